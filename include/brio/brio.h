@@ -1,0 +1,435 @@
+/* brio: exact three-dimensional Delaunay and regular triangulations of very large point sets, and surface
+ * reconstruction with guarantees on top of them.   MIT licence.
+ *
+ * This header is the manual. It goes in the order of a user's work: status and context, triangulation, meshes and
+ * their certificates, reconstruction, files, test data, predicates.
+ *
+ * Words, used in one meaning throughout:
+ *   points      the rows of the input
+ *   duplicates  points minus distinct positions; of coincident points the heaviest represents the others, then the
+ *               one with the lowest index
+ *   vertices    distinct positions that own a (Voronoi or power) cell
+ *   hidden      distinct positions without a cell (never without weights), each represented by the vertex of least
+ *               power distance, ties by lexicographic position
+ *               points = vertices + duplicates + hidden
+ *   infinite    the infinite vertex BRIO_INFINITE closes the convex hull: every hull facet belongs to one infinite
+ *               tetrahedron
+ *   facet       handle 4*t + i names the facet of tetrahedron t opposite to its vertex i; two facet handles that name
+ *               the same triangle from its two sides are mates
+ *   oriented    a tetrahedron (a, b, c, d) is positive when det [b-a, c-a, d-a] > 0
+ *
+ * Promises. Every sign of every predicate is right for every finite double. The same point set gives the same set of
+ * tetrahedra for every order of the points, insertion order, location strategy and number of threads: ties are broken
+ * by a symbolic perturbation of the lifted coordinate, keyed by lexicographic position [Devillers Teillaud 2011].
+ * -0.0 equals 0.0. Arrays of the caller are read only, never kept, never reordered. The library never prints, exits
+ * or aborts; every function that can fail returns a status, and the context keeps the sentence that explains it.
+ */
+#ifndef BRIO_H
+#define BRIO_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define BRIO_VERSION "0.1.0"
+
+#if defined(_WIN32)
+#define BRIO_API __declspec(dllexport)
+#else
+#define BRIO_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Status and context
+ */
+
+/** What a function that can fail returns. Numbers are fixed; families have gaps. */
+typedef enum brio_status {
+    BRIO_OK = 0,
+    /* the call */
+    BRIO_ERR_ARGUMENT = 10,   /* an argument outside its documented range */
+    BRIO_ERR_NOT_FINITE = 11, /* NaN or an infinity among coordinates or weights */
+    /* the problem */
+    BRIO_ERR_NO_ANSWER = 20, /* the input has no answer of the kind asked for, e.g. no inside found */
+    BRIO_ERR_CHECK = 21,     /* a check found the object wrong */
+    /* the machine */
+    BRIO_ERR_NO_MEMORY = 30, /* the system or the memory limit refused memory */
+    BRIO_ERR_TOO_LARGE = 31, /* more objects than indices can name */
+    BRIO_ERR_CANCELLED = 32, /* the progress callback asked to stop */
+    /* files */
+    BRIO_ERR_OPEN = 40,   /* missing or unreadable */
+    BRIO_ERR_FORMAT = 41, /* malformed, truncated, or of an unknown format */
+    BRIO_ERR_WRITE = 42,  /* could not be written; nothing half-written is left behind */
+    /* a fault of this library */
+    BRIO_ERR_INTERNAL = 90,
+    BRIO_STATUS_END
+} brio_status;
+
+/** A static sentence for a status; never NULL. */
+BRIO_API const char *brio_status_string(brio_status status);
+
+/** Memory functions of the caller's choice. alloc and realloc return NULL on failure; sizes are in bytes. */
+typedef struct brio_allocator {
+    void *(*alloc)(size_t size, void *user);
+    void *(*realloc)(void *block, size_t size, void *user);
+    void (*free)(void *block, void *user);
+    void *user;
+} brio_allocator;
+
+/** Settings, the last error message and the memory account of one line of work. A context serves one call at a time;
+ *  different contexts are independent. Everything made with a context must be freed before it. */
+typedef struct brio_context brio_context;
+
+/** Makes a context.   allocator  NULL for the system's memory (large arrays then live in mappings of their own, that
+ *  grow without copying).   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_context_new(const brio_allocator *allocator, brio_context **out);
+
+/** Frees a context; NULL is accepted. */
+BRIO_API void brio_context_free(brio_context *ctx);
+
+/** The sentence that explains the last failure in this context ("point 1842: y is NaN"); "" when there was none.
+ *  Valid until the next call with the context. */
+BRIO_API const char *brio_message(const brio_context *ctx);
+
+/** Number of threads to use; 0 (default) means all cores. */
+BRIO_API void brio_context_set_threads(brio_context *ctx, int threads);
+/** Number of threads that will be used, at least 1. */
+BRIO_API int brio_context_threads(const brio_context *ctx);
+
+/** Called now and then from long work, in the calling thread, with the stage's name and its finished fraction in
+ *  [0, 1]. A result other than 0 cancels the work: the function that runs frees everything and returns
+ *  BRIO_ERR_CANCELLED. */
+typedef int (*brio_progress_fn)(const char *stage, double fraction, void *user);
+BRIO_API void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user);
+
+/** The context's account may not exceed `bytes`; a request beyond it fails with BRIO_ERR_NO_MEMORY. 0 removes the
+ *  limit of the caller. The limits of the process' memory cgroup and of the machine hold always. */
+BRIO_API void brio_context_set_memory_limit(brio_context *ctx, size_t bytes);
+
+/** Large arrays made from now on live in unlinked mapped files in this folder instead of anonymous memory; each growth
+ *  is allocated on disk before it is touched. NULL goes back to memory. Not with a caller's allocator.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder), BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_context_set_scratch(brio_context *ctx, const char *folder);
+
+/** Bytes now held by objects and work of this context, and the most there ever were. */
+BRIO_API size_t brio_context_memory(const brio_context *ctx);
+BRIO_API size_t brio_context_memory_peak(const brio_context *ctx);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Delaunay and regular triangulation
+ */
+
+#define BRIO_INFINITE UINT32_MAX
+
+/** Insertion orders. All give the same tetrahedra. */
+typedef enum brio_order {
+    BRIO_ORDER_BRIO = 0,   /* random rounds, Hilbert curve inside a round: the tuned one [Amenta Choi Rote 2003] */
+    BRIO_ORDER_HILBERT = 1, /* one round */
+    BRIO_ORDER_RANDOM = 2,
+    BRIO_ORDER_INPUT = 3,
+    BRIO_ORDER_END
+} brio_order;
+
+typedef struct brio_options {
+    brio_order order;
+    double round_ratio;      /* share of the points left for the rounds before the last, in (0, 1); default 1/8 */
+    uint64_t seed;           /* every random choice follows from it; default 1 */
+    uint32_t max_tetrahedra; /* finite and infinite ones at any time; default (and most) 2^30 */
+} brio_options;
+
+BRIO_API brio_options brio_options_default(void);
+
+/** Facts of a triangulation. Counters are totals and include infinite tetrahedra. */
+typedef struct brio_stats {
+    size_t points, vertices, duplicates, hidden;
+    int dimension;             /* of the affine hull: -1 (no points) to 3 */
+    size_t tetrahedra;         /* finite ones */
+    size_t hull_facets;        /* = infinite tetrahedra */
+    uint64_t created, destroyed, walk_steps, insphere_calls;
+    uint64_t exact_calls;      /* predicate calls that the first filter did not settle */
+    double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
+} brio_stats;
+
+typedef struct brio_triangulation brio_triangulation;
+
+/** Builds the Delaunay triangulation of a point set; with weights, the regular triangulation (power distance
+ *  |x - p|^2 - w).
+ *  Any finite input is answered: points of dimension 2 or less have vertices, duplicates and hidden points but no
+ *  tetrahedra.
+ *  points   #P by 3, row after row.   weights  #P, or NULL.   num_points  less than 2^32 - 16.
+ *  options  NULL for the defaults.    out      owned by the caller, freed with brio_triangulation_free; NULL on error.
+ *  Cost: O(n log n) expected for points of realistic inputs, 33 bytes a tetrahedron and 44 a point at the peak, plus a
+ *  sort buffer of 24 bytes a point before the first tetrahedron.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_CANCELLED.
+ *  Based on: [Bowyer 1981], [Watson 1981], [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties. */
+BRIO_API brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                   const brio_options *options, brio_triangulation **out);
+
+/** Frees a triangulation; NULL is accepted. */
+BRIO_API void brio_triangulation_free(brio_triangulation *t);
+
+BRIO_API const brio_stats *brio_triangulation_stats(const brio_triangulation *t);
+
+/** #T by 4 indices of points, #T = tetrahedra + hull_facets. The finite tetrahedra come first and are positive; an
+ *  infinite tetrahedron has BRIO_INFINITE as its last vertex and the other three see the outside on their negative
+ *  side ((a, b, c, x) is positive for x outside). The order is the same for every number of threads. View, valid until the
+ *  triangulation is freed. */
+BRIO_API const uint32_t *brio_triangulation_tetrahedra(const brio_triangulation *t);
+
+/** #T by 4 facet handles: the mate of each facet. View. */
+BRIO_API const uint32_t *brio_triangulation_mates(const brio_triangulation *t);
+
+/** #P: for each point the vertex that represents it: itself for a vertex. View. */
+BRIO_API const uint32_t *brio_triangulation_representatives(const brio_triangulation *t);
+
+/** Checks a triangulation exactly and completely against its points: adjacency, orientation, the empty (ortho)sphere
+ *  across every facet including the symbolic perturbation, convexity of the hull, Euler's relation, and that every
+ *  point is a vertex, a duplicate of one, or hidden under the tetrahedron that holds it.
+ *  points, weights, num_points  as they were given to brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation *t, const double *points,
+                                              const double *weights, size_t num_points);
+
+/** The same check for tetrahedra from anywhere: #T by 4 indices of points, finite ones only, in any order and either
+ *  orientation. Any Delaunay (regular) triangulation of the points passes, however its ties are broken.
+ *  canonical  receives 1 when it is the one that brio_delaunay computes, else 0; may be NULL. */
+BRIO_API brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const double *weights,
+                                           size_t num_points, const uint32_t *tetrahedra, size_t num_tetrahedra,
+                                           int *canonical);
+
+/** A hash of the set of tetrahedra over the lexicographic ranks of their vertices: independent of the order of the
+ *  points and of the tetrahedra, and unchanged by scaling all points with a power of two.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulation *t, const double *points,
+                                                 uint64_t *checksum);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Meshes and their certificates
+ */
+
+/** Scalar types of properties, as PLY has them. */
+typedef enum brio_scalar {
+    BRIO_INT8, BRIO_UINT8, BRIO_INT16, BRIO_UINT16, BRIO_INT32, BRIO_UINT32, BRIO_FLOAT32, BRIO_FLOAT64, BRIO_SCALAR_END
+} brio_scalar;
+
+/** Bytes of a scalar type. */
+BRIO_API size_t brio_scalar_size(brio_scalar type);
+
+/** One named number for each vertex. */
+typedef struct brio_property {
+    char name[64];
+    brio_scalar type;
+    void *data; /* #V scalars of `type` */
+} brio_property;
+
+/** Points, with polygons or tetrahedra over them, and properties of the points: what a file holds. Polygons are stored
+ *  one after the other: face f has the vertices face_vertices[face_offsets[f] .. face_offsets[f+1]). Vertices are never
+ *  merged by position. All arrays are owned by the mesh; arrays of absent parts are NULL. */
+typedef struct brio_mesh {
+    brio_context *context;
+    size_t num_vertices;
+    double *vertices; /* #V by 3 */
+    size_t num_faces;
+    uint64_t *face_offsets; /* #F + 1 */
+    uint32_t *face_vertices;
+    size_t num_tetrahedra;
+    uint32_t *tetrahedra; /* #T by 4 */
+    size_t num_properties;
+    brio_property *properties;
+} brio_mesh;
+
+/** An empty mesh. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_mesh_new(brio_context *ctx, brio_mesh **out);
+/** Frees a mesh with all its arrays; NULL is accepted. */
+BRIO_API void brio_mesh_free(brio_mesh *mesh);
+
+/** Gives an empty mesh its vertices (copied; vertices may be NULL: zeros). */
+BRIO_API brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size_t num_vertices);
+/** Gives a mesh polygons (copied): offsets #F + 1, indices offsets[#F]. */
+BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices,
+                                         size_t num_faces);
+/** Gives a mesh tetrahedra (copied): #T by 4. */
+BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t num_tetrahedra);
+/** Adds a property of the vertices, zeroed, and returns where its numbers go in *data; a name that is there already is
+ *  BRIO_ERR_ARGUMENT. */
+BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
+/** The property of that name, or NULL. */
+BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);
+/** Scalar i of a property as a double. */
+BRIO_API double brio_property_value(const brio_property *property, size_t i);
+
+/** What can be said of a surface by connectivity alone, vertices never being merged by position.
+ *  genus = sum over components (faces joined across edges) of (2 - chi - boundary loops) / 2. */
+typedef struct brio_certificate {
+    int closed;   /* there are faces, and every edge has two */
+    int manifold; /* no edge has more than two faces; the faces round each vertex form one fan */
+    int oriented; /* the two faces of an edge run along it in opposite directions */
+    size_t components;
+    int64_t genus;
+    int64_t *genera; /* of each component, largest component (by faces) first; owned by the certificate */
+    size_t boundary_edges, boundary_loops;
+    size_t nonmanifold_edges, nonmanifold_vertices, flipped_edges;
+    int64_t self_intersections; /* pairs of faces; -1 when not counted */
+    double area, volume; /* volume is signed: positive when the faces are seen counterclockwise from outside */
+    brio_context *context;
+} brio_certificate;
+
+/** Certifies the polygons of a mesh. Cost O(F log F).
+ *  Returns BRIO_OK (whatever the certificate says), BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out);
+/** Frees what a certificate owns; a zeroed certificate is accepted. */
+BRIO_API void brio_certificate_free(brio_certificate *certificate);
+
+/** Distances between two surfaces, both ways, in the unit of the coordinates. */
+typedef struct brio_distance {
+    double mean, rms, p95, hausdorff; /* of the distances from samples of either to the other, exact point to triangle */
+    double normal_consistency;        /* mean |cos| between the normals at a sample and at its nearest point */
+    double diagonal;                  /* of the bounding box of b */
+} brio_distance;
+
+/** Compares two surfaces by `samples` random points on each (0: 100,000), uniform by area, and their nearest points on
+ *  the other. Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without faces), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
+                                        uint64_t seed, brio_distance *out);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Surface reconstruction
+ */
+
+typedef struct brio_surface_options {
+    uint64_t seed;  /* default 1 */
+    int triangulate; /* 1: cut the polygons into triangles; default 0 */
+} brio_surface_options;
+
+BRIO_API brio_surface_options brio_surface_options_default(void);
+
+/** What the power crust counts. */
+typedef struct brio_power_crust_stats {
+    size_t samples;                     /* distinct positions */
+    size_t poles, hidden_poles;         /* polar balls; of these without a power cell */
+    size_t inner, outer;                /* labels */
+    size_t confused;                    /* poles that had evidence for both labels when they were labelled */
+    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds;
+} brio_power_crust_stats;
+
+/** Reconstructs a closed surface from samples: the power crust. The faces of the power diagram of the polar balls that
+ *  separate cells of inner poles from cells of outer poles, as polygons seen counterclockwise from outside.
+ *  Guarantees: the mesh is closed, manifold and oriented as a combinatorial object, for every input that has an inside;
+ *  on a dense sample of a smooth closed surface it is homeomorphic and close to it (appendix B of [Choi 2003]).
+ *  Does not guarantee: triangular faces, absence of tiny faces, absence of self-intersections on undersampled input.
+ *  points  #P by 3.   options  NULL for the defaults.   stats  may be NULL.   out  owned by the caller.
+ *  Cost: two triangulations, of the samples and of their about 1.5 n poles; about 600 bytes a sample at the peak.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found), and as brio_delaunay.
+ *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] sections 3.3 and 5. */
+BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
+                                      const brio_surface_options *options, brio_mesh **out,
+                                      brio_power_crust_stats *stats);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Files
+ */
+
+/** File formats. BRIO_FORMAT_AUTO goes by the extension, and by the content where that tells. */
+typedef enum brio_format {
+    BRIO_FORMAT_AUTO = 0,
+    BRIO_FORMAT_PLY,
+    BRIO_FORMAT_XYZ, /* .xyz .pts .txt .csv */
+    BRIO_FORMAT_OBJ,
+    BRIO_FORMAT_OFF,
+    BRIO_FORMAT_VTU,  /* write only */
+    BRIO_FORMAT_NODE, /* TetGen's .node, with .ele beside it */
+    BRIO_FORMAT_END
+} brio_format;
+
+/** The format of a file's name, BRIO_FORMAT_AUTO when the extension is unknown. A leading dot or path is optional. */
+BRIO_API brio_format brio_format_of(const char *path);
+
+/** Reads a file. Vertices, polygons, tetrahedra, and every other scalar property of the vertices are kept; other
+ *  elements are skipped. "-" reads standard input.
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (the message names file, line or byte offset, and what was expected),
+ *  BRIO_ERR_NOT_FINITE (the first such point and how many there are), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
+
+typedef struct brio_write_options {
+    brio_format format; /* AUTO: by the extension */
+    int ascii;          /* 1: text where the format has both; default 0 */
+    int float32;        /* 1: coordinates in single precision where the format has both; default 0 */
+    const char *comment; /* a line for the header, or NULL */
+} brio_write_options;
+
+BRIO_API brio_write_options brio_write_options_default(void);
+
+/** Writes a mesh: to a temporary name beside the target, flushed, then renamed, so that nothing half-written is ever
+ *  left. "-" writes to standard output (the format must then be given).
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a format that cannot hold the mesh), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
+                                const brio_write_options *options);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Test data
+ */
+
+typedef enum brio_kind {
+    BRIO_KIND_CUBE,     /* uniform in the unit cube */
+    BRIO_KIND_BALL,     /* uniform in the unit ball */
+    BRIO_KIND_SPHERE,   /* uniform on the unit sphere */
+    BRIO_KIND_TORUS,    /* uniform by area on the torus of radii 1 and 0.4 */
+    BRIO_KIND_CYLINDER, /* uniform on the side of the cylinder of radius 1 and height 4 */
+    BRIO_KIND_GRID,     /* the first n points of the smallest cubic integer grid that has them */
+    BRIO_KIND_SCAN,     /* a simulated laser scan of a sculpture of genus 3 */
+    BRIO_KIND_END
+} brio_kind;
+
+typedef struct brio_generate_options {
+    uint64_t seed; /* default 1 */
+    double noise;  /* scan: standard deviation of the sensor along its ray, in units of the sample spacing; default 0.1 */
+    int views;     /* scan: number of sensor positions; default 12 */
+} brio_generate_options;
+
+BRIO_API brio_generate_options brio_generate_options_default(void);
+
+/** Makes n points of a kind; the same seed gives the same points. A scan has about n points (as many as its rays hit)
+ *  and the property "view".   Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,
+                                   brio_mesh **out);
+
+/** The surface that BRIO_KIND_SCAN scans, as a closed triangle mesh on a grid of `resolution` cells along the longest
+ *  side of its box (0: 160). */
+BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Predicates, exact for every finite double
+ */
+
+/** Sign (-1, 0, 1) of det [b-a, c-a, d-a]; a, b, c, d are 3 doubles each. */
+BRIO_API int brio_orient3d(const double *a, const double *b, const double *c, const double *d);
+
+/** Sign of the in-sphere determinant: 1 when e is inside the sphere through the positive tetrahedron (a, b, c, d), -1
+ *  outside, 0 on it; the opposite for a negative one.   weights  NULL, or the five weights in the order a to e: then e
+ *  is held against the orthosphere (power test). */
+BRIO_API int brio_insphere(const double *a, const double *b, const double *c, const double *d, const double *e,
+                           const double *weights);
+
+/** As brio_insphere for a positive tetrahedron and a point that is none of its vertices, with ties broken by the
+ *  symbolic perturbation: never 0. */
+BRIO_API int brio_insphere_perturbed(const double *a, const double *b, const double *c, const double *d,
+                                     const double *e, const double *weights);
+
+/** Circumcentre of a tetrahedron that is not flat or, with 4 weights, its orthocentre. A function of the set of points:
+ *  the same bits for every order of them. Each coordinate is off by at most `*error` (may be NULL), which is a few units
+ *  in the last place of the largest of the centre's coordinates and of its distance to the tetrahedron; higher precision
+ *  is used where doubles do not reach it. Returns BRIO_OK, or BRIO_ERR_ARGUMENT for a flat tetrahedron or a
+ *  centre that is not representable. */
+BRIO_API brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d,
+                                       const double *weights, double *centre, double *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,101 @@
+/* Context: settings, last message, progress. */
+#include "base/context.h"
+#include "base/memory.h"
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static void *system_alloc(size_t size, void *user) {
+    (void)user;
+    return malloc(size);
+}
+static void *system_realloc(void *block, size_t size, void *user) {
+    (void)user;
+    return realloc(block, size);
+}
+static void system_free(void *block, void *user) {
+    (void)user;
+    free(block);
+}
+
+brio_status brio_context_new(const brio_allocator *allocator, brio_context **out) {
+    const brio_allocator system = {system_alloc, system_realloc, system_free, NULL};
+    const brio_allocator *a = allocator ? allocator : &system;
+    brio_context *ctx = a->alloc(sizeof *ctx, a->user);
+    *out = ctx;
+    if (!ctx) return BRIO_ERR_NO_MEMORY;
+    memset(ctx, 0, sizeof *ctx);
+    ctx->allocator = *a;
+    ctx->custom = allocator != NULL;
+    ctx->machine_limit = brio_machine_memory();
+    ctx->progress_to = 1;
+    return BRIO_OK;
+}
+
+void brio_context_free(brio_context *ctx) {
+    if (!ctx) return;
+    brio_release(ctx, ctx->scratch);
+    brio_allocator a = ctx->allocator;
+    a.free(ctx, a.user);
+}
+
+const char *brio_message(const brio_context *ctx) { return ctx->message; }
+
+void brio_context_set_threads(brio_context *ctx, int threads) { ctx->threads = threads > 0 ? threads : 0; }
+
+int brio_context_threads(const brio_context *ctx) {
+    if (ctx->threads > 0) return ctx->threads;
+#ifdef _OPENMP
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+
+void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user) {
+    ctx->progress = progress;
+    ctx->progress_user = user;
+}
+
+void brio_context_set_memory_limit(brio_context *ctx, size_t bytes) { ctx->caller_limit = bytes; }
+
+brio_status brio_context_set_scratch(brio_context *ctx, const char *folder) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, !folder || !ctx->custom, BRIO_ERR_ARGUMENT, "a scratch folder and a caller's allocator exclude each other");
+    BRIO_REQUIRE(ctx, !folder || access(folder, W_OK | X_OK) == 0, BRIO_ERR_OPEN, "%s: not a writable folder", folder);
+    brio_release(ctx, ctx->scratch);
+    ctx->scratch = NULL;
+    if (folder) {
+        BRIO_TRY(BRIO_ALLOC(ctx, ctx->scratch, strlen(folder) + 1));
+        strcpy(ctx->scratch, folder);
+    }
+done:
+    return status;
+}
+
+brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(ctx->message, sizeof ctx->message, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+brio_status brio_progress(brio_context *ctx, const char *stage, double fraction) {
+    if (!ctx->progress) return BRIO_OK;
+    double whole = ctx->progress_from + fraction * (ctx->progress_to - ctx->progress_from);
+    if (!ctx->progress(stage, whole, ctx->progress_user)) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_CANCELLED, "cancelled during %s", stage);
+}
+
+double brio_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}

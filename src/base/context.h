@@ -1,0 +1,48 @@
+/* The context behind the public handle, and the ways every other part reports failure, takes memory, and shows
+ * progress. Error handling in one shape everywhere: a function keeps `brio_status status = BRIO_OK`, uses BRIO_TRY and
+ * BRIO_REQUIRE, which jump to its one label `done:`, and frees its workspace there. */
+#ifndef BRIO_BASE_CONTEXT_H
+#define BRIO_BASE_CONTEXT_H
+
+#include "brio/brio.h"
+#include <stdbool.h>
+
+struct brio_context {
+    brio_allocator allocator;
+    bool custom;          /* allocator is the caller's: no mappings */
+    int threads;          /* as set; 0 = all */
+    size_t caller_limit;  /* bytes, 0 = none */
+    size_t machine_limit; /* of the memory cgroup and the machine */
+    size_t live, peak;    /* bytes of anonymous memory; updated atomically */
+    char *scratch;        /* folder of mapped files, or NULL */
+    brio_progress_fn progress;
+    void *progress_user;
+    double progress_from, progress_to; /* the part of the bar that the running stage owns */
+    char message[512];
+};
+
+/** Stores the sentence for the status and returns the status. */
+brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/** Tells the caller how far a stage is; BRIO_ERR_CANCELLED when the caller wants to stop. */
+brio_status brio_progress(brio_context *ctx, const char *stage, double fraction);
+
+/** Seconds of a monotonic clock. */
+double brio_seconds(void);
+
+#define BRIO_TRY(call)                                                                                                 \
+    do {                                                                                                               \
+        status = (call);                                                                                               \
+        if (status != BRIO_OK) goto done;                                                                              \
+    } while (0)
+
+#define BRIO_REQUIRE(ctx, condition, code, ...)                                                                        \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            status = brio_fail(ctx, code, __VA_ARGS__);                                                                \
+            goto done;                                                                                                 \
+        }                                                                                                              \
+    } while (0)
+
+#endif

@@ -1,0 +1,260 @@
+/* Counted memory: small blocks from the allocator, large ones in mappings that grow without copying.
+ *
+ * Invariants: a block's header tells how it was made; `live` is the sum of the sizes of anonymous blocks; a mapped
+ * file is allocated on disk (posix_fallocate) before its pages can be touched, so that a full disk is a status. */
+#define _GNU_SOURCE
+#include "base/memory.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+enum { HEADER = 64, MAP_FROM = 1 << 20, HUGE_PAGE = 2 << 20 };
+
+typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
+
+typedef struct {
+    size_t size; /* of the whole block, header included */
+    int file;    /* descriptor of KIND_FILE */
+    block_kind kind;
+} block_header;
+
+static block_header *header_of(void *block) { return (block_header *)((char *)block - HEADER); }
+
+/* --- the account --- */
+
+static bool account_add(brio_context *ctx, size_t bytes) {
+    size_t live = __atomic_add_fetch(&ctx->live, bytes, __ATOMIC_RELAXED);
+    size_t limit = ctx->machine_limit;
+    if (ctx->caller_limit && ctx->caller_limit < limit) limit = ctx->caller_limit;
+    if (live > limit) {
+        __atomic_sub_fetch(&ctx->live, bytes, __ATOMIC_RELAXED);
+        return false;
+    }
+    size_t peak = __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED);
+    while (live > peak &&
+           !__atomic_compare_exchange_n(&ctx->peak, &peak, live, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+    return true;
+}
+
+static void account_sub(brio_context *ctx, size_t bytes) { __atomic_sub_fetch(&ctx->live, bytes, __ATOMIC_RELAXED); }
+
+size_t brio_context_memory(const brio_context *ctx) { return __atomic_load_n(&ctx->live, __ATOMIC_RELAXED); }
+size_t brio_context_memory_peak(const brio_context *ctx) { return __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED); }
+
+static size_t number_in_file(const char *path) {
+    FILE *f = fopen(path, "r");
+    unsigned long long bytes = 0;
+    if (!f) return SIZE_MAX;
+    int read = fscanf(f, "%llu", &bytes);
+    fclose(f);
+    return read == 1 && bytes ? (size_t)bytes : SIZE_MAX;
+}
+
+/* The least limit over the process' memory cgroup and its ancestors. */
+static size_t cgroup_memory(void) {
+    size_t least = SIZE_MAX;
+    char line[512];
+    FILE *f = fopen("/proc/self/cgroup", "r");
+    if (!f) return least;
+    while (fgets(line, sizeof line, f)) {
+        char *controllers = strchr(line, ':');
+        char *path = controllers ? strchr(controllers + 1, ':') : NULL;
+        if (!path) continue;
+        *path++ = 0;
+        path[strcspn(path, "\n")] = 0;
+        bool v2 = controllers[1] == 0;
+        if (!v2 && strcmp(controllers + 1, "memory")) continue;
+        for (;;) {
+            char name[1024];
+            snprintf(name, sizeof name, v2 ? "/sys/fs/cgroup%s/memory.max" : "/sys/fs/cgroup/memory%s/memory.limit_in_bytes", path);
+            size_t limit = number_in_file(name);
+            if (limit < least) least = limit;
+            char *slash = strrchr(path, '/');
+            if (!slash || path[0] == 0) break;
+            *slash = 0;
+        }
+    }
+    fclose(f);
+    return least;
+}
+
+size_t brio_machine_memory(void) {
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    size_t machine = pages > 0 && page > 0 ? (size_t)pages * (size_t)page : SIZE_MAX;
+    size_t group = cgroup_memory();
+    return group < machine ? group : machine;
+}
+
+/* --- mapped blocks --- */
+
+static size_t round_up(size_t size, size_t unit) { return (size + unit - 1) / unit * unit; }
+
+static size_t mapped_size(size_t size) { return round_up(size, size >= HUGE_PAGE ? HUGE_PAGE : 4096); }
+
+/* An anonymous mapping that starts on a huge page, so that the system can back it with such. */
+static void *map_anonymous(size_t size) {
+    char *base = mmap(NULL, size + HUGE_PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (base == MAP_FAILED) return NULL;
+    char *aligned = (char *)round_up((size_t)base, HUGE_PAGE);
+    if (aligned > base) munmap(base, (size_t)(aligned - base));
+    size_t tail = (size_t)(base + size + HUGE_PAGE - (aligned + size));
+    if (tail) munmap(aligned + size, tail);
+    madvise(aligned, size, MADV_HUGEPAGE);
+    return aligned;
+}
+
+static void *map_file(brio_context *ctx, size_t size, int *file, brio_status *status) {
+    *file = open(ctx->scratch, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (*file < 0) {
+        char name[4096];
+        snprintf(name, sizeof name, "%s/brio-XXXXXX", ctx->scratch);
+        *file = mkstemp(name);
+        if (*file >= 0) unlink(name);
+    }
+    int error = *file < 0 ? errno : posix_fallocate(*file, 0, (off_t)size);
+    void *base = error ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, *file, 0);
+    if (base != MAP_FAILED) return base;
+    *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s", ctx->scratch, size,
+                        strerror(error ? error : errno));
+    if (*file >= 0) close(*file);
+    return NULL;
+}
+
+/* --- one block --- */
+
+static brio_status refuse(brio_context *ctx, size_t size) {
+    size_t limit = ctx->machine_limit;
+    if (ctx->caller_limit && ctx->caller_limit < limit) limit = ctx->caller_limit;
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "out of memory: %zu bytes more, %zu in use, limit %zu", size,
+                     brio_context_memory(ctx), limit);
+}
+
+static void *block_new(brio_context *ctx, size_t size, brio_status *status) {
+    block_header h = {size, -1, KIND_HEAP};
+    char *base = NULL;
+    bool mapped = !ctx->custom && size >= MAP_FROM;
+    if (mapped) {
+        h.kind = ctx->scratch ? KIND_FILE : KIND_MAPPED;
+        h.size = mapped_size(size);
+    }
+    if (h.kind == KIND_FILE) {
+        base = map_file(ctx, h.size, &h.file, status);
+        if (!base) return NULL;
+    } else {
+        if (account_add(ctx, h.size)) {
+            base = mapped ? map_anonymous(h.size) : ctx->allocator.alloc(h.size, ctx->allocator.user);
+            if (!base) account_sub(ctx, h.size);
+        }
+        if (!base) {
+            *status = refuse(ctx, h.size);
+            return NULL;
+        }
+    }
+    memcpy(base, &h, sizeof h);
+    return base + HEADER;
+}
+
+void brio_release(brio_context *ctx, void *block) {
+    if (!block) return;
+    block_header h = *header_of(block);
+    if (h.kind == KIND_HEAP)
+        ctx->allocator.free(header_of(block), ctx->allocator.user);
+    else
+        munmap(header_of(block), h.size);
+    if (h.kind == KIND_FILE)
+        close(h.file);
+    else
+        account_sub(ctx, h.size);
+}
+
+/* Grows or shrinks a mapping in place of copying it. */
+static void *block_remap(brio_context *ctx, void *block, size_t size, brio_status *status) {
+    block_header h = *header_of(block);
+    size_t target = mapped_size(size);
+    if (target == h.size) return block;
+    bool grows = target > h.size, file = h.kind == KIND_FILE;
+    int error = file && grows ? posix_fallocate(h.file, 0, (off_t)target) : 0;
+    if (error) {
+        *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s",
+                            ctx->scratch ? ctx->scratch : "scratch", target, strerror(error));
+        return NULL;
+    }
+    if (!file && grows && !account_add(ctx, target - h.size)) {
+        *status = refuse(ctx, target - h.size);
+        return NULL;
+    }
+    char *base = mremap(header_of(block), h.size, target, MREMAP_MAYMOVE);
+    if (base == MAP_FAILED) {
+        if (!file && grows) account_sub(ctx, target - h.size);
+        *status = refuse(ctx, target);
+        return NULL;
+    }
+    if (!file && !grows) account_sub(ctx, h.size - target);
+    if (!file && grows) madvise(base, target, MADV_HUGEPAGE);
+    if (file && !grows && ftruncate(h.file, (off_t)target) != 0) errno = 0;
+    ((block_header *)base)->size = target;
+    return base + HEADER;
+}
+
+static void *block_move(brio_context *ctx, void *block, size_t size, brio_status *status) {
+    size_t old = header_of(block)->size;
+    void *moved = block_new(ctx, size, status);
+    if (!moved) return NULL;
+    memcpy(moved, block, (old < size ? old : size) - HEADER);
+    brio_release(ctx, block);
+    return moved;
+}
+
+static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_status *status) {
+    size_t old = header_of(block)->size;
+    if (size > old && !account_add(ctx, size - old)) {
+        *status = refuse(ctx, size - old);
+        return NULL;
+    }
+    char *base = ctx->allocator.realloc(header_of(block), size, ctx->allocator.user);
+    if (!base) {
+        if (size > old) account_sub(ctx, size - old);
+        *status = refuse(ctx, size);
+        return NULL;
+    }
+    if (size < old) account_sub(ctx, old - size);
+    ((block_header *)base)->size = size;
+    return base + HEADER;
+}
+
+void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, brio_status *status) {
+    size_t bytes;
+    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2) {
+        *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "out of memory: %zu objects of %zu bytes", count, size);
+        return NULL;
+    }
+    bytes += HEADER;
+    if (!block) return block_new(ctx, bytes, status);
+    block_kind kind = header_of(block)->kind;
+    bool mapped = !ctx->custom && bytes >= MAP_FROM;
+    if (kind != KIND_HEAP && mapped) return block_remap(ctx, block, bytes, status);
+    if (kind == KIND_HEAP && !mapped) return block_realloc(ctx, block, bytes, status);
+    return block_move(ctx, block, bytes, status);
+}
+
+brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
+    brio_status status = brio_resize_to(ctx, pointer_to_block, count, size);
+    if (status != BRIO_OK) return status;
+    void *block;
+    memcpy(&block, pointer_to_block, sizeof block);
+    if (header_of(block)->kind == KIND_HEAP) memset(block, 0, count * size); /* new mappings are zero */
+    return BRIO_OK;
+}
+
+brio_status brio_reserve(brio_context *ctx, void *pointer_to_block, size_t *capacity, size_t need, size_t size) {
+    size_t target = *capacity ? *capacity : 16;
+    while (target < need) target = target > SIZE_MAX / 4 ? need : target * 2;
+    brio_status status = brio_resize_to(ctx, pointer_to_block, target, size);
+    if (status == BRIO_OK) *capacity = target;
+    return status;
+}

@@ -1,0 +1,45 @@
+/* All memory of the library comes from here and is counted against the context's limit.
+ *
+ * Small blocks come from the context's allocator. Large ones (from 1 MiB on, with the system's allocator) are mappings
+ * of their own, of huge pages where the system has them, or of an unlinked file in the scratch folder; they grow by
+ * mremap, which moves pages and copies nothing. A header of 64 bytes before each block holds its size, so the block
+ * stays aligned to a cache line. */
+#ifndef BRIO_BASE_MEMORY_H
+#define BRIO_BASE_MEMORY_H
+
+#include "base/context.h"
+
+/** Makes block hold count elements of `size` bytes, keeping what it held; NULL makes a new one. On failure *status tells
+ *  and the old block stays. New bytes are not set. */
+void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, brio_status *status);
+
+/** Frees a block; NULL is accepted. */
+void brio_release(brio_context *ctx, void *block);
+
+/** Memory that this process may use: the least of the machine's and its cgroups' (v1 and v2). */
+size_t brio_machine_memory(void);
+
+static inline brio_status brio_resize_to(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
+    brio_status status = BRIO_OK;
+    void *block;
+    __builtin_memcpy(&block, pointer_to_block, sizeof block);
+    block = brio_resize(ctx, block, count, size, &status);
+    if (status == BRIO_OK) __builtin_memcpy(pointer_to_block, &block, sizeof block);
+    return status;
+}
+
+brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count, size_t size);
+
+/** p = room for count elements of *p; bytes not set. */
+#define BRIO_ALLOC(ctx, p, count) ((p) = NULL, brio_resize_to(ctx, &(p), count, sizeof *(p)))
+/** p = room for count elements of *p, all bytes 0. */
+#define BRIO_ALLOC_ZERO(ctx, p, count) ((p) = NULL, brio_zeroed(ctx, &(p), count, sizeof *(p)))
+/** p = the same block with room for count elements. */
+#define BRIO_RESIZE(ctx, p, count) brio_resize_to(ctx, &(p), count, sizeof *(p))
+
+/** Makes room for at least `need` elements in a growing array: doubles *capacity as often as needed. */
+#define BRIO_RESERVE(ctx, p, capacity, need)                                                                           \
+    ((size_t)(need) <= (size_t)(capacity) ? BRIO_OK : brio_reserve(ctx, &(p), &(capacity), need, sizeof *(p)))
+brio_status brio_reserve(brio_context *ctx, void *pointer_to_block, size_t *capacity, size_t need, size_t size);
+
+#endif

@@ -1,0 +1,118 @@
+/* The mesh handle: points, polygons or tetrahedra over them, properties of the points. */
+#include "base/memory.h"
+#include <string.h>
+
+brio_status brio_mesh_new(brio_context *ctx, brio_mesh **out) {
+    brio_status status = BRIO_ALLOC_ZERO(ctx, *out, 1);
+    if (status == BRIO_OK) (*out)->context = ctx;
+    return status;
+}
+
+void brio_mesh_free(brio_mesh *mesh) {
+    if (!mesh) return;
+    brio_context *ctx = mesh->context;
+    for (size_t i = 0; i < mesh->num_properties; i++) brio_release(ctx, mesh->properties[i].data);
+    brio_release(ctx, mesh->properties);
+    brio_release(ctx, mesh->vertices);
+    brio_release(ctx, mesh->face_offsets);
+    brio_release(ctx, mesh->face_vertices);
+    brio_release(ctx, mesh->tetrahedra);
+    brio_release(ctx, mesh);
+}
+
+brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size_t num_vertices) {
+    brio_context *ctx = mesh->context;
+    double *copy = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, !mesh->vertices, BRIO_ERR_ARGUMENT, "the mesh has vertices already");
+    BRIO_TRY(vertices ? BRIO_ALLOC(ctx, copy, 3 * num_vertices) : BRIO_ALLOC_ZERO(ctx, copy, 3 * num_vertices));
+    if (vertices && num_vertices) memcpy(copy, vertices, 3 * num_vertices * sizeof *copy);
+    mesh->vertices = copy;
+    mesh->num_vertices = num_vertices;
+done:
+    return status;
+}
+
+brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices, size_t num_faces) {
+    brio_context *ctx = mesh->context;
+    uint64_t *o = NULL;
+    uint32_t *v = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, !mesh->face_offsets, BRIO_ERR_ARGUMENT, "the mesh has faces already");
+    BRIO_TRY(BRIO_ALLOC(ctx, o, num_faces + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, v, num_faces ? offsets[num_faces] : 0));
+    o[0] = 0;
+    if (num_faces) {
+        memcpy(o, offsets, (num_faces + 1) * sizeof *o);
+        memcpy(v, indices, offsets[num_faces] * sizeof *v);
+    }
+    mesh->face_offsets = o;
+    mesh->face_vertices = v;
+    mesh->num_faces = num_faces;
+    o = NULL;
+    v = NULL;
+done:
+    brio_release(ctx, o);
+    brio_release(ctx, v);
+    return status;
+}
+
+brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t num_tetrahedra) {
+    brio_context *ctx = mesh->context;
+    uint32_t *copy = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, !mesh->tetrahedra, BRIO_ERR_ARGUMENT, "the mesh has tetrahedra already");
+    BRIO_TRY(BRIO_ALLOC(ctx, copy, 4 * num_tetrahedra));
+    if (num_tetrahedra) memcpy(copy, tetrahedra, 4 * num_tetrahedra * sizeof *copy);
+    mesh->tetrahedra = copy;
+    mesh->num_tetrahedra = num_tetrahedra;
+done:
+    return status;
+}
+
+size_t brio_scalar_size(brio_scalar type) {
+    static const size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+    return (unsigned)type < BRIO_SCALAR_END ? sizes[type] : 0;
+}
+
+brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data) {
+    brio_context *ctx = mesh->context;
+    brio_property p = {.type = type};
+    brio_status status = BRIO_OK;
+    char *bytes = NULL;
+    BRIO_REQUIRE(ctx, brio_scalar_size(type), BRIO_ERR_ARGUMENT, "property %s: no such scalar type", name);
+    BRIO_REQUIRE(ctx, name[0] && strlen(name) < sizeof p.name, BRIO_ERR_ARGUMENT, "property name of %zu characters",
+                 strlen(name));
+    BRIO_REQUIRE(ctx, !brio_mesh_property(mesh, name), BRIO_ERR_ARGUMENT, "two properties named %s", name);
+    strcpy(p.name, name);
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, bytes, mesh->num_vertices * brio_scalar_size(type)));
+    p.data = bytes;
+    BRIO_TRY(BRIO_RESIZE(ctx, mesh->properties, mesh->num_properties + 1));
+    mesh->properties[mesh->num_properties++] = p;
+    if (data) *data = bytes;
+    bytes = NULL;
+done:
+    brio_release(ctx, bytes);
+    return status;
+}
+
+const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name) {
+    for (size_t i = 0; i < mesh->num_properties; i++)
+        if (!strcmp(mesh->properties[i].name, name)) return &mesh->properties[i];
+    return NULL;
+}
+
+double brio_property_value(const brio_property *property, size_t i) {
+    switch (property->type) {
+    case BRIO_INT8: return ((const int8_t *)property->data)[i];
+    case BRIO_UINT8: return ((const uint8_t *)property->data)[i];
+    case BRIO_INT16: return ((const int16_t *)property->data)[i];
+    case BRIO_UINT16: return ((const uint16_t *)property->data)[i];
+    case BRIO_INT32: return ((const int32_t *)property->data)[i];
+    case BRIO_UINT32: return ((const uint32_t *)property->data)[i];
+    case BRIO_FLOAT32: return (double)((const float *)property->data)[i];
+    case BRIO_FLOAT64: return ((const double *)property->data)[i];
+    case BRIO_SCALAR_END: break;
+    }
+    return 0;
+}
