@@ -1,0 +1,87 @@
+/* Sorting: least-significant-digit radix sort of pairs, and heap sort of indices. */
+#include "base/sort.h"
+#include "base/memory.h"
+#include <string.h>
+
+enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PASSES = (64 + DIGIT - 1) / DIGIT };
+
+static void count_digits(const uint64_t *keys, size_t n, int passes, size_t (*count)[BUCKETS]) {
+    memset(count, 0, (size_t)passes * sizeof *count);
+    for (size_t i = 0; i < n; i++)
+        for (int p = 0; p < passes; p++) count[p][keys[i] >> (p * DIGIT) & (BUCKETS - 1)]++;
+}
+
+/* Turns counts into first positions; false when all keys share this digit. */
+static bool first_positions(size_t count[BUCKETS], size_t n) {
+    size_t sum = 0;
+    for (int b = 0; b < BUCKETS; b++) {
+        size_t c = count[b];
+        if (c == n) return false;
+        count[b] = sum;
+        sum += c;
+    }
+    return true;
+}
+
+brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits) {
+    brio_status status = BRIO_OK;
+    int passes = (bits + DIGIT - 1) / DIGIT;
+    uint64_t *k = keys, *other_k = NULL, *spare_k = NULL;
+    uint32_t *v = values, *other_v = NULL, *spare_v = NULL;
+    size_t(*count)[BUCKETS] = NULL;
+    if (n < 2) goto done;
+    BRIO_TRY(BRIO_ALLOC(ctx, count, (size_t)passes));
+    BRIO_TRY(BRIO_ALLOC(ctx, spare_k, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, spare_v, n));
+    other_k = spare_k, other_v = spare_v;
+    count_digits(keys, n, passes, count);
+    for (int p = 0; p < passes; p++) {
+        if (!first_positions(count[p], n)) continue;
+        for (size_t i = 0; i < n; i++) {
+            size_t to = count[p][k[i] >> (p * DIGIT) & (BUCKETS - 1)]++;
+            other_k[to] = k[i];
+            other_v[to] = v[i];
+        }
+        uint64_t *swap_k = k;
+        uint32_t *swap_v = v;
+        k = other_k, other_k = swap_k;
+        v = other_v, other_v = swap_v;
+    }
+    if (k != keys) {
+        memcpy(keys, k, n * sizeof *k);
+        memcpy(values, v, n * sizeof *v);
+    }
+done:
+    brio_release(ctx, count);
+    brio_release(ctx, spare_k);
+    brio_release(ctx, spare_v);
+    return status;
+}
+
+static void sift_down(uint32_t *a, size_t root, size_t n, brio_compare_fn compare, const void *user) {
+    uint32_t moved = a[root];
+    for (size_t child; (child = 2 * root + 1) < n; root = child) {
+        if (child + 1 < n && compare(a[child], a[child + 1], user) < 0) child++;
+        if (compare(moved, a[child], user) >= 0) break;
+        a[root] = a[child];
+    }
+    a[root] = moved;
+}
+
+void brio_sort_indices(uint32_t *a, size_t n, brio_compare_fn compare, const void *user) {
+    if (n <= 24) {
+        for (size_t i = 1; i < n; i++) {
+            uint32_t moved = a[i];
+            size_t j = i;
+            for (; j > 0 && compare(moved, a[j - 1], user) < 0; j--) a[j] = a[j - 1];
+            a[j] = moved;
+        }
+        return;
+    }
+    for (size_t i = n / 2; i-- > 0;) sift_down(a, i, n, compare, user);
+    for (size_t i = n; i-- > 1;) {
+        uint32_t top = a[0];
+        a[0] = a[i], a[i] = top;
+        sift_down(a, 0, i, compare, user);
+    }
+}

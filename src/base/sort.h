@@ -1,0 +1,17 @@
+/* Sorting: linear-time radix sort of keys with their values, and a comparison sort of indices. */
+#ifndef BRIO_BASE_SORT_H
+#define BRIO_BASE_SORT_H
+
+#include "base/context.h"
+
+/** Sorts n pairs by key, keys below 2^bits, stable. Needs 12 n bytes of workspace. */
+brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits);
+
+/** Negative, zero or positive, as the first index sorts before, with or after the second. */
+typedef int (*brio_compare_fn)(uint32_t, uint32_t, const void *user);
+
+/** Sorts indices in place; not stable, so that `compare` should be 0 for equal indices only where the result must not
+ *  depend on the order they come in. No workspace. */
+void brio_sort_indices(uint32_t *indices, size_t n, brio_compare_fn compare, const void *user);
+
+#endif

@@ -1,0 +1,85 @@
+/* Stage 3 of the predicates: the determinants in double-double arithmetic.
+ *
+ * Along any path through the in-sphere determinant the relative errors of double_double.h add up to less than 60 u^2 of
+ * the permanent (7 for each of four products, 3 for each of nine sums), so 2^-99 = 128 u^2 is a safe bound; rows relative
+ * to e are exact in a double-double, and so is the difference of two weights. */
+#include "predicates/double_double.h"
+#include "predicates/predicates.h"
+
+static const double BOUND = 0x1p-99;
+
+static inline int sign_of(brio_dd det, double permanent, double floor) {
+    if (!(fabs(det.hi) > BOUND * permanent + floor)) return 2;
+    return det.hi > 0 ? 1 : -1;
+}
+
+BRIO_INLINE int orient3d(const double *a, const double *b, const double *c, const double *d, double permanent,
+                         double floor, const bool fma) {
+    brio_dd m[3][3];
+    for (int k = 0; k < 3; k++) {
+        m[0][k] = dd_difference(b[k], a[k]);
+        m[1][k] = dd_difference(c[k], a[k]);
+        m[2][k] = dd_difference(d[k], a[k]);
+    }
+    brio_dd x = dd_multiply(m[2][0], dd_minor(m[0][1], m[1][2], m[0][2], m[1][1], fma), fma);
+    brio_dd y = dd_multiply(m[2][1], dd_minor(m[0][2], m[1][0], m[0][0], m[1][2], fma), fma);
+    brio_dd z = dd_multiply(m[2][2], dd_minor(m[0][0], m[1][1], m[0][1], m[1][0], fma), fma);
+    return sign_of(dd_sum3(x, y, z), permanent, floor);
+}
+
+BRIO_INLINE brio_dd lift_of(const brio_dd r[3], const double *p, const double *e, const bool weighted,
+                            const bool fma) {
+    brio_dd lift = dd_sum3(dd_multiply(r[0], r[0], fma), dd_multiply(r[1], r[1], fma), dd_multiply(r[2], r[2], fma));
+    return weighted ? dd_subtract(lift, dd_difference(p[3], e[3])) : lift;
+}
+
+/* z1 m1 + z2 m2 + z3 m3. */
+BRIO_INLINE brio_dd expand(brio_dd z1, brio_dd m1, brio_dd z2, brio_dd m2, brio_dd z3, brio_dd m3, const bool fma) {
+    return dd_sum3(dd_multiply(z1, m1, fma), dd_multiply(z2, m2, fma), dd_multiply(z3, m3, fma));
+}
+
+BRIO_INLINE brio_dd negated(brio_dd x) { return (brio_dd){-x.hi, -x.lo}; }
+
+BRIO_INLINE int insphere(const double *a, const double *b, const double *c, const double *d, const double *e,
+                         const bool weighted, double permanent, double floor, const bool fma) {
+    const double *row[4] = {a, b, c, d};
+    brio_dd r[4][3], lift[4];
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) r[i][k] = dd_difference(row[i][k], e[k]);
+        lift[i] = lift_of(r[i], row[i], e, weighted, fma);
+    }
+    brio_dd ab = dd_minor(r[0][0], r[1][1], r[1][0], r[0][1], fma);
+    brio_dd bc = dd_minor(r[1][0], r[2][1], r[2][0], r[1][1], fma);
+    brio_dd cd = dd_minor(r[2][0], r[3][1], r[3][0], r[2][1], fma);
+    brio_dd da = dd_minor(r[3][0], r[0][1], r[0][0], r[3][1], fma);
+    brio_dd ac = dd_minor(r[0][0], r[2][1], r[2][0], r[0][1], fma);
+    brio_dd bd = dd_minor(r[1][0], r[3][1], r[3][0], r[1][1], fma);
+    brio_dd abc = expand(r[0][2], bc, r[1][2], negated(ac), r[2][2], ab, fma);
+    brio_dd bcd = expand(r[1][2], cd, r[2][2], negated(bd), r[3][2], bc, fma);
+    brio_dd cda = expand(r[2][2], da, r[3][2], ac, r[0][2], cd, fma);
+    brio_dd dab = expand(r[3][2], ab, r[0][2], bd, r[1][2], da, fma);
+    brio_dd first = dd_minor(lift[2], dab, lift[3], abc, fma), second = dd_minor(lift[0], bcd, lift[1], cda, fma);
+    return sign_of(dd_add(first, second), permanent, floor);
+}
+
+BRIO_TARGET_FMA static int orient3d_fma(const double *a, const double *b, const double *c, const double *d,
+                                        double permanent, double floor) {
+    return orient3d(a, b, c, d, permanent, floor, true);
+}
+
+BRIO_TARGET_FMA static int insphere_fma(const double *a, const double *b, const double *c, const double *d,
+                                        const double *e, bool weighted, double permanent, double floor) {
+    return insphere(a, b, c, d, e, weighted, permanent, floor, true);
+}
+
+int brio_orient3d_double_double(const double *a, const double *b, const double *c, const double *d, double permanent,
+                                double floor) {
+    if (dd_have_fma()) return orient3d_fma(a, b, c, d, permanent, floor);
+    return orient3d(a, b, c, d, permanent, floor, false);
+}
+
+int brio_insphere_double_double(const double *a, const double *b, const double *c, const double *d, const double *e,
+                                bool weighted, double permanent, double floor) {
+    if (dd_have_fma()) return insphere_fma(a, b, c, d, e, weighted, permanent, floor);
+    return insphere(a, b, c, d, e, weighted, permanent, floor, false);
+}

@@ -1,0 +1,86 @@
+/* Floating-point stages 1 and 2 of the predicates: bounds, and the permanents they come from.
+ *
+ * With u = 2^-53 and first-order terms rounded up generously, an estimate is off by at most
+ *   orient3d   (7 + 56 u) u   times the permanent (Shewchuk's o3derrboundA),
+ *   insphere   (16 + 224 u) u (his isperrboundA), and 17 with the one more subtraction of the weighted lift,
+ * the permanent being the same expression with every term replaced by its magnitude. */
+#include "predicates/predicates.h"
+
+static const double ORIENT_BOUND = 8 * 0x1p-53, INSPHERE_BOUND = 18 * 0x1p-53;
+
+/* Larger extents could overflow in stages 1 to 3 (degree 5, Dekker's splitting). */
+static const double EXTENT_MOST = 1e55, WEIGHT_MOST = 1e110;
+
+void brio_filter_set(brio_filter *f, const double extent[3], double weight_extent, bool weighted) {
+    double x = extent[0], y = extent[1], z = extent[2];
+    double most = fmax(x, fmax(y, z)), w = weighted ? weight_extent : 0;
+    *f = (brio_filter){INFINITY, INFINITY, INFINITY, INFINITY, weighted, 0};
+    if (!(most <= EXTENT_MOST && w <= WEIGHT_MOST)) return;
+    /* each of some hundred products may lose 2^-1074, and is multiplied by at most this */
+    double unit = 0x1p-1060;
+    f->orient_floor = unit * (1 + most) * (1 + most);
+    f->insphere_floor = unit * (1 + most) * (1 + most) * (1 + most) * (1 + most + w);
+    /* 6 products in a 3 by 3 minor, 4 minors times a lift; 1.001 covers the rounding of the bound */
+    f->orient_static = 1.001 * ORIENT_BOUND * 6 * x * y * z + f->orient_floor;
+    f->insphere_static = 1.001 * INSPHERE_BOUND * 24 * x * y * z * (x * x + y * y + z * z + w) + f->insphere_floor;
+}
+
+static double orient3d_with_permanent(const double *a, const double *b, const double *c, const double *d,
+                                      double *permanent) {
+    double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
+    double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
+    double dx = d[0] - a[0], dy = d[1] - a[1], dz = d[2] - a[2];
+    *permanent = fabs(dx) * (fabs(by * cz) + fabs(bz * cy)) + fabs(dy) * (fabs(bz * cx) + fabs(bx * cz)) +
+                 fabs(dz) * (fabs(bx * cy) + fabs(by * cx));
+    return dx * (by * cz - bz * cy) + dy * (bz * cx - bx * cz) + dz * (bx * cy - by * cx);
+}
+
+int brio_orient3d_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d) {
+    double permanent;
+    double det = orient3d_with_permanent(a, b, c, d, &permanent);
+    double bound = ORIENT_BOUND * permanent + f->orient_floor;
+    if (fabs(det) > bound) return det > 0 ? 1 : -1;
+    f->unsettled++;
+    int sign = brio_orient3d_double_double(a, b, c, d, permanent, f->orient_floor);
+    return sign != 2 ? sign : brio_orient3d_exact(a, b, c, d);
+}
+
+static double insphere_permanent(const double *a, const double *b, const double *c, const double *d, const double *e,
+                                 bool weighted) {
+    const double *row[4] = {a, b, c, d};
+    double x[4], y[4], z[4], lift[4], xy[4][4];
+    for (int i = 0; i < 4; i++) {
+        x[i] = fabs(row[i][0] - e[0]), y[i] = fabs(row[i][1] - e[1]), z[i] = fabs(row[i][2] - e[2]);
+        lift[i] = x[i] * x[i] + y[i] * y[i] + z[i] * z[i] + (weighted ? fabs(row[i][3] - e[3]) : 0);
+    }
+    for (int i = 0; i < 4; i++)
+        for (int j = i + 1; j < 4; j++) xy[i][j] = x[i] * y[j] + x[j] * y[i];
+    return lift[0] * (z[1] * xy[2][3] + z[2] * xy[1][3] + z[3] * xy[1][2]) +
+           lift[1] * (z[2] * xy[0][3] + z[3] * xy[0][2] + z[0] * xy[2][3]) +
+           lift[2] * (z[3] * xy[0][1] + z[0] * xy[1][3] + z[1] * xy[0][3]) +
+           lift[3] * (z[0] * xy[1][2] + z[1] * xy[0][2] + z[2] * xy[0][1]);
+}
+
+int brio_insphere_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d,
+                            const double *e) {
+    double det = brio_insphere_estimate(a, b, c, d, e, f->weighted);
+    double permanent = insphere_permanent(a, b, c, d, e, f->weighted);
+    double bound = INSPHERE_BOUND * permanent + f->insphere_floor;
+    if (fabs(det) > bound) return det > 0 ? 1 : -1;
+    f->unsettled++;
+    int sign = brio_insphere_double_double(a, b, c, d, e, f->weighted, permanent, f->insphere_floor);
+    return sign != 2 ? sign : brio_insphere_exact(a, b, c, d, e, f->weighted);
+}
+
+static double power(const double *x, const double *p, double *magnitude) {
+    double dx = x[0] - p[0], dy = x[1] - p[1], dz = x[2] - p[2], square = dx * dx + dy * dy + dz * dz;
+    *magnitude += square + fabs(p[3]);
+    return square - p[3];
+}
+
+int brio_power_compare(const double *x, const double *p, const double *q) {
+    double magnitude = 0, difference = power(x, p, &magnitude) - power(x, q, &magnitude);
+    /* each square is off by at most 5 u, the three further operations by one each; NaN and infinity compare false */
+    if (fabs(difference) > 10 * 0x1p-53 * magnitude + 0x1p-1000 && magnitude < INFINITY) return difference > 0 ? 1 : -1;
+    return brio_power_compare_exact(x, p, q);
+}

@@ -1,0 +1,194 @@
+/* Delaunay and regular triangulation: order the points, insert them one by one, sort the result.
+ *
+ * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
+ *           Devillers, Teillaud. Perturbations for Delaunay and weighted Delaunay 3D triangulations. CGTA 2011. */
+#include "base/memory.h"
+#include "order/order.h"
+#include "triangulation/kernel.h"
+#include "triangulation/triangulation.h"
+#include <string.h>
+
+enum { PROGRESS_EVERY = 8192 };
+
+brio_options brio_options_default(void) {
+    return (brio_options){.order = BRIO_ORDER_BRIO, .round_ratio = 0.125, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
+}
+
+static brio_status check_options(brio_context *ctx, size_t n, const brio_options *o) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
+    BRIO_REQUIRE(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
+    BRIO_REQUIRE(ctx, o->round_ratio > 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
+                 "round ratio %g is not between 0 and 1", o->round_ratio);
+    BRIO_REQUIRE(ctx, o->max_tetrahedra <= UINT32_C(1) << 30, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
+                 o->max_tetrahedra);
+done:
+    return status;
+}
+
+/* --- points --- */
+
+static brio_status refuse_not_finite(brio_context *ctx, const double *points, const double *weights, size_t n,
+                                     size_t first) {
+    size_t bad = 0;
+    for (size_t i = first; i < n; i++)
+        bad += !(isfinite(points[3 * i]) && isfinite(points[3 * i + 1]) && isfinite(points[3 * i + 2]) &&
+                 (!weights || isfinite(weights[i])));
+    int c = 0;
+    while (c < 3 && isfinite(points[3 * first + (size_t)c])) c++;
+    double x = c < 3 ? points[3 * first + (size_t)c] : weights[first];
+    static const char *const name[] = {"x", "y", "z", "weight"};
+    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %s is %s (%zu such points in all)", first, name[c],
+                     isnan(x) ? "NaN" : "infinite", bad);
+}
+
+brio_status brio_records_new(brio_context *ctx, const double *points, const double *weights, size_t n,
+                             const uint32_t *order, size_t room, brio_record **out) {
+    brio_record *record = NULL;
+    brio_status status = BRIO_ALLOC(ctx, record, n + room);
+    if (status != BRIO_OK) return status;
+    size_t bad = n;
+    for (size_t i = 0; i < n; i++) {
+        size_t from = order ? order[i] : i;
+        double w = weights ? weights[from] + 0.0 : 0.0, finite = 0 * w;
+        for (size_t c = 0; c < 3; c++) {
+            record[i][c] = points[3 * from + c] + 0.0;
+            finite += 0 * record[i][c];
+        }
+        record[i][3] = w;
+        if (finite != 0 && from < bad) bad = from; /* NaN: something was not finite */
+    }
+    if (bad < n) {
+        brio_release(ctx, record);
+        return refuse_not_finite(ctx, points, weights, n, bad);
+    }
+    memset(record + n, 0, room * sizeof *record);
+    *out = record;
+    return BRIO_OK;
+}
+
+/* --- construction --- */
+
+static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *points, const double *weights, size_t n,
+                              const brio_options *options) {
+    brio_status status = BRIO_OK;
+    memset(k, 0, sizeof *k);
+    k->ctx = ctx;
+    k->num_points = n;
+    k->weighted = weights != NULL;
+    k->max_tetrahedra = options->max_tetrahedra;
+    k->stats.points = n;
+    k->t.infinite = (uint32_t)n + 2;
+    double start = brio_seconds();
+    BRIO_TRY(BRIO_ALLOC(ctx, k->caller, n + 3));
+    BRIO_TRY(brio_progress(ctx, "order", 0));
+    BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller));
+    BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
+    k->t.record = k->record;
+    k->stats.order_seconds = brio_seconds() - start;
+    BRIO_TRY(BRIO_ALLOC(ctx, k->representative, n + 3));
+    for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;
+    BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.local, n + 3));
+    memset(k->cavity.local, BRIO_NO_LOCAL, n + 3);
+done:
+    return status;
+}
+
+static void kernel_free(brio_kernel *k) {
+    brio_cavity_free(k->ctx, &k->cavity);
+    brio_release(k->ctx, k->t.vertex);
+    brio_release(k->ctx, k->t.mate);
+    brio_release(k->ctx, k->state);
+    brio_release(k->ctx, k->unused);
+    brio_release(k->ctx, k->record);
+    brio_release(k->ctx, k->caller);
+    brio_release(k->ctx, k->representative);
+}
+
+static brio_status insert_all(brio_kernel *k) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_kernel_start(k));
+    if (k->dimension <= 0) goto done;
+    for (size_t p = (size_t)k->dimension + 1; p < k->num_points; p++) {
+        if (p % PROGRESS_EVERY == 0)
+            BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)k->num_points));
+        BRIO_TRY(brio_kernel_insert(k, (uint32_t)p));
+    }
+done:
+    return status;
+}
+
+/* --- result --- */
+
+/* Counts, and the caller's indices in place of records'. */
+static void name_vertices(brio_kernel *k) {
+    brio_tetrahedra *t = &k->t;
+    if (k->dimension < 3) t->count = 0;
+    for (size_t tet = 0; tet < t->count; tet++) {
+        uint32_t *v = t->vertex + 4 * tet;
+        bool infinite = v[3] == t->infinite;
+        k->stats.hull_facets += infinite;
+        for (int i = 0; i < 3; i++) v[i] = k->caller[v[i]];
+        v[3] = infinite ? BRIO_INFINITE : k->caller[v[3]];
+    }
+    k->stats.tetrahedra = t->count - k->stats.hull_facets;
+    k->stats.dimension = k->dimension;
+    k->stats.walk_steps = k->walk.steps;
+    k->stats.exact_calls = k->filter.unsettled;
+}
+
+static brio_status triangulation_new(brio_kernel *k, brio_triangulation **out) {
+    brio_context *ctx = k->ctx;
+    brio_triangulation *t = NULL;
+    brio_status status = BRIO_OK;
+    name_vertices(k);
+    BRIO_TRY(BRIO_RESIZE(ctx, k->t.vertex, 4 * k->t.count));
+    BRIO_TRY(BRIO_RESIZE(ctx, k->t.mate, 4 * k->t.count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, t->representative, k->num_points));
+    for (size_t p = 0; p < k->num_points; p++)
+        t->representative[k->caller[p]] = k->caller[k->representative[p]];
+    t->ctx = ctx;
+    t->vertex = k->t.vertex;
+    t->mate = k->t.mate;
+    t->stats = k->stats;
+    k->t.vertex = k->t.mate = NULL;
+    *out = t;
+    t = NULL;
+done:
+    brio_triangulation_free(t);
+    return status;
+}
+
+brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                          const brio_options *options, brio_triangulation **out) {
+    brio_options standard = brio_options_default();
+    brio_kernel kernel;
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    if (!options) options = &standard;
+    BRIO_TRY(check_options(ctx, num_points, options));
+    status = kernel_new(&kernel, ctx, points, weights, num_points, options);
+    double start = brio_seconds();
+    if (status == BRIO_OK) status = insert_all(&kernel);
+    if (status == BRIO_OK) status = brio_kernel_represent(&kernel);
+    if (status == BRIO_OK) status = brio_kernel_sort(&kernel);
+    kernel.stats.insert_seconds = brio_seconds() - start;
+    if (status == BRIO_OK) status = triangulation_new(&kernel, out);
+    kernel_free(&kernel);
+done:
+    return status;
+}
+
+void brio_triangulation_free(brio_triangulation *t) {
+    if (!t) return;
+    brio_release(t->ctx, t->vertex);
+    brio_release(t->ctx, t->mate);
+    brio_release(t->ctx, t->representative);
+    brio_release(t->ctx, t);
+}
+
+const brio_stats *brio_triangulation_stats(const brio_triangulation *t) { return &t->stats; }
+const uint32_t *brio_triangulation_tetrahedra(const brio_triangulation *t) { return t->vertex; }
+const uint32_t *brio_triangulation_mates(const brio_triangulation *t) { return t->mate; }
+const uint32_t *brio_triangulation_representatives(const brio_triangulation *t) { return t->representative; }

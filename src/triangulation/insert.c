@@ -1,0 +1,54 @@
+/* Incremental insertion: locate, dig the cavity, fill the cavity. */
+#include "base/memory.h"
+#include "triangulation/kernel.h"
+
+brio_status brio_kernel_reserve(brio_kernel *k, size_t more) {
+    brio_status status = BRIO_OK;
+    size_t need = k->t.count + more;
+    if (need <= k->capacity) return BRIO_OK;
+    size_t capacity = need + need / 8 + 1024;
+    BRIO_REQUIRE(k->ctx, need <= k->max_tetrahedra, BRIO_ERR_TOO_LARGE, "more than %zu tetrahedra", k->max_tetrahedra);
+    if (capacity > k->max_tetrahedra) capacity = k->max_tetrahedra;
+    BRIO_TRY(BRIO_RESIZE(k->ctx, k->t.vertex, 4 * capacity));
+    BRIO_TRY(BRIO_RESIZE(k->ctx, k->t.mate, 4 * capacity));
+    BRIO_TRY(BRIO_RESIZE(k->ctx, k->state, capacity));
+    k->capacity = capacity;
+done:
+    return status;
+}
+
+/* The vertex of a finite tetrahedron at the position of p, or the infinite vertex. */
+static uint32_t vertex_at(const brio_kernel *k, uint32_t tet, const double *p) {
+    const uint32_t *v = k->t.vertex + 4 * (size_t)tet;
+    for (int i = 0; i < 4; i++)
+        if (brio_same_position(k->record[v[i]], p)) return v[i];
+    return k->t.infinite;
+}
+
+/* Whether p, coincident with vertex v, adds nothing: of equal weights the lower index keeps the name. */
+static bool absorbed(brio_kernel *k, uint32_t p, uint32_t v) {
+    double wp = k->record[p][3], wv = k->record[v][3];
+    if (k->weighted && wp > wv) return false;
+    if ((!k->weighted || wp == wv) && k->caller[p] < k->caller[v]) {
+        uint32_t swap = k->caller[p];
+        k->caller[p] = k->caller[v], k->caller[v] = swap;
+    }
+    k->representative[p] = v;
+    return true;
+}
+
+brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
+    const double *point = k->record[p];
+    uint32_t tet = brio_locate_walk(&k->t, &k->filter, &k->walk, point);
+    if (!brio_is_infinite(&k->t, tet)) {
+        uint32_t v = vertex_at(k, tet, point);
+        if (v != k->t.infinite && absorbed(k, p, v)) return BRIO_OK;
+        if (k->weighted && !brio_in_conflict(&k->t, &k->filter, tet, point, true)) {
+            k->representative[p] = k->t.vertex[4 * (size_t)tet];
+            k->walk.start = tet;
+            return BRIO_OK;
+        }
+    }
+    brio_status status = brio_cavity_dig(k, tet, p);
+    return status == BRIO_OK ? brio_cavity_fill(k, p) : status;
+}

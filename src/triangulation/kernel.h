@@ -1,0 +1,81 @@
+/* The incremental kernel: everything one construction works on. */
+#ifndef BRIO_TRIANGULATION_KERNEL_H
+#define BRIO_TRIANGULATION_KERNEL_H
+
+#include "triangulation/locate.h"
+#include "triangulation/tetrahedra.h"
+
+/** A facet of the cavity's border: the mate outside, and the cavity's tetrahedron with the vertex that sees the facet
+ *  replaced by the new one. */
+typedef struct {
+    uint32_t outside;
+    uint32_t slot; /* of the new vertex */
+    uint32_t vertex[4];
+} brio_border;
+
+/** Workspace of one insertion, kept from one to the next. */
+typedef struct {
+    uint32_t *tets, *outside; /* in conflict; tested and not in conflict */
+    brio_border *border;
+    size_t num_tets, num_outside, num_border;
+    size_t tets_capacity, outside_capacity, border_capacity;
+    uint8_t *local;      /* number of a vertex on the border, NO_LOCAL elsewhere */
+    uint32_t *numbered;  /* the vertices that have a number */
+    size_t num_numbered, numbered_capacity;
+    uint32_t *table;     /* facet handle of each directed edge of the border */
+    size_t table_capacity;
+    uint64_t *edge_key;  /* hash table of directed edges, for large borders */
+    uint32_t *edge_facet;
+    size_t hash_capacity, hash_facet_capacity;
+    uint32_t *created;   /* the new tetrahedron of each border facet */
+    size_t created_capacity;
+} brio_cavity;
+
+enum { BRIO_NO_LOCAL = 255 };
+
+typedef struct {
+    brio_context *ctx;
+    brio_tetrahedra t;
+    size_t capacity, max_tetrahedra;
+    uint8_t *state;          /* of each tetrahedron: brio_tet_state */
+    uint32_t *unused;        /* slots of destroyed tetrahedra */
+    size_t num_unused, unused_capacity;
+    brio_record *record;     /* the points in insertion order, then up to two apexes, then room for the infinite vertex */
+    uint32_t *caller;        /* index of each record's point in the caller's arrays */
+    uint32_t *representative; /* of each record: itself, or a record that took its place */
+    size_t num_points;
+    bool weighted;
+    int dimension;
+    brio_filter filter;
+    brio_walk walk;
+    brio_cavity cavity;
+    brio_stats stats;
+} brio_kernel;
+
+typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_OUTSIDE = 2, TET_UNUSED = 3 } brio_tet_state;
+
+/** Finds four points in general position, or the dimension that they have instead; adds apexes off the points' affine hull
+ *  so that every input of at least two distinct positions becomes three-dimensional; makes the first tetrahedron. */
+brio_status brio_kernel_start(brio_kernel *k);
+
+/** Makes room for at least `more` further tetrahedra. */
+brio_status brio_kernel_reserve(brio_kernel *k, size_t more);
+
+/** Inserts record p, which is not yet in: as a vertex, a duplicate, or a hidden point. */
+brio_status brio_kernel_insert(brio_kernel *k, uint32_t p);
+
+/** Finds all tetrahedra in conflict with record p, from one of them, and the border of their union. */
+brio_status brio_cavity_dig(brio_kernel *k, uint32_t first, uint32_t p);
+
+/** Replaces the cavity by the star of record p; vertices that lose their last tetrahedron become hidden. */
+brio_status brio_cavity_fill(brio_kernel *k, uint32_t p);
+
+void brio_cavity_free(brio_context *ctx, brio_cavity *c);
+
+/** Gives every point that is no vertex the vertex that represents it; counts duplicates and hidden points. */
+brio_status brio_kernel_represent(brio_kernel *k);
+
+/** Sorts the tetrahedra into their canonical order, finite ones first, without a second copy of them. */
+brio_status brio_kernel_sort(brio_kernel *k);
+
+#endif

@@ -1,0 +1,18 @@
+/* Point location. */
+#ifndef BRIO_TRIANGULATION_LOCATE_H
+#define BRIO_TRIANGULATION_LOCATE_H
+
+#include "triangulation/tetrahedra.h"
+
+/** State of a line of walks: where the next one starts, its random bits, and the steps of all of them. */
+typedef struct {
+    uint32_t start;
+    uint32_t random;
+    uint64_t steps;
+} brio_walk;
+
+/** The tetrahedron whose closure holds p, or, for p strictly outside the hull, an infinite one whose facet p is strictly
+ *  outside of. Exact. */
+uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p);
+
+#endif

@@ -1,0 +1,35 @@
+/* Point location by a visibility walk from the last inserted tetrahedron.
+ *
+ * From a tetrahedron step across any facet that has the point strictly on its other side. In the regular triangulation
+ * of exact predicates no tetrahedron comes twice, so the walk ends. The facet to try first is drawn at random, which avoids
+ * the long detours of a fixed order.
+ *
+ * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
+#include "triangulation/locate.h"
+
+static inline uint32_t next_random(uint32_t x) { return x * 1664525u + 1013904223u; }
+
+uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p) {
+    uint32_t tet = walk->start;
+    if (brio_is_infinite(t, tet)) tet = brio_tet_of(t->mate[4 * (size_t)tet + 3]);
+    int came_through = 4;
+    for (;;) {
+        const uint32_t *v = t->vertex + 4 * (size_t)tet;
+        if (v[3] == t->infinite) return tet;
+        walk->random = next_random(walk->random);
+        int first = (int)(walk->random >> 30), i = 0;
+        for (; i < 4; i++) {
+            int slot = (first + i) & 3;
+            if (slot == came_through) continue;
+            const uint8_t *facet = BRIO_FACET[slot];
+            if (brio_orient3d_sign(f, t->record[v[facet[0]]], t->record[v[facet[1]]], t->record[v[facet[2]]], p) < 0) {
+                uint32_t mate = t->mate[4 * (size_t)tet + (size_t)slot];
+                tet = brio_tet_of(mate);
+                came_through = brio_slot_of(mate);
+                walk->steps++;
+                break;
+            }
+        }
+        if (i == 4) return tet;
+    }
+}

@@ -1,0 +1,155 @@
+/* Points that own no cell, each with the vertex that represents it.
+ *
+ * Without weights a point that is no vertex is a duplicate, and insertion has named its vertex. With weights a point may
+ * have been hidden by another that was hidden later itself, and may coincide with a vertex that came after it: so each one
+ * is located in the finished triangulation. At the position of a vertex it is a duplicate; else it is hidden, and
+ * its vertex of least power distance is found by descent along edges: in a regular triangulation a vertex with no nearer
+ * neighbour is the nearest of all. Apexes of flat inputs are passed over: the edges of the flat triangulation suffice. */
+#include "base/memory.h"
+#include "base/sort.h"
+#include "triangulation/kernel.h"
+#include <string.h>
+
+typedef struct {
+    brio_kernel *k;
+    uint32_t *vertex_tet; /* a tetrahedron of each vertex */
+    uint32_t *star;       /* tetrahedra round a vertex */
+    size_t star_size, star_capacity;
+    uint32_t *hidden;
+    size_t num_hidden;
+} workspace;
+
+static bool is_point(const brio_kernel *k, uint32_t v) { return v < k->num_points; }
+
+/* Collects the tetrahedra round vertex v, marking them in the state bytes until the end. */
+static brio_status collect_star(workspace *w, uint32_t v) {
+    brio_kernel *k = w->k;
+    brio_status status = BRIO_OK;
+    w->star_size = 0;
+    BRIO_TRY(BRIO_RESERVE(k->ctx, w->star, w->star_capacity, 1));
+    w->star[w->star_size++] = w->vertex_tet[v];
+    k->state[w->vertex_tet[v]] = TET_CAVITY;
+    for (size_t n = 0; n < w->star_size; n++) {
+        uint32_t tet = w->star[n];
+        BRIO_TRY(BRIO_RESERVE(k->ctx, w->star, w->star_capacity, w->star_size + 4));
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = brio_tet_of(k->t.mate[4 * (size_t)tet + (size_t)i]);
+            if (k->t.vertex[4 * (size_t)tet + (size_t)i] == v || k->state[other] != TET_PLAIN) continue;
+            k->state[other] = TET_CAVITY;
+            w->star[w->star_size++] = other;
+        }
+    }
+done:
+    for (size_t n = 0; n < w->star_size; n++) k->state[w->star[n]] = TET_PLAIN;
+    return status;
+}
+
+/* The nearer of two vertices to x by power distance, ties lexicographic. */
+static uint32_t nearer(const brio_kernel *k, const double *x, uint32_t u, uint32_t v) {
+    if (u == k->t.infinite || !is_point(k, u)) return v;
+    if (v == k->t.infinite || !is_point(k, v)) return u;
+    int sign = brio_power_compare(x, k->record[u], k->record[v]);
+    if (sign == 0) sign = brio_lexicographic(k->record[u], k->record[v]);
+    return sign < 0 ? u : v;
+}
+
+static brio_status nearest_vertex(workspace *w, uint32_t tet, const double *x, uint32_t *best) {
+    brio_kernel *k = w->k;
+    const uint32_t *v = k->t.vertex + 4 * (size_t)tet;
+    *best = nearer(k, x, nearer(k, x, v[0], v[1]), nearer(k, x, v[2], v[3]));
+    for (uint32_t from = k->t.infinite; from != *best;) {
+        from = *best;
+        brio_status status = collect_star(w, from);
+        if (status != BRIO_OK) return status;
+        for (size_t n = 0; n < w->star_size; n++)
+            for (int i = 0; i < 4; i++) *best = nearer(k, x, *best, k->t.vertex[4 * (size_t)w->star[n] + (size_t)i]);
+    }
+    return BRIO_OK;
+}
+
+/* Follows the points that took each other's place to one that is still a vertex. */
+static uint32_t alive(const brio_kernel *k, uint32_t p) {
+    while (k->representative[p] != p) p = k->representative[p];
+    return p;
+}
+
+static brio_status represent_one(workspace *w, uint32_t p) {
+    brio_kernel *k = w->k;
+    const double *x = k->record[p];
+    k->walk.start = w->vertex_tet[alive(k, p)];
+    uint32_t tet = brio_locate_walk(&k->t, &k->filter, &k->walk, x);
+    const uint32_t *v = k->t.vertex + 4 * (size_t)tet;
+    for (int i = 0; i < 4; i++)
+        if (v[i] != k->t.infinite && brio_same_position(k->record[v[i]], x)) {
+            k->representative[p] = v[i];
+            k->stats.duplicates++;
+            return BRIO_OK;
+        }
+    w->hidden[w->num_hidden++] = p;
+    return nearest_vertex(w, tet, x, &k->representative[p]);
+}
+
+/* By position; at one position the heaviest first, then the lowest index. */
+static int compare_hidden(uint32_t p, uint32_t q, const void *user) {
+    const brio_kernel *k = user;
+    int sign = brio_lexicographic(k->record[p], k->record[q]);
+    if (sign) return sign;
+    if (k->record[p][3] != k->record[q][3]) return k->record[p][3] > k->record[q][3] ? -1 : 1;
+    return k->caller[p] < k->caller[q] ? -1 : 1;
+}
+
+static void count_hidden(workspace *w) {
+    brio_kernel *k = w->k;
+    brio_sort_indices(w->hidden, w->num_hidden, compare_hidden, k);
+    for (size_t n = 0; n < w->num_hidden; n++) {
+        bool again = n > 0 && brio_same_position(k->record[w->hidden[n - 1]], k->record[w->hidden[n]]);
+        if (again)
+            k->stats.duplicates++;
+        else
+            k->stats.hidden++;
+    }
+}
+
+static brio_status represent_weighted(brio_kernel *k) {
+    workspace w = {.k = k};
+    brio_status status = BRIO_OK;
+    size_t not_vertices = 0;
+    for (uint32_t p = 0; p < k->num_points; p++) not_vertices += k->representative[p] != p;
+    if (!not_vertices) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(k->ctx, w.hidden, not_vertices));
+    BRIO_TRY(BRIO_ALLOC(k->ctx, w.vertex_tet, k->num_points + 3));
+    for (size_t t = 0; t < k->t.count; t++)
+        if (k->state[t] == TET_PLAIN)
+            for (int i = 0; i < 4; i++) w.vertex_tet[k->t.vertex[4 * t + (size_t)i]] = (uint32_t)t;
+    for (uint32_t p = 0; p < k->num_points; p++)
+        if (k->representative[p] != p) BRIO_TRY(represent_one(&w, p));
+    count_hidden(&w);
+done:
+    brio_release(k->ctx, w.vertex_tet);
+    brio_release(k->ctx, w.star);
+    brio_release(k->ctx, w.hidden);
+    return status;
+}
+
+/* All points at one position: the heaviest, then the lowest index, represents the others. */
+static void represent_coincident(brio_kernel *k) {
+    uint32_t best = 0;
+    for (uint32_t p = 1; p < k->num_points; p++) {
+        double difference = k->weighted ? k->record[p][3] - k->record[best][3] : 0;
+        if (difference > 0 || (difference == 0 && k->caller[p] < k->caller[best])) best = p;
+    }
+    for (uint32_t p = 0; p < k->num_points; p++) k->representative[p] = best;
+    k->stats.duplicates = k->num_points - 1;
+}
+
+brio_status brio_kernel_represent(brio_kernel *k) {
+    brio_status status = BRIO_OK;
+    if (k->dimension == 0)
+        represent_coincident(k);
+    else if (k->weighted && k->dimension > 0)
+        status = represent_weighted(k);
+    else
+        for (uint32_t p = 0; p < k->num_points; p++) k->stats.duplicates += k->representative[p] != p;
+    k->stats.vertices = k->num_points - k->stats.duplicates - k->stats.hidden;
+    return status;
+}

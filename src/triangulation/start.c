@@ -1,0 +1,130 @@
+/* The first tetrahedron, and inputs of fewer than three dimensions.
+ *
+ * The first point, the first one elsewhere, the first one off their line and the first one off their plane come first in the
+ * insertion order. When the points run out before that, an apex off the plane (two off the line) is added: every
+ * tetrahedron then has all apexes, its orthosphere meets the points' plane (line) in the orthocircle of its other vertices, and the
+ * symbolic perturbation skips the apexes, so the link of the apexes is the perturbed regular triangulation of the points in their
+ * own dimension, with the same hidden points. */
+#include "triangulation/kernel.h"
+#include <string.h>
+
+static void swap_records(brio_kernel *k, size_t i, size_t j) {
+    if (i == j) return;
+    brio_record r;
+    memcpy(r, k->record[i], sizeof r);
+    memcpy(k->record[i], k->record[j], sizeof r);
+    memcpy(k->record[j], r, sizeof r);
+    uint32_t c = k->caller[i];
+    k->caller[i] = k->caller[j], k->caller[j] = c;
+}
+
+/* Whether record i is off the affine hull of the first `count` records, which are in general position. */
+static bool off_hull(brio_kernel *k, size_t i, int count) {
+    const brio_record *r = k->record;
+    switch (count) {
+    case 1: return !brio_same_position(r[0], r[i]);
+    case 2: return !brio_collinear(r[0], r[1], r[i]);
+    default: return brio_orient3d_sign(&k->filter, r[0], r[1], r[2], r[i]) != 0;
+    }
+}
+
+/* Brings records in general position to the front; their number. */
+static int general_position(brio_kernel *k) {
+    int count = k->num_points > 0;
+    for (size_t i = 1; i < k->num_points && count < 4; i++) {
+        if (count == 0 || !off_hull(k, i, count)) continue;
+        swap_records(k, i, (size_t)count);
+        count++;
+    }
+    return count;
+}
+
+/* Another number than x, about `step` away, and finite. */
+static double moved(double x, double step) {
+    double y = x > 0 ? x - step : x + step;
+    if (y != x) return y;
+    return x != 0 ? x * 0.5 : 1;
+}
+
+/* corner[0 .. count) are records in general position; writes record `apex` off their affine hull. */
+static void place_apex(brio_kernel *k, uint32_t corner[4], int count, uint32_t apex, double step) {
+    const brio_record *r = k->record;
+    for (int axis = 0; axis < 3; axis++) {
+        double *p = k->record[apex];
+        memcpy(p, r[corner[0]], sizeof(brio_record));
+        p[3] = 0;
+        p[axis] = moved(p[axis], step);
+        bool off = count == 2 ? !brio_collinear(r[corner[0]], r[corner[1]], p)
+                              : brio_orient3d_exact(r[corner[0]], r[corner[1]], r[corner[2]], p) != 0;
+        if (off) break;
+    }
+    corner[count] = apex;
+}
+
+static void set_filter(brio_kernel *k, size_t num_records) {
+    double low[4], high[4], extent[4];
+    for (int c = 0; c < 4; c++) low[c] = high[c] = k->record[0][c];
+    for (size_t i = 1; i < num_records; i++)
+        for (int c = 0; c < 4; c++) {
+            double x = k->record[i][c];
+            low[c] = x < low[c] ? x : low[c];
+            high[c] = x > high[c] ? x : high[c];
+        }
+    for (int c = 0; c < 4; c++) extent[c] = high[c] - low[c];
+    brio_filter_set(&k->filter, extent, extent[3], k->weighted);
+}
+
+static double largest_difference(const brio_kernel *k) {
+    double most = 0;
+    for (int c = 0; c < 3; c++) most = fmax(most, fabs(k->record[1][c] - k->record[0][c]));
+    return fmin(most, 1e300);
+}
+
+/* The tetrahedron of four records and the four infinite ones around it. */
+static void first_tetrahedron(brio_kernel *k, uint32_t corner[4]) {
+    const brio_record *r = k->record;
+    brio_tetrahedra *t = &k->t;
+    if (brio_orient3d_exact(r[corner[0]], r[corner[1]], r[corner[2]], r[corner[3]]) < 0) {
+        uint32_t swap = corner[0];
+        corner[0] = corner[1], corner[1] = swap;
+    }
+    t->count = 5;
+    memcpy(t->vertex, corner, 4 * sizeof *corner);
+    for (uint32_t i = 0; i < 4; i++) {
+        uint32_t *v = t->vertex + 4 * (i + 1);
+        /* the facet seen from outside: its order reversed */
+        v[0] = corner[BRIO_FACET[i][0]], v[1] = corner[BRIO_FACET[i][2]], v[2] = corner[BRIO_FACET[i][1]];
+        v[3] = t->infinite;
+        t->mate[i] = brio_facet_of(i + 1, 3);
+        t->mate[4 * (i + 1) + 3] = i;
+    }
+    for (uint32_t i = 0; i < 4; i++)
+        for (uint32_t s = 0; s < 3; s++) { /* across the edge opposite to corner s lies the facet opposite to it */
+            uint32_t missing = t->vertex[4 * (i + 1) + s];
+            uint32_t j = (uint32_t)brio_slot_of_vertex(corner, missing);
+            uint32_t other = (uint32_t)brio_slot_of_vertex(t->vertex + 4 * (j + 1), corner[i]);
+            t->mate[4 * (i + 1) + s] = brio_facet_of(j + 1, (int)other);
+        }
+    memset(k->state, TET_PLAIN, t->count);
+    k->stats.created = t->count;
+    k->walk.start = 0;
+}
+
+brio_status brio_kernel_start(brio_kernel *k) {
+    if (k->num_points == 0) {
+        k->dimension = -1;
+        return BRIO_OK;
+    }
+    set_filter(k, k->num_points);
+    int count = general_position(k);
+    k->dimension = count - 1;
+    if (k->dimension == 0) return BRIO_OK;
+    uint32_t corner[4] = {0, 1, 2, 3};
+    double step = largest_difference(k);
+    for (int apex = 0; count < 4; apex++, count++)
+        place_apex(k, corner, count, (uint32_t)k->num_points + (uint32_t)apex, step);
+    if (k->dimension < 3) set_filter(k, k->num_points + (size_t)(3 - k->dimension));
+    brio_status status = brio_kernel_reserve(k, 5);
+    if (status == BRIO_OK) first_tetrahedron(k, corner);
+    return status;
+}
