@@ -421,11 +421,10 @@ BRIO_API int brio_insphere(const double *a, const double *b, const double *c, co
 BRIO_API int brio_insphere_perturbed(const double *a, const double *b, const double *c, const double *d,
                                      const double *e, const double *weights);
 
-/** Circumcentre of a tetrahedron that is not flat or, with 4 weights, its orthocentre. A function of the set of points:
- *  the same bits for every order of them. Each coordinate is off by at most `*error` (may be NULL), which is a few units
- *  in the last place of the largest of the centre's coordinates and of its distance to the tetrahedron; higher precision
- *  is used where doubles do not reach it. Returns BRIO_OK, or BRIO_ERR_ARGUMENT for a flat tetrahedron or a
- *  centre that is not representable. */
+/** Circumcentre of a tetrahedron that is not flat or, with 4 weights, its orthocentre. A function of the set of points: the
+ *  same bits for every order of them. Each coordinate is off by at most `*error` (may be NULL): at most 2^-44 of the centre's
+ *  distance to the lexicographically first point, plus one rounding; higher precision is used where doubles do not reach it.
+ *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT for a flat tetrahedron or a centre that doubles cannot hold. */
 BRIO_API brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d,
                                        const double *weights, double *centre, double *error);
 

@@ -14,4 +14,11 @@ typedef int (*brio_compare_fn)(uint32_t, uint32_t, const void *user);
  *  depend on the order they come in. No workspace. */
 void brio_sort_indices(uint32_t *indices, size_t n, brio_compare_fn compare, const void *user);
 
+/** Unsigned key with the order of the doubles; -0 and 0 have the same. */
+uint64_t brio_double_key(double x);
+
+/** Sorts rows of an array by their first number, ties by `compare`: indices[i] name the rows of `stride` doubles. */
+brio_status brio_sort_rows(brio_context *ctx, const double *rows, size_t stride, uint32_t *indices, size_t n,
+                           brio_compare_fn compare, const void *user);
+
 #endif

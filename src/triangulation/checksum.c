@@ -6,35 +6,24 @@
 #include "base/rng.h"
 #include "base/sort.h"
 #include "triangulation/triangulation.h"
-#include <string.h>
 
-/* Unsigned key whose order is that of the doubles; -0 is 0. */
-static uint64_t ordered_key(double x) {
-    uint64_t bits;
-    x += 0.0;
-    memcpy(&bits, &x, sizeof bits);
-    return bits >> 63 ? ~bits : bits | UINT64_C(1) << 63;
+static int compare_points(uint32_t p, uint32_t q, const void *points) {
+    return brio_lexicographic((const double *)points + 3 * (size_t)p, (const double *)points + 3 * (size_t)q);
 }
 
-/* rank[p] of each vertex p among the vertices: three stable sorts, least significant coordinate first. */
+/* rank[p] of each vertex p among the vertices. */
 static brio_status lexicographic_ranks(brio_context *ctx, const brio_triangulation *t, const double *points,
                                        uint32_t *rank) {
     brio_status status = BRIO_OK;
-    size_t n = t->stats.vertices, filled = 0;
+    size_t n = 0;
     uint32_t *vertex = NULL;
-    uint64_t *key = NULL;
-    BRIO_TRY(BRIO_ALLOC(ctx, vertex, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, key, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, vertex, t->stats.vertices));
     for (size_t p = 0; p < t->stats.points; p++)
-        if (t->representative[p] == p) vertex[filled++] = (uint32_t)p;
-    for (size_t c = 3; c-- > 0;) {
-        for (size_t i = 0; i < n; i++) key[i] = ordered_key(points[3 * (size_t)vertex[i] + c]);
-        BRIO_TRY(brio_radix_sort(ctx, key, vertex, n, 64));
-    }
+        if (t->representative[p] == p) vertex[n++] = (uint32_t)p;
+    BRIO_TRY(brio_sort_rows(ctx, points, 3, vertex, n, compare_points, points));
     for (size_t i = 0; i < n; i++) rank[vertex[i]] = (uint32_t)i;
 done:
     brio_release(ctx, vertex);
-    brio_release(ctx, key);
     return status;
 }
 

@@ -75,7 +75,7 @@ void brio_cavity_free(brio_context *ctx, brio_cavity *c);
 /** Gives every point that is no vertex the vertex that represents it; counts duplicates and hidden points. */
 brio_status brio_kernel_represent(brio_kernel *k);
 
-/** Sorts the tetrahedra into their canonical order, finite ones first, without a second copy of them. */
+/** Sorts the tetrahedra into their canonical order, finite ones first. */
 brio_status brio_kernel_sort(brio_kernel *k);
 
 #endif

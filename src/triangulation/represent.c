@@ -8,41 +8,17 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "triangulation/kernel.h"
-#include <string.h>
+#include "triangulation/star.h"
 
 typedef struct {
     brio_kernel *k;
     uint32_t *vertex_tet; /* a tetrahedron of each vertex */
-    uint32_t *star;       /* tetrahedra round a vertex */
-    size_t star_size, star_capacity;
+    brio_star star;
     uint32_t *hidden;
     size_t num_hidden;
 } workspace;
 
 static bool is_point(const brio_kernel *k, uint32_t v) { return v < k->num_points; }
-
-/* Collects the tetrahedra round vertex v, marking them in the state bytes until the end. */
-static brio_status collect_star(workspace *w, uint32_t v) {
-    brio_kernel *k = w->k;
-    brio_status status = BRIO_OK;
-    w->star_size = 0;
-    BRIO_TRY(BRIO_RESERVE(k->ctx, w->star, w->star_capacity, 1));
-    w->star[w->star_size++] = w->vertex_tet[v];
-    k->state[w->vertex_tet[v]] = TET_CAVITY;
-    for (size_t n = 0; n < w->star_size; n++) {
-        uint32_t tet = w->star[n];
-        BRIO_TRY(BRIO_RESERVE(k->ctx, w->star, w->star_capacity, w->star_size + 4));
-        for (int i = 0; i < 4; i++) {
-            uint32_t other = brio_tet_of(k->t.mate[4 * (size_t)tet + (size_t)i]);
-            if (k->t.vertex[4 * (size_t)tet + (size_t)i] == v || k->state[other] != TET_PLAIN) continue;
-            k->state[other] = TET_CAVITY;
-            w->star[w->star_size++] = other;
-        }
-    }
-done:
-    for (size_t n = 0; n < w->star_size; n++) k->state[w->star[n]] = TET_PLAIN;
-    return status;
-}
 
 /* The nearer of two vertices to x by power distance, ties lexicographic. */
 static uint32_t nearer(const brio_kernel *k, const double *x, uint32_t u, uint32_t v) {
@@ -59,10 +35,11 @@ static brio_status nearest_vertex(workspace *w, uint32_t tet, const double *x, u
     *best = nearer(k, x, nearer(k, x, v[0], v[1]), nearer(k, x, v[2], v[3]));
     for (uint32_t from = k->t.infinite; from != *best;) {
         from = *best;
-        brio_status status = collect_star(w, from);
+        brio_status status = brio_star_collect(k->ctx, &k->t, from, w->vertex_tet[from], &w->star);
         if (status != BRIO_OK) return status;
-        for (size_t n = 0; n < w->star_size; n++)
-            for (int i = 0; i < 4; i++) *best = nearer(k, x, *best, k->t.vertex[4 * (size_t)w->star[n] + (size_t)i]);
+        for (size_t n = 0; n < w->star.size; n++)
+            for (size_t i = 0; i < 4; i++)
+                *best = nearer(k, x, *best, k->t.vertex[4 * (size_t)w->star.tet[n] + i]);
     }
     return BRIO_OK;
 }
@@ -116,6 +93,7 @@ static brio_status represent_weighted(brio_kernel *k) {
     size_t not_vertices = 0;
     for (uint32_t p = 0; p < k->num_points; p++) not_vertices += k->representative[p] != p;
     if (!not_vertices) return BRIO_OK;
+    BRIO_TRY(brio_star_new(k->ctx, k->t.count, &w.star));
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.hidden, not_vertices));
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.vertex_tet, k->num_points + 3));
     for (size_t t = 0; t < k->t.count; t++)
@@ -126,7 +104,7 @@ static brio_status represent_weighted(brio_kernel *k) {
     count_hidden(&w);
 done:
     brio_release(k->ctx, w.vertex_tet);
-    brio_release(k->ctx, w.star);
+    brio_star_free(k->ctx, &w.star);
     brio_release(k->ctx, w.hidden);
     return status;
 }

@@ -1,0 +1,175 @@
+/* The poles of samples.
+ *
+ * One pass over the tetrahedra offers each circumcentre to the four vertices as the farthest Voronoi vertex; a second one
+ * offers it as the farthest on the other side, where the vector to it makes an obtuse angle with the vector to the first. Equal
+ * distances are decided by the centre and then by the tetrahedron's own points, never by its place in memory.
+ *
+ * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999.
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.8. */
+#include "dual/poles.h"
+#include "base/memory.h"
+#include "base/sort.h"
+#include "predicates/circumcentre.h"
+#include "predicates/predicates.h"
+#include <string.h>
+
+enum { NO_TET = UINT32_MAX };
+
+typedef struct {
+    const uint32_t *vertex; /* of the tetrahedra */
+    const double *points;
+    size_t num_tets, num_samples;
+    double *centre;   /* of each tetrahedron; NaN where there is none */
+    uint32_t *best;   /* of each sample and side, a tetrahedron */
+} finder;
+
+static const double *centre_of(const finder *f, uint32_t tet) { return f->centre + 3 * (size_t)tet; }
+
+static void find_centres(const brio_context *ctx, finder *f) {
+    int threads = brio_context_threads(ctx);
+    (void)threads; /* without OpenMP */
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (size_t tet = 0; tet < f->num_tets; tet++) {
+        double r[4][4] = {{0}};
+        for (int i = 0; i < 4; i++)
+            memcpy(r[i], f->points + 3 * (size_t)f->vertex[4 * tet + (size_t)i], 3 * sizeof **r);
+        if (!brio_centre(r[0], r[1], r[2], r[3], false, f->centre + 3 * tet, NULL)) f->centre[3 * tet] = NAN;
+    }
+}
+
+static double square_distance(const double *p, const double *q) {
+    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+    return x * x + y * y + z * z;
+}
+
+/* Positions of a tetrahedron's vertices, ascending. */
+static void sorted_positions(const finder *f, uint32_t tet, const double *p[4]) {
+    for (int i = 0; i < 4; i++) p[i] = f->points + 3 * (size_t)f->vertex[4 * (size_t)tet + (size_t)i];
+    for (int i = 1; i < 4; i++)
+        for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {
+            const double *swap = p[j];
+            p[j] = p[j - 1], p[j - 1] = swap;
+        }
+}
+
+static int compare_tets(const finder *f, uint32_t s, uint32_t t) {
+    const double *p[4], *q[4];
+    int sign = brio_lexicographic(centre_of(f, s), centre_of(f, t));
+    if (sign) return sign;
+    sorted_positions(f, s, p);
+    sorted_positions(f, t, q);
+    for (int i = 0; i < 4 && !sign; i++) sign = brio_lexicographic(p[i], q[i]);
+    return sign;
+}
+
+/* Keeps the farther of the best tetrahedron so far and this one. */
+static inline void offer(const finder *f, uint32_t *best, uint32_t tet, const double *sample) {
+    if (*best == NO_TET) {
+        *best = tet;
+        return;
+    }
+    double now = square_distance(centre_of(f, *best), sample), then = square_distance(centre_of(f, tet), sample);
+    if (then > now || (then == now && compare_tets(f, tet, *best) > 0)) *best = tet;
+}
+
+static bool opposite(const finder *f, uint32_t first, uint32_t tet, const double *s) {
+    const double *p = centre_of(f, first), *q = centre_of(f, tet);
+    return (p[0] - s[0]) * (q[0] - s[0]) + (p[1] - s[1]) * (q[1] - s[1]) + (p[2] - s[2]) * (q[2] - s[2]) < 0;
+}
+
+static void offer_all(finder *f, int side) {
+    for (size_t tet = 0; tet < f->num_tets; tet++) {
+        if (isnan(f->centre[3 * tet])) continue;
+        for (int i = 0; i < 4; i++) {
+            size_t v = f->vertex[4 * tet + (size_t)i];
+            if (v >= f->num_samples) continue;
+            const double *s = f->points + 3 * v;
+            if (side == 1 && !opposite(f, f->best[2 * v], (uint32_t)tet, s)) continue;
+            offer(f, &f->best[2 * v + (size_t)side], (uint32_t)tet, s);
+        }
+    }
+}
+
+/* --- from tetrahedra to numbered poles --- */
+
+static int compare_for_sort(uint32_t s, uint32_t t, const void *user) { return compare_tets(user, s, t); }
+
+static brio_status list_poles(brio_context *ctx, const finder *f, uint32_t **list, size_t *count) {
+    brio_status status = BRIO_OK;
+    uint8_t *is_pole = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, is_pole, f->num_tets));
+    *count = 0;
+    for (size_t i = 0; i < 2 * f->num_samples; i++)
+        if (f->best[i] != NO_TET) *count += !is_pole[f->best[i]], is_pole[f->best[i]] = 1;
+    BRIO_TRY(BRIO_ALLOC(ctx, *list, *count));
+    for (size_t tet = 0, n = 0; tet < f->num_tets; tet++)
+        if (is_pole[tet]) (*list)[n++] = (uint32_t)tet;
+    BRIO_TRY(brio_sort_rows(ctx, f->centre, 3, *list, *count, compare_for_sort, f));
+done:
+    brio_release(ctx, is_pole);
+    return status;
+}
+
+static void fill_poles(const finder *f, const uint32_t *list, brio_poles *poles) {
+    for (size_t p = 0; p < poles->count; p++) {
+        const double *position[4];
+        memcpy(poles->centre + 3 * p, centre_of(f, list[p]), 3 * sizeof *poles->centre);
+        sorted_positions(f, list[p], position);
+        poles->square[p] = square_distance(poles->centre + 3 * p, position[0]);
+        poles->bounding[p] = 0;
+        for (int i = 0; i < 4; i++)
+            if (f->vertex[4 * (size_t)list[p] + (size_t)i] >= f->num_samples) poles->bounding[p] = 1;
+    }
+}
+
+/* Numbers the poles and replaces the tetrahedra in f->best by these numbers. */
+static brio_status number_poles(brio_context *ctx, finder *f, brio_poles *poles) {
+    brio_status status = BRIO_OK;
+    uint32_t *list = NULL, *number = NULL;
+    BRIO_TRY(list_poles(ctx, f, &list, &poles->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, poles->centre, 3 * poles->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, poles->square, poles->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, poles->bounding, poles->count));
+    fill_poles(f, list, poles);
+    BRIO_TRY(BRIO_ALLOC(ctx, number, f->num_tets));
+    for (size_t p = 0; p < poles->count; p++) number[list[p]] = (uint32_t)p;
+    for (size_t i = 0; i < 2 * f->num_samples; i++)
+        f->best[i] = f->best[i] == NO_TET ? BRIO_NO_POLE : number[f->best[i]];
+done:
+    brio_release(ctx, list);
+    brio_release(ctx, number);
+    return status;
+}
+
+brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
+                            brio_poles *out) {
+    brio_status status = BRIO_OK;
+    finder f = {.vertex = brio_triangulation_tetrahedra(t),
+                .points = points,
+                .num_tets = brio_triangulation_stats(t)->tetrahedra,
+                .num_samples = num_samples};
+    *out = (brio_poles){0};
+    BRIO_TRY(BRIO_ALLOC(ctx, f.centre, 3 * f.num_tets));
+    BRIO_TRY(BRIO_ALLOC(ctx, f.best, 2 * num_samples));
+    for (size_t i = 0; i < 2 * num_samples; i++) f.best[i] = NO_TET;
+    find_centres(ctx, &f);
+    BRIO_TRY(brio_progress(ctx, "poles", 0.5));
+    offer_all(&f, 0);
+    offer_all(&f, 1);
+    BRIO_TRY(number_poles(ctx, &f, out));
+    out->of_sample = f.best;
+    f.best = NULL;
+done:
+    brio_release(ctx, f.centre);
+    brio_release(ctx, f.best);
+    if (status != BRIO_OK) brio_poles_free(ctx, out);
+    return status;
+}
+
+void brio_poles_free(brio_context *ctx, brio_poles *poles) {
+    brio_release(ctx, poles->centre);
+    brio_release(ctx, poles->square);
+    brio_release(ctx, poles->bounding);
+    brio_release(ctx, poles->of_sample);
+    *poles = (brio_poles){0};
+}

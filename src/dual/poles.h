@@ -1,0 +1,27 @@
+/* The poles of samples: the farthest Voronoi vertices of their cells on either side. */
+#ifndef BRIO_DUAL_POLES_H
+#define BRIO_DUAL_POLES_H
+
+#include "base/context.h"
+
+enum { BRIO_NO_POLE = UINT32_MAX };
+
+/** Polar balls, numbered canonically: by centre, then radius, lexicographic, so that the numbers do not depend on the order of
+ *  the samples. A pole is a Delaunay tetrahedron: two of them may have the same centre. */
+typedef struct {
+    size_t count;
+    double *centre;    /* #poles by 3 */
+    double *square;    /* squared radii */
+    uint8_t *bounding; /* 1: the tetrahedron has a bounding point */
+    uint32_t *of_sample; /* #samples by 2: the farther pole and the one on its other side, or BRIO_NO_POLE */
+} brio_poles;
+
+/** Finds the poles of the first num_samples of the points that t triangulates; the points after them only bound the cells and have
+ *  no poles, nor do duplicates.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
+                            brio_poles *out);
+
+void brio_poles_free(brio_context *ctx, brio_poles *poles);
+
+#endif

@@ -1,0 +1,204 @@
+/* Circumcentres and orthocentres, in as much precision as they need.
+ *
+ * With the points sorted lexicographically and taken relative to the first, b, c, d, and with their lifts l = |p|^2 less the
+ * difference of weights, the centre is
+ *     a + (l_b c x d + l_c d x b + l_d b x c) / (2 det [b, c, d]).
+ * A numerator and the determinant carry an error of a few units in the last place of their permanents; when that leaves the
+ * quotient less certain than RELATIVE_GOAL, the same formula is evaluated in double-doubles, and at last in exact dyadic numbers.
+ * Differences are first scaled by a power of two to at most 1, so that nothing overflows on the way. */
+#include "predicates/circumcentre.h"
+#include "brio/brio.h"
+#include "predicates/double_double.h"
+#include "predicates/dyadic.h"
+#include "predicates/predicates.h"
+
+/* An error of 2^-44 of the centre's distance is what doubles reach for tetrahedra of ordinary shape. */
+static const double RELATIVE_GOAL = 0x1p-44;
+/* First-order error of each expression below: at most 20 roundings along a path; double-doubles 80 u^2. */
+static const double DOUBLE_BOUND = 20 * 0x1p-53, DD_BOUND = 0x1p-99;
+
+typedef struct {
+    double offset[3]; /* centre - first point, scaled */
+    double error;     /* of each coordinate */
+} solution;
+
+/* Magnitudes of the numerators and the determinant with every term positive. */
+typedef struct {
+    double numerator[3], determinant;
+} permanents;
+
+static permanents permanents_of(double r[3][3], double lift[3]) {
+    permanents p = {{0, 0, 0}, 0};
+    for (int i = 0; i < 3; i++) {
+        const double *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
+        double x = fabs(u[1] * v[2]) + fabs(u[2] * v[1]), y = fabs(u[2] * v[0]) + fabs(u[0] * v[2]),
+               z = fabs(u[0] * v[1]) + fabs(u[1] * v[0]);
+        p.numerator[0] += lift[i] * x, p.numerator[1] += lift[i] * y, p.numerator[2] += lift[i] * z;
+        if (i == 0) p.determinant = fabs(r[0][0]) * x + fabs(r[0][1]) * y + fabs(r[0][2]) * z;
+    }
+    return p;
+}
+
+/* The quotients with their error from the errors of numerator and determinant; false when that is too large. */
+static bool divide(const double numerator[3], double determinant, const permanents *p, double bound, solution *s) {
+    double slack = fabs(determinant) - bound * p->determinant - 0x1p-900, most = 0;
+    if (!(slack > 0)) return false;
+    s->error = 0;
+    for (int k = 0; k < 3; k++) {
+        s->offset[k] = 0.5 * (numerator[k] / determinant);
+        double error = 0.5 * (bound * p->numerator[k] + 0x1p-900) / slack +
+                       fabs(s->offset[k]) * (bound * p->determinant / slack + 0x1p-52);
+        s->error = fmax(s->error, error);
+        most = fmax(most, fabs(s->offset[k]));
+    }
+    return s->error <= RELATIVE_GOAL * most && most < INFINITY;
+}
+
+static bool solve_double(double r[3][3], const double weight[3], solution *s, permanents *p) {
+    double lift[3], magnitude[3], numerator[3] = {0, 0, 0}, determinant = 0;
+    for (int i = 0; i < 3; i++) {
+        double square = r[i][0] * r[i][0] + r[i][1] * r[i][1] + r[i][2] * r[i][2];
+        lift[i] = square - weight[i];
+        magnitude[i] = square + fabs(weight[i]);
+    }
+    *p = permanents_of(r, magnitude);
+    for (int i = 0; i < 3; i++) {
+        const double *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
+        double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+        numerator[0] += lift[i] * x, numerator[1] += lift[i] * y, numerator[2] += lift[i] * z;
+        if (i == 0) determinant = r[0][0] * x + r[0][1] * y + r[0][2] * z;
+    }
+    return divide(numerator, determinant, p, DOUBLE_BOUND, s);
+}
+
+BRIO_INLINE bool solve_dd(brio_dd r[3][3], const brio_dd weight[3], const permanents *p, solution *s, const bool fma) {
+    brio_dd numerator[3] = {{0, 0}, {0, 0}, {0, 0}}, determinant = {0, 0};
+    for (int i = 0; i < 3; i++) {
+        brio_dd *u = r[(i + 1) % 3], *v = r[(i + 2) % 3], cross[3];
+        brio_dd lift = dd_sum3(dd_multiply(r[i][0], r[i][0], fma), dd_multiply(r[i][1], r[i][1], fma),
+                               dd_multiply(r[i][2], r[i][2], fma));
+        lift = dd_subtract(lift, weight[i]);
+        for (int k = 0; k < 3; k++) {
+            int m = (k + 1) % 3, n = (k + 2) % 3;
+            cross[k] = dd_minor(u[m], v[n], u[n], v[m], fma);
+            numerator[k] = dd_add(numerator[k], dd_multiply(lift, cross[k], fma));
+            if (i == 0) determinant = dd_add(determinant, dd_multiply(r[0][k], cross[k], fma));
+        }
+    }
+    return divide((double[]){numerator[0].hi, numerator[1].hi, numerator[2].hi}, determinant.hi, p, DD_BOUND, s);
+}
+
+static bool solve_dd_plain(brio_dd r[3][3], const brio_dd w[3], const permanents *p, solution *s) {
+    return solve_dd(r, w, p, s, false);
+}
+BRIO_TARGET_FMA static bool solve_dd_fma(brio_dd r[3][3], const brio_dd w[3], const permanents *p, solution *s) {
+    return solve_dd(r, w, p, s, true);
+}
+
+/* x = 1/2 numerator / determinant of exact numbers, scaled by 2^-exponent. */
+static double quotient(const brio_dyadic *numerator, const brio_dyadic *determinant, int exponent) {
+    int en, ed;
+    double n = brio_dyadic_to_double(numerator, &en), d = brio_dyadic_to_double(determinant, &ed);
+    return ldexp(n / d, en - ed - 1 - exponent);
+}
+
+static bool solve_exact(const double *const p[4], bool weighted, int exponent, solution *s) {
+    brio_dyadic r[3][3], lift, minor, term, determinant = {0}, numerator[3] = {{0}, {0}, {0}};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) brio_dyadic_difference(&r[i][k], p[i + 1][k], p[0][k]);
+    for (int i = 0; i < 3; i++) {
+        const brio_dyadic *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
+        brio_dyadic_multiply(&lift, &r[i][0], &r[i][0]);
+        for (int k = 1; k < 3; k++) {
+            brio_dyadic_multiply(&term, &r[i][k], &r[i][k]);
+            brio_dyadic_add(&lift, &lift, &term, 1);
+        }
+        if (weighted) {
+            brio_dyadic_difference(&term, p[i + 1][3], p[0][3]);
+            brio_dyadic_add(&lift, &lift, &term, -1);
+        }
+        for (int k = 0; k < 3; k++) {
+            int m = (k + 1) % 3, n = (k + 2) % 3;
+            brio_dyadic_multiply(&minor, &u[m], &v[n]);
+            brio_dyadic_multiply(&term, &u[n], &v[m]);
+            brio_dyadic_add(&minor, &minor, &term, -1);
+            brio_dyadic_multiply(&term, &lift, &minor);
+            brio_dyadic_add(&numerator[k], &numerator[k], &term, 1);
+            if (i > 0) continue;
+            brio_dyadic_multiply(&term, &r[0][k], &minor);
+            brio_dyadic_add(&determinant, &determinant, &term, 1);
+        }
+    }
+    if (!determinant.sign) return false;
+    s->error = 0;
+    for (int k = 0; k < 3; k++) {
+        s->offset[k] = quotient(&numerator[k], &determinant, exponent);
+        s->error = fmax(s->error, fabs(s->offset[k]) * 0x1p-50);
+    }
+    return true;
+}
+
+static void sort_ascending(const double *p[4]) {
+    for (int i = 1; i < 4; i++)
+        for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {
+            const double *swap = p[j];
+            p[j] = p[j - 1], p[j - 1] = swap;
+        }
+}
+
+/* Exponent of the largest difference to the first point; the differences may not be finite. */
+static int exponent_of(const double *const p[4]) {
+    double most = 0;
+    for (int i = 1; i < 4; i++)
+        for (int k = 0; k < 3; k++) most = fmax(most, fabs(p[i][k] * 0.5 - p[0][k] * 0.5));
+    int exponent;
+    frexp(most, &exponent);
+    return exponent + 1;
+}
+
+static bool solve(const double *const p[4], bool weighted, int exponent, solution *s) {
+    double r[3][3], weight[3] = {0, 0, 0}, scale = ldexp(1, -exponent);
+    brio_dd rr[3][3], ww[3] = {{0, 0}, {0, 0}, {0, 0}};
+    permanents permanent;
+    bool ordinary = exponent > -400 && exponent < 400; /* scaling is exact and finite */
+    if (!ordinary) return solve_exact(p, weighted, exponent, s);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            rr[i][k] = dd_difference(p[i + 1][k] * scale, p[0][k] * scale);
+            r[i][k] = rr[i][k].hi;
+        }
+        if (weighted) ww[i] = dd_difference(p[i + 1][3] * scale * scale, p[0][3] * scale * scale);
+        weight[i] = ww[i].hi;
+    }
+    if (solve_double(r, weight, s, &permanent)) return true;
+    bool done = dd_have_fma() ? solve_dd_fma(rr, ww, &permanent, s) : solve_dd_plain(rr, ww, &permanent, s);
+    return done || solve_exact(p, weighted, exponent, s);
+}
+
+bool brio_centre(const double *a, const double *b, const double *c, const double *d, bool weighted, double centre[3],
+                 double *error) {
+    const double *p[4] = {a, b, c, d};
+    solution s;
+    sort_ascending(p);
+    int exponent = exponent_of(p);
+    if (!solve(p, weighted, exponent, &s)) return false;
+    double worst = ldexp(s.error, exponent);
+    for (int k = 0; k < 3; k++) {
+        centre[k] = p[0][k] + ldexp(s.offset[k], exponent);
+        if (!isfinite(centre[k])) return false;
+    }
+    worst += 0x1p-53 * fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2])));
+    if (error) *error = worst;
+    return true;
+}
+
+brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d, const double *weights,
+                              double *centre, double *error) {
+    const double *p[4] = {a, b, c, d};
+    double r[4][4];
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) r[i][k] = p[i][k] + 0.0;
+        r[i][3] = weights ? weights[i] : 0;
+    }
+    return brio_centre(r[0], r[1], r[2], r[3], weights != NULL, centre, error) ? BRIO_OK : BRIO_ERR_ARGUMENT;
+}

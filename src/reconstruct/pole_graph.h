@@ -1,0 +1,43 @@
+/* The graph of poles that labels travel along: neighbours in the power diagram, and the two poles of each sample. */
+#ifndef BRIO_RECONSTRUCT_POLE_GRAPH_H
+#define BRIO_RECONSTRUCT_POLE_GRAPH_H
+
+#include "dual/poles.h"
+#include "triangulation/star.h"
+
+typedef enum { BRIO_LABEL_NONE = 0, BRIO_LABEL_OUTER = 1, BRIO_LABEL_INNER = 2 } brio_label;
+
+/** Two poles are neighbours when their power cells share a face, that is an edge of the regular triangulation of the polar balls;
+ *  a hidden pole has one neighbour, its representative. Two poles are opposite when they are the poles of one sample. */
+typedef struct {
+    brio_context *ctx;
+    const brio_poles *poles;
+    const double *samples;     /* #samples by 3 */
+    size_t num_samples;
+    brio_tetrahedra power;     /* the regular triangulation of the polar balls, caller's indices */
+    size_t num_finite;
+    const uint32_t *representative;
+    uint32_t *vertex_tet;      /* a tetrahedron of each pole with a cell */
+    uint32_t *first_of_pole;   /* list of the (sample, side) pairs of each pole: 2 sample + side */
+    uint32_t *next_of_pole;
+    uint32_t *first_hidden, *next_hidden; /* list of the hidden poles of each representative */
+    brio_star star;
+    uint32_t *seen;            /* last visit of each pole, so that a neighbour is offered once */
+    uint32_t visit;
+} brio_pole_graph;
+
+brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
+                                const brio_triangulation *power, brio_pole_graph *out);
+void brio_pole_graph_free(brio_pole_graph *g);
+
+/** Called for an edge from a pole to `other` of the given weight in (0, 1]. */
+typedef void (*brio_pole_visit_fn)(uint32_t other, double weight, void *user);
+
+/** Visits the opposite poles of p; the weight is -cos of the angle at the sample, edges that are not positive are left out. */
+void brio_pole_graph_opposite(const brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit, void *user);
+
+/** Visits the neighbours of p whose balls intersect p's deeply; the weight is -cos of the angle of intersection (0 at a right angle,
+ *  1 for a ball inside the other), edges that are not positive are left out. */
+brio_status brio_pole_graph_neighbours(brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit, void *user);
+
+#endif

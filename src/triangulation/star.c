@@ -1,0 +1,36 @@
+/* The star of a vertex, breadth first across the facets that hold the vertex. */
+#include "triangulation/star.h"
+#include "base/memory.h"
+
+brio_status brio_star_new(brio_context *ctx, size_t num_tetrahedra, brio_star *out) {
+    *out = (brio_star){0};
+    return BRIO_ALLOC_ZERO(ctx, out->mark, num_tetrahedra);
+}
+
+void brio_star_free(brio_context *ctx, brio_star *star) {
+    brio_release(ctx, star->tet);
+    brio_release(ctx, star->mark);
+    *star = (brio_star){0};
+}
+
+brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint32_t v, uint32_t first,
+                              brio_star *star) {
+    brio_status status = BRIO_OK;
+    star->size = 0;
+    BRIO_TRY(BRIO_RESERVE(ctx, star->tet, star->capacity, 1));
+    star->tet[star->size++] = first;
+    star->mark[first] = 1;
+    for (size_t n = 0; n < star->size; n++) {
+        size_t tet = star->tet[n];
+        BRIO_TRY(BRIO_RESERVE(ctx, star->tet, star->capacity, star->size + 4));
+        for (size_t f = 4 * tet; f < 4 * tet + 4; f++) {
+            uint32_t other = brio_tet_of(t->mate[f]);
+            if (t->vertex[f] == v || star->mark[other]) continue;
+            star->mark[other] = 1;
+            star->tet[star->size++] = other;
+        }
+    }
+done:
+    for (size_t n = 0; n < star->size; n++) star->mark[star->tet[n]] = 0;
+    return status;
+}

@@ -1,0 +1,21 @@
+/* The tetrahedra round a vertex. */
+#ifndef BRIO_TRIANGULATION_STAR_H
+#define BRIO_TRIANGULATION_STAR_H
+
+#include "triangulation/tetrahedra.h"
+
+/** Workspace of collections: the last star, and one mark a tetrahedron. */
+typedef struct {
+    uint32_t *tet;
+    size_t size, capacity;
+    uint8_t *mark; /* 0 between calls */
+} brio_star;
+
+brio_status brio_star_new(brio_context *ctx, size_t num_tetrahedra, brio_star *out);
+void brio_star_free(brio_context *ctx, brio_star *star);
+
+/** star->tet[0 .. size) = the tetrahedra with vertex v, `first` being one of them; infinite ones included. */
+brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint32_t v, uint32_t first,
+                              brio_star *star);
+
+#endif
