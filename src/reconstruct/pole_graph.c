@@ -45,7 +45,6 @@ brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, cons
         g->first_hidden[r] = (uint32_t)p;
     }
 done:
-    if (status != BRIO_OK) brio_pole_graph_free(g);
     return status;
 }
 

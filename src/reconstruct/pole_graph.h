@@ -26,6 +26,7 @@ typedef struct {
     uint32_t visit;
 } brio_pole_graph;
 
+/** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power. */
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
                                 const brio_triangulation *power, brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);

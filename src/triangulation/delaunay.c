@@ -145,10 +145,10 @@ static brio_status triangulation_new(brio_kernel *k, brio_triangulation **out) {
     BRIO_TRY(BRIO_RESIZE(ctx, k->t.vertex, 4 * k->t.count));
     BRIO_TRY(BRIO_RESIZE(ctx, k->t.mate, 4 * k->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
+    t->ctx = ctx;
     BRIO_TRY(BRIO_ALLOC(ctx, t->representative, k->num_points));
     for (size_t p = 0; p < k->num_points; p++)
         t->representative[k->caller[p]] = k->caller[k->representative[p]];
-    t->ctx = ctx;
     t->vertex = k->t.vertex;
     t->mate = k->t.mate;
     t->stats = k->stats;

@@ -1,0 +1,52 @@
+/* The certificate of a surface as facts. */
+#include "certificate.h"
+
+static void report_certificate(facts *f, const brio_certificate *c) {
+    cli_fact_open(f, "certificate", FACT_OBJECT);
+    cli_fact_bool(f, "closed", c->closed);
+    cli_fact_bool(f, "manifold", c->manifold);
+    cli_fact_bool(f, "oriented", c->oriented);
+    cli_fact_count(f, "components", c->components);
+    cli_fact_integer(f, "genus", c->genus);
+    cli_fact_open(f, "genera", FACT_LIST);
+    for (size_t i = 0; i < c->components; i++) cli_fact_integer(f, NULL, c->genera[i]);
+    cli_fact_close(f);
+    cli_fact_count(f, "boundary_edges", c->boundary_edges);
+    cli_fact_count(f, "boundary_loops", c->boundary_loops);
+    cli_fact_count(f, "nonmanifold_edges", c->nonmanifold_edges);
+    cli_fact_count(f, "nonmanifold_vertices", c->nonmanifold_vertices);
+    cli_fact_count(f, "flipped_edges", c->flipped_edges);
+    if (c->self_intersections < 0)
+        cli_fact_null(f, "self_intersections");
+    else
+        cli_fact_integer(f, "self_intersections", c->self_intersections);
+    cli_fact_real(f, "area", c->area);
+    cli_fact_real(f, "volume", c->volume);
+    cli_fact_close(f);
+}
+
+static brio_status judge(run *r, const brio_certificate *c, bool open) {
+    if (!c->manifold)
+        return cli_fail(r, BRIO_ERR_CHECK,
+                        "the surface is not manifold: %zu edges with more than two faces, %zu pinched vertices",
+                        c->nonmanifold_edges, c->nonmanifold_vertices);
+    if (!c->oriented)
+        return cli_fail(r, BRIO_ERR_CHECK, "the surface is not oriented: across %zu edges the faces disagree",
+                        c->flipped_edges);
+    if (!c->closed && !open)
+        return cli_fail(r, BRIO_ERR_CHECK, "the surface is not closed: %zu boundary edges in %zu loops",
+                        c->boundary_edges, c->boundary_loops);
+    return BRIO_OK;
+}
+
+brio_status cli_certify(run *r, const brio_mesh *mesh, bool open) {
+    brio_certificate c = {0};
+    brio_status status = brio_mesh_certificate(r->ctx, mesh, &c);
+    cli_lap(r, "certify");
+    if (status == BRIO_OK) {
+        report_certificate(&r->facts, &c);
+        status = judge(r, &c, open);
+    }
+    brio_certificate_free(&c);
+    return status;
+}

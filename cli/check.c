@@ -1,0 +1,77 @@
+/* brio check: the certificate of the faces of a file, the exact Delaunay check of its tetrahedra, or both. */
+#include "certificate.h"
+#include "commands.h"
+#include "weights.h"
+#include <stdlib.h>
+
+typedef struct arguments {
+    weights_options weights;
+    bool open;
+} arguments;
+
+static const option options[] = {
+    WEIGHTS_ROWS(arguments, weights),
+    {"open", 0, OPTION_FLAG, offsetof(arguments, open), NULL, "a surface may have a boundary", 0},
+    {"self-intersections", 0, OPTION_LATER, 0, NULL, NULL, 0},
+    {0},
+};
+
+static const arguments defaults = {.weights.exponent = NO_EXPONENT};
+
+/* An index out of range is a fault of the file here, not of the call. */
+static brio_status blame_file(run *r, brio_status status) {
+    if (status != BRIO_ERR_ARGUMENT) return status;
+    return cli_fail(r, BRIO_ERR_FORMAT, "%s: %s", r->operands[0], brio_message(r->ctx));
+}
+
+static brio_status check_tetrahedra(run *r, const arguments *a, const brio_mesh *mesh) {
+    double *weights = NULL;
+    int canonical = 0;
+    brio_status status = BRIO_OK;
+    TRY(cli_weights(r, &a->weights, mesh, &weights));
+    r->lap = cli_clock();
+    status = brio_tetrahedra_check(r->ctx, mesh->vertices, weights, mesh->num_vertices, mesh->tetrahedra,
+                                   mesh->num_tetrahedra, &canonical);
+    cli_lap(r, "check");
+    if (status == BRIO_OK || status == BRIO_ERR_CHECK) {
+        cli_fact_bool(&r->facts, "weighted", weights != NULL);
+        cli_fact_bool(&r->facts, "verified", status == BRIO_OK);
+        cli_fact_bool(&r->facts, "canonical", status == BRIO_OK && canonical);
+    }
+    status = blame_file(r, status);
+done:
+    free(weights);
+    return status;
+}
+
+static brio_status check(run *r) {
+    const arguments *a = r->arguments;
+    brio_mesh *mesh = NULL;
+    brio_status status = BRIO_OK;
+    TRY(cli_check_weights_options(r, &a->weights));
+    if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "check writes no file; -o has no meaning here"));
+    TRY(cli_read(r, r->operands[0], &mesh));
+    if (!mesh->num_faces && !mesh->num_tetrahedra)
+        TRY(cli_fail(r, BRIO_ERR_FORMAT, "%s: expected faces or tetrahedra to check, found points only",
+                     r->operands[0]));
+    cli_fact_count(&r->facts, "vertices", mesh->num_vertices);
+    cli_fact_count(&r->facts, "faces", mesh->num_faces);
+    cli_fact_count(&r->facts, "tetrahedra", mesh->num_tetrahedra);
+    if (mesh->num_tetrahedra) TRY(check_tetrahedra(r, a, mesh));
+    if (mesh->num_faces) TRY(blame_file(r, cli_certify(r, mesh, a->open)));
+done:
+    brio_mesh_free(mesh);
+    return status;
+}
+
+const command cli_check = {
+    .name = "check",
+    .operands = "FILE",
+    .summary = "certificate of a surface, or exact Delaunay check of tetrahedra",
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = check,
+};

@@ -1,0 +1,19 @@
+/* The list of commands. A new one is a file that defines `const command cli_NAME` and its name here. */
+#ifndef BRIO_CLI_COMMANDS_H
+#define BRIO_CLI_COMMANDS_H
+
+#include "run.h"
+
+#define COMMANDS(X)                                                                                                    \
+    X(delaunay)                                                                                                        \
+    X(surface)                                                                                                         \
+    X(check)                                                                                                           \
+    X(compare)                                                                                                         \
+    X(info)                                                                                                            \
+    X(generate)
+
+#define COMMAND_DECLARE(name) extern const command cli_##name;
+COMMANDS(COMMAND_DECLARE)
+#undef COMMAND_DECLARE
+
+#endif

@@ -1,0 +1,153 @@
+/* brio delaunay: tetrahedra of the points of a file, weighted or not. */
+#include "commands.h"
+#include "estimate.h"
+#include "weights.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct arguments {
+    weights_options weights;
+    int order, locate;
+    double round_ratio; /* NaN: not given */
+    bool verify;
+} arguments;
+
+static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},     {"hilbert", BRIO_ORDER_HILBERT},
+                                       {"random", BRIO_ORDER_RANDOM}, {"input", BRIO_ORDER_INPUT},
+                                       {"brio-octree", CHOICE_LATER}, {"brio-kdtree", CHOICE_LATER},
+                                       {"octree", CHOICE_LATER},      {NULL, 0}};
+
+static const option_choice locations[] = {{"walk", 0},
+                                          {"jump", CHOICE_LATER},
+                                          {"hierarchy", CHOICE_LATER},
+                                          {"history", CHOICE_LATER},
+                                          {"trace", CHOICE_LATER},
+                                          {NULL, 0}};
+
+#define FIELD(name) offsetof(arguments, name)
+static const option options[] = {
+    WEIGHTS_ROWS(arguments, weights),
+    {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order; the result is the same", orders},
+    {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R", "share of the points before the last round", 0},
+    {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron", locations},
+    {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
+    {"block-size", 0, OPTION_LATER, 0, NULL, NULL, 0},
+    {0},
+};
+#undef FIELD
+
+static const arguments defaults = {.weights.exponent = NO_EXPONENT, .order = BRIO_ORDER_BRIO, .round_ratio = NAN};
+static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE, BRIO_FORMAT_AUTO};
+
+static bool is_standard_output(const run *r) {
+    return r->common.output && !strcmp(r->common.output, "-");
+}
+
+static brio_status check_arguments(run *r, const arguments *a) {
+    brio_status status = BRIO_OK;
+    TRY(cli_check_weights_options(r, &a->weights));
+    TRY(cli_require_output(r, formats, true));
+    if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
+    if (a->round_ratio <= 0 || a->round_ratio >= 1)
+        status = cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: %g is not between 0 and 1", a->round_ratio);
+done:
+    return status;
+}
+
+static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh, const double *weights,
+                               brio_triangulation **out) {
+    brio_options o = brio_options_default();
+    o.order = (brio_order)a->order;
+    o.seed = r->common.seed;
+    if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
+    brio_status status = brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out);
+    if (status != BRIO_OK) return status;
+    const brio_stats *s = brio_triangulation_stats(*out);
+    cli_stage(r, "order", s->order_seconds);
+    cli_stage(r, "insert", s->insert_seconds);
+    r->lap = cli_clock();
+    return cli_check_interrupt(r);
+}
+
+static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triangulation *t, bool weighted) {
+    const brio_stats *s = brio_triangulation_stats(t);
+    facts *f = &r->facts;
+    uint64_t checksum;
+    char text[20];
+    brio_status status = brio_triangulation_checksum(r->ctx, t, mesh->vertices, &checksum);
+    if (status != BRIO_OK) return status;
+    cli_lap(r, "checksum");
+    snprintf(text, sizeof text, "%016" PRIx64, checksum);
+    cli_fact_bool(f, "weighted", weighted);
+    cli_fact_count(f, "points", s->points);
+    cli_fact_count(f, "vertices", s->vertices);
+    cli_fact_count(f, "duplicates", s->duplicates);
+    cli_fact_count(f, "hidden", s->hidden);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_count(f, "tetrahedra", s->tetrahedra);
+    cli_fact_count(f, "hull_facets", s->hull_facets);
+    cli_fact_text(f, "checksum", text);
+    cli_fact_count(f, "created", s->created);
+    cli_fact_count(f, "destroyed", s->destroyed);
+    cli_fact_count(f, "walk_steps", s->walk_steps);
+    cli_fact_count(f, "insphere_calls", s->insphere_calls);
+    cli_fact_count(f, "exact_calls", s->exact_calls);
+    return BRIO_OK;
+}
+
+static brio_status verify(run *r, const brio_mesh *mesh, const double *weights, const brio_triangulation *t) {
+    brio_status status = brio_triangulation_check(r->ctx, t, mesh->vertices, weights, mesh->num_vertices);
+    cli_lap(r, "verify");
+    if (status == BRIO_OK || status == BRIO_ERR_CHECK) cli_fact_bool(&r->facts, "verified", status == BRIO_OK);
+    return status;
+}
+
+/* Fills the mesh with the result and frees the triangulation before the file is written. */
+static brio_status write_output(run *r, brio_mesh *mesh, const double *weights, brio_triangulation **t) {
+    brio_status status = BRIO_OK;
+    TRY(cli_keep_weights(mesh, weights));
+    TRY(brio_mesh_set_tetrahedra(mesh, brio_triangulation_tetrahedra(*t), brio_triangulation_stats(*t)->tetrahedra));
+    brio_triangulation_free(*t);
+    *t = NULL;
+    TRY(cli_write(r, mesh));
+done:
+    return status;
+}
+
+static brio_status delaunay(run *r) {
+    const arguments *a = r->arguments;
+    brio_mesh *mesh = NULL;
+    double *weights = NULL;
+    brio_triangulation *t = NULL;
+    brio_status status = BRIO_OK;
+    TRY(check_arguments(r, a));
+    TRY(cli_read_points(r, r->operands[0], &mesh));
+    bool weighted = cli_is_weighted(&a->weights, mesh);
+    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted)));
+    TRY(cli_weights(r, &a->weights, mesh, &weights));
+    cli_lap(r, "read");
+    TRY(triangulate(r, a, mesh, weights, &t));
+    TRY(report_stats(r, mesh, t, weighted));
+    if (a->verify) TRY(verify(r, mesh, weights, t));
+    if (r->common.output) TRY(write_output(r, mesh, weights, &t));
+done:
+    brio_triangulation_free(t);
+    free(weights);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+const command cli_delaunay = {
+    .name = "delaunay",
+    .operands = "IN",
+    .summary = "Delaunay triangulation of the points of a file; regular with weights (.vtu .ply .node)",
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = delaunay,
+};

@@ -1,0 +1,23 @@
+/* How much memory a command takes, told from the number of points: what --max-memory and `brio info` go by. */
+#ifndef BRIO_CLI_ESTIMATE_H
+#define BRIO_CLI_ESTIMATE_H
+
+#include "brio/brio.h"
+#include <stdbool.h>
+
+/** Bytes of the mesh as it was read: its points, faces, tetrahedra and properties. */
+double cli_mesh_bytes(const brio_mesh *mesh);
+
+/** Bytes beside the input that `brio delaunay` takes. */
+double cli_delaunay_bytes(size_t points, bool weighted);
+
+/** Bytes beside the input that `brio surface` takes. */
+double cli_surface_bytes(size_t points);
+
+/** Bytes beside the input that `brio info` takes. */
+double cli_info_bytes(size_t points);
+
+/** Bytes of `points` points of brio generate. */
+double cli_generate_bytes(size_t points);
+
+#endif

@@ -1,0 +1,14 @@
+/* What can be told of an output's path before anything is written there. */
+#ifndef BRIO_CLI_FILES_H
+#define BRIO_CLI_FILES_H
+
+#include "run.h"
+
+/** BRIO_ERR_WRITE when a file of that name cannot be written: its folder is missing or not writable, the file itself
+ *  is protected, or it is a folder. */
+brio_status cli_check_target(run *r, const char *path);
+
+/** The format that --format or the extension asks for; BRIO_FORMAT_AUTO with the reason stored when there is none. */
+brio_status cli_output_format(run *r, const char *path, const char *extension, brio_format *format);
+
+#endif

@@ -1,0 +1,123 @@
+/* brio generate: test data, the same for the same seed. */
+#include "commands.h"
+#include "estimate.h"
+#include "files.h"
+#include <limits.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+typedef struct arguments {
+    uint64_t points; /* NO_COUNT: not given */
+    double noise;    /* NaN: not given */
+    int views;       /* NO_VIEWS: not given */
+    const char *truth;
+    uint64_t truth_resolution;
+} arguments;
+
+#define NO_COUNT UINT64_MAX
+#define NO_VIEWS INT_MIN
+
+#define FIELD(name) offsetof(arguments, name)
+static const option options[] = {
+    {"points", 'n', OPTION_NATURAL, FIELD(points), "N", "number of points", 0},
+    {"noise", 0, OPTION_NUMBER, FIELD(noise), "S", "scan: noise, in units of the spacing (default 0.1)", 0},
+    {"views", 0, OPTION_INT, FIELD(views), "V", "scan: number of sensor positions (default 12)", 0},
+    {"truth", 0, OPTION_TEXT, FIELD(truth), "FILE", "scan: also write the surface that is scanned", 0},
+    {"truth-resolution", 0, OPTION_NATURAL, FIELD(truth_resolution), "R", "cells along its longest side (default 160)",
+     0},
+    {0},
+};
+#undef FIELD
+
+static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .views = NO_VIEWS};
+
+static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},         {"ball", BRIO_KIND_BALL},
+                                      {"sphere", BRIO_KIND_SPHERE},     {"torus", BRIO_KIND_TORUS},
+                                      {"cylinder", BRIO_KIND_CYLINDER}, {"grid", BRIO_KIND_GRID},
+                                      {"scan", BRIO_KIND_SCAN},         {NULL, 0}};
+
+static const char *kind_name(const void *list, size_t i) {
+    return ((const option_choice *)list)[i].name;
+}
+
+static brio_status find_kind(run *r, brio_kind *kind) {
+    const char *name = r->operands[0];
+    for (const option_choice *k = kinds; k->name; k++) {
+        *kind = (brio_kind)k->value;
+        if (!strcmp(k->name, name)) return BRIO_OK;
+    }
+    const char *near = cli_nearest(name, kind_name, kinds);
+    if (near) return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; did you mean '%s'?", name, near);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; there are cube ball sphere torus cylinder grid scan",
+                    name);
+}
+
+static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
+    bool of_scan = !isnan(a->noise) || a->views != NO_VIEWS || a->truth || a->truth_resolution;
+    brio_format format;
+    brio_status status = BRIO_OK;
+    if (a->points == NO_COUNT) return cli_fail(r, BRIO_ERR_ARGUMENT, "the number of points is missing: -n N");
+    if (kind != BRIO_KIND_SCAN && of_scan)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
+    if (a->views != NO_VIEWS && a->views < 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--views: %d is not positive", a->views);
+    if (a->noise < 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise: %g is negative", a->noise);
+    if (a->truth_resolution && !a->truth) return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth-resolution goes with --truth");
+    TRY(cli_require_output(r, NULL, false));
+    if (!a->truth) return BRIO_OK;
+    if (!strcmp(a->truth, "-")) return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth needs a file");
+    if (r->common.output && !strcmp(a->truth, r->common.output))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth and -o name the same file");
+    TRY(cli_output_format(r, a->truth, NULL, &format));
+    TRY(cli_check_target(r, a->truth));
+done:
+    return status;
+}
+
+static brio_status write_truth(run *r, const arguments *a) {
+    brio_mesh *truth = NULL;
+    brio_status status = BRIO_OK;
+    TRY(brio_generate_truth(r->ctx, (size_t)a->truth_resolution, &truth));
+    cli_lap(r, "truth");
+    TRY(cli_write_to(r, a->truth, truth));
+    cli_fact_count(&r->facts, "truth_vertices", truth->num_vertices);
+    cli_fact_count(&r->facts, "truth_faces", truth->num_faces);
+done:
+    brio_mesh_free(truth);
+    return status;
+}
+
+static brio_status generate(run *r) {
+    const arguments *a = r->arguments;
+    brio_generate_options o = brio_generate_options_default();
+    brio_mesh *mesh = NULL;
+    brio_kind kind;
+    brio_status status = BRIO_OK;
+    TRY(find_kind(r, &kind));
+    TRY(check_arguments(r, a, kind));
+    TRY(cli_require_memory(r, cli_generate_bytes((size_t)a->points)));
+    o.seed = r->common.seed;
+    if (!isnan(a->noise)) o.noise = a->noise;
+    if (a->views != NO_VIEWS) o.views = a->views;
+    TRY(brio_generate(r->ctx, kind, (size_t)a->points, &o, &mesh));
+    cli_lap(r, "generate");
+    cli_fact_count(&r->facts, "points", mesh->num_vertices);
+    if (a->truth) TRY(write_truth(r, a));
+    TRY(cli_write(r, mesh));
+done:
+    brio_mesh_free(mesh);
+    return status;
+}
+
+const command cli_generate = {
+    .name = "generate",
+    .operands = "KIND",
+    .summary = "test data: cube ball sphere torus cylinder grid scan; -n N points to -o FILE",
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = generate,
+};

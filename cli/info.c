@@ -1,0 +1,83 @@
+/* brio info: what is in a file, and how much memory each command would take for it. */
+#include "cloud.h"
+#include "commands.h"
+#include "estimate.h"
+
+static const option options[] = {{0}};
+static const char defaults = 0; /* info has no options of its own */
+
+static void report_vector(facts *f, const char *name, const double v[3]) {
+    cli_fact_open(f, name, FACT_LIST);
+    for (int k = 0; k < 3; k++) cli_fact_real(f, NULL, v[k]);
+    cli_fact_close(f);
+}
+
+static void report_box(facts *f, const brio_mesh *mesh) {
+    double low[3], high[3];
+    if (!mesh->num_vertices) {
+        cli_fact_null(f, "box");
+        return;
+    }
+    cli_cloud_box(mesh->vertices, mesh->num_vertices, low, high);
+    cli_fact_open(f, "box", FACT_OBJECT);
+    report_vector(f, "min", low);
+    report_vector(f, "max", high);
+    cli_fact_close(f);
+}
+
+static void report_properties(facts *f, const brio_mesh *mesh) {
+    static const char *const types[] = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
+    cli_fact_open(f, "properties", FACT_OBJECT);
+    for (size_t i = 0; i < mesh->num_properties; i++)
+        cli_fact_text(f, mesh->properties[i].name, types[mesh->properties[i].type]);
+    cli_fact_close(f);
+}
+
+static void report_estimates(facts *f, const brio_mesh *mesh) {
+    double coordinates = cli_mesh_bytes(mesh);
+    bool weighted = brio_mesh_property(mesh, "weight") != NULL;
+    cli_fact_open(f, "estimate_bytes", FACT_OBJECT);
+    cli_fact_bytes(f, "delaunay", (uint64_t)(coordinates + cli_delaunay_bytes(mesh->num_vertices, weighted)));
+    cli_fact_bytes(f, "surface", (uint64_t)(coordinates + cli_surface_bytes(mesh->num_vertices)));
+    cli_fact_close(f);
+}
+
+static brio_status info(run *r) {
+    brio_mesh *mesh = NULL;
+    size_t duplicates;
+    double spacing;
+    facts *f = &r->facts;
+    brio_status status = BRIO_OK;
+    if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "info writes no file; -o has no meaning here"));
+    TRY(cli_read(r, r->operands[0], &mesh));
+    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_info_bytes(mesh->num_vertices)));
+    TRY(cli_cloud_duplicates(r, mesh->vertices, mesh->num_vertices, &duplicates));
+    TRY(cli_cloud_spacing(r, mesh->vertices, mesh->num_vertices, &spacing));
+    cli_lap(r, "measure");
+    cli_fact_count(f, "points", mesh->num_vertices);
+    cli_fact_count(f, "faces", mesh->num_faces);
+    cli_fact_count(f, "tetrahedra", mesh->num_tetrahedra);
+    report_box(f, mesh);
+    cli_fact_count(f, "duplicates", duplicates);
+    if (spacing > 0)
+        cli_fact_real(f, "spacing", spacing);
+    else
+        cli_fact_null(f, "spacing");
+    report_properties(f, mesh);
+    report_estimates(f, mesh);
+done:
+    brio_mesh_free(mesh);
+    return status;
+}
+
+const command cli_info = {
+    .name = "info",
+    .operands = "FILE",
+    .summary = "what is in a file: counts, box, duplicates, spacing, memory for each command",
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = info,
+};

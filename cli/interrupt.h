@@ -1,0 +1,21 @@
+/* Ctrl-C and its like. The first signal asks the work to stop: the progress callback sees it and the library gives
+ * everything back. The second one ends the process at once, unless a file is being written: only the library knows the
+ * temporary file beside the target, so its writer is left the moment it needs to remove it. Nothing else of a run lies
+ * on disk under a name.
+ *
+ * SIGINT and SIGTERM are caught always, SIGHUP unless it is ignored (nohup). SIGPIPE and SIGXFSZ are ignored, so that a
+ * reader that went away and a limit on the file size are errors of writing. */
+#ifndef BRIO_CLI_INTERRUPT_H
+#define BRIO_CLI_INTERRUPT_H
+
+#include <stdbool.h>
+
+void cli_interrupt_install(void);
+
+/** Whether a signal asked to stop. */
+bool cli_interrupted(void);
+
+/** Tells that a file with a name is being written from now on, or no longer. */
+void cli_interrupt_writing(bool writing);
+
+#endif

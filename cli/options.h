@@ -1,0 +1,69 @@
+/* Options of the command line, described by tables: each row names an option, the kind of its value and the field of a
+ * struct that receives it. The same rows parse the line and print the help. */
+#ifndef BRIO_CLI_OPTIONS_H
+#define BRIO_CLI_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+typedef enum option_kind {
+    OPTION_END = 0, /* closes a table */
+    OPTION_FLAG,    /* bool, without a value */
+    OPTION_TEXT,    /* const char *, a view of the command line */
+    OPTION_INT,     /* int */
+    OPTION_NATURAL, /* uint64_t: 1000000, also 1e6 */
+    OPTION_NUMBER,  /* double, finite */
+    OPTION_SIZE,    /* size_t bytes: 500M, 8G, 1.5GiB */
+    OPTION_CHOICE,  /* int: a name from a list */
+    OPTION_LATER    /* known by the contract, not in this version */
+} option_kind;
+
+enum { CHOICE_LATER = -1 };
+
+/** A name and what it stands for; CHOICE_LATER for a name that this version only knows of. A list ends with NULL. */
+typedef struct option_choice {
+    const char *name;
+    int value;
+} option_choice;
+
+typedef struct option {
+    const char *name; /* long name without dashes */
+    char letter;      /* short name, 0 for none */
+    option_kind kind;
+    size_t offset;               /* of the field in the struct of values */
+    const char *value, *meaning; /* what the help prints */
+    const option_choice *choices;
+} option;
+
+/** A table and the struct that its rows fill. */
+typedef struct option_group {
+    const char *title;
+    const option *rows;
+    void *values;
+} option_group;
+
+/** What the line was found to hold. */
+typedef struct option_parse {
+    const option_group *groups;
+    size_t num_groups;
+    char **operands; /* moved to the front of the arguments */
+    int num_operands;
+    bool help;         /* --help was there; nothing else counts then */
+    char message[512]; /* why the line is wrong */
+} option_parse;
+
+/** Reads the arguments into the groups' structs; false when the line is wrong. Operands may stand between options; what
+ *  follows `--` is operands. */
+bool cli_parse(option_parse *parse, int argc, char **argv);
+
+/** Prints the rows of a group. */
+void cli_print_options(FILE *out, const option_group *group);
+
+/** Reads "500M", "8G", "1.5GiB": K M G T are powers of 1024, as KiB ...; KB MB GB TB are powers of 1000. */
+bool cli_parse_size(const char *text, size_t *bytes);
+
+/** The name that is closest to `word`, or NULL when none is near. `next(list, i)` gives name i, NULL at the end. */
+const char *cli_nearest(const char *word, const char *(*next)(const void *list, size_t i), const void *list);
+
+#endif

@@ -1,0 +1,259 @@
+/* The steps that all commands share, between the command line on one side and the library on the other. */
+#include "run.h"
+#include "files.h"
+#include "interrupt.h"
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+enum { MAX_THREADS = 1024 };
+
+#define FIELD(name) offsetof(common_options, name)
+const option cli_common_options[] = {
+    {"output", 'o', OPTION_TEXT, FIELD(output), "FILE", "output; the extension tells the format; - is standard output",
+     0},
+    {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output (needed with -o -)", 0},
+    {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT", "format of the input", 0},
+    {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
+    {"float32", 0, OPTION_FLAG, FIELD(float32), NULL, "write coordinates in single precision", 0},
+    {"json", 0, OPTION_FLAG, FIELD(json), NULL, "print one JSON object with the facts of the run", 0},
+    {"threads", 0, OPTION_INT, FIELD(threads), "N", "threads to use; 0 (default) means all cores", 0},
+    {"seed", 0, OPTION_NATURAL, FIELD(seed), "N", "every random choice follows from it (default 1)", 0},
+    {"max-memory", 0, OPTION_SIZE, FIELD(max_memory), "SIZE", "refuse work estimated over SIZE (500M, 8G)", 0},
+    {"scratch", 0, OPTION_TEXT, FIELD(scratch), "DIR", "keep big arrays in mapped files in DIR", 0},
+    {"quiet", 0, OPTION_FLAG, FIELD(quiet), NULL, "no progress bar and no report", 0},
+    {"progress", 0, OPTION_FLAG, FIELD(progress), NULL, "progress bar even where standard error is no terminal", 0},
+    {0},
+};
+#undef FIELD
+
+const common_options cli_common_defaults = {.seed = 1};
+
+/* --- failure --- */
+
+brio_status cli_fail(run *r, brio_status status, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r->message, sizeof r->message, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+const char *cli_message(const run *r, brio_status status) {
+    if (r->message[0]) return r->message;
+    if (r->ctx && brio_message(r->ctx)[0]) return brio_message(r->ctx);
+    return brio_status_string(status);
+}
+
+int cli_exit_code(brio_status status) {
+    switch (status) {
+    case BRIO_OK:
+        return 0;
+    case BRIO_ERR_ARGUMENT:
+        return 1;
+    case BRIO_ERR_OPEN:
+    case BRIO_ERR_FORMAT:
+    case BRIO_ERR_NOT_FINITE:
+        return 2;
+    case BRIO_ERR_NO_ANSWER:
+        return 3;
+    case BRIO_ERR_NO_MEMORY:
+    case BRIO_ERR_TOO_LARGE:
+        return 4;
+    case BRIO_ERR_CHECK:
+        return 5;
+    case BRIO_ERR_WRITE:
+        return 6;
+    case BRIO_ERR_CANCELLED:
+        return 130;
+    case BRIO_ERR_INTERNAL:
+    case BRIO_STATUS_END:
+        break;
+    }
+    return 70; /* EX_SOFTWARE of sysexits.h: a fault of the program */
+}
+
+/* --- beginning and end --- */
+
+static int on_progress(const char *stage, double fraction, void *user) {
+    run *r = user;
+    cli_progress_show(&r->bar, stage, fraction);
+    return cli_interrupted();
+}
+
+static brio_status check_common(run *r) {
+    const common_options *c = &r->common;
+    if (c->threads < 0 || c->threads > MAX_THREADS)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--threads: %d is not between 0 and %d", c->threads, MAX_THREADS);
+    if (c->json && c->output && !strcmp(c->output, "-"))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--json and -o - both want standard output");
+    if (c->input_format && brio_format_of(c->input_format) == BRIO_FORMAT_AUTO)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--input-format: unknown format '%s'", c->input_format);
+    return BRIO_OK;
+}
+
+brio_status cli_begin(run *r) {
+    const common_options *c = &r->common;
+    brio_status status = BRIO_OK;
+    TRY(check_common(r));
+    TRY(brio_context_new(NULL, &r->ctx));
+    brio_context_set_threads(r->ctx, c->threads);
+    brio_context_set_memory_limit(r->ctx, c->max_memory);
+    brio_context_set_progress(r->ctx, on_progress, r);
+    if (c->scratch) TRY(brio_context_set_scratch(r->ctx, c->scratch));
+    r->bar.terminal = isatty(STDERR_FILENO);
+    r->bar.shown = c->progress || (r->bar.terminal && !c->quiet);
+done:
+    return status;
+}
+
+void cli_end(run *r) {
+    cli_facts_free(&r->facts);
+    brio_context_free(r->ctx);
+}
+
+/* --- the clock --- */
+
+void cli_stage(run *r, const char *stage, double seconds) {
+    int i = 0;
+    while (i < r->num_stages && strcmp(r->stages[i].stage, stage)) i++;
+    if (i == MAX_STAGES) return;
+    if (i == r->num_stages) r->num_stages++;
+    r->stages[i].stage = stage;
+    r->stages[i].seconds += seconds;
+}
+
+void cli_lap(run *r, const char *stage) {
+    double now = cli_clock();
+    cli_stage(r, stage, now - r->lap);
+    r->lap = now;
+}
+
+brio_status cli_check_interrupt(run *r) {
+    return cli_interrupted() ? cli_fail(r, BRIO_ERR_CANCELLED, "interrupted") : BRIO_OK;
+}
+
+/* --- memory --- */
+
+brio_status cli_require_memory(run *r, double bytes) {
+    const common_options *c = &r->common;
+    if (c->scratch || !c->max_memory || bytes <= (double)c->max_memory) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_NO_MEMORY, "about %.0f MiB needed, over the limit of %.0f MiB (--max-memory)",
+                    bytes / 0x1p20, (double)c->max_memory / 0x1p20);
+}
+
+/* The kernel's high-water mark of this program's own memory. getrusage stands in where /proc is missing: it also counts
+ * what the process held before it became this program. */
+static uint64_t peak_bytes(void) {
+    unsigned long long kib = 0;
+    char line[256];
+    FILE *file = fopen("/proc/self/status", "r");
+    while (file && !kib && fgets(line, sizeof line, file)) sscanf(line, "VmHWM: %llu", &kib);
+    if (file) fclose(file);
+    struct rusage usage;
+    if (!kib && getrusage(RUSAGE_SELF, &usage) == 0) kib = (unsigned long long)usage.ru_maxrss;
+    return kib * 1024;
+}
+
+/* --- files --- */
+
+brio_status cli_read(run *r, const char *path, brio_mesh **out) {
+    const char *extension = r->common.input_format;
+    brio_status status = BRIO_OK;
+    TRY(brio_read(r->ctx, path, extension ? brio_format_of(extension) : BRIO_FORMAT_AUTO, out));
+    TRY(cli_check_interrupt(r));
+    cli_lap(r, "read");
+done:
+    return status;
+}
+
+/* Moves faces and tetrahedra out of the mesh into one that is freed. */
+static brio_status drop_connectivity(run *r, brio_mesh *mesh) {
+    brio_mesh *rest = NULL;
+    brio_status status = brio_mesh_new(r->ctx, &rest);
+    if (status != BRIO_OK) return status;
+    rest->face_offsets = mesh->face_offsets;
+    rest->face_vertices = mesh->face_vertices;
+    rest->tetrahedra = mesh->tetrahedra;
+    brio_mesh_free(rest);
+    mesh->face_offsets = NULL;
+    mesh->face_vertices = mesh->tetrahedra = NULL;
+    mesh->num_faces = mesh->num_tetrahedra = 0;
+    return BRIO_OK;
+}
+
+brio_status cli_read_points(run *r, const char *path, brio_mesh **out) {
+    brio_status status = cli_read(r, path, out);
+    return status == BRIO_OK ? drop_connectivity(r, *out) : status;
+}
+
+static brio_status check_format(run *r, const brio_format *formats, brio_format format) {
+    for (; formats && *formats != format; formats++)
+        if (*formats == BRIO_FORMAT_AUTO)
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold the result of '%s'",
+                            r->common.output, r->command->name);
+    return BRIO_OK;
+}
+
+brio_status cli_require_output(run *r, const brio_format *formats, bool optional) {
+    const common_options *c = &r->common;
+    brio_format format;
+    brio_status status = BRIO_OK;
+    if (!c->output && (optional || c->json)) return BRIO_OK;
+    if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: -o FILE is missing");
+    TRY(cli_output_format(r, c->output, c->format, &format));
+    TRY(check_format(r, formats, format));
+    if (strcmp(c->output, "-")) TRY(cli_check_target(r, c->output));
+done:
+    return status;
+}
+
+static brio_status write_file(run *r, const char *path, const char *extension, const brio_mesh *mesh) {
+    brio_write_options options = brio_write_options_default();
+    brio_status status = BRIO_OK;
+    TRY(cli_output_format(r, path, extension, &options.format));
+    options.ascii = r->common.ascii;
+    options.float32 = r->common.float32;
+    options.comment = "brio " BRIO_VERSION;
+    TRY(cli_check_interrupt(r));
+    cli_interrupt_writing(strcmp(path, "-") != 0);
+    status = brio_write(r->ctx, path, mesh, &options);
+    cli_interrupt_writing(false);
+    cli_lap(r, "write");
+done:
+    return status;
+}
+
+brio_status cli_write(run *r, const brio_mesh *mesh) {
+    return r->common.output ? write_file(r, r->common.output, r->common.format, mesh) : BRIO_OK;
+}
+
+brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh) {
+    return write_file(r, path, NULL, mesh);
+}
+
+/* --- the frame of a report --- */
+
+void cli_opening_facts(run *r) {
+    facts *f = &r->facts;
+    cli_fact_text(f, "command", r->command->name);
+    if (r->num_operands == 1) {
+        cli_fact_text(f, "input", r->operands[0]);
+    } else {
+        cli_fact_open(f, "input", FACT_LIST);
+        for (int i = 0; i < r->num_operands; i++) cli_fact_text(f, NULL, r->operands[i]);
+        cli_fact_close(f);
+    }
+    cli_fact_count(f, "threads", (uint64_t)brio_context_threads(r->ctx));
+}
+
+void cli_closing_facts(run *r) {
+    facts *f = &r->facts;
+    cli_fact_open(f, "seconds", FACT_OBJECT);
+    for (int i = 0; i < r->num_stages; i++) cli_fact_seconds(f, r->stages[i].stage, r->stages[i].seconds);
+    cli_fact_seconds(f, "total", cli_clock() - r->started);
+    cli_fact_close(f);
+    cli_fact_bytes(f, "peak_bytes", peak_bytes());
+}

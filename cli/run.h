@@ -1,0 +1,99 @@
+/* A run of one command: the options that every command has, the library's context, the facts to report, the clock, and
+ * the steps that all commands share (reading, writing, the memory estimate). Steps return a status; what it means for
+ * the process is decided in one place, cli_exit_code. */
+#ifndef BRIO_CLI_RUN_H
+#define BRIO_CLI_RUN_H
+
+#include "brio/brio.h"
+#include "facts.h"
+#include "options.h"
+#include "progress.h"
+
+/* The shape of error handling, as in the library. */
+#define TRY(call)                                                                                                      \
+    do {                                                                                                               \
+        status = (call);                                                                                               \
+        if (status != BRIO_OK) goto done;                                                                              \
+    } while (0)
+
+typedef struct common_options {
+    const char *output, *format, *input_format, *scratch;
+    bool json, quiet, progress, ascii, float32;
+    int threads;
+    uint64_t seed;
+    size_t max_memory; /* 0: no limit */
+} common_options;
+
+extern const option cli_common_options[];
+extern const common_options cli_common_defaults;
+
+enum { MAX_STAGES = 16 };
+
+typedef struct run {
+    const struct command *command;
+    common_options common;
+    const void *arguments; /* the command's own options */
+    char **operands;
+    int num_operands;
+    brio_context *ctx;
+    facts facts;
+    progress bar;
+    struct {
+        const char *stage;
+        double seconds;
+    } stages[MAX_STAGES];
+    int num_stages;
+    double started, lap; /* clock at the beginning, and at the end of the last stage */
+    char message[1024];  /* of a failure found here; the library's is in the context */
+} run;
+
+typedef struct command {
+    const char *name, *operands, *summary;
+    int min_operands, max_operands;
+    const option *options;
+    const void *defaults; /* what the command's options are before the line is read */
+    size_t size;          /* of that struct */
+    brio_status (*run)(run *r);
+} command;
+
+/** Prepares context, progress and signals' callback from the common options. */
+brio_status cli_begin(run *r);
+void cli_end(run *r);
+
+/** Stores the sentence for a status and returns the status. */
+brio_status cli_fail(run *r, brio_status status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/** The sentence of the failure, found here or in the library. */
+const char *cli_message(const run *r, brio_status status);
+int cli_exit_code(brio_status status);
+
+/** Ends a stage of the clock. */
+void cli_lap(run *r, const char *stage);
+/** Adds to a stage what something else has timed. */
+void cli_stage(run *r, const char *stage, double seconds);
+/** BRIO_ERR_CANCELLED when a signal asked to stop. */
+brio_status cli_check_interrupt(run *r);
+
+/** Refuses an estimate over --max-memory. With --scratch the big arrays are not in memory and only the limit of the
+ *  context holds. */
+brio_status cli_require_memory(run *r, double bytes);
+
+/** Reads an input with --input-format. The time is lapped as `read`. */
+brio_status cli_read(run *r, const char *path, brio_mesh **out);
+
+/** The same for a command that goes by the points alone: faces and tetrahedra of the file are dropped. */
+brio_status cli_read_points(run *r, const char *path, brio_mesh **out);
+
+/** Finds everything wrong with -o that can be found before the work: no output, no format, a format not among those of
+ *  `formats` (ended by BRIO_FORMAT_AUTO; NULL: any), a folder that cannot be written.   optional  the command has a use
+ *  without -o also when it does not report as JSON. */
+brio_status cli_require_output(run *r, const brio_format *formats, bool optional);
+/** Writes to -o, or does nothing without it. The time is lapped as `write`. */
+brio_status cli_write(run *r, const brio_mesh *mesh);
+/** Writes to another file, by its extension. */
+brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh);
+
+/** The facts that begin and end every report. */
+void cli_opening_facts(run *r);
+void cli_closing_facts(run *r);
+
+#endif

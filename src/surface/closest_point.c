@@ -1,0 +1,277 @@
+/* Nearest points on a surface by a bounding-volume hierarchy.
+ *
+ * The triangles are halved again and again by the median of their centroids along the longest side of the centroids'
+ * box, in place (quickselect). The search goes down to the nearer child first and drops every box that is not nearer
+ * than the best point found, so its answer is exact whatever the tree looks like.
+ *
+ * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980 (boxes).
+ * Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). */
+#include "surface/closest_point.h"
+#include "base/parallel.h"
+#include "base/rng.h"
+#include <math.h>
+#include <string.h>
+
+enum {
+    MOST_LEVELS = 64,
+    TASK_FROM = 1 << 15 /* triangles of a node that is worth a task of its own */
+};
+
+/* A triangle while the tree is built: its centroid, in units of the mesh's box, and its index. */
+typedef struct {
+    float centroid[3];
+    uint32_t triangle;
+} item;
+
+typedef struct {
+    const double *vertices;
+    uint32_t (*triangles)[3]; /* in the order of the faces */
+    item *items;
+    brio_box *boxes;
+} builder;
+
+/* --- boxes --- */
+
+static brio_box empty_box(void) {
+    return (brio_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+static void box_add_point(brio_box *box, const double *p) {
+    for (int k = 0; k < 3; k++) {
+        if (p[k] < box->low[k]) box->low[k] = p[k];
+        if (p[k] > box->high[k]) box->high[k] = p[k];
+    }
+}
+
+static double box_distance(const brio_box *box, const double *p) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double d = fmax(fmax(box->low[k] - p[k], p[k] - box->high[k]), 0);
+        square += d * d;
+    }
+    return square;
+}
+
+static void box_add_box(brio_box *box, const brio_box *other) {
+    box_add_point(box, other->low);
+    box_add_point(box, other->high);
+}
+
+/* --- building --- */
+
+/* Reorders the items so that none before `middle` has a larger coordinate than any from there on. The pivots are random
+ * places, so that no order of the triangles is a bad one. */
+static void split_at(item *items, ptrdiff_t count, ptrdiff_t middle, int axis) {
+    ptrdiff_t low = 0, high = count - 1;
+    while (low < high) {
+        size_t place = (size_t)(brio_mix((uint64_t)(low ^ high << 32)) % (uint64_t)(high - low + 1));
+        float pivot = items[low + (ptrdiff_t)place].centroid[axis];
+        ptrdiff_t i = low, j = high;
+        while (i <= j) {
+            while (items[i].centroid[axis] < pivot) i++;
+            while (pivot < items[j].centroid[axis]) j--;
+            if (i > j) break;
+            item swap = items[i];
+            items[i++] = items[j];
+            items[j--] = swap;
+        }
+        if (middle > j) low = i;
+        if (middle < i) high = j;
+    }
+}
+
+static int longest_axis(const item *items, size_t count) {
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            low[k] = fminf(low[k], items[i].centroid[k]);
+            high[k] = fmaxf(high[k], items[i].centroid[k]);
+        }
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+    return axis;
+}
+
+static void build_node(const builder *b, size_t node, size_t low, size_t high) {
+    brio_box box = empty_box();
+    if (high - low <= BRIO_LEAF_TRIANGLES) {
+        for (size_t i = low; i < high; i++)
+            for (int k = 0; k < 3; k++)
+                box_add_point(&box, b->vertices + 3 * (size_t)b->triangles[b->items[i].triangle][k]);
+    } else {
+        size_t middle = low + (high - low) / 2;
+        split_at(b->items + low, (ptrdiff_t)(high - low), (ptrdiff_t)(middle - low),
+                 longest_axis(b->items + low, high - low));
+        BRIO_OMP(task if (high - low >= TASK_FROM))
+        build_node(b, 2 * node + 1, low, middle);
+        build_node(b, 2 * node + 2, middle, high);
+        BRIO_OMP(taskwait)
+        box_add_box(&box, &b->boxes[2 * node + 1]);
+        box_add_box(&box, &b->boxes[2 * node + 2]);
+    }
+    b->boxes[node] = box;
+}
+
+/* Cuts the faces into triangles. */
+static brio_status cut_faces(brio_context *ctx, const brio_mesh *mesh, uint32_t (**triangles)[3], size_t *count) {
+    brio_status status = BRIO_OK;
+    const uint64_t *offsets = mesh->face_offsets;
+    size_t n = 0;
+    for (size_t f = 0; f < mesh->num_faces; f++)
+        if (offsets[f + 1] - offsets[f] > 2) n += offsets[f + 1] - offsets[f] - 2;
+    BRIO_REQUIRE(ctx, n > 0, BRIO_ERR_ARGUMENT, "a mesh without faces has no surface");
+    BRIO_TRY(BRIO_ALLOC(ctx, *triangles, n));
+    *count = n;
+    n = 0;
+    for (size_t f = 0; f < mesh->num_faces; f++)
+        for (uint64_t h = offsets[f] + 2; h < offsets[f + 1]; h++, n++) {
+            (*triangles)[n][0] = mesh->face_vertices[offsets[f]];
+            (*triangles)[n][1] = mesh->face_vertices[h - 1];
+            (*triangles)[n][2] = mesh->face_vertices[h];
+        }
+done:
+    return status;
+}
+
+static void fill_items(const builder *b, size_t count) {
+    brio_box box = empty_box();
+    double centre[3], scale = 0;
+    for (size_t t = 0; t < count; t++)
+        for (int k = 0; k < 3; k++) box_add_point(&box, b->vertices + 3 * (size_t)b->triangles[t][k]);
+    for (int k = 0; k < 3; k++) {
+        centre[k] = 0.5 * box.low[k] + 0.5 * box.high[k];
+        scale = fmax(scale, 0.5 * box.high[k] - 0.5 * box.low[k]);
+    }
+    if (scale == 0) scale = 1;
+    for (size_t t = 0; t < count; t++) {
+        b->items[t].triangle = (uint32_t)t;
+        for (int k = 0; k < 3; k++) {
+            double sum = 0;
+            for (int c = 0; c < 3; c++) sum += (b->vertices[3 * (size_t)b->triangles[t][c] + k] - centre[k]) / scale;
+            b->items[t].centroid[k] = (float)(sum / 3);
+        }
+    }
+}
+
+/* Nodes of the tree over that many triangles, those of the levels above its deepest leaves all counted. */
+static size_t count_nodes(size_t triangles) {
+    size_t nodes = 1;
+    for (size_t most = triangles; most > BRIO_LEAF_TRIANGLES; most -= most / 2) nodes = 2 * nodes + 1;
+    return nodes;
+}
+
+brio_status brio_triangle_tree_new(brio_context *ctx, const brio_mesh *mesh, brio_triangle_tree *out) {
+    brio_status status = BRIO_OK;
+    builder b = {.vertices = mesh->vertices};
+    size_t count = 0;
+    *out = (brio_triangle_tree){.vertices = mesh->vertices};
+    BRIO_TRY(cut_faces(ctx, mesh, &b.triangles, &count));
+    BRIO_TRY(BRIO_ALLOC(ctx, b.items, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->triangles, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->boxes, count_nodes(count)));
+    out->num_triangles = count;
+    b.boxes = out->boxes;
+    fill_items(&b, count);
+    BRIO_OMP(parallel num_threads(brio_context_threads(ctx)))
+    BRIO_OMP(single)
+    build_node(&b, 0, 0, count);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) out->triangles[i][k] = b.triangles[b.items[i].triangle][k];
+done:
+    brio_release(ctx, b.triangles);
+    brio_release(ctx, b.items);
+    return status;
+}
+
+void brio_triangle_tree_free(brio_context *ctx, brio_triangle_tree *tree) {
+    brio_release(ctx, tree->triangles);
+    brio_release(ctx, tree->boxes);
+    *tree = (brio_triangle_tree){0};
+}
+
+/* --- one triangle --- */
+
+static double dot(const double *a, const double *b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double square_distance(const double *a, const double *b) {
+    double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return dot(d, d);
+}
+
+/* The point of segment ab nearest to p, which may be one point only. */
+static void closest_on_segment(const double *a, const double *b, const double *p, double *closest) {
+    double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    double length = dot(u, u), t = length > 0 ? fmin(fmax(dot(w, u) / length, 0), 1) : 0;
+    for (int k = 0; k < 3; k++) closest[k] = t < 1 ? a[k] + t * u[k] : b[k];
+}
+
+/* Whether p lies over the inside of triangle (a, a+u, a+v); if so, its foot in the plane. */
+static bool closest_inside(const double *a, const double *u, const double *v, const double *p, double *closest) {
+    double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
+    double determinant = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
+    if (!(determinant > 0 && s >= 0 && t >= 0 && s + t <= determinant)) return false;
+    for (int k = 0; k < 3; k++) closest[k] = a[k] + s / determinant * u[k] + t / determinant * v[k];
+    return true;
+}
+
+/* Nearest point of triangle abc, of whatever shape. */
+static void closest_on_triangle(const double *a, const double *b, const double *c, const double *p, double *closest) {
+    double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    if (closest_inside(a, u, v, p, closest)) return;
+    double other[3];
+    closest_on_segment(a, b, p, closest);
+    closest_on_segment(b, c, p, other);
+    if (square_distance(p, other) < square_distance(p, closest)) memcpy(closest, other, sizeof other);
+    closest_on_segment(c, a, p, other);
+    if (square_distance(p, other) < square_distance(p, closest)) memcpy(closest, other, sizeof other);
+}
+
+/* --- searching --- */
+
+typedef struct {
+    size_t node, low, high; /* the range of triangles */
+    double distance;        /* squared, to the box */
+} visit;
+
+static visit visit_child(const brio_triangle_tree *tree, const visit *parent, int upper, const double *p) {
+    size_t middle = parent->low + (parent->high - parent->low) / 2;
+    visit child = {2 * parent->node + 1 + (size_t)upper, upper ? middle : parent->low, upper ? parent->high : middle,
+                   0};
+    child.distance = box_distance(&tree->boxes[child.node], p);
+    return child;
+}
+
+double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle) {
+    visit stack[MOST_LEVELS];
+    int depth = 0;
+    double best = INFINITY, q[3];
+    stack[depth++] = (visit){0, 0, tree->num_triangles, 0};
+    *triangle = 0;
+    memcpy(closest, tree->vertices + 3 * (size_t)tree->triangles[0][0], 3 * sizeof *closest);
+    while (depth > 0) {
+        visit v = stack[--depth];
+        if (v.distance >= best) continue;
+        if (v.high - v.low > BRIO_LEAF_TRIANGLES) {
+            visit lower = visit_child(tree, &v, 0, p), upper = visit_child(tree, &v, 1, p);
+            bool lower_first = lower.distance <= upper.distance;
+            stack[depth++] = lower_first ? upper : lower;
+            stack[depth++] = lower_first ? lower : upper;
+            continue;
+        }
+        for (size_t t = v.low; t < v.high; t++) {
+            const uint32_t *c = tree->triangles[t];
+            closest_on_triangle(tree->vertices + 3 * (size_t)c[0], tree->vertices + 3 * (size_t)c[1],
+                                tree->vertices + 3 * (size_t)c[2], p, q);
+            double distance = square_distance(p, q);
+            if (distance >= best) continue;
+            best = distance;
+            *triangle = t;
+            memcpy(closest, q, sizeof q);
+        }
+    }
+    return best;
+}

@@ -1,0 +1,122 @@
+/* Edges of a polygon mesh, found by sorting.
+ *
+ * The half-edges are dealt into one bucket for each vertex, by the lower of their two vertices (a counting sort);
+ * inside a bucket they are sorted by the higher vertex and then by their own index. Half-edges of one edge are then
+ * neighbours, in ascending order. Buckets are short in any surface worth the name, so this is linear in practice;
+ * heapsort bounds the buckets of the others. */
+#include "surface/edge_rings.h"
+
+enum { SHORT_BUCKET = 24 };
+
+static void insertion_sort(uint64_t *keys, size_t count) {
+    for (size_t i = 1; i < count; i++) {
+        uint64_t key = keys[i];
+        size_t j = i;
+        for (; j > 0 && keys[j - 1] > key; j--) keys[j] = keys[j - 1];
+        keys[j] = key;
+    }
+}
+
+/* Restores the heap under `root` after its key has shrunk. */
+static void sift_down(uint64_t *keys, size_t root, size_t count) {
+    uint64_t key = keys[root];
+    for (size_t child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && keys[child + 1] > keys[child]) child++;
+        if (keys[child] <= key) break;
+        keys[root] = keys[child];
+    }
+    keys[root] = key;
+}
+
+void brio_sort_keys(uint64_t *keys, size_t count) {
+    if (count <= SHORT_BUCKET) {
+        insertion_sort(keys, count);
+        return;
+    }
+    for (size_t i = count / 2; i-- > 0;) sift_down(keys, i, count);
+    for (size_t last = count - 1; last > 0; last--) {
+        uint64_t key = keys[0];
+        keys[0] = keys[last];
+        keys[last] = key;
+        sift_down(keys, 0, last);
+    }
+}
+
+brio_status brio_mesh_check_faces(brio_context *ctx, const brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    const uint64_t *offsets = mesh->face_offsets;
+    if (!mesh->num_faces) return BRIO_OK;
+    BRIO_REQUIRE(ctx, offsets[0] == 0, BRIO_ERR_ARGUMENT, "face 0: starts at corner %llu, expected 0",
+                 (unsigned long long)offsets[0]);
+    for (size_t f = 0; f < mesh->num_faces; f++)
+        BRIO_REQUIRE(ctx, offsets[f] <= offsets[f + 1], BRIO_ERR_ARGUMENT, "face %zu: ends before it starts", f);
+    BRIO_REQUIRE(ctx, offsets[mesh->num_faces] < UINT32_MAX && mesh->num_faces < UINT32_MAX, BRIO_ERR_TOO_LARGE,
+                 "%zu faces with %llu corners are more than 32-bit indices can name", mesh->num_faces,
+                 (unsigned long long)offsets[mesh->num_faces]);
+    for (size_t f = 0; f < mesh->num_faces; f++)
+        for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++)
+            BRIO_REQUIRE(ctx, mesh->face_vertices[h] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
+                         "face %zu: vertex %u of a mesh of %zu vertices", f, mesh->face_vertices[h],
+                         mesh->num_vertices);
+done:
+    return status;
+}
+
+typedef struct {
+    uint32_t lower, higher;
+} edge;
+
+/* The edge of half-edge h of the face with corners first to end. */
+static edge edge_of(const uint32_t *corners, uint64_t first, uint64_t end, uint64_t h) {
+    uint32_t u = corners[h], v = corners[h + 1 < end ? h + 1 : first];
+    return u < v ? (edge){u, v} : (edge){v, u};
+}
+
+/* Half-edges as keys (higher vertex, half-edge), the bucket of each lower vertex after that of the one before.
+ * bucket_end  #V, zeroed. */
+static void deal_into_buckets(const brio_mesh *mesh, uint32_t *bucket_end, uint64_t *keys) {
+    const uint64_t *offsets = mesh->face_offsets;
+    for (size_t f = 0; f < mesh->num_faces; f++)
+        for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++)
+            bucket_end[edge_of(mesh->face_vertices, offsets[f], offsets[f + 1], h).lower]++;
+    uint32_t start = 0;
+    for (size_t v = 0; v < mesh->num_vertices; v++) {
+        uint32_t count = bucket_end[v];
+        bucket_end[v] = start;
+        start += count;
+    }
+    for (size_t f = 0; f < mesh->num_faces; f++)
+        for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++) {
+            edge e = edge_of(mesh->face_vertices, offsets[f], offsets[f + 1], h);
+            keys[bucket_end[e.lower]++] = (uint64_t)e.higher << 32 | h;
+        }
+}
+
+/* Links each run of equal higher vertices among the sorted keys of one bucket. */
+static void link_bucket(const uint64_t *keys, size_t count, uint32_t *ring) {
+    for (size_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && keys[end] >> 32 == keys[i] >> 32; end++)
+            ring[(uint32_t)keys[end - 1]] = (uint32_t)keys[end];
+        ring[(uint32_t)keys[end - 1]] = (uint32_t)keys[i];
+    }
+}
+
+brio_status brio_edge_rings(brio_context *ctx, const brio_mesh *mesh, uint32_t **ring) {
+    brio_status status = BRIO_OK;
+    size_t corners = mesh->num_faces ? mesh->face_offsets[mesh->num_faces] : 0;
+    uint32_t *bucket_end = NULL;
+    uint64_t *keys = NULL;
+    *ring = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, bucket_end, mesh->num_vertices));
+    BRIO_TRY(BRIO_ALLOC(ctx, keys, corners));
+    BRIO_TRY(BRIO_ALLOC(ctx, *ring, corners));
+    deal_into_buckets(mesh, bucket_end, keys);
+    for (size_t v = 0, start = 0; v < mesh->num_vertices; start = bucket_end[v++]) {
+        brio_sort_keys(keys + start, bucket_end[v] - start);
+        link_bucket(keys + start, bucket_end[v] - start, *ring);
+    }
+done:
+    brio_release(ctx, bucket_end);
+    brio_release(ctx, keys);
+    return status;
+}

@@ -1,0 +1,194 @@
+/* Points of well-known kinds, for tests, examples and measurements.
+ *
+ * Point i follows from the seed and i alone: it is the same for every n and every number of threads. The round kinds
+ * use rejection and square roots, and no other function of the mathematical library, so that they are the same numbers
+ * on every machine.
+ *
+ * Based on: Marsaglia. Choosing a point from the surface of a sphere. Annals of Mathematical Statistics 1972. */
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "surface/iso_surface.h"
+#include "surface/scan.h"
+#include "surface/sculpture.h"
+#include <math.h>
+
+static const size_t MOST_POINTS = (size_t)1 << 48;
+static const size_t BATCH = (size_t)1 << 18; /* points between two reports of progress */
+
+enum {
+    DEFAULT_RESOLUTION = 160,
+    MOST_RESOLUTION = 1 << 15,
+    PARALLEL_FROM = 1 << 12 /* points that are worth several threads */
+};
+
+static const double TORUS_MAJOR = 1, TORUS_MINOR = 0.4, CYLINDER_HEIGHT = 4;
+
+brio_generate_options brio_generate_options_default(void) {
+    return (brio_generate_options){.seed = 1, .noise = 0.1, .views = 12};
+}
+
+/* --- one point of a kind --- */
+
+static double symmetric(brio_rng *rng) {
+    return 2 * brio_rng_double(rng) - 1;
+}
+
+static void point_of_cube(brio_rng *rng, double *p) {
+    for (int k = 0; k < 3; k++) p[k] = brio_rng_double(rng);
+}
+
+static void point_of_ball(brio_rng *rng, double *p) {
+    do {
+        for (int k = 0; k < 3; k++) p[k] = symmetric(rng);
+    } while (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] > 1);
+}
+
+static void point_of_sphere(brio_rng *rng, double *p) {
+    double x, y, square;
+    do {
+        x = symmetric(rng);
+        y = symmetric(rng);
+        square = x * x + y * y;
+    } while (square >= 1);
+    double scale = 2 * sqrt(1 - square);
+    p[0] = x * scale;
+    p[1] = y * scale;
+    p[2] = 1 - 2 * square;
+}
+
+/* A uniform direction in the plane. */
+static void direction(brio_rng *rng, double *cosine, double *sine) {
+    double x, y, square;
+    do {
+        x = symmetric(rng);
+        y = symmetric(rng);
+        square = x * x + y * y;
+    } while (square > 1 || square < 0x1p-40);
+    *cosine = x / sqrt(square);
+    *sine = y / sqrt(square);
+}
+
+/* The area of the torus is proportional to the distance from its axis, so nearer points are kept more rarely. */
+static void point_of_torus(brio_rng *rng, double *p) {
+    double c, s, radius;
+    do {
+        direction(rng, &c, &s);
+        radius = TORUS_MAJOR + TORUS_MINOR * c;
+    } while (brio_rng_double(rng) * (TORUS_MAJOR + TORUS_MINOR) > radius);
+    p[2] = TORUS_MINOR * s;
+    direction(rng, &c, &s);
+    p[0] = radius * c;
+    p[1] = radius * s;
+}
+
+static void point_of_cylinder(brio_rng *rng, double *p) {
+    direction(rng, &p[0], &p[1]);
+    p[2] = CYLINDER_HEIGHT * (brio_rng_double(rng) - 0.5);
+}
+
+static void random_point(brio_kind kind, uint64_t seed, size_t i, double *p) {
+    brio_rng rng = brio_rng_new(brio_mix(seed) + i);
+    switch (kind) {
+    case BRIO_KIND_CUBE:
+        point_of_cube(&rng, p);
+        break;
+    case BRIO_KIND_BALL:
+        point_of_ball(&rng, p);
+        break;
+    case BRIO_KIND_SPHERE:
+        point_of_sphere(&rng, p);
+        break;
+    case BRIO_KIND_TORUS:
+        point_of_torus(&rng, p);
+        break;
+    case BRIO_KIND_CYLINDER:
+        point_of_cylinder(&rng, p);
+        break;
+    case BRIO_KIND_GRID:
+    case BRIO_KIND_SCAN:
+    case BRIO_KIND_END:
+        break;
+    }
+}
+
+/* --- all points --- */
+
+static size_t grid_side(size_t n) {
+    size_t side = 1;
+    while (side * side * side < n) side++;
+    return side;
+}
+
+static void grid_point(size_t side, size_t i, double *p) {
+    p[0] = (double)(i / (side * side));
+    p[1] = (double)(i / side % side);
+    p[2] = (double)(i % side);
+}
+
+static brio_status fill(brio_context *ctx, brio_kind kind, uint64_t seed, brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    size_t n = mesh->num_vertices, side = kind == BRIO_KIND_GRID ? grid_side(n) : 0;
+    for (size_t start = 0; start < n; start += BATCH) {
+        size_t end = n - start < BATCH ? n : start + BATCH;
+        BRIO_TRY(brio_progress(ctx, "generate", (double)start / (double)n));
+    BRIO_OMP(parallel for if (n >= PARALLEL_FROM) num_threads(brio_context_threads(ctx)))
+    for (size_t i = start; i < end; i++) {
+        if (kind == BRIO_KIND_GRID)
+            grid_point(side, i, mesh->vertices + 3 * i);
+        else
+            random_point(kind, seed, i, mesh->vertices + 3 * i);
+    }
+    }
+    BRIO_TRY(brio_progress(ctx, "generate", 1));
+done:
+    return status;
+}
+
+static brio_status check_options(brio_context *ctx, const brio_generate_options *options) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, isfinite(options->noise) && options->noise >= 0, BRIO_ERR_ARGUMENT,
+                 "noise %g: expected a finite number, 0 or more", options->noise);
+    BRIO_REQUIRE(ctx, options->views >= 1 && options->views <= UINT16_MAX, BRIO_ERR_ARGUMENT,
+                 "%d views: expected 1 to %d", options->views, UINT16_MAX);
+done:
+    return status;
+}
+
+brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,
+                          brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    brio_generate_options o = options ? *options : brio_generate_options_default();
+    brio_mesh *mesh = NULL;
+    *out = NULL;
+    BRIO_REQUIRE(ctx, (unsigned)kind < BRIO_KIND_END, BRIO_ERR_ARGUMENT, "there is no kind %d of points", (int)kind);
+    BRIO_REQUIRE(ctx, n <= MOST_POINTS, BRIO_ERR_NO_MEMORY, "out of memory: %zu points", n);
+    BRIO_TRY(check_options(ctx, &o));
+    if (kind == BRIO_KIND_SCAN) return brio_scan(ctx, n, &o, out);
+    BRIO_TRY(brio_mesh_new(ctx, &mesh));
+    BRIO_TRY(brio_mesh_set_vertices(mesh, NULL, n));
+    BRIO_TRY(fill(ctx, kind, o.seed, mesh));
+    *out = mesh;
+    mesh = NULL;
+done:
+    brio_mesh_free(mesh);
+    return status;
+}
+
+brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    brio_implicit_grid grid = {.value = brio_sculpture};
+    double low[3], high[3], side = 0;
+    *out = NULL;
+    BRIO_REQUIRE(ctx, resolution <= MOST_RESOLUTION, BRIO_ERR_ARGUMENT, "resolution %zu: expected 0 to %d", resolution,
+                 MOST_RESOLUTION);
+    brio_sculpture_box(low, high);
+    for (int k = 0; k < 3; k++) side = fmax(side, high[k] - low[k]);
+    grid.cell = side / (double)(resolution ? resolution : DEFAULT_RESOLUTION);
+    for (int k = 0; k < 3; k++) { /* whole cells, and the same excess on both sides */
+        grid.cells[k] = (uint32_t)ceil((high[k] - low[k]) / grid.cell);
+        grid.low[k] = 0.5 * (low[k] + high[k] - grid.cells[k] * grid.cell);
+    }
+    BRIO_TRY(brio_iso_surface(ctx, &grid, out));
+done:
+    return status;
+}

@@ -1,0 +1,246 @@
+/* Iso-surfaces by marching tetrahedra.
+ *
+ * Every cube of the grid is cut into the six tetrahedra round its diagonal from least to greatest corner (Kuhn's
+ * subdivision): all cubes are cut alike, so the cuts agree on shared sides and the tetrahedra form one complex. The
+ * zero set of a piecewise linear function on a complex is a manifold when no node is zero, and here a node is inside or
+ * outside, never between. A tetrahedron with both kinds of nodes adds one triangle or two; its vertices sit on edges of
+ * the complex and are placed by root finding on the function itself.
+ *
+ * An edge joins a node to one of the seven nodes above it in the order of coordinates; (node, direction) names it. The
+ * cubes are visited layer by layer, and the vertices of the edges of two layers of nodes are remembered in a table, so
+ * every edge has one vertex and memory is that of two layers.
+ *
+ * Based on: Doi, Koide. An efficient method of triangulating equi-valued surfaces by using tetrahedral cells. IEICE
+ * Transactions 1991. */
+#include "surface/iso_surface.h"
+#include "base/parallel.h"
+
+enum {
+    DIRECTIONS = 7,
+    ROOT_STEPS = 12,
+    PARALLEL_FROM = 1 << 12 /* nodes of a layer that are worth several threads */
+};
+
+static const uint32_t NO_VERTEX = UINT32_MAX;
+
+/* Corners of a cube are numbers of three bits: 1 for x, 2 for y, 4 for z. All six tetrahedra are positive. */
+static const uint8_t TETRAHEDRA[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
+                                         {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}};
+
+/* For each set of inside vertices of a tetrahedron (bit i for vertex i), an even permutation that puts them first or,
+ * where there are three, that puts the outside one first. */
+static const uint8_t INSIDE_FIRST[16][4] = {
+    {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 3, 1}, {1, 2, 0, 3}, {3, 0, 2, 1},
+    {3, 0, 2, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 3, 0, 1}, {1, 0, 3, 2}, {0, 1, 2, 3}, {0, 1, 2, 3}};
+
+/* Layers of nodes are z = constant; `value[0]` and `edge_vertex[0]` belong to the lower layer in work. */
+typedef struct {
+    brio_context *ctx;
+    const brio_implicit_grid *grid;
+    size_t row, layer;        /* nodes of a row, of a layer */
+    double *value[2];         /* of each node */
+    uint32_t *edge_vertex[2]; /* of each node and direction - 1 */
+    double *vertices;
+    uint32_t *triangles;
+    size_t num_vertices, vertex_capacity, num_triangles, triangle_capacity;
+} marcher;
+
+/* --- layers --- */
+
+static void node_position(const brio_implicit_grid *grid, uint32_t x, uint32_t y, uint32_t z, double *p) {
+    p[0] = grid->low[0] + x * grid->cell;
+    p[1] = grid->low[1] + y * grid->cell;
+    p[2] = grid->low[2] + z * grid->cell;
+}
+
+/* Evaluates layer z into the upper slot and forgets the edges of the layer that was there. */
+static brio_status fill_upper_layer(marcher *m, uint32_t z) {
+    brio_status status = BRIO_OK;
+    const brio_implicit_grid *grid = m->grid;
+    const uint32_t *cells = grid->cells;
+    bool closed = true;
+    BRIO_OMP(parallel for if (m->layer >= PARALLEL_FROM) num_threads(brio_context_threads(m->ctx))
+                 schedule(dynamic, 8) reduction(&& : closed))
+    for (uint32_t y = 0; y <= cells[1]; y++) {
+        bool border_row = z == 0 || z == cells[2] || y == 0 || y == cells[1];
+        for (uint32_t x = 0; x <= cells[0]; x++) {
+            double p[3];
+            node_position(grid, x, y, z, p);
+            double value = grid->value(p, grid->user);
+            m->value[1][y * m->row + x] = value;
+            if (value < 0 && (border_row || x == 0 || x == cells[0])) closed = false;
+        }
+    }
+    BRIO_REQUIRE(m->ctx, closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
+    for (size_t i = 0; i < m->layer * DIRECTIONS; i++) m->edge_vertex[1][i] = NO_VERTEX;
+done:
+    return status;
+}
+
+static void upper_layer_becomes_lower(marcher *m) {
+    double *value = m->value[0];
+    uint32_t *edge_vertex = m->edge_vertex[0];
+    m->value[0] = m->value[1];
+    m->edge_vertex[0] = m->edge_vertex[1];
+    m->value[1] = value;
+    m->edge_vertex[1] = edge_vertex;
+}
+
+/* --- vertices --- */
+
+/* Where on the edge from a (value f_a) to b (value f_b, of the other sign) the function is zero: regula falsi in the
+ * Illinois variant, which halves the value of an end that stays, so that both ends close in. */
+static void place_on_edge(const brio_implicit_grid *grid, const double *a, const double *b, double f_a, double f_b,
+                          double *p) {
+    double s = 0, t = 1, root = 0.5;
+    for (int step = 0, side = 0; step < ROOT_STEPS; step++) {
+        root = f_a == f_b ? 0.5 * (s + t) : s + (t - s) * (f_a / (f_a - f_b));
+        for (int k = 0; k < 3; k++) p[k] = a[k] + root * (b[k] - a[k]);
+        double f = grid->value(p, grid->user);
+        if (f == 0 || t - s < 1e-12) return;
+        if ((f < 0) == (f_a < 0)) {
+            s = root;
+            f_a = f;
+            if (side == 1) f_b /= 2;
+            side = 1;
+        } else {
+            t = root;
+            f_b = f;
+            if (side == 2) f_a /= 2;
+            side = 2;
+        }
+    }
+}
+
+/* The vertex on the edge between two corners of cube (x, y, z), made when the edge has none yet. */
+static brio_status vertex_on_edge(marcher *m, const uint32_t cube[3], uint32_t corner, uint32_t other, uint32_t *out) {
+    brio_status status = BRIO_OK;
+    uint32_t low = corner < other ? corner : other, high = corner ^ other ^ low;
+    uint32_t at[2][3];
+    size_t node[2];
+    double p[2][3];
+    for (int end = 0; end < 2; end++) {
+        uint32_t bits = end ? high : low;
+        for (int k = 0; k < 3; k++) at[end][k] = cube[k] + (bits >> k & 1);
+        node[end] = at[end][1] * m->row + at[end][0];
+    }
+    uint32_t *slot = &m->edge_vertex[low >> 2][node[0] * DIRECTIONS + (low ^ high) - 1];
+    if (*slot == NO_VERTEX) {
+        BRIO_REQUIRE(m->ctx, m->num_vertices < NO_VERTEX, BRIO_ERR_TOO_LARGE, "a surface of 2^32 vertices");
+        BRIO_TRY(BRIO_RESERVE(m->ctx, m->vertices, m->vertex_capacity, 3 * m->num_vertices + 3));
+        for (int end = 0; end < 2; end++) node_position(m->grid, at[end][0], at[end][1], at[end][2], p[end]);
+        place_on_edge(m->grid, p[0], p[1], m->value[low >> 2][node[0]], m->value[high >> 2][node[1]],
+                      m->vertices + 3 * m->num_vertices);
+        *slot = (uint32_t)m->num_vertices++;
+    }
+    *out = *slot;
+done:
+    return status;
+}
+
+/* --- triangles --- */
+
+static brio_status add_triangle(marcher *m, uint32_t a, uint32_t b, uint32_t c) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(m->ctx, m->triangles, m->triangle_capacity, 3 * m->num_triangles + 3));
+    uint32_t *triangle = m->triangles + 3 * m->num_triangles++;
+    triangle[0] = a;
+    triangle[1] = b;
+    triangle[2] = c;
+done:
+    return status;
+}
+
+/* Adds the surface inside one tetrahedron. In a positive tetrahedron (a, b, c, d) with only a inside, the triangle
+ * (ab, ac, ad) looks away from a; with a and b inside, the quadrilateral (ac, ad, bd, bc) looks away from both. */
+static brio_status march_tetrahedron(marcher *m, const uint32_t cube[3], const uint8_t *tetrahedron, unsigned inside) {
+    brio_status status = BRIO_OK;
+    unsigned set = 0;
+    for (unsigned i = 0; i < 4; i++) set |= (inside >> tetrahedron[i] & 1) << i;
+    if (set == 0 || set == 15) return BRIO_OK;
+    uint32_t corner[4], v[4];
+    for (int i = 0; i < 4; i++) corner[i] = tetrahedron[INSIDE_FIRST[set][i]];
+    int count = __builtin_popcount(set);
+    if (count == 2) {
+        BRIO_TRY(vertex_on_edge(m, cube, corner[0], corner[2], &v[0]));
+        BRIO_TRY(vertex_on_edge(m, cube, corner[0], corner[3], &v[1]));
+        BRIO_TRY(vertex_on_edge(m, cube, corner[1], corner[3], &v[2]));
+        BRIO_TRY(vertex_on_edge(m, cube, corner[1], corner[2], &v[3]));
+        BRIO_TRY(add_triangle(m, v[0], v[1], v[2]));
+        BRIO_TRY(add_triangle(m, v[0], v[2], v[3]));
+        goto done;
+    }
+    for (int i = 0; i < 3; i++) BRIO_TRY(vertex_on_edge(m, cube, corner[0], corner[i + 1], &v[i]));
+    BRIO_TRY(count == 1 ? add_triangle(m, v[0], v[1], v[2]) : add_triangle(m, v[2], v[1], v[0]));
+done:
+    return status;
+}
+
+static brio_status march_layer(marcher *m, uint32_t z) {
+    brio_status status = BRIO_OK;
+    for (uint32_t y = 0; y < m->grid->cells[1]; y++)
+        for (uint32_t x = 0; x < m->grid->cells[0]; x++) {
+            const uint32_t cube[3] = {x, y, z};
+            unsigned inside = 0;
+            for (unsigned c = 0; c < 8; c++) {
+                size_t node = (y + (c >> 1 & 1)) * m->row + x + (c & 1);
+                inside |= (unsigned)(m->value[c >> 2][node] < 0) << c;
+            }
+            if (inside == 0 || inside == 255) continue;
+            for (int t = 0; t < 6; t++) BRIO_TRY(march_tetrahedron(m, cube, TETRAHEDRA[t], inside));
+        }
+done:
+    return status;
+}
+
+/* --- all of it --- */
+
+/* Moves the arrays of the marcher into a mesh. */
+static brio_status make_mesh(marcher *m, brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    brio_mesh *mesh = NULL;
+    *out = NULL;
+    BRIO_TRY(BRIO_RESIZE(m->ctx, m->vertices, 3 * m->num_vertices));
+    BRIO_TRY(BRIO_RESIZE(m->ctx, m->triangles, 3 * m->num_triangles));
+    BRIO_TRY(brio_mesh_new(m->ctx, &mesh));
+    BRIO_TRY(BRIO_ALLOC(m->ctx, mesh->face_offsets, m->num_triangles + 1));
+    for (size_t f = 0; f <= m->num_triangles; f++) mesh->face_offsets[f] = 3 * f;
+    mesh->num_vertices = m->num_vertices;
+    mesh->vertices = m->vertices;
+    mesh->num_faces = m->num_triangles;
+    mesh->face_vertices = m->triangles;
+    m->vertices = NULL;
+    m->triangles = NULL;
+    *out = mesh;
+    mesh = NULL;
+done:
+    brio_mesh_free(mesh);
+    return status;
+}
+
+brio_status brio_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    marcher m = {.ctx = ctx, .grid = grid, .row = (size_t)grid->cells[0] + 1};
+    m.layer = m.row * ((size_t)grid->cells[1] + 1);
+    *out = NULL;
+    for (int i = 0; i < 2; i++) {
+        BRIO_TRY(BRIO_ALLOC(ctx, m.value[i], m.layer));
+        BRIO_TRY(BRIO_ALLOC(ctx, m.edge_vertex[i], m.layer * DIRECTIONS));
+    }
+    BRIO_TRY(fill_upper_layer(&m, 0));
+    for (uint32_t z = 0; z < grid->cells[2]; z++) {
+        upper_layer_becomes_lower(&m);
+        BRIO_TRY(fill_upper_layer(&m, z + 1));
+        BRIO_TRY(march_layer(&m, z));
+        BRIO_TRY(brio_progress(ctx, "surface", (z + 1.0) / grid->cells[2]));
+    }
+    BRIO_TRY(make_mesh(&m, out));
+done:
+    for (int i = 0; i < 2; i++) {
+        brio_release(ctx, m.value[i]);
+        brio_release(ctx, m.edge_vertex[i]);
+    }
+    brio_release(ctx, m.vertices);
+    brio_release(ctx, m.triangles);
+    return status;
+}

@@ -1,0 +1,68 @@
+/* Circumcentres and orthocentres: known ones, every order of the points, and the error bound against exact residuals. */
+#include "harness.h"
+#include "points.h"
+#include <math.h>
+
+static void known_centres(void) {
+    const double a[3] = {0, 0, 0}, b[3] = {2, 0, 0}, c[3] = {0, 4, 0}, d[3] = {0, 0, 6};
+    double x[3], error, weights[4] = {0, 4, 0, 0};
+    EXPECT(brio_circumcentre(a, b, c, d, NULL, x, &error) == BRIO_OK);
+    EXPECT(x[0] == 1 && x[1] == 2 && x[2] == 3 && error < 1e-12);
+    EXPECT(brio_circumcentre(a, b, c, d, weights, x, NULL) == BRIO_OK);
+    EXPECT(x[0] == 0 && x[1] == 2 && x[2] == 3); /* |x|^2 = |x-b|^2 - 4 */
+    EXPECT(brio_circumcentre(a, b, c, c, NULL, x, NULL) == BRIO_ERR_ARGUMENT);
+}
+
+static void order_of_the_points_does_not_matter(void) {
+    static const int order[6][4] = {{0, 1, 2, 3}, {3, 2, 1, 0}, {1, 0, 3, 2}, {2, 3, 0, 1}, {0, 2, 1, 3}, {3, 0, 1, 2}};
+    for (uint64_t trial = 0; trial < 2000; trial++) {
+        double p[12], w[4], first[3], x[3];
+        uniform_points(trial, 4, p);
+        for (int i = 0; i < 4; i++) w[i] = p[i] * 0.1;
+        if (trial % 3 == 0) p[2] = p[5] = p[8] = 0.5, p[11] = 0.5 + 1e-14; /* nearly flat */
+        for (int k = 0; k < 6; k++) {
+            const double *q[4];
+            double v[4];
+            for (int i = 0; i < 4; i++) q[i] = p + 3 * order[k][i], v[i] = w[order[k][i]];
+            EXPECT(brio_circumcentre(q[0], q[1], q[2], q[3], v, x, NULL) == BRIO_OK);
+            if (k == 0) memcpy(first, x, sizeof x);
+            EXPECT(!memcmp(first, x, sizeof x));
+        }
+    }
+}
+
+/* A box's corners have its middle for a centre, which stays within the bound however flat the tetrahedron and wherever the box is. */
+static void error_bound_holds_for_flat_and_far_tetrahedra(void) {
+    for (int e = 0; e <= 50; e += 5)
+        for (int shift = 0; shift < 2; shift++) {
+            double h = ldexp(1, -e), o = shift ? 4096 : 0;
+            double a[3] = {o, o, 0}, b[3] = {o + 1, o, 0}, c[3] = {o, o + 1, 0}, d[3] = {o + 1, o + 1, h}, x[3], error;
+            /* |x-a| = |x-d|: z = (1 + 1 + h^2 - 2 (x + y)) / (2 h) with x = y = 1/2 */
+            double z = h / 2;
+            EXPECT(brio_circumcentre(a, b, c, d, NULL, x, &error) == BRIO_OK);
+            EXPECT(fabs(x[0] - o - 0.5) <= error && fabs(x[1] - o - 0.5) <= error && fabs(x[2] - z) <= error,
+                   "2^-%d: %g %g %g, error %g", e, x[0], x[1], x[2], error);
+            EXPECT(error < 1e-11);
+        }
+}
+
+static void extreme_scales_are_answered(void) {
+    const double scales[] = {0x1p-1000, 0x1p-600, 0x1p-30, 0x1p500, 0x1p1000};
+    for (int s = 0; s < 5; s++) {
+        double u = scales[s], a[3] = {0, 0, 0}, b[3] = {2 * u, 0, 0}, c[3] = {0, 4 * u, 0}, d[3] = {0, 0, 6 * u}, x[3];
+        EXPECT(brio_circumcentre(a, b, c, d, NULL, x, NULL) == BRIO_OK);
+        EXPECT(x[0] == u && x[1] == 2 * u && x[2] == 3 * u, "scale %d", s);
+    }
+    const double a[3] = {0, 0, 0}, b[3] = {1e300, 0, 0}, c[3] = {0, 1e-300, 0}, d[3] = {1, 1, 1e-300};
+    double x[3];
+    brio_status status = brio_circumcentre(a, b, c, d, NULL, x, NULL);
+    EXPECT(status == BRIO_ERR_ARGUMENT || (isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2])));
+}
+
+int main(void) {
+    RUN(known_centres);
+    RUN(order_of_the_points_does_not_matter);
+    RUN(error_bound_holds_for_flat_and_far_tetrahedra);
+    RUN(extreme_scales_are_answered);
+    return harness_end();
+}

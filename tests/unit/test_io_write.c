@@ -1,0 +1,268 @@
+/* Writing: what is written reads back with the same bits in each format; files appear complete or not at all. */
+#include "test_io.h"
+#include <fcntl.h>
+
+static brio_mesh *write_and_read(const brio_mesh *mesh, const char *name, brio_write_options options) {
+    brio_mesh *back = NULL;
+    brio_status status = brio_write(io_ctx, io_path(name), mesh, &options);
+    EXPECT(status == BRIO_OK, "%s: %s", name, brio_message(io_ctx));
+    status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &back);
+    EXPECT(status == BRIO_OK, "%s: %s", name, brio_message(io_ctx));
+    EXPECT(io_count_files(".part-") == 0, "a temporary file is left");
+    return back;
+}
+
+/* values: properties as doubles, for formats that keep no types. */
+static void expect_properties(const brio_mesh *a, const brio_mesh *b, bool types) {
+    EXPECT(a->num_properties == b->num_properties, "%zu and %zu", a->num_properties, b->num_properties);
+    for (size_t i = 0; i < a->num_properties && i < b->num_properties; i++) {
+        const brio_property *p = &a->properties[i], *q = &b->properties[i];
+        if (types) {
+            EXPECT(!strcmp(p->name, q->name) && p->type == q->type, "%s %s", p->name, q->name);
+            EXPECT(io_same_bytes(p->data, q->data, a->num_vertices * brio_scalar_size(p->type)), "%s", p->name);
+            continue;
+        }
+        for (size_t v = 0; v < a->num_vertices; v++)
+            EXPECT(p->type == BRIO_FLOAT32 ? (float)brio_property_value(q, v) == (float)brio_property_value(p, v)
+                                           : brio_property_value(q, v) == brio_property_value(p, v),
+                   "%s of point %zu", p->name, v);
+    }
+}
+
+static void check_ply(int parts, int ascii, int float32) {
+    brio_write_options options = brio_write_options_default();
+    options.ascii = ascii;
+    options.float32 = float32;
+    options.comment = "two\nlines";
+    brio_mesh *mesh = io_make(1000, parts), *back = write_and_read(mesh, "a.ply", options);
+    if (back) {
+        EXPECT(io_same_points(mesh, back), "parts %d ascii %d float32 %d", parts, ascii, float32);
+        EXPECT(io_same_faces(mesh, back), "parts %d ascii %d", parts, ascii);
+        EXPECT(io_same_tetrahedra(mesh, back), "parts %d ascii %d", parts, ascii);
+        expect_properties(mesh, back, true);
+    }
+    brio_mesh_free(mesh);
+    brio_mesh_free(back);
+}
+
+static void ply_reads_back(void) {
+    for (int ascii = 0; ascii < 2; ascii++) {
+        for (int parts = 0; parts < 16; parts++) check_ply(parts, ascii, 0);
+        check_ply(IO_SINGLE | IO_FACES | IO_PROPERTIES, ascii, 1);
+    }
+}
+
+static void vtu_reads_back(void) {
+    brio_write_options options = brio_write_options_default();
+    options.comment = "-- > <";
+    for (int parts = 0; parts < 32; parts++) {
+        options.float32 = parts >= IO_SINGLE;
+        brio_mesh *mesh = io_make(700, parts), *back = write_and_read(mesh, "a.vtu", options);
+        if (back) {
+            EXPECT(io_same_points(mesh, back) && io_same_faces(mesh, back) && io_same_tetrahedra(mesh, back),
+                   "parts %d", parts);
+            expect_properties(mesh, back, true);
+        }
+        brio_mesh_free(mesh);
+        brio_mesh_free(back);
+    }
+}
+
+static void texts_read_back(void) {
+    static const struct {
+        const char *name;
+        int parts;
+        bool properties;
+    } cases[] = {{"a.xyz", IO_PROPERTIES, true},
+                 {"a.csv", IO_PROPERTIES, true},
+                 {"a.pts", 0, true},
+                 {"a.obj", IO_FACES, false},
+                 {"b.obj", IO_BIG_FACE, false},
+                 {"a.off", IO_FACES, false},
+                 {"b.off", IO_BIG_FACE, false},
+                 {"c.off", 0, false},
+                 {"a.node", IO_PROPERTIES, true},
+                 {"b.node", IO_TETRAHEDRA | IO_PROPERTIES, true},
+                 {"c.ele", IO_TETRAHEDRA, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        brio_mesh *mesh = io_make(500, cases[i].parts);
+        brio_write_options options = brio_write_options_default();
+        options.comment = "a comment";
+        brio_mesh *back = write_and_read(mesh, cases[i].name, options);
+        if (back) {
+            EXPECT(io_same_points(mesh, back), "%s", cases[i].name);
+            EXPECT(io_same_faces(mesh, back), "%s", cases[i].name);
+            EXPECT(io_same_tetrahedra(mesh, back), "%s", cases[i].name);
+            if (cases[i].properties) expect_properties(mesh, back, false);
+        }
+        brio_mesh_free(mesh);
+        brio_mesh_free(back);
+    }
+}
+
+static void empty_mesh_reads_back(void) {
+    static const char *const names[] = {"e.ply", "e.xyz", "e.obj", "e.off", "e.vtu", "e.node"};
+    for (size_t i = 0; i < 6; i++) {
+        brio_mesh *mesh = io_make(0, 0), *back = write_and_read(mesh, names[i], brio_write_options_default());
+        EXPECT(back && back->num_vertices == 0 && !back->vertices && !back->face_offsets && !back->tetrahedra, "%s",
+               names[i]);
+        brio_mesh_free(mesh);
+        brio_mesh_free(back);
+    }
+}
+
+/* New points without tetrahedra must not be read with the tetrahedra of the old ones. */
+static void node_replaces_old_tetrahedra(void) {
+    brio_mesh *old = io_make(50, IO_TETRAHEDRA), *new = io_make(40, 0);
+    brio_mesh_free(write_and_read(old, "r.node", brio_write_options_default()));
+    brio_mesh *back = write_and_read(new, "r.node", brio_write_options_default());
+    EXPECT(back && back->num_vertices == 40 && back->num_tetrahedra == 0);
+    brio_mesh_free(old);
+    brio_mesh_free(new);
+    brio_mesh_free(back);
+}
+
+static void property_names_become_words(void) {
+    brio_mesh *mesh = io_make(5, 0);
+    void *data;
+    EXPECT(brio_mesh_add_property(mesh, "two words,\n", BRIO_INT32, &data) == BRIO_OK);
+    brio_mesh *ply = write_and_read(mesh, "n.ply", brio_write_options_default());
+    brio_mesh *vtu = write_and_read(mesh, "n.vtu", brio_write_options_default());
+    EXPECT(ply && brio_mesh_property(ply, "two_words__"));
+    EXPECT(vtu && vtu->num_properties == 1);
+    EXPECT(brio_mesh_add_property(mesh, "two words;;", BRIO_INT32, &data) == BRIO_OK);
+    EXPECT(brio_write(io_ctx, io_path("n.ply"), mesh, NULL) == BRIO_ERR_ARGUMENT, "two equal names");
+    brio_mesh_free(mesh);
+    brio_mesh_free(ply);
+    brio_mesh_free(vtu);
+}
+
+static void refuse_what_the_format_cannot_hold(void) {
+    static const char *const names[] = {"t.obj", "t.off", "t.xyz", "t.csv", "t.unknown", "-"};
+    brio_mesh *mesh = io_make(10, IO_TETRAHEDRA);
+    for (size_t i = 0; i < 6; i++) {
+        EXPECT(brio_write(io_ctx, io_path(names[i]), mesh, NULL) == BRIO_ERR_ARGUMENT, "%s", names[i]);
+        EXPECT(io_count_files("t.") == 0, "%s", names[i]);
+    }
+    EXPECT(brio_write(io_ctx, "-", mesh, NULL) == BRIO_ERR_ARGUMENT, "standard output without a format");
+    brio_write_options options = brio_write_options_default();
+    options.format = BRIO_FORMAT_NODE;
+    EXPECT(brio_write(io_ctx, "-", mesh, &options) == BRIO_ERR_ARGUMENT, "two files");
+    mesh->vertices[4] = 1e300;
+    options = (brio_write_options){.float32 = 1};
+    EXPECT(brio_write(io_ctx, io_path("t.ply"), mesh, &options) == BRIO_ERR_ARGUMENT);
+    EXPECT(strstr(brio_message(io_ctx), "point 1 "), "%s", brio_message(io_ctx));
+    brio_mesh_free(mesh);
+}
+
+static void full_disk_is_a_status(void) {
+    if (access("/dev/full", W_OK) != 0) return;
+    brio_mesh *mesh = io_make(100000, 0);
+    brio_write_options options = brio_write_options_default();
+    options.format = BRIO_FORMAT_PLY;
+    EXPECT(brio_write(io_ctx, "/dev/full", mesh, &options) == BRIO_ERR_WRITE);
+    EXPECT(strstr(brio_message(io_ctx), "/dev/full: No space left on device"), "%s", brio_message(io_ctx));
+    brio_mesh_free(mesh);
+}
+
+static void unwritable_folder_is_a_status(void) {
+    brio_mesh *mesh = io_make(10, 0);
+    EXPECT(brio_write(io_ctx, io_path("no/such/folder/a.ply"), mesh, NULL) == BRIO_ERR_WRITE);
+    EXPECT(brio_write(io_ctx, io_folder, mesh, &(brio_write_options){.format = BRIO_FORMAT_PLY}) == BRIO_ERR_WRITE);
+    brio_mesh_free(mesh);
+}
+
+static int cancel(const char *stage, double fraction, void *user) {
+    EXPECT(fraction >= 0 && fraction <= 1, "%s %g", stage, fraction);
+    return --*(int *)user < 0;
+}
+
+/* Cancelled at each report in turn, a write leaves the old file and nothing else. */
+static void cancelled_write_leaves_the_old_file(void) {
+    brio_mesh *old = io_make(10, 0), *new = io_make(100000, IO_PROPERTIES), *back = NULL;
+    EXPECT(brio_write(io_ctx, io_path("c.ply"), old, NULL) == BRIO_OK);
+    int allowed = 0, reports = 0;
+    for (;; allowed++) {
+        reports = allowed;
+        brio_context_set_progress(io_ctx, cancel, &reports);
+        brio_status status = brio_write(io_ctx, io_path("c.ply"), new, NULL);
+        brio_context_set_progress(io_ctx, NULL, NULL);
+        if (status == BRIO_OK) break;
+        EXPECT(status == BRIO_ERR_CANCELLED, "status %d", (int)status);
+        EXPECT(io_count_files(".part-") == 0);
+        EXPECT(brio_read(io_ctx, io_path("c.ply"), BRIO_FORMAT_AUTO, &back) == BRIO_OK && back->num_vertices == 10);
+        brio_mesh_free(back);
+    }
+    EXPECT(allowed >= 5, "only %d reports for 5 MB", allowed);
+    reports = 2;
+    brio_context_set_progress(io_ctx, cancel, &reports);
+    EXPECT(brio_read(io_ctx, io_path("c.ply"), BRIO_FORMAT_AUTO, &back) == BRIO_ERR_CANCELLED && !back);
+    brio_context_set_progress(io_ctx, NULL, NULL);
+    brio_mesh_free(old);
+    brio_mesh_free(new);
+}
+
+static void permissions_and_links_stay(void) {
+    brio_mesh *mesh = io_make(10, 0);
+    struct stat facts;
+    EXPECT(brio_write(io_ctx, io_path("p.ply"), mesh, NULL) == BRIO_OK);
+    EXPECT(chmod(io_path("p.ply"), 0600) == 0 && symlink("p.ply", io_path("l.ply")) == 0);
+    EXPECT(brio_write(io_ctx, io_path("l.ply"), mesh, NULL) == BRIO_OK);
+    EXPECT(lstat(io_path("l.ply"), &facts) == 0 && S_ISLNK(facts.st_mode), "the link is replaced");
+    EXPECT(stat(io_path("p.ply"), &facts) == 0 && (facts.st_mode & 0777) == 0600, "mode %o", (unsigned)facts.st_mode);
+    brio_mesh_free(mesh);
+}
+
+/* Writes to standard output and reads from standard input, both a file in place of the terminal. */
+static void standard_streams(void) {
+    brio_mesh *mesh = io_make(300, IO_FACES | IO_PROPERTIES), *back = NULL;
+    brio_write_options options = brio_write_options_default();
+    options.format = BRIO_FORMAT_PLY;
+    int out = dup(1), in = dup(0), file = open(io_path("s"), O_RDWR | O_CREAT, 0600);
+    dup2(file, 1);
+    brio_status status = brio_write(io_ctx, "-", mesh, &options);
+    dup2(out, 1);
+    EXPECT(status == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(lseek(file, 0, SEEK_SET) == 0);
+    dup2(file, 0);
+    status = brio_read(io_ctx, "-", BRIO_FORMAT_AUTO, &back);
+    dup2(in, 0);
+    EXPECT(status == BRIO_OK && io_same_points(mesh, back) && io_same_faces(mesh, back), "%s", brio_message(io_ctx));
+    close(in);
+    close(out);
+    close(file);
+    brio_mesh_free(mesh);
+    brio_mesh_free(back);
+}
+
+static void numbers_from_a_pipe(void) {
+    int ends[2], in = dup(0);
+    brio_mesh *m = NULL;
+    EXPECT(pipe(ends) == 0 && write(ends[1], "1 2 3\n4 5 6", 11) == 11);
+    close(ends[1]);
+    dup2(ends[0], 0);
+    brio_status status = brio_read(io_ctx, "-", BRIO_FORMAT_AUTO, &m);
+    dup2(in, 0);
+    EXPECT(status == BRIO_OK && m->num_vertices == 2 && m->vertices[5] == 6, "%s", brio_message(io_ctx));
+    close(in);
+    close(ends[0]);
+    brio_mesh_free(m);
+}
+
+int main(void) {
+    io_begin();
+    RUN(ply_reads_back);
+    RUN(vtu_reads_back);
+    RUN(texts_read_back);
+    RUN(empty_mesh_reads_back);
+    RUN(node_replaces_old_tetrahedra);
+    RUN(property_names_become_words);
+    RUN(refuse_what_the_format_cannot_hold);
+    RUN(full_disk_is_a_status);
+    RUN(unwritable_folder_is_a_status);
+    RUN(cancelled_write_leaves_the_old_file);
+    RUN(permissions_and_links_stay);
+    RUN(standard_streams);
+    RUN(numbers_from_a_pipe);
+    return io_end();
+}
