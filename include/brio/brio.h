@@ -340,7 +340,7 @@ typedef enum brio_format {
     BRIO_FORMAT_XYZ, /* .xyz .pts .txt .csv */
     BRIO_FORMAT_OBJ,
     BRIO_FORMAT_OFF,
-    BRIO_FORMAT_VTU,  /* write only */
+    BRIO_FORMAT_VTU,  /* read back when its arrays are appended raw, as they are written */
     BRIO_FORMAT_NODE, /* TetGen's .node, with .ele beside it */
     BRIO_FORMAT_END
 } brio_format;

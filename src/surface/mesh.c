@@ -42,10 +42,8 @@ brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const 
     BRIO_TRY(BRIO_ALLOC(ctx, o, num_faces + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, v, num_faces ? offsets[num_faces] : 0));
     o[0] = 0;
-    if (num_faces) {
-        memcpy(o, offsets, (num_faces + 1) * sizeof *o);
-        memcpy(v, indices, offsets[num_faces] * sizeof *v);
-    }
+    if (num_faces) memcpy(o, offsets, (num_faces + 1) * sizeof *o);
+    if (o[num_faces]) memcpy(v, indices, o[num_faces] * sizeof *v);
     mesh->face_offsets = o;
     mesh->face_vertices = v;
     mesh->num_faces = num_faces;

@@ -1,0 +1,238 @@
+/* A mesh under construction.
+ *
+ * Arrays grow by half while they are small and by an eighth when they are large: the large ones are mappings that grow
+ * without copying, and what is reserved counts against the memory limit. Points, faces and tetrahedra are counted from
+ * 0 in all messages; indices of vertices appear as in the file. */
+#include "io/builder.h"
+#include "base/memory.h"
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum { FIRST_CAPACITY = 64, LARGE = 1 << 22 };
+
+static size_t grown(size_t capacity, size_t need) {
+    size_t target = capacity + (capacity < LARGE ? capacity / 2 : capacity / 8);
+    if (target < FIRST_CAPACITY) target = FIRST_CAPACITY;
+    return target < need ? need : target;
+}
+
+brio_status brio_builder_start(brio_builder *b, brio_context *ctx, const char *name) {
+    *b = (brio_builder){.ctx = ctx, .name = name};
+    return brio_mesh_new(ctx, &b->mesh);
+}
+
+/* --- vertices and their properties --- */
+
+static brio_status set_vertex_capacity(brio_builder *b, size_t capacity) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESIZE(b->ctx, b->mesh->vertices, 3 * capacity));
+    for (size_t i = 0; i < b->mesh->num_properties; i++) {
+        brio_property *p = &b->mesh->properties[i];
+        BRIO_TRY(brio_resize_to(b->ctx, &p->data, capacity, brio_scalar_size(p->type)));
+    }
+    b->vertex_capacity = capacity;
+done:
+    return status;
+}
+
+static brio_status too_many_vertices(const brio_builder *b, uint64_t count) {
+    return brio_fail(b->ctx, BRIO_ERR_TOO_LARGE, "%s: %" PRIu64 " points, the most are %" PRIu64, b->name, count,
+                     BRIO_MAX_VERTICES);
+}
+
+brio_status brio_builder_expect_vertices(brio_builder *b, uint64_t count) {
+    if (count > BRIO_MAX_VERTICES) return too_many_vertices(b, count);
+    return count > b->vertex_capacity ? set_vertex_capacity(b, count) : BRIO_OK;
+}
+
+brio_status brio_builder_add_vertices(brio_builder *b, size_t count) {
+    brio_status status = BRIO_OK;
+    size_t need = b->mesh->num_vertices + count;
+    if (need > b->vertex_capacity) {
+        if (need > BRIO_MAX_VERTICES) return too_many_vertices(b, need);
+        BRIO_TRY(set_vertex_capacity(b, grown(b->vertex_capacity, need)));
+    }
+    b->mesh->num_vertices = need;
+done:
+    return status;
+}
+
+brio_status brio_builder_vertex(brio_builder *b, const double *point) {
+    brio_status status = brio_builder_add_vertices(b, 1);
+    if (status == BRIO_OK) memcpy(b->mesh->vertices + 3 * (b->mesh->num_vertices - 1), point, 3 * sizeof *point);
+    return status;
+}
+
+brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar type) {
+    brio_status status = BRIO_OK;
+    size_t length = strlen(name);
+    BRIO_REQUIRE(b->ctx, length > 0 && length < sizeof b->mesh->properties->name, BRIO_ERR_FORMAT,
+                 "%s: a property name of %zu characters, expected 1 to 63", b->name, length);
+    BRIO_REQUIRE(b->ctx, !brio_mesh_property(b->mesh, name), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name,
+                 name);
+    BRIO_TRY(brio_mesh_add_property(b->mesh, name, type, NULL));
+    if (b->vertex_capacity) BRIO_TRY(set_vertex_capacity(b, b->vertex_capacity));
+done:
+    return status;
+}
+
+brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_scalar type, void *data) {
+    brio_status status = brio_builder_property(b, name, type);
+    if (status != BRIO_OK) {
+        brio_release(b->ctx, data);
+        return status;
+    }
+    brio_property *p = &b->mesh->properties[b->mesh->num_properties - 1];
+    brio_release(b->ctx, p->data);
+    p->data = data;
+    return BRIO_OK;
+}
+
+void brio_builder_drop_property(brio_builder *b, size_t i) {
+    brio_mesh *m = b->mesh;
+    brio_release(b->ctx, m->properties[i].data);
+    m->num_properties--;
+    memmove(m->properties + i, m->properties + i + 1, (m->num_properties - i) * sizeof *m->properties);
+}
+
+/* --- faces and tetrahedra --- */
+
+static brio_status set_face_capacity(brio_builder *b, size_t capacity) {
+    brio_status status = BRIO_RESIZE(b->ctx, b->mesh->face_offsets, capacity + 1);
+    if (status != BRIO_OK) return status;
+    if (!b->face_capacity) b->mesh->face_offsets[0] = 0;
+    b->face_capacity = capacity;
+    return BRIO_OK;
+}
+
+brio_status brio_builder_expect_faces(brio_builder *b, uint64_t count) {
+    return count > b->face_capacity ? set_face_capacity(b, count) : BRIO_OK;
+}
+
+brio_status brio_builder_expect_tetrahedra(brio_builder *b, uint64_t count) {
+    if (count <= b->tetrahedron_capacity) return BRIO_OK;
+    brio_status status = brio_resize_to(b->ctx, &b->mesh->tetrahedra, count, 4 * sizeof *b->mesh->tetrahedra);
+    if (status == BRIO_OK) b->tetrahedron_capacity = count;
+    return status;
+}
+
+static bool is_index(double index) {
+    return index >= 0 && index < UINT32_MAX && index == floor(index);
+}
+
+static brio_status no_index(const brio_builder *b, const char *what, size_t which, double index) {
+    return brio_fail(b->ctx, BRIO_ERR_FORMAT, "%s: %s %zu (counted from 0): %.17g is not the index of a vertex",
+                     b->name, what, which, index + b->index_base);
+}
+
+static brio_status bad_index(const brio_builder *b, const char *what, size_t which, double index) {
+    size_t n = b->mesh->num_vertices;
+    return brio_fail(b->ctx, BRIO_ERR_FORMAT,
+                     "%s: %s %zu (counted from 0): index %.17g, expected one of the %zu vertices, numbered from %u",
+                     b->name, what, which, index + b->index_base, n, b->index_base);
+}
+
+brio_status brio_builder_corner(brio_builder *b, double index) {
+    brio_status status = BRIO_OK;
+    if (!is_index(index)) return no_index(b, "face", b->mesh->num_faces, index);
+    if (b->num_corners == b->corner_capacity) {
+        size_t capacity = grown(b->corner_capacity, b->num_corners + 1);
+        BRIO_TRY(BRIO_RESIZE(b->ctx, b->mesh->face_vertices, capacity));
+        b->corner_capacity = capacity;
+    }
+    b->mesh->face_vertices[b->num_corners++] = (uint32_t)index;
+done:
+    return status;
+}
+
+brio_status brio_builder_face(brio_builder *b) {
+    brio_status status = BRIO_OK;
+    size_t f = b->mesh->num_faces;
+    if (f == b->face_capacity) BRIO_TRY(set_face_capacity(b, grown(f, f + 1)));
+    b->mesh->face_offsets[f + 1] = b->num_corners;
+    b->mesh->num_faces = f + 1;
+done:
+    return status;
+}
+
+brio_status brio_builder_tetrahedron(brio_builder *b, const double *indices) {
+    brio_status status = BRIO_OK;
+    size_t t = b->mesh->num_tetrahedra;
+    for (int i = 0; i < 4; i++)
+        if (!is_index(indices[i])) return no_index(b, "tetrahedron", t, indices[i]);
+    if (t == b->tetrahedron_capacity) BRIO_TRY(brio_builder_expect_tetrahedra(b, grown(t, t + 1)));
+    for (int i = 0; i < 4; i++) b->mesh->tetrahedra[4 * t + i] = (uint32_t)indices[i];
+    b->mesh->num_tetrahedra = t + 1;
+done:
+    return status;
+}
+
+/* --- the end --- */
+
+static brio_status check_indices(const brio_builder *b) {
+    const brio_mesh *m = b->mesh;
+    for (size_t i = 0, f = 0; i < b->num_corners; i++) {
+        if (m->face_vertices[i] < m->num_vertices) continue;
+        while (m->face_offsets[f + 1] <= i) f++;
+        return bad_index(b, "face", f, m->face_vertices[i]);
+    }
+    for (size_t i = 0; i < 4 * m->num_tetrahedra; i++)
+        if (m->tetrahedra[i] >= m->num_vertices) return bad_index(b, "tetrahedron", i / 4, m->tetrahedra[i]);
+    return BRIO_OK;
+}
+
+static bool finite_row(const double *p) {
+    return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
+}
+
+static brio_status check_finite(const brio_builder *b) {
+    const brio_mesh *m = b->mesh;
+    size_t count = 0, first = 0;
+    for (size_t i = m->num_vertices; i-- > 0;) {
+        if (finite_row(m->vertices + 3 * i)) continue;
+        first = i;
+        count++;
+    }
+    if (!count) return BRIO_OK;
+    const double *p = m->vertices + 3 * first;
+    int axis = !isfinite(p[0]) ? 0 : !isfinite(p[1]) ? 1 : 2;
+    return brio_fail(b->ctx, BRIO_ERR_NOT_FINITE,
+                     "%s: point %zu: %c is %s (%zu such point%s in all); points are counted from 0", b->name, first,
+                     "xyz"[axis], isnan(p[axis]) ? "NaN" : "infinite", count, count == 1 ? "" : "s");
+}
+
+static brio_status trim(brio_builder *b) {
+    brio_status status = BRIO_OK;
+    brio_mesh *m = b->mesh;
+    if (m->num_vertices) {
+        if (m->num_vertices < b->vertex_capacity) BRIO_TRY(set_vertex_capacity(b, m->num_vertices));
+    } else {
+        brio_release(b->ctx, m->vertices);
+        m->vertices = NULL;
+    }
+    if (m->num_faces) {
+        BRIO_TRY(BRIO_RESIZE(b->ctx, m->face_offsets, m->num_faces + 1));
+        BRIO_TRY(BRIO_RESIZE(b->ctx, m->face_vertices, b->num_corners));
+    } else {
+        brio_release(b->ctx, m->face_offsets);
+        m->face_offsets = NULL;
+    }
+    if (m->num_tetrahedra) {
+        BRIO_TRY(brio_resize_to(b->ctx, &m->tetrahedra, m->num_tetrahedra, 4 * sizeof *m->tetrahedra));
+    } else {
+        brio_release(b->ctx, m->tetrahedra);
+        m->tetrahedra = NULL;
+    }
+done:
+    return status;
+}
+
+brio_status brio_builder_finish(brio_builder *b) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(trim(b));
+    BRIO_TRY(check_indices(b));
+    BRIO_TRY(check_finite(b));
+done:
+    return status;
+}

@@ -1,0 +1,178 @@
+/* TetGen's pair of text files: .node with points, attributes and boundary markers, and .ele with tetrahedra.
+ *
+ * Rows are numbered from 0 or 1: the number of the first point decides for both files. Attributes become the properties
+ * attribute1, attribute2, ..., the marker the property boundary_marker; of quadratic tetrahedra the four corners are
+ * kept.
+ *
+ * Based on: Si. TetGen user's manual, section 5.2. WIAS 2015. */
+#include "base/memory.h"
+#include "io/formats.h"
+#include "io/scalar.h"
+#include "io/textrow.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char marker_name[] = "boundary_marker";
+
+enum { MAX_ATTRIBUTES = 4096 }; /* no file has so many; bounds what a false header can ask for */
+
+/* The numbers in the first line of a file; those that are not there are 0. */
+static brio_status read_header(brio_text *t, uint64_t *counts, size_t num_counts) {
+    brio_status status = BRIO_OK;
+    memset(counts, 0, num_counts * sizeof *counts);
+    brio_stream_element(t->stream, "count", num_counts);
+    BRIO_TRY(brio_text_next_line(t));
+    if (!t->at) return brio_text_expected(t, "the number of rows");
+    for (size_t i = 0; i < num_counts && brio_text_more(t); i++)
+        BRIO_TRY(brio_text_count(t, "a number of the first line", UINT64_MAX >> 1, &counts[i]));
+    BRIO_TRY(brio_text_row_end(t));
+done:
+    return status;
+}
+
+/* The number in front of each row, which counts from `base`. */
+static brio_status read_row_number(brio_text *t, unsigned base) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = t->stream;
+    uint64_t number;
+    BRIO_TRY(brio_text_count(t, "the row's number", UINT64_MAX >> 1, &number));
+    BRIO_REQUIRE(s->ctx, number == s->row + base, BRIO_ERR_FORMAT,
+                 "%s: line %zu: expected row %" PRIu64 ", found %" PRIu64, s->name, s->line, s->row + base, number);
+done:
+    return status;
+}
+
+/* The first row's number, looked at without using it up. */
+static brio_status find_base(brio_text *t, unsigned *base) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_text_next_line(t));
+    *base = t->at && t->at[0] == '1' && brio_is_blank(t->at[1]);
+done:
+    return status;
+}
+
+static brio_status plan_node(brio_builder *b, const uint64_t *counts) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(b->ctx, counts[1] == 3, BRIO_ERR_FORMAT, "%s: %" PRIu64 " dimensions, expected 3", b->name, counts[1]);
+    BRIO_REQUIRE(b->ctx, counts[2] <= MAX_ATTRIBUTES && counts[3] <= 1, BRIO_ERR_FORMAT,
+                 "%s: %" PRIu64 " attributes and %" PRIu64 " markers, expected up to %d and 1", b->name, counts[2],
+                 counts[3], MAX_ATTRIBUTES);
+    for (uint64_t i = 0; i < counts[2]; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "attribute%" PRIu64, i + 1);
+        BRIO_TRY(brio_builder_property(b, name, BRIO_FLOAT64));
+    }
+    if (counts[3]) BRIO_TRY(brio_builder_property(b, marker_name, BRIO_INT32));
+done:
+    return status;
+}
+
+static brio_status read_node_row(brio_text *t, brio_builder *b) {
+    brio_status status = BRIO_OK;
+    double point[3], value;
+    BRIO_TRY(read_row_number(t, b->index_base));
+    for (int k = 0; k < 3; k++) BRIO_TRY(brio_text_number(t, &point[k]));
+    BRIO_TRY(brio_builder_vertex(b, point));
+    size_t v = b->mesh->num_vertices - 1;
+    for (size_t i = 0; i < b->mesh->num_properties; i++) {
+        brio_property *p = &b->mesh->properties[i];
+        BRIO_TRY(brio_text_number(t, &value));
+        BRIO_REQUIRE(b->ctx, brio_scalar_store((char *)p->data + v * brio_scalar_size(p->type), p->type, value),
+                     BRIO_ERR_FORMAT, "%s: line %zu: boundary marker %.17g, expected a whole number", b->name,
+                     t->stream->line, value);
+    }
+    BRIO_TRY(brio_text_row_end(t));
+done:
+    return status;
+}
+
+brio_status brio_node_read(brio_stream *s, brio_builder *b) {
+    brio_status status = BRIO_OK;
+    brio_text t = {s, '#', NULL};
+    uint64_t counts[4];
+    BRIO_TRY(read_header(&t, counts, 4));
+    BRIO_TRY(plan_node(b, counts));
+    /* each number with a blank or the line's end behind it, the last one apart */
+    BRIO_TRY(brio_stream_expect(s, counts[0], 2 * (4 + counts[2] + counts[3]) - 1, "the number of points"));
+    brio_stream_element(s, "point", counts[0]);
+    BRIO_TRY(find_base(&t, &b->index_base));
+    for (; s->row < counts[0]; s->row++) BRIO_TRY(read_node_row(&t, b));
+done:
+    return status;
+}
+
+static brio_status read_ele_row(brio_text *t, brio_builder *b, uint64_t corners) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = t->stream;
+    double indices[4];
+    uint64_t index;
+    size_t points = b->mesh->num_vertices;
+    BRIO_TRY(read_row_number(t, b->index_base));
+    for (uint64_t i = 0; i < corners; i++) {
+        BRIO_TRY(brio_text_count(t, "a corner", UINT32_MAX, &index));
+        BRIO_REQUIRE(s->ctx, index >= b->index_base && index - b->index_base < points, BRIO_ERR_FORMAT,
+                     "%s: line %zu: corner %" PRIu64 ", expected one of the %zu points, numbered from %u", s->name,
+                     s->line, index, points, b->index_base);
+        if (i < 4) indices[i] = (double)(index - b->index_base);
+    }
+    BRIO_TRY(brio_builder_tetrahedron(b, indices));
+    t->at = NULL; /* the rest of the line is the region's attribute */
+done:
+    return status;
+}
+
+brio_status brio_ele_read(brio_stream *s, brio_builder *b) {
+    brio_status status = BRIO_OK;
+    brio_text t = {s, '#', NULL};
+    uint64_t counts[3];
+    BRIO_TRY(read_header(&t, counts, 3));
+    BRIO_REQUIRE(s->ctx, counts[1] == 4 || counts[1] == 10 || !counts[0], BRIO_ERR_FORMAT,
+                 "%s: %" PRIu64 " corners, expected 4 or 10", s->name, counts[1]);
+    BRIO_TRY(brio_stream_expect(s, counts[0], 2 * (1 + counts[1]) - 1, "the number of tetrahedra"));
+    brio_stream_element(s, "tetrahedron", counts[0]);
+    for (; s->row < counts[0]; s->row++) BRIO_TRY(read_ele_row(&t, b, counts[1]));
+done:
+    return status;
+}
+
+/* --- writing --- */
+
+static bool is_marker(const brio_property *p) {
+    return p->type == BRIO_INT32 && !strcmp(p->name, marker_name);
+}
+
+brio_status brio_node_write(brio_output *out, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
+    const brio_property *marker = brio_mesh_property(m, marker_name);
+    if (marker && !is_marker(marker)) marker = NULL;
+    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
+    BRIO_TRY(brio_output_format(out, "%zu 3 %zu %d\n", m->num_vertices, m->num_properties - (marker != NULL),
+                                marker != NULL));
+    for (size_t v = 0; v < m->num_vertices; v++) {
+        BRIO_TRY(brio_output_integer(out, 0, (int64_t)v));
+        BRIO_TRY(brio_output_string(out, " "));
+        BRIO_TRY(brio_output_point(out, m->vertices + 3 * v));
+        for (size_t i = 0; i < m->num_properties; i++)
+            if (&m->properties[i] != marker) BRIO_TRY(brio_output_scalar(out, ' ', &m->properties[i], v));
+        if (marker) BRIO_TRY(brio_output_scalar(out, ' ', marker, v));
+        BRIO_TRY(brio_output_string(out, "\n"));
+    }
+done:
+    return status;
+}
+
+brio_status brio_ele_write(brio_output *out, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
+    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
+    BRIO_TRY(brio_output_format(out, "%zu 4 0\n", m->num_tetrahedra));
+    for (size_t t = 0; t < m->num_tetrahedra; t++) {
+        BRIO_TRY(brio_output_integer(out, 0, (int64_t)t));
+        for (int i = 0; i < 4; i++) BRIO_TRY(brio_output_integer(out, ' ', m->tetrahedra[4 * t + (size_t)i]));
+        BRIO_TRY(brio_output_string(out, "\n"));
+    }
+done:
+    return status;
+}

@@ -1,0 +1,303 @@
+/* Numbers as text, correctly rounded both ways.
+ *
+ * A decimal number is w * 10^e with an integer w of up to 19 digits. When w and 10^|e| are doubles, one multiplication
+ * or division rounds once and is the answer. Otherwise, for |e| <= 27, 5^|e| has 64 bits, so that w * 5^e or w / 5^-e
+ * is formed in 128-bit integers with the remainder known, and rounds once too. What is left (longer mantissas, far
+ * exponents) goes to strtod in the C locale. Printing runs the same integers backwards: 17 digits identify a double, 9
+ * a float; one or two fewer are printed when they read back the same.
+ *
+ * Based on: Clinger. How to read floating point numbers accurately. PLDI 1990. */
+#define _GNU_SOURCE
+#include "io/number.h"
+#include <locale.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+typedef unsigned __int128 wide;
+
+enum { MAX_DIGITS = 19, MAX_POWER = 27, EXACT_POWER = 22, FAR_EXPONENT = 100000 };
+
+/* clang-format off */
+static const uint64_t powers_of_5[MAX_POWER + 1] = {
+    1, 5, 25, 125, 625, 3125, 15625, 78125, 390625, 1953125, 9765625, 48828125, 244140625, 1220703125, 6103515625,
+    30517578125, 152587890625, 762939453125, 3814697265625, 19073486328125, 95367431640625, 476837158203125,
+    2384185791015625, 11920928955078125, 59604644775390625, 298023223876953125, 1490116119384765625,
+    7450580596923828125};
+/* clang-format on */
+
+static const double powers_of_10[EXACT_POWER + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                                     1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                                                     1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+static bool is_digit(char c) {
+    return (unsigned)(c - '0') < 10;
+}
+
+/* --- reading --- */
+
+/* w * 10^power for 0 <= power <= MAX_POWER: the product is exact in 128 bits; its lower half only has to tell whether
+ * anything is there. */
+static double rounded_product(uint64_t w, int power) {
+    wide product = (wide)w * powers_of_5[power];
+    uint64_t high = (uint64_t)(product >> 64);
+    if (high == 0) return ldexp((double)(uint64_t)product, power);
+    int lift = __builtin_clzll(high);
+    product <<= lift;
+    uint64_t sticky = (uint64_t)product != 0;
+    return ldexp((double)((uint64_t)(product >> 64) | sticky), 64 - lift + power);
+}
+
+/* w / 10^power for 0 < power <= MAX_POWER: a quotient of 63 or 64 bits whose last bit also stands for the remainder. */
+static double rounded_quotient(uint64_t w, int power) {
+    uint64_t divisor = powers_of_5[power];
+    int lift_w = __builtin_clzll(w), lift_d = __builtin_clzll(divisor);
+    divisor <<= lift_d;
+    wide dividend = (wide)(w << lift_w) << 63;
+    uint64_t quotient = (uint64_t)(dividend / divisor);
+    uint64_t sticky = dividend != (wide)quotient * divisor;
+    return ldexp((double)(quotient | sticky), lift_d - lift_w - 63 - power);
+}
+
+/* w * 10^power, correctly rounded; false where the integers do not reach. */
+static bool compose(uint64_t w, int power, double *value) {
+    if (w == 0) {
+        *value = 0;
+    } else if (w >> 53 == 0 && power >= -EXACT_POWER && power <= EXACT_POWER) {
+        *value = power < 0 ? (double)w / powers_of_10[-power] : (double)w * powers_of_10[power];
+    } else if (power >= 0 && power <= MAX_POWER) {
+        *value = rounded_product(w, power);
+    } else if (power < 0 && power >= -MAX_POWER) {
+        *value = rounded_quotient(w, -power);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+typedef struct {
+    uint64_t mantissa; /* the first MAX_DIGITS significant digits */
+    int digits;        /* significant ones, all */
+    int power;         /* of 10, with which the mantissa is to be multiplied */
+} decimal;
+
+static const char *scan_digits(const char *p, decimal *d, bool fraction) {
+    for (; is_digit(*p); p++) {
+        if (d->digits || *p != '0') {
+            if (d->digits < MAX_DIGITS) d->mantissa = d->mantissa * 10 + (uint64_t)(*p - '0');
+            if (d->digits <= MAX_DIGITS) d->digits++;
+        }
+        if (fraction && d->power > -FAR_EXPONENT) d->power--;
+    }
+    return p;
+}
+
+static const char *scan_exponent(const char *p, decimal *d) {
+    const char *q = p + 1;
+    bool negative = *q == '-';
+    q += *q == '-' || *q == '+';
+    if (!is_digit(*q)) return p;
+    int exponent = 0;
+    for (; is_digit(*q); q++)
+        if (exponent < FAR_EXPONENT) exponent = exponent * 10 + (*q - '0');
+    d->power += negative ? -exponent : exponent;
+    return q;
+}
+
+/* Moves behind the number at p; NULL when there is none. */
+static const char *scan_decimal(const char *p, decimal *d) {
+    const char *start = p;
+    p = scan_digits(p, d, false);
+    size_t seen = (size_t)(p - start);
+    if (*p == '.') {
+        const char *point = p;
+        p = scan_digits(p + 1, d, true);
+        seen += (size_t)(p - point) - 1;
+    }
+    if (!seen) return NULL;
+    return *p == 'e' || *p == 'E' ? scan_exponent(p, d) : p;
+}
+
+static const char *scan_word(const char *p, double *value) {
+    if (!strncasecmp(p, "nan", 3)) {
+        *value = (double)NAN;
+        return p + 3;
+    }
+    if (strncasecmp(p, "inf", 3) != 0) return NULL;
+    *value = (double)INFINITY;
+    return p + (strncasecmp(p, "infinity", 8) ? 3 : 8);
+}
+
+/* The C locale is a constant of the C library: asking for it allocates nothing. */
+static double parse_far(const char *text) {
+    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    double value = c ? strtod_l(text, NULL, c) : strtod(text, NULL);
+    if (c) freelocale(c);
+    return value;
+}
+
+bool brio_parse_number(const char **text, double *value) {
+    const char *p = *text;
+    bool negative = *p == '-';
+    p += *p == '-' || *p == '+';
+    decimal d = {0, 0, 0};
+    const char *end = scan_decimal(p, &d);
+    if (!end) {
+        end = scan_word(p, value);
+        if (!end) return false;
+    } else if (d.digits > MAX_DIGITS || !compose(d.mantissa, d.power, value)) {
+        *value = parse_far(p);
+    }
+    if (negative) *value = -*value;
+    *text = end;
+    return true;
+}
+
+bool brio_parse_count(const char **text, uint64_t *value) {
+    const char *p = *text;
+    uint64_t sum = 0;
+    if (!is_digit(*p)) return false;
+    for (; is_digit(*p); p++)
+        if (__builtin_mul_overflow(sum, 10, &sum) || __builtin_add_overflow(sum, (uint64_t)(*p - '0'), &sum))
+            return false;
+    *value = sum;
+    *text = p;
+    return true;
+}
+
+/* --- printing --- */
+
+static uint64_t power_of_10(int n) {
+    return powers_of_5[n] << n;
+}
+
+/* x * 10^power, rounded half to even; x > 0 and the result below 2^62. */
+static uint64_t scaled(double x, int power) {
+    int exponent;
+    uint64_t mantissa = (uint64_t)ldexp(frexp(x, &exponent), 53);
+    int shift = exponent - 53 + power;
+    wide product = (wide)mantissa * powers_of_5[power];
+    if (shift >= 0) return (uint64_t)(product << shift);
+    wide whole = product >> -shift, rest = product - (whole << -shift), half = (wide)1 << (-shift - 1);
+    return (uint64_t)whole + (rest > half || (rest == half && (whole & 1)));
+}
+
+/* What the C library prints, taken apart because its decimal point is the locale's. */
+static uint64_t digits_far(double x, int count, int *exponent) {
+    char text[64];
+    uint64_t digits = 0;
+    snprintf(text, sizeof text, "%.*e", count - 1, x);
+    const char *p = text;
+    for (; *p && *p != 'e'; p++)
+        if (is_digit(*p)) digits = digits * 10 + (uint64_t)(*p - '0');
+    *exponent = *p ? atoi(p + 1) : 0;
+    return digits;
+}
+
+/* The first `count` digits of x > 0, rounded, the first of them worth 10^*exponent. */
+static uint64_t digits_of(double x, int count, int *exponent) {
+    int binary;
+    frexp(x, &binary);
+    int guess = (int)floor((binary - 1) * 0.30102999566398120); /* log10(2): right, or one too low */
+    for (int e = guess; e <= guess + 2; e++) {
+        int power = count - 1 - e;
+        if (power < 0 || power > MAX_POWER) break;
+        uint64_t digits = scaled(x, power);
+        if (digits < power_of_10(count)) {
+            *exponent = e;
+            return digits;
+        }
+    }
+    return digits_far(x, count, exponent);
+}
+
+/* n digits, the first worth 10^exponent, as text. */
+static size_t layout(char *text, const char *digits, int n, int exponent) {
+    char *p = text;
+    if (exponent < -5 || exponent > 16) {
+        *p++ = digits[0];
+        if (n > 1) {
+            *p++ = '.';
+            memcpy(p, digits + 1, (size_t)n - 1);
+            p += n - 1;
+        }
+        *p++ = 'e';
+        return (size_t)(p - text) + brio_print_integer(p, exponent);
+    }
+    if (exponent < 0) {
+        *p++ = '0';
+        *p++ = '.';
+        for (int i = -1; i > exponent; i--) *p++ = '0';
+    }
+    for (int i = 0; i < n || i <= exponent; i++) {
+        *p++ = i < n ? digits[i] : '0';
+        if (i == exponent && i + 1 < n) *p++ = '.';
+    }
+    return (size_t)(p - text);
+}
+
+static bool reads_back(uint64_t digits, int power, double x, bool single) {
+    double back;
+    if (!compose(digits, power, &back)) {
+        char text[64];
+        snprintf(text, sizeof text, "%llue%d", (unsigned long long)digits, power);
+        back = parse_far(text);
+    }
+    return single ? (float)back == (float)x : back == x;
+}
+
+static size_t print_positive(char *text, double x, bool single) {
+    int exponent, count = single ? 9 : 17;
+    uint64_t digits = digits_of(x, count, &exponent);
+    uint64_t fifteen = (digits + 50) / 100, sixteen = (digits + 5) / 10; /* names for a double */
+    if (reads_back(fifteen, exponent - (count - 3), x, single))
+        digits = fifteen * 100;
+    else if (reads_back(sixteen, exponent - (count - 2), x, single))
+        digits = sixteen * 10;
+    if (digits == power_of_10(count)) {
+        digits /= 10;
+        exponent++;
+    }
+    char figures[BRIO_NUMBER_LENGTH];
+    int n = count;
+    while (n > 1 && digits % 10 == 0) {
+        digits /= 10;
+        n--;
+    }
+    for (int i = n; i-- > 0; digits /= 10) figures[i] = (char)('0' + digits % 10);
+    return layout(text, figures, n, exponent);
+}
+
+static size_t print_number(char *text, double x, bool single) {
+    size_t sign = signbit(x) && !isnan(x);
+    if (sign) *text++ = '-';
+    if (isnan(x) || isinf(x)) {
+        memcpy(text, isnan(x) ? "nan" : "inf", 3);
+        return sign + 3;
+    }
+    if (x == 0) {
+        *text = '0';
+        return sign + 1;
+    }
+    return sign + print_positive(text, fabs(x), single);
+}
+
+size_t brio_print_double(char *text, double x) {
+    return print_number(text, x, false);
+}
+size_t brio_print_float(char *text, float x) {
+    return print_number(text, (double)x, true);
+}
+
+size_t brio_print_integer(char *text, int64_t x) {
+    char reversed[BRIO_NUMBER_LENGTH];
+    size_t n = 0, sign = x < 0;
+    uint64_t rest = sign ? 0 - (uint64_t)x : (uint64_t)x;
+    do reversed[n++] = (char)('0' + rest % 10);
+    while (rest /= 10);
+    if (sign) *text++ = '-';
+    for (size_t i = 0; i < n; i++) text[i] = reversed[n - 1 - i];
+    return sign + n;
+}

@@ -1,0 +1,50 @@
+/* The header of a PLY file: elements, each with properties that are scalars or lists. */
+#ifndef BRIO_IO_PLY_HEADER_H
+#define BRIO_IO_PLY_HEADER_H
+
+#include "io/stream.h"
+
+typedef enum { BRIO_PLY_ASCII, BRIO_PLY_LITTLE, BRIO_PLY_BIG } brio_ply_encoding;
+
+/* What becomes of a property's values. */
+typedef enum {
+    BRIO_PLY_SKIP,
+    BRIO_PLY_COORDINATE,
+    BRIO_PLY_PROPERTY,
+    BRIO_PLY_FACE,
+    BRIO_PLY_TETRAHEDRON
+} brio_ply_role;
+
+typedef struct brio_ply_property {
+    char name[64];
+    brio_scalar type, count_type; /* the second of lists */
+    bool list;
+    brio_ply_role role;
+    size_t target; /* axis of a coordinate, number of a property of the mesh */
+    size_t offset; /* in a binary row without lists */
+} brio_ply_property;
+
+typedef struct brio_ply_element {
+    char name[64];
+    uint64_t count;
+    brio_ply_property *properties;
+    size_t num_properties, property_capacity;
+    bool has_list;
+    size_t row_size; /* binary, each list empty: the least a row can take */
+} brio_ply_element;
+
+typedef struct brio_ply_header {
+    brio_ply_encoding encoding;
+    brio_ply_element *elements;
+    size_t num_elements, element_capacity;
+} brio_ply_header;
+
+/** PLY's name of a scalar type. */
+const char *brio_ply_type_name(brio_scalar type);
+
+/** Reads the header and holds its promises against the size of the file. The header is to be freed even when this
+ *  fails. */
+brio_status brio_ply_header_read(brio_stream *s, brio_ply_header *header);
+void brio_ply_header_free(brio_context *ctx, brio_ply_header *header);
+
+#endif

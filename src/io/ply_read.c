@@ -1,0 +1,249 @@
+/* Reads PLY files: text, little and big endian.
+ *
+ * Each element is read in one of three ways. Binary rows of fixed size are taken by the buffer: those of vertices are
+ * converted column by column, all others passed over. Every other row is walked scalar by scalar, whatever its lists
+ * and encoding.
+ *
+ * Based on: Turk. The PLY polygon file format. Stanford 1994. */
+#include "io/formats.h"
+#include "io/ply_header.h"
+#include "io/scalar.h"
+#include "io/textrow.h"
+#include <math.h>
+#include <string.h>
+
+enum { BLOCK_BYTES = 1 << 16 }; /* a block of rows and what it becomes stay in the cache */
+
+typedef struct {
+    brio_stream *stream;
+    brio_builder *builder;
+    brio_text text;
+    bool ascii, swap;
+} ply_reader;
+
+bool brio_ply_starts(const char *bytes, size_t size) {
+    return size >= 4 && !memcmp(bytes, "ply", 3) && (bytes[3] == '\n' || bytes[3] == '\r');
+}
+
+/* --- what becomes of the properties --- */
+
+static int axis_of(const char *name) {
+    return name[0] >= 'x' && name[0] <= 'z' && !name[1] ? name[0] - 'x' : -1;
+}
+
+static brio_status plan_vertex(brio_builder *b, brio_ply_element *e) {
+    brio_status status = BRIO_OK;
+    unsigned seen = 0;
+    for (size_t i = 0; i < e->num_properties; i++) {
+        brio_ply_property *p = &e->properties[i];
+        int axis = axis_of(p->name);
+        if (p->list) continue;
+        if (axis >= 0) {
+            BRIO_REQUIRE(b->ctx, !(seen & 1u << axis), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name,
+                         p->name);
+            seen |= 1u << axis;
+            p->role = BRIO_PLY_COORDINATE;
+            p->target = (size_t)axis;
+        } else {
+            p->role = BRIO_PLY_PROPERTY;
+            p->target = b->mesh->num_properties;
+            BRIO_TRY(brio_builder_property(b, p->name, p->type));
+        }
+    }
+    BRIO_REQUIRE(b->ctx, seen == 7 || e->count == 0, BRIO_ERR_FORMAT, "%s: the vertices have no property %c", b->name,
+                 "xyxzxyx"[seen]);
+done:
+    return status;
+}
+
+static void plan_list(brio_ply_element *e, brio_ply_role role) {
+    for (size_t i = 0; i < e->num_properties; i++) {
+        brio_ply_property *p = &e->properties[i];
+        if (!p->list || (strcmp(p->name, "vertex_indices") != 0 && strcmp(p->name, "vertex_index") != 0)) continue;
+        p->role = role;
+        return;
+    }
+}
+
+static bool has_role(const brio_ply_element *e, brio_ply_role role) {
+    for (size_t i = 0; i < e->num_properties; i++)
+        if (e->properties[i].role == role) return true;
+    return false;
+}
+
+static brio_status plan(ply_reader *r, brio_ply_header *header) {
+    brio_status status = BRIO_OK;
+    brio_builder *b = r->builder;
+    bool known = r->stream->size != BRIO_SIZE_UNKNOWN, vertices = false;
+    for (size_t i = 0; i < header->num_elements; i++) {
+        brio_ply_element *e = &header->elements[i];
+        if (!strcmp(e->name, "vertex")) {
+            vertices = true;
+            BRIO_REQUIRE(b->ctx, e->count <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE, "%s: %zu points, the most are %zu",
+                         b->name, (size_t)e->count, (size_t)BRIO_MAX_VERTICES);
+            BRIO_TRY(plan_vertex(b, e));
+            if (known) BRIO_TRY(brio_builder_expect_vertices(b, e->count));
+        } else if (!strcmp(e->name, "face")) {
+            plan_list(e, BRIO_PLY_FACE);
+            if (known && has_role(e, BRIO_PLY_FACE)) BRIO_TRY(brio_builder_expect_faces(b, e->count));
+        } else if (!strcmp(e->name, "tetrahedron")) {
+            plan_list(e, BRIO_PLY_TETRAHEDRON);
+            if (known && has_role(e, BRIO_PLY_TETRAHEDRON)) BRIO_TRY(brio_builder_expect_tetrahedra(b, e->count));
+        }
+    }
+    BRIO_REQUIRE(b->ctx, vertices, BRIO_ERR_FORMAT, "%s: the header has no element vertex", b->name);
+done:
+    return status;
+}
+
+/* --- rows of fixed size --- */
+
+/* Number of coordinates, from property i on, that are x, y, z in this order, of one type and without gaps. */
+static size_t consecutive(const brio_ply_element *e, size_t i) {
+    for (size_t j = 0; j < 3; j++) {
+        if (i + j >= e->num_properties) return 1;
+        const brio_ply_property *p = &e->properties[i + j];
+        if (p->role != BRIO_PLY_COORDINATE || p->target != j || p->type != e->properties[i].type) return 1;
+    }
+    return 3;
+}
+
+static void convert_axis(double *target, const char *source, size_t rows, size_t stride, brio_scalar type, bool swap) {
+    for (size_t i = 0; i < rows; i++) target[3 * i] = brio_scalar_load(source + i * stride, type, swap);
+}
+
+static void convert_vertices(const ply_reader *r, const brio_ply_element *e, const char *bytes, size_t first,
+                             size_t rows) {
+    const brio_mesh *mesh = r->builder->mesh;
+    size_t stride = e->row_size;
+    for (size_t i = 0; i < e->num_properties; i++) {
+        const brio_ply_property *p = &e->properties[i];
+        const char *source = bytes + p->offset;
+        if (p->role == BRIO_PLY_PROPERTY) {
+            size_t size = brio_scalar_size(p->type);
+            char *target = (char *)mesh->properties[p->target].data + first * size;
+            brio_scalar_gather(target, source, rows, stride, size, r->swap);
+        } else if (consecutive(e, i) == 3) {
+            brio_scalar_convert(mesh->vertices + 3 * first, source, rows, stride, 3, p->type, r->swap);
+            i += 2;
+        } else {
+            convert_axis(mesh->vertices + 3 * first + p->target, source, rows, stride, p->type, r->swap);
+        }
+    }
+}
+
+static brio_status read_blocks(ply_reader *r, const brio_ply_element *e) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    bool vertices = has_role(e, BRIO_PLY_COORDINATE);
+    size_t most = e->row_size < BLOCK_BYTES ? BLOCK_BYTES / e->row_size : 1;
+    while (s->row < e->count) {
+        BRIO_TRY(brio_stream_fill(s, e->row_size));
+        size_t rows = brio_stream_left(s) / e->row_size;
+        if (rows > most) rows = most;
+        if (rows > e->count - s->row) rows = (size_t)(e->count - s->row);
+        if (!rows) return brio_stream_truncated(s);
+        if (vertices) {
+            BRIO_TRY(brio_builder_add_vertices(r->builder, rows));
+            convert_vertices(r, e, s->buffer + s->begin, (size_t)s->row, rows);
+        }
+        s->begin += rows * e->row_size;
+        s->row += rows;
+    }
+done:
+    return status;
+}
+
+/* --- rows walked scalar by scalar --- */
+
+static brio_status next_scalar(ply_reader *r, brio_scalar type, double *value) {
+    if (r->ascii) return brio_text_number(&r->text, value);
+    const char *bytes = NULL;
+    brio_status status = brio_stream_take(r->stream, brio_scalar_size(type), &bytes);
+    if (status == BRIO_OK) *value = brio_scalar_load(bytes, type, r->swap);
+    return status;
+}
+
+static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, double value) {
+    const brio_mesh *mesh = r->builder->mesh;
+    size_t row = (size_t)r->stream->row;
+    if (p->role == BRIO_PLY_COORDINATE) {
+        /* not rounded to the declared type: texts often carry more digits than the float they declare */
+        mesh->vertices[3 * row + p->target] = value;
+        return BRIO_OK;
+    }
+    char *target = (char *)mesh->properties[p->target].data + row * brio_scalar_size(p->type);
+    if (brio_scalar_store(target, p->type, value)) return BRIO_OK;
+    return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT,
+                     "%s: vertex %zu (counted from 0): %s is %.17g, not a number of its type %s", r->stream->name, row,
+                     p->name, value, brio_ply_type_name(p->type));
+}
+
+static brio_status read_list(ply_reader *r, const brio_ply_property *p) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    double count, item, corners[4];
+    BRIO_TRY(next_scalar(r, p->count_type, &count));
+    BRIO_REQUIRE(s->ctx, count >= 0 && count < 0x1p53 && count == floor(count), BRIO_ERR_FORMAT,
+                 "%s: %s %zu (counted from 0): a list of %.17g numbers", s->name, s->element, (size_t)s->row, count);
+    BRIO_REQUIRE(s->ctx, p->role != BRIO_PLY_TETRAHEDRON || count == 4, BRIO_ERR_FORMAT,
+                 "%s: tetrahedron %zu (counted from 0): %g corners, expected 4", s->name, (size_t)s->row, count);
+    uint64_t items = (uint64_t)count;
+    for (uint64_t i = 0; i < items; i++) {
+        BRIO_TRY(next_scalar(r, p->type, &item));
+        if (p->role == BRIO_PLY_FACE) BRIO_TRY(brio_builder_corner(r->builder, item));
+        if (p->role == BRIO_PLY_TETRAHEDRON) corners[i] = item;
+    }
+    if (p->role == BRIO_PLY_FACE) BRIO_TRY(brio_builder_face(r->builder));
+    if (p->role == BRIO_PLY_TETRAHEDRON) BRIO_TRY(brio_builder_tetrahedron(r->builder, corners));
+done:
+    return status;
+}
+
+static brio_status read_row(ply_reader *r, const brio_ply_element *e) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < e->num_properties; i++) {
+        const brio_ply_property *p = &e->properties[i];
+        double value;
+        if (p->list) {
+            BRIO_TRY(read_list(r, p));
+            continue;
+        }
+        BRIO_TRY(next_scalar(r, p->type, &value));
+        if (p->role != BRIO_PLY_SKIP) BRIO_TRY(store_scalar(r, p, value));
+    }
+    if (r->ascii) BRIO_TRY(brio_text_row_end(&r->text));
+done:
+    return status;
+}
+
+static brio_status read_rows(ply_reader *r, const brio_ply_element *e) {
+    brio_status status = BRIO_OK;
+    bool vertices = has_role(e, BRIO_PLY_COORDINATE);
+    for (; r->stream->row < e->count; r->stream->row++) {
+        if (vertices) BRIO_TRY(brio_builder_add_vertices(r->builder, 1));
+        BRIO_TRY(read_row(r, e));
+    }
+done:
+    return status;
+}
+
+static brio_status read_element(ply_reader *r, const brio_ply_element *e) {
+    brio_stream_element(r->stream, e->name, e->count);
+    if (!e->num_properties) return BRIO_OK;
+    if (r->ascii || e->has_list) return read_rows(r, e);
+    return read_blocks(r, e);
+}
+
+brio_status brio_ply_read(brio_stream *s, brio_builder *b) {
+    brio_status status = BRIO_OK;
+    brio_ply_header header;
+    BRIO_TRY(brio_ply_header_read(s, &header));
+    ply_reader r = {s, b, {s, 0, NULL}, header.encoding == BRIO_PLY_ASCII, false};
+    r.swap = !r.ascii && (header.encoding == BRIO_PLY_LITTLE) != brio_host_is_little();
+    BRIO_TRY(plan(&r, &header));
+    for (size_t i = 0; i < header.num_elements; i++) BRIO_TRY(read_element(&r, &header.elements[i]));
+done:
+    brio_ply_header_free(b->ctx, &header);
+    return status;
+}

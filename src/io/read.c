@@ -1,0 +1,126 @@
+/* Reads a file: finds out its format, and hands it to the format's reader. */
+#include "base/memory.h"
+#include "io/formats.h"
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+enum { START = 4096 }; /* bytes in which a file's content may tell its format */
+
+static const struct {
+    const char *extension;
+    brio_format format;
+} extensions[] = {{"ply", BRIO_FORMAT_PLY}, {"xyz", BRIO_FORMAT_XYZ}, {"pts", BRIO_FORMAT_XYZ},
+                  {"txt", BRIO_FORMAT_XYZ}, {"csv", BRIO_FORMAT_XYZ}, {"obj", BRIO_FORMAT_OBJ},
+                  {"off", BRIO_FORMAT_OFF}, {"vtu", BRIO_FORMAT_VTU}, {"node", BRIO_FORMAT_NODE},
+                  {"ele", BRIO_FORMAT_NODE}};
+
+/* The part of a name behind its last dot; all of it when there is none. */
+static const char *extension_of(const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    return dot ? dot + 1 : name;
+}
+
+brio_format brio_format_of(const char *path) {
+    const char *extension = extension_of(path);
+    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
+        if (!strcasecmp(extension, extensions[i].extension)) return extensions[i].format;
+    return BRIO_FORMAT_AUTO;
+}
+
+bool brio_is_ele(const char *path) {
+    return !strcasecmp(extension_of(path), "ele");
+}
+
+brio_status brio_sibling(brio_context *ctx, const char *path, const char *extension, char **out) {
+    brio_status status = BRIO_OK;
+    const char *old = extension_of(path);
+    size_t stem = brio_format_of(path) == BRIO_FORMAT_NODE && old > path && old[-1] == '.' ? (size_t)(old - path) - 1
+                                                                                           : strlen(path);
+    BRIO_TRY(BRIO_ALLOC(ctx, *out, stem + strlen(extension) + 1));
+    memcpy(*out, path, stem);
+    strcpy(*out + stem, extension);
+done:
+    return status;
+}
+
+/* Content before extension; numbers alone are what standard input is taken for. */
+static brio_status find_format(brio_stream *s, const char *path, brio_format *format) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_stream_fill(s, START));
+    const char *bytes = s->buffer + s->begin;
+    size_t size = brio_stream_left(s);
+    if (brio_ply_starts(bytes, size))
+        *format = BRIO_FORMAT_PLY;
+    else if (brio_off_starts(bytes, size))
+        *format = BRIO_FORMAT_OFF;
+    else if (brio_vtu_starts(bytes, size))
+        *format = BRIO_FORMAT_VTU;
+    else
+        *format = strcmp(path, "-") ? brio_format_of(path) : BRIO_FORMAT_XYZ;
+    BRIO_REQUIRE(s->ctx, *format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
+                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .node or .ele", s->name);
+done:
+    return status;
+}
+
+static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format format) {
+    switch (format) {
+    case BRIO_FORMAT_PLY:
+        return brio_ply_read(s, b);
+    case BRIO_FORMAT_XYZ:
+        return brio_xyz_read(s, b);
+    case BRIO_FORMAT_OBJ:
+        return brio_obj_read(s, b);
+    case BRIO_FORMAT_OFF:
+        return brio_off_read(s, b);
+    case BRIO_FORMAT_VTU:
+        return brio_vtu_read(s, b);
+    case BRIO_FORMAT_NODE:
+        return brio_node_read(s, b);
+    case BRIO_FORMAT_AUTO:
+    case BRIO_FORMAT_END:
+        break;
+    }
+    return brio_fail(s->ctx, BRIO_ERR_ARGUMENT, "%s: no such format: %d", s->name, (int)format);
+}
+
+/* Reads the tetrahedra in the .ele beside a .node, if it is there or was asked for. */
+static brio_status read_tetrahedra(brio_builder *b, const char *path, bool asked_for) {
+    brio_status status = BRIO_OK;
+    brio_stream s = {.ctx = b->ctx, .file = -1};
+    char *ele = NULL;
+    BRIO_TRY(brio_sibling(b->ctx, path, ".ele", &ele));
+    if (asked_for || access(ele, F_OK) == 0) {
+        BRIO_TRY(brio_stream_open(&s, b->ctx, ele));
+        BRIO_TRY(brio_ele_read(&s, b));
+    }
+done:
+    brio_stream_close(&s);
+    brio_release(b->ctx, ele);
+    return status;
+}
+
+brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    brio_stream s = {.ctx = ctx, .file = -1};
+    brio_builder b = {.ctx = ctx};
+    char *node = NULL;
+    *out = NULL;
+    bool tetrahedra = (format == BRIO_FORMAT_AUTO || format == BRIO_FORMAT_NODE) && brio_is_ele(path);
+    if (tetrahedra) BRIO_TRY(brio_sibling(ctx, path, ".node", &node));
+    BRIO_TRY(brio_stream_open(&s, ctx, node ? node : path));
+    if (format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : path, &format));
+    BRIO_TRY(brio_builder_start(&b, ctx, s.name));
+    BRIO_TRY(read_stream(&s, &b, format));
+    if (format == BRIO_FORMAT_NODE && strcmp(path, "-") != 0) BRIO_TRY(read_tetrahedra(&b, path, tetrahedra));
+    BRIO_TRY(brio_builder_finish(&b));
+    BRIO_TRY(brio_progress(ctx, "read", 1));
+    *out = b.mesh;
+    b.mesh = NULL;
+done:
+    brio_mesh_free(b.mesh);
+    brio_stream_close(&s);
+    brio_release(ctx, node);
+    return status;
+}

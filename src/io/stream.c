@@ -1,0 +1,157 @@
+/* Buffered input of a file or a pipe.
+ *
+ * The buffer holds a megabyte, or a smaller file as a whole, and moves forward over the file; what is not yet used
+ * is shifted to its front when more is needed. It grows only for a line or a request longer than itself, up to
+ * MAX_LINE. */
+#include "io/stream.h"
+#include "base/memory.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define BYTE_ORDER_MARK "\xef\xbb\xbf" /* of UTF-8; some editors begin texts with it */
+
+enum { BLOCK = 1 << 20, MAX_LINE = 1 << 28 };
+
+brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path) {
+    brio_status status = BRIO_OK;
+    bool standard = !strcmp(path, "-");
+    *s = (brio_stream){.ctx = ctx, .name = standard ? "standard input" : path, .file = -1, .size = BRIO_SIZE_UNKNOWN};
+    s->file = standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+    s->owned = !standard && s->file >= 0;
+    BRIO_REQUIRE(ctx, s->file >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+    struct stat facts;
+    off_t at = fstat(s->file, &facts) == 0 && S_ISREG(facts.st_mode) ? lseek(s->file, 0, SEEK_CUR) : -1;
+    /* a size of 0 is also what special file systems say of files that have content */
+    if (at >= 0 && facts.st_size > at) s->size = (uint64_t)(facts.st_size - at);
+    size_t capacity = s->size < BLOCK ? (size_t)s->size + 1 : BLOCK;
+    BRIO_TRY(BRIO_ALLOC(ctx, s->buffer, capacity + 1));
+    s->capacity = capacity;
+done:
+    return status;
+}
+
+void brio_stream_close(brio_stream *s) {
+    if (s->owned) close(s->file);
+    s->owned = false;
+    brio_release(s->ctx, s->buffer);
+    s->buffer = NULL;
+}
+
+static brio_status report(brio_stream *s) {
+    uint64_t read_so_far = s->base + s->end;
+    if (read_so_far - s->reported < BLOCK) return BRIO_OK;
+    s->reported = read_so_far;
+    double share = s->size == BRIO_SIZE_UNKNOWN ? 0 : (double)read_so_far / (double)s->size;
+    return brio_progress(s->ctx, "read", share < 1 ? share : 1);
+}
+
+static brio_status make_room(brio_stream *s, size_t need) {
+    if (s->begin) {
+        memmove(s->buffer, s->buffer + s->begin, brio_stream_left(s));
+        s->base += s->begin;
+        s->end -= s->begin;
+        s->begin = 0;
+    }
+    if (need <= s->capacity) return BRIO_OK;
+    size_t capacity = need > 2 * s->capacity ? need : 2 * s->capacity;
+    brio_status status = BRIO_RESIZE(s->ctx, s->buffer, capacity + 1);
+    if (status == BRIO_OK) s->capacity = capacity;
+    return status;
+}
+
+brio_status brio_stream_fill(brio_stream *s, size_t need) {
+    brio_status status = BRIO_OK;
+    if (brio_stream_left(s) >= need || s->ended) return BRIO_OK;
+    BRIO_TRY(make_room(s, need));
+    while (brio_stream_left(s) < need && !s->ended) {
+        ssize_t got = read(s->file, s->buffer + s->end, s->capacity - s->end);
+        if (got < 0 && errno == EINTR) { /* a signal: the caller may want to stop */
+            BRIO_TRY(brio_progress(s->ctx, "read", 0));
+            continue;
+        }
+        BRIO_REQUIRE(s->ctx, got >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+        s->ended = got == 0;
+        s->end += (size_t)got;
+        BRIO_TRY(report(s));
+    }
+done:
+    return status;
+}
+
+brio_status brio_stream_skip(brio_stream *s, uint64_t count) {
+    brio_status status = BRIO_OK;
+    while (count) {
+        BRIO_TRY(brio_stream_fill(s, 1));
+        size_t left = brio_stream_left(s);
+        if (!left) return brio_stream_truncated(s);
+        if (left > count) left = (size_t)count;
+        s->begin += left;
+        count -= left;
+    }
+done:
+    return status;
+}
+
+/* Length of the next line, its end not counted; brio_stream_left when the file ends without one. */
+static brio_status line_length(brio_stream *s, size_t *length) {
+    brio_status status = BRIO_OK;
+    size_t searched = 0;
+    for (;;) {
+        const char *start = s->buffer + s->begin;
+        size_t left = brio_stream_left(s);
+        const char *end = left > searched ? memchr(start + searched, '\n', left - searched) : NULL;
+        *length = end ? (size_t)(end - start) : left;
+        if (end || s->ended) return BRIO_OK;
+        searched = left;
+        BRIO_REQUIRE(s->ctx, searched < MAX_LINE, BRIO_ERR_FORMAT, "%s: line %zu: longer than %d bytes: not a text",
+                     s->name, s->line + 1, MAX_LINE);
+        BRIO_TRY(brio_stream_fill(s, searched + 1));
+    }
+done:
+    return status;
+}
+
+brio_status brio_stream_line(brio_stream *s, char **line) {
+    brio_status status = BRIO_OK;
+    size_t length;
+    *line = NULL;
+    BRIO_TRY(line_length(s, &length));
+    if (!length && !brio_stream_left(s)) return BRIO_OK;
+    char *text = s->buffer + s->begin;
+    s->begin += length + (length < brio_stream_left(s));
+    s->line++;
+    BRIO_REQUIRE(s->ctx, !length || !memchr(text, 0, length), BRIO_ERR_FORMAT,
+                 "%s: line %zu: holds a byte 0: not a text", s->name, s->line);
+    if (length && text[length - 1] == '\r') length--;
+    text[length] = 0;
+    *line = s->line == 1 && !strncmp(text, BYTE_ORDER_MARK, 3) ? text + 3 : text;
+done:
+    return status;
+}
+
+void brio_stream_element(brio_stream *s, const char *element, uint64_t rows) {
+    s->element = element;
+    s->row = 0;
+    s->rows = rows;
+}
+
+brio_status brio_stream_truncated(brio_stream *s) {
+    return brio_fail(s->ctx, BRIO_ERR_FORMAT,
+                     "%s: ends at byte %" PRIu64 " in %s %" PRIu64 " (counted from 0) of %" PRIu64, s->name,
+                     s->base + s->end, s->element ? s->element : "row", s->row, s->rows);
+}
+
+brio_status brio_stream_expect(brio_stream *s, uint64_t rows, uint64_t row, const char *what) {
+    uint64_t promised;
+    if (__builtin_mul_overflow(rows, row, &promised)) promised = UINT64_MAX;
+    if (s->size == BRIO_SIZE_UNKNOWN) return BRIO_OK;
+    uint64_t offset = brio_stream_offset(s), left = s->size > offset ? s->size - offset : 0;
+    if (promised <= left) return BRIO_OK;
+    return brio_fail(s->ctx, BRIO_ERR_FORMAT,
+                     "%s: %s promises at least %" PRIu64 " bytes after byte %" PRIu64 ", the file has %" PRIu64,
+                     s->name, what, promised, offset, left);
+}

@@ -1,0 +1,162 @@
+/* Writes a mesh: refuses what the format cannot hold, and hands the rest to the format's writer. */
+#include "base/memory.h"
+#include "io/formats.h"
+#include "io/textrow.h"
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+brio_write_options brio_write_options_default(void) {
+    return (brio_write_options){.format = BRIO_FORMAT_AUTO};
+}
+
+/* --- what a format can hold --- */
+
+/* Names as words: PLY and the header of XYZ have no way to quote a blank or a comma. */
+static void make_word(char name[64], const char *source) {
+    size_t n = 0;
+    for (; n < 63 && source[n]; n++) {
+        bool plain = (unsigned char)source[n] > ' ' && source[n] != 127 && !strchr(",;\"'", source[n]);
+        name[n] = plain ? source[n] : '_';
+    }
+    name[n] = 0;
+}
+
+static bool is_axis(const char *name) {
+    return strlen(name) == 1 && strchr("xyzXYZ", name[0]);
+}
+
+static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    size_t count = job->mesh->num_properties;
+    BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
+    for (size_t i = 0; i < count; i++) {
+        const char *name = job->mesh->properties[i].name;
+        make_word(job->names[i], name);
+        BRIO_REQUIRE(ctx, name[0] && !is_axis(name), BRIO_ERR_ARGUMENT,
+                     "%s: a property cannot be named \"%s\" beside the coordinates", path, name);
+        for (size_t j = 0; j < i; j++)
+            BRIO_REQUIRE(ctx, strcmp(job->names[i], job->names[j]) != 0, BRIO_ERR_ARGUMENT,
+                         "%s: two properties named %s", path, job->names[i]);
+    }
+done:
+    return status;
+}
+
+static brio_status check_single(brio_context *ctx, const char *path, const brio_mesh *m) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < 3 * m->num_vertices; i++)
+        BRIO_REQUIRE(ctx, !(fabs(m->vertices[i]) > 0x1.ffffffp127), BRIO_ERR_ARGUMENT,
+                     "%s: point %zu (counted from 0): %g does not fit single precision", path, i / 3, m->vertices[i]);
+done:
+    return status;
+}
+
+static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
+                               const brio_write_options *options) {
+    static const char *const without_tetrahedra[BRIO_FORMAT_END] = {
+        [BRIO_FORMAT_XYZ] = "a text of points", [BRIO_FORMAT_OBJ] = "an OBJ file", [BRIO_FORMAT_OFF] = "an OFF file"};
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, format > BRIO_FORMAT_AUTO && format < BRIO_FORMAT_END, BRIO_ERR_ARGUMENT,
+                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu or .node", path);
+    BRIO_REQUIRE(ctx, !m->num_tetrahedra || !without_tetrahedra[format], BRIO_ERR_ARGUMENT,
+                 "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, without_tetrahedra[format]);
+    BRIO_REQUIRE(ctx, !m->num_tetrahedra || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0, BRIO_ERR_ARGUMENT,
+                 "standard output cannot hold the two files .node and .ele");
+    if (options->float32) BRIO_TRY(check_single(ctx, path, m));
+done:
+    return status;
+}
+
+/* --- writing --- */
+
+static uint64_t expected_bytes(const brio_mesh *m, bool text) {
+    uint64_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0, scalars = 3 + m->num_properties;
+    uint64_t number = text ? 18 : 8, index = text ? 7 : 4;
+    return m->num_vertices * scalars * number + (corners + m->num_faces + 5 * m->num_tetrahedra) * index;
+}
+
+static brio_status write_output(brio_output *out, const brio_write_job *job, brio_format format) {
+    switch (format) {
+    case BRIO_FORMAT_PLY:
+        return brio_ply_write(out, job);
+    case BRIO_FORMAT_XYZ:
+        return brio_xyz_write(out, job);
+    case BRIO_FORMAT_OBJ:
+        return brio_obj_write(out, job);
+    case BRIO_FORMAT_OFF:
+        return brio_off_write(out, job);
+    case BRIO_FORMAT_VTU:
+        return brio_vtu_write(out, job);
+    case BRIO_FORMAT_NODE:
+        return brio_node_write(out, job);
+    case BRIO_FORMAT_AUTO:
+    case BRIO_FORMAT_END:
+        break;
+    }
+    return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: no such format: %d", out->name, (int)format);
+}
+
+static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
+    brio_status status = BRIO_OK;
+    brio_output out;
+    bool text = job->options->ascii || (format != BRIO_FORMAT_PLY && format != BRIO_FORMAT_VTU);
+    BRIO_TRY(brio_output_open(&out, ctx, path, expected_bytes(job->mesh, text)));
+    BRIO_TRY(write_output(&out, job, format));
+    BRIO_TRY(brio_output_finish(&out));
+    BRIO_TRY(brio_output_publish(&out));
+done:
+    brio_output_close(&out);
+    return status;
+}
+
+/* Writes .node and .ele, both complete before either gets its name. */
+static brio_status write_pair(brio_context *ctx, const char *node_path, const char *ele_path,
+                              const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    brio_output node = {.ctx = ctx, .file = -1}, ele = {.ctx = ctx, .file = -1};
+    uint64_t expected = expected_bytes(job->mesh, true);
+    BRIO_TRY(brio_output_open(&node, ctx, node_path, expected));
+    BRIO_TRY(brio_node_write(&node, job));
+    BRIO_TRY(brio_output_finish(&node));
+    BRIO_TRY(brio_output_open(&ele, ctx, ele_path, expected));
+    ele.written = node.written;
+    BRIO_TRY(brio_ele_write(&ele, job));
+    BRIO_TRY(brio_output_finish(&ele));
+    BRIO_TRY(brio_output_publish(&node));
+    BRIO_TRY(brio_output_publish(&ele));
+done:
+    brio_output_close(&node);
+    brio_output_close(&ele);
+    return status;
+}
+
+/* An .ele that is there already is replaced even by an empty one: it belongs to the points that are replaced. */
+static brio_status write_node(brio_context *ctx, const char *path, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    char *node = NULL, *ele = NULL;
+    if (!strcmp(path, "-")) return write_one(ctx, path, job, BRIO_FORMAT_NODE);
+    if (brio_is_ele(path)) BRIO_TRY(brio_sibling(ctx, path, ".node", &node));
+    BRIO_TRY(brio_sibling(ctx, path, ".ele", &ele));
+    const char *points = node ? node : path;
+    bool pair = job->mesh->num_tetrahedra || access(ele, F_OK) == 0;
+    BRIO_TRY(pair ? write_pair(ctx, points, ele, job) : write_one(ctx, points, job, BRIO_FORMAT_NODE));
+done:
+    brio_release(ctx, node);
+    brio_release(ctx, ele);
+    return status;
+}
+
+brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh, const brio_write_options *options) {
+    brio_status status = BRIO_OK;
+    const brio_write_options defaults = brio_write_options_default();
+    brio_write_job job = {.mesh = mesh, .options = options ? options : &defaults};
+    brio_format format = job.options->format;
+    if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
+    BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
+    if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ) BRIO_TRY(make_names(ctx, path, &job));
+    BRIO_TRY(format == BRIO_FORMAT_NODE ? write_node(ctx, path, &job) : write_one(ctx, path, &job, format));
+done:
+    brio_release(ctx, job.names);
+    return status;
+}
