@@ -76,6 +76,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     k->ctx = ctx;
     k->num_points = n;
     k->weighted = weights != NULL;
+    k->conflicts = brio_conflicts_choose(k->weighted);
     k->max_tetrahedra = options->max_tetrahedra;
     k->stats.points = n;
     k->t.infinite = (uint32_t)n + 2;

@@ -2,23 +2,31 @@
 #ifndef BRIO_TRIANGULATION_KERNEL_H
 #define BRIO_TRIANGULATION_KERNEL_H
 
+#include "triangulation/conflict.h"
 #include "triangulation/locate.h"
 #include "triangulation/tetrahedra.h"
 
-/** A facet of the cavity's border: the mate outside, and the cavity's tetrahedron with the vertex that sees the facet
- *  replaced by the new one. */
+/** A facet of the cavity's border: its mate outside, and its vertices such that (new vertex, vertex[0..2]) is positive; an
+ *  infinite vertex is the last. */
 typedef struct {
     uint32_t outside;
-    uint32_t slot; /* of the new vertex */
-    uint32_t vertex[4];
+    uint32_t vertex[3];
 } brio_border;
+
+/** The tetrahedron made on a border facet, and the numbers of its border vertices. */
+typedef struct {
+    uint32_t tet;
+    uint8_t local[3];
+} brio_created;
 
 /** Workspace of one insertion, kept from one to the next. */
 typedef struct {
-    uint32_t *tets, *outside; /* in conflict; tested and not in conflict */
+    uint32_t *tets, *outside; /* in conflict; not, or not tested yet */
     brio_border *border;
     size_t num_tets, num_outside, num_border;
     size_t tets_capacity, outside_capacity, border_capacity;
+    uint32_t *cavity_vertex; /* the vertices of all tets, with repetitions; weighted only */
+    size_t cavity_vertex_capacity;
     uint8_t *local;      /* number of a vertex on the border, NO_LOCAL elsewhere */
     uint32_t *numbered;  /* the vertices that have a number */
     size_t num_numbered, numbered_capacity;
@@ -27,7 +35,7 @@ typedef struct {
     uint64_t *edge_key;  /* hash table of directed edges, for large borders */
     uint32_t *edge_facet;
     size_t hash_capacity, hash_facet_capacity;
-    uint32_t *created;   /* the new tetrahedron of each border facet */
+    brio_created *created; /* one for each border facet */
     size_t created_capacity;
 } brio_cavity;
 
@@ -47,12 +55,13 @@ typedef struct {
     bool weighted;
     int dimension;
     brio_filter filter;
+    brio_conflicts_fn conflicts;
     brio_walk walk;
     brio_cavity cavity;
     brio_stats stats;
 } brio_kernel;
 
-typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_OUTSIDE = 2, TET_UNUSED = 3 } brio_tet_state;
+typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_QUEUED = 2, TET_UNUSED = 3 } brio_tet_state;
 
 /** Finds four points in general position, or the dimension that they have instead; adds apexes off the points' affine hull
  *  so that every input of at least two distinct positions becomes three-dimensional; makes the first tetrahedron. */

@@ -80,30 +80,35 @@ static double largest_difference(const brio_kernel *k) {
     return fmin(most, 1e300);
 }
 
-/* The tetrahedron of four records and the four infinite ones around it. */
+/* Brings the latest of the first three vertices to the front, keeping the orientation. */
+static void latest_first(uint32_t *v) {
+    while (v[0] < v[1] || v[0] < v[2]) {
+        uint32_t first = v[0];
+        v[0] = v[1], v[1] = v[2], v[2] = first;
+    }
+}
+
+/* The tetrahedron of four records and the four infinite ones around it; the latest vertex in slot 0, as after any insertion. */
 static void first_tetrahedron(brio_kernel *k, uint32_t corner[4]) {
     const brio_record *r = k->record;
     brio_tetrahedra *t = &k->t;
-    if (brio_orient3d_exact(r[corner[0]], r[corner[1]], r[corner[2]], r[corner[3]]) < 0) {
-        uint32_t swap = corner[0];
-        corner[0] = corner[1], corner[1] = swap;
-    }
+    uint32_t *own = t->vertex;
+    own[0] = corner[3], own[1] = corner[0], own[2] = corner[1], own[3] = corner[2];
+    if (brio_orient3d_exact(r[own[0]], r[own[1]], r[own[2]], r[own[3]]) < 0) own[2] = corner[2], own[3] = corner[1];
     t->count = 5;
-    memcpy(t->vertex, corner, 4 * sizeof *corner);
-    for (uint32_t i = 0; i < 4; i++) {
-        uint32_t *v = t->vertex + 4 * (i + 1);
-        /* the facet seen from outside: its order reversed */
-        v[0] = corner[BRIO_FACET[i][0]], v[1] = corner[BRIO_FACET[i][2]], v[2] = corner[BRIO_FACET[i][1]];
+    for (uint32_t i = 0; i < 4; i++) { /* facet i seen from outside: its order reversed */
+        uint32_t *v = own + 4 * (i + 1);
+        v[0] = own[BRIO_FACET[i][0]], v[1] = own[BRIO_FACET[i][2]], v[2] = own[BRIO_FACET[i][1]];
         v[3] = t->infinite;
+        latest_first(v);
         t->mate[i] = brio_facet_of(i + 1, 3);
         t->mate[4 * (i + 1) + 3] = i;
     }
     for (uint32_t i = 0; i < 4; i++)
-        for (uint32_t s = 0; s < 3; s++) { /* across the edge opposite to corner s lies the facet opposite to it */
-            uint32_t missing = t->vertex[4 * (i + 1) + s];
-            uint32_t j = (uint32_t)brio_slot_of_vertex(corner, missing);
-            uint32_t other = (uint32_t)brio_slot_of_vertex(t->vertex + 4 * (j + 1), corner[i]);
-            t->mate[4 * (i + 1) + s] = brio_facet_of(j + 1, (int)other);
+        for (uint32_t s = 0; s < 3; s++) { /* across the edge opposite to vertex s lies the facet opposite to it */
+            uint32_t j = (uint32_t)brio_slot_of_vertex(own, t->vertex[4 * (i + 1) + s]);
+            int other = brio_slot_of_vertex(t->vertex + 4 * (j + 1), own[i]);
+            t->mate[4 * (i + 1) + s] = brio_facet_of(j + 1, other);
         }
     memset(k->state, TET_PLAIN, t->count);
     k->stats.created = t->count;

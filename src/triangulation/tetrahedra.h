@@ -64,4 +64,7 @@ static inline bool brio_in_conflict(const brio_tetrahedra *t, brio_filter *f, ui
     return brio_conflict(f, t->record[v[0]], t->record[v[1]], t->record[v[2]], t->record[v[3]], p, weighted);
 }
 
+/* The same by the exact stage at once, for a test that the inexact ones have given up. */
+bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted);
+
 #endif
