@@ -1,4 +1,4 @@
-/* Stage 4 of the predicates: the determinants in exact dyadic numbers, for every finite double. */
+/* Stages 4 and 5 of the predicates: integers where the points are on a grid, else exact dyadic numbers, for every finite double. */
 #include "predicates/dyadic.h"
 #include "predicates/predicates.h"
 
@@ -34,7 +34,7 @@ static void add_square(brio_dyadic *r, const brio_dyadic *x, int s) {
     brio_dyadic_add(r, r, &square, s);
 }
 
-int brio_orient3d_exact(const double *a, const double *b, const double *c, const double *d) {
+int brio_orient3d_dyadic(const double *a, const double *b, const double *c, const double *d) {
     brio_dyadic rows[3][3], det;
     difference3(rows[0], b, a);
     difference3(rows[1], c, a);
@@ -54,8 +54,8 @@ static void lift_of(brio_dyadic *lift, const brio_dyadic row[3], const double *p
     brio_dyadic_add(lift, lift, &w, -1);
 }
 
-int brio_insphere_exact(const double *a, const double *b, const double *c, const double *d, const double *e,
-                        bool weighted) {
+int brio_insphere_dyadic(const double *a, const double *b, const double *c, const double *d, const double *e,
+                         bool weighted) {
     const double *p[4] = {a, b, c, d};
     brio_dyadic row[4][3], det = {0}, lift, minor, term;
     for (int i = 0; i < 4; i++) difference3(row[i], p[i], e);
@@ -100,4 +100,15 @@ bool brio_collinear(const double *a, const double *b, const double *c) {
         if (m.sign) return false;
     }
     return true;
+}
+
+int brio_orient3d_exact(const double *a, const double *b, const double *c, const double *d) {
+    int sign = brio_orient3d_integer(a, b, c, d);
+    return sign != 2 ? sign : brio_orient3d_dyadic(a, b, c, d);
+}
+
+int brio_insphere_exact(const double *a, const double *b, const double *c, const double *d, const double *e,
+                        bool weighted) {
+    int sign = brio_insphere_integer(a, b, c, d, e, weighted);
+    return sign != 2 ? sign : brio_insphere_dyadic(a, b, c, d, e, weighted);
 }

@@ -4,7 +4,8 @@
  *   1. doubles, against a bound that holds for the whole point set (inline, here);
  *   2. doubles, against a bound from this call's own terms (the permanent);
  *   3. double-double, against its permanent;
- *   4. dyadic numbers, exact for every finite double.
+ *   4. integers of fixed width, exact where the points are on a common grid;
+ *   5. dyadic numbers, exact for every finite double.
  * Stages 1 to 3 assume that nothing overflows and that underflow costs less than `floor`; brio_filter_set switches them
  * off for point sets where that could fail.
  *
@@ -34,17 +35,27 @@ typedef struct {
  *  weight_extent; weighted = false ignores the weights. */
 void brio_filter_set(brio_filter *f, const double extent[3], double weight_extent, bool weighted);
 
-/** Stages 2 to 4. */
+/** Stages 2 to 5. */
 int brio_orient3d_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d);
 int brio_insphere_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d,
                             const double *e);
 
-/** Stage 4 alone. */
+/** Stages 4 and 5: the sign. */
 int brio_orient3d_exact(const double *a, const double *b, const double *c, const double *d);
 int brio_insphere_exact(const double *a, const double *b, const double *c, const double *d, const double *e,
                         bool weighted);
 
-/** Stages 3: the sign, or 2 when it cannot tell. */
+/** Stage 4: the sign, or 2 when the points are on no grid that is coarse enough. */
+int brio_orient3d_integer(const double *a, const double *b, const double *c, const double *d);
+int brio_insphere_integer(const double *a, const double *b, const double *c, const double *d, const double *e,
+                          bool weighted);
+
+/** Stage 5. */
+int brio_orient3d_dyadic(const double *a, const double *b, const double *c, const double *d);
+int brio_insphere_dyadic(const double *a, const double *b, const double *c, const double *d, const double *e,
+                         bool weighted);
+
+/** Stage 3: the sign, or 2 when it cannot tell. */
 int brio_orient3d_double_double(const double *a, const double *b, const double *c, const double *d, double permanent,
                                 double floor);
 int brio_insphere_double_double(const double *a, const double *b, const double *c, const double *d, const double *e,

@@ -140,6 +140,33 @@ static void stages_agree_near_a_sphere(void) {
     EXPECT(told > 19000 && close > 10000, "told %d close %d", told, close);
 }
 
+/* Integer stage against dyadic numbers: grids of every width, near-zero determinants, weights on and off the grid. */
+static void integers_agree_with_dyadic_numbers(void) {
+    int answered = 0, zeros = 0;
+    for (uint64_t trial = 0; trial < 60000; trial++) {
+        brio_rng rng = brio_rng_new(trial + 31);
+        int bits = 2 + (int)(trial % 42), grid = (int)brio_rng_below(&rng, 80) - 40;
+        bool weighted = trial / 3 % 2;
+        double p[5][4];
+        for (int i = 0; i < 5; i++) {
+            for (int k = 0; k < 3; k++) p[i][k] = ldexp((double)(brio_rng_next(&rng) >> (64 - bits)), grid);
+            p[i][3] = ldexp((double)(brio_rng_next(&rng) >> (64 - bits)), 2 * grid + (int)brio_rng_below(&rng, 3) - 1);
+        }
+        if (trial % 3 == 0) /* cospherical: the corners of a box and its middle point reflected */
+            for (int i = 1; i < 5; i++)
+                for (int k = 0; k < 3; k++) p[i][k] = (i == k + 1 || i == 4) ? p[1][k] : p[0][k];
+        if (trial % 3 == 0)
+            for (int i = 0; i < 5; i++) p[i][3] = p[0][3];
+        int dyadic = brio_insphere_dyadic(p[0], p[1], p[2], p[3], p[4], weighted);
+        int integer = brio_insphere_integer(p[0], p[1], p[2], p[3], p[4], weighted);
+        EXPECT(integer == 2 || integer == dyadic, "trial %llu", (unsigned long long)trial);
+        int orient = brio_orient3d_integer(p[0], p[1], p[2], p[3]);
+        EXPECT(orient == 2 || orient == brio_orient3d_dyadic(p[0], p[1], p[2], p[3]));
+        answered += integer != 2, zeros += dyadic == 0;
+    }
+    EXPECT(answered > 50000 && zeros > 15000, "%d answered, %d zeros", answered, zeros);
+}
+
 static void extreme_doubles_are_exact(void) {
     const double tiny = 0x1p-1074, huge = 0x1p1023;
     double o[3] = {0, 0, 0}, x[3] = {huge, 0, 0}, y[3] = {0, tiny, 0}, z[3] = {0, 0, 1}, m[3] = {huge, tiny, 0};
@@ -166,6 +193,7 @@ int main(void) {
     RUN(every_five_of_a_grid);
     RUN(random_small_integers_at_every_scale);
     RUN(stages_agree_near_a_sphere);
+    RUN(integers_agree_with_dyadic_numbers);
     RUN(extreme_doubles_are_exact);
     RUN(weights_move_the_boundary);
     return harness_end();
