@@ -14,7 +14,7 @@ static const double EXTENT_MOST = 1e55, WEIGHT_MOST = 1e110;
 void brio_filter_set(brio_filter *f, const double extent[3], double weight_extent, bool weighted) {
     double x = extent[0], y = extent[1], z = extent[2];
     double most = fmax(x, fmax(y, z)), w = weighted ? weight_extent : 0;
-    *f = (brio_filter){INFINITY, INFINITY, INFINITY, INFINITY, weighted, 0};
+    *f = (brio_filter){INFINITY, INFINITY, INFINITY, INFINITY, weighted, false, false, 0};
     if (!(most <= EXTENT_MOST && w <= WEIGHT_MOST)) return;
     /* each of some hundred products may lose 2^-1074, and is multiplied by at most this */
     double unit = 0x1p-1060;
@@ -23,6 +23,62 @@ void brio_filter_set(brio_filter *f, const double extent[3], double weight_exten
     /* 6 products in a 3 by 3 minor, 4 minors times a lift; 1.001 covers the rounding of the bound */
     f->orient_static = 1.001 * ORIENT_BOUND * 6 * x * y * z + f->orient_floor;
     f->insphere_static = 1.001 * INSPHERE_BOUND * 24 * x * y * z * (x * x + y * y + z * z + w) + f->insphere_floor;
+}
+
+/* Exponent of the lowest bit of a number; zero has none. */
+static int lowest_bit(double x) {
+    int e;
+    double m = frexp(x, &e);
+    if (m == 0) return INT32_MAX;
+    return e - 53 + __builtin_ctzll((uint64_t)fabs(ldexp(m, 53)));
+}
+
+/* The powers of two between which all coordinates' differences lie: multiples of 2^low, below 2^high. Weights are taken for squares.
+ * Gives up where that is more than most_bits apart. */
+typedef struct {
+    int low, high;
+} lattice;
+
+static lattice lattice_of(const double (*record)[4], size_t n, const double extent[4], bool weighted, int most_bits) {
+    lattice l;
+    int weight_low = INT32_MAX, weight_high;
+    frexp(fmax(extent[0], fmax(extent[1], extent[2])), &l.high);
+    l.low = l.high;
+    for (size_t i = 0; i < n && l.high - l.low <= most_bits; i++) {
+        for (int k = 0; k < 3; k++) {
+            int bit = lowest_bit(record[i][k]);
+            l.low = bit < l.low ? bit : l.low;
+        }
+        int bit = weighted ? lowest_bit(record[i][3]) : INT32_MAX;
+        weight_low = bit < weight_low ? bit : weight_low;
+    }
+    if (weight_low == INT32_MAX) return l;
+    frexp(extent[3], &weight_high);
+    int low = weight_low >= 0 ? weight_low / 2 : -((1 - weight_low) / 2), high = weight_high > 0 ? (weight_high + 1) / 2 : weight_high / 2;
+    l.low = low < l.low ? low : l.low;
+    l.high = high > l.high ? high : l.high;
+    return l;
+}
+
+void brio_filter_for(brio_filter *f, const double (*record)[4], size_t n, bool weighted) {
+    enum { LATTICE_BITS = 9, COARSE_BITS = 20 };
+    double low[4], high[4], extent[4];
+    for (int c = 0; c < 4; c++) low[c] = high[c] = n ? record[0][c] : 0;
+    for (size_t i = 1; i < n; i++)
+        for (int c = 0; c < 4; c++) {
+            double x = record[i][c];
+            low[c] = x < low[c] ? x : low[c];
+            high[c] = x > high[c] ? x : high[c];
+        }
+    for (int c = 0; c < 4; c++) extent[c] = high[c] - low[c];
+    brio_filter_set(f, extent, extent[3], weighted);
+    if (f->orient_floor == INFINITY) return;
+    lattice l = lattice_of(record, n, extent, weighted, COARSE_BITS);
+    bool far_from_limits = l.low > -150 && l.high < 150;
+    f->coarse = far_from_limits && l.high - l.low <= COARSE_BITS;
+    /* lifts below 2^21, minors below 6 2^27, the determinant below 2^53: all integers that doubles hold */
+    f->lattice = far_from_limits && l.high - l.low <= LATTICE_BITS;
+    if (f->lattice) f->orient_static = f->insphere_static = 0;
 }
 
 static double orient3d_with_permanent(const double *a, const double *b, const double *c, const double *d,
@@ -37,11 +93,12 @@ static double orient3d_with_permanent(const double *a, const double *b, const do
 
 int brio_orient3d_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d) {
     double permanent;
+    if (f->lattice) return 0;
     double det = orient3d_with_permanent(a, b, c, d, &permanent);
     double bound = ORIENT_BOUND * permanent + f->orient_floor;
     if (fabs(det) > bound) return det > 0 ? 1 : -1;
     f->unsettled++;
-    int sign = brio_orient3d_double_double(a, b, c, d, permanent, f->orient_floor);
+    int sign = f->coarse ? 2 : brio_orient3d_double_double(a, b, c, d, permanent, f->orient_floor);
     return sign != 2 ? sign : brio_orient3d_exact(a, b, c, d);
 }
 
@@ -63,12 +120,14 @@ static double insphere_permanent(const double *a, const double *b, const double 
 
 int brio_insphere_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d,
                             const double *e) {
+    if (f->lattice) return 0;
     double det = brio_insphere_estimate(a, b, c, d, e, f->weighted);
     double permanent = insphere_permanent(a, b, c, d, e, f->weighted);
     double bound = INSPHERE_BOUND * permanent + f->insphere_floor;
     if (fabs(det) > bound) return det > 0 ? 1 : -1;
     f->unsettled++;
-    int sign = brio_insphere_double_double(a, b, c, d, e, f->weighted, permanent, f->insphere_floor);
+    int sign =
+        f->coarse ? 2 : brio_insphere_double_double(a, b, c, d, e, f->weighted, permanent, f->insphere_floor);
     return sign != 2 ? sign : brio_insphere_exact(a, b, c, d, e, f->weighted);
 }
 

@@ -28,12 +28,17 @@ typedef struct {
     double orient_static, insphere_static; /* an estimate beyond this has the right sign */
     double orient_floor, insphere_floor;   /* what underflow may cost stages 2 and 3 */
     bool weighted;
+    bool lattice; /* stage 1 has no rounding errors at all: its zeros are zeros */
+    bool coarse;  /* stage 4 decides every call, sooner than stage 3 */
     uint64_t unsettled;
 } brio_filter;
 
 /** Prepares the bounds for points whose coordinates differ by at most extent[0..2] in x, y, z and whose weights by at most
  *  weight_extent; weighted = false ignores the weights. */
 void brio_filter_set(brio_filter *f, const double extent[3], double weight_extent, bool weighted);
+
+/** The same for given records, and whether they stand on a lattice. */
+void brio_filter_for(brio_filter *f, const double (*record)[4], size_t num_records, bool weighted);
 
 /** Stages 2 to 5. */
 int brio_orient3d_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d);

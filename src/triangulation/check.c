@@ -202,23 +202,11 @@ done:
 
 /* --- all of it --- */
 
-static void set_filter(judge *j) {
-    double low[4], high[4], extent[4];
-    for (int c = 0; c < 4; c++) low[c] = INFINITY, high[c] = -INFINITY;
-    for (size_t p = 0; p < j->num_points; p++)
-        for (int c = 0; c < 4; c++) {
-            low[c] = fmin(low[c], j->t.record[p][c]);
-            high[c] = fmax(high[c], j->t.record[p][c]);
-        }
-    for (int c = 0; c < 4; c++) extent[c] = high[c] - low[c];
-    brio_filter_set(&j->filter, extent, extent[3], j->weighted);
-}
-
 brio_status brio_check_tetrahedra(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, bool weighted,
                                   bool *canonical) {
     judge j = {.ctx = ctx, .t = *t, .weighted = weighted, .num_points = num_points, .canonical = true};
     brio_status status = BRIO_OK;
-    set_filter(&j);
+    brio_filter_for(&j.filter, t->record, num_points, weighted);
     BRIO_TRY(BRIO_ALLOC(ctx, j.vertex_tet, num_points));
     for (size_t p = 0; p < num_points; p++) j.vertex_tet[p] = NO_TET;
     BRIO_TRY(check_mates(&j));

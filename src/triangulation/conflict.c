@@ -97,13 +97,41 @@ AVX2_INLINE void rows_set(const corners *c, lanes infinite, rows *r, const bool 
     r->lift[3] = _mm256_blendv_pd(r->lift[3], all(1), infinite);
 }
 
-AVX2_INLINE lanes determinant(const rows *r) {
-    const lanes *x = r->x, *y = r->y, *z = r->z, *l = r->lift;
+/* Minors of the rows but one, with the signs that make minor[i] the orientation of the tetrahedron with vertex i replaced by the
+ * query. */
+AVX2_INLINE void minors(const rows *r, lanes minor[4]) {
+    const lanes *x = r->x, *y = r->y, *z = r->z;
     lanes ab = x[0] * y[1] - x[1] * y[0], bc = x[1] * y[2] - x[2] * y[1], cd = x[2] * y[3] - x[3] * y[2];
     lanes da = x[3] * y[0] - x[0] * y[3], ac = x[0] * y[2] - x[2] * y[0], bd = x[1] * y[3] - x[3] * y[1];
-    lanes abc = z[0] * bc - z[1] * ac + z[2] * ab, bcd = z[1] * cd - z[2] * bd + z[3] * bc;
-    lanes cda = z[2] * da + z[3] * ac + z[0] * cd, dab = z[3] * ab + z[0] * bd + z[1] * da;
-    return (l[2] * dab - l[3] * abc) + (l[0] * bcd - l[1] * cda);
+    minor[0] = z[1] * cd - z[2] * bd + z[3] * bc;
+    minor[1] = all(0) - (z[2] * da + z[3] * ac + z[0] * cd);
+    minor[2] = z[3] * ab + z[0] * bd + z[1] * da;
+    minor[3] = all(0) - (z[0] * bc - z[1] * ac + z[2] * ab);
+}
+
+AVX2_INLINE lanes determinant(const rows *r) {
+    lanes minor[4];
+    minors(r, minor);
+    return (r->lift[2] * minor[2] + r->lift[3] * minor[3]) + (r->lift[0] * minor[0] + r->lift[1] * minor[1]);
+}
+
+/* Lanes where p is lexicographically larger than q. */
+AVX2_INLINE lanes larger(const lanes p[3], const lanes q[3]) {
+    lanes z = _mm256_cmp_pd(p[2], q[2], _CMP_GT_OQ);
+    lanes y = _mm256_blendv_pd(_mm256_cmp_pd(p[1], q[1], _CMP_GT_OQ), z, _mm256_cmp_pd(p[1], q[1], _CMP_EQ_OQ));
+    return _mm256_blendv_pd(_mm256_cmp_pd(p[0], q[0], _CMP_GT_OQ), y, _mm256_cmp_pd(p[0], q[0], _CMP_EQ_OQ));
+}
+
+/* The symbolic perturbation (perturb.c) where minors are exact: bits of the lanes in conflict if their determinant is 0. */
+AVX2_INLINE unsigned ties(const corners *c, const rows *r) {
+    lanes minor[4], decisive[3] = {c->e[0], c->e[1], c->e[2]}, decision = all(-1);
+    minors(r, minor);
+    for (int s = 0; s < 4; s++) {
+        lanes take = _mm256_and_pd(larger(c->v[s], decisive), _mm256_cmp_pd(minor[s], all(0), _CMP_NEQ_OQ));
+        decision = _mm256_blendv_pd(decision, minor[s], take);
+        for (int k = 0; k < 3; k++) decisive[k] = _mm256_blendv_pd(decisive[k], c->v[s][k], take);
+    }
+    return (unsigned)_mm256_movemask_pd(_mm256_cmp_pd(decision, all(0), _CMP_GT_OQ));
 }
 
 /* Bits of the lanes that are certainly in conflict, and of those that are certainly not, added to *known. */
@@ -180,18 +208,27 @@ AVX2 static __attribute__((noinline)) lanes determinant_dd(const corners *c, lan
 
 static const double DOUBLE_UNIT = 18 * 0x1p-53, DD_UNIT = 0x1p-99;
 
+/* Lanes whose determinant is exactly 0, on a lattice: a hull facet's plane is decided by its finite neighbour, else ties are broken. */
+AVX2 static __attribute__((noinline)) unsigned settle_lattice(const brio_tetrahedra *t, brio_filter *f,
+                                                              const uint32_t tets[BRIO_BATCH], const double *p,
+                                                              const corners *c, const rows *r, unsigned known) {
+    unsigned zero = ~known & 15, infinite = zero & (unsigned)_mm256_movemask_pd(r->infinite);
+    unsigned mask = ties(c, r) & zero & ~infinite;
+    for (int i = 0; i < BRIO_BATCH; i++)
+        if (infinite >> i & 1) mask |= (unsigned)brio_in_conflict(t, f, tets[i], p, f->weighted) << i;
+    return mask;
+}
+
 /* Stages beyond the static bound, for the lanes not yet known. */
 AVX2 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH],
-                                                      const double *p, const corners *c, lanes infinite, unsigned known,
-                                                      const bool weighted) {
-    rows r;
-    rows_set(c, infinite, &r, weighted);
-    lanes floor = _mm256_blendv_pd(all(f->insphere_floor), all(f->orient_floor), infinite);
-    lanes most = permanent(c, &r, weighted);
-    unsigned mask = decide(determinant(&r), all(DOUBLE_UNIT) * most + floor, &known);
+                                                      const double *p, const corners *c, const rows *r, lanes det,
+                                                      unsigned known, const bool weighted) {
+    lanes floor = _mm256_blendv_pd(all(f->insphere_floor), all(f->orient_floor), r->infinite);
+    lanes most = permanent(c, r, weighted);
+    unsigned mask = decide(det, all(DOUBLE_UNIT) * most + floor, &known);
     if (known == 15) return mask;
     f->unsettled += (uint64_t)__builtin_popcount(~known & 15);
-    mask |= decide(determinant_dd(c, infinite, weighted), all(DD_UNIT) * most + floor, &known);
+    if (!f->coarse) mask |= decide(determinant_dd(c, r->infinite, weighted), all(DD_UNIT) * most + floor, &known);
     for (int i = 0; i < BRIO_BATCH; i++)
         if (!(known >> i & 1)) mask |= (unsigned)brio_in_conflict_exact(t, f, tets[i], p, weighted) << i;
     return mask;
@@ -206,9 +243,11 @@ AVX2_INLINE unsigned conflicts(const brio_tetrahedra *t, brio_filter *f, const u
     lanes infinite = infinite_lanes(t, tets);
     rows_set(&c, infinite, &r, weighted);
     lanes bound = _mm256_blendv_pd(all(f->insphere_static), all(f->orient_static), infinite);
-    unsigned mask = decide(determinant(&r), bound, &known);
+    lanes det = determinant(&r);
+    unsigned mask = decide(det, bound, &known);
     if (__builtin_expect(known == 15, 1)) return mask;
-    return mask | settle(t, f, tets, p, &c, infinite, known, weighted);
+    if (f->lattice) return mask | settle_lattice(t, f, tets, p, &c, &r, known);
+    return mask | settle(t, f, tets, p, &c, &r, det, known, weighted);
 }
 
 AVX2 static unsigned conflicts_avx2(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH], const double *p) {

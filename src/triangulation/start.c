@@ -61,19 +61,6 @@ static void place_apex(brio_kernel *k, uint32_t corner[4], int count, uint32_t a
     corner[count] = apex;
 }
 
-static void set_filter(brio_kernel *k, size_t num_records) {
-    double low[4], high[4], extent[4];
-    for (int c = 0; c < 4; c++) low[c] = high[c] = k->record[0][c];
-    for (size_t i = 1; i < num_records; i++)
-        for (int c = 0; c < 4; c++) {
-            double x = k->record[i][c];
-            low[c] = x < low[c] ? x : low[c];
-            high[c] = x > high[c] ? x : high[c];
-        }
-    for (int c = 0; c < 4; c++) extent[c] = high[c] - low[c];
-    brio_filter_set(&k->filter, extent, extent[3], k->weighted);
-}
-
 static double largest_difference(const brio_kernel *k) {
     double most = 0;
     for (int c = 0; c < 3; c++) most = fmax(most, fabs(k->record[1][c] - k->record[0][c]));
@@ -120,7 +107,7 @@ brio_status brio_kernel_start(brio_kernel *k) {
         k->dimension = -1;
         return BRIO_OK;
     }
-    set_filter(k, k->num_points);
+    brio_filter_for(&k->filter, (const brio_record *)k->record, k->num_points, k->weighted);
     int count = general_position(k);
     k->dimension = count - 1;
     if (k->dimension == 0) return BRIO_OK;
@@ -128,7 +115,10 @@ brio_status brio_kernel_start(brio_kernel *k) {
     double step = largest_difference(k);
     for (int apex = 0; count < 4; apex++, count++)
         place_apex(k, corner, count, (uint32_t)k->num_points + (uint32_t)apex, step);
-    if (k->dimension < 3) set_filter(k, k->num_points + (size_t)(3 - k->dimension));
+    if (k->dimension < 3) {
+        size_t records = k->num_points + (size_t)(3 - k->dimension);
+        brio_filter_for(&k->filter, (const brio_record *)k->record, records, k->weighted);
+    }
     brio_status status = brio_kernel_reserve(k, 5);
     if (status == BRIO_OK) first_tetrahedron(k, corner);
     return status;
