@@ -19,11 +19,9 @@ typedef struct {
     brio_filter filter;
     bool weighted;
     size_t num_points;
-    uint32_t *vertex_tet; /* a tetrahedron of each vertex, NO_TET of other points */
+    uint32_t *vertex_tet; /* a tetrahedron of each vertex, BRIO_NO_TET of other points */
     bool canonical;
 } judge;
-
-enum { NO_TET = UINT32_MAX };
 
 static const uint32_t *vertices_of(const judge *j, size_t tet) { return j->t.vertex + 4 * tet; }
 
@@ -98,7 +96,7 @@ static brio_status check_euler(judge *j) {
     BRIO_TRY(BRIO_ALLOC(j->ctx, stack, j->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(j->ctx, seen, j->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(j->ctx, on_hull, j->num_points));
-    for (size_t p = 0; p < j->num_points; p++) vertices += j->vertex_tet[p] != NO_TET;
+    for (size_t p = 0; p < j->num_points; p++) vertices += j->vertex_tet[p] != BRIO_NO_TET;
     for (size_t tet = 0; tet < j->t.count; tet++) {
         const uint32_t *v = vertices_of(j, tet);
         for (int a = 0; a < 4; a++)
@@ -175,7 +173,7 @@ done:
 static brio_status check_point(judge *j, brio_walk *walk, uint32_t p) {
     brio_status status = BRIO_OK;
     const double *x = j->t.record[p];
-    uint32_t tet = brio_locate_walk(&j->t, &j->filter, walk, x);
+    uint32_t tet = brio_locate_walk(&j->t, &j->filter, walk, x, UINT64_MAX);
     const uint32_t *v = vertices_of(j, tet);
     walk->start = tet;
     BRIO_REQUIRE(j->ctx, v[3] != BRIO_INFINITE, BRIO_ERR_CHECK, "point %u is outside the hull", p);
@@ -195,7 +193,7 @@ static brio_status check_points(judge *j) {
     brio_status status = BRIO_OK;
     brio_walk walk = {0};
     for (size_t p = 0; p < j->num_points; p++)
-        if (j->vertex_tet[p] == NO_TET) BRIO_TRY(check_point(j, &walk, (uint32_t)p));
+        if (j->vertex_tet[p] == BRIO_NO_TET) BRIO_TRY(check_point(j, &walk, (uint32_t)p));
 done:
     return status;
 }
@@ -208,7 +206,7 @@ brio_status brio_check_tetrahedra(brio_context *ctx, const brio_tetrahedra *t, s
     brio_status status = BRIO_OK;
     brio_filter_for(&j.filter, t->record, num_points, weighted);
     BRIO_TRY(BRIO_ALLOC(ctx, j.vertex_tet, num_points));
-    for (size_t p = 0; p < num_points; p++) j.vertex_tet[p] = NO_TET;
+    for (size_t p = 0; p < num_points; p++) j.vertex_tet[p] = BRIO_NO_TET;
     BRIO_TRY(check_mates(&j));
     BRIO_TRY(check_orientation(&j));
     for (size_t tet = 0; tet < t->count; tet++)

@@ -101,6 +101,7 @@ static void kernel_free(brio_kernel *k) {
     brio_release(k->ctx, k->t.mate);
     brio_release(k->ctx, k->state);
     brio_release(k->ctx, k->unused);
+    brio_release(k->ctx, k->star.tet);
     brio_release(k->ctx, k->record);
     brio_release(k->ctx, k->caller);
     brio_release(k->ctx, k->representative);

@@ -37,9 +37,25 @@ static bool absorbed(brio_kernel *k, uint32_t p, uint32_t v) {
     return true;
 }
 
+/* A short walk, which is best nearly always; where walks are long again and again, the descent, with a walk tried now and then. */
+static brio_status locate(brio_kernel *k, const double *point, uint32_t *tet) {
+    enum { SHORT_WALK = 40, DESCENTS = 64 };
+    if (k->long_walks == 0 || k->cavity.num_border == 0) {
+        uint64_t most = k->cavity.num_border ? SHORT_WALK : UINT64_MAX;
+        *tet = brio_locate_walk(&k->t, &k->filter, &k->walk, point, most);
+        if (*tet != BRIO_NO_TET) return BRIO_OK;
+        k->long_walks = DESCENTS;
+    }
+    k->long_walks--;
+    k->star.mark = k->state;
+    return brio_locate_descent(k, point, tet);
+}
+
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
     const double *point = k->record[p];
-    uint32_t tet = brio_locate_walk(&k->t, &k->filter, &k->walk, point);
+    uint32_t tet;
+    brio_status located = locate(k, point, &tet);
+    if (located != BRIO_OK) return located;
     if (!brio_is_infinite(&k->t, tet)) {
         uint32_t v = vertex_at(k, tet, point);
         if (v != k->t.infinite && absorbed(k, p, v)) return BRIO_OK;

@@ -4,6 +4,7 @@
 
 #include "triangulation/conflict.h"
 #include "triangulation/locate.h"
+#include "triangulation/star.h"
 #include "triangulation/tetrahedra.h"
 
 /** A facet of the cavity's border: its mate outside, and its vertices such that (new vertex, vertex[0..2]) is positive; an
@@ -57,6 +58,8 @@ typedef struct {
     brio_filter filter;
     brio_conflicts_fn conflicts;
     brio_walk walk;
+    unsigned long_walks;     /* how often of late a walk was given up, see insert.c */
+    brio_star star;          /* workspace of the descent; its marks are the states */
     brio_cavity cavity;
     brio_stats stats;
 } brio_kernel;
@@ -72,6 +75,9 @@ brio_status brio_kernel_reserve(brio_kernel *k, size_t more);
 
 /** Inserts record p, which is not yet in: as a vertex, a duplicate, or a hidden point. */
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p);
+
+/** A tetrahedron in conflict with p near the last insertion, or what brio_locate_walk gives. */
+brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet);
 
 /** Finds all tetrahedra in conflict with record p, from one of them, and the border of their union. */
 brio_status brio_cavity_dig(brio_kernel *k, uint32_t first, uint32_t p);

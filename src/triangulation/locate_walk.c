@@ -9,11 +9,13 @@
 
 static inline uint32_t next_random(uint32_t x) { return x * 1664525u + 1013904223u; }
 
-uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p) {
+uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
+                          uint64_t most_steps) {
     uint32_t tet = walk->start;
     if (brio_is_infinite(t, tet)) tet = brio_tet_of(t->mate[4 * (size_t)tet + 3]);
     int came_through = 4;
-    for (;;) {
+    for (uint64_t steps = 0;; steps++, walk->steps++) {
+        if (steps > most_steps) return BRIO_NO_TET;
         const uint32_t *v = t->vertex + 4 * (size_t)tet;
         if (v[3] == t->infinite) return tet;
         walk->random = next_random(walk->random);
@@ -26,7 +28,6 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w
                 uint32_t mate = t->mate[4 * (size_t)tet + (size_t)slot];
                 tet = brio_tet_of(mate);
                 came_through = brio_slot_of(mate);
-                walk->steps++;
                 break;
             }
         }

@@ -1,0 +1,56 @@
+/* Point location by descent along edges to the nearest vertex.
+ *
+ * Samples of a smooth surface make stacks of thin tetrahedra between its sheets; a walk to a near point crosses them by the hundred.
+ * But the nearest vertex is a Delaunay neighbour of the new point, so some tetrahedron round it is in conflict. From the star of the
+ * last inserted vertex go to the vertex nearest to the point, test its star, and while nothing there conflicts go on to a nearer
+ * one. Where that ends without a conflict (hidden points) the walk takes over from the nearest vertex.
+ *
+ * Based on: the nearest-neighbour graph is a part of the Delaunay triangulation; Birn, Holtgrewe, Sanders, Singler. Simple and fast nearest
+ * neighbor search. ALENEX 2010, for the descent. */
+#include "triangulation/kernel.h"
+
+typedef struct {
+    uint32_t vertex, tet; /* a vertex and a tetrahedron that has it */
+    double square;        /* its squared distance from the point */
+} candidate;
+
+static inline void offer(const brio_tetrahedra *t, candidate *best, uint32_t tet, const double *p) {
+    for (size_t i = 0; i < 4; i++) {
+        uint32_t v = t->vertex[4 * (size_t)tet + i];
+        if (v == t->infinite) continue;
+        double x = t->record[v][0] - p[0], y = t->record[v][1] - p[1], z = t->record[v][2] - p[2];
+        double square = x * x + y * y + z * z;
+        if (square < best->square) *best = (candidate){v, tet, square};
+    }
+}
+
+/* The first tetrahedron of the star in conflict with p, or BRIO_NO_TET. */
+static uint32_t conflict_in_star(brio_kernel *k, const double *p) {
+    const brio_star *star = &k->star;
+    for (size_t n = 0; n < star->size; n += BRIO_BATCH) {
+        uint32_t batch[BRIO_BATCH];
+        for (size_t i = 0; i < BRIO_BATCH; i++) batch[i] = star->tet[n + i < star->size ? n + i : n];
+        unsigned mask = k->conflicts(&k->t, &k->filter, batch, p);
+        k->stats.insphere_calls += BRIO_BATCH;
+        if (mask) return batch[__builtin_ctz(mask)];
+    }
+    return BRIO_NO_TET;
+}
+
+brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) {
+    candidate best = {k->t.infinite, BRIO_NO_TET, INFINITY};
+    for (size_t b = 0; b < k->cavity.num_border; b++) offer(&k->t, &best, k->cavity.created[b].tet, p);
+    for (uint32_t from = k->t.infinite; best.vertex != from && best.square > 0;) {
+        from = best.vertex;
+        brio_status status = brio_star_collect(k->ctx, &k->t, from, best.tet, &k->star);
+        if (status != BRIO_OK) return status;
+        for (size_t n = 0; n < k->star.size; n++) offer(&k->t, &best, k->star.tet[n], p);
+        k->walk.steps++;
+        if (best.square == 0) break;
+        *tet = conflict_in_star(k, p);
+        if (*tet != BRIO_NO_TET) return BRIO_OK;
+    }
+    if (best.tet != BRIO_NO_TET) k->walk.start = best.tet;
+    *tet = brio_locate_walk(&k->t, &k->filter, &k->walk, p, UINT64_MAX);
+    return BRIO_OK;
+}
