@@ -126,7 +126,7 @@ BRIO_API size_t brio_context_memory_peak(const brio_context *ctx);
 
 /** Insertion orders. All give the same tetrahedra. */
 typedef enum brio_order {
-    BRIO_ORDER_BRIO = 0,   /* random rounds, Hilbert curve inside a round: the tuned one [Amenta Choi Rote 2003] */
+    BRIO_ORDER_BRIO = 0,    /* random rounds, Hilbert curve inside a round: the tuned one [Amenta Choi Rote 2003] */
     BRIO_ORDER_HILBERT = 1, /* one round */
     BRIO_ORDER_RANDOM = 2,
     BRIO_ORDER_INPUT = 3,
@@ -145,11 +145,11 @@ BRIO_API brio_options brio_options_default(void);
 /** Facts of a triangulation. Counters are totals and include infinite tetrahedra. */
 typedef struct brio_stats {
     size_t points, vertices, duplicates, hidden;
-    int dimension;             /* of the affine hull: -1 (no points) to 3 */
-    size_t tetrahedra;         /* finite ones */
-    size_t hull_facets;        /* = infinite tetrahedra */
+    int dimension;      /* of the affine hull: -1 (no points) to 3 */
+    size_t tetrahedra;  /* finite ones */
+    size_t hull_facets; /* = infinite tetrahedra */
     uint64_t created, destroyed, walk_steps, insphere_calls;
-    uint64_t exact_calls;      /* predicate calls that the first filter did not settle */
+    uint64_t exact_calls;                 /* predicate calls that the first filter did not settle */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
 
@@ -213,7 +213,15 @@ BRIO_API brio_status brio_triangulation_checksum(brio_context *ctx, const brio_t
 
 /** Scalar types of properties, as PLY has them. */
 typedef enum brio_scalar {
-    BRIO_INT8, BRIO_UINT8, BRIO_INT16, BRIO_UINT16, BRIO_INT32, BRIO_UINT32, BRIO_FLOAT32, BRIO_FLOAT64, BRIO_SCALAR_END
+    BRIO_INT8,
+    BRIO_UINT8,
+    BRIO_INT16,
+    BRIO_UINT16,
+    BRIO_INT32,
+    BRIO_UINT32,
+    BRIO_FLOAT32,
+    BRIO_FLOAT64,
+    BRIO_SCALAR_END
 } brio_scalar;
 
 /** Bytes of a scalar type. */
@@ -274,7 +282,7 @@ typedef struct brio_certificate {
     size_t boundary_edges, boundary_loops;
     size_t nonmanifold_edges, nonmanifold_vertices, flipped_edges;
     int64_t self_intersections; /* pairs of faces; -1 when not counted */
-    double area, volume; /* volume is signed: positive when the faces are seen counterclockwise from outside */
+    double area, volume;        /* volume is signed: positive when the faces are seen counterclockwise from outside */
     brio_context *context;
 } brio_certificate;
 
@@ -286,7 +294,7 @@ BRIO_API void brio_certificate_free(brio_certificate *certificate);
 
 /** Distances between two surfaces, both ways, in the unit of the coordinates. */
 typedef struct brio_distance {
-    double mean, rms, p95, hausdorff; /* of the distances from samples of either to the other, exact point to triangle */
+    double mean, rms, p95, hausdorff; /* of the samples of either from the triangles of the other, exactly */
     double normal_consistency;        /* mean |cos| between the normals at a sample and at its nearest point */
     double diagonal;                  /* of the bounding box of b */
 } brio_distance;
@@ -301,7 +309,7 @@ BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, c
  */
 
 typedef struct brio_surface_options {
-    uint64_t seed;  /* default 1 */
+    uint64_t seed;   /* default 1 */
     int triangulate; /* 1: cut the polygons into triangles; default 0 */
 } brio_surface_options;
 
@@ -309,10 +317,10 @@ BRIO_API brio_surface_options brio_surface_options_default(void);
 
 /** What the power crust counts. */
 typedef struct brio_power_crust_stats {
-    size_t samples;                     /* distinct positions */
-    size_t poles, hidden_poles;         /* polar balls; of these without a power cell */
-    size_t inner, outer;                /* labels */
-    size_t confused;                    /* poles that had evidence for both labels when they were labelled */
+    size_t samples;             /* distinct positions */
+    size_t poles, hidden_poles; /* polar balls; of these without a power cell */
+    size_t inner, outer;        /* labels */
+    size_t confused;            /* poles that had evidence for both labels when they were labelled */
     double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds;
 } brio_power_crust_stats;
 
@@ -356,9 +364,9 @@ BRIO_API brio_format brio_format_of(const char *path);
 BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
 
 typedef struct brio_write_options {
-    brio_format format; /* AUTO: by the extension */
-    int ascii;          /* 1: text where the format has both; default 0 */
-    int float32;        /* 1: coordinates in single precision where the format has both; default 0 */
+    brio_format format;  /* AUTO: by the extension */
+    int ascii;           /* 1: text where the format has both; default 0 */
+    int float32;         /* 1: coordinates in single precision where the format has both; default 0 */
     const char *comment; /* a line for the header, or NULL */
 } brio_write_options;
 
@@ -388,7 +396,7 @@ typedef enum brio_kind {
 
 typedef struct brio_generate_options {
     uint64_t seed; /* default 1 */
-    double noise;  /* scan: standard deviation of the sensor along its ray, in units of the sample spacing; default 0.1 */
+    double noise;  /* scan: standard deviation along the ray, in units of the sample spacing; default 0.05 */
     int views;     /* scan: number of sensor positions; default 12 */
 } brio_generate_options;
 

@@ -45,9 +45,13 @@ void brio_context_free(brio_context *ctx) {
     a.free(ctx, a.user);
 }
 
-const char *brio_message(const brio_context *ctx) { return ctx->message; }
+const char *brio_message(const brio_context *ctx) {
+    return ctx->message;
+}
 
-void brio_context_set_threads(brio_context *ctx, int threads) { ctx->threads = threads > 0 ? threads : 0; }
+void brio_context_set_threads(brio_context *ctx, int threads) {
+    ctx->threads = threads > 0 ? threads : 0;
+}
 
 int brio_context_threads(const brio_context *ctx) {
     if (ctx->threads > 0) return ctx->threads;
@@ -63,11 +67,14 @@ void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, voi
     ctx->progress_user = user;
 }
 
-void brio_context_set_memory_limit(brio_context *ctx, size_t bytes) { ctx->caller_limit = bytes; }
+void brio_context_set_memory_limit(brio_context *ctx, size_t bytes) {
+    ctx->caller_limit = bytes;
+}
 
 brio_status brio_context_set_scratch(brio_context *ctx, const char *folder) {
     brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, !folder || !ctx->custom, BRIO_ERR_ARGUMENT, "a scratch folder and a caller's allocator exclude each other");
+    BRIO_REQUIRE(ctx, !folder || !ctx->custom, BRIO_ERR_ARGUMENT,
+                 "a scratch folder and a caller's allocator exclude each other");
     BRIO_REQUIRE(ctx, !folder || access(folder, W_OK | X_OK) == 0, BRIO_ERR_OPEN, "%s: not a writable folder", folder);
     brio_release(ctx, ctx->scratch);
     ctx->scratch = NULL;

@@ -23,7 +23,9 @@ typedef struct {
     block_kind kind;
 } block_header;
 
-static block_header *header_of(void *block) { return (block_header *)((char *)block - HEADER); }
+static block_header *header_of(void *block) {
+    return (block_header *)((char *)block - HEADER);
+}
 
 /* --- the account --- */
 
@@ -41,10 +43,16 @@ static bool account_add(brio_context *ctx, size_t bytes) {
     return true;
 }
 
-static void account_sub(brio_context *ctx, size_t bytes) { __atomic_sub_fetch(&ctx->live, bytes, __ATOMIC_RELAXED); }
+static void account_sub(brio_context *ctx, size_t bytes) {
+    __atomic_sub_fetch(&ctx->live, bytes, __ATOMIC_RELAXED);
+}
 
-size_t brio_context_memory(const brio_context *ctx) { return __atomic_load_n(&ctx->live, __ATOMIC_RELAXED); }
-size_t brio_context_memory_peak(const brio_context *ctx) { return __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED); }
+size_t brio_context_memory(const brio_context *ctx) {
+    return __atomic_load_n(&ctx->live, __ATOMIC_RELAXED);
+}
+size_t brio_context_memory_peak(const brio_context *ctx) {
+    return __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED);
+}
 
 static size_t number_in_file(const char *path) {
     FILE *f = fopen(path, "r");
@@ -71,7 +79,8 @@ static size_t cgroup_memory(void) {
         if (!v2 && strcmp(controllers + 1, "memory")) continue;
         for (;;) {
             char name[1024];
-            snprintf(name, sizeof name, v2 ? "/sys/fs/cgroup%s/memory.max" : "/sys/fs/cgroup/memory%s/memory.limit_in_bytes", path);
+            snprintf(name, sizeof name,
+                     v2 ? "/sys/fs/cgroup%s/memory.max" : "/sys/fs/cgroup/memory%s/memory.limit_in_bytes", path);
             size_t limit = number_in_file(name);
             if (limit < least) least = limit;
             char *slash = strrchr(path, '/');
@@ -92,13 +101,18 @@ size_t brio_machine_memory(void) {
 
 /* --- mapped blocks --- */
 
-static size_t round_up(size_t size, size_t unit) { return (size + unit - 1) / unit * unit; }
+static size_t round_up(size_t size, size_t unit) {
+    return (size + unit - 1) / unit * unit;
+}
 
-static size_t mapped_size(size_t size) { return round_up(size, size >= HUGE_PAGE ? HUGE_PAGE : 4096); }
+static size_t mapped_size(size_t size) {
+    return round_up(size, size >= HUGE_PAGE ? HUGE_PAGE : 4096);
+}
 
 /* An anonymous mapping that starts on a huge page, so that the system can back it with such. */
 static void *map_anonymous(size_t size) {
-    char *base = mmap(NULL, size + HUGE_PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    char *base =
+        mmap(NULL, size + HUGE_PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (base == MAP_FAILED) return NULL;
     char *aligned = (char *)round_up((size_t)base, HUGE_PAGE);
     if (aligned > base) munmap(base, (size_t)(aligned - base));

@@ -18,12 +18,18 @@ typedef struct {
     uint64_t state;
 } brio_rng;
 
-static inline brio_rng brio_rng_new(uint64_t seed) { return (brio_rng){brio_mix(seed)}; }
+static inline brio_rng brio_rng_new(uint64_t seed) {
+    return (brio_rng){brio_mix(seed)};
+}
 
-static inline uint64_t brio_rng_next(brio_rng *rng) { return brio_mix(rng->state++); }
+static inline uint64_t brio_rng_next(brio_rng *rng) {
+    return brio_mix(rng->state++);
+}
 
 /** Uniform in [0, 1). */
-static inline double brio_rng_double(brio_rng *rng) { return (double)(brio_rng_next(rng) >> 11) * 0x1p-53; }
+static inline double brio_rng_double(brio_rng *rng) {
+    return (double)(brio_rng_next(rng) >> 11) * 0x1p-53;
+}
 
 /** Uniform in [0, n), n < 2^32. */
 static inline uint32_t brio_rng_below(brio_rng *rng, uint32_t n) {

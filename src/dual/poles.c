@@ -9,6 +9,7 @@
 #include "dual/poles.h"
 #include "base/memory.h"
 #include "base/sort.h"
+#include "order/hilbert.h"
 #include "predicates/circumcentre.h"
 #include "predicates/predicates.h"
 #include <string.h>
@@ -19,11 +20,13 @@ typedef struct {
     const uint32_t *vertex; /* of the tetrahedra */
     const double *points;
     size_t num_tets, num_samples;
-    double *centre;   /* of each tetrahedron; NaN where there is none */
-    uint32_t *best;   /* of each sample and side, a tetrahedron */
+    double *centre; /* of each tetrahedron; NaN where there is none */
+    uint32_t *best; /* of each sample and side, a tetrahedron */
 } finder;
 
-static const double *centre_of(const finder *f, uint32_t tet) { return f->centre + 3 * (size_t)tet; }
+static const double *centre_of(const finder *f, uint32_t tet) {
+    return f->centre + 3 * (size_t)tet;
+}
 
 static void find_centres(const brio_context *ctx, finder *f) {
     int threads = brio_context_threads(ctx);
@@ -92,7 +95,30 @@ static void offer_all(finder *f, int side) {
 
 /* --- from tetrahedra to numbered poles --- */
 
-static int compare_for_sort(uint32_t s, uint32_t t, const void *user) { return compare_tets(user, s, t); }
+static int compare_for_sort(uint32_t s, uint32_t t, const void *user) {
+    return compare_tets(user, s, t);
+}
+
+/* Sorts poles along a Hilbert curve, so that neighbours in space are neighbours in memory; equal keys lexicographically. */
+static brio_status sort_poles(brio_context *ctx, const finder *f, uint32_t *list, size_t count) {
+    enum { BITS = 16 };
+    brio_status status = BRIO_OK;
+    uint64_t *keys = NULL;
+    double *centres = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, keys, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, centres, 3 * count));
+    for (size_t p = 0; p < count; p++) memcpy(centres + 3 * p, centre_of(f, list[p]), 3 * sizeof *centres);
+    brio_hilbert_keys(centres, count, BITS, keys);
+    BRIO_TRY(brio_radix_sort(ctx, keys, list, count, 3 * BITS));
+    for (size_t begin = 0, end; begin < count; begin = end) {
+        for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;
+        brio_sort_indices(list + begin, end - begin, compare_for_sort, f);
+    }
+done:
+    brio_release(ctx, keys);
+    brio_release(ctx, centres);
+    return status;
+}
 
 static brio_status list_poles(brio_context *ctx, const finder *f, uint32_t **list, size_t *count) {
     brio_status status = BRIO_OK;
@@ -104,7 +130,7 @@ static brio_status list_poles(brio_context *ctx, const finder *f, uint32_t **lis
     BRIO_TRY(BRIO_ALLOC(ctx, *list, *count));
     for (size_t tet = 0, n = 0; tet < f->num_tets; tet++)
         if (is_pole[tet]) (*list)[n++] = (uint32_t)tet;
-    BRIO_TRY(brio_sort_rows(ctx, f->centre, 3, *list, *count, compare_for_sort, f));
+    BRIO_TRY(sort_poles(ctx, f, *list, *count));
 done:
     brio_release(ctx, is_pole);
     return status;

@@ -6,13 +6,13 @@
 
 enum { BRIO_NO_POLE = UINT32_MAX };
 
-/** Polar balls, numbered canonically: by centre, then radius, lexicographic, so that the numbers do not depend on the order of
- *  the samples. A pole is a Delaunay tetrahedron: two of them may have the same centre. */
+/** Polar balls, numbered canonically: by their centres along a Hilbert curve, then lexicographic, so that the numbers do not depend on
+ *  the order of the samples and neighbours in space are neighbours in memory. A pole is a Delaunay tetrahedron: two of them may have the same centre. */
 typedef struct {
     size_t count;
-    double *centre;    /* #poles by 3 */
-    double *square;    /* squared radii */
-    uint8_t *bounding; /* 1: the tetrahedron has a bounding point */
+    double *centre;      /* #poles by 3 */
+    double *square;      /* squared radii */
+    uint8_t *bounding;   /* 1: the tetrahedron has a bounding point */
     uint32_t *of_sample; /* #samples by 2: the farther pole and the one on its other side, or BRIO_NO_POLE */
 } brio_poles;
 

@@ -27,8 +27,7 @@ BRIO_INLINE int orient3d(const double *a, const double *b, const double *c, cons
     return sign_of(dd_sum3(x, y, z), permanent, floor);
 }
 
-BRIO_INLINE brio_dd lift_of(const brio_dd r[3], const double *p, const double *e, const bool weighted,
-                            const bool fma) {
+BRIO_INLINE brio_dd lift_of(const brio_dd r[3], const double *p, const double *e, const bool weighted, const bool fma) {
     brio_dd lift = dd_sum3(dd_multiply(r[0], r[0], fma), dd_multiply(r[1], r[1], fma), dd_multiply(r[2], r[2], fma));
     return weighted ? dd_subtract(lift, dd_difference(p[3], e[3])) : lift;
 }
@@ -38,7 +37,9 @@ BRIO_INLINE brio_dd expand(brio_dd z1, brio_dd m1, brio_dd z2, brio_dd m2, brio_
     return dd_sum3(dd_multiply(z1, m1, fma), dd_multiply(z2, m2, fma), dd_multiply(z3, m3, fma));
 }
 
-BRIO_INLINE brio_dd negated(brio_dd x) { return (brio_dd){-x.hi, -x.lo}; }
+BRIO_INLINE brio_dd negated(brio_dd x) {
+    return (brio_dd){-x.hi, -x.lo};
+}
 
 BRIO_INLINE int insphere(const double *a, const double *b, const double *c, const double *d, const double *e,
                          const bool weighted, double permanent, double floor, const bool fma) {
@@ -82,4 +83,27 @@ int brio_insphere_double_double(const double *a, const double *b, const double *
                                 bool weighted, double permanent, double floor) {
     if (dd_have_fma()) return insphere_fma(a, b, c, d, e, weighted, permanent, floor);
     return insphere(a, b, c, d, e, weighted, permanent, floor, false);
+}
+
+/* |x - p|^2 - w_p. */
+BRIO_INLINE brio_dd power(const double *x, const double *p, const bool fma) {
+    brio_dd d[3];
+    for (int k = 0; k < 3; k++) d[k] = dd_difference(x[k], p[k]);
+    brio_dd sum = dd_sum3(dd_multiply(d[0], d[0], fma), dd_multiply(d[1], d[1], fma), dd_multiply(d[2], d[2], fma));
+    return dd_subtract(sum, (brio_dd){p[3], 0});
+}
+
+BRIO_INLINE int power_compare(const double *x, const double *p, const double *q, double magnitude, const bool fma) {
+    /* at most 20 u^2 of the terms; nothing overflows or underflows by as much as the floor below 2^500 */
+    if (!(magnitude < 0x1p500)) return 2;
+    return sign_of(dd_subtract(power(x, p, fma), power(x, q, fma)), magnitude, 0x1p-900);
+}
+
+BRIO_TARGET_FMA static int power_compare_fma(const double *x, const double *p, const double *q, double magnitude) {
+    return power_compare(x, p, q, magnitude, true);
+}
+
+int brio_power_compare_double_double(const double *x, const double *p, const double *q, double magnitude) {
+    if (dd_have_fma()) return power_compare_fma(x, p, q, magnitude);
+    return power_compare(x, p, q, magnitude, false);
 }

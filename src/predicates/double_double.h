@@ -31,7 +31,9 @@ BRIO_INLINE brio_dd dd_fast_two_sum(double a, double b) {
 }
 
 /* The exact difference of two doubles. */
-BRIO_INLINE brio_dd dd_difference(double a, double b) { return dd_two_sum(a, -b); }
+BRIO_INLINE brio_dd dd_difference(double a, double b) {
+    return dd_two_sum(a, -b);
+}
 
 BRIO_INLINE brio_dd dd_two_product(double a, double b, const bool fma) {
     double p = a * b;
@@ -51,7 +53,9 @@ BRIO_INLINE brio_dd dd_add(brio_dd x, brio_dd y) {
     return dd_fast_two_sum(s.hi, s.lo + (x.lo + y.lo));
 }
 
-BRIO_INLINE brio_dd dd_subtract(brio_dd x, brio_dd y) { return dd_add(x, (brio_dd){-y.hi, -y.lo}); }
+BRIO_INLINE brio_dd dd_subtract(brio_dd x, brio_dd y) {
+    return dd_add(x, (brio_dd){-y.hi, -y.lo});
+}
 
 /* x y - z w, the 2 by 2 minor. */
 BRIO_INLINE brio_dd dd_minor(brio_dd x, brio_dd y, brio_dd z, brio_dd w, const bool fma) {
@@ -59,7 +63,9 @@ BRIO_INLINE brio_dd dd_minor(brio_dd x, brio_dd y, brio_dd z, brio_dd w, const b
 }
 
 /* x + y + z. */
-BRIO_INLINE brio_dd dd_sum3(brio_dd x, brio_dd y, brio_dd z) { return dd_add(dd_add(x, y), z); }
+BRIO_INLINE brio_dd dd_sum3(brio_dd x, brio_dd y, brio_dd z) {
+    return dd_add(dd_add(x, y), z);
+}
 
 /* Whether this processor multiplies and adds in one rounding; a constant where the target always or never does. */
 BRIO_INLINE bool dd_have_fma(void) {

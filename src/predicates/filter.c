@@ -54,7 +54,8 @@ static lattice lattice_of(const double (*record)[4], size_t n, const double exte
     }
     if (weight_low == INT32_MAX) return l;
     frexp(extent[3], &weight_high);
-    int low = weight_low >= 0 ? weight_low / 2 : -((1 - weight_low) / 2), high = weight_high > 0 ? (weight_high + 1) / 2 : weight_high / 2;
+    int low = weight_low >= 0 ? weight_low / 2 : -((1 - weight_low) / 2),
+        high = weight_high > 0 ? (weight_high + 1) / 2 : weight_high / 2;
     l.low = low < l.low ? low : l.low;
     l.high = high > l.high ? high : l.high;
     return l;
@@ -126,8 +127,7 @@ int brio_insphere_unsettled(brio_filter *f, const double *a, const double *b, co
     double bound = INSPHERE_BOUND * permanent + f->insphere_floor;
     if (fabs(det) > bound) return det > 0 ? 1 : -1;
     f->unsettled++;
-    int sign =
-        f->coarse ? 2 : brio_insphere_double_double(a, b, c, d, e, f->weighted, permanent, f->insphere_floor);
+    int sign = f->coarse ? 2 : brio_insphere_double_double(a, b, c, d, e, f->weighted, permanent, f->insphere_floor);
     return sign != 2 ? sign : brio_insphere_exact(a, b, c, d, e, f->weighted);
 }
 
@@ -141,5 +141,6 @@ int brio_power_compare(const double *x, const double *p, const double *q) {
     double magnitude = 0, difference = power(x, p, &magnitude) - power(x, q, &magnitude);
     /* each square is off by at most 5 u, the three further operations by one each; NaN and infinity compare false */
     if (fabs(difference) > 10 * 0x1p-53 * magnitude + 0x1p-1000 && magnitude < INFINITY) return difference > 0 ? 1 : -1;
-    return brio_power_compare_exact(x, p, q);
+    int sign = brio_power_compare_double_double(x, p, q, magnitude);
+    return sign != 2 ? sign : brio_power_compare_exact(x, p, q);
 }

@@ -21,8 +21,10 @@ static void span_add(span *s, double x) {
     memcpy(&bits, &x, sizeof bits);
     int exponent = (int)(bits >> 52 & 0x7ff);
     uint64_t mantissa = bits & ((UINT64_C(1) << 52) - 1);
-    if (exponent == 0) exponent = 1; /* subnormal, or zero */
-    else mantissa |= UINT64_C(1) << 52;
+    if (exponent == 0)
+        exponent = 1; /* subnormal, or zero */
+    else
+        mantissa |= UINT64_C(1) << 52;
     if (!mantissa) return;
     int low = exponent - 1075 + __builtin_ctzll(mantissa), high = exponent - 1075 + 64 - __builtin_clzll(mantissa);
     s->low = low < s->low ? low : s->low;
@@ -83,7 +85,9 @@ static int bits_of(const int64_t (*row)[3], int count) {
     return all ? 64 - __builtin_clzll(all) : 0;
 }
 
-static int sign_of(wide x) { return (x > 0) - (x < 0); }
+static int sign_of(wide x) {
+    return (x > 0) - (x < 0);
+}
 
 static wide minor3(const int64_t p[3], const int64_t q[3], const int64_t s[3]) {
     return s[0] * ((wide)p[1] * q[2] - (wide)p[2] * q[1]) + s[1] * ((wide)p[2] * q[0] - (wide)p[0] * q[2]) +

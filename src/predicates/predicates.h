@@ -72,6 +72,7 @@ int brio_insphere_tie(brio_filter *f, const double *a, const double *b, const do
 
 /** Sign of |x - p|^2 - w_p - (|x - q|^2 - w_q): which of p and q (records) is nearer to x in power distance; staged. */
 int brio_power_compare(const double *x, const double *p, const double *q);
+int brio_power_compare_double_double(const double *x, const double *p, const double *q, double magnitude);
 int brio_power_compare_exact(const double *x, const double *p, const double *q);
 
 /** Whether a, b, c (records) are collinear; exact. */

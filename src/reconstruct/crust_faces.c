@@ -30,7 +30,9 @@ typedef struct {
 
 enum { NO_VERTEX = UINT32_MAX };
 
-static bool inner(const builder *b, uint32_t pole) { return b->label[pole] == BRIO_LABEL_INNER; }
+static bool inner(const builder *b, uint32_t pole) {
+    return b->label[pole] == BRIO_LABEL_INNER;
+}
 
 static void vertex_position(const builder *b, const uint32_t *v, double *position) {
     double r[4][4];

@@ -56,7 +56,9 @@ static uint32_t pop(queue *q) {
     return top;
 }
 
-static bool confused_pole(const queue *q, uint32_t p) { return q->belief[0][p] > 0 && q->belief[1][p] > 0; }
+static bool confused_pole(const queue *q, uint32_t p) {
+    return q->belief[0][p] > 0 && q->belief[1][p] > 0;
+}
 
 static void update_priority(queue *q, uint32_t p) {
     double out = q->belief[0][p], in = q->belief[1][p], old = q->priority[p];
@@ -111,14 +113,14 @@ static void queue_free(brio_context *ctx, queue *q) {
     brio_release(ctx, q->certain);
 }
 
-brio_status brio_label_greedy(brio_pole_graph *g, uint8_t *label, size_t *confused) {
+brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, size_t *confused) {
     brio_status status = BRIO_OK;
     queue q = {0};
     *confused = 0;
     BRIO_TRY(queue_new(g, &q));
     while (q.heap_size) {
         if (q.heap_size % 65536 == 0)
-            BRIO_TRY(brio_progress(g->ctx, "label", 1 - (double)q.heap_size / (double)q.num_poles));
+            BRIO_TRY(brio_progress(g->ctx, "label", 1 - 0.5 * (double)q.heap_size / (double)q.num_poles));
         uint32_t p = pop(&q);
         int inner = q.belief[1][p] > q.belief[0][p];
         label[p] = inner ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
@@ -127,7 +129,8 @@ brio_status brio_label_greedy(brio_pole_graph *g, uint8_t *label, size_t *confus
         q.side = !inner;
         brio_pole_graph_opposite(g, p, push, &q);
         q.side = inner;
-        BRIO_TRY(brio_pole_graph_neighbours(g, p, push, &q));
+        for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++)
+            push(g->edge_pole[e], (double)g->edge_weight[e], &q);
     }
 done:
     queue_free(g->ctx, &q);

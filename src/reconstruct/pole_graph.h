@@ -12,21 +12,20 @@ typedef enum { BRIO_LABEL_NONE = 0, BRIO_LABEL_OUTER = 1, BRIO_LABEL_INNER = 2 }
 typedef struct {
     brio_context *ctx;
     const brio_poles *poles;
-    const double *samples;     /* #samples by 3 */
+    const double *samples; /* #samples by 3 */
     size_t num_samples;
-    brio_tetrahedra power;     /* the regular triangulation of the polar balls, caller's indices */
+    brio_tetrahedra power; /* the regular triangulation of the polar balls, caller's indices */
     size_t num_finite;
-    const uint32_t *representative;
-    uint32_t *vertex_tet;      /* a tetrahedron of each pole with a cell */
-    uint32_t *first_of_pole;   /* list of the (sample, side) pairs of each pole: 2 sample + side */
+    uint32_t *first_of_pole; /* list of the (sample, side) pairs of each pole: 2 sample + side */
     uint32_t *next_of_pole;
-    uint32_t *first_hidden, *next_hidden; /* list of the hidden poles of each representative */
-    brio_star star;
-    uint32_t *seen;            /* last visit of each pole, so that a neighbour is offered once */
-    uint32_t visit;
+    size_t *first_edge; /* #poles + 1: the edges to deeply intersecting neighbours of each pole */
+    uint32_t *edge_pole;
+    float *edge_weight;
 } brio_pole_graph;
 
-/** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power. */
+/** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power.
+ *  The weight of an edge between neighbours is -cos of the angle at which their balls intersect: 0 at a right angle, 1 for a ball inside the
+ *  other; edges that are not positive are left out. */
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
                                 const brio_triangulation *power, brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);
@@ -36,9 +35,5 @@ typedef void (*brio_pole_visit_fn)(uint32_t other, double weight, void *user);
 
 /** Visits the opposite poles of p; the weight is -cos of the angle at the sample, edges that are not positive are left out. */
 void brio_pole_graph_opposite(const brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit, void *user);
-
-/** Visits the neighbours of p whose balls intersect p's deeply; the weight is -cos of the angle of intersection (0 at a right angle,
- *  1 for a ball inside the other), edges that are not positive are left out. */
-brio_status brio_pole_graph_neighbours(brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit, void *user);
 
 #endif

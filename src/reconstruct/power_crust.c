@@ -18,7 +18,9 @@
 
 enum { BOUNDING_POINTS = 8 };
 
-brio_surface_options brio_surface_options_default(void) { return (brio_surface_options){.seed = 1}; }
+brio_surface_options brio_surface_options_default(void) {
+    return (brio_surface_options){.seed = 1};
+}
 
 typedef struct {
     brio_context *ctx;

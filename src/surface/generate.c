@@ -24,7 +24,7 @@ enum {
 static const double TORUS_MAJOR = 1, TORUS_MINOR = 0.4, CYLINDER_HEIGHT = 4;
 
 brio_generate_options brio_generate_options_default(void) {
-    return (brio_generate_options){.seed = 1, .noise = 0.1, .views = 12};
+    return (brio_generate_options){.seed = 1, .noise = 0.05, .views = 12};
 }
 
 /* --- one point of a kind --- */

@@ -23,7 +23,9 @@ typedef struct {
     bool canonical;
 } judge;
 
-static const uint32_t *vertices_of(const judge *j, size_t tet) { return j->t.vertex + 4 * tet; }
+static const uint32_t *vertices_of(const judge *j, size_t tet) {
+    return j->t.vertex + 4 * tet;
+}
 
 /* --- structure --- */
 
@@ -61,8 +63,8 @@ static brio_status check_orientation(judge *j) {
             BRIO_REQUIRE(j->ctx, w[3] != BRIO_INFINITE && v[1] == w[f[(at + 2) % 3]], BRIO_ERR_CHECK,
                          "infinite tetrahedron %zu is turned inside out", tet);
         } else {
-            BRIO_REQUIRE(j->ctx, brio_orient3d_sign(&j->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]]) > 0,
-                         BRIO_ERR_CHECK, "tetrahedron %zu (%u %u %u %u) is not positive", tet, v[0], v[1], v[2], v[3]);
+            BRIO_REQUIRE(j->ctx, brio_orient3d_sign(&j->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]]) > 0, BRIO_ERR_CHECK,
+                         "tetrahedron %zu (%u %u %u %u) is not positive", tet, v[0], v[1], v[2], v[3]);
         }
     }
 done:
@@ -144,8 +146,8 @@ static brio_status check_sphere(judge *j, size_t tet, uint32_t far) {
     const double *a = j->t.record[v[0]], *b = j->t.record[v[1]], *c = j->t.record[v[2]], *d = j->t.record[v[3]],
                  *e = j->t.record[far];
     int sign = brio_insphere_sign(&j->filter, a, b, c, d, e, j->weighted);
-    BRIO_REQUIRE(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the sphere of tetrahedron %zu (%u %u %u %u)", far,
-                 tet, v[0], v[1], v[2], v[3]);
+    BRIO_REQUIRE(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the sphere of tetrahedron %zu (%u %u %u %u)",
+                 far, tet, v[0], v[1], v[2], v[3]);
     if (sign == 0 && brio_insphere_tie(&j->filter, a, b, c, d, e) > 0) j->canonical = false;
 done:
     return status;

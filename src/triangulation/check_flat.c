@@ -11,9 +11,12 @@
 /* Extends `count` records in general position by the first one off their hull. */
 static bool extends(const brio_record *r, const size_t corner[4], int count, const double *p) {
     switch (count) {
-    case 1: return !brio_same_position(r[corner[0]], p);
-    case 2: return !brio_collinear(r[corner[0]], r[corner[1]], p);
-    default: return brio_orient3d(r[corner[0]], r[corner[1]], r[corner[2]], p) != 0;
+    case 1:
+        return !brio_same_position(r[corner[0]], p);
+    case 2:
+        return !brio_collinear(r[corner[0]], r[corner[1]], p);
+    default:
+        return brio_orient3d(r[corner[0]], r[corner[1]], r[corner[2]], p) != 0;
     }
 }
 

@@ -22,7 +22,8 @@ bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t t
     return (sign ? sign : brio_insphere_tie(f, a, b, c, d, p)) > 0;
 }
 
-static unsigned conflicts_plain(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH], const double *p) {
+static unsigned conflicts_plain(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH],
+                                const double *p) {
     unsigned mask = 0;
     for (int i = 0; i < BRIO_BATCH; i++) mask |= (unsigned)brio_in_conflict(t, f, tets[i], p, false) << i;
     return mask;
@@ -38,7 +39,7 @@ static unsigned conflicts_plain_weighted(const brio_tetrahedra *t, brio_filter *
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 
-#define AVX2 __attribute__((target("avx2,fma")))
+#define AVX2        __attribute__((target("avx2,fma")))
 #define AVX2_INLINE static inline __attribute__((always_inline, target("avx2,fma")))
 
 typedef __m256d lanes; /* one number of each of the four tetrahedra; + - * act on each lane */
@@ -49,8 +50,12 @@ typedef struct {
     lanes infinite; /* mask */
 } rows;
 
-AVX2_INLINE lanes all(double x) { return _mm256_set1_pd(x); }
-AVX2_INLINE lanes magnitude(lanes x) { return _mm256_andnot_pd(all(-0.0), x); }
+AVX2_INLINE lanes all(double x) {
+    return _mm256_set1_pd(x);
+}
+AVX2_INLINE lanes magnitude(lanes x) {
+    return _mm256_andnot_pd(all(-0.0), x);
+}
 
 /* Loads slot s of the four tetrahedra and transposes the records into lanes. */
 AVX2_INLINE void load_slot(const brio_tetrahedra *t, const uint32_t tets[BRIO_BATCH], int s, lanes out[4]) {
@@ -144,7 +149,8 @@ AVX2_INLINE unsigned decide(lanes det, lanes bound, unsigned *known) {
 }
 
 AVX2_INLINE lanes largest(const lanes v[4]) {
-    return _mm256_max_pd(_mm256_max_pd(magnitude(v[0]), magnitude(v[1])), _mm256_max_pd(magnitude(v[2]), magnitude(v[3])));
+    return _mm256_max_pd(_mm256_max_pd(magnitude(v[0]), magnitude(v[1])),
+                         _mm256_max_pd(magnitude(v[2]), magnitude(v[3])));
 }
 
 /* A bound of the permanent of each lane. */
@@ -172,7 +178,9 @@ AVX2_INLINE dd renormalised(lanes a, lanes b) {
     lanes s = a + b;
     return (dd){s, b - (s - a)};
 }
-AVX2_INLINE dd difference(lanes a, lanes b) { return two_sum(a, all(0) - b); }
+AVX2_INLINE dd difference(lanes a, lanes b) {
+    return two_sum(a, all(0) - b);
+}
 AVX2_INLINE dd multiply(dd x, dd y) {
     lanes p = x.hi * y.hi, e = _mm256_fmsub_pd(x.hi, y.hi, p);
     return renormalised(p, e + (x.hi * y.lo + x.lo * y.hi));
@@ -181,8 +189,12 @@ AVX2_INLINE dd add(dd x, dd y) {
     dd s = two_sum(x.hi, y.hi);
     return renormalised(s.hi, s.lo + (x.lo + y.lo));
 }
-AVX2_INLINE dd subtract(dd x, dd y) { return add(x, (dd){all(0) - y.hi, all(0) - y.lo}); }
-AVX2_INLINE dd minor2(dd x, dd y, dd z, dd w) { return subtract(multiply(x, y), multiply(z, w)); }
+AVX2_INLINE dd subtract(dd x, dd y) {
+    return add(x, (dd){all(0) - y.hi, all(0) - y.lo});
+}
+AVX2_INLINE dd minor2(dd x, dd y, dd z, dd w) {
+    return subtract(multiply(x, y), multiply(z, w));
+}
 AVX2_INLINE dd masked(dd x, lanes drop, double value) {
     return (dd){_mm256_blendv_pd(x.hi, all(value), drop), _mm256_andnot_pd(drop, x.lo)};
 }
@@ -220,9 +232,10 @@ AVX2 static __attribute__((noinline)) unsigned settle_lattice(const brio_tetrahe
 }
 
 /* Stages beyond the static bound, for the lanes not yet known. */
-AVX2 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH],
-                                                      const double *p, const corners *c, const rows *r, lanes det,
-                                                      unsigned known, const bool weighted) {
+AVX2 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f,
+                                                      const uint32_t tets[BRIO_BATCH], const double *p,
+                                                      const corners *c, const rows *r, lanes det, unsigned known,
+                                                      const bool weighted) {
     lanes floor = _mm256_blendv_pd(all(f->insphere_floor), all(f->orient_floor), r->infinite);
     lanes most = permanent(c, r, weighted);
     unsigned mask = decide(det, all(DOUBLE_UNIT) * most + floor, &known);
@@ -234,8 +247,8 @@ AVX2 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, 
     return mask;
 }
 
-AVX2_INLINE unsigned conflicts(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH], const double *p,
-                               const bool weighted) {
+AVX2_INLINE unsigned conflicts(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH],
+                               const double *p, const bool weighted) {
     corners c;
     rows r;
     unsigned known = 0;
@@ -250,7 +263,8 @@ AVX2_INLINE unsigned conflicts(const brio_tetrahedra *t, brio_filter *f, const u
     return mask | settle(t, f, tets, p, &c, &r, det, known, weighted);
 }
 
-AVX2 static unsigned conflicts_avx2(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH], const double *p) {
+AVX2 static unsigned conflicts_avx2(const brio_tetrahedra *t, brio_filter *f, const uint32_t tets[BRIO_BATCH],
+                                    const double *p) {
     return conflicts(t, f, tets, p, false);
 }
 
@@ -267,6 +281,8 @@ brio_conflicts_fn brio_conflicts_choose(bool weighted) {
 
 #else
 
-brio_conflicts_fn brio_conflicts_choose(bool weighted) { return weighted ? conflicts_plain_weighted : conflicts_plain; }
+brio_conflicts_fn brio_conflicts_choose(bool weighted) {
+    return weighted ? conflicts_plain_weighted : conflicts_plain;
+}
 
 #endif

@@ -11,7 +11,8 @@
 enum { PROGRESS_EVERY = 8192 };
 
 brio_options brio_options_default(void) {
-    return (brio_options){.order = BRIO_ORDER_BRIO, .round_ratio = 0.125, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
+    return (brio_options){
+        .order = BRIO_ORDER_BRIO, .round_ratio = 0.125, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
 }
 
 static brio_status check_options(brio_context *ctx, size_t n, const brio_options *o) {
@@ -112,8 +113,7 @@ static brio_status insert_all(brio_kernel *k) {
     BRIO_TRY(brio_kernel_start(k));
     if (k->dimension <= 0) goto done;
     for (size_t p = (size_t)k->dimension + 1; p < k->num_points; p++) {
-        if (p % PROGRESS_EVERY == 0)
-            BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)k->num_points));
+        if (p % PROGRESS_EVERY == 0) BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)k->num_points));
         BRIO_TRY(brio_kernel_insert(k, (uint32_t)p));
     }
 done:
@@ -149,8 +149,7 @@ static brio_status triangulation_new(brio_kernel *k, brio_triangulation **out) {
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
     BRIO_TRY(BRIO_ALLOC(ctx, t->representative, k->num_points));
-    for (size_t p = 0; p < k->num_points; p++)
-        t->representative[k->caller[p]] = k->caller[k->representative[p]];
+    for (size_t p = 0; p < k->num_points; p++) t->representative[k->caller[p]] = k->caller[k->representative[p]];
     t->vertex = k->t.vertex;
     t->mate = k->t.mate;
     t->stats = k->stats;
@@ -190,7 +189,15 @@ void brio_triangulation_free(brio_triangulation *t) {
     brio_release(t->ctx, t);
 }
 
-const brio_stats *brio_triangulation_stats(const brio_triangulation *t) { return &t->stats; }
-const uint32_t *brio_triangulation_tetrahedra(const brio_triangulation *t) { return t->vertex; }
-const uint32_t *brio_triangulation_mates(const brio_triangulation *t) { return t->mate; }
-const uint32_t *brio_triangulation_representatives(const brio_triangulation *t) { return t->representative; }
+const brio_stats *brio_triangulation_stats(const brio_triangulation *t) {
+    return &t->stats;
+}
+const uint32_t *brio_triangulation_tetrahedra(const brio_triangulation *t) {
+    return t->vertex;
+}
+const uint32_t *brio_triangulation_mates(const brio_triangulation *t) {
+    return t->mate;
+}
+const uint32_t *brio_triangulation_representatives(const brio_triangulation *t) {
+    return t->representative;
+}

@@ -28,12 +28,12 @@ typedef struct {
     size_t tets_capacity, outside_capacity, border_capacity;
     uint32_t *cavity_vertex; /* the vertices of all tets, with repetitions; weighted only */
     size_t cavity_vertex_capacity;
-    uint8_t *local;      /* number of a vertex on the border, NO_LOCAL elsewhere */
-    uint32_t *numbered;  /* the vertices that have a number */
+    uint8_t *local;     /* number of a vertex on the border, NO_LOCAL elsewhere */
+    uint32_t *numbered; /* the vertices that have a number */
     size_t num_numbered, numbered_capacity;
-    uint32_t *table;     /* facet handle of each directed edge of the border */
+    uint32_t *table; /* facet handle of each directed edge of the border */
     size_t table_capacity;
-    uint64_t *edge_key;  /* hash table of directed edges, for large borders */
+    uint64_t *edge_key; /* hash table of directed edges, for large borders */
     uint32_t *edge_facet;
     size_t hash_capacity, hash_facet_capacity;
     brio_created *created; /* one for each border facet */
@@ -46,11 +46,11 @@ typedef struct {
     brio_context *ctx;
     brio_tetrahedra t;
     size_t capacity, max_tetrahedra;
-    uint8_t *state;          /* of each tetrahedron: brio_tet_state */
-    uint32_t *unused;        /* slots of destroyed tetrahedra */
+    uint8_t *state;   /* of each tetrahedron: brio_tet_state */
+    uint32_t *unused; /* slots of destroyed tetrahedra */
     size_t num_unused, unused_capacity;
-    brio_record *record;     /* the points in insertion order, then up to two apexes, then room for the infinite vertex */
-    uint32_t *caller;        /* index of each record's point in the caller's arrays */
+    brio_record *record; /* the points in insertion order, then up to two apexes, then room for the infinite vertex */
+    uint32_t *caller;    /* index of each record's point in the caller's arrays */
     uint32_t *representative; /* of each record: itself, or a record that took its place */
     size_t num_points;
     bool weighted;
@@ -58,8 +58,8 @@ typedef struct {
     brio_filter filter;
     brio_conflicts_fn conflicts;
     brio_walk walk;
-    unsigned long_walks;     /* how often of late a walk was given up, see insert.c */
-    brio_star star;          /* workspace of the descent; its marks are the states */
+    unsigned long_walks; /* how often of late a walk was given up, see insert.c */
+    brio_star star;      /* workspace of the descent; its marks are the states */
     brio_cavity cavity;
     brio_stats stats;
 } brio_kernel;

@@ -9,6 +9,8 @@
  * neighbor search. ALENEX 2010, for the descent. */
 #include "triangulation/kernel.h"
 
+enum { MOST_OF_STAR = 512 }; /* tetrahedra to look at round one vertex, so that the apex of a cone costs no more */
+
 typedef struct {
     uint32_t vertex, tet; /* a vertex and a tetrahedron that has it */
     double square;        /* its squared distance from the point */
@@ -42,7 +44,7 @@ brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) 
     for (size_t b = 0; b < k->cavity.num_border; b++) offer(&k->t, &best, k->cavity.created[b].tet, p);
     for (uint32_t from = k->t.infinite; best.vertex != from && best.square > 0;) {
         from = best.vertex;
-        brio_status status = brio_star_collect(k->ctx, &k->t, from, best.tet, &k->star);
+        brio_status status = brio_star_collect(k->ctx, &k->t, from, best.tet, MOST_OF_STAR, &k->star);
         if (status != BRIO_OK) return status;
         for (size_t n = 0; n < k->star.size; n++) offer(&k->t, &best, k->star.tet[n], p);
         k->walk.steps++;

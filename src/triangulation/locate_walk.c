@@ -7,7 +7,9 @@
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "triangulation/locate.h"
 
-static inline uint32_t next_random(uint32_t x) { return x * 1664525u + 1013904223u; }
+static inline uint32_t next_random(uint32_t x) {
+    return x * 1664525u + 1013904223u;
+}
 
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps) {

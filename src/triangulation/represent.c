@@ -8,41 +8,15 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "triangulation/kernel.h"
-#include "triangulation/star.h"
+#include "triangulation/nearest_vertex.h"
 
 typedef struct {
     brio_kernel *k;
     uint32_t *vertex_tet; /* a tetrahedron of each vertex */
-    brio_star star;
+    brio_nearest nearest;
     uint32_t *hidden;
     size_t num_hidden;
 } workspace;
-
-static bool is_point(const brio_kernel *k, uint32_t v) { return v < k->num_points; }
-
-/* The nearer of two vertices to x by power distance, ties lexicographic. */
-static uint32_t nearer(const brio_kernel *k, const double *x, uint32_t u, uint32_t v) {
-    if (u == k->t.infinite || !is_point(k, u)) return v;
-    if (v == k->t.infinite || !is_point(k, v)) return u;
-    int sign = brio_power_compare(x, k->record[u], k->record[v]);
-    if (sign == 0) sign = brio_lexicographic(k->record[u], k->record[v]);
-    return sign < 0 ? u : v;
-}
-
-static brio_status nearest_vertex(workspace *w, uint32_t tet, const double *x, uint32_t *best) {
-    brio_kernel *k = w->k;
-    const uint32_t *v = k->t.vertex + 4 * (size_t)tet;
-    *best = nearer(k, x, nearer(k, x, v[0], v[1]), nearer(k, x, v[2], v[3]));
-    for (uint32_t from = k->t.infinite; from != *best;) {
-        from = *best;
-        brio_status status = brio_star_collect(k->ctx, &k->t, from, w->vertex_tet[from], &w->star);
-        if (status != BRIO_OK) return status;
-        for (size_t n = 0; n < w->star.size; n++)
-            for (size_t i = 0; i < 4; i++)
-                *best = nearer(k, x, *best, k->t.vertex[4 * (size_t)w->star.tet[n] + i]);
-    }
-    return BRIO_OK;
-}
 
 /* Follows the points that took each other's place to one that is still a vertex. */
 static uint32_t alive(const brio_kernel *k, uint32_t p) {
@@ -63,7 +37,7 @@ static brio_status represent_one(workspace *w, uint32_t p) {
             return BRIO_OK;
         }
     w->hidden[w->num_hidden++] = p;
-    return nearest_vertex(w, tet, x, &k->representative[p]);
+    return brio_nearest_vertex(&w->nearest, tet, x, &k->representative[p]);
 }
 
 /* By position; at one position the heaviest first, then the lowest index. */
@@ -93,18 +67,18 @@ static brio_status represent_weighted(brio_kernel *k) {
     size_t not_vertices = 0;
     for (uint32_t p = 0; p < k->num_points; p++) not_vertices += k->representative[p] != p;
     if (!not_vertices) return BRIO_OK;
-    BRIO_TRY(brio_star_new(k->ctx, k->t.count, &w.star));
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.hidden, not_vertices));
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.vertex_tet, k->num_points + 3));
     for (size_t t = 0; t < k->t.count; t++)
         if (k->state[t] == TET_PLAIN)
             for (int i = 0; i < 4; i++) w.vertex_tet[k->t.vertex[4 * t + (size_t)i]] = (uint32_t)t;
+    BRIO_TRY(brio_nearest_new(k, w.vertex_tet, &w.nearest));
     for (uint32_t p = 0; p < k->num_points; p++)
         if (k->representative[p] != p) BRIO_TRY(represent_one(&w, p));
     count_hidden(&w);
 done:
     brio_release(k->ctx, w.vertex_tet);
-    brio_star_free(k->ctx, &w.star);
+    brio_nearest_free(&w.nearest);
     brio_release(k->ctx, w.hidden);
     return status;
 }

@@ -13,14 +13,14 @@ void brio_star_free(brio_context *ctx, brio_star *star) {
     *star = (brio_star){0};
 }
 
-brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint32_t v, uint32_t first,
+brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint32_t v, uint32_t first, size_t most,
                               brio_star *star) {
     brio_status status = BRIO_OK;
     star->size = 0;
     BRIO_TRY(BRIO_RESERVE(ctx, star->tet, star->capacity, 1));
     star->tet[star->size++] = first;
     star->mark[first] = 1;
-    for (size_t n = 0; n < star->size; n++) {
+    for (size_t n = 0; n < star->size && star->size < most; n++) {
         size_t tet = star->tet[n];
         BRIO_TRY(BRIO_RESERVE(ctx, star->tet, star->capacity, star->size + 4));
         for (size_t f = 4 * tet; f < 4 * tet + 4; f++) {

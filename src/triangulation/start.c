@@ -22,9 +22,12 @@ static void swap_records(brio_kernel *k, size_t i, size_t j) {
 static bool off_hull(brio_kernel *k, size_t i, int count) {
     const brio_record *r = k->record;
     switch (count) {
-    case 1: return !brio_same_position(r[0], r[i]);
-    case 2: return !brio_collinear(r[0], r[1], r[i]);
-    default: return brio_orient3d_sign(&k->filter, r[0], r[1], r[2], r[i]) != 0;
+    case 1:
+        return !brio_same_position(r[0], r[i]);
+    case 2:
+        return !brio_collinear(r[0], r[1], r[i]);
+    default:
+        return brio_orient3d_sign(&k->filter, r[0], r[1], r[2], r[i]) != 0;
     }
 }
 

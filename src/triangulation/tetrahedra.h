@@ -27,9 +27,15 @@ typedef struct {
     const brio_record *record;
 } brio_tetrahedra;
 
-static inline uint32_t brio_facet_of(uint32_t tet, int i) { return 4 * tet + (uint32_t)i; }
-static inline uint32_t brio_tet_of(uint32_t facet) { return facet >> 2; }
-static inline int brio_slot_of(uint32_t facet) { return (int)(facet & 3); }
+static inline uint32_t brio_facet_of(uint32_t tet, int i) {
+    return 4 * tet + (uint32_t)i;
+}
+static inline uint32_t brio_tet_of(uint32_t facet) {
+    return facet >> 2;
+}
+static inline int brio_slot_of(uint32_t facet) {
+    return (int)(facet & 3);
+}
 
 static inline bool brio_is_infinite(const brio_tetrahedra *t, uint32_t tet) {
     return t->vertex[4 * (size_t)tet + 3] == t->infinite;

@@ -17,7 +17,7 @@ static int harness_failures, harness_checks;
         if (!(condition)) {                                                                                            \
             if (harness_failures++ < 20) {                                                                             \
                 fprintf(stderr, "%s:%d: %s: ", __FILE__, __LINE__, #condition);                                        \
-                fprintf(stderr, " " __VA_ARGS__);                                                                       \
+                fprintf(stderr, " " __VA_ARGS__);                                                                      \
                 fputc('\n', stderr);                                                                                   \
             }                                                                                                          \
         }                                                                                                              \

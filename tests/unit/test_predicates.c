@@ -41,7 +41,9 @@ static wide oracle_insphere(const integer_point *p[5], const wide lift[5]) {
     return -sum;
 }
 
-static int sign_of(wide x) { return (x > 0) - (x < 0); }
+static int sign_of(wide x) {
+    return (x > 0) - (x < 0);
+}
 
 static int lexicographic(const integer_point *p, const integer_point *q) {
     if (p->x != q->x) return p->x < q->x ? -1 : 1;
@@ -68,7 +70,8 @@ static void check_five(const integer_point *p[5], bool weighted, double scale) {
     EXPECT(brio_insphere_perturbed(r[0], r[1], r[2], r[3], r[4], weights) == ties);
 }
 
-static const int QUERY_LAST[5][5] = {{0, 1, 2, 3, 4}, {0, 1, 2, 4, 3}, {0, 1, 3, 4, 2}, {0, 2, 3, 4, 1}, {1, 2, 3, 4, 0}};
+static const int QUERY_LAST[5][5] = {
+    {0, 1, 2, 3, 4}, {0, 1, 2, 4, 3}, {0, 1, 3, 4, 2}, {0, 2, 3, 4, 1}, {1, 2, 3, 4, 0}};
 
 /* Each of five points as the query, in both orders of the others (one of which is positive, unless flat). */
 static void check_subset(const integer_point *p, const int index[5], bool weighted, double scale) {

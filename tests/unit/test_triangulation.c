@@ -13,7 +13,9 @@ typedef struct {
     bool is_vertex[32];
 } brute;
 
-static bool same_position(const double *p, const double *q) { return p[0] == q[0] && p[1] == q[1] && p[2] == q[2]; }
+static bool same_position(const double *p, const double *q) {
+    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+}
 
 /* Whether j represents i's position before i does: heavier, or as heavy and earlier. */
 static bool is_duplicate(const double *p, const double *w, size_t n, size_t i) {
@@ -31,7 +33,8 @@ static bool empty_sphere(const double *p, const double *w, size_t n, const size_
         double five[5] = {0};
         if (w)
             for (int i = 0; i < 5; i++) five[i] = w[i < 4 ? q[i] : e];
-        if (brio_insphere_perturbed(p + 3 * q[0], p + 3 * q[1], p + 3 * q[2], p + 3 * q[3], p + 3 * e, w ? five : NULL) > 0)
+        if (brio_insphere_perturbed(p + 3 * q[0], p + 3 * q[1], p + 3 * q[2], p + 3 * q[3], p + 3 * e,
+                                    w ? five : NULL) > 0)
             return false;
     }
     return true;
@@ -77,7 +80,8 @@ static void expect_representatives(const double *p, const double *w, size_t n, c
             double d = power_distance(p, w, i, v), best = power_distance(p, w, i, r[i]);
             EXPECT(!same_position(p + 3 * i, p + 3 * v) || r[i] == v, "duplicate %zu of %zu got %u", i, v, r[i]);
             if (same_position(p + 3 * i, p + 3 * r[i])) continue;
-            EXPECT(best < d || (best == d && lexicographic(p + 3 * r[i], p + 3 * v) <= 0), "%zu: %u not %zu", i, r[i], v);
+            EXPECT(best < d || (best == d && lexicographic(p + 3 * r[i], p + 3 * v) <= 0), "%zu: %u not %zu", i, r[i],
+                   v);
         }
     }
 }
@@ -175,7 +179,8 @@ static void output_order_repeats(void) {
     brio_triangulation *s, *t;
     EXPECT(brio_delaunay(ctx, p, NULL, 2000, NULL, &s) == BRIO_OK);
     EXPECT(brio_delaunay(ctx, p, NULL, 2000, NULL, &t) == BRIO_OK);
-    size_t bytes = 4 * sizeof(uint32_t) * (brio_triangulation_stats(s)->tetrahedra + brio_triangulation_stats(s)->hull_facets);
+    size_t bytes =
+        4 * sizeof(uint32_t) * (brio_triangulation_stats(s)->tetrahedra + brio_triangulation_stats(s)->hull_facets);
     EXPECT(!memcmp(brio_triangulation_tetrahedra(s), brio_triangulation_tetrahedra(t), bytes));
     EXPECT(!memcmp(brio_triangulation_mates(s), brio_triangulation_mates(t), bytes));
     brio_triangulation_free(s);
@@ -200,7 +205,8 @@ static void many_points_hidden_at_once(void) {
     brio_triangulation *t;
     EXPECT(brio_delaunay(ctx, p, w, 1001, &o, &t) == BRIO_OK);
     const brio_stats *s = brio_triangulation_stats(t);
-    EXPECT(s->vertices == 489 && s->hidden == 512 && s->tetrahedra == 972, "%zu %zu %zu", s->vertices, s->hidden, s->tetrahedra);
+    EXPECT(s->vertices == 489 && s->hidden == 512 && s->tetrahedra == 972, "%zu %zu %zu", s->vertices, s->hidden,
+           s->tetrahedra);
     EXPECT(brio_triangulation_check(ctx, t, p, w, 1001) == BRIO_OK, "%s", brio_message(ctx));
     brio_triangulation_free(t);
     brio_context_free(ctx);
@@ -246,7 +252,8 @@ static void expect_flat(const double *p, const double *w, size_t n, int dimensio
     const brio_stats *s = brio_triangulation_stats(t);
     EXPECT(s->dimension == dimension && s->vertices == vertices && s->duplicates == duplicates && s->hidden == hidden &&
                s->tetrahedra == 0 && s->hull_facets == 0,
-           "dimension %d: %zu vertices, %zu duplicates, %zu hidden", s->dimension, s->vertices, s->duplicates, s->hidden);
+           "dimension %d: %zu vertices, %zu duplicates, %zu hidden", s->dimension, s->vertices, s->duplicates,
+           s->hidden);
     EXPECT(brio_triangulation_check(ctx, t, p, w, n) == BRIO_OK, "%s", brio_message(ctx));
     brio_triangulation_free(t);
     brio_context_free(ctx);
@@ -429,7 +436,8 @@ static void other_tie_breaks_pass_but_are_not_canonical(void) {
     brio_context *ctx = new_context();
     int sum = 0;
     for (int axis = 0; axis < 3; axis++) {
-        uint32_t a = (uint32_t)(2 * axis), b = a + 1, ring[4] = {(a + 2) % 6, (a + 4) % 6, (a + 3) % 6, (a + 5) % 6}, v[16];
+        uint32_t a = (uint32_t)(2 * axis), b = a + 1, ring[4] = {(a + 2) % 6, (a + 4) % 6, (a + 3) % 6, (a + 5) % 6},
+                 v[16];
         int canonical = 0;
         for (uint32_t i = 0; i < 4; i++) {
             uint32_t tet[4] = {a, b, ring[i], ring[(i + 1) % 4]};

@@ -1,0 +1,19 @@
+#!/bin/sh
+# demo.sh BRIO FOLDER: a simulated scan of a sculpture of genus 3, its surface, and how far that is from the truth.
+set -eu
+
+brio=$1
+out=$2
+points=60000
+
+mkdir -p "$out"
+echo "== a scan of about $points points from 12 views, and the surface that is scanned"
+"$brio" generate scan -n $points --truth "$out/truth.ply" -o "$out/scan.ply"
+echo
+echo "== the surface through the points, with its certificate"
+"$brio" surface "$out/scan.ply" -o "$out/demo.ply"
+echo
+echo "== the surface held against the truth"
+"$brio" compare "$out/demo.ply" "$out/truth.ply"
+echo
+echo "Written: $out/scan.ply, $out/demo.ply, $out/truth.ply"

@@ -1,0 +1,76 @@
+#!/bin/sh
+# setup.sh build|check: sees to the tools that building, or also testing, needs.
+# What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
+set -eu
+
+cmake_least=3.20
+python=/usr/bin/python3
+
+has() { command -v "$1" >/dev/null 2>&1; }
+
+has_cmake() {
+    has cmake || return 1
+    found=$(cmake --version | sed -n '1s/[^0-9]*\([0-9.]*\).*/\1/p')
+    [ "$(printf '%s\n%s\n' "$cmake_least" "$found" | sort -V | head -n 1)" = "$cmake_least" ]
+}
+
+# A compiler without the C library's headers is no use, so that a program is tried.
+has_compiler() {
+    compiler=${CC:-cc}
+    has "$compiler" || return 1
+    folder=$(mktemp -d)
+    printf '#include <math.h>\nint main(void) { return 0; }\n' >"$folder/try.c"
+    works=0
+    "$compiler" -o "$folder/try" "$folder/try.c" -lm >/dev/null 2>&1 || works=1
+    rm -rf "$folder"
+    return $works
+}
+
+has_python_with() { [ -x $python ] && $python -c "import $1" >/dev/null 2>&1; }
+
+# The Debian packages that are missing for a purpose.
+missing() {
+    has_cmake || echo cmake
+    has make || echo make
+    has_compiler || echo gcc libc6-dev
+    [ "$1" = check ] || return 0
+    [ -x $python ] || echo python3
+    has_python_with numpy || echo python3-numpy
+    has_python_with scipy || echo python3-scipy
+    has clang-format || echo clang-format
+    has pkg-config || echo pkg-config
+}
+
+install() {
+    export DEBIAN_FRONTEND=noninteractive
+    log=$(mktemp)
+    if apt-get update >"$log" 2>&1 && apt-get install -y --no-install-recommends "$@" >>"$log" 2>&1; then
+        rm -f "$log"
+    else
+        tail -n 20 "$log" >&2
+        rm -f "$log"
+    fi
+}
+
+purpose=${1:-build}
+case $purpose in
+build | check) ;;
+*)
+    echo "usage: setup.sh build|check" >&2
+    exit 1
+    ;;
+esac
+
+packages=$(missing "$purpose" | xargs)
+[ -n "$packages" ] || exit 0
+if [ "$(id -u)" = 0 ] && has apt-get; then
+    echo "setup: installing $packages"
+    # shellcheck disable=SC2086
+    install $packages
+    packages=$(missing "$purpose" | xargs)
+    [ -n "$packages" ] || exit 0
+fi
+echo "setup: these are needed and missing: $packages" >&2
+echo "setup: on Debian or Ubuntu: sudo apt-get install $packages" >&2
+case " $packages " in *" cmake "*) echo "setup: cmake has to be $cmake_least or later" >&2 ;; esac
+exit 1

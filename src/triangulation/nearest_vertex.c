@@ -1,0 +1,109 @@
+/* The vertex of least power distance, by descent along edges: in a regular triangulation a vertex with no nearer neighbour is the
+ * nearest of all.
+ *
+ * Samples of a sphere hide thousands of poles behind a few vertices with as many neighbours each. Looking at the whole star for every hidden
+ * point would be quadratic. So a look at a large star leaves a memory: the difference of the power distances to vertex v and to a neighbour u
+ * changes by at most 2 |u - v| a unit of length, so within some radius of the point only those neighbours matter (the rivals) whose
+ * distance hardly differed. */
+#include "triangulation/nearest_vertex.h"
+#include "base/memory.h"
+#include <string.h>
+
+enum { LARGE_STAR = 256 };
+
+/* Differences below this share of their terms are not trusted to tell more than rounding errors do. */
+static const double TRUSTED = 1e-9;
+
+brio_status brio_nearest_new(brio_kernel *k, const uint32_t *vertex_tet, brio_nearest *out) {
+    memset(out, 0, sizeof *out);
+    out->k = k;
+    out->vertex_tet = vertex_tet;
+    for (int i = 0; i < BRIO_NEAREST_MEMORIES; i++) out->memory[i].vertex = k->t.infinite;
+    return brio_star_new(k->ctx, k->t.count, &out->star);
+}
+
+void brio_nearest_free(brio_nearest *n) {
+    if (!n->k) return;
+    for (int i = 0; i < BRIO_NEAREST_MEMORIES; i++) brio_release(n->k->ctx, n->memory[i].rival);
+    brio_star_free(n->k->ctx, &n->star);
+}
+
+static bool is_point(const brio_kernel *k, uint32_t v) {
+    return v < k->num_points;
+}
+
+/* The nearer of two vertices to x by power distance, ties lexicographic. */
+static uint32_t nearer(const brio_kernel *k, const double *x, uint32_t u, uint32_t v) {
+    if (u == v || !is_point(k, u)) return v;
+    if (!is_point(k, v)) return u;
+    int sign = brio_power_compare(x, k->record[u], k->record[v]);
+    if (sign == 0) sign = brio_lexicographic(k->record[u], k->record[v]);
+    return sign < 0 ? u : v;
+}
+
+static double square_distance(const double *p, const double *q) {
+    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+    return x * x + y * y + z * z;
+}
+
+/* Holds neighbour u against vertex m->vertex as seen from m->centre: a rival, or a bound of the radius. */
+static brio_status remember(brio_nearest *n, brio_nearest_memory *m, uint32_t u) {
+    const double *a = n->k->record[m->vertex], *b = n->k->record[u];
+    double to_a = square_distance(m->centre, a), to_b = square_distance(m->centre, b);
+    double margin = to_b - b[3] - (to_a - a[3]);
+    if (margin > TRUSTED * (to_a + to_b + fabs(a[3]) + fabs(b[3]))) {
+        m->radius = fmin(m->radius, margin / (4 * sqrt(square_distance(a, b))));
+        return BRIO_OK;
+    }
+    brio_status status = BRIO_RESERVE(n->k->ctx, m->rival, m->capacity, m->num_rivals + 1);
+    if (status == BRIO_OK) m->rival[m->num_rivals++] = u;
+    return status;
+}
+
+static brio_status remember_star(brio_nearest *n, uint32_t v, const double *x) {
+    brio_nearest_memory *m = &n->memory[v % BRIO_NEAREST_MEMORIES];
+    brio_status status = BRIO_OK;
+    m->vertex = v;
+    memcpy(m->centre, x, sizeof m->centre);
+    m->radius = INFINITY;
+    m->num_rivals = 0;
+    for (size_t i = 0; i < 4 * n->star.size; i++) {
+        uint32_t u = n->k->t.vertex[4 * (size_t)n->star.tet[i / 4] + i % 4];
+        if (u != v && is_point(n->k, u)) BRIO_TRY(remember(n, m, u));
+    }
+done:
+    if (status != BRIO_OK) m->vertex = n->k->t.infinite;
+    return status;
+}
+
+static const brio_nearest_memory *recall(const brio_nearest *n, uint32_t v, const double *x) {
+    const brio_nearest_memory *m = &n->memory[v % BRIO_NEAREST_MEMORIES];
+    return m->vertex == v && sqrt(square_distance(x, m->centre)) < m->radius ? m : NULL;
+}
+
+/* The nearest of a vertex and its neighbours. */
+static brio_status look_around(brio_nearest *n, const double *x, uint32_t v, uint32_t *best) {
+    brio_kernel *k = n->k;
+    const brio_nearest_memory *m = recall(n, v, x);
+    *best = v;
+    if (m) {
+        for (size_t i = 0; i < m->num_rivals; i++) *best = nearer(k, x, *best, m->rival[i]);
+        return BRIO_OK;
+    }
+    brio_status status = brio_star_collect(k->ctx, &k->t, v, n->vertex_tet[v], SIZE_MAX, &n->star);
+    if (status != BRIO_OK) return status;
+    for (size_t i = 0; i < 4 * n->star.size; i++)
+        *best = nearer(k, x, *best, k->t.vertex[4 * (size_t)n->star.tet[i / 4] + i % 4]);
+    return n->star.size > LARGE_STAR ? remember_star(n, v, x) : BRIO_OK;
+}
+
+brio_status brio_nearest_vertex(brio_nearest *n, uint32_t tet, const double *x, uint32_t *best) {
+    const uint32_t *v = n->k->t.vertex + 4 * (size_t)tet;
+    uint32_t next = nearer(n->k, x, nearer(n->k, x, v[0], v[1]), nearer(n->k, x, v[2], v[3]));
+    do {
+        *best = next;
+        brio_status status = look_around(n, x, *best, &next);
+        if (status != BRIO_OK) return status;
+    } while (next != *best);
+    return BRIO_OK;
+}

@@ -1,0 +1,61 @@
+#!/bin/sh
+# check_install.sh CMAKE CC ROOT static|shared: installs the library to a folder of its own, moves that, and builds and
+# runs a program with what is found there: by CMake's find_package and by pkg-config.
+set -eu
+
+cmake=$1
+cc=$2
+root=$3
+kind=$4
+consumer=$root/tests/install
+
+folder=$(mktemp -d)
+prefix=$folder/moved
+
+finish() {
+    status=$?
+    [ $status = 0 ] || tail -n 40 "$folder/log"
+    rm -rf "$folder"
+    exit $status
+}
+trap finish EXIT
+trap 'exit 1' INT TERM
+
+step() {
+    echo "-- $*"
+    : >"$folder/log" # of this step only
+}
+
+expect_output() {
+    output=$("$@")
+    [ "$output" = "12 tetrahedra" ] && return
+    echo "$1 printed \"$output\", expected \"12 tetrahedra\"" >&2
+    exit 1
+}
+
+step "build and install ($kind)"
+[ "$kind" = shared ] && shared=ON || shared=OFF
+"$cmake" -S "$root" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=$shared \
+    -DBRIO_TESTS=OFF -DCMAKE_INSTALL_PREFIX="$folder/installed" >>"$folder/log" 2>&1
+"$cmake" --build "$folder/build" >>"$folder/log" 2>&1
+"$cmake" --install "$folder/build" >>"$folder/log" 2>&1
+mv "$folder/installed" "$prefix"
+"$prefix/bin/brio" --version
+
+step "find_package"
+"$cmake" -S "$consumer" -B "$folder/found" -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$prefix" >>"$folder/log" 2>&1
+"$cmake" --build "$folder/found" >>"$folder/log" 2>&1
+expect_output "$folder/found/consumer"
+
+step "pkg-config"
+if ! command -v pkg-config >/dev/null 2>&1; then
+    echo "skipped: install.$kind, the part with pkg-config: there is no such program"
+    exit 0
+fi
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name brio.pc)")
+export PKG_CONFIG_PATH
+# shellcheck disable=SC2046
+"$cc" -o "$folder/configured" "$consumer/consumer.c" $(pkg-config --cflags --libs brio)
+LD_LIBRARY_PATH=$(pkg-config --variable=libdir brio)
+export LD_LIBRARY_PATH
+expect_output "$folder/configured"
