@@ -165,7 +165,8 @@ typedef struct brio_triangulation brio_triangulation;
  *  sort buffer of 24 bytes a point before the first tetrahedron.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_CANCELLED.
- *  Based on: [Bowyer 1981], [Watson 1981], [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties. */
+ *  Based on: [Bowyer 1981], [Watson 1981], [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties.
+ *  */
 BRIO_API brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                    const brio_options *options, brio_triangulation **out);
 
@@ -176,8 +177,8 @@ BRIO_API const brio_stats *brio_triangulation_stats(const brio_triangulation *t)
 
 /** #T by 4 indices of points, #T = tetrahedra + hull_facets. The finite tetrahedra come first and are positive; an
  *  infinite tetrahedron has BRIO_INFINITE as its last vertex and the other three see the outside on their negative
- *  side ((a, b, c, x) is positive for x outside). The order is the same for every number of threads. View, valid until the
- *  triangulation is freed. */
+ *  side ((a, b, c, x) is positive for x outside). The order is the same for every number of threads. View, valid until
+ *  the triangulation is freed. */
 BRIO_API const uint32_t *brio_triangulation_tetrahedra(const brio_triangulation *t);
 
 /** #T by 4 facet handles: the mate of each facet. View. */
@@ -358,9 +359,9 @@ BRIO_API brio_format brio_format_of(const char *path);
 
 /** Reads a file. Vertices, polygons, tetrahedra, and every other scalar property of the vertices are kept; other
  *  elements are skipped. "-" reads standard input.
- *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (the message names file, line or byte offset, and what was expected),
- *  BRIO_ERR_NOT_FINITE (the first such point and how many there are), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
- *  BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (the message names file, line or byte offset, and what was
+ *  expected), BRIO_ERR_NOT_FINITE (the first such point and how many there are), BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
 
 typedef struct brio_write_options {
@@ -429,9 +430,10 @@ BRIO_API int brio_insphere(const double *a, const double *b, const double *c, co
 BRIO_API int brio_insphere_perturbed(const double *a, const double *b, const double *c, const double *d,
                                      const double *e, const double *weights);
 
-/** Circumcentre of a tetrahedron that is not flat or, with 4 weights, its orthocentre. A function of the set of points: the
- *  same bits for every order of them. Each coordinate is off by at most `*error` (may be NULL): at most 2^-44 of the centre's
- *  distance to the lexicographically first point, plus one rounding; higher precision is used where doubles do not reach it.
+/** Circumcentre of a tetrahedron that is not flat or, with 4 weights, its orthocentre. A function of the set of points:
+ *  the same bits for every order of them. Each coordinate is off by at most `*error` (may be NULL): at most 2^-44 of
+ *  the centre's distance to the lexicographically first point, plus one rounding; higher precision is used where
+ *  doubles do not reach it.
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT for a flat tetrahedron or a centre that doubles cannot hold. */
 BRIO_API brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d,
                                        const double *weights, double *centre, double *error);

@@ -9,8 +9,8 @@
 
 #include "base/context.h"
 
-/** Makes block hold count elements of `size` bytes, keeping what it held; NULL makes a new one. On failure *status tells
- *  and the old block stays. New bytes are not set. */
+/** Makes block hold count elements of `size` bytes, keeping what it held; NULL makes a new one. On failure *status
+ *  tells and the old block stays. New bytes are not set. */
 void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, brio_status *status);
 
 /** Frees a block; NULL is accepted. */

@@ -1,8 +1,9 @@
 /* The poles of samples.
  *
- * One pass over the tetrahedra offers each circumcentre to the four vertices as the farthest Voronoi vertex; a second one
- * offers it as the farthest on the other side, where the vector to it makes an obtuse angle with the vector to the first. Equal
- * distances are decided by the centre and then by the tetrahedron's own points, never by its place in memory.
+ * One pass over the tetrahedra offers each circumcentre to the four vertices as the farthest Voronoi vertex; a second
+ * one offers it as the farthest on the other side, where the vector to it makes an obtuse angle with the vector to the
+ * first. Equal distances are decided by the centre and then by the tetrahedron's own points, never by its place in
+ * memory.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.8. */
@@ -99,7 +100,8 @@ static int compare_for_sort(uint32_t s, uint32_t t, const void *user) {
     return compare_tets(user, s, t);
 }
 
-/* Sorts poles along a Hilbert curve, so that neighbours in space are neighbours in memory; equal keys lexicographically. */
+/* Sorts poles along a Hilbert curve, so that neighbours in space are neighbours in memory; equal keys
+ * lexicographically. */
 static brio_status sort_poles(brio_context *ctx, const finder *f, uint32_t *list, size_t count) {
     enum { BITS = 16 };
     brio_status status = BRIO_OK;

@@ -6,8 +6,9 @@
 
 enum { BRIO_NO_POLE = UINT32_MAX };
 
-/** Polar balls, numbered canonically: by their centres along a Hilbert curve, then lexicographic, so that the numbers do not depend on
- *  the order of the samples and neighbours in space are neighbours in memory. A pole is a Delaunay tetrahedron: two of them may have the same centre. */
+/** Polar balls, numbered canonically: by their centres along a Hilbert curve, then lexicographic, so that the numbers
+ *  do not depend on the order of the samples and neighbours in space are neighbours in memory. A pole is a Delaunay
+ *  tetrahedron: two of them may have the same centre. */
 typedef struct {
     size_t count;
     double *centre;      /* #poles by 3 */
@@ -16,8 +17,8 @@ typedef struct {
     uint32_t *of_sample; /* #samples by 2: the farther pole and the one on its other side, or BRIO_NO_POLE */
 } brio_poles;
 
-/** Finds the poles of the first num_samples of the points that t triangulates; the points after them only bound the cells and have
- *  no poles, nor do duplicates.
+/** Finds the poles of the first num_samples of the points that t triangulates; the points after them only bound the
+ *  cells and have no poles, nor do duplicates.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
                             brio_poles *out);

@@ -7,8 +7,8 @@
  *
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 5.3.
- * Differs from the paper: a Hilbert curve in place of octree blocks; a ratio of 1/8 in place of 1/2, which inserts fewer
- * points into a coarse triangulation. */
+ * Differs from the paper: a Hilbert curve in place of octree blocks; a ratio of 1/8 in place of 1/2, which inserts
+ * fewer points into a coarse triangulation. */
 #include "order/order.h"
 #include "base/memory.h"
 #include "base/rng.h"

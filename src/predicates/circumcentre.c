@@ -1,11 +1,11 @@
 /* Circumcentres and orthocentres, in as much precision as they need.
  *
- * With the points sorted lexicographically and taken relative to the first, b, c, d, and with their lifts l = |p|^2 less the
- * difference of weights, the centre is
+ * With the points sorted lexicographically and taken relative to the first, b, c, d, and with their lifts l = |p|^2
+ * less the difference of weights, the centre is
  *     a + (l_b c x d + l_c d x b + l_d b x c) / (2 det [b, c, d]).
- * A numerator and the determinant carry an error of a few units in the last place of their permanents; when that leaves the
- * quotient less certain than RELATIVE_GOAL, the same formula is evaluated in double-doubles, and at last in exact dyadic numbers.
- * Differences are first scaled by a power of two to at most 1, so that nothing overflows on the way. */
+ * A numerator and the determinant carry an error of a few units in the last place of their permanents; when that leaves
+ * the quotient less certain than RELATIVE_GOAL, the same formula is evaluated in double-doubles, and at last in exact
+ * dyadic numbers. Differences are first scaled by a power of two to at most 1, so that nothing overflows on the way. */
 #include "predicates/circumcentre.h"
 #include "brio/brio.h"
 #include "predicates/double_double.h"

@@ -1,8 +1,8 @@
 /* Stage 3 of the predicates: the determinants in double-double arithmetic.
  *
  * Along any path through the in-sphere determinant the relative errors of double_double.h add up to less than 60 u^2 of
- * the permanent (7 for each of four products, 3 for each of nine sums), so 2^-99 = 128 u^2 is a safe bound; rows relative
- * to e are exact in a double-double, and so is the difference of two weights. */
+ * the permanent (7 for each of four products, 3 for each of nine sums), so 2^-99 = 128 u^2 is a safe bound; rows
+ * relative to e are exact in a double-double, and so is the difference of two weights. */
 #include "predicates/double_double.h"
 #include "predicates/predicates.h"
 

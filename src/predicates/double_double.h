@@ -7,7 +7,8 @@
  * `fma` is a compile-time constant: with it a product's error is one instruction, without it Dekker's 17.
  *
  * Based on: Dekker. A floating-point technique for extending the available precision. Numer. Math. 1971.
- *           Joldes, Muller, Popescu. Tight and rigorous error bounds for basic building blocks of double-word arithmetic.
+ *           Joldes, Muller, Popescu. Tight and rigorous error bounds for basic building blocks of double-word
+ *  arithmetic.
  *           TOMS 2017. */
 #ifndef BRIO_PREDICATES_DOUBLE_DOUBLE_H
 #define BRIO_PREDICATES_DOUBLE_DOUBLE_H

@@ -4,8 +4,8 @@
  * value = sign * (limb[0] + limb[1] B + ... + limb[size-1] B^(size-1)) * B^low,   B = 2^64
  * Invariants: sign is 0 exactly when size is 0; the first and the last limb are not 0.
  *
- * CAPACITY covers the largest determinant here: a difference of doubles spans 2098 bits = 34 limbs, a sum of three squares
- * 69, less a weight 70, a minor of three differences 103, their product and the sum of four of them 175. */
+ * CAPACITY covers the largest determinant here: a difference of doubles spans 2098 bits = 34 limbs, a sum of three
+ * squares 69, less a weight 70, a minor of three differences 103, their product and the sum of four of them 175. */
 #ifndef BRIO_PREDICATES_DYADIC_H
 #define BRIO_PREDICATES_DYADIC_H
 

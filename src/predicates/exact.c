@@ -1,4 +1,5 @@
-/* Stages 4 and 5 of the predicates: integers where the points are on a grid, else exact dyadic numbers, for every finite double. */
+/* Stages 4 and 5 of the predicates: integers where the points are on a grid, else exact dyadic numbers, for every
+ * finite double. */
 #include "predicates/dyadic.h"
 #include "predicates/predicates.h"
 

@@ -33,8 +33,8 @@ static int lowest_bit(double x) {
     return e - 53 + __builtin_ctzll((uint64_t)fabs(ldexp(m, 53)));
 }
 
-/* The powers of two between which all coordinates' differences lie: multiples of 2^low, below 2^high. Weights are taken for squares.
- * Gives up where that is more than most_bits apart. */
+/* The powers of two between which all coordinates' differences lie: multiples of 2^low, below 2^high. Weights are taken
+ * for squares. Gives up where that is more than most_bits apart. */
 typedef struct {
     int low, high;
 } lattice;

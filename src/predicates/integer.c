@@ -1,8 +1,9 @@
 /* Exact predicates in fixed-width integers, for points on a common grid: lattices, scans in single precision.
  *
- * Where the differences of a call are exact doubles, they are integers times one power of two. With at most 20 bits each all but the last
- * products fit 64 bits and the sum 128; with at most 41 bits every 3 by 3 minor fits 128 bits and the sum 256. That decides a zero in
- * tens of nanoseconds, where dyadic numbers take a microsecond. Other calls are declined. */
+ * Where the differences of a call are exact doubles, they are integers times one power of two. With at most 20 bits
+ * each all but the last products fit 64 bits and the sum 128; with at most 41 bits every 3 by 3 minor fits 128 bits and
+ * the sum 256. That decides a zero in tens of nanoseconds, where dyadic numbers take a microsecond. Other calls are
+ * declined. */
 #include "predicates/predicates.h"
 #include <string.h>
 

@@ -33,8 +33,8 @@ typedef struct {
     uint64_t unsettled;
 } brio_filter;
 
-/** Prepares the bounds for points whose coordinates differ by at most extent[0..2] in x, y, z and whose weights by at most
- *  weight_extent; weighted = false ignores the weights. */
+/** Prepares the bounds for points whose coordinates differ by at most extent[0..2] in x, y, z and whose weights by at
+ *  most weight_extent; weighted = false ignores the weights. */
 void brio_filter_set(brio_filter *f, const double extent[3], double weight_extent, bool weighted);
 
 /** The same for given records, and whether they stand on a lattice. */

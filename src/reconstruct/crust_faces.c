@@ -1,10 +1,10 @@
 /* The crust, read off the dual.
  *
- * A tetrahedron of the regular triangulation of the polar balls with both labels is a vertex of the crust (its orthocentre); an edge with
- * both labels is a face, the ring of tetrahedra round it. A triangle with both labels has exactly two such edges, so each edge of the crust
- * has two faces; a tetrahedron split one to three or two to two gives one cycle round its vertex. Hull vertices are outer, so every ring
- * closes: the crust is a closed oriented 2-manifold whatever the coordinates are. It stays combinatorial: no vertices are merged, no
- * faces dropped.
+ * A tetrahedron of the regular triangulation of the polar balls with both labels is a vertex of the crust (its
+ * orthocentre); an edge with both labels is a face, the ring of tetrahedra round it. A triangle with both labels has
+ * exactly two such edges, so each edge of the crust has two faces; a tetrahedron split one to three or two to two gives
+ * one cycle round its vertex. Hull vertices are outer, so every ring closes: the crust is a closed oriented 2-manifold
+ * whatever the coordinates are. It stays combinatorial: no vertices are merged, no faces dropped.
  *
  * Cutting a face into triangles by diagonals keeps all this, since two faces share at most one edge.
  *
@@ -63,8 +63,8 @@ done:
     return status;
 }
 
-/* The ring of tetrahedra round the edge from slot i to slot j of `tet`, counterclockwise seen from the far end; *leads tells whether `tet` is the
- * first of them in memory, and the ring is complete only then. */
+/* The ring of tetrahedra round the edge from slot i to slot j of `tet`, counterclockwise seen from the far end; *leads
+ * tells whether `tet` is the first of them in memory, and the ring is complete only then. */
 static brio_status walk_ring(builder *b, uint32_t tet, int i, int j, bool *leads) {
     const brio_tetrahedra *t = &b->g->power;
     uint32_t from = tet, leave = t->vertex[brio_facet_of(tet, BRIO_EDGE[i][j][0])],

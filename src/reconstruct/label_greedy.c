@@ -1,14 +1,14 @@
 /* Greedy labelling of poles: the surest first.
  *
- * Each unlabelled pole holds two beliefs, in and out, between 0 (unknown) and 1 (certain). The pole of highest priority is labelled by the
- * larger belief and passes its strength on, weakened by the weight of the edge: opposite poles are pushed to the opposite label,
- * deeply intersecting neighbours to the same. A pole with evidence for both labels is "confused" and waits until the end of the queue.
- * Equal priorities go by the poles' canonical numbers.
+ * Each unlabelled pole holds two beliefs, in and out, between 0 (unknown) and 1 (certain). The pole of highest priority
+ * is labelled by the larger belief and passes its strength on, weakened by the weight of the edge: opposite poles are
+ * pushed to the opposite label, deeply intersecting neighbours to the same. A pole with evidence for both labels is
+ * "confused" and waits until the end of the queue. Equal priorities go by the poles' canonical numbers.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.8.
  *           Amenta, Choi, Kolluri. The power crust. Solid Modeling 2001.
- * Differs from the paper: poles on the hull of the regular triangulation are certainly outer too, and what is certain is never
- * pushed. */
+ * Differs from the paper: poles on the hull of the regular triangulation are certainly outer too, and what is certain
+ * is never pushed. */
 #include "base/memory.h"
 #include "reconstruct/labelling.h"
 

@@ -7,8 +7,9 @@
 
 typedef enum { BRIO_LABEL_NONE = 0, BRIO_LABEL_OUTER = 1, BRIO_LABEL_INNER = 2 } brio_label;
 
-/** Two poles are neighbours when their power cells share a face, that is an edge of the regular triangulation of the polar balls;
- *  a hidden pole has one neighbour, its representative. Two poles are opposite when they are the poles of one sample. */
+/** Two poles are neighbours when their power cells share a face, that is an edge of the regular triangulation of the
+ *  polar balls; a hidden pole has one neighbour, its representative. Two poles are opposite when they are the poles of
+ *  one sample. */
 typedef struct {
     brio_context *ctx;
     const brio_poles *poles;
@@ -24,8 +25,8 @@ typedef struct {
 } brio_pole_graph;
 
 /** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power.
- *  The weight of an edge between neighbours is -cos of the angle at which their balls intersect: 0 at a right angle, 1 for a ball inside the
- *  other; edges that are not positive are left out. */
+ *  The weight of an edge between neighbours is -cos of the angle at which their balls intersect: 0 at a right angle, 1
+ *  for a ball inside the other; edges that are not positive are left out. */
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
                                 const brio_triangulation *power, brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);
@@ -33,7 +34,8 @@ void brio_pole_graph_free(brio_pole_graph *g);
 /** Called for an edge from a pole to `other` of the given weight in (0, 1]. */
 typedef void (*brio_pole_visit_fn)(uint32_t other, double weight, void *user);
 
-/** Visits the opposite poles of p; the weight is -cos of the angle at the sample, edges that are not positive are left out. */
+/** Visits the opposite poles of p; the weight is -cos of the angle at the sample, edges that are not positive are left
+ *  out. */
 void brio_pole_graph_opposite(const brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit, void *user);
 
 #endif

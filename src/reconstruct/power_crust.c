@@ -8,8 +8,8 @@
  *
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7.
- * Differs from the paper: the bounding points are no poles and take no part in the power diagram; poles on the hull of the
- * power diagram's dual are outer, without which the crust of small or clustered inputs would not close. */
+ * Differs from the paper: the bounding points are no poles and take no part in the power diagram; poles on the hull of
+ * the power diagram's dual are outer, without which the crust of small or clustered inputs would not close. */
 #include "base/memory.h"
 #include "reconstruct/crust_faces.h"
 #include "reconstruct/labelling.h"
@@ -44,8 +44,8 @@ done:
     return status;
 }
 
-/* Eight corners of the box scaled five times about its centre; a side shorter than a fifth of the longest is taken as that, so
- * that flat inputs are bounded on both sides. */
+/* Eight corners of the box scaled five times about its centre; a side shorter than a fifth of the longest is taken as
+ * that, so that flat inputs are bounded on both sides. */
 static void bounding_corners(const double *points, size_t n, double *corner) {
     double low[3], high[3], centre[3], half[3], longest = 0;
     for (int k = 0; k < 3; k++) {

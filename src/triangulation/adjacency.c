@@ -7,7 +7,8 @@
 #include "base/sort.h"
 #include <string.h>
 
-/* The vertices of a handle in ascending order: three of a facet, or two of a hull edge (facet of an infinite tetrahedron). */
+/* The vertices of a handle in ascending order: three of a facet, or two of a hull edge (facet of an infinite
+ * tetrahedron). */
 static void sorted_vertices(const brio_tetrahedra *t, uint32_t handle, uint32_t v[3]) {
     const uint32_t *tet = t->vertex + 4 * (size_t)brio_tet_of(handle);
     const uint8_t *f = BRIO_FACET[brio_slot_of(handle)];

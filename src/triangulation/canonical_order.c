@@ -1,14 +1,15 @@
 /* The canonical order of the tetrahedra, in place.
  *
- * Every tetrahedron has its latest vertex (in insertion order) in slot 0, since that vertex created it. The three others are turned so
- * that the latest of them comes first, which leaves one arrangement of each orientation (an infinite vertex stays last). Tetrahedra
- * are sorted by these vertices, finite ones first: a counting sort by the latest vertex, then a small sort in each bucket. The order
- * depends on the set of tetrahedra and the insertion order alone, not on the history or the threads that made it. And a
- * tetrahedron already lies near its place; sorting by the earliest vertex would cost 40 % of the construction in cache misses.
+ * Every tetrahedron has its latest vertex (in insertion order) in slot 0, since that vertex created it. The three
+ * others are turned so that the latest of them comes first, which leaves one arrangement of each orientation (an
+ * infinite vertex stays last). Tetrahedra are sorted by these vertices, finite ones first: a counting sort by the
+ * latest vertex, then a small sort in each bucket. The order depends on the set of tetrahedra and the insertion order
+ * alone, not on the history or the threads that made it. And a tetrahedron already lies near its place; sorting by the
+ * earliest vertex would cost 40 % of the construction in cache misses.
  *
- * The arrays are permuted block by block: what belongs into a block is gathered aside, what else lives there moves to the places
- * that this left free, and the block is written. The reads of a block are independent, which following cycles would not be. Two
- * numbers a tetrahedron are added, no second copy. */
+ * The arrays are permuted block by block: what belongs into a block is gathered aside, what else lives there moves to
+ * the places that this left free, and the block is written. The reads of a block are independent, which following
+ * cycles would not be. Two numbers a tetrahedron are added, no second copy. */
 #include "base/memory.h"
 #include "triangulation/kernel.h"
 #include <string.h>
@@ -144,7 +145,8 @@ static inline void put(brio_tetrahedra *t, size_t tet, const entry *e) {
     memcpy(t->mate + 4 * tet, e->m, sizeof e->m);
 }
 
-/* Makes the tetrahedra in [begin, end) those of order[begin .. end); place[t] = where the one now at t belongs, NOWHERE for none. */
+/* Makes the tetrahedra in [begin, end) those of order[begin .. end); place[t] = where the one now at t belongs, NOWHERE
+ * for none. */
 static void fill_block(brio_tetrahedra *t, uint32_t *order, uint32_t *place, size_t begin, size_t end, entry *aside) {
     for (size_t i = begin; i < end; i++) {
         take(t, order[i], &aside[i - begin]);

@@ -1,11 +1,12 @@
 /* The cavity of a point: dig it out, fill it with the point's star.
  *
- * Dig: breadth first from one tetrahedron in conflict across facets; each tetrahedron is tested once, several together, and the
- * facets between conflict and no conflict are the border, a sphere that the point sees from inside.
- * Fill: each border facet and the point make a tetrahedron, in the slots of the cavity. Two of these are neighbours across
- * the edge that their border facets share, which each of them sees in its own direction: entered under (u, v), found under
- * (v, u). Vertices of the border are numbered so that the edges fit a small square table; borders with too many vertices
- * use a hash table. Lists are written always and their length is advanced by a bit, since no branch could be foreseen.
+ * Dig: breadth first from one tetrahedron in conflict across facets; each tetrahedron is tested once, several together,
+ * and the facets between conflict and no conflict are the border, a sphere that the point sees from inside. Fill: each
+ * border facet and the point make a tetrahedron, in the slots of the cavity. Two of these are neighbours across the
+ * edge that their border facets share, which each of them sees in its own direction: entered under (u, v), found under
+ * (v, u). Vertices of the border are numbered so that the edges fit a small square table; borders with too many
+ * vertices use a hash table. Lists are written always and their length is advanced by a bit, since no branch could be
+ * foreseen.
  *
  * Based on: Bowyer. Computing Dirichlet tessellations. Comput. J. 1981.
  *           Watson. Computing the n-dimensional Delaunay tessellation ... Comput. J. 1981. */

@@ -1,10 +1,10 @@
 /* The exact check of a Delaunay or regular triangulation.
  *
- * A closed adjacency of positive tetrahedra with a locally convex hull of genus 0 triangulates the convex hull, and it is regular
- * when every two neighbours are: the far vertex of one is not inside the other's (ortho)sphere. With ties broken by the
- * symbolic perturbation the regular triangulation is unique, so "locally regular under the perturbation" means "the one that
- * brio_delaunay computes". Every remaining point is located exactly, and must be at a vertex that is not lighter, or outside the
- * orthosphere of the tetrahedron that holds it.
+ * A closed adjacency of positive tetrahedra with a locally convex hull of genus 0 triangulates the convex hull, and it
+ * is regular when every two neighbours are: the far vertex of one is not inside the other's (ortho)sphere. With ties
+ * broken by the symbolic perturbation the regular triangulation is unique, so "locally regular under the perturbation"
+ * means "the one that brio_delaunay computes". Every remaining point is located exactly, and must be at a vertex that
+ * is not lighter, or outside the orthosphere of the tetrahedron that holds it.
  *
  * Inputs of fewer dimensions have no tetrahedra to look at; their check is in check_flat.c. */
 #include "base/memory.h"
@@ -71,8 +71,8 @@ done:
     return status;
 }
 
-/* Whether `tet` is the least of the tetrahedra round the edge opposite to slots a and b; false also for a ring that does
- * not close. */
+/* Whether `tet` is the least of the tetrahedra round the edge opposite to slots a and b; false also for a ring that
+ * does not close. */
 static bool leads_ring(const judge *j, uint32_t tet, int a, int b) {
     uint32_t from = tet;
     uint32_t u = vertices_of(j, tet)[a]; /* leave through the facet opposite to u, keep turning the same way */

@@ -4,8 +4,8 @@
 
 #include "triangulation/tetrahedra.h"
 
-/** Checks a complete structure of tetrahedra over num_points records (view with BRIO_INFINITE); *canonical tells whether ties
- *  are broken as brio_delaunay does. BRIO_ERR_CHECK says what is wrong. */
+/** Checks a complete structure of tetrahedra over num_points records (view with BRIO_INFINITE); *canonical tells
+ *  whether ties are broken as brio_delaunay does. BRIO_ERR_CHECK says what is wrong. */
 brio_status brio_check_tetrahedra(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, bool weighted,
                                   bool *canonical);
 

@@ -1,8 +1,8 @@
 /* The check of inputs in a plane, on a line, or at one position, which have no tetrahedra.
  *
- * Points off the hull (two for a line) make the input three-dimensional without changing which of its points own a cell:
- * they are chosen here, given to the triangulation as plain points, and its result is checked exactly in three dimensions. Its
- * vertices must then be the vertices in question. */
+ * Points off the hull (two for a line) make the input three-dimensional without changing which of its points own a
+ * cell: they are chosen here, given to the triangulation as plain points, and its result is checked exactly in three
+ * dimensions. Its vertices must then be the vertices in question. */
 #include "base/memory.h"
 #include "triangulation/check.h"
 #include "triangulation/triangulation.h"

@@ -1,7 +1,8 @@
 /* A hash of a triangulation that depends on the points alone.
  *
- * Each vertex is known by its rank among the vertices in lexicographic order of positions; each tetrahedron by the ascending ranks
- * of its vertices, mixed to 64 bits; the hash is the sum of these, so that no order of anything matters. */
+ * Each vertex is known by its rank among the vertices in lexicographic order of positions; each tetrahedron by the
+ * ascending ranks of its vertices, mixed to 64 bits; the hash is the sum of these, so that no order of anything
+ * matters. */
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"

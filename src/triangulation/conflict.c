@@ -1,13 +1,13 @@
 /* Conflict tests, four at a time.
  *
- * Four tetrahedra go through the in-sphere determinant side by side in the lanes of vector registers. An infinite vertex enters as the
- * point at infinity of the lifting: row (0, 0, 0) with lift 1, which turns the determinant into the orientation of the hull facet and the
- * query, so finite and infinite tetrahedra need no branch. Lanes whose sign is not certain take the further stages:
- * a bound from the largest difference along each axis, then double-doubles in the same lanes, and only what these leave is tested one by
- * one.
+ * Four tetrahedra go through the in-sphere determinant side by side in the lanes of vector registers. An infinite
+ * vertex enters as the point at infinity of the lifting: row (0, 0, 0) with lift 1, which turns the determinant into
+ * the orientation of the hull facet and the query, so finite and infinite tetrahedra need no branch. Lanes whose sign
+ * is not certain take the further stages: a bound from the largest difference along each axis, then double-doubles in
+ * the same lanes, and only what these leave is tested one by one.
  *
- * The bounds are those of filter.c and double_double.c: a permanent is at most 24 times (6 times for an orientation) the product of the
- * largest differences and the largest lift. */
+ * The bounds are those of filter.c and double_double.c: a permanent is at most 24 times (6 times for an orientation)
+ * the product of the largest differences and the largest lift. */
 #include "triangulation/conflict.h"
 
 bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted) {
@@ -102,8 +102,8 @@ AVX2_INLINE void rows_set(const corners *c, lanes infinite, rows *r, const bool 
     r->lift[3] = _mm256_blendv_pd(r->lift[3], all(1), infinite);
 }
 
-/* Minors of the rows but one, with the signs that make minor[i] the orientation of the tetrahedron with vertex i replaced by the
- * query. */
+/* Minors of the rows but one, with the signs that make minor[i] the orientation of the tetrahedron with vertex i
+ * replaced by the query. */
 AVX2_INLINE void minors(const rows *r, lanes minor[4]) {
     const lanes *x = r->x, *y = r->y, *z = r->z;
     lanes ab = x[0] * y[1] - x[1] * y[0], bc = x[1] * y[2] - x[2] * y[1], cd = x[2] * y[3] - x[3] * y[2];
@@ -127,7 +127,8 @@ AVX2_INLINE lanes larger(const lanes p[3], const lanes q[3]) {
     return _mm256_blendv_pd(_mm256_cmp_pd(p[0], q[0], _CMP_GT_OQ), y, _mm256_cmp_pd(p[0], q[0], _CMP_EQ_OQ));
 }
 
-/* The symbolic perturbation (perturb.c) where minors are exact: bits of the lanes in conflict if their determinant is 0. */
+/* The symbolic perturbation (perturb.c) where minors are exact: bits of the lanes in conflict if their determinant is
+ * 0. */
 AVX2_INLINE unsigned ties(const corners *c, const rows *r) {
     lanes minor[4], decisive[3] = {c->e[0], c->e[1], c->e[2]}, decision = all(-1);
     minors(r, minor);
@@ -220,7 +221,8 @@ AVX2 static __attribute__((noinline)) lanes determinant_dd(const corners *c, lan
 
 static const double DOUBLE_UNIT = 18 * 0x1p-53, DD_UNIT = 0x1p-99;
 
-/* Lanes whose determinant is exactly 0, on a lattice: a hull facet's plane is decided by its finite neighbour, else ties are broken. */
+/* Lanes whose determinant is exactly 0, on a lattice: a hull facet's plane is decided by its finite neighbour, else
+ * ties are broken. */
 AVX2 static __attribute__((noinline)) unsigned settle_lattice(const brio_tetrahedra *t, brio_filter *f,
                                                               const uint32_t tets[BRIO_BATCH], const double *p,
                                                               const corners *c, const rows *r, unsigned known) {

@@ -37,7 +37,8 @@ static bool absorbed(brio_kernel *k, uint32_t p, uint32_t v) {
     return true;
 }
 
-/* A short walk, which is best nearly always; where walks are long again and again, the descent, with a walk tried now and then. */
+/* A short walk, which is best nearly always; where walks are long again and again, the descent, with a walk tried now
+ * and then. */
 static brio_status locate(brio_kernel *k, const double *point, uint32_t *tet) {
     enum { SHORT_WALK = 40, DESCENTS = 64 };
     if (k->long_walks == 0 || k->cavity.num_border == 0) {

@@ -7,8 +7,8 @@
 #include "triangulation/star.h"
 #include "triangulation/tetrahedra.h"
 
-/** A facet of the cavity's border: its mate outside, and its vertices such that (new vertex, vertex[0..2]) is positive; an
- *  infinite vertex is the last. */
+/** A facet of the cavity's border: its mate outside, and its vertices such that (new vertex, vertex[0..2]) is positive;
+ *  an infinite vertex is the last. */
 typedef struct {
     uint32_t outside;
     uint32_t vertex[3];
@@ -66,8 +66,9 @@ typedef struct {
 
 typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_QUEUED = 2, TET_UNUSED = 3 } brio_tet_state;
 
-/** Finds four points in general position, or the dimension that they have instead; adds apexes off the points' affine hull
- *  so that every input of at least two distinct positions becomes three-dimensional; makes the first tetrahedron. */
+/** Finds four points in general position, or the dimension that they have instead; adds apexes off the points' affine
+ *  hull so that every input of at least two distinct positions becomes three-dimensional; makes the first tetrahedron.
+ *  */
 brio_status brio_kernel_start(brio_kernel *k);
 
 /** Makes room for at least `more` further tetrahedra. */

@@ -13,8 +13,8 @@ typedef struct {
 
 enum { BRIO_NO_TET = UINT32_MAX };
 
-/** The tetrahedron whose closure holds p, or, for p strictly outside the hull, an infinite one whose facet p is strictly
- *  outside of. Exact. BRIO_NO_TET when that takes more than most_steps. */
+/** The tetrahedron whose closure holds p, or, for p strictly outside the hull, an infinite one whose facet p is
+ *  strictly outside of. Exact. BRIO_NO_TET when that takes more than most_steps. */
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps);
 

@@ -1,12 +1,13 @@
 /* Point location by descent along edges to the nearest vertex.
  *
- * Samples of a smooth surface make stacks of thin tetrahedra between its sheets; a walk to a near point crosses them by the hundred.
- * But the nearest vertex is a Delaunay neighbour of the new point, so some tetrahedron round it is in conflict. From the star of the
- * last inserted vertex go to the vertex nearest to the point, test its star, and while nothing there conflicts go on to a nearer
- * one. Where that ends without a conflict (hidden points) the walk takes over from the nearest vertex.
+ * Samples of a smooth surface make stacks of thin tetrahedra between its sheets; a walk to a near point crosses them by
+ * the hundred. But the nearest vertex is a Delaunay neighbour of the new point, so some tetrahedron round it is in
+ * conflict. From the star of the last inserted vertex go to the vertex nearest to the point, test its star, and while
+ * nothing there conflicts go on to a nearer one. Where that ends without a conflict (hidden points) the walk takes over
+ * from the nearest vertex.
  *
- * Based on: the nearest-neighbour graph is a part of the Delaunay triangulation; Birn, Holtgrewe, Sanders, Singler. Simple and fast nearest
- * neighbor search. ALENEX 2010, for the descent. */
+ * Based on: the nearest-neighbour graph is a part of the Delaunay triangulation; Birn, Holtgrewe, Sanders, Singler.
+ * Simple and fast nearest neighbor search. ALENEX 2010, for the descent. */
 #include "triangulation/kernel.h"
 
 enum { MOST_OF_STAR = 512 }; /* tetrahedra to look at round one vertex, so that the apex of a cone costs no more */

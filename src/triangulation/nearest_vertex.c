@@ -1,10 +1,10 @@
-/* The vertex of least power distance, by descent along edges: in a regular triangulation a vertex with no nearer neighbour is the
- * nearest of all.
+/* The vertex of least power distance, by descent along edges: in a regular triangulation a vertex with no nearer
+ * neighbour is the nearest of all.
  *
- * Samples of a sphere hide thousands of poles behind a few vertices with as many neighbours each. Looking at the whole star for every hidden
- * point would be quadratic. So a look at a large star leaves a memory: the difference of the power distances to vertex v and to a neighbour u
- * changes by at most 2 |u - v| a unit of length, so within some radius of the point only those neighbours matter (the rivals) whose
- * distance hardly differed. */
+ * Samples of a sphere hide thousands of poles behind a few vertices with as many neighbours each. Looking at the whole
+ * star for every hidden point would be quadratic. So a look at a large star leaves a memory: the difference of the
+ * power distances to vertex v and to a neighbour u changes by at most 2 |u - v| a unit of length, so within some radius
+ * of the point only those neighbours matter (the rivals) whose distance hardly differed. */
 #include "triangulation/nearest_vertex.h"
 #include "base/memory.h"
 #include <string.h>

@@ -4,7 +4,8 @@
 
 #include "triangulation/kernel.h"
 
-/** What has been learnt of one vertex with a large star: near `centre` only the rivals can be nearer than the vertex itself. */
+/** What has been learnt of one vertex with a large star: near `centre` only the rivals can be nearer than the vertex
+ *  itself. */
 typedef struct {
     uint32_t vertex;
     double centre[3], radius;
@@ -24,8 +25,8 @@ typedef struct {
 brio_status brio_nearest_new(brio_kernel *k, const uint32_t *vertex_tet, brio_nearest *out);
 void brio_nearest_free(brio_nearest *n);
 
-/** *best = the vertex of least power distance from x, ties lexicographic, starting from the vertices of a tetrahedron near x. Exact.
- *  Apexes of flat inputs are passed over: the edges of the flat triangulation suffice. */
+/** *best = the vertex of least power distance from x, ties lexicographic, starting from the vertices of a tetrahedron
+ *  near x. Exact. Apexes of flat inputs are passed over: the edges of the flat triangulation suffice. */
 brio_status brio_nearest_vertex(brio_nearest *n, uint32_t tet, const double *x, uint32_t *best);
 
 #endif

@@ -1,10 +1,11 @@
 /* Points that own no cell, each with the vertex that represents it.
  *
- * Without weights a point that is no vertex is a duplicate, and insertion has named its vertex. With weights a point may
- * have been hidden by another that was hidden later itself, and may coincide with a vertex that came after it: so each one
- * is located in the finished triangulation. At the position of a vertex it is a duplicate; else it is hidden, and
- * its vertex of least power distance is found by descent along edges: in a regular triangulation a vertex with no nearer
- * neighbour is the nearest of all. Apexes of flat inputs are passed over: the edges of the flat triangulation suffice. */
+ * Without weights a point that is no vertex is a duplicate, and insertion has named its vertex. With weights a point
+ * may have been hidden by another that was hidden later itself, and may coincide with a vertex that came after it: so
+ * each one is located in the finished triangulation. At the position of a vertex it is a duplicate; else it is hidden,
+ * and its vertex of least power distance is found by descent along edges: in a regular triangulation a vertex with no
+ * nearer neighbour is the nearest of all. Apexes of flat inputs are passed over: the edges of the flat triangulation
+ * suffice. */
 #include "base/memory.h"
 #include "base/sort.h"
 #include "triangulation/kernel.h"

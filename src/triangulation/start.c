@@ -1,10 +1,10 @@
 /* The first tetrahedron, and inputs of fewer than three dimensions.
  *
- * The first point, the first one elsewhere, the first one off their line and the first one off their plane come first in the
- * insertion order. When the points run out before that, an apex off the plane (two off the line) is added: every
- * tetrahedron then has all apexes, its orthosphere meets the points' plane (line) in the orthocircle of its other vertices, and the
- * symbolic perturbation skips the apexes, so the link of the apexes is the perturbed regular triangulation of the points in their
- * own dimension, with the same hidden points. */
+ * The first point, the first one elsewhere, the first one off their line and the first one off their plane come first
+ * in the insertion order. When the points run out before that, an apex off the plane (two off the line) is added: every
+ * tetrahedron then has all apexes, its orthosphere meets the points' plane (line) in the orthocircle of its other
+ * vertices, and the symbolic perturbation skips the apexes, so the link of the apexes is the perturbed regular
+ * triangulation of the points in their own dimension, with the same hidden points. */
 #include "triangulation/kernel.h"
 #include <string.h>
 
@@ -78,7 +78,8 @@ static void latest_first(uint32_t *v) {
     }
 }
 
-/* The tetrahedron of four records and the four infinite ones around it; the latest vertex in slot 0, as after any insertion. */
+/* The tetrahedron of four records and the four infinite ones around it; the latest vertex in slot 0, as after any
+ * insertion. */
 static void first_tetrahedron(brio_kernel *k, uint32_t corner[4]) {
     const brio_record *r = k->record;
     brio_tetrahedra *t = &k->t;

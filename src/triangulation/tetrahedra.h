@@ -4,14 +4,15 @@
  *   mate[4 t + i]     facet handle 4 u + j of the same triangle seen from the tetrahedron u on its other side
  *
  * I1  A finite tetrahedron is positive: det [b-a, c-a, d-a] > 0.
- * I2  The infinite vertex is only ever in slot 3, and (a, b, c, x) is positive for x strictly outside the hull facet abc.
+ * I2  The infinite vertex is only ever in slot 3, and (a, b, c, x) is positive for x strictly outside the hull facet
+ * abc.
  * I3  mate is an involution, and mates have the same three vertices.
  * I4  In the kernel the tetrahedra are those of the perturbed regular triangulation of the points inserted so far.
  *
  * Not stored: a tetrahedron of each vertex, circumcentres, anything about facets or edges.
  *
- * Points are records of four doubles, x y z weight, in insertion order, so that neighbours in the order are neighbours in
- * memory. */
+ * Points are records of four doubles, x y z weight, in insertion order, so that neighbours in the order are neighbours
+ * in memory. */
 #ifndef BRIO_TRIANGULATION_TETRAHEDRA_H
 #define BRIO_TRIANGULATION_TETRAHEDRA_H
 
@@ -57,8 +58,8 @@ static inline int brio_slot_of_vertex(const uint32_t v4[4], uint32_t v) {
     return v4[0] == v ? 0 : v4[1] == v ? 1 : v4[2] == v ? 2 : v4[3] == v ? 3 : 4;
 }
 
-/* Whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the plane of a
- * hull facet the finite neighbour decides. Ties are broken, so that the answer is never on the border. */
+/* Whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the plane of
+ * a hull facet the finite neighbour decides. Ties are broken, so that the answer is never on the border. */
 static inline bool brio_in_conflict(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p,
                                     const bool weighted) {
     const uint32_t *v = t->vertex + 4 * (size_t)tet;

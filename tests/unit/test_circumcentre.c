@@ -1,4 +1,5 @@
-/* Circumcentres and orthocentres: known ones, every order of the points, and the error bound against exact residuals. */
+/* Circumcentres and orthocentres: known ones, every order of the points, and the error bound against exact residuals.
+ * */
 #include "harness.h"
 #include "points.h"
 #include <math.h>
@@ -31,7 +32,8 @@ static void order_of_the_points_does_not_matter(void) {
     }
 }
 
-/* A box's corners have its middle for a centre, which stays within the bound however flat the tetrahedron and wherever the box is. */
+/* A box's corners have its middle for a centre, which stays within the bound however flat the tetrahedron and wherever
+ * the box is. */
 static void error_bound_holds_for_flat_and_far_tetrahedra(void) {
     for (int e = 0; e <= 50; e += 5)
         for (int shift = 0; shift < 2; shift++) {

@@ -45,7 +45,8 @@ static void every_order_is_a_permutation(void) {
     brio_context_free(ctx);
 }
 
-/* With ratio 1/2 half of the points are in the last round: the positions at which the curve starts anew tell the rounds. */
+/* With ratio 1/2 half of the points are in the last round: the positions at which the curve starts anew tell the
+ * rounds. */
 static void rounds_have_their_share(void) {
     enum { N = 40000 };
     static double p[3 * N];

@@ -1,4 +1,5 @@
-/* The power crust: closed, manifold and oriented on anything that has an inside; independent of the order of the samples. */
+/* The power crust: closed, manifold and oriented on anything that has an inside; independent of the order of the
+ * samples. */
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
