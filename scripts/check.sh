@@ -7,9 +7,11 @@ set -u
 
 cd "$(dirname "$0")/.." || exit 1
 build_jobs=${1:-2}
-test_jobs=2   # few, since each test has several threads or processes itself
-log=check.log # in the build folder: what the runner printed,
-tests_log=Testing/Temporary/LastTest.log # and what the tests did
+# Few at a time, since each test has several threads or processes itself.
+test_jobs=2
+# In the build folder: what the runner printed, and what the tests did.
+log=check.log
+tests_log=Testing/Temporary/LastTest.log
 
 suite() {
     rm -f "build-$1/$log" "build-$1/$tests_log"

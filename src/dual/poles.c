@@ -9,6 +9,7 @@
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.8. */
 #include "dual/poles.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "base/sort.h"
 #include "order/hilbert.h"
 #include "predicates/circumcentre.h"
@@ -30,9 +31,8 @@ static const double *centre_of(const finder *f, uint32_t tet) {
 }
 
 static void find_centres(const brio_context *ctx, finder *f) {
-    int threads = brio_context_threads(ctx);
-    (void)threads; /* without OpenMP */
-#pragma omp parallel for schedule(static) num_threads(threads)
+    (void)ctx; /* without OpenMP */
+    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t tet = 0; tet < f->num_tets; tet++) {
         double r[4][4] = {{0}};
         for (int i = 0; i < 4; i++)

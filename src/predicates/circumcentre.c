@@ -146,6 +146,16 @@ static void sort_ascending(const double *p[4]) {
         }
 }
 
+/* 2^e for exponents of normal numbers, sparing a library call. */
+static double power_of_two(int e) {
+    uint64_t bits = (uint64_t)(e + 1023) << 52;
+    double x;
+    __builtin_memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static bool ordinary(int exponent) { return exponent > -400 && exponent < 400; }
+
 /* Exponent of the largest difference to the first point; the differences may not be finite. */
 static int exponent_of(const double *const p[4]) {
     double most = 0;
@@ -157,11 +167,11 @@ static int exponent_of(const double *const p[4]) {
 }
 
 static bool solve(const double *const p[4], bool weighted, int exponent, solution *s) {
-    double r[3][3], weight[3] = {0, 0, 0}, scale = ldexp(1, -exponent);
+    double r[3][3], weight[3] = {0, 0, 0}, scale;
     brio_dd rr[3][3], ww[3] = {{0, 0}, {0, 0}, {0, 0}};
     permanents permanent;
-    bool ordinary = exponent > -400 && exponent < 400; /* scaling is exact and finite */
-    if (!ordinary) return solve_exact(p, weighted, exponent, s);
+    if (!ordinary(exponent)) return solve_exact(p, weighted, exponent, s);
+    scale = power_of_two(-exponent); /* exact and finite */
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) {
             rr[i][k] = dd_difference(p[i + 1][k] * scale, p[0][k] * scale);
@@ -182,9 +192,10 @@ bool brio_centre(const double *a, const double *b, const double *c, const double
     sort_ascending(p);
     int exponent = exponent_of(p);
     if (!solve(p, weighted, exponent, &s)) return false;
-    double worst = ldexp(s.error, exponent);
+    double unit = ordinary(exponent) ? power_of_two(exponent) : 1;
+    double worst = ordinary(exponent) ? s.error * unit : ldexp(s.error, exponent);
     for (int k = 0; k < 3; k++) {
-        centre[k] = p[0][k] + ldexp(s.offset[k], exponent);
+        centre[k] = p[0][k] + (ordinary(exponent) ? s.offset[k] * unit : ldexp(s.offset[k], exponent));
         if (!isfinite(centre[k])) return false;
     }
     worst += 0x1p-53 * fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2])));

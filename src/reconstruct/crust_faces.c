@@ -11,6 +11,7 @@
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3. */
 #include "reconstruct/crust_faces.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "predicates/circumcentre.h"
 #include <math.h>
 #include <string.h>
@@ -56,6 +57,7 @@ static brio_status make_vertices(builder *b) {
         b->number[tet] = inside % 4 ? (uint32_t)count++ : NO_VERTEX;
     }
     BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, count));
+    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t tet = 0; tet < b->g->num_finite; tet++)
         if (b->number[tet] != NO_VERTEX)
             vertex_position(b, vertex + 4 * tet, b->mesh->vertices + 3 * (size_t)b->number[tet]);

@@ -35,7 +35,7 @@ expect_output() {
 
 step "build and install ($kind)"
 [ "$kind" = shared ] && shared=ON || shared=OFF
-"$cmake" -S "$root" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=$shared \
+"$cmake" -S "$root" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS="$shared" \
     -DBRIO_TESTS=OFF -DCMAKE_INSTALL_PREFIX="$folder/installed" >>"$folder/log" 2>&1
 "$cmake" --build "$folder/build" >>"$folder/log" 2>&1
 "$cmake" --install "$folder/build" >>"$folder/log" 2>&1
