@@ -34,7 +34,7 @@ void brio_cavity_free(brio_context *ctx, brio_cavity *c) {
 
 /* Queues the neighbours of a cavity tetrahedron that were not queued before: written always, counted by a bit. */
 static inline void queue_neighbours(brio_kernel *k, uint32_t tet) {
-    const uint32_t *mate = k->t.mate + 4 * (size_t)tet;
+    const uint32_t *mate = k->t.mate + 4 * (size_t)tet, *vertex = k->t.vertex;
     uint32_t *queue = k->cavity.outside;
     uint8_t *state = k->state; /* stores to bytes may alias anything: what is used again stays in locals */
     size_t n = k->cavity.num_outside;
@@ -42,6 +42,8 @@ static inline void queue_neighbours(brio_kernel *k, uint32_t tet) {
         uint32_t other = brio_tet_of(mate[i]);
         uint8_t s = state[other];
         queue[n] = other;
+        __builtin_prefetch(vertex + 4 * (size_t)other);
+        __builtin_prefetch(k->t.mate + 4 * (size_t)other);
         n += s == TET_PLAIN;
         state[other] = s == TET_PLAIN ? TET_QUEUED : s;
     }
@@ -52,6 +54,10 @@ static inline void queue_neighbours(brio_kernel *k, uint32_t tet) {
 static inline void test_batch(brio_kernel *k, size_t from, size_t count, const double *point) {
     brio_cavity *c = &k->cavity;
     uint32_t *queued = c->outside + from;
+    for (size_t i = BRIO_BATCH; from + i < c->num_outside && i < 2 * BRIO_BATCH; i++) { /* the batch after this */
+        const uint32_t *v = k->t.vertex + 4 * (size_t)queued[i];
+        for (int j = 0; j < 4; j++) __builtin_prefetch(k->record[v[j]]);
+    }
     for (size_t i = count; i < BRIO_BATCH; i++) queued[i] = queued[0];
     unsigned conflicts = k->conflicts(&k->t, &k->filter, queued, point);
     uint32_t *tets = c->tets;

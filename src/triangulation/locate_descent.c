@@ -8,6 +8,7 @@
  *
  * Based on: the nearest-neighbour graph is a part of the Delaunay triangulation; Birn, Holtgrewe, Sanders, Singler.
  * Simple and fast nearest neighbor search. ALENEX 2010, for the descent. */
+#include "base/memory.h"
 #include "triangulation/kernel.h"
 
 enum { MOST_OF_STAR = 512 }; /* tetrahedra to look at round one vertex, so that the apex of a cone costs no more */
@@ -27,12 +28,11 @@ static inline void offer(const brio_tetrahedra *t, candidate *best, uint32_t tet
     }
 }
 
-/* The first tetrahedron of the star in conflict with p, or BRIO_NO_TET. */
-static uint32_t conflict_in_star(brio_kernel *k, const double *p) {
-    const brio_star *star = &k->star;
-    for (size_t n = 0; n < star->size; n += BRIO_BATCH) {
+/* The first of some tetrahedra in conflict with p, or BRIO_NO_TET. */
+static uint32_t first_conflict(brio_kernel *k, const uint32_t *tets, size_t count, const double *p) {
+    for (size_t n = 0; n < count; n += BRIO_BATCH) {
         uint32_t batch[BRIO_BATCH];
-        for (size_t i = 0; i < BRIO_BATCH; i++) batch[i] = star->tet[n + i < star->size ? n + i : n];
+        for (size_t i = 0; i < BRIO_BATCH; i++) batch[i] = tets[n + i < count ? n + i : n];
         unsigned mask = k->conflicts(&k->t, &k->filter, batch, p);
         k->stats.insphere_calls += BRIO_BATCH;
         if (mask) return batch[__builtin_ctz(mask)];
@@ -40,9 +40,29 @@ static uint32_t conflict_in_star(brio_kernel *k, const double *p) {
     return BRIO_NO_TET;
 }
 
+/* Of the star of the last inserted vertex, which is still in the caches, the tetrahedra that also have vertex v. */
+static brio_status collect_last(brio_kernel *k, uint32_t v) {
+    brio_star *star = &k->star;
+    brio_status status = BRIO_RESERVE(k->ctx, star->tet, star->capacity, k->cavity.num_border);
+    if (status != BRIO_OK) return status;
+    star->size = 0;
+    for (size_t b = 0; b < k->cavity.num_border; b++) {
+        uint32_t tet = k->cavity.created[b].tet;
+        star->tet[star->size] = tet;
+        star->size += brio_slot_of_vertex(k->t.vertex + 4 * (size_t)tet, v) < 4;
+    }
+    return BRIO_OK;
+}
+
 brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) {
     candidate best = {k->t.infinite, BRIO_NO_TET, INFINITY};
     for (size_t b = 0; b < k->cavity.num_border; b++) offer(&k->t, &best, k->cavity.created[b].tet, p);
+    if (best.square > 0 && best.vertex != k->t.infinite) {
+        brio_status status = collect_last(k, best.vertex);
+        if (status != BRIO_OK) return status;
+        *tet = first_conflict(k, k->star.tet, k->star.size, p);
+        if (*tet != BRIO_NO_TET) return BRIO_OK;
+    }
     for (uint32_t from = k->t.infinite; best.vertex != from && best.square > 0;) {
         from = best.vertex;
         brio_status status = brio_star_collect(k->ctx, &k->t, from, best.tet, MOST_OF_STAR, &k->star);
@@ -50,7 +70,7 @@ brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) 
         for (size_t n = 0; n < k->star.size; n++) offer(&k->t, &best, k->star.tet[n], p);
         k->walk.steps++;
         if (best.square == 0) break;
-        *tet = conflict_in_star(k, p);
+        *tet = first_conflict(k, k->star.tet, k->star.size, p);
         if (*tet != BRIO_NO_TET) return BRIO_OK;
     }
     if (best.tet != BRIO_NO_TET) k->walk.start = best.tet;

@@ -28,6 +28,8 @@ brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint3
             if (t->vertex[f] == v || star->mark[other]) continue;
             star->mark[other] = 1;
             star->tet[star->size++] = other;
+            __builtin_prefetch(t->vertex + 4 * (size_t)other);
+            __builtin_prefetch(t->mate + 4 * (size_t)other);
         }
     }
 done:
