@@ -154,7 +154,9 @@ static double power_of_two(int e) {
     return x;
 }
 
-static bool ordinary(int exponent) { return exponent > -400 && exponent < 400; }
+static bool ordinary(int exponent) {
+    return exponent > -400 && exponent < 400;
+}
 
 /* Exponent of the largest difference to the first point; the differences may not be finite. */
 static int exponent_of(const double *const p[4]) {
