@@ -14,7 +14,7 @@
 #include "triangulation/kernel.h"
 #include <string.h>
 
-enum { BLOCK = 1 << 14, TURN_SHIFT = 30, SMALL = 24 };
+enum { BLOCK = 1 << 14, TURN_SHIFT = 30, SMALL = 24, AHEAD = 32 };
 
 static const uint32_t PLACE_MASK = (UINT32_C(1) << TURN_SHIFT) - 1, NOWHERE = UINT32_MAX;
 
@@ -75,7 +75,10 @@ static void heap_sort(sort_key *a, size_t n) {
 static brio_status sort_bucket(brio_kernel *k, uint32_t *tets, size_t n, sort_key **keys, size_t *capacity) {
     brio_status status = BRIO_RESERVE(k->ctx, *keys, *capacity, n);
     if (status != BRIO_OK) return status;
-    for (size_t i = 0; i < n; i++) (*keys)[i] = key_of(k, tets[i]);
+    for (size_t i = 0; i < n; i++) {
+        __builtin_prefetch(k->t.vertex + 4 * (size_t)tets[i + AHEAD]); /* of a bucket to come; order has room for it */
+        (*keys)[i] = key_of(k, tets[i]);
+    }
     if (n <= SMALL)
         insertion_sort(*keys, n);
     else
@@ -149,6 +152,8 @@ static inline void put(brio_tetrahedra *t, size_t tet, const entry *e) {
  * for none. */
 static void fill_block(brio_tetrahedra *t, uint32_t *order, uint32_t *place, size_t begin, size_t end, entry *aside) {
     for (size_t i = begin; i < end; i++) {
+        __builtin_prefetch(t->vertex + 4 * (size_t)order[i + AHEAD]);
+        __builtin_prefetch(t->mate + 4 * (size_t)order[i + AHEAD]);
         take(t, order[i], &aside[i - begin]);
         place[order[i]] = NOWHERE;
     }
@@ -172,10 +177,12 @@ brio_status brio_kernel_sort(brio_kernel *k) {
     entry *aside = NULL;
     size_t live = k->t.count - k->num_unused;
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(k->ctx, order, live));
+    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, order, live + AHEAD));
     BRIO_TRY(BRIO_ALLOC(k->ctx, place, k->t.count));
     BRIO_TRY(BRIO_ALLOC(k->ctx, aside, BLOCK));
     BRIO_TRY(sort_into(k, order));
+    brio_release(k->ctx, k->state);
+    k->state = NULL;
     for (size_t t = 0; t < k->t.count; t++) place[t] = NOWHERE;
     for (size_t i = 0; i < live; i++) place[order[i] & PLACE_MASK] = (uint32_t)i | (order[i] & ~PLACE_MASK);
     rename_facets(&k->t, place);

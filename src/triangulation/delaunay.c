@@ -173,6 +173,8 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     double start = brio_seconds();
     if (status == BRIO_OK) status = insert_all(&kernel);
     if (status == BRIO_OK) status = brio_kernel_represent(&kernel);
+    brio_release(ctx, kernel.record); /* only names matter from here on */
+    kernel.record = NULL;
     if (status == BRIO_OK) status = brio_kernel_sort(&kernel);
     kernel.stats.insert_seconds = brio_seconds() - start;
     if (status == BRIO_OK) status = triangulation_new(&kernel, out);

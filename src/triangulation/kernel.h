@@ -91,7 +91,8 @@ void brio_cavity_free(brio_context *ctx, brio_cavity *c);
 /** Gives every point that is no vertex the vertex that represents it; counts duplicates and hidden points. */
 brio_status brio_kernel_represent(brio_kernel *k);
 
-/** Sorts the tetrahedra into their canonical order, finite ones first. */
+/** Sorts the tetrahedra into their canonical order, finite ones first. The last step:
+ *  the states are given back. */
 brio_status brio_kernel_sort(brio_kernel *k);
 
 #endif
