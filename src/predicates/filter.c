@@ -33,36 +33,52 @@ static int lowest_bit(double x) {
     return e - 53 + __builtin_ctzll((uint64_t)fabs(ldexp(m, 53)));
 }
 
-/* The powers of two between which all coordinates' differences lie: multiples of 2^low, below 2^high. Weights are taken
- * for squares. Gives up where that is more than most_bits apart. */
+/* The powers of two between which differences lie: multiples of 2^low, below 2^high. */
 typedef struct {
     int low, high;
-} lattice;
+} span;
 
-static lattice lattice_of(const double (*record)[4], size_t n, const double extent[4], bool weighted, int most_bits) {
-    lattice l;
-    int weight_low = INT32_MAX, weight_high;
-    frexp(fmax(extent[0], fmax(extent[1], extent[2])), &l.high);
-    l.low = l.high;
-    for (size_t i = 0; i < n && l.high - l.low <= most_bits; i++) {
+/* Spans of the coordinates' differences and of the weights'. Gives up where coordinates are more than most_bits apart. */
+static void find_spans(const double (*record)[4], size_t n, const double extent[4], bool weighted, int most_bits,
+                       span *coordinates, span *weights) {
+    frexp(fmax(extent[0], fmax(extent[1], extent[2])), &coordinates->high);
+    frexp(extent[3], &weights->high);
+    coordinates->low = coordinates->high;
+    weights->low = weights->high;
+    for (size_t i = 0; i < n && coordinates->high - coordinates->low <= most_bits; i++) {
         for (int k = 0; k < 3; k++) {
             int bit = lowest_bit(record[i][k]);
-            l.low = bit < l.low ? bit : l.low;
+            coordinates->low = bit < coordinates->low ? bit : coordinates->low;
         }
         int bit = weighted ? lowest_bit(record[i][3]) : INT32_MAX;
-        weight_low = bit < weight_low ? bit : weight_low;
+        weights->low = bit < weights->low ? bit : weights->low;
     }
-    if (weight_low == INT32_MAX) return l;
-    frexp(extent[3], &weight_high);
-    int low = weight_low >= 0 ? weight_low / 2 : -((1 - weight_low) / 2),
-        high = weight_high > 0 ? (weight_high + 1) / 2 : weight_high / 2;
-    l.low = low < l.low ? low : l.low;
-    l.high = high > l.high ? high : l.high;
-    return l;
+}
+
+static int most(int a, int b) {
+    return a > b ? a : b;
+}
+static int least(int a, int b) {
+    return a < b ? a : b;
+}
+
+/* Whether the in-sphere determinant is exact in doubles: a lift is a multiple of the coordinates' unit squared and of the
+ * weights', a sum of three squares and a weight; a minor has six products of three; four products of these are summed. */
+static bool exact_in_doubles(span c, span w, bool weighted) {
+    int low = weighted ? least(2 * c.low, w.low) : 2 * c.low,
+        high = weighted ? most(2 * c.high + 2, w.high) + 1 : 2 * c.high + 2;
+    return (high - low) + 3 * (c.high - c.low) + 3 + 2 <= 53;
+}
+
+/* Whether coordinates fit 20 bits in a unit of which the weights are multiples of the square (integer.c). */
+static bool fits_integers(span c, span w, bool weighted) {
+    int low = c.low;
+    if (weighted) low = least(low, w.low >= 0 ? w.low / 2 : -((1 - w.low) / 2));
+    return c.high - low <= 20 && (!weighted || w.high - 2 * low <= 42);
 }
 
 void brio_filter_for(brio_filter *f, const double (*record)[4], size_t n, bool weighted) {
-    enum { LATTICE_BITS = 9, COARSE_BITS = 20 };
+    enum { COARSE_BITS = 20, FAR = 150 };
     double low[4], high[4], extent[4];
     for (int c = 0; c < 4; c++) low[c] = high[c] = n ? record[0][c] : 0;
     for (size_t i = 1; i < n; i++)
@@ -74,11 +90,12 @@ void brio_filter_for(brio_filter *f, const double (*record)[4], size_t n, bool w
     for (int c = 0; c < 4; c++) extent[c] = high[c] - low[c];
     brio_filter_set(f, extent, extent[3], weighted);
     if (f->orient_floor == INFINITY) return;
-    lattice l = lattice_of(record, n, extent, weighted, COARSE_BITS);
-    bool far_from_limits = l.low > -150 && l.high < 150;
-    f->coarse = far_from_limits && l.high - l.low <= COARSE_BITS;
-    /* lifts below 2^21, minors below 6 2^27, the determinant below 2^53: all integers that doubles hold */
-    f->lattice = far_from_limits && l.high - l.low <= LATTICE_BITS;
+    span coordinates, weights;
+    find_spans(record, n, extent, weighted, COARSE_BITS, &coordinates, &weights);
+    bool ordinary = coordinates.low > -FAR && coordinates.high < FAR;
+    if (weighted) ordinary &= weights.low > -2 * FAR && weights.high < 2 * FAR;
+    f->coarse = ordinary && fits_integers(coordinates, weights, weighted);
+    f->lattice = ordinary && exact_in_doubles(coordinates, weights, weighted);
     if (f->lattice) f->orient_static = f->insphere_static = 0;
 }
 
