@@ -149,7 +149,7 @@ typedef struct brio_stats {
     size_t tetrahedra;  /* finite ones */
     size_t hull_facets; /* = infinite tetrahedra */
     uint64_t created, destroyed, walk_steps, insphere_calls;
-    uint64_t exact_calls;                 /* predicate calls that the first filter did not settle */
+    uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
 
@@ -161,8 +161,8 @@ typedef struct brio_triangulation brio_triangulation;
  *  tetrahedra.
  *  points   #P by 3, row after row.   weights  #P, or NULL.   num_points  less than 2^32 - 16.
  *  options  NULL for the defaults.    out      owned by the caller, freed with brio_triangulation_free; NULL on error.
- *  Cost: O(n log n) expected for points of realistic inputs, 33 bytes a tetrahedron and 44 a point at the peak, plus a
- *  sort buffer of 24 bytes a point before the first tetrahedron.
+ *  Cost: O(n log n) expected for points of realistic inputs; 41 bytes a tetrahedron and 45 a point at the peak, with up
+ *  to an eighth more set aside for growth; a sort buffer of 24 bytes a point before the first tetrahedron.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_CANCELLED.
  *  Based on: [Bowyer 1981], [Watson 1981], [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties.
@@ -331,7 +331,7 @@ typedef struct brio_power_crust_stats {
  *  on a dense sample of a smooth closed surface it is homeomorphic and close to it (appendix B of [Choi 2003]).
  *  Does not guarantee: triangular faces, absence of tiny faces, absence of self-intersections on undersampled input.
  *  points  #P by 3.   options  NULL for the defaults.   stats  may be NULL.   out  owned by the caller.
- *  Cost: two triangulations, of the samples and of their about 1.5 n poles; about 600 bytes a sample at the peak.
+ *  Cost: two triangulations, of the samples and of their about 2 n poles; 1,300 to 1,700 bytes a sample at the peak.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found), and as brio_delaunay.
  *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] sections 3.3 and 5. */
 BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
