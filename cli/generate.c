@@ -103,8 +103,8 @@ static brio_status generate(run *r) {
     TRY(brio_generate(r->ctx, kind, (size_t)a->points, &o, &mesh));
     cli_lap(r, "generate");
     cli_fact_count(&r->facts, "points", mesh->num_vertices);
-    if (a->truth) TRY(write_truth(r, a));
     TRY(cli_write(r, mesh));
+    if (a->truth) TRY(write_truth(r, a));
 done:
     brio_mesh_free(mesh);
     return status;

@@ -140,7 +140,7 @@ brio_status cli_check_interrupt(run *r) {
 brio_status cli_require_memory(run *r, double bytes) {
     const common_options *c = &r->common;
     if (c->scratch || !c->max_memory || bytes <= (double)c->max_memory) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_NO_MEMORY, "about %.0f MiB needed, over the limit of %.0f MiB (--max-memory)",
+    return cli_fail(r, BRIO_ERR_NO_MEMORY, "about %.1f MiB needed, over the limit of %.1f MiB (--max-memory)",
                     bytes / 0x1p20, (double)c->max_memory / 0x1p20);
 }
 

@@ -56,6 +56,7 @@ static void bounding_corners(const double *points, size_t n, double *corner) {
         }
         longest = fmax(longest, high[k] - low[k]);
     }
+    if (longest == 0) longest = 1; /* one position */
     for (int k = 0; k < 3; k++) {
         centre[k] = 0.5 * (low[k] + high[k]);
         half[k] = 2.5 * fmax(high[k] - low[k], longest / 5);

@@ -127,6 +127,8 @@ brio_status brio_adjacency_build(brio_context *ctx, const brio_record *record, s
     BRIO_TRY(sort_handles(ctx, &t, num_points, handles, 4 * n, sorted));
     BRIO_TRY(match(ctx, &t, sorted, 4 * n, &num_hull));
     t.count = n + num_hull;
+    BRIO_REQUIRE(ctx, t.count <= (size_t)1 << 30, BRIO_ERR_TOO_LARGE,
+                 "%zu tetrahedra, infinite ones included; at most 2^30", t.count);
     BRIO_TRY(BRIO_RESIZE(ctx, t.vertex, 4 * t.count));
     BRIO_TRY(BRIO_RESIZE(ctx, t.mate, 4 * t.count));
     BRIO_TRY(BRIO_ALLOC(ctx, edges, 3 * num_hull));

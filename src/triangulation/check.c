@@ -1,10 +1,10 @@
 /* The exact check of a Delaunay or regular triangulation.
  *
- * A closed adjacency of positive tetrahedra with a locally convex hull of genus 0 triangulates the convex hull, and it
- * is regular when every two neighbours are: the far vertex of one is not inside the other's (ortho)sphere. With ties
- * broken by the symbolic perturbation the regular triangulation is unique, so "locally regular under the perturbation"
- * means "the one that brio_delaunay computes". Every remaining point is located exactly, and must be at a vertex that
- * is not lighter, or outside the orthosphere of the tetrahedron that holds it.
+ * A closed adjacency of positive tetrahedra with a locally convex hull of genus 0, in which no point is covered twice,
+ * triangulates the convex hull; and it is regular when every two neighbours are: the far vertex of one is not inside the
+ * other's (ortho)sphere. With ties broken by the symbolic perturbation the regular triangulation is unique, so "locally
+ * regular under the perturbation" means "the one that brio_delaunay computes". Every remaining point is located exactly,
+ * and must be at a vertex that is not lighter, or outside the orthosphere of the tetrahedron that holds it.
  *
  * Inputs of fewer dimensions have no tetrahedra to look at; their check is in check_flat.c. */
 #include "base/memory.h"
@@ -171,6 +171,41 @@ done:
     return status;
 }
 
+/* The side of (a, b, c) on which a point just inside the tetrahedron `seed` lies, next to its first vertex: an orientation
+ * is affine in its last point, so the first of the seed's vertices off the plane decides. */
+static int side_of_seed(judge *j, const uint32_t *seed, uint32_t a, uint32_t b, uint32_t c) {
+    const brio_record *r = j->t.record;
+    int side = 0;
+    for (int i = 0; i < 4 && !side; i++) side = brio_orient3d_sign(&j->filter, r[a], r[b], r[c], r[seed[i]]);
+    return side;
+}
+
+/* Nothing is covered twice: a point inside one finite tetrahedron is in no other and inside of every hull facet. Positive
+ * tetrahedra cover every point inside the hull equally often, and a hull that is seen once from one point is embedded. */
+static brio_status check_cover(judge *j) {
+    brio_status status = BRIO_OK;
+    size_t first = 0;
+    while (first < j->t.count && brio_is_infinite(&j->t, (uint32_t)first)) first++;
+    BRIO_REQUIRE(j->ctx, first < j->t.count, BRIO_ERR_CHECK, "no finite tetrahedron");
+    const uint32_t *seed = vertices_of(j, first);
+    for (size_t tet = 0; tet < j->t.count; tet++) {
+        const uint32_t *v = vertices_of(j, tet);
+        if (v[3] == BRIO_INFINITE) {
+            BRIO_REQUIRE(j->ctx, side_of_seed(j, seed, v[0], v[1], v[2]) < 0, BRIO_ERR_CHECK,
+                         "tetrahedron %zu is outside of hull facet (%u %u %u)", first, v[0], v[1], v[2]);
+            continue;
+        }
+        int inside = 0;
+        for (; inside < 4; inside++) {
+            const uint8_t *f = BRIO_FACET[inside];
+            if (side_of_seed(j, seed, v[f[0]], v[f[1]], v[f[2]]) <= 0) break;
+        }
+        BRIO_REQUIRE(j->ctx, inside < 4 || tet == first, BRIO_ERR_CHECK, "tetrahedra %zu and %zu overlap", first, tet);
+    }
+done:
+    return status;
+}
+
 /* A point that is no vertex: a duplicate of one that is not lighter, or hidden under the tetrahedron that holds it. */
 static brio_status check_point(judge *j, brio_walk *walk, uint32_t p) {
     brio_status status = BRIO_OK;
@@ -216,6 +251,7 @@ brio_status brio_check_tetrahedra(brio_context *ctx, const brio_tetrahedra *t, s
             if (vertices_of(&j, tet)[i] != BRIO_INFINITE) j.vertex_tet[vertices_of(&j, tet)[i]] = (uint32_t)tet;
     BRIO_TRY(check_euler(&j));
     BRIO_TRY(check_facets(&j));
+    BRIO_TRY(check_cover(&j));
     BRIO_TRY(check_points(&j));
     *canonical = j.canonical;
 done:

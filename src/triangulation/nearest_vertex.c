@@ -13,6 +13,8 @@ enum { LARGE_STAR = 256 };
 
 /* Differences below this share of their terms are not trusted to tell more than rounding errors do. */
 static const double TRUSTED = 1e-9;
+/* Far more than squares of subnormal differences may lose. */
+static const double UNDERFLOW = 0x1p-900;
 
 brio_status brio_nearest_new(brio_kernel *k, const uint32_t *vertex_tet, brio_nearest *out) {
     memset(out, 0, sizeof *out);
@@ -51,7 +53,7 @@ static brio_status remember(brio_nearest *n, brio_nearest_memory *m, uint32_t u)
     const double *a = n->k->record[m->vertex], *b = n->k->record[u];
     double to_a = square_distance(m->centre, a), to_b = square_distance(m->centre, b);
     double margin = to_b - b[3] - (to_a - a[3]);
-    if (margin > TRUSTED * (to_a + to_b + fabs(a[3]) + fabs(b[3]))) {
+    if (margin > TRUSTED * (to_a + to_b + fabs(a[3]) + fabs(b[3])) + UNDERFLOW) {
         m->radius = fmin(m->radius, margin / (4 * sqrt(square_distance(a, b))));
         return BRIO_OK;
     }

@@ -126,6 +126,10 @@ static void inputs_without_an_inside_say_so(void) {
     EXPECT(brio_power_crust(ctx, NULL, 0, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     EXPECT(brio_power_crust(ctx, three, 3, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     EXPECT(brio_power_crust(ctx, flat, 5, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    const double once[9] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+    brio_power_crust_stats s;
+    EXPECT(brio_power_crust(ctx, once, 3, NULL, &mesh, &s) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(s.samples == 1 && !strcmp(brio_message(ctx), "1 distinct points span no solid"), "%s", brio_message(ctx));
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }

@@ -450,6 +450,49 @@ static void other_tie_breaks_pass_but_are_not_canonical(void) {
     brio_context_free(ctx);
 }
 
+/* Eight tetrahedra that wind twice round the z axis: closed, positive, locally Delaunay, every inner point covered twice. */
+static void check_refuses_space_covered_twice(void) {
+    const double p[30] = {0, 0,  5, 0, 0, -5, 5,  0, 0, 0,  5,  0, -5, 0,  0,
+                          0, -5, 0, 3, 4, 0,  -4, 3, 0, -3, -4, 0, 4,  -3, 0};
+    uint32_t v[32];
+    for (uint32_t i = 0; i < 8; i++) {
+        uint32_t tet[4] = {0, 1, 2 + i, 2 + (i + 1) % 8};
+        memcpy(v + 4 * i, tet, sizeof tet);
+    }
+    brio_context *ctx = new_context();
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 10, v, 8, NULL) == BRIO_ERR_CHECK);
+    EXPECT(strstr(brio_message(ctx), "overlap") != NULL, "%s", brio_message(ctx));
+    brio_context_free(ctx);
+}
+
+/* Thousands of hidden points behind few vertices, scaled until squared distances are subnormal: the same representatives. */
+static void representatives_survive_subnormal_distances(void) {
+    enum { N = 1200 };
+    static double p[3 * N], w[N], q[3 * N], u[N];
+    for (size_t i = 0; i < N; i++) {
+        brio_rng rng = brio_rng_new(i + 5);
+        bool outer = i < N / 2;
+        double d[3], length = 0;
+        for (int k = 0; k < 3; k++) d[k] = brio_rng_double(&rng) - 0.5, length += d[k] * d[k];
+        for (size_t k = 0; k < 3; k++) p[3 * i + k] = floor(d[k] / sqrt(length) * (outer ? 2000 : 300));
+        w[i] = outer ? 0 : -4096 * (double)brio_rng_below(&rng, 1000); /* 2^12: exact at every scale below */
+    }
+    brio_context *ctx = new_context();
+    brio_triangulation *s, *t;
+    for (int e = -543; e <= -538; e++) {
+        for (size_t i = 0; i < 3 * N; i++) q[i] = ldexp(p[i], e);
+        for (size_t i = 0; i < N; i++) u[i] = ldexp(w[i], 2 * e);
+        EXPECT(brio_delaunay(ctx, p, w, N, NULL, &s) == BRIO_OK && brio_delaunay(ctx, q, u, N, NULL, &t) == BRIO_OK);
+        EXPECT(brio_triangulation_stats(s)->hidden == brio_triangulation_stats(t)->hidden);
+        for (size_t i = 0; i < N; i++)
+            EXPECT(brio_triangulation_representatives(s)[i] == brio_triangulation_representatives(t)[i], "2^%d: %zu", e,
+                   i);
+        brio_triangulation_free(s);
+        brio_triangulation_free(t);
+    }
+    brio_context_free(ctx);
+}
+
 int main(void) {
     RUN(small_grids_match_brute_force);
     RUN(order_shuffle_and_scale_do_not_matter);
@@ -468,5 +511,7 @@ int main(void) {
     RUN(every_memory_limit_is_a_status);
     RUN(check_refuses_what_is_wrong);
     RUN(other_tie_breaks_pass_but_are_not_canonical);
+    RUN(check_refuses_space_covered_twice);
+    RUN(representatives_survive_subnormal_distances);
     return harness_end();
 }
