@@ -467,22 +467,23 @@ static void check_refuses_space_covered_twice(void) {
 
 /* Thousands of hidden points behind few vertices, scaled until squared distances are subnormal: the same representatives. */
 static void representatives_survive_subnormal_distances(void) {
-    enum { N = 1200 };
+    enum { N = 2000, OUTER = 600, INNER = 3 };
     static double p[3 * N], w[N], q[3 * N], u[N];
-    for (size_t i = 0; i < N; i++) {
-        brio_rng rng = brio_rng_new(i + 5);
-        bool outer = i < N / 2;
-        double d[3], length = 0;
-        for (int k = 0; k < 3; k++) d[k] = brio_rng_double(&rng) - 0.5, length += d[k] * d[k];
-        for (size_t k = 0; k < 3; k++) p[3 * i + k] = floor(d[k] / sqrt(length) * (outer ? 2000 : 300));
-        w[i] = outer ? 0 : -4096 * (double)brio_rng_below(&rng, 1000); /* 2^12: exact at every scale below */
-    }
     brio_context *ctx = new_context();
     brio_triangulation *s, *t;
-    for (int e = -543; e <= -538; e++) {
-        for (size_t i = 0; i < 3 * N; i++) q[i] = ldexp(p[i], e);
-        for (size_t i = 0; i < N; i++) u[i] = ldexp(w[i], 2 * e);
+    for (int e = -543; e <= -542; e++) {
+        for (size_t i = 0; i < N; i++) {
+            brio_rng rng = brio_rng_new(i + 5);
+            double d[3], length = 0;
+            for (int k = 0; k < 3; k++) d[k] = brio_rng_double(&rng) - 0.5, length += d[k] * d[k];
+            for (size_t k = 0; k < 3; k++)
+                p[3 * i + k] = i < INNER ? (double)(i * (3 - k)) : rint(d[k] / sqrt(length) * (i < OUTER ? 2000 : 300));
+            w[i] = i < OUTER ? 0 : -ldexp(100000, -1074 - 2 * e);
+            for (size_t k = 0; k < 3; k++) q[3 * i + k] = ldexp(p[3 * i + k], e);
+            u[i] = ldexp(w[i], 2 * e);
+        }
         EXPECT(brio_delaunay(ctx, p, w, N, NULL, &s) == BRIO_OK && brio_delaunay(ctx, q, u, N, NULL, &t) == BRIO_OK);
+        EXPECT(brio_triangulation_stats(s)->hidden > N / 2);
         EXPECT(brio_triangulation_stats(s)->hidden == brio_triangulation_stats(t)->hidden);
         for (size_t i = 0; i < N; i++)
             EXPECT(brio_triangulation_representatives(s)[i] == brio_triangulation_representatives(t)[i], "2^%d: %zu", e,
