@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check clean
+.PHONY: all demo check bench clean
 
 all:
 	@sh scripts/setup.sh build
@@ -16,6 +16,14 @@ demo: all
 check:
 	@sh scripts/setup.sh check
 	@sh scripts/check.sh $(JOBS)
+
+# BENCH="--runs 5 --only uniform_1m happy_raw" measures less.
+bench: all
+	@sh scripts/setup.sh bench
+	cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_PEERS=ON
+	cmake --build build-bench -j $(JOBS) --target cgal_delaunay cgal_regular
+	@mkdir -p out
+	/usr/bin/python3 bench/bench.py $(BRIO) build-bench out/bench.csv $(BENCH)
 
 clean:
 	rm -rf build build-ci build-debug build-sanitize out

@@ -1,5 +1,5 @@
 #!/bin/sh
-# setup.sh build|check: sees to the tools that building, or also testing, needs.
+# setup.sh build|check|bench: sees to the tools that building, testing or measuring needs.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
 set -eu
 
@@ -33,6 +33,11 @@ missing() {
     has_cmake || echo cmake
     has make || echo make
     has_compiler || echo gcc libc6-dev
+    if [ "$1" = bench ]; then
+        has g++ || echo g++
+        [ -d /usr/include/CGAL ] || echo libcgal-dev
+        has_python_with numpy || echo python3-numpy
+    fi
     [ "$1" = check ] || return 0
     [ -x $python ] || echo python3
     has_python_with numpy || echo python3-numpy
@@ -54,9 +59,9 @@ install() {
 
 purpose=${1:-build}
 case $purpose in
-build | check) ;;
+build | check | bench) ;;
 *)
-    echo "usage: setup.sh build|check" >&2
+    echo "usage: setup.sh build|check|bench" >&2
     exit 1
     ;;
 esac

@@ -50,9 +50,10 @@ static int compare_hidden(uint32_t p, uint32_t q, const void *user) {
     return k->caller[p] < k->caller[q] ? -1 : 1;
 }
 
-static void count_hidden(workspace *w) {
+static brio_status count_hidden(workspace *w) {
     brio_kernel *k = w->k;
-    brio_sort_indices(w->hidden, w->num_hidden, compare_hidden, k);
+    brio_status status = brio_sort_rows(k->ctx, *k->record, 4, w->hidden, w->num_hidden, compare_hidden, k);
+    if (status != BRIO_OK) return status;
     for (size_t n = 0; n < w->num_hidden; n++) {
         bool again = n > 0 && brio_same_position(k->record[w->hidden[n - 1]], k->record[w->hidden[n]]);
         if (again)
@@ -60,6 +61,7 @@ static void count_hidden(workspace *w) {
         else
             k->stats.hidden++;
     }
+    return BRIO_OK;
 }
 
 static brio_status represent_weighted(brio_kernel *k) {
@@ -76,7 +78,7 @@ static brio_status represent_weighted(brio_kernel *k) {
     BRIO_TRY(brio_nearest_new(k, w.vertex_tet, &w.nearest));
     for (uint32_t p = 0; p < k->num_points; p++)
         if (k->representative[p] != p) BRIO_TRY(represent_one(&w, p));
-    count_hidden(&w);
+    BRIO_TRY(count_hidden(&w));
 done:
     brio_release(k->ctx, w.vertex_tet);
     brio_nearest_free(&w.nearest);
