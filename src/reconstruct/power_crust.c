@@ -36,12 +36,16 @@ typedef struct {
 /* --- 1: samples and bounding points --- */
 
 static brio_status check_finite(brio_context *ctx, const double *points, size_t n) {
-    brio_status status = BRIO_OK;
-    for (size_t i = 0; i < 3 * n; i++)
-        BRIO_REQUIRE(ctx, isfinite(points[i]), BRIO_ERR_NOT_FINITE, "point %zu: %c is %s", i / 3, "xyz"[i % 3],
-                     isnan(points[i]) ? "NaN" : "infinite");
-done:
-    return status;
+    size_t first = n, bad = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (isfinite(points[3 * i]) && isfinite(points[3 * i + 1]) && isfinite(points[3 * i + 2])) continue;
+        if (bad++ == 0) first = i;
+    }
+    if (bad == 0) return BRIO_OK;
+    size_t k = 0;
+    while (isfinite(points[3 * first + k])) k++;
+    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %c is %s (%zu such points in all)", first, "xyz"[k],
+                     isnan(points[3 * first + k]) ? "NaN" : "infinite", bad);
 }
 
 /* Eight corners of the box scaled five times about its centre; a side shorter than a fifth of the longest is taken as

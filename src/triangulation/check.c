@@ -328,7 +328,7 @@ brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation
     BRIO_TRY(check_representatives(ctx, t, record));
     BRIO_TRY(check_used(ctx, t, tets));
     if (t->stats.dimension < 3) {
-        BRIO_TRY(brio_check_flat(ctx, t, points, weights, record));
+        BRIO_TRY(brio_check_flat(ctx, t, points, weights));
     } else {
         brio_tetrahedra view = {t->vertex, t->mate, tets, BRIO_INFINITE, record};
         BRIO_TRY(brio_check_tetrahedra(ctx, &view, num_points, weights != NULL, &canonical));

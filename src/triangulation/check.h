@@ -13,7 +13,7 @@ brio_status brio_check_tetrahedra(brio_context *ctx, const brio_tetrahedra *t, s
 int brio_dimension(const brio_record *record, size_t num_points);
 
 /** Checks which points of a flat input are vertices. */
-brio_status brio_check_flat(brio_context *ctx, const brio_triangulation *t, const double *points, const double *weights,
-                            const brio_record *record);
+brio_status brio_check_flat(brio_context *ctx, const brio_triangulation *t, const double *points,
+                            const double *weights);
 
 #endif

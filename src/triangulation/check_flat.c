@@ -54,8 +54,8 @@ static double reach_of(const double *points, size_t n) {
     return fmin(fmax(most, 1e-300), 8e307);
 }
 
-brio_status brio_check_flat(brio_context *ctx, const brio_triangulation *t, const double *points, const double *weights,
-                            const brio_record *record) {
+brio_status brio_check_flat(brio_context *ctx, const brio_triangulation *t, const double *points,
+                            const double *weights) {
     brio_status status = BRIO_OK;
     size_t n = t->stats.points;
     double *lifted = NULL, *w = NULL;
@@ -65,7 +65,6 @@ brio_status brio_check_flat(brio_context *ctx, const brio_triangulation *t, cons
                      t->stats.vertices);
         goto done;
     }
-    (void)record;
     BRIO_TRY(BRIO_ALLOC(ctx, lifted, 3 * (n + 3)));
     memcpy(lifted, points, 3 * n * sizeof *lifted);
     size_t total = add_apexes(lifted, n, reach_of(points, n));

@@ -126,6 +126,9 @@ static void inputs_without_an_inside_say_so(void) {
     EXPECT(brio_power_crust(ctx, NULL, 0, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     EXPECT(brio_power_crust(ctx, three, 3, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     EXPECT(brio_power_crust(ctx, flat, 5, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    const double bad[9] = {0, 0, 0, 1, NAN, 0, 0, 1, INFINITY};
+    EXPECT(brio_power_crust(ctx, bad, 3, NULL, &mesh, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
+    EXPECT(!strcmp(brio_message(ctx), "point 1: y is NaN (2 such points in all)"), "%s", brio_message(ctx));
     const double once[9] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
     brio_power_crust_stats s;
     EXPECT(brio_power_crust(ctx, once, 3, NULL, &mesh, &s) == BRIO_ERR_NO_ANSWER && !mesh);
