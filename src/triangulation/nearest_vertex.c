@@ -21,13 +21,15 @@ brio_status brio_nearest_new(brio_kernel *k, const uint32_t *vertex_tet, brio_ne
     out->k = k;
     out->vertex_tet = vertex_tet;
     for (int i = 0; i < BRIO_NEAREST_MEMORIES; i++) out->memory[i].vertex = k->t.infinite;
-    return brio_star_new(k->ctx, k->t.count, &out->star);
+    brio_status status = BRIO_ALLOC_ZERO(k->ctx, out->seen, k->num_points + 3);
+    return status == BRIO_OK ? brio_star_new(k->ctx, k->t.count, &out->star) : status;
 }
 
 void brio_nearest_free(brio_nearest *n) {
     if (!n->k) return;
     for (int i = 0; i < BRIO_NEAREST_MEMORIES; i++) brio_release(n->k->ctx, n->memory[i].rival);
     brio_star_free(n->k->ctx, &n->star);
+    brio_release(n->k->ctx, n->seen);
 }
 
 static bool is_point(const brio_kernel *k, uint32_t v) {
@@ -94,8 +96,13 @@ static brio_status look_around(brio_nearest *n, const double *x, uint32_t v, uin
     }
     brio_status status = brio_star_collect(k->ctx, &k->t, v, n->vertex_tet[v], SIZE_MAX, &n->star);
     if (status != BRIO_OK) return status;
-    for (size_t i = 0; i < 4 * n->star.size; i++)
-        *best = nearer(k, x, *best, k->t.vertex[4 * (size_t)n->star.tet[i / 4] + i % 4]);
+    n->look++;
+    for (size_t i = 0; i < 4 * n->star.size; i++) { /* each neighbour is in some five of these tetrahedra */
+        uint32_t u = k->t.vertex[4 * (size_t)n->star.tet[i / 4] + i % 4];
+        if (n->seen[u] == n->look) continue;
+        n->seen[u] = n->look;
+        *best = nearer(k, x, *best, u);
+    }
     return n->star.size > LARGE_STAR ? remember_star(n, v, x) : BRIO_OK;
 }
 

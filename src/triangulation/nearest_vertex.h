@@ -19,6 +19,8 @@ typedef struct {
     brio_kernel *k;
     const uint32_t *vertex_tet; /* a tetrahedron of each vertex */
     brio_star star;
+    uint32_t *seen; /* of each vertex, the last look that it was compared in */
+    uint32_t look;
     brio_nearest_memory memory[BRIO_NEAREST_MEMORIES];
 } brio_nearest;
 
