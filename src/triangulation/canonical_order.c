@@ -4,8 +4,8 @@
  * others are turned so that the latest of them comes first, which leaves one arrangement of each orientation (an
  * infinite vertex stays last). Tetrahedra are sorted by these vertices, finite ones first: a counting sort by the
  * latest vertex, then a small sort in each bucket. The order depends on the set of tetrahedra and the insertion order
- * alone, not on the history or the threads that made it. And a tetrahedron already lies near its place; sorting by the
- * earliest vertex would cost 40 % of the construction in cache misses.
+ * alone, not on the history or the threads that made it. And a tetrahedron already lies near its place, nearer than in
+ * an order by the earliest vertex, which takes 5 to 12 % longer in all.
  *
  * The arrays are permuted block by block: what belongs into a block is gathered aside, what else lives there moves to
  * the places that this left free, and the block is written. The reads of a block are independent, which following
