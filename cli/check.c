@@ -30,7 +30,7 @@ static brio_status check_tetrahedra(run *r, const arguments *a, const brio_mesh 
     brio_status status = BRIO_OK;
     TRY(cli_weights(r, &a->weights, mesh, &weights));
     r->lap = cli_clock();
-    status = brio_tetrahedra_check(r->ctx, mesh->vertices, weights, mesh->num_vertices, mesh->tetrahedra,
+    status = brio_tetrahedra_check(r->ctx, mesh->vertices, weights, mesh->num_vertices, mesh->tetrahedra, 4,
                                    mesh->num_tetrahedra, &canonical);
     cli_lap(r, "check");
     if (status == BRIO_OK || status == BRIO_ERR_CHECK) {

@@ -109,7 +109,8 @@ static brio_status verify(run *r, const brio_mesh *mesh, const double *weights, 
 static brio_status write_output(run *r, brio_mesh *mesh, const double *weights, brio_triangulation **t) {
     brio_status status = BRIO_OK;
     TRY(cli_keep_weights(mesh, weights));
-    TRY(brio_mesh_set_tetrahedra(mesh, brio_triangulation_tetrahedra(*t), brio_triangulation_stats(*t)->tetrahedra));
+    const brio_tetrahedron *tets = brio_triangulation_tetrahedra(*t);
+    TRY(brio_mesh_set_tetrahedra(mesh, (const uint32_t *)tets, 8, brio_triangulation_stats(*t)->tetrahedra));
     brio_triangulation_free(*t);
     *t = NULL;
     TRY(cli_write(r, mesh));

@@ -32,10 +32,19 @@ static const option options[] = {
 
 static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .views = NO_VIEWS};
 
-static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},         {"ball", BRIO_KIND_BALL},
-                                      {"sphere", BRIO_KIND_SPHERE},     {"torus", BRIO_KIND_TORUS},
-                                      {"cylinder", BRIO_KIND_CYLINDER}, {"grid", BRIO_KIND_GRID},
-                                      {"scan", BRIO_KIND_SCAN},         {NULL, 0}};
+#define KINDS "cube ball sphere torus cylinder grid scan clusters moment"
+
+static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
+                                      {"ball", BRIO_KIND_BALL},
+                                      {"sphere", BRIO_KIND_SPHERE},
+                                      {"torus", BRIO_KIND_TORUS},
+                                      {"cylinder", BRIO_KIND_CYLINDER},
+                                      {"grid", BRIO_KIND_GRID},
+                                      {"scan", BRIO_KIND_SCAN},
+                                      {"clusters", BRIO_KIND_CLUSTERS},
+                                      {"moment", BRIO_KIND_MOMENT},
+                                      {"moment-curve", BRIO_KIND_MOMENT},
+                                      {NULL, 0}};
 
 static const char *kind_name(const void *list, size_t i) {
     return ((const option_choice *)list)[i].name;
@@ -49,8 +58,7 @@ static brio_status find_kind(run *r, brio_kind *kind) {
     }
     const char *near = cli_nearest(name, kind_name, kinds);
     if (near) return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; did you mean '%s'?", name, near);
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; there are cube ball sphere torus cylinder grid scan",
-                    name);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; there are " KINDS, name);
 }
 
 static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
@@ -113,7 +121,7 @@ done:
 const command cli_generate = {
     .name = "generate",
     .operands = "KIND",
-    .summary = "test data: cube ball sphere torus cylinder grid scan; -n N points to -o FILE",
+    .summary = "test data: " KINDS "; -n N points to -o FILE",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

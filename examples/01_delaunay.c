@@ -1,6 +1,6 @@
 /* Delaunay triangulation of random points, and a walk through it: which tetrahedron holds the centre of the cube, and
  * which vertices look at it across its facets. Facet handle 4*t + i names the facet of tetrahedron t opposite to its
- * vertex i; mates[4*t + i] is the same facet seen from the tetrahedron on the other side. */
+ * vertex i; its mate is the same facet seen from the tetrahedron on the other side. */
 #include "common.h"
 
 static const size_t NUM_POINTS = 10000;
@@ -11,15 +11,15 @@ static const int facet[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
 /* Walks from the first tetrahedron towards q, each step across a facet that has q on its other side. In a Delaunay
  * triangulation this ends. Outside the hull the walk would end in an infinite tetrahedron. */
 static uint32_t locate(const brio_triangulation *t, const double *points, const double *q) {
-    const uint32_t *vertices = brio_triangulation_tetrahedra(t), *mates = brio_triangulation_mates(t);
+    const brio_tetrahedron *tets = brio_triangulation_tetrahedra(t);
     uint32_t tet = 0;
     for (int i = 0; i < 4; i++) {
-        const uint32_t *v = vertices + 4 * (size_t)tet;
+        const uint32_t *v = tets[tet].vertex;
         if (v[3] == BRIO_INFINITE) break;
         const double *a = points + 3 * (size_t)v[facet[i][0]], *b = points + 3 * (size_t)v[facet[i][1]],
                      *c = points + 3 * (size_t)v[facet[i][2]];
         if (brio_orient3d(a, b, c, q) >= 0) continue;
-        tet = mates[4 * (size_t)tet + (size_t)i] / 4;
+        tet = tets[tet].mate[i] / 4;
         i = -1;
     }
     return tet;
@@ -52,10 +52,13 @@ int main(void) {
 
     const double centre[3] = {0.5, 0.5, 0.5};
     const uint32_t tet = locate(t, cloud->vertices, centre);
-    const uint32_t *vertices = brio_triangulation_tetrahedra(t), *mates = brio_triangulation_mates(t);
+    const brio_tetrahedron *tets = brio_triangulation_tetrahedra(t);
     uint32_t across[4];
-    for (size_t i = 0; i < 4; i++) across[i] = vertices[mates[4 * (size_t)tet + i]];
-    print_sorted("the centre lies among the points", vertices + 4 * (size_t)tet);
+    for (int i = 0; i < 4; i++) {
+        const uint32_t mate = tets[tet].mate[i];
+        across[i] = tets[mate / 4].vertex[mate % 4];
+    }
+    print_sorted("the centre lies among the points", tets[tet].vertex);
     print_sorted("seen across the facets by", across);
 
     CHECK(ctx, brio_triangulation_check(ctx, t, cloud->vertices, NULL, cloud->num_vertices));

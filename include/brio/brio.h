@@ -124,6 +124,12 @@ BRIO_API size_t brio_context_memory_peak(const brio_context *ctx);
 
 #define BRIO_INFINITE UINT32_MAX
 
+/** A tetrahedron: its vertices, as indices of points, and for the facet opposite to each of them its mate, the handle of
+ *  the same facet seen from the tetrahedron on the other side. As an array of numbers: eight to a tetrahedron. */
+typedef struct {
+    uint32_t vertex[4], mate[4];
+} brio_tetrahedron;
+
 /** Insertion orders. All give the same tetrahedra. */
 typedef enum brio_order {
     BRIO_ORDER_BRIO = 0,    /* random rounds, Hilbert curve inside a round: the tuned one [Amenta Choi Rote 2003] */
@@ -175,14 +181,11 @@ BRIO_API void brio_triangulation_free(brio_triangulation *t);
 
 BRIO_API const brio_stats *brio_triangulation_stats(const brio_triangulation *t);
 
-/** #T by 4 indices of points, #T = tetrahedra + hull_facets. The finite tetrahedra come first and are positive; an
+/** The #T = tetrahedra + hull_facets tetrahedra. The finite tetrahedra come first and are positive; an
  *  infinite tetrahedron has BRIO_INFINITE as its last vertex and the other three see the outside on their negative
  *  side ((a, b, c, x) is positive for x outside). The order is the same for every number of threads. View, valid until
  *  the triangulation is freed. */
-BRIO_API const uint32_t *brio_triangulation_tetrahedra(const brio_triangulation *t);
-
-/** #T by 4 facet handles: the mate of each facet. View. */
-BRIO_API const uint32_t *brio_triangulation_mates(const brio_triangulation *t);
+BRIO_API const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triangulation *t);
 
 /** #P: for each point the vertex that represents it: itself for a vertex. View. */
 BRIO_API const uint32_t *brio_triangulation_representatives(const brio_triangulation *t);
@@ -195,12 +198,12 @@ BRIO_API const uint32_t *brio_triangulation_representatives(const brio_triangula
 BRIO_API brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation *t, const double *points,
                                               const double *weights, size_t num_points);
 
-/** The same check for tetrahedra from anywhere: #T by 4 indices of points, finite ones only, in any order and either
- *  orientation. Any Delaunay (regular) triangulation of the points passes, however its ties are broken.
+/** The same check for tetrahedra from anywhere, finite ones only, in any order and either orientation: the four indices
+ *  of points of each are at tetrahedra + stride * i (4 where they are packed, 8 for a view of a triangulation). Any Delaunay (regular) triangulation of the points passes, however its ties are broken.
  *  canonical  receives 1 when it is the one that brio_delaunay computes, else 0; may be NULL. */
 BRIO_API brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const double *weights,
-                                           size_t num_points, const uint32_t *tetrahedra, size_t num_tetrahedra,
-                                           int *canonical);
+                                           size_t num_points, const uint32_t *tetrahedra, size_t stride,
+                                           size_t num_tetrahedra, int *canonical);
 
 /** A hash of the set of tetrahedra over the lexicographic ranks of their vertices: independent of the order of the
  *  points and of the tetrahedra, and unchanged by scaling all points with a power of two.
@@ -262,7 +265,8 @@ BRIO_API brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *verti
 BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices,
                                          size_t num_faces);
 /** Gives a mesh tetrahedra (copied): #T by 4. */
-BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t num_tetrahedra);
+BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t stride,
+                                              size_t num_tetrahedra);
 /** Adds a property of the vertices, zeroed, and returns where its numbers go in *data; a name that is there already is
  *  BRIO_ERR_ARGUMENT. */
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
@@ -392,6 +396,8 @@ typedef enum brio_kind {
     BRIO_KIND_CYLINDER, /* uniform on the side of the cylinder of radius 1 and height 4 */
     BRIO_KIND_GRID,     /* the first n points of the smallest cubic integer grid that has them */
     BRIO_KIND_SCAN,     /* a simulated laser scan of a sculpture of genus 3 */
+    BRIO_KIND_CLUSTERS, /* uniform in 256 balls in the unit cube, their radii log-uniform from 1e-7 to 0.1 */
+    BRIO_KIND_MOMENT,   /* (t, t^2, t^3), t uniform in [0, 1): about n^2 / 4 tetrahedra */
     BRIO_KIND_END
 } brio_kind;
 

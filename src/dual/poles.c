@@ -19,7 +19,7 @@
 enum { NO_TET = UINT32_MAX };
 
 typedef struct {
-    const uint32_t *vertex; /* of the tetrahedra */
+    const brio_tetrahedron *tet;
     const double *points;
     size_t num_tets, num_samples;
     double *centre; /* of each tetrahedron; NaN where there is none */
@@ -36,7 +36,7 @@ static void find_centres(const brio_context *ctx, finder *f) {
     for (size_t tet = 0; tet < f->num_tets; tet++) {
         double r[4][4] = {{0}};
         for (int i = 0; i < 4; i++)
-            memcpy(r[i], f->points + 3 * (size_t)f->vertex[4 * tet + (size_t)i], 3 * sizeof **r);
+            memcpy(r[i], f->points + 3 * (size_t)f->tet[tet].vertex[i], 3 * sizeof **r);
         if (!brio_centre(r[0], r[1], r[2], r[3], false, f->centre + 3 * tet, NULL)) f->centre[3 * tet] = NAN;
     }
 }
@@ -48,7 +48,7 @@ static double square_distance(const double *p, const double *q) {
 
 /* Positions of a tetrahedron's vertices, ascending. */
 static void sorted_positions(const finder *f, uint32_t tet, const double *p[4]) {
-    for (int i = 0; i < 4; i++) p[i] = f->points + 3 * (size_t)f->vertex[4 * (size_t)tet + (size_t)i];
+    for (int i = 0; i < 4; i++) p[i] = f->points + 3 * (size_t)f->tet[tet].vertex[i];
     for (int i = 1; i < 4; i++)
         for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {
             const double *swap = p[j];
@@ -85,7 +85,7 @@ static void offer_all(finder *f, int side) {
     for (size_t tet = 0; tet < f->num_tets; tet++) {
         if (isnan(f->centre[3 * tet])) continue;
         for (int i = 0; i < 4; i++) {
-            size_t v = f->vertex[4 * tet + (size_t)i];
+            size_t v = f->tet[tet].vertex[i];
             if (v >= f->num_samples) continue;
             const double *s = f->points + 3 * v;
             if (side == 1 && !opposite(f, f->best[2 * v], (uint32_t)tet, s)) continue;
@@ -146,7 +146,7 @@ static void fill_poles(const finder *f, const uint32_t *list, brio_poles *poles)
         poles->square[p] = square_distance(poles->centre + 3 * p, position[0]);
         poles->bounding[p] = 0;
         for (int i = 0; i < 4; i++)
-            if (f->vertex[4 * (size_t)list[p] + (size_t)i] >= f->num_samples) poles->bounding[p] = 1;
+            if (f->tet[list[p]].vertex[i] >= f->num_samples) poles->bounding[p] = 1;
     }
 }
 
@@ -172,7 +172,7 @@ done:
 brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
                             brio_poles *out) {
     brio_status status = BRIO_OK;
-    finder f = {.vertex = brio_triangulation_tetrahedra(t),
+    finder f = {.tet = brio_triangulation_tetrahedra(t),
                 .points = points,
                 .num_tets = brio_triangulation_stats(t)->tetrahedra,
                 .num_samples = num_samples};

@@ -48,19 +48,19 @@ static void vertex_position(const builder *b, const uint32_t *v, double *positio
 static brio_status make_vertices(builder *b) {
     brio_status status = BRIO_OK;
     brio_context *ctx = b->g->ctx;
-    const uint32_t *vertex = b->g->power.vertex;
+    const brio_tetrahedron *power = b->g->power.tet;
     size_t count = 0;
     BRIO_TRY(BRIO_ALLOC(ctx, b->number, b->g->num_finite));
     for (size_t tet = 0; tet < b->g->num_finite; tet++) {
         int inside = 0;
-        for (int i = 0; i < 4; i++) inside += inner(b, vertex[4 * tet + (size_t)i]);
+        for (int i = 0; i < 4; i++) inside += inner(b, power[tet].vertex[i]);
         b->number[tet] = inside % 4 ? (uint32_t)count++ : NO_VERTEX;
     }
     BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, count));
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t tet = 0; tet < b->g->num_finite; tet++)
         if (b->number[tet] != NO_VERTEX)
-            vertex_position(b, vertex + 4 * tet, b->mesh->vertices + 3 * (size_t)b->number[tet]);
+            vertex_position(b, power[tet].vertex, b->mesh->vertices + 3 * (size_t)b->number[tet]);
 done:
     return status;
 }
@@ -69,20 +69,18 @@ done:
  * tells whether `tet` is the first of them in memory, and the ring is complete only then. */
 static brio_status walk_ring(builder *b, uint32_t tet, int i, int j, bool *leads) {
     const brio_tetrahedra *t = &b->g->power;
-    uint32_t from = tet, leave = t->vertex[brio_facet_of(tet, BRIO_EDGE[i][j][0])],
-             pivot = t->vertex[brio_facet_of(tet, BRIO_EDGE[i][j][1])];
+    uint32_t from = tet, leave = t->tet[tet].vertex[BRIO_EDGE[i][j][0]], pivot = t->tet[tet].vertex[BRIO_EDGE[i][j][1]];
     b->ring_size = 0;
     *leads = false;
     do {
         brio_status status = BRIO_RESERVE(b->g->ctx, b->ring, b->ring_capacity, b->ring_size + 1);
         if (status != BRIO_OK) return status;
         b->ring[b->ring_size++] = b->number[from];
-        int slot = brio_slot_of_vertex(t->vertex + 4 * (size_t)from, leave);
-        uint32_t mate = t->mate[brio_facet_of(from, slot)];
+        uint32_t mate = t->tet[from].mate[brio_slot_of_vertex(t->tet[from].vertex, leave)];
         from = brio_tet_of(mate);
         if (from < tet) return BRIO_OK;
         leave = pivot;
-        pivot = t->vertex[mate];
+        pivot = brio_apex(t, mate);
     } while (from != tet);
     *leads = true;
     return BRIO_OK;
@@ -113,7 +111,7 @@ done:
 
 static brio_status make_faces(builder *b) {
     brio_status status = BRIO_OK;
-    const uint32_t *vertex = b->g->power.vertex;
+    const brio_tetrahedron *power = b->g->power.tet;
     BRIO_TRY(BRIO_RESERVE(b->g->ctx, b->offsets, b->faces_capacity, 1));
     b->offsets[0] = 0;
     for (size_t tet = 0; tet < b->g->num_finite; tet++) {
@@ -122,7 +120,7 @@ static brio_status make_faces(builder *b) {
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++) {
                 bool leads;
-                if (!inner(b, vertex[4 * tet + (size_t)i]) || inner(b, vertex[4 * tet + (size_t)j])) continue;
+                if (!inner(b, power[tet].vertex[i]) || inner(b, power[tet].vertex[j])) continue;
                 BRIO_TRY(walk_ring(b, (uint32_t)tet, i, j, &leads));
                 if (leads) BRIO_TRY(add_ring(b));
             }

@@ -80,7 +80,7 @@ static void push(uint32_t p, double weight, void *user) {
 static void mark_certain(const brio_pole_graph *g, queue *q) {
     for (size_t p = 0; p < q->num_poles; p++) q->certain[p] = g->poles->bounding[p];
     for (size_t tet = g->num_finite; tet < g->power.count; tet++)
-        for (int i = 0; i < 3; i++) q->certain[g->power.vertex[4 * tet + (size_t)i]] = 1;
+        for (int i = 0; i < 3; i++) q->certain[g->power.tet[tet].vertex[i]] = 1;
 }
 
 static brio_status queue_new(const brio_pole_graph *g, queue *q) {

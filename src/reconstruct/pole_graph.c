@@ -65,7 +65,7 @@ static brio_status add_neighbours(builder *b, uint32_t p) {
     b->seen[p] = p;
     for (size_t n = 0; n < b->star.size; n++)
         for (size_t i = 0; i < 4; i++) {
-            uint32_t q = g->power.vertex[4 * (size_t)b->star.tet[n] + i];
+            uint32_t q = g->power.tet[b->star.tet[n]].vertex[i];
             if (q == BRIO_INFINITE || b->seen[q] == p) continue;
             b->seen[q] = p;
             add_edge(b, p, q);
@@ -84,8 +84,10 @@ static brio_status add_all_neighbours(builder *b) {
     BRIO_TRY(filled(ctx, &b->next_hidden, n, NONE));
     BRIO_TRY(filled(ctx, &b->seen, n, NONE));
     BRIO_TRY(brio_star_new(ctx, g->power.count, &b->star));
-    for (size_t i = 0; i < 4 * g->power.count; i++)
-        if (g->power.vertex[i] != BRIO_INFINITE) b->vertex_tet[g->power.vertex[i]] = (uint32_t)(i / 4);
+    for (size_t i = 0; i < 4 * g->power.count; i++) {
+        uint32_t v = g->power.tet[i / 4].vertex[i % 4];
+        if (v != BRIO_INFINITE) b->vertex_tet[v] = (uint32_t)(i / 4);
+    }
     for (size_t p = n; p-- > 0;) {
         uint32_t r = b->representative[p];
         if (r == p) continue;
@@ -130,7 +132,7 @@ brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, cons
     g->num_finite = stats->tetrahedra;
     /* the view is read only: the structure is shared with code that builds triangulations */
     g->power =
-        (brio_tetrahedra){(uint32_t *)brio_triangulation_tetrahedra(power), (uint32_t *)brio_triangulation_mates(power),
+        (brio_tetrahedra){(brio_tetrahedron *)brio_triangulation_tetrahedra(power),
                           stats->tetrahedra + stats->hull_facets, BRIO_INFINITE, NULL};
     builder b = {.g = g, .representative = brio_triangulation_representatives(power)};
     BRIO_TRY(list_samples(g));

@@ -18,10 +18,13 @@ static const size_t BATCH = (size_t)1 << 18; /* points between two reports of pr
 enum {
     DEFAULT_RESOLUTION = 160,
     MOST_RESOLUTION = 1 << 15,
-    PARALLEL_FROM = 1 << 12 /* points that are worth several threads */
+    PARALLEL_FROM = 1 << 12, /* points that are worth several threads */
+    CLUSTERS = 256,
+    EXPONENT_DIGITS = 20 /* binary ones, of the radius of a cluster */
 };
 
 static const double TORUS_MAJOR = 1, TORUS_MINOR = 0.4, CYLINDER_HEIGHT = 4;
+static const double LARGEST_CLUSTER = 0.1, CLUSTER_RANGE = 1e-6; /* radii, and the least as a share of it */
 
 brio_generate_options brio_generate_options_default(void) {
     return (brio_generate_options){.seed = 1, .noise = 0.05, .views = 12};
@@ -86,6 +89,33 @@ static void point_of_cylinder(brio_rng *rng, double *p) {
     p[2] = CYLINDER_HEIGHT * (brio_rng_double(rng) - 0.5);
 }
 
+/* CLUSTER_RANGE to a power uniform in [0, 1): each digit of the power takes one more square root into the product or
+ * leaves it out. pow would do it in one step, but not with the same bits everywhere. */
+static double cluster_radius(brio_rng *rng) {
+    double radius = LARGEST_CLUSTER, root = CLUSTER_RANGE;
+    for (int digit = 0; digit < EXPONENT_DIGITS; digit++) {
+        root = sqrt(root);
+        if (brio_rng_next(rng) & 1) radius *= root;
+    }
+    return radius;
+}
+
+static void point_of_clusters(brio_rng *rng, uint64_t seed, double *p) {
+    brio_rng cluster = brio_rng_new(brio_mix(~seed) + brio_rng_below(rng, CLUSTERS));
+    double centre[3], radius;
+    point_of_cube(&cluster, centre);
+    radius = cluster_radius(&cluster);
+    point_of_ball(rng, p);
+    for (int k = 0; k < 3; k++) p[k] = centre[k] + radius * p[k];
+}
+
+static void point_of_moment(brio_rng *rng, double *p) {
+    double t = brio_rng_double(rng);
+    p[0] = t;
+    p[1] = t * t;
+    p[2] = t * t * t;
+}
+
 static void random_point(brio_kind kind, uint64_t seed, size_t i, double *p) {
     brio_rng rng = brio_rng_new(brio_mix(seed) + i);
     switch (kind) {
@@ -103,6 +133,12 @@ static void random_point(brio_kind kind, uint64_t seed, size_t i, double *p) {
         break;
     case BRIO_KIND_CYLINDER:
         point_of_cylinder(&rng, p);
+        break;
+    case BRIO_KIND_CLUSTERS:
+        point_of_clusters(&rng, seed, p);
+        break;
+    case BRIO_KIND_MOMENT:
+        point_of_moment(&rng, p);
         break;
     case BRIO_KIND_GRID:
     case BRIO_KIND_SCAN:

@@ -55,13 +55,14 @@ done:
     return status;
 }
 
-brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t num_tetrahedra) {
+brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t stride,
+                                     size_t num_tetrahedra) {
     brio_context *ctx = mesh->context;
     uint32_t *copy = NULL;
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, !mesh->tetrahedra, BRIO_ERR_ARGUMENT, "the mesh has tetrahedra already");
     BRIO_TRY(BRIO_ALLOC(ctx, copy, 4 * num_tetrahedra));
-    if (num_tetrahedra) memcpy(copy, tetrahedra, 4 * num_tetrahedra * sizeof *copy);
+    for (size_t t = 0; t < num_tetrahedra; t++) memcpy(copy + 4 * t, tetrahedra + stride * t, 4 * sizeof *copy);
     mesh->tetrahedra = copy;
     mesh->num_tetrahedra = num_tetrahedra;
 done:

@@ -10,7 +10,7 @@
 /* The vertices of a handle in ascending order: three of a facet, or two of a hull edge (facet of an infinite
  * tetrahedron). */
 static void sorted_vertices(const brio_tetrahedra *t, uint32_t handle, uint32_t v[3]) {
-    const uint32_t *tet = t->vertex + 4 * (size_t)brio_tet_of(handle);
+    const uint32_t *tet = t->tet[brio_tet_of(handle)].vertex;
     const uint8_t *f = BRIO_FACET[brio_slot_of(handle)];
     uint32_t a = tet[f[0]], b = tet[f[1]], c = tet[f[2]], swap;
     if (a > b) swap = a, a = b, b = swap;
@@ -69,8 +69,8 @@ static brio_status match(brio_context *ctx, brio_tetrahedra *t, uint32_t *sorted
         BRIO_REQUIRE(ctx, i + 2 >= n || !same_vertices(t, sorted[i], sorted[i + 2]), BRIO_ERR_CHECK,
                      "tetrahedra %u, %u and %u share a facet", brio_tet_of(sorted[i]), brio_tet_of(sorted[i + 1]),
                      brio_tet_of(sorted[i + 2]));
-        t->mate[sorted[i]] = sorted[i + 1];
-        t->mate[sorted[i + 1]] = sorted[i];
+        *brio_mate(t, sorted[i]) = sorted[i + 1];
+        *brio_mate(t, sorted[i + 1]) = sorted[i];
         i++;
     }
 done:
@@ -79,11 +79,11 @@ done:
 
 /* Copies the vertices, each tetrahedron made positive. */
 static brio_status copy_positive(brio_context *ctx, const brio_record *r, size_t num_points, const uint32_t *from,
-                                 size_t n, uint32_t *to) {
+                                 size_t stride, size_t n, brio_tetrahedron *to) {
     brio_status status = BRIO_OK;
     for (size_t tet = 0; tet < n; tet++) {
-        uint32_t *v = to + 4 * tet;
-        memcpy(v, from + 4 * tet, 4 * sizeof *v);
+        uint32_t *v = to[tet].vertex;
+        memcpy(v, from + stride * tet, 4 * sizeof *v);
         for (int i = 0; i < 4; i++)
             BRIO_REQUIRE(ctx, v[i] < num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
         int sign = brio_orient3d(r[v[0]], r[v[1]], r[v[2]], r[v[3]]);
@@ -101,26 +101,25 @@ done:
 /* One infinite tetrahedron behind each hull facet, and the handles of its three facets through the infinite vertex. */
 static void close_hull(brio_tetrahedra *t, size_t first, const uint32_t *hull, size_t num_hull, uint32_t *edges) {
     for (size_t i = 0; i < num_hull; i++) {
-        uint32_t tet = (uint32_t)(first + i), *v = t->vertex + 4 * (size_t)tet;
-        const uint32_t *inside = t->vertex + 4 * (size_t)brio_tet_of(hull[i]);
+        uint32_t tet = (uint32_t)(first + i), *v = t->tet[tet].vertex;
+        const uint32_t *inside = t->tet[brio_tet_of(hull[i])].vertex;
         const uint8_t *f = BRIO_FACET[brio_slot_of(hull[i])];
         v[0] = inside[f[0]], v[1] = inside[f[2]], v[2] = inside[f[1]], v[3] = BRIO_INFINITE;
-        t->mate[brio_facet_of(tet, 3)] = hull[i];
-        t->mate[hull[i]] = brio_facet_of(tet, 3);
+        t->tet[tet].mate[3] = hull[i];
+        *brio_mate(t, hull[i]) = brio_facet_of(tet, 3);
         for (int j = 0; j < 3; j++) edges[3 * i + (size_t)j] = brio_facet_of(tet, j);
     }
 }
 
 brio_status brio_adjacency_build(brio_context *ctx, const brio_record *record, size_t num_points,
-                                 const uint32_t *tetrahedra, size_t n, brio_tetrahedra *out) {
+                                 const uint32_t *tetrahedra, size_t stride, size_t n, brio_tetrahedra *out) {
     brio_status status = BRIO_OK;
     brio_tetrahedra t = {.infinite = BRIO_INFINITE, .record = record};
     uint32_t *handles = NULL, *sorted = NULL, *edges = NULL;
     size_t num_hull = 0, alone = 0;
     BRIO_REQUIRE(ctx, n < UINT32_C(1) << 29, BRIO_ERR_TOO_LARGE, "%zu tetrahedra; at most 2^29", n);
-    BRIO_TRY(BRIO_ALLOC(ctx, t.vertex, 4 * n));
-    BRIO_TRY(BRIO_ALLOC(ctx, t.mate, 4 * n));
-    BRIO_TRY(copy_positive(ctx, record, num_points, tetrahedra, n, t.vertex));
+    BRIO_TRY(BRIO_ALLOC(ctx, t.tet, n));
+    BRIO_TRY(copy_positive(ctx, record, num_points, tetrahedra, stride, n, t.tet));
     BRIO_TRY(BRIO_ALLOC(ctx, handles, 4 * n));
     BRIO_TRY(BRIO_ALLOC(ctx, sorted, 4 * n));
     for (size_t h = 0; h < 4 * n; h++) handles[h] = (uint32_t)h;
@@ -129,8 +128,7 @@ brio_status brio_adjacency_build(brio_context *ctx, const brio_record *record, s
     t.count = n + num_hull;
     BRIO_REQUIRE(ctx, t.count <= (size_t)1 << 30, BRIO_ERR_TOO_LARGE,
                  "%zu tetrahedra, infinite ones included; at most 2^30", t.count);
-    BRIO_TRY(BRIO_RESIZE(ctx, t.vertex, 4 * t.count));
-    BRIO_TRY(BRIO_RESIZE(ctx, t.mate, 4 * t.count));
+    BRIO_TRY(BRIO_RESIZE(ctx, t.tet, t.count));
     BRIO_TRY(BRIO_ALLOC(ctx, edges, 3 * num_hull));
     close_hull(&t, n, sorted, num_hull, edges);
     BRIO_TRY(BRIO_RESIZE(ctx, sorted, 3 * num_hull));
@@ -139,10 +137,9 @@ brio_status brio_adjacency_build(brio_context *ctx, const brio_record *record, s
     BRIO_REQUIRE(ctx, alone == 0, BRIO_ERR_CHECK, "the hull is open at facet %u of tetrahedron %u",
                  (unsigned)brio_slot_of(sorted[0]), brio_tet_of(sorted[0]));
     *out = t;
-    t.vertex = t.mate = NULL;
+    t.tet = NULL;
 done:
-    brio_release(ctx, t.vertex);
-    brio_release(ctx, t.mate);
+    brio_release(ctx, t.tet);
     brio_release(ctx, handles);
     brio_release(ctx, sorted);
     brio_release(ctx, edges);

@@ -24,7 +24,7 @@ typedef struct {
 } judge;
 
 static const uint32_t *vertices_of(const judge *j, size_t tet) {
-    return j->t.vertex + 4 * tet;
+    return j->t.tet[tet].vertex;
 }
 
 /* --- structure --- */
@@ -39,8 +39,8 @@ static bool same_facet(const judge *j, uint32_t f, uint32_t g) {
 static brio_status check_mates(const judge *j) {
     brio_status status = BRIO_OK;
     for (size_t f = 0; f < 4 * j->t.count; f++) {
-        uint32_t g = j->t.mate[f];
-        BRIO_REQUIRE(j->ctx, g < 4 * j->t.count && j->t.mate[g] == f && same_facet(j, (uint32_t)f, g), BRIO_ERR_CHECK,
+        uint32_t g = *brio_mate(&j->t, (uint32_t)f);
+        BRIO_REQUIRE(j->ctx, g < 4 * j->t.count && *brio_mate(&j->t, g) == f && same_facet(j, (uint32_t)f, g), BRIO_ERR_CHECK,
                      "facet %zu of tetrahedron %zu and its mate do not match", f % 4, f / 4);
     }
 done:
@@ -56,7 +56,7 @@ static brio_status check_orientation(judge *j) {
         for (int i = 0; i < 4 - infinite; i++)
             BRIO_REQUIRE(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
         if (infinite) { /* its three vertices run the other way round than in the finite neighbour */
-            uint32_t m = j->t.mate[4 * tet + 3];
+            uint32_t m = j->t.tet[tet].mate[3];
             const uint32_t *w = vertices_of(j, brio_tet_of(m));
             const uint8_t *f = BRIO_FACET[brio_slot_of(m)];
             int at = v[0] == w[f[0]] ? 0 : v[0] == w[f[1]] ? 1 : 2;
@@ -78,12 +78,12 @@ static bool leads_ring(const judge *j, uint32_t tet, int a, int b) {
     uint32_t u = vertices_of(j, tet)[a]; /* leave through the facet opposite to u, keep turning the same way */
     uint32_t pivot = vertices_of(j, tet)[b];
     for (size_t steps = 0; steps <= j->t.count; steps++) {
-        uint32_t mate = j->t.mate[brio_facet_of(from, brio_slot_of_vertex(vertices_of(j, from), u))];
+        uint32_t mate = j->t.tet[from].mate[brio_slot_of_vertex(vertices_of(j, from), u)];
         uint32_t next = brio_tet_of(mate);
         if (next == tet) return true;
         if (next < tet) return false;
         u = pivot;
-        pivot = vertices_of(j, next)[brio_slot_of(mate)];
+        pivot = brio_apex(&j->t, mate);
         from = next;
     }
     return false;
@@ -115,7 +115,7 @@ static brio_status check_euler(judge *j) {
     for (stack[reached++] = 0; reached > 0;) {
         uint32_t tet = stack[--reached];
         for (int i = 0; i < 4; i++) {
-            uint32_t other = brio_tet_of(j->t.mate[brio_facet_of(tet, i)]);
+            uint32_t other = brio_tet_of(j->t.tet[tet].mate[i]);
             if (!seen[other]) seen[other] = 1, stack[reached++] = other;
         }
     }
@@ -157,7 +157,7 @@ done:
 static brio_status check_facets(judge *j) {
     brio_status status = BRIO_OK;
     for (size_t f = 0; f < 4 * j->t.count; f++) {
-        uint32_t g = j->t.mate[f];
+        uint32_t g = *brio_mate(&j->t, (uint32_t)f);
         if (g < f) continue;
         if ((f & 0xffffc) == 0) BRIO_TRY(brio_progress(j->ctx, "check", (double)f / (double)(4 * j->t.count)));
         bool infinite = brio_is_infinite(&j->t, (uint32_t)(f / 4)), other = brio_is_infinite(&j->t, brio_tet_of(g));
@@ -260,7 +260,8 @@ done:
 }
 
 brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const double *weights, size_t num_points,
-                                  const uint32_t *tetrahedra, size_t num_tetrahedra, int *canonical) {
+                                  const uint32_t *tetrahedra, size_t stride, size_t num_tetrahedra,
+                                  int *canonical) {
     brio_status status = BRIO_OK;
     brio_record *record = NULL;
     brio_tetrahedra t = {0};
@@ -270,14 +271,13 @@ brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const
         BRIO_REQUIRE(ctx, brio_dimension(record, num_points) < 3, BRIO_ERR_CHECK,
                      "no tetrahedra, but the points are not in a plane");
     } else {
-        BRIO_TRY(brio_adjacency_build(ctx, record, num_points, tetrahedra, num_tetrahedra, &t));
+        BRIO_TRY(brio_adjacency_build(ctx, record, num_points, tetrahedra, stride, num_tetrahedra, &t));
         BRIO_TRY(brio_check_tetrahedra(ctx, &t, num_points, weights != NULL, &same));
     }
     if (canonical) *canonical = same;
 done:
     brio_release(ctx, record);
-    brio_release(ctx, t.vertex);
-    brio_release(ctx, t.mate);
+    brio_release(ctx, t.tet);
     return status;
 }
 
@@ -306,7 +306,7 @@ done:
 static brio_status check_used(brio_context *ctx, const brio_triangulation *t, size_t tets) {
     brio_status status = BRIO_OK;
     for (size_t i = 0; i < 4 * tets; i++) {
-        uint32_t v = t->vertex[i];
+        uint32_t v = t->tet[i / 4].vertex[i % 4];
         BRIO_REQUIRE(ctx, v == BRIO_INFINITE || (v < t->stats.points && t->representative[v] == v), BRIO_ERR_CHECK,
                      "tetrahedron %zu has the vertex %u, which represents nothing", i / 4, v);
     }
@@ -330,7 +330,7 @@ brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation
     if (t->stats.dimension < 3) {
         BRIO_TRY(brio_check_flat(ctx, t, points, weights));
     } else {
-        brio_tetrahedra view = {t->vertex, t->mate, tets, BRIO_INFINITE, record};
+        brio_tetrahedra view = {t->tet, tets, BRIO_INFINITE, record};
         BRIO_TRY(brio_check_tetrahedra(ctx, &view, num_points, weights != NULL, &canonical));
     }
     BRIO_REQUIRE(ctx, canonical, BRIO_ERR_CHECK, "ties are not broken by the symbolic perturbation");

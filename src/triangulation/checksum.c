@@ -46,7 +46,7 @@ brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulat
     uint64_t sum = brio_mix(t->stats.vertices);
     for (size_t tet = 0; tet < t->stats.tetrahedra; tet++) {
         uint32_t r[4];
-        for (int i = 0; i < 4; i++) r[i] = rank[t->vertex[4 * tet + (size_t)i]];
+        for (int i = 0; i < 4; i++) r[i] = rank[t->tet[tet].vertex[i]];
         sum += hash_of(r);
     }
     *checksum = sum;

@@ -86,20 +86,21 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     BRIO_TRY(brio_progress(ctx, "order", 0));
     BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller));
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
+    k->record[n + 2][3] = INFINITY; /* the infinite vertex, as conflict_lanes.h knows it */
     k->t.record = k->record;
     k->stats.order_seconds = brio_seconds() - start;
     BRIO_TRY(BRIO_ALLOC(ctx, k->representative, n + 3));
     for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;
     BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.local, n + 3));
     memset(k->cavity.local, BRIO_NO_LOCAL, n + 3);
+    BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.table, BRIO_TABLE));
 done:
     return status;
 }
 
 static void kernel_free(brio_kernel *k) {
     brio_cavity_free(k->ctx, &k->cavity);
-    brio_release(k->ctx, k->t.vertex);
-    brio_release(k->ctx, k->t.mate);
+    brio_release(k->ctx, k->t.tet);
     brio_release(k->ctx, k->state);
     brio_release(k->ctx, k->unused);
     brio_release(k->ctx, k->star.tet);
@@ -122,38 +123,21 @@ done:
 
 /* --- result --- */
 
-/* Counts, and the caller's indices in place of records'. */
-static void name_vertices(brio_kernel *k) {
-    brio_tetrahedra *t = &k->t;
-    if (k->dimension < 3) t->count = 0;
-    for (size_t tet = 0; tet < t->count; tet++) {
-        uint32_t *v = t->vertex + 4 * tet;
-        bool infinite = v[3] == t->infinite;
-        k->stats.hull_facets += infinite;
-        for (int i = 0; i < 3; i++) v[i] = k->caller[v[i]];
-        v[3] = infinite ? BRIO_INFINITE : k->caller[v[3]];
-    }
-    k->stats.tetrahedra = t->count - k->stats.hull_facets;
-    k->stats.dimension = k->dimension;
-    k->stats.walk_steps = k->walk.steps;
-    k->stats.exact_calls = k->filter.unsettled;
-}
-
 static brio_status triangulation_new(brio_kernel *k, brio_triangulation **out) {
     brio_context *ctx = k->ctx;
     brio_triangulation *t = NULL;
     brio_status status = BRIO_OK;
-    name_vertices(k);
-    BRIO_TRY(BRIO_RESIZE(ctx, k->t.vertex, 4 * k->t.count));
-    BRIO_TRY(BRIO_RESIZE(ctx, k->t.mate, 4 * k->t.count));
+    k->stats.dimension = k->dimension;
+    k->stats.walk_steps = k->walk.steps;
+    k->stats.exact_calls = k->filter.unsettled;
+    BRIO_TRY(BRIO_RESIZE(ctx, k->t.tet, k->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
     BRIO_TRY(BRIO_ALLOC(ctx, t->representative, k->num_points));
     for (size_t p = 0; p < k->num_points; p++) t->representative[k->caller[p]] = k->caller[k->representative[p]];
-    t->vertex = k->t.vertex;
-    t->mate = k->t.mate;
+    t->tet = k->t.tet;
     t->stats = k->stats;
-    k->t.vertex = k->t.mate = NULL;
+    k->t.tet = NULL;
     *out = t;
     t = NULL;
 done:
@@ -175,7 +159,8 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     if (status == BRIO_OK) status = brio_kernel_represent(&kernel);
     brio_release(ctx, kernel.record); /* only names matter from here on */
     kernel.record = NULL;
-    if (status == BRIO_OK) status = brio_kernel_sort(&kernel);
+    if (kernel.dimension < 3) kernel.t.count = 0;
+    if (status == BRIO_OK && kernel.t.count > 0) status = brio_kernel_sort(&kernel);
     kernel.stats.insert_seconds = brio_seconds() - start;
     if (status == BRIO_OK) status = triangulation_new(&kernel, out);
     kernel_free(&kernel);
@@ -185,8 +170,7 @@ done:
 
 void brio_triangulation_free(brio_triangulation *t) {
     if (!t) return;
-    brio_release(t->ctx, t->vertex);
-    brio_release(t->ctx, t->mate);
+    brio_release(t->ctx, t->tet);
     brio_release(t->ctx, t->representative);
     brio_release(t->ctx, t);
 }
@@ -194,11 +178,8 @@ void brio_triangulation_free(brio_triangulation *t) {
 const brio_stats *brio_triangulation_stats(const brio_triangulation *t) {
     return &t->stats;
 }
-const uint32_t *brio_triangulation_tetrahedra(const brio_triangulation *t) {
-    return t->vertex;
-}
-const uint32_t *brio_triangulation_mates(const brio_triangulation *t) {
-    return t->mate;
+const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triangulation *t) {
+    return t->tet;
 }
 const uint32_t *brio_triangulation_representatives(const brio_triangulation *t) {
     return t->representative;

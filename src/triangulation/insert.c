@@ -9,8 +9,7 @@ brio_status brio_kernel_reserve(brio_kernel *k, size_t more) {
     size_t capacity = need + need / 8 + 1024;
     BRIO_REQUIRE(k->ctx, need <= k->max_tetrahedra, BRIO_ERR_TOO_LARGE, "more than %zu tetrahedra", k->max_tetrahedra);
     if (capacity > k->max_tetrahedra) capacity = k->max_tetrahedra;
-    BRIO_TRY(BRIO_RESIZE(k->ctx, k->t.vertex, 4 * capacity));
-    BRIO_TRY(BRIO_RESIZE(k->ctx, k->t.mate, 4 * capacity));
+    BRIO_TRY(BRIO_RESIZE(k->ctx, k->t.tet, capacity));
     BRIO_TRY(BRIO_RESIZE(k->ctx, k->state, capacity));
     k->capacity = capacity;
 done:
@@ -19,7 +18,7 @@ done:
 
 /* The vertex of a finite tetrahedron at the position of p, or the infinite vertex. */
 static uint32_t vertex_at(const brio_kernel *k, uint32_t tet, const double *p) {
-    const uint32_t *v = k->t.vertex + 4 * (size_t)tet;
+    const uint32_t *v = k->t.tet[tet].vertex;
     for (int i = 0; i < 4; i++)
         if (brio_same_position(k->record[v[i]], p)) return v[i];
     return k->t.infinite;
@@ -61,7 +60,7 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
         uint32_t v = vertex_at(k, tet, point);
         if (v != k->t.infinite && absorbed(k, p, v)) return BRIO_OK;
         if (k->weighted && !brio_in_conflict(&k->t, &k->filter, tet, point, true)) {
-            k->representative[p] = k->t.vertex[4 * (size_t)tet];
+            k->representative[p] = k->t.tet[tet].vertex[0];
             k->walk.start = tet;
             return BRIO_OK;
         }

@@ -7,40 +7,27 @@
 #include "triangulation/star.h"
 #include "triangulation/tetrahedra.h"
 
-/** A facet of the cavity's border: its mate outside, and its vertices such that (new vertex, vertex[0..2]) is positive;
- *  an infinite vertex is the last. */
-typedef struct {
-    uint32_t outside;
-    uint32_t vertex[3];
-} brio_border;
-
-/** The tetrahedron made on a border facet, and the numbers of its border vertices. */
-typedef struct {
-    uint32_t tet;
-    uint8_t local[3];
-} brio_created;
-
 /** Workspace of one insertion, kept from one to the next. */
 typedef struct {
-    uint32_t *tets, *outside; /* in conflict; not, or not tested yet */
-    brio_border *border;
-    size_t num_tets, num_outside, num_border;
-    size_t tets_capacity, outside_capacity, border_capacity;
+    uint32_t *tets;   /* in conflict; after the fill, those created: one for each border facet */
+    uint32_t *facet;  /* outer sides of the facets through which the cavity was left */
+    uint32_t *border; /* those of them that lead to no conflict */
+    size_t num_tets, num_border;
+    size_t capacity;         /* of tets, a quarter of that of the others */
     uint32_t *cavity_vertex; /* the vertices of all tets, with repetitions; weighted only */
     size_t cavity_vertex_capacity;
     uint8_t *local;     /* number of a vertex on the border, NO_LOCAL elsewhere */
     uint32_t *numbered; /* the vertices that have a number */
     size_t num_numbered, numbered_capacity;
-    uint32_t *table; /* facet handle of each directed edge of the border */
-    size_t table_capacity;
+    uint32_t *code; /* of each border facet: the numbers of its vertices */
+    size_t code_capacity;
+    uint32_t *table;    /* facet handle of each directed edge of the border, BRIO_TABLE of them */
     uint64_t *edge_key; /* hash table of directed edges, for large borders */
     uint32_t *edge_facet;
     size_t hash_capacity, hash_facet_capacity;
-    brio_created *created; /* one for each border facet */
-    size_t created_capacity;
 } brio_cavity;
 
-enum { BRIO_NO_LOCAL = 255 };
+enum { BRIO_NO_LOCAL = 255, BRIO_TABLE = 1 << 16 };
 
 typedef struct {
     brio_context *ctx;
@@ -64,7 +51,7 @@ typedef struct {
     brio_stats stats;
 } brio_kernel;
 
-typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_QUEUED = 2, TET_UNUSED = 3 } brio_tet_state;
+typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_UNUSED = 2 } brio_tet_state;
 
 /** Finds four points in general position, or the dimension that they have instead; adds apexes off the points' affine
  *  hull so that every input of at least two distinct positions becomes three-dimensional; makes the first tetrahedron.

@@ -20,7 +20,7 @@ typedef struct {
 
 static inline void offer(const brio_tetrahedra *t, candidate *best, uint32_t tet, const double *p) {
     for (size_t i = 0; i < 4; i++) {
-        uint32_t v = t->vertex[4 * (size_t)tet + i];
+        uint32_t v = t->tet[tet].vertex[i];
         if (v == t->infinite) continue;
         double x = t->record[v][0] - p[0], y = t->record[v][1] - p[1], z = t->record[v][2] - p[2];
         double square = x * x + y * y + z * z;
@@ -31,11 +31,12 @@ static inline void offer(const brio_tetrahedra *t, candidate *best, uint32_t tet
 /* The first of some tetrahedra in conflict with p, or BRIO_NO_TET. */
 static uint32_t first_conflict(brio_kernel *k, const uint32_t *tets, size_t count, const double *p) {
     for (size_t n = 0; n < count; n += BRIO_BATCH) {
-        uint32_t batch[BRIO_BATCH];
-        for (size_t i = 0; i < BRIO_BATCH; i++) batch[i] = tets[n + i < count ? n + i : n];
-        unsigned mask = k->conflicts(&k->t, &k->filter, batch, p);
-        k->stats.insphere_calls += BRIO_BATCH;
-        if (mask) return batch[__builtin_ctz(mask)];
+        size_t size = count - n < BRIO_BATCH ? count - n : BRIO_BATCH;
+        uint32_t facet[BRIO_BATCH];
+        for (size_t i = 0; i < BRIO_BATCH; i++) facet[i] = brio_facet_of(tets[i < size ? n + i : n], 0);
+        unsigned mask = k->conflicts(&k->t, &k->filter, facet, size, p);
+        k->stats.insphere_calls += size;
+        if (mask) return tets[n + (size_t)__builtin_ctz(mask)];
     }
     return BRIO_NO_TET;
 }
@@ -47,16 +48,16 @@ static brio_status collect_last(brio_kernel *k, uint32_t v) {
     if (status != BRIO_OK) return status;
     star->size = 0;
     for (size_t b = 0; b < k->cavity.num_border; b++) {
-        uint32_t tet = k->cavity.created[b].tet;
+        uint32_t tet = k->cavity.tets[b];
         star->tet[star->size] = tet;
-        star->size += brio_slot_of_vertex(k->t.vertex + 4 * (size_t)tet, v) < 4;
+        star->size += brio_slot_of_vertex(k->t.tet[tet].vertex, v) < 4;
     }
     return BRIO_OK;
 }
 
 brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) {
     candidate best = {k->t.infinite, BRIO_NO_TET, INFINITY};
-    for (size_t b = 0; b < k->cavity.num_border; b++) offer(&k->t, &best, k->cavity.created[b].tet, p);
+    for (size_t b = 0; b < k->cavity.num_border; b++) offer(&k->t, &best, k->cavity.tets[b], p);
     if (best.square > 0 && best.vertex != k->t.infinite) {
         brio_status status = collect_last(k, best.vertex);
         if (status != BRIO_OK) return status;

@@ -14,11 +14,11 @@ static inline uint32_t next_random(uint32_t x) {
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps) {
     uint32_t tet = walk->start;
-    if (brio_is_infinite(t, tet)) tet = brio_tet_of(t->mate[4 * (size_t)tet + 3]);
+    if (brio_is_infinite(t, tet)) tet = brio_tet_of(t->tet[tet].mate[3]);
     int came_through = 4;
     for (uint64_t steps = 0;; steps++, walk->steps++) {
         if (steps > most_steps) return BRIO_NO_TET;
-        const uint32_t *v = t->vertex + 4 * (size_t)tet;
+        const uint32_t *v = t->tet[tet].vertex;
         if (v[3] == t->infinite) return tet;
         walk->random = next_random(walk->random);
         int first = (int)(walk->random >> 30), i = 0;
@@ -27,7 +27,7 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w
             if (slot == came_through) continue;
             const uint8_t *facet = BRIO_FACET[slot];
             if (brio_orient3d_sign(f, t->record[v[facet[0]]], t->record[v[facet[1]]], t->record[v[facet[2]]], p) < 0) {
-                uint32_t mate = t->mate[4 * (size_t)tet + (size_t)slot];
+                uint32_t mate = t->tet[tet].mate[slot];
                 tet = brio_tet_of(mate);
                 came_through = brio_slot_of(mate);
                 break;

@@ -72,7 +72,7 @@ static brio_status remember_star(brio_nearest *n, uint32_t v, const double *x) {
     m->radius = INFINITY;
     m->num_rivals = 0;
     for (size_t i = 0; i < 4 * n->star.size; i++) {
-        uint32_t u = n->k->t.vertex[4 * (size_t)n->star.tet[i / 4] + i % 4];
+        uint32_t u = n->k->t.tet[n->star.tet[i / 4]].vertex[i % 4];
         if (u != v && is_point(n->k, u)) BRIO_TRY(remember(n, m, u));
     }
 done:
@@ -98,7 +98,7 @@ static brio_status look_around(brio_nearest *n, const double *x, uint32_t v, uin
     if (status != BRIO_OK) return status;
     n->look++;
     for (size_t i = 0; i < 4 * n->star.size; i++) { /* each neighbour is in some five of these tetrahedra */
-        uint32_t u = k->t.vertex[4 * (size_t)n->star.tet[i / 4] + i % 4];
+        uint32_t u = k->t.tet[n->star.tet[i / 4]].vertex[i % 4];
         if (n->seen[u] == n->look) continue;
         n->seen[u] = n->look;
         *best = nearer(k, x, *best, u);
@@ -107,7 +107,7 @@ static brio_status look_around(brio_nearest *n, const double *x, uint32_t v, uin
 }
 
 brio_status brio_nearest_vertex(brio_nearest *n, uint32_t tet, const double *x, uint32_t *best) {
-    const uint32_t *v = n->k->t.vertex + 4 * (size_t)tet;
+    const uint32_t *v = n->k->t.tet[tet].vertex;
     uint32_t next = nearer(n->k, x, nearer(n->k, x, v[0], v[1]), nearer(n->k, x, v[2], v[3]));
     do {
         *best = next;

@@ -30,7 +30,7 @@ static brio_status represent_one(workspace *w, uint32_t p) {
     const double *x = k->record[p];
     k->walk.start = w->vertex_tet[alive(k, p)];
     uint32_t tet = brio_locate_walk(&k->t, &k->filter, &k->walk, x, UINT64_MAX);
-    const uint32_t *v = k->t.vertex + 4 * (size_t)tet;
+    const uint32_t *v = k->t.tet[tet].vertex;
     for (int i = 0; i < 4; i++)
         if (v[i] != k->t.infinite && brio_same_position(k->record[v[i]], x)) {
             k->representative[p] = v[i];
@@ -74,7 +74,7 @@ static brio_status represent_weighted(brio_kernel *k) {
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.vertex_tet, k->num_points + 3));
     for (size_t t = 0; t < k->t.count; t++)
         if (k->state[t] == TET_PLAIN)
-            for (int i = 0; i < 4; i++) w.vertex_tet[k->t.vertex[4 * t + (size_t)i]] = (uint32_t)t;
+            for (int i = 0; i < 4; i++) w.vertex_tet[k->t.tet[t].vertex[i]] = (uint32_t)t;
     BRIO_TRY(brio_nearest_new(k, w.vertex_tet, &w.nearest));
     for (uint32_t p = 0; p < k->num_points; p++)
         if (k->representative[p] != p) BRIO_TRY(represent_one(&w, p));

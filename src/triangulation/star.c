@@ -23,13 +23,12 @@ brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint3
     for (size_t n = 0; n < star->size && star->size < most; n++) {
         size_t tet = star->tet[n];
         BRIO_TRY(BRIO_RESERVE(ctx, star->tet, star->capacity, star->size + 4));
-        for (size_t f = 4 * tet; f < 4 * tet + 4; f++) {
-            uint32_t other = brio_tet_of(t->mate[f]);
-            if (t->vertex[f] == v || star->mark[other]) continue;
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = brio_tet_of(t->tet[tet].mate[i]);
+            if (t->tet[tet].vertex[i] == v || star->mark[other]) continue;
             star->mark[other] = 1;
             star->tet[star->size++] = other;
-            __builtin_prefetch(t->vertex + 4 * (size_t)other);
-            __builtin_prefetch(t->mate + 4 * (size_t)other);
+            __builtin_prefetch(&t->tet[other]);
         }
     }
 done:

@@ -83,23 +83,23 @@ static void latest_first(uint32_t *v) {
 static void first_tetrahedron(brio_kernel *k, uint32_t corner[4]) {
     const brio_record *r = k->record;
     brio_tetrahedra *t = &k->t;
-    uint32_t *own = t->vertex;
+    uint32_t *own = t->tet[0].vertex;
     own[0] = corner[3], own[1] = corner[0], own[2] = corner[1], own[3] = corner[2];
     if (brio_orient3d_exact(r[own[0]], r[own[1]], r[own[2]], r[own[3]]) < 0) own[2] = corner[2], own[3] = corner[1];
     t->count = 5;
     for (uint32_t i = 0; i < 4; i++) { /* facet i seen from outside: its order reversed */
-        uint32_t *v = own + 4 * (i + 1);
+        uint32_t *v = t->tet[i + 1].vertex;
         v[0] = own[BRIO_FACET[i][0]], v[1] = own[BRIO_FACET[i][2]], v[2] = own[BRIO_FACET[i][1]];
         v[3] = t->infinite;
         latest_first(v);
-        t->mate[i] = brio_facet_of(i + 1, 3);
-        t->mate[4 * (i + 1) + 3] = i;
+        t->tet[0].mate[i] = brio_facet_of(i + 1, 3);
+        t->tet[i + 1].mate[3] = i;
     }
     for (uint32_t i = 0; i < 4; i++)
         for (uint32_t s = 0; s < 3; s++) { /* across the edge opposite to vertex s lies the facet opposite to it */
-            uint32_t j = (uint32_t)brio_slot_of_vertex(own, t->vertex[4 * (i + 1) + s]);
-            int other = brio_slot_of_vertex(t->vertex + 4 * (j + 1), own[i]);
-            t->mate[4 * (i + 1) + s] = brio_facet_of(j + 1, other);
+            uint32_t j = (uint32_t)brio_slot_of_vertex(own, t->tet[i + 1].vertex[s]);
+            int other = brio_slot_of_vertex(t->tet[j + 1].vertex, own[i]);
+            t->tet[i + 1].mate[s] = brio_facet_of(j + 1, other);
         }
     memset(k->state, TET_PLAIN, t->count);
     k->stats.created = t->count;

@@ -1,7 +1,7 @@
 /* The tetrahedra: the one data structure of the kernel, of the result and of the checks.
  *
- *   vertex[4 t + i]   vertex i of tetrahedron t: the row of a record, or `infinite`
- *   mate[4 t + i]     facet handle 4 u + j of the same triangle seen from the tetrahedron u on its other side
+ *   tet[t].vertex[i]   vertex i of tetrahedron t: the row of a record, or `infinite`
+ *   tet[t].mate[i]     facet handle 4 u + j of the same triangle seen from the tetrahedron u on its other side
  *
  * I1  A finite tetrahedron is positive: det [b-a, c-a, d-a] > 0.
  * I2  The infinite vertex is only ever in slot 3, and (a, b, c, x) is positive for x strictly outside the hull facet
@@ -22,7 +22,7 @@
 typedef double brio_record[4];
 
 typedef struct {
-    uint32_t *vertex, *mate;
+    brio_tetrahedron *tet;
     size_t count;
     uint32_t infinite;
     const brio_record *record;
@@ -38,8 +38,16 @@ static inline int brio_slot_of(uint32_t facet) {
     return (int)(facet & 3);
 }
 
+/* The mate of a facet, and the vertex opposite to it. */
+static inline uint32_t *brio_mate(const brio_tetrahedra *t, uint32_t facet) {
+    return &t->tet[brio_tet_of(facet)].mate[brio_slot_of(facet)];
+}
+static inline uint32_t brio_apex(const brio_tetrahedra *t, uint32_t facet) {
+    return t->tet[brio_tet_of(facet)].vertex[brio_slot_of(facet)];
+}
+
 static inline bool brio_is_infinite(const brio_tetrahedra *t, uint32_t tet) {
-    return t->vertex[4 * (size_t)tet + 3] == t->infinite;
+    return t->tet[tet].vertex[3] == t->infinite;
 }
 
 /* FACET[i]: the other three slots such that (FACET[i], slot i) is an even permutation of the slots. */
@@ -62,11 +70,11 @@ static inline int brio_slot_of_vertex(const uint32_t v4[4], uint32_t v) {
  * a hull facet the finite neighbour decides. Ties are broken, so that the answer is never on the border. */
 static inline bool brio_in_conflict(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p,
                                     const bool weighted) {
-    const uint32_t *v = t->vertex + 4 * (size_t)tet;
+    const uint32_t *v = t->tet[tet].vertex;
     if (v[3] == t->infinite) {
         int side = brio_orient3d_sign(f, t->record[v[0]], t->record[v[1]], t->record[v[2]], p);
         if (side) return side > 0;
-        v = t->vertex + 4 * (size_t)brio_tet_of(t->mate[4 * (size_t)tet + 3]);
+        v = t->tet[brio_tet_of(t->tet[tet].mate[3])].vertex;
     }
     return brio_conflict(f, t->record[v[0]], t->record[v[1]], t->record[v[2]], t->record[v[3]], p, weighted);
 }

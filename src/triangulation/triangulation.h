@@ -6,7 +6,7 @@
 
 struct brio_triangulation {
     brio_context *ctx;
-    uint32_t *vertex, *mate;  /* finite tetrahedra first; vertices are the caller's indices or BRIO_INFINITE */
+    brio_tetrahedron *tet;    /* finite ones first; vertices are the caller's indices or BRIO_INFINITE */
     uint32_t *representative; /* of each point of the caller */
     brio_stats stats;
 };

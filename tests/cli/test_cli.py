@@ -893,8 +893,18 @@ class Answers(CliTest):
         self.assertNotEqual(outputs[0], outputs[3])
 
     def test_generate_of_every_kind(self):
-        for kind in ["cube", "ball", "sphere", "torus", "cylinder", "grid"]:
+        listed = self.expect(0, "generate", "--help").text
+        for kind in ["cube", "ball", "sphere", "torus", "cylinder", "grid", "clusters", "moment"]:
             self.assertEqual(self.facts("generate", kind, "-n", "77")["points"], 77, kind)
+            self.assertIn(kind, listed)
+
+    def test_generate_of_the_moment_curve_by_either_name(self):
+        outputs = [self.expect(0, "generate", kind, "-n", "50", "-o", "-", "--format", "xyz").out
+                   for kind in ["moment", "moment-curve"]]
+        self.assertEqual(outputs[0], outputs[1])
+        for line in outputs[0].decode().split("\n")[:-1]:
+            t, square, cube = map(float, line.split())
+            self.assertEqual((square, cube), (t * t, t * t * t))
 
     def test_generate_scan_with_its_truth(self):
         facts = self.facts("generate", "scan", "-n", "2000", "-o", self.path("s.ply"), "--views", "4", "--noise", "0",

@@ -8,6 +8,11 @@
 
 static brio_context *ctx;
 
+/* The kinds whose points are independent of each other. */
+static const brio_kind random_kinds[] = {BRIO_KIND_CUBE,     BRIO_KIND_BALL,     BRIO_KIND_SPHERE, BRIO_KIND_TORUS,
+                                         BRIO_KIND_CYLINDER, BRIO_KIND_CLUSTERS, BRIO_KIND_MOMENT};
+enum { RANDOM_KINDS = sizeof random_kinds / sizeof *random_kinds };
+
 static const double PI = 3.14159265358979323846;
 
 static brio_mesh *make(brio_kind kind, size_t n, uint64_t seed) {
@@ -33,7 +38,8 @@ static void no_points_are_an_empty_mesh(void) {
 }
 
 static void point_depends_on_seed_and_index_alone(void) {
-    for (brio_kind kind = BRIO_KIND_CUBE; kind <= BRIO_KIND_CYLINDER; kind++) {
+    for (int k = 0; k < RANDOM_KINDS; k++) {
+        brio_kind kind = random_kinds[k];
         brio_mesh *few = make(kind, 100, 7), *many = make(kind, 3000, 7), *other = make(kind, 100, 8);
         brio_context_set_threads(ctx, 1);
         brio_mesh *serial = make(kind, 3000, 7);
@@ -61,13 +67,18 @@ static double error_of(brio_kind kind, const double *p) {
         return fabs(norm(norm(p[0], p[1], 0) - 1, p[2], 0) - 0.4);
     case BRIO_KIND_CYLINDER:
         return fmax(fabs(norm(p[0], p[1], 0) - 1), fabs(p[2]) - 2);
+    case BRIO_KIND_CLUSTERS: /* no cluster reaches further out of the cube than the largest radius */
+        return fmax(fmax(fmax(fabs(p[0] - 0.5), fabs(p[1] - 0.5)), fabs(p[2] - 0.5)) - 0.6, 0);
+    case BRIO_KIND_MOMENT:
+        return p[0] >= 0 && p[0] < 1 ? norm(p[1] - p[0] * p[0], p[2] - p[0] * p[0] * p[0], 0) : 1;
     default:
         return 1;
     }
 }
 
 static void points_lie_on_their_set(void) {
-    for (brio_kind kind = BRIO_KIND_CUBE; kind <= BRIO_KIND_CYLINDER; kind++) {
+    for (int k = 0; k < RANDOM_KINDS; k++) {
+        brio_kind kind = random_kinds[k];
         brio_mesh *mesh = make(kind, 5000, 3);
         double worst = 0;
         for (size_t i = 0; i < mesh->num_vertices; i++) worst = fmax(worst, error_of(kind, mesh->vertices + 3 * i));
@@ -116,6 +127,33 @@ static void points_are_uniform(void) {
     EXPECT(fabs(mean_of(BRIO_KIND_TORUS, second)) < 0.01);
     EXPECT(fabs(mean_of(BRIO_KIND_CYLINDER, third_squared) - 4.0 / 3) < 0.02);
     EXPECT(fabs(mean_of(BRIO_KIND_CYLINDER, third)) < 0.02);
+    EXPECT(fabs(mean_of(BRIO_KIND_MOMENT, first) - 0.5) < 0.01);
+    EXPECT(fabs(mean_of(BRIO_KIND_MOMENT, third) - 0.25) < 0.01);
+}
+
+/* Distance from point i to the nearest other one. */
+static double gap_of(const brio_mesh *mesh, size_t i) {
+    double nearest = INFINITY;
+    const double *p = mesh->vertices + 3 * i;
+    for (size_t j = 0; j < mesh->num_vertices; j++) {
+        const double *q = mesh->vertices + 3 * j;
+        if (j != i) nearest = fmin(nearest, norm(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+    }
+    return nearest;
+}
+
+/* With 40 points a cluster the gaps are some fifth of its radius: as many points in each decade of it. */
+static void gaps_in_clusters_spread_evenly_over_six_decades(void) {
+    enum { POINTS = 10240, PROBED = 1024 };
+    brio_mesh *mesh = make(BRIO_KIND_CLUSTERS, POINTS, 1);
+    int decades[6] = {0};
+    for (size_t i = 0; i < PROBED; i++) {
+        int decade = (int)floor(-log10(5 * gap_of(mesh, i))) - 1;
+        if (decade >= 0 && decade < 6) decades[decade]++;
+    }
+    for (int d = 0; d < 6; d++)
+        EXPECT(abs(decades[d] - PROBED / 6) < PROBED / 12, "decade %d: %d points", d, decades[d]);
+    brio_mesh_free(mesh);
 }
 
 static void grid_is_the_smallest_that_has_room(void) {
@@ -368,6 +406,7 @@ int main(void) {
     RUN(point_depends_on_seed_and_index_alone);
     RUN(points_lie_on_their_set);
     RUN(points_are_uniform);
+    RUN(gaps_in_clusters_spread_evenly_over_six_decades);
     RUN(grid_is_the_smallest_that_has_room);
     RUN(bad_options_are_refused);
     RUN(sculpture_function_never_exceeds_the_distance);

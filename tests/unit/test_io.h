@@ -161,7 +161,7 @@ static inline brio_mesh *io_make(size_t n, int parts) {
     if (parts & (IO_FACES | IO_BIG_FACE)) io_add_faces(m, parts & IO_BIG_FACE);
     if (parts & IO_TETRAHEDRA) {
         const uint32_t tetrahedra[] = {0, 1, 2, 3, 3, 2, 1, 4, 4, 0, 1, 2};
-        EXPECT(brio_mesh_set_tetrahedra(m, tetrahedra, 3) == BRIO_OK);
+        EXPECT(brio_mesh_set_tetrahedra(m, tetrahedra, 4, 3) == BRIO_OK);
     }
     return m;
 }

@@ -180,9 +180,8 @@ static void output_order_repeats(void) {
     EXPECT(brio_delaunay(ctx, p, NULL, 2000, NULL, &s) == BRIO_OK);
     EXPECT(brio_delaunay(ctx, p, NULL, 2000, NULL, &t) == BRIO_OK);
     size_t bytes =
-        4 * sizeof(uint32_t) * (brio_triangulation_stats(s)->tetrahedra + brio_triangulation_stats(s)->hull_facets);
+        sizeof(brio_tetrahedron) * (brio_triangulation_stats(s)->tetrahedra + brio_triangulation_stats(s)->hull_facets);
     EXPECT(!memcmp(brio_triangulation_tetrahedra(s), brio_triangulation_tetrahedra(t), bytes));
-    EXPECT(!memcmp(brio_triangulation_mates(s), brio_triangulation_mates(t), bytes));
     brio_triangulation_free(s);
     brio_triangulation_free(t);
     brio_context_free(ctx);
@@ -359,7 +358,7 @@ static brio_status triangulate_and_check(brio_context *ctx) {
     if (status == BRIO_OK) status = brio_triangulation_check(ctx, t, p, w, 200);
     if (status == BRIO_OK) status = brio_triangulation_checksum(ctx, t, p, &sum);
     if (status == BRIO_OK)
-        status = brio_tetrahedra_check(ctx, p, w, 200, brio_triangulation_tetrahedra(t),
+        status = brio_tetrahedra_check(ctx, p, w, 200, (const uint32_t *)brio_triangulation_tetrahedra(t), 8,
                                        brio_triangulation_stats(t)->tetrahedra, NULL);
     brio_triangulation_free(t);
     return status;
@@ -409,18 +408,18 @@ static void check_refuses_what_is_wrong(void) {
     brio_triangulation *t;
     EXPECT(brio_delaunay(ctx, p, NULL, 300, NULL, &t) == BRIO_OK);
     size_t n = brio_triangulation_stats(t)->tetrahedra;
-    uint32_t *v = malloc(16 * n);
-    memcpy(v, brio_triangulation_tetrahedra(t), 16 * n);
+    uint32_t *v = malloc(32 * n);
+    memcpy(v, brio_triangulation_tetrahedra(t), 32 * n);
     int canonical = 0;
-    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, n, &canonical) == BRIO_OK && canonical);
-    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, n - 1, NULL) == BRIO_ERR_CHECK); /* one missing */
-    memcpy(v, v + 4, 16);
-    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, n, NULL) == BRIO_ERR_CHECK); /* one twice */
-    memcpy(v, brio_triangulation_tetrahedra(t), 16 * n);
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, 8, n, &canonical) == BRIO_OK && canonical);
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, 8, n - 1, NULL) == BRIO_ERR_CHECK); /* one missing */
+    memcpy(v, v + 8, 32);
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, 8, n, NULL) == BRIO_ERR_CHECK); /* one twice */
+    memcpy(v, brio_triangulation_tetrahedra(t), 32 * n);
     v[0] = 300;
-    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, n, NULL) == BRIO_ERR_CHECK); /* out of range */
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, 8, n, NULL) == BRIO_ERR_CHECK); /* out of range */
     v[0] = v[1];
-    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, n, NULL) == BRIO_ERR_CHECK); /* flat */
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 300, v, 8, n, NULL) == BRIO_ERR_CHECK); /* flat */
     double q[900];
     memcpy(q, p, sizeof q);
     q[3 * 17] += 0.05; /* a point moved: spheres or orientations fail */
@@ -443,7 +442,7 @@ static void other_tie_breaks_pass_but_are_not_canonical(void) {
             uint32_t tet[4] = {a, b, ring[i], ring[(i + 1) % 4]};
             memcpy(v + 4 * i, tet, sizeof tet);
         }
-        EXPECT(brio_tetrahedra_check(ctx, p, NULL, 6, v, 4, &canonical) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_tetrahedra_check(ctx, p, NULL, 6, v, 4, 4, &canonical) == BRIO_OK, "%s", brio_message(ctx));
         sum += canonical;
     }
     EXPECT(sum == 1);
@@ -460,7 +459,7 @@ static void check_refuses_space_covered_twice(void) {
         memcpy(v + 4 * i, tet, sizeof tet);
     }
     brio_context *ctx = new_context();
-    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 10, v, 8, NULL) == BRIO_ERR_CHECK);
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 10, v, 4, 8, NULL) == BRIO_ERR_CHECK);
     EXPECT(strstr(brio_message(ctx), "overlap") != NULL, "%s", brio_message(ctx));
     brio_context_free(ctx);
 }

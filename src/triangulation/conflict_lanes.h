@@ -1,0 +1,239 @@
+/* Conflict tests side by side in the lanes of vector registers; included by one source file an instruction set, after
+ * the operations on its lanes.
+ *
+ * LANES tetrahedra go through the in-sphere determinant together. An infinite vertex enters as the point at infinity of
+ * the lifting: row (0, 0, 0) with lift 1, which turns the determinant into the orientation of the hull facet and the
+ * query, so finite and infinite tetrahedra need no branch; its record is told by an infinite weight. Lanes whose sign is not certain take the further stages: a
+ * bound from the largest difference along each axis, then double-doubles in the same lanes, and only what these leave is
+ * tested one by one.
+ *
+ * The bounds are those of filter.c and double_double.c: a permanent is at most 24 times (6 times for an orientation)
+ * the product of the largest differences and the largest lift. Fused operations round less often than these bounds
+ * allow for. */
+#include "triangulation/conflict.h"
+
+enum { ALL_LANES = (1 << LANES) - 1 };
+
+/* The four rows of the determinant relative to the query; infinite lanes have row d = 0 and lift 1. */
+typedef struct {
+    lanes x[4], y[4], z[4], lift[4];
+    lane_mask infinite;
+} rows;
+
+/* Coordinates of all vertices, for the stages that need them again. */
+typedef struct {
+    lanes v[4][4]; /* of slot s: x, y, z, weight */
+    lanes e[4];
+} corners;
+
+static inline void load_corners(const brio_tetrahedra *t, const uint32_t facets[LANES], const double *p, corners *c) {
+    for (int s = 0; s < 4; s++) load_slot(t, facets, s, c->v[s]);
+    for (int k = 0; k < 4; k++) c->e[k] = all(p[k]);
+}
+
+static inline lanes square_length(lanes x, lanes y, lanes z) {
+    return multiply_add(x, x, multiply_add(y, y, z * z));
+}
+
+static inline void rows_set(const corners *c, rows *r, const bool weighted) {
+    lane_mask infinite = equal(c->v[3][3], all(INFINITY));
+    for (int s = 0; s < 4; s++) {
+        r->x[s] = c->v[s][0] - c->e[0], r->y[s] = c->v[s][1] - c->e[1], r->z[s] = c->v[s][2] - c->e[2];
+        r->lift[s] = square_length(r->x[s], r->y[s], r->z[s]);
+        if (weighted) r->lift[s] -= c->v[s][3] - c->e[3];
+    }
+    r->infinite = infinite;
+    r->x[3] = choose(infinite, all(0), r->x[3]);
+    r->y[3] = choose(infinite, all(0), r->y[3]);
+    r->z[3] = choose(infinite, all(0), r->z[3]);
+    r->lift[3] = choose(infinite, all(1), r->lift[3]);
+}
+
+/* x w - z y. */
+static inline lanes minor2(lanes x, lanes y, lanes z, lanes w) {
+    return multiply_subtract(x, w, z * y);
+}
+
+/* Minors of the rows but one: the orientations of the tetrahedron with one vertex replaced by the query, up to the sign:
+ * minor[1] and minor[3] are negated. */
+static inline void minors(const rows *r, lanes minor[4]) {
+    const lanes *x = r->x, *y = r->y, *z = r->z;
+    lanes ab = minor2(x[0], y[0], x[1], y[1]), bc = minor2(x[1], y[1], x[2], y[2]), cd = minor2(x[2], y[2], x[3], y[3]);
+    lanes da = minor2(x[3], y[3], x[0], y[0]), ac = minor2(x[0], y[0], x[2], y[2]), bd = minor2(x[1], y[1], x[3], y[3]);
+    minor[0] = multiply_add(z[1], cd, multiply_subtract(z[3], bc, z[2] * bd));
+    minor[1] = multiply_add(z[2], da, multiply_add(z[3], ac, z[0] * cd));
+    minor[2] = multiply_add(z[3], ab, multiply_add(z[0], bd, z[1] * da));
+    minor[3] = multiply_add(z[0], bc, multiply_subtract(z[2], ab, z[1] * ac));
+}
+
+static inline lanes determinant(const rows *r) {
+    lanes minor[4];
+    minors(r, minor);
+    lanes even = multiply_add(r->lift[2], minor[2], r->lift[0] * minor[0]);
+    lanes odd = multiply_add(r->lift[3], minor[3], r->lift[1] * minor[1]);
+    return even - odd;
+}
+
+/* Lanes where p is lexicographically larger than q. */
+static inline lane_mask larger(const lanes p[3], const lanes q[3]) {
+    lane_mask z = greater(p[2], q[2]);
+    lane_mask y = either(greater(p[1], q[1]), both(equal(p[1], q[1]), z));
+    return either(greater(p[0], q[0]), both(equal(p[0], q[0]), y));
+}
+
+/* The symbolic perturbation (perturb.c) where minors are exact: bits of the lanes in conflict if their determinant is
+ * 0. */
+static inline unsigned ties(const corners *c, const rows *r) {
+    lanes minor[4], decisive[3] = {c->e[0], c->e[1], c->e[2]}, decision = all(-1);
+    minors(r, minor);
+    for (int s = 0; s < 4; s++) {
+        lanes side = minor[s];
+        if (s % 2) side = all(0) - side;
+        lane_mask take = first_only(larger(c->v[s], decisive), equal(side, all(0)));
+        decision = choose(take, side, decision);
+        for (int k = 0; k < 3; k++) decisive[k] = choose(take, c->v[s][k], decisive[k]);
+    }
+    return bits_of(greater(decision, all(0)));
+}
+
+/* Bits of the lanes that are certainly in conflict, and of those that are certainly not, added to *known. */
+static inline unsigned decide(lanes det, lanes bound, unsigned *known) {
+    unsigned above = bits_of(greater(det, bound)), below = bits_of(greater(all(0) - bound, det));
+    unsigned fresh = above & ~*known;
+    *known |= above | below;
+    return fresh;
+}
+
+static inline lanes largest(const lanes v[4]) {
+    return maximum(maximum(magnitude(v[0]), magnitude(v[1])), maximum(magnitude(v[2]), magnitude(v[3])));
+}
+
+/* A bound of the permanent of each lane. */
+static inline lanes permanent(const corners *c, const rows *r, const bool weighted) {
+    lanes lift[4];
+    for (int s = 0; s < 4; s++) {
+        lift[s] = square_length(r->x[s], r->y[s], r->z[s]);
+        if (weighted) lift[s] += magnitude(c->v[s][3] - c->e[3]);
+    }
+    lanes box = largest(r->x) * largest(r->y) * largest(r->z);
+    return choose(r->infinite, all(6.01) * box, all(24.01) * box * largest(lift));
+}
+
+/* --- double-doubles in lanes; see double_double.h for their bounds --- */
+
+typedef struct {
+    lanes hi, lo;
+} dd;
+
+static inline dd two_sum(lanes a, lanes b) {
+    lanes s = a + b, t = s - a;
+    return (dd){s, (a - (s - t)) + (b - t)};
+}
+static inline dd renormalised(lanes a, lanes b) {
+    lanes s = a + b;
+    return (dd){s, b - (s - a)};
+}
+static inline dd dd_difference(lanes a, lanes b) {
+    return two_sum(a, all(0) - b);
+}
+static inline dd dd_multiply(dd x, dd y) {
+    lanes p = x.hi * y.hi, e = multiply_subtract(x.hi, y.hi, p);
+    return renormalised(p, e + (x.hi * y.lo + x.lo * y.hi));
+}
+static inline dd dd_add(dd x, dd y) {
+    dd s = two_sum(x.hi, y.hi);
+    return renormalised(s.hi, s.lo + (x.lo + y.lo));
+}
+static inline dd dd_subtract(dd x, dd y) {
+    return dd_add(x, (dd){all(0) - y.hi, all(0) - y.lo});
+}
+/* x y - z w. */
+static inline dd dd_minor(dd x, dd y, dd z, dd w) {
+    return dd_subtract(dd_multiply(x, y), dd_multiply(z, w));
+}
+static inline dd masked(dd x, lane_mask drop, double value) {
+    return (dd){choose(drop, all(value), x.hi), choose(drop, all(0), x.lo)};
+}
+
+static __attribute__((noinline)) lanes determinant_dd(const corners *c, lane_mask infinite, bool weighted) {
+    dd x[4], y[4], z[4], l[4];
+    for (int s = 0; s < 4; s++) {
+        x[s] = dd_difference(c->v[s][0], c->e[0]), y[s] = dd_difference(c->v[s][1], c->e[1]);
+        z[s] = dd_difference(c->v[s][2], c->e[2]);
+        l[s] = dd_add(dd_add(dd_multiply(x[s], x[s]), dd_multiply(y[s], y[s])), dd_multiply(z[s], z[s]));
+        if (weighted) l[s] = dd_subtract(l[s], dd_difference(c->v[s][3], c->e[3]));
+    }
+    x[3] = masked(x[3], infinite, 0), y[3] = masked(y[3], infinite, 0), z[3] = masked(z[3], infinite, 0);
+    l[3] = masked(l[3], infinite, 1);
+    dd ab = dd_minor(x[0], y[1], x[1], y[0]), bc = dd_minor(x[1], y[2], x[2], y[1]);
+    dd cd = dd_minor(x[2], y[3], x[3], y[2]), da = dd_minor(x[3], y[0], x[0], y[3]);
+    dd ac = dd_minor(x[0], y[2], x[2], y[0]), bd = dd_minor(x[1], y[3], x[3], y[1]);
+    dd abc = dd_add(dd_minor(z[0], bc, z[1], ac), dd_multiply(z[2], ab));
+    dd bcd = dd_add(dd_minor(z[1], cd, z[2], bd), dd_multiply(z[3], bc));
+    dd cda = dd_add(dd_add(dd_multiply(z[2], da), dd_multiply(z[3], ac)), dd_multiply(z[0], cd));
+    dd dab = dd_add(dd_add(dd_multiply(z[3], ab), dd_multiply(z[0], bd)), dd_multiply(z[1], da));
+    return dd_add(dd_minor(l[2], dab, l[3], abc), dd_minor(l[0], bcd, l[1], cda)).hi;
+}
+
+static const double DOUBLE_UNIT = 18 * 0x1p-53, DD_UNIT = 0x1p-99;
+
+/* Lanes whose determinant is exactly 0, on a lattice: a hull facet's plane is decided by its finite neighbour, else
+ * ties are broken. */
+static __attribute__((noinline)) unsigned settle_lattice(const brio_tetrahedra *t, brio_filter *f,
+                                                         const uint32_t facets[LANES], const double *p,
+                                                         const corners *c, const rows *r, unsigned known) {
+    unsigned zero = ~known & ALL_LANES, infinite = zero & bits_of(r->infinite);
+    unsigned mask = ties(c, r) & zero & ~infinite;
+    for (int i = 0; i < LANES; i++)
+        if (infinite >> i & 1) mask |= (unsigned)brio_in_conflict(t, f, brio_tet_of(facets[i]), p, f->weighted) << i;
+    return mask;
+}
+
+/* Stages beyond the static bound, for the lanes not yet known. */
+static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
+                                                 const double *p, const corners *c, const rows *r, lanes det,
+                                                 unsigned known, const bool weighted) {
+    lanes floor = choose(r->infinite, all(f->orient_floor), all(f->insphere_floor));
+    lanes most = permanent(c, r, weighted);
+    unsigned mask = decide(det, all(DOUBLE_UNIT) * most + floor, &known);
+    if (known == ALL_LANES) return mask;
+    f->unsettled += (uint64_t)__builtin_popcount(~known & ALL_LANES);
+    if (!f->coarse) mask |= decide(determinant_dd(c, r->infinite, weighted), all(DD_UNIT) * most + floor, &known);
+    for (int i = 0; i < LANES; i++)
+        if (!(known >> i & 1)) mask |= (unsigned)brio_in_conflict_exact(t, f, brio_tet_of(facets[i]), p, weighted) << i;
+    return mask;
+}
+
+static inline __attribute__((always_inline)) unsigned lanes_in_conflict(const brio_tetrahedra *t, brio_filter *f,
+                                                                        const uint32_t facets[LANES], const double *p,
+                                                                        const bool weighted) {
+    corners c;
+    rows r;
+    unsigned known = 0;
+    load_corners(t, facets, p, &c);
+    rows_set(&c, &r, weighted);
+    lanes bound = choose(r.infinite, all(f->orient_static), all(f->insphere_static));
+    lanes det = determinant(&r);
+    unsigned mask = decide(det, bound, &known);
+    if (__builtin_expect(known == ALL_LANES, 1)) return mask;
+    if (f->lattice) return mask | settle_lattice(t, f, facets, p, &c, &r, known);
+    return mask | settle(t, f, facets, p, &c, &r, det, known, weighted);
+}
+
+static inline __attribute__((always_inline)) unsigned batch_in_conflict(const brio_tetrahedra *t, brio_filter *f,
+                                                                        const uint32_t *facets, size_t count,
+                                                                        const double *p, const bool weighted) {
+    unsigned mask = 0;
+    for (size_t i = 0; i < count; i += LANES) mask |= lanes_in_conflict(t, f, facets + i, p, weighted) << i;
+    return mask & ((1u << count) - 1);
+}
+
+static unsigned conflicts_plain(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH],
+                                size_t count, const double *p) {
+    return batch_in_conflict(t, f, facets, count, p, false);
+}
+
+static unsigned conflicts_weighted(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH],
+                                   size_t count, const double *p) {
+    return batch_in_conflict(t, f, facets, count, p, true);
+}

@@ -1,0 +1,64 @@
+/* Four doubles side by side: the vector operations of conflict_lanes.h and sides_lanes.h in AVX2. */
+#ifndef BRIO_TRIANGULATION_LANES_AVX2_H
+#define BRIO_TRIANGULATION_LANES_AVX2_H
+
+#include "triangulation/tetrahedra.h"
+#include <immintrin.h>
+
+enum { LANES = 4 };
+
+typedef __m256d lanes; /* + - * act on each lane */
+typedef __m256d lane_mask;
+
+static inline lanes all(double x) {
+    return _mm256_set1_pd(x);
+}
+static inline lanes magnitude(lanes x) {
+    return _mm256_andnot_pd(all(-0.0), x);
+}
+static inline lanes maximum(lanes x, lanes y) {
+    return _mm256_max_pd(x, y);
+}
+/* x y - z and x y + z with one rounding. */
+static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {
+    return _mm256_fmsub_pd(x, y, z);
+}
+static inline lanes multiply_add(lanes x, lanes y, lanes z) {
+    return _mm256_fmadd_pd(x, y, z);
+}
+static inline lane_mask greater(lanes x, lanes y) {
+    return _mm256_cmp_pd(x, y, _CMP_GT_OQ);
+}
+static inline lane_mask equal(lanes x, lanes y) {
+    return _mm256_cmp_pd(x, y, _CMP_EQ_OQ);
+}
+static inline lane_mask both(lane_mask a, lane_mask b) {
+    return _mm256_and_pd(a, b);
+}
+static inline lane_mask first_only(lane_mask a, lane_mask b) {
+    return _mm256_andnot_pd(b, a);
+}
+static inline lane_mask either(lane_mask a, lane_mask b) {
+    return _mm256_or_pd(a, b);
+}
+/* x in the lanes of the mask, y in the others. */
+static inline lanes choose(lane_mask m, lanes x, lanes y) {
+    return _mm256_blendv_pd(y, x, m);
+}
+static inline unsigned bits_of(lane_mask m) {
+    return (unsigned)_mm256_movemask_pd(m);
+}
+
+/* x y z w of the vertex in slot s of each tetrahedron. */
+static inline void load_slot(const brio_tetrahedra *t, const uint32_t facets[LANES], int s, lanes out[4]) {
+    lanes r[4];
+    for (int i = 0; i < LANES; i++) r[i] = _mm256_loadu_pd(t->record[t->tet[brio_tet_of(facets[i])].vertex[s]]);
+    lanes ab0 = _mm256_unpacklo_pd(r[0], r[1]), ab1 = _mm256_unpackhi_pd(r[0], r[1]);
+    lanes cd0 = _mm256_unpacklo_pd(r[2], r[3]), cd1 = _mm256_unpackhi_pd(r[2], r[3]);
+    out[0] = _mm256_permute2f128_pd(ab0, cd0, 0x20);
+    out[1] = _mm256_permute2f128_pd(ab1, cd1, 0x20);
+    out[2] = _mm256_permute2f128_pd(ab0, cd0, 0x31);
+    out[3] = _mm256_permute2f128_pd(ab1, cd1, 0x31);
+}
+
+#endif

@@ -1,0 +1,69 @@
+/* Eight doubles side by side: the vector operations of conflict_lanes.h in AVX-512. */
+#ifndef BRIO_TRIANGULATION_LANES_AVX512_H
+#define BRIO_TRIANGULATION_LANES_AVX512_H
+
+#include "triangulation/tetrahedra.h"
+#include <immintrin.h>
+
+enum { LANES = 8 };
+
+typedef __m512d lanes; /* + - * act on each lane */
+typedef __mmask8 lane_mask;
+
+static inline lanes all(double x) {
+    return _mm512_set1_pd(x);
+}
+static inline lanes magnitude(lanes x) {
+    return _mm512_abs_pd(x);
+}
+static inline lanes maximum(lanes x, lanes y) {
+    return _mm512_max_pd(x, y);
+}
+/* x y - z and x y + z with one rounding. */
+static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {
+    return _mm512_fmsub_pd(x, y, z);
+}
+static inline lanes multiply_add(lanes x, lanes y, lanes z) {
+    return _mm512_fmadd_pd(x, y, z);
+}
+static inline lane_mask greater(lanes x, lanes y) {
+    return _mm512_cmp_pd_mask(x, y, _CMP_GT_OQ);
+}
+static inline lane_mask equal(lanes x, lanes y) {
+    return _mm512_cmp_pd_mask(x, y, _CMP_EQ_OQ);
+}
+static inline lane_mask both(lane_mask a, lane_mask b) {
+    return a & b;
+}
+static inline lane_mask first_only(lane_mask a, lane_mask b) {
+    return a & (lane_mask)~b;
+}
+static inline lane_mask either(lane_mask a, lane_mask b) {
+    return a | b;
+}
+/* x in the lanes of the mask, y in the others. */
+static inline lanes choose(lane_mask m, lanes x, lanes y) {
+    return _mm512_mask_blend_pd(m, y, x);
+}
+static inline unsigned bits_of(lane_mask m) {
+    return m;
+}
+
+/* x y z w of the vertex in slot s of each tetrahedron. */
+static inline void load_slot(const brio_tetrahedra *t, const uint32_t facets[LANES], int s, lanes out[4]) {
+    lanes r[4]; /* two records each, so paired that the lanes come out in order */
+    for (int i = 0; i < 4; i++) {
+        int low = i < 2 ? i : i + 2;
+        __m256d a = _mm256_loadu_pd(t->record[t->tet[brio_tet_of(facets[low])].vertex[s]]);
+        __m256d b = _mm256_loadu_pd(t->record[t->tet[brio_tet_of(facets[low + 2])].vertex[s]]);
+        r[i] = _mm512_insertf64x4(_mm512_castpd256_pd512(a), b, 1);
+    }
+    lanes ab0 = _mm512_unpacklo_pd(r[0], r[1]), ab1 = _mm512_unpackhi_pd(r[0], r[1]);
+    lanes cd0 = _mm512_unpacklo_pd(r[2], r[3]), cd1 = _mm512_unpackhi_pd(r[2], r[3]);
+    out[0] = _mm512_shuffle_f64x2(ab0, cd0, 0x88);
+    out[1] = _mm512_shuffle_f64x2(ab1, cd1, 0x88);
+    out[2] = _mm512_shuffle_f64x2(ab0, cd0, 0xdd);
+    out[3] = _mm512_shuffle_f64x2(ab1, cd1, 0xdd);
+}
+
+#endif
