@@ -17,13 +17,14 @@ check:
 	@sh scripts/setup.sh check
 	@sh scripts/check.sh $(JOBS)
 
-# BENCH="--runs 5 --only uniform_1m happy_raw" measures less.
+# BENCH="--runs 5 --only uniform_1m happy_raw" measures less, BENCH="--sizes 1e4 1e5 1e6 1e7" more: docs/benchmarks.md.
 bench: all
 	@sh scripts/setup.sh bench
 	cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_PEERS=ON
-	cmake --build build-bench -j $(JOBS) --target cgal_delaunay cgal_regular
+	cmake --build build-bench -j $(JOBS) --target peers
 	@mkdir -p out
 	/usr/bin/python3 bench/bench.py $(BRIO) build-bench out/bench.csv $(BENCH)
+	/usr/bin/python3 bench/plot.py out/bench.csv out
 
 clean:
 	rm -rf build build-ci build-debug build-sanitize out

@@ -35,7 +35,6 @@ missing() {
     has_compiler || echo gcc libc6-dev
     if [ "$1" = bench ]; then
         has g++ || echo g++
-        [ -d /usr/include/CGAL ] || echo libcgal-dev
         has_python_with numpy || echo python3-numpy
     fi
     [ "$1" = check ] || return 0
@@ -44,6 +43,15 @@ missing() {
     has_python_with scipy || echo python3-scipy
     has clang-format || echo clang-format
     has pkg-config || echo pkg-config
+}
+
+# The Debian packages of other libraries, and of the plots, that are missing: the bench does without them.
+missing_peers() {
+    [ -d /usr/include/CGAL ] || echo libcgal-dev
+    [ -d /usr/include/tbb ] || echo libtbb-dev
+    [ -f /usr/include/tetgen.h ] || echo libtet1.5-dev
+    [ -d /usr/include/libqhull_r ] || echo libqhull-dev
+    has gnuplot || echo gnuplot-nox
 }
 
 install() {
@@ -57,6 +65,24 @@ install() {
     fi
 }
 
+# Installs of them what this Debian has, and says what stays missing.
+install_peers() {
+    wanted=$(missing_peers)
+    [ -n "$wanted" ] || return 0
+    if [ "$(id -u)" = 0 ] && has apt-get; then
+        apt-get update >/dev/null 2>&1 || true
+        there=$(for package in $wanted; do apt-cache show "$package" >/dev/null 2>&1 && echo "$package"; done | xargs)
+        if [ -n "$there" ]; then
+            echo "setup: installing $there"
+            # shellcheck disable=SC2086
+            install $there
+        fi
+        wanted=$(missing_peers)
+    fi
+    # shellcheck disable=SC2086
+    [ -z "$wanted" ] || echo "setup: the bench leaves out what needs these Debian packages:" $wanted >&2
+}
+
 purpose=${1:-build}
 case $purpose in
 build | check | bench) ;;
@@ -66,6 +92,7 @@ build | check | bench) ;;
     ;;
 esac
 
+[ "$purpose" != bench ] || install_peers
 packages=$(missing "$purpose" | xargs)
 [ -n "$packages" ] || exit 0
 if [ "$(id -u)" = 0 ] && has apt-get; then

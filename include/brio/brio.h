@@ -397,7 +397,7 @@ typedef enum brio_kind {
     BRIO_KIND_GRID,     /* the first n points of the smallest cubic integer grid that has them */
     BRIO_KIND_SCAN,     /* a simulated laser scan of a sculpture of genus 3 */
     BRIO_KIND_CLUSTERS, /* uniform in 256 balls in the unit cube, their radii log-uniform from 1e-7 to 0.1 */
-    BRIO_KIND_MOMENT,   /* (t, t^2, t^3), t uniform in [0, 1): about n^2 / 4 tetrahedra */
+    BRIO_KIND_MOMENT,   /* (t, t^2, t^3), t uniform in [0, 1): about n^2 / 2 tetrahedra */
     BRIO_KIND_END
 } brio_kind;
 

@@ -138,6 +138,8 @@ static void rename_all(sorter *s) {
     for (size_t t = 0; t < k->t.count; t++) {
         if (k->state[t] == TET_UNUSED) continue;
         brio_tetrahedron old = tets[t], *tet = &tets[t];
+        size_t later = t + 12 < k->t.count ? t + 12 : t;
+        for (int i = 0; i < 4; i++) __builtin_prefetch(&tets[brio_tet_of(tets[later].mate[i])]);
         const uint8_t *from = TURNED[old.vertex[0] >> TURN_SHIFT];
         for (int i = 0; i < 4; i++) {
             uint32_t facet = old.mate[from[i]], other = tets[brio_tet_of(facet)].vertex[0];

@@ -10,7 +10,7 @@
  * The bounds are those of filter.c and double_double.c: a permanent is at most 24 times (6 times for an orientation)
  * the product of the largest differences and the largest lift. Fused operations round less often than these bounds
  * allow for. */
-#include "triangulation/conflict.h"
+#include "triangulation/engine.h"
 
 enum { ALL_LANES = (1 << LANES) - 1 };
 
@@ -179,9 +179,8 @@ static const double DOUBLE_UNIT = 18 * 0x1p-53, DD_UNIT = 0x1p-99;
 
 /* Lanes whose determinant is exactly 0, on a lattice: a hull facet's plane is decided by its finite neighbour, else
  * ties are broken. */
-static __attribute__((noinline)) unsigned settle_lattice(const brio_tetrahedra *t, brio_filter *f,
-                                                         const uint32_t facets[LANES], const double *p,
-                                                         const corners *c, const rows *r, unsigned known) {
+static inline unsigned settle_lattice(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
+                                      const double *p, const corners *c, const rows *r, unsigned known) {
     unsigned zero = ~known & ALL_LANES, infinite = zero & bits_of(r->infinite);
     unsigned mask = ties(c, r) & zero & ~infinite;
     for (int i = 0; i < LANES; i++)
@@ -189,16 +188,21 @@ static __attribute__((noinline)) unsigned settle_lattice(const brio_tetrahedra *
     return mask;
 }
 
-/* Stages beyond the static bound, for the lanes not yet known. */
+/* Stages beyond the static bound, for the lanes not yet known. Loads everything again: keeping it at hand would cost the
+ * calls that do not come here, nearly all of them, more. */
 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
-                                                 const double *p, const corners *c, const rows *r, lanes det,
-                                                 unsigned known, const bool weighted) {
-    lanes floor = choose(r->infinite, all(f->orient_floor), all(f->insphere_floor));
-    lanes most = permanent(c, r, weighted);
-    unsigned mask = decide(det, all(DOUBLE_UNIT) * most + floor, &known);
+                                                 const double *p, unsigned known, const bool weighted) {
+    corners c;
+    rows r;
+    load_corners(t, facets, p, &c);
+    rows_set(&c, &r, weighted);
+    if (f->lattice) return settle_lattice(t, f, facets, p, &c, &r, known);
+    lanes floor = choose(r.infinite, all(f->orient_floor), all(f->insphere_floor));
+    lanes most = permanent(&c, &r, weighted);
+    unsigned mask = decide(determinant(&r), all(DOUBLE_UNIT) * most + floor, &known);
     if (known == ALL_LANES) return mask;
     f->unsettled += (uint64_t)__builtin_popcount(~known & ALL_LANES);
-    if (!f->coarse) mask |= decide(determinant_dd(c, r->infinite, weighted), all(DD_UNIT) * most + floor, &known);
+    if (!f->coarse) mask |= decide(determinant_dd(&c, r.infinite, weighted), all(DD_UNIT) * most + floor, &known);
     for (int i = 0; i < LANES; i++)
         if (!(known >> i & 1)) mask |= (unsigned)brio_in_conflict_exact(t, f, brio_tet_of(facets[i]), p, weighted) << i;
     return mask;
@@ -213,11 +217,9 @@ static inline __attribute__((always_inline)) unsigned lanes_in_conflict(const br
     load_corners(t, facets, p, &c);
     rows_set(&c, &r, weighted);
     lanes bound = choose(r.infinite, all(f->orient_static), all(f->insphere_static));
-    lanes det = determinant(&r);
-    unsigned mask = decide(det, bound, &known);
+    unsigned mask = decide(determinant(&r), bound, &known);
     if (__builtin_expect(known == ALL_LANES, 1)) return mask;
-    if (f->lattice) return mask | settle_lattice(t, f, facets, p, &c, &r, known);
-    return mask | settle(t, f, facets, p, &c, &r, det, known, weighted);
+    return mask | settle(t, f, facets, p, known, weighted);
 }
 
 static inline __attribute__((always_inline)) unsigned batch_in_conflict(const brio_tetrahedra *t, brio_filter *f,
@@ -226,14 +228,4 @@ static inline __attribute__((always_inline)) unsigned batch_in_conflict(const br
     unsigned mask = 0;
     for (size_t i = 0; i < count; i += LANES) mask |= lanes_in_conflict(t, f, facets + i, p, weighted) << i;
     return mask & ((1u << count) - 1);
-}
-
-static unsigned conflicts_plain(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH],
-                                size_t count, const double *p) {
-    return batch_in_conflict(t, f, facets, count, p, false);
-}
-
-static unsigned conflicts_weighted(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH],
-                                   size_t count, const double *p) {
-    return batch_in_conflict(t, f, facets, count, p, true);
 }

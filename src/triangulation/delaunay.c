@@ -77,7 +77,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     k->ctx = ctx;
     k->num_points = n;
     k->weighted = weights != NULL;
-    k->conflicts = brio_conflicts_choose(k->weighted);
+    k->engine = brio_engine_choose(k->weighted);
     k->max_tetrahedra = options->max_tetrahedra;
     k->stats.points = n;
     k->t.infinite = (uint32_t)n + 2;
@@ -92,8 +92,8 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     BRIO_TRY(BRIO_ALLOC(ctx, k->representative, n + 3));
     for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;
     BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.local, n + 3));
-    memset(k->cavity.local, BRIO_NO_LOCAL, n + 3);
     BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.table, BRIO_TABLE));
+    BRIO_TRY(brio_cavity_reserve(ctx, &k->cavity, 64));
 done:
     return status;
 }

@@ -65,6 +65,6 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
             return BRIO_OK;
         }
     }
-    brio_status status = brio_cavity_dig(k, tet, p);
+    brio_status status = k->engine->dig(k, tet, p);
     return status == BRIO_OK ? brio_cavity_fill(k, p) : status;
 }

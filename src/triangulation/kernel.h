@@ -2,34 +2,31 @@
 #ifndef BRIO_TRIANGULATION_KERNEL_H
 #define BRIO_TRIANGULATION_KERNEL_H
 
-#include "triangulation/conflict.h"
+#include "triangulation/engine.h"
 #include "triangulation/locate.h"
 #include "triangulation/star.h"
 #include "triangulation/tetrahedra.h"
 
 /** Workspace of one insertion, kept from one to the next. */
 typedef struct {
-    uint32_t *tets;   /* in conflict; after the fill, those created: one for each border facet */
-    uint32_t *facet;  /* outer sides of the facets through which the cavity was left */
+    uint32_t *entry;  /* of each tetrahedron in conflict, the facet through which it was found */
+    uint32_t *created; /* a tetrahedron for each border facet */
+    uint32_t *facet;  /* outer sides of the facets through which the cavity was left; then codes of the border's vertices */
     uint32_t *border; /* those of them that lead to no conflict */
     size_t num_tets, num_border;
-    size_t capacity;         /* of tets, a quarter of that of the others */
+    size_t capacity;         /* of entry, a quarter of that of the other lists */
     uint32_t *cavity_vertex; /* the vertices of all tets, with repetitions; weighted only */
     size_t cavity_vertex_capacity;
-    uint8_t *local;     /* number of a vertex on the border, NO_LOCAL elsewhere */
-    uint32_t *numbered; /* the vertices that have a number */
-    size_t num_numbered, numbered_capacity;
-    uint32_t *code; /* of each border facet: the numbers of its vertices */
-    size_t code_capacity;
+    uint8_t *local;     /* of each vertex: its number in the cavity it was last in */
     uint32_t *table;    /* facet handle of each directed edge of the border, BRIO_TABLE of them */
     uint64_t *edge_key; /* hash table of directed edges, for large borders */
     uint32_t *edge_facet;
     size_t hash_capacity, hash_facet_capacity;
 } brio_cavity;
 
-enum { BRIO_NO_LOCAL = 255, BRIO_TABLE = 1 << 16 };
+enum { BRIO_TABLE = 1 << 16 };
 
-typedef struct {
+struct brio_kernel {
     brio_context *ctx;
     brio_tetrahedra t;
     size_t capacity, max_tetrahedra;
@@ -43,13 +40,13 @@ typedef struct {
     bool weighted;
     int dimension;
     brio_filter filter;
-    brio_conflicts_fn conflicts;
+    const brio_engine *engine;
     brio_walk walk;
     unsigned long_walks; /* how often of late a walk was given up, see insert.c */
     brio_star star;      /* workspace of the descent; its marks are the states */
     brio_cavity cavity;
     brio_stats stats;
-} brio_kernel;
+};
 
 typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_UNUSED = 2 } brio_tet_state;
 
@@ -67,8 +64,8 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p);
 /** A tetrahedron in conflict with p near the last insertion, or what brio_locate_walk gives. */
 brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet);
 
-/** Finds all tetrahedra in conflict with record p, from one of them, and the border of their union. */
-brio_status brio_cavity_dig(brio_kernel *k, uint32_t first, uint32_t p);
+/** Room for the lists of a cavity of at most `tets` tetrahedra. */
+brio_status brio_cavity_reserve(brio_context *ctx, brio_cavity *c, size_t tets);
 
 /** Replaces the cavity by the star of record p; vertices that lose their last tetrahedron become hidden. */
 brio_status brio_cavity_fill(brio_kernel *k, uint32_t p);

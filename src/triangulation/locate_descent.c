@@ -34,7 +34,7 @@ static uint32_t first_conflict(brio_kernel *k, const uint32_t *tets, size_t coun
         size_t size = count - n < BRIO_BATCH ? count - n : BRIO_BATCH;
         uint32_t facet[BRIO_BATCH];
         for (size_t i = 0; i < BRIO_BATCH; i++) facet[i] = brio_facet_of(tets[i < size ? n + i : n], 0);
-        unsigned mask = k->conflicts(&k->t, &k->filter, facet, size, p);
+        unsigned mask = k->engine->conflicts(&k->t, &k->filter, facet, size, p);
         k->stats.insphere_calls += size;
         if (mask) return tets[n + (size_t)__builtin_ctz(mask)];
     }
@@ -48,7 +48,7 @@ static brio_status collect_last(brio_kernel *k, uint32_t v) {
     if (status != BRIO_OK) return status;
     star->size = 0;
     for (size_t b = 0; b < k->cavity.num_border; b++) {
-        uint32_t tet = k->cavity.tets[b];
+        uint32_t tet = k->cavity.created[b];
         star->tet[star->size] = tet;
         star->size += brio_slot_of_vertex(k->t.tet[tet].vertex, v) < 4;
     }
@@ -57,7 +57,7 @@ static brio_status collect_last(brio_kernel *k, uint32_t v) {
 
 brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) {
     candidate best = {k->t.infinite, BRIO_NO_TET, INFINITY};
-    for (size_t b = 0; b < k->cavity.num_border; b++) offer(&k->t, &best, k->cavity.tets[b], p);
+    for (size_t b = 0; b < k->cavity.num_border; b++) offer(&k->t, &best, k->cavity.created[b], p);
     if (best.square > 0 && best.vertex != k->t.infinite) {
         brio_status status = collect_last(k, best.vertex);
         if (status != BRIO_OK) return status;

@@ -902,8 +902,9 @@ class Answers(CliTest):
         outputs = [self.expect(0, "generate", kind, "-n", "50", "-o", "-", "--format", "xyz").out
                    for kind in ["moment", "moment-curve"]]
         self.assertEqual(outputs[0], outputs[1])
-        for line in outputs[0].decode().split("\n")[:-1]:
-            t, square, cube = map(float, line.split())
+        rows = [line.split() for line in outputs[0].decode().splitlines() if not line.startswith("#")]
+        self.assertEqual(len(rows), 50)
+        for t, square, cube in [map(float, row) for row in rows]:
             self.assertEqual((square, cube), (t * t, t * t * t))
 
     def test_generate_scan_with_its_truth(self):

@@ -1,0 +1,34 @@
+/* The inner loops without vector instructions, and the choice of the instruction set at run time. */
+#include "triangulation/engine.h"
+
+bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted) {
+    const uint32_t *v = t->tet[tet].vertex;
+    if (v[3] == t->infinite) {
+        int side = brio_orient3d_exact(t->record[v[0]], t->record[v[1]], t->record[v[2]], p);
+        if (side) return side > 0;
+        return brio_in_conflict(t, f, brio_tet_of(t->tet[tet].mate[3]), p, weighted);
+    }
+    const double *a = t->record[v[0]], *b = t->record[v[1]], *c = t->record[v[2]], *d = t->record[v[3]];
+    int sign = brio_insphere_exact(a, b, c, d, p, weighted);
+    return (sign ? sign : brio_insphere_tie(f, a, b, c, d, p)) > 0;
+}
+
+static inline unsigned batch_in_conflict(const brio_tetrahedra *t, brio_filter *f, const uint32_t *facets, size_t count,
+                                         const double *p, const bool weighted) {
+    unsigned mask = 0;
+    for (size_t i = 0; i < count; i++)
+        mask |= (unsigned)brio_in_conflict(t, f, brio_tet_of(facets[i]), p, weighted) << i;
+    return mask;
+}
+
+#define ENGINE brio_engine_plain
+#include "triangulation/engine_body.h"
+
+const brio_engine *brio_engine_choose(bool weighted) {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+        return &brio_engine_avx512[weighted];
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return &brio_engine_avx2[weighted];
+#endif
+    return &brio_engine_plain[weighted];
+}

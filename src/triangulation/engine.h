@@ -1,0 +1,26 @@
+/* The inner loops of the kernel, in versions for several instruction sets. */
+#ifndef BRIO_TRIANGULATION_ENGINE_H
+#define BRIO_TRIANGULATION_ENGINE_H
+
+#include "triangulation/tetrahedra.h"
+
+typedef struct brio_kernel brio_kernel;
+
+enum { BRIO_BATCH = 8 };
+
+typedef struct {
+    /** Bit i of the result: whether p conflicts with the tetrahedron of facet handle facets[i], i < count. All
+     *  BRIO_BATCH entries must be handles of valid tetrahedra. Same answers as brio_in_conflict. */
+    unsigned (*conflicts)(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH], size_t count,
+                          const double *p);
+    /** Finds all tetrahedra in conflict with record p, from one of them, and the border of their union. */
+    brio_status (*dig)(brio_kernel *k, uint32_t first, uint32_t p);
+} brio_engine;
+
+/** The fastest version that this processor runs. */
+const brio_engine *brio_engine_choose(bool weighted);
+
+/** The versions, without and with weights. */
+extern const brio_engine brio_engine_plain[2], brio_engine_avx2[2], brio_engine_avx512[2];
+
+#endif

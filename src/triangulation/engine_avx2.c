@@ -1,0 +1,11 @@
+/* The inner loops in AVX2: four doubles a register. */
+#if defined(__x86_64__)
+#include "triangulation/lanes_avx2.h"
+
+#include "triangulation/conflict_lanes.h"
+
+#define ENGINE brio_engine_avx2
+#include "triangulation/engine_body.h"
+#else
+typedef int brio_no_avx2;
+#endif

@@ -1,0 +1,11 @@
+/* The inner loops in AVX-512: eight doubles a register. */
+#if defined(__x86_64__)
+#include "triangulation/lanes_avx512.h"
+
+#include "triangulation/conflict_lanes.h"
+
+#define ENGINE brio_engine_avx512
+#include "triangulation/engine_body.h"
+#else
+typedef int brio_no_avx512;
+#endif
