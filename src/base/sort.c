@@ -58,6 +58,43 @@ done:
     return status;
 }
 
+/* --- items --- */
+
+enum { ITEM_DIGIT = 10, ITEM_BUCKETS = 1 << ITEM_DIGIT, ITEM_PASSES = (32 + ITEM_DIGIT - 1) / ITEM_DIGIT, FEW_ITEMS = 48 };
+
+static void insert_items(uint64_t *items, size_t n) {
+    for (size_t i = 1; i < n; i++) {
+        uint64_t moved = items[i];
+        size_t j = i;
+        for (; j > 0 && moved >> 32 < items[j - 1] >> 32; j--) items[j] = items[j - 1];
+        items[j] = moved;
+    }
+}
+
+void brio_sort_items(uint64_t *items, uint64_t *spare, size_t n, int bits) {
+    size_t count[ITEM_PASSES][ITEM_BUCKETS] = {0};
+    int passes = (bits + ITEM_DIGIT - 1) / ITEM_DIGIT;
+    uint64_t *from = items, *to = spare;
+    if (n <= FEW_ITEMS) {
+        insert_items(items, n);
+        return;
+    }
+    for (size_t i = 0; i < n; i++)
+        for (int p = 0; p < passes; p++) count[p][items[i] >> (32 + p * ITEM_DIGIT) & (ITEM_BUCKETS - 1)]++;
+    for (int p = 0; p < passes; p++) {
+        size_t sum = 0;
+        for (int b = 0; b < ITEM_BUCKETS; b++) {
+            size_t c = count[p][b];
+            count[p][b] = sum;
+            sum += c;
+        }
+        for (size_t i = 0; i < n; i++) to[count[p][from[i] >> (32 + p * ITEM_DIGIT) & (ITEM_BUCKETS - 1)]++] = from[i];
+        uint64_t *swap = from;
+        from = to, to = swap;
+    }
+    if (from != items) memcpy(items, from, n * sizeof *items);
+}
+
 static void sift_down(uint32_t *a, size_t root, size_t n, brio_compare_fn compare, const void *user) {
     uint32_t moved = a[root];
     for (size_t child; (child = 2 * root + 1) < n; root = child) {

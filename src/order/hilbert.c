@@ -16,43 +16,102 @@ static const uint8_t STATE[12][8] = {
     {0x12, 0x1b, 0x11, 0x40, 0x35, 0x1c, 0x36, 0x2f}, {0x44, 0x43, 0x1d, 0x22, 0x4f, 0x30, 0x1e, 0x21},
 };
 
-uint64_t brio_hilbert_key(uint32_t x, uint32_t y, uint32_t z, int bits) {
+/* Two levels at once: STATE composed with itself, 64 * next state + rank of each pair of octants. */
+typedef struct {
+    uint16_t step[12][64];
+} two_levels;
+
+static void compose(two_levels *two) {
+    for (int s = 0; s < 12; s++)
+        for (unsigned i = 0; i < 64; i++) { /* i = x x y y z z, the higher level first */
+            unsigned high = (i >> 5 & 1) << 2 | (i >> 3 & 1) << 1 | (i >> 1 & 1);
+            unsigned low = (i >> 4 & 1) << 2 | (i >> 2 & 1) << 1 | (i & 1);
+            unsigned first = STATE[s][high], second = STATE[first >> 3][low];
+            two->step[s][i] = (uint16_t)((second >> 3) << 6 | (first & 7) << 3 | (second & 7));
+        }
+}
+
+static inline uint64_t key_of(const two_levels *two, uint32_t x, uint32_t y, uint32_t z, int bits) {
     uint64_t key = 0;
     unsigned state = 0;
-    for (int b = bits - 1; b >= 0; b--) {
-        unsigned octant = (x >> b & 1) << 2 | (y >> b & 1) << 1 | (z >> b & 1);
-        unsigned next = STATE[state][octant];
-        key = key << 3 | (next & 7);
-        state = next >> 3;
+    int b = bits;
+    if (b % 2) {
+        b--;
+        unsigned first = STATE[0][(x >> b & 1) << 2 | (y >> b & 1) << 1 | (z >> b & 1)];
+        key = first & 7;
+        state = first >> 3;
+    }
+    while ((b -= 2) >= 0) {
+        unsigned next = two->step[state][(x >> b & 3) << 4 | (y >> b & 3) << 2 | (z >> b & 3)];
+        key = key << 6 | (next & 63);
+        state = next >> 6;
     }
     return key;
 }
 
-/* Coordinates are halved first, so that the side of the box cannot overflow. */
-static void half_box(const double *points, size_t n, double low[3], double *side) {
-    double high[3];
-    for (int k = 0; k < 3; k++) low[k] = high[k] = points[k] * 0.5;
-    for (size_t i = 1; i < n; i++)
-        for (int k = 0; k < 3; k++) {
-            double c = points[3 * i + (size_t)k] * 0.5;
-            low[k] = c < low[k] ? c : low[k];
-            high[k] = c > high[k] ? c : high[k];
-        }
-    *side = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2]));
+uint64_t brio_hilbert_key(uint32_t x, uint32_t y, uint32_t z, int bits) {
+    two_levels two;
+    compose(&two);
+    return key_of(&two, x, y, z, bits);
+}
+
+/* The cube of points. Coordinates are halved first, so that its side cannot overflow. */
+typedef struct {
+    double low[3], high[3], scale, last;
+} cube;
+
+static void cube_new(cube *c, const double *p) {
+    for (int k = 0; k < 3; k++) c->low[k] = c->high[k] = p[k] * 0.5;
+}
+
+static inline void cube_add(cube *c, const double *p) {
+    for (int k = 0; k < 3; k++) {
+        double x = p[k] * 0.5;
+        c->low[k] = x < c->low[k] ? x : c->low[k];
+        c->high[k] = x > c->high[k] ? x : c->high[k];
+    }
+}
+
+/* Divides the cube into 2^bits cells a side; false when it is a point. */
+static bool cube_divide(cube *c, int bits) {
+    double side = fmax(c->high[0] - c->low[0], fmax(c->high[1] - c->low[1], c->high[2] - c->low[2]));
+    double cells = ldexp(1, bits);
+    c->last = cells - 1;
+    c->scale = side > 0 ? fmin(cells / side, 0x1p1000) : 0;
+    return side > 0;
+}
+
+static inline uint64_t cube_key(const cube *c, const two_levels *two, const double *p, int bits) {
+    uint32_t cell[3];
+    for (int k = 0; k < 3; k++) {
+        double x = (p[k] * 0.5 - c->low[k]) * c->scale;
+        cell[k] = (uint32_t)(int64_t)(x < c->last ? x : c->last);
+    }
+    return key_of(two, cell[0], cell[1], cell[2], bits);
 }
 
 void brio_hilbert_keys(const double *points, size_t n, int bits, uint64_t *keys) {
     if (!n) return;
-    double low[3], side;
-    half_box(points, n, low, &side);
-    double cells = ldexp(1, bits), last = cells - 1;
-    double scale = side > 0 ? fmin(cells / side, 0x1p1000) : 0;
+    two_levels two;
+    cube c;
+    compose(&two);
+    cube_new(&c, points);
+    for (size_t i = 1; i < n; i++) cube_add(&c, points + 3 * i);
+    cube_divide(&c, bits);
+    for (size_t i = 0; i < n; i++) keys[i] = cube_key(&c, &two, points + 3 * i, bits);
+}
+
+bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bits) {
+    if (!n) return false;
+    two_levels two;
+    cube c;
+    compose(&two);
+    cube_new(&c, points + 3 * (size_t)(uint32_t)items[0]);
+    for (size_t i = 1; i < n; i++) cube_add(&c, points + 3 * (size_t)(uint32_t)items[i]);
+    if (!cube_divide(&c, bits)) return false;
     for (size_t i = 0; i < n; i++) {
-        uint32_t cell[3];
-        for (int k = 0; k < 3; k++) {
-            double c = (points[3 * i + (size_t)k] * 0.5 - low[k]) * scale;
-            cell[k] = (uint32_t)(c < last ? c : last);
-        }
-        keys[i] = brio_hilbert_key(cell[0], cell[1], cell[2], bits);
+        uint64_t index = (uint32_t)items[i];
+        items[i] = cube_key(&c, &two, points + 3 * index, bits) << 32 | index;
     }
+    return true;
 }

@@ -13,4 +13,8 @@ uint64_t brio_hilbert_key(uint32_t x, uint32_t y, uint32_t z, int bits);
  *  finite coordinates. */
 void brio_hilbert_keys(const double *points, size_t num_points, int bits, uint64_t *keys);
 
+/** The same for some of the points: the low half of items[i] is an index of a point, the high half becomes its key in
+ *  the smallest cube that holds them all; bits at most 10. False when they are all at one position. */
+bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bits);
+
 #endif

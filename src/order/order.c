@@ -14,55 +14,99 @@
 #include "base/rng.h"
 #include "base/sort.h"
 #include "order/hilbert.h"
-#include <math.h>
+#include <string.h>
 
-enum { CURVE_BITS = 16, ROUND_BITS = 6, ROUNDS = 1 << ROUND_BITS };
+enum { CURVE_BITS = 10, ROUNDS = 64, CELL_MOST = 8 };
 
-/* Number of the round of a point: ROUNDS - 1 is the last. u uniform in [0, 1). */
-static uint64_t round_of(double u, double inverse_log_ratio, uint64_t most_back) {
-    double back = floor(log1p(-u) * inverse_log_ratio);
-    return ROUNDS - 1 - (back < (double)most_back ? (uint64_t)back : most_back);
+/* --- along the curve --- */
+
+/* Levels of the curve for n points: enough to tell them apart where they are spread evenly over a surface. */
+static int curve_bits(size_t n) {
+    int bits = 2;
+    while (bits < CURVE_BITS && (size_t)1 << 2 * (bits - 1) < n) bits++;
+    return bits;
 }
 
-/* Rounds smaller than a handful of points are merged into the first. */
-static uint64_t rounds_back(size_t n, double ratio) {
-    double rounds = floor(log((double)n / 16 + 1) / -log(ratio));
-    return rounds < ROUNDS - 1 ? (uint64_t)rounds : ROUNDS - 1;
-}
-
-static void add_rounds(uint64_t *keys, size_t n, const brio_options *options) {
-    double inverse = 1 / log(options->round_ratio);
-    uint64_t most = rounds_back(n, options->round_ratio);
-    for (size_t i = 0; i < n; i++) {
-        double u = (double)(brio_mix(options->seed + brio_mix(i)) >> 11) * 0x1p-53;
-        keys[i] |= round_of(u, inverse, most) << (3 * CURVE_BITS);
+/* Sorts items along the curve through the points' own cube; cells with many points are sorted again, along the curve
+ * through theirs, so that clusters of any size are resolved. */
+static void sort_along_curve(const double *points, uint64_t *items, uint64_t *spare, size_t n) {
+    int bits = curve_bits(n);
+    if (!brio_hilbert_items(points, items, n, bits)) return;
+    brio_sort_items(items, spare, n, 3 * bits);
+    for (size_t begin = 0, end; begin < n; begin = end) {
+        for (end = begin + 1; end < n && items[end] >> 32 == items[begin] >> 32;) end++;
+        if (end - begin > CELL_MOST) sort_along_curve(points, items + begin, spare, end - begin);
     }
 }
 
-static void random_keys(uint64_t *keys, size_t n, uint64_t seed) {
-    for (size_t i = 0; i < n; i++) keys[i] = brio_mix(seed + brio_mix(i));
+/* --- rounds --- */
+
+static inline uint64_t hash_of(uint64_t seed, size_t i) {
+    return brio_mix(seed + brio_mix(i));
+}
+
+/* least[r]: a point whose hash is below least[r] is at least r rounds before the last. Rounds smaller than a handful of
+ * points are merged into the first; the number of rounds. */
+static int set_rounds(size_t n, double ratio, uint64_t least[ROUNDS + 1]) {
+    double share = ratio;
+    int rounds = 1;
+    for (; rounds < ROUNDS && share * (double)n > 16; rounds++, share *= ratio)
+        least[rounds] = (uint64_t)(share * 0x1p63) << 1;
+    least[rounds] = 0;
+    return rounds;
+}
+
+static inline int round_of(uint64_t hash, const uint64_t least[ROUNDS + 1]) {
+    int back = 0;
+    while (hash < least[back + 1]) back++;
+    return back;
+}
+
+/* Items in the order of their rounds, the first round first; end[r] is where round r, counted from the last, ends. */
+static brio_status sort_into_rounds(brio_context *ctx, size_t n, const brio_options *options, uint64_t *items,
+                                    size_t end[ROUNDS], int *rounds) {
+    uint64_t least[ROUNDS + 1];
+    uint8_t *round = NULL;
+    brio_status status = BRIO_ALLOC(ctx, round, n);
+    if (status != BRIO_OK) return status;
+    *rounds = set_rounds(n, options->round_ratio, least);
+    memset(end, 0, ROUNDS * sizeof *end);
+    for (size_t i = 0; i < n; i++) end[round[i] = (uint8_t)round_of(hash_of(options->seed, i), least)]++;
+    size_t sum = 0;
+    for (int r = *rounds; r-- > 0;) {
+        size_t count = end[r];
+        end[r] = sum;
+        sum += count;
+    }
+    for (size_t i = 0; i < n; i++) items[end[round[i]]++] = i;
+    brio_release(ctx, round);
+    return BRIO_OK;
+}
+
+static brio_status order_rounds(brio_context *ctx, const double *points, size_t n, const brio_options *options,
+                              uint64_t *items, uint64_t *spare) {
+    size_t end[ROUNDS], begin = 0;
+    int rounds;
+    brio_status status = sort_into_rounds(ctx, n, options, items, end, &rounds);
+    for (int r = rounds; status == BRIO_OK && r-- > 0; begin = end[r])
+        sort_along_curve(points, items + begin, spare, end[r] - begin);
+    return status;
 }
 
 brio_status brio_order_points(brio_context *ctx, const double *points, size_t n, const brio_options *options,
                               uint32_t *order) {
     brio_status status = BRIO_OK;
-    uint64_t *keys = NULL;
-    for (size_t i = 0; i < n; i++) order[i] = (uint32_t)i;
-    if (options->order == BRIO_ORDER_INPUT) return BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, keys, n));
-    int bits = 64;
-    if (options->order == BRIO_ORDER_RANDOM) {
-        random_keys(keys, n, options->seed);
-    } else {
-        bits = 3 * CURVE_BITS;
-        brio_hilbert_keys(points, n, CURVE_BITS, keys);
-        if (options->order == BRIO_ORDER_BRIO) {
-            add_rounds(keys, n, options);
-            bits += ROUND_BITS;
-        }
-    }
-    BRIO_TRY(brio_radix_sort(ctx, keys, order, n, bits));
+    uint64_t *items = NULL, *spare = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, items, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, spare, n));
+    bool random = options->order == BRIO_ORDER_RANDOM;
+    for (size_t i = 0; i < n; i++) items[i] = random ? hash_of(options->seed, i) >> 32 << 32 | i : i;
+    if (random) brio_sort_items(items, spare, n, 32);
+    if (options->order == BRIO_ORDER_HILBERT) sort_along_curve(points, items, spare, n);
+    if (options->order == BRIO_ORDER_BRIO) BRIO_TRY(order_rounds(ctx, points, n, options, items, spare));
+    for (size_t i = 0; i < n; i++) order[i] = (uint32_t)items[i];
 done:
-    brio_release(ctx, keys);
+    brio_release(ctx, items);
+    brio_release(ctx, spare);
     return status;
 }

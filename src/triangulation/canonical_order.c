@@ -7,17 +7,19 @@
  * in this order. The order depends on the set of tetrahedra and the insertion order alone, not on the history or the
  * threads that made it. And a tetrahedron already lies near its place, nearer than in an order by the earliest vertex.
  *
- * Only one number a tetrahedron is added: its place is kept where its latest vertex was, which the place tells. The
- * array is permuted block by block: what belongs into a block is gathered aside, what else lives there moves to the
- * slots that this left free, and the block is written. The reads of a block are independent, which following cycles
- * would not be. */
+ * The array is permuted in place, block by block: what belongs into a block is gathered aside with its facets and
+ * vertices renamed, what else lives there moves to the slots that this left free, and the block is written. The reads of
+ * a block are independent, which following cycles would not be. Two numbers a tetrahedron are added, no second copy. */
 #include "base/memory.h"
 #include "triangulation/kernel.h"
 #include <string.h>
 
 enum { BLOCK = 1 << 13, TURN_SHIFT = 30, FEW = 48, AHEAD = 24 };
 
-static const uint32_t PLACE_MASK = (UINT32_C(1) << TURN_SHIFT) - 1;
+static const uint32_t PLACE_MASK = (UINT32_C(1) << TURN_SHIFT) - 1, NOWHERE = UINT32_MAX;
+
+/* What a slot holds while things move, instead of the states of the insertion. */
+enum { SLOT_FIRST = TET_PLAIN, SLOT_MOVED = TET_CAVITY, SLOT_FREE = TET_UNUSED };
 
 /* TURNED[r][i]: the slot whose entry comes to slot i; and back. */
 static const uint8_t TURNED[3][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}};
@@ -26,7 +28,8 @@ static const uint8_t TURNED_BACK[3][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 
 /* Workspace: bucket b of tetrahedra holds places end[b - 1] to end[b]. */
 typedef struct {
     brio_kernel *k;
-    uint32_t *order; /* of each place: the tetrahedron that belongs there */
+    uint32_t *order; /* of each place: the slot whose tetrahedron belongs there */
+    uint32_t *place; /* of each tetrahedron by its slot in the insertion: its bucket, then its place and turn */
     uint32_t *end;
     size_t buckets, live;
     uint64_t *key; /* of the tetrahedra of one bucket, and their names */
@@ -35,22 +38,22 @@ typedef struct {
 } sorter;
 
 /* Buckets: finite tetrahedra by latest vertex, then infinite ones. */
-static inline size_t bucket_of(const brio_kernel *k, const uint32_t *v) {
-    return v[0] + (v[3] == k->t.infinite ? k->num_points + 2 : 0);
-}
-
 static void fill_buckets(sorter *s) {
     const brio_kernel *k = s->k;
-    uint32_t sum = 0;
-    for (size_t t = 0; t < k->t.count; t++)
-        if (k->state[t] != TET_UNUSED) s->end[bucket_of(k, k->t.tet[t].vertex)]++;
+    uint32_t sum = 0, infinite = k->t.infinite, first_infinite = (uint32_t)k->num_points + 2;
+    for (size_t t = 0; t < k->t.count; t++) {
+        const uint32_t *v = k->t.tet[t].vertex;
+        uint32_t b = v[0] + (v[3] == infinite ? first_infinite : 0);
+        s->place[t] = k->state[t] == TET_UNUSED ? NOWHERE : b;
+        s->end[b] += k->state[t] != TET_UNUSED;
+    }
     for (size_t b = 0; b < s->buckets; b++) {
         uint32_t c = s->end[b];
         s->end[b] = sum;
         sum += c;
     }
     for (size_t t = 0; t < k->t.count; t++)
-        if (k->state[t] != TET_UNUSED) s->order[s->end[bucket_of(k, k->t.tet[t].vertex)]++] = (uint32_t)t;
+        if (s->place[t] != NOWHERE) s->order[s->end[s->place[t]]++] = (uint32_t)t;
 }
 
 /* How a tetrahedron is turned, and its key: the second and third vertex then. */
@@ -99,7 +102,7 @@ static void sort_few(const uint64_t *key, const uint32_t *name, size_t n, uint32
 /* Sorts the tetrahedra of the places [begin, end) and tells each its place and turn. */
 static brio_status sort_bucket(sorter *s, size_t begin, size_t end) {
     size_t n = end - begin;
-    brio_tetrahedron *tets = s->k->t.tet;
+    const brio_tetrahedron *tets = s->k->t.tet;
     uint32_t *order = s->order + begin, infinite = s->k->t.infinite;
     brio_status status = BRIO_RESERVE(s->k->ctx, s->key, s->key_capacity, n);
     if (status == BRIO_OK) status = BRIO_RESERVE(s->k->ctx, s->name, s->name_capacity, n);
@@ -118,7 +121,7 @@ static brio_status sort_bucket(sorter *s, size_t begin, size_t end) {
     }
     for (size_t i = 0; i < n; i++) {
         uint32_t tet = order[i] & PLACE_MASK;
-        tets[tet].vertex[0] = (uint32_t)(begin + i) | (order[i] & ~PLACE_MASK);
+        s->place[tet] = (uint32_t)(begin + i) | (order[i] & ~PLACE_MASK);
         order[i] = tet;
     }
     return BRIO_OK;
@@ -131,53 +134,58 @@ static brio_status sort_buckets(sorter *s) {
     return status;
 }
 
-/* Turns each tetrahedron, and renames its facets and its vertices but the first. */
-static void rename_all(sorter *s) {
-    brio_kernel *k = s->k;
-    brio_tetrahedron *tets = k->t.tet;
-    for (size_t t = 0; t < k->t.count; t++) {
-        if (k->state[t] == TET_UNUSED) continue;
-        brio_tetrahedron old = tets[t], *tet = &tets[t];
-        size_t later = t + 12 < k->t.count ? t + 12 : t;
-        for (int i = 0; i < 4; i++) __builtin_prefetch(&tets[brio_tet_of(tets[later].mate[i])]);
-        const uint8_t *from = TURNED[old.vertex[0] >> TURN_SHIFT];
-        for (int i = 0; i < 4; i++) {
-            uint32_t facet = old.mate[from[i]], other = tets[brio_tet_of(facet)].vertex[0];
-            tet->mate[i] = brio_facet_of(other & PLACE_MASK, TURNED_BACK[other >> TURN_SHIFT][brio_slot_of(facet)]);
-        }
-        for (int i = 1; i < 4; i++) {
-            uint32_t v = old.vertex[from[i]];
-            tet->vertex[i] = v == k->t.infinite ? BRIO_INFINITE : k->caller[v];
-        }
+/* --- moving --- */
+
+/* Place and turn of the tetrahedron in a slot. */
+static inline uint32_t place_of(const sorter *s, uint32_t slot) {
+    return s->k->state[slot] == SLOT_MOVED ? s->k->t.tet[slot].vertex[0] : s->place[slot];
+}
+
+/* The tetrahedron in a slot as it will stand, but for its first vertex. */
+static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *out) {
+    const brio_kernel *k = s->k;
+    const brio_tetrahedron *old = &k->t.tet[slot];
+    const uint8_t *from = TURNED[place_of(s, slot) >> TURN_SHIFT];
+    for (int i = 0; i < 4; i++) {
+        uint32_t facet = old->mate[from[i]], other = s->place[brio_tet_of(facet)];
+        out->mate[i] = brio_facet_of(other & PLACE_MASK, TURNED_BACK[other >> TURN_SHIFT][brio_slot_of(facet)]);
+    }
+    for (int i = 1; i < 4; i++) {
+        uint32_t v = old->vertex[from[i]];
+        out->vertex[i] = v == k->t.infinite ? BRIO_INFINITE : k->caller[v];
     }
 }
 
-/* --- moving --- */
-
-/* Makes the tetrahedra at [begin, end) those that belong there. */
+/* Makes the tetrahedra at [begin, end) those that belong there. A tetrahedron that has to leave the block for a free
+ * slot takes its place along in vertex[0], which its place tells. */
 static void fill_block(sorter *s, size_t begin, size_t end, brio_tetrahedron *aside) {
     brio_tetrahedron *tets = s->k->t.tet;
     uint32_t *order = s->order;
     uint8_t *state = s->k->state;
     for (size_t i = begin; i < end; i++) {
+        const brio_tetrahedron *later = &tets[order[i + AHEAD / 2]];
         __builtin_prefetch(&tets[order[i + AHEAD]]);
-        aside[i - begin] = tets[order[i]];
-        state[order[i]] = TET_UNUSED;
+        for (int f = 0; f < 4; f++) __builtin_prefetch(&s->place[brio_tet_of(later->mate[f])]);
+        rename_one(s, order[i], &aside[i - begin]);
+        state[order[i]] = SLOT_FREE;
     }
     size_t next = begin; /* of the block's own sources, those outside it are free now */
     for (size_t x = begin; x < end; x++) {
-        if (state[x] == TET_UNUSED) continue;
+        size_t later = x + AHEAD < end ? x + AHEAD : x;
+        if (state[later] != SLOT_FREE) __builtin_prefetch(&order[place_of(s, (uint32_t)later) & PLACE_MASK], 1);
+        if (state[x] == SLOT_FREE) continue;
         while (order[next] >= begin && order[next] < end) next++;
-        uint32_t free_slot = order[next++];
+        uint32_t free_slot = order[next++], place = place_of(s, (uint32_t)x);
         tets[free_slot] = tets[x];
-        order[tets[x].vertex[0] & PLACE_MASK] = free_slot;
-        state[free_slot] = TET_PLAIN;
-        state[x] = TET_UNUSED;
+        tets[free_slot].vertex[0] = place;
+        order[place & PLACE_MASK] = free_slot;
+        state[free_slot] = SLOT_MOVED;
+        state[x] = SLOT_FREE;
     }
     memcpy(tets + begin, aside, (end - begin) * sizeof *tets);
 }
 
-/* Moves everything to its place, and gives back to each tetrahedron its first vertex, by the caller's name. */
+/* Moves everything to its place, and gives each tetrahedron its first vertex. */
 static brio_status move_all(sorter *s) {
     brio_kernel *k = s->k;
     brio_tetrahedron *aside = NULL;
@@ -200,10 +208,10 @@ brio_status brio_kernel_sort(brio_kernel *k) {
     sorter s = {.k = k, .buckets = 2 * (k->num_points + 2), .live = k->t.count - k->num_unused};
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.order, s.live + AHEAD));
+    BRIO_TRY(BRIO_ALLOC(k->ctx, s.place, k->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.end, s.buckets));
     fill_buckets(&s);
     BRIO_TRY(sort_buckets(&s));
-    rename_all(&s);
     BRIO_TRY(move_all(&s));
     k->t.count = k->capacity = s.live;
     k->num_unused = 0;
@@ -213,6 +221,7 @@ brio_status brio_kernel_sort(brio_kernel *k) {
     k->state = NULL;
 done:
     brio_release(k->ctx, s.order);
+    brio_release(k->ctx, s.place);
     brio_release(k->ctx, s.end);
     brio_release(k->ctx, s.key);
     brio_release(k->ctx, s.name);

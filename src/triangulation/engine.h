@@ -2,7 +2,7 @@
 #ifndef BRIO_TRIANGULATION_ENGINE_H
 #define BRIO_TRIANGULATION_ENGINE_H
 
-#include "triangulation/tetrahedra.h"
+#include "triangulation/locate.h"
 
 typedef struct brio_kernel brio_kernel;
 
@@ -15,6 +15,8 @@ typedef struct {
                           const double *p);
     /** Finds all tetrahedra in conflict with record p, from one of them, and the border of their union. */
     brio_status (*dig)(brio_kernel *k, uint32_t first, uint32_t p);
+    /** brio_locate_walk. */
+    uint32_t (*walk)(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p, uint64_t most_steps);
 } brio_engine;
 
 /** The fastest version that this processor runs. */

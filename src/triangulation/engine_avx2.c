@@ -3,6 +3,7 @@
 #include "triangulation/lanes_avx2.h"
 
 #include "triangulation/conflict_lanes.h"
+#include "triangulation/walk_lanes.h"
 
 #define ENGINE brio_engine_avx2
 #include "triangulation/engine_body.h"

@@ -3,6 +3,7 @@
 #include "triangulation/lanes_avx512.h"
 
 #include "triangulation/conflict_lanes.h"
+#include "triangulation/walk_lanes.h"
 
 #define ENGINE brio_engine_avx512
 #include "triangulation/engine_body.h"

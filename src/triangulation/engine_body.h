@@ -82,4 +82,4 @@ static brio_status dig_weighted(brio_kernel *k, uint32_t first, uint32_t p) {
     return dig_cavity(k, first, k->record[p], true);
 }
 
-const brio_engine ENGINE[2] = {{conflicts, dig}, {conflicts_weighted, dig_weighted}};
+const brio_engine ENGINE[2] = {{conflicts, dig, walk}, {conflicts_weighted, dig_weighted, walk}};

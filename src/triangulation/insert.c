@@ -42,7 +42,7 @@ static brio_status locate(brio_kernel *k, const double *point, uint32_t *tet) {
     enum { SHORT_WALK = 40, DESCENTS = 64 };
     if (k->long_walks == 0 || k->cavity.num_border == 0) {
         uint64_t most = k->cavity.num_border ? SHORT_WALK : UINT64_MAX;
-        *tet = brio_locate_walk(&k->t, &k->filter, &k->walk, point, most);
+        *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, most);
         if (*tet != BRIO_NO_TET) return BRIO_OK;
         k->long_walks = DESCENTS;
     }

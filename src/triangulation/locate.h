@@ -18,4 +18,13 @@ enum { BRIO_NO_TET = UINT32_MAX };
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps);
 
+/** The tetrahedron where a walk starts: the given one, or the finite one next to it. */
+static inline uint32_t brio_walk_begin(const brio_tetrahedra *t, const brio_walk *walk) {
+    return brio_is_infinite(t, walk->start) ? brio_tet_of(t->tet[walk->start].mate[3]) : walk->start;
+}
+
+static inline uint32_t brio_walk_random(uint32_t x) {
+    return x * 1664525u + 1013904223u;
+}
+
 #endif

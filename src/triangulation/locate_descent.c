@@ -75,6 +75,6 @@ brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) 
         if (*tet != BRIO_NO_TET) return BRIO_OK;
     }
     if (best.tet != BRIO_NO_TET) k->walk.start = best.tet;
-    *tet = brio_locate_walk(&k->t, &k->filter, &k->walk, p, UINT64_MAX);
+    *tet = k->engine->walk(&k->t, &k->filter, &k->walk, p, UINT64_MAX);
     return BRIO_OK;
 }

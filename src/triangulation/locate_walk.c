@@ -7,20 +7,15 @@
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "triangulation/locate.h"
 
-static inline uint32_t next_random(uint32_t x) {
-    return x * 1664525u + 1013904223u;
-}
-
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps) {
-    uint32_t tet = walk->start;
-    if (brio_is_infinite(t, tet)) tet = brio_tet_of(t->tet[tet].mate[3]);
+    uint32_t tet = brio_walk_begin(t, walk);
     int came_through = 4;
     for (uint64_t steps = 0;; steps++, walk->steps++) {
         if (steps > most_steps) return BRIO_NO_TET;
         const uint32_t *v = t->tet[tet].vertex;
         if (v[3] == t->infinite) return tet;
-        walk->random = next_random(walk->random);
+        walk->random = brio_walk_random(walk->random);
         int first = (int)(walk->random >> 30), i = 0;
         for (; i < 4; i++) {
             int slot = (first + i) & 3;

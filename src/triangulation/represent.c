@@ -29,7 +29,7 @@ static brio_status represent_one(workspace *w, uint32_t p) {
     brio_kernel *k = w->k;
     const double *x = k->record[p];
     k->walk.start = w->vertex_tet[alive(k, p)];
-    uint32_t tet = brio_locate_walk(&k->t, &k->filter, &k->walk, x, UINT64_MAX);
+    uint32_t tet = k->engine->walk(&k->t, &k->filter, &k->walk, x, UINT64_MAX);
     const uint32_t *v = k->t.tet[tet].vertex;
     for (int i = 0; i < 4; i++)
         if (v[i] != k->t.infinite && brio_same_position(k->record[v[i]], x)) {
