@@ -4,10 +4,10 @@
  * LANES tetrahedra go through the in-sphere determinant together. An infinite vertex enters as the point at infinity of
  * the lifting: row (0, 0, 0) with lift 1, which turns the determinant into the orientation of the hull facet and the
  * query, so finite and infinite tetrahedra need no branch; its record is told by an infinite weight. Lanes whose sign is not certain take the further stages: a
- * bound from the largest difference along each axis, then double-doubles in the same lanes, and only what these leave is
- * tested one by one.
+ * bound from the largest difference along each axis, then pairs of doubles in the same lanes, and only what these leave is tested
+ * one by one.
  *
- * The bounds are those of filter.c and double_double.c: a permanent is at most 24 times (6 times for an orientation)
+ * The bounds are those of filter.c and of the pairs below: a permanent is at most 24 times (6 times for an orientation)
  * the product of the largest differences and the largest lift. Fused operations round less often than these bounds
  * allow for. */
 #include "triangulation/engine.h"
@@ -119,63 +119,66 @@ static inline lanes permanent(const corners *c, const rows *r, const bool weight
     return choose(r->infinite, all(6.01) * box, all(24.01) * box * largest(lift));
 }
 
-/* --- double-doubles in lanes; see double_double.h for their bounds --- */
+/* --- pairs of doubles in lanes ---
+ *
+ * Double-doubles that are never normalised: the low part may grow, which so few operations can afford. Let P be the
+ * permanent of an expression and u = 2^-53; every pair here has |lo| <= c u P and an error of at most e u^2 P, where
+ *   difference  c = 1, e = 0;   product  c = c1 + c2 + 1, e = e1 + e2 + c1 c2 + c1 + 2 c2 + 2;
+ *   sum         c = max(c1, c2) + 1, e = max(e1, e2) + 2 c,
+ * which makes (4, 14) of a minor of two rows, (8, 60) of three, (5, 24) of a lift and (16, 210) of the determinant.
+ *
+ * Based on: Lange, Rump. Faithfully rounded floating-point computations. TOMS 2020 (pair arithmetic). */
 
 typedef struct {
     lanes hi, lo;
-} dd;
+} pair;
 
-static inline dd two_sum(lanes a, lanes b) {
-    lanes s = a + b, t = s - a;
-    return (dd){s, (a - (s - t)) + (b - t)};
+static inline pair pair_difference(lanes a, lanes b) {
+    lanes s = a - b, t = s - a;
+    return (pair){s, (a - (s - t)) - (b + t)};
 }
-static inline dd renormalised(lanes a, lanes b) {
-    lanes s = a + b;
-    return (dd){s, b - (s - a)};
+static inline pair pair_multiply(pair x, pair y) {
+    lanes p = x.hi * y.hi;
+    return (pair){p, multiply_add(x.lo, y.hi, multiply_add(x.hi, y.lo, multiply_subtract(x.hi, y.hi, p)))};
 }
-static inline dd dd_difference(lanes a, lanes b) {
-    return two_sum(a, all(0) - b);
+static inline pair pair_add(pair x, pair y) {
+    lanes s = x.hi + y.hi, t = s - x.hi;
+    return (pair){s, ((x.hi - (s - t)) + (y.hi - t)) + (x.lo + y.lo)};
 }
-static inline dd dd_multiply(dd x, dd y) {
-    lanes p = x.hi * y.hi, e = multiply_subtract(x.hi, y.hi, p);
-    return renormalised(p, e + (x.hi * y.lo + x.lo * y.hi));
-}
-static inline dd dd_add(dd x, dd y) {
-    dd s = two_sum(x.hi, y.hi);
-    return renormalised(s.hi, s.lo + (x.lo + y.lo));
-}
-static inline dd dd_subtract(dd x, dd y) {
-    return dd_add(x, (dd){all(0) - y.hi, all(0) - y.lo});
+static inline pair pair_subtract(pair x, pair y) {
+    pair s = pair_difference(x.hi, y.hi);
+    return (pair){s.hi, s.lo + (x.lo - y.lo)};
 }
 /* x y - z w. */
-static inline dd dd_minor(dd x, dd y, dd z, dd w) {
-    return dd_subtract(dd_multiply(x, y), dd_multiply(z, w));
+static inline pair pair_minor(pair x, pair y, pair z, pair w) {
+    return pair_subtract(pair_multiply(x, y), pair_multiply(z, w));
 }
-static inline dd masked(dd x, lane_mask drop, double value) {
-    return (dd){choose(drop, all(value), x.hi), choose(drop, all(0), x.lo)};
+static inline pair masked(pair x, lane_mask drop, double value) {
+    return (pair){choose(drop, all(value), x.hi), choose(drop, all(0), x.lo)};
 }
 
-static __attribute__((noinline)) lanes determinant_dd(const corners *c, lane_mask infinite, bool weighted) {
-    dd x[4], y[4], z[4], l[4];
+static __attribute__((noinline)) lanes determinant_of_pairs(const corners *c, lane_mask infinite, bool weighted) {
+    pair x[4], y[4], z[4], l[4];
     for (int s = 0; s < 4; s++) {
-        x[s] = dd_difference(c->v[s][0], c->e[0]), y[s] = dd_difference(c->v[s][1], c->e[1]);
-        z[s] = dd_difference(c->v[s][2], c->e[2]);
-        l[s] = dd_add(dd_add(dd_multiply(x[s], x[s]), dd_multiply(y[s], y[s])), dd_multiply(z[s], z[s]));
-        if (weighted) l[s] = dd_subtract(l[s], dd_difference(c->v[s][3], c->e[3]));
+        x[s] = pair_difference(c->v[s][0], c->e[0]), y[s] = pair_difference(c->v[s][1], c->e[1]);
+        z[s] = pair_difference(c->v[s][2], c->e[2]);
+        l[s] = pair_add(pair_add(pair_multiply(x[s], x[s]), pair_multiply(y[s], y[s])), pair_multiply(z[s], z[s]));
+        if (weighted) l[s] = pair_subtract(l[s], pair_difference(c->v[s][3], c->e[3]));
     }
     x[3] = masked(x[3], infinite, 0), y[3] = masked(y[3], infinite, 0), z[3] = masked(z[3], infinite, 0);
     l[3] = masked(l[3], infinite, 1);
-    dd ab = dd_minor(x[0], y[1], x[1], y[0]), bc = dd_minor(x[1], y[2], x[2], y[1]);
-    dd cd = dd_minor(x[2], y[3], x[3], y[2]), da = dd_minor(x[3], y[0], x[0], y[3]);
-    dd ac = dd_minor(x[0], y[2], x[2], y[0]), bd = dd_minor(x[1], y[3], x[3], y[1]);
-    dd abc = dd_add(dd_minor(z[0], bc, z[1], ac), dd_multiply(z[2], ab));
-    dd bcd = dd_add(dd_minor(z[1], cd, z[2], bd), dd_multiply(z[3], bc));
-    dd cda = dd_add(dd_add(dd_multiply(z[2], da), dd_multiply(z[3], ac)), dd_multiply(z[0], cd));
-    dd dab = dd_add(dd_add(dd_multiply(z[3], ab), dd_multiply(z[0], bd)), dd_multiply(z[1], da));
-    return dd_add(dd_minor(l[2], dab, l[3], abc), dd_minor(l[0], bcd, l[1], cda)).hi;
+    pair ab = pair_minor(x[0], y[1], x[1], y[0]), bc = pair_minor(x[1], y[2], x[2], y[1]);
+    pair cd = pair_minor(x[2], y[3], x[3], y[2]), da = pair_minor(x[3], y[0], x[0], y[3]);
+    pair ac = pair_minor(x[0], y[2], x[2], y[0]), bd = pair_minor(x[1], y[3], x[3], y[1]);
+    pair abc = pair_add(pair_minor(z[0], bc, z[1], ac), pair_multiply(z[2], ab));
+    pair bcd = pair_add(pair_minor(z[1], cd, z[2], bd), pair_multiply(z[3], bc));
+    pair cda = pair_add(pair_add(pair_multiply(z[2], da), pair_multiply(z[3], ac)), pair_multiply(z[0], cd));
+    pair dab = pair_add(pair_add(pair_multiply(z[3], ab), pair_multiply(z[0], bd)), pair_multiply(z[1], da));
+    pair det = pair_add(pair_minor(l[2], dab, l[3], abc), pair_minor(l[0], bcd, l[1], cda));
+    return det.hi + det.lo;
 }
 
-static const double DOUBLE_UNIT = 18 * 0x1p-53, DD_UNIT = 0x1p-99;
+static const double DOUBLE_UNIT = 18 * 0x1p-53, PAIR_UNIT = 0x1p-97;
 
 /* Lanes whose determinant is exactly 0, on a lattice: a hull facet's plane is decided by its finite neighbour, else
  * ties are broken. */
@@ -202,7 +205,7 @@ static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_
     unsigned mask = decide(determinant(&r), all(DOUBLE_UNIT) * most + floor, &known);
     if (known == ALL_LANES) return mask;
     f->unsettled += (uint64_t)__builtin_popcount(~known & ALL_LANES);
-    if (!f->coarse) mask |= decide(determinant_dd(&c, r.infinite, weighted), all(DD_UNIT) * most + floor, &known);
+    if (!f->coarse) mask |= decide(determinant_of_pairs(&c, r.infinite, weighted), all(PAIR_UNIT) * most + floor, &known);
     for (int i = 0; i < LANES; i++)
         if (!(known >> i & 1)) mask |= (unsigned)brio_in_conflict_exact(t, f, brio_tet_of(facets[i]), p, weighted) << i;
     return mask;
