@@ -14,7 +14,6 @@
 #include "base/rng.h"
 #include "base/sort.h"
 #include "order/hilbert.h"
-#include <string.h>
 
 enum { CURVE_BITS = 10, ROUNDS = 64, CELL_MOST = 8 };
 
@@ -35,7 +34,8 @@ static void sort_along_curve(const double *points, uint64_t *items, uint64_t *sp
     brio_sort_items(items, spare, n, 3 * bits);
     for (size_t begin = 0, end; begin < n; begin = end) {
         for (end = begin + 1; end < n && items[end] >> 32 == items[begin] >> 32;) end++;
-        if (end - begin > CELL_MOST) sort_along_curve(points, items + begin, spare, end - begin);
+        bool crowded = end - begin > CELL_MOST && end - begin < n; /* else the cube is too small to be divided */
+        if (crowded) sort_along_curve(points, items + begin, spare, end - begin);
     }
 }
 
@@ -62,39 +62,42 @@ static inline int round_of(uint64_t hash, const uint64_t least[ROUNDS + 1]) {
     return back;
 }
 
-/* Items in the order of their rounds, the first round first; end[r] is where round r, counted from the last, ends. */
-static brio_status sort_into_rounds(brio_context *ctx, size_t n, const brio_options *options, uint64_t *items,
-                                    size_t end[ROUNDS], int *rounds) {
+/* order = the items, which are in the order of the curve, by rounds, the first round first; rank as in order.h. */
+static brio_status divide_into_rounds(brio_context *ctx, const uint64_t *items, size_t n, const brio_options *options,
+                                      uint32_t *order, uint32_t *rank) {
     uint64_t least[ROUNDS + 1];
+    size_t place[ROUNDS] = {0}, sum = 0;
     uint8_t *round = NULL;
     brio_status status = BRIO_ALLOC(ctx, round, n);
     if (status != BRIO_OK) return status;
-    *rounds = set_rounds(n, options->round_ratio, least);
-    memset(end, 0, ROUNDS * sizeof *end);
-    for (size_t i = 0; i < n; i++) end[round[i] = (uint8_t)round_of(hash_of(options->seed, i), least)]++;
-    size_t sum = 0;
-    for (int r = *rounds; r-- > 0;) {
-        size_t count = end[r];
-        end[r] = sum;
+    int rounds = set_rounds(n, options->round_ratio, least);
+    for (size_t i = 0; i < n; i++) {
+        round[i] = (uint8_t)round_of(hash_of(options->seed, (uint32_t)items[i]), least);
+        place[round[i]]++;
+    }
+    for (int r = rounds; r-- > 0;) {
+        size_t count = place[r];
+        place[r] = sum;
         sum += count;
     }
-    for (size_t i = 0; i < n; i++) items[end[round[i]]++] = i;
+    for (size_t i = 0; i < n; i++) {
+        size_t to = place[round[i]]++;
+        order[to] = (uint32_t)items[i];
+        if (rank) rank[to] = (uint32_t)i;
+    }
     brio_release(ctx, round);
     return BRIO_OK;
 }
 
-static brio_status order_rounds(brio_context *ctx, const double *points, size_t n, const brio_options *options,
-                              uint64_t *items, uint64_t *spare) {
-    size_t end[ROUNDS], begin = 0;
-    int rounds;
-    brio_status status = sort_into_rounds(ctx, n, options, items, end, &rounds);
-    for (int r = rounds; status == BRIO_OK && r-- > 0; begin = end[r])
-        sort_along_curve(points, items + begin, spare, end[r] - begin);
-    return status;
+static void list_items(const uint64_t *items, size_t n, uint32_t *order, uint32_t *rank) {
+    for (size_t i = 0; i < n; i++) {
+        order[i] = (uint32_t)items[i];
+        if (rank) rank[i] = (uint32_t)i;
+    }
 }
 
 brio_status brio_order_points(brio_context *ctx, const double *points, size_t n, const brio_options *options,
-                              uint32_t *order) {
+                              uint32_t *order, uint32_t *rank) {
     brio_status status = BRIO_OK;
     uint64_t *items = NULL, *spare = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, items, n));
@@ -102,9 +105,12 @@ brio_status brio_order_points(brio_context *ctx, const double *points, size_t n,
     bool random = options->order == BRIO_ORDER_RANDOM;
     for (size_t i = 0; i < n; i++) items[i] = random ? hash_of(options->seed, i) >> 32 << 32 | i : i;
     if (random) brio_sort_items(items, spare, n, 32);
-    if (options->order == BRIO_ORDER_HILBERT) sort_along_curve(points, items, spare, n);
-    if (options->order == BRIO_ORDER_BRIO) BRIO_TRY(order_rounds(ctx, points, n, options, items, spare));
-    for (size_t i = 0; i < n; i++) order[i] = (uint32_t)items[i];
+    if (options->order == BRIO_ORDER_HILBERT || options->order == BRIO_ORDER_BRIO)
+        sort_along_curve(points, items, spare, n);
+    if (options->order == BRIO_ORDER_BRIO)
+        BRIO_TRY(divide_into_rounds(ctx, items, n, options, order, rank));
+    else
+        list_items(items, n, order, rank);
 done:
     brio_release(ctx, items);
     brio_release(ctx, spare);

@@ -84,7 +84,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     double start = brio_seconds();
     BRIO_TRY(BRIO_ALLOC(ctx, k->caller, n + 3));
     BRIO_TRY(brio_progress(ctx, "order", 0));
-    BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller));
+    BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller, NULL));
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
     k->record[n + 2][3] = INFINITY; /* the infinite vertex, as conflict_lanes.h knows it */
     k->t.record = k->record;
