@@ -156,6 +156,7 @@ typedef struct brio_stats {
     size_t hull_facets; /* = infinite tetrahedra */
     uint64_t created, destroyed, walk_steps, insphere_calls;
     uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
+    uint64_t deferred, serial; /* with threads: insertions put off to a later pass, and those left to one thread */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
 
@@ -275,6 +276,11 @@ BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const ch
 /** Scalar i of a property as a double. */
 BRIO_API double brio_property_value(const brio_property *property, size_t i);
 
+/** Adds the properties nx, ny, nz (float32) of the vertices: unit normals, the mean of the faces round a vertex by area,
+ *  to the side from which faces are seen counterclockwise; 0 where there is none.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, normals that are there already), BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_mesh_add_normals(brio_mesh *mesh);
+
 /** What can be said of a surface by connectivity alone, vertices never being merged by position.
  *  genus = sum over components (faces joined across edges) of (2 - chi - boundary loops) / 2. */
 typedef struct brio_certificate {
@@ -286,7 +292,7 @@ typedef struct brio_certificate {
     int64_t *genera; /* of each component, largest component (by faces) first; owned by the certificate */
     size_t boundary_edges, boundary_loops;
     size_t nonmanifold_edges, nonmanifold_vertices, flipped_edges;
-    int64_t self_intersections; /* pairs of faces; -1 when not counted */
+    int64_t self_intersections; /* -1: not counted; see brio_mesh_self_intersections */
     double area, volume;        /* volume is signed: positive when the faces are seen counterclockwise from outside */
     brio_context *context;
 } brio_certificate;
@@ -294,6 +300,13 @@ typedef struct brio_certificate {
 /** Certifies the polygons of a mesh. Cost O(F log F).
  *  Returns BRIO_OK (whatever the certificate says), BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out);
+/** Counts the pairs of faces that meet in more than common corners and edges, exactly: faces that run through each
+ *  other, touch, or overlap in one plane. Corners are common when their positions are equal. Polygons count as fans of
+ *  triangles from their first corners; triangles without area meet nothing. Cost: near-linear in faces of about equal
+ *  size; 100 bytes a face.   Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs);
+
 /** Frees what a certificate owns; a zeroed certificate is accepted. */
 BRIO_API void brio_certificate_free(brio_certificate *certificate);
 
@@ -309,13 +322,44 @@ typedef struct brio_distance {
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
                                         uint64_t seed, brio_distance *out);
 
+/** Subdivides a mesh of triangles by the butterfly scheme: each level gives every edge a vertex and makes four triangles
+ *  of one. The surface goes through the old vertices, which stay where they are, with the same indices; its limit is
+ *  smooth, also at vertices that have not six neighbours. Boundaries are curves of their own. Properties go along: new
+ *  vertices have the mean of their edge's ends, or for whole numbers that of one end.
+ *  levels  1 to 15.   out  owned by the caller.
+ *  Cost: linear in the result; 64 bytes a vertex of it and 118 a vertex of the level before.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (faces that are no triangles, edges of more than two faces or
+ *  of faces that disagree), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Dyn Levin Gregory 1990], [Zorin Schroeder Sweldens 1996]. */
+BRIO_API brio_status brio_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out);
+
 /* ------------------------------------------------------------------------------------------------------------------
  * Surface reconstruction
  */
 
+/** Ways to label the poles of a power crust as inner or outer. */
+typedef enum brio_labeling {
+    BRIO_LABELING_GREEDY = 0,      /* the surest pole first [Choi 2003, figure 3.8] */
+    BRIO_LABELING_NAIVE = 1,       /* breadth first from outside [Choi 2003, section 3.3.3] */
+    BRIO_LABELING_THEORETICAL = 2, /* breadth first from one sample [Choi 2003, appendix B.3] */
+    BRIO_LABELING_GLOBAL = 3,      /* least sum of violated weights, by roof duality [Boros Hammer 2002] */
+    BRIO_LABELING_END
+} brio_labeling;
+
 typedef struct brio_surface_options {
-    uint64_t seed;   /* default 1 */
-    int triangulate; /* 1: cut the polygons into triangles; default 0 */
+    uint64_t seed;          /* default 1 */
+    int triangulate;        /* 1: cut the polygons into triangles; default 0 */
+    brio_labeling labeling; /* default greedy */
+    /* Cells of samples whose radius in the co-cone is over 1.3 R / (1 - R) times the distance to the nearer pole are
+     * badly shaped, for a surface that is an R-sample; R in (0, 1), smaller for more of them; default 0: none is. */
+    double sampling_density;
+    int sharp; /* 1: both poles of badly shaped cells are discarded, not the nearer one only, so that the faces beside
+                  an edge without samples meet in it; sampling_density 0 then stands for 0.3 */
+    double open;     /* K > 0: faces are left out whose two balls intersect at more than pi / 4, the smaller one's radius
+                        being over K local spacings of the samples: large holes of the samples stay open; default 0: closed */
+    int simplify;    /* 1: triangles, about a quarter as many as the crust has polygons; edges far shorter than the local
+                        spacing collapse, the surface stays the same as a manifold; default 0 */
+    double *normals; /* #P by 3, the caller's: receives the oriented unit normal of each point; NULL: not wanted */
 } brio_surface_options;
 
 BRIO_API brio_surface_options brio_surface_options_default(void);
@@ -324,9 +368,15 @@ BRIO_API brio_surface_options brio_surface_options_default(void);
 typedef struct brio_power_crust_stats {
     size_t samples;             /* distinct positions */
     size_t poles, hidden_poles; /* polar balls; of these without a power cell */
+    size_t bad_cells;           /* samples with badly shaped cells, whose poles were discarded */
     size_t inner, outer;        /* labels */
     size_t confused;            /* poles that had evidence for both labels when they were labelled */
-    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds;
+    size_t unreached;           /* naive, theoretical: poles that were left to the greedy labelling */
+    size_t open, toggled;       /* global: poles that roof duality left open; poles whose greedy label was changed */
+    double energy_greedy;       /* global: sum of the violated weights of the greedy labels */
+    double energy;              /* sum of the violated weights of the labels */
+    size_t left_out;            /* faces that `open` left out */
+    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds, simplify_seconds;
 } brio_power_crust_stats;
 
 /** Reconstructs a closed surface from samples: the power crust. The faces of the power diagram of the polar balls that
@@ -341,6 +391,47 @@ typedef struct brio_power_crust_stats {
 BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
                                       const brio_surface_options *options, brio_mesh **out,
                                       brio_power_crust_stats *stats);
+
+typedef struct brio_cocone_options {
+    uint64_t seed;  /* default 1 */
+    double theta;   /* half the opening of the co-cone, radians, in (0, pi/2); default pi/8 */
+    int tight;      /* 1: the tight co-cone, a watertight surface; default 0: surfaces may come out open */
+    int boundaries; /* 1: samples at boundaries and where the sampling is too sparse are found by the shape of their
+                       Voronoi cells, and triangles among them alone are no candidates; default 0 */
+    int density;    /* 1: the sampling condition is estimated: the mesh gets vertex properties; default 0 */
+} brio_cocone_options;
+
+BRIO_API brio_cocone_options brio_cocone_options_default(void);
+
+/** What the co-cone counts. Shares are of the samples. */
+typedef struct brio_cocone_stats {
+    size_t samples;           /* distinct positions */
+    size_t unused;            /* of these, on no triangle of the surface */
+    size_t candidates;        /* triangles that pass the test */
+    size_t pruned;            /* of these, dropped at sharp edges */
+    size_t boundary_samples;  /* found with options.boundaries */
+    size_t relabelled;        /* tetrahedra whose side was changed to keep the surface a manifold */
+    size_t outside_guarantee; /* with options.density: samples on the surface where the estimate of r is over 0.08 */
+    double r_median, r_p95;   /* with options.density: of the estimates of r over the samples on the surface */
+    double delaunay_seconds, poles_seconds, candidates_seconds, labels_seconds, manifold_seconds, density_seconds;
+} brio_cocone_stats;
+
+/** Reconstructs a surface out of Delaunay triangles of the samples: the co-cone, or the tight co-cone.
+ *  Guarantees: the mesh is manifold and oriented as a combinatorial object, for every input; the tight co-cone is closed
+ *  besides. On an r-sample of a smooth closed surface, r <= 0.08, the co-cone is homeomorphic to it and within
+ *  1.3 r / (1 - r) of the local feature size (theorem 19 of [Choi 2003]).
+ *  Does not guarantee: a closed mesh on sparser samples, absence of self-intersections, that every sample is used.
+ *  points  #P by 3.   options  NULL for the defaults.   stats  may be NULL.
+ *  out     owned by the caller. Its vertices are the points, with the same indices; those that no face has are left
+ *          where they are. With options.density: "feature_size", the distance to the nearest pole; "r", an estimate
+ *          of the sampling density there (0 where the sample is on no face); "boundary", 1 for a boundary sample (with
+ *          options.boundaries too).
+ *  Cost: one triangulation; about 60 bytes a tetrahedron more.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found, or no inside), and as brio_delaunay.
+ *  Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
+ *            [Dey Goswami 2003]. */
+BRIO_API brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points,
+                                 const brio_cocone_options *options, brio_mesh **out, brio_cocone_stats *stats);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Files
@@ -417,6 +508,25 @@ BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, 
 /** The surface that BRIO_KIND_SCAN scans, as a closed triangle mesh on a grid of `resolution` cells along the longest
  *  side of its box (0: 160). */
 BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out);
+
+typedef struct brio_iso_options {
+    double level;      /* of the surface, in the unit of the map or the density of atoms; default 1 */
+    int deviations;    /* 1: the level counts standard deviations above the mean of the map; default 0 */
+    double blobbiness; /* atoms: above 0 and at most 100, the larger the more the surface is that of balls; default 2 */
+    size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
+    size_t vertices;   /* not 0: the resolution is chosen so that there are about so many vertices; default 0 */
+} brio_iso_options;
+
+BRIO_API brio_iso_options brio_iso_options_default(void);
+
+/** The iso-surface of a file's density, as a closed triangle mesh: of a CCP4 or MRC map (.map .mrc .ccp4), cut off flat
+ *  where it leaves the map, or of the atoms in a PDB file (.pdb .ent), each a Gaussian that alone has level 1 at its
+ *  van der Waals radius. "-" reads standard input.   options  NULL for the defaults.
+ *  Memory: the map with 4 bytes a value, or 40 bytes an atom; the mesh; two layers of cells with 36 bytes each.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (nothing is above the level, or the map is one value thin),
+ *  and as brio_read. */
+BRIO_API brio_status brio_generate_iso(brio_context *ctx, const char *path, const brio_iso_options *options,
+                                       brio_mesh **out);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Predicates, exact for every finite double

@@ -1,6 +1,7 @@
 /* Context: settings, last message, progress. */
 #include "base/context.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,6 +90,7 @@ done:
 brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
+    BRIO_OMP(critical(brio_message)) /* threads may fail together */
     vsnprintf(ctx->message, sizeof ctx->message, format, arguments);
     va_end(arguments);
     return status;

@@ -1,6 +1,7 @@
 /* Sorting: least-significant-digit radix sort of pairs, and heap sort of indices. */
 #include "base/sort.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 #include <string.h>
 
 enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PASSES = (64 + DIGIT - 1) / DIGIT };
@@ -60,7 +61,7 @@ done:
 
 /* --- items --- */
 
-enum { ITEM_DIGIT = 10, ITEM_BUCKETS = 1 << ITEM_DIGIT, ITEM_PASSES = (32 + ITEM_DIGIT - 1) / ITEM_DIGIT, FEW_ITEMS = 48 };
+enum { ITEM_DIGIT = 10, ITEM_BUCKETS = 1 << ITEM_DIGIT, FEW_ITEMS = 48, ITEMS_A_THREAD = 1 << 14 };
 
 static void insert_items(uint64_t *items, size_t n) {
     for (size_t i = 1; i < n; i++) {
@@ -71,28 +72,46 @@ static void insert_items(uint64_t *items, size_t n) {
     }
 }
 
-void brio_sort_items(uint64_t *items, uint64_t *spare, size_t n, int bits) {
-    size_t count[ITEM_PASSES][ITEM_BUCKETS] = {0};
-    int passes = (bits + ITEM_DIGIT - 1) / ITEM_DIGIT;
-    uint64_t *from = items, *to = spare;
-    if (n <= FEW_ITEMS) {
-        insert_items(items, n);
-        return;
-    }
-    for (size_t i = 0; i < n; i++)
-        for (int p = 0; p < passes; p++) count[p][items[i] >> (32 + p * ITEM_DIGIT) & (ITEM_BUCKETS - 1)]++;
-    for (int p = 0; p < passes; p++) {
-        size_t sum = 0;
-        for (int b = 0; b < ITEM_BUCKETS; b++) {
-            size_t c = count[p][b];
-            count[p][b] = sum;
+/* Turns each thread's counts into where it writes: all threads' of one digit, then of the next. */
+static void first_places(size_t (*count)[ITEM_BUCKETS], int threads) {
+    size_t sum = 0;
+    for (int b = 0; b < ITEM_BUCKETS; b++)
+        for (int t = 0; t < threads; t++) {
+            size_t c = count[t][b];
+            count[t][b] = sum;
             sum += c;
         }
-        for (size_t i = 0; i < n; i++) to[count[p][from[i] >> (32 + p * ITEM_DIGIT) & (ITEM_BUCKETS - 1)]++] = from[i];
-        uint64_t *swap = from;
-        from = to, to = swap;
+}
+
+/* One digit; every thread of the team calls this. */
+static void sort_digit(const uint64_t *from, uint64_t *to, size_t n, int shift, size_t (*count)[ITEM_BUCKETS]) {
+    int thread = brio_thread(), threads = brio_team_size();
+    size_t begin = brio_part(n, thread, threads), end = brio_part(n, thread + 1, threads), *mine = count[thread];
+    memset(mine, 0, sizeof *count);
+    for (size_t i = begin; i < end; i++) mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++;
+    BRIO_OMP(barrier)
+    BRIO_OMP(single)
+    first_places(count, threads);
+    for (size_t i = begin; i < end; i++) to[mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++] = from[i];
+    BRIO_OMP(barrier)
+}
+
+brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare, size_t n, int bits, int threads) {
+    size_t(*count)[ITEM_BUCKETS] = NULL;
+    int passes = (bits + ITEM_DIGIT - 1) / ITEM_DIGIT, most = (int)(n / ITEMS_A_THREAD) + 1;
+    if (n <= FEW_ITEMS) {
+        insert_items(items, n);
+        return BRIO_OK;
     }
-    if (from != items) memcpy(items, from, n * sizeof *items);
+    if (threads > most) threads = most;
+    brio_status status = BRIO_ALLOC(ctx, count, (size_t)threads);
+    if (status != BRIO_OK) return status;
+    BRIO_OMP(parallel num_threads(threads))
+    for (int p = 0; p < passes; p++)
+        sort_digit(p % 2 ? spare : items, p % 2 ? items : spare, n, 32 + p * ITEM_DIGIT, count);
+    if (passes % 2) memcpy(items, spare, n * sizeof *items);
+    brio_release(ctx, count);
+    return BRIO_OK;
 }
 
 static void sift_down(uint32_t *a, size_t root, size_t n, brio_compare_fn compare, const void *user) {

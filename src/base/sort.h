@@ -7,8 +7,9 @@
 /** Sorts n pairs by key, keys below 2^bits, stable. Needs 12 n bytes of workspace. */
 brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits);
 
-/** Sorts n items by the `bits` bits from bit 32 on, stable; spare holds n items, too. */
-void brio_sort_items(uint64_t *items, uint64_t *spare, size_t n, int bits);
+/** Sorts n items by the `bits` bits from bit 32 on, stable; spare holds n items, too. Each thread takes at least some
+ *  thousands. */
+brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare, size_t n, int bits, int threads);
 
 /** Negative, zero or positive, as the first index sorts before, with or after the second. */
 typedef int (*brio_compare_fn)(uint32_t, uint32_t, const void *user);

@@ -4,6 +4,7 @@
  * Based on: Hamilton. Compact Hilbert indices. Technical report CS-2006-07, Dalhousie University 2006 (the table is his
  * construction from Gray codes, written out for three dimensions; twelve of the 24 orientations occur). */
 #include "order/hilbert.h"
+#include "base/parallel.h"
 #include <math.h>
 
 /* STATE[s][octant] = 8 * next state + rank; octant = 4 x + 2 y + z of the next bits. */
@@ -90,28 +91,70 @@ static inline uint64_t cube_key(const cube *c, const two_levels *two, const doub
     return key_of(two, cell[0], cell[1], cell[2], bits);
 }
 
+/* The cube of rows of a matrix, or of those that the low halves of the items name. */
+static cube cube_of(const double *rows, size_t stride, const uint64_t *items, size_t n, int threads) {
+    cube all;
+    cube_new(&all, rows + stride * (items ? (uint32_t)items[0] : 0));
+    BRIO_OMP(parallel num_threads(threads))
+    {
+        cube own = all;
+        BRIO_OMP(for nowait)
+        for (size_t i = 0; i < n; i++) cube_add(&own, rows + stride * (items ? (uint32_t)items[i] : i));
+        BRIO_OMP(critical(brio_cube))
+        for (int k = 0; k < 3; k++) {
+            all.low[k] = fmin(all.low[k], own.low[k]);
+            all.high[k] = fmax(all.high[k], own.high[k]);
+        }
+    }
+    return all;
+}
+
 void brio_hilbert_keys(const double *points, size_t n, int bits, uint64_t *keys) {
     if (!n) return;
     two_levels two;
-    cube c;
     compose(&two);
-    cube_new(&c, points);
-    for (size_t i = 1; i < n; i++) cube_add(&c, points + 3 * i);
+    cube c = cube_of(points, 3, NULL, n, 1);
     cube_divide(&c, bits);
     for (size_t i = 0; i < n; i++) keys[i] = cube_key(&c, &two, points + 3 * i, bits);
 }
 
-bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bits) {
+bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bits, int threads) {
     if (!n) return false;
     two_levels two;
-    cube c;
     compose(&two);
-    cube_new(&c, points + 3 * (size_t)(uint32_t)items[0]);
-    for (size_t i = 1; i < n; i++) cube_add(&c, points + 3 * (size_t)(uint32_t)items[i]);
+    cube c = cube_of(points, 3, items, n, threads);
     if (!cube_divide(&c, bits)) return false;
+    BRIO_OMP(parallel for num_threads(threads))
     for (size_t i = 0; i < n; i++) {
         uint64_t index = (uint32_t)items[i];
         items[i] = cube_key(&c, &two, points + 3 * index, bits) << 32 | index;
     }
     return true;
+}
+
+void brio_hilbert_variant(const double *rows, size_t stride, size_t n, int variant, int threads, uint32_t *key) {
+    enum { BITS = 10 };
+    two_levels two;
+    double room = 0;
+    if (!n) return;
+    compose(&two);
+    cube c = cube_of(rows, stride, NULL, n, threads);
+    for (int k = 0; k < 3; k++) room = fmax(room, c.high[k] - c.low[k]);
+    for (int k = 0; k < 3; k++) { /* the golden ratio spreads the variants over the room that the larger cube gives */
+        double part = fmod(0.618033988749895 * (double)(3 * variant + k + 1), 1);
+        c.low[k] -= 0.6 * room * part;
+        c.high[k] = c.low[k] + 1.6 * room;
+    }
+    cube_divide(&c, BITS);
+    BRIO_OMP(parallel for num_threads(threads))
+    for (size_t i = 0; i < n; i++) {
+        double turned[3];
+        cube about = c;
+        for (int k = 0; k < 3; k++) {
+            int from = (k + variant) % 3;
+            turned[k] = rows[stride * i + (size_t)from];
+            about.low[k] = c.low[from];
+        }
+        key[i] = (uint32_t)cube_key(&about, &two, turned, BITS);
+    }
 }

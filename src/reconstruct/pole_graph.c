@@ -13,6 +13,7 @@ typedef struct {
     uint32_t *first_hidden, *next_hidden; /* list of the hidden poles of each representative */
     uint32_t *seen;                       /* last pole whose neighbours this one was offered to */
     brio_star star;
+    double least_weight;
     size_t num_edges, pole_capacity, weight_capacity;
 } builder;
 
@@ -27,18 +28,18 @@ static const double *centre_of(const brio_pole_graph *g, uint32_t p) {
     return g->poles->centre + 3 * (size_t)p;
 }
 
-static double neighbour_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
+double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
     const double *a = centre_of(g, p), *b = centre_of(g, q);
     double pp = g->poles->square[p], qq = g->poles->square[q], x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
     return (pp + qq - (x * x + y * y + z * z)) / (2 * sqrt(pp * qq));
 }
 
-/* Room for one more edge is there; written always, counted when it is deep. */
+/* Room for one more edge is there; written always, counted when it is deep enough. */
 static inline void add_edge(builder *b, uint32_t p, uint32_t q) {
-    double weight = neighbour_weight(b->g, p, q);
+    double weight = brio_pole_graph_weight(b->g, p, q);
     b->g->edge_pole[b->num_edges] = q;
     b->g->edge_weight[b->num_edges] = (float)fmin(weight, 1);
-    b->num_edges += weight > 0;
+    b->num_edges += weight > b->least_weight;
 }
 
 static brio_status reserve_edges(builder *b, size_t more) {
@@ -125,16 +126,16 @@ done:
 }
 
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
-                                const brio_triangulation *power, brio_pole_graph *g) {
+                                const brio_triangulation *power, double least_weight, brio_pole_graph *g) {
     brio_status status = BRIO_OK;
     const brio_stats *stats = brio_triangulation_stats(power);
     *g = (brio_pole_graph){.ctx = ctx, .poles = poles, .samples = samples, .num_samples = num_samples};
     g->num_finite = stats->tetrahedra;
     /* the view is read only: the structure is shared with code that builds triangulations */
-    g->power =
-        (brio_tetrahedra){(brio_tetrahedron *)brio_triangulation_tetrahedra(power),
-                          stats->tetrahedra + stats->hull_facets, BRIO_INFINITE, NULL};
-    builder b = {.g = g, .representative = brio_triangulation_representatives(power)};
+    g->power = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(power),
+                                 .count = stats->tetrahedra + stats->hull_facets,
+                                 .infinite = BRIO_INFINITE};
+    builder b = {.g = g, .representative = brio_triangulation_representatives(power), .least_weight = least_weight};
     BRIO_TRY(list_samples(g));
     BRIO_TRY(add_all_neighbours(&b));
 done:

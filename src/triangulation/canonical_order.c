@@ -1,8 +1,7 @@
 /* The canonical order of the tetrahedra, in place, and the caller's names for their vertices.
  *
- * Every tetrahedron has its latest vertex (in insertion order) in slot 0, since that vertex created it. The three
- * others are turned so that the latest of them comes first, which leaves one arrangement of each orientation (an
- * infinite vertex stays last). Tetrahedra are sorted by their first three vertices, finite ones first: a counting sort
+ * The vertices of every tetrahedron are turned by an even permutation: the latest (in the order of insertion) comes first,
+ * then the latest of the others, which leaves one arrangement (an infinite vertex stays last). Tetrahedra are sorted by their first three vertices, finite ones first: a counting sort
  * by the latest vertex, then a small sort in each bucket by the two after it, which no two tetrahedra of a bucket share
  * in this order. The order depends on the set of tetrahedra and the insertion order alone, not on the history or the
  * threads that made it. And a tetrahedron already lies near its place, nearer than in an order by the earliest vertex.
@@ -11,61 +10,91 @@
  * vertices renamed, what else lives there moves to the slots that this left free, and the block is written. The reads of
  * a block are independent, which following cycles would not be. Two numbers a tetrahedron are added, no second copy. */
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "triangulation/kernel.h"
 #include <string.h>
 
-enum { BLOCK = 1 << 13, TURN_SHIFT = 30, FEW = 48, AHEAD = 24 };
+enum { BLOCK = 1 << 13, FEW = 48, AHEAD = 24 };
 
-static const uint32_t PLACE_MASK = (UINT32_C(1) << TURN_SHIFT) - 1, NOWHERE = UINT32_MAX;
+static const uint32_t NOWHERE = UINT32_MAX;
 
-/* What a slot holds while things move, instead of the states of the insertion. */
-enum { SLOT_FIRST = TET_PLAIN, SLOT_MOVED = TET_CAVITY, SLOT_FREE = TET_UNUSED };
+/* The states while things move: the turn of the tetrahedron that was in the slot at the end of the insertion, and what the
+ * slot holds now: still that one, another one, already turned, or nothing. */
+enum { TURN = 15, SLOT_MOVED = 16, SLOT_FREE = 32 };
 
-/* TURNED[r][i]: the slot whose entry comes to slot i; and back. */
-static const uint8_t TURNED[3][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}};
-static const uint8_t TURNED_BACK[3][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}};
+/* The even permutations of four slots: TURNED[r][i] comes to slot i; and back. */
+static const uint8_t TURNED[12][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2}, {1, 3, 2, 0}, {1, 2, 0, 3},
+                                      {2, 0, 1, 3}, {2, 1, 3, 0}, {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 2, 1, 0}, {3, 1, 0, 2}};
+static const uint8_t BACK[12][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 0, 3, 2}, {3, 0, 2, 1}, {2, 0, 1, 3},
+                                    {1, 2, 0, 3}, {3, 1, 0, 2}, {2, 3, 0, 1}, {1, 3, 2, 0}, {3, 2, 1, 0}, {2, 1, 3, 0}};
+
+/* The latest finite vertex: its slot. */
+static inline unsigned latest_slot(const uint32_t *v, uint32_t infinite) {
+    unsigned low = v[1] > v[0], high = v[3] != infinite && v[3] > v[2] ? 3 : 2;
+    return v[high] > v[low] ? high : low;
+}
 
 /* Workspace: bucket b of tetrahedra holds places end[b - 1] to end[b]. */
 typedef struct {
     brio_kernel *k;
     uint32_t *order; /* of each place: the slot whose tetrahedron belongs there */
-    uint32_t *place; /* of each tetrahedron by its slot in the insertion: its bucket, then its place and turn */
+    uint32_t *place; /* of each tetrahedron by its slot in the insertion: its bucket, then its place */
     uint32_t *end;
     size_t buckets, live;
-    uint64_t *key; /* of the tetrahedra of one bucket, and their names */
+    int threads;
+} sorter;
+
+/* The tetrahedra of one bucket, in a thread's hands. */
+typedef struct {
+    uint64_t *key;
     uint32_t *name;
     size_t key_capacity, name_capacity;
-} sorter;
+} bucket;
+
+/* One more in a bucket; what was there before. */
+static inline uint32_t count_one(const sorter *s, size_t b) {
+    if (s->threads == 1) return s->end[b]++;
+    return __atomic_fetch_add(&s->end[b], 1, __ATOMIC_RELAXED);
+}
 
 /* Buckets: finite tetrahedra by latest vertex, then infinite ones. */
 static void fill_buckets(sorter *s) {
     const brio_kernel *k = s->k;
     uint32_t sum = 0, infinite = k->t.infinite, first_infinite = (uint32_t)k->num_points + 2;
+    BRIO_OMP(parallel for num_threads(s->threads))
     for (size_t t = 0; t < k->t.count; t++) {
         const uint32_t *v = k->t.tet[t].vertex;
-        uint32_t b = v[0] + (v[3] == infinite ? first_infinite : 0);
-        s->place[t] = k->state[t] == TET_UNUSED ? NOWHERE : b;
-        s->end[b] += k->state[t] != TET_UNUSED;
+        if (k->state[t] == TET_UNUSED) {
+            s->place[t] = NOWHERE;
+            k->state[t] = SLOT_FREE;
+            continue;
+        }
+        s->place[t] = v[latest_slot(v, infinite)] + (v[3] == infinite ? first_infinite : 0);
+        count_one(s, s->place[t]);
     }
     for (size_t b = 0; b < s->buckets; b++) {
         uint32_t c = s->end[b];
         s->end[b] = sum;
         sum += c;
     }
+    BRIO_OMP(parallel for num_threads(s->threads))
     for (size_t t = 0; t < k->t.count; t++)
-        if (s->place[t] != NOWHERE) s->order[s->end[s->place[t]]++] = (uint32_t)t;
+        if (s->place[t] != NOWHERE) s->order[count_one(s, s->place[t])] = (uint32_t)t;
 }
 
 /* How a tetrahedron is turned, and its key: the second and third vertex then. */
-static inline uint64_t key_of(const uint32_t *v, uint32_t infinite, uint32_t *turn) {
-    uint32_t a = v[1], b = v[2], c = v[3], r = 0;
-    if (c != infinite) {
-        r = b > a ? 1 : 0;
-        r = c > (r ? b : a) ? 2 : r;
+static inline uint64_t key_of(const uint32_t *v, uint32_t infinite, uint8_t *turn) {
+    unsigned first = 3 * latest_slot(v, infinite), r = first;
+    if (v[3] == infinite) {
+        r += first == 3 ? 2 : 0;
+    } else {
+        const uint8_t *from = TURNED[first];
+        uint32_t a = v[from[1]], b = v[from[2]], c = v[from[3]];
+        unsigned later = b > a;
+        r += c > (later ? b : a) ? 2 : later;
     }
-    *turn = r;
-    uint64_t second = r == 0 ? a : r == 1 ? b : c, third = r == 0 ? b : r == 1 ? c : a;
-    return second << 32 | third;
+    *turn = (uint8_t)r;
+    return (uint64_t)v[TURNED[r][1]] << 32 | v[TURNED[r][2]];
 }
 
 static void sift_down(uint64_t *key, uint32_t *name, size_t root, size_t n) {
@@ -100,55 +129,83 @@ static void sort_few(const uint64_t *key, const uint32_t *name, size_t n, uint32
 }
 
 /* Sorts the tetrahedra of the places [begin, end) and tells each its place and turn. */
-static brio_status sort_bucket(sorter *s, size_t begin, size_t end) {
+static brio_status sort_bucket(sorter *s, bucket *b, size_t begin, size_t end) {
     size_t n = end - begin;
     const brio_tetrahedron *tets = s->k->t.tet;
     uint32_t *order = s->order + begin, infinite = s->k->t.infinite;
-    brio_status status = BRIO_RESERVE(s->k->ctx, s->key, s->key_capacity, n);
-    if (status == BRIO_OK) status = BRIO_RESERVE(s->k->ctx, s->name, s->name_capacity, n);
+    brio_status status = BRIO_RESERVE(s->k->ctx, b->key, b->key_capacity, n);
+    if (status == BRIO_OK) status = BRIO_RESERVE(s->k->ctx, b->name, b->name_capacity, n);
     if (status != BRIO_OK) return status;
     for (size_t i = 0; i < n; i++) {
-        uint32_t turn;
-        __builtin_prefetch(&tets[order[i + AHEAD]]); /* of a bucket to come; order has room for it */
-        s->key[i] = key_of(tets[order[i]].vertex, infinite, &turn);
-        s->name[i] = order[i] | turn << TURN_SHIFT;
+        b->key[i] = key_of(tets[order[i]].vertex, infinite, &s->k->state[order[i]]);
+        b->name[i] = order[i];
     }
     if (n <= FEW) {
-        sort_few(s->key, s->name, n, order);
+        sort_few(b->key, b->name, n, order);
     } else {
-        heap_sort(s->key, s->name, n);
-        memcpy(order, s->name, n * sizeof *order);
+        heap_sort(b->key, b->name, n);
+        memcpy(order, b->name, n * sizeof *order);
     }
-    for (size_t i = 0; i < n; i++) {
-        uint32_t tet = order[i] & PLACE_MASK;
-        s->place[tet] = (uint32_t)(begin + i) | (order[i] & ~PLACE_MASK);
-        order[i] = tet;
-    }
+    for (size_t i = 0; i < n; i++) s->place[order[i]] = (uint32_t)(begin + i);
     return BRIO_OK;
 }
 
-static brio_status sort_buckets(sorter *s) {
+/* The buckets [from, to). */
+static brio_status sort_some(sorter *s, size_t from, size_t to) {
+    bucket b = {0};
     brio_status status = BRIO_OK;
-    for (size_t b = 0, begin = 0; b < s->buckets && status == BRIO_OK; begin = s->end[b++])
-        status = sort_bucket(s, begin, s->end[b]);
+    size_t last = to ? s->end[to - 1] : 0;
+    for (size_t i = from, begin = from ? s->end[from - 1] : 0; i < to && status == BRIO_OK; begin = s->end[i++]) {
+        for (size_t a = begin; a < s->end[i] && a + AHEAD < last; a++)
+            __builtin_prefetch(&s->k->t.tet[s->order[a + AHEAD]]);
+        status = sort_bucket(s, &b, begin, s->end[i]);
+    }
+    brio_release(s->k->ctx, b.key);
+    brio_release(s->k->ctx, b.name);
+    return status;
+}
+
+static brio_status sort_buckets(sorter *s) {
+    enum { PARTS = 16 }; /* a thread, since buckets are not alike */
+    brio_status status = BRIO_OK;
+    int parts = s->threads > 1 ? PARTS * s->threads : 1;
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(s->threads))
+    for (int p = 0; p < parts; p++) {
+        brio_status own = sort_some(s, brio_part(s->buckets, p, parts), brio_part(s->buckets, p + 1, parts));
+        if (own != BRIO_OK) BRIO_OMP(critical(brio_sort_status)) status = own;
+    }
     return status;
 }
 
 /* --- moving --- */
 
-/* Place and turn of the tetrahedron in a slot. */
+/* Threads mark their own slots while others read the turns there. */
+static inline unsigned load_state(const sorter *s, uint32_t slot) {
+    return __atomic_load_n(&s->k->state[slot], __ATOMIC_RELAXED);
+}
+static inline void mark_slot(sorter *s, uint32_t slot, unsigned mark) {
+    __atomic_store_n(&s->k->state[slot], (uint8_t)((load_state(s, slot) & TURN) | mark), __ATOMIC_RELAXED);
+}
+
+/* Place of the tetrahedron in a slot. */
 static inline uint32_t place_of(const sorter *s, uint32_t slot) {
-    return s->k->state[slot] == SLOT_MOVED ? s->k->t.tet[slot].vertex[0] : s->place[slot];
+    return load_state(s, slot) & SLOT_MOVED ? s->k->t.tet[slot].vertex[0] : s->place[slot];
+}
+
+/* The slots of the tetrahedron in a slot, in the order in which it will stand. */
+static inline const uint8_t *turn_of(const sorter *s, uint32_t slot) {
+    unsigned state = load_state(s, slot);
+    return TURNED[state & SLOT_MOVED ? 0 : state & TURN];
 }
 
 /* The tetrahedron in a slot as it will stand, but for its first vertex. */
 static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *out) {
     const brio_kernel *k = s->k;
     const brio_tetrahedron *old = &k->t.tet[slot];
-    const uint8_t *from = TURNED[place_of(s, slot) >> TURN_SHIFT];
+    const uint8_t *from = turn_of(s, slot);
     for (int i = 0; i < 4; i++) {
-        uint32_t facet = old->mate[from[i]], other = s->place[brio_tet_of(facet)];
-        out->mate[i] = brio_facet_of(other & PLACE_MASK, TURNED_BACK[other >> TURN_SHIFT][brio_slot_of(facet)]);
+        uint32_t facet = old->mate[from[i]], other = brio_tet_of(facet);
+        out->mate[i] = brio_facet_of(s->place[other], BACK[load_state(s, other) & TURN][brio_slot_of(facet)]);
     }
     for (int i = 1; i < 4; i++) {
         uint32_t v = old->vertex[from[i]];
@@ -156,56 +213,141 @@ static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *
     }
 }
 
-/* Makes the tetrahedra at [begin, end) those that belong there. A tetrahedron that has to leave the block for a free
- * slot takes its place along in vertex[0], which its place tells. */
-static void fill_block(sorter *s, size_t begin, size_t end, brio_tetrahedron *aside) {
-    brio_tetrahedron *tets = s->k->t.tet;
-    uint32_t *order = s->order;
-    uint8_t *state = s->k->state;
-    for (size_t i = begin; i < end; i++) {
-        const brio_tetrahedron *later = &tets[order[i + AHEAD / 2]];
-        __builtin_prefetch(&tets[order[i + AHEAD]]);
-        for (int f = 0; f < 4; f++) __builtin_prefetch(&s->place[brio_tet_of(later->mate[f])]);
-        rename_one(s, order[i], &aside[i - begin]);
-        state[order[i]] = SLOT_FREE;
-    }
-    size_t next = begin; /* of the block's own sources, those outside it are free now */
-    for (size_t x = begin; x < end; x++) {
-        size_t later = x + AHEAD < end ? x + AHEAD : x;
-        if (state[later] != SLOT_FREE) __builtin_prefetch(&order[place_of(s, (uint32_t)later) & PLACE_MASK], 1);
-        if (state[x] == SLOT_FREE) continue;
-        while (order[next] >= begin && order[next] < end) next++;
-        uint32_t free_slot = order[next++], place = place_of(s, (uint32_t)x);
-        tets[free_slot] = tets[x];
-        tets[free_slot].vertex[0] = place;
-        order[place & PLACE_MASK] = free_slot;
-        state[free_slot] = SLOT_MOVED;
-        state[x] = SLOT_FREE;
-    }
-    memcpy(tets + begin, aside, (end - begin) * sizeof *tets);
+/* Turns the tetrahedron of a slot into another slot, where vertex[0] tells its place, which tells that vertex. */
+static inline void move_one(sorter *s, uint32_t slot, uint32_t to) {
+    const brio_tetrahedron *old = &s->k->t.tet[slot];
+    brio_tetrahedron *new = &s->k->t.tet[to];
+    const uint8_t *from = turn_of(s, slot);
+    uint32_t place = place_of(s, slot);
+    for (int i = 0; i < 4; i++) new->vertex[i] = old->vertex[from[i]], new->mate[i] = old->mate[from[i]];
+    new->vertex[0] = place;
+    s->order[place] = to;
+    mark_slot(s, to, SLOT_MOVED);
+    mark_slot(s, slot, SLOT_FREE);
 }
 
-/* Moves everything to its place, and gives each tetrahedron its first vertex. */
-static brio_status move_all(sorter *s) {
-    brio_kernel *k = s->k;
-    brio_tetrahedron *aside = NULL;
-    size_t b = 0;
-    brio_status status = BRIO_ALLOC(k->ctx, aside, BLOCK);
-    if (status != BRIO_OK) return status;
-    for (size_t begin = 0; begin < s->live; begin += BLOCK) {
-        size_t end = begin + BLOCK < s->live ? begin + BLOCK : s->live;
-        fill_block(s, begin, end, aside);
-        for (size_t i = begin; i < end; i++) {
-            while (s->end[b] <= i) b++;
-            k->t.tet[i].vertex[0] = k->caller[b < k->num_points + 2 ? b : b - k->num_points - 2];
+/* What the threads share that fill a block: the tetrahedra aside, those that have to leave and the slots for them, and how
+ * many of each the threads before one have found. */
+typedef struct {
+    brio_tetrahedron *aside;
+    uint32_t *leaving, *vacant;
+    size_t *num_leaving, *num_vacant;
+} mover;
+
+/* Gathers the tetrahedra of the places [begin + from, begin + to) aside. */
+static void gather(sorter *s, const mover *m, size_t begin, size_t from, size_t to) {
+    const brio_tetrahedron *tets = s->k->t.tet;
+    const uint32_t *order = s->order + begin;
+    for (size_t i = from; i < to; i++) {
+        if (i + AHEAD < to) {
+            const brio_tetrahedron *later = &tets[order[i + AHEAD / 2]];
+            __builtin_prefetch(&tets[order[i + AHEAD]]);
+            for (int f = 0; f < 4; f++) __builtin_prefetch(&s->place[brio_tet_of(later->mate[f])]);
         }
+        rename_one(s, order[i], &m->aside[i]);
     }
-    brio_release(k->ctx, aside);
-    return BRIO_OK;
+    for (size_t i = from; i < to; i++) mark_slot(s, order[i], SLOT_FREE);
+}
+
+/* Lists what has to leave the slots from `from` to `to` of the block, and what the places there left vacant elsewhere;
+ * with counts only, just counts. */
+static void list_moves(const sorter *s, const mover *m, size_t begin, size_t end, size_t from, size_t to, int thread,
+                       bool counts_only) {
+    size_t leaving = counts_only ? 0 : m->num_leaving[thread], vacant = counts_only ? 0 : m->num_vacant[thread];
+    for (size_t x = begin + from; x < begin + to; x++) {
+        uint32_t source = s->order[x];
+        bool stays = !(s->k->state[x] & SLOT_FREE), outside = source < begin || source >= end;
+        if (!counts_only && stays) m->leaving[leaving] = (uint32_t)x;
+        if (!counts_only && outside) m->vacant[vacant] = source;
+        leaving += stays;
+        vacant += outside;
+    }
+    if (counts_only) m->num_leaving[thread] = leaving, m->num_vacant[thread] = vacant;
+}
+
+/* Turns the threads' counts into where each begins; how many there are to move. */
+static size_t add_up(const mover *m, int threads) {
+    size_t leaving = 0, vacant = 0;
+    for (int t = 0; t < threads; t++) {
+        size_t l = m->num_leaving[t], v = m->num_vacant[t];
+        m->num_leaving[t] = leaving, m->num_vacant[t] = vacant;
+        leaving += l, vacant += v;
+    }
+    return m->num_leaving[threads] = leaving;
+}
+
+/* Moves of the leaving ones those from `from` to `to`. */
+static void leave_block(sorter *s, const mover *m, size_t from, size_t to) {
+    for (size_t i = from; i < to; i++) {
+        if (i + AHEAD < to) __builtin_prefetch(&s->order[place_of(s, m->leaving[i + AHEAD])], 1);
+        move_one(s, m->leaving[i], m->vacant[i]);
+    }
+}
+
+/* Writes what was gathered, each with its first vertex. */
+static void write_block(sorter *s, const mover *m, size_t begin, size_t from, size_t to) {
+    brio_kernel *k = s->k;
+    size_t low = 0, high = s->buckets; /* to the bucket of the first place */
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (s->end[middle] <= begin + from)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    for (size_t i = from, b = low; i < to; i++) {
+        while (s->end[b] <= begin + i) b++;
+        k->t.tet[begin + i] = m->aside[i];
+        k->t.tet[begin + i].vertex[0] = k->caller[b < k->num_points + 2 ? b : b - k->num_points - 2];
+    }
+}
+
+static void move_blocks(sorter *s, const mover *m, size_t block) {
+    BRIO_OMP(parallel num_threads(s->threads))
+    for (size_t begin = 0; begin < s->live; begin += block) {
+        int thread = brio_thread(), threads = brio_team_size();
+        size_t end = begin + block < s->live ? begin + block : s->live;
+        size_t from = brio_part(end - begin, thread, threads), to = brio_part(end - begin, thread + 1, threads);
+        gather(s, m, begin, from, to);
+        BRIO_OMP(barrier)
+        list_moves(s, m, begin, end, from, to, thread, true);
+        BRIO_OMP(barrier)
+        BRIO_OMP(single)
+        add_up(m, threads);
+        list_moves(s, m, begin, end, from, to, thread, false);
+        BRIO_OMP(barrier)
+        size_t moves = m->num_leaving[threads];
+        leave_block(s, m, brio_part(moves, thread, threads), brio_part(moves, thread + 1, threads));
+        BRIO_OMP(barrier)
+        write_block(s, m, begin, from, to);
+        BRIO_OMP(barrier)
+    }
+}
+
+static brio_status move_all(sorter *s) {
+    brio_context *ctx = s->k->ctx;
+    mover m = {0};
+    brio_status status = BRIO_OK;
+    size_t block = (size_t)BLOCK * (size_t)s->threads;
+    BRIO_TRY(BRIO_ALLOC(ctx, m.aside, block));
+    BRIO_TRY(BRIO_ALLOC(ctx, m.leaving, block));
+    BRIO_TRY(BRIO_ALLOC(ctx, m.vacant, block));
+    BRIO_TRY(BRIO_ALLOC(ctx, m.num_leaving, (size_t)s->threads + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, m.num_vacant, (size_t)s->threads + 1));
+    move_blocks(s, &m, block);
+done:
+    brio_release(ctx, m.aside);
+    brio_release(ctx, m.leaving);
+    brio_release(ctx, m.vacant);
+    brio_release(ctx, m.num_leaving);
+    brio_release(ctx, m.num_vacant);
+    return status;
 }
 
 brio_status brio_kernel_sort(brio_kernel *k) {
     sorter s = {.k = k, .buckets = 2 * (k->num_points + 2), .live = k->t.count - k->num_unused};
+    int threads = brio_context_threads(k->ctx), most = (int)(s.live / BLOCK) + 1;
+    s.threads = threads < most ? threads : most;
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.order, s.live + AHEAD));
     BRIO_TRY(BRIO_ALLOC(k->ctx, s.place, k->t.count));
@@ -223,7 +365,5 @@ done:
     brio_release(k->ctx, s.order);
     brio_release(k->ctx, s.place);
     brio_release(k->ctx, s.end);
-    brio_release(k->ctx, s.key);
-    brio_release(k->ctx, s.name);
     return status;
 }

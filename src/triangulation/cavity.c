@@ -40,6 +40,11 @@ brio_status brio_cavity_reserve(brio_context *ctx, brio_cavity *c, size_t tets) 
     return status;
 }
 
+brio_status brio_cavity_defer(brio_kernel *k) {
+    for (size_t i = 0; i < k->cavity.num_tets; i++) k->state[brio_tet_of(k->cavity.entry[i])] = TET_PLAIN;
+    return BRIO_DEFERRED;
+}
+
 /* OUT[s]: the slots other than s, so that (x, OUT[s]) is positive for x on the other side of facet s; slot 3, which may
  * hold the infinite vertex, last. */
 static const uint8_t OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}};
@@ -89,13 +94,16 @@ static inline void create(brio_tetrahedron *tets, uint32_t tet, uint32_t outer, 
     store_four(inside->vertex, p, v[0], v[1], v[2]);
 }
 
+static inline uint8_t *number_of(brio_kernel *k, uint32_t v) {
+    return v == k->t.infinite ? &k->cavity.infinite_local : &k->cavity.local[v];
+}
+
 /* Numbers the vertices of the cavity: those of the first tetrahedron by their slots, and what each later one added, the
  * vertex opposite to the facet it was found through, by when it was found. The last number of a vertex counts. */
 static void number_vertices(brio_kernel *k) {
     brio_cavity *c = &k->cavity;
-    uint8_t *local = c->local;
-    for (int i = 0; i < 4; i++) local[brio_apex(&k->t, c->entry[0] ^ (uint32_t)i)] = (uint8_t)i;
-    for (size_t n = 1; n < c->num_tets; n++) local[brio_apex(&k->t, c->entry[n])] = (uint8_t)(n + 3);
+    for (int i = 0; i < 4; i++) *number_of(k, brio_apex(&k->t, c->entry[0] ^ (uint32_t)i)) = (uint8_t)i;
+    for (size_t n = 1; n < c->num_tets; n++) *number_of(k, brio_apex(&k->t, c->entry[n])) = (uint8_t)(n + 3);
 }
 
 /* Joins the star by a table of edges. Facet i > 0 of a new tetrahedron holds the point and the edge from vertex i % 3 + 1
@@ -111,7 +119,7 @@ static inline void join_by_table(brio_kernel *k, uint32_t p, const int bits) {
     for (size_t b = 0; b < num_border; b++) {
         uint32_t tet = created[b], v[3];
         create(tets, tet, border[b], p, v);
-        uint32_t x = local[v[0]], y = local[v[1]], z = local[v[2]], xx = x | x << 3 * bits;
+        uint32_t x = local[v[0]], y = local[v[1]], z = *number_of(k, v[2]), xx = x | x << 3 * bits;
         uint32_t xyzx = xx | y << bits | z << 2 * bits;
         code[b] = xx | z << bits | y << 2 * bits;
         table[xyzx >> bits & pair] = brio_facet_of(tet, 1);
@@ -173,18 +181,19 @@ static brio_status list_vertices(brio_kernel *k) {
 /* Vertices of the cavity that are not on its border are hidden by p. */
 static void hide_interior(brio_kernel *k, uint32_t p) {
     brio_cavity *c = &k->cavity;
-    uint8_t *local = c->local;
-    for (size_t i = 0; i < c->num_tets + 3; i++) local[c->cavity_vertex[i]] = 0;
+    for (size_t i = 0; i < c->num_tets + 3; i++) *number_of(k, c->cavity_vertex[i]) = 0;
     for (size_t b = 0; b < c->num_border; b++)
-        for (int i = 1; i < 4; i++) local[k->t.tet[c->created[b]].vertex[i]] = 1;
+        for (int i = 1; i < 4; i++) *number_of(k, k->t.tet[c->created[b]].vertex[i]) = 1;
     for (size_t i = 0; i < c->num_tets + 3; i++)
-        if (!local[c->cavity_vertex[i]]) k->representative[c->cavity_vertex[i]] = p;
+        if (!*number_of(k, c->cavity_vertex[i])) k->representative[c->cavity_vertex[i]] = p;
 }
 
 brio_status brio_cavity_fill(brio_kernel *k, uint32_t p) {
     brio_cavity *c = &k->cavity;
     brio_status status = BRIO_OK;
-    BRIO_TRY(brio_kernel_reserve(k, c->num_border));
+    size_t slots = c->num_tets + k->num_unused;
+    if (c->num_border > slots) status = brio_kernel_reserve(k, c->num_border - slots);
+    if (status != BRIO_OK) return status == BRIO_DEFERRED ? brio_cavity_defer(k) : status;
     if (k->weighted) BRIO_TRY(list_vertices(k));
     if (c->num_tets <= BYTES_MOST) number_vertices(k);
     BRIO_TRY(take_slots(k));
@@ -197,6 +206,7 @@ brio_status brio_cavity_fill(brio_kernel *k, uint32_t p) {
     if (k->weighted) hide_interior(k, p);
     k->stats.created += c->num_border;
     k->stats.destroyed += c->num_tets;
+    c->num_created = c->num_border;
     k->walk.start = c->created[0];
 done:
     return status;

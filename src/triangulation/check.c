@@ -330,7 +330,7 @@ brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation
     if (t->stats.dimension < 3) {
         BRIO_TRY(brio_check_flat(ctx, t, points, weights));
     } else {
-        brio_tetrahedra view = {t->tet, tets, BRIO_INFINITE, record};
+        brio_tetrahedra view = {t->tet, tets, BRIO_INFINITE, record, NULL};
         BRIO_TRY(brio_check_tetrahedra(ctx, &view, num_points, weights != NULL, &canonical));
     }
     BRIO_REQUIRE(ctx, canonical, BRIO_ERR_CHECK, "ties are not broken by the symbolic perturbation");

@@ -3,12 +3,13 @@
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Devillers, Teillaud. Perturbations for Delaunay and weighted Delaunay 3D triangulations. CGTA 2011. */
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "order/order.h"
 #include "triangulation/kernel.h"
 #include "triangulation/triangulation.h"
 #include <string.h>
 
-enum { PROGRESS_EVERY = 8192 };
+enum { PROGRESS_EVERY = 8192, PARALLEL_FROM = 1 << 15 };
 
 brio_options brio_options_default(void) {
     return (brio_options){
@@ -43,21 +44,27 @@ static brio_status refuse_not_finite(brio_context *ctx, const double *points, co
                      isnan(x) ? "NaN" : "infinite", bad);
 }
 
+/* Writes a record; whether all its numbers are finite. */
+static inline bool write_record(const double *points, const double *weights, size_t from, double *record) {
+    double w = weights ? weights[from] + 0.0 : 0.0, finite = 0 * w;
+    for (size_t c = 0; c < 3; c++) {
+        record[c] = points[3 * from + c] + 0.0;
+        finite += 0 * record[c];
+    }
+    record[3] = w;
+    return finite == 0; /* else NaN */
+}
+
 brio_status brio_records_new(brio_context *ctx, const double *points, const double *weights, size_t n,
                              const uint32_t *order, size_t room, brio_record **out) {
     brio_record *record = NULL;
     brio_status status = BRIO_ALLOC(ctx, record, n + room);
     if (status != BRIO_OK) return status;
     size_t bad = n;
+    BRIO_OMP(parallel for num_threads(brio_context_threads(ctx)) reduction(min : bad) if (n > PARALLEL_FROM))
     for (size_t i = 0; i < n; i++) {
         size_t from = order ? order[i] : i;
-        double w = weights ? weights[from] + 0.0 : 0.0, finite = 0 * w;
-        for (size_t c = 0; c < 3; c++) {
-            record[i][c] = points[3 * from + c] + 0.0;
-            finite += 0 * record[i][c];
-        }
-        record[i][3] = w;
-        if (finite != 0 && from < bad) bad = from; /* NaN: something was not finite */
+        if (!write_record(points, weights, from, record[i]) && from < bad) bad = from;
     }
     if (bad < n) {
         brio_release(ctx, record);
@@ -84,7 +91,9 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     double start = brio_seconds();
     BRIO_TRY(BRIO_ALLOC(ctx, k->caller, n + 3));
     BRIO_TRY(brio_progress(ctx, "order", 0));
-    BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller, NULL));
+    bool follows_curve = options->order == BRIO_ORDER_BRIO || options->order == BRIO_ORDER_HILBERT;
+    if (brio_context_threads(ctx) > 1 && follows_curve) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, k->rank, n + 3));
+    BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller, k->rank));
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
     k->record[n + 2][3] = INFINITY; /* the infinite vertex, as conflict_lanes.h knows it */
     k->t.record = k->record;
@@ -106,17 +115,34 @@ static void kernel_free(brio_kernel *k) {
     brio_release(k->ctx, k->star.tet);
     brio_release(k->ctx, k->record);
     brio_release(k->ctx, k->caller);
+    brio_release(k->ctx, k->rank);
     brio_release(k->ctx, k->representative);
+}
+
+/* Where the records from `begin` on stop to follow the curve. */
+static size_t end_of_run(const brio_kernel *k, size_t begin) {
+    size_t end = begin + 1;
+    while (end < k->num_points && k->rank[end] > k->rank[end - 1]) end++;
+    return end;
 }
 
 static brio_status insert_all(brio_kernel *k) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_kernel_start(k));
     if (k->dimension <= 0) goto done;
-    for (size_t p = (size_t)k->dimension + 1; p < k->num_points; p++) {
-        if (p % PROGRESS_EVERY == 0) BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)k->num_points));
-        BRIO_TRY(brio_kernel_insert(k, (uint32_t)p));
+    bool parallel = k->rank && k->dimension == 3;
+    for (size_t p = (size_t)k->dimension + 1, end; p < k->num_points; p = end) {
+        end = p + PROGRESS_EVERY - p % PROGRESS_EVERY < k->num_points ? p + PROGRESS_EVERY - p % PROGRESS_EVERY
+                                                                       : k->num_points;
+        BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)k->num_points));
+        if (parallel) {
+            end = end_of_run(k, p);
+            BRIO_TRY(brio_kernel_insert_parallel(k, p, end));
+        } else {
+            for (size_t q = p; q < end; q++) BRIO_TRY(brio_kernel_insert(k, (uint32_t)q));
+        }
     }
+    status = brio_progress(k->ctx, "insert", 1);
 done:
     return status;
 }

@@ -18,12 +18,14 @@ static inline size_t leave(const brio_kernel *k, uint32_t tet, uint32_t *facet, 
     return n;
 }
 
-/* Adds the tetrahedra of those facets that are in conflict, each once, and the other facets to the border. */
-static inline void divide(brio_kernel *k, const uint32_t *facet, size_t count, unsigned conflicts) {
+/* Adds the tetrahedra of those facets that are in conflict, each once, and the other facets to the border. False when one
+ * of them is not the thread's own. */
+static inline bool divide(brio_kernel *k, const uint32_t *facet, size_t count, unsigned conflicts) {
     brio_cavity *c = &k->cavity;
     uint32_t *entries = c->entry, *border = c->border;
     uint8_t *state = k->state; /* stores to bytes may alias anything: what is used again stays in locals */
     size_t num_tets = c->num_tets, num_border = c->num_border;
+    bool own = true;
     unsigned borders = ~conflicts & ((1u << count) - 1);
     for (size_t i = 0; i < BRIO_BATCH; i++) {
         border[num_border] = facet[i];
@@ -32,11 +34,16 @@ static inline void divide(brio_kernel *k, const uint32_t *facet, size_t count, u
     for (; conflicts; conflicts &= conflicts - 1) {
         uint32_t entry = facet[__builtin_ctz(conflicts)], tet = brio_tet_of(entry);
         entries[num_tets] = entry;
+        if (!brio_owns(&k->t, tet)) {
+            own = false;
+            break;
+        }
         num_tets += state[tet] != TET_CAVITY;
         state[tet] = TET_CAVITY;
     }
     c->num_tets = num_tets;
     c->num_border = num_border;
+    return own;
 }
 
 static inline __attribute__((always_inline)) brio_status dig_cavity(brio_kernel *k, uint32_t first, const double *point,
@@ -54,7 +61,8 @@ static inline __attribute__((always_inline)) brio_status dig_cavity(brio_kernel 
         if (count == 0) break;
         uint32_t *facet = c->facet + tested;
         for (size_t i = count; i < BRIO_BATCH; i++) facet[i] = facet[0];
-        divide(k, facet, count, batch_in_conflict(&k->t, &k->filter, facet, count, point, weighted));
+        unsigned conflicts = batch_in_conflict(&k->t, &k->filter, facet, count, point, weighted);
+        if (!divide(k, facet, count, conflicts)) return brio_cavity_defer(k);
         tested += count;
         if (c->num_tets + 2 * BRIO_BATCH <= c->capacity) continue;
         brio_status status = brio_cavity_reserve(k->ctx, c, 2 * c->capacity);
@@ -64,12 +72,12 @@ static inline __attribute__((always_inline)) brio_status dig_cavity(brio_kernel 
     return BRIO_OK;
 }
 
-static unsigned conflicts(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH], size_t count,
+static unsigned test_batch(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH], size_t count,
                           const double *p) {
     return batch_in_conflict(t, f, facets, count, p, false);
 }
 
-static unsigned conflicts_weighted(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH],
+static unsigned test_batch_weighted(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH],
                                    size_t count, const double *p) {
     return batch_in_conflict(t, f, facets, count, p, true);
 }
@@ -82,4 +90,4 @@ static brio_status dig_weighted(brio_kernel *k, uint32_t first, uint32_t p) {
     return dig_cavity(k, first, k->record[p], true);
 }
 
-const brio_engine ENGINE[2] = {{conflicts, dig, walk}, {conflicts_weighted, dig_weighted, walk}};
+const brio_engine ENGINE[2] = {{test_batch, dig, walk}, {test_batch_weighted, dig_weighted, walk}};

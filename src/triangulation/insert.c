@@ -6,6 +6,7 @@ brio_status brio_kernel_reserve(brio_kernel *k, size_t more) {
     brio_status status = BRIO_OK;
     size_t need = k->t.count + more;
     if (need <= k->capacity) return BRIO_OK;
+    if (k->team) return brio_team_reserve(k, more);
     size_t capacity = need + need / 8 + 1024;
     BRIO_REQUIRE(k->ctx, need <= k->max_tetrahedra, BRIO_ERR_TOO_LARGE, "more than %zu tetrahedra", k->max_tetrahedra);
     if (capacity > k->max_tetrahedra) capacity = k->max_tetrahedra;
@@ -40,10 +41,11 @@ static bool absorbed(brio_kernel *k, uint32_t p, uint32_t v) {
  * and then. */
 static brio_status locate(brio_kernel *k, const double *point, uint32_t *tet) {
     enum { SHORT_WALK = 40, DESCENTS = 64 };
-    if (k->long_walks == 0 || k->cavity.num_border == 0) {
-        uint64_t most = k->cavity.num_border ? SHORT_WALK : UINT64_MAX;
+    if (k->long_walks == 0 || k->cavity.num_created == 0) {
+        uint64_t most = k->cavity.num_created ? SHORT_WALK : UINT64_MAX;
         *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, most);
         if (*tet != BRIO_NO_TET) return BRIO_OK;
+        if (k->walk.blocked) return BRIO_DEFERRED;
         k->long_walks = DESCENTS;
     }
     k->long_walks--;

@@ -1,4 +1,6 @@
-/* The incremental kernel: everything one construction works on. */
+/* The incremental kernel: everything one construction works on.
+ *
+ * In a parallel pass each thread has a kernel of its own, with its own workspace, and shares the arrays. */
 #ifndef BRIO_TRIANGULATION_KERNEL_H
 #define BRIO_TRIANGULATION_KERNEL_H
 
@@ -10,14 +12,15 @@
 /** Workspace of one insertion, kept from one to the next. */
 typedef struct {
     uint32_t *entry;  /* of each tetrahedron in conflict, the facet through which it was found */
-    uint32_t *created; /* a tetrahedron for each border facet */
+    uint32_t *created; /* a tetrahedron for each border facet: the star of the last point that was inserted */
     uint32_t *facet;  /* outer sides of the facets through which the cavity was left; then codes of the border's vertices */
     uint32_t *border; /* those of them that lead to no conflict */
-    size_t num_tets, num_border;
+    size_t num_tets, num_border, num_created;
     size_t capacity;         /* of entry, a quarter of that of the other lists */
     uint32_t *cavity_vertex; /* the vertices of all tets, with repetitions; weighted only */
     size_t cavity_vertex_capacity;
     uint8_t *local;     /* of each vertex: its number in the cavity it was last in */
+    uint8_t infinite_local; /* the infinite vertex', which all threads meet */
     uint32_t *table;    /* facet handle of each directed edge of the border, BRIO_TABLE of them */
     uint64_t *edge_key; /* hash table of directed edges, for large borders */
     uint32_t *edge_facet;
@@ -29,11 +32,13 @@ enum { BRIO_TABLE = 1 << 16 };
 struct brio_kernel {
     brio_context *ctx;
     brio_tetrahedra t;
-    size_t capacity, max_tetrahedra;
+    size_t capacity, max_tetrahedra; /* slots from t.count to capacity are fresh */
+    struct brio_team *team;          /* of the parallel pass, or NULL */
     uint8_t *state;   /* of each tetrahedron: brio_tet_state */
     uint32_t *unused; /* slots of destroyed tetrahedra */
     size_t num_unused, unused_capacity;
     brio_record *record; /* the points in insertion order, then up to two apexes, then room for the infinite vertex */
+    uint32_t *rank;      /* of each record along the curve; NULL with one thread */
     uint32_t *caller;    /* index of each record's point in the caller's arrays */
     uint32_t *representative; /* of each record: itself, or a record that took its place */
     size_t num_points;
@@ -48,6 +53,9 @@ struct brio_kernel {
     brio_stats stats;
 };
 
+/** Not an error: the point touches what may be another thread's, and waits for a later pass. */
+#define BRIO_DEFERRED ((brio_status)-1)
+
 typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_UNUSED = 2 } brio_tet_state;
 
 /** Finds four points in general position, or the dimension that they have instead; adds apexes off the points' affine
@@ -58,6 +66,12 @@ brio_status brio_kernel_start(brio_kernel *k);
 /** Makes room for at least `more` further tetrahedra. */
 brio_status brio_kernel_reserve(brio_kernel *k, size_t more);
 
+/** The same in a parallel pass: a new stretch of fresh slots; BRIO_DEFERRED when there are no more. */
+brio_status brio_team_reserve(brio_kernel *k, size_t more);
+
+/** Inserts the records [begin, end), which follow the curve, by all threads of the context. */
+brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end);
+
 /** Inserts record p, which is not yet in: as a vertex, a duplicate, or a hidden point. */
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p);
 
@@ -66,6 +80,9 @@ brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet);
 
 /** Room for the lists of a cavity of at most `tets` tetrahedra. */
 brio_status brio_cavity_reserve(brio_context *ctx, brio_cavity *c, size_t tets);
+
+/** Leaves everything as it was before the dig; BRIO_DEFERRED. */
+brio_status brio_cavity_defer(brio_kernel *k);
 
 /** Replaces the cavity by the star of record p; vertices that lose their last tetrahedron become hidden. */
 brio_status brio_cavity_fill(brio_kernel *k, uint32_t p);

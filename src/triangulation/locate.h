@@ -9,12 +9,13 @@ typedef struct {
     uint32_t start;
     uint32_t random;
     uint64_t steps;
+    bool blocked; /* the last walk led out of the thread's zone */
 } brio_walk;
 
 enum { BRIO_NO_TET = UINT32_MAX };
 
 /** The tetrahedron whose closure holds p, or, for p strictly outside the hull, an infinite one whose facet p is
- *  strictly outside of. Exact. BRIO_NO_TET when that takes more than most_steps. */
+ *  strictly outside of. Exact. BRIO_NO_TET when that takes more than most_steps, or leads out of the thread's zone. */
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps);
 

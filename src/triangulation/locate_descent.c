@@ -44,10 +44,10 @@ static uint32_t first_conflict(brio_kernel *k, const uint32_t *tets, size_t coun
 /* Of the star of the last inserted vertex, which is still in the caches, the tetrahedra that also have vertex v. */
 static brio_status collect_last(brio_kernel *k, uint32_t v) {
     brio_star *star = &k->star;
-    brio_status status = BRIO_RESERVE(k->ctx, star->tet, star->capacity, k->cavity.num_border);
+    brio_status status = BRIO_RESERVE(k->ctx, star->tet, star->capacity, k->cavity.num_created);
     if (status != BRIO_OK) return status;
     star->size = 0;
-    for (size_t b = 0; b < k->cavity.num_border; b++) {
+    for (size_t b = 0; b < k->cavity.num_created; b++) {
         uint32_t tet = k->cavity.created[b];
         star->tet[star->size] = tet;
         star->size += brio_slot_of_vertex(k->t.tet[tet].vertex, v) < 4;
@@ -57,7 +57,7 @@ static brio_status collect_last(brio_kernel *k, uint32_t v) {
 
 brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) {
     candidate best = {k->t.infinite, BRIO_NO_TET, INFINITY};
-    for (size_t b = 0; b < k->cavity.num_border; b++) offer(&k->t, &best, k->cavity.created[b], p);
+    for (size_t b = 0; b < k->cavity.num_created; b++) offer(&k->t, &best, k->cavity.created[b], p);
     if (best.square > 0 && best.vertex != k->t.infinite) {
         brio_status status = collect_last(k, best.vertex);
         if (status != BRIO_OK) return status;
@@ -76,5 +76,5 @@ brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) 
     }
     if (best.tet != BRIO_NO_TET) k->walk.start = best.tet;
     *tet = k->engine->walk(&k->t, &k->filter, &k->walk, p, UINT64_MAX);
-    return BRIO_OK;
+    return *tet == BRIO_NO_TET ? BRIO_DEFERRED : BRIO_OK;
 }

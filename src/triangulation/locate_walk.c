@@ -14,6 +14,7 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w
     for (uint64_t steps = 0;; steps++, walk->steps++) {
         if (steps > most_steps) return BRIO_NO_TET;
         const uint32_t *v = t->tet[tet].vertex;
+        if (t->zone && (walk->blocked = !brio_owns(t, tet))) return BRIO_NO_TET;
         if (v[3] == t->infinite) return tet;
         walk->random = brio_walk_random(walk->random);
         int first = (int)(walk->random >> 30), i = 0;

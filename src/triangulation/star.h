@@ -15,7 +15,7 @@ brio_status brio_star_new(brio_context *ctx, size_t num_tetrahedra, brio_star *o
 void brio_star_free(brio_context *ctx, brio_star *star);
 
 /** star->tet[0 .. size) = the tetrahedra with vertex v, `first` being one of them; infinite ones included. Stops soon
- *  after `most`. */
+ *  after `most`, and at what is not the thread's own. */
 brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint32_t v, uint32_t first, size_t most,
                               brio_star *star);
 

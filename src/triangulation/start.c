@@ -16,6 +16,9 @@ static void swap_records(brio_kernel *k, size_t i, size_t j) {
     memcpy(k->record[j], r, sizeof r);
     uint32_t c = k->caller[i];
     k->caller[i] = k->caller[j], k->caller[j] = c;
+    if (!k->rank) return;
+    c = k->rank[i];
+    k->rank[i] = k->rank[j], k->rank[j] = c;
 }
 
 /* Whether record i is off the affine hull of the first `count` records, which are in general position. */

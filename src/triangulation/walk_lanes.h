@@ -39,6 +39,7 @@ static uint32_t walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w, con
     __m256d bound = _mm256_set1_pd(f->orient_static);
     for (uint64_t steps = 0; steps <= most_steps; steps++, w->steps++) {
         const uint32_t *v = t->tet[tet].vertex;
+        if (t->zone && (w->blocked = !brio_owns(t, tet))) return BRIO_NO_TET;
         if (v[3] == t->infinite) return tet;
         __m256d xyz[3];
         vertices_about(t, v, p, xyz);

@@ -1,4 +1,5 @@
-/* Memory that runs out at a chosen request, and knows what was not given back. */
+/* Memory that runs out at a chosen request, and knows what was not given back. Threads may use it together; after the one
+ * that fails, requests are granted again. */
 #ifndef BRIO_TESTS_FAILING_ALLOCATOR_H
 #define BRIO_TESTS_FAILING_ALLOCATOR_H
 
@@ -10,13 +11,14 @@ typedef struct {
 } failing_memory;
 
 static inline int failing_memory_refuses(failing_memory *m) {
-    return m->left > 0 && --m->left == 0;
+    size_t left = __atomic_load_n(&m->left, __ATOMIC_RELAXED);
+    return left > 0 && __atomic_sub_fetch(&m->left, 1, __ATOMIC_RELAXED) == 0;
 }
 
 static inline void *failing_alloc(size_t size, void *user) {
     failing_memory *m = user;
     void *block = failing_memory_refuses(m) ? NULL : malloc(size);
-    if (block) m->live++;
+    if (block) __atomic_add_fetch(&m->live, 1, __ATOMIC_RELAXED);
     return block;
 }
 
@@ -26,7 +28,7 @@ static inline void *failing_realloc(void *block, size_t size, void *user) {
 
 static inline void failing_free(void *block, void *user) {
     failing_memory *m = user;
-    if (block) m->live--;
+    if (block) __atomic_sub_fetch(&m->live, 1, __ATOMIC_RELAXED);
     free(block);
 }
 
