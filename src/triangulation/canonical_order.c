@@ -14,7 +14,7 @@
 #include "triangulation/kernel.h"
 #include <string.h>
 
-enum { BLOCK = 1 << 13, FEW = 48, AHEAD = 24 };
+enum { BLOCK = 1 << 13, STEPS = 32, FEW = 48, AHEAD = 24 };
 
 static const uint32_t NOWHERE = UINT32_MAX;
 
@@ -329,6 +329,7 @@ static brio_status move_all(sorter *s) {
     mover m = {0};
     brio_status status = BRIO_OK;
     size_t block = (size_t)BLOCK * (size_t)s->threads;
+    if (s->threads > 1 && block < s->live / STEPS) block = s->live / STEPS; /* threads wait for each other each time */
     BRIO_TRY(BRIO_ALLOC(ctx, m.aside, block));
     BRIO_TRY(BRIO_ALLOC(ctx, m.leaving, block));
     BRIO_TRY(BRIO_ALLOC(ctx, m.vacant, block));

@@ -23,7 +23,7 @@
 enum {
     STRETCH = 4096, /* slots taken at once */
     LEAST = 512,    /* points to insert that are worth a thread */
-    CROWD = 8192,   /* points in all that make a zone which is not all border */
+    CROWD = 4096,   /* points in all that make a zone which is not all border */
     PASSES = 6,     /* then one thread goes on */
     HINTS = 32,     /* tetrahedra located along a zone before its pass */
     PROGRESS_EVERY = 4096
@@ -188,15 +188,15 @@ static void place_hints(worker *w, brio_team *team) {
     if (w->kernel.walk.start == BRIO_NO_TET) w->kernel.walk.start = main->walk.start; /* blocked there at once */
 }
 
-/* Sorts the listed records along another curve; *key receives their keys. */
-static brio_status list_along(brio_team *team, int variant, int threads, uint32_t **key) {
+/* Sorts the listed records along another curve; *key receives the keys of all records before `end`. */
+static brio_status list_along(brio_team *team, size_t end, int variant, int threads, uint32_t **key) {
     brio_kernel *k = team->main;
     uint64_t *items = NULL, *spare = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(k->ctx, *key, k->num_points));
+    BRIO_TRY(BRIO_ALLOC(k->ctx, *key, end));
     BRIO_TRY(BRIO_ALLOC(k->ctx, items, team->count));
     BRIO_TRY(BRIO_ALLOC(k->ctx, spare, team->count));
-    brio_hilbert_variant(*k->record, 4, k->num_points, variant, threads, *key);
+    brio_hilbert_variant(*k->record, 4, end, variant, threads, *key);
     for (size_t i = 0; i < team->count; i++) items[i] = (uint64_t)(*key)[team->list[i]] << 32 | team->list[i];
     BRIO_TRY(brio_sort_items(k->ctx, items, spare, team->count, 30, threads));
     for (size_t i = 0; i < team->count; i++) team->list[i] = (uint32_t)items[i];
@@ -271,6 +271,12 @@ done:
     return status;
 }
 
+/* Whether to insert that many points by threads saves more time than the keys of all points along another curve take. */
+static bool pays(size_t count, size_t points, int threads) {
+    enum { KEYS_AN_INSERTION = 36 };
+    return count * KEYS_AN_INSERTION * (size_t)(threads - 1) > points;
+}
+
 static int useful_zones(size_t count, size_t points, int most) {
     size_t zones = count / LEAST < points / CROWD ? count / LEAST : points / CROWD;
     return zones < (size_t)most ? (int)zones : most;
@@ -288,10 +294,10 @@ brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end
         int zones = useful_zones(team.count, end, most);
         uint32_t *left = NULL;
         size_t num_left = 0;
-        if (zones < 2) break;
+        if (zones < 2 || (pass > 0 && !pays(team.count, end, most))) break;
         BRIO_TRY(reserve_slots(&team, begin, zones));
-        if (pass > 0) BRIO_TRY(list_along(&team, pass, most, &key));
-        BRIO_TRY(start_pass(&team, workers, zones, pass > 0 ? key : k->rank));
+        if (pass > 0) BRIO_TRY(list_along(&team, end, pass, most, &key));
+        BRIO_TRY(start_pass(&team, workers, zones, key ? key : k->rank));
         BRIO_TRY(run_pass(&team, workers, zones, &left, &num_left));
         bool stuck = num_left > team.count / 2;
         brio_release(k->ctx, key);
