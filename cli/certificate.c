@@ -25,7 +25,7 @@ static void report_certificate(facts *f, const brio_certificate *c) {
     cli_fact_close(f);
 }
 
-static brio_status judge(run *r, const brio_certificate *c, bool open) {
+static brio_status judge(run *r, const brio_certificate *c, unsigned how) {
     if (!c->manifold)
         return cli_fail(r, BRIO_ERR_CHECK,
                         "the surface is not manifold: %zu edges with more than two faces, %zu pinched vertices",
@@ -33,20 +33,30 @@ static brio_status judge(run *r, const brio_certificate *c, bool open) {
     if (!c->oriented)
         return cli_fail(r, BRIO_ERR_CHECK, "the surface is not oriented: across %zu edges the faces disagree",
                         c->flipped_edges);
-    if (!c->closed && !open)
+    if (!c->closed && !(how & CERTIFY_OPEN))
         return cli_fail(r, BRIO_ERR_CHECK, "the surface is not closed: %zu boundary edges in %zu loops",
                         c->boundary_edges, c->boundary_loops);
+    if (c->self_intersections > 0 && how & CERTIFY_EMBEDDED)
+        return cli_fail(r, BRIO_ERR_CHECK, "the surface intersects itself: %lld pairs of faces",
+                        (long long)c->self_intersections);
     return BRIO_OK;
 }
 
-brio_status cli_certify(run *r, const brio_mesh *mesh, bool open) {
+static brio_status count_self_intersections(run *r, const brio_mesh *mesh, brio_certificate *c) {
+    brio_status status = brio_mesh_self_intersections(r->ctx, mesh, &c->self_intersections);
+    cli_lap(r, "self_intersections");
+    return status;
+}
+
+brio_status cli_certify(run *r, const brio_mesh *mesh, unsigned how) {
     brio_certificate c = {0};
-    brio_status status = brio_mesh_certificate(r->ctx, mesh, &c);
+    brio_status status = BRIO_OK;
+    TRY(brio_mesh_certificate(r->ctx, mesh, &c));
     cli_lap(r, "certify");
-    if (status == BRIO_OK) {
-        report_certificate(&r->facts, &c);
-        status = judge(r, &c, open);
-    }
+    if (how & (CERTIFY_COUNTED | CERTIFY_EMBEDDED)) TRY(count_self_intersections(r, mesh, &c));
+    report_certificate(&r->facts, &c);
+    status = judge(r, &c, how);
+done:
     brio_certificate_free(&c);
     return status;
 }

@@ -4,8 +4,13 @@
 
 #include "run.h"
 
-/** Certifies the faces of a mesh and reports what is found. BRIO_ERR_CHECK with the reason when it is not manifold and
- *  oriented or, unless `open`, not closed. The time is lapped as `certify`. */
-brio_status cli_certify(run *r, const brio_mesh *mesh, bool open);
+enum certify_how {
+    CERTIFY_OPEN = 1,    /* a boundary is no fault */
+    CERTIFY_COUNTED = 2, /* self-intersections are counted */
+    CERTIFY_EMBEDDED = 4 /* they are counted, and a fault */
+};
+
+/** Reports the certificate of the faces; BRIO_ERR_CHECK when it finds a fault.   how  bits of certify_how. */
+brio_status cli_certify(run *r, const brio_mesh *mesh, unsigned how);
 
 #endif

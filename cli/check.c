@@ -6,13 +6,14 @@
 
 typedef struct arguments {
     weights_options weights;
-    bool open;
+    bool open, self_intersections;
 } arguments;
 
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
     {"open", 0, OPTION_FLAG, offsetof(arguments, open), NULL, "a surface may have a boundary", 0},
-    {"self-intersections", 0, OPTION_LATER, 0, NULL, NULL, 0},
+    {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
+     "faces may not run through each other; counts the pairs that do", 0},
     {0},
 };
 
@@ -58,7 +59,8 @@ static brio_status check(run *r) {
     cli_fact_count(&r->facts, "faces", mesh->num_faces);
     cli_fact_count(&r->facts, "tetrahedra", mesh->num_tetrahedra);
     if (mesh->num_tetrahedra) TRY(check_tetrahedra(r, a, mesh));
-    if (mesh->num_faces) TRY(blame_file(r, cli_certify(r, mesh, a->open)));
+    unsigned how = (a->open ? CERTIFY_OPEN : 0u) | (a->self_intersections ? CERTIFY_EMBEDDED : 0u);
+    if (mesh->num_faces) TRY(blame_file(r, cli_certify(r, mesh, how)));
 done:
     brio_mesh_free(mesh);
     return status;

@@ -10,7 +10,8 @@
     X(check)                                                                                                           \
     X(compare)                                                                                                         \
     X(info)                                                                                                            \
-    X(generate)
+    X(generate)                                                                                                        \
+    X(subdivide)
 
 #define COMMAND_DECLARE(name) extern const command cli_##name;
 COMMANDS(COMMAND_DECLARE)

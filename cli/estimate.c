@@ -12,13 +12,17 @@
 #define FACE_OFFSET        8.0
 #define TETRAHEDRA_A_POINT 6.8 /* of uniform points; raw scans have 6.2 to 6.4 */
 #define BYTES_A_POINT      44.0
-/* 33 of the triangulation with the slack of its growth, and 8 of the sort of its result: 1 million uniform points peak at
- * 353 bytes a point resident, input included. The output, 16 bytes a tetrahedron, comes after that peak and stays below
- * it. */
+/* 33 of the triangulation with the slack of its growth, and 8 of the sort of its result: 1 million uniform points peak
+ * at 353 bytes a point resident, input included. The output, 16 bytes a tetrahedron, comes after that peak and stays
+ * below it. */
 #define BYTES_A_TETRAHEDRON 45.0
 /* Scans and models peak at 1,260 (dragon stand) to 1,720 (bunny) bytes a sample resident. */
 #define SURFACE_BYTES_A_POINT 1600.0
-#define INFO_BYTES_A_POINT    6.0 /* the hash table of duplicates */
+/* Of the result: 4 million faces from 1 million peak at 77 bytes a face resident, the certificate included. */
+#define GLOBAL_BYTES_A_POINT   600.0  /* more: the flow of anchor_scan takes 570, of the bunny 300 */
+#define SIMPLIFY_BYTES_A_POINT 1700.0 /* more: bunny 1,570, fandisk 1,700 */
+#define SUBDIVIDE_BYTES_A_FACE 78.0
+#define INFO_BYTES_A_POINT     6.0 /* the hash table of duplicates */
 
 double cli_mesh_bytes(const brio_mesh *mesh) {
     double bytes = COORDINATES * (double)mesh->num_vertices + 4 * INDEX * (double)mesh->num_tetrahedra;
@@ -38,8 +42,18 @@ double cli_surface_bytes(size_t points) {
     return (double)points * SURFACE_BYTES_A_POINT;
 }
 
+double cli_crust_extra_bytes(size_t points, bool global, bool simplify) {
+    return (double)points * ((global ? GLOBAL_BYTES_A_POINT : 0) + (simplify ? SIMPLIFY_BYTES_A_POINT : 0));
+}
+
 double cli_info_bytes(size_t points) {
     return (double)points * INFO_BYTES_A_POINT;
+}
+
+double cli_subdivide_bytes(const brio_mesh *mesh, int levels) {
+    double faces = (double)mesh->num_faces;
+    for (int i = 0; i < levels; i++) faces *= 4;
+    return faces * SUBDIVIDE_BYTES_A_FACE;
 }
 
 double cli_generate_bytes(size_t points) {

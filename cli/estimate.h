@@ -14,8 +14,14 @@ double cli_delaunay_bytes(size_t points, bool weighted);
 /** Bytes beside the input that `brio surface` takes. */
 double cli_surface_bytes(size_t points);
 
+/** Bytes that a power crust takes besides with global labels, and with simplification. */
+double cli_crust_extra_bytes(size_t points, bool global, bool simplify);
+
 /** Bytes beside the input that `brio info` takes. */
 double cli_info_bytes(size_t points);
+
+/** Bytes beside the input that `brio subdivide` takes. */
+double cli_subdivide_bytes(const brio_mesh *mesh, int levels);
 
 /** Bytes of `points` points of brio generate. */
 double cli_generate_bytes(size_t points);

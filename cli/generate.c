@@ -13,6 +13,9 @@ typedef struct arguments {
     int views;       /* NO_VIEWS: not given */
     const char *truth;
     uint64_t truth_resolution;
+    double level, blobbiness; /* NaN: not given */
+    uint64_t resolution;
+    bool sigma;
 } arguments;
 
 #define NO_COUNT UINT64_MAX
@@ -26,13 +29,22 @@ static const option options[] = {
     {"truth", 0, OPTION_TEXT, FIELD(truth), "FILE", "scan: also write the surface that is scanned", 0},
     {"truth-resolution", 0, OPTION_NATURAL, FIELD(truth_resolution), "R", "cells along its longest side (default 160)",
      0},
+    {"level", 0, OPTION_NUMBER, FIELD(level), "L", "iso: of the surface; 1 is an atom's own radius", 0},
+    {"sigma", 0, OPTION_FLAG, FIELD(sigma), NULL, "iso: the level is in standard deviations above the map's mean", 0},
+    {"resolution", 0, OPTION_NATURAL, FIELD(resolution), "R",
+     "iso: cells along the longest side (default the map's own, or 0.5 A for atoms)", 0},
+    {"blobbiness", 0, OPTION_NUMBER, FIELD(blobbiness), "B", "iso: the larger, the more atoms are balls (default 2)",
+     0},
     {0},
 };
 #undef FIELD
 
-static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .views = NO_VIEWS};
+static const arguments defaults = {
+    .points = NO_COUNT, .noise = NAN, .views = NO_VIEWS, .level = NAN, .blobbiness = NAN};
 
 #define KINDS "cube ball sphere torus cylinder grid scan clusters moment"
+
+enum { KIND_ISO = BRIO_KIND_END }; /* made from a file, and by a function of its own */
 
 static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"ball", BRIO_KIND_BALL},
@@ -44,30 +56,45 @@ static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"clusters", BRIO_KIND_CLUSTERS},
                                       {"moment", BRIO_KIND_MOMENT},
                                       {"moment-curve", BRIO_KIND_MOMENT},
+                                      {"iso", KIND_ISO},
                                       {NULL, 0}};
+
+static const brio_format surface_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_VTU,
+                                              BRIO_FORMAT_AUTO};
 
 static const char *kind_name(const void *list, size_t i) {
     return ((const option_choice *)list)[i].name;
 }
 
-static brio_status find_kind(run *r, brio_kind *kind) {
+static brio_status find_kind(run *r, int *kind) {
     const char *name = r->operands[0];
     for (const option_choice *k = kinds; k->name; k++) {
-        *kind = (brio_kind)k->value;
+        *kind = k->value;
         if (!strcmp(k->name, name)) return BRIO_OK;
     }
     const char *near = cli_nearest(name, kind_name, kinds);
     if (near) return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; did you mean '%s'?", name, near);
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; there are " KINDS, name);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; there are " KINDS " iso", name);
+}
+
+static bool has_scan_options(const arguments *a) {
+    return !isnan(a->noise) || a->views != NO_VIEWS || a->truth || a->truth_resolution;
+}
+
+static bool has_iso_options(const arguments *a) {
+    return !isnan(a->level) || !isnan(a->blobbiness) || a->resolution || a->sigma;
 }
 
 static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
-    bool of_scan = !isnan(a->noise) || a->views != NO_VIEWS || a->truth || a->truth_resolution;
     brio_format format;
     brio_status status = BRIO_OK;
+    if (r->num_operands > 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "generate: one argument too many: '%s'", r->operands[1]);
     if (a->points == NO_COUNT) return cli_fail(r, BRIO_ERR_ARGUMENT, "the number of points is missing: -n N");
-    if (kind != BRIO_KIND_SCAN && of_scan)
+    if (kind != BRIO_KIND_SCAN && has_scan_options(a))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
+    if (has_iso_options(a))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--level, --sigma, --resolution and --blobbiness go with iso only");
     if (a->views != NO_VIEWS && a->views < 1)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--views: %d is not positive", a->views);
     if (a->noise < 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise: %g is negative", a->noise);
@@ -96,13 +123,10 @@ done:
     return status;
 }
 
-static brio_status generate(run *r) {
-    const arguments *a = r->arguments;
+static brio_status generate_points(run *r, const arguments *a, brio_kind kind) {
     brio_generate_options o = brio_generate_options_default();
     brio_mesh *mesh = NULL;
-    brio_kind kind;
     brio_status status = BRIO_OK;
-    TRY(find_kind(r, &kind));
     TRY(check_arguments(r, a, kind));
     TRY(cli_require_memory(r, cli_generate_bytes((size_t)a->points)));
     o.seed = r->common.seed;
@@ -118,12 +142,54 @@ done:
     return status;
 }
 
+static brio_status check_iso_arguments(run *r, const arguments *a) {
+    if (r->num_operands < 2)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "generate iso: the file is missing: a map or a PDB file");
+    if (has_scan_options(a))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
+    if (isnan(a->level)) return cli_fail(r, BRIO_ERR_ARGUMENT, "the level of the surface is missing: --level L");
+    if (a->points == 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "-n: a surface of no points");
+    if (a->points != NO_COUNT && a->resolution)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "-n chooses the resolution: give one of -n and --resolution");
+    return cli_require_output(r, surface_formats, false);
+}
+
+static brio_status generate_iso(run *r, const arguments *a) {
+    brio_iso_options o = brio_iso_options_default();
+    brio_mesh *mesh = NULL;
+    brio_status status = BRIO_OK;
+    TRY(check_iso_arguments(r, a));
+    o.level = a->level;
+    o.deviations = a->sigma;
+    o.resolution = (size_t)a->resolution;
+    if (!isnan(a->blobbiness)) o.blobbiness = a->blobbiness;
+    if (a->points != NO_COUNT) o.vertices = (size_t)a->points;
+    TRY(brio_generate_iso(r->ctx, r->operands[1], &o, &mesh));
+    cli_lap(r, "generate");
+    cli_fact_count(&r->facts, "points", mesh->num_vertices);
+    cli_fact_count(&r->facts, "faces", mesh->num_faces);
+    TRY(cli_write(r, mesh));
+done:
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static brio_status generate(run *r) {
+    const arguments *a = r->arguments;
+    int kind;
+    brio_status status = BRIO_OK;
+    TRY(find_kind(r, &kind));
+    TRY(kind == KIND_ISO ? generate_iso(r, a) : generate_points(r, a, (brio_kind)kind));
+done:
+    return status;
+}
+
 const command cli_generate = {
     .name = "generate",
-    .operands = "KIND",
-    .summary = "test data: " KINDS "; -n N points to -o FILE",
+    .operands = "KIND [IN]",
+    .summary = "test data: " KINDS "; -n N points to -o FILE; or iso, the surface of a map or PDB file",
     .min_operands = 1,
-    .max_operands = 1,
+    .max_operands = 2,
     .options = options,
     .defaults = &defaults,
     .size = sizeof defaults,

@@ -2,66 +2,162 @@
 #include "certificate.h"
 #include "commands.h"
 #include "estimate.h"
+#include "power_crust.h"
+#include <string.h>
+
+enum { POWER_CRUST, COCONE, TIGHT_COCONE };
 
 typedef struct arguments {
     int method;
-    bool triangulate;
+    power_crust_options crust;
+    bool boundaries, density, vertex_normals, self_intersections;
+    double theta; /* 0: not given */
 } arguments;
 
 static const option_choice methods[] = {
-    {"power-crust", 0}, {"cocone", CHOICE_LATER}, {"tight-cocone", CHOICE_LATER}, {NULL, 0}};
+    {"power-crust", POWER_CRUST}, {"cocone", COCONE}, {"tight-cocone", TIGHT_COCONE}, {NULL, 0}};
 
 static const option options[] = {
     {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME", "how to reconstruct", methods},
-    {"triangulate", 0, OPTION_FLAG, offsetof(arguments, triangulate), NULL, "cut the polygons into triangles", 0},
+    POWER_CRUST_ROWS(arguments, crust),
+    {"theta", 0, OPTION_NUMBER, offsetof(arguments, theta), "ANGLE", "co-cones: half their opening, radians (pi/8)", 0},
+    {"boundaries", 0, OPTION_FLAG, offsetof(arguments, boundaries), NULL,
+     "co-cones: find the samples at boundaries and leave the surface open there", 0},
+    {"density", 0, OPTION_FLAG, offsetof(arguments, density), NULL,
+     "co-cones: estimate the sampling density r, also in properties of the vertices", 0},
+    {"vertex-normals", 0, OPTION_FLAG, offsetof(arguments, vertex_normals), NULL,
+     "give the vertices normals, as properties nx ny nz", 0},
+    {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
+     "count the pairs of faces that run through each other", 0},
     {0},
 };
 
 static const arguments defaults = {0};
+/* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
+static const double LEAST_THETA = 0.2542;
 static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_VTU,
                                       BRIO_FORMAT_AUTO};
 
-static void report_counts(run *r, const arguments *a, const brio_mesh *surface, const brio_power_crust_stats *s) {
+static void report_mesh(run *r, size_t samples, const brio_mesh *surface) {
+    const arguments *a = r->arguments;
     facts *f = &r->facts;
     cli_fact_text(f, "method", methods[a->method].name);
-    cli_fact_count(f, "samples", s->samples);
+    cli_fact_count(f, "samples", samples);
     cli_fact_count(f, "vertices", surface->num_vertices);
     cli_fact_count(f, "faces", surface->num_faces);
-    cli_fact_count(f, "poles", s->poles);
-    cli_fact_count(f, "hidden_poles", s->hidden_poles);
-    cli_fact_count(f, "inner", s->inner);
-    cli_fact_count(f, "outer", s->outer);
-    cli_fact_count(f, "confused", s->confused);
 }
 
-static brio_status reconstruct(run *r, const arguments *a, const brio_mesh *points, brio_mesh **surface) {
-    brio_surface_options o = brio_surface_options_default();
+/* --- the power crust --- */
+
+static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surface) {
+    const arguments *a = r->arguments;
     brio_power_crust_stats s = {0};
+    brio_status status = cli_power_crust(r, &a->crust, points, surface, &s);
+    if (status != BRIO_OK) return status;
+    report_mesh(r, s.samples, *surface);
+    cli_report_power_crust(r, &a->crust, &s);
+    return BRIO_OK;
+}
+
+/* --- the co-cones --- */
+
+static void report_cocone(run *r, const brio_cocone_stats *s) {
+    const arguments *a = r->arguments;
+    facts *f = &r->facts;
+    cli_fact_count(f, "unused", s->unused);
+    cli_fact_count(f, "candidates", s->candidates);
+    cli_fact_count(f, "pruned", s->pruned);
+    if (a->boundaries) cli_fact_count(f, "boundary_samples", s->boundary_samples);
+    cli_fact_count(f, "relabelled", s->relabelled);
+}
+
+/* The sampling condition of the guarantee (theorem 19: r <= 0.08), as far as the samples themselves tell. */
+static void report_density(run *r, const brio_cocone_stats *s) {
+    facts *f = &r->facts;
+    size_t used = s->samples - s->unused;
+    double share = used ? (double)s->outside_guarantee / (double)used : 0;
+    cli_fact_open(f, "sampling", FACT_OBJECT);
+    cli_fact_real(f, "r_median", s->r_median);
+    cli_fact_real(f, "r_p95", s->r_p95);
+    cli_fact_count(f, "outside_guarantee", s->outside_guarantee);
+    cli_fact_real(f, "outside_share", share);
+    cli_fact_close(f);
+    if (share > 0 && !r->common.quiet)
+        fprintf(stderr, "brio: %.1f %% of the samples are outside the guarantee (r over 0.08)\n", 100 * share);
+}
+
+static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) {
+    const arguments *a = r->arguments;
+    brio_cocone_options o = brio_cocone_options_default();
+    brio_cocone_stats s = {0};
     o.seed = r->common.seed;
-    o.triangulate = a->triangulate;
-    brio_status status = brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
+    if (a->theta != 0) o.theta = a->theta;
+    o.tight = a->method == TIGHT_COCONE;
+    o.boundaries = a->boundaries;
+    o.density = a->density || r->common.json;
+    brio_status status = brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
     if (status != BRIO_OK) return status;
     cli_stage(r, "delaunay", s.delaunay_seconds);
     cli_stage(r, "poles", s.poles_seconds);
-    cli_stage(r, "power", s.power_seconds);
-    cli_stage(r, "label", s.label_seconds);
-    cli_stage(r, "crust", s.crust_seconds);
-    r->lap = cli_clock();
-    report_counts(r, a, *surface, &s);
-    return cli_check_interrupt(r);
+    cli_stage(r, "candidates", s.candidates_seconds);
+    cli_stage(r, "label", s.labels_seconds);
+    cli_stage(r, "manifold", s.manifold_seconds);
+    cli_stage(r, "density", s.density_seconds);
+    report_mesh(r, s.samples, *surface);
+    report_cocone(r, &s);
+    if (o.density) report_density(r, &s);
+    return BRIO_OK;
+}
+
+/* What the points of the file had beside their coordinates: the vertices of a co-cone are the same points. */
+static brio_status copy_properties(const brio_mesh *points, brio_mesh *surface) {
+    for (size_t i = 0; i < points->num_properties; i++) {
+        const brio_property *p = &points->properties[i];
+        void *data;
+        if (brio_mesh_property(surface, p->name)) continue; /* estimated anew */
+        brio_status status = brio_mesh_add_property(surface, p->name, p->type, &data);
+        if (status != BRIO_OK) return status;
+        memcpy(data, p->data, points->num_vertices * brio_scalar_size(p->type));
+    }
+    return BRIO_OK;
+}
+
+/* Options of the other method are a mistake; a theta that voids the guarantee is worth a word. */
+static brio_status check_arguments(run *r) {
+    const arguments *a = r->arguments;
+    if (a->method == POWER_CRUST && (a->theta != 0 || a->boundaries || a->density))
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--theta, --boundaries and --density are for --method cocone|tight-cocone");
+    if (a->method != POWER_CRUST && cli_has_power_crust_options(&a->crust))
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--triangulate, --simplify, --labeling, --sampling-density, --sharp, --open and --normals are "
+                        "for --method power-crust");
+    if (a->theta < 0 || a->theta >= 1.57)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
+    if (a->theta > 0 && a->theta < LEAST_THETA && !r->common.quiet)
+        fprintf(stderr, "brio: theta under %g: no guarantee holds\n", LEAST_THETA);
+    return BRIO_OK;
 }
 
 static brio_status surface(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *points = NULL, *result = NULL;
     brio_status status = BRIO_OK;
+    TRY(check_arguments(r));
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read_points(r, r->operands[0], &points));
-    TRY(cli_require_memory(r, cli_mesh_bytes(points) + cli_surface_bytes(points->num_vertices)));
-    TRY(reconstruct(r, a, points, &result));
+    double extra =
+        cli_crust_extra_bytes(points->num_vertices, a->crust.labeling == BRIO_LABELING_GLOBAL, a->crust.simplify);
+    TRY(cli_require_memory(r, cli_mesh_bytes(points) + cli_surface_bytes(points->num_vertices) + extra));
+    TRY(a->method == POWER_CRUST ? power_crust(r, points, &result) : cocone(r, points, &result));
+    r->lap = cli_clock();
+    TRY(cli_check_interrupt(r));
+    if (a->method != POWER_CRUST) TRY(copy_properties(points, result));
     brio_mesh_free(points);
     points = NULL;
-    TRY(cli_certify(r, result, false));
+    if (a->vertex_normals) TRY(brio_mesh_add_normals(result));
+    unsigned how = a->method == COCONE || a->crust.open > 0 ? CERTIFY_OPEN : 0u;
+    TRY(cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u)));
     TRY(cli_write(r, result));
 done:
     brio_mesh_free(result);
@@ -72,7 +168,7 @@ done:
 const command cli_surface = {
     .name = "surface",
     .operands = "IN",
-    .summary = "closed surface through the points of a file, certified (.ply .obj .off .vtu)",
+    .summary = "surface through the points of a file, certified (.ply .obj .off .vtu)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

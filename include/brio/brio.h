@@ -124,8 +124,8 @@ BRIO_API size_t brio_context_memory_peak(const brio_context *ctx);
 
 #define BRIO_INFINITE UINT32_MAX
 
-/** A tetrahedron: its vertices, as indices of points, and for the facet opposite to each of them its mate, the handle of
- *  the same facet seen from the tetrahedron on the other side. As an array of numbers: eight to a tetrahedron. */
+/** A tetrahedron: its vertices, as indices of points, and for the facet opposite to each of them its mate, the handle
+ *  of the same facet seen from the tetrahedron on the other side. As an array of numbers: eight to a tetrahedron. */
 typedef struct {
     uint32_t vertex[4], mate[4];
 } brio_tetrahedron;
@@ -155,7 +155,7 @@ typedef struct brio_stats {
     size_t tetrahedra;  /* finite ones */
     size_t hull_facets; /* = infinite tetrahedra */
     uint64_t created, destroyed, walk_steps, insphere_calls;
-    uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
+    uint64_t exact_calls;      /* predicate calls that the floating-point filter did not settle */
     uint64_t deferred, serial; /* with threads: insertions put off to a later pass, and those left to one thread */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
@@ -200,8 +200,9 @@ BRIO_API brio_status brio_triangulation_check(brio_context *ctx, const brio_tria
                                               const double *weights, size_t num_points);
 
 /** The same check for tetrahedra from anywhere, finite ones only, in any order and either orientation: the four indices
- *  of points of each are at tetrahedra + stride * i (4 where they are packed, 8 for a view of a triangulation). Any Delaunay (regular) triangulation of the points passes, however its ties are broken.
- *  canonical  receives 1 when it is the one that brio_delaunay computes, else 0; may be NULL. */
+ *  of points of each are at tetrahedra + stride * i (4 where they are packed, 8 for a view of a triangulation). Any
+ *  Delaunay (regular) triangulation of the points passes, however its ties are broken. canonical  receives 1 when it is
+ *  the one that brio_delaunay computes, else 0; may be NULL. */
 BRIO_API brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const double *weights,
                                            size_t num_points, const uint32_t *tetrahedra, size_t stride,
                                            size_t num_tetrahedra, int *canonical);
@@ -276,9 +277,9 @@ BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const ch
 /** Scalar i of a property as a double. */
 BRIO_API double brio_property_value(const brio_property *property, size_t i);
 
-/** Adds the properties nx, ny, nz (float32) of the vertices: unit normals, the mean of the faces round a vertex by area,
- *  to the side from which faces are seen counterclockwise; 0 where there is none.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, normals that are there already), BRIO_ERR_NO_MEMORY. */
+/** Adds the properties nx, ny, nz (float32) of the vertices: unit normals, the mean of the faces round a vertex by
+ *  area, to the side from which faces are seen counterclockwise; 0 where there is none. Returns BRIO_OK,
+ *  BRIO_ERR_ARGUMENT (an index out of range, normals that are there already), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_add_normals(brio_mesh *mesh);
 
 /** What can be said of a surface by connectivity alone, vertices never being merged by position.
@@ -322,12 +323,11 @@ typedef struct brio_distance {
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
                                         uint64_t seed, brio_distance *out);
 
-/** Subdivides a mesh of triangles by the butterfly scheme: each level gives every edge a vertex and makes four triangles
- *  of one. The surface goes through the old vertices, which stay where they are, with the same indices; its limit is
- *  smooth, also at vertices that have not six neighbours. Boundaries are curves of their own. Properties go along: new
- *  vertices have the mean of their edge's ends, or for whole numbers that of one end.
- *  levels  1 to 15.   out  owned by the caller.
- *  Cost: linear in the result; 64 bytes a vertex of it and 118 a vertex of the level before.
+/** Subdivides a mesh of triangles by the butterfly scheme: each level gives every edge a vertex and makes four
+ *  triangles of one. The surface goes through the old vertices, which stay where they are, with the same indices; its
+ *  limit is smooth, also at vertices that have not six neighbours. Boundaries are curves of their own. Properties go
+ *  along: new vertices have the mean of their edge's ends, or for whole numbers that of one end. levels  1 to 15.   out
+ *  owned by the caller. Cost: linear in the result; 64 bytes a vertex of it and 118 a vertex of the level before.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (faces that are no triangles, edges of more than two faces or
  *  of faces that disagree), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Dyn Levin Gregory 1990], [Zorin Schroeder Sweldens 1996]. */
@@ -353,11 +353,11 @@ typedef struct brio_surface_options {
     /* Cells of samples whose radius in the co-cone is over 1.3 R / (1 - R) times the distance to the nearer pole are
      * badly shaped, for a surface that is an R-sample; R in (0, 1), smaller for more of them; default 0: none is. */
     double sampling_density;
-    int sharp; /* 1: both poles of badly shaped cells are discarded, not the nearer one only, so that the faces beside
-                  an edge without samples meet in it; sampling_density 0 then stands for 0.3 */
-    double open;     /* K > 0: faces are left out whose two balls intersect at more than pi / 4, the smaller one's radius
-                        being over K local spacings of the samples: large holes of the samples stay open; default 0: closed */
-    int simplify;    /* 1: triangles, about a quarter as many as the crust has polygons; edges far shorter than the local
+    int sharp;   /* 1: both poles of badly shaped cells are discarded, not the nearer one only, so that the faces beside
+                  an edge without samples meet in it; sampling_density 0 then stands for 0.5 */
+    double open; /* K > 0: faces are left out whose two balls intersect at more than pi / 4, the smaller one's radius
+                        being over K local spacings: large holes of the samples stay open; default 0: closed */
+    int simplify; /* 1: triangles, about a quarter as many as the crust has polygons; edges far shorter than the local
                         spacing collapse, the surface stays the same as a manifold; default 0 */
     double *normals; /* #P by 3, the caller's: receives the oriented unit normal of each point; NULL: not wanted */
 } brio_surface_options;
@@ -416,18 +416,18 @@ typedef struct brio_cocone_stats {
     double delaunay_seconds, poles_seconds, candidates_seconds, labels_seconds, manifold_seconds, density_seconds;
 } brio_cocone_stats;
 
-/** Reconstructs a surface out of Delaunay triangles of the samples: the co-cone, or the tight co-cone.
- *  Guarantees: the mesh is manifold and oriented as a combinatorial object, for every input; the tight co-cone is closed
- *  besides. On an r-sample of a smooth closed surface, r <= 0.08, the co-cone is homeomorphic to it and within
- *  1.3 r / (1 - r) of the local feature size (theorem 19 of [Choi 2003]).
- *  Does not guarantee: a closed mesh on sparser samples, absence of self-intersections, that every sample is used.
- *  points  #P by 3.   options  NULL for the defaults.   stats  may be NULL.
- *  out     owned by the caller. Its vertices are the points, with the same indices; those that no face has are left
+/** Reconstructs a surface out of Delaunay triangles of the samples: the co-cone, or the tight co-cone. Guarantees: the
+ *  mesh is manifold and oriented as a combinatorial object, for every input; the tight co-cone is closed besides. On an
+ *  r-sample of a smooth closed surface, r <= 0.08, the co-cone is homeomorphic to it and within 1.3 r / (1 - r) of the
+ *  local feature size (theorem 19 of [Choi 2003]). Does not guarantee: a closed mesh on sparser samples, absence of
+ *  self-intersections, that every sample is used. points  #P by 3.   options  NULL for the defaults.   stats  may be
+ *  NULL. out     owned by the caller. Its vertices are the points, with the same indices; those that no face has are
+ *  left
  *          where they are. With options.density: "feature_size", the distance to the nearest pole; "r", an estimate
  *          of the sampling density there (0 where the sample is on no face); "boundary", 1 for a boundary sample (with
  *          options.boundaries too).
- *  Cost: one triangulation; about 60 bytes a tetrahedron more.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found, or no inside), and as brio_delaunay.
+ *  Cost: one triangulation; about 60 bytes a tetrahedron more. Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found,
+ *  or no inside), and as brio_delaunay.
  *  Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
  *            [Dey Goswami 2003]. */
 BRIO_API brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points,

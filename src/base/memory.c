@@ -109,8 +109,8 @@ static size_t mapped_size(size_t size) {
     return round_up(size, PAGE);
 }
 
-/* Pages of the usual size: clearing a huge page at its first touch drives everything else out of the caches, which cost the
- * triangulation of four million points a fifth of its time (docs/performance.md). */
+/* Pages of the usual size: clearing a huge page at its first touch drives everything else out of the caches, which cost
+ * the triangulation of four million points a fifth of its time (docs/performance.md). */
 static void *map_anonymous(size_t size) {
     void *base = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     return base == MAP_FAILED ? NULL : base;

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/sort.h"
+#include "dual/cell_shape.h"
 #include "order/hilbert.h"
 #include "predicates/circumcentre.h"
 #include "predicates/predicates.h"
@@ -35,8 +36,7 @@ static void find_centres(const brio_context *ctx, finder *f) {
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t tet = 0; tet < f->num_tets; tet++) {
         double r[4][4] = {{0}};
-        for (int i = 0; i < 4; i++)
-            memcpy(r[i], f->points + 3 * (size_t)f->tet[tet].vertex[i], 3 * sizeof **r);
+        for (int i = 0; i < 4; i++) memcpy(r[i], f->points + 3 * (size_t)f->tet[tet].vertex[i], 3 * sizeof **r);
         if (!brio_centre(r[0], r[1], r[2], r[3], false, f->centre + 3 * tet, NULL)) f->centre[3 * tet] = NAN;
     }
 }
@@ -92,6 +92,23 @@ static void offer_all(finder *f, int side) {
             offer(f, &f->best[2 * v + (size_t)side], (uint32_t)tet, s);
         }
     }
+}
+
+static brio_status discard_bad(brio_context *ctx, finder *f, const brio_pole_filter *filter, size_t *bad_cells) {
+    brio_status status = BRIO_OK;
+    double *radius = NULL;
+    brio_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
+    BRIO_TRY(BRIO_ALLOC(ctx, radius, f->num_samples));
+    brio_cocone_radii(&cells, radius);
+    for (size_t s = 0; s < f->num_samples; s++) {
+        if (!brio_cell_is_bad(&cells, s, radius[s], filter->sampling_density)) continue;
+        f->best[2 * s + 1] = NO_TET;
+        if (filter->both) f->best[2 * s] = NO_TET;
+        ++*bad_cells;
+    }
+done:
+    brio_release(ctx, radius);
+    return status;
 }
 
 /* --- from tetrahedra to numbered poles --- */
@@ -170,7 +187,7 @@ done:
 }
 
 brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
-                            brio_poles *out) {
+                            const brio_pole_filter *filter, brio_poles *out) {
     brio_status status = BRIO_OK;
     finder f = {.tet = brio_triangulation_tetrahedra(t),
                 .points = points,
@@ -184,6 +201,7 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
     offer_all(&f, 0);
     offer_all(&f, 1);
+    if (filter->sampling_density > 0) BRIO_TRY(discard_bad(ctx, &f, filter, &out->bad_cells));
     BRIO_TRY(number_poles(ctx, &f, out));
     out->of_sample = f.best;
     f.best = NULL;

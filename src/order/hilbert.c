@@ -95,8 +95,7 @@ static inline uint64_t cube_key(const cube *c, const two_levels *two, const doub
 static cube cube_of(const double *rows, size_t stride, const uint64_t *items, size_t n, int threads) {
     cube all;
     cube_new(&all, rows + stride * (items ? (uint32_t)items[0] : 0));
-    BRIO_OMP(parallel num_threads(threads))
-    {
+    BRIO_OMP(parallel num_threads(threads)) {
         cube own = all;
         BRIO_OMP(for nowait)
         for (size_t i = 0; i < n; i++) cube_add(&own, rows + stride * (items ? (uint32_t)items[i] : i));

@@ -35,15 +35,16 @@ typedef struct {
 
 static brio_status sort_along_curve(const curve *c, size_t begin, size_t end, int threads);
 
-/* Sorts cells with many points again, along the curve through their own cube, so that clusters of any size are resolved.
- * Of the cells of [begin, end) those that start in [from, to). */
+/* Sorts cells with many points again, along the curve through their own cube, so that clusters of any size are
+ * resolved. Of the cells of [begin, end) those that start in [from, to). */
 static brio_status refine_cells(const curve *c, size_t begin, size_t end, size_t from, size_t to) {
     const uint64_t *items = c->items;
     brio_status status = BRIO_OK;
     while (from > begin && from < end && items[from] >> 32 == items[from - 1] >> 32) from++;
     for (size_t next; from < to && status == BRIO_OK; from = next) {
         for (next = from + 1; next < end && items[next] >> 32 == items[from] >> 32;) next++;
-        bool crowded = next - from > CELL_MOST && next - from < end - begin; /* else the cube is too small to be divided */
+        bool crowded =
+            next - from > CELL_MOST && next - from < end - begin; /* else the cube is too small to be divided */
         if (crowded) status = sort_along_curve(c, from, next, 1);
     }
     return status;
@@ -58,7 +59,8 @@ static brio_status sort_along_curve(const curve *c, size_t begin, size_t end, in
     if (status != BRIO_OK) return status;
     BRIO_OMP(parallel for schedule(static, 1) num_threads(threads))
     for (int t = 0; t < threads; t++) {
-        brio_status own = refine_cells(c, begin, end, begin + brio_part(n, t, threads), begin + brio_part(n, t + 1, threads));
+        brio_status own =
+            refine_cells(c, begin, end, begin + brio_part(n, t, threads), begin + brio_part(n, t + 1, threads));
         if (own != BRIO_OK) BRIO_OMP(critical(brio_curve_status)) status = own;
     }
     return status;
@@ -136,7 +138,8 @@ brio_status brio_order_points(brio_context *ctx, const double *points, size_t n,
     BRIO_TRY(BRIO_ALLOC(ctx, items, n));
     BRIO_TRY(BRIO_ALLOC(ctx, spare, n));
     bool random = options->order == BRIO_ORDER_RANDOM;
-    int most = brio_context_threads(ctx), threads = n / POINTS_A_THREAD < (size_t)most ? (int)(n / POINTS_A_THREAD) + 1 : most;
+    int most = brio_context_threads(ctx),
+        threads = n / POINTS_A_THREAD < (size_t)most ? (int)(n / POINTS_A_THREAD) + 1 : most;
     for (size_t i = 0; i < n; i++) items[i] = random ? hash_of(options->seed, i) >> 32 << 32 | i : i;
     if (random) BRIO_TRY(brio_sort_items(ctx, items, spare, n, 32, threads));
     if (options->order == BRIO_ORDER_HILBERT || options->order == BRIO_ORDER_BRIO)

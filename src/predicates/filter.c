@@ -38,7 +38,8 @@ typedef struct {
     int low, high;
 } span;
 
-/* Spans of the coordinates' differences and of the weights'. Gives up where coordinates are more than most_bits apart. */
+/* Spans of the coordinates' differences and of the weights'. Gives up where coordinates are more than most_bits apart.
+ */
 static void find_spans(const double (*record)[4], size_t n, const double extent[4], bool weighted, int most_bits,
                        span *coordinates, span *weights) {
     frexp(fmax(extent[0], fmax(extent[1], extent[2])), &coordinates->high);
@@ -62,8 +63,9 @@ static int least(int a, int b) {
     return a < b ? a : b;
 }
 
-/* Whether the in-sphere determinant is exact in doubles: a lift is a multiple of the coordinates' unit squared and of the
- * weights', a sum of three squares and a weight; a minor has six products of three; four products of these are summed. */
+/* Whether the in-sphere determinant is exact in doubles: a lift is a multiple of the coordinates' unit squared and of
+ * the weights', a sum of three squares and a weight; a minor has six products of three; four products of these are
+ * summed. */
 static bool exact_in_doubles(span c, span w, bool weighted) {
     int low = weighted ? least(2 * c.low, w.low) : 2 * c.low,
         high = weighted ? most(2 * c.high + 2, w.high) + 1 : 2 * c.high + 2;

@@ -77,13 +77,16 @@ static void push(uint32_t p, double weight, void *user) {
     update_priority(q, p);
 }
 
-static void mark_certain(const brio_pole_graph *g, queue *q) {
-    for (size_t p = 0; p < q->num_poles; p++) q->certain[p] = g->poles->bounding[p];
-    for (size_t tet = g->num_finite; tet < g->power.count; tet++)
-        for (int i = 0; i < 3; i++) q->certain[g->power.tet[tet].vertex[i]] = 1;
+/* Certain poles are outer; labelled ones are as certain of their labels. */
+static void mark_certain(const brio_pole_graph *g, const uint8_t *label, queue *q) {
+    brio_label_certain(g, q->certain);
+    for (uint32_t p = 0; p < q->num_poles; p++) {
+        if (label[p] != BRIO_LABEL_NONE) q->certain[p] = 1;
+        if (q->certain[p]) q->belief[label[p] == BRIO_LABEL_INNER][p] = 1;
+    }
 }
 
-static brio_status queue_new(const brio_pole_graph *g, queue *q) {
+static brio_status queue_new(const brio_pole_graph *g, const uint8_t *label, queue *q) {
     brio_status status = BRIO_OK;
     brio_context *ctx = g->ctx;
     size_t n = g->poles->count;
@@ -94,12 +97,9 @@ static brio_status queue_new(const brio_pole_graph *g, queue *q) {
     BRIO_TRY(BRIO_ALLOC(ctx, q->heap, n));
     BRIO_TRY(BRIO_ALLOC(ctx, q->place, n));
     BRIO_TRY(BRIO_ALLOC(ctx, q->certain, n));
-    mark_certain(g, q);
+    mark_certain(g, label, q);
     for (uint32_t p = 0; p < n; p++) put(q, p, p);
-    for (uint32_t p = 0; p < n; p++) {
-        q->belief[0][p] = q->certain[p];
-        update_priority(q, p);
-    }
+    for (uint32_t p = 0; p < n; p++) update_priority(q, p);
 done:
     return status;
 }
@@ -113,18 +113,17 @@ static void queue_free(brio_context *ctx, queue *q) {
     brio_release(ctx, q->certain);
 }
 
-brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, size_t *confused) {
+brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
     brio_status status = BRIO_OK;
     queue q = {0};
-    *confused = 0;
-    BRIO_TRY(queue_new(g, &q));
+    BRIO_TRY(queue_new(g, label, &q));
     while (q.heap_size) {
         if (q.heap_size % 65536 == 0)
             BRIO_TRY(brio_progress(g->ctx, "label", 1 - 0.5 * (double)q.heap_size / (double)q.num_poles));
         uint32_t p = pop(&q);
         int inner = q.belief[1][p] > q.belief[0][p];
         label[p] = inner ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-        *confused += confused_pole(&q, p);
+        stats->confused += confused_pole(&q, p);
         q.strength = q.belief[inner][p];
         q.side = !inner;
         brio_pole_graph_opposite(g, p, push, &q);

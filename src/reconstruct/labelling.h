@@ -4,9 +4,46 @@
 
 #include "reconstruct/pole_graph.h"
 
-/** label[p] of every pole, hidden ones too. Poles whose tetrahedron has a bounding point and the poles on the hull of
- *  the power diagram's dual are outer from the start and for good: only then does every crust face close. *confused
- *  counts the poles that had evidence for both labels when they were labelled. */
-brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, size_t *confused);
+/** What a labelling counts; fields it does not know of stay as they were. */
+typedef struct {
+    size_t confused;              /* poles that had evidence for both labels when they were labelled */
+    size_t unreached;             /* left to the greedy labelling by another one */
+    size_t open;                  /* not settled by roof duality */
+    size_t toggled;               /* of these, the ones that differ from the greedy labelling in the end */
+    double energy_greedy, energy; /* sum of the violated weights, of the greedy labelling and in the end */
+} brio_labelling_stats;
+
+/* Every labelling gives label[p] to every pole, hidden ones too; *label is BRIO_LABEL_NONE throughout to begin with.
+ * Poles whose tetrahedron has a bounding point and the poles on the hull of the power diagram's dual are certain: outer
+ * for good. Only then does every crust face close. */
+
+/** The surest pole first. Poles that are labelled already keep their labels and are as sure as the certain ones. */
+brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
+
+/** Breadth first from all certain poles. */
+brio_status brio_label_naive(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
+
+/** Breadth first from one sample of the hull; the graph has the edges of weight over BRIO_THEORETICAL_WEIGHT. */
+brio_status brio_label_theoretical(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
+
+/** Of least energy as far as roof duality tells; of no more energy than the greedy one. */
+brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
+
+/** -cos of pi / 4: the balls of the theoretical algorithm's neighbours intersect at a larger angle. */
+#define BRIO_THEORETICAL_WEIGHT (-0.70710678118654752)
+
+/** certain[p] = 1 for the poles that are outer for good, else 0; others are not written where they are 1. */
+void brio_label_certain(const brio_pole_graph *g, uint8_t *certain);
+
+/** The sum of the violated positive weights: neighbours of different labels, opposite poles of the same. */
+double brio_label_energy(const brio_pole_graph *g, const uint8_t *label);
+
+/** Spreads labels breadth first from the poles of a queue, that are labelled: deeply intersecting neighbours get the
+ *  same label, opposite poles the opposite one, certain poles outer whatever reaches them.
+ *  queue  #poles, of which `size` are filled. */
+void brio_label_spread(const brio_pole_graph *g, const uint8_t *certain, uint8_t *label, uint32_t *queue, size_t size);
+
+/** Lets the greedy labelling label what is not yet labelled, and counts it. */
+brio_status brio_label_finish(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
 
 #endif

@@ -24,14 +24,17 @@ typedef struct {
     float *edge_weight;
 } brio_pole_graph;
 
-/** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power.
- *  The weight of an edge between neighbours is -cos of the angle at which their balls intersect: 0 at a right angle, 1
- *  for a ball inside the other; edges that are not positive are left out. */
+/** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power. The
+ *  weight of an edge between neighbours is -cos of the angle at which their balls intersect: -1 where they touch, 0 at
+ *  a right angle, 1 for a ball inside the other; edges of weight `least_weight` and less are left out. */
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
-                                const brio_triangulation *power, brio_pole_graph *out);
+                                const brio_triangulation *power, double least_weight, brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);
 
-/** Called for an edge from a pole to `other` of the given weight in (0, 1]. */
+/** The weight of an edge between two neighbours, deep or not; over 1 for a ball inside the other. */
+double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q);
+
+/** Called for an edge from a pole to `other` of the given weight, at most 1. */
 typedef void (*brio_pole_visit_fn)(uint32_t other, double weight, void *user);
 
 /** Visits the opposite poles of p; the weight is -cos of the angle at the sample, edges that are not positive are left

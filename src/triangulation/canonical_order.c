@@ -1,14 +1,16 @@
 /* The canonical order of the tetrahedra, in place, and the caller's names for their vertices.
  *
- * The vertices of every tetrahedron are turned by an even permutation: the latest (in the order of insertion) comes first,
- * then the latest of the others, which leaves one arrangement (an infinite vertex stays last). Tetrahedra are sorted by their first three vertices, finite ones first: a counting sort
- * by the latest vertex, then a small sort in each bucket by the two after it, which no two tetrahedra of a bucket share
- * in this order. The order depends on the set of tetrahedra and the insertion order alone, not on the history or the
- * threads that made it. And a tetrahedron already lies near its place, nearer than in an order by the earliest vertex.
+ * The vertices of every tetrahedron are turned by an even permutation: the latest (in the order of insertion) comes
+ * first, then the latest of the others, which leaves one arrangement (an infinite vertex stays last). Tetrahedra are
+ * sorted by their first three vertices, finite ones first: a counting sort by the latest vertex, then a small sort in
+ * each bucket by the two after it, which no two tetrahedra of a bucket share in this order. The order depends on the
+ * set of tetrahedra and the insertion order alone, not on the history or the threads that made it. And a tetrahedron
+ * already lies near its place, nearer than in an order by the earliest vertex.
  *
  * The array is permuted in place, block by block: what belongs into a block is gathered aside with its facets and
- * vertices renamed, what else lives there moves to the slots that this left free, and the block is written. The reads of
- * a block are independent, which following cycles would not be. Two numbers a tetrahedron are added, no second copy. */
+ * vertices renamed, what else lives there moves to the slots that this left free, and the block is written. The reads
+ * of a block are independent, which following cycles would not be. Two numbers a tetrahedron are added, no second copy.
+ */
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "triangulation/kernel.h"
@@ -18,13 +20,14 @@ enum { BLOCK = 1 << 13, STEPS = 32, FEW = 48, AHEAD = 24 };
 
 static const uint32_t NOWHERE = UINT32_MAX;
 
-/* The states while things move: the turn of the tetrahedron that was in the slot at the end of the insertion, and what the
- * slot holds now: still that one, another one, already turned, or nothing. */
+/* The states while things move: the turn of the tetrahedron that was in the slot at the end of the insertion, and what
+ * the slot holds now: still that one, another one, already turned, or nothing. */
 enum { TURN = 15, SLOT_MOVED = 16, SLOT_FREE = 32 };
 
 /* The even permutations of four slots: TURNED[r][i] comes to slot i; and back. */
-static const uint8_t TURNED[12][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2}, {1, 3, 2, 0}, {1, 2, 0, 3},
-                                      {2, 0, 1, 3}, {2, 1, 3, 0}, {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 2, 1, 0}, {3, 1, 0, 2}};
+static const uint8_t TURNED[12][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2},
+                                      {1, 3, 2, 0}, {1, 2, 0, 3}, {2, 0, 1, 3}, {2, 1, 3, 0},
+                                      {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 2, 1, 0}, {3, 1, 0, 2}};
 static const uint8_t BACK[12][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 0, 3, 2}, {3, 0, 2, 1}, {2, 0, 1, 3},
                                     {1, 2, 0, 3}, {3, 1, 0, 2}, {2, 3, 0, 1}, {1, 3, 2, 0}, {3, 2, 1, 0}, {2, 1, 3, 0}};
 
@@ -226,8 +229,8 @@ static inline void move_one(sorter *s, uint32_t slot, uint32_t to) {
     mark_slot(s, slot, SLOT_FREE);
 }
 
-/* What the threads share that fill a block: the tetrahedra aside, those that have to leave and the slots for them, and how
- * many of each the threads before one have found. */
+/* What the threads share that fill a block: the tetrahedra aside, those that have to leave and the slots for them, and
+ * how many of each the threads before one have found. */
 typedef struct {
     brio_tetrahedron *aside;
     uint32_t *leaving, *vacant;

@@ -1,13 +1,13 @@
 /* The cavity of a point: dig it out, fill it with the point's star.
  *
  * Dig: breadth first from one tetrahedron in conflict. All facets through which the cavity has been left so far wait in
- * one list, as their outer sides; several of the tetrahedra there are tested together. One in conflict joins the cavity,
- * else the facet belongs to the border, a sphere that the point sees from inside. A tetrahedron seen across two facets
- * may be tested twice with the same answer, which costs less than marking it. Fill: each border facet and the point make
- * a tetrahedron, in the slots of the cavity. Two of these are neighbours across the edge that their border facets
- * share, which each of them sees in its own direction: entered under (u, v), found under (v, u). Vertices of the border
- * are numbered in bytes, so that a pair of them is a place in a small table; borders with too many vertices use a hash
- * table. Lists are written always and their length is advanced by a bit, since no branch could be foreseen.
+ * one list, as their outer sides; several of the tetrahedra there are tested together. One in conflict joins the
+ * cavity, else the facet belongs to the border, a sphere that the point sees from inside. A tetrahedron seen across two
+ * facets may be tested twice with the same answer, which costs less than marking it. Fill: each border facet and the
+ * point make a tetrahedron, in the slots of the cavity. Two of these are neighbours across the edge that their border
+ * facets share, which each of them sees in its own direction: entered under (u, v), found under (v, u). Vertices of the
+ * border are numbered in bytes, so that a pair of them is a place in a small table; borders with too many vertices use
+ * a hash table. Lists are written always and their length is advanced by a bit, since no branch could be foreseen.
  *
  * Based on: Bowyer. Computing Dirichlet tessellations. Comput. J. 1981.
  *           Watson. Computing the n-dimensional Delaunay tessellation ... Comput. J. 1981. */
@@ -49,8 +49,8 @@ brio_status brio_cavity_defer(brio_kernel *k) {
  * hold the infinite vertex, last. */
 static const uint8_t OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}};
 
-/* Slots for the new tetrahedra: those of the cavity, of older ones, then new ones (room is there). What the star does not
- * need of the cavity becomes unused. */
+/* Slots for the new tetrahedra: those of the cavity, of older ones, then new ones (room is there). What the star does
+ * not need of the cavity becomes unused. */
 static brio_status take_slots(brio_kernel *k) {
     brio_cavity *c = &k->cavity;
     size_t n = 0;
@@ -106,9 +106,9 @@ static void number_vertices(brio_kernel *k) {
     for (size_t n = 1; n < c->num_tets; n++) *number_of(k, brio_apex(&k->t, c->entry[n])) = (uint8_t)(n + 3);
 }
 
-/* Joins the star by a table of edges. Facet i > 0 of a new tetrahedron holds the point and the edge from vertex i % 3 + 1
- * to the one after it. The numbers x, y, z of the vertices 1, 2, 3, of so many bits each, are packed as x y z x from the
- * lowest on, so that each edge is a pair of neighbours; packed as x z y x, each edge the other way round is one. */
+/* Joins the star by a table of edges. Facet i > 0 of a new tetrahedron holds the point and the edge from vertex i % 3 +
+ * 1 to the one after it. The numbers x, y, z of the vertices 1, 2, 3, of so many bits each, are packed as x y z x from
+ * the lowest on, so that each edge is a pair of neighbours; packed as x z y x, each edge the other way round is one. */
 static inline void join_by_table(brio_kernel *k, uint32_t p, const int bits) {
     brio_cavity *c = &k->cavity;
     const uint32_t *border = c->border, *created = c->created, pair = (1u << 2 * bits) - 1;

@@ -1,10 +1,11 @@
 /* The exact check of a Delaunay or regular triangulation.
  *
  * A closed adjacency of positive tetrahedra with a locally convex hull of genus 0, in which no point is covered twice,
- * triangulates the convex hull; and it is regular when every two neighbours are: the far vertex of one is not inside the
- * other's (ortho)sphere. With ties broken by the symbolic perturbation the regular triangulation is unique, so "locally
- * regular under the perturbation" means "the one that brio_delaunay computes". Every remaining point is located exactly,
- * and must be at a vertex that is not lighter, or outside the orthosphere of the tetrahedron that holds it.
+ * triangulates the convex hull; and it is regular when every two neighbours are: the far vertex of one is not inside
+ * the other's (ortho)sphere. With ties broken by the symbolic perturbation the regular triangulation is unique, so
+ * "locally regular under the perturbation" means "the one that brio_delaunay computes". Every remaining point is
+ * located exactly, and must be at a vertex that is not lighter, or outside the orthosphere of the tetrahedron that
+ * holds it.
  *
  * Inputs of fewer dimensions have no tetrahedra to look at; their check is in check_flat.c. */
 #include "base/memory.h"
@@ -40,8 +41,8 @@ static brio_status check_mates(const judge *j) {
     brio_status status = BRIO_OK;
     for (size_t f = 0; f < 4 * j->t.count; f++) {
         uint32_t g = *brio_mate(&j->t, (uint32_t)f);
-        BRIO_REQUIRE(j->ctx, g < 4 * j->t.count && *brio_mate(&j->t, g) == f && same_facet(j, (uint32_t)f, g), BRIO_ERR_CHECK,
-                     "facet %zu of tetrahedron %zu and its mate do not match", f % 4, f / 4);
+        BRIO_REQUIRE(j->ctx, g < 4 * j->t.count && *brio_mate(&j->t, g) == f && same_facet(j, (uint32_t)f, g),
+                     BRIO_ERR_CHECK, "facet %zu of tetrahedron %zu and its mate do not match", f % 4, f / 4);
     }
 done:
     return status;
@@ -171,8 +172,8 @@ done:
     return status;
 }
 
-/* The side of (a, b, c) on which a point just inside the tetrahedron `seed` lies, next to its first vertex: an orientation
- * is affine in its last point, so the first of the seed's vertices off the plane decides. */
+/* The side of (a, b, c) on which a point just inside the tetrahedron `seed` lies, next to its first vertex: an
+ * orientation is affine in its last point, so the first of the seed's vertices off the plane decides. */
 static int side_of_seed(judge *j, const uint32_t *seed, uint32_t a, uint32_t b, uint32_t c) {
     const brio_record *r = j->t.record;
     int side = 0;
@@ -180,8 +181,9 @@ static int side_of_seed(judge *j, const uint32_t *seed, uint32_t a, uint32_t b, 
     return side;
 }
 
-/* Nothing is covered twice: a point inside one finite tetrahedron is in no other and inside of every hull facet. Positive
- * tetrahedra cover every point inside the hull equally often, and a hull that is seen once from one point is embedded. */
+/* Nothing is covered twice: a point inside one finite tetrahedron is in no other and inside of every hull facet.
+ * Positive tetrahedra cover every point inside the hull equally often, and a hull that is seen once from one point is
+ * embedded. */
 static brio_status check_cover(judge *j) {
     brio_status status = BRIO_OK;
     size_t first = 0;
@@ -260,8 +262,7 @@ done:
 }
 
 brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const double *weights, size_t num_points,
-                                  const uint32_t *tetrahedra, size_t stride, size_t num_tetrahedra,
-                                  int *canonical) {
+                                  const uint32_t *tetrahedra, size_t stride, size_t num_tetrahedra, int *canonical) {
     brio_status status = BRIO_OK;
     brio_record *record = NULL;
     brio_tetrahedra t = {0};

@@ -3,9 +3,9 @@
  *
  * LANES tetrahedra go through the in-sphere determinant together. An infinite vertex enters as the point at infinity of
  * the lifting: row (0, 0, 0) with lift 1, which turns the determinant into the orientation of the hull facet and the
- * query, so finite and infinite tetrahedra need no branch; its record is told by an infinite weight. Lanes whose sign is not certain take the further stages: a
- * bound from the largest difference along each axis, then pairs of doubles in the same lanes, and only what these leave is tested
- * one by one.
+ * query, so finite and infinite tetrahedra need no branch; its record is told by an infinite weight. Lanes whose sign
+ * is not certain take the further stages: a bound from the largest difference along each axis, then pairs of doubles in
+ * the same lanes, and only what these leave is tested one by one.
  *
  * The bounds are those of filter.c and of the pairs below: a permanent is at most 24 times (6 times for an orientation)
  * the product of the largest differences and the largest lift. Fused operations round less often than these bounds
@@ -54,8 +54,8 @@ static inline lanes minor2(lanes x, lanes y, lanes z, lanes w) {
     return multiply_subtract(x, w, z * y);
 }
 
-/* Minors of the rows but one: the orientations of the tetrahedron with one vertex replaced by the query, up to the sign:
- * minor[1] and minor[3] are negated. */
+/* Minors of the rows but one: the orientations of the tetrahedron with one vertex replaced by the query, up to the
+ * sign: minor[1] and minor[3] are negated. */
 static inline void minors(const rows *r, lanes minor[4]) {
     const lanes *x = r->x, *y = r->y, *z = r->z;
     lanes ab = minor2(x[0], y[0], x[1], y[1]), bc = minor2(x[1], y[1], x[2], y[2]), cd = minor2(x[2], y[2], x[3], y[3]);
@@ -191,8 +191,8 @@ static inline unsigned settle_lattice(const brio_tetrahedra *t, brio_filter *f, 
     return mask;
 }
 
-/* Stages beyond the static bound, for the lanes not yet known. Loads everything again: keeping it at hand would cost the
- * calls that do not come here, nearly all of them, more. */
+/* Stages beyond the static bound, for the lanes not yet known. Loads everything again: keeping it at hand would cost
+ * the calls that do not come here, nearly all of them, more. */
 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
                                                  const double *p, unsigned known, const bool weighted) {
     corners c;
@@ -205,7 +205,8 @@ static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_
     unsigned mask = decide(determinant(&r), all(DOUBLE_UNIT) * most + floor, &known);
     if (known == ALL_LANES) return mask;
     f->unsettled += (uint64_t)__builtin_popcount(~known & ALL_LANES);
-    if (!f->coarse) mask |= decide(determinant_of_pairs(&c, r.infinite, weighted), all(PAIR_UNIT) * most + floor, &known);
+    if (!f->coarse)
+        mask |= decide(determinant_of_pairs(&c, r.infinite, weighted), all(PAIR_UNIT) * most + floor, &known);
     for (int i = 0; i < LANES; i++)
         if (!(known >> i & 1)) mask |= (unsigned)brio_in_conflict_exact(t, f, brio_tet_of(facets[i]), p, weighted) << i;
     return mask;

@@ -133,7 +133,7 @@ static brio_status insert_all(brio_kernel *k) {
     bool parallel = k->rank && k->dimension == 3;
     for (size_t p = (size_t)k->dimension + 1, end; p < k->num_points; p = end) {
         end = p + PROGRESS_EVERY - p % PROGRESS_EVERY < k->num_points ? p + PROGRESS_EVERY - p % PROGRESS_EVERY
-                                                                       : k->num_points;
+                                                                      : k->num_points;
         BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)k->num_points));
         if (parallel) {
             end = end_of_run(k, p);

@@ -18,8 +18,8 @@ static inline size_t leave(const brio_kernel *k, uint32_t tet, uint32_t *facet, 
     return n;
 }
 
-/* Adds the tetrahedra of those facets that are in conflict, each once, and the other facets to the border. False when one
- * of them is not the thread's own. */
+/* Adds the tetrahedra of those facets that are in conflict, each once, and the other facets to the border. False when
+ * one of them is not the thread's own. */
 static inline bool divide(brio_kernel *k, const uint32_t *facet, size_t count, unsigned conflicts) {
     brio_cavity *c = &k->cavity;
     uint32_t *entries = c->entry, *border = c->border;
@@ -73,12 +73,12 @@ static inline __attribute__((always_inline)) brio_status dig_cavity(brio_kernel 
 }
 
 static unsigned test_batch(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH], size_t count,
-                          const double *p) {
+                           const double *p) {
     return batch_in_conflict(t, f, facets, count, p, false);
 }
 
 static unsigned test_batch_weighted(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH],
-                                   size_t count, const double *p) {
+                                    size_t count, const double *p) {
     return batch_in_conflict(t, f, facets, count, p, true);
 }
 

@@ -11,18 +11,19 @@
 
 /** Workspace of one insertion, kept from one to the next. */
 typedef struct {
-    uint32_t *entry;  /* of each tetrahedron in conflict, the facet through which it was found */
+    uint32_t *entry;   /* of each tetrahedron in conflict, the facet through which it was found */
     uint32_t *created; /* a tetrahedron for each border facet: the star of the last point that was inserted */
-    uint32_t *facet;  /* outer sides of the facets through which the cavity was left; then codes of the border's vertices */
+    uint32_t
+        *facet; /* outer sides of the facets through which the cavity was left; then codes of the border's vertices */
     uint32_t *border; /* those of them that lead to no conflict */
     size_t num_tets, num_border, num_created;
     size_t capacity;         /* of entry, a quarter of that of the other lists */
     uint32_t *cavity_vertex; /* the vertices of all tets, with repetitions; weighted only */
     size_t cavity_vertex_capacity;
-    uint8_t *local;     /* of each vertex: its number in the cavity it was last in */
+    uint8_t *local;         /* of each vertex: its number in the cavity it was last in */
     uint8_t infinite_local; /* the infinite vertex', which all threads meet */
-    uint32_t *table;    /* facet handle of each directed edge of the border, BRIO_TABLE of them */
-    uint64_t *edge_key; /* hash table of directed edges, for large borders */
+    uint32_t *table;        /* facet handle of each directed edge of the border, BRIO_TABLE of them */
+    uint64_t *edge_key;     /* hash table of directed edges, for large borders */
     uint32_t *edge_facet;
     size_t hash_capacity, hash_facet_capacity;
 } brio_cavity;
@@ -34,8 +35,8 @@ struct brio_kernel {
     brio_tetrahedra t;
     size_t capacity, max_tetrahedra; /* slots from t.count to capacity are fresh */
     struct brio_team *team;          /* of the parallel pass, or NULL */
-    uint8_t *state;   /* of each tetrahedron: brio_tet_state */
-    uint32_t *unused; /* slots of destroyed tetrahedra */
+    uint8_t *state;                  /* of each tetrahedron: brio_tet_state */
+    uint32_t *unused;                /* slots of destroyed tetrahedra */
     size_t num_unused, unused_capacity;
     brio_record *record; /* the points in insertion order, then up to two apexes, then room for the infinite vertex */
     uint32_t *rank;      /* of each record along the curve; NULL with one thread */

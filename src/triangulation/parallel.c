@@ -2,17 +2,18 @@
  *
  * A pass divides the points into zones, one a thread. A thread walks through and destroys only tetrahedra all of whose
  * finite vertices are in its zone, and inserts its points in their order; a point whose walk or cavity would leave the
- * zone is deferred. The tetrahedra round a cavity share three vertices with it, so no other thread can destroy them, and
- * what it reads there does not change: their mates are written only through the facet that both share. So threads need no
- * locks and share nothing but the count of slots, taken in large stretches. The first pass divides the curve
- * that the points follow. Deferred points lie along the borders of its zones; each later pass takes another curve, which
- * cuts space elsewhere. What is left at the end is inserted by one thread.
+ * zone is deferred. The tetrahedra round a cavity share three vertices with it, so no other thread can destroy them,
+ * and what it reads there does not change: their mates are written only through the facet that both share. So threads
+ * need no locks and share nothing but the count of slots, taken in large stretches. The first pass divides the curve
+ * that the points follow. Deferred points lie along the borders of its zones; each later pass takes another curve,
+ * which cuts space elsewhere. What is left at the end is inserted by one thread.
  *
  * The result is the one triangulation that exact predicates and the symbolic perturbation determine, whatever was
  * deferred.
  *
  * Based on: Marot, Pellerin, Remacle. One machine, one minute, three billion tetrahedra. IJNME 2019.
- * Differs from the paper: a walk that is blocked starts again from one of the hints that were located along the zone. */
+ * Differs from the paper: a walk that is blocked starts again from one of the hints that were located along the zone.
+ */
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/sort.h"
@@ -271,7 +272,8 @@ done:
     return status;
 }
 
-/* Whether to insert that many points by threads saves more time than the keys of all points along another curve take. */
+/* Whether to insert that many points by threads saves more time than the keys of all points along another curve take.
+ */
 static bool pays(size_t count, size_t points, int threads) {
     enum { KEYS_AN_INSERTION = 36 };
     return count * KEYS_AN_INSERTION * (size_t)(threads - 1) > points;

@@ -98,8 +98,8 @@ static void represent_coincident(brio_kernel *k) {
     k->stats.duplicates = k->num_points - 1;
 }
 
-/* In a parallel pass a later one of coincident points may come first and become the vertex. The first in the order takes its
- * place back, so that the order of the tetrahedra does not tell. */
+/* In a parallel pass a later one of coincident points may come first and become the vertex. The first in the order
+ * takes its place back, so that the order of the tetrahedra does not tell. */
 static brio_status restore_first(brio_kernel *k) {
     uint32_t *first = NULL;
     size_t changed = 0;

@@ -78,8 +78,8 @@ static inline int brio_slot_of_vertex(const uint32_t v4[4], uint32_t v) {
     return v4[0] == v ? 0 : v4[1] == v ? 1 : v4[2] == v ? 2 : v4[3] == v ? 3 : 4;
 }
 
-/* Whether this thread may destroy a tetrahedron: all its vertices are in its zone. No other thread destroys it then, nor
- * any that shares a facet with it, see parallel.c. */
+/* Whether this thread may destroy a tetrahedron: all its vertices are in its zone. No other thread destroys it then,
+ * nor any that shares a facet with it, see parallel.c. */
 static inline bool brio_owns(const brio_tetrahedra *t, uint32_t tet) {
     const uint32_t *v = t->tet[tet].vertex;
     if (!t->zone) return true;

@@ -1,5 +1,5 @@
-/* The walk of locate_walk.c with the four facets of a tetrahedron side by side in the lanes of one AVX2 register; included
- * by the engines that have it. */
+/* The walk of locate_walk.c with the four facets of a tetrahedron side by side in the lanes of one AVX2 register;
+ * included by the engines that have it. */
 #include "triangulation/locate.h"
 #include <immintrin.h>
 

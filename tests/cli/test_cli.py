@@ -18,16 +18,19 @@ import time
 import unittest
 
 BRIO = os.environ.get("BRIO", "brio")
-COMMANDS = ["delaunay", "surface", "check", "compare", "info", "generate"]
+COMMANDS = ["delaunay", "surface", "check", "compare", "info", "generate", "subdivide"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--round-ratio", "--locate", "--verify"],
-    "surface": ["--method", "--triangulate"],
-    "check": ["--weights", "--weights-mod", "--unweighted", "--open"],
+    "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--simplify", "--labeling",
+                "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
+    "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
     "compare": ["--samples"],
     "info": [],
-    "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution"],
+    "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--level", "--sigma",
+                 "--resolution", "--blobbiness"],
+    "subdivide": ["--levels"],
 }
 
 CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
@@ -188,8 +191,7 @@ class Usage(CliTest):
 
     def test_names_of_later_versions(self):
         for arguments in [("delaunay", "--order", "octree"), ("delaunay", "--order", "brio-kdtree"),
-                          ("delaunay", "--locate", "jump"), ("delaunay", "--block-size", "8"),
-                          ("surface", "--method", "cocone"), ("check", "--self-intersections")]:
+                          ("delaunay", "--locate", "jump"), ("delaunay", "--block-size", "8")]:
             self.usage("not available in this version", arguments[0], "a.xyz", *arguments[1:])
 
     def test_output_without_a_known_extension(self):
@@ -616,11 +618,75 @@ class Json(CliTest):
         facts = self.facts("surface", points, "-o", self.path("out.ply"))
         seconds = {key: number for key in "read delaunay poles power label crust certify write total".split()}
         counts = "samples vertices faces poles hidden_poles inner outer confused".split()
-        self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str,
-                                   "certificate": CERTIFICATE, "seconds": seconds})
+        self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "labeling": str,
+                                   "energy": number, "certificate": CERTIFICATE, "seconds": seconds})
         self.assertEqual((facts["method"], facts["samples"]), ("power-crust", 2000))
         c = facts["certificate"]
         self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
+
+    def test_cocone(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        seconds = {key: number for key in
+                   "read delaunay poles candidates label manifold density certify write total".split()}
+        counts = "samples vertices faces unused candidates pruned relabelled".split()
+        sampling = {"r_median": number, "r_p95": number, "outside_guarantee": count, "outside_share": number}
+        for method in ("cocone", "tight-cocone"):
+            facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", method)
+            self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str,
+                                       "certificate": CERTIFICATE, "seconds": seconds, "sampling": sampling})
+            self.assertEqual((facts["method"], facts["vertices"], facts["faces"]), (method, 2000, 3996))
+            c = facts["certificate"]
+            self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
+        bounded = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--boundaries")
+        self.assertLess(bounded["boundary_samples"], 100)
+
+    def test_labelings(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        more = {"greedy": [], "naive": ["unreached"], "theoretical": ["unreached"],
+                "global": ["energy_greedy", "open", "toggled"]}
+        for labeling, keys in more.items():
+            facts = self.facts("surface", points, "-o", self.path("out.ply"), "--labeling", labeling)
+            self.assertEqual(facts["labeling"], labeling)
+            self.assertTrue(facts["certificate"]["closed"])
+            self.assertTrue({"energy", *keys} <= set(facts))
+        self.usage("unknown name", "surface", points, "-o", self.path("out.ply"), "--labeling", "best")
+
+    def test_surface_outputs(self):
+        points, out, normals = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply"), self.path("n.csv")
+        whole = self.facts("surface", points, "-o", out, "--self-intersections")
+        self.assertIsInstance(whole["certificate"]["self_intersections"], int)
+        simple = self.facts("surface", points, "-o", out, "--simplify", "--vertex-normals", "--normals", normals)
+        self.assertLess(simple["faces"], whole["faces"])
+        self.assertIsNone(simple["certificate"]["self_intersections"])
+        self.assertTrue({"nx", "ny", "nz"} <= set(self.facts("info", out)["properties"]))
+        with open(normals) as f:
+            rows = [line.replace(",", " ").split() for line in f][-2000:]
+        for row in rows:
+            x, y, z, a, b, c = map(float, row)
+            self.assertGreater(x * a + y * b + z * c, 0.98)
+        sharp = self.facts("surface", points, "-o", out, "--sharp", "-R", "0.05", "--open", "50")
+        self.assertGreater(sharp["bad_cells"], 0)
+        self.assertEqual(sharp["left_out"], 0)
+        self.usage("between 0 and 1", "surface", points, "-o", out, "-R", "1")
+        self.usage("a positive number", "surface", points, "-o", out, "--open", "-1")
+        self.expect(6, "surface", points, "-o", out, "--normals", self.path("missing/n.ply"))
+
+    def test_check_of_self_intersections(self):
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        facts = self.facts("check", mesh, "--self-intersections")
+        self.assertEqual(facts["certificate"]["self_intersections"], 0)
+        twice = self.off("t.off", OCTAHEDRON + [(x + .5, y, z) for x, y, z in OCTAHEDRON],
+                         OCTAHEDRON_FACES + [tuple(v + len(OCTAHEDRON) for v in face) for face in OCTAHEDRON_FACES])
+        self.assertIn("pairs of faces", self.expect(5, "check", twice, "--self-intersections").err)
+        self.expect(0, "check", twice)
+
+    def test_options_of_another_surface_method(self):
+        for option in [("--theta", "0.3"), ("--boundaries",), ("--density",)]:
+            self.usage("cocone", "surface", "a.xyz", "-o", "x.ply", *option)
+        for option in [("--triangulate",), ("--simplify",), ("--labeling", "global"), ("-R", "0.3"), ("--sharp",),
+                       ("--open", "4"), ("--normals", "n.ply")]:
+            self.usage("power-crust", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", *option)
+        self.usage("pi/2", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", "--theta", "2")
 
     def test_check(self):
         mesh = self.facts("check", self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES))
@@ -913,6 +979,73 @@ class Answers(CliTest):
         self.assertEqual(facts["points"], self.facts("info", self.path("s.ply"))["points"])
         self.assertIn("view", self.facts("info", self.path("s.ply"))["properties"])
         self.assertTrue(self.facts("check", self.path("t.ply"))["certificate"]["closed"])
+
+    def ball_map(self, name, size=20):
+        """A CCP4 map whose values fall with the distance from the middle."""
+        header = struct.pack("<10i", size, size, size, 2, 0, 0, 0, size, size, size)
+        header += struct.pack("<6f", size, size, size, 90, 90, 90) + struct.pack("<3i", 1, 2, 3)
+        header = header.ljust(208, b"\0") + b"MAP \x44\x44\0\0"
+        middle = (size - 1) / 2
+        distance = lambda *p: sum((x - middle) ** 2 for x in p) ** 0.5
+        values = [distance(x, y, z) for z in range(size) for y in range(size) for x in range(size)]
+        return self.file(name, header.ljust(1024, b"\0") + struct.pack("<%df" % len(values), *[-v for v in values]))
+
+    def test_generate_iso_from_a_map(self):
+        ball = self.ball_map("a.map")
+        facts = self.facts("generate", "iso", ball, "--level", "-6", "-o", self.path("s.ply"))
+        certificate = self.facts("check", self.path("s.ply"))["certificate"]
+        self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
+        self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
+        self.assertEqual(facts["points"], self.facts("info", self.path("s.ply"))["points"])
+        wanted = self.facts("generate", "iso", ball, "--level", "-6", "-n", "20000", "-o", self.path("s.ply"))
+        self.assertAlmostEqual(wanted["points"] / 20000, 1, delta=0.1)
+        with open(ball, "rb") as f:
+            piped = self.expect(0, "generate", "iso", "-", "--level", "-6", "-o", "-", "--format", "off", "--quiet",
+                                stdin=f.read())
+        self.assertTrue(piped.out.startswith(b"OFF"))
+
+    def test_generate_iso_from_atoms(self):
+        atom = "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
+        self.facts("generate", "iso", self.file("a.pdb", atom), "--level", "1", "--resolution", "60",
+                   "-o", self.path("s.ply"))
+        self.assertAlmostEqual(self.facts("check", self.path("s.ply"))["certificate"]["volume"], 20.58, delta=0.4)
+        self.usage("standard deviations", "generate", "iso", self.path("a.pdb"), "--level", "1", "--sigma",
+                   "-o", self.path("s.ply"))
+
+    def test_generate_iso_refusals(self):
+        ball, out = self.ball_map("a.map", 8), self.path("s.ply")
+        self.usage("the file is missing", "generate", "iso", "-o", out)
+        self.usage("--level L", "generate", "iso", ball, "-o", out)
+        self.usage("one of -n and --resolution", "generate", "iso", ball, "--level", "1", "-n", "5", "--resolution",
+                   "5", "-o", out)
+        self.usage("go with scan only", "generate", "iso", ball, "--level", "1", "--noise", "0", "-o", out)
+        self.usage("go with iso only", "generate", "cube", "-n", "5", "--level", "1", "-o", out)
+        self.usage("one argument too many", "generate", "cube", "x", "-n", "5", "-o", out)
+        self.usage("cannot hold", "generate", "iso", ball, "--level", "1", "-o", self.path("s.xyz"))
+        self.expect(3, "generate", "iso", ball, "--level", "9", "-o", out)
+        self.expect(2, "generate", "iso", self.path("missing.map"), "--level", "1", "-o", out)
+        self.expect(2, "generate", "iso", self.file("b.map", "MAP"), "--level", "1", "-o", out)
+        self.expect(4, "generate", "iso", self.ball_map("c.map", 60), "--level", "-6", "-o", out, "--max-memory", "1M")
+        self.assert_only(self.folder, "a.map", "b.map", "c.map")
+
+    def test_subdivide(self):
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        facts = self.facts("subdivide", mesh, "--levels", "3", "-o", self.path("s.off"))
+        self.assertEqual((facts["levels"], facts["vertices"], facts["faces"]), (3, 258, 512))
+        self.assertTrue(facts["certificate"]["closed"] and facts["certificate"]["genus"] == 0)
+        with open(self.path("s.off")) as f:
+            rows = [line.split() for line in f if not line.startswith("#")]
+        self.assertEqual([tuple(map(float, row)) for row in rows[2:8]], OCTAHEDRON)
+
+    def test_subdivide_refusals(self):
+        mesh, out = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES), self.path("s.ply")
+        self.usage("between 1 and 15", "subdivide", mesh, "--levels", "0", "-o", out)
+        self.usage("-o FILE is missing", "subdivide", mesh)
+        self.expect(3, "subdivide", self.xyz("p.xyz", CUBE), "-o", out)
+        square = self.off("q.off", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
+        self.assertIn("face 0 has 4 corners", self.expect(3, "subdivide", square, "-o", out).err)
+        self.expect(4, "subdivide", mesh, "--levels", "15", "-o", out, "--max-memory", "100M")
+        self.assert_only(self.folder, "m.off", "p.xyz", "q.off")
 
     def test_compare_of_a_surface_with_itself(self):
         mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)

@@ -1,4 +1,4 @@
-"""run_quality.py MODELS DATA JUDGE: surfaces of real samples, held against an independent judge.
+"""run_quality.py MODELS DATA JUDGE [METHOD]: surfaces of real samples, held against an independent judge.
 
 Each row of MODELS names a file of samples in DATA, the true surface or '-', and what JUDGE (a program that prints the
 topology of a mesh and its distance to the truth as JSON) has to find; '-' is not judged. The certificate that brio
@@ -41,7 +41,7 @@ def json_of(command):
 
 
 def certificate_differences(certificate, judged):
-    """What the certificate says otherwise than the judge."""
+    """What the certificate says otherwise than the judge, who gives open surfaces no genus."""
     claims = {
         "closed": (certificate["closed"], judged["watertight"]),
         "oriented": (certificate["oriented"], judged["flipped_edges"] == 0),
@@ -50,7 +50,7 @@ def certificate_differences(certificate, judged):
         "genus": (certificate["genus"], judged["genus"]),
     }
     return ["the certificate says %s %s, the judge %s" % (key, ours, theirs)
-            for key, (ours, theirs) in claims.items() if ours != theirs]
+            for key, (ours, theirs) in claims.items() if ours != theirs and theirs is not None]
 
 
 def model_differences(model, judged):
@@ -64,12 +64,13 @@ def model_differences(model, judged):
     return wrong
 
 
-def examine(model, data, judge):
+def examine(model, data, judge, method):
     """Reconstructs one model. Returns the line to print of it and what is wrong."""
     with tempfile.TemporaryDirectory(prefix="brio-quality-") as folder:
         mesh = os.path.join(folder, "surface.ply")
         try:
-            facts = json_of([BRIO, "surface", os.path.join(data, model["file"]), "-o", mesh, "--json", "--quiet"])
+            facts = json_of([BRIO, "surface", os.path.join(data, model["file"]), "-o", mesh, "--method", method,
+                             "--json", "--quiet"])
             truth = [] if model["truth"] == "-" else [os.path.join(data, model["truth"])]
             judged = json_of([sys.executable, judge, mesh, *truth])
         except (RuntimeError, ValueError) as error:
@@ -92,16 +93,16 @@ def reason_to_skip(data, judge):
 
 
 def main():
-    if len(sys.argv) != 4:
+    if len(sys.argv) not in (4, 5):
         sys.exit(__doc__)
-    table, data, judge = sys.argv[1:]
+    table, data, judge, method = (sys.argv[1:] + ["power-crust"])[:4]
     reason = reason_to_skip(data, judge)
     if reason:
         print("skipped: data.surface: " + reason)
         return SKIPPED
     models, wrong = read_models(table), 0
     with concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool:
-        for line, differences in pool.map(lambda model: examine(model, data, judge), models):
+        for line, differences in pool.map(lambda model: examine(model, data, judge, method), models):
             wrong += bool(differences)
             print("\n    ".join([line, *differences]), flush=True)
     print("%d models, %d wrong" % (len(models), wrong))

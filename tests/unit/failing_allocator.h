@@ -1,5 +1,5 @@
-/* Memory that runs out at a chosen request, and knows what was not given back. Threads may use it together; after the one
- * that fails, requests are granted again. */
+/* Memory that runs out at a chosen request, and knows what was not given back. Threads may use it together; after the
+ * one that fails, requests are granted again. */
 #ifndef BRIO_TESTS_FAILING_ALLOCATOR_H
 #define BRIO_TESTS_FAILING_ALLOCATOR_H
 

@@ -27,7 +27,8 @@ static uint64_t fingerprint(const double *p, const double *w, size_t n, int thre
 /* Some points and weights twice, so that first comers matter. */
 static void repeat_some(size_t n) {
     for (size_t i = 0; i + 7 < n; i += 7)
-        memcpy(points + 3 * (i + 3), points + 3 * ((i * 31) % n), 3 * sizeof *points), weights[i + 3] = weights[(i * 31) % n];
+        memcpy(points + 3 * (i + 3), points + 3 * ((i * 31) % n), 3 * sizeof *points),
+            weights[i + 3] = weights[(i * 31) % n];
 }
 
 static void make_set(int set) {

@@ -449,7 +449,8 @@ static void other_tie_breaks_pass_but_are_not_canonical(void) {
     brio_context_free(ctx);
 }
 
-/* Eight tetrahedra that wind twice round the z axis: closed, positive, locally Delaunay, every inner point covered twice. */
+/* Eight tetrahedra that wind twice round the z axis: closed, positive, locally Delaunay, every inner point covered
+ * twice. */
 static void check_refuses_space_covered_twice(void) {
     const double p[30] = {0, 0,  5, 0, 0, -5, 5,  0, 0, 0,  5,  0, -5, 0,  0,
                           0, -5, 0, 3, 4, 0,  -4, 3, 0, -3, -4, 0, 4,  -3, 0};
@@ -464,7 +465,8 @@ static void check_refuses_space_covered_twice(void) {
     brio_context_free(ctx);
 }
 
-/* Thousands of hidden points behind few vertices, scaled until squared distances are subnormal: the same representatives. */
+/* Thousands of hidden points behind few vertices, scaled until squared distances are subnormal: the same
+ * representatives. */
 static void representatives_survive_subnormal_distances(void) {
     enum { N = 2000, OUTER = 600, INNER = 3 };
     static double p[3 * N], w[N], q[3 * N], u[N];

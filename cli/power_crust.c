@@ -1,0 +1,89 @@
+/* The power crust on the command line: its options, the call, what it counts. */
+#include "power_crust.h"
+#include "files.h"
+#include <stdlib.h>
+
+const option_choice cli_labelings[] = {{"greedy", BRIO_LABELING_GREEDY},
+                                       {"naive", BRIO_LABELING_NAIVE},
+                                       {"theoretical", BRIO_LABELING_THEORETICAL},
+                                       {"global", BRIO_LABELING_GLOBAL},
+                                       {NULL, 0}};
+
+bool cli_has_power_crust_options(const power_crust_options *a) {
+    return a->labeling || a->sampling_density != 0 || a->open != 0 || a->sharp || a->triangulate || a->simplify ||
+           a->normals;
+}
+
+/* The points with their normals, to the file of --normals. */
+static brio_status write_normals(run *r, const char *path, const brio_mesh *points, const double *normals) {
+    static const char *const names[3] = {"nx", "ny", "nz"};
+    brio_mesh *out = NULL;
+    brio_status status = BRIO_OK;
+    TRY(brio_mesh_new(r->ctx, &out));
+    TRY(brio_mesh_set_vertices(out, points->vertices, points->num_vertices));
+    for (size_t k = 0; k < 3; k++) {
+        void *data;
+        TRY(brio_mesh_add_property(out, names[k], BRIO_FLOAT64, &data));
+        for (size_t i = 0; i < points->num_vertices; i++) ((double *)data)[i] = normals[3 * i + k];
+    }
+    TRY(cli_write_to(r, path, out));
+done:
+    brio_mesh_free(out);
+    return status;
+}
+
+static void report_stages(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "poles", s->poles_seconds);
+    cli_stage(r, "power", s->power_seconds);
+    cli_stage(r, "label", s->label_seconds);
+    cli_stage(r, "crust", s->crust_seconds);
+    if (a->simplify) cli_stage(r, "simplify", s->simplify_seconds);
+    r->lap = cli_clock();
+}
+
+brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mesh *points, brio_mesh **surface,
+                            brio_power_crust_stats *stats) {
+    brio_surface_options o = brio_surface_options_default();
+    brio_format format;
+    brio_status status = BRIO_OK;
+    o.seed = r->common.seed;
+    o.triangulate = a->triangulate;
+    o.labeling = (brio_labeling)a->labeling;
+    o.sampling_density = a->sampling_density;
+    o.sharp = a->sharp;
+    o.open = a->open;
+    o.simplify = a->simplify;
+    if (a->normals) {
+        TRY(cli_output_format(r, a->normals, NULL, &format));
+        TRY(cli_check_target(r, a->normals));
+        o.normals = malloc((3 * points->num_vertices + 1) * sizeof *o.normals);
+        if (!o.normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
+    }
+    TRY(brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, stats));
+    report_stages(r, a, stats);
+    if (a->normals) TRY(write_normals(r, a->normals, points, o.normals));
+done:
+    free(o.normals);
+    return status;
+}
+
+void cli_report_power_crust(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
+    facts *f = &r->facts;
+    cli_fact_count(f, "poles", s->poles);
+    cli_fact_count(f, "hidden_poles", s->hidden_poles);
+    cli_fact_count(f, "inner", s->inner);
+    cli_fact_count(f, "outer", s->outer);
+    cli_fact_text(f, "labeling", cli_labelings[a->labeling].name);
+    cli_fact_count(f, "confused", s->confused);
+    cli_fact_real(f, "energy", s->energy);
+    if (a->labeling == BRIO_LABELING_NAIVE || a->labeling == BRIO_LABELING_THEORETICAL)
+        cli_fact_count(f, "unreached", s->unreached);
+    if (a->labeling == BRIO_LABELING_GLOBAL) {
+        cli_fact_real(f, "energy_greedy", s->energy_greedy);
+        cli_fact_count(f, "open", s->open);
+        cli_fact_count(f, "toggled", s->toggled);
+    }
+    if (a->sharp || a->sampling_density > 0) cli_fact_count(f, "bad_cells", s->bad_cells);
+    if (a->open > 0) cli_fact_count(f, "left_out", s->left_out);
+}

@@ -1,0 +1,45 @@
+/* The power crust on the command line: its options, the call, what it counts. */
+#ifndef BRIO_CLI_POWER_CRUST_H
+#define BRIO_CLI_POWER_CRUST_H
+
+#include "run.h"
+
+typedef struct power_crust_options {
+    int labeling;
+    double sampling_density, open;
+    bool sharp, triangulate, simplify;
+    const char *normals; /* file, or NULL */
+} power_crust_options;
+
+extern const option_choice cli_labelings[];
+
+/** Rows of a command's option table whose struct has power_crust_options as its member `field`. */
+/* clang-format off */
+#define POWER_CRUST_ROWS(type, field)                                                                                  \
+    {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
+     "power crust: cut the polygons into triangles", 0},                                                               \
+    {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
+     "power crust: a quarter as many faces, triangles", 0},                                                            \
+    {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
+     "power crust: how poles are labelled inner or outer", cli_labelings},                                             \
+    {"sampling-density", 'R', OPTION_NUMBER, offsetof(type, field.sampling_density), "R",                              \
+     "power crust: discard the nearer pole of cells too wide for an R-sample", 0},                                     \
+    {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \
+     "power crust: discard both, for sharp edges without samples (R 0.5)", 0},                                         \
+    {"open", 0, OPTION_NUMBER, offsetof(type, field.open), "K",                                                        \
+     "power crust: leave holes open whose balls are over K sample spacings", 0},                                       \
+    {"normals", 0, OPTION_TEXT, offsetof(type, field.normals), "FILE",                                                 \
+     "power crust: also write the points with oriented normals", 0}
+/* clang-format on */
+
+/** Whether any of them was given. */
+bool cli_has_power_crust_options(const power_crust_options *options);
+
+/** Reconstructs the surface of the points; writes the normals where they are asked for. */
+brio_status cli_power_crust(run *r, const power_crust_options *options, const brio_mesh *points, brio_mesh **surface,
+                            brio_power_crust_stats *stats);
+
+/** Reports the counts of a power crust. */
+void cli_report_power_crust(run *r, const power_crust_options *options, const brio_power_crust_stats *stats);
+
+#endif

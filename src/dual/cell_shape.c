@@ -1,0 +1,70 @@
+/* The radius of a Voronoi cell inside the co-cone of its sample.
+ *
+ * Every facet of the Delaunay triangulation is dual to a Voronoi edge, which belongs to the cells of the facet's three
+ * vertices. The edge is cut with the cone about the direction to the farther pole, a quadratic equation in the place on
+ * the edge; distance from the sample is convex along the edge, so it is largest where a piece in the co-cone ends.
+ *
+ * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. IJCGA 2002 (the
+ *           co-cone).
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, corollary 23: on an r-sample the radius is at
+ *           most 1.3 r / (1 - r) times the local feature size, for which the distance to the nearer pole stands here.
+ */
+#include "dual/cell_shape.h"
+#include <math.h>
+
+static const double SQUARED_SINE = 0.14644660940672624; /* of pi / 8 */
+
+static double dot(const double *a, const double *b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void subtract(const double *a, const double *b, double *difference) {
+    for (int k = 0; k < 3; k++) difference[k] = a[k] - b[k];
+}
+
+/* Largest squared length of a point of the segment from a to b that is in the co-cone across n; 0 when none is. */
+static double reach_in_cocone(const double *a, const double *b, const double *n) {
+    double d[3], limit = SQUARED_SINE * dot(n, n), most = 0;
+    subtract(b, a, d);
+    /* in the co-cone: (x.n)^2 - limit x.x <= 0, for x = a + t d the polynomial (q2 t + 2 q1) t + q0 */
+    double an = dot(a, n), dn = dot(d, n), aa = dot(a, a), ad = dot(a, d), dd = dot(d, d);
+    double q2 = dn * dn - limit * dd, q1 = an * dn - limit * ad, q0 = an * an - limit * aa;
+    if (q0 <= 0) most = aa;
+    if (q2 + 2 * q1 + q0 <= 0) most = fmax(most, dot(b, b));
+    double discriminant = q1 * q1 - q2 * q0;
+    if (discriminant < 0) return most;
+    double sum = -(q1 + copysign(sqrt(discriminant), q1)), root[2] = {sum / q2, q0 / sum};
+    for (int i = 0; i < 2; i++)
+        if (root[i] > 0 && root[i] < 1) most = fmax(most, aa + root[i] * (2 * ad + root[i] * dd));
+    return most;
+}
+
+static void offer_edge(const brio_cells *c, uint32_t s, const double *from, const double *to, double *square) {
+    const double *sample = c->points + 3 * (size_t)s;
+    double a[3], b[3], n[3];
+    if (s >= c->num_samples || c->pole_of[2 * (size_t)s] == UINT32_MAX) return;
+    subtract(from, sample, a);
+    subtract(to, sample, b);
+    if (dot(a, a) <= square[s] && dot(b, b) <= square[s]) return;
+    subtract(c->centre + 3 * (size_t)c->pole_of[2 * (size_t)s], sample, n);
+    square[s] = fmax(square[s], reach_in_cocone(a, b, n));
+}
+
+void brio_cocone_radii(const brio_cells *c, double *radius) {
+    for (size_t s = 0; s < c->num_samples; s++) radius[s] = 0;
+    for (size_t t = 0; t < c->num_finite; t++)
+        for (int i = 0; i < 4; i++) {
+            size_t u = c->tet[t].mate[i] / 4;
+            if (u < t || u >= c->num_finite || isnan(c->centre[3 * t]) || isnan(c->centre[3 * u])) continue;
+            for (int k = 1; k < 4; k++)
+                offer_edge(c, c->tet[t].vertex[(i + k) % 4], c->centre + 3 * t, c->centre + 3 * u, radius);
+        }
+    for (size_t s = 0; s < c->num_samples; s++) radius[s] = sqrt(radius[s]);
+}
+
+bool brio_cell_is_bad(const brio_cells *c, size_t s, double radius, double density) {
+    double pole[3];
+    if (c->pole_of[2 * s + 1] == UINT32_MAX) return false;
+    subtract(c->centre + 3 * (size_t)c->pole_of[2 * s + 1], c->points + 3 * s, pole);
+    return radius > 1.3 * density / (1 - density) * sqrt(dot(pole, pole));
+}

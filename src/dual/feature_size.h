@@ -1,0 +1,12 @@
+/* The local feature size, from the poles. */
+#ifndef BRIO_DUAL_FEATURE_SIZE_H
+#define BRIO_DUAL_FEATURE_SIZE_H
+
+#include "dual/pole_vectors.h"
+
+/** size[p] = distance from sample p to the nearest pole of any sample, the estimate of its distance to the medial axis;
+ *  infinite without poles, 0 for points that are no vertices.   size  #P, owned by the caller (brio_release).
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+brio_status brio_feature_sizes(brio_context *ctx, const brio_pole_vectors *v, double **size);
+
+#endif

@@ -1,0 +1,129 @@
+/* Reads atoms from files of the Protein Data Bank.
+ *
+ * Lines that begin with ATOM or HETATM, in fixed columns: 13 to 16 the atom's name, 17 the alternate location, 18 to 20
+ * the residue, 31 to 54 the coordinates in angstrom, 77 and 78 the element. Where the element is missing, it is what
+ * the first two columns of the name say, which are right-justified.
+ *
+ * Based on: Worldwide Protein Data Bank. Atomic coordinate entry format version 3.3. 2012. Bondi. Van der Waals volumes
+ * and radii. Journal of Physical Chemistry 1964. Rowland, Taylor. Intermolecular nonbonded contact distances in organic
+ * crystal structures. Journal of Physical Chemistry 1996 (hydrogen). */
+#include "io/pdb.h"
+#include "base/memory.h"
+#include "io/number.h"
+#include "io/textrow.h"
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    NAME = 12,
+    ALTERNATE = 16,
+    RESIDUE = 17,
+    COORDINATES = 30,
+    COORDINATE_WIDTH = 8,
+    ELEMENT = 76,
+    NEEDED = COORDINATES + 3 * COORDINATE_WIDTH
+};
+
+static const double OTHER_RADIUS = 1.8; /* of elements that are not in the table, metals for the most part */
+
+static const struct {
+    char element[3];
+    double radius;
+} radii[] = {{"H", 1.10},  {"D", 1.10},  {"C", 1.70},  {"N", 1.55},  {"O", 1.52},  {"F", 1.47},  {"P", 1.80},
+             {"S", 1.80},  {"CL", 1.75}, {"BR", 1.85}, {"I", 1.98},  {"SE", 1.90}, {"SI", 2.10}, {"NA", 2.27},
+             {"MG", 1.73}, {"K", 2.75},  {"LI", 1.82}, {"ZN", 1.39}, {"NI", 1.63}, {"CU", 1.40}, {"AS", 1.85}};
+
+static double radius_of(const char *element) {
+    for (size_t i = 0; i < sizeof radii / sizeof *radii; i++)
+        if (!strcmp(radii[i].element, element)) return radii[i].radius;
+    return OTHER_RADIUS;
+}
+
+/* The letters of two columns, in capitals. */
+static void take_letters(const char *columns, char element[3]) {
+    size_t n = 0;
+    for (int i = 0; i < 2; i++)
+        if (isalpha((unsigned char)columns[i])) element[n++] = (char)toupper((unsigned char)columns[i]);
+    element[n] = 0;
+}
+
+/* A name of four characters that begins with H is a hydrogen's, though its first column is an element's first letter.
+ * */
+static void find_element(const char *line, size_t length, char element[3]) {
+    element[0] = 0;
+    if (length >= ELEMENT + 2) take_letters(line + ELEMENT, element);
+    if (element[0]) return;
+    bool hydrogen = toupper((unsigned char)line[NAME]) == 'H' && line[NAME + 3] != ' ';
+    if (hydrogen)
+        strcpy(element, "H");
+    else
+        take_letters(line + NAME, element);
+}
+
+static bool is_atom(const char *line) {
+    return !strncmp(line, "ATOM", 4) || !strncmp(line, "HETATM", 6);
+}
+
+static bool is_wanted(const char *line) {
+    static const char *const water[] = {"HOH", "WAT", "DOD", "H2O"};
+    char location = line[ALTERNATE];
+    for (size_t i = 0; i < sizeof water / sizeof *water; i++)
+        if (!strncmp(line + RESIDUE, water[i], 3)) return false;
+    return location == ' ' || location == 'A' || location == '1';
+}
+
+static brio_status parse_coordinate(const brio_stream *s, const char *line, int axis, double *value) {
+    brio_status status = BRIO_OK;
+    char field[COORDINATE_WIDTH + 1] = {0};
+    int first = COORDINATES + axis * COORDINATE_WIDTH;
+    memcpy(field, line + first, COORDINATE_WIDTH);
+    const char *p = brio_skip_blanks(field);
+    BRIO_REQUIRE(s->ctx, brio_parse_number(&p, value) && !p[strspn(p, " ")], BRIO_ERR_FORMAT,
+                 "%s: line %zu: columns %d to %d: expected the coordinate %c, found \"%s\"", s->name, s->line,
+                 first + 1, first + COORDINATE_WIDTH, "xyz"[axis], field);
+    BRIO_REQUIRE(s->ctx, isfinite(*value), BRIO_ERR_NOT_FINITE, "%s: line %zu: the coordinate %c is not finite",
+                 s->name, s->line, "xyz"[axis]);
+done:
+    return status;
+}
+
+static brio_status parse_atom(const brio_stream *s, const char *line, brio_atom *atom) {
+    brio_status status = BRIO_OK;
+    char element[3];
+    for (int k = 0; k < 3; k++) BRIO_TRY(parse_coordinate(s, line, k, &atom->position[k]));
+    find_element(line, strlen(line), element);
+    atom->radius = radius_of(element);
+done:
+    return status;
+}
+
+brio_status brio_pdb_read(brio_stream *s, brio_atom **atoms, size_t *num_atoms) {
+    brio_status status = BRIO_OK;
+    brio_atom *list = NULL;
+    size_t count = 0, capacity = 0;
+    char *line;
+    *atoms = NULL;
+    *num_atoms = 0;
+    for (;;) {
+        BRIO_TRY(brio_stream_line(s, &line));
+        if (!line || !strncmp(line, "ENDMDL", 6)) break;
+        if (!is_atom(line)) continue;
+        size_t length = strlen(line);
+        BRIO_REQUIRE(s->ctx, length >= NEEDED, BRIO_ERR_FORMAT,
+                     "%s: line %zu: an atom of %zu columns, expected coordinates in columns %d to %d", s->name, s->line,
+                     length, COORDINATES + 1, NEEDED);
+        if (!is_wanted(line)) continue;
+        BRIO_TRY(BRIO_RESERVE(s->ctx, list, capacity, count + 1));
+        BRIO_TRY(parse_atom(s, line, &list[count]));
+        count++;
+    }
+    BRIO_REQUIRE(s->ctx, count, BRIO_ERR_FORMAT, "%s: no line is an atom (ATOM or HETATM) other than of water",
+                 s->name);
+    *atoms = list;
+    *num_atoms = count;
+    list = NULL;
+done:
+    brio_release(s->ctx, list);
+    return status;
+}

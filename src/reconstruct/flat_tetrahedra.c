@@ -1,0 +1,95 @@
+/* Flat tetrahedra within the surface.
+ *
+ * Four neighbouring samples of a surface often make a flat tetrahedron that lies within it, all of whose facets are
+ * candidates: two of them are one way to cover the quadrilateral of the samples, two the other. Both are manifolds of
+ * candidates, so any choice keeps the guarantee; that of less area is nearer to a smooth surface and has the steadier
+ * normals (on knot2, by 1 % of the distance to the true surface).
+ *
+ * Works in rounds: a tetrahedron changes sides when its gain is larger than that of every neighbour. So within a round
+ * no change touches another and the order of the tetrahedra is of no importance. */
+#include "reconstruct/flat_tetrahedra.h"
+#include "base/memory.h"
+#include "reconstruct/label_boundary.h"
+#include "reconstruct/triangle.h"
+
+enum { ROUNDS = 4 };
+
+/* Far above rounding: what is equal but for rounding counts as equal. */
+static const double SIGNIFICANT = 1e-9;
+
+typedef struct {
+    const brio_tet_labels *labels;
+    const brio_tetrahedra *t;
+    uint32_t *tet; /* the tetrahedra that may change */
+    size_t count, capacity;
+    double *gain; /* of each tetrahedron: the area that its change saves; 0 for those that may not change */
+} flattening;
+
+static double area(const flattening *x, uint32_t facet) {
+    const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
+    const double *corner[3];
+    for (int k = 0; k < 3; k++)
+        corner[k] = x->labels->cocones->dual->points + 3 * (size_t)v[BRIO_FACET[brio_slot_of(facet)][k]];
+    return brio_triangle_area(corner[0], corner[1], corner[2]);
+}
+
+/* The area that is saved when a tetrahedron changes sides; 0 unless one pair of candidates then gives way to another.
+ */
+static double gain_of(const flattening *x, uint32_t tet) {
+    double saved = 0, all = 0;
+    int leaving = 0;
+    for (int i = 0; i < 4; i++) {
+        uint32_t facet = brio_facet_of(tet, i);
+        bool leaves = brio_is_boundary(x->labels, facet);
+        if (!leaves && !brio_is_candidate(x->labels->cocones, facet)) return 0;
+        double size = area(x, facet);
+        saved += leaves ? size : -size;
+        all += size;
+        leaving += leaves;
+    }
+    return leaving == 2 && saved > SIGNIFICANT * all ? saved : 0;
+}
+
+static bool is_best(const flattening *x, uint32_t tet) {
+    bool best = x->gain[tet] > 0;
+    for (int i = 0; i < 4; i++)
+        best = best && x->gain[tet] > (1 + SIGNIFICANT) * x->gain[brio_tet_of(x->t->tet[tet].mate[i])];
+    return best;
+}
+
+static brio_status collect(brio_context *ctx, flattening *x) {
+    brio_status status = BRIO_OK;
+    for (size_t tet = 0; tet < x->labels->cocones->dual->num_finite; tet++) {
+        if (!x->labels->cocones->candidates[tet] || brio_tet_vote(x->labels, tet)) continue;
+        BRIO_TRY(BRIO_RESERVE(ctx, x->tet, x->capacity, x->count + 1));
+        x->tet[x->count++] = (uint32_t)tet;
+    }
+done:
+    return status;
+}
+
+/* One round; the number of changes. */
+static size_t change_best(flattening *x) {
+    size_t changes = 0;
+    for (size_t n = 0; n < x->count; n++) x->gain[x->tet[n]] = gain_of(x, x->tet[n]);
+    for (size_t n = 0; n < x->count; n++) {
+        uint8_t *label = &x->labels->label[x->tet[n]];
+        if (!is_best(x, x->tet[n])) continue;
+        *label = *label == BRIO_LABEL_OUTER ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+        changes++;
+    }
+    return changes;
+}
+
+brio_status brio_flatten(brio_context *ctx, const brio_tet_labels *l) {
+    brio_status status = BRIO_OK;
+    flattening x = {.labels = l, .t = &l->cocones->dual->t};
+    BRIO_TRY(collect(ctx, &x));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.gain, x.t->count));
+    for (int round = 0; round < ROUNDS; round++)
+        if (change_best(&x) == 0) break;
+done:
+    brio_release(ctx, x.tet);
+    brio_release(ctx, x.gain);
+    return status;
+}

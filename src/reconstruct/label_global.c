@@ -1,0 +1,257 @@
+/* Labelling of poles that minimises one energy: the sum of the weights that are violated, neighbours that intersect
+ * deeply wanting the same label and opposite poles different ones.
+ *
+ * Edges of the second kind make the energy not submodular, so no single cut minimises it. Roof duality does what a cut
+ * can: every pole has two nodes, itself and its complement; an edge for equal labels joins pole with pole and
+ * complement with complement, an edge for different labels joins either pole with the other's complement. In a minimum
+ * cut between the certain poles and their complements, a pole on the side of the source is outer and one whose
+ * complement is there is inner, in a labelling of least energy; the others stay open.
+ *
+ * Open poles begin with their greedy labels, and sets of them are toggled while that lowers the energy. Around the
+ * present labels the energy of a set is that of a cut but for the violated edges, which want exactly one end toggled;
+ * counted as a gain at one end and a loss at the other they bound the energy from above, equal when nothing is toggled.
+ * So the set of least bound is no loss. The ends are drawn anew for each move.
+ *
+ * Based on: Hammer, Hansen, Simeone. Roof duality, complementation and persistency in quadratic 0-1 optimization.
+ *           Mathematical Programming 1984.
+ *           Boros, Hammer. Pseudo-Boolean optimization. Discrete Applied Mathematics 2002 (the doubled graph).
+ *           Gorelick et al. Submodularization for binary pairwise energies. CVPR 2014 (the bound). */
+#include "base/memory.h"
+#include "base/rng.h"
+#include "reconstruct/labelling.h"
+#include "reconstruct/max_flow.h"
+#include <math.h>
+
+enum { WEIGHT_SCALE = 1 << 20, MOST_MOVES = 32, IDLE_MOVES = 4 };
+
+typedef struct {
+    const brio_pole_graph *g;
+    brio_context *ctx;
+    uint8_t *label;
+    uint8_t *certain, *open;
+    brio_flow_edge *edges; /* capacity > 0: the same label is wanted; < 0: different labels */
+    size_t num_edges, capacity;
+} problem;
+
+/* --- the energy as a list of edges --- */
+
+static int32_t whole_weight(double weight) {
+    return (int32_t)lround(weight * WEIGHT_SCALE);
+}
+
+typedef struct {
+    problem *pr;
+    uint32_t pole;
+    brio_status status;
+} collector;
+
+static brio_status add_edge(problem *pr, uint32_t a, uint32_t b, int32_t weight) {
+    brio_status status = BRIO_RESERVE(pr->ctx, pr->edges, pr->capacity, pr->num_edges + 1);
+    if (status == BRIO_OK && weight) pr->edges[pr->num_edges++] = (brio_flow_edge){a, b, weight};
+    return status;
+}
+
+static void collect_opposite(uint32_t other, double weight, void *user) {
+    collector *c = user;
+    if (other > c->pole && c->status == BRIO_OK) c->status = add_edge(c->pr, c->pole, other, -whole_weight(weight));
+}
+
+static brio_status collect_edges(problem *pr) {
+    const brio_pole_graph *g = pr->g;
+    collector c = {.pr = pr};
+    for (c.pole = 0; c.pole < g->poles->count && c.status == BRIO_OK; c.pole++) {
+        brio_pole_graph_opposite(g, c.pole, collect_opposite, &c);
+        for (size_t e = g->first_edge[c.pole]; e < g->first_edge[c.pole + 1] && c.status == BRIO_OK; e++)
+            if (g->edge_pole[e] > c.pole && g->edge_weight[e] > 0)
+                c.status = add_edge(pr, c.pole, g->edge_pole[e], whole_weight((double)g->edge_weight[e]));
+    }
+    return c.status;
+}
+
+/* --- roof duality --- */
+
+/* Doubles the graph: node p is the pole, node n + p its complement. */
+static void double_edges(const problem *pr, brio_flow_edge *doubled) {
+    uint32_t n = (uint32_t)pr->g->poles->count;
+    for (size_t e = 0; e < pr->num_edges; e++) {
+        brio_flow_edge x = pr->edges[e];
+        uint32_t shift = x.capacity > 0 ? 0 : n;
+        int32_t capacity = x.capacity > 0 ? x.capacity : -x.capacity;
+        doubled[2 * e] = (brio_flow_edge){x.a, x.b + shift, capacity};
+        doubled[2 * e + 1] = (brio_flow_edge){x.a + n, x.b + n - shift, capacity};
+    }
+}
+
+static brio_status settle_by_roof_duality(problem *pr) {
+    brio_status status = BRIO_OK;
+    brio_flow_edge *doubled = NULL;
+    int64_t *terminal = NULL;
+    uint8_t *side = NULL;
+    size_t n = pr->g->poles->count;
+    BRIO_TRY(BRIO_ALLOC(pr->ctx, doubled, 2 * pr->num_edges));
+    BRIO_TRY(BRIO_ALLOC_ZERO(pr->ctx, terminal, 2 * n));
+    BRIO_TRY(BRIO_ALLOC(pr->ctx, side, 2 * n));
+    double_edges(pr, doubled);
+    for (size_t p = 0; p < n; p++)
+        if (pr->certain[p]) terminal[p] = BRIO_FLOW_ENDLESS, terminal[n + p] = -BRIO_FLOW_ENDLESS;
+    BRIO_TRY(brio_max_flow(pr->ctx, 2 * n, doubled, 2 * pr->num_edges, terminal, side));
+    for (size_t p = 0; p < n; p++) {
+        bool outer = side[p] == BRIO_FLOW_SOURCE, inner = side[n + p] == BRIO_FLOW_SOURCE;
+        pr->open[p] = !outer && !inner;
+        if (outer) pr->label[p] = BRIO_LABEL_OUTER;
+        if (inner) pr->label[p] = BRIO_LABEL_INNER;
+    }
+done:
+    brio_release(pr->ctx, doubled);
+    brio_release(pr->ctx, terminal);
+    brio_release(pr->ctx, side);
+    return status;
+}
+
+/* --- moves --- */
+
+static bool violated(const problem *pr, const brio_flow_edge *x) {
+    return (pr->label[x->a] == pr->label[x->b]) != (x->capacity > 0);
+}
+
+static void toggle(problem *pr, uint32_t p) {
+    pr->label[p] = pr->label[p] == BRIO_LABEL_INNER ? BRIO_LABEL_OUTER : BRIO_LABEL_INNER;
+}
+
+/* The edges between poles, an open one among them, as of a cut around the present labels: satisfied edges between open
+ * poles are edges of the cut, what any other edge wants is a terminal. A pole on the side of the sink is toggled.
+ * number  the place of each open pole among them. */
+static size_t bound_edges(const problem *pr, const uint32_t *number, brio_rng *rng, brio_flow_edge *cut,
+                          int64_t *terminal) {
+    size_t count = 0;
+    for (size_t e = 0; e < pr->num_edges; e++) {
+        const brio_flow_edge *x = &pr->edges[e];
+        bool a = pr->open[x->a], b = pr->open[x->b];
+        int64_t weight = x->capacity > 0 ? x->capacity : -x->capacity;
+        if (!a && !b) continue;
+        if (!violated(pr, x)) {
+            if (a && b)
+                cut[count++] = (brio_flow_edge){number[x->a], number[x->b], (int32_t)weight};
+            else
+                terminal[number[a ? x->a : x->b]] += weight;
+            continue;
+        }
+        bool gain_at_a = a && (!b || brio_rng_below(rng, 2));
+        if (a) terminal[number[x->a]] += gain_at_a ? -weight : weight;
+        if (b) terminal[number[x->b]] += gain_at_a ? weight : -weight;
+    }
+    return count;
+}
+
+/* What toggling all the poles on the side of the sink would save. */
+static int64_t saving(const problem *pr, const uint32_t *number, const uint8_t *side) {
+    int64_t sum = 0;
+    for (size_t e = 0; e < pr->num_edges; e++) {
+        const brio_flow_edge *x = &pr->edges[e];
+        bool a = pr->open[x->a] && side[number[x->a]] == BRIO_FLOW_SINK;
+        bool b = pr->open[x->b] && side[number[x->b]] == BRIO_FLOW_SINK;
+        if (a == b) continue;
+        int64_t weight = x->capacity > 0 ? x->capacity : -x->capacity;
+        sum += violated(pr, x) ? weight : -weight;
+    }
+    return sum;
+}
+
+typedef struct {
+    uint32_t *number, *pole; /* of a pole among the open ones, and back */
+    size_t count;
+    brio_flow_edge *cut;
+    int64_t *terminal;
+    uint8_t *side;
+} mover;
+
+static brio_status move_by_cut(problem *pr, mover *m, brio_rng *rng, bool *moved) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < m->count; i++) m->terminal[i] = 0;
+    size_t num_edges = bound_edges(pr, m->number, rng, m->cut, m->terminal);
+    BRIO_TRY(brio_max_flow(pr->ctx, m->count, m->cut, num_edges, m->terminal, m->side));
+    *moved = saving(pr, m->number, m->side) > 0;
+    for (size_t i = 0; i < m->count && *moved; i++)
+        if (m->side[i] == BRIO_FLOW_SINK) toggle(pr, m->pole[i]);
+done:
+    return status;
+}
+
+static brio_status list_open(problem *pr, mover *m) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = pr->ctx;
+    size_t n = pr->g->poles->count, edges = 0;
+    for (size_t p = 0; p < n; p++) m->count += pr->open[p];
+    if (!m->count) return BRIO_OK;
+    for (size_t e = 0; e < pr->num_edges; e++) edges += pr->open[pr->edges[e].a] || pr->open[pr->edges[e].b];
+    BRIO_TRY(BRIO_ALLOC(ctx, m->number, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, m->pole, m->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, m->cut, edges));
+    BRIO_TRY(BRIO_ALLOC(ctx, m->terminal, m->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, m->side, m->count));
+    for (size_t p = 0, i = 0; p < n; p++)
+        if (pr->open[p]) m->pole[i] = (uint32_t)p, m->number[p] = (uint32_t)i++;
+    /* only edges with an open pole matter from here on */
+    edges = 0;
+    for (size_t e = 0; e < pr->num_edges; e++)
+        if (pr->open[pr->edges[e].a] || pr->open[pr->edges[e].b]) pr->edges[edges++] = pr->edges[e];
+    pr->num_edges = edges;
+done:
+    return status;
+}
+
+static brio_status improve_open(problem *pr) {
+    brio_status status = BRIO_OK;
+    brio_rng rng = brio_rng_new(1);
+    mover m = {0};
+    BRIO_TRY(list_open(pr, &m));
+    for (int move = 0, idle = 0; m.count && move < MOST_MOVES && idle < IDLE_MOVES; move++) {
+        bool moved = false;
+        BRIO_TRY(move_by_cut(pr, &m, &rng, &moved));
+        idle = moved ? 0 : idle + 1;
+    }
+done:
+    brio_release(pr->ctx, m.number);
+    brio_release(pr->ctx, m.pole);
+    brio_release(pr->ctx, m.cut);
+    brio_release(pr->ctx, m.terminal);
+    brio_release(pr->ctx, m.side);
+    return status;
+}
+
+/* --- the whole --- */
+
+static brio_status minimise(problem *pr, brio_labelling_stats *stats) {
+    brio_status status = BRIO_OK;
+    size_t n = pr->g->poles->count;
+    uint8_t *greedy = NULL;
+    BRIO_TRY(BRIO_ALLOC(pr->ctx, greedy, n));
+    for (size_t p = 0; p < n; p++) greedy[p] = pr->label[p];
+    BRIO_TRY(settle_by_roof_duality(pr));
+    BRIO_TRY(improve_open(pr));
+    for (size_t p = 0; p < n; p++) {
+        stats->open += pr->open[p];
+        stats->toggled += pr->label[p] != greedy[p];
+    }
+done:
+    brio_release(pr->ctx, greedy);
+    return status;
+}
+
+brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
+    brio_status status = BRIO_OK;
+    problem pr = {.g = g, .ctx = g->ctx, .label = label};
+    BRIO_TRY(brio_label_greedy(g, label, stats));
+    stats->energy_greedy = brio_label_energy(g, label);
+    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, pr.certain, g->poles->count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, pr.open, g->poles->count));
+    brio_label_certain(g, pr.certain);
+    BRIO_TRY(collect_edges(&pr));
+    BRIO_TRY(minimise(&pr, stats));
+    stats->energy = brio_label_energy(g, label);
+done:
+    brio_release(g->ctx, pr.certain);
+    brio_release(g->ctx, pr.open);
+    brio_release(g->ctx, pr.edges);
+    return status;
+}

@@ -1,0 +1,103 @@
+/* Delaunay tetrahedra inside and outside of the surface that the co-cones suggest.
+ *
+ * A sample knows of the tetrahedra whose Voronoi vertices lie in its two cones that they are on either side of the
+ * surface. Each tetrahedron goes by the majority of its samples. What no sample knows of (the flat tetrahedra within
+ * the surface) takes the label that reaches it first across facets that are no candidates; what candidates close off on
+ * all sides are the pockets between two layers of candidates, and these are inside. So on a dense sample the boundary
+ * between the labels is the outer boundary of the candidates, as the depth-first walk of the paper finds it; and a
+ * missing triangle far away does not matter, as it would to the walk.
+ *
+ * Based on: Dey, Goswami. Tight cocone: a water-tight surface reconstructor. JCISE 2003, for labels of tetrahedra from
+ *           the two sides of each sample.
+ * Differs from the paper: the sides are those of the cones, by majority, instead of an umbrella of triangles that some
+ * samples do not have. */
+#include "reconstruct/tetrahedron_labels.h"
+#include "base/memory.h"
+
+int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
+    const brio_tetrahedron *t = l->cocones->dual->t.tet;
+    int vote = 0;
+    for (int i = 0; i < 4; i++) {
+        int side = brio_side_of(l->cocones, tet, i); /* of the infinite vertex: BRIO_SIDE_COCONE */
+        if (side == BRIO_SIDE_COCONE) continue;
+        vote += (side == BRIO_SIDE_POLE) != l->turned[t[tet].vertex[i]] ? 1 : -1;
+    }
+    return vote;
+}
+
+static void label_by_votes(brio_tet_labels *l) {
+    for (size_t tet = 0; tet < l->cocones->dual->t.count; tet++) {
+        int vote = brio_tet_vote(l, tet);
+        l->label[tet] = vote > 0 ? BRIO_LABEL_OUTER : vote < 0 ? BRIO_LABEL_INNER : BRIO_LABEL_NONE;
+        if (l->watertight && tet >= l->cocones->dual->num_finite) l->label[tet] = BRIO_LABEL_OUTER;
+    }
+}
+
+/* Workspace of the spreading: the tetrahedra that the last wave reached, and the new labels of those of this one. */
+typedef struct {
+    uint32_t *reached;
+    uint8_t *news;
+    size_t size, capacity, news_capacity;
+} wave;
+
+static const uint8_t REACHED = 0xff; /* a label that is still to be found */
+
+/* Adds the tetrahedra without a label next to one, across the facets that are no candidates. */
+static brio_status reach_from(brio_context *ctx, brio_tet_labels *l, size_t tet, wave *w) {
+    brio_status status = BRIO_OK;
+    const brio_tetrahedra *t = &l->cocones->dual->t;
+    BRIO_TRY(BRIO_RESERVE(ctx, w->reached, w->capacity, w->size + 4));
+    for (int i = 0; i < 4; i++) {
+        uint32_t facet = brio_facet_of((uint32_t)tet, i), other = brio_tet_of(*brio_mate(t, facet));
+        if (l->label[other] != BRIO_LABEL_NONE || brio_is_candidate(l->cocones, facet)) continue;
+        l->label[other] = REACHED;
+        w->reached[w->size++] = other;
+    }
+done:
+    return status;
+}
+
+/* The label that most neighbours of a tetrahedron had before this wave; outer at a tie. */
+static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
+    const brio_tetrahedra *t = &l->cocones->dual->t;
+    int inner = 0;
+    for (int i = 0; i < 4; i++) {
+        uint8_t label = l->label[brio_tet_of(t->tet[tet].mate[i])];
+        if (label == REACHED || label == BRIO_LABEL_NONE || brio_is_candidate(l->cocones, brio_facet_of(tet, i)))
+            continue;
+        inner += label == BRIO_LABEL_INNER ? 1 : -1;
+    }
+    return inner > 0 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+}
+
+/* Passes labels on in waves; within a wave none depends on another, so that the order of the tetrahedra is of no
+ * importance. */
+static brio_status spread(brio_context *ctx, brio_tet_labels *l) {
+    brio_status status = BRIO_OK;
+    wave w = {0};
+    for (size_t tet = 0; tet < l->cocones->dual->t.count; tet++)
+        if (l->label[tet] == BRIO_LABEL_INNER || l->label[tet] == BRIO_LABEL_OUTER)
+            BRIO_TRY(reach_from(ctx, l, tet, &w));
+    for (size_t begin = 0, end; begin < w.size; begin = end) {
+        end = w.size;
+        BRIO_TRY(BRIO_RESERVE(ctx, w.news, w.news_capacity, end - begin));
+        for (size_t n = begin; n < end; n++) w.news[n - begin] = label_of_neighbours(l, w.reached[n]);
+        for (size_t n = begin; n < end; n++) l->label[w.reached[n]] = w.news[n - begin];
+        for (size_t n = begin; n < end; n++) BRIO_TRY(reach_from(ctx, l, w.reached[n], &w));
+    }
+done:
+    brio_release(ctx, w.reached);
+    brio_release(ctx, w.news);
+    return status;
+}
+
+brio_status brio_tet_labels_find(brio_context *ctx, brio_tet_labels *l) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, l->label, l->cocones->dual->t.count));
+    label_by_votes(l);
+    BRIO_TRY(spread(ctx, l));
+    for (size_t tet = 0; tet < l->cocones->dual->t.count; tet++)
+        if (l->label[tet] == BRIO_LABEL_NONE) l->label[tet] = BRIO_LABEL_INNER;
+done:
+    return status;
+}

@@ -1,0 +1,22 @@
+/* Delaunay tetrahedra inside and outside of the surface that the co-cones suggest. */
+#ifndef BRIO_RECONSTRUCT_TETRAHEDRON_LABELS_H
+#define BRIO_RECONSTRUCT_TETRAHEDRON_LABELS_H
+
+#include "reconstruct/cocone_candidates.h"
+#include "reconstruct/labelling.h"
+
+/** Tetrahedra with a brio_label each, which samples can be held against. */
+typedef struct {
+    const brio_cocones *cocones;
+    const uint8_t *turned; /* #P, from brio_orient_samples */
+    bool watertight;       /* infinite tetrahedra are outer */
+    uint8_t *label;        /* #T */
+} brio_tet_labels;
+
+/** Labels all tetrahedra, the other fields of *l being set. label is to be freed (brio_release) on failure too. */
+brio_status brio_tet_labels_find(brio_context *ctx, brio_tet_labels *l);
+
+/** How many of its samples see a tetrahedron outside, less those that see it inside. */
+int brio_tet_vote(const brio_tet_labels *l, size_t tet);
+
+#endif

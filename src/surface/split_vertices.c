@@ -1,0 +1,90 @@
+/* Splitting of vertices where several fans of faces meet.
+ *
+ * A union-find joins the corners at both ends of every edge of two faces; its sets are the fans. The fans are numbered
+ * in the order of their first corners, and become the vertices. */
+#include "surface/split_vertices.h"
+#include "base/memory.h"
+#include "surface/edge_rings.h"
+#include <string.h>
+
+static uint32_t find(uint32_t *parent, uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/* To the lower index, so that a fan is known by its first corner. */
+static void unite(uint32_t *parent, uint32_t i, uint32_t j) {
+    i = find(parent, i);
+    j = find(parent, j);
+    if (i < j)
+        parent[j] = i;
+    else
+        parent[i] = j;
+}
+
+static void join_corners(const brio_mesh *m, const uint32_t *ring, const uint32_t *next, uint32_t *fan) {
+    const uint32_t *v = m->face_vertices;
+    for (uint32_t h = 0; h < m->face_offsets[m->num_faces]; h++) {
+        uint32_t g = ring[h];
+        if (g <= h || ring[g] != h) continue;
+        bool same_way = v[h] == v[g];
+        unite(fan, h, same_way ? g : next[g]);
+        unite(fan, next[h], same_way ? next[g] : g);
+    }
+}
+
+/* Rows of `size` bytes, one for each fan, from those of the vertices; *rows is replaced. */
+static brio_status take_rows(brio_context *ctx, char **rows, size_t size, const uint32_t *from, size_t count) {
+    char *taken = NULL;
+    brio_status status = BRIO_ALLOC(ctx, taken, count * size);
+    if (status != BRIO_OK) return status;
+    for (size_t i = 0; i < count; i++) memcpy(taken + i * size, *rows + from[i] * size, size);
+    brio_release(ctx, *rows);
+    *rows = taken;
+    return BRIO_OK;
+}
+
+static brio_status replace_vertices(brio_context *ctx, brio_mesh *m, const uint32_t *from, size_t count) {
+    brio_status status = BRIO_OK;
+    char *rows = (char *)m->vertices;
+    BRIO_TRY(take_rows(ctx, &rows, 3 * sizeof *m->vertices, from, count));
+    m->vertices = (double *)(void *)rows;
+    for (size_t i = 0; i < m->num_properties; i++) {
+        rows = m->properties[i].data;
+        BRIO_TRY(take_rows(ctx, &rows, brio_scalar_size(m->properties[i].type), from, count));
+        m->properties[i].data = rows;
+    }
+    m->num_vertices = count;
+done:
+    return status;
+}
+
+brio_status brio_mesh_split_vertices(brio_context *ctx, brio_mesh *m) {
+    brio_status status = BRIO_OK;
+    uint32_t *ring = NULL, *next = NULL, *fan = NULL, *from = NULL;
+    size_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0, count = 0;
+    BRIO_TRY(brio_mesh_check_faces(ctx, m));
+    BRIO_TRY(brio_edge_rings(ctx, m, &ring));
+    BRIO_TRY(BRIO_ALLOC(ctx, next, corners));
+    BRIO_TRY(BRIO_ALLOC(ctx, fan, corners));
+    BRIO_TRY(BRIO_ALLOC(ctx, from, corners));
+    for (size_t f = 0; f < m->num_faces; f++)
+        for (uint64_t h = m->face_offsets[f]; h < m->face_offsets[f + 1]; h++) {
+            fan[h] = (uint32_t)h;
+            next[h] = (uint32_t)(h + 1 < m->face_offsets[f + 1] ? h + 1 : m->face_offsets[f]);
+        }
+    if (corners) join_corners(m, ring, next, fan);
+    for (uint32_t h = 0; h < corners; h++) {
+        uint32_t first = find(fan, h);
+        if (first == h) from[count] = m->face_vertices[h], next[h] = (uint32_t)count++; /* next: now the fan's number */
+        ring[h] = next[first]; /* ring: now the new vertex of the corner */
+    }
+    BRIO_TRY(replace_vertices(ctx, m, from, count));
+    memcpy(m->face_vertices, ring, corners * sizeof *ring);
+done:
+    brio_release(ctx, ring);
+    brio_release(ctx, next);
+    brio_release(ctx, fan);
+    brio_release(ctx, from);
+    return status;
+}

@@ -1,0 +1,277 @@
+/* What a power crust can be asked for beside its polygons: simplified, open, sharp, with normals. */
+#include "failing_allocator.h"
+#include "harness.h"
+#include "points.h"
+
+/* Small inputs: one thread is faster. */
+static brio_context *new_small_context(void) {
+    brio_context *ctx = new_context();
+    brio_context_set_threads(ctx, 1);
+    return ctx;
+}
+
+static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, const brio_surface_options *o,
+                        brio_power_crust_stats *s) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_power_crust(ctx, p, n, o, &mesh, s);
+    EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
+    return mesh;
+}
+
+static brio_certificate certify(brio_context *ctx, const brio_mesh *mesh) {
+    brio_certificate c = {0};
+    EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
+    return c;
+}
+
+/* --- simplified --- */
+
+static void simplified_torus_is_a_quarter_and_the_same(void) {
+    static double p[3 * 6000];
+    torus_points(1, 6000, p);
+    brio_context *ctx = new_small_context();
+    brio_surface_options o = brio_surface_options_default();
+    brio_mesh *whole = crust(ctx, p, 6000, &o, NULL), *simple;
+    brio_distance d;
+    o.simplify = 1;
+    simple = crust(ctx, p, 6000, &o, NULL);
+    brio_certificate c = certify(ctx, simple);
+    EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == 1);
+    EXPECT(fabs(c.volume - 3.158273) < 0.02 * 3.158273, "volume %g", c.volume);
+    EXPECT(simple->num_faces <= whole->num_faces / 4 + 2, "%zu of %zu", simple->num_faces, whole->num_faces);
+    EXPECT(simple->num_properties == 0);
+    EXPECT(brio_mesh_distance(ctx, simple, whole, 20000, 1, &d) == BRIO_OK);
+    EXPECT(d.mean < 5e-4 * d.diagonal && d.hausdorff < 0.02 * d.diagonal, "mean %g, most %g", d.mean / d.diagonal,
+           d.hausdorff / d.diagonal);
+    EXPECT(d.normal_consistency > 0.98, "%g", d.normal_consistency);
+    brio_certificate_free(&c);
+    brio_mesh_free(whole);
+    brio_mesh_free(simple);
+    brio_context_free(ctx);
+}
+
+/* Whatever the input, simplification keeps components, genus and closedness. */
+static void simplified_anything_stays_the_same_manifold(void) {
+    double p[3 * 40];
+    size_t collapsed = 0;
+    brio_context *ctx = new_small_context();
+    for (uint64_t trial = 0; trial < 120; trial++) {
+        size_t n = 4 + trial % 37;
+        brio_surface_options o = brio_surface_options_default();
+        if (trial % 2)
+            clustered_points(trial, n, p);
+        else
+            integer_points(trial, n, 3 + (uint32_t)(trial % 3), p);
+        o.triangulate = 1;
+        brio_mesh *whole = crust(ctx, p, n, &o, NULL);
+        if (!whole) continue;
+        o.simplify = 1;
+        brio_mesh *simple = crust(ctx, p, n, &o, NULL);
+        brio_certificate a = certify(ctx, whole), b = certify(ctx, simple);
+        EXPECT(b.closed && b.manifold && b.oriented, "trial %llu", (unsigned long long)trial);
+        EXPECT(a.components == b.components && a.genus == b.genus, "trial %llu", (unsigned long long)trial);
+        collapsed += whole->num_faces - simple->num_faces;
+        brio_certificate_free(&a);
+        brio_certificate_free(&b);
+        brio_mesh_free(whole);
+        brio_mesh_free(simple);
+    }
+    EXPECT(collapsed > 2000, "%zu", collapsed);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* --- open --- */
+
+/* A sphere without the samples of its cap z > 0.5: closed over by default, a disk when holes stay open. */
+static void hole_of_the_samples_stays_open_on_request(void) {
+    static double p[3 * 4000];
+    size_t n = 0;
+    sphere_points(6, 4000, p);
+    for (size_t i = 0; i < 4000; i++)
+        if (p[3 * i + 2] < 0.5) memmove(p + 3 * n++, p + 3 * i, 3 * sizeof *p);
+    for (int simplify = 0; simplify < 2; simplify++) {
+        brio_context *ctx = new_small_context();
+        brio_surface_options o = brio_surface_options_default();
+        brio_power_crust_stats s;
+        o.simplify = simplify;
+        brio_mesh *mesh = crust(ctx, p, n, &o, &s);
+        brio_certificate c = certify(ctx, mesh);
+        EXPECT(c.closed && c.genus == 0 && s.left_out == 0);
+        brio_certificate_free(&c);
+        brio_mesh_free(mesh);
+        o.open = 4;
+        mesh = crust(ctx, p, n, &o, &s);
+        c = certify(ctx, mesh);
+        EXPECT(!c.closed && c.manifold && c.oriented && s.left_out > 0);
+        EXPECT(c.components == 1 && c.genus == 0 && c.boundary_loops == 1, "%zu components, %zu loops", c.components,
+               c.boundary_loops);
+        brio_certificate_free(&c);
+        brio_mesh_free(mesh);
+        brio_context_free(ctx);
+    }
+}
+
+static void open_anything_is_manifold(void) {
+    double p[3 * 60];
+    size_t left_out = 0;
+    brio_context *ctx = new_small_context();
+    for (uint64_t trial = 0; trial < 120; trial++) {
+        size_t n = 20 + trial % 40;
+        brio_surface_options o = brio_surface_options_default();
+        brio_power_crust_stats s;
+        o.open = 0.5 + (double)(trial % 4);
+        o.simplify = trial % 3 == 0;
+        if (trial % 2)
+            clustered_points(trial, n, p);
+        else
+            integer_points(trial, n, 4, p);
+        brio_mesh *mesh = crust(ctx, p, n, &o, &s);
+        if (!mesh) continue;
+        brio_certificate c = certify(ctx, mesh);
+        EXPECT(c.manifold && c.oriented, "trial %llu", (unsigned long long)trial);
+        EXPECT((s.left_out > 0) == !c.closed, "trial %llu", (unsigned long long)trial);
+        left_out += s.left_out;
+        brio_certificate_free(&c);
+        brio_mesh_free(mesh);
+    }
+    EXPECT(left_out > 100, "%zu", left_out);
+    brio_context_free(ctx);
+}
+
+/* --- sharp --- */
+
+/* Uniform samples inside the faces of the cube [0, 1]^3, none near its edges. */
+static void cube_points(uint64_t seed, size_t n, double *p) {
+    brio_rng rng = brio_rng_new(seed);
+    for (size_t i = 0; i < n; i++) {
+        size_t axis = i % 3;
+        for (size_t k = 0; k < 3; k++) p[3 * i + k] = 0.02 + 0.96 * brio_rng_double(&rng);
+        p[3 * i + axis] = (double)(i / 3 % 2);
+    }
+}
+
+static double reach(const brio_mesh *mesh) {
+    double most = 0; /* how near a vertex comes to the corner (1, 1, 1) */
+    for (size_t v = 0; v < mesh->num_vertices; v++) {
+        const double *p = mesh->vertices + 3 * v;
+        most = fmax(most, fmin(p[0], fmin(p[1], p[2])));
+    }
+    return most;
+}
+
+static void cube_comes_out_with_its_edges(void) {
+    static double p[3 * 6000];
+    cube_points(2, 6000, p);
+    brio_context *ctx = new_small_context();
+    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_stats s;
+    brio_mesh *plain = crust(ctx, p, 6000, &o, &s);
+    EXPECT(s.bad_cells == 0);
+    o.sharp = 1;
+    brio_mesh *sharp = crust(ctx, p, 6000, &o, &s);
+    EXPECT(s.bad_cells > 0);
+    brio_certificate a = certify(ctx, plain), b = certify(ctx, sharp);
+    EXPECT(b.closed && b.manifold && b.oriented && b.components == 1 && b.genus == 0);
+    EXPECT(fabs(b.volume - 1) < fabs(a.volume - 1), "%g, %g", b.volume - 1, a.volume - 1);
+    EXPECT(reach(sharp) > 0.99, "%g", reach(sharp));
+    brio_certificate_free(&a);
+    brio_certificate_free(&b);
+    brio_mesh_free(plain);
+    brio_mesh_free(sharp);
+    brio_context_free(ctx);
+}
+
+static void sampling_density_out_of_range_is_refused(void) {
+    double p[3 * 20];
+    uniform_points(1, 20, p);
+    brio_context *ctx = new_small_context();
+    const double bad[] = {-0.1, 1, 2, NAN};
+    for (int i = 0; i < 4; i++) {
+        brio_surface_options o = brio_surface_options_default();
+        brio_mesh *mesh;
+        o.sampling_density = bad[i];
+        EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+        o.sampling_density = 0;
+        o.open = bad[i] == 1 || bad[i] == 2 ? -1 : bad[i];
+        EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    }
+    brio_context_free(ctx);
+}
+
+/* --- normals --- */
+
+static void normals_of_samples_are_those_of_the_sphere(void) {
+    static double p[3 * 2200], normals[3 * 2200];
+    sphere_points(3, 2000, p);
+    memcpy(p + 6000, p, 600 * sizeof *p); /* 200 duplicates */
+    for (int sharp = 0; sharp < 2; sharp++) {
+        brio_context *ctx = new_small_context();
+        brio_surface_options o = brio_surface_options_default();
+        double worst = 1;
+        o.normals = normals;
+        o.sampling_density = sharp ? 0.05 : 0; /* many samples then have no poles */
+        o.sharp = sharp;
+        brio_mesh *mesh = crust(ctx, p, 2200, &o, NULL);
+        for (size_t i = 0; i < 2200; i++) {
+            const double *n = normals + 3 * i, *x = p + 3 * i;
+            worst = fmin(worst, n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
+            EXPECT(fabs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) < 1e-12);
+        }
+        EXPECT(worst > (sharp ? 0.9 : 0.98), "%g", worst);
+        EXPECT(!memcmp(normals, normals + 6000, 600 * sizeof *normals));
+        brio_mesh_free(mesh);
+        brio_context_free(ctx);
+    }
+}
+
+static void normals_of_vertices_point_outwards(void) {
+    static double p[3 * 3000];
+    sphere_points(3, 3000, p);
+    brio_context *ctx = new_small_context();
+    brio_mesh *mesh = crust(ctx, p, 3000, NULL, NULL);
+    EXPECT(brio_mesh_add_normals(mesh) == BRIO_OK);
+    const brio_property *n[3] = {brio_mesh_property(mesh, "nx"), brio_mesh_property(mesh, "ny"),
+                                 brio_mesh_property(mesh, "nz")};
+    EXPECT(n[0] && n[1] && n[2]);
+    for (size_t v = 0; v < mesh->num_vertices; v++) {
+        double outwards = 0;
+        for (size_t k = 0; k < 3; k++) outwards += mesh->vertices[3 * v + k] * brio_property_value(n[k], v);
+        EXPECT(outwards > 0.8, "%g", outwards);
+    }
+    EXPECT(brio_mesh_add_normals(mesh) == BRIO_ERR_ARGUMENT);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
+static brio_status everything_small(brio_context *ctx) {
+    double p[3 * 40], normals[3 * 40];
+    brio_surface_options o = brio_surface_options_default();
+    brio_mesh *mesh;
+    sphere_points(3, 40, p);
+    o.simplify = o.sharp = 1;
+    o.open = 1;
+    o.normals = normals;
+    o.sampling_density = 0.5;
+    brio_status status = brio_power_crust(ctx, p, 40, &o, &mesh, NULL);
+    if (status == BRIO_OK) status = brio_mesh_add_normals(mesh);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void every_failed_allocation_is_a_status(void) {
+    expect_clean_failures(everything_small);
+}
+
+int main(void) {
+    RUN(simplified_torus_is_a_quarter_and_the_same);
+    RUN(simplified_anything_stays_the_same_manifold);
+    RUN(hole_of_the_samples_stays_open_on_request);
+    RUN(open_anything_is_manifold);
+    RUN(cube_comes_out_with_its_edges);
+    RUN(sampling_density_out_of_range_is_refused);
+    RUN(normals_of_samples_are_those_of_the_sphere);
+    RUN(normals_of_vertices_point_outwards);
+    RUN(every_failed_allocation_is_a_status);
+    return harness_end();
+}

@@ -1,0 +1,182 @@
+/* Labellings: right on dense samples, ordered by energy, and the same for every order of the samples; the maximum flow
+ * under the global one. */
+#include "failing_allocator.h"
+#include "harness.h"
+#include "points.h"
+#include "reconstruct/max_flow.h"
+
+static const brio_labeling ALL[] = {BRIO_LABELING_GREEDY, BRIO_LABELING_NAIVE, BRIO_LABELING_THEORETICAL,
+                                    BRIO_LABELING_GLOBAL};
+
+static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_labeling labeling,
+                        brio_power_crust_stats *s) {
+    brio_surface_options o = brio_surface_options_default();
+    brio_mesh *mesh = NULL;
+    o.labeling = labeling;
+    brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, s);
+    EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "labeling %d: %s", (int)labeling, brio_message(ctx));
+    return mesh;
+}
+
+static bool same_mesh(const brio_mesh *a, const brio_mesh *b) {
+    return a->num_vertices == b->num_vertices && a->num_faces == b->num_faces &&
+           !memcmp(a->vertices, b->vertices, 24 * a->num_vertices) &&
+           !memcmp(a->face_vertices, b->face_vertices, 4 * a->face_offsets[a->num_faces]);
+}
+
+/* Dense samples of smooth surfaces: lemmata 56 and 57 say that every label is right. */
+static void all_agree_on_dense_samples(void) {
+    static double p[3 * 3000];
+    for (int shape = 0; shape < 2; shape++) {
+        brio_context *ctx = new_context();
+        brio_context_set_threads(ctx, 1);
+        brio_mesh *first = NULL;
+        if (shape)
+            torus_points(4, 3000, p);
+        else
+            sphere_points(4, 3000, p);
+        for (int l = 0; l < BRIO_LABELING_END; l++) {
+            brio_power_crust_stats s;
+            brio_mesh *mesh = crust(ctx, p, 3000, ALL[l], &s);
+            EXPECT(s.unreached == 0 && s.open == 0 && s.toggled == 0, "labeling %d", l);
+            EXPECT(s.energy < 1e-6 * (double)s.poles, "labeling %d: %g", l, s.energy);
+            if (!first)
+                first = mesh;
+            else {
+                EXPECT(same_mesh(first, mesh), "labeling %d", l);
+                brio_mesh_free(mesh);
+            }
+        }
+        brio_mesh_free(first);
+        brio_context_free(ctx);
+    }
+}
+
+/* Inputs with no right answer: all are closed, and the global labels violate no more than the greedy ones. */
+static void anything_is_labelled_and_global_is_no_worse(void) {
+    double p[3 * 60];
+    int lower = 0;
+    brio_context *ctx = new_context();
+    brio_context_set_threads(ctx, 1);
+    for (uint64_t trial = 0; trial < 150; trial++) {
+        size_t n = 10 + trial % 50;
+        if (trial % 2)
+            clustered_points(trial, n, p);
+        else
+            integer_points(trial, n, 4, p);
+        for (int l = 0; l < BRIO_LABELING_END; l++) {
+            brio_power_crust_stats s;
+            brio_certificate c = {0};
+            brio_mesh *mesh = crust(ctx, p, n, ALL[l], &s);
+            if (!mesh) continue;
+            EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
+            EXPECT(c.closed && c.manifold && c.oriented, "trial %llu, labeling %d", (unsigned long long)trial, l);
+            if (ALL[l] == BRIO_LABELING_GLOBAL) {
+                EXPECT(s.energy <= s.energy_greedy + 1e-9, "trial %llu", (unsigned long long)trial);
+                lower += s.energy < s.energy_greedy - 1e-4;
+            }
+            brio_certificate_free(&c);
+            brio_mesh_free(mesh);
+        }
+    }
+    EXPECT(lower > 20, "%d", lower);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void shuffled_samples_give_the_same_global_labels(void) {
+    static double p[3 * 400], q[3 * 400];
+    static size_t to[400];
+    clustered_points(8, 400, p);
+    shuffle_points(3, 400, p, q, to);
+    brio_context *ctx = new_context();
+    brio_power_crust_stats s, t;
+    brio_mesh *a = crust(ctx, p, 400, BRIO_LABELING_GLOBAL, &s), *b = crust(ctx, q, 400, BRIO_LABELING_GLOBAL, &t);
+    EXPECT(a && b && same_mesh(a, b));
+    EXPECT(s.energy == t.energy && s.toggled == t.toggled);
+    brio_mesh_free(a);
+    brio_mesh_free(b);
+    brio_context_free(ctx);
+}
+
+static void unknown_labeling_is_refused(void) {
+    double p[3 * 20];
+    uniform_points(1, 20, p);
+    brio_context *ctx = new_context();
+    brio_surface_options o = brio_surface_options_default();
+    brio_mesh *mesh;
+    o.labeling = BRIO_LABELING_END;
+    EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    brio_context_free(ctx);
+}
+
+/* --- maximum flow --- */
+
+enum { NODES = 8 };
+
+/* The value of the cut with the given nodes on the source's side. */
+static int64_t cut_value(unsigned sources, const brio_flow_edge *e, size_t n, const int64_t *terminal) {
+    int64_t value = 0;
+    for (size_t i = 0; i < n; i++)
+        if ((sources >> e[i].a & 1) != (sources >> e[i].b & 1)) value += e[i].capacity;
+    for (int v = 0; v < NODES; v++) {
+        bool source = sources >> v & 1;
+        if (terminal[v] > 0 && !source) value += terminal[v];
+        if (terminal[v] < 0 && source) value -= terminal[v];
+    }
+    return value;
+}
+
+/* All 256 cuts of random graphs: both sides that come back are least minimum cuts. */
+static void cuts_are_minimal_and_least(void) {
+    brio_context *ctx = new_context();
+    for (uint64_t trial = 0; trial < 2000; trial++) {
+        brio_rng rng = brio_rng_new(trial);
+        brio_flow_edge e[20];
+        size_t n = brio_rng_below(&rng, 21);
+        int64_t terminal[NODES], used[NODES], best = INT64_MAX;
+        uint8_t side[NODES];
+        unsigned from_source = 0, to_sink = 0, all_sources = 255, all_sinks = 255;
+        for (size_t i = 0; i < n; i++)
+            e[i] = (brio_flow_edge){brio_rng_below(&rng, NODES), brio_rng_below(&rng, NODES),
+                                    (int32_t)brio_rng_below(&rng, 6)};
+        for (int v = 0; v < NODES; v++) used[v] = terminal[v] = (int64_t)brio_rng_below(&rng, 9) - 4;
+        EXPECT(brio_max_flow(ctx, NODES, e, n, used, side) == BRIO_OK);
+        for (unsigned s = 0; s < 256; s++) {
+            int64_t value = cut_value(s, e, n, terminal);
+            if (value < best) best = value, all_sources = 255, all_sinks = 255;
+            if (value == best) all_sources &= s, all_sinks &= ~s & 255;
+        }
+        for (int v = 0; v < NODES; v++) {
+            if (side[v] == BRIO_FLOW_SOURCE) from_source |= 1u << v;
+            if (side[v] == BRIO_FLOW_SINK) to_sink |= 1u << v;
+        }
+        EXPECT(from_source == all_sources && to_sink == all_sinks, "trial %llu", (unsigned long long)trial);
+    }
+    brio_context_free(ctx);
+}
+
+static brio_status small_global_crust(brio_context *ctx) {
+    double p[3 * 40];
+    brio_surface_options o = brio_surface_options_default();
+    brio_mesh *mesh;
+    o.labeling = BRIO_LABELING_GLOBAL;
+    clustered_points(3, 40, p);
+    brio_status status = brio_power_crust(ctx, p, 40, &o, &mesh, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void every_failed_allocation_is_a_status(void) {
+    expect_clean_failures(small_global_crust);
+}
+
+int main(void) {
+    RUN(all_agree_on_dense_samples);
+    RUN(anything_is_labelled_and_global_is_no_worse);
+    RUN(shuffled_samples_give_the_same_global_labels);
+    RUN(unknown_labeling_is_refused);
+    RUN(cuts_are_minimal_and_least);
+    RUN(every_failed_allocation_is_a_status);
+    return harness_end();
+}
