@@ -1,5 +1,6 @@
 #!/bin/sh
-# check.sh JOBS: builds with warnings as errors and runs every test, then both again under the sanitizers.
+# check.sh JOBS: builds with warnings as errors and runs every test, then both again under the sanitizers,
+# and the parallel tests under the thread sanitizer.
 #
 # The second suite runs even when the first fails. The last line is a closing line of the test runner with its numbers,
 # and that of a suite that failed if one did.
@@ -31,7 +32,7 @@ closing_line() {
 
 passed=
 failed=
-for preset in ci sanitize; do
+for preset in ci sanitize threads; do
     if suite "$preset"; then passed="$preset $passed"; else failed="$preset $failed"; fi
 done
 echo
