@@ -93,10 +93,11 @@ static inline uint64_t cube_key(const cube *c, const two_levels *two, const doub
 
 /* The cube of rows of a matrix, or of those that the low halves of the items name. */
 static cube cube_of(const double *rows, size_t stride, const uint64_t *items, size_t n, int threads) {
-    cube all;
-    cube_new(&all, rows + stride * (items ? (uint32_t)items[0] : 0));
+    cube first, all;
+    cube_new(&first, rows + stride * (items ? (uint32_t)items[0] : 0));
+    all = first;
     BRIO_OMP(parallel num_threads(threads)) {
-        cube own = all;
+        cube own = first;
         BRIO_OMP(for nowait)
         for (size_t i = 0; i < n; i++) cube_add(&own, rows + stride * (items ? (uint32_t)items[i] : i));
         BRIO_OMP(critical(brio_cube))
