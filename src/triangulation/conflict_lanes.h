@@ -191,6 +191,20 @@ static inline unsigned settle_lattice(const brio_tetrahedra *t, brio_filter *f, 
     return mask;
 }
 
+/* The same against a bound from the lifts alone, which are at hand. With the largest lift L no difference is over
+ * sqrt(L), so that the permanent is at most 24 L^2.5, for a hull facet 6 L^1.5; compared as squares. */
+static inline unsigned decide_by_lifts(const brio_filter *f, const rows *r, lanes det, unsigned *known) {
+    static const double FINITE = 24.1 * DOUBLE_UNIT, HULL = 6.1 * DOUBLE_UNIT, TINY = 1e-290;
+    lanes last = choose(r->infinite, all(0), r->lift[3]);
+    lanes most = maximum(maximum(r->lift[0], r->lift[1]), maximum(r->lift[2], last)), cube = most * most * most;
+    lanes bound = choose(r->infinite, all(HULL * HULL) * cube, all(FINITE * FINITE) * cube * (most * most));
+    bound += choose(r->infinite, all(f->orient_floor * f->orient_floor), all(f->insphere_floor * f->insphere_floor));
+    unsigned certain = bits_of(greater(det * det, bound + all(TINY)));
+    unsigned fresh = certain & bits_of(greater(det, all(0))) & ~*known;
+    *known |= certain;
+    return fresh;
+}
+
 /* Stages beyond the static bound, for the lanes not yet known. Loads everything again: keeping it at hand would cost
  * the calls that do not come here, nearly all of them, more. */
 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
@@ -221,8 +235,11 @@ static inline __attribute__((always_inline)) unsigned lanes_in_conflict(const br
     load_corners(t, facets, p, &c);
     rows_set(&c, &r, weighted);
     lanes bound = choose(r.infinite, all(f->orient_static), all(f->insphere_static));
-    unsigned mask = decide(determinant(&r), bound, &known);
+    lanes det = determinant(&r);
+    unsigned mask = decide(det, bound, &known);
     if (__builtin_expect(known == ALL_LANES, 1)) return mask;
+    if (!weighted && !f->lattice) mask |= decide_by_lifts(f, &r, det, &known);
+    if (known == ALL_LANES) return mask;
     return mask | settle(t, f, facets, p, known, weighted);
 }
 
