@@ -95,6 +95,8 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     cli_fact_count(f, "walk_steps", s->walk_steps);
     cli_fact_count(f, "insphere_calls", s->insphere_calls);
     cli_fact_count(f, "exact_calls", s->exact_calls);
+    cli_fact_count(f, "deferred", s->deferred);
+    cli_fact_count(f, "serial", s->serial);
     return BRIO_OK;
 }
 

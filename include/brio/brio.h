@@ -155,8 +155,8 @@ typedef struct brio_stats {
     size_t tetrahedra;  /* finite ones */
     size_t hull_facets; /* = infinite tetrahedra */
     uint64_t created, destroyed, walk_steps, insphere_calls;
-    uint64_t exact_calls;      /* predicate calls that the floating-point filter did not settle */
-    uint64_t deferred, serial; /* with threads: insertions put off to a later pass, and those left to one thread */
+    uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
+    uint64_t deferred, serial;            /* with threads: insertions put off to a later pass; left to one thread */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
 
@@ -168,8 +168,8 @@ typedef struct brio_triangulation brio_triangulation;
  *  tetrahedra.
  *  points   #P by 3, row after row.   weights  #P, or NULL.   num_points  less than 2^32 - 16.
  *  options  NULL for the defaults.    out      owned by the caller, freed with brio_triangulation_free; NULL on error.
- *  Cost: O(n log n) expected for points of realistic inputs; 41 bytes a tetrahedron and 45 a point at the peak, with up
- *  to an eighth more set aside for growth; a sort buffer of 24 bytes a point before the first tetrahedron.
+ *  Cost: O(n log n) expected for points of realistic inputs; 33 bytes a tetrahedron and 41 a point, then, when the result
+ *  is sorted, 41 and 16, with up to an eighth more set aside for growth; 4 bytes a point more with several threads.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_CANCELLED.
  *  Based on: [Bowyer 1981], [Watson 1981], [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties.

@@ -275,7 +275,7 @@ done:
 /* Whether to insert that many points by threads saves more time than the keys of all points along another curve take.
  */
 static bool pays(size_t count, size_t points, int threads) {
-    enum { KEYS_AN_INSERTION = 36 };
+    enum { KEYS_AN_INSERTION = 60 };
     return count * KEYS_AN_INSERTION * (size_t)(threads - 1) > points;
 }
 
