@@ -2,25 +2,34 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include <pthread.h>
+#include <unistd.h>
 
 enum { N = 40000 };
 
 static double points[3 * N], weights[N];
 
 /* The whole result of a run as one number: tetrahedra in their order, mates, representatives, counts. */
-static uint64_t fingerprint(const double *p, const double *w, size_t n, int threads, brio_stats *stats) {
+static brio_status run(const double *p, const double *w, size_t n, int threads, brio_stats *stats, uint64_t *sum) {
     brio_context *ctx = new_context();
     brio_triangulation *t = NULL;
     brio_context_set_threads(ctx, threads);
-    EXPECT(brio_delaunay(ctx, p, w, n, NULL, &t) == BRIO_OK, "%s", brio_message(ctx));
-    if (!t) return 0;
-    *stats = *brio_triangulation_stats(t);
-    uint64_t sum = brio_mix(stats->vertices) ^ brio_mix(stats->hidden + 77);
-    const uint32_t *number = (const uint32_t *)brio_triangulation_tetrahedra(t);
-    for (size_t i = 0; i < 8 * (stats->tetrahedra + stats->hull_facets); i++) sum = brio_mix(sum + number[i]);
-    for (size_t i = 0; i < n; i++) sum = brio_mix(sum + brio_triangulation_representatives(t)[i]);
+    brio_status status = brio_delaunay(ctx, p, w, n, NULL, &t);
+    if (status == BRIO_OK) {
+        *stats = *brio_triangulation_stats(t);
+        *sum = brio_mix(stats->vertices) ^ brio_mix(stats->hidden + 77);
+        const uint32_t *number = (const uint32_t *)brio_triangulation_tetrahedra(t);
+        for (size_t i = 0; i < 8 * (stats->tetrahedra + stats->hull_facets); i++) *sum = brio_mix(*sum + number[i]);
+        for (size_t i = 0; i < n; i++) *sum = brio_mix(*sum + brio_triangulation_representatives(t)[i]);
+    }
     brio_triangulation_free(t);
     brio_context_free(ctx);
+    return status;
+}
+
+static uint64_t fingerprint(const double *p, const double *w, size_t n, int threads, brio_stats *stats) {
+    uint64_t sum = 0;
+    EXPECT(run(p, w, n, threads, stats, &sum) == BRIO_OK, "%zu points, %d threads", n, threads);
     return sum;
 }
 
@@ -183,11 +192,45 @@ static void failed_allocations_in_threads_are_statuses(void) {
     }
 }
 
+typedef struct {
+    int threads;
+    uint64_t found;
+    brio_stats stats;
+    brio_status status;
+} caller;
+
+static void *call(void *user) {
+    caller *c = user;
+    c->status = run(points, NULL, N, c->threads, &c->stats, &c->found);
+    return NULL;
+}
+
+static void two_callers_with_a_context_each(void) {
+    make_set(1);
+    brio_stats stats;
+    uint64_t expected = fingerprint(points, NULL, N, 1, &stats);
+    caller callers[3] = {{.threads = 2}, {.threads = 3}, {.threads = 1}};
+    pthread_t thread[3];
+    for (int i = 0; i < 3; i++) EXPECT(pthread_create(&thread[i], NULL, call, &callers[i]) == 0);
+    for (int i = 0; i < 3; i++) {
+        pthread_join(thread[i], NULL);
+        EXPECT(callers[i].status == BRIO_OK && callers[i].found == expected, "caller %d", i);
+    }
+}
+
+/* A thread that waits for ever ends the program by a signal, which is a failure. */
+static void watch(void) {
+    enum { SECONDS = 800 };
+    alarm(SECONDS);
+}
+
 int main(void) {
+    watch();
     RUN(every_number_of_threads_gives_the_same_arrays);
     RUN(repeated_runs_give_the_same_arrays);
     RUN(shuffled_points_give_the_same_checksum);
     RUN(more_threads_than_work);
+    RUN(two_callers_with_a_context_each);
     RUN(result_of_threads_passes_the_check);
     RUN(cancelled_threads_free_everything);
     RUN(memory_running_out_in_a_thread_is_a_status);
