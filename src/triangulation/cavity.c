@@ -74,7 +74,7 @@ static brio_status take_slots(brio_kernel *k) {
     return BRIO_OK;
 }
 
-/* Writes four numbers in two stores: the number of stores is what bounds the fill. */
+/* Writes four numbers in two stores. */
 static inline void store_four(uint32_t *to, uint64_t a, uint64_t b, uint64_t c, uint64_t d) {
 #if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
     uint64_t pair[2] = {a | b << 32, c | d << 32};

@@ -13,9 +13,8 @@
 typedef struct {
     uint32_t *entry;   /* of each tetrahedron in conflict, the facet through which it was found */
     uint32_t *created; /* a tetrahedron for each border facet: the star of the last point that was inserted */
-    uint32_t
-        *facet; /* outer sides of the facets through which the cavity was left; then codes of the border's vertices */
-    uint32_t *border; /* those of them that lead to no conflict */
+    uint32_t *facet;   /* outer sides of the facets that left the cavity; then codes of the border's vertices */
+    uint32_t *border;  /* those of them that lead to no conflict */
     size_t num_tets, num_border, num_created;
     size_t capacity;         /* of entry, a quarter of that of the other lists */
     uint32_t *cavity_vertex; /* the vertices of all tets, with repetitions; weighted only */

@@ -74,11 +74,11 @@ brio_status brio_team_reserve(brio_kernel *k, size_t more) {
     size_t size = more > STRETCH ? more : STRETCH, begin;
     brio_status status = give_back_stretch(k);
     if (status != BRIO_OK) return status;
-    begin = __atomic_fetch_add(&team->next_slot, size, __ATOMIC_RELAXED);
-    if (begin + size > team->last_slot) {
-        __atomic_fetch_sub(&team->next_slot, size, __ATOMIC_RELAXED);
-        return BRIO_DEFERRED;
-    }
+    begin = __atomic_load_n(&team->next_slot, __ATOMIC_RELAXED);
+    do { /* taken only when it fits: giving back what did not could give away another thread's slots */
+        if (begin + size > team->last_slot) return BRIO_DEFERRED;
+    } while (
+        !__atomic_compare_exchange_n(&team->next_slot, &begin, begin + size, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED));
     k->t.count = begin;
     k->capacity = begin + size;
     return BRIO_OK;
