@@ -240,9 +240,9 @@ typedef struct brio_property {
     void *data; /* #V scalars of `type` */
 } brio_property;
 
-/** Points, with polygons or tetrahedra over them, and properties of the points: what a file holds. Polygons are stored
- *  one after the other: face f has the vertices face_vertices[face_offsets[f] .. face_offsets[f+1]). Vertices are never
- *  merged by position. All arrays are owned by the mesh; arrays of absent parts are NULL. */
+/** Points, with polygons, tetrahedra or edges over them, and properties of the points: what a file holds. Polygons are
+ *  stored one after the other: face f has the vertices face_vertices[face_offsets[f] .. face_offsets[f+1]). Vertices are
+ *  never merged by position. All arrays are owned by the mesh; arrays of absent parts are NULL. */
 typedef struct brio_mesh {
     brio_context *context;
     size_t num_vertices;
@@ -254,6 +254,8 @@ typedef struct brio_mesh {
     uint32_t *tetrahedra; /* #T by 4 */
     size_t num_properties;
     brio_property *properties;
+    size_t num_edges; /* that are drawn by themselves; those of polygons are not listed */
+    uint32_t *edges;  /* #E by 2 */
 } brio_mesh;
 
 /** An empty mesh. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
@@ -269,6 +271,8 @@ BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offset
 /** Gives a mesh tetrahedra (copied): #T by 4. */
 BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t stride,
                                               size_t num_tetrahedra);
+/** Gives a mesh edges (copied): #E by 2. */
+BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges, size_t num_edges);
 /** Adds a property of the vertices, zeroed, and returns where its numbers go in *data; a name that is there already is
  *  BRIO_ERR_ARGUMENT. */
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
@@ -446,6 +450,7 @@ typedef enum brio_format {
     BRIO_FORMAT_OFF,
     BRIO_FORMAT_VTU,  /* read back when its arrays are appended raw, as they are written */
     BRIO_FORMAT_NODE, /* TetGen's .node, with .ele beside it */
+    BRIO_FORMAT_VTP,  /* written, not read */
     BRIO_FORMAT_END
 } brio_format;
 
@@ -469,7 +474,7 @@ typedef struct brio_write_options {
 BRIO_API brio_write_options brio_write_options_default(void);
 
 /** Writes a mesh: to a temporary name beside the target, flushed, then renamed, so that nothing half-written is ever
- *  left. "-" writes to standard output (the format must then be given).
+ *  left. "-" writes to standard output (the format must then be given). Edges go into PLY, VTU and VTP alone.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a format that cannot hold the mesh), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
