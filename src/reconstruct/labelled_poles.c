@@ -11,6 +11,7 @@
 #include "reconstruct/labelled_poles.h"
 #include "base/memory.h"
 #include "dual/spacing.h"
+#include "reconstruct/label_solid.h"
 #include <math.h>
 #include <string.h>
 
@@ -141,7 +142,7 @@ static brio_status triangulate_poles(brio_labelled_poles *l) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     BRIO_TRY(brio_delaunay(l->ctx, l->poles.centre, l->poles.square, l->poles.count, &l->triangulation, &l->power));
-    l->stats.power_seconds = brio_seconds() - start;
+    l->stats.power_seconds += brio_seconds() - start;
     BRIO_REQUIRE(l->ctx, brio_triangulation_stats(l->power)->dimension == 3, BRIO_ERR_NO_ANSWER,
                  "no inside found: the poles span no solid");
 done:
@@ -151,6 +152,7 @@ done:
 static void count_labels(brio_labelled_poles *l) {
     const brio_stats *s = brio_triangulation_stats(l->power);
     l->stats.hidden_poles = s->hidden + s->duplicates;
+    l->stats.inner = 0;
     for (size_t p = 0; p < l->poles.count; p++) l->stats.inner += l->label[p] == BRIO_LABEL_INNER;
     l->stats.outer = l->poles.count - l->stats.inner;
 }
@@ -160,12 +162,11 @@ typedef brio_status (*label_fn)(const brio_pole_graph *g, uint8_t *label, brio_l
 static const label_fn labellings[BRIO_LABELING_END] = {brio_label_greedy, brio_label_naive, brio_label_theoretical,
                                                        brio_label_global};
 
-static brio_status label_poles(brio_labelled_poles *l, brio_labeling labeling) {
+static brio_status label_along_graph(brio_labelled_poles *l, brio_labeling labeling) {
     brio_status status = BRIO_OK;
     brio_labelling_stats s = {0};
-    double start = brio_seconds(), least = labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0;
+    double least = labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0;
     BRIO_TRY(brio_pole_graph_new(l->ctx, &l->poles, l->points, l->num_samples, l->power, least, &l->graph));
-    BRIO_TRY(BRIO_ALLOC_ZERO(l->ctx, l->label, l->poles.count));
     BRIO_TRY(labellings[labeling](&l->graph, l->label, &s));
     l->stats.confused = s.confused;
     l->stats.unreached = s.unreached;
@@ -173,6 +174,32 @@ static brio_status label_poles(brio_labelled_poles *l, brio_labeling labeling) {
     l->stats.toggled = s.toggled;
     l->stats.energy_greedy = s.energy_greedy;
     l->stats.energy = brio_label_energy(&l->graph, l->label);
+done:
+    return status;
+}
+
+/* The graph with nothing but the triangulation. */
+static void make_bare_graph(brio_labelled_poles *l) {
+    const brio_stats *s = brio_triangulation_stats(l->power);
+    brio_pole_graph_free(&l->graph);
+    l->graph =
+        (brio_pole_graph){.ctx = l->ctx, .poles = &l->poles, .samples = l->points, .num_samples = l->num_samples};
+    l->graph.num_finite = s->tetrahedra;
+    l->graph.power = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(l->power),
+                                       .count = s->tetrahedra + s->hull_facets,
+                                       .infinite = BRIO_INFINITE};
+}
+
+static brio_status label_poles(brio_labelled_poles *l, const brio_pole_request *request) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    BRIO_TRY(BRIO_ALLOC_ZERO(l->ctx, l->label, l->poles.count));
+    if (request->solid) {
+        make_bare_graph(l);
+        BRIO_TRY(brio_label_by_solid(l->ctx, &l->poles, l->exponent, request->solid, l->label));
+    } else {
+        BRIO_TRY(label_along_graph(l, request->labeling));
+    }
     count_labels(l);
     l->stats.label_seconds = brio_seconds() - start;
 done:
@@ -190,9 +217,48 @@ brio_status brio_labelled_poles_find(brio_context *ctx, const double *points, si
     stage(ctx, request, 0.5, 0.89);
     BRIO_TRY(triangulate_poles(l));
     stage(ctx, request, 0.89, 1);
-    BRIO_TRY(label_poles(l, request->labeling));
+    BRIO_TRY(label_poles(l, request));
 done:
     return status;
+}
+
+/* --- fewer poles --- */
+
+static void close_up(brio_labelled_poles *l, const uint8_t *keep) {
+    brio_poles *poles = &l->poles;
+    size_t n = 0;
+    for (size_t p = 0; p < poles->count; p++) {
+        if (!keep[p]) continue;
+        for (size_t k = 0; k < 3; k++) poles->centre[3 * n + k] = poles->centre[3 * p + k];
+        poles->square[n] = poles->square[p];
+        poles->bounding[n] = poles->bounding[p];
+        l->label[n] = l->label[p];
+        if (l->spacing) l->spacing[n] = l->spacing[p];
+        n++;
+    }
+    poles->count = n;
+}
+
+brio_status brio_labelled_poles_keep(brio_labelled_poles *l, const uint8_t *keep) {
+    brio_status status = BRIO_OK;
+    close_up(l, keep);
+    for (size_t i = 0; i < 2 * l->num_samples; i++) l->poles.of_sample[i] = BRIO_NO_POLE;
+    brio_pole_graph_free(&l->graph);
+    l->graph = (brio_pole_graph){.ctx = l->ctx};
+    brio_triangulation_free(l->power);
+    l->power = NULL;
+    BRIO_TRY(triangulate_poles(l));
+    make_bare_graph(l);
+    count_labels(l);
+done:
+    return status;
+}
+
+void brio_labelled_poles_close_hull(brio_labelled_poles *l) {
+    const brio_tetrahedra *power = &l->graph.power;
+    for (size_t tet = l->graph.num_finite; tet < power->count; tet++)
+        for (int i = 0; i < 3; i++) l->label[power->tet[tet].vertex[i]] = BRIO_LABEL_OUTER;
+    count_labels(l);
 }
 
 void brio_labelled_poles_free(brio_labelled_poles *l) {

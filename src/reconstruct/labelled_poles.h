@@ -9,10 +9,11 @@ typedef struct {
     uint64_t seed;
     brio_pole_filter filter;
     brio_labeling labeling;
-    double margin;       /* by which the bounding points are moved out, in the unit of the points */
-    bool spacing;        /* of the poles */
-    bool representative; /* of the samples */
-    double until;        /* share of the progress bar */
+    const brio_mesh *solid; /* a closed mesh that gives the labels instead, or NULL */
+    double margin;          /* by which the bounding points are moved out, in the unit of the points */
+    bool spacing;           /* of the poles */
+    bool representative;    /* of the samples */
+    double until;           /* share of the progress bar */
 } brio_pole_request;
 
 /** Polar balls with labels, and the regular triangulation of them. */
@@ -27,7 +28,7 @@ typedef struct {
     double *spacing;          /* of the poles, or NULL */
     uint32_t *representative; /* of the samples, or NULL */
     brio_triangulation *power;
-    brio_pole_graph graph; /* of these poles */
+    brio_pole_graph graph; /* of these poles; without edges where the labels came from elsewhere */
     uint8_t *label;
     brio_power_crust_stats stats; /* its first part, up to the labels */
 } brio_labelled_poles;
@@ -39,6 +40,14 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_surface_options *
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid), and as brio_delaunay. */
 brio_status brio_labelled_poles_find(brio_context *ctx, const double *points, size_t num_points,
                                      const brio_pole_request *request, brio_labelled_poles *l);
+
+/** Takes away the poles for which keep is 0, and triangulates those that are left with their present radii; the
+ *  others' numbers, labels and spacings close up in order. Samples forget their poles, and the graph has no edges.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid), and as brio_delaunay. */
+brio_status brio_labelled_poles_keep(brio_labelled_poles *l, const uint8_t *keep);
+
+/** Makes the poles on the hull of the triangulation outer, as a crust needs it. */
+void brio_labelled_poles_close_hull(brio_labelled_poles *l);
 
 void brio_labelled_poles_free(brio_labelled_poles *l);
 
