@@ -35,7 +35,7 @@ static double error_of(const medial_shape *shape, double h, double distance) {
 /* The faces are tangent to the balls: their corners are off by the square of the spacing. */
 static void expect_convergence(const medial_shape *shape, double distance, double most_over_square) {
     for (int i = 0; i < 3; i++) {
-        double h = ldexp(0.3, -i), error = error_of(shape, h, distance);
+        double h = 0.3 / (1 + 0.5 * i), error = error_of(shape, h, distance);
         EXPECT(error < most_over_square * h * h, "%s by %g: %g at h = %g", shape->name, distance, error, h);
     }
 }
@@ -117,7 +117,8 @@ static void small_inputs_are_closed_at_any_distance(void) {
     double p[3 * 40];
     int surfaces = 0;
     brio_context *ctx = new_context();
-    for (uint64_t trial = 0; trial < 3000; trial++) {
+    brio_context_set_threads(ctx, 1);
+    for (uint64_t trial = 0; trial < 1500; trial++) {
         size_t n = 4 + trial % 37;
         brio_rng rng = brio_rng_new(trial);
         brio_mesh *mesh;
@@ -134,7 +135,7 @@ static void small_inputs_are_closed_at_any_distance(void) {
         surfaces++;
         brio_mesh_free(mesh);
     }
-    EXPECT(surfaces > 1000, "%d", surfaces);
+    EXPECT(surfaces > 500, "%d", surfaces);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }
