@@ -325,7 +325,10 @@ class NoAnswer(CliTest):
 
     def test_medial_axis_of_an_open_mesh(self):
         mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES[:-1])
-        self.assertIn("along 3 edges", self.expect(3, "medial", mesh, "-o", self.path("out.ply")).err)
+        for command in (["medial"], ["offset", "--distance", "0.1"]):
+            run = self.expect(3, *command, mesh, "-o", self.path("out.ply"))
+            self.assertIn("along 3 edges", run.err)
+            self.assertIn("--labeling greedy", run.err)
         self.assert_only(self.folder, "m.off")
 
     def test_offset_that_swallows_everything(self):
@@ -693,7 +696,8 @@ class Json(CliTest):
             at = int(facts["offset"])
             size, = struct.unpack_from("<Q", data, at)
             code = codes[facts["type"]]
-            arrays[section, facts["Name"]] = struct.unpack_from("<%d%s" % (size // struct.calcsize(code), code), data, at + 8)
+            count = size // struct.calcsize(code)
+            arrays[section, facts["Name"]] = struct.unpack_from("<%d%s" % (count, code), data, at + 8)
         return arrays, dict(re.findall(r'(NumberOf[PVLS]\w+)="(\d+)"', xml.decode()))
 
     def test_power_shape_in_files(self):
@@ -746,6 +750,9 @@ class Json(CliTest):
             self.assertEqual(facts["distance"], distance)
             self.assertTrue(facts["certificate"]["closed"])
             self.assertAlmostEqual(facts["certificate"]["volume"] / volume, 1, delta=0.03)
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        self.assertEqual(self.facts("offset", mesh, "-D", "0.1", "-o", out)["labeling"], "mesh")
+        self.assertEqual(self.facts("offset", mesh, "-D", "0.1", "-o", out, "--labeling", "greedy")["labeling"], "greedy")
         simple = self.facts("offset", points, "-D", "0.5", "-o", out, "--simplify")
         self.assertTrue(simple["certificate"]["closed"])
 
