@@ -102,6 +102,7 @@ static void radii_are_distances_to_samples_and_sides_are_told(void) {
                brio_property_value(radius, v));
         bool inside = torus_distance(p) < 0;
         EXPECT(brio_property_value(side, v) == (inside ? -1 : 1));
+        EXPECT(inside || hypot(p[0], p[1]) < 0.2 + 0.3 * fabs(p[2])); /* near the axis of revolution */
         inner += inside;
         outer += !inside;
     }
@@ -282,6 +283,56 @@ static void poles_of_a_known_box_are_labelled_by_where_they_are(void) {
     free(c.points);
 }
 
+/* All poles are inner then, those on the hull of their triangulation, too. */
+static void points_within_a_larger_solid_have_closed_crusts(void) {
+    brio_context *ctx = new_context();
+    brio_mesh *box = box_mesh(ctx, false, false, 6), *mesh, *shape;
+    brio_medial_options medial = brio_medial_options_default();
+    brio_surface_options surface = brio_surface_options_default();
+    double p[3 * 50];
+    uniform_points(1, 50, p);
+    for (size_t i = 0; i < 3 * box->num_vertices; i++) box->vertices[i] *= 1e4;
+    medial.solid = surface.solid = box;
+    for (int kind = 0; kind < 2; kind++) {
+        brio_certificate c = {0};
+        brio_status status = kind ? brio_power_crust(ctx, p, 50, &surface, &mesh, NULL)
+                                  : brio_power_shape(ctx, p, 50, &medial, &shape, &mesh, NULL);
+        EXPECT(status == BRIO_OK && brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(c.closed && c.manifold && c.oriented);
+        brio_certificate_free(&c);
+        brio_mesh_free(mesh);
+    }
+    brio_mesh_free(shape);
+    brio_mesh_free(box);
+    brio_context_free(ctx);
+}
+
+static void poles_that_are_kept_keep_what_is_theirs(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_torus, 0.3, 1);
+    brio_labelled_poles l, all;
+    brio_surface_options o = brio_surface_options_default();
+    brio_pole_request request;
+    o.simplify = 1;
+    EXPECT(brio_pole_request_of(ctx, &o, &request) == BRIO_OK);
+    EXPECT(brio_labelled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
+    EXPECT(brio_labelled_poles_find(ctx, c.points, c.count, &request, &all) == BRIO_OK);
+    uint8_t *keep = calloc(all.poles.count, 1);
+    for (size_t p = 0; p < all.poles.count; p += 3) keep[p] = 1;
+    EXPECT(brio_labelled_poles_keep(&l, keep) == BRIO_OK && l.poles.count == (all.poles.count + 2) / 3);
+    for (size_t n = 0, p = 0; n < l.poles.count; n++, p += 3) {
+        EXPECT(!memcmp(l.poles.centre + 3 * n, all.poles.centre + 3 * p, 24) &&
+               l.poles.square[n] == all.poles.square[p]);
+        EXPECT(l.label[n] == all.label[p] && l.spacing[n] == all.spacing[p]);
+        EXPECT(l.poles.bounding[n] == all.poles.bounding[p]);
+    }
+    free(keep);
+    brio_labelled_poles_free(&l);
+    brio_labelled_poles_free(&all);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
 static void open_mesh_is_no_solid(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_box, 0.5, 1);
@@ -414,6 +465,8 @@ int main(void) {
     RUN(cover_is_what_brute_force_finds);
     RUN(simplification_takes_the_noise_of_a_sphere_away);
     RUN(poles_of_a_known_box_are_labelled_by_where_they_are);
+    RUN(points_within_a_larger_solid_have_closed_crusts);
+    RUN(poles_that_are_kept_keep_what_is_theirs);
     RUN(open_mesh_is_no_solid);
     RUN(winding_numbers_of_lattice_points_are_right);
     RUN(winding_numbers_of_a_curved_mesh_are_right);
