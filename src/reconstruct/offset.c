@@ -12,27 +12,21 @@
 static const double POLES_SHARE = 0.6, POWER_SHARE = 0.9; /* of the progress bar */
 static const double MARGIN = 4;                           /* of the bounding points, in distances */
 
-/* Changes the radii; keep[p] = 0 for the balls that vanish. Returns how many inner ones are left. */
-static size_t change_radii(brio_labelled_poles *l, double distance, uint8_t *keep) {
+/* Changes the radii; keep[p] = 0 for the balls that vanish. */
+static void change_radii(brio_labelled_poles *l, double distance, uint8_t *keep) {
     double scaled = ldexp(distance, -l->exponent);
-    size_t inner = 0;
     for (size_t p = 0; p < l->poles.count; p++) {
-        bool is_inner = l->label[p] == BRIO_LABEL_INNER;
-        double radius = sqrt(l->poles.square[p]) + (is_inner ? scaled : -scaled);
+        double radius = sqrt(l->poles.square[p]) + (l->label[p] == BRIO_LABEL_INNER ? scaled : -scaled);
         keep[p] = radius > 0;
         l->poles.square[p] = radius * radius;
-        inner += is_inner && keep[p];
     }
-    return inner;
 }
 
 static brio_status move_surface(brio_labelled_poles *l, double distance) {
     brio_status status = BRIO_OK;
     uint8_t *keep = NULL;
-    BRIO_REQUIRE(l->ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
     BRIO_TRY(BRIO_ALLOC(l->ctx, keep, l->poles.count));
-    BRIO_REQUIRE(l->ctx, change_radii(l, distance, keep) > 0, BRIO_ERR_NO_ANSWER,
-                 "the offset by %g swallows the whole object: no inner ball is that large", distance);
+    change_radii(l, distance, keep);
     BRIO_TRY(brio_labelled_poles_keep(l, keep));
     brio_labelled_poles_close_hull(l);
 done:
@@ -60,8 +54,11 @@ static brio_status make_offset(brio_labelled_poles *l, const double *points, siz
     BRIO_TRY(brio_labelled_poles_find(l->ctx, points, num_points, &request, l));
     l->ctx->progress_from = POLES_SHARE;
     l->ctx->progress_to = POWER_SHARE;
-    BRIO_TRY(move_surface(l, distance));
-    BRIO_TRY(brio_make_crust(l, o, POWER_SHARE, mesh));
+    BRIO_REQUIRE(l->ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
+    status = move_surface(l, distance);
+    if (status == BRIO_OK) status = brio_make_crust(l, o, POWER_SHARE, mesh);
+    if (status == BRIO_ERR_NO_ANSWER && distance < 0)
+        return brio_fail(l->ctx, status, "the offset by %g swallows the whole object: no inside is left", distance);
 done:
     return status;
 }
