@@ -19,7 +19,7 @@ static const option options[] = {
     {"sides", 0, OPTION_CHOICE, offsetof(arguments, sides), "NAME", "of the surface whose axis is wanted (inner)",
      sides},
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, labeling), "NAME",
-     "what tells inner poles from outer ones: faces, where there are (mesh), or the points (greedy)",
+     "what tells inner poles from outer ones: faces, where there are (mesh), or the points as for surface",
      cli_labelings_or_mesh},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, simplify), NULL,
      "leave out what noise and close sampling add: --scale 1.1 --redundancy 0.01", 0},

@@ -18,7 +18,7 @@ static const option options[] = {
     {"triangulate", 0, OPTION_FLAG, offsetof(arguments, crust.triangulate), NULL, "cut the polygons into triangles", 0},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, crust.simplify), NULL, "a quarter as many faces, triangles", 0},
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, crust.labeling), "NAME",
-     "what tells inner poles from outer ones: faces, where there are (mesh), or the points (greedy)",
+     "what tells inner poles from outer ones: faces, where there are (mesh), or the points as for surface",
      cli_labelings_or_mesh},
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, crust.sampling_density), "R",
      "discard the nearer pole of cells too wide for an R-sample", 0},

@@ -18,7 +18,7 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
     if (*labeling == LABELS_OF_MESH && !input->num_faces)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--labeling mesh: %s has no faces", r->operands[0]);
     *by_mesh = *labeling == LABELS_OF_MESH || (*labeling == LABELS_OF_INPUT && input->num_faces > 0);
-    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = BRIO_LABELING_GREEDY;
+    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = (int)brio_surface_options_default().labeling;
     return BRIO_OK;
 }
 

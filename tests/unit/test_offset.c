@@ -207,6 +207,36 @@ static void shuffled_samples_give_the_same_offset(void) {
     brio_context_free(ctx);
 }
 
+static void scale_of_points_and_distance_is_the_scale_of_the_offset(void) {
+    static double p[3 * 500], q[3 * 500];
+    brio_context *ctx = new_context();
+    brio_mesh *a, *b;
+    torus_points(3, 500, p);
+    for (int i = 0; i < 1500; i++) q[i] = p[i] * 0x1p300;
+    EXPECT(brio_offset_surface(ctx, p, 500, 0.3, NULL, &a, NULL) == BRIO_OK);
+    EXPECT(brio_offset_surface(ctx, q, 500, 0.3 * 0x1p300, NULL, &b, NULL) == BRIO_OK);
+    bool same = a->num_vertices == b->num_vertices;
+    for (size_t i = 0; same && i < 3 * a->num_vertices; i++) same = a->vertices[i] * 0x1p300 == b->vertices[i];
+    EXPECT(same);
+    brio_mesh_free(a);
+    brio_mesh_free(b);
+    brio_context_free(ctx);
+}
+
+static void duplicates_change_nothing(void) {
+    static double p[3 * 1000];
+    brio_context *ctx = new_context();
+    brio_mesh *a, *b;
+    torus_points(3, 500, p);
+    memcpy(p + 1500, p, 1500 * sizeof *p);
+    EXPECT(brio_offset_surface(ctx, p, 500, 0.1, NULL, &a, NULL) == BRIO_OK);
+    EXPECT(brio_offset_surface(ctx, p, 1000, 0.1, NULL, &b, NULL) == BRIO_OK);
+    EXPECT(a->num_vertices == b->num_vertices && !memcmp(a->vertices, b->vertices, 24 * a->num_vertices));
+    brio_mesh_free(a);
+    brio_mesh_free(b);
+    brio_context_free(ctx);
+}
+
 static void wrong_options_are_refused(void) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
@@ -251,6 +281,8 @@ int main(void) {
     RUN(small_inputs_are_closed_at_any_distance);
     RUN(distances_of_any_size_are_answered);
     RUN(shuffled_samples_give_the_same_offset);
+    RUN(scale_of_points_and_distance_is_the_scale_of_the_offset);
+    RUN(duplicates_change_nothing);
     RUN(wrong_options_are_refused);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
