@@ -92,14 +92,14 @@ static inline uint64_t cube_key(const cube *c, const two_levels *two, const doub
 }
 
 /* The cube of rows of a matrix, or of those that the low halves of the items name. */
-static cube cube_of(const double *rows, size_t stride, const uint64_t *items, size_t n, int threads) {
+static cube cube_of(const double *points, const uint64_t *items, size_t n, int threads) {
     cube first, all;
-    cube_new(&first, rows + stride * (items ? (uint32_t)items[0] : 0));
+    cube_new(&first, points + 3 * (items ? (size_t)(uint32_t)items[0] : 0));
     all = first;
     BRIO_OMP(parallel num_threads(threads)) {
         cube own = first;
         BRIO_OMP(for nowait)
-        for (size_t i = 0; i < n; i++) cube_add(&own, rows + stride * (items ? (uint32_t)items[i] : i));
+        for (size_t i = 0; i < n; i++) cube_add(&own, points + 3 * (items ? (size_t)(uint32_t)items[i] : i));
         BRIO_OMP(critical(brio_cube))
         for (int k = 0; k < 3; k++) {
             all.low[k] = fmin(all.low[k], own.low[k]);
@@ -113,7 +113,7 @@ void brio_hilbert_keys(const double *points, size_t n, int bits, uint64_t *keys)
     if (!n) return;
     two_levels two;
     compose(&two);
-    cube c = cube_of(points, 3, NULL, n, 1);
+    cube c = cube_of(points, NULL, n, 1);
     cube_divide(&c, bits);
     for (size_t i = 0; i < n; i++) keys[i] = cube_key(&c, &two, points + 3 * i, bits);
 }
@@ -122,7 +122,7 @@ bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bit
     if (!n) return false;
     two_levels two;
     compose(&two);
-    cube c = cube_of(points, 3, items, n, threads);
+    cube c = cube_of(points, items, n, threads);
     if (!cube_divide(&c, bits)) return false;
     BRIO_OMP(parallel for num_threads(threads))
     for (size_t i = 0; i < n; i++) {
@@ -130,31 +130,4 @@ bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bit
         items[i] = cube_key(&c, &two, points + 3 * index, bits) << 32 | index;
     }
     return true;
-}
-
-void brio_hilbert_variant(const double *rows, size_t stride, size_t n, int variant, int threads, uint32_t *key) {
-    enum { BITS = 10 };
-    two_levels two;
-    double room = 0;
-    if (!n) return;
-    compose(&two);
-    cube c = cube_of(rows, stride, NULL, n, threads);
-    for (int k = 0; k < 3; k++) room = fmax(room, c.high[k] - c.low[k]);
-    for (int k = 0; k < 3; k++) { /* the golden ratio spreads the variants over the room that the larger cube gives */
-        double part = fmod(0.618033988749895 * (double)(3 * variant + k + 1), 1);
-        c.low[k] -= 0.6 * room * part;
-        c.high[k] = c.low[k] + 1.6 * room;
-    }
-    cube_divide(&c, BITS);
-    BRIO_OMP(parallel for num_threads(threads))
-    for (size_t i = 0; i < n; i++) {
-        double turned[3];
-        cube about = c;
-        for (int k = 0; k < 3; k++) {
-            int from = (k + variant) % 3;
-            turned[k] = rows[stride * i + (size_t)from];
-            about.low[k] = c.low[from];
-        }
-        key[i] = (uint32_t)cube_key(&about, &two, turned, BITS);
-    }
 }

@@ -17,9 +17,4 @@ void brio_hilbert_keys(const double *points, size_t num_points, int bits, uint64
  *  the smallest cube that holds them all; bits at most 10. False when they are all at one position. */
 bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bits, int threads);
 
-/** key[i] = key of row i (its first three of `stride` doubles) along a curve of 10 levels through a cube that is larger
- *  than that of the rows and placed differently for each `variant`, its axes in turn: curves that cut space elsewhere.
- */
-void brio_hilbert_variant(const double *rows, size_t stride, size_t n, int variant, int threads, uint32_t *key);
-
 #endif

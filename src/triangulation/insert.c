@@ -41,9 +41,8 @@ static bool absorbed(brio_kernel *k, uint32_t p, uint32_t v) {
  * and then. */
 static brio_status locate(brio_kernel *k, const double *point, uint32_t *tet) {
     enum { SHORT_WALK = 40, DESCENTS = 64 };
-    if (k->long_walks == 0 || k->cavity.num_created == 0) {
-        uint64_t most = k->cavity.num_created ? SHORT_WALK : UINT64_MAX;
-        *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, most);
+    if (k->long_walks == 0) {
+        *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, SHORT_WALK);
         if (*tet != BRIO_NO_TET) return BRIO_OK;
         if (k->walk.blocked) return BRIO_DEFERRED;
         k->long_walks = DESCENTS;
@@ -67,6 +66,7 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
             return BRIO_OK;
         }
     }
+    if (!brio_owns(&k->t, tet)) return BRIO_DEFERRED;
     brio_status status = k->engine->dig(k, tet, p);
     return status == BRIO_OK ? brio_cavity_fill(k, p) : status;
 }
