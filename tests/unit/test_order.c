@@ -36,7 +36,7 @@ static void every_order_is_a_permutation(void) {
         for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
             brio_options o = brio_options_default();
             o.order = (brio_order)kind;
-            EXPECT(brio_order_points(ctx, p, N, &o, order, NULL) == BRIO_OK);
+            EXPECT(brio_order_points(ctx, p, N, &o, order, NULL, NULL) == BRIO_OK);
             static char seen[N];
             memset(seen, 0, N);
             for (size_t i = 0; i < N; i++) EXPECT(order[i] < N && !seen[order[i]]++);
@@ -57,7 +57,7 @@ static void rounds_have_their_share(void) {
     brio_options o = brio_options_default();
     o.round_ratio = 0.5;
     brio_context *ctx = new_context();
-    EXPECT(brio_order_points(ctx, p, N, &o, order, NULL) == BRIO_OK);
+    EXPECT(brio_order_points(ctx, p, N, &o, order, NULL, NULL) == BRIO_OK);
     size_t last = N - 1;
     while (last > 0 && key[order[last - 1]] <= key[order[last]]) last--;
     EXPECT(last > 0.48 * N && last < 0.52 * N, "last round starts at %zu", last);
