@@ -20,7 +20,7 @@ brio_status brio_octree_blocks(brio_context *ctx, const double *points, size_t n
                                uint32_t *index, uint32_t *spare, brio_block_fn visit, const void *user);
 
 /** The same with the cells of a k-d tree: a cell of n points has children of n / 2 and n - n / 2.
- *  Needs 8 n bytes of workspace. */
+ *  Needs 16 n bytes of workspace. */
 brio_status brio_kdtree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, int threads,
                                uint32_t *index, brio_block_fn visit, const void *user);
 

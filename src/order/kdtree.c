@@ -1,10 +1,13 @@
 /* Blocks of points by a k-d tree: a cell with more points than a block may have is halved at the median across the longest
  * side of its points' box.
  *
- * The medians are found by selection [Hoare 1961] on the coordinate, in 2^32 steps of the cube of the cell's points, with
- * the point's index below it: no two points are equal, so that duplicates are halved as anything else is. n log n in all.
+ * Coordinates are kept beside the indices, in 2^32 steps of a cube round the points, and taken anew from the cube of a cell
+ * that has become so small that the steps show: clusters of any size are resolved, and memory is read in sequence. The
+ * medians are found by selection; where coordinates are equal the index decides, so that duplicates are halved as
+ * anything else is. n log n in all.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, sections 5.3 and 5.8.
+ *           Hoare. Algorithm 65: find. CACM 1961.
  * Differs from the paper: selection in place of sorting. */
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -12,91 +15,131 @@
 #include "order/blocks.h"
 #include "order/cube.h"
 
-enum { KEY_BITS = 32, POINTS_A_TASK = 1 << 13 };
+enum { STEP_BITS = 32, FEW_STEPS = 1 << 10, POINTS_A_TASK = 1 << 13, SAMPLE = 31 };
+
+typedef struct {
+    uint32_t step[3], index;
+} node;
 
 typedef struct {
     const double *points;
-    uint64_t *items; /* key across the longest side, index */
+    node *nodes;
     uint32_t *index;
     size_t block_size;
     brio_block_fn visit;
     const void *user;
 } kdtree;
 
-static inline uint64_t median_of_three(uint64_t a, uint64_t b, uint64_t c) {
-    uint64_t low = a < b ? a : b, high = a < b ? b : a;
-    return c < low ? low : c > high ? high : c;
+/* --- the median --- */
+
+/* No two nodes have the same key. */
+static inline uint64_t key_of(const node *a, int axis) {
+    return (uint64_t)a->step[axis] << 32 | a->index;
 }
 
-/* An item that is likely to be near the middle, whatever the order. */
-static uint64_t choose_pivot(const uint64_t *items, size_t n) {
+static inline void swap_nodes(node *a, node *b) {
+    node swap = *a;
+    *a = *b, *b = swap;
+}
+
+/* A node that is likely to have `half` of the n nodes before it. */
+static size_t choose_pivot(const node *nodes, size_t n, size_t half, int axis) {
+    size_t sample[SAMPLE], size = n < 8 * SAMPLE ? 3 : SAMPLE;
     brio_rng rng = brio_rng_new(n);
-    uint64_t three[3];
-    for (int i = 0; i < 3; i++) three[i] = items[brio_rng_below(&rng, (uint32_t)n)];
-    return median_of_three(three[0], three[1], three[2]);
+    for (size_t i = 0, j; i < size; i++) {
+        size_t drawn = brio_rng_below(&rng, (uint32_t)n);
+        for (j = i; j > 0 && key_of(&nodes[sample[j - 1]], axis) > key_of(&nodes[drawn], axis); j--)
+            sample[j] = sample[j - 1];
+        sample[j] = drawn;
+    }
+    return sample[half * size / n];
 }
 
-/* Brings the `half` least items to the front. No two are equal. */
-static void select_least(uint64_t *items, size_t n, size_t half) {
-    size_t begin = 0, end = n;
-    while (begin < half && half < end) {
-        uint64_t pivot = choose_pivot(items + begin, end - begin);
-        size_t i = begin, j = end - 1;
-        for (;; i++, j--) {
-            while (items[i] < pivot) i++;
-            while (items[j] > pivot) j--;
-            if (i >= j) break;
-            uint64_t swap = items[i];
-            items[i] = items[j], items[j] = swap;
-        }
-        if (half <= i)
-            end = i;
+/* Brings the nodes with keys below the pivot's to the front, and the pivot behind them; their number. */
+static size_t divide_by_pivot(node *nodes, size_t n, size_t pivot, int axis) {
+    size_t front = 0;
+    uint64_t key = key_of(&nodes[pivot], axis);
+    swap_nodes(&nodes[pivot], &nodes[n - 1]);
+    for (size_t i = 0; i < n - 1; i++) { /* always moves, so that there is no branch to guess */
+        bool before = key_of(&nodes[i], axis) < key;
+        swap_nodes(&nodes[i], &nodes[front]);
+        front += before;
+    }
+    swap_nodes(&nodes[front], &nodes[n - 1]);
+    return front;
+}
+
+/* Brings the `half` nodes with the least keys to the front. */
+static void select_least(node *nodes, size_t n, size_t half, int axis) {
+    while (half > 0 && half < n) {
+        size_t front = divide_by_pivot(nodes, n, choose_pivot(nodes, n, half, axis), axis);
+        if (half <= front)
+            n = front;
         else
-            begin = i == j ? i + 1 : i; /* where they met stands the pivot, in its place */
+            nodes += front + 1, half -= front + 1, n -= front + 1;
     }
 }
 
-/* Gives the items the keys of their points' longest side. */
-static void set_keys(const kdtree *k, uint64_t *items, size_t n) {
-    brio_cube cube;
-    int axis = 0;
-    brio_cube_new(&cube, k->points + 3 * (size_t)(uint32_t)items[0]);
-    for (size_t i = 1; i < n; i++) brio_cube_add(&cube, k->points + 3 * (size_t)(uint32_t)items[i]);
-    brio_cube_divide(&cube, KEY_BITS);
+/* --- cells --- */
+
+/* The longest side of the nodes' box, in steps. */
+static uint32_t longest_side(const node *nodes, size_t n, int *axis) {
+    uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
+    for (size_t i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++) {
+            low[c] = nodes[i].step[c] < low[c] ? nodes[i].step[c] : low[c];
+            high[c] = nodes[i].step[c] > high[c] ? nodes[i].step[c] : high[c];
+        }
+    *axis = 0;
     for (int c = 1; c < 3; c++)
-        if (cube.high[c] - cube.low[c] > cube.high[axis] - cube.low[axis]) axis = c;
-    for (size_t i = 0; i < n; i++) {
-        uint64_t index = (uint32_t)items[i];
-        items[i] = (uint64_t)brio_cube_cell(&cube, k->points + 3 * index, axis) << 32 | index;
-    }
+        if (high[c] - low[c] > high[*axis] - low[*axis]) *axis = c;
+    return high[*axis] - low[*axis];
+}
+
+/* Takes the coordinates in steps of the nodes' own cube. */
+static void take_steps(const kdtree *k, node *nodes, size_t n) {
+    brio_cube cube;
+    brio_cube_new(&cube, k->points + 3 * (size_t)nodes[0].index);
+    for (size_t i = 1; i < n; i++) brio_cube_add(&cube, k->points + 3 * (size_t)nodes[i].index);
+    brio_cube_divide(&cube, STEP_BITS);
+    for (size_t i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++) nodes[i].step[c] = brio_cube_cell(&cube, k->points + 3 * (size_t)nodes[i].index, c);
+}
+
+static void visit_block(const kdtree *k, size_t begin, size_t end, int passes) {
+    brio_block block = {begin, end, passes};
+    for (size_t i = begin; i < end; i++) k->index[i] = k->nodes[i].index;
+    k->visit(k->index, &block, k->user);
 }
 
 static void divide(const kdtree *k, size_t begin, size_t end, int passes) {
-    uint64_t *items = k->items + begin;
-    size_t n = end - begin, half = n / 2;
+    node *nodes = k->nodes + begin;
+    size_t n = end - begin, middle = begin + n / 2;
+    int axis;
     if (n <= k->block_size) {
-        brio_block block = {begin, end, passes};
-        for (size_t i = 0; i < n; i++) k->index[begin + i] = (uint32_t)items[i];
-        k->visit(k->index, &block, k->user);
+        visit_block(k, begin, end, passes);
         return;
     }
-    set_keys(k, items, n);
-    select_least(items, n, half);
+    if (longest_side(nodes, n, &axis) < FEW_STEPS) {
+        take_steps(k, nodes, n);
+        longest_side(nodes, n, &axis);
+    }
+    select_least(nodes, n, n / 2, axis);
     BRIO_OMP(task if (n > POINTS_A_TASK))
-    divide(k, begin, begin + half, passes + 1);
-    divide(k, begin + half, end, passes + 1);
+    divide(k, begin, middle, passes + 1);
+    divide(k, middle, end, passes + 1);
 }
 
 brio_status brio_kdtree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, int threads,
                                uint32_t *index, brio_block_fn visit, const void *user) {
     kdtree k = {points, NULL, index, block_size, visit, user};
     if (n == 0) return BRIO_OK;
-    brio_status status = BRIO_ALLOC(ctx, k.items, n);
+    brio_status status = BRIO_ALLOC(ctx, k.nodes, n);
     if (status != BRIO_OK) return status;
-    for (size_t i = 0; i < n; i++) k.items[i] = i;
+    for (size_t i = 0; i < n; i++) k.nodes[i] = (node){{0, 0, 0}, (uint32_t)i};
     BRIO_OMP(parallel num_threads(threads))
     BRIO_OMP(single)
     divide(&k, 0, n, 0);
-    brio_release(ctx, k.items);
+    brio_release(ctx, k.nodes);
     return BRIO_OK;
 }
