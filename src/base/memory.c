@@ -180,6 +180,11 @@ void brio_release(brio_context *ctx, void *block) {
         account_sub(ctx, h.size);
 }
 
+void brio_expect_random(const void *block) {
+    const block_header *h = (const block_header *)((const char *)block - HEADER);
+    if (h->kind == KIND_FILE) madvise((char *)block - HEADER, h->size, MADV_RANDOM);
+}
+
 /* Grows or shrinks a mapping in place of copying it. */
 static void *block_remap(brio_context *ctx, void *block, size_t size, brio_status *status) {
     block_header h = *header_of(block);

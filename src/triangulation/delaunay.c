@@ -85,6 +85,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     k->num_points = n;
     k->weighted = weights != NULL;
     k->engine = brio_engine_choose(k->weighted);
+    brio_read_ahead_start(&k->read_ahead, ctx);
     k->max_tetrahedra = options->max_tetrahedra;
     k->stats.points = n;
     k->t.infinite = (uint32_t)n + 2;
@@ -97,6 +98,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
     k->record[n + 2][3] = INFINITY; /* the infinite vertex, as conflict_lanes.h knows it */
     k->t.record = k->record;
+    brio_expect_random(k->record);
     k->stats.order_seconds = brio_seconds() - start;
     BRIO_TRY(BRIO_ALLOC(ctx, k->representative, n + 3));
     for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;

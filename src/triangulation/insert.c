@@ -12,6 +12,8 @@ brio_status brio_kernel_reserve(brio_kernel *k, size_t more) {
     if (capacity > k->max_tetrahedra) capacity = k->max_tetrahedra;
     BRIO_TRY(BRIO_RESIZE(k->ctx, k->t.tet, capacity));
     BRIO_TRY(BRIO_RESIZE(k->ctx, k->state, capacity));
+    brio_expect_random(k->t.tet);
+    brio_expect_random(k->state);
     k->capacity = capacity;
 done:
     return status;
@@ -53,6 +55,17 @@ static brio_status locate(brio_kernel *k, const double *point, uint32_t *tet) {
     return brio_locate_descent(k, point, tet);
 }
 
+/* Around a point is where the next ones go. */
+static void expect_neighbours(brio_kernel *k) {
+    const brio_cavity *c = &k->cavity;
+    k->read_ahead.now++;
+    for (size_t i = 0; i < c->num_created; i++) {
+        const brio_tetrahedron *t = &k->t.tet[c->created[i]];
+        brio_expect(&k->read_ahead, &k->t.tet[brio_tet_of(t->mate[0])]);
+        brio_expect(&k->read_ahead, k->record[t->vertex[1]]);
+    }
+}
+
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
     const double *point = k->record[p];
     uint32_t tet;
@@ -68,5 +81,7 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
         }
     }
     brio_status status = k->engine->dig(k, tet, p);
-    return status == BRIO_OK ? brio_cavity_fill(k, p) : status;
+    if (status == BRIO_OK) status = brio_cavity_fill(k, p);
+    if (status == BRIO_OK && k->read_ahead.active) expect_neighbours(k);
+    return status;
 }

@@ -4,6 +4,7 @@
 #ifndef BRIO_TRIANGULATION_KERNEL_H
 #define BRIO_TRIANGULATION_KERNEL_H
 
+#include "base/read_ahead.h"
 #include "triangulation/engine.h"
 #include "triangulation/locate.h"
 #include "triangulation/star.h"
@@ -50,6 +51,7 @@ struct brio_kernel {
     unsigned long_walks; /* how often of late a walk was given up, see insert.c */
     brio_star star;      /* workspace of the descent; its marks are the states */
     brio_cavity cavity;
+    brio_read_ahead read_ahead;
     brio_stats stats;
 };
 
