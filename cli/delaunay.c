@@ -10,14 +10,19 @@
 typedef struct arguments {
     weights_options weights;
     int order, locate;
-    double round_ratio; /* NaN: not given */
-    bool verify;
+    double round_ratio;                /* NaN: not given */
+    uint64_t block_size, record_every; /* 0: not given */
+    bool rounds, verify;
 } arguments;
 
-static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},     {"hilbert", BRIO_ORDER_HILBERT},
-                                       {"random", BRIO_ORDER_RANDOM}, {"input", BRIO_ORDER_INPUT},
-                                       {"brio-octree", CHOICE_LATER}, {"brio-kdtree", CHOICE_LATER},
-                                       {"octree", CHOICE_LATER},      {NULL, 0}};
+static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},
+                                       {"brio-octree", BRIO_ORDER_BRIO_OCTREE},
+                                       {"brio-kdtree", BRIO_ORDER_BRIO_KDTREE},
+                                       {"octree", BRIO_ORDER_OCTREE},
+                                       {"hilbert", BRIO_ORDER_HILBERT},
+                                       {"random", BRIO_ORDER_RANDOM},
+                                       {"input", BRIO_ORDER_INPUT},
+                                       {NULL, 0}};
 
 static const option_choice locations[] = {{"walk", 0},
                                           {"jump", CHOICE_LATER},
@@ -30,10 +35,14 @@ static const option_choice locations[] = {{"walk", 0},
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
     {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order; the result is the same", orders},
-    {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R", "share of the points before the last round", 0},
+    {"block-size", 0, OPTION_NATURAL, FIELD(block_size), "N",
+     "most points of an octree or k-d tree block (default 2000)", 0},
+    {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R",
+     "share of the points before the last round (default 1/8 for brio, else 1/2)", 0},
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron", locations},
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
-    {"block-size", 0, OPTION_LATER, 0, NULL, NULL, 0},
+    {"rounds", 0, OPTION_FLAG, FIELD(rounds), NULL, "report the counters at the end of each round", 0},
+    {"record-every", 0, OPTION_NATURAL, FIELD(record_every), "N", "report the counters after every N insertions", 0},
     {0},
 };
 #undef FIELD
@@ -45,14 +54,27 @@ static bool is_standard_output(const run *r) {
     return r->common.output && !strcmp(r->common.output, "-");
 }
 
+static brio_status check_order(run *r, const arguments *a) {
+    bool in_blocks = a->order == BRIO_ORDER_BRIO_OCTREE || a->order == BRIO_ORDER_BRIO_KDTREE;
+    bool in_rounds = a->order == BRIO_ORDER_BRIO || in_blocks;
+    if (a->block_size && !in_blocks && a->order != BRIO_ORDER_OCTREE)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--block-size: only with --order brio-octree, brio-kdtree or octree");
+    if (!isnan(a->round_ratio) && !in_rounds)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: the insertion order has no rounds");
+    if (a->round_ratio <= 0 || a->round_ratio >= 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: %g is not between 0 and 1", a->round_ratio);
+    return BRIO_OK;
+}
+
 static brio_status check_arguments(run *r, const arguments *a) {
     brio_status status = BRIO_OK;
+    TRY(check_order(r, a));
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(cli_require_output(r, formats, true));
     if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
-    if (a->round_ratio <= 0 || a->round_ratio >= 1)
-        status = cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: %g is not between 0 and 1", a->round_ratio);
+    if (a->rounds && a->record_every)
+        status = cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --rounds and --record-every");
 done:
     return status;
 }
@@ -62,6 +84,8 @@ static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh
     brio_options o = brio_options_default();
     o.order = (brio_order)a->order;
     o.seed = r->common.seed;
+    o.block_size = (size_t)a->block_size;
+    o.record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every;
     if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
     brio_status status = brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out);
     if (status != BRIO_OK) return status;
@@ -100,6 +124,26 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     return BRIO_OK;
 }
 
+static void report_rounds(facts *f, const brio_triangulation *t) {
+    size_t count;
+    const brio_round *round = brio_triangulation_rounds(t, &count);
+    if (!round) return;
+    cli_fact_open(f, "rounds", FACT_LIST);
+    for (size_t i = 0; i < count; i++) {
+        cli_fact_open(f, NULL, FACT_OBJECT);
+        cli_fact_count(f, "points", round[i].points);
+        cli_fact_count(f, "tetrahedra", round[i].tetrahedra);
+        cli_fact_count(f, "created", round[i].created);
+        cli_fact_count(f, "destroyed", round[i].destroyed);
+        cli_fact_count(f, "walk_steps", round[i].walk_steps);
+        cli_fact_count(f, "insphere_calls", round[i].insphere_calls);
+        cli_fact_count(f, "history", round[i].history);
+        cli_fact_seconds(f, "seconds", round[i].seconds);
+        cli_fact_close(f);
+    }
+    cli_fact_close(f);
+}
+
 static brio_status verify(run *r, const brio_mesh *mesh, const double *weights, const brio_triangulation *t) {
     brio_status status = brio_triangulation_check(r->ctx, t, mesh->vertices, weights, mesh->num_vertices);
     cli_lap(r, "verify");
@@ -134,6 +178,7 @@ static brio_status delaunay(run *r) {
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));
     TRY(report_stats(r, mesh, t, weighted));
+    report_rounds(&r->facts, t);
     if (a->verify) TRY(verify(r, mesh, weights, t));
     if (r->common.output) TRY(write_output(r, mesh, weights, &t));
 done:

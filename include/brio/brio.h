@@ -136,15 +136,25 @@ typedef enum brio_order {
     BRIO_ORDER_HILBERT = 1, /* one round */
     BRIO_ORDER_RANDOM = 2,
     BRIO_ORDER_INPUT = 3,
+    BRIO_ORDER_BRIO_OCTREE = 4, /* random rounds, octree blocks inside a round, shuffled inside a block [Choi 2003] */
+    BRIO_ORDER_BRIO_KDTREE = 5, /* the same with the blocks of a k-d tree */
+    BRIO_ORDER_OCTREE = 6,      /* octree blocks, shuffled inside a block; one round */
     BRIO_ORDER_END
 } brio_order;
 
 typedef struct brio_options {
     brio_order order;
-    double round_ratio;      /* share of the points left for the rounds before the last, in (0, 1); default 1/8 */
-    uint64_t seed;           /* every random choice follows from it; default 1 */
+    double round_ratio; /* share of the points left for the rounds before the last, in (0, 1); default 0: the order's
+                                own, 1/8 of BRIO_ORDER_BRIO and 1/2 of the thesis' orders */
+    uint64_t seed;      /* every random choice follows from it; default 1 */
     uint32_t max_tetrahedra; /* finite and infinite ones at any time; default (and most) 2^30 */
+    size_t block_size;       /* most points of an octree or k-d tree block; default 0: 2,000 */
+    uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;
+                                default 0: none are kept */
 } brio_options;
+
+/** One entry at the end of each round; of orders without rounds, after 4,096 points, twice as many, and so on. */
+#define BRIO_RECORD_ROUNDS UINT64_MAX
 
 BRIO_API brio_options brio_options_default(void);
 
@@ -155,10 +165,19 @@ typedef struct brio_stats {
     size_t tetrahedra;  /* finite ones */
     size_t hull_facets; /* = infinite tetrahedra */
     uint64_t created, destroyed, walk_steps, insphere_calls;
+    uint64_t history;                     /* nodes of the history DAG, with BRIO_LOCATE_HISTORY or BRIO_LOCATE_TRACE */
     uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
     uint64_t deferred, serial;            /* with threads: insertions put off to a later pass; left to one thread */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
+
+/** Counters when so many points were in; those of brio_stats, up to then. */
+typedef struct brio_round {
+    size_t points;     /* inserted so far */
+    size_t tetrahedra; /* at that time, infinite ones included */
+    uint64_t created, destroyed, walk_steps, insphere_calls, history;
+    double seconds; /* since the insertion began */
+} brio_round;
 
 typedef struct brio_triangulation brio_triangulation;
 
@@ -181,6 +200,12 @@ BRIO_API brio_status brio_delaunay(brio_context *ctx, const double *points, cons
 BRIO_API void brio_triangulation_free(brio_triangulation *t);
 
 BRIO_API const brio_stats *brio_triangulation_stats(const brio_triangulation *t);
+
+/** The counters in the course of the insertion: *count entries of rising `points`, the last one at the end of the
+ *  insertion; NULL and 0 unless options.record_every was set. The same numbers of points for every number of threads,
+ *  which insert what lies between two entries together: small steps leave little to share, and the counters of a step
+ *  depend on who came first. View. */
+BRIO_API const brio_round *brio_triangulation_rounds(const brio_triangulation *t, size_t *count);
 
 /** The #T = tetrahedra + hull_facets tetrahedra. The finite tetrahedra come first and are positive; an
  *  infinite tetrahedron has BRIO_INFINITE as its last vertex and the other three see the outside on their negative

@@ -22,7 +22,8 @@ COMMANDS = ["delaunay", "surface", "check", "compare", "info", "generate", "subd
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
-    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--round-ratio", "--locate", "--verify"],
+    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio",
+                 "--locate", "--rounds", "--record-every", "--verify"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--simplify", "--labeling",
                 "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
@@ -190,8 +191,7 @@ class Usage(CliTest):
             self.usage("scan", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
 
     def test_names_of_later_versions(self):
-        for arguments in [("delaunay", "--order", "octree"), ("delaunay", "--order", "brio-kdtree"),
-                          ("delaunay", "--locate", "jump"), ("delaunay", "--block-size", "8")]:
+        for arguments in [("delaunay", "--locate", "jump")]:
             self.usage("not available in this version", arguments[0], "a.xyz", *arguments[1:])
 
     def test_output_without_a_known_extension(self):
@@ -612,6 +612,35 @@ class Json(CliTest):
         self.assertEqual(facts["points"], facts["vertices"] + facts["duplicates"] + facts["hidden"])
         self.assertEqual(facts["created"] - facts["destroyed"], facts["tetrahedra"] + facts["hull_facets"])
         self.assertNotIn("verified", facts)
+
+    def test_orders(self):
+        points = self.cloud("a.ply", 6000)
+        orders = [["brio"], ["brio-octree"], ["brio-kdtree"], ["octree"], ["hilbert"], ["random"], ["input"],
+                  ["brio-octree", "--block-size", "50"], ["octree", "--block-size", "1"],
+                  ["brio-kdtree", "--round-ratio", "0.3"]]
+        runs = [self.facts("delaunay", points, "--threads", "1", "--order", *order) for order in orders]
+        self.assertEqual(len({run["checksum"] for run in runs}), 1)
+        self.assertEqual(len({run["created"] for run in runs}), len(runs))
+        for order in ["brio", "hilbert", "random", "input"]:
+            self.usage("octree", "delaunay", points, "--order", order, "--block-size", "9")
+        for order in ["octree", "hilbert", "random", "input"]:
+            self.usage("has no rounds", "delaunay", points, "--order", order, "--round-ratio", "0.3")
+
+    def test_counters_of_rounds(self):
+        points = self.cloud("a.ply", 9000)
+        keys = "points tetrahedra created destroyed walk_steps insphere_calls history".split()
+        for arguments in [["--rounds"], ["--rounds", "--order", "brio-octree"], ["--rounds", "--order", "hilbert"],
+                          ["--record-every", "4000"]]:
+            facts = self.facts("delaunay", points, *arguments)
+            for entry in facts["rounds"]:
+                self.assert_schema(entry, {**{key: count for key in keys}, "seconds": number})
+                self.assertEqual(entry["created"] - entry["destroyed"], entry["tetrahedra"])
+            self.assertEqual(facts["rounds"][-1]["created"], facts["created"])
+        self.assertEqual([entry["points"] for entry in facts["rounds"]], [4000, 8000, 9000])
+        table = self.expect(0, "delaunay", points, "--rounds").text.split("\nrounds")[1]
+        self.assertRegex(table, r"\A +\n +points +tetrahedra .*seconds\n( +[0-9.]+){8}\n")
+        self.assertNotIn("rounds", self.facts("delaunay", points))
+        self.usage("only one of", "delaunay", points, "--rounds", "--record-every", "9")
 
     def test_surface(self):
         points = self.cloud("a.ply", 2000, "sphere")
