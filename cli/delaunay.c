@@ -145,6 +145,7 @@ static void report_rounds(facts *f, const brio_triangulation *t) {
         cli_fact_count(f, "walk_steps", round[i].walk_steps);
         cli_fact_count(f, "insphere_calls", round[i].insphere_calls);
         cli_fact_count(f, "history", round[i].history);
+        cli_fact_seconds(f, "locate_seconds", round[i].locate_seconds);
         cli_fact_seconds(f, "seconds", round[i].seconds);
         cli_fact_close(f);
     }

@@ -189,6 +189,7 @@ typedef struct brio_stats {
     uint64_t history;                     /* nodes of the history DAG, with BRIO_LOCATE_HISTORY or BRIO_LOCATE_TRACE */
     uint64_t history_tests;               /* nodes that searches held against a point */
     uint64_t trace_intersections;         /* tetrahedra entered while edges were traced */
+    double locate_seconds;                /* of the insertion: point location, from every 64th one; with one thread */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
 
@@ -197,7 +198,8 @@ typedef struct brio_round {
     size_t points;     /* inserted so far */
     size_t tetrahedra; /* at that time, infinite ones included */
     uint64_t created, destroyed, walk_steps, insphere_calls, history;
-    double seconds; /* since the insertion began */
+    double locate_seconds; /* as in brio_stats */
+    double seconds;        /* since the insertion began */
 } brio_round;
 
 typedef struct brio_triangulation brio_triangulation;

@@ -1,9 +1,7 @@
 /* Reading ahead in scratch files, by stretches of 32 KiB.
  *
- * The kernel of the system reads one page at a fault where the access is told to be random (brio_expect_random), and
- * as much as its device is set to, up to megabytes, where it is not: the one waits for the disk at every page, the
- * other reads a hundred times what is used. Who knows what comes next says so here instead. A stretch that was asked
- * for a short while ago is not asked for again. */
+ * A fault reads one page and waits for the disk (memory.h). Who knows what comes next says so here, and it is read
+ * meanwhile. A stretch that was asked for a short while ago is not asked for again. */
 #ifndef BRIO_BASE_READ_AHEAD_H
 #define BRIO_BASE_READ_AHEAD_H
 

@@ -383,7 +383,6 @@ static brio_status copy_all(sorter *s) {
     brio_tetrahedron *out = NULL;
     brio_status status = BRIO_ALLOC(k->ctx, out, s->live);
     if (status != BRIO_OK) return status;
-    brio_expect_random(out);
     for (size_t x = 0, b = 0; x < s->live; x++) {
         while (s->end[b] <= x) b++;
         expect_at_place(s, x);
@@ -404,9 +403,6 @@ brio_status brio_kernel_sort(brio_kernel *k) {
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.order, s.live + AHEAD));
     BRIO_TRY(BRIO_ALLOC(k->ctx, s.place, k->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.end, s.buckets));
-    brio_expect_random(s.place);
-    brio_expect_random(s.order);
-    brio_expect_random(s.end);
     fill_buckets(&s);
     BRIO_TRY(sort_buckets(&s));
     BRIO_TRY(k->read_ahead.active ? copy_all(&s) : move_all(&s));

@@ -92,6 +92,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     k->weighted = weights != NULL;
     k->engine = brio_engine_choose(k->weighted);
     brio_read_ahead_start(&k->read_ahead, ctx);
+    k->goes_on = k->read_ahead.active && options->order != BRIO_ORDER_RANDOM;
     k->locator = brio_locator_choose(options->locate);
     k->max_tetrahedra = options->max_tetrahedra;
     k->stats.points = n;
@@ -105,7 +106,6 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
     k->record[n + 2][3] = INFINITY; /* the infinite vertex, as conflict_lanes.h knows it */
     k->t.record = k->record;
-    brio_expect_random(k->record);
     k->stats.order_seconds = brio_seconds() - start;
     status = brio_kernel_workspace(k);
 done:

@@ -12,8 +12,6 @@ brio_status brio_kernel_reserve(brio_kernel *k, size_t more) {
     if (capacity > k->max_tetrahedra) capacity = k->max_tetrahedra;
     BRIO_TRY(BRIO_RESIZE(k->ctx, k->t.tet, capacity));
     BRIO_TRY(BRIO_RESIZE(k->ctx, k->state, capacity));
-    brio_expect_random(k->t.tet);
-    brio_expect_random(k->state);
     k->capacity = capacity;
 done:
     return status;
@@ -50,10 +48,20 @@ static void expect_neighbours(brio_kernel *k) {
     }
 }
 
+/* Every so manieth location is timed and stands for the others: a clock costs as much as a walk step. */
+static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
+    enum { TIMED = 64 };
+    if (p % TIMED) return k->locator->locate(k, p, tet);
+    double start = brio_seconds();
+    brio_status status = k->locator->locate(k, p, tet);
+    k->stats.locate_seconds += TIMED * (brio_seconds() - start);
+    return status;
+}
+
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
     const double *point = k->record[p];
     uint32_t tet;
-    brio_status located = k->locator->locate(k, p, &tet);
+    brio_status located = locate(k, p, &tet);
     if (located != BRIO_OK) return located;
     if (!brio_is_infinite(&k->t, tet)) {
         uint32_t v = vertex_at(k, tet, point);
@@ -66,6 +74,6 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
     }
     brio_status status = k->engine->dig(k, tet, p);
     if (status == BRIO_OK) status = brio_cavity_fill(k, p);
-    if (status == BRIO_OK && k->read_ahead.active) expect_neighbours(k);
+    if (status == BRIO_OK && k->goes_on) expect_neighbours(k);
     return status == BRIO_OK && k->locator->filled ? k->locator->filled(k, p) : status;
 }

@@ -55,6 +55,7 @@ struct brio_kernel {
     brio_star star;              /* workspace of the descent; its marks are the states */
     brio_cavity cavity;
     brio_read_ahead read_ahead;
+    bool goes_on; /* in scratch files: the next point is often close to the last one */
     brio_stats stats;
 };
 
