@@ -12,7 +12,7 @@ typedef struct arguments {
     int order, locate;
     double round_ratio;                /* NaN: not given */
     uint64_t block_size, record_every; /* 0: not given */
-    bool rounds, verify;
+    bool all_conflicts, rounds, verify;
 } arguments;
 
 static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},
@@ -24,11 +24,12 @@ static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},
                                        {"input", BRIO_ORDER_INPUT},
                                        {NULL, 0}};
 
-static const option_choice locations[] = {{"walk", 0},
-                                          {"jump", CHOICE_LATER},
-                                          {"hierarchy", CHOICE_LATER},
-                                          {"history", CHOICE_LATER},
+static const option_choice locations[] = {{"walk", BRIO_LOCATE_WALK},
+                                          {"jump", BRIO_LOCATE_JUMP},
+                                          {"hierarchy", BRIO_LOCATE_HIERARCHY},
+                                          {"history", BRIO_LOCATE_HISTORY},
                                           {"trace", CHOICE_LATER},
+                                          {"neighbour", CHOICE_LATER},
                                           {NULL, 0}};
 
 #define FIELD(name) offsetof(arguments, name)
@@ -40,6 +41,7 @@ static const option options[] = {
     {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R",
      "share of the points before the last round (default 1/8 for brio, else 1/2)", 0},
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron", locations},
+    {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history: follow all conflicts, not one path", 0},
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
     {"rounds", 0, OPTION_FLAG, FIELD(rounds), NULL, "report the counters at the end of each round", 0},
     {"record-every", 0, OPTION_NATURAL, FIELD(record_every), "N", "report the counters after every N insertions", 0},
@@ -83,6 +85,8 @@ static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh
                                brio_triangulation **out) {
     brio_options o = brio_options_default();
     o.order = (brio_order)a->order;
+    o.locate = (brio_location)a->locate;
+    o.all_conflicts = a->all_conflicts;
     o.seed = r->common.seed;
     o.block_size = (size_t)a->block_size;
     o.record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every;
@@ -121,6 +125,9 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     cli_fact_count(f, "exact_calls", s->exact_calls);
     cli_fact_count(f, "deferred", s->deferred);
     cli_fact_count(f, "serial", s->serial);
+    cli_fact_count(f, "history", s->history);
+    cli_fact_count(f, "history_tests", s->history_tests);
+    cli_fact_count(f, "trace_intersections", s->trace_intersections);
     return BRIO_OK;
 }
 
@@ -138,6 +145,7 @@ static void report_rounds(facts *f, const brio_triangulation *t) {
         cli_fact_count(f, "walk_steps", round[i].walk_steps);
         cli_fact_count(f, "insphere_calls", round[i].insphere_calls);
         cli_fact_count(f, "history", round[i].history);
+        cli_fact_seconds(f, "locate_seconds", round[i].locate_seconds);
         cli_fact_seconds(f, "seconds", round[i].seconds);
         cli_fact_close(f);
     }

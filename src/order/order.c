@@ -54,6 +54,8 @@ static brio_status order_items(maker *m) {
     bool random = m->options->order == BRIO_ORDER_RANDOM;
     BRIO_TRY(BRIO_ALLOC(m->ctx, items, m->n));
     BRIO_TRY(BRIO_ALLOC(m->ctx, spare, m->n));
+    brio_expect_sequence(items);
+    brio_expect_sequence(spare);
     for (size_t i = 0; i < m->n; i++) items[i] = random ? brio_hash(seed, i) >> 32 << 32 | i : i;
     if (random)
         BRIO_TRY(brio_sort_items(m->ctx, items, spare, m->n, 32, m->threads));

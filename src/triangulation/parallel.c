@@ -184,6 +184,7 @@ static brio_status leave_team(worker *w, brio_team *team) {
     main->stats.destroyed += k->stats.destroyed;
     main->stats.insphere_calls += k->stats.insphere_calls;
     main->stats.deferred += k->stats.deferred;
+    main->stats.locate_seconds += k->stats.locate_seconds;
     main->walk.steps += k->walk.steps;
     main->filter.unsettled += k->filter.unsettled;
     if (k->stats.created) main->walk.start = k->walk.start;

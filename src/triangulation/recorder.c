@@ -34,6 +34,7 @@ brio_status brio_recorder_note(brio_recorder *r, const brio_kernel *k, size_t in
         .walk_steps = k->walk.steps,
         .insphere_calls = k->stats.insphere_calls,
         .history = k->stats.history,
+        .locate_seconds = k->stats.locate_seconds,
         .seconds = brio_seconds() - r->start,
     };
 done:

@@ -22,8 +22,8 @@ COMMANDS = ["delaunay", "surface", "check", "compare", "info", "generate", "subd
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
-    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio",
-                 "--locate", "--rounds", "--record-every", "--verify"],
+    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate",
+                 "--all-conflicts", "--rounds", "--record-every", "--verify"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--simplify", "--labeling",
                 "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
@@ -191,7 +191,7 @@ class Usage(CliTest):
             self.usage("scan", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
 
     def test_names_of_later_versions(self):
-        for arguments in [("delaunay", "--locate", "jump")]:
+        for arguments in [("delaunay", "--locate", "trace")]:
             self.usage("not available in this version", arguments[0], "a.xyz", *arguments[1:])
 
     def test_output_without_a_known_extension(self):
@@ -943,8 +943,19 @@ class Answers(CliTest):
     def test_every_order_and_number_of_threads_gives_the_same(self):
         points = self.cloud("a.ply", 3000)
         runs = [[], ["--order", "hilbert"], ["--order", "random"], ["--order", "input"], ["--threads", "1"],
-                ["--seed", "99"], ["--round-ratio", "0.5"], ["--locate", "walk"]]
+                ["--seed", "99"], ["--round-ratio", "0.5"], ["--locate", "walk"], ["--locate", "jump"],
+                ["--locate", "hierarchy"], ["--locate", "history"], ["--locate", "history", "--all-conflicts"]]
         self.assertEqual(len({self.facts("delaunay", points, *run)["checksum"] for run in runs}), 1)
+
+    def test_history_is_counted(self):
+        points = self.cloud("a.ply", 3000)
+        plain = self.facts("delaunay", points)
+        path = self.facts("delaunay", points, "--locate", "history")
+        conflicts = self.facts("delaunay", points, "--locate", "history", "--all-conflicts")
+        self.assertEqual((plain["history"], plain["history_tests"]), (0, 0))
+        self.assertEqual(path["history"], path["created"])
+        self.assertGreater(path["history_tests"], 3000)
+        self.assertGreater(conflicts["history_tests"], path["history_tests"])
 
     def test_threads_are_those_asked_for(self):
         self.assertEqual(self.facts("delaunay", self.xyz("a.xyz", CUBE), "--threads", "1")["threads"], 1)
