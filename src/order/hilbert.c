@@ -109,12 +109,13 @@ static cube cube_of(const double *rows, size_t stride, const uint64_t *items, si
     return all;
 }
 
-void brio_hilbert_keys(const double *points, size_t n, int bits, uint64_t *keys) {
+void brio_hilbert_keys(const double *points, size_t n, int bits, int threads, uint64_t *keys) {
     if (!n) return;
     two_levels two;
     compose(&two);
-    cube c = cube_of(points, 3, NULL, n, 1);
+    cube c = cube_of(points, 3, NULL, n, threads);
     cube_divide(&c, bits);
+    BRIO_OMP(parallel for num_threads(threads))
     for (size_t i = 0; i < n; i++) keys[i] = cube_key(&c, &two, points + 3 * i, bits);
 }
 

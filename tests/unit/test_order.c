@@ -53,7 +53,7 @@ static void rounds_have_their_share(void) {
     static uint32_t order[N];
     static uint64_t key[N];
     uniform_points(3, N, p);
-    brio_hilbert_keys(p, N, 7, key); /* coarser than the order's own curve */
+    brio_hilbert_keys(p, N, 7, 2, key); /* coarser than the order's own curve */
     brio_options o = brio_options_default();
     o.round_ratio = 0.5;
     brio_context *ctx = new_context();
