@@ -5,9 +5,9 @@
  * pushed to the opposite label, deeply intersecting neighbours to the same. A pole with evidence for both labels is
  * "confused" and waits until the end of the queue. Equal priorities go by the poles' canonical numbers.
  *
- * The queue is a heap of (priority, pole) in which a pole that changes its priority gets a new entry and leaves the old
- * one, which is passed over when it comes up. Poles without evidence are in no heap: when only confused ones are left
- * there, a cursor takes the others in the order of their numbers. So the heap holds little more than the front.
+ * Poles without evidence and confused ones come last, and beliefs are passed on weakened, so that until then no
+ * priority rises above the last one taken, and the queue is a radix heap. A pole whose belief grows gets a new entry;
+ * the old one is passed over when it comes up. The confused poles then go through a common heap in the same way.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.8.
  *           Amenta, Choi, Kolluri. The power crust. Solid Modeling 2001.
@@ -15,11 +15,14 @@
  * is never pushed. */
 #include "base/memory.h"
 #include "reconstruct/labelling.h"
+#include "reconstruct/pole_queue.h"
 
 /* Beliefs of a pole, out and in; both SETTLED once no evidence can change them. */
 typedef struct {
     double belief[2];
 } node;
+
+#define SETTLED INFINITY
 
 typedef struct {
     double priority;
@@ -31,153 +34,153 @@ typedef struct {
     const brio_pole_graph *g;
     uint8_t *label;
     node *nodes;
-    uint8_t *certain;
-    entry *heap;
+    brio_pole_queue sure;
+    bool all_confused; /* the poles that are left */
+    entry *heap;       /* of them */
     size_t size, capacity;
-    uint32_t cursor; /* poles before it are labelled or have evidence */
     size_t labelled;
-} queue;
+} labeller;
 
-#define SETTLED INFINITY
-
-/* --- heap --- */
+/* --- heap of confused poles --- */
 
 static inline bool before(const entry *a, const entry *b) {
     return a->priority != b->priority ? a->priority > b->priority : a->pole < b->pole;
 }
 
-enum { ARITY = 4 };
-
-static brio_status heap_push(queue *q, entry e) {
-    brio_status status = BRIO_RESERVE(q->ctx, q->heap, q->capacity, q->size + 1);
+static brio_status heap_push(labeller *l, entry e) {
+    brio_status status = BRIO_RESERVE(l->ctx, l->heap, l->capacity, l->size + 1);
     if (status != BRIO_OK) return status;
-    size_t i = q->size++;
-    for (; i > 0 && before(&e, &q->heap[(i - 1) / ARITY]); i = (i - 1) / ARITY) q->heap[i] = q->heap[(i - 1) / ARITY];
-    q->heap[i] = e;
+    size_t i = l->size++;
+    for (; i > 0 && before(&e, &l->heap[(i - 1) / 2]); i = (i - 1) / 2) l->heap[i] = l->heap[(i - 1) / 2];
+    l->heap[i] = e;
     return BRIO_OK;
 }
 
-static size_t best_child(const queue *q, size_t i) {
-    size_t first = ARITY * i + 1, end = first + ARITY < q->size ? first + ARITY : q->size, best = first;
-    for (size_t child = first + 1; child < end; child++)
-        if (before(&q->heap[child], &q->heap[best])) best = child;
-    return best;
-}
-
-static void heap_pop(queue *q) {
-    entry last = q->heap[--q->size];
+static entry heap_pop(labeller *l) {
+    entry top = l->heap[0], last = l->heap[--l->size];
     size_t i = 0;
-    for (size_t child; ARITY * i + 1 < q->size; i = child) {
-        child = best_child(q, i);
-        if (!before(&q->heap[child], &last)) break;
-        q->heap[i] = q->heap[child];
+    for (size_t child; (child = 2 * i + 1) < l->size; i = child) {
+        if (child + 1 < l->size && before(&l->heap[child + 1], &l->heap[child])) child++;
+        if (!before(&l->heap[child], &last)) break;
+        l->heap[i] = l->heap[child];
     }
-    if (q->size) q->heap[i] = last;
+    if (l->size) l->heap[i] = last;
+    return top;
 }
 
 /* --- beliefs --- */
 
-static double priority_of(const node *n) {
-    double out = n->belief[0], in = n->belief[1];
-    return out > 0 && in > 0 ? fabs(in - out) - 1 : fmax(in, out);
+static bool is_confused(const node *n) {
+    return n->belief[0] > 0 && n->belief[1] > 0;
+}
+
+static double confusion(const node *n) {
+    return fabs(n->belief[1] - n->belief[0]) - 1;
 }
 
 /* Evidence of strength `belief` for the side (0 out, 1 in) of a pole. */
-static inline brio_status offer(queue *q, uint32_t p, int side, double belief) {
-    node *n = &q->nodes[p];
+static inline brio_status offer(labeller *l, uint32_t p, int side, double belief) {
+    node *n = &l->nodes[p];
     if (!(belief > n->belief[side])) return BRIO_OK;
     n->belief[side] = belief;
-    return heap_push(q, (entry){priority_of(n), p});
+    if (l->all_confused) return heap_push(l, (entry){confusion(n), p});
+    return is_confused(n) ? BRIO_OK : brio_pole_queue_push(&l->sure, p, belief);
 }
 
-static brio_status pass_on(queue *q, uint32_t p, int side, double strength) {
-    const brio_pole_graph *g = q->g;
+static brio_status pass_on(labeller *l, uint32_t p, int side, double strength) {
+    const brio_pole_graph *g = l->g;
     brio_status status = BRIO_OK;
     for (size_t e = g->first_opposite[p]; e < g->first_opposite[p + 1]; e++)
-        BRIO_TRY(offer(q, g->opposite_pole[e], !side, strength * g->opposite_weight[e]));
+        BRIO_TRY(offer(l, g->opposite_pole[e], !side, strength * g->opposite_weight[e]));
     for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++)
-        BRIO_TRY(offer(q, g->edge_pole[e], side, strength * (double)g->edge_weight[e]));
+        BRIO_TRY(offer(l, g->edge_pole[e], side, strength * (double)g->edge_weight[e]));
 done:
     return status;
 }
 
-/* Labels the pole whose turn it is. */
-static brio_status label_pole(queue *q, uint32_t p, brio_labelling_stats *stats) {
-    double out = q->nodes[p].belief[0], in = q->nodes[p].belief[1];
-    int side = in > out;
-    if (q->certain[p]) {
-        side = q->label[p] == BRIO_LABEL_INNER;
-        out = in = 1;
-        q->certain[p] = 0;
-    } else {
-        stats->confused += out > 0 && in > 0;
+static brio_status settle(labeller *l, uint32_t p, int side, double strength) {
+    if (l->labelled++ % 65536 == 0) {
+        double share = (double)l->labelled / (double)l->g->poles->count;
+        brio_status status = brio_progress(l->ctx, "label", 0.5 + 0.5 * (share < 1 ? share : 1));
+        if (status != BRIO_OK) return status;
     }
-    q->label[p] = side ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-    q->nodes[p] = (node){{SETTLED, SETTLED}};
-    q->labelled++;
-    return pass_on(q, p, side, side ? in : out);
+    l->label[p] = side ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+    l->nodes[p] = (node){{SETTLED, SETTLED}};
+    return pass_on(l, p, side, strength);
 }
 
-/* --- queue --- */
+/* --- in order of priority --- */
 
 /* Certain poles are outer; labelled ones are as certain of their labels. */
-static brio_status queue_new(queue *q) {
+static brio_status settle_certain(labeller *l) {
     brio_status status = BRIO_OK;
-    size_t n = q->g->poles->count;
-    BRIO_TRY(BRIO_ALLOC_ZERO(q->ctx, q->nodes, n));
-    BRIO_TRY(BRIO_ALLOC(q->ctx, q->certain, n));
-    brio_label_certain(q->g, q->certain);
-    for (uint32_t p = 0; p < n; p++) {
-        if (q->label[p] != BRIO_LABEL_NONE) q->certain[p] = 1;
-        if (!q->certain[p]) continue;
-        q->nodes[p] = (node){{SETTLED, SETTLED}};
-        BRIO_TRY(heap_push(q, (entry){1, p}));
+    size_t n = l->g->poles->count;
+    uint8_t *certain = NULL;
+    BRIO_TRY(BRIO_ALLOC(l->ctx, certain, n));
+    brio_label_certain(l->g, certain);
+    for (size_t p = 0; p < n; p++) certain[p] |= l->label[p] != BRIO_LABEL_NONE;
+    for (size_t p = 0; p < n; p++)
+        if (certain[p]) l->nodes[p] = (node){{SETTLED, SETTLED}};
+    for (uint32_t p = 0; p < n; p++)
+        if (certain[p]) BRIO_TRY(settle(l, p, l->label[p] == BRIO_LABEL_INNER, 1));
+done:
+    brio_release(l->ctx, certain);
+    return status;
+}
+
+static brio_status settle_sure(labeller *l) {
+    brio_status status = BRIO_OK;
+    for (;;) {
+        uint32_t p;
+        double priority;
+        bool found;
+        BRIO_TRY(brio_pole_queue_pop(&l->sure, &p, &priority, &found));
+        if (!found) break;
+        const node *n = &l->nodes[p];
+        if (is_confused(n) || fmax(n->belief[0], n->belief[1]) != priority) continue; /* SETTLED is confused too */
+        BRIO_TRY(settle(l, p, n->belief[1] > 0, priority));
     }
 done:
     return status;
 }
 
-static bool is_current(const queue *q, const entry *e) {
-    return q->certain[e->pole] || priority_of(&q->nodes[e->pole]) == e->priority;
-}
-
-/* The first entry that is up to date, or NULL. */
-static const entry *heap_first(queue *q) {
-    while (q->size && !is_current(q, &q->heap[0])) heap_pop(q);
-    return q->size ? &q->heap[0] : NULL;
-}
-
-/* The first pole without evidence; the number of poles when there is none. */
-static uint32_t next_without_evidence(queue *q) {
-    size_t n = q->g->poles->count;
-    while (q->cursor < n && (q->nodes[q->cursor].belief[0] > 0 || q->nodes[q->cursor].belief[1] > 0)) q->cursor++;
-    return q->cursor;
-}
-
-static uint32_t next_pole(queue *q) {
-    const entry *first = heap_first(q);
-    if (!first || first->priority < 0) {
-        uint32_t p = next_without_evidence(q);
-        if (p < q->g->poles->count) return p;
+/* Nothing reaches these: they are outer, and pass nothing on. */
+static void settle_without_evidence(labeller *l) {
+    for (size_t p = 0; p < l->g->poles->count; p++) {
+        if (l->nodes[p].belief[0] > 0 || l->nodes[p].belief[1] > 0) continue;
+        l->label[p] = BRIO_LABEL_OUTER;
+        l->nodes[p] = (node){{SETTLED, SETTLED}};
     }
-    uint32_t pole = first->pole;
-    heap_pop(q);
-    return pole;
+}
+
+static brio_status settle_confused(labeller *l, brio_labelling_stats *stats) {
+    brio_status status = BRIO_OK;
+    l->all_confused = true;
+    for (uint32_t p = 0; p < l->g->poles->count; p++)
+        if (l->label[p] == BRIO_LABEL_NONE) BRIO_TRY(heap_push(l, (entry){confusion(&l->nodes[p]), p}));
+    while (l->size) {
+        entry e = heap_pop(l);
+        const node *n = &l->nodes[e.pole];
+        if (!(confusion(n) == e.priority)) continue; /* NaN once it is settled */
+        int side = n->belief[1] > n->belief[0];
+        stats->confused++;
+        BRIO_TRY(settle(l, e.pole, side, n->belief[side]));
+    }
+done:
+    return status;
 }
 
 brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
     brio_status status = BRIO_OK;
-    queue q = {.ctx = g->ctx, .g = g, .label = label};
-    size_t n = g->poles->count;
-    BRIO_TRY(queue_new(&q));
-    while (q.labelled < n) {
-        if (q.labelled % 65536 == 0)
-            BRIO_TRY(brio_progress(g->ctx, "label", 0.5 + 0.5 * (double)q.labelled / (double)n));
-        BRIO_TRY(label_pole(&q, next_pole(&q), stats));
-    }
+    labeller l = {.ctx = g->ctx, .g = g, .label = label, .sure = brio_pole_queue_new(g->ctx, 1)};
+    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, l.nodes, g->poles->count));
+    BRIO_TRY(settle_certain(&l));
+    BRIO_TRY(settle_sure(&l));
+    settle_without_evidence(&l);
+    BRIO_TRY(settle_confused(&l, stats));
 done:
-    brio_release(g->ctx, q.nodes);
-    brio_release(g->ctx, q.certain);
-    brio_release(g->ctx, q.heap);
+    brio_pole_queue_free(&l.sure);
+    brio_release(g->ctx, l.nodes);
+    brio_release(g->ctx, l.heap);
     return status;
 }

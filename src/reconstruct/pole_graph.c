@@ -30,23 +30,36 @@ static const double *centre_of(const brio_pole_graph *g, uint32_t p) {
     return g->poles->centre + 3 * (size_t)p;
 }
 
-double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
+static inline double weight_of(const brio_pole_graph *g, uint32_t p, uint32_t q) {
     const double *a = centre_of(g, p), *b = centre_of(g, q);
     double pp = g->poles->square[p], qq = g->poles->square[q], x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
     return (pp + qq - (x * x + y * y + z * z)) / (2 * sqrt(pp * qq));
 }
 
+double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
+    return weight_of(g, p, q);
+}
+
 /* --- neighbours --- */
 
-/* Whether no tetrahedron round the edge from slot i to slot j of `tet` comes before it. */
+static uint32_t slot_of(const uint32_t v[4], uint32_t vertex) { /* without a branch */
+    return (uint32_t)(v[1] == vertex) + 2 * (uint32_t)(v[2] == vertex) + 3 * (uint32_t)(v[3] == vertex);
+}
+
+/* Whether the edge from slot i to slot j of `tet` has no tetrahedron before it on either side. */
+static bool may_lead(const brio_tetrahedron *t, uint32_t tet, int i, int j) {
+    uint32_t one = brio_tet_of(t->mate[BRIO_EDGE[i][j][0]]), other = brio_tet_of(t->mate[BRIO_EDGE[i][j][1]]);
+    return (one > tet) & (other > tet);
+}
+
+/* Whether no tetrahedron round that edge comes before `tet`. */
 static bool leads(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
     const brio_tetrahedron *first = &t->tet[tet];
     int k = BRIO_EDGE[i][j][0], l = BRIO_EDGE[i][j][1];
     uint32_t from = brio_tet_of(first->mate[k]), last = brio_tet_of(first->mate[l]), pivot = first->vertex[l];
-    if (from < tet || last < tet) return false;
     uint32_t apex = brio_apex(t, first->mate[k]);
     while (from != last) {
-        uint32_t mate = t->tet[from].mate[brio_slot_of_vertex(t->tet[from].vertex, pivot)];
+        uint32_t mate = t->tet[from].mate[slot_of(t->tet[from].vertex, pivot)];
         from = brio_tet_of(mate);
         if (from < tet) return false;
         pivot = apex;
@@ -73,8 +86,9 @@ static void count_tetrahedron(const builder *b, uint32_t tet) {
     b->leads[tet] = 0;
     for (int e = 0; e < 6; e++) {
         uint32_t p = v[PAIR[e][0]], q = v[PAIR[e][1]];
+        if (!may_lead(&b->g->power.tet[tet], tet, PAIR[e][0], PAIR[e][1])) continue;
+        if (!(weight_of(b->g, p, q) > b->least_weight)) continue;
         if (!leads(&b->g->power, tet, PAIR[e][0], PAIR[e][1])) continue;
-        if (!(brio_pole_graph_weight(b->g, p, q) > b->least_weight)) continue;
         b->leads[tet] |= (uint8_t)(1 << e);
         count_edge(b, p, q);
     }
@@ -84,14 +98,14 @@ static void put_tetrahedron(const builder *b, uint32_t tet) {
     const uint32_t *v = b->g->power.tet[tet].vertex;
     for (int e = 0; e < 6; e++) {
         uint32_t p = v[PAIR[e][0]], q = v[PAIR[e][1]];
-        if (b->leads[tet] >> e & 1) put_edge(b, p, q, brio_pole_graph_weight(b->g, p, q));
+        if (b->leads[tet] >> e & 1) put_edge(b, p, q, weight_of(b->g, p, q));
     }
 }
 
 static void put_hidden(const builder *b, uint32_t p, bool count) {
     uint32_t r = b->representative[p];
     double weight;
-    if (r == p || !((weight = brio_pole_graph_weight(b->g, p, r)) > b->least_weight)) return;
+    if (r == p || !((weight = weight_of(b->g, p, r)) > b->least_weight)) return;
     if (count)
         count_edge(b, p, r);
     else
