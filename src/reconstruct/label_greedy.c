@@ -17,9 +17,11 @@
 #include "reconstruct/labelling.h"
 #include "reconstruct/pole_queue.h"
 
-/* Beliefs of a pole, out and in; both SETTLED once no evidence can change them. */
+/* Beliefs of a pole, out and in; both SETTLED once no evidence can change them. And where its edges begin: poles come up
+ * all over the surface, and what is fetched for one of them should be in one place. */
 typedef struct {
     double belief[2];
+    size_t opposite, edge;
 } node;
 
 #define SETTLED INFINITY
@@ -87,15 +89,30 @@ static inline brio_status offer(labeller *l, uint32_t p, int side, double belief
     return is_confused(n) ? BRIO_OK : brio_pole_queue_push(&l->sure, p, belief);
 }
 
+/* Calls for everything at once that the pole's edges need. */
+static void fetch(const labeller *l, const node *n, const node *end) {
+    const brio_pole_graph *g = l->g;
+    __builtin_prefetch(&g->opposite_pole[n->opposite]);
+    __builtin_prefetch(&g->opposite_weight[n->opposite]);
+    __builtin_prefetch(&g->edge_weight[n->edge]);
+    for (size_t e = n->edge; e < end->edge; e++) __builtin_prefetch(&l->nodes[g->edge_pole[e]]);
+}
+
 static brio_status pass_on(labeller *l, uint32_t p, int side, double strength) {
     const brio_pole_graph *g = l->g;
     brio_status status = BRIO_OK;
-    for (size_t e = g->first_opposite[p]; e < g->first_opposite[p + 1]; e++)
+    const node *n = &l->nodes[p], *end = n + 1;
+    fetch(l, n, end);
+    for (size_t e = n->opposite; e < end->opposite; e++)
         BRIO_TRY(offer(l, g->opposite_pole[e], !side, strength * g->opposite_weight[e]));
-    for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++)
+    for (size_t e = n->edge; e < end->edge; e++)
         BRIO_TRY(offer(l, g->edge_pole[e], side, strength * (double)g->edge_weight[e]));
 done:
     return status;
+}
+
+static void mark_settled(labeller *l, size_t p) {
+    l->nodes[p].belief[0] = l->nodes[p].belief[1] = SETTLED;
 }
 
 static brio_status settle(labeller *l, uint32_t p, int side, double strength) {
@@ -105,7 +122,7 @@ static brio_status settle(labeller *l, uint32_t p, int side, double strength) {
         if (status != BRIO_OK) return status;
     }
     l->label[p] = side ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-    l->nodes[p] = (node){{SETTLED, SETTLED}};
+    mark_settled(l, p);
     return pass_on(l, p, side, strength);
 }
 
@@ -120,7 +137,7 @@ static brio_status settle_certain(labeller *l) {
     brio_label_certain(l->g, certain);
     for (size_t p = 0; p < n; p++) certain[p] |= l->label[p] != BRIO_LABEL_NONE;
     for (size_t p = 0; p < n; p++)
-        if (certain[p]) l->nodes[p] = (node){{SETTLED, SETTLED}};
+        if (certain[p]) mark_settled(l, p);
     for (uint32_t p = 0; p < n; p++)
         if (certain[p]) BRIO_TRY(settle(l, p, l->label[p] == BRIO_LABEL_INNER, 1));
 done:
@@ -136,6 +153,8 @@ static brio_status settle_sure(labeller *l) {
         bool found;
         BRIO_TRY(brio_pole_queue_pop(&l->sure, &p, &priority, &found));
         if (!found) break;
+        uint32_t next = brio_pole_queue_next(&l->sure);
+        if (next != BRIO_NO_POLE) __builtin_prefetch(&l->nodes[next]);
         const node *n = &l->nodes[p];
         if (is_confused(n) || fmax(n->belief[0], n->belief[1]) != priority) continue; /* SETTLED is confused too */
         BRIO_TRY(settle(l, p, n->belief[1] > 0, priority));
@@ -149,7 +168,7 @@ static void settle_without_evidence(labeller *l) {
     for (size_t p = 0; p < l->g->poles->count; p++) {
         if (l->nodes[p].belief[0] > 0 || l->nodes[p].belief[1] > 0) continue;
         l->label[p] = BRIO_LABEL_OUTER;
-        l->nodes[p] = (node){{SETTLED, SETTLED}};
+        mark_settled(l, p);
     }
 }
 
@@ -170,10 +189,18 @@ done:
     return status;
 }
 
+static brio_status nodes_new(labeller *l) {
+    size_t n = l->g->poles->count;
+    brio_status status = BRIO_ALLOC(l->ctx, l->nodes, n + 1);
+    if (status != BRIO_OK) return status;
+    for (size_t p = 0; p <= n; p++) l->nodes[p] = (node){{0, 0}, l->g->first_opposite[p], l->g->first_edge[p]};
+    return BRIO_OK;
+}
+
 brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
     brio_status status = BRIO_OK;
     labeller l = {.ctx = g->ctx, .g = g, .label = label, .sure = brio_pole_queue_new(g->ctx, 1)};
-    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, l.nodes, g->poles->count));
+    BRIO_TRY(nodes_new(&l));
     BRIO_TRY(settle_certain(&l));
     BRIO_TRY(settle_sure(&l));
     settle_without_evidence(&l);

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEP = 1 << 21 /* tetrahedra or poles between two looks at the caller's wish to stop */ };
+enum { STEP = 1 << 21, AHEAD = 8 }; /* tetrahedra between two looks at the caller's wish to stop, and to fetch ahead */
 
 /* Workspace of the construction. */
 typedef struct {
@@ -81,6 +81,11 @@ static void put_edge(const builder *b, uint32_t p, uint32_t q, double weight) {
     b->edges[__atomic_fetch_add(&b->place[q], 1, __ATOMIC_RELAXED)] = (uint64_t)p << 32 | bits;
 }
 
+/* The walks begin in the neighbours. */
+static inline void fetch_neighbours(const brio_tetrahedra *t, size_t tet) {
+    for (int i = 0; i < 4; i++) __builtin_prefetch(&t->tet[brio_tet_of(t->tet[tet].mate[i])]);
+}
+
 static void count_tetrahedron(const builder *b, uint32_t tet) {
     const uint32_t *v = b->g->power.tet[tet].vertex;
     b->leads[tet] = 0;
@@ -121,10 +126,12 @@ static brio_status pass(const builder *b, bool count, double from, double to) {
         BRIO_TRY(brio_progress(g->ctx, "label", from + (to - from) * (double)begin / (double)g->num_finite));
         BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
         for (size_t tet = begin; tet < end; tet++) {
-            if (count)
+            if (count) {
+                if (tet + AHEAD < end) fetch_neighbours(&g->power, tet + AHEAD);
                 count_tetrahedron(b, (uint32_t)tet);
-            else if (b->leads[tet])
+            } else if (b->leads[tet]) {
                 put_tetrahedron(b, (uint32_t)tet);
+            }
         }
     }
     BRIO_OMP(parallel for num_threads(b->threads))

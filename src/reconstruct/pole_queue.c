@@ -50,6 +50,7 @@ static inline brio_status add(brio_pole_queue *q, brio_pole_entry e) {
     brio_status status = BRIO_RESERVE(q->ctx, q->bucket[b], q->capacity[b], q->size[b] + 1);
     if (status != BRIO_OK) return status;
     q->bucket[b][q->size[b]++] = e;
+    q->filled |= UINT64_C(1) << b;
     if (b == 0) lift_last(q->bucket[0], q->size[0]);
     return BRIO_OK;
 }
@@ -67,20 +68,27 @@ static brio_status deal_out(brio_pole_queue *q, int b) {
         if (q->bucket[b][i].key > q->last) q->last = q->bucket[b][i].key;
     for (size_t i = 0; i < q->size[b]; i++) BRIO_TRY(add(q, q->bucket[b][i]));
     q->size[b] = 0;
+    q->filled &= ~(UINT64_C(1) << b);
 done:
     return status;
 }
 
 brio_status brio_pole_queue_pop(brio_pole_queue *q, uint32_t *pole, double *priority, bool *found) {
     brio_status status = BRIO_OK;
-    int b = 0;
-    while (b < BRIO_POLE_BUCKETS && !q->size[b]) b++;
-    *found = b < BRIO_POLE_BUCKETS;
+    *found = q->filled != 0;
     if (!*found) goto done;
+    int b = __builtin_ctzll(q->filled);
     if (b > 0) BRIO_TRY(deal_out(q, b));
     *pole = q->bucket[0][0].pole;
     memcpy(priority, &q->last, sizeof *priority);
     drop_first(q->bucket[0], q->size[0]--);
+    if (!q->size[0]) q->filled &= ~UINT64_C(1);
 done:
     return status;
+}
+
+uint32_t brio_pole_queue_next(const brio_pole_queue *q) {
+    if (!q->filled) return BRIO_NO_POLE;
+    int b = __builtin_ctzll(q->filled);
+    return q->bucket[b][q->size[b] - 1].pole;
 }

@@ -2,18 +2,19 @@
 #ifndef BRIO_RECONSTRUCT_POLE_QUEUE_H
 #define BRIO_RECONSTRUCT_POLE_QUEUE_H
 
-#include "base/context.h"
+#include "dual/poles.h"
 
 typedef struct {
     uint64_t key; /* the bits of the priority, which order positive numbers as their values do */
     uint32_t pole;
 } brio_pole_entry;
 
-enum { BRIO_POLE_BUCKETS = 65 };
+enum { BRIO_POLE_BUCKETS = 64 };
 
 typedef struct {
     brio_context *ctx;
-    uint64_t last; /* key of the last pole taken */
+    uint64_t last;   /* key of the last pole taken */
+    uint64_t filled; /* bit b: bucket b has entries; no sign, no bucket 64 */
     brio_pole_entry *bucket[BRIO_POLE_BUCKETS];
     size_t size[BRIO_POLE_BUCKETS], capacity[BRIO_POLE_BUCKETS];
 } brio_pole_queue;
@@ -28,5 +29,8 @@ brio_status brio_pole_queue_push(brio_pole_queue *queue, uint32_t pole, double p
 /** Takes an entry of the highest priority, of several the one with the lowest pole; *found is false when there is none.
  *  O(1) amortised but for the ties. */
 brio_status brio_pole_queue_pop(brio_pole_queue *queue, uint32_t *pole, double *priority, bool *found);
+
+/** One of the poles that come up next; BRIO_NO_POLE when there is none. */
+uint32_t brio_pole_queue_next(const brio_pole_queue *queue);
 
 #endif
