@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "surface/edge_rings.h"
+#include "triangulation/ring.h"
 #include <math.h>
 #include <string.h>
 
@@ -42,32 +43,6 @@ double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) 
 
 /* --- neighbours --- */
 
-static uint32_t slot_of(const uint32_t v[4], uint32_t vertex) { /* without a branch */
-    return (uint32_t)(v[1] == vertex) + 2 * (uint32_t)(v[2] == vertex) + 3 * (uint32_t)(v[3] == vertex);
-}
-
-/* Whether the edge from slot i to slot j of `tet` has no tetrahedron before it on either side. */
-static bool may_lead(const brio_tetrahedron *t, uint32_t tet, int i, int j) {
-    uint32_t one = brio_tet_of(t->mate[BRIO_EDGE[i][j][0]]), other = brio_tet_of(t->mate[BRIO_EDGE[i][j][1]]);
-    return (one > tet) & (other > tet);
-}
-
-/* Whether no tetrahedron round that edge comes before `tet`. */
-static bool leads(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
-    const brio_tetrahedron *first = &t->tet[tet];
-    int k = BRIO_EDGE[i][j][0], l = BRIO_EDGE[i][j][1];
-    uint32_t from = brio_tet_of(first->mate[k]), last = brio_tet_of(first->mate[l]), pivot = first->vertex[l];
-    uint32_t apex = brio_apex(t, first->mate[k]);
-    while (from != last) {
-        uint32_t mate = t->tet[from].mate[slot_of(t->tet[from].vertex, pivot)];
-        from = brio_tet_of(mate);
-        if (from < tet) return false;
-        pivot = apex;
-        apex = brio_apex(t, mate);
-    }
-    return true;
-}
-
 static void count_edge(const builder *b, uint32_t p, uint32_t q) {
     __atomic_fetch_add(&b->place[p], 1, __ATOMIC_RELAXED);
     __atomic_fetch_add(&b->place[q], 1, __ATOMIC_RELAXED);
@@ -81,19 +56,14 @@ static void put_edge(const builder *b, uint32_t p, uint32_t q, double weight) {
     b->edges[__atomic_fetch_add(&b->place[q], 1, __ATOMIC_RELAXED)] = (uint64_t)p << 32 | bits;
 }
 
-/* The walks begin in the neighbours. */
-static inline void fetch_neighbours(const brio_tetrahedra *t, size_t tet) {
-    for (int i = 0; i < 4; i++) __builtin_prefetch(&t->tet[brio_tet_of(t->tet[tet].mate[i])]);
-}
-
 static void count_tetrahedron(const builder *b, uint32_t tet) {
     const uint32_t *v = b->g->power.tet[tet].vertex;
     b->leads[tet] = 0;
     for (int e = 0; e < 6; e++) {
         uint32_t p = v[PAIR[e][0]], q = v[PAIR[e][1]];
-        if (!may_lead(&b->g->power.tet[tet], tet, PAIR[e][0], PAIR[e][1])) continue;
+        if (!brio_ring_may_lead(&b->g->power, tet, PAIR[e][0], PAIR[e][1])) continue;
         if (!(weight_of(b->g, p, q) > b->least_weight)) continue;
-        if (!leads(&b->g->power, tet, PAIR[e][0], PAIR[e][1])) continue;
+        if (!brio_ring_size(&b->g->power, tet, PAIR[e][0], PAIR[e][1])) continue;
         b->leads[tet] |= (uint8_t)(1 << e);
         count_edge(b, p, q);
     }
@@ -127,7 +97,7 @@ static brio_status pass(const builder *b, bool count, double from, double to) {
         BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
         for (size_t tet = begin; tet < end; tet++) {
             if (count) {
-                if (tet + AHEAD < end) fetch_neighbours(&g->power, tet + AHEAD);
+                if (tet + AHEAD < end) brio_ring_fetch(&g->power, tet + AHEAD);
                 count_tetrahedron(b, (uint32_t)tet);
             } else if (b->leads[tet]) {
                 put_tetrahedron(b, (uint32_t)tet);
