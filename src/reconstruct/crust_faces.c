@@ -202,7 +202,9 @@ static void fill_triangles(const builder *b, uint32_t tet, int i, int j, cursor 
 static void fill_faces(const builder *b, size_t block) {
     const block_counts *at = &b->blocks[block];
     cursor c = {b->mesh->face_vertices + at->corners, b->mesh->face_offsets + at->faces + 1, at->corners};
-    for (size_t tet = block_begin(b, block); tet < block_begin(b, block + 1); tet++)
+    size_t end = block_begin(b, block + 1);
+    for (size_t tet = block_begin(b, block); tet < end; tet++) {
+        if (tet + AHEAD < end && b->leads[tet + AHEAD]) brio_ring_fetch(&b->g->power, tet + AHEAD);
         for (unsigned left = b->leads[tet]; left; left &= left - 1) {
             int bit = __builtin_ctz(left);
             if (b->options->triangulate)
@@ -210,6 +212,7 @@ static void fill_faces(const builder *b, size_t block) {
             else
                 fill_polygon(b, (uint32_t)tet, bit / 4, bit % 4, &c);
         }
+    }
 }
 
 static brio_status make_faces(builder *b) {
