@@ -75,12 +75,13 @@ static brio_cube cube_of(const double *points, const uint64_t *items, size_t n, 
     return all;
 }
 
-void brio_hilbert_keys(const double *points, size_t n, int bits, uint64_t *keys) {
+void brio_hilbert_keys(const double *points, size_t n, int bits, int threads, uint64_t *keys) {
     if (!n) return;
     two_levels two;
     compose(&two);
-    brio_cube c = cube_of(points, NULL, n, 1);
+    brio_cube c = cube_of(points, NULL, n, threads);
     brio_cube_divide(&c, bits);
+    BRIO_OMP(parallel for num_threads(threads))
     for (size_t i = 0; i < n; i++) keys[i] = cube_key(&c, &two, points + 3 * i, bits);
 }
 

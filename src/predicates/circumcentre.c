@@ -5,7 +5,8 @@
  *     a + (l_b c x d + l_c d x b + l_d b x c) / (2 det [b, c, d]).
  * A numerator and the determinant carry an error of a few units in the last place of their permanents; when that leaves
  * the quotient less certain than RELATIVE_GOAL, the same formula is evaluated in double-doubles, and at last in exact
- * dyadic numbers. Differences are first scaled by a power of two to at most 1, so that nothing overflows on the way. */
+ * dyadic numbers. Very large and very small differences are first scaled by a power of two to at most 1, so that nothing
+ * overflows on the way. */
 #include "predicates/circumcentre.h"
 #include "brio/brio.h"
 #include "predicates/double_double.h"
@@ -21,6 +22,11 @@ typedef struct {
     double offset[3]; /* centre - first point, scaled */
     double error;     /* of each coordinate */
 } solution;
+
+/* One instruction, where fmax is a call for the sake of NaN. */
+static inline double larger(double x, double y) {
+    return x > y ? x : y;
+}
 
 /* Magnitudes of the numerators and the determinant with every term positive. */
 typedef struct {
@@ -48,8 +54,8 @@ static bool divide(const double numerator[3], double determinant, const permanen
         s->offset[k] = 0.5 * (numerator[k] / determinant);
         double error = 0.5 * (bound * p->numerator[k] + 0x1p-900) / slack +
                        fabs(s->offset[k]) * (bound * p->determinant / slack + 0x1p-52);
-        s->error = fmax(s->error, error);
-        most = fmax(most, fabs(s->offset[k]));
+        s->error = larger(s->error, error);
+        most = larger(most, fabs(s->offset[k]));
     }
     return s->error <= RELATIVE_GOAL * most && most < INFINITY;
 }
@@ -138,12 +144,22 @@ static bool solve_exact(const double *const p[4], bool weighted, int exponent, s
     return true;
 }
 
+/* Puts two points into lexicographic order, without a branch where their first coordinates tell. */
+static inline void sort_two(const double **p, const double **q) {
+    uintptr_t a = (uintptr_t)*p, b = (uintptr_t)*q;
+    uintptr_t turn = (*q)[0] < (*p)[0];
+    if ((*p)[0] == (*q)[0]) turn = brio_lexicographic(*p, *q) > 0;
+    uintptr_t both = (a ^ b) & -turn;
+    *p = (const double *)(a ^ both);
+    *q = (const double *)(b ^ both);
+}
+
 static void sort_ascending(const double *p[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {
-            const double *swap = p[j];
-            p[j] = p[j - 1], p[j - 1] = swap;
-        }
+    sort_two(&p[0], &p[1]);
+    sort_two(&p[2], &p[3]);
+    sort_two(&p[0], &p[2]);
+    sort_two(&p[1], &p[3]);
+    sort_two(&p[1], &p[2]);
 }
 
 /* 2^e for exponents of normal numbers, sparing a library call. */
@@ -158,33 +174,39 @@ static bool ordinary(int exponent) {
     return exponent > -400 && exponent < 400;
 }
 
-/* Exponent of the largest difference to the first point; the differences may not be finite. */
+/* 0, or the exponent of the largest difference to the first point where that is far from 0; the differences may not be
+ * finite. */
 static int exponent_of(const double *const p[4]) {
     double most = 0;
     for (int i = 1; i < 4; i++)
-        for (int k = 0; k < 3; k++) most = fmax(most, fabs(p[i][k] * 0.5 - p[0][k] * 0.5));
+        for (int k = 0; k < 3; k++) most = larger(most, fabs(p[i][k] * 0.5 - p[0][k] * 0.5));
     int exponent;
+    if (most > 0x1p-60 && most < 0x1p60) return 0;
     frexp(most, &exponent);
     return exponent + 1;
 }
 
+static bool solve_in_dd(const double *const p[4], bool weighted, double scale, const permanents *permanent,
+                        solution *s) {
+    brio_dd r[3][3], weight[3] = {{0, 0}, {0, 0}, {0, 0}};
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) r[i][k] = dd_difference(p[i + 1][k] * scale, p[0][k] * scale);
+        if (weighted) weight[i] = dd_difference(p[i + 1][3] * scale * scale, p[0][3] * scale * scale);
+    }
+    return dd_have_fma() ? solve_dd_fma(r, weight, permanent, s) : solve_dd_plain(r, weight, permanent, s);
+}
+
 static bool solve(const double *const p[4], bool weighted, int exponent, solution *s) {
-    double r[3][3], weight[3] = {0, 0, 0}, scale;
-    brio_dd rr[3][3], ww[3] = {{0, 0}, {0, 0}, {0, 0}};
+    double r[3][3], weight[3] = {0, 0, 0};
     permanents permanent;
     if (!ordinary(exponent)) return solve_exact(p, weighted, exponent, s);
-    scale = power_of_two(-exponent); /* exact and finite */
+    double scale = power_of_two(-exponent); /* exact and finite */
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            rr[i][k] = dd_difference(p[i + 1][k] * scale, p[0][k] * scale);
-            r[i][k] = rr[i][k].hi;
-        }
-        if (weighted) ww[i] = dd_difference(p[i + 1][3] * scale * scale, p[0][3] * scale * scale);
-        weight[i] = ww[i].hi;
+        for (int k = 0; k < 3; k++) r[i][k] = p[i + 1][k] * scale - p[0][k] * scale;
+        if (weighted) weight[i] = p[i + 1][3] * scale * scale - p[0][3] * scale * scale;
     }
-    if (solve_double(r, weight, s, &permanent)) return true;
-    bool done = dd_have_fma() ? solve_dd_fma(rr, ww, &permanent, s) : solve_dd_plain(rr, ww, &permanent, s);
-    return done || solve_exact(p, weighted, exponent, s);
+    return solve_double(r, weight, s, &permanent) || solve_in_dd(p, weighted, scale, &permanent, s) ||
+           solve_exact(p, weighted, exponent, s);
 }
 
 bool brio_centre(const double *a, const double *b, const double *c, const double *d, bool weighted, double centre[3],
@@ -200,7 +222,7 @@ bool brio_centre(const double *a, const double *b, const double *c, const double
         centre[k] = p[0][k] + (ordinary(exponent) ? s.offset[k] * unit : ldexp(s.offset[k], exponent));
         if (!isfinite(centre[k])) return false;
     }
-    worst += 0x1p-53 * fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2])));
+    worst += 0x1p-53 * larger(fabs(centre[0]), larger(fabs(centre[1]), fabs(centre[2])));
     if (error) *error = worst;
     return true;
 }

@@ -209,7 +209,7 @@ static void ranks_rise_inside_rounds(void) {
 static void rounds_follow_the_curve(void) {
     static uint64_t key[MOST];
     uniform_points(3, MOST, points);
-    brio_hilbert_keys(points, MOST, 7, key); /* coarser than the order's own curve */
+    brio_hilbert_keys(points, MOST, 7, 2, key); /* coarser than the order's own curve */
     brio_options o = options_of(BRIO_ORDER_BRIO, 0);
     o.round_ratio = 0.5;
     brio_context *ctx = new_context();
