@@ -7,6 +7,8 @@
 #define COMMANDS(X)                                                                                                    \
     X(delaunay)                                                                                                        \
     X(surface)                                                                                                         \
+    X(medial)                                                                                                          \
+    X(offset)                                                                                                          \
     X(check)                                                                                                           \
     X(compare)                                                                                                         \
     X(info)                                                                                                            \

@@ -32,7 +32,7 @@ done:
     return status;
 }
 
-static void report_stages(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
+void cli_report_power_crust_stages(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
     cli_stage(r, "delaunay", s->delaunay_seconds);
     cli_stage(r, "poles", s->poles_seconds);
     cli_stage(r, "power", s->power_seconds);
@@ -42,11 +42,8 @@ static void report_stages(run *r, const power_crust_options *a, const brio_power
     r->lap = cli_clock();
 }
 
-brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mesh *points, brio_mesh **surface,
-                            brio_power_crust_stats *stats) {
+brio_surface_options cli_surface_options(const run *r, const power_crust_options *a) {
     brio_surface_options o = brio_surface_options_default();
-    brio_format format;
-    brio_status status = BRIO_OK;
     o.seed = r->common.seed;
     o.triangulate = a->triangulate;
     o.labeling = (brio_labeling)a->labeling;
@@ -54,6 +51,14 @@ brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mes
     o.sharp = a->sharp;
     o.open = a->open;
     o.simplify = a->simplify;
+    return o;
+}
+
+brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mesh *points, brio_mesh **surface,
+                            brio_power_crust_stats *stats) {
+    brio_surface_options o = cli_surface_options(r, a);
+    brio_format format;
+    brio_status status = BRIO_OK;
     if (a->normals) {
         TRY(cli_output_format(r, a->normals, NULL, &format));
         TRY(cli_check_target(r, a->normals));
@@ -61,7 +66,7 @@ brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mes
         if (!o.normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
     }
     TRY(brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, stats));
-    report_stages(r, a, stats);
+    cli_report_power_crust_stages(r, a, stats);
     if (a->normals) TRY(write_normals(r, a->normals, points, o.normals));
 done:
     free(o.normals);

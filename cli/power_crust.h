@@ -35,9 +35,15 @@ extern const option_choice cli_labelings[];
 /** Whether any of them was given. */
 bool cli_has_power_crust_options(const power_crust_options *options);
 
+/** The options as the library has them, but for the normals. */
+brio_surface_options cli_surface_options(const run *r, const power_crust_options *options);
+
 /** Reconstructs the surface of the points; writes the normals where they are asked for. */
 brio_status cli_power_crust(run *r, const power_crust_options *options, const brio_mesh *points, brio_mesh **surface,
                             brio_power_crust_stats *stats);
+
+/** Adds the stages of a power crust to the clock. */
+void cli_report_power_crust_stages(run *r, const power_crust_options *options, const brio_power_crust_stats *stats);
 
 /** Reports the counts of a power crust. */
 void cli_report_power_crust(run *r, const power_crust_options *options, const brio_power_crust_stats *stats);

@@ -290,9 +290,9 @@ typedef struct brio_property {
     void *data; /* #V scalars of `type` */
 } brio_property;
 
-/** Points, with polygons or tetrahedra over them, and properties of the points: what a file holds. Polygons are stored
- *  one after the other: face f has the vertices face_vertices[face_offsets[f] .. face_offsets[f+1]). Vertices are never
- *  merged by position. All arrays are owned by the mesh; arrays of absent parts are NULL. */
+/** Points, with polygons, tetrahedra or edges over them, and properties of the points: what a file holds. Polygons are
+ *  stored one after the other: face f has the vertices face_vertices[face_offsets[f] .. face_offsets[f+1]). Vertices are
+ *  never merged by position. All arrays are owned by the mesh; arrays of absent parts are NULL. */
 typedef struct brio_mesh {
     brio_context *context;
     size_t num_vertices;
@@ -304,6 +304,8 @@ typedef struct brio_mesh {
     uint32_t *tetrahedra; /* #T by 4 */
     size_t num_properties;
     brio_property *properties;
+    size_t num_edges; /* that are drawn by themselves; those of polygons are not listed */
+    uint32_t *edges;  /* #E by 2 */
 } brio_mesh;
 
 /** An empty mesh. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
@@ -319,6 +321,8 @@ BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offset
 /** Gives a mesh tetrahedra (copied): #T by 4. */
 BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t stride,
                                               size_t num_tetrahedra);
+/** Gives a mesh edges (copied): #E by 2. */
+BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges, size_t num_edges);
 /** Adds a property of the vertices, zeroed, and returns where its numbers go in *data; a name that is there already is
  *  BRIO_ERR_ARGUMENT. */
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
@@ -442,6 +446,71 @@ BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, s
                                       const brio_surface_options *options, brio_mesh **out,
                                       brio_power_crust_stats *stats);
 
+/** The surface at a distance from the one that the power crust of the samples is: outwards for distance > 0, inwards
+ *  for distance < 0. Its parts merge where they meet, and it vanishes where the object is too thin. Guarantees: as the
+ *  power crust, closed, manifold and oriented whatever the distance. It is as far off the exact offset as the
+ *  polar balls are off the maximal ones.
+ *  distance  in the unit of the points.   options  NULL for the defaults; not `open`, not `normals`.   stats  may be
+ *  NULL: of the balls that are left.   out  owned by the caller.
+ *  Cost: as brio_power_crust and one more triangulation of the poles.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or the offset swallows the object), and as brio_delaunay.
+ *  Based on: [Choi 2003] section 3.3.4. */
+BRIO_API brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
+                                         const brio_surface_options *options, brio_mesh **out,
+                                         brio_power_crust_stats *stats);
+
+/** The sides of the surface that a power shape is made of. */
+typedef enum brio_medial_sides {
+    BRIO_MEDIAL_INNER = 0,
+    BRIO_MEDIAL_OUTER = 1,
+    BRIO_MEDIAL_BOTH = 2,
+    BRIO_MEDIAL_END
+} brio_medial_sides;
+
+typedef struct brio_medial_options {
+    uint64_t seed;          /* default 1 */
+    brio_labeling labeling; /* as in brio_surface_options, and so are the next two */
+    double sampling_density;
+    int sharp;
+    const brio_mesh
+        *solid; /* a closed mesh, in the unit of the points: poles within it are inner, whatever the labeling;
+                                its vertices may be the points; default NULL */
+    brio_medial_sides sides; /* default inner */
+    /* Balls that one larger ball of the same side can stand for are left out: */
+    double scale;      /* S > 1: it holds them when both are scaled by S, which is what noise comes to; default 1 */
+    double redundancy; /* E > 0: it holds them when its radius grows by E of itself; default 0 */
+} brio_medial_options;
+
+BRIO_API brio_medial_options brio_medial_options_default(void);
+
+typedef struct brio_medial_stats {
+    size_t samples;                  /* distinct positions */
+    size_t poles, hidden_poles;      /* polar balls; of these without a power cell */
+    size_t inner, outer, unlabelled; /* labels of all poles; with the labelings that there are, none is unlabelled */
+    size_t left_out;                 /* by `scale` and `redundancy` */
+    size_t edges, triangles;         /* of the shape */
+    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, simplify_seconds, shape_seconds;
+} brio_medial_stats;
+
+/** The power shape of samples of a surface, an approximation of its medial axis: the poles on the sides asked for that
+ *  have a cell in the power diagram of all polar balls, and the edges and triangles of its dual between those of one
+ *  side. Poles of a dense sample of a smooth surface converge to the medial axis as the sampling gets denser; those of
+ *  bounding points beyond the hull are left out.
+ *  points   #P by 3.   options  NULL for the defaults.   stats  may be NULL.
+ *  shape    owned by the caller: vertices with the properties "radius" (float64) and "side" (int8; -1 inner, 1 outer),
+ *           edges, triangles as faces.
+ *  crust    NULL, or receives the power crust of the balls, after simplification: closed, manifold, oriented; owned by
+ *           the caller.
+ *  Every ball left out by simplification is within max ((S - 1) (R - r), E R) of a larger one that stays, r and R being
+ *  their radii.
+ *  Cost: as brio_power_crust; one more triangulation of the poles with simplification.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid, none is on the side asked for, or the mesh `solid` is
+ *  not closed), and as brio_delaunay.
+ *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] section 3.3.2, [Miklos Giesen Pauly 2010]. */
+BRIO_API brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num_points,
+                                      const brio_medial_options *options, brio_mesh **shape, brio_mesh **crust,
+                                      brio_medial_stats *stats);
+
 typedef struct brio_cocone_options {
     uint64_t seed;  /* default 1 */
     double theta;   /* half the opening of the co-cone, radians, in (0, pi/2); default pi/8 */
@@ -496,6 +565,7 @@ typedef enum brio_format {
     BRIO_FORMAT_OFF,
     BRIO_FORMAT_VTU,  /* read back when its arrays are appended raw, as they are written */
     BRIO_FORMAT_NODE, /* TetGen's .node, with .ele beside it */
+    BRIO_FORMAT_VTP,  /* written, not read */
     BRIO_FORMAT_END
 } brio_format;
 
@@ -519,7 +589,7 @@ typedef struct brio_write_options {
 BRIO_API brio_write_options brio_write_options_default(void);
 
 /** Writes a mesh: to a temporary name beside the target, flushed, then renamed, so that nothing half-written is ever
- *  left. "-" writes to standard output (the format must then be given).
+ *  left. "-" writes to standard output (the format must then be given). Edges go into PLY, VTU and VTP alone.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a format that cannot hold the mesh), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,

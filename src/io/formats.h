@@ -25,6 +25,7 @@ brio_status brio_xyz_write(brio_output *out, const brio_write_job *job);
 brio_status brio_obj_write(brio_output *out, const brio_write_job *job);
 brio_status brio_off_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtu_write(brio_output *out, const brio_write_job *job);
+brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
 brio_status brio_node_write(brio_output *out, const brio_write_job *job);
 brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
 

@@ -31,6 +31,9 @@ static brio_status write_header(brio_output *out, const brio_write_job *job, boo
     if (m->num_tetrahedra)
         BRIO_TRY(brio_output_format(out, "element tetrahedron %zu\nproperty list uchar %s vertex_indices\n",
                                     m->num_tetrahedra, index));
+    if (m->num_edges)
+        BRIO_TRY(brio_output_format(out, "element edge %zu\nproperty %s vertex1\nproperty %s vertex2\n", m->num_edges,
+                                    index, index));
     BRIO_TRY(brio_output_string(out, "end_header\n"));
 done:
     return status;
@@ -89,6 +92,16 @@ done:
     return status;
 }
 
+static brio_status write_edge(brio_output *out, const brio_write_job *job, const uint32_t *edge) {
+    brio_status status = BRIO_OK;
+    if (!job->options->ascii) return brio_output_bytes(out, edge, 2 * sizeof *edge);
+    BRIO_TRY(brio_output_integer(out, 0, edge[0]));
+    BRIO_TRY(brio_output_integer(out, ' ', edge[1]));
+    BRIO_TRY(brio_output_string(out, "\n"));
+done:
+    return status;
+}
+
 brio_status brio_ply_write(brio_output *out, const brio_write_job *job) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
@@ -104,6 +117,7 @@ brio_status brio_ply_write(brio_output *out, const brio_write_job *job) {
         BRIO_TRY(write_list(out, job, m->face_vertices + from, (size_t)(to - from), long_lists));
     }
     for (size_t t = 0; t < m->num_tetrahedra; t++) BRIO_TRY(write_list(out, job, m->tetrahedra + 4 * t, 4, false));
+    for (size_t e = 0; e < m->num_edges; e++) BRIO_TRY(write_edge(out, job, m->edges + 2 * e));
 done:
     return status;
 }

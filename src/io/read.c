@@ -10,10 +10,10 @@ enum { START = 4096 }; /* bytes in which a file's content may tell its format */
 static const struct {
     const char *extension;
     brio_format format;
-} extensions[] = {{"ply", BRIO_FORMAT_PLY}, {"xyz", BRIO_FORMAT_XYZ}, {"pts", BRIO_FORMAT_XYZ},
-                  {"txt", BRIO_FORMAT_XYZ}, {"csv", BRIO_FORMAT_XYZ}, {"obj", BRIO_FORMAT_OBJ},
-                  {"off", BRIO_FORMAT_OFF}, {"vtu", BRIO_FORMAT_VTU}, {"node", BRIO_FORMAT_NODE},
-                  {"ele", BRIO_FORMAT_NODE}};
+} extensions[] = {{"ply", BRIO_FORMAT_PLY},  {"xyz", BRIO_FORMAT_XYZ}, {"pts", BRIO_FORMAT_XYZ},
+                  {"txt", BRIO_FORMAT_XYZ},  {"csv", BRIO_FORMAT_XYZ}, {"obj", BRIO_FORMAT_OBJ},
+                  {"off", BRIO_FORMAT_OFF},  {"vtu", BRIO_FORMAT_VTU}, {"node", BRIO_FORMAT_NODE},
+                  {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}};
 
 /* The part of a name behind its last dot; all of it when there is none. */
 static const char *extension_of(const char *path) {
@@ -78,6 +78,8 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
         return brio_vtu_read(s, b);
     case BRIO_FORMAT_NODE:
         return brio_node_read(s, b);
+    case BRIO_FORMAT_VTP:
+        return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: VTP files are written, not read", s->name);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;

@@ -54,11 +54,13 @@ done:
 
 static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
                                const brio_write_options *options) {
-    static const char *const without_tetrahedra[BRIO_FORMAT_END] = {
-        [BRIO_FORMAT_XYZ] = "a text of points", [BRIO_FORMAT_OBJ] = "an OBJ file", [BRIO_FORMAT_OFF] = "an OFF file"};
+    static const char *const without_tetrahedra[BRIO_FORMAT_END] = {[BRIO_FORMAT_XYZ] = "a text of points",
+                                                                    [BRIO_FORMAT_OBJ] = "an OBJ file",
+                                                                    [BRIO_FORMAT_OFF] = "an OFF file",
+                                                                    [BRIO_FORMAT_VTP] = "a VTP file"};
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, format > BRIO_FORMAT_AUTO && format < BRIO_FORMAT_END, BRIO_ERR_ARGUMENT,
-                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu or .node", path);
+                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp or .node", path);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || !without_tetrahedra[format], BRIO_ERR_ARGUMENT,
                  "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, without_tetrahedra[format]);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0, BRIO_ERR_ARGUMENT,
@@ -73,7 +75,8 @@ done:
 static uint64_t expected_bytes(const brio_mesh *m, bool text) {
     uint64_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0, scalars = 3 + m->num_properties;
     uint64_t number = text ? 18 : 8, index = text ? 7 : 4;
-    return m->num_vertices * scalars * number + (corners + m->num_faces + 5 * m->num_tetrahedra) * index;
+    return m->num_vertices * scalars * number +
+           (corners + m->num_faces + 5 * m->num_tetrahedra + 2 * m->num_edges) * index;
 }
 
 static brio_status write_output(brio_output *out, const brio_write_job *job, brio_format format) {
@@ -90,6 +93,8 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
         return brio_vtu_write(out, job);
     case BRIO_FORMAT_NODE:
         return brio_node_write(out, job);
+    case BRIO_FORMAT_VTP:
+        return brio_vtp_write(out, job);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;
@@ -100,7 +105,8 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
 static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
     brio_status status = BRIO_OK;
     brio_output out;
-    bool text = job->options->ascii || (format != BRIO_FORMAT_PLY && format != BRIO_FORMAT_VTU);
+    bool text =
+        job->options->ascii || (format != BRIO_FORMAT_PLY && format != BRIO_FORMAT_VTU && format != BRIO_FORMAT_VTP);
     BRIO_TRY(brio_output_open(&out, ctx, path, expected_bytes(job->mesh, text)));
     BRIO_TRY(write_output(&out, job, format));
     BRIO_TRY(brio_output_finish(&out));

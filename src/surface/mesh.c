@@ -17,6 +17,7 @@ void brio_mesh_free(brio_mesh *mesh) {
     brio_release(ctx, mesh->face_offsets);
     brio_release(ctx, mesh->face_vertices);
     brio_release(ctx, mesh->tetrahedra);
+    brio_release(ctx, mesh->edges);
     brio_release(ctx, mesh);
 }
 
@@ -65,6 +66,19 @@ brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra
     for (size_t t = 0; t < num_tetrahedra; t++) memcpy(copy + 4 * t, tetrahedra + stride * t, 4 * sizeof *copy);
     mesh->tetrahedra = copy;
     mesh->num_tetrahedra = num_tetrahedra;
+done:
+    return status;
+}
+
+brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges, size_t num_edges) {
+    brio_context *ctx = mesh->context;
+    uint32_t *copy = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, !mesh->edges, BRIO_ERR_ARGUMENT, "the mesh has edges already");
+    BRIO_TRY(BRIO_ALLOC(ctx, copy, 2 * num_edges));
+    if (num_edges) memcpy(copy, edges, 2 * num_edges * sizeof *copy);
+    mesh->edges = copy;
+    mesh->num_edges = num_edges;
 done:
     return status;
 }

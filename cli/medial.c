@@ -1,0 +1,153 @@
+/* brio medial: the medial axis of a surface, known by points of it or as a closed mesh. */
+#include "certificate.h"
+#include "commands.h"
+#include "estimate.h"
+#include "files.h"
+
+enum { BY_INPUT = -2, BY_MESH = BRIO_LABELING_END };
+
+typedef struct arguments {
+    int labeling, sides;
+    double sampling_density, scale, redundancy; /* the last two: 0 where they are not given */
+    bool sharp, simplify;
+    const char *crust; /* file, or NULL */
+} arguments;
+
+static const option_choice labelings[] = {{"mesh", BY_MESH},
+                                          {"greedy", BRIO_LABELING_GREEDY},
+                                          {"naive", BRIO_LABELING_NAIVE},
+                                          {"theoretical", BRIO_LABELING_THEORETICAL},
+                                          {"global", BRIO_LABELING_GLOBAL},
+                                          {NULL, 0}};
+static const option_choice sides[] = {
+    {"inner", BRIO_MEDIAL_INNER}, {"outer", BRIO_MEDIAL_OUTER}, {"both", BRIO_MEDIAL_BOTH}, {NULL, 0}};
+
+static const option options[] = {
+    {"sides", 0, OPTION_CHOICE, offsetof(arguments, sides), "NAME", "of the surface whose axis is wanted (inner)",
+     sides},
+    {"labeling", 0, OPTION_CHOICE, offsetof(arguments, labeling), "NAME",
+     "what tells inner poles from outer ones: faces, where there are (mesh), or the points (greedy)", labelings},
+    {"simplify", 0, OPTION_FLAG, offsetof(arguments, simplify), NULL,
+     "leave out what noise and close sampling add: --scale 1.1 --redundancy 0.01", 0},
+    {"scale", 0, OPTION_NUMBER, offsetof(arguments, scale), "S",
+     "leave out balls that lie in another when both are scaled by S", 0},
+    {"redundancy", 0, OPTION_NUMBER, offsetof(arguments, redundancy), "E",
+     "leave out balls that lie in another enlarged by E of its radius", 0},
+    {"crust", 0, OPTION_TEXT, offsetof(arguments, crust), "FILE",
+     "also write the surface of the balls: their power crust", 0},
+    {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, sampling_density), "R",
+     "discard the nearer pole of cells too wide for an R-sample", 0},
+    {"sharp", 'B', OPTION_FLAG, offsetof(arguments, sharp), NULL,
+     "discard both, for sharp edges without samples (R 0.5)", 0},
+    {0},
+};
+
+static const arguments defaults = {.labeling = BY_INPUT};
+static const double SCALE = 1.1, REDUNDANCY = 0.01; /* of --simplify */
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU, BRIO_FORMAT_XYZ,
+                                      BRIO_FORMAT_AUTO};
+
+static brio_status check_arguments(run *r) {
+    const arguments *a = r->arguments;
+    brio_format format;
+    brio_status status = BRIO_OK;
+    if (a->scale != 0 && a->scale < 1) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--scale: %g is less than 1", a->scale));
+    if (a->redundancy < 0) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--redundancy: %g is negative", a->redundancy));
+    if (a->crust) {
+        TRY(cli_output_format(r, a->crust, NULL, &format));
+        TRY(cli_check_target(r, a->crust));
+    }
+done:
+    return status;
+}
+
+static brio_medial_options medial_options(const run *r, const brio_mesh *input, bool by_mesh) {
+    const arguments *a = r->arguments;
+    brio_medial_options o = brio_medial_options_default();
+    o.seed = r->common.seed;
+    if (by_mesh)
+        o.solid = input;
+    else if (a->labeling != BY_INPUT)
+        o.labeling = (brio_labeling)a->labeling;
+    o.sides = (brio_medial_sides)a->sides;
+    o.sampling_density = a->sampling_density;
+    o.sharp = a->sharp;
+    if (a->simplify) o.scale = SCALE, o.redundancy = REDUNDANCY;
+    if (a->scale != 0) o.scale = a->scale;
+    if (a->redundancy > 0) o.redundancy = a->redundancy;
+    return o;
+}
+
+static void report(run *r, const brio_medial_options *o, const brio_medial_stats *s, const brio_mesh *shape) {
+    facts *f = &r->facts;
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "poles", s->poles_seconds);
+    cli_stage(r, "power", s->power_seconds);
+    cli_stage(r, "label", s->label_seconds);
+    cli_stage(r, "shape", s->shape_seconds);
+    r->lap = cli_clock();
+    cli_fact_count(f, "samples", s->samples);
+    cli_fact_count(f, "poles", s->poles);
+    cli_fact_count(f, "hidden_poles", s->hidden_poles);
+    cli_fact_count(f, "inner", s->inner);
+    cli_fact_count(f, "outer", s->outer);
+    cli_fact_count(f, "unlabelled", s->unlabelled);
+    cli_fact_text(f, "labeling", labelings[o->solid ? 0 : 1 + (int)o->labeling].name);
+    if (o->scale > 1 || o->redundancy > 0) {
+        cli_stage(r, "simplify", s->simplify_seconds);
+        cli_fact_count(f, "left_out", s->left_out);
+    }
+    cli_fact_count(f, "vertices", shape->num_vertices);
+    cli_fact_count(f, "edges", s->edges);
+    cli_fact_count(f, "triangles", s->triangles);
+}
+
+static brio_status write_crust(run *r, const brio_mesh *crust) {
+    const arguments *a = r->arguments;
+    brio_status status = BRIO_OK;
+    if (!crust) return BRIO_OK;
+    TRY(cli_certify(r, crust, 0));
+    TRY(cli_write_to(r, a->crust, crust));
+done:
+    return status;
+}
+
+static brio_status medial(run *r) {
+    const arguments *a = r->arguments;
+    brio_mesh *input = NULL, *shape = NULL, *crust = NULL;
+    brio_medial_stats s = {0};
+    brio_status status = BRIO_OK;
+    TRY(check_arguments(r));
+    TRY(cli_require_output(r, formats, false));
+    TRY(cli_read(r, r->operands[0], &input));
+    bool by_mesh = a->labeling == BY_MESH || (a->labeling == BY_INPUT && input->num_faces > 0);
+    if (by_mesh && !input->num_faces)
+        TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--labeling mesh: %s has no faces", r->operands[0]));
+    double extra = cli_crust_extra_bytes(input->num_vertices, a->labeling == BRIO_LABELING_GLOBAL, false);
+    TRY(cli_require_memory(r, cli_mesh_bytes(input) + cli_surface_bytes(input->num_vertices) + extra));
+    brio_medial_options o = medial_options(r, input, by_mesh);
+    TRY(brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s));
+    report(r, &o, &s, shape);
+    brio_mesh_free(input);
+    input = NULL;
+    TRY(cli_check_interrupt(r));
+    TRY(write_crust(r, crust));
+    TRY(cli_write(r, shape));
+done:
+    brio_mesh_free(input);
+    brio_mesh_free(shape);
+    brio_mesh_free(crust);
+    return status;
+}
+
+const command cli_medial = {
+    .name = "medial",
+    .operands = "IN",
+    .summary = "medial axis of the points, or the closed mesh, of a file: balls, edges, triangles (.ply .vtp .vtu)",
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = medial,
+};

@@ -1,0 +1,87 @@
+/* brio offset: the surface at a distance from the one through the points of a file, with its certificate. */
+#include "certificate.h"
+#include "commands.h"
+#include "estimate.h"
+#include "power_crust.h"
+#include <math.h>
+
+typedef struct arguments {
+    double distance;
+    power_crust_options crust;
+    bool vertex_normals, self_intersections;
+} arguments;
+
+static const option options[] = {
+    {"distance", 'D', OPTION_NUMBER, offsetof(arguments, distance), "D",
+     "of the surface, in the unit of the points: outwards when positive", 0},
+    {"triangulate", 0, OPTION_FLAG, offsetof(arguments, crust.triangulate), NULL, "cut the polygons into triangles", 0},
+    {"simplify", 0, OPTION_FLAG, offsetof(arguments, crust.simplify), NULL, "a quarter as many faces, triangles", 0},
+    {"labeling", 0, OPTION_CHOICE, offsetof(arguments, crust.labeling), "NAME", "how poles are labelled inner or outer",
+     cli_labelings},
+    {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, crust.sampling_density), "R",
+     "discard the nearer pole of cells too wide for an R-sample", 0},
+    {"sharp", 'B', OPTION_FLAG, offsetof(arguments, crust.sharp), NULL,
+     "discard both, for sharp edges without samples (R 0.5)", 0},
+    {"vertex-normals", 0, OPTION_FLAG, offsetof(arguments, vertex_normals), NULL,
+     "give the vertices normals, as properties nx ny nz", 0},
+    {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
+     "count the pairs of faces that run through each other", 0},
+    {0},
+};
+
+static const arguments defaults = {.distance = NAN};
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+                                      BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
+
+static brio_status offset_surface(run *r, const brio_mesh *points, brio_mesh **surface) {
+    const arguments *a = r->arguments;
+    brio_surface_options o = cli_surface_options(r, &a->crust);
+    brio_power_crust_stats s = {0};
+    facts *f = &r->facts;
+    brio_status status =
+        brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &s);
+    if (status != BRIO_OK) return status;
+    cli_report_power_crust_stages(r, &a->crust, &s);
+    cli_fact_text(f, "method", "power-crust");
+    cli_fact_real(f, "distance", a->distance);
+    cli_fact_count(f, "samples", s.samples);
+    cli_fact_count(f, "vertices", (*surface)->num_vertices);
+    cli_fact_count(f, "faces", (*surface)->num_faces);
+    cli_report_power_crust(r, &a->crust, &s);
+    return BRIO_OK;
+}
+
+static brio_status offset(run *r) {
+    const arguments *a = r->arguments;
+    brio_mesh *points = NULL, *surface = NULL;
+    brio_status status = BRIO_OK;
+    if (isnan(a->distance)) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "offset needs --distance"));
+    TRY(cli_require_output(r, formats, false));
+    TRY(cli_read_points(r, r->operands[0], &points));
+    double extra =
+        cli_crust_extra_bytes(points->num_vertices, a->crust.labeling == BRIO_LABELING_GLOBAL, a->crust.simplify);
+    TRY(cli_require_memory(r, cli_mesh_bytes(points) + cli_surface_bytes(points->num_vertices) + extra));
+    TRY(offset_surface(r, points, &surface));
+    TRY(cli_check_interrupt(r));
+    brio_mesh_free(points);
+    points = NULL;
+    if (a->vertex_normals) TRY(brio_mesh_add_normals(surface));
+    TRY(cli_certify(r, surface, a->self_intersections ? CERTIFY_COUNTED : 0u));
+    TRY(cli_write(r, surface));
+done:
+    brio_mesh_free(surface);
+    brio_mesh_free(points);
+    return status;
+}
+
+const command cli_offset = {
+    .name = "offset",
+    .operands = "IN",
+    .summary = "surface at a distance from the one through the points of a file (.ply .obj .off .vtu .vtp)",
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = offset,
+};
