@@ -411,7 +411,7 @@ static void check_result(const theory *x) {
 
 static void check_theory(const known_surface *surface) {
     theory x = {.ctx = new_context(), .surface = surface};
-    x.points = surface->sample(11, &x.n);
+    x.points = surface->sample(surface->r, 11, &x.n);
     EXPECT(brio_delaunay(x.ctx, x.points, NULL, x.n, NULL, &x.t) == BRIO_OK);
     EXPECT(brio_pole_vectors_find(x.ctx, x.t, x.points, x.n, &x.dual) == BRIO_OK);
     EXPECT(brio_cocones_new(x.ctx, &x.dual, THETA, &x.cocones) == BRIO_OK);
