@@ -81,9 +81,9 @@ done:
 static brio_status find_candidates(reconstruction *r) {
     brio_status status = BRIO_OK;
     stage(r, 0.5, 0.65);
-    BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, &r->dual));
+    BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, r->options->theta, &r->dual));
     r->stats.poles_seconds = lap(r);
-    BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, r->options->theta, &r->cocones));
+    BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &r->cocones));
     if (r->options->boundaries) {
         BRIO_TRY(brio_boundary_samples(r->ctx, &r->cocones, &r->boundary, &r->stats.boundary_samples));
         r->cocones.boundary = r->boundary;
@@ -98,10 +98,11 @@ done:
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
     stage(r, 0.65, 0.8);
-    BRIO_TRY(brio_orient_samples(r->ctx, &r->cocones, r->stats.candidates, &r->turned));
+    BRIO_TRY(brio_orient_samples(r->ctx, &r->cocones, &r->turned));
     r->labels = (brio_tet_labels){.cocones = &r->cocones, .turned = r->turned, .watertight = r->options->tight};
+    BRIO_TRY(brio_tet_labels_vote(r->ctx, &r->labels));
     BRIO_TRY(brio_cocone_prune(r->ctx, &r->labels, &r->stats.pruned));
-    BRIO_TRY(brio_tet_labels_find(r->ctx, &r->labels));
+    BRIO_TRY(brio_tet_labels_spread(r->ctx, &r->labels));
     BRIO_TRY(brio_flatten(r->ctx, &r->labels));
     r->stats.labels_seconds = lap(r);
 done:
@@ -164,7 +165,7 @@ done:
 }
 
 static void release(reconstruction *r) {
-    brio_release(r->ctx, r->labels.label);
+    brio_tet_labels_free(r->ctx, &r->labels);
     brio_release(r->ctx, r->turned);
     brio_release(r->ctx, r->boundary);
     brio_cocones_free(r->ctx, &r->cocones);

@@ -413,8 +413,8 @@ static void check_theory(const known_surface *surface) {
     theory x = {.ctx = new_context(), .surface = surface};
     x.points = surface->sample(surface->r, 11, &x.n);
     EXPECT(brio_delaunay(x.ctx, x.points, NULL, x.n, NULL, &x.t) == BRIO_OK);
-    EXPECT(brio_pole_vectors_find(x.ctx, x.t, x.points, x.n, &x.dual) == BRIO_OK);
-    EXPECT(brio_cocones_new(x.ctx, &x.dual, THETA, &x.cocones) == BRIO_OK);
+    EXPECT(brio_pole_vectors_find(x.ctx, x.t, x.points, x.n, THETA, &x.dual) == BRIO_OK);
+    EXPECT(brio_cocones_new(x.ctx, &x.dual, &x.cocones) == BRIO_OK);
     brio_cocones_select(x.ctx, &x.cocones, &x.candidates);
     check_cells(&x);
     check_candidates(&x);
