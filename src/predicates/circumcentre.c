@@ -233,19 +233,19 @@ bool brio_centre(const double *a, const double *b, const double *c, const double
 typedef double lanes __attribute__((vector_size(8 * BRIO_CENTRES)));
 typedef int64_t lane_mask __attribute__((vector_size(8 * BRIO_CENTRES)));
 
-BRIO_INLINE lanes larger(lanes a, lanes b) {
-    lane_mask more = a > b;
-    return (lanes)(((lane_mask)a & more) | ((lane_mask)b & ~more));
-}
-
-BRIO_INLINE lanes magnitude(lanes a) {
-    return (lanes)((lane_mask)a & INT64_MAX);
+/* most = the larger of most and |x|, lane by lane. Vectors are passed by address: their registers depend on the
+ * instruction set. */
+BRIO_INLINE void take_larger(lanes *most, const lanes *x) {
+    lanes size = (lanes)((lane_mask)*x & INT64_MAX);
+    lane_mask more = size > *most;
+    *most = (lanes)(((lane_mask)size & more) | ((lane_mask)*most & ~more));
 }
 
 /* The quotients and a bound of their errors, from the differences r to the first points; in doubles, unscaled, with the
  * permanents bounded by the largest difference in each coordinate. Where a lane is no number its error is none. */
 BRIO_INLINE void solve_lanes(const lanes r[3][3], lanes offset[3], lanes *error, lanes *far) {
-    lanes zero = {0}, one = zero + 1, determinant = zero, lifts = zero, numerator[3] = {zero, zero, zero}, size[3];
+    lanes zero = {0}, one = zero + 1, determinant = zero, lifts = zero, numerator[3] = {zero, zero, zero};
+    lanes size[3] = {zero, zero, zero}, slack = zero;
     for (int i = 0; i < 3; i++) {
         const lanes *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
         lanes lift = r[i][0] * r[i][0] + r[i][1] * r[i][1] + r[i][2] * r[i][2];
@@ -253,25 +253,28 @@ BRIO_INLINE void solve_lanes(const lanes r[3][3], lanes offset[3], lanes *error,
         numerator[0] += lift * x, numerator[1] += lift * y, numerator[2] += lift * z;
         if (i == 0) determinant = r[0][0] * x + r[0][1] * y + r[0][2] * z;
         lifts += lift;
-        size[i] = larger(larger(magnitude(r[0][i]), magnitude(r[1][i])), magnitude(r[2][i]));
+        for (int k = 0; k < 3; k++) take_larger(&size[k], &r[i][k]);
     }
     lanes permanent = 6 * size[0] * size[1] * size[2];
-    lanes slack = magnitude(determinant) - DOUBLE_BOUND * permanent - 0x1p-900;
+    take_larger(&slack, &determinant);
+    slack -= DOUBLE_BOUND * permanent + 0x1p-900;
     lanes inverse = one / slack, share = DOUBLE_BOUND * permanent * inverse * (1 + 0x1p-50) + 0x1p-52;
     *error = zero, *far = zero;
     for (int k = 0; k < 3; k++) {
         lanes most = 2 * lifts * size[(k + 1) % 3] * size[(k + 2) % 3];
         offset[k] = 0.5 * (numerator[k] / determinant);
-        lanes own = 0.5 * (DOUBLE_BOUND * most + 0x1p-900) * inverse * (1 + 0x1p-50) + magnitude(offset[k]) * share;
-        *error = larger(own, *error);
-        *far = larger(magnitude(offset[k]), *far);
+        lanes own = 0.5 * (DOUBLE_BOUND * most + 0x1p-900) * inverse * (1 + 0x1p-50), length = zero;
+        take_larger(&length, &offset[k]);
+        own += length * share;
+        take_larger(error, &own);
+        take_larger(far, &length);
     }
     lane_mask bad = ~(slack > zero) | ~(*error <= ROUGH_GOAL * *far) | ~(*far < 0x1p900);
     *error = (lanes)((lane_mask)*error | bad);
 }
 
 BRIO_INLINE void rough_centres(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
-    lanes base[3], r[3][3], offset[3], worst, far;
+    lanes base[3], r[3][3], offset[3], worst, far, farthest = {0};
     for (int n = 0; n < BRIO_CENTRES; n++) {
         sort_ascending(p[n]);
         for (int k = 0; k < 3; k++) {
@@ -283,8 +286,8 @@ BRIO_INLINE void rough_centres(const double *p[BRIO_CENTRES][4], double (*centre
         for (int k = 0; k < 3; k++) r[i][k] -= base[k];
     solve_lanes((const lanes(*)[3])r, offset, &worst, &far);
     for (int k = 0; k < 3; k++) offset[k] += base[k];
-    far = larger(larger(magnitude(offset[0]), magnitude(offset[1])), magnitude(offset[2]));
-    worst += 0x1p-53 * far;
+    for (int k = 0; k < 3; k++) take_larger(&farthest, &offset[k]);
+    worst += 0x1p-53 * farthest;
     for (int n = 0; n < BRIO_CENTRES; n++) {
         for (int k = 0; k < 3; k++) centre[n][k] = offset[k][n];
         error[n] = worst[n];

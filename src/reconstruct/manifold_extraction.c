@@ -196,22 +196,21 @@ done:
     return status;
 }
 
-static brio_status write_faces(extraction *x, brio_mesh *mesh) {
+static brio_status write_faces(extraction *x, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
     size_t count = 0;
     for (size_t n = 0; n < x->num_boundary; n++)
         if (is_face(x, x->boundary[n])) x->boundary[count++] = x->boundary[n];
-    BRIO_TRY(BRIO_ALLOC(x->ctx, mesh->face_offsets, count + 1));
-    BRIO_TRY(BRIO_ALLOC(x->ctx, mesh->face_vertices, 3 * count));
+    BRIO_TRY(BRIO_ALLOC(x->ctx, *faces, 3 * count));
+    *num_faces = count;
     for (size_t n = 0; n < count; n++)
-        for (int k = 0; k < 3; k++) mesh->face_vertices[3 * n + (size_t)k] = corner_of(x, x->boundary[n], k);
-    for (size_t f = 0; f <= count; f++) mesh->face_offsets[f] = 3 * f;
-    mesh->num_faces = count;
+        for (int k = 0; k < 3; k++) (*faces)[3 * n + (size_t)k] = corner_of(x, x->boundary[n], k);
 done:
     return status;
 }
 
-brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, brio_mesh *mesh) {
+brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, uint32_t **faces,
+                               size_t *num_faces) {
     brio_status status = BRIO_OK;
     extraction x = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
     BRIO_TRY(brio_boundary_facets(ctx, l, &x.boundary, &x.num_boundary));
@@ -222,7 +221,7 @@ brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool
         BRIO_TRY(choose_fillings(&x, !candidates_only));
         BRIO_TRY(drop_small_fans(&x));
     }
-    BRIO_TRY(write_faces(&x, mesh));
+    BRIO_TRY(write_faces(&x, faces, num_faces));
 done:
     brio_release(ctx, x.boundary);
     brio_release(ctx, x.face);

@@ -435,6 +435,10 @@ static void theory_holds_on_a_torus(void) {
     check_theory(&known_torus);
 }
 
+static void theory_holds_on_a_plate_of_genus_3(void) {
+    check_theory(&known_plate);
+}
+
 int main(void) {
     RUN(small_inputs_are_manifold_oriented);
     RUN(large_noise_is_manifold_oriented);
@@ -448,6 +452,7 @@ int main(void) {
     RUN(density_of_a_sphere_is_measured);
     RUN(theory_holds_on_a_sphere);
     RUN(theory_holds_on_a_torus);
+    RUN(theory_holds_on_a_plate_of_genus_3);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
 }
