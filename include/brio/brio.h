@@ -518,6 +518,8 @@ typedef struct brio_cocone_options {
     int boundaries; /* 1: samples at boundaries and where the sampling is too sparse are found by the shape of their
                        Voronoi cells, and triangles among them alone are no candidates; default 0 */
     int density;    /* 1: the sampling condition is estimated: the mesh gets vertex properties; default 0 */
+    size_t pieces;  /* over 1: in about so many pieces that are triangulated one after the other and matched at their
+                       seams (super co-cone); not with tight; default 0: the whole at once */
 } brio_cocone_options;
 
 BRIO_API brio_cocone_options brio_cocone_options_default(void);
@@ -530,6 +532,8 @@ typedef struct brio_cocone_stats {
     size_t pruned;            /* of these, dropped at sharp edges */
     size_t boundary_samples;  /* found with options.boundaries */
     size_t relabelled;        /* tetrahedra whose side was changed to keep the surface a manifold */
+    size_t pieces, unmatched; /* with options.pieces: cells of the octree; triangles at their seams left out because
+                                 the pieces disagree on them */
     size_t outside_guarantee; /* with options.density: samples on the surface where the estimate of r is over 0.08 */
     double r_median, r_p95;   /* with options.density: of the estimates of r over the samples on the surface */
     double delaunay_seconds, poles_seconds, candidates_seconds, labels_seconds, manifold_seconds, density_seconds;
@@ -545,10 +549,11 @@ typedef struct brio_cocone_stats {
  *          where they are. With options.density: "feature_size", the distance to the nearest pole; "r", an estimate
  *          of the sampling density there (0 where the sample is on no face); "boundary", 1 for a boundary sample (with
  *          options.boundaries too).
- *  Cost: one triangulation; about 60 bytes a tetrahedron more. Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found,
+ *  Cost: one triangulation; about 50 bytes a tetrahedron more. In N pieces the memory is that of 1/N of the samples and
+ *  their surroundings, and 80 bytes a point; on a dense sample the triangles are the same. Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found,
  *  or no inside), and as brio_delaunay.
  *  Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
- *            [Dey Goswami 2003]. */
+ *            [Dey Giesen Hudson 2001], [Dey Goswami 2003]. */
 BRIO_API brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points,
                                  const brio_cocone_options *options, brio_mesh **out, brio_cocone_stats *stats);
 

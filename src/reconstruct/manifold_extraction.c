@@ -22,53 +22,82 @@ typedef struct {
     brio_context *ctx;
     const brio_tet_labels *labels;
     const brio_tetrahedra *t;
-    uint8_t *face;      /* of each outer tetrahedron: bit i tells whether facet i is a face */
+    uint32_t *boundary; /* the facets of the boundary, seen from outside */
+    size_t num_boundary;
+    uint8_t *face;   /* of each outer tetrahedron: bit i tells whether facet i is a face */
+    size_t num_gaps; /* facets of the boundary that are no candidates */
+    double
+        *size_at; /* of each sample at a gap: squared radius of the largest circle round a candidate there; else -1 */
     uint32_t *facet_of; /* of each sample: a boundary facet seen from outside; BRIO_INFINITE for none */
     uint32_t *queue;    /* samples to look at */
     size_t size, capacity;
-    double *size_at; /* of each sample: squared radius of the largest circle round a candidate there */
 } extraction;
+
+/* --- which facets are faces --- */
 
 static bool is_face(const extraction *x, uint32_t facet) {
     return x->face[brio_tet_of(facet)] >> brio_slot_of(facet) & 1;
 }
 
+static void set_face(extraction *x, uint32_t facet) {
+    x->face[brio_tet_of(facet)] |= (uint8_t)(1 << brio_slot_of(facet));
+}
+
+static uint32_t corner_of(const extraction *x, uint32_t facet, int k) {
+    return x->t->tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
+}
+
 static double circle_square(const extraction *x, uint32_t facet) {
-    const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
-    const double *corner[3];
-    for (int k = 0; k < 3; k++)
-        corner[k] = x->labels->cocones->dual->points + 3 * (size_t)v[BRIO_FACET[brio_slot_of(facet)][k]];
-    return brio_circle_square(corner[0], corner[1], corner[2]);
+    const double *points = x->labels->cocones->dual->points;
+    return brio_circle_square(points + 3 * (size_t)corner_of(x, facet, 0), points + 3 * (size_t)corner_of(x, facet, 1),
+                              points + 3 * (size_t)corner_of(x, facet, 2));
 }
 
 static bool is_finite(const extraction *x, uint32_t facet) {
     return brio_slot_of(facet) == 3 || x->t->tet[brio_tet_of(facet)].vertex[3] != BRIO_INFINITE;
 }
 
-/* Finds the boundary: a facet of each sample, the candidates as faces, and how large these are. */
 static void choose_candidates(extraction *x) {
-    for (size_t tet = 0; tet < x->t->count; tet++)
-        for (int i = 0; i < 4 && x->labels->label[tet] == BRIO_LABEL_OUTER; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            const uint32_t *v = x->t->tet[tet].vertex;
-            if (!brio_is_boundary(x->labels, facet)) continue;
-            bool candidate = brio_is_candidate(x->labels->cocones, facet);
-            double size = candidate ? circle_square(x, facet) : 0;
-            if (candidate) x->face[tet] |= (uint8_t)(1 << i);
-            for (int k = 0; k < 3; k++) {
-                uint32_t p = v[BRIO_FACET[i][k]];
-                if (p == BRIO_INFINITE) continue;
-                x->facet_of[p] = facet;
-                x->size_at[p] = fmax(x->size_at[p], size);
-            }
+    for (size_t n = 0; n < x->num_boundary; n++) {
+        if (brio_is_candidate(x->labels->cocones, x->boundary[n]))
+            set_face(x, x->boundary[n]);
+        else
+            x->num_gaps++;
+    }
+}
+
+/* Finds how large the candidates at each sample of a gap are, and a boundary facet of each sample. */
+static brio_status measure_gaps(extraction *x) {
+    brio_status status = BRIO_OK;
+    size_t num_points = x->labels->cocones->dual->num_points;
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->size_at, num_points));
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->facet_of, num_points));
+    for (size_t p = 0; p < num_points; p++) x->size_at[p] = -1, x->facet_of[p] = BRIO_INFINITE;
+    for (size_t n = 0; n < x->num_boundary; n++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t p = corner_of(x, x->boundary[n], k);
+            if (p == BRIO_INFINITE) continue;
+            x->facet_of[p] = x->boundary[n];
+            if (!is_face(x, x->boundary[n])) x->size_at[p] = 0;
         }
+    for (size_t n = 0; n < x->num_boundary; n++) {
+        uint32_t facet = x->boundary[n];
+        double size = -1;
+        for (int k = 0; k < 3 && is_face(x, facet); k++) {
+            double *most = x->size_at + corner_of(x, facet, k);
+            if (*most < 0) continue;
+            if (size < 0) size = circle_square(x, facet);
+            *most = *most < size ? size : *most;
+        }
+    }
+done:
+    return status;
 }
 
 /* Whether a facet of the boundary that is no candidate is as small as the candidates around it. */
 static bool fills_small_hole(const extraction *x, uint32_t facet) {
-    const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
     double size = 0;
-    for (int k = 0; k < 3; k++) size = fmax(size, x->size_at[v[BRIO_FACET[brio_slot_of(facet)][k]]]);
+    for (int k = 0; k < 3; k++) size = fmax(size, x->size_at[corner_of(x, facet, k)]);
     return circle_square(x, facet) <= FILLING * FILLING * size;
 }
 
@@ -83,21 +112,21 @@ done:
 /* Adds the facets of the boundary that fill holes; the samples of the others are to be looked at. */
 static brio_status choose_fillings(extraction *x, bool all) {
     brio_status status = BRIO_OK;
-    for (size_t tet = 0; tet < x->t->count; tet++)
-        for (int i = 0; i < 4 && x->labels->label[tet] == BRIO_LABEL_OUTER; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            const uint32_t *v = x->t->tet[tet].vertex;
-            if (is_face(x, facet) || !brio_is_boundary(x->labels, facet)) continue;
-            if (is_finite(x, facet) && (all || fills_small_hole(x, facet))) {
-                x->face[tet] |= (uint8_t)(1 << i);
-                continue;
-            }
-            for (int k = 0; k < 3; k++)
-                if (v[BRIO_FACET[i][k]] != BRIO_INFINITE) BRIO_TRY(push(x, v[BRIO_FACET[i][k]]));
+    for (size_t n = 0; n < x->num_boundary; n++) {
+        uint32_t facet = x->boundary[n];
+        if (is_face(x, facet)) continue;
+        if (is_finite(x, facet) && (all || fills_small_hole(x, facet))) {
+            set_face(x, facet);
+            continue;
         }
+        for (int k = 0; k < 3; k++)
+            if (corner_of(x, facet, k) != BRIO_INFINITE) BRIO_TRY(push(x, corner_of(x, facet, k)));
+    }
 done:
     return status;
 }
+
+/* --- one fan a sample --- */
 
 /* A fan of faces: its first face, counterclockwise, and the number of faces. */
 typedef struct {
@@ -167,35 +196,34 @@ done:
     return status;
 }
 
-static brio_status write_faces(extraction *x, brio_mesh *mesh) {
+static brio_status write_faces(extraction *x, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
     size_t count = 0;
-    for (size_t tet = 0; tet < x->t->count; tet++) count += (size_t)__builtin_popcount(x->face[tet]);
-    BRIO_TRY(BRIO_ALLOC(x->ctx, mesh->face_offsets, count + 1));
-    BRIO_TRY(BRIO_ALLOC(x->ctx, mesh->face_vertices, 3 * count));
-    uint32_t *corner = mesh->face_vertices;
-    for (size_t tet = 0; tet < x->t->count; tet++)
-        for (int i = 0; i < 4; i++)
-            for (int k = 0; k < 3 && x->face[tet] >> i & 1; k++) *corner++ = x->t->tet[tet].vertex[BRIO_FACET[i][k]];
-    for (size_t f = 0; f <= count; f++) mesh->face_offsets[f] = 3 * f;
-    mesh->num_faces = count;
+    for (size_t n = 0; n < x->num_boundary; n++)
+        if (is_face(x, x->boundary[n])) x->boundary[count++] = x->boundary[n];
+    BRIO_TRY(BRIO_ALLOC(x->ctx, *faces, 3 * count));
+    *num_faces = count;
+    for (size_t n = 0; n < count; n++)
+        for (int k = 0; k < 3; k++) (*faces)[3 * n + (size_t)k] = corner_of(x, x->boundary[n], k);
 done:
     return status;
 }
 
-brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, brio_mesh *mesh) {
+brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, uint32_t **faces,
+                               size_t *num_faces) {
     brio_status status = BRIO_OK;
-    size_t n = l->cocones->dual->num_points;
     extraction x = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
+    BRIO_TRY(brio_boundary_facets(ctx, l, &x.boundary, &x.num_boundary));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.face, x.t->count));
-    BRIO_TRY(BRIO_ALLOC(ctx, x.facet_of, n));
-    for (size_t v = 0; v < n; v++) x.facet_of[v] = BRIO_INFINITE;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.size_at, n));
     choose_candidates(&x);
-    BRIO_TRY(choose_fillings(&x, !candidates_only));
-    BRIO_TRY(drop_small_fans(&x));
-    BRIO_TRY(write_faces(&x, mesh));
+    if (x.num_gaps > 0) {
+        BRIO_TRY(measure_gaps(&x));
+        BRIO_TRY(choose_fillings(&x, !candidates_only));
+        BRIO_TRY(drop_small_fans(&x));
+    }
+    BRIO_TRY(write_faces(&x, faces, num_faces));
 done:
+    brio_release(ctx, x.boundary);
     brio_release(ctx, x.face);
     brio_release(ctx, x.facet_of);
     brio_release(ctx, x.size_at);

@@ -413,8 +413,8 @@ static void check_theory(const known_surface *surface) {
     theory x = {.ctx = new_context(), .surface = surface};
     x.points = surface->sample(surface->r, 11, &x.n);
     EXPECT(brio_delaunay(x.ctx, x.points, NULL, x.n, NULL, &x.t) == BRIO_OK);
-    EXPECT(brio_pole_vectors_find(x.ctx, x.t, x.points, x.n, &x.dual) == BRIO_OK);
-    EXPECT(brio_cocones_new(x.ctx, &x.dual, THETA, &x.cocones) == BRIO_OK);
+    EXPECT(brio_pole_vectors_find(x.ctx, x.t, x.points, x.n, THETA, &x.dual) == BRIO_OK);
+    EXPECT(brio_cocones_new(x.ctx, &x.dual, &x.cocones) == BRIO_OK);
     brio_cocones_select(x.ctx, &x.cocones, &x.candidates);
     check_cells(&x);
     check_candidates(&x);
@@ -435,6 +435,10 @@ static void theory_holds_on_a_torus(void) {
     check_theory(&known_torus);
 }
 
+static void theory_holds_on_a_plate_of_genus_3(void) {
+    check_theory(&known_plate);
+}
+
 int main(void) {
     RUN(small_inputs_are_manifold_oriented);
     RUN(large_noise_is_manifold_oriented);
@@ -448,6 +452,7 @@ int main(void) {
     RUN(density_of_a_sphere_is_measured);
     RUN(theory_holds_on_a_sphere);
     RUN(theory_holds_on_a_torus);
+    RUN(theory_holds_on_a_plate_of_genus_3);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
 }
