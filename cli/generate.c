@@ -190,6 +190,7 @@ const command cli_generate = {
     .summary = "test data: " KINDS "; -n N points to -o FILE; or iso, the surface of a map or PDB file",
     .min_operands = 1,
     .max_operands = 2,
+    .first_input = 1,
     .options = options,
     .defaults = &defaults,
     .size = sizeof defaults,

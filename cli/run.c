@@ -238,12 +238,13 @@ brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh) {
 
 void cli_opening_facts(run *r) {
     facts *f = &r->facts;
+    int first = r->command->first_input < r->num_operands ? r->command->first_input : 0;
     cli_fact_text(f, "command", r->command->name);
-    if (r->num_operands == 1) {
-        cli_fact_text(f, "input", r->operands[0]);
+    if (r->num_operands == first + 1) {
+        cli_fact_text(f, "input", r->operands[first]);
     } else {
         cli_fact_open(f, "input", FACT_LIST);
-        for (int i = 0; i < r->num_operands; i++) cli_fact_text(f, NULL, r->operands[i]);
+        for (int i = first; i < r->num_operands; i++) cli_fact_text(f, NULL, r->operands[i]);
         cli_fact_close(f);
     }
     cli_fact_count(f, "threads", (uint64_t)brio_context_threads(r->ctx));

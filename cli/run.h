@@ -50,6 +50,7 @@ typedef struct run {
 typedef struct command {
     const char *name, *operands, *summary;
     int min_operands, max_operands;
+    int first_input; /* operands before it say what to do; without inputs the report names the first */
     const option *options;
     const void *defaults; /* what the command's options are before the line is read */
     size_t size;          /* of that struct */

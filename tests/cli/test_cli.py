@@ -993,6 +993,7 @@ class Answers(CliTest):
     def test_generate_iso_from_a_map(self):
         ball = self.ball_map("a.map")
         facts = self.facts("generate", "iso", ball, "--level", "-6", "-o", self.path("s.ply"))
+        self.assertEqual(facts["input"], ball)
         certificate = self.facts("check", self.path("s.ply"))["certificate"]
         self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
         self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
