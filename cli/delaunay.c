@@ -11,7 +11,7 @@ typedef struct arguments {
     weights_options weights;
     int order, locate;
     double round_ratio; /* NaN: not given */
-    bool verify;
+    bool all_conflicts, verify;
 } arguments;
 
 static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},     {"hilbert", BRIO_ORDER_HILBERT},
@@ -19,11 +19,12 @@ static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},     {"hilbert"
                                        {"brio-octree", CHOICE_LATER}, {"brio-kdtree", CHOICE_LATER},
                                        {"octree", CHOICE_LATER},      {NULL, 0}};
 
-static const option_choice locations[] = {{"walk", 0},
-                                          {"jump", CHOICE_LATER},
-                                          {"hierarchy", CHOICE_LATER},
-                                          {"history", CHOICE_LATER},
+static const option_choice locations[] = {{"walk", BRIO_LOCATE_WALK},
+                                          {"jump", BRIO_LOCATE_JUMP},
+                                          {"hierarchy", BRIO_LOCATE_HIERARCHY},
+                                          {"history", BRIO_LOCATE_HISTORY},
                                           {"trace", CHOICE_LATER},
+                                          {"neighbour", CHOICE_LATER},
                                           {NULL, 0}};
 
 #define FIELD(name) offsetof(arguments, name)
@@ -32,6 +33,7 @@ static const option options[] = {
     {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order; the result is the same", orders},
     {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R", "share of the points before the last round", 0},
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron", locations},
+    {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history: follow all conflicts, not one path", 0},
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
     {"block-size", 0, OPTION_LATER, 0, NULL, NULL, 0},
     {0},
@@ -61,6 +63,8 @@ static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh
                                brio_triangulation **out) {
     brio_options o = brio_options_default();
     o.order = (brio_order)a->order;
+    o.locate = (brio_location)a->locate;
+    o.all_conflicts = a->all_conflicts;
     o.seed = r->common.seed;
     if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
     brio_status status = brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out);
@@ -97,6 +101,9 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     cli_fact_count(f, "exact_calls", s->exact_calls);
     cli_fact_count(f, "deferred", s->deferred);
     cli_fact_count(f, "serial", s->serial);
+    cli_fact_count(f, "history", s->history);
+    cli_fact_count(f, "history_tests", s->history_tests);
+    cli_fact_count(f, "trace_intersections", s->trace_intersections);
     return BRIO_OK;
 }
 

@@ -139,11 +139,30 @@ typedef enum brio_order {
     BRIO_ORDER_END
 } brio_order;
 
+/** How a point finds its tetrahedron. All give the same tetrahedra; those other than the walk work on one thread.
+ *  Points that edges do not reach are located as by BRIO_LOCATE_HISTORY (trace) or BRIO_LOCATE_WALK (neighbour).
+ *  Memory beyond the walk's: jump and neighbour 4 bytes a point, neighbour and trace 8 an edge, the hierarchy about 6 a
+ *  point, history and trace 20 for every tetrahedron that is ever created and 4 for every one that is. */
+typedef enum brio_location {
+    BRIO_LOCATE_WALK = 0,  /* from the point inserted last [Devillers Pion Teillaud 2002] */
+    BRIO_LOCATE_JUMP,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
+    BRIO_LOCATE_HIERARCHY, /* through triangulations of ever larger samples [Devillers 2002] */
+    BRIO_LOCATE_HISTORY,   /* in the history DAG [Guibas Knuth Sharir 1992, Clarkson Mehlhorn Seidel 1993] */
+    BRIO_LOCATE_TRACE,     /* edges are traced now and then, the history DAG does the rest; in BRIO_ORDER_RANDOM
+                              O(n log* n) for Delaunay edges that span the points [Choi 2003, chapter 4] */
+    BRIO_LOCATE_NEIGHBOUR, /* from the nearest of the point's neighbours along edges and the last point */
+    BRIO_LOCATE_END
+} brio_location;
+
 typedef struct brio_options {
     brio_order order;
     double round_ratio;      /* share of the points left for the rounds before the last, in (0, 1); default 1/8 */
     uint64_t seed;           /* every random choice follows from it; default 1 */
     uint32_t max_tetrahedra; /* finite and infinite ones at any time; default (and most) 2^30 */
+    brio_location locate;    /* default BRIO_LOCATE_WALK */
+    int all_conflicts;       /* history and trace: follow all conflicts, not one path; default 0 */
+    const uint32_t *edges;   /* trace and neighbour: num_edges pairs of indices of points; default NULL */
+    size_t num_edges;
 } brio_options;
 
 BRIO_API brio_options brio_options_default(void);
@@ -157,6 +176,9 @@ typedef struct brio_stats {
     uint64_t created, destroyed, walk_steps, insphere_calls;
     uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
     uint64_t deferred, serial;            /* with threads: insertions put off to a later pass; left to one thread */
+    uint64_t history;                     /* nodes of the history DAG, with BRIO_LOCATE_HISTORY or BRIO_LOCATE_TRACE */
+    uint64_t history_tests;               /* nodes that searches held against a point */
+    uint64_t trace_intersections;         /* tetrahedra entered while edges were traced */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
 

@@ -22,6 +22,12 @@ static brio_status check_options(brio_context *ctx, size_t n, const brio_options
     BRIO_REQUIRE(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
     BRIO_REQUIRE(ctx, o->round_ratio > 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
                  "round ratio %g is not between 0 and 1", o->round_ratio);
+    BRIO_REQUIRE(ctx, (unsigned)o->locate < BRIO_LOCATE_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
+                 (int)o->locate);
+    BRIO_REQUIRE(ctx, o->edges || !o->num_edges, BRIO_ERR_ARGUMENT, "%zu edges, but no array of them", o->num_edges);
+    for (size_t i = 0; i < 2 * o->num_edges; i++)
+        BRIO_REQUIRE(ctx, o->edges[i] < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, o->edges[i],
+                     n);
     BRIO_REQUIRE(ctx, o->max_tetrahedra <= UINT32_C(1) << 30, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
                  o->max_tetrahedra);
 done:
@@ -85,6 +91,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     k->num_points = n;
     k->weighted = weights != NULL;
     k->engine = brio_engine_choose(k->weighted);
+    k->locator = brio_locator_choose(options->locate);
     k->max_tetrahedra = options->max_tetrahedra;
     k->stats.points = n;
     k->t.infinite = (uint32_t)n + 2;
@@ -92,22 +99,32 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     BRIO_TRY(BRIO_ALLOC(ctx, k->caller, n + 3));
     BRIO_TRY(brio_progress(ctx, "order", 0));
     bool follows_curve = options->order == BRIO_ORDER_BRIO || options->order == BRIO_ORDER_HILBERT;
-    if (brio_context_threads(ctx) > 1 && follows_curve) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, k->rank, n + 3));
+    bool parallel = brio_context_threads(ctx) > 1 && options->locate == BRIO_LOCATE_WALK;
+    if (parallel && follows_curve) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, k->rank, n + 3));
     BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller, k->rank));
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
     k->record[n + 2][3] = INFINITY; /* the infinite vertex, as conflict_lanes.h knows it */
     k->t.record = k->record;
     k->stats.order_seconds = brio_seconds() - start;
-    BRIO_TRY(BRIO_ALLOC(ctx, k->representative, n + 3));
-    for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;
-    BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.local, n + 3));
-    BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.table, BRIO_TABLE));
-    BRIO_TRY(brio_cavity_reserve(ctx, &k->cavity, 64));
+    status = brio_kernel_workspace(k);
 done:
     return status;
 }
 
-static void kernel_free(brio_kernel *k) {
+brio_status brio_kernel_workspace(brio_kernel *k) {
+    brio_status status = BRIO_OK;
+    size_t n = k->num_points;
+    BRIO_TRY(BRIO_ALLOC(k->ctx, k->representative, n + 3));
+    for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;
+    BRIO_TRY(BRIO_ALLOC(k->ctx, k->cavity.local, n + 3));
+    BRIO_TRY(BRIO_ALLOC(k->ctx, k->cavity.table, BRIO_TABLE));
+    status = brio_cavity_reserve(k->ctx, &k->cavity, 64);
+done:
+    return status;
+}
+
+void brio_kernel_free(brio_kernel *k) {
+    if (k->locator->free) k->locator->free(k);
     brio_cavity_free(k->ctx, &k->cavity);
     brio_release(k->ctx, k->t.tet);
     brio_release(k->ctx, k->state);
@@ -126,10 +143,11 @@ static size_t end_of_run(const brio_kernel *k, size_t begin) {
     return end;
 }
 
-static brio_status insert_all(brio_kernel *k) {
+static brio_status insert_all(brio_kernel *k, const brio_options *options) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_kernel_start(k));
     if (k->dimension <= 0) goto done;
+    if (k->locator->start) BRIO_TRY(k->locator->start(k, options));
     bool parallel = k->rank && k->dimension == 3;
     for (size_t p = (size_t)k->dimension + 1, end; p < k->num_points; p = end) {
         end = p + PROGRESS_EVERY - p % PROGRESS_EVERY < k->num_points ? p + PROGRESS_EVERY - p % PROGRESS_EVERY
@@ -181,7 +199,7 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     BRIO_TRY(check_options(ctx, num_points, options));
     status = kernel_new(&kernel, ctx, points, weights, num_points, options);
     double start = brio_seconds();
-    if (status == BRIO_OK) status = insert_all(&kernel);
+    if (status == BRIO_OK) status = insert_all(&kernel, options);
     if (status == BRIO_OK) status = brio_kernel_represent(&kernel);
     brio_release(ctx, kernel.record); /* only names matter from here on */
     kernel.record = NULL;
@@ -189,7 +207,7 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     if (status == BRIO_OK && kernel.t.count > 0) status = brio_kernel_sort(&kernel);
     kernel.stats.insert_seconds = brio_seconds() - start;
     if (status == BRIO_OK) status = triangulation_new(&kernel, out);
-    kernel_free(&kernel);
+    brio_kernel_free(&kernel);
 done:
     return status;
 }
