@@ -1,6 +1,7 @@
 /* brio delaunay: tetrahedra of the points of a file, weighted or not. */
 #include "commands.h"
 #include "estimate.h"
+#include "mesh_edges.h"
 #include "weights.h"
 #include <inttypes.h>
 #include <math.h>
@@ -9,10 +10,12 @@
 
 typedef struct arguments {
     weights_options weights;
-    int order, locate;
+    int order, locate, subgraph;
     double round_ratio; /* NaN: not given */
     bool all_conflicts, verify;
 } arguments;
+
+enum { FITTING_ORDER = BRIO_ORDER_END }; /* random for a trace, else BRIO */
 
 static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},     {"hilbert", BRIO_ORDER_HILBERT},
                                        {"random", BRIO_ORDER_RANDOM}, {"input", BRIO_ORDER_INPUT},
@@ -23,8 +26,8 @@ static const option_choice locations[] = {{"walk", BRIO_LOCATE_WALK},
                                           {"jump", BRIO_LOCATE_JUMP},
                                           {"hierarchy", BRIO_LOCATE_HIERARCHY},
                                           {"history", BRIO_LOCATE_HISTORY},
-                                          {"trace", CHOICE_LATER},
-                                          {"neighbour", CHOICE_LATER},
+                                          {"trace", BRIO_LOCATE_TRACE},
+                                          {"neighbour", BRIO_LOCATE_NEIGHBOUR},
                                           {NULL, 0}};
 
 #define FIELD(name) offsetof(arguments, name)
@@ -33,14 +36,18 @@ static const option options[] = {
     {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order; the result is the same", orders},
     {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R", "share of the points before the last round", 0},
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron", locations},
-    {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history: follow all conflicts, not one path", 0},
+    {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history, trace: follow all conflicts, not one path",
+     0},
+    {"subgraph", 0, OPTION_CHOICE, FIELD(subgraph), "NAME",
+     "trace, neighbour: edges of IN, a surface mesh, to go along (default bounded, all)", cli_subgraphs},
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
     {"block-size", 0, OPTION_LATER, 0, NULL, NULL, 0},
     {0},
 };
 #undef FIELD
 
-static const arguments defaults = {.weights.exponent = NO_EXPONENT, .order = BRIO_ORDER_BRIO, .round_ratio = NAN};
+static const arguments defaults = {
+    .weights.exponent = NO_EXPONENT, .order = FITTING_ORDER, .subgraph = SUBGRAPH_FITTING, .round_ratio = NAN};
 static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE, BRIO_FORMAT_AUTO};
 
 static bool is_standard_output(const run *r) {
@@ -54,26 +61,45 @@ static brio_status check_arguments(run *r, const arguments *a) {
     if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
     if (a->round_ratio <= 0 || a->round_ratio >= 1)
-        status = cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: %g is not between 0 and 1", a->round_ratio);
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: %g is not between 0 and 1", a->round_ratio);
+    if (a->subgraph != SUBGRAPH_FITTING && !cli_needs_edges((brio_location)a->locate))
+        status = cli_fail(r, BRIO_ERR_ARGUMENT, "--subgraph goes with --locate trace and neighbour only");
 done:
     return status;
 }
 
-static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh, const double *weights,
-                               brio_triangulation **out) {
+static brio_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
     brio_options o = brio_options_default();
-    o.order = (brio_order)a->order;
+    o.order = a->order != FITTING_ORDER             ? (brio_order)a->order
+              : a->locate == (int)BRIO_LOCATE_TRACE ? BRIO_ORDER_RANDOM
+                                                    : BRIO_ORDER_BRIO;
     o.locate = (brio_location)a->locate;
     o.all_conflicts = a->all_conflicts;
+    o.edges = edges->ends;
+    o.num_edges = edges->count;
     o.seed = r->common.seed;
     if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
-    brio_status status = brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out);
-    if (status != BRIO_OK) return status;
+    return o;
+}
+
+/* Goes along the edges of the mesh where the location wants them; its faces are dropped before the triangulation. */
+static brio_status triangulate(run *r, const arguments *a, brio_mesh *mesh, const double *weights,
+                               brio_triangulation **out) {
+    brio_status status = BRIO_OK;
+    brio_edges edges = {0};
+    if (cli_needs_edges((brio_location)a->locate))
+        TRY(cli_mesh_edges(r, mesh, (brio_location)a->locate, a->subgraph, &edges));
+    TRY(cli_drop_connectivity(r, mesh));
+    brio_options o = library_options(r, a, &edges);
+    TRY(brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out));
     const brio_stats *s = brio_triangulation_stats(*out);
     cli_stage(r, "order", s->order_seconds);
     cli_stage(r, "insert", s->insert_seconds);
     r->lap = cli_clock();
-    return cli_check_interrupt(r);
+    TRY(cli_check_interrupt(r));
+done:
+    brio_edges_free(r->ctx, &edges);
+    return status;
 }
 
 static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triangulation *t, bool weighted) {
@@ -134,9 +160,11 @@ static brio_status delaunay(run *r) {
     brio_triangulation *t = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a));
-    TRY(cli_read_points(r, r->operands[0], &mesh));
+    TRY(cli_needs_edges((brio_location)a->locate) ? cli_read(r, r->operands[0], &mesh)
+                                                  : cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
-    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted)));
+    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted) +
+                                  cli_location_bytes((brio_location)a->locate, mesh)));
     TRY(cli_weights(r, &a->weights, mesh, &weights));
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));

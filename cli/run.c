@@ -169,8 +169,8 @@ done:
     return status;
 }
 
-/* Moves faces and tetrahedra out of the mesh into one that is freed. */
-static brio_status drop_connectivity(run *r, brio_mesh *mesh) {
+/* Moves the arrays into a mesh that is freed. */
+brio_status cli_drop_connectivity(run *r, brio_mesh *mesh) {
     brio_mesh *rest = NULL;
     brio_status status = brio_mesh_new(r->ctx, &rest);
     if (status != BRIO_OK) return status;
@@ -186,7 +186,7 @@ static brio_status drop_connectivity(run *r, brio_mesh *mesh) {
 
 brio_status cli_read_points(run *r, const char *path, brio_mesh **out) {
     brio_status status = cli_read(r, path, out);
-    return status == BRIO_OK ? drop_connectivity(r, *out) : status;
+    return status == BRIO_OK ? cli_drop_connectivity(r, *out) : status;
 }
 
 static brio_status check_format(run *r, const brio_format *formats, brio_format format) {
