@@ -91,15 +91,16 @@ static inline int genus_of_random_mesh(uint64_t seed) {
     return (int)(seed % (MOST_GENUS + 1));
 }
 
-/* Surface `seed` of RANDOM_SURFACES and more: every other one with handles, of each kind every other one with flips,
- * of these every other one shaken. */
+/* Surface `seed` of RANDOM_SURFACES and more: every other one is a sphere with handles, else a chain of one or two tori
+ * with what handles the genus wants; of each kind every other one has flips, of these every other one is shaken. */
 static inline brio_mesh *random_mesh(brio_context *ctx, uint64_t seed) {
     brio_rng rng = brio_rng_new(seed);
-    int genus = genus_of_random_mesh(seed);
+    int genus = genus_of_random_mesh(seed), most = genus < 2 ? genus : 1 + (int)brio_rng_below(&rng, 2);
     uint64_t kind = seed / (MOST_GENUS + 1);
-    bool handles = kind & 1, flips = kind & 2, shaken = kind & 4;
-    brio_mesh *mesh = handles ? random_surface(ctx, 0, 0.5, seed) : random_surface(ctx, genus, 0.25, seed);
-    for (int i = 0; handles && i < genus; i++) mesh = with_handle(ctx, mesh, &rng);
+    bool flips = kind & 2, shaken = kind & 4;
+    int tori = kind & 1 ? 0 : most;
+    brio_mesh *mesh = random_surface(ctx, tori, tori ? 0.25 : 0.5, seed);
+    for (int i = tori; i < genus; i++) mesh = with_handle(ctx, mesh, &rng);
     if (flips) flip_edges(ctx, mesh, 1 + brio_rng_below(&rng, (uint32_t)(4 * mesh->num_faces)), &rng);
     for (size_t i = 0; shaken && i < 3 * mesh->num_vertices; i++) mesh->vertices[i] += 0.1 * brio_rng_double(&rng);
     return mesh;
