@@ -22,7 +22,8 @@ COMMANDS = ["delaunay", "surface", "check", "compare", "info", "generate", "subd
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
-    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--round-ratio", "--locate", "--verify"],
+    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--round-ratio", "--locate",
+                 "--all-conflicts", "--subgraph", "--verify"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--simplify", "--labeling",
                 "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
@@ -191,7 +192,7 @@ class Usage(CliTest):
 
     def test_names_of_later_versions(self):
         for arguments in [("delaunay", "--order", "octree"), ("delaunay", "--order", "brio-kdtree"),
-                          ("delaunay", "--locate", "jump"), ("delaunay", "--block-size", "8")]:
+                          ("delaunay", "--block-size", "8")]:
             self.usage("not available in this version", arguments[0], "a.xyz", *arguments[1:])
 
     def test_output_without_a_known_extension(self):
@@ -916,6 +917,33 @@ class Answers(CliTest):
         runs = [[], ["--order", "hilbert"], ["--order", "random"], ["--order", "input"], ["--threads", "1"],
                 ["--seed", "99"], ["--round-ratio", "0.5"], ["--locate", "walk"]]
         self.assertEqual(len({self.facts("delaunay", points, *run)["checksum"] for run in runs}), 1)
+
+    def test_every_location_gives_the_same(self):
+        mesh = self.path("torus.ply")
+        self.expect(0, "generate", "iso", self.ball_map("a.map"), "--level", "-6", "-o", mesh)
+        plain = self.facts("delaunay", mesh)["checksum"]
+        for location in ["walk", "jump", "hierarchy", "history", "trace", "neighbour"]:
+            facts = self.facts("delaunay", mesh, "--locate", location, "--verify")
+            self.assertTrue(facts["checksum"] == plain and facts["verified"], location)
+            self.assertEqual("subgraph" in facts, location in ("trace", "neighbour"))
+            self.assertEqual(facts["trace_intersections"] > 0, location == "trace")
+        for kind in ["bounded", "mst", "tree", "all"]:
+            facts = self.facts("delaunay", mesh, "--locate", "trace", "--subgraph", kind)
+            self.assertEqual((facts["checksum"], facts["subgraph"]["kind"]), (plain, kind))
+        self.assertEqual(self.facts("delaunay", mesh, "--locate", "trace")["subgraph"]["max_degree"], 3)
+
+    def test_meshes_to_go_along(self):
+        faces = OCTAHEDRON_FACES + [(0, 1, 2)]  # edges of three faces
+        mesh = self.off("m.off", OCTAHEDRON + [(9, 9, 9), (1, 0, 0)], faces)
+        plain = self.facts("delaunay", mesh)["checksum"]
+        facts = self.facts("delaunay", mesh, "--locate", "trace", "-o", self.path("t.ply"))
+        self.assertEqual((facts["checksum"], facts["subgraph"]["kind"], facts["duplicates"]), (plain, "mst", 1))
+        self.assertEqual(self.facts("info", self.path("t.ply"))["faces"], 0)
+        self.expect(3, "delaunay", mesh, "--locate", "trace", "--subgraph", "bounded")
+        points = self.expect(2, "delaunay", self.xyz("p.xyz", CUBE), "--locate", "trace")
+        self.assertIn("found no faces", points.err)
+        self.usage("--locate trace and neighbour", "delaunay", mesh, "--subgraph", "mst")
+        self.expect(4, "delaunay", self.cloud("c.ply", 2000), "--locate", "history", "--max-memory", "1M")
 
     def test_threads_are_those_asked_for(self):
         self.assertEqual(self.facts("delaunay", self.xyz("a.xyz", CUBE), "--threads", "1")["threads"], 1)
