@@ -5,8 +5,8 @@
  * destroyed infinite tetrahedron is in the closure of a finite one created then, or strictly outside the facet of an
  * infinite one: a ray from the new vertex through the old hull only goes down from the plane of a facet that it sees.
  * All conflicts: from the first tetrahedra on, through all that were in conflict with the point. Those that held it
- * are among them unless it is hidden. A hull facet in whose plane the point lies counts as in conflict, as does a
- * tetrahedron that has a vertex at its position.
+ * are among them unless it is hidden. A destroyed hull facet in whose plane the point lies counts as in conflict, a live
+ * one does not; a finite tetrahedron with a vertex at its position does.
  *
  * Based on: Guibas, Knuth, Sharir. Randomized incremental construction of Delaunay and Voronoi diagrams.
  *           Algorithmica 1992, for the path.
@@ -100,10 +100,12 @@ uint32_t brio_history_path(brio_kernel *k, brio_history *h, uint32_t from, const
 static bool conflicts(brio_kernel *k, const brio_history_node *node, const double *p) {
     const brio_record *r = k->t.record;
     const uint32_t *v = node->vertex;
+    if (v[3] == k->t.infinite) {
+        int side = brio_orient3d_sign(&k->filter, r[v[0]], r[v[1]], r[v[2]], p);
+        return is_live(node) ? side > 0 : side >= 0;
+    }
     for (int i = 0; i < 4; i++)
-        if (v[i] != k->t.infinite && brio_same_position(r[v[i]], p)) return true;
-    if (is_live(node)) return brio_in_conflict(&k->t, &k->filter, live_slot(node), p, k->weighted);
-    if (v[3] == k->t.infinite) return brio_orient3d_sign(&k->filter, r[v[0]], r[v[1]], r[v[2]], p) >= 0;
+        if (brio_same_position(r[v[i]], p)) return true;
     return brio_conflict(&k->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]], p, k->weighted);
 }
 
