@@ -24,6 +24,7 @@
  * Differs from the paper: the corners of the grid take part, which makes the construction one of labelling. */
 #include "base/sort.h"
 #include "surface/iso_surface.h"
+#include "surface/split_vertices.h"
 
 enum { AXES = 3 };
 
@@ -351,7 +352,12 @@ brio_status brio_conforming_iso_surface(brio_context *ctx, const brio_implicit_g
     }
     BRIO_TRY(add_shared(&s));
     BRIO_TRY(brio_mesh_of_triangles(ctx, &s.vertices, s.num_vertices, &s.triangles, s.num_triangles, out));
+    BRIO_TRY(brio_mesh_split_sheets(ctx, *out));
 done:
     slab_free(&s);
+    if (status != BRIO_OK) {
+        brio_mesh_free(*out);
+        *out = NULL;
+    }
     return status;
 }
