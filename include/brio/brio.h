@@ -568,6 +568,8 @@ typedef struct brio_iso_options {
     double blobbiness; /* atoms: above 0 and at most 100, the larger the more the surface is that of balls; default 2 */
     size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
     size_t vertices;   /* not 0: the resolution is chosen so that there are about so many vertices; default 0 */
+    int conforming;    /* 1: all triangles are Delaunay, for vertices at the same place taken as one: facets of the
+                          Delaunay triangulation of the mesh's vertices [Attali Lachaud 2001]; default 0 */
 } brio_iso_options;
 
 BRIO_API brio_iso_options brio_iso_options_default(void);

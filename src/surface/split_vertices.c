@@ -87,20 +87,34 @@ static bool is_met_first(const brio_mesh *m, uint32_t h, uint32_t g, uint32_t ot
     return side_of_apex(m, g, other) > 0; /* g runs the other way than h */
 }
 
-/* The half-edge of the ring of h that shares its wedge. */
-static uint32_t wedge_partner(const brio_mesh *m, const uint32_t *ring, uint32_t h) {
+/* The half-edge of the ring of h at the other side of its wedge, or of the wedge outside. */
+static uint32_t wedge_partner(const brio_mesh *m, const uint32_t *ring, uint32_t h, bool inside) {
     const uint32_t *v = m->face_vertices;
     uint32_t partner = h;
     for (uint32_t g = ring[h]; g != h; g = ring[g])
-        if (v[g] != v[h] && (partner == h || is_met_first(m, h, g, partner))) partner = g;
+        if (v[g] != v[h] && (partner == h || is_met_first(m, h, g, partner) == inside)) partner = g;
     return partner;
 }
 
-/* Takes rings of more than two half-edges apart into pairs that share a wedge.   partner  #corners of work space. */
-static void pair_wedges(const brio_mesh *m, uint32_t *ring, uint32_t *partner) {
+/* Takes rings of more than two half-edges apart into pairs that share a wedge: an inside one or, where `outside` is
+ * given, an outside one, but then for one edge at a vertex only.   partner  #corners of work space;   outside  #V,
+ * zeroed, or NULL.   Returns whether there were such rings. */
+static bool pair_wedges(const brio_mesh *m, uint32_t *ring, uint32_t *partner, uint8_t *outside) {
     size_t corners = 3 * m->num_faces;
-    for (uint32_t h = 0; h < corners; h++) partner[h] = ring[ring[h]] == h ? ring[h] : wedge_partner(m, ring, h);
+    bool any = false;
+    for (uint32_t h = 0; h < corners; h++) partner[h] = ring[h];
+    for (uint32_t h = 0; h < corners; h++) {
+        if (ring[ring[h]] == h || ring[h] > h) continue; /* once for a ring, at its end */
+        uint32_t a = m->face_vertices[h], b = m->face_vertices[next_corner(h)];
+        bool inside = !outside || outside[a] || outside[b];
+        if (!inside) outside[a] = outside[b] = 1;
+        uint32_t g = h;
+        do partner[g] = wedge_partner(m, ring, g, inside);
+        while ((g = ring[g]) != h);
+        any = true;
+    }
     for (uint32_t h = 0; h < corners; h++) ring[h] = partner[partner[h]] == h ? partner[h] : h;
+    return any;
 }
 
 /* --- all of it --- */
@@ -144,15 +158,28 @@ done:
     return status;
 }
 
+/* Joined across inside wedges, two sheets may still hang together round both ends of their edge, which then stays one
+ * edge of four faces. There the fan of either end passes the edge twice, and falls in two when it is joined across the
+ * outside wedges instead. */
 brio_status brio_mesh_split_sheets(brio_context *ctx, brio_mesh *m) {
     brio_status status = BRIO_OK;
     uint32_t *ring = NULL, *partner = NULL;
-    BRIO_TRY(brio_edge_rings(ctx, m, &ring));
+    uint8_t *outside = NULL;
+    bool touch = true;
     BRIO_TRY(BRIO_ALLOC(ctx, partner, 3 * m->num_faces));
-    pair_wedges(m, ring, partner);
-    BRIO_TRY(split_fans(ctx, m, ring));
+    for (size_t vertices = SIZE_MAX; touch && vertices != m->num_vertices;) {
+        vertices = outside ? m->num_vertices : SIZE_MAX;
+        BRIO_TRY(brio_edge_rings(ctx, m, &ring));
+        touch = pair_wedges(m, ring, partner, outside);
+        BRIO_TRY(split_fans(ctx, m, ring));
+        brio_release(ctx, ring);
+        brio_release(ctx, outside);
+        ring = NULL;
+        BRIO_TRY(BRIO_ALLOC_ZERO(ctx, outside, m->num_vertices));
+    }
 done:
     brio_release(ctx, ring);
     brio_release(ctx, partner);
+    brio_release(ctx, outside);
     return status;
 }

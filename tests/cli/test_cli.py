@@ -30,7 +30,7 @@ OWN_OPTIONS = {
     "compare": ["--samples"],
     "info": [],
     "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--level", "--sigma",
-                 "--resolution", "--blobbiness"],
+                 "--resolution", "--blobbiness", "--delaunay-conforming"],
     "subdivide": ["--levels"],
 }
 
@@ -1032,6 +1032,14 @@ class Answers(CliTest):
             piped = self.expect(0, "generate", "iso", "-", "--level", "-6", "-o", "-", "--format", "off", "--quiet",
                                 stdin=f.read())
         self.assertTrue(piped.out.startswith(b"OFF"))
+
+    def test_generate_iso_of_delaunay_triangles(self):
+        ball, mesh = self.ball_map("a.map"), self.path("s.ply")
+        self.facts("generate", "iso", ball, "--level", "-6", "--delaunay-conforming", "-o", mesh)
+        certificate = self.facts("check", mesh, "--self-intersections")["certificate"]
+        self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
+        self.assertEqual(certificate["self_intersections"], 0)
+        self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
 
     def test_generate_iso_from_atoms(self):
         atom = "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
