@@ -915,7 +915,8 @@ class Answers(CliTest):
     def test_every_order_and_number_of_threads_gives_the_same(self):
         points = self.cloud("a.ply", 3000)
         runs = [[], ["--order", "hilbert"], ["--order", "random"], ["--order", "input"], ["--threads", "1"],
-                ["--seed", "99"], ["--round-ratio", "0.5"], ["--locate", "walk"]]
+                ["--seed", "99"], ["--round-ratio", "0.5"], ["--locate", "walk"], ["--locate", "jump"],
+                ["--locate", "hierarchy"], ["--locate", "history"], ["--locate", "history", "--all-conflicts"]]
         self.assertEqual(len({self.facts("delaunay", points, *run)["checksum"] for run in runs}), 1)
 
     def test_every_location_gives_the_same(self):
@@ -944,6 +945,16 @@ class Answers(CliTest):
         self.assertIn("found no faces", points.err)
         self.usage("--locate trace and neighbour", "delaunay", mesh, "--subgraph", "mst")
         self.expect(4, "delaunay", self.cloud("c.ply", 2000), "--locate", "history", "--max-memory", "1M")
+
+    def test_history_is_counted(self):
+        points = self.cloud("a.ply", 3000)
+        plain = self.facts("delaunay", points)
+        path = self.facts("delaunay", points, "--locate", "history")
+        conflicts = self.facts("delaunay", points, "--locate", "history", "--all-conflicts")
+        self.assertEqual((plain["history"], plain["history_tests"]), (0, 0))
+        self.assertEqual(path["history"], path["created"])
+        self.assertGreater(path["history_tests"], 3000)
+        self.assertGreater(conflicts["history_tests"], path["history_tests"])
 
     def test_threads_are_those_asked_for(self):
         self.assertEqual(self.facts("delaunay", self.xyz("a.xyz", CUBE), "--threads", "1")["threads"], 1)
