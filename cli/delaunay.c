@@ -1,6 +1,7 @@
 /* brio delaunay: tetrahedra of the points of a file, weighted or not. */
 #include "commands.h"
 #include "estimate.h"
+#include "mesh_edges.h"
 #include "weights.h"
 #include <inttypes.h>
 #include <math.h>
@@ -9,11 +10,13 @@
 
 typedef struct arguments {
     weights_options weights;
-    int order, locate;
+    int order, locate, subgraph;
     double round_ratio;                /* NaN: not given */
     uint64_t block_size, record_every; /* 0: not given */
     bool all_conflicts, rounds, verify;
 } arguments;
+
+enum { FITTING_ORDER = BRIO_ORDER_END }; /* random for a trace, else BRIO */
 
 static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},
                                        {"brio-octree", BRIO_ORDER_BRIO_OCTREE},
@@ -28,8 +31,8 @@ static const option_choice locations[] = {{"walk", BRIO_LOCATE_WALK},
                                           {"jump", BRIO_LOCATE_JUMP},
                                           {"hierarchy", BRIO_LOCATE_HIERARCHY},
                                           {"history", BRIO_LOCATE_HISTORY},
-                                          {"trace", CHOICE_LATER},
-                                          {"neighbour", CHOICE_LATER},
+                                          {"trace", BRIO_LOCATE_TRACE},
+                                          {"neighbour", BRIO_LOCATE_NEIGHBOUR},
                                           {NULL, 0}};
 
 #define FIELD(name) offsetof(arguments, name)
@@ -41,7 +44,10 @@ static const option options[] = {
     {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R",
      "share of the points before the last round (default 1/8 for brio, else 1/2)", 0},
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron", locations},
-    {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history: follow all conflicts, not one path", 0},
+    {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history, trace: follow all conflicts, not one path",
+     0},
+    {"subgraph", 0, OPTION_CHOICE, FIELD(subgraph), "NAME",
+     "trace, neighbour: edges of IN, a surface mesh, to go along (default bounded, all)", cli_subgraphs},
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
     {"rounds", 0, OPTION_FLAG, FIELD(rounds), NULL, "report the counters at the end of each round", 0},
     {"record-every", 0, OPTION_NATURAL, FIELD(record_every), "N", "report the counters after every N insertions", 0},
@@ -49,17 +55,24 @@ static const option options[] = {
 };
 #undef FIELD
 
-static const arguments defaults = {.weights.exponent = NO_EXPONENT, .order = BRIO_ORDER_BRIO, .round_ratio = NAN};
+static const arguments defaults = {
+    .weights.exponent = NO_EXPONENT, .order = FITTING_ORDER, .subgraph = SUBGRAPH_FITTING, .round_ratio = NAN};
 static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE, BRIO_FORMAT_AUTO};
 
 static bool is_standard_output(const run *r) {
     return r->common.output && !strcmp(r->common.output, "-");
 }
 
+static brio_order insertion_order(const arguments *a) {
+    if (a->order != FITTING_ORDER) return (brio_order)a->order;
+    return a->locate == (int)BRIO_LOCATE_TRACE ? BRIO_ORDER_RANDOM : BRIO_ORDER_BRIO;
+}
+
 static brio_status check_order(run *r, const arguments *a) {
-    bool in_blocks = a->order == BRIO_ORDER_BRIO_OCTREE || a->order == BRIO_ORDER_BRIO_KDTREE;
-    bool in_rounds = a->order == BRIO_ORDER_BRIO || in_blocks;
-    if (a->block_size && !in_blocks && a->order != BRIO_ORDER_OCTREE)
+    brio_order order = insertion_order(a);
+    bool in_blocks = order == BRIO_ORDER_BRIO_OCTREE || order == BRIO_ORDER_BRIO_KDTREE;
+    bool in_rounds = order == BRIO_ORDER_BRIO || in_blocks;
+    if (a->block_size && !in_blocks && order != BRIO_ORDER_OCTREE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--block-size: only with --order brio-octree, brio-kdtree or octree");
     if (!isnan(a->round_ratio) && !in_rounds)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: the insertion order has no rounds");
@@ -75,29 +88,45 @@ static brio_status check_arguments(run *r, const arguments *a) {
     TRY(cli_require_output(r, formats, true));
     if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
-    if (a->rounds && a->record_every)
-        status = cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --rounds and --record-every");
+    if (a->rounds && a->record_every) return cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --rounds and --record-every");
+    if (a->subgraph != SUBGRAPH_FITTING && !cli_needs_edges((brio_location)a->locate))
+        status = cli_fail(r, BRIO_ERR_ARGUMENT, "--subgraph goes with --locate trace and neighbour only");
 done:
     return status;
 }
 
-static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh, const double *weights,
-                               brio_triangulation **out) {
+static brio_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
     brio_options o = brio_options_default();
-    o.order = (brio_order)a->order;
+    o.order = insertion_order(a);
     o.locate = (brio_location)a->locate;
     o.all_conflicts = a->all_conflicts;
+    o.edges = edges->ends;
+    o.num_edges = edges->count;
     o.seed = r->common.seed;
     o.block_size = (size_t)a->block_size;
     o.record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every;
     if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
-    brio_status status = brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out);
-    if (status != BRIO_OK) return status;
+    return o;
+}
+
+/* Goes along the edges of the mesh where the location wants them; its faces are dropped before the triangulation. */
+static brio_status triangulate(run *r, const arguments *a, brio_mesh *mesh, const double *weights,
+                               brio_triangulation **out) {
+    brio_status status = BRIO_OK;
+    brio_edges edges = {0};
+    if (cli_needs_edges((brio_location)a->locate))
+        TRY(cli_mesh_edges(r, mesh, (brio_location)a->locate, a->subgraph, &edges));
+    TRY(cli_drop_connectivity(r, mesh));
+    brio_options o = library_options(r, a, &edges);
+    TRY(brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out));
     const brio_stats *s = brio_triangulation_stats(*out);
     cli_stage(r, "order", s->order_seconds);
     cli_stage(r, "insert", s->insert_seconds);
     r->lap = cli_clock();
-    return cli_check_interrupt(r);
+    TRY(cli_check_interrupt(r));
+done:
+    brio_edges_free(r->ctx, &edges);
+    return status;
 }
 
 static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triangulation *t, bool weighted) {
@@ -179,9 +208,11 @@ static brio_status delaunay(run *r) {
     brio_triangulation *t = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a));
-    TRY(cli_read_points(r, r->operands[0], &mesh));
+    TRY(cli_needs_edges((brio_location)a->locate) ? cli_read(r, r->operands[0], &mesh)
+                                                  : cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
-    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted)));
+    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted) +
+                                  cli_location_bytes((brio_location)a->locate, mesh)));
     TRY(cli_weights(r, &a->weights, mesh, &weights));
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));

@@ -22,6 +22,9 @@
 #define GLOBAL_BYTES_A_POINT   600.0  /* more: the flow of anchor_scan takes 570, of the bunny 300 */
 #define SIMPLIFY_BYTES_A_POINT 1700.0 /* more: bunny 1,570, fandisk 1,700 */
 #define SUBDIVIDE_BYTES_A_FACE 78.0
+#define HISTORY_BYTES_A_POINT  700.0
+#define LOCATION_BYTES_A_POINT 8.0
+#define EDGE_BYTES_A_CORNER    8.0
 #define INFO_BYTES_A_POINT     6.0 /* the hash table of duplicates */
 
 double cli_mesh_bytes(const brio_mesh *mesh) {
@@ -36,6 +39,15 @@ double cli_mesh_bytes(const brio_mesh *mesh) {
 double cli_delaunay_bytes(size_t points, bool weighted) {
     double point = BYTES_A_POINT + TETRAHEDRA_A_POINT * BYTES_A_TETRAHEDRON + (weighted ? WEIGHT : 0);
     return (double)points * point;
+}
+
+double cli_location_bytes(brio_location location, const brio_mesh *mesh) {
+    double points = (double)mesh->num_vertices, corners = 0;
+    if (mesh->num_faces) corners = (double)mesh->face_offsets[mesh->num_faces];
+    bool keeps_history = location == BRIO_LOCATE_HISTORY || location == BRIO_LOCATE_TRACE;
+    bool has_edges = location == BRIO_LOCATE_NEIGHBOUR || location == BRIO_LOCATE_TRACE;
+    return points * (keeps_history ? HISTORY_BYTES_A_POINT : LOCATION_BYTES_A_POINT) +
+           (has_edges ? corners * EDGE_BYTES_A_CORNER : 0);
 }
 
 double cli_surface_bytes(size_t points) {

@@ -11,6 +11,9 @@ double cli_mesh_bytes(const brio_mesh *mesh);
 /** Bytes beside the input that `brio delaunay` takes. */
 double cli_delaunay_bytes(size_t points, bool weighted);
 
+/** Bytes that a location takes besides; of one that goes along edges, those of the mesh. */
+double cli_location_bytes(brio_location location, const brio_mesh *mesh);
+
 /** Bytes beside the input that `brio surface` takes. */
 double cli_surface_bytes(size_t points);
 

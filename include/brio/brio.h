@@ -387,6 +387,37 @@ BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, c
  *  Based on: [Dyn Levin Gregory 1990], [Zorin Schroeder Sweldens 1996]. */
 BRIO_API brio_status brio_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out);
 
+/** Edges between vertices. Zeroed to begin with. */
+typedef struct brio_edges {
+    size_t count;
+    uint32_t *ends; /* count by 2 */
+} brio_edges;
+
+/** Frees edges and zeroes the struct; zeroed ones are accepted. */
+BRIO_API void brio_edges_free(brio_context *ctx, brio_edges *edges);
+
+/** Sparse subgraphs of the edges of a mesh. */
+typedef enum brio_subgraph {
+    BRIO_SUBGRAPH_BOUNDED = 0, /* of bounded degree, for oriented surfaces of triangles */
+    BRIO_SUBGRAPH_MINIMUM = 1, /* a minimum spanning tree by length, of any mesh; its degree is at most 12 where the
+                                  mesh holds the Euclidean minimum spanning tree of its vertices */
+    BRIO_SUBGRAPH_TREE = 2,    /* a breadth-first tree, of any mesh: of bounded degree where the mesh is */
+    BRIO_SUBGRAPH_ALL = 3,     /* every edge, once */
+    BRIO_SUBGRAPH_END
+} brio_subgraph;
+
+/** A subgraph of the edges of a mesh that reaches all vertices on faces and joins what the mesh joins: the way along a
+ *  known surface, for brio_options.edges. The bounded one has degree at most 3 on closed surfaces of genus 0 and 12 g
+ *  on those of genus g, each component for itself, at most 3 on disks; where a surface has several boundary loops, or
+ *  components that share a vertex, no bound is promised.
+ *  Cost: linear for the bounded one and the breadth-first tree; about 20 bytes a corner of the mesh.
+ *  out  freed with brio_edges_free.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_ANSWER (bounded: faces that are no
+ *  triangles, edges of more than two faces or of faces that disagree), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED.
+ *  Based on: [Choi 2003] section 4.3, [Lazarus Pocchiola Vegter Verroust 2001], [Kruskal 1956]. */
+BRIO_API brio_status brio_mesh_subgraph(brio_context *ctx, const brio_mesh *mesh, brio_subgraph kind, brio_edges *out);
+
 /* ------------------------------------------------------------------------------------------------------------------
  * Surface reconstruction
  */
@@ -640,6 +671,8 @@ typedef struct brio_iso_options {
     double blobbiness; /* atoms: above 0 and at most 100, the larger the more the surface is that of balls; default 2 */
     size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
     size_t vertices;   /* not 0: the resolution is chosen so that there are about so many vertices; default 0 */
+    int conforming;    /* 1: all triangles are Delaunay, for vertices at the same place taken as one: facets of the
+                          Delaunay triangulation of the mesh's vertices [Attali Lachaud 2001]; default 0 */
 } brio_iso_options;
 
 BRIO_API brio_iso_options brio_iso_options_default(void);

@@ -23,14 +23,14 @@ COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float3
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate",
-                 "--all-conflicts", "--rounds", "--record-every", "--verify"],
+                 "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--simplify", "--labeling",
                 "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
     "compare": ["--samples"],
     "info": [],
     "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--level", "--sigma",
-                 "--resolution", "--blobbiness"],
+                 "--resolution", "--blobbiness", "--delaunay-conforming"],
     "subdivide": ["--levels"],
 }
 
@@ -189,10 +189,6 @@ class Usage(CliTest):
     def test_generate_with_options_of_another_kind(self):
         for option in [("--noise", "0.5"), ("--views", "3"), ("--truth", "t.ply")]:
             self.usage("scan", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
-
-    def test_names_of_later_versions(self):
-        for arguments in [("delaunay", "--locate", "trace")]:
-            self.usage("not available in this version", arguments[0], "a.xyz", *arguments[1:])
 
     def test_output_without_a_known_extension(self):
         self.usage("--format", "delaunay", "a.xyz", "-o", "out.npy")
@@ -947,6 +943,33 @@ class Answers(CliTest):
                 ["--locate", "hierarchy"], ["--locate", "history"], ["--locate", "history", "--all-conflicts"]]
         self.assertEqual(len({self.facts("delaunay", points, *run)["checksum"] for run in runs}), 1)
 
+    def test_every_location_gives_the_same(self):
+        mesh = self.path("torus.ply")
+        self.expect(0, "generate", "iso", self.ball_map("a.map"), "--level", "-6", "-o", mesh)
+        plain = self.facts("delaunay", mesh)["checksum"]
+        for location in ["walk", "jump", "hierarchy", "history", "trace", "neighbour"]:
+            facts = self.facts("delaunay", mesh, "--locate", location, "--verify")
+            self.assertTrue(facts["checksum"] == plain and facts["verified"], location)
+            self.assertEqual("subgraph" in facts, location in ("trace", "neighbour"))
+            self.assertEqual(facts["trace_intersections"] > 0, location == "trace")
+        for kind in ["bounded", "mst", "tree", "all"]:
+            facts = self.facts("delaunay", mesh, "--locate", "trace", "--subgraph", kind)
+            self.assertEqual((facts["checksum"], facts["subgraph"]["kind"]), (plain, kind))
+        self.assertEqual(self.facts("delaunay", mesh, "--locate", "trace")["subgraph"]["max_degree"], 3)
+
+    def test_meshes_to_go_along(self):
+        faces = OCTAHEDRON_FACES + [(0, 1, 2)]  # edges of three faces
+        mesh = self.off("m.off", OCTAHEDRON + [(9, 9, 9), (1, 0, 0)], faces)
+        plain = self.facts("delaunay", mesh)["checksum"]
+        facts = self.facts("delaunay", mesh, "--locate", "trace", "-o", self.path("t.ply"))
+        self.assertEqual((facts["checksum"], facts["subgraph"]["kind"], facts["duplicates"]), (plain, "mst", 1))
+        self.assertEqual(self.facts("info", self.path("t.ply"))["faces"], 0)
+        self.expect(3, "delaunay", mesh, "--locate", "trace", "--subgraph", "bounded")
+        points = self.expect(2, "delaunay", self.xyz("p.xyz", CUBE), "--locate", "trace")
+        self.assertIn("found no faces", points.err)
+        self.usage("--locate trace and neighbour", "delaunay", mesh, "--subgraph", "mst")
+        self.expect(4, "delaunay", self.cloud("c.ply", 2000), "--locate", "history", "--max-memory", "1M")
+
     def test_history_is_counted(self):
         points = self.cloud("a.ply", 3000)
         plain = self.facts("delaunay", points)
@@ -1033,6 +1056,7 @@ class Answers(CliTest):
     def test_generate_iso_from_a_map(self):
         ball = self.ball_map("a.map")
         facts = self.facts("generate", "iso", ball, "--level", "-6", "-o", self.path("s.ply"))
+        self.assertEqual(facts["input"], ball)
         certificate = self.facts("check", self.path("s.ply"))["certificate"]
         self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
         self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
@@ -1043,6 +1067,14 @@ class Answers(CliTest):
             piped = self.expect(0, "generate", "iso", "-", "--level", "-6", "-o", "-", "--format", "off", "--quiet",
                                 stdin=f.read())
         self.assertTrue(piped.out.startswith(b"OFF"))
+
+    def test_generate_iso_of_delaunay_triangles(self):
+        ball, mesh = self.ball_map("a.map"), self.path("s.ply")
+        self.facts("generate", "iso", ball, "--level", "-6", "--delaunay-conforming", "-o", mesh)
+        certificate = self.facts("check", mesh, "--self-intersections")["certificate"]
+        self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
+        self.assertEqual(certificate["self_intersections"], 0)
+        self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
 
     def test_generate_iso_from_atoms(self):
         atom = "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
