@@ -167,9 +167,9 @@ typedef struct brio_stats {
     size_t tetrahedra;  /* finite ones */
     size_t hull_facets; /* = infinite tetrahedra */
     uint64_t created, destroyed, walk_steps, insphere_calls;
-    uint64_t history;                     /* nodes of the history DAG, with BRIO_LOCATE_HISTORY or BRIO_LOCATE_TRACE */
     uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
     uint64_t deferred, serial;            /* with threads: insertions put off to a later pass; left to one thread */
+    uint64_t history;                     /* nodes of the history DAG, with BRIO_LOCATE_HISTORY or BRIO_LOCATE_TRACE */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
 
