@@ -161,9 +161,9 @@ typedef enum brio_location {
 
 typedef struct brio_options {
     brio_order order;
-    double round_ratio; /* share of the points left for the rounds before the last, in (0, 1); default 0: the order's
-                                own, 1/8 of BRIO_ORDER_BRIO and 1/2 of the thesis' orders */
-    uint64_t seed;      /* every random choice follows from it; default 1 */
+    double round_ratio;      /* share of the points left for the rounds before the last, below 1; default 0: the
+                                order's own, 1/8 for BRIO and 1/2 for BRIO_OCTREE and BRIO_KDTREE */
+    uint64_t seed;           /* every random choice follows from it; default 1 */
     uint32_t max_tetrahedra; /* finite and infinite ones at any time; default (and most) 2^30 */
     size_t block_size;       /* most points of an octree or k-d tree block; default 0: 2,000 */
     uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;

@@ -1,13 +1,19 @@
 /* The choice of a strategy of point location, and the default one: the walk from the point inserted last. */
 #include "triangulation/kernel.h"
 
-/* A short walk, which is best nearly always; where walks are long again and again, the descent, with a walk tried now
- * and then. */
+/* The steps after which a walk counts as long: more than it takes to cross vertices that fill space, as the walks of
+ * orders without locality do. */
+static uint64_t most_steps(const brio_kernel *k) {
+    return 40 + (uint64_t)(4 * cbrt((double)k->num_points));
+}
+
+/* A walk, which is best nearly always; where walks are long again and again, the descent, with a walk tried now and
+ * then. */
 static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
     const double *point = k->record[p];
-    enum { SHORT_WALK = 40, DESCENTS = 64 };
+    enum { DESCENTS = 64 };
     if (k->long_walks == 0) {
-        *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, SHORT_WALK);
+        *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, most_steps(k));
         if (*tet != BRIO_NO_TET) return BRIO_OK;
         if (k->walk.blocked) return BRIO_DEFERRED;
         k->long_walks = DESCENTS;
