@@ -136,7 +136,8 @@ static brio_status delaunay(run *r) {
     TRY(check_arguments(r, a));
     TRY(cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
-    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted)));
+    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted) +
+                                  cli_location_bytes(mesh->num_vertices, (brio_location)a->locate)));
     TRY(cli_weights(r, &a->weights, mesh, &weights));
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));

@@ -11,6 +11,9 @@ double cli_mesh_bytes(const brio_mesh *mesh);
 /** Bytes beside the input that `brio delaunay` takes. */
 double cli_delaunay_bytes(size_t points, bool weighted);
 
+/** Bytes that a strategy of point location takes besides, where they are more than a few. */
+double cli_location_bytes(size_t points, brio_location locate);
+
 /** Bytes beside the input that `brio surface` takes. */
 double cli_surface_bytes(size_t points);
 
