@@ -11,6 +11,7 @@
  * Differs from the paper: the bounding points are no poles and take no part in the power diagram; poles on the hull of
  * the power diagram's dual are outer, without which the crust of small or clustered inputs would not close. */
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "dual/spacing.h"
 #include "reconstruct/crust_faces.h"
 #include "reconstruct/labelling.h"
@@ -76,6 +77,15 @@ static void bounding_corners(const double *points, size_t n, double *corner) {
         for (int k = 0; k < 3; k++) corner[3 * i + k] = centre[k] + (i >> k & 1 ? half[k] : -half[k]);
 }
 
+/* out = x 2^exponent; by a product where that is a normal number, and so the same. */
+static void scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out) {
+    (void)ctx; /* without OpenMP */
+    bool normal = exponent > -1000 && exponent < 1000;
+    double factor = normal ? ldexp(1, exponent) : 0;
+    BRIO_OMP(parallel for num_threads(brio_context_threads(ctx)))
+    for (size_t i = 0; i < n; i++) out[i] = normal ? x[i] * factor : ldexp(x[i], exponent);
+}
+
 static brio_status prepare(crust *c, const double *points) {
     brio_status status = BRIO_OK;
     size_t n = c->num_samples;
@@ -83,9 +93,9 @@ static brio_status prepare(crust *c, const double *points) {
     BRIO_REQUIRE(c->ctx, n > 0, BRIO_ERR_NO_ANSWER, "no points, no surface");
     BRIO_TRY(check_finite(c->ctx, points, n));
     BRIO_TRY(BRIO_ALLOC(c->ctx, c->points, 3 * (n + BOUNDING_POINTS)));
-    for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
+    for (size_t i = 0; i < 3 * n; i++) most = fabs(points[i]) > most ? fabs(points[i]) : most;
     frexp(most, &c->exponent);
-    for (size_t i = 0; i < 3 * n; i++) c->points[i] = ldexp(points[i], -c->exponent);
+    scale(c->ctx, points, 3 * n, -c->exponent, c->points);
     bounding_corners(c->points, n, c->points + 3 * n);
 done:
     return status;
@@ -211,7 +221,7 @@ static brio_status make_crust(crust *c, const brio_pole_graph *graph, const brio
     stage(c, 0.93, 1);
     if (o->simplify) BRIO_TRY(simplify(c, counts.faces, mesh));
     drop_properties(mesh);
-    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) mesh->vertices[i] = ldexp(mesh->vertices[i], c->exponent);
+    scale(c->ctx, mesh->vertices, 3 * mesh->num_vertices, c->exponent, mesh->vertices);
 done:
     return status;
 }
