@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include <string.h>
 
-enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PAIRS_A_THREAD = 1 << 14 };
+enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PAIRS_A_THREAD = 1 << 12 };
 
 typedef struct {
     uint64_t *key;

@@ -3,6 +3,7 @@
  * The samples are scaled by a power of two to coordinates of at most 1, so that nothing over- or underflows on the way;
  * their triangles are those of the whole set (cocone_surface.c) or matched together from pieces (super_cocone.c). */
 #include "base/memory.h"
+#include "base/scale.h"
 #include "reconstruct/sampling_density.h"
 #include "reconstruct/super_cocone.h"
 #include <math.h>
@@ -16,17 +17,12 @@ brio_cocone_options brio_cocone_options_default(void) {
 /* The points times 2^-exponent. */
 static brio_status scale_points(brio_context *ctx, const double *points, size_t num_points, double **scaled,
                                 int *exponent) {
-    enum { MOST = 1000 }; /* a power of two that doubles hold, as its inverse */
     brio_status status = BRIO_OK;
-    double most = 0, *p;
+    double most = 0;
     BRIO_TRY(BRIO_ALLOC(ctx, *scaled, 3 * num_points));
-    p = *scaled;
     for (size_t i = 0; i < 3 * num_points; i++) most = most < fabs(points[i]) ? fabs(points[i]) : most;
     if (isfinite(most)) frexp(most, exponent);
-    double factor = ldexp(1, -*exponent);
-    bool ordinary = abs(*exponent) <= MOST;
-    for (size_t i = 0; i < 3 * num_points; i++) /* no -0 */
-        p[i] = (ordinary ? points[i] * factor : ldexp(points[i], -*exponent)) + 0.0;
+    brio_scale(ctx, points, 3 * num_points, -*exponent, *scaled);
 done:
     return status;
 }

@@ -10,6 +10,7 @@
  * the power diagram's dual are outer, without which the crust of small or clustered inputs would not close. */
 #include "reconstruct/labelled_poles.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "dual/spacing.h"
 #include "reconstruct/label_solid.h"
 #include <math.h>
@@ -80,7 +81,7 @@ static brio_status prepare(brio_labelled_poles *l, const double *points, double 
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
     for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
     frexp(most, &l->exponent);
-    for (size_t i = 0; i < 3 * n; i++) l->points[i] = ldexp(points[i], -l->exponent);
+    brio_scale(l->ctx, points, 3 * n, -l->exponent, l->points);
     bounding_corners(l->points, n, ldexp(margin, -l->exponent), l->points + 3 * n);
 done:
     return status;

@@ -36,7 +36,8 @@ static inline bool brio_ring_next(brio_ring *r) {
 /** Whether neither neighbour in the ring comes before `tet`: where one does, the ring need not be walked. */
 static inline bool brio_ring_may_lead(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
     const uint32_t *mate = t->tet[tet].mate;
-    return (brio_tet_of(mate[BRIO_EDGE[i][j][0]]) > tet) & (brio_tet_of(mate[BRIO_EDGE[i][j][1]]) > tet);
+    uint32_t one = brio_tet_of(mate[BRIO_EDGE[i][j][0]]), other = brio_tet_of(mate[BRIO_EDGE[i][j][1]]);
+    return (one < other ? one : other) > tet;
 }
 
 /** The number of tetrahedra in the ring when `tet` is the first of them in memory, else 0. */
