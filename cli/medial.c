@@ -3,8 +3,7 @@
 #include "commands.h"
 #include "estimate.h"
 #include "files.h"
-
-enum { BY_INPUT = -2, BY_MESH = BRIO_LABELING_END };
+#include "power_crust.h"
 
 typedef struct arguments {
     int labeling, sides;
@@ -13,12 +12,6 @@ typedef struct arguments {
     const char *crust; /* file, or NULL */
 } arguments;
 
-static const option_choice labelings[] = {{"mesh", BY_MESH},
-                                          {"greedy", BRIO_LABELING_GREEDY},
-                                          {"naive", BRIO_LABELING_NAIVE},
-                                          {"theoretical", BRIO_LABELING_THEORETICAL},
-                                          {"global", BRIO_LABELING_GLOBAL},
-                                          {NULL, 0}};
 static const option_choice sides[] = {
     {"inner", BRIO_MEDIAL_INNER}, {"outer", BRIO_MEDIAL_OUTER}, {"both", BRIO_MEDIAL_BOTH}, {NULL, 0}};
 
@@ -26,7 +19,8 @@ static const option options[] = {
     {"sides", 0, OPTION_CHOICE, offsetof(arguments, sides), "NAME", "of the surface whose axis is wanted (inner)",
      sides},
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, labeling), "NAME",
-     "what tells inner poles from outer ones: faces, where there are (mesh), or the points (greedy)", labelings},
+     "what tells inner poles from outer ones: faces, where there are (mesh), or the points (greedy)",
+     cli_labelings_or_mesh},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, simplify), NULL,
      "leave out what noise and close sampling add: --scale 1.1 --redundancy 0.01", 0},
     {"scale", 0, OPTION_NUMBER, offsetof(arguments, scale), "S",
@@ -42,7 +36,7 @@ static const option options[] = {
     {0},
 };
 
-static const arguments defaults = {.labeling = BY_INPUT};
+static const arguments defaults = {.labeling = LABELS_OF_INPUT};
 static const double SCALE = 1.1, REDUNDANCY = 0.01; /* of --simplify */
 static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU, BRIO_FORMAT_XYZ,
                                       BRIO_FORMAT_AUTO};
@@ -61,14 +55,12 @@ done:
     return status;
 }
 
-static brio_medial_options medial_options(const run *r, const brio_mesh *input, bool by_mesh) {
+static brio_medial_options medial_options(const run *r, int labeling, const brio_mesh *solid) {
     const arguments *a = r->arguments;
     brio_medial_options o = brio_medial_options_default();
     o.seed = r->common.seed;
-    if (by_mesh)
-        o.solid = input;
-    else if (a->labeling != BY_INPUT)
-        o.labeling = (brio_labeling)a->labeling;
+    o.labeling = (brio_labeling)labeling;
+    o.solid = solid;
     o.sides = (brio_medial_sides)a->sides;
     o.sampling_density = a->sampling_density;
     o.sharp = a->sharp;
@@ -92,7 +84,7 @@ static void report(run *r, const brio_medial_options *o, const brio_medial_stats
     cli_fact_count(f, "inner", s->inner);
     cli_fact_count(f, "outer", s->outer);
     cli_fact_count(f, "unlabelled", s->unlabelled);
-    cli_fact_text(f, "labeling", labelings[o->solid ? 0 : 1 + (int)o->labeling].name);
+    cli_fact_text(f, "labeling", o->solid ? "mesh" : cli_labelings[o->labeling].name);
     if (o->scale > 1 || o->redundancy > 0) {
         cli_stage(r, "simplify", s->simplify_seconds);
         cli_fact_count(f, "left_out", s->left_out);
@@ -117,16 +109,18 @@ static brio_status medial(run *r) {
     brio_mesh *input = NULL, *shape = NULL, *crust = NULL;
     brio_medial_stats s = {0};
     brio_status status = BRIO_OK;
+    int labeling = a->labeling;
+    bool by_mesh;
     TRY(check_arguments(r));
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read(r, r->operands[0], &input));
-    bool by_mesh = a->labeling == BY_MESH || (a->labeling == BY_INPUT && input->num_faces > 0);
-    if (by_mesh && !input->num_faces)
-        TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--labeling mesh: %s has no faces", r->operands[0]));
-    double extra = cli_crust_extra_bytes(input->num_vertices, a->labeling == BRIO_LABELING_GLOBAL, false);
+    TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
+    double extra = cli_crust_extra_bytes(input->num_vertices, labeling == BRIO_LABELING_GLOBAL, false);
     TRY(cli_require_memory(r, cli_mesh_bytes(input) + cli_surface_bytes(input->num_vertices) + extra));
-    brio_medial_options o = medial_options(r, input, by_mesh);
-    TRY(brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s));
+    brio_medial_options o = medial_options(r, labeling, by_mesh ? input : NULL);
+    status = brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
+    cli_suggest_labeling(r, status, a->labeling, by_mesh);
+    if (status != BRIO_OK) goto done;
     report(r, &o, &s, shape);
     brio_mesh_free(input);
     input = NULL;

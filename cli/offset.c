@@ -1,4 +1,5 @@
-/* brio offset: the surface at a distance from the one through the points of a file, with its certificate. */
+/* brio offset: the surface at a distance from the one through the points of a file, or from a closed mesh, with its
+ * certificate. */
 #include "certificate.h"
 #include "commands.h"
 #include "estimate.h"
@@ -16,8 +17,9 @@ static const option options[] = {
      "of the surface, in the unit of the points: outwards when positive", 0},
     {"triangulate", 0, OPTION_FLAG, offsetof(arguments, crust.triangulate), NULL, "cut the polygons into triangles", 0},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, crust.simplify), NULL, "a quarter as many faces, triangles", 0},
-    {"labeling", 0, OPTION_CHOICE, offsetof(arguments, crust.labeling), "NAME", "how poles are labelled inner or outer",
-     cli_labelings},
+    {"labeling", 0, OPTION_CHOICE, offsetof(arguments, crust.labeling), "NAME",
+     "what tells inner poles from outer ones: faces, where there are (mesh), or the points (greedy)",
+     cli_labelings_or_mesh},
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, crust.sampling_density), "R",
      "discard the nearer pole of cells too wide for an R-sample", 0},
     {"sharp", 'B', OPTION_FLAG, offsetof(arguments, crust.sharp), NULL,
@@ -29,39 +31,56 @@ static const option options[] = {
     {0},
 };
 
-static const arguments defaults = {.distance = NAN};
+static const arguments defaults = {.distance = NAN, .crust.labeling = LABELS_OF_INPUT};
 static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
                                       BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
-static brio_status offset_surface(run *r, const brio_mesh *points, brio_mesh **surface) {
+/* What there is to count when the labels are known. */
+static void report_by_mesh(facts *f, const brio_power_crust_stats *s) {
+    cli_fact_count(f, "poles", s->poles);
+    cli_fact_count(f, "hidden_poles", s->hidden_poles);
+    cli_fact_count(f, "inner", s->inner);
+    cli_fact_count(f, "outer", s->outer);
+    cli_fact_text(f, "labeling", "mesh");
+}
+
+static brio_status offset_surface(run *r, const power_crust_options *crust, const brio_mesh *points, bool by_mesh,
+                                  brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_surface_options o = cli_surface_options(r, &a->crust);
+    brio_surface_options o = cli_surface_options(r, crust);
     brio_power_crust_stats s = {0};
     facts *f = &r->facts;
+    if (by_mesh) o.solid = points;
     brio_status status =
         brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &s);
+    cli_suggest_labeling(r, status, a->crust.labeling, by_mesh);
     if (status != BRIO_OK) return status;
-    cli_report_power_crust_stages(r, &a->crust, &s);
+    cli_report_power_crust_stages(r, crust, &s);
     cli_fact_text(f, "method", "power-crust");
     cli_fact_real(f, "distance", a->distance);
     cli_fact_count(f, "samples", s.samples);
     cli_fact_count(f, "vertices", (*surface)->num_vertices);
     cli_fact_count(f, "faces", (*surface)->num_faces);
-    cli_report_power_crust(r, &a->crust, &s);
+    if (by_mesh)
+        report_by_mesh(f, &s);
+    else
+        cli_report_power_crust(r, crust, &s);
     return BRIO_OK;
 }
 
 static brio_status offset(run *r) {
     const arguments *a = r->arguments;
+    power_crust_options crust = a->crust;
     brio_mesh *points = NULL, *surface = NULL;
     brio_status status = BRIO_OK;
+    bool by_mesh;
     if (isnan(a->distance)) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "offset needs --distance"));
     TRY(cli_require_output(r, formats, false));
-    TRY(cli_read_points(r, r->operands[0], &points));
-    double extra =
-        cli_crust_extra_bytes(points->num_vertices, a->crust.labeling == BRIO_LABELING_GLOBAL, a->crust.simplify);
+    TRY(cli_read(r, r->operands[0], &points));
+    TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));
+    double extra = cli_crust_extra_bytes(points->num_vertices, crust.labeling == BRIO_LABELING_GLOBAL, crust.simplify);
     TRY(cli_require_memory(r, cli_mesh_bytes(points) + cli_surface_bytes(points->num_vertices) + extra));
-    TRY(offset_surface(r, points, &surface));
+    TRY(offset_surface(r, &crust, points, by_mesh, &surface));
     TRY(cli_check_interrupt(r));
     brio_mesh_free(points);
     points = NULL;
@@ -77,7 +96,8 @@ done:
 const command cli_offset = {
     .name = "offset",
     .operands = "IN",
-    .summary = "surface at a distance from the one through the points of a file (.ply .obj .off .vtu .vtp)",
+    .summary =
+        "surface at a distance from that of the points, or the closed mesh, of a file (.ply .obj .off .vtu .vtp)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -9,6 +9,24 @@ const option_choice cli_labelings[] = {{"greedy", BRIO_LABELING_GREEDY},
                                        {"global", BRIO_LABELING_GLOBAL},
                                        {NULL, 0}};
 
+const option_choice cli_labelings_or_mesh[] = {
+    {"mesh", LABELS_OF_MESH},         {"greedy", BRIO_LABELING_GREEDY},
+    {"naive", BRIO_LABELING_NAIVE},   {"theoretical", BRIO_LABELING_THEORETICAL},
+    {"global", BRIO_LABELING_GLOBAL}, {NULL, 0}};
+
+brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, bool *by_mesh) {
+    if (*labeling == LABELS_OF_MESH && !input->num_faces)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--labeling mesh: %s has no faces", r->operands[0]);
+    *by_mesh = *labeling == LABELS_OF_MESH || (*labeling == LABELS_OF_INPUT && input->num_faces > 0);
+    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = BRIO_LABELING_GREEDY;
+    return BRIO_OK;
+}
+
+void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool by_mesh) {
+    if (status == BRIO_ERR_NO_ANSWER && by_mesh && labeling == LABELS_OF_INPUT && !r->common.quiet)
+        fputs("brio: --labeling greedy goes by the points of a mesh alone\n", stderr);
+}
+
 bool cli_has_power_crust_options(const power_crust_options *a) {
     return a->labeling || a->sampling_density != 0 || a->open != 0 || a->sharp || a->triangulate || a->simplify ||
            a->normals;

@@ -13,6 +13,17 @@ typedef struct power_crust_options {
 
 extern const option_choice cli_labelings[];
 
+/** Of commands that take the faces of a closed mesh for labels where there are any, and the default of theirs. */
+enum { LABELS_OF_INPUT = -2, LABELS_OF_MESH = BRIO_LABELING_END };
+extern const option_choice cli_labelings_or_mesh[];
+
+/** Replaces LABELS_OF_INPUT by what it comes to, and tells whether that is the mesh; BRIO_ERR_ARGUMENT when faces are
+ *  asked for that are not there. */
+brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, bool *by_mesh);
+
+/** Tells on standard error what can be done where a mesh that the user did not ask to go by has no inside. */
+void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool by_mesh);
+
 /** Rows of a command's option table whose struct has power_crust_options as its member `field`. */
 /* clang-format off */
 #define POWER_CRUST_ROWS(type, field)                                                                                  \

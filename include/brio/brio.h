@@ -435,6 +435,9 @@ typedef struct brio_surface_options {
     uint64_t seed;          /* default 1 */
     int triangulate;        /* 1: cut the polygons into triangles; default 0 */
     brio_labeling labeling; /* default greedy */
+    /* A closed mesh in the unit of the points, its vertices being the points or not: poles within it are inner, whatever
+       the labeling; default NULL. BRIO_ERR_NO_ANSWER when it is not closed. */
+    const brio_mesh *solid;
     /* Cells of samples whose radius in the co-cone is over 1.3 R / (1 - R) times the distance to the nearer pole are
      * badly shaped, for a surface that is an R-sample; R in (0, 1), smaller for more of them; default 0: none is. */
     double sampling_density;
@@ -500,12 +503,10 @@ typedef enum brio_medial_sides {
 
 typedef struct brio_medial_options {
     uint64_t seed;          /* default 1 */
-    brio_labeling labeling; /* as in brio_surface_options, and so are the next two */
+    brio_labeling labeling; /* as in brio_surface_options, and so are the next three */
+    const brio_mesh *solid;
     double sampling_density;
     int sharp;
-    const brio_mesh
-        *solid; /* a closed mesh, in the unit of the points: poles within it are inner, whatever the labeling;
-                                its vertices may be the points; default NULL */
     brio_medial_sides sides; /* default inner */
     /* Balls that one larger ball of the same side can stand for are left out: */
     double scale;      /* S > 1: it holds them when both are scaled by S, which is what noise comes to; default 1 */

@@ -28,6 +28,7 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_surface_options *
     *request = (brio_pole_request){.seed = o->seed,
                                    .filter = {o->sampling_density, o->sharp},
                                    .labeling = o->labeling,
+                                   .solid = o->solid,
                                    .spacing = o->open > 0 || o->simplify,
                                    .representative = o->normals != NULL,
                                    .until = 1};

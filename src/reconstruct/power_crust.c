@@ -71,6 +71,7 @@ brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num
     request.until = POLES_SHARE;
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(brio_labelled_poles_find(ctx, points, num_points, &request, &l));
+    if (options->solid) brio_labelled_poles_close_hull(&l);
     BRIO_TRY(brio_make_crust(&l, options, POLES_SHARE, mesh));
     *out = mesh;
     mesh = NULL;

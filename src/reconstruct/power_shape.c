@@ -203,6 +203,7 @@ static brio_surface_options surface_options(const brio_medial_options *o) {
     brio_surface_options s = brio_surface_options_default();
     s.seed = o->seed;
     s.labeling = o->labeling;
+    s.solid = o->solid;
     s.sampling_density = o->sampling_density;
     s.sharp = o->sharp;
     return s;
@@ -241,7 +242,6 @@ static brio_status make_both(brio_labelled_poles *l, const double *points, size_
     brio_pole_request request;
     BRIO_TRY(check_options(l->ctx, o));
     BRIO_TRY(brio_pole_request_of(l->ctx, &surface, &request));
-    request.solid = o->solid;
     request.until = POLES_SHARE;
     BRIO_TRY(brio_labelled_poles_find(l->ctx, points, num_points, &request, l));
     count_poles(l, s);

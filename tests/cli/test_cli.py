@@ -18,7 +18,7 @@ import time
 import unittest
 
 BRIO = os.environ.get("BRIO", "brio")
-COMMANDS = ["delaunay", "surface", "check", "compare", "info", "generate", "subdivide"]
+COMMANDS = ["delaunay", "surface", "medial", "offset", "check", "compare", "info", "generate", "subdivide"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
@@ -26,6 +26,10 @@ OWN_OPTIONS = {
                  "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--simplify", "--labeling",
                 "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
+    "medial": ["--sides", "--labeling", "--simplify", "--scale", "--redundancy", "--crust", "--sampling-density",
+               "--sharp"],
+    "offset": ["--distance", "--triangulate", "--simplify", "--labeling", "--sampling-density", "--sharp",
+               "--vertex-normals", "--self-intersections"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
     "compare": ["--samples"],
     "info": [],
@@ -137,6 +141,14 @@ class Help(CliTest):
 class Usage(CliTest):
     def test_no_command(self):
         self.usage("no command")
+
+    def test_medial_and_offset(self):
+        points = self.xyz("a.xyz", CUBE)
+        self.usage("--distance", "offset", points, "-o", "x.ply")
+        self.usage("no faces", "medial", points, "-o", "x.ply", "--labeling", "mesh")
+        self.usage("less than 1", "medial", points, "-o", "x.ply", "--scale", "0.5")
+        self.usage("negative", "medial", points, "-o", "x.ply", "--redundancy", "-1")
+        self.usage("obj", "medial", points, "-o", "x.obj")
 
     def test_unknown_command_near_a_name(self):
         self.usage("unknown command 'delauney'; did you mean 'delaunay'", "delauney", "x")
@@ -301,6 +313,25 @@ class NoAnswer(CliTest):
     def test_surface_of_a_plane(self):
         points = self.xyz("a.xyz", [(x, y, 0) for x in range(6) for y in range(6)])
         self.expect(3, "surface", points, "-o", self.path("out.ply"))
+
+    def test_medial_axis_of_a_plane(self):
+        points = self.xyz("a.xyz", [(x, y, 0) for x in range(6) for y in range(6)])
+        self.expect(3, "medial", points, "-o", self.path("out.ply"))
+        self.assert_only(self.folder, "a.xyz")
+
+    def test_medial_axis_of_an_open_mesh(self):
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES[:-1])
+        for command in (["medial"], ["offset", "--distance", "0.1"]):
+            run = self.expect(3, *command, mesh, "-o", self.path("out.ply"))
+            self.assertIn("along 3 edges", run.err)
+            self.assertIn("--labeling greedy", run.err)
+        self.assert_only(self.folder, "m.off")
+
+    def test_offset_that_swallows_everything(self):
+        points = self.cloud("a.ply", 500, "sphere")
+        run = self.expect(3, "offset", points, "--distance", "-1.5", "-o", self.path("out.ply"))
+        self.assertIn("swallows the whole object", run.err)
+        self.assert_only(self.folder, "a.ply")
 
 
 class Memory(CliTest):
@@ -648,6 +679,107 @@ class Json(CliTest):
         self.assertEqual((facts["method"], facts["samples"]), ("power-crust", 2000))
         c = facts["certificate"]
         self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
+
+    def test_medial(self):
+        points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
+        counts = "samples poles hidden_poles inner outer unlabelled vertices edges triangles".split()
+        seconds = {key: number for key in "read delaunay poles power label shape write total".split()}
+        schema = {**COMMON_FACTS, **{key: count for key in counts}, "labeling": str, "seconds": seconds}
+        facts = self.facts("medial", points, "-o", out)
+        self.assert_schema(facts, schema)
+        self.assertEqual((facts["samples"], facts["unlabelled"], facts["labeling"]), (2000, 0, "greedy"))
+        self.assertEqual(facts["poles"], facts["inner"] + facts["outer"])
+        self.assertEqual(set(self.facts("info", out)["properties"]), {"radius", "side"})
+        mesh = self.path("mesh.ply")
+        self.expect(0, "surface", points, "-o", mesh)
+        facts = self.facts("medial", mesh, "-o", out, "--sides", "both")
+        self.assert_schema(facts, schema)
+        self.assertEqual(facts["labeling"], "mesh")
+        self.assertEqual(self.facts("medial", mesh, "-o", out, "--labeling", "global")["labeling"], "global")
+
+    def test_medial_simplified_with_its_crust(self):
+        points, crust = self.cloud("a.ply", 2000, "torus"), self.path("crust.ply")
+        whole = self.facts("medial", points, "-o", self.path("out.vtp"))
+        facts = self.facts("medial", points, "-o", self.path("out.vtp"), "--simplify", "--crust", crust)
+        self.assertLess(facts["vertices"], whole["vertices"])
+        self.assertGreater(facts["left_out"], 0)
+        self.assert_schema(facts, {"certificate": CERTIFICATE})
+        self.assertEqual((facts["certificate"]["closed"], facts["certificate"]["genus"]), (True, 1))
+        self.assertTrue(self.facts("check", crust)["certificate"]["manifold"])
+
+    def appended_arrays(self, name):
+        """The arrays of a VTK file by section and name, and the attributes of its piece."""
+        with open(self.path(name), "rb") as f:
+            xml, data = f.read().split(b"\n_", 1)
+        codes = {"Int32": "i", "Int64": "q", "UInt8": "B", "Int8": "b", "Float64": "d"}
+        arrays, section = {}, None
+        for tag in re.findall(r"<(\w+)([^>]*)>", xml.decode()):
+            if tag[0] != "DataArray":
+                section = tag[0]
+                continue
+            facts = dict(re.findall(r'(\w+)="([^"]*)"', tag[1]))
+            at = int(facts["offset"])
+            size, = struct.unpack_from("<Q", data, at)
+            code = codes[facts["type"]]
+            count = size // struct.calcsize(code)
+            arrays[section, facts["Name"]] = struct.unpack_from("<%d%s" % (count, code), data, at + 8)
+        return arrays, dict(re.findall(r'(NumberOf[PVLS]\w+)="(\d+)"', xml.decode()))
+
+    def test_power_shape_in_files(self):
+        points = self.cloud("a.ply", 300, "torus")
+        facts = self.facts("medial", points, "-o", self.path("out.ply"), "--ascii")
+        n, e, t = facts["vertices"], facts["edges"], facts["triangles"]
+        with open(self.path("out.ply")) as f:
+            lines = f.read().split("end_header\n")[1].splitlines()
+        rows = [tuple(map(float, line.split())) for line in lines[:n]]
+        faces = [tuple(map(int, line.split()))[1:] for line in lines[n:n + t]]
+        edges = [tuple(map(int, line.split())) for line in lines[n + t:]]
+        self.assertEqual((len(rows), len(faces), len(edges)), (n, t, e))
+        self.assertTrue(all(0 <= a < b < n for a, b in edges))
+        sides = {tuple(sorted((f[i], f[i - 1]))) for f in faces for i in range(3)}
+        self.assertTrue(sides <= set(edges))
+        self.expect(0, "medial", points, "-o", self.path("out.vtp"))
+        arrays, piece = self.appended_arrays("out.vtp")
+        self.assertEqual(piece, {"NumberOfPoints": str(n), "NumberOfVerts": "0", "NumberOfLines": str(e),
+                                 "NumberOfStrips": "0", "NumberOfPolys": str(t)})
+        self.assertEqual(arrays["Points", "Points"], tuple(x for row in rows for x in row[:3]))
+        self.assertEqual(arrays["PointData", "radius"], tuple(row[3] for row in rows))
+        self.assertEqual(arrays["PointData", "side"], (-1,) * n)
+        self.assertEqual(arrays["Lines", "connectivity"], tuple(v for edge in edges for v in edge))
+        self.assertEqual(arrays["Lines", "offsets"], tuple(range(2, 2 * e + 1, 2)))
+        self.assertEqual(arrays["Polys", "connectivity"], tuple(v for face in faces for v in face))
+        self.assertEqual(arrays["Polys", "offsets"], tuple(range(3, 3 * t + 1, 3)))
+        self.assertEqual(arrays["Verts", "connectivity"], ())
+        self.expect(0, "medial", points, "-o", self.path("out.vtu"))
+        arrays, _ = self.appended_arrays("out.vtu")
+        self.assertEqual(arrays["Cells", "types"], (7,) * t + (3,) * e)
+        self.assertEqual(arrays["Cells", "connectivity"][3 * t:], tuple(v for edge in edges for v in edge))
+        self.assertEqual(arrays["Cells", "offsets"][-1], 3 * t + 2 * e)
+        self.expect(2, "info", self.path("out.vtp"))
+
+    def test_points_in_a_vtp_file_are_cells(self):
+        self.expect(0, "generate", "ball", "-n", 20, "-o", self.path("b.vtp"))
+        arrays, piece = self.appended_arrays("b.vtp")
+        self.assertEqual((piece["NumberOfVerts"], piece["NumberOfLines"]), ("20", "0"))
+        self.assertEqual(arrays["Verts", "connectivity"], tuple(range(20)))
+        self.assertEqual(arrays["Verts", "offsets"], tuple(range(1, 21)))
+
+    def test_offset(self):
+        points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
+        seconds = {key: number for key in "read delaunay poles power label crust certify write total".split()}
+        counts = "samples vertices faces poles hidden_poles inner outer".split()
+        for distance, volume in [(0.5, 14.137), (-0.5, 0.5236)]:
+            facts = self.facts("offset", points, "--distance", str(distance), "-o", out)
+            self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str,
+                                       "distance": number, "certificate": CERTIFICATE, "seconds": seconds})
+            self.assertEqual(facts["distance"], distance)
+            self.assertTrue(facts["certificate"]["closed"])
+            self.assertAlmostEqual(facts["certificate"]["volume"] / volume, 1, delta=0.03)
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        self.assertEqual(self.facts("offset", mesh, "-D", "0.1", "-o", out)["labeling"], "mesh")
+        self.assertEqual(self.facts("offset", mesh, "-D", "0.1", "-o", out, "--labeling", "greedy")["labeling"], "greedy")
+        simple = self.facts("offset", points, "-D", "0.5", "-o", out, "--simplify")
+        self.assertTrue(simple["certificate"]["closed"])
 
     def test_cocone(self):
         points = self.cloud("a.ply", 2000, "sphere")

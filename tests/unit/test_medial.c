@@ -1,0 +1,424 @@
+/* The power shape's parts against their definition, its simplification against brute force, labels from a known solid,
+ * and inputs that have no medial axis. */
+#include "failing_allocator.h"
+#include "harness.h"
+#include "medial_shapes.h"
+#include "points.h"
+#include "reconstruct/ball_cover.h"
+#include "reconstruct/labelled_poles.h"
+#include "surface/solid.h"
+
+static brio_mesh *shape_of(brio_context *ctx, const double *p, size_t n, const brio_medial_options *o) {
+    brio_mesh *shape = NULL;
+    EXPECT(brio_power_shape(ctx, p, n, o, &shape, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    return shape;
+}
+
+static void expect_same(const brio_mesh *a, const brio_mesh *b) {
+    EXPECT(a->num_vertices == b->num_vertices && a->num_edges == b->num_edges && a->num_faces == b->num_faces);
+    if (a->num_vertices != b->num_vertices || a->num_edges != b->num_edges || a->num_faces != b->num_faces) return;
+    EXPECT(!memcmp(a->vertices, b->vertices, 24 * a->num_vertices));
+    EXPECT(!a->num_edges || !memcmp(a->edges, b->edges, 8 * a->num_edges));
+    EXPECT(!memcmp(a->face_vertices, b->face_vertices, 12 * a->num_faces));
+}
+
+/* --- the shape --- */
+
+/* The inner poles with a cell, numbered as the shape does it. */
+static size_t number_inner(const brio_labelled_poles *l, uint32_t *number) {
+    size_t count = 0;
+    for (size_t p = 0; p < l->poles.count; p++) {
+        bool cell = brio_triangulation_representatives(l->power)[p] == p;
+        number[p] = cell && l->label[p] == BRIO_LABEL_INNER ? (uint32_t)count++ : UINT32_MAX;
+    }
+    return count;
+}
+
+/* Every pair and triple of inner vertices of a tetrahedron of the dual is in the shape, and nothing else. */
+static void shape_is_the_dual_between_inner_poles(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_ellipsoid, 0.35, 1);
+    brio_labelled_poles l;
+    brio_pole_request request;
+    brio_surface_options surface = brio_surface_options_default();
+    brio_mesh *shape = shape_of(ctx, c.points, c.count, NULL);
+    EXPECT(brio_pole_request_of(ctx, &surface, &request) == BRIO_OK);
+    EXPECT(brio_labelled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
+    uint32_t *number = malloc(l.poles.count * sizeof *number);
+    size_t n = number_inner(&l, number), edges = 0, triangles = 0;
+    uint8_t *edge = calloc(n * n, 1), *triangle = calloc(n * n * n, 1);
+    EXPECT(shape->num_vertices == n && n < 400);
+    for (size_t tet = 0; tet < l.graph.num_finite; tet++)
+        for (int i = 0; i < 64; i++) {
+            const uint32_t *v = l.graph.power.tet[tet].vertex;
+            size_t a = number[v[i % 4]], b = number[v[i / 4 % 4]], d = number[v[i / 16]];
+            if (a >= b || b == UINT32_MAX) continue;
+            edges += !edge[n * a + b], edge[n * a + b] = 1;
+            if (b >= d || d == UINT32_MAX) continue;
+            triangles += !triangle[n * (n * a + b) + d], triangle[n * (n * a + b) + d] = 1;
+        }
+    EXPECT(shape->num_edges == edges && shape->num_faces == triangles, "%zu %zu, %zu %zu", shape->num_edges, edges,
+           shape->num_faces, triangles);
+    for (size_t e = 0; e < shape->num_edges; e++) {
+        const uint32_t *v = shape->edges + 2 * e;
+        EXPECT(v[0] < v[1] && edge[n * v[0] + v[1]] == 1);
+        edge[n * v[0] + v[1]] = 0; /* none twice */
+    }
+    for (size_t f = 0; f < shape->num_faces; f++) {
+        const uint32_t *v = shape->face_vertices + 3 * f;
+        size_t low = v[0] < v[1] ? v[0] : v[1], high = v[0] < v[1] ? v[1] : v[0];
+        low = v[2] < low ? v[2] : low, high = v[2] > high ? v[2] : high;
+        size_t at = n * (n * low + (v[0] + v[1] + v[2] - low - high)) + high;
+        EXPECT(triangle[at] == 1);
+        triangle[at] = 0;
+    }
+    free(number);
+    free(edge);
+    free(triangle);
+    brio_labelled_poles_free(&l);
+    brio_mesh_free(shape);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
+/* Balls of an ellipsoid: each as large as its centre is far from the samples, on either side. */
+static void radii_are_distances_to_samples_and_sides_are_told(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_torus, 0.3, 1);
+    brio_medial_options o = brio_medial_options_default();
+    size_t inner = 0, outer = 0;
+    o.sides = BRIO_MEDIAL_BOTH;
+    brio_mesh *shape = shape_of(ctx, c.points, c.count, &o);
+    const brio_property *radius = brio_mesh_property(shape, "radius"), *side = brio_mesh_property(shape, "side");
+    for (size_t v = 0; v < shape->num_vertices; v++) {
+        const double *p = shape->vertices + 3 * v;
+        double least = INFINITY;
+        for (size_t i = 0; i < c.count; i++) {
+            const double *q = c.points + 3 * i;
+            least = fmin(least, sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
+                                     (p[2] - q[2]) * (p[2] - q[2])));
+        }
+        EXPECT(fabs(least - brio_property_value(radius, v)) < 1e-9 * least, "%g %g", least,
+               brio_property_value(radius, v));
+        bool inside = torus_distance(p) < 0;
+        EXPECT(brio_property_value(side, v) == (inside ? -1 : 1));
+        inner += inside;
+        outer += !inside;
+    }
+    for (size_t e = 0; e < shape->num_edges; e++) {
+        const uint32_t *v = shape->edges + 2 * e;
+        EXPECT(brio_property_value(side, v[0]) == brio_property_value(side, v[1]));
+    }
+    EXPECT(inner > 50 && outer > 20, "%zu %zu", inner, outer);
+    brio_mesh_free(shape);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
+static void shuffled_samples_give_the_same_shape(void) {
+    static double p[3 * 1000], q[3 * 1000];
+    static size_t to[1000];
+    brio_context *ctx = new_context();
+    brio_medial_options o = brio_medial_options_default();
+    torus_points(2, 1000, p);
+    shuffle_points(5, 1000, p, q, to);
+    for (int simplified = 0; simplified < 2; simplified++) {
+        o.scale = simplified ? 1.1 : 1;
+        o.redundancy = simplified ? 0.01 : 0;
+        brio_context_set_threads(ctx, 1);
+        brio_mesh *a = shape_of(ctx, p, 1000, &o);
+        brio_context_set_threads(ctx, 4);
+        brio_mesh *b = shape_of(ctx, q, 1000, &o);
+        expect_same(a, b);
+        brio_mesh_free(a);
+        brio_mesh_free(b);
+    }
+    brio_context_free(ctx);
+}
+
+static void crust_of_all_balls_is_the_power_crust(void) {
+    static double p[3 * 1000];
+    brio_context *ctx = new_context();
+    brio_mesh *shape, *crust, *expected;
+    torus_points(4, 1000, p);
+    EXPECT(brio_power_shape(ctx, p, 1000, NULL, &shape, &crust, NULL) == BRIO_OK);
+    EXPECT(brio_power_crust(ctx, p, 1000, NULL, &expected, NULL) == BRIO_OK);
+    expect_same(crust, expected);
+    brio_mesh_free(shape);
+    brio_mesh_free(crust);
+    brio_mesh_free(expected);
+    brio_context_free(ctx);
+}
+
+/* --- simplification --- */
+
+static double distance_between(const double *p, const double *q) {
+    return sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
+}
+
+/* Whether ball a may stand for ball b, with a little to spare on either side. */
+static bool stands_for(const brio_cover_rule *rule, double a, double b, double distance, double spare) {
+    double scaled = rule->scale * (a - b), enlarged = (1 + rule->redundancy) * a - b;
+    return distance <= fmax(scaled, enlarged) + spare * a;
+}
+
+/* Of what is kept, none stands for a smaller one; what is left out has something kept that stands for it. */
+static void expect_cover(const double *centre, const double *square, size_t n, const brio_cover_rule *rule) {
+    brio_context *ctx = new_context();
+    uint32_t *balls = malloc(n * sizeof *balls);
+    uint8_t *keep = malloc(n);
+    for (size_t i = 0; i < n; i++) balls[i] = (uint32_t)i, keep[i] = 1;
+    EXPECT(brio_cover_balls(ctx, centre, square, balls, n, rule, keep) == BRIO_OK);
+    for (size_t b = 0; b < n; b++) {
+        bool left_out = false, surely = false;
+        for (size_t a = 0; a < n; a++) {
+            if (a == b || !keep[a] || square[a] < square[b]) continue;
+            double d = distance_between(centre + 3 * a, centre + 3 * b);
+            left_out |= stands_for(rule, sqrt(square[a]), sqrt(square[b]), d, 2e-9);
+            surely |= square[a] > square[b] && stands_for(rule, sqrt(square[a]), sqrt(square[b]), d, 0);
+        }
+        EXPECT(keep[b] ? !surely : left_out, "ball %zu of %zu", b, n);
+    }
+    free(balls);
+    free(keep);
+    brio_context_free(ctx);
+}
+
+static void cover_is_what_brute_force_finds(void) {
+    static double centre[3 * 300], square[300];
+    for (uint64_t trial = 0; trial < 200; trial++) {
+        brio_rng rng = brio_rng_new(trial);
+        size_t n = 1 + trial * 3 % 300;
+        brio_cover_rule rule = {trial % 3 ? 1 + brio_rng_double(&rng) : 1, trial % 4 ? 0.3 * brio_rng_double(&rng) : 0};
+        if (trial % 2)
+            uniform_points(trial, n, centre);
+        else
+            integer_points(trial, n, 4, centre);
+        for (size_t i = 0; i < n; i++) square[i] = trial % 5 ? 0.3 * brio_rng_double(&rng) : 1;
+        expect_cover(centre, square, n, &rule);
+    }
+}
+
+static double largest_norm(const brio_mesh *mesh) {
+    static const double origin[3] = {0};
+    double most = 0;
+    for (size_t v = 0; v < mesh->num_vertices; v++) most = fmax(most, distance_between(mesh->vertices + 3 * v, origin));
+    return most;
+}
+
+/* Bumps of a noisy sphere have axes of their own, down to the centre; simplified, only balls near it are left. */
+static void simplification_takes_the_noise_of_a_sphere_away(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_sphere, 0.15, 1);
+    brio_medial_options o = brio_medial_options_default();
+    brio_mesh *all, *few, *crust;
+    brio_medial_stats s;
+    brio_certificate certificate = {0};
+    for (size_t i = 0; i < c.count; i++) {
+        double r = 1 + 0.02 * (brio_rng_double(&c.rng) - 0.5);
+        for (size_t k = 0; k < 3; k++) c.points[3 * i + k] *= r;
+    }
+    all = shape_of(ctx, c.points, c.count, &o);
+    o.scale = 1.2;
+    o.redundancy = 0.02;
+    EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &few, &crust, &s) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(largest_norm(all) > 0.3 && largest_norm(few) < 0.1, "%g %g", largest_norm(all), largest_norm(few));
+    EXPECT(10 * few->num_vertices < all->num_vertices, "%zu of %zu", few->num_vertices, all->num_vertices);
+    EXPECT(s.left_out > 0 && s.inner + s.outer == s.poles && s.unlabelled == 0);
+    EXPECT(brio_mesh_certificate(ctx, crust, &certificate) == BRIO_OK);
+    EXPECT(certificate.closed && certificate.manifold && certificate.genus == 0 && certificate.components == 1);
+    EXPECT(fabs(certificate.volume - 4.18879) < 0.15, "%g", certificate.volume);
+    brio_certificate_free(&certificate);
+    brio_mesh_free(all);
+    brio_mesh_free(few);
+    brio_mesh_free(crust);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
+/* --- a known solid --- */
+
+/* The box of half sides 1, 0.7, 0.5; `split`: each face with corners of its own; `turn`: seen clockwise. */
+static brio_mesh *box_mesh(brio_context *ctx, bool split, bool turn, size_t faces) {
+    static const uint32_t corner[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                          {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    brio_mesh *mesh;
+    double p[3 * 24];
+    uint32_t v[24];
+    uint64_t offsets[7];
+    for (uint32_t i = 0; i < 24; i++) {
+        uint32_t from = split ? corner[i / 4][i % 4] : i % 8;
+        p[3 * i] = from & 1 ? 1 : -1, p[3 * i + 1] = from & 2 ? 0.7 : -0.7, p[3 * i + 2] = from & 4 ? 0.5 : -0.5;
+        uint32_t slot = turn ? i / 4 * 4 + 3 - i % 4 : i;
+        v[slot] = split ? i : corner[i / 4][i % 4];
+    }
+    for (uint64_t f = 0; f < 7; f++) offsets[f] = 4 * f;
+    EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK);
+    EXPECT(brio_mesh_set_vertices(mesh, p, split ? 24 : 8) == BRIO_OK);
+    EXPECT(brio_mesh_set_faces(mesh, offsets, v, faces) == BRIO_OK);
+    return mesh;
+}
+
+static void poles_of_a_known_box_are_labelled_by_where_they_are(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_box, 0.2, 1);
+    brio_medial_options o = brio_medial_options_default();
+    o.sides = BRIO_MEDIAL_BOTH;
+    for (int kind = 0; kind < 4; kind++) {
+        brio_mesh *box = box_mesh(ctx, kind & 1, kind & 2, 6);
+        o.solid = box;
+        brio_mesh *shape = shape_of(ctx, c.points, c.count, &o);
+        const brio_property *side = brio_mesh_property(shape, "side");
+        for (size_t v = 0; v < shape->num_vertices; v++) {
+            const double *p = shape->vertices + 3 * v;
+            bool inside = fabs(p[0]) < 1 && fabs(p[1]) < 0.7 && fabs(p[2]) < 0.5;
+            EXPECT(brio_property_value(side, v) == (inside ? -1 : 1), "%g %g %g", p[0], p[1], p[2]);
+        }
+        EXPECT(shape->num_vertices > 250, "%zu", shape->num_vertices);
+        brio_mesh_free(shape);
+        brio_mesh_free(box);
+    }
+    brio_context_free(ctx);
+    free(c.points);
+}
+
+static void open_mesh_is_no_solid(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_box, 0.5, 1);
+    brio_medial_options o = brio_medial_options_default();
+    brio_mesh *shape, *crust, *box = box_mesh(ctx, true, false, 5);
+    o.solid = box;
+    EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &shape, &crust, NULL) == BRIO_ERR_NO_ANSWER && !shape &&
+           !crust);
+    EXPECT(strstr(brio_message(ctx), "along 4 edges"), "%s", brio_message(ctx));
+    brio_mesh_free(box);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
+/* Rays through corners, along edges and through the diagonals of faces. */
+static void winding_numbers_of_lattice_points_are_right(void) {
+    brio_context *ctx = new_context();
+    for (int kind = 0; kind < 4; kind++) {
+        brio_mesh *box = box_mesh(ctx, kind & 1, kind & 2, 6);
+        brio_solid solid;
+        for (size_t i = 0; i < 3 * box->num_vertices; i++) box->vertices[i] = box->vertices[i] < 0 ? -2 : 2;
+        EXPECT(brio_solid_new(ctx, box, &solid) == BRIO_OK, "%s", brio_message(ctx));
+        for (int i = 0; i < 343; i++) {
+            double p[3] = {i % 7 - 3, i / 7 % 7 - 3, i / 49 - 3}, most = 0;
+            for (int k = 0; k < 3; k++) most = fmax(most, fabs(p[k]));
+            if (most == 2) continue;
+            int expected = most > 2 ? 0 : kind & 2 ? -1 : 1;
+            EXPECT(brio_winding_number(&solid, p) == expected, "%g %g %g", p[0], p[1], p[2]);
+        }
+        brio_solid_free(ctx, &solid);
+        brio_mesh_free(box);
+    }
+    brio_context_free(ctx);
+}
+
+/* The crust of a torus as the solid: what is well inside or outside of it is known. */
+static void winding_numbers_of_a_curved_mesh_are_right(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_torus, 0.15, 1);
+    brio_rng rng = brio_rng_new(7);
+    brio_mesh *crust;
+    brio_solid solid;
+    EXPECT(brio_power_crust(ctx, c.points, c.count, NULL, &crust, NULL) == BRIO_OK);
+    EXPECT(brio_solid_new(ctx, crust, &solid) == BRIO_OK);
+    for (int i = 0; i < 2000; i++) {
+        double p[3] = {3 * brio_rng_double(&rng) - 1.5, 3 * brio_rng_double(&rng) - 1.5, brio_rng_double(&rng) - 0.5};
+        double d = torus_distance(p);
+        if (fabs(d) > 0.05) EXPECT(brio_winding_number(&solid, p) == (d < 0), "%g %g %g", p[0], p[1], p[2]);
+    }
+    brio_solid_free(ctx, &solid);
+    brio_mesh_free(crust);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
+/* --- any input --- */
+
+static void small_inputs_have_shapes_and_closed_crusts_or_say_so(void) {
+    double p[3 * 40];
+    int shapes = 0;
+    brio_context *ctx = new_context();
+    brio_context_set_threads(ctx, 1);
+    for (uint64_t trial = 0; trial < 2000; trial++) {
+        size_t n = 1 + trial % 40;
+        brio_medial_options o = brio_medial_options_default();
+        brio_mesh *shape, *crust;
+        brio_certificate certificate = {0};
+        o.sides = (brio_medial_sides)(trial / 40 % 3);
+        o.scale = trial % 2 ? 1.1 : 1;
+        o.redundancy = trial % 5 ? 0.05 : 0;
+        if (trial % 3 == 0)
+            clustered_points(trial, n, p);
+        else
+            integer_points(trial, n, 3 + (uint32_t)(trial % 3), p);
+        brio_status status = brio_power_shape(ctx, p, n, &o, &shape, &crust, NULL);
+        EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !shape && !crust), "trial %d: %s", (int)trial,
+               brio_message(ctx));
+        if (status != BRIO_OK) continue;
+        shapes++;
+        EXPECT(brio_mesh_certificate(ctx, crust, &certificate) == BRIO_OK);
+        EXPECT(certificate.closed && certificate.manifold && certificate.oriented, "trial %d", (int)trial);
+        for (size_t i = 0; i < 3 * shape->num_vertices; i++) EXPECT(isfinite(shape->vertices[i]));
+        brio_certificate_free(&certificate);
+        brio_mesh_free(shape);
+        brio_mesh_free(crust);
+    }
+    EXPECT(shapes > 500, "%d", shapes);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void wrong_options_are_refused(void) {
+    brio_context *ctx = new_context();
+    double p[3 * 60];
+    sphere_points(3, 60, p);
+    for (int kind = 0; kind < 5; kind++) {
+        brio_medial_options o = brio_medial_options_default();
+        brio_mesh *shape;
+        if (kind == 0) o.scale = 0.5;
+        if (kind == 1) o.redundancy = -1;
+        if (kind == 2) o.scale = NAN;
+        if (kind == 3) o.sides = BRIO_MEDIAL_END;
+        if (kind == 4) o.labeling = BRIO_LABELING_END;
+        EXPECT(brio_power_shape(ctx, p, 60, &o, &shape, NULL, NULL) == BRIO_ERR_ARGUMENT && !shape, "%d", kind);
+    }
+    brio_context_free(ctx);
+}
+
+static brio_status small_shape(brio_context *ctx) {
+    double p[3 * 60];
+    brio_mesh *shape, *crust;
+    brio_medial_options o = brio_medial_options_default();
+    sphere_points(3, 60, p);
+    o.redundancy = 0.01;
+    brio_status status = brio_power_shape(ctx, p, 60, &o, &shape, &crust, NULL);
+    brio_mesh_free(shape);
+    brio_mesh_free(crust);
+    return status;
+}
+
+static void every_failed_allocation_is_a_status(void) {
+    expect_clean_failures(small_shape);
+}
+
+int main(void) {
+    RUN(shape_is_the_dual_between_inner_poles);
+    RUN(radii_are_distances_to_samples_and_sides_are_told);
+    RUN(shuffled_samples_give_the_same_shape);
+    RUN(crust_of_all_balls_is_the_power_crust);
+    RUN(cover_is_what_brute_force_finds);
+    RUN(simplification_takes_the_noise_of_a_sphere_away);
+    RUN(poles_of_a_known_box_are_labelled_by_where_they_are);
+    RUN(open_mesh_is_no_solid);
+    RUN(winding_numbers_of_lattice_points_are_right);
+    RUN(winding_numbers_of_a_curved_mesh_are_right);
+    RUN(small_inputs_have_shapes_and_closed_crusts_or_say_so);
+    RUN(wrong_options_are_refused);
+    RUN(every_failed_allocation_is_a_status);
+    return harness_end();
+}
