@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check bench clean
+.PHONY: all demo check bench quality clean
 
 all:
 	@sh scripts/setup.sh build
@@ -25,6 +25,10 @@ bench: all
 	@mkdir -p out
 	/usr/bin/python3 bench/bench.py $(BRIO) build-bench out/bench.csv $(BENCH)
 	/usr/bin/python3 bench/plot.py out/bench.csv out
+
+# Judges the surfaces of every shared set: docs/quality.md, about half an hour. The same figures on every machine.
+quality: all
+	/usr/bin/python3 bench/quality.py $(BRIO) docs/quality.csv docs/quality.md
 
 clean:
 	rm -rf build build-ci build-debug build-sanitize out

@@ -424,17 +424,17 @@ BRIO_API brio_status brio_mesh_subgraph(brio_context *ctx, const brio_mesh *mesh
 
 /** Ways to label the poles of a power crust as inner or outer. */
 typedef enum brio_labeling {
-    BRIO_LABELING_GREEDY = 0,      /* the surest pole first [Choi 2003, figure 3.8] */
-    BRIO_LABELING_NAIVE = 1,       /* breadth first from outside [Choi 2003, section 3.3.3] */
-    BRIO_LABELING_THEORETICAL = 2, /* breadth first from one sample [Choi 2003, appendix B.3] */
-    BRIO_LABELING_GLOBAL = 3,      /* least sum of violated weights, by roof duality [Boros Hammer 2002] */
+    BRIO_LABELING_GLOBAL = 0,      /* least sum of violated weights, by roof duality [Boros Hammer 2002] */
+    BRIO_LABELING_GREEDY = 1,      /* the surest pole first [Choi 2003, figure 3.8] */
+    BRIO_LABELING_NAIVE = 2,       /* breadth first from outside [Choi 2003, section 3.3.3] */
+    BRIO_LABELING_THEORETICAL = 3, /* breadth first from one sample [Choi 2003, appendix B.3] */
     BRIO_LABELING_END
 } brio_labeling;
 
 typedef struct brio_surface_options {
     uint64_t seed;          /* default 1 */
     int triangulate;        /* 1: cut the polygons into triangles; default 0 */
-    brio_labeling labeling; /* default greedy */
+    brio_labeling labeling; /* default global */
     /* A closed mesh in the unit of the points, its vertices being the points or not: poles within it are inner, whatever
        the labeling; default NULL. BRIO_ERR_NO_ANSWER when it is not closed. */
     const brio_mesh *solid;
@@ -461,7 +461,7 @@ typedef struct brio_power_crust_stats {
     size_t confused;            /* poles that had evidence for both labels when they were labelled */
     size_t unreached;           /* naive, theoretical: poles that were left to the greedy labelling */
     size_t open, toggled;       /* global: poles that roof duality left open; poles whose greedy label was changed */
-    double energy_greedy;       /* global: sum of the violated weights of the greedy labels */
+    double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
     double energy;              /* sum of the violated weights of the labels */
     size_t left_out;            /* faces that `open` left out */
     double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds, simplify_seconds;

@@ -161,8 +161,8 @@ static void count_labels(brio_labelled_poles *l) {
 
 typedef brio_status (*label_fn)(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
 
-static const label_fn labellings[BRIO_LABELING_END] = {brio_label_greedy, brio_label_naive, brio_label_theoretical,
-                                                       brio_label_global};
+static const label_fn labellings[BRIO_LABELING_END] = {brio_label_global, brio_label_greedy, brio_label_naive,
+                                                       brio_label_theoretical};
 
 static brio_status label_along_graph(brio_labelled_poles *l, brio_labeling labeling) {
     brio_status status = BRIO_OK;

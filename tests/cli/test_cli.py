@@ -840,7 +840,7 @@ class Json(CliTest):
     def test_options_of_another_surface_method(self):
         for option in [("--theta", "0.3"), ("--boundaries",), ("--density",)]:
             self.usage("cocone", "surface", "a.xyz", "-o", "x.ply", *option)
-        for option in [("--triangulate",), ("--simplify",), ("--labeling", "global"), ("-R", "0.3"), ("--sharp",),
+        for option in [("--triangulate",), ("--simplify",), ("--labeling", "greedy"), ("-R", "0.3"), ("--sharp",),
                        ("--open", "4"), ("--normals", "n.ply")]:
             self.usage("power-crust", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", *option)
         self.usage("pi/2", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", "--theta", "2")
