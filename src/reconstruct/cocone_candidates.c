@@ -23,7 +23,7 @@ void brio_cocones_free(brio_context *ctx, brio_cocones *c) {
 }
 
 /* Whether the Voronoi edge of a facet meets the co-cones of its samples, or of those that are no boundary samples. */
-static bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_t *boundary) {
+static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_t *boundary) {
     const uint32_t *v = c->dual->t.tet[brio_tet_of(facet)].vertex;
     for (int k = 0; k < 3; k++) {
         uint32_t p = v[BRIO_FACET[brio_slot_of(facet)][k]];
