@@ -22,17 +22,20 @@ void brio_cocones_free(brio_context *ctx, brio_cocones *c) {
     *c = (brio_cocones){0};
 }
 
-static bool passes(const brio_cocones *c, uint32_t facet) {
+/* Whether the Voronoi edge of a facet meets the co-cones of its samples, or of those that are no boundary samples. */
+static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_t *boundary) {
     const uint32_t *v = c->dual->t.tet[brio_tet_of(facet)].vertex;
-    int asked = 0;
     for (int k = 0; k < 3; k++) {
         uint32_t p = v[BRIO_FACET[brio_slot_of(facet)][k]];
         if (p == BRIO_INFINITE) return false;
-        if (c->boundary && c->boundary[p]) continue;
-        if (!brio_meets_cocone(c, facet, p)) return false;
-        asked++;
+        if (!(boundary && boundary[p]) && !brio_meets_cocone(c, facet, p)) return false;
     }
-    return asked > 0;
+    return true;
+}
+
+static bool passes(const brio_cocones *c, uint32_t facet) {
+    return meets_all(c, facet, c->boundary) &&
+           (!c->boundary || !brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
 }
 
 static inline void mark(const brio_cocones *c, uint32_t facet) {

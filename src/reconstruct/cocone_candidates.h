@@ -15,9 +15,8 @@ typedef struct {
 brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, brio_cocones *out);
 void brio_cocones_free(brio_context *ctx, brio_cocones *c);
 
-/** Finds the candidates, once: the facets whose dual Voronoi edge meets
- *  the co-cone of each of their samples that take part, which at least one does.
- *  count  receives the number of candidates. */
+/** Finds the candidates, once: the facets whose dual Voronoi edge meets the co-cone of each of their samples that take
+ *  part or, where none does, of each of their samples.   count  receives the number of candidates. */
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count);
 
 /** Whether the Voronoi edge of facet `slot` of a tetrahedron meets the co-cone of its sample v: unless both ends lie in
@@ -28,6 +27,16 @@ static inline bool brio_meets_cocone(const brio_cocones *c, uint32_t facet, uint
     int a = brio_side_of(c->dual, here, brio_slot_of_vertex(tet[here].vertex, v));
     int b = brio_side_of(c->dual, there, brio_slot_of_vertex(tet[there].vertex, v));
     return a != b || a == BRIO_SIDE_COCONE;
+}
+
+/** Whether all samples of a facet are boundary samples. */
+static inline bool brio_is_among_boundary(const brio_cocones *c, uint32_t facet) {
+    const uint32_t *v = c->dual->t.tet[brio_tet_of(facet)].vertex;
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = v[BRIO_FACET[brio_slot_of(facet)][k]];
+        if (!c->boundary || (p != BRIO_INFINITE && !c->boundary[p])) return false;
+    }
+    return true;
 }
 
 static inline bool brio_is_candidate(const brio_cocones *c, uint32_t facet) {

@@ -24,7 +24,8 @@ COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float3
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate",
                  "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify"],
-    "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--simplify", "--labeling",
+    "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
+                "--labeling",
                 "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
     "medial": ["--sides", "--labeling", "--simplify", "--scale", "--redundancy", "--crust", "--sampling-density",
                "--sharp"],
@@ -796,6 +797,15 @@ class Json(CliTest):
             self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
         bounded = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--boundaries")
         self.assertLess(bounded["boundary_samples"], 100)
+        pieces = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--pieces", "4")
+        self.assertEqual((pieces["faces"], pieces["unmatched"]), (3996, 0))
+        self.assertGreaterEqual(pieces["pieces"], 4)
+
+    def test_theta_without_a_guarantee_warns(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        for theta, warns in (("0.25", True), ("0.26", False)):
+            done = self.expect(0, "surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--theta", theta)
+            self.assertEqual("no guarantee holds" in done.err, warns)
 
     def test_labelings(self):
         points = self.cloud("a.ply", 2000, "sphere")
@@ -838,7 +848,7 @@ class Json(CliTest):
         self.expect(0, "check", twice)
 
     def test_options_of_another_surface_method(self):
-        for option in [("--theta", "0.3"), ("--boundaries",), ("--density",)]:
+        for option in [("--theta", "0.3"), ("--boundaries",), ("--density",), ("--pieces", "3")]:
             self.usage("cocone", "surface", "a.xyz", "-o", "x.ply", *option)
         for option in [("--triangulate",), ("--simplify",), ("--labeling", "greedy"), ("-R", "0.3"), ("--sharp",),
                        ("--open", "4"), ("--normals", "n.ply")]:

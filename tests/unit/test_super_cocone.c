@@ -80,7 +80,7 @@ static void order_of_samples_and_duplicates_change_nothing(void) {
 }
 
 static void anything_is_manifold_oriented(void) {
-    static double p[3 * 600];
+    static double p[3 * 700];
     brio_context *ctx = new_context();
     int surfaces = 0;
     brio_context_set_threads(ctx, 1);
