@@ -160,6 +160,7 @@ static brio_status insert_all(brio_kernel *k, const brio_options *options) {
             for (size_t q = p; q < end; q++) BRIO_TRY(brio_kernel_insert(k, (uint32_t)q));
         }
     }
+    if (k->locator->free) k->locator->free(k); /* the sort needs the room */
     status = brio_progress(k->ctx, "insert", 1);
 done:
     return status;

@@ -259,6 +259,33 @@ static void segments_enter_what_they_cross(void) {
 
 /* --- tracing --- */
 
+/* Inserts all points in their order, tracing the chain of points from `first` on; lists how many were in when something
+ * was traced. */
+static size_t list_tracings(uint32_t first, uint32_t tracings[8]) {
+    brio_context *ctx = new_context();
+    brio_kernel k;
+    brio_options o = strategy(BRIO_LOCATE_TRACE);
+    size_t count = 0;
+    for (uint32_t i = first; i + 1 < N; i++) edges[2 * (i - first)] = i, edges[2 * (i - first) + 1] = i + 1;
+    o.num_edges = N - 1 - first;
+    uniform_points(1, N, points);
+    kernel_begin(&k, ctx, points, NULL, N, &o);
+    for (uint32_t p = (uint32_t)k.dimension + 1; p < N; p++) {
+        uint64_t before = k.stats.trace_intersections;
+        kernel_insert(&k, p, p + 1);
+        if (k.stats.trace_intersections > before && count < 8) tracings[count++] = p;
+    }
+    brio_kernel_free(&k);
+    brio_context_free(ctx);
+    return count;
+}
+
+static void edges_are_traced_when_so_many_points_are_in(void) {
+    uint32_t tracings[8], expected[2] = {(uint32_t)ceil(N / log(N)), (uint32_t)ceil(N / log(log(N)))};
+    EXPECT(list_tracings(0, tracings) == 2 && !memcmp(tracings, expected, sizeof expected));
+    EXPECT(list_tracings(N - 50, tracings) == 2 && !memcmp(tracings, expected, sizeof expected), "none was a vertex");
+}
+
 /* The corners of a tetrahedron; false when one is infinite. */
 static bool corners_of(const brio_tetrahedron *tet, const double *corner[4]) {
     for (int i = 0; i < 4; i++) corner[i] = points + 3 * (size_t)tet->vertex[i];
@@ -496,6 +523,7 @@ int main(void) {
     RUN(history_searches_find_what_brute_force_finds);
     RUN(segments_lead_to_their_ends);
     RUN(segments_enter_what_they_cross);
+    RUN(edges_are_traced_when_so_many_points_are_in);
     RUN(edges_end_in_the_regions_of_the_triangles_they_cross);
     RUN(tracing_is_linear_on_a_sphere);
     RUN(few_points_are_answered);
