@@ -120,25 +120,27 @@ def growth_row(bench, mesh):
             per_point(neighbour, 'walk_steps')]
 
 
-GROWTH_PLOT = '''set terminal svg size 1100,420 background "white"
+GROWTH_PLOT = '''set terminal svg size 1300,420 background "white"
 set output "%s"
-set multiplot layout 1,2
+set multiplot layout 1,3
 set logscale x
 set format x "10^{%%L}"
 set xlabel "points"
 set yrange [0:*]
 set grid
-set key top left
-set title "nodes of the history DAG held against a point"
-plot $conforming using 1:2 with linespoints lc 1 title "history, one path", \\
-     $conforming using 1:3 with linespoints lc 2 title "traced, one path", \\
-     $conforming using 1:4 with linespoints lc 3 title "history, all conflicts", \\
-     $conforming using 1:5 with linespoints lc 4 title "traced, all conflicts"
+set key top left Left reverse
+set title "history DAG: nodes held against a point, one path"
+plot $conforming using 1:2 with linespoints lw 2 lc 1 title "history alone", \\
+     $conforming using 1:3 with linespoints lw 2 lc 2 title "traced"
+set title "the same, all conflicts"
+plot $conforming using 1:4 with linespoints lw 2 lc 1 title "history alone", \\
+     $conforming using 1:5 with linespoints lw 2 lc 2 title "traced"
 set title "tetrahedra entered for a point"
-plot $conforming using 1:6 with linespoints lc 5 title "all tracings, Delaunay triangles", \\
-     $marching using 1:6 with linespoints lc 6 title "all tracings, other triangles", \\
-     $conforming using 1:7 with linespoints lc 7 title "walks, BRIO order", \\
-     $conforming using 1:8 with linespoints lc 8 title "walks from neighbours, BRIO order"
+set yrange [0:10]
+plot $conforming using 1:6 with linespoints lw 2 lc 2 title "all tracings, triangles Delaunay", \\
+     $marching using 1:6 with linespoints lw 2 lc 3 title "all tracings, triangles not all Delaunay", \\
+     $conforming using 1:7 with linespoints lw 2 lc 7 title "walks, BRIO order", \\
+     $conforming using 1:8 with linespoints lw 2 lc 8 title "walks from neighbours, BRIO order"
 unset multiplot
 '''
 
