@@ -141,8 +141,8 @@ typedef enum brio_order {
 
 /** How a point finds its tetrahedron. All give the same tetrahedra; those other than the walk work on one thread.
  *  Points that edges do not reach are located as by BRIO_LOCATE_HISTORY (trace) or BRIO_LOCATE_WALK (neighbour).
- *  Memory beyond the walk's: jump and neighbour 4 bytes a point, neighbour and trace 8 an edge, the hierarchy about 6 a
- *  point, history and trace 20 for every tetrahedron that is ever created and 4 for every one that is. */
+ *  Memory beyond the walk's, in bytes a point: jump 4, hierarchy about 17, neighbour 8, trace 16, the last two 8 an
+ *  edge besides; history and trace also 20 for every tetrahedron that is ever created and 4 for every one there is. */
 typedef enum brio_location {
     BRIO_LOCATE_WALK = 0,  /* from the point inserted last [Devillers Pion Teillaud 2002] */
     BRIO_LOCATE_JUMP,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
