@@ -22,9 +22,8 @@
 #define GLOBAL_BYTES_A_POINT   600.0  /* more: the flow of anchor_scan takes 570, of the bunny 300 */
 #define SIMPLIFY_BYTES_A_POINT 1700.0 /* more: bunny 1,570, fandisk 1,700 */
 #define SUBDIVIDE_BYTES_A_FACE 78.0
-#define HISTORY_BYTES_A_POINT  700.0
-#define LOCATION_BYTES_A_POINT 8.0
-#define EDGE_BYTES_A_CORNER    8.0
+#define LOCATION_BYTES_A_POINT 8.0 /* of the others, and of what goes along edges, beside the next */
+#define EDGE_BYTES_A_CORNER    8.0 /* an edge has two corners, and takes 8 bytes as a pair and 8 in the graph */
 #define INFO_BYTES_A_POINT     6.0 /* the hash table of duplicates */
 
 double cli_mesh_bytes(const brio_mesh *mesh) {

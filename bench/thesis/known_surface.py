@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""known_surface.py BRIO FOLDER [--map FILE] [--runs N] [--only PART ...]: the Delaunay triangulation of a known surface.
+"""known_surface.py BRIO FOLDER [--map FILE] [--runs N] [--only PART ...] [--levels L ...]
+
+The Delaunay triangulation of a known surface, by the strategies of chapter 4.
 
 PART is one of
     growth   what a point costs against the number of points, located by the history DAG alone, by tracing, by walks:
              counts, on the iso-surface of a chain of atoms at several resolutions -> FOLDER/known_surface.svg
     shares   how many triangles and edges of meshes are Delaunay, and what tracing them costs
-    times    seconds of the strategies on the butterfly subdivisions of the map's iso-surface, as the thesis made its
-             sets B-1 and B-2: the runs alternate, and each ratio is that of the medians
+    times    the processor's seconds of the strategies on the butterfly subdivisions of the map's iso-surface, as the
+             thesis made its sets B-1 and B-2: the runs alternate, and each ratio is that of the medians
 
 Tables go to standard output and, as they are, to FOLDER/known_surface.md. FILE is a CCP4 map; without it `shares` and
 `times` use the chain of atoms, too. Debian's numpy is needed for `shares`, gnuplot for the plot."""
@@ -15,6 +17,7 @@ import json
 import math
 import os
 import random
+import resource
 import shutil
 import statistics
 import subprocess
@@ -52,8 +55,13 @@ class Bench:
         return os.path.join(self.folder, name)
 
     def run(self, *arguments):
+        """The facts of a run on one thread, with the processor's seconds as `cpu`."""
         command = [self.brio, *arguments, '--json', '--quiet', '--threads', '1']
-        return json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True, text=True).stdout)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        facts = json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True, text=True).stdout)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        facts['cpu'] = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        return facts
 
     def delaunay(self, mesh, *arguments):
         return self.run('delaunay', self.path(mesh), '--locate', *arguments)
@@ -112,25 +120,27 @@ def growth_row(bench, mesh):
             per_point(neighbour, 'walk_steps')]
 
 
-GROWTH_PLOT = '''set terminal svg size 1100,420 background "white"
+GROWTH_PLOT = '''set terminal svg size 1300,420 background "white"
 set output "%s"
-set multiplot layout 1,2
+set multiplot layout 1,3
 set logscale x
 set format x "10^{%%L}"
 set xlabel "points"
 set yrange [0:*]
 set grid
-set key top left
-set title "nodes of the history DAG held against a point"
-plot $conforming using 1:2 with linespoints lc 1 title "history, one path", \\
-     $conforming using 1:3 with linespoints lc 2 title "traced, one path", \\
-     $conforming using 1:4 with linespoints lc 3 title "history, all conflicts", \\
-     $conforming using 1:5 with linespoints lc 4 title "traced, all conflicts"
+set key top left Left reverse
+set title "history DAG: nodes held against a point, one path"
+plot $conforming using 1:2 with linespoints lw 2 lc 1 title "history alone", \\
+     $conforming using 1:3 with linespoints lw 2 lc 2 title "traced"
+set title "the same, all conflicts"
+plot $conforming using 1:4 with linespoints lw 2 lc 1 title "history alone", \\
+     $conforming using 1:5 with linespoints lw 2 lc 2 title "traced"
 set title "tetrahedra entered for a point"
-plot $conforming using 1:6 with linespoints lc 5 title "all tracings, Delaunay triangles", \\
-     $marching using 1:6 with linespoints lc 6 title "all tracings, other triangles", \\
-     $conforming using 1:7 with linespoints lc 7 title "walks, BRIO order", \\
-     $conforming using 1:8 with linespoints lc 8 title "walks from neighbours, BRIO order"
+set yrange [0:10]
+plot $conforming using 1:6 with linespoints lw 2 lc 2 title "all tracings, triangles Delaunay", \\
+     $marching using 1:6 with linespoints lw 2 lc 3 title "all tracings, triangles not all Delaunay", \\
+     $conforming using 1:7 with linespoints lw 2 lc 7 title "walks, BRIO order", \\
+     $conforming using 1:8 with linespoints lw 2 lc 8 title "walks from neighbours, BRIO order"
 unset multiplot
 '''
 
@@ -222,29 +232,31 @@ def shares(bench, report):
 
 # --- times
 
+STAGES = ['subgraph', 'order', 'insert']
+
+
 def times_of(bench, mesh, runs):
-    """The seconds of order, subgraph and insertion for each strategy, a list of runs each."""
+    """For each strategy a list of runs: the processor's seconds of the process, and the clock's of the stages."""
     seconds = {name: [] for name in STRATEGIES}
     for run in range(runs):
         for name, arguments in STRATEGIES.items():
             facts = bench.delaunay(mesh, *arguments)
-            seconds[name].append([facts['seconds'].get(stage, 0) for stage in ('subgraph', 'order', 'insert')])
-            print('times: %s, run %d, %s: %.2f' % (mesh, run + 1, name, sum(seconds[name][-1])), file=sys.stderr,
-                  flush=True)
+            seconds[name].append([facts['cpu']] + [facts['seconds'].get(stage, 0) for stage in STAGES])
+            print('times: %s, run %d, %s: %.2f' % (mesh, run + 1, name, facts['cpu']), file=sys.stderr, flush=True)
     return facts['points'], seconds
 
 
-def times(bench, report, runs):
-    for levels in (1, 2):
+def times(bench, report, runs, all_levels):
+    for levels in all_levels:
         points, seconds = times_of(bench, bench.subdivided(levels), runs)
-        total = {name: [sum(run) for run in lists] for name, lists in seconds.items()}
-        walk = statistics.median(total['walk'])
-        report.line('%d points (subdivided %s), seconds of one thread, medians of %d alternating runs:\n'
-                    % (points, ['once', 'twice'][levels - 1], runs))
-        report.table(['strategy', 'subgraph', 'order', 'insert', 'together', 'least', 'ratio to the walk'],
-                     [[name] + ['%.2f' % statistics.median(run[i] for run in seconds[name]) for i in range(3)] +
-                      ['%.2f' % statistics.median(total[name]), '%.2f' % min(total[name]),
-                       '%.2f' % (statistics.median(total[name]) / walk)] for name in STRATEGIES])
+        cpu = {name: statistics.median(run[0] for run in lists) for name, lists in seconds.items()}
+        report.line('%d points (subdivided %d times), one thread, medians of %d alternating runs. Processor: seconds of the '
+                    'process, reading and checksum included; the stages are by the clock.\n'
+                    % (points, levels, runs))
+        report.table(['strategy', 'processor', 'ratio to the walk'] + STAGES,
+                     [[name, '%.2f' % cpu[name], '%.2f' % (cpu[name] / cpu['walk'])] +
+                      ['%.2f' % statistics.median(run[i + 1] for run in seconds[name]) for i in range(3)]
+                      for name in STRATEGIES])
 
 
 def main():
@@ -253,6 +265,7 @@ def main():
     parser.add_argument('folder')
     parser.add_argument('--map')
     parser.add_argument('--runs', type=int, default=3)
+    parser.add_argument('--levels', type=int, nargs='*', default=[1, 2], help='of subdivision, for times')
     parser.add_argument('--only', nargs='*', default=['growth', 'shares', 'times'])
     options = parser.parse_args()
     os.makedirs(options.folder, exist_ok=True)
@@ -260,7 +273,7 @@ def main():
     report = Report(bench.path('known_surface.md'))
     if 'growth' in options.only: growth(bench, report)
     if 'shares' in options.only: shares(bench, report)
-    if 'times' in options.only: times(bench, report, options.runs)
+    if 'times' in options.only: times(bench, report, options.runs, options.levels)
 
 
 main()

@@ -36,12 +36,11 @@ static const double LEAST_SHARE = 1.0 / 1024;
 /* The facets of a positive tetrahedron, seen counterclockwise from outside it; facet i is opposite to vertex i. */
 static const uint8_t FACET[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-typedef enum { OUTSIDE, INSIDE, NO_CELL } tet_side;
+typedef enum { OUTSIDE, INSIDE, BEYOND } tet_side; /* beyond the slab */
 
 /* A point of a slab: a corner of its cells, or a vertex on one of their edges. */
 typedef struct {
     uint32_t vertex; /* NONE for a corner */
-    uint32_t at[3];  /* twice the number of the node along each axis; one more between it and the next */
     bool inside;     /* of a corner */
 } site;
 
@@ -99,7 +98,7 @@ static brio_status add_corner(slab *s, const uint32_t node[3], uint32_t lowest) 
     uint32_t side = node[2] - lowest, *slot = &s->side[side].node_site[i];
     double p[3];
     if (*slot != NONE) return BRIO_OK;
-    site corner = {NONE, {2 * node[0], 2 * node[1], 2 * node[2]}, s->side[side].value[i] < 0};
+    site corner = {NONE, s->side[side].value[i] < 0};
     brio_implicit_node(s->grid, node, p);
     return add_site(s, &corner, p, slot);
 }
@@ -134,8 +133,7 @@ static brio_status add_crossing(slab *s, const uint32_t node[3], uint32_t axis, 
     uint32_t *vertex = &s->side[side].edge_vertex[AXES * i + axis], *slot = &s->side[side].edge_site[AXES * i + axis];
     if (*slot != NONE || (value < 0) == (next_value < 0)) return BRIO_OK;
     if (*vertex == NONE) BRIO_TRY(add_vertex(s, node, axis, value, next_value, vertex));
-    site crossing = {.vertex = *vertex, .at = {2 * node[0], 2 * node[1], 2 * node[2]}};
-    crossing.at[axis]++;
+    site crossing = {.vertex = *vertex};
     BRIO_TRY(add_site(s, &crossing, s->vertices + 3 * (size_t)*vertex, slot));
 done:
     return status;
@@ -171,23 +169,10 @@ done:
 
 /* --- labels --- */
 
-/* Whether the sites of a tetrahedron are all on one cell. Along each axis a cell spans two from an even number. */
-static bool is_in_cell(const slab *s, const uint32_t *v) {
-    for (int k = 0; k < 3; k++) {
-        uint32_t low = UINT32_MAX, high = 0;
-        for (int i = 0; i < 4; i++) {
-            uint32_t at = s->sites[v[i]].at[k];
-            if (at < low) low = at;
-            if (at > high) high = at;
-        }
-        if (high > (low & ~UINT32_C(1)) + 2) return false;
-    }
-    return true;
-}
-
+/* Of tetrahedra between cells that the surface does not pass, which have corners only, the side does not matter. */
 static tet_side side_of(const slab *s, const uint32_t *v) {
     double centroid[3] = {0};
-    if (v[3] == BRIO_INFINITE || !is_in_cell(s, v)) return NO_CELL;
+    if (v[3] == BRIO_INFINITE) return BEYOND;
     for (int i = 0; i < 4; i++) {
         const site *corner = &s->sites[v[i]];
         if (corner->vertex == NONE) return corner->inside ? INSIDE : OUTSIDE;
@@ -230,7 +215,7 @@ static brio_status take_boundary(slab *s, const brio_triangulation *t) {
         for (int f = 0; s->label[i] == INSIDE && f < 4; f++) {
             tet_side beyond = (tet_side)s->label[tet[i].mate[f] / 4];
             if (beyond == INSIDE || !is_of_vertices(s, tet[i].vertex, f)) continue;
-            BRIO_TRY(add_facet(s, tet[i].vertex, f, beyond == NO_CELL));
+            BRIO_TRY(add_facet(s, tet[i].vertex, f, beyond == BEYOND));
         }
 done:
     return status;
