@@ -81,6 +81,13 @@ done:
     return status;
 }
 
+static brio_status require_memory(run *r, const brio_mesh *mesh, const double *weights) {
+    triangulation_size size;
+    brio_status status = cli_sample_size(r, mesh, weights, &size);
+    if (status != BRIO_OK) return status;
+    return cli_require_memory(r, cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size));
+}
+
 static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh, const double *weights,
                                brio_triangulation **out) {
     brio_options o = brio_options_default();
@@ -181,8 +188,8 @@ static brio_status delaunay(run *r) {
     TRY(check_arguments(r, a));
     TRY(cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
-    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted)));
     TRY(cli_weights(r, &a->weights, mesh, &weights));
+    if (cli_limits_memory(r)) TRY(require_memory(r, mesh, weights));
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));
     TRY(report_stats(r, mesh, t, weighted));
