@@ -112,7 +112,6 @@ static bool store(option_parse *parse, const option *row, void *field, const cha
     case OPTION_CHOICE:
         return parse_choice(parse, row, text, field);
     case OPTION_FLAG:
-    case OPTION_LATER:
     case OPTION_END:
         break;
     }
@@ -172,7 +171,6 @@ static bool take(option_parse *parse, int argc, char **argv, int *i) {
         if (argument[2]) value = argument + 2;
     }
     if (!f.row) return unknown(parse, argument);
-    if (f.row->kind == OPTION_LATER) return wrong(parse, "--%s: not available in this version", f.row->name);
     if (f.row->kind == OPTION_FLAG) {
         if (value) return wrong(parse, "--%s takes no value", f.row->name);
         *(bool *)f.field = true;
@@ -221,7 +219,6 @@ void cli_print_options(FILE *out, const option_group *group) {
     enum { COLUMN = 28 };
     fprintf(out, "\n%s:\n", group->title);
     for (const option *row = group->rows; row->kind; row++) {
-        if (row->kind == OPTION_LATER) continue;
         char left[128];
         const char letter[] = {'-', row->letter, ',', ' ', 0};
         snprintf(left, sizeof left, "%s--%s %s", row->letter ? letter : "", row->name, row->value ? row->value : "");

@@ -130,7 +130,9 @@ typedef struct {
     uint32_t vertex[4], mate[4];
 } brio_tetrahedron;
 
-/** Insertion orders. All give the same tetrahedra. */
+/** Insertion orders. All give the same tetrahedra. Several threads insert together except with RANDOM and INPUT, which
+ *  follow no path through space. Workspace, bytes a point, given back before the insertion: BRIO, HILBERT and
+ *  RANDOM 16, BRIO_OCTREE 5, BRIO_KDTREE 20, OCTREE 4, INPUT none. */
 typedef enum brio_order {
     BRIO_ORDER_BRIO = 0,    /* random rounds, Hilbert curve inside a round: the tuned one [Amenta Choi Rote 2003] */
     BRIO_ORDER_HILBERT = 1, /* one round */
@@ -159,9 +161,9 @@ typedef enum brio_location {
 
 typedef struct brio_options {
     brio_order order;
-    double round_ratio; /* share of the points left for the rounds before the last, in (0, 1); default 0: the order's
-                                own, 1/8 of BRIO_ORDER_BRIO and 1/2 of the thesis' orders */
-    uint64_t seed;      /* every random choice follows from it; default 1 */
+    double round_ratio;      /* share of the points left for the rounds before the last, below 1; default 0: the
+                                order's own, 1/8 for BRIO and 1/2 for BRIO_OCTREE and BRIO_KDTREE */
+    uint64_t seed;           /* every random choice follows from it; default 1 */
     uint32_t max_tetrahedra; /* finite and infinite ones at any time; default (and most) 2^30 */
     size_t block_size;       /* most points of an octree or k-d tree block; default 0: 2,000 */
     uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;

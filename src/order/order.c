@@ -18,15 +18,20 @@
 
 enum { POINTS_A_THREAD = 1 << 14, BLOCK_SIZE = 2000 };
 
-/* An order in the making: `index` receives the points in the order of the curve or of the blocks. */
+/* An order in the making. */
 typedef struct {
     brio_context *ctx;
     const double *points;
     size_t n;
     const brio_options *options;
     int threads;
-    uint32_t *index, *spare;
+    uint32_t *index; /* receives the points in the order of the curve or of the blocks; NULL until room is needed */
+    uint32_t *spare; /* room for n indices, or NULL */
 } maker;
+
+static brio_status need_room(const maker *m, uint32_t **indices) {
+    return *indices ? BRIO_OK : BRIO_ALLOC(m->ctx, *indices, m->n);
+}
 
 static bool has_rounds(brio_order order) {
     return order == BRIO_ORDER_BRIO || order == BRIO_ORDER_BRIO_OCTREE || order == BRIO_ORDER_BRIO_KDTREE;
@@ -43,7 +48,7 @@ static double ratio_of(const brio_options *options) {
 
 /* --- items: by a key --- */
 
-static brio_status order_items(const maker *m) {
+static brio_status order_items(maker *m) {
     brio_status status = BRIO_OK;
     uint64_t *items = NULL, *spare = NULL, seed = m->options->seed;
     bool random = m->options->order == BRIO_ORDER_RANDOM;
@@ -56,6 +61,9 @@ static brio_status order_items(const maker *m) {
         BRIO_TRY(brio_sort_items(m->ctx, items, spare, m->n, 32, m->threads));
     else
         BRIO_TRY(brio_sort_along_curve(m->ctx, m->points, items, spare, m->n, m->threads));
+    brio_release(m->ctx, spare);
+    spare = NULL;
+    BRIO_TRY(need_room(m, &m->index));
     for (size_t i = 0; i < m->n; i++) m->index[i] = (uint32_t)items[i];
 done:
     brio_release(m->ctx, items);
@@ -75,17 +83,21 @@ static void shuffle_block(uint32_t *index, const brio_block *block, const void *
     }
 }
 
-static brio_status order_blocks(const maker *m) {
+static brio_status order_blocks(maker *m) {
     size_t block_size = m->options->block_size ? m->options->block_size : BLOCK_SIZE;
+    brio_status status = need_room(m, &m->index);
+    if (status != BRIO_OK) return status;
     if (m->options->order == BRIO_ORDER_BRIO_KDTREE)
         return brio_kdtree_blocks(m->ctx, m->points, m->n, block_size, m->threads, m->index, shuffle_block, m->options);
+    status = need_room(m, &m->spare);
+    if (status != BRIO_OK) return status;
     return brio_octree_blocks(m->ctx, m->points, m->n, block_size, m->threads, m->index, m->spare, shuffle_block,
                               m->options);
 }
 
 /* --- all of them --- */
 
-static brio_status order_index(const maker *m) {
+static brio_status order_index(maker *m) {
     switch (m->options->order) {
     case BRIO_ORDER_BRIO_OCTREE:
     case BRIO_ORDER_BRIO_KDTREE:
@@ -103,20 +115,19 @@ brio_status brio_order_points(brio_context *ctx, const double *points, size_t n,
                               uint32_t *order, uint32_t *rank, brio_round_ends *rounds) {
     brio_status status = BRIO_OK;
     brio_round_ends ends = {1, {n}};
-    uint32_t *other = NULL;
     int most = brio_context_threads(ctx);
     int threads = n / POINTS_A_THREAD < (size_t)most ? (int)(n / POINTS_A_THREAD) + 1 : most;
-    if (has_rounds(options->order)) {
-        BRIO_TRY(BRIO_ALLOC(ctx, other, n));
-        BRIO_TRY(order_index(&(maker){ctx, points, n, options, threads, other, order}));
-        BRIO_TRY(brio_divide_into_rounds(ctx, other, n, ratio_of(options), options->seed, threads, order, rank, &ends));
-    } else {
-        if (options->order == BRIO_ORDER_OCTREE) BRIO_TRY(BRIO_ALLOC(ctx, other, n));
-        BRIO_TRY(order_index(&(maker){ctx, points, n, options, threads, order, other}));
+    bool in_rounds = has_rounds(options->order);
+    maker m = {ctx, points, n, options, threads, in_rounds ? NULL : order, in_rounds ? order : NULL};
+    BRIO_TRY(order_index(&m));
+    if (in_rounds)
+        BRIO_TRY(
+            brio_divide_into_rounds(ctx, m.index, n, ratio_of(options), options->seed, threads, order, rank, &ends));
+    else
         for (size_t i = 0; rank && i < n; i++) rank[i] = (uint32_t)i;
-    }
     if (rounds) *rounds = ends;
 done:
-    brio_release(ctx, other);
+    if (m.index != order) brio_release(ctx, m.index);
+    if (m.spare != order) brio_release(ctx, m.spare);
     return status;
 }

@@ -171,6 +171,24 @@ static void rounds_shrink_by_the_ratio(void) {
     brio_context_free(ctx);
 }
 
+/* The round is the point's own: orders of the same ratio agree on it. */
+static void round_follows_from_the_index(void) {
+    static uint8_t round_of[MOST];
+    brio_round_ends rounds;
+    brio_context *ctx = new_context();
+    uniform_points(3, MOST, points);
+    for (int kind = BRIO_ORDER_BRIO_OCTREE; kind <= BRIO_ORDER_BRIO_KDTREE; kind++) {
+        brio_options o = options_of(kind, 0);
+        EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
+        for (size_t i = 0, r = 0; i < MOST; i++) {
+            while (i >= rounds.end[r]) r++;
+            EXPECT(kind == BRIO_ORDER_BRIO_OCTREE || round_of[order[i]] == r);
+            round_of[order[i]] = (uint8_t)r;
+        }
+    }
+    brio_context_free(ctx);
+}
+
 static void ranks_rise_inside_rounds(void) {
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
@@ -275,15 +293,48 @@ static void octree_blocks_are_cells_depth_first(void) {
     }
 }
 
-/* Whether a plane across an axis has index_of[begin, middle) on one side and index_of[middle, end) on the other. */
+typedef struct {
+    double low, high;
+} interval;
+
+/* Of coordinate c of the points index_of[begin, end). */
+static interval extent(size_t begin, size_t end, size_t c) {
+    interval e = {INFINITY, -INFINITY};
+    for (size_t i = begin; i < end; i++) {
+        double x = points[3 * (size_t)index_of[i] + c];
+        e.low = fmin(e.low, x), e.high = fmax(e.high, x);
+    }
+    return e;
+}
+
+static double longest_side(size_t begin, size_t end) {
+    double side = 0;
+    for (size_t c = 0; c < 3; c++) side = fmax(side, extent(begin, end, c).high - extent(begin, end, c).low);
+    return side;
+}
+
+/* Whether a plane across the longest side has index_of[begin, middle) on one side and index_of[middle, end) on the
+ * other. */
 static bool plane_between(size_t begin, size_t middle, size_t end) {
+    double side = longest_side(begin, end);
     for (size_t c = 0; c < 3; c++) {
-        double below = -INFINITY, above = INFINITY;
-        for (size_t i = begin; i < middle; i++) below = fmax(below, points[3 * (size_t)index_of[i] + c]);
-        for (size_t i = middle; i < end; i++) above = fmin(above, points[3 * (size_t)index_of[i] + c]);
-        if (below <= above) return true;
+        interval a = extent(begin, middle, c), b = extent(middle, end, c);
+        if (b.high - a.low >= 0.999999 * side && a.high <= b.low) return true;
     }
     return false;
+}
+
+/* A cluster is divided as the whole is, however small it is: its blocks are cells of its own cube. */
+static void octree_divides_clusters(void) {
+    enum { N = 5000 };
+    for (int bits = 20; bits <= 50; bits += 15) {
+        double size = ldexp(1, -bits);
+        uniform_points(6, N, points);
+        for (size_t i = 0; i < 3 * (N - 10); i++) points[i] = 1 + points[i] * size;
+        make_blocks(true, N, 200);
+        for (size_t b = 0; b < N; b = blocks[b].end)
+            if (blocks[b].end - b > 10) EXPECT(longest_side(b, blocks[b].end) <= 0.5 * size, "block at %zu", b);
+    }
 }
 
 static void expect_halves(size_t begin, size_t end) {
@@ -359,10 +410,12 @@ int main(void) {
     RUN(seed_decides_every_random_choice);
     RUN(refused_memory_is_a_status);
     RUN(rounds_shrink_by_the_ratio);
+    RUN(round_follows_from_the_index);
     RUN(ranks_rise_inside_rounds);
     RUN(rounds_follow_the_curve);
     RUN(blocks_are_never_too_large);
     RUN(octree_blocks_are_cells_depth_first);
+    RUN(octree_divides_clusters);
     RUN(kdtree_cells_are_halved_by_planes);
     RUN(rounds_visit_blocks_in_turn);
     RUN(octree_work_is_linear);
