@@ -81,11 +81,12 @@ done:
     return status;
 }
 
-static brio_status require_memory(run *r, const brio_mesh *mesh, const double *weights) {
+static brio_status require_memory(run *r, const arguments *a, const brio_mesh *mesh, const double *weights) {
     triangulation_size size;
     brio_status status = cli_sample_size(r, mesh, weights, &size);
     if (status != BRIO_OK) return status;
-    return cli_require_memory(r, cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size));
+    return cli_require_memory(r, cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size) +
+                                     cli_location_bytes(mesh->num_vertices, (brio_location)a->locate));
 }
 
 static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh, const double *weights,
@@ -189,7 +190,7 @@ static brio_status delaunay(run *r) {
     TRY(cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
     TRY(cli_weights(r, &a->weights, mesh, &weights));
-    if (cli_limits_memory(r)) TRY(require_memory(r, mesh, weights));
+    if (cli_limits_memory(r)) TRY(require_memory(r, a, mesh, weights));
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));
     TRY(report_stats(r, mesh, t, weighted));

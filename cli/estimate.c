@@ -23,6 +23,9 @@
 #define THREADS_BYTES_A_POINT       4.0
 #define THREADS_BYTES_A_TETRAHEDRON 1.25
 
+/* More: 300,000 points of a scan peak at 892 bytes a point resident, 322 by the walk. */
+#define HISTORY_BYTES_A_POINT 570.0
+
 /* Measured: raw scans take 1,250 to 1,290 bytes a sample, models 1,430 to 1,590; the co-cone 800, and 650 to 760. */
 #define CRUST_BYTES_A_POINT    1400.0
 #define COCONE_BYTES_A_POINT   730.0
@@ -54,6 +57,11 @@ double cli_delaunay_bytes(const brio_mesh *mesh, bool weighted, int threads, con
     double sort = SORT_BYTES_A_POINT * points + SORT_BYTES_A_TETRAHEDRON * size->tetrahedra;
     if (threads > 1) sort += THREADS_BYTES_A_TETRAHEDRON * size->tetrahedra;
     return PROGRAM + input + (threads > 1 ? THREADS_BYTES_A_POINT * points : 0) + larger(insert, sort);
+}
+
+double cli_location_bytes(size_t points, brio_location locate) {
+    bool history = locate == BRIO_LOCATE_HISTORY || locate == BRIO_LOCATE_TRACE;
+    return history ? HISTORY_BYTES_A_POINT * (double)points : 0;
 }
 
 double cli_crust_bytes(const brio_mesh *mesh) {

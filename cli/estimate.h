@@ -12,6 +12,9 @@ double cli_mesh_bytes(const brio_mesh *mesh);
 /** Of `brio delaunay`, for a triangulation of that size. */
 double cli_delaunay_bytes(const brio_mesh *mesh, bool weighted, int threads, const triangulation_size *size);
 
+/** Bytes that a strategy of point location takes besides, where they are more than a few. */
+double cli_location_bytes(size_t points, brio_location locate);
+
 /** Of `brio surface`: a power crust, or a co-cone. */
 double cli_crust_bytes(const brio_mesh *mesh);
 double cli_cocone_bytes(const brio_mesh *mesh);

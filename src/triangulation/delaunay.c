@@ -173,6 +173,7 @@ static brio_status insert_all(brio_kernel *k, const brio_options *options, brio_
         }
         BRIO_TRY(brio_recorder_note(recorder, k, end));
     }
+    if (k->locator->free) k->locator->free(k); /* the sort needs the room */
     status = brio_progress(k->ctx, "insert", 1);
 done:
     return status;

@@ -5,8 +5,8 @@
  * destroyed infinite tetrahedron is in the closure of a finite one created then, or strictly outside the facet of an
  * infinite one: a ray from the new vertex through the old hull only goes down from the plane of a facet that it sees.
  * All conflicts: from the first tetrahedra on, through all that were in conflict with the point. Those that held it
- * are among them unless it is hidden. A destroyed hull facet in whose plane the point lies counts as in conflict, a live
- * one does not; a finite tetrahedron with a vertex at its position does.
+ * are among them unless it is hidden. A hull facet in whose plane the point lies does not count as in conflict; a
+ * tetrahedron with a vertex at its position does, so that duplicates are found.
  *
  * Based on: Guibas, Knuth, Sharir. Randomized incremental construction of Delaunay and Voronoi diagrams.
  *           Algorithmica 1992, for the path.
@@ -32,14 +32,28 @@ static inline uint32_t live_slot(const brio_history_node *node) {
     return node->next & ~BRIO_HISTORY_LIVE;
 }
 
+/* Room for `count` more nodes. Doubling would set aside too much of the largest array there is. */
+static brio_status reserve_nodes(brio_kernel *k, brio_history *h, size_t count) {
+    brio_status status = BRIO_OK;
+    size_t need = h->num_nodes + count, capacity = need + need / 8 + 1024;
+    BRIO_REQUIRE(k->ctx, need < UINT32_MAX, BRIO_ERR_TOO_LARGE, "more than 2^32 - 2 nodes of the history DAG");
+    if (need > h->node_capacity) {
+        BRIO_TRY(BRIO_RESIZE(k->ctx, h->node, capacity));
+        h->node_capacity = capacity;
+    }
+    if (k->capacity > h->slot_capacity) {
+        BRIO_TRY(BRIO_RESIZE(k->ctx, h->node_of, k->capacity));
+        h->slot_capacity = k->capacity;
+    }
+    status = BRIO_RESERVE(k->ctx, h->first, h->first_capacity, h->num_insertions + 2);
+done:
+    return status;
+}
+
 /* Nodes of `count` new tetrahedra in those slots (NULL: slots 0, 1, ...). */
 static brio_status add_nodes(brio_kernel *k, brio_history *h, const uint32_t *slots, size_t count) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(k->ctx, h->num_nodes + count < UINT32_MAX, BRIO_ERR_TOO_LARGE,
-                 "more than 2^32 - 1 nodes of the history DAG");
-    BRIO_TRY(BRIO_RESERVE(k->ctx, h->node, h->node_capacity, h->num_nodes + count));
-    BRIO_TRY(BRIO_RESERVE(k->ctx, h->first, h->first_capacity, h->num_insertions + 2));
-    BRIO_TRY(BRIO_RESERVE(k->ctx, h->node_of, h->slot_capacity, k->t.count));
+    brio_status status = reserve_nodes(k, h, count);
+    if (status != BRIO_OK) return status;
     for (size_t i = 0; i < count; i++) {
         uint32_t slot = slots ? slots[i] : (uint32_t)i;
         const uint32_t *v = k->t.tet[slot].vertex;
@@ -48,8 +62,7 @@ static brio_status add_nodes(brio_kernel *k, brio_history *h, const uint32_t *sl
     }
     h->first[++h->num_insertions] = (uint32_t)h->num_nodes;
     k->stats.history = h->num_nodes;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_history_new(brio_kernel *k, const brio_options *options, brio_history *out) {
@@ -100,10 +113,7 @@ uint32_t brio_history_path(brio_kernel *k, brio_history *h, uint32_t from, const
 static bool conflicts(brio_kernel *k, const brio_history_node *node, const double *p) {
     const brio_record *r = k->t.record;
     const uint32_t *v = node->vertex;
-    if (v[3] == k->t.infinite) {
-        int side = brio_orient3d_sign(&k->filter, r[v[0]], r[v[1]], r[v[2]], p);
-        return is_live(node) ? side > 0 : side >= 0;
-    }
+    if (v[3] == k->t.infinite) return brio_orient3d_sign(&k->filter, r[v[0]], r[v[1]], r[v[2]], p) > 0;
     for (int i = 0; i < 4; i++)
         if (brio_same_position(r[v[i]], p)) return true;
     return brio_conflict(&k->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]], p, k->weighted);

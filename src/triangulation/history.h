@@ -22,7 +22,7 @@ typedef struct {
     size_t num_nodes, node_capacity;
     uint32_t *first; /* node of each insertion, and one more at the end */
     size_t num_insertions, first_capacity;
-    uint32_t *node_of; /* of each slot in use */
+    uint32_t *node_of; /* of each slot */
     size_t slot_capacity;
     bool all_conflicts;
     /* of the search for all conflicts */
@@ -36,7 +36,7 @@ typedef struct {
 brio_status brio_history_new(brio_kernel *k, const brio_options *options, brio_history *out);
 void brio_history_free(brio_context *ctx, brio_history *h);
 
-/** Adds the insertion whose cavity was filled last. BRIO_ERR_TOO_LARGE beyond 2^32 - 1 nodes. */
+/** Adds the insertion whose cavity was filled last. BRIO_ERR_TOO_LARGE beyond 2^32 - 2 nodes. */
 brio_status brio_history_add(brio_kernel *k, brio_history *h);
 
 /** The live tetrahedron whose closure holds p, or, for p strictly outside the hull, an infinite one whose facet p is

@@ -13,6 +13,7 @@ typedef struct {
     brio_status (*locate)(brio_kernel *k, uint32_t p, uint32_t *tet);
     /** Record p has become a vertex: k->cavity has the slots of what was destroyed, and of what was created. */
     brio_status (*filled)(brio_kernel *k, uint32_t p);
+    /** Frees k->location and makes it NULL; accepts NULL. */
     void (*free)(brio_kernel *k);
 } brio_locator;
 

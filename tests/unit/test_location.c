@@ -131,6 +131,29 @@ static void strategies_count_what_they_do(void) {
     }
 }
 
+/* In random order the point inserted last is anywhere: what a strategy starts from decides. */
+static void walks_are_short(void) {
+    enum { MANY = 8000 };
+    double *many = malloc(3 * MANY * sizeof *many);
+    uint32_t *chain = malloc(2 * MANY * sizeof *chain);
+    uniform_points(1, MANY, many);
+    for (size_t i = 1; i < MANY; i += 2) /* pairs of points close together */
+        for (size_t c = 0; c < 3; c++) many[3 * i + c] = many[3 * i - 3 + c] + 1e-5 * many[3 * i + c];
+    for (uint32_t i = 0; i + 1 < MANY; i += 2) chain[i] = i, chain[i + 1] = i + 1;
+    for (int s = BRIO_LOCATE_JUMP; s <= BRIO_LOCATE_NEIGHBOUR; s++) {
+        brio_options o = brio_options_default();
+        o.order = BRIO_ORDER_RANDOM, o.locate = (brio_location)s, o.edges = chain, o.num_edges = MANY / 2;
+        result r = run(many, NULL, MANY, &o);
+        double steps = (double)r.stats.walk_steps / MANY;
+        EXPECT(steps < 30, "%s: %g steps a point", names[s], steps);
+        o.num_edges = 0;
+        r = run(many, NULL, MANY, &o);
+        EXPECT(s != BRIO_LOCATE_NEIGHBOUR || (double)r.stats.walk_steps / MANY > 35, "without edges");
+    }
+    free(many);
+    free(chain);
+}
+
 /* --- searches --- */
 
 /* A search for p against all live tetrahedra. */
@@ -175,6 +198,14 @@ static void history_searches_find_what_brute_force_finds(void) {
     }
 }
 
+/* Whether the open segment v w crosses the open triangle. */
+static bool crosses(const double *v, const double *w, const double *const *triangle) {
+    const double *a = triangle[0], *b = triangle[1], *c = triangle[2];
+    if (brio_orient3d(a, b, c, v) * brio_orient3d(a, b, c, w) >= 0) return false;
+    int x = brio_orient3d(v, w, a, b), y = brio_orient3d(v, w, b, c), z = brio_orient3d(v, w, c, a);
+    return x != 0 && x == y && y == z;
+}
+
 /* Among lattice points segments run through vertices, along edges and in facets; some start or end outside. */
 static void segments_lead_to_their_ends(void) {
     for (int set = 0; set < SETS; set++) {
@@ -197,14 +228,62 @@ static void segments_lead_to_their_ends(void) {
     }
 }
 
+/* Between points in general position inside of the hull. */
+static void segments_enter_what_they_cross(void) {
+    static double ends[6 * 100];
+    brio_context *ctx = new_context();
+    brio_kernel k;
+    brio_options o = strategy(BRIO_LOCATE_HISTORY);
+    uniform_points(1, N, points);
+    uniform_points(2, 200, ends);
+    kernel_begin(&k, ctx, points, NULL, N, &o);
+    kernel_insert(&k, 0, N);
+    for (int i = 0; i < 100; i++) {
+        double u[4] = {0}, w[4] = {0};
+        for (int c = 0; c < 3; c++) u[c] = 0.3 + 0.4 * ends[6 * i + c], w[c] = 0.3 + 0.4 * ends[6 * i + 3 + c];
+        uint64_t entered = 0, crossed = 0;
+        uint32_t from = brio_history_path(&k, k.location, BRIO_HISTORY_ROOT, u);
+        brio_locate_segment(&k, from, u, w, &entered);
+        for (size_t f = 0; f < 4 * k.t.count; f++) {
+            const uint32_t *v = k.t.tet[f / 4].vertex;
+            if (k.state[f / 4] != TET_PLAIN || v[3] == k.t.infinite || *brio_mate(&k.t, (uint32_t)f) < f) continue;
+            const double *triangle[3];
+            for (size_t c = 0; c < 3; c++) triangle[c] = k.record[v[(f + 1 + c) % 4]];
+            crossed += crosses(u, w, triangle);
+        }
+        EXPECT(entered == crossed, "segment %d enters %d, crosses %d", i, (int)entered, (int)crossed);
+    }
+    brio_kernel_free(&k);
+    brio_context_free(ctx);
+}
+
 /* --- tracing --- */
 
-/* Whether the open segment v w crosses the open triangle. */
-static bool crosses(const double *v, const double *w, const double *const *triangle) {
-    const double *a = triangle[0], *b = triangle[1], *c = triangle[2];
-    if (brio_orient3d(a, b, c, v) * brio_orient3d(a, b, c, w) >= 0) return false;
-    int x = brio_orient3d(v, w, a, b), y = brio_orient3d(v, w, b, c), z = brio_orient3d(v, w, c, a);
-    return x != 0 && x == y && y == z;
+/* Inserts all points in their order, tracing the chain of points from `first` on; lists how many were in when something
+ * was traced. */
+static size_t list_tracings(uint32_t first, uint32_t tracings[8]) {
+    brio_context *ctx = new_context();
+    brio_kernel k;
+    brio_options o = strategy(BRIO_LOCATE_TRACE);
+    size_t count = 0;
+    for (uint32_t i = first; i + 1 < N; i++) edges[2 * (i - first)] = i, edges[2 * (i - first) + 1] = i + 1;
+    o.num_edges = N - 1 - first;
+    uniform_points(1, N, points);
+    kernel_begin(&k, ctx, points, NULL, N, &o);
+    for (uint32_t p = (uint32_t)k.dimension + 1; p < N; p++) {
+        uint64_t before = k.stats.trace_intersections;
+        kernel_insert(&k, p, p + 1);
+        if (k.stats.trace_intersections > before && count < 8) tracings[count++] = p;
+    }
+    brio_kernel_free(&k);
+    brio_context_free(ctx);
+    return count;
+}
+
+static void edges_are_traced_when_so_many_points_are_in(void) {
+    uint32_t tracings[8], expected[2] = {(uint32_t)ceil(N / log(N)), (uint32_t)ceil(N / log(log(N)))};
+    EXPECT(list_tracings(0, tracings) == 2 && !memcmp(tracings, expected, sizeof expected));
+    EXPECT(list_tracings(N - 50, tracings) == 2 && !memcmp(tracings, expected, sizeof expected), "none was a vertex");
 }
 
 /* The corners of a tetrahedron; false when one is infinite. */
@@ -440,8 +519,11 @@ static void failed_allocations_free_everything(void) {
 int main(void) {
     RUN(every_strategy_in_every_order_gives_one_triangulation);
     RUN(strategies_count_what_they_do);
+    RUN(walks_are_short);
     RUN(history_searches_find_what_brute_force_finds);
     RUN(segments_lead_to_their_ends);
+    RUN(segments_enter_what_they_cross);
+    RUN(edges_are_traced_when_so_many_points_are_in);
     RUN(edges_end_in_the_regions_of_the_triangles_they_cross);
     RUN(tracing_is_linear_on_a_sphere);
     RUN(few_points_are_answered);
