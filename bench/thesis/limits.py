@@ -52,9 +52,13 @@ class Group:
             except OSError:
                 if i + 1 == len(parents): raise
         limits = ['memory.limit_in_bytes'] if self.version == 1 else ['memory.max', 'memory.swap.max']
-        for name in limits:
-            if os.path.exists(os.path.join(self.path, name)):
-                _write(os.path.join(self.path, name), '0' if 'swap' in name else str(limit))
+        try:
+            for name in limits:
+                if os.path.exists(os.path.join(self.path, name)):
+                    _write(os.path.join(self.path, name), '0' if 'swap' in name else str(limit))
+        except OSError:
+            os.rmdir(self.path)
+            raise
 
     def join(self):
         _write(os.path.join(self.path, 'cgroup.procs'), str(os.getpid()))

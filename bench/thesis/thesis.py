@@ -71,14 +71,15 @@ class Bench:
         if not r.share or r.share > 1: return r.share
         key = r.set, r.locate
         if key not in self.peaks:
-            done = self.measure(figures.run('', r.set, 'brio-octree', r.locate), None, 1e6)
+            done = self.measure(figures.run('', r.set, 'brio-octree', r.locate), None, None)
+            if done['status'] != 'done': sys.exit(f'{r.set}, {r.locate}: {done["status"]} without a limit')
             self.peaks[key] = done['peak_bytes']
         return max(LEAST_MEMORY, int(r.share * self.peaks[key]))
 
     def measure(self, r, memory, most_seconds):
         """A dict of what a run gave."""
         command = self.command(r) + (['--scratch', self.folder] if memory else [])
-        done = limits.run(command, memory, min(most_seconds, self.options.limit))
+        done = limits.run(command, memory, most_seconds)
         points = self.data.points(r.set)
         begin = next((t for t, stage, _ in done.marks if stage == 'insert'), 0)
         result = {'points': points, 'memory': memory or '', 'wall': done.seconds, 'order': begin, 'insert': '',
@@ -100,7 +101,7 @@ class Bench:
             if r.share and self.no_limits: continue
             memory = self.memory(r)
             most = max(30, self.options.patience * first) if first and memory else self.options.limit
-            result = self.measure(r, memory, most)
+            result = self.measure(r, memory, min(most, self.options.limit))
             if memory and result['status'] == 'done': first = first or result['wall']
             write(f, r, result)
             results[r.label] = result
