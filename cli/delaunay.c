@@ -95,6 +95,14 @@ done:
     return status;
 }
 
+static brio_status require_memory(run *r, const arguments *a, const brio_mesh *mesh, const double *weights) {
+    triangulation_size size;
+    brio_status status = cli_sample_size(r, mesh, weights, &size);
+    if (status != BRIO_OK) return status;
+    return cli_require_memory(r, cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size) +
+                                     cli_location_bytes((brio_location)a->locate, mesh));
+}
+
 static brio_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
     brio_options o = brio_options_default();
     o.order = insertion_order(a);
@@ -211,9 +219,8 @@ static brio_status delaunay(run *r) {
     TRY(cli_needs_edges((brio_location)a->locate) ? cli_read(r, r->operands[0], &mesh)
                                                   : cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
-    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted) +
-                                  cli_location_bytes((brio_location)a->locate, mesh)));
     TRY(cli_weights(r, &a->weights, mesh, &weights));
+    if (cli_limits_memory(r)) TRY(require_memory(r, a, mesh, weights));
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));
     TRY(report_stats(r, mesh, t, weighted));

@@ -167,6 +167,7 @@ static brio_status generate_iso(run *r, const arguments *a) {
     o.resolution = (size_t)a->resolution;
     if (!isnan(a->blobbiness)) o.blobbiness = a->blobbiness;
     if (a->points != NO_COUNT) o.vertices = (size_t)a->points;
+    if (o.vertices) TRY(cli_require_memory(r, cli_iso_bytes(o.vertices)));
     TRY(brio_generate_iso(r->ctx, r->operands[1], &o, &mesh));
     cli_lap(r, "generate");
     cli_fact_count(&r->facts, "points", mesh->num_vertices);

@@ -137,9 +137,13 @@ brio_status cli_check_interrupt(run *r) {
 
 /* --- memory --- */
 
+bool cli_limits_memory(const run *r) {
+    return r->common.max_memory && !r->common.scratch;
+}
+
 brio_status cli_require_memory(run *r, double bytes) {
     const common_options *c = &r->common;
-    if (c->scratch || !c->max_memory || bytes <= (double)c->max_memory) return BRIO_OK;
+    if (!cli_limits_memory(r) || bytes <= (double)c->max_memory) return BRIO_OK;
     return cli_fail(r, BRIO_ERR_NO_MEMORY, "about %.1f MiB needed, over the limit of %.1f MiB (--max-memory)",
                     bytes / 0x1p20, (double)c->max_memory / 0x1p20);
 }

@@ -74,6 +74,8 @@ void cli_stage(run *r, const char *stage, double seconds);
 /** BRIO_ERR_CANCELLED when a signal asked to stop. */
 brio_status cli_check_interrupt(run *r);
 
+/** Whether an estimate can refuse the work. */
+bool cli_limits_memory(const run *r);
 /** Refuses an estimate over --max-memory. With --scratch the big arrays are not in memory and only the limit of the
  *  context holds. */
 brio_status cli_require_memory(run *r, double bytes);

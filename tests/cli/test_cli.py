@@ -350,6 +350,31 @@ class Memory(CliTest):
         self.assertRegex(run.err, "about .* needed")
         self.assertLess(time.monotonic() - start, 2)
 
+    def assert_estimated(self, estimate, *arguments):
+        peak = self.facts(*arguments)["peak_bytes"]
+        self.assertLess(abs(estimate - peak), 0.15 * peak, arguments)
+
+    def test_estimates_are_within_15_per_cent_of_the_peak(self):
+        if self.facts("generate", "cube", "-n", "10")["peak_bytes"] > 12 << 20:
+            self.skipTest("this build takes memory for itself")
+        for kind in ["cube", "scan", "grid", "sphere", "torus"]:
+            points = self.cloud(f"{kind}.ply", 60000, kind)
+            for threads in ["1", "2"]:
+                estimates = self.facts("info", points, "--threads", threads)["estimate_bytes"]
+                self.assert_estimated(estimates["delaunay"], "delaunay", points, "--threads", threads)
+        surface = self.path("surface.ply")
+        points = self.cloud("few.ply", 20000, "scan")
+        self.assert_estimated(self.facts("info", points)["estimate_bytes"]["surface"], "surface", points, "-o", surface)
+        self.facts("surface", points, "-o", surface, "--method", "cocone")
+        self.assert_estimated(self.facts("info", surface)["estimate_bytes"]["subdivide"],
+                              "subdivide", surface, "-o", self.path("fine.ply"))
+
+    def test_limit_between_two_estimates(self):
+        """Weights that hide most points take less memory: the estimate knows."""
+        points = self.cloud("a.ply", 60000)
+        self.expect(4, "delaunay", points, "--max-memory", "18M")
+        self.facts("delaunay", points, "--max-memory", "18M", "--weights-mod", "-3")
+
     def test_memory_that_the_system_refuses(self):
         points = self.cloud("a.ply", 200000)
 
