@@ -46,7 +46,8 @@ static brio_status report_estimates(run *r, const brio_mesh *mesh) {
     cli_fact_open(f, "estimate_bytes", FACT_OBJECT);
     cli_fact_bytes(f, "delaunay",
                    (uint64_t)cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size));
-    cli_fact_bytes(f, "surface", (uint64_t)cli_crust_bytes(mesh));
+    cli_fact_bytes(f, "surface",
+                   (uint64_t)(cli_crust_bytes(mesh) + cli_crust_extra_bytes(mesh->num_vertices, true, false, false)));
     if (mesh->num_faces) cli_fact_bytes(f, "subdivide", (uint64_t)cli_subdivide_bytes(mesh, 1));
     cli_fact_close(f);
 done:
