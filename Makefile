@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check bench clean
+.PHONY: all demo check bench quality thesis clean
 
 all:
 	@sh scripts/setup.sh build
@@ -25,6 +25,16 @@ bench: all
 	@mkdir -p out
 	/usr/bin/python3 bench/bench.py $(BRIO) build-bench out/bench.csv $(BENCH)
 	/usr/bin/python3 bench/plot.py out/bench.csv out
+
+# Judges the surfaces of every shared set: docs/quality.md, about half an hour. The same figures on every machine.
+quality: all
+	/usr/bin/python3 bench/quality.py $(BRIO) docs/quality.csv docs/quality.md
+
+# The thesis' experiments at a fourth of their size; THESIS="--full --report docs/thesis-experiments.md" for all of it.
+# Root, for the limits of memory: docs/benchmarks.md.
+thesis: all
+	@sh scripts/setup.sh thesis
+	/usr/bin/python3 bench/thesis/thesis.py $(BRIO) $(THESIS)
 
 clean:
 	rm -rf build build-ci build-debug build-sanitize out

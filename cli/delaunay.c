@@ -1,6 +1,7 @@
 /* brio delaunay: tetrahedra of the points of a file, weighted or not. */
 #include "commands.h"
 #include "estimate.h"
+#include "mesh_edges.h"
 #include "weights.h"
 #include <inttypes.h>
 #include <math.h>
@@ -9,67 +10,131 @@
 
 typedef struct arguments {
     weights_options weights;
-    int order, locate;
-    double round_ratio; /* NaN: not given */
-    bool verify;
+    int order, locate, subgraph;
+    double round_ratio;                /* NaN: not given */
+    uint64_t block_size, record_every; /* 0: not given */
+    bool all_conflicts, rounds, verify;
 } arguments;
 
-static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},     {"hilbert", BRIO_ORDER_HILBERT},
-                                       {"random", BRIO_ORDER_RANDOM}, {"input", BRIO_ORDER_INPUT},
-                                       {"brio-octree", CHOICE_LATER}, {"brio-kdtree", CHOICE_LATER},
-                                       {"octree", CHOICE_LATER},      {NULL, 0}};
+enum { FITTING_ORDER = BRIO_ORDER_END }; /* random for a trace, else BRIO */
 
-static const option_choice locations[] = {{"walk", 0},
-                                          {"jump", CHOICE_LATER},
-                                          {"hierarchy", CHOICE_LATER},
-                                          {"history", CHOICE_LATER},
-                                          {"trace", CHOICE_LATER},
+static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},
+                                       {"brio-octree", BRIO_ORDER_BRIO_OCTREE},
+                                       {"brio-kdtree", BRIO_ORDER_BRIO_KDTREE},
+                                       {"octree", BRIO_ORDER_OCTREE},
+                                       {"hilbert", BRIO_ORDER_HILBERT},
+                                       {"random", BRIO_ORDER_RANDOM},
+                                       {"input", BRIO_ORDER_INPUT},
+                                       {NULL, 0}};
+
+static const option_choice locations[] = {{"walk", BRIO_LOCATE_WALK},
+                                          {"jump", BRIO_LOCATE_JUMP},
+                                          {"hierarchy", BRIO_LOCATE_HIERARCHY},
+                                          {"history", BRIO_LOCATE_HISTORY},
+                                          {"trace", BRIO_LOCATE_TRACE},
+                                          {"neighbour", BRIO_LOCATE_NEIGHBOUR},
                                           {NULL, 0}};
 
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
     {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order; the result is the same", orders},
-    {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R", "share of the points before the last round", 0},
+    {"block-size", 0, OPTION_NATURAL, FIELD(block_size), "N",
+     "most points of an octree or k-d tree block (default 2000)", 0},
+    {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R",
+     "share of the points before the last round (default 1/8 for brio, else 1/2)", 0},
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron", locations},
+    {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history, trace: follow all conflicts, not one path",
+     0},
+    {"subgraph", 0, OPTION_CHOICE, FIELD(subgraph), "NAME",
+     "trace, neighbour: edges of IN, a surface mesh, to go along (default bounded, all)", cli_subgraphs},
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
-    {"block-size", 0, OPTION_LATER, 0, NULL, NULL, 0},
+    {"rounds", 0, OPTION_FLAG, FIELD(rounds), NULL, "report the counters at the end of each round", 0},
+    {"record-every", 0, OPTION_NATURAL, FIELD(record_every), "N", "report the counters after every N insertions", 0},
     {0},
 };
 #undef FIELD
 
-static const arguments defaults = {.weights.exponent = NO_EXPONENT, .order = BRIO_ORDER_BRIO, .round_ratio = NAN};
+static const arguments defaults = {
+    .weights.exponent = NO_EXPONENT, .order = FITTING_ORDER, .subgraph = SUBGRAPH_FITTING, .round_ratio = NAN};
 static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE, BRIO_FORMAT_AUTO};
 
 static bool is_standard_output(const run *r) {
     return r->common.output && !strcmp(r->common.output, "-");
 }
 
+static brio_order insertion_order(const arguments *a) {
+    if (a->order != FITTING_ORDER) return (brio_order)a->order;
+    return a->locate == (int)BRIO_LOCATE_TRACE ? BRIO_ORDER_RANDOM : BRIO_ORDER_BRIO;
+}
+
+static brio_status check_order(run *r, const arguments *a) {
+    brio_order order = insertion_order(a);
+    bool in_blocks = order == BRIO_ORDER_BRIO_OCTREE || order == BRIO_ORDER_BRIO_KDTREE;
+    bool in_rounds = order == BRIO_ORDER_BRIO || in_blocks;
+    if (a->block_size && !in_blocks && order != BRIO_ORDER_OCTREE)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--block-size: only with --order brio-octree, brio-kdtree or octree");
+    if (!isnan(a->round_ratio) && !in_rounds)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: the insertion order has no rounds");
+    if (a->round_ratio <= 0 || a->round_ratio >= 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: %g is not between 0 and 1", a->round_ratio);
+    return BRIO_OK;
+}
+
 static brio_status check_arguments(run *r, const arguments *a) {
     brio_status status = BRIO_OK;
+    TRY(check_order(r, a));
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(cli_require_output(r, formats, true));
     if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
-    if (a->round_ratio <= 0 || a->round_ratio >= 1)
-        status = cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: %g is not between 0 and 1", a->round_ratio);
+    if (a->rounds && a->record_every) return cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --rounds and --record-every");
+    if (a->subgraph != SUBGRAPH_FITTING && !cli_needs_edges((brio_location)a->locate))
+        status = cli_fail(r, BRIO_ERR_ARGUMENT, "--subgraph goes with --locate trace and neighbour only");
 done:
     return status;
 }
 
-static brio_status triangulate(run *r, const arguments *a, const brio_mesh *mesh, const double *weights,
-                               brio_triangulation **out) {
-    brio_options o = brio_options_default();
-    o.order = (brio_order)a->order;
-    o.seed = r->common.seed;
-    if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
-    brio_status status = brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out);
+static brio_status require_memory(run *r, const arguments *a, const brio_mesh *mesh, const double *weights) {
+    triangulation_size size;
+    brio_status status = cli_sample_size(r, mesh, weights, &size);
     if (status != BRIO_OK) return status;
+    return cli_require_memory(r, cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size) +
+                                     cli_location_bytes((brio_location)a->locate, mesh));
+}
+
+static brio_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
+    brio_options o = brio_options_default();
+    o.order = insertion_order(a);
+    o.locate = (brio_location)a->locate;
+    o.all_conflicts = a->all_conflicts;
+    o.edges = edges->ends;
+    o.num_edges = edges->count;
+    o.seed = r->common.seed;
+    o.block_size = (size_t)a->block_size;
+    o.record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every;
+    if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
+    return o;
+}
+
+/* Goes along the edges of the mesh where the location wants them; its faces are dropped before the triangulation. */
+static brio_status triangulate(run *r, const arguments *a, brio_mesh *mesh, const double *weights,
+                               brio_triangulation **out) {
+    brio_status status = BRIO_OK;
+    brio_edges edges = {0};
+    if (cli_needs_edges((brio_location)a->locate))
+        TRY(cli_mesh_edges(r, mesh, (brio_location)a->locate, a->subgraph, &edges));
+    TRY(cli_drop_connectivity(r, mesh));
+    brio_options o = library_options(r, a, &edges);
+    TRY(brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out));
     const brio_stats *s = brio_triangulation_stats(*out);
     cli_stage(r, "order", s->order_seconds);
     cli_stage(r, "insert", s->insert_seconds);
     r->lap = cli_clock();
-    return cli_check_interrupt(r);
+    TRY(cli_check_interrupt(r));
+done:
+    brio_edges_free(r->ctx, &edges);
+    return status;
 }
 
 static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triangulation *t, bool weighted) {
@@ -97,7 +162,31 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     cli_fact_count(f, "exact_calls", s->exact_calls);
     cli_fact_count(f, "deferred", s->deferred);
     cli_fact_count(f, "serial", s->serial);
+    cli_fact_count(f, "history", s->history);
+    cli_fact_count(f, "history_tests", s->history_tests);
+    cli_fact_count(f, "trace_intersections", s->trace_intersections);
     return BRIO_OK;
+}
+
+static void report_rounds(facts *f, const brio_triangulation *t) {
+    size_t count;
+    const brio_round *round = brio_triangulation_rounds(t, &count);
+    if (!round) return;
+    cli_fact_open(f, "rounds", FACT_LIST);
+    for (size_t i = 0; i < count; i++) {
+        cli_fact_open(f, NULL, FACT_OBJECT);
+        cli_fact_count(f, "points", round[i].points);
+        cli_fact_count(f, "tetrahedra", round[i].tetrahedra);
+        cli_fact_count(f, "created", round[i].created);
+        cli_fact_count(f, "destroyed", round[i].destroyed);
+        cli_fact_count(f, "walk_steps", round[i].walk_steps);
+        cli_fact_count(f, "insphere_calls", round[i].insphere_calls);
+        cli_fact_count(f, "history", round[i].history);
+        cli_fact_seconds(f, "locate_seconds", round[i].locate_seconds);
+        cli_fact_seconds(f, "seconds", round[i].seconds);
+        cli_fact_close(f);
+    }
+    cli_fact_close(f);
 }
 
 static brio_status verify(run *r, const brio_mesh *mesh, const double *weights, const brio_triangulation *t) {
@@ -127,13 +216,15 @@ static brio_status delaunay(run *r) {
     brio_triangulation *t = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a));
-    TRY(cli_read_points(r, r->operands[0], &mesh));
+    TRY(cli_needs_edges((brio_location)a->locate) ? cli_read(r, r->operands[0], &mesh)
+                                                  : cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
-    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_delaunay_bytes(mesh->num_vertices, weighted)));
     TRY(cli_weights(r, &a->weights, mesh, &weights));
+    if (cli_limits_memory(r)) TRY(require_memory(r, a, mesh, weights));
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));
     TRY(report_stats(r, mesh, t, weighted));
+    report_rounds(&r->facts, t);
     if (a->verify) TRY(verify(r, mesh, weights, t));
     if (r->common.output) TRY(write_output(r, mesh, weights, &t));
 done:

@@ -15,7 +15,7 @@ typedef struct arguments {
     uint64_t truth_resolution;
     double level, blobbiness; /* NaN: not given */
     uint64_t resolution;
-    bool sigma;
+    bool sigma, conforming;
 } arguments;
 
 #define NO_COUNT UINT64_MAX
@@ -35,6 +35,7 @@ static const option options[] = {
      "iso: cells along the longest side (default the map's own, or 0.5 A for atoms)", 0},
     {"blobbiness", 0, OPTION_NUMBER, FIELD(blobbiness), "B", "iso: the larger, the more atoms are balls (default 2)",
      0},
+    {"delaunay-conforming", 0, OPTION_FLAG, FIELD(conforming), NULL, "iso: all triangles are Delaunay", 0},
     {0},
 };
 #undef FIELD
@@ -82,7 +83,7 @@ static bool has_scan_options(const arguments *a) {
 }
 
 static bool has_iso_options(const arguments *a) {
-    return !isnan(a->level) || !isnan(a->blobbiness) || a->resolution || a->sigma;
+    return !isnan(a->level) || !isnan(a->blobbiness) || a->resolution || a->sigma || a->conforming;
 }
 
 static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
@@ -94,7 +95,8 @@ static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
     if (kind != BRIO_KIND_SCAN && has_scan_options(a))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
     if (has_iso_options(a))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--level, --sigma, --resolution and --blobbiness go with iso only");
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--level, --sigma, --resolution, --blobbiness and --delaunay-conforming go with iso only");
     if (a->views != NO_VIEWS && a->views < 1)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--views: %d is not positive", a->views);
     if (a->noise < 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise: %g is negative", a->noise);
@@ -161,9 +163,11 @@ static brio_status generate_iso(run *r, const arguments *a) {
     TRY(check_iso_arguments(r, a));
     o.level = a->level;
     o.deviations = a->sigma;
+    o.conforming = a->conforming;
     o.resolution = (size_t)a->resolution;
     if (!isnan(a->blobbiness)) o.blobbiness = a->blobbiness;
     if (a->points != NO_COUNT) o.vertices = (size_t)a->points;
+    if (o.vertices) TRY(cli_require_memory(r, cli_iso_bytes(o.vertices)));
     TRY(brio_generate_iso(r->ctx, r->operands[1], &o, &mesh));
     cli_lap(r, "generate");
     cli_fact_count(&r->facts, "points", mesh->num_vertices);
@@ -190,6 +194,7 @@ const command cli_generate = {
     .summary = "test data: " KINDS "; -n N points to -o FILE; or iso, the surface of a map or PDB file",
     .min_operands = 1,
     .max_operands = 2,
+    .first_input = 1,
     .options = options,
     .defaults = &defaults,
     .size = sizeof defaults,

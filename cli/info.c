@@ -2,6 +2,8 @@
 #include "cloud.h"
 #include "commands.h"
 #include "estimate.h"
+#include "weights.h"
+#include <stdlib.h>
 
 static const option options[] = {{0}};
 static const char defaults = 0; /* info has no options of its own */
@@ -33,13 +35,24 @@ static void report_properties(facts *f, const brio_mesh *mesh) {
     cli_fact_close(f);
 }
 
-static void report_estimates(facts *f, const brio_mesh *mesh) {
-    double coordinates = cli_mesh_bytes(mesh);
-    bool weighted = brio_mesh_property(mesh, "weight") != NULL;
+static brio_status report_estimates(run *r, const brio_mesh *mesh) {
+    static const weights_options standard = {.exponent = NO_EXPONENT};
+    facts *f = &r->facts;
+    triangulation_size size;
+    double *weights = NULL;
+    brio_status status = BRIO_OK;
+    TRY(cli_weights(r, &standard, mesh, &weights));
+    TRY(cli_sample_size(r, mesh, weights, &size));
     cli_fact_open(f, "estimate_bytes", FACT_OBJECT);
-    cli_fact_bytes(f, "delaunay", (uint64_t)(coordinates + cli_delaunay_bytes(mesh->num_vertices, weighted)));
-    cli_fact_bytes(f, "surface", (uint64_t)(coordinates + cli_surface_bytes(mesh->num_vertices)));
+    cli_fact_bytes(f, "delaunay",
+                   (uint64_t)cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size));
+    cli_fact_bytes(f, "surface",
+                   (uint64_t)(cli_crust_bytes(mesh) + cli_crust_extra_bytes(mesh->num_vertices, true, false, false)));
+    if (mesh->num_faces) cli_fact_bytes(f, "subdivide", (uint64_t)cli_subdivide_bytes(mesh, 1));
     cli_fact_close(f);
+done:
+    free(weights);
+    return status;
 }
 
 static brio_status info(run *r) {
@@ -50,7 +63,7 @@ static brio_status info(run *r) {
     brio_status status = BRIO_OK;
     if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "info writes no file; -o has no meaning here"));
     TRY(cli_read(r, r->operands[0], &mesh));
-    TRY(cli_require_memory(r, cli_mesh_bytes(mesh) + cli_info_bytes(mesh->num_vertices)));
+    TRY(cli_require_memory(r, cli_info_bytes(mesh)));
     TRY(cli_cloud_duplicates(r, mesh->vertices, mesh->num_vertices, &duplicates));
     TRY(cli_cloud_spacing(r, mesh->vertices, mesh->num_vertices, &spacing));
     cli_lap(r, "measure");
@@ -64,7 +77,7 @@ static brio_status info(run *r) {
     else
         cli_fact_null(f, "spacing");
     report_properties(f, mesh);
-    report_estimates(f, mesh);
+    TRY(report_estimates(r, mesh));
 done:
     brio_mesh_free(mesh);
     return status;

@@ -82,7 +82,6 @@ static const char *choice_name(const void *choices, size_t i) {
 static bool parse_choice(option_parse *parse, const option *row, const char *text, int *value) {
     for (const option_choice *c = row->choices; c->name; c++) {
         if (strcmp(c->name, text)) continue;
-        if (c->value == CHOICE_LATER) return wrong(parse, "--%s %s: not available in this version", row->name, text);
         *value = c->value;
         return true;
     }
@@ -112,7 +111,6 @@ static bool store(option_parse *parse, const option *row, void *field, const cha
     case OPTION_CHOICE:
         return parse_choice(parse, row, text, field);
     case OPTION_FLAG:
-    case OPTION_LATER:
     case OPTION_END:
         break;
     }
@@ -172,7 +170,6 @@ static bool take(option_parse *parse, int argc, char **argv, int *i) {
         if (argument[2]) value = argument + 2;
     }
     if (!f.row) return unknown(parse, argument);
-    if (f.row->kind == OPTION_LATER) return wrong(parse, "--%s: not available in this version", f.row->name);
     if (f.row->kind == OPTION_FLAG) {
         if (value) return wrong(parse, "--%s takes no value", f.row->name);
         *(bool *)f.field = true;
@@ -213,15 +210,13 @@ bool cli_parse(option_parse *parse, int argc, char **argv) {
 /* --- help --- */
 
 static void print_choices(FILE *out, const option_choice *choices) {
-    for (const option_choice *c = choices; c->name; c++)
-        if (c->value != CHOICE_LATER) fprintf(out, "%s%s", c == choices ? "" : "|", c->name);
+    for (const option_choice *c = choices; c->name; c++) fprintf(out, "%s%s", c == choices ? "" : "|", c->name);
 }
 
 void cli_print_options(FILE *out, const option_group *group) {
     enum { COLUMN = 28 };
     fprintf(out, "\n%s:\n", group->title);
     for (const option *row = group->rows; row->kind; row++) {
-        if (row->kind == OPTION_LATER) continue;
         char left[128];
         const char letter[] = {'-', row->letter, ',', ' ', 0};
         snprintf(left, sizeof left, "%s--%s %s", row->letter ? letter : "", row->name, row->value ? row->value : "");

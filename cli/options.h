@@ -15,13 +15,10 @@ typedef enum option_kind {
     OPTION_NATURAL, /* uint64_t: 1000000, also 1e6 */
     OPTION_NUMBER,  /* double, finite */
     OPTION_SIZE,    /* size_t bytes: 500M, 8G, 1.5GiB */
-    OPTION_CHOICE,  /* int: a name from a list */
-    OPTION_LATER    /* known by the contract, not in this version */
+    OPTION_CHOICE   /* int: a name from a list */
 } option_kind;
 
-enum { CHOICE_LATER = -1 };
-
-/** A name and what it stands for; CHOICE_LATER for a name that this version only knows of. A list ends with NULL. */
+/** A name and what it stands for. A list ends with NULL. */
 typedef struct option_choice {
     const char *name;
     int value;

@@ -3,10 +3,10 @@
 #include "files.h"
 #include <stdlib.h>
 
-const option_choice cli_labelings[] = {{"greedy", BRIO_LABELING_GREEDY},
+const option_choice cli_labelings[] = {{"global", BRIO_LABELING_GLOBAL},
+                                       {"greedy", BRIO_LABELING_GREEDY},
                                        {"naive", BRIO_LABELING_NAIVE},
                                        {"theoretical", BRIO_LABELING_THEORETICAL},
-                                       {"global", BRIO_LABELING_GLOBAL},
                                        {NULL, 0}};
 
 const option_choice cli_labelings_or_mesh[] = {

@@ -137,9 +137,13 @@ brio_status cli_check_interrupt(run *r) {
 
 /* --- memory --- */
 
+bool cli_limits_memory(const run *r) {
+    return r->common.max_memory && !r->common.scratch;
+}
+
 brio_status cli_require_memory(run *r, double bytes) {
     const common_options *c = &r->common;
-    if (c->scratch || !c->max_memory || bytes <= (double)c->max_memory) return BRIO_OK;
+    if (!cli_limits_memory(r) || bytes <= (double)c->max_memory) return BRIO_OK;
     return cli_fail(r, BRIO_ERR_NO_MEMORY, "about %.1f MiB needed, over the limit of %.1f MiB (--max-memory)",
                     bytes / 0x1p20, (double)c->max_memory / 0x1p20);
 }
@@ -169,8 +173,8 @@ done:
     return status;
 }
 
-/* Moves faces and tetrahedra out of the mesh into one that is freed. */
-static brio_status drop_connectivity(run *r, brio_mesh *mesh) {
+/* Moves the arrays into a mesh that is freed. */
+brio_status cli_drop_connectivity(run *r, brio_mesh *mesh) {
     brio_mesh *rest = NULL;
     brio_status status = brio_mesh_new(r->ctx, &rest);
     if (status != BRIO_OK) return status;
@@ -186,7 +190,7 @@ static brio_status drop_connectivity(run *r, brio_mesh *mesh) {
 
 brio_status cli_read_points(run *r, const char *path, brio_mesh **out) {
     brio_status status = cli_read(r, path, out);
-    return status == BRIO_OK ? drop_connectivity(r, *out) : status;
+    return status == BRIO_OK ? cli_drop_connectivity(r, *out) : status;
 }
 
 static brio_status check_format(run *r, const brio_format *formats, brio_format format) {
@@ -238,12 +242,13 @@ brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh) {
 
 void cli_opening_facts(run *r) {
     facts *f = &r->facts;
+    int first = r->command->first_input < r->num_operands ? r->command->first_input : 0;
     cli_fact_text(f, "command", r->command->name);
-    if (r->num_operands == 1) {
-        cli_fact_text(f, "input", r->operands[0]);
+    if (r->num_operands == first + 1) {
+        cli_fact_text(f, "input", r->operands[first]);
     } else {
         cli_fact_open(f, "input", FACT_LIST);
-        for (int i = 0; i < r->num_operands; i++) cli_fact_text(f, NULL, r->operands[i]);
+        for (int i = first; i < r->num_operands; i++) cli_fact_text(f, NULL, r->operands[i]);
         cli_fact_close(f);
     }
     cli_fact_count(f, "threads", (uint64_t)brio_context_threads(r->ctx));

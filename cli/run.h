@@ -50,6 +50,7 @@ typedef struct run {
 typedef struct command {
     const char *name, *operands, *summary;
     int min_operands, max_operands;
+    int first_input; /* operands before it say what to do; without inputs the report names the first */
     const option *options;
     const void *defaults; /* what the command's options are before the line is read */
     size_t size;          /* of that struct */
@@ -73,6 +74,8 @@ void cli_stage(run *r, const char *stage, double seconds);
 /** BRIO_ERR_CANCELLED when a signal asked to stop. */
 brio_status cli_check_interrupt(run *r);
 
+/** Whether an estimate can refuse the work. */
+bool cli_limits_memory(const run *r);
 /** Refuses an estimate over --max-memory. With --scratch the big arrays are not in memory and only the limit of the
  *  context holds. */
 brio_status cli_require_memory(run *r, double bytes);
@@ -80,7 +83,10 @@ brio_status cli_require_memory(run *r, double bytes);
 /** Reads an input with --input-format. The time is lapped as `read`. */
 brio_status cli_read(run *r, const char *path, brio_mesh **out);
 
-/** The same for a command that goes by the points alone: faces and tetrahedra of the file are dropped. */
+/** Frees the faces and tetrahedra of a mesh. */
+brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);
+
+/** Reads for a command that goes by the points alone: faces and tetrahedra of the file are dropped. */
 brio_status cli_read_points(run *r, const char *path, brio_mesh **out);
 
 /** Finds everything wrong with -o that can be found before the work: no output, no format, a format not among those of

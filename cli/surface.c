@@ -12,6 +12,7 @@ typedef struct arguments {
     power_crust_options crust;
     bool boundaries, density, vertex_normals, self_intersections;
     double theta; /* 0: not given */
+    uint64_t pieces;
 } arguments;
 
 static const option_choice methods[] = {
@@ -25,6 +26,8 @@ static const option options[] = {
      "co-cones: find the samples at boundaries and leave the surface open there", 0},
     {"density", 0, OPTION_FLAG, offsetof(arguments, density), NULL,
      "co-cones: estimate the sampling density r, also in properties of the vertices", 0},
+    {"pieces", 0, OPTION_NATURAL, offsetof(arguments, pieces), "N",
+     "co-cone: triangulate about N pieces one after the other, with 1/N of the memory", 0},
     {"vertex-normals", 0, OPTION_FLAG, offsetof(arguments, vertex_normals), NULL,
      "give the vertices normals, as properties nx ny nz", 0},
     {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
@@ -69,6 +72,10 @@ static void report_cocone(run *r, const brio_cocone_stats *s) {
     cli_fact_count(f, "pruned", s->pruned);
     if (a->boundaries) cli_fact_count(f, "boundary_samples", s->boundary_samples);
     cli_fact_count(f, "relabelled", s->relabelled);
+    if (a->pieces > 1) {
+        cli_fact_count(f, "pieces", s->pieces);
+        cli_fact_count(f, "unmatched", s->unmatched);
+    }
 }
 
 /* The sampling condition of the guarantee (theorem 19: r <= 0.08), as far as the samples themselves tell. */
@@ -94,6 +101,7 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     if (a->theta != 0) o.theta = a->theta;
     o.tight = a->method == TIGHT_COCONE;
     o.boundaries = a->boundaries;
+    o.pieces = a->pieces;
     o.density = a->density || r->common.json;
     brio_status status = brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
     if (status != BRIO_OK) return status;
@@ -128,6 +136,7 @@ static brio_status check_arguments(run *r) {
     if (a->method == POWER_CRUST && (a->theta != 0 || a->boundaries || a->density))
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--theta, --boundaries and --density are for --method cocone|tight-cocone");
+    if (a->pieces > 0 && a->method != COCONE) return cli_fail(r, BRIO_ERR_ARGUMENT, "--pieces is for --method cocone");
     if (a->method != POWER_CRUST && cli_has_power_crust_options(&a->crust))
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--triangulate, --simplify, --labeling, --sampling-density, --sharp, --open and --normals are "
@@ -146,9 +155,9 @@ static brio_status surface(run *r) {
     TRY(check_arguments(r));
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read_points(r, r->operands[0], &points));
-    double extra =
-        cli_crust_extra_bytes(points->num_vertices, a->crust.labeling == BRIO_LABELING_GLOBAL, a->crust.simplify);
-    TRY(cli_require_memory(r, cli_mesh_bytes(points) + cli_surface_bytes(points->num_vertices) + extra));
+    double extra = cli_crust_extra_bytes(points->num_vertices, a->crust.labeling == BRIO_LABELING_GLOBAL,
+                                         a->crust.simplify, a->crust.triangulate);
+    TRY(cli_require_memory(r, (a->method == POWER_CRUST ? cli_crust_bytes(points) : cli_cocone_bytes(points)) + extra));
     TRY(a->method == POWER_CRUST ? power_crust(r, points, &result) : cocone(r, points, &result));
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));

@@ -1,5 +1,5 @@
 #!/bin/sh
-# setup.sh build|check|bench: sees to the tools that building, testing or measuring needs.
+# setup.sh build|check|bench|thesis: sees to the tools that building, testing or measuring needs.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
 set -eu
 
@@ -39,6 +39,10 @@ missing() {
     if [ "$1" = bench ]; then
         has g++ || echo g++
         has_python_with numpy || echo python3-numpy
+    fi
+    if [ "$1" = thesis ]; then
+        has_python_with numpy || echo python3-numpy
+        has gnuplot || echo gnuplot-nox
     fi
     [ "$1" = check ] || return 0
     [ -x $python ] || echo python3
@@ -90,9 +94,9 @@ install_peers() {
 
 purpose=${1:-build}
 case $purpose in
-build | check | bench) ;;
+build | check | bench | thesis) ;;
 *)
-    echo "usage: setup.sh build|check|bench" >&2
+    echo "usage: setup.sh build|check|bench|thesis" >&2
     exit 1
     ;;
 esac

@@ -130,21 +130,52 @@ typedef struct {
     uint32_t vertex[4], mate[4];
 } brio_tetrahedron;
 
-/** Insertion orders. All give the same tetrahedra. */
+/** Insertion orders. All give the same tetrahedra. Several threads insert together except with RANDOM and INPUT, which
+ *  follow no path through space. Workspace, bytes a point, given back before the insertion: BRIO, HILBERT and
+ *  RANDOM 16, BRIO_OCTREE 5, BRIO_KDTREE 20, OCTREE 4, INPUT none. */
 typedef enum brio_order {
     BRIO_ORDER_BRIO = 0,    /* random rounds, Hilbert curve inside a round: the tuned one [Amenta Choi Rote 2003] */
     BRIO_ORDER_HILBERT = 1, /* one round */
     BRIO_ORDER_RANDOM = 2,
     BRIO_ORDER_INPUT = 3,
+    BRIO_ORDER_BRIO_OCTREE = 4, /* random rounds, octree blocks inside a round, shuffled inside a block [Choi 2003] */
+    BRIO_ORDER_BRIO_KDTREE = 5, /* the same with the blocks of a k-d tree */
+    BRIO_ORDER_OCTREE = 6,      /* octree blocks, shuffled inside a block; one round */
     BRIO_ORDER_END
 } brio_order;
 
+/** How a point finds its tetrahedron. All give the same tetrahedra; those other than the walk work on one thread.
+ *  Points that edges do not reach are located as by BRIO_LOCATE_HISTORY (trace) or BRIO_LOCATE_WALK (neighbour).
+ *  Memory beyond the walk's, in bytes a point: jump 4, hierarchy about 17, neighbour 8, trace 16, the last two 8 an
+ *  edge besides; history and trace also 20 for every tetrahedron that is ever created and 4 for every one there is. */
+typedef enum brio_location {
+    BRIO_LOCATE_WALK = 0,  /* from the point inserted last [Devillers Pion Teillaud 2002] */
+    BRIO_LOCATE_JUMP,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
+    BRIO_LOCATE_HIERARCHY, /* through triangulations of ever larger samples [Devillers 2002] */
+    BRIO_LOCATE_HISTORY,   /* in the history DAG [Guibas Knuth Sharir 1992, Clarkson Mehlhorn Seidel 1993] */
+    BRIO_LOCATE_TRACE,     /* edges are traced now and then, the history DAG does the rest; in BRIO_ORDER_RANDOM
+                              O(n log* n) for Delaunay edges that span the points [Choi 2003, chapter 4] */
+    BRIO_LOCATE_NEIGHBOUR, /* from the nearest of the point's neighbours along edges and the last point */
+    BRIO_LOCATE_END
+} brio_location;
+
 typedef struct brio_options {
     brio_order order;
-    double round_ratio;      /* share of the points left for the rounds before the last, in (0, 1); default 1/8 */
+    double round_ratio;      /* share of the points left for the rounds before the last, below 1; default 0: the
+                                order's own, 1/8 for BRIO and 1/2 for BRIO_OCTREE and BRIO_KDTREE */
     uint64_t seed;           /* every random choice follows from it; default 1 */
     uint32_t max_tetrahedra; /* finite and infinite ones at any time; default (and most) 2^30 */
+    size_t block_size;       /* most points of an octree or k-d tree block; default 0: 2,000 */
+    uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;
+                                default 0: none are kept */
+    brio_location locate;    /* default BRIO_LOCATE_WALK */
+    int all_conflicts;       /* history and trace: follow all conflicts, not one path; default 0 */
+    const uint32_t *edges;   /* trace and neighbour: num_edges pairs of indices of points; default NULL */
+    size_t num_edges;
 } brio_options;
+
+/** One entry at the end of each round; of orders without rounds, after 4,096 points, twice as many, and so on. */
+#define BRIO_RECORD_ROUNDS UINT64_MAX
 
 BRIO_API brio_options brio_options_default(void);
 
@@ -157,8 +188,21 @@ typedef struct brio_stats {
     uint64_t created, destroyed, walk_steps, insphere_calls;
     uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
     uint64_t deferred, serial;            /* with threads: insertions put off to a later pass; left to one thread */
+    uint64_t history;                     /* nodes of the history DAG, with BRIO_LOCATE_HISTORY or BRIO_LOCATE_TRACE */
+    uint64_t history_tests;               /* nodes that searches held against a point */
+    uint64_t trace_intersections;         /* tetrahedra entered while edges were traced */
+    double locate_seconds;                /* of the insertion: point location, from every 64th one; with one thread */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
 } brio_stats;
+
+/** Counters when so many points were in; those of brio_stats, up to then. */
+typedef struct brio_round {
+    size_t points;     /* inserted so far */
+    size_t tetrahedra; /* at that time, infinite ones included */
+    uint64_t created, destroyed, walk_steps, insphere_calls, history;
+    double locate_seconds; /* as in brio_stats */
+    double seconds;        /* since the insertion began */
+} brio_round;
 
 typedef struct brio_triangulation brio_triangulation;
 
@@ -181,6 +225,12 @@ BRIO_API brio_status brio_delaunay(brio_context *ctx, const double *points, cons
 BRIO_API void brio_triangulation_free(brio_triangulation *t);
 
 BRIO_API const brio_stats *brio_triangulation_stats(const brio_triangulation *t);
+
+/** The counters in the course of the insertion: *count entries of rising `points`, the last one at the end of the
+ *  insertion; NULL and 0 unless options.record_every was set. The same numbers of points for every number of threads,
+ *  which insert what lies between two entries together: small steps leave little to share, and the counters of a step
+ *  depend on who came first. View. */
+BRIO_API const brio_round *brio_triangulation_rounds(const brio_triangulation *t, size_t *count);
 
 /** The #T = tetrahedra + hull_facets tetrahedra. The finite tetrahedra come first and are positive; an
  *  infinite tetrahedron has BRIO_INFINITE as its last vertex and the other three see the outside on their negative
@@ -337,23 +387,54 @@ BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, c
  *  Based on: [Dyn Levin Gregory 1990], [Zorin Schroeder Sweldens 1996]. */
 BRIO_API brio_status brio_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out);
 
+/** Edges between vertices. Zeroed to begin with. */
+typedef struct brio_edges {
+    size_t count;
+    uint32_t *ends; /* count by 2 */
+} brio_edges;
+
+/** Frees edges and zeroes the struct; zeroed ones are accepted. */
+BRIO_API void brio_edges_free(brio_context *ctx, brio_edges *edges);
+
+/** Sparse subgraphs of the edges of a mesh. */
+typedef enum brio_subgraph {
+    BRIO_SUBGRAPH_BOUNDED = 0, /* of bounded degree, for oriented surfaces of triangles */
+    BRIO_SUBGRAPH_MINIMUM = 1, /* a minimum spanning tree by length, of any mesh; its degree is at most 12 where the
+                                  mesh holds the Euclidean minimum spanning tree of its vertices */
+    BRIO_SUBGRAPH_TREE = 2,    /* a breadth-first tree, of any mesh: of bounded degree where the mesh is */
+    BRIO_SUBGRAPH_ALL = 3,     /* every edge, once */
+    BRIO_SUBGRAPH_END
+} brio_subgraph;
+
+/** A subgraph of the edges of a mesh that reaches all vertices on faces and joins what the mesh joins: the way along a
+ *  known surface, for brio_options.edges. The bounded one has degree at most 3 on closed surfaces of genus 0 and 12 g
+ *  on those of genus g, each component for itself, at most 3 on disks; where a surface has several boundary loops, or
+ *  components that share a vertex, no bound is promised.
+ *  Cost: linear for the bounded one and the breadth-first tree; about 20 bytes a corner of the mesh.
+ *  out  freed with brio_edges_free.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_ANSWER (bounded: faces that are no
+ *  triangles, edges of more than two faces or of faces that disagree), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED.
+ *  Based on: [Choi 2003] section 4.3, [Lazarus Pocchiola Vegter Verroust 2001], [Kruskal 1956]. */
+BRIO_API brio_status brio_mesh_subgraph(brio_context *ctx, const brio_mesh *mesh, brio_subgraph kind, brio_edges *out);
+
 /* ------------------------------------------------------------------------------------------------------------------
  * Surface reconstruction
  */
 
 /** Ways to label the poles of a power crust as inner or outer. */
 typedef enum brio_labeling {
-    BRIO_LABELING_GREEDY = 0,      /* the surest pole first [Choi 2003, figure 3.8] */
-    BRIO_LABELING_NAIVE = 1,       /* breadth first from outside [Choi 2003, section 3.3.3] */
-    BRIO_LABELING_THEORETICAL = 2, /* breadth first from one sample [Choi 2003, appendix B.3] */
-    BRIO_LABELING_GLOBAL = 3,      /* least sum of violated weights, by roof duality [Boros Hammer 2002] */
+    BRIO_LABELING_GLOBAL = 0,      /* least sum of violated weights, by roof duality [Boros Hammer 2002] */
+    BRIO_LABELING_GREEDY = 1,      /* the surest pole first [Choi 2003, figure 3.8] */
+    BRIO_LABELING_NAIVE = 2,       /* breadth first from outside [Choi 2003, section 3.3.3] */
+    BRIO_LABELING_THEORETICAL = 3, /* breadth first from one sample [Choi 2003, appendix B.3] */
     BRIO_LABELING_END
 } brio_labeling;
 
 typedef struct brio_surface_options {
     uint64_t seed;          /* default 1 */
     int triangulate;        /* 1: cut the polygons into triangles; default 0 */
-    brio_labeling labeling; /* default greedy */
+    brio_labeling labeling; /* default global */
     /* A closed mesh in the unit of the points, its vertices being the points or not: poles within it are inner, whatever
        the labeling; default NULL. BRIO_ERR_NO_ANSWER when it is not closed. */
     const brio_mesh *solid;
@@ -380,7 +461,7 @@ typedef struct brio_power_crust_stats {
     size_t confused;            /* poles that had evidence for both labels when they were labelled */
     size_t unreached;           /* naive, theoretical: poles that were left to the greedy labelling */
     size_t open, toggled;       /* global: poles that roof duality left open; poles whose greedy label was changed */
-    double energy_greedy;       /* global: sum of the violated weights of the greedy labels */
+    double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
     double energy;              /* sum of the violated weights of the labels */
     size_t left_out;            /* faces that `open` left out */
     double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds, simplify_seconds;
@@ -469,6 +550,8 @@ typedef struct brio_cocone_options {
     int boundaries; /* 1: samples at boundaries and where the sampling is too sparse are found by the shape of their
                        Voronoi cells, and triangles among them alone are no candidates; default 0 */
     int density;    /* 1: the sampling condition is estimated: the mesh gets vertex properties; default 0 */
+    size_t pieces;  /* over 1: in about so many pieces that are triangulated one after the other and matched at their
+                       seams (super co-cone); not with tight; default 0: the whole at once */
 } brio_cocone_options;
 
 BRIO_API brio_cocone_options brio_cocone_options_default(void);
@@ -481,6 +564,8 @@ typedef struct brio_cocone_stats {
     size_t pruned;            /* of these, dropped at sharp edges */
     size_t boundary_samples;  /* found with options.boundaries */
     size_t relabelled;        /* tetrahedra whose side was changed to keep the surface a manifold */
+    size_t pieces, unmatched; /* with options.pieces: cells of the octree; triangles at their seams left out because
+                                 the pieces disagree on them */
     size_t outside_guarantee; /* with options.density: samples on the surface where the estimate of r is over 0.08 */
     double r_median, r_p95;   /* with options.density: of the estimates of r over the samples on the surface */
     double delaunay_seconds, poles_seconds, candidates_seconds, labels_seconds, manifold_seconds, density_seconds;
@@ -496,10 +581,11 @@ typedef struct brio_cocone_stats {
  *          where they are. With options.density: "feature_size", the distance to the nearest pole; "r", an estimate
  *          of the sampling density there (0 where the sample is on no face); "boundary", 1 for a boundary sample (with
  *          options.boundaries too).
- *  Cost: one triangulation; about 60 bytes a tetrahedron more. Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found,
+ *  Cost: one triangulation; about 50 bytes a tetrahedron more. In N pieces the memory is that of 1/N of the samples and
+ *  their surroundings, and 80 bytes a point; on a dense sample the triangles are the same. Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found,
  *  or no inside), and as brio_delaunay.
  *  Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
- *            [Dey Goswami 2003]. */
+ *            [Dey Giesen Hudson 2001], [Dey Goswami 2003]. */
 BRIO_API brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points,
                                  const brio_cocone_options *options, brio_mesh **out, brio_cocone_stats *stats);
 
@@ -586,6 +672,8 @@ typedef struct brio_iso_options {
     double blobbiness; /* atoms: above 0 and at most 100, the larger the more the surface is that of balls; default 2 */
     size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
     size_t vertices;   /* not 0: the resolution is chosen so that there are about so many vertices; default 0 */
+    int conforming;    /* 1: all triangles are Delaunay, for vertices at the same place taken as one: facets of the
+                          Delaunay triangulation of the mesh's vertices [Attali Lachaud 2001]; default 0 */
 } brio_iso_options;
 
 BRIO_API brio_iso_options brio_iso_options_default(void);

@@ -1,7 +1,11 @@
 /* Counted memory: small blocks from the allocator, large ones in mappings that grow without copying.
  *
  * Invariants: a block's header tells how it was made; `live` is the sum of the sizes of anonymous blocks; a mapped
- * file is allocated on disk (posix_fallocate) before its pages can be touched, so that a full disk is a status. */
+ * file is allocated on disk (posix_fallocate) before its pages can be touched, so that a full disk is a status.
+ *
+ * A fault on a mapped file reads a single page, unless the block is read in sequence: the system would read what its
+ * device is set to, up to megabytes, and where memory is short these throw out what is used. What is needed next is
+ * asked for where that is known (read_ahead.h). */
 #define _GNU_SOURCE
 #include "base/memory.h"
 #include <errno.h>
@@ -126,7 +130,10 @@ static void *map_file(brio_context *ctx, size_t size, int *file, brio_status *st
     }
     int error = *file < 0 ? errno : posix_fallocate(*file, 0, (off_t)size);
     void *base = error ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, *file, 0);
-    if (base != MAP_FAILED) return base;
+    if (base != MAP_FAILED) {
+        madvise(base, size, MADV_RANDOM);
+        return base;
+    }
     *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s", ctx->scratch, size,
                         strerror(error ? error : errno));
     if (*file >= 0) close(*file);
@@ -178,6 +185,11 @@ void brio_release(brio_context *ctx, void *block) {
         close(h.file);
     else
         account_sub(ctx, h.size);
+}
+
+void brio_expect_sequence(const void *block) {
+    const block_header *h = (const block_header *)((const char *)block - HEADER);
+    if (h->kind == KIND_FILE) madvise((char *)block - HEADER, h->size, MADV_NORMAL);
 }
 
 /* Grows or shrinks a mapping in place of copying it. */

@@ -18,6 +18,10 @@ void brio_release(brio_context *ctx, void *block);
 /** Memory that this process may use: the least of the machine's and its cgroups' (v1 and v2). */
 size_t brio_machine_memory(void);
 
+/** The block will be read from its beginning to its end: a fault on its scratch file then reads on. Other blocks' faults
+ *  read a single page. Nothing for blocks in memory. */
+void brio_expect_sequence(const void *block);
+
 static inline brio_status brio_resize_to(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
     brio_status status = BRIO_OK;
     void *block;

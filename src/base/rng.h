@@ -14,6 +14,11 @@ static inline uint64_t brio_mix(uint64_t x) {
     return x ^ (x >> 31);
 }
 
+/** The random number of an index. */
+static inline uint64_t brio_hash(uint64_t seed, uint64_t index) {
+    return brio_mix(seed + brio_mix(index));
+}
+
 typedef struct {
     uint64_t state;
 } brio_rng;

@@ -4,58 +4,80 @@
 #include "base/parallel.h"
 #include <string.h>
 
-enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PASSES = (64 + DIGIT - 1) / DIGIT };
+enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PAIRS_A_THREAD = 1 << 12 };
 
-static void count_digits(const uint64_t *keys, size_t n, int passes, size_t (*count)[BUCKETS]) {
-    memset(count, 0, (size_t)passes * sizeof *count);
-    for (size_t i = 0; i < n; i++)
-        for (int p = 0; p < passes; p++) count[p][keys[i] >> (p * DIGIT) & (BUCKETS - 1)]++;
-}
+typedef struct {
+    uint64_t *key;
+    uint32_t *value;
+} pairs;
 
-/* Turns counts into first positions; false when all keys share this digit. */
-static bool first_positions(size_t count[BUCKETS], size_t n) {
+/* Turns each thread's counts into where it writes: all threads' of one digit, then of the next; false when all keys
+ * share this digit. */
+static bool first_positions(size_t (*count)[BUCKETS], int threads, size_t n) {
     size_t sum = 0;
     for (int b = 0; b < BUCKETS; b++) {
-        size_t c = count[b];
-        if (c == n) return false;
-        count[b] = sum;
-        sum += c;
+        size_t before = sum;
+        for (int t = 0; t < threads; t++) {
+            size_t c = count[t][b];
+            count[t][b] = sum;
+            sum += c;
+        }
+        if (sum - before == n) return false;
     }
     return true;
 }
 
+/* One digit; every thread of the team calls this. *moved, which they share, tells whether the pairs are in `to`. */
+static void sort_pairs_digit(pairs from, pairs to, size_t n, int shift, size_t (*count)[BUCKETS], bool *moved) {
+    int thread = brio_thread(), threads = brio_team_size();
+    size_t begin = brio_part(n, thread, threads), end = brio_part(n, thread + 1, threads), *mine = count[thread];
+    memset(mine, 0, sizeof *count);
+    for (size_t i = begin; i < end; i++) mine[from.key[i] >> shift & (BUCKETS - 1)]++;
+    BRIO_OMP(barrier)
+    BRIO_OMP(single)
+    *moved = first_positions(count, threads, n);
+    for (size_t i = *moved ? begin : end; i < end; i++) {
+        size_t place = mine[from.key[i] >> shift & (BUCKETS - 1)]++;
+        to.key[place] = from.key[i];
+        to.value[place] = from.value[i];
+    }
+    BRIO_OMP(barrier)
+}
+
+/* Sorts a, with b as spare room; whether the pairs are in b in the end. Every thread of the team calls this. */
+static bool sort_pairs(pairs a, pairs b, size_t n, int bits, size_t (*count)[BUCKETS], bool *moved) {
+    bool in_b = false;
+    for (int shift = 0; shift < bits; shift += DIGIT) {
+        sort_pairs_digit(in_b ? b : a, in_b ? a : b, n, shift, count, moved);
+        in_b ^= *moved;
+        BRIO_OMP(barrier)
+    }
+    return in_b;
+}
+
 brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits) {
     brio_status status = BRIO_OK;
-    int passes = (bits + DIGIT - 1) / DIGIT;
-    uint64_t *k = keys, *other_k = NULL, *spare_k = NULL;
-    uint32_t *v = values, *other_v = NULL, *spare_v = NULL;
+    int threads = brio_context_threads(ctx), most = (int)(n / PAIRS_A_THREAD) + 1;
+    pairs spare = {NULL, NULL};
     size_t(*count)[BUCKETS] = NULL;
+    bool moved = false, in_spare = false;
     if (n < 2) goto done;
-    BRIO_TRY(BRIO_ALLOC(ctx, count, (size_t)passes));
-    BRIO_TRY(BRIO_ALLOC(ctx, spare_k, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, spare_v, n));
-    other_k = spare_k, other_v = spare_v;
-    count_digits(keys, n, passes, count);
-    for (int p = 0; p < passes; p++) {
-        if (!first_positions(count[p], n)) continue;
-        for (size_t i = 0; i < n; i++) {
-            size_t to = count[p][k[i] >> (p * DIGIT) & (BUCKETS - 1)]++;
-            other_k[to] = k[i];
-            other_v[to] = v[i];
-        }
-        uint64_t *swap_k = k;
-        uint32_t *swap_v = v;
-        k = other_k, other_k = swap_k;
-        v = other_v, other_v = swap_v;
+    if (threads > most) threads = most;
+    BRIO_TRY(BRIO_ALLOC(ctx, count, (size_t)threads));
+    BRIO_TRY(BRIO_ALLOC(ctx, spare.key, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, spare.value, n));
+    BRIO_OMP(parallel num_threads(threads)) {
+        bool last = sort_pairs((pairs){keys, values}, spare, n, bits, count, &moved);
+        if (brio_thread() == 0) in_spare = last;
     }
-    if (k != keys) {
-        memcpy(keys, k, n * sizeof *k);
-        memcpy(values, v, n * sizeof *v);
+    if (in_spare) {
+        memcpy(keys, spare.key, n * sizeof *keys);
+        memcpy(values, spare.value, n * sizeof *values);
     }
 done:
     brio_release(ctx, count);
-    brio_release(ctx, spare_k);
-    brio_release(ctx, spare_v);
+    brio_release(ctx, spare.key);
+    brio_release(ctx, spare.value);
     return status;
 }
 

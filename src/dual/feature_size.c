@@ -51,8 +51,9 @@ static int longest_axis(const pole_tree *t, size_t begin, size_t end) {
     for (int k = 0; k < 3; k++) low[k] = high[k] = t->pole[begin][k];
     for (size_t i = begin + 1; i < end; i++)
         for (int k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], t->pole[i][k]);
-            high[k] = fmax(high[k], t->pole[i][k]);
+            double x = t->pole[i][k];
+            low[k] = x < low[k] ? x : low[k];
+            high[k] = x > high[k] ? x : high[k];
         }
     int axis = 0;
     for (int k = 1; k < 3; k++)
@@ -60,12 +61,14 @@ static int longest_axis(const pole_tree *t, size_t begin, size_t end) {
     return axis;
 }
 
-/* Recursion as deep as the logarithm of the number of poles. */
+/* Recursion as deep as the logarithm of the number of poles; large halves are left to other threads. */
 static void build(pole_tree *t, size_t begin, size_t end) {
+    enum { LARGE = 4096 };
     if (end - begin <= LEAF) return;
     size_t middle = begin + (end - begin) / 2;
     t->axis[middle] = (uint8_t)longest_axis(t, begin, end);
     select_middle(t->pole, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
+    BRIO_OMP(task if (end - begin > LARGE))
     build(t, begin, middle);
     build(t, middle + 1, end);
 }
@@ -75,19 +78,33 @@ static double square_distance(const double *p, const double *q) {
     return x * x + y * y + z * z;
 }
 
+static inline double least(double a, double b) {
+    return b < a ? b : a;
+}
+
 /* The least of `best` and the squared distances from p to the poles of a range. */
 static double nearest(const pole_tree *t, const double *p, size_t begin, size_t end, double best) {
     if (end - begin <= LEAF) {
-        for (size_t i = begin; i < end; i++) best = fmin(best, square_distance(p, t->pole[i]));
+        for (size_t i = begin; i < end; i++) best = least(best, square_distance(p, t->pole[i]));
         return best;
     }
     size_t middle = begin + (end - begin) / 2;
     double across = p[t->axis[middle]] - t->pole[middle][t->axis[middle]];
-    best = fmin(best, square_distance(p, t->pole[middle]));
+    best = least(best, square_distance(p, t->pole[middle]));
     bool below = across < 0;
     best = below ? nearest(t, p, begin, middle, best) : nearest(t, p, middle + 1, end, best);
     if (across * across >= best) return best;
     return below ? nearest(t, p, middle + 1, end, best) : nearest(t, p, begin, middle, best);
+}
+
+/* Square of the distance from a sample to the nearest pole; its own ones are near to begin with. */
+static double nearest_of(const pole_tree *t, const brio_pole_vectors *v, size_t p) {
+    double best = INFINITY;
+    for (int side = 0; side < 2; side++) {
+        size_t own = v->pole[2 * p + (size_t)side];
+        if (own < v->num_finite) best = least(best, square_distance(v->points + 3 * p, v->centre + 3 * own));
+    }
+    return nearest(t, v->points + 3 * p, 0, t->count, best);
 }
 
 /* The finite poles, each once. */
@@ -113,11 +130,13 @@ brio_status brio_feature_sizes(brio_context *ctx, const brio_pole_vectors *v, do
     *size = NULL;
     BRIO_TRY(collect_poles(ctx, v, &tree));
     BRIO_TRY(BRIO_ALLOC(ctx, result, v->num_points));
+    BRIO_OMP(parallel num_threads(brio_context_threads(ctx)))
+    BRIO_OMP(single)
     build(&tree, 0, tree.count);
     BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(brio_context_threads(ctx)))
     for (size_t p = 0; p < v->num_points; p++) {
         bool vertex = v->pole[2 * p] != BRIO_INFINITE;
-        result[p] = vertex ? sqrt(nearest(&tree, v->points + 3 * p, 0, tree.count, INFINITY)) : 0;
+        result[p] = vertex ? sqrt(nearest_of(&tree, v, p)) : 0;
     }
     *size = result;
 done:

@@ -1,28 +1,36 @@
-/* Voronoi vertices, and the direction of each sample's pole. */
+/* Voronoi vertices, the direction of each sample's pole, and what lies which way as seen from there. */
 #ifndef BRIO_DUAL_POLE_VECTORS_H
 #define BRIO_DUAL_POLE_VECTORS_H
 
 #include "base/context.h"
 #include "triangulation/tetrahedra.h"
 
+/** Where a Voronoi vertex lies as seen from a sample: in the cone about the direction to its pole, in the opposite one,
+ *  or in the co-cone between them. A place too close to the border to tell counts as in the co-cone. */
+typedef enum { BRIO_SIDE_COCONE = 0, BRIO_SIDE_POLE = 1, BRIO_SIDE_ANTIPOLE = 2 } brio_side;
+
 /** The dual of a Delaunay triangulation, as far as a sample sees its surface by it. A Voronoi vertex is named by its
  *  tetrahedron; that of an infinite tetrahedron lies infinitely far along the outward normal of the hull facet. */
 typedef struct {
     brio_tetrahedra t; /* caller's indices; without records */
-    size_t num_finite, num_points;
+    size_t num_finite, num_points, num_vertices;
     const double *points;
-    double *centre; /* #T by 3; of an infinite tetrahedron the unit direction; NaN where doubles cannot hold it */
-    double *error;  /* #T: bounds the error of each coordinate; of a direction too */
-    double *vector; /* #P by 3, unit: from the sample to the farther pole or, on the hull, the sum of the unit outward
+    double theta;    /* half the opening of the co-cones */
+    double *centre;  /* #T by 3; of an infinite tetrahedron the unit direction; NaN where doubles cannot hold it */
+    double *error;   /* #T: bounds the error of each coordinate; of a direction too */
+    double *vector;  /* #P by 3, unit: from the sample to the farther pole or, on the hull, the sum of the unit outward
                        normals of its hull facets; zero for points that are no vertices */
-    uint32_t *pole; /* #P by 2: the farther pole (on the hull an infinite tetrahedron) and the farthest Voronoi vertex
+    uint32_t *pole;  /* #P by 2: the farther pole (on the hull an infinite tetrahedron) and the farthest Voronoi vertex
                        on its other side; BRIO_INFINITE where there is none */
+    uint16_t *sides; /* #T: two bits for each slot, the side of the Voronoi vertex as its sample sees it; in the upper
+                        half two more, how near to the axis */
 } brio_pole_vectors;
 
-/** Finds them. t and points must outlive the result; what it holds is to be freed on failure too. Ties go by the
- *  lexicographically largest centre. Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+/** Finds them.   theta  in (0, pi/2).   t and points must outlive the result; what it holds is to be freed on failure
+ *  too. Ties go by the positions of centres, then of vertices. Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ */
 brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *t, const double *points,
-                                   size_t num_points, brio_pole_vectors *out);
+                                   size_t num_points, double theta, brio_pole_vectors *out);
 
 void brio_pole_vectors_free(brio_context *ctx, brio_pole_vectors *v);
 
@@ -31,6 +39,18 @@ static inline void brio_towards_centre(const brio_pole_vectors *v, size_t tet, s
     const double *c = v->centre + 3 * tet, *from = v->points + 3 * p;
     bool ray = tet >= v->num_finite;
     for (int k = 0; k < 3; k++) to[k] = ray ? c[k] : c[k] - from[k];
+}
+
+static inline int brio_side_of(const brio_pole_vectors *v, size_t tet, int slot) {
+    return v->sides[tet] >> 2 * slot & 3;
+}
+
+enum { BRIO_DEPTHS = 4 };
+
+/** Whether the sine of the angle between the direction to a Voronoi vertex and the axis of the sample in a slot is over
+ *  1/16, 1/8, 1/4: how many of these. */
+static inline int brio_depth_class(const brio_pole_vectors *v, size_t tet, int slot) {
+    return v->sides[tet] >> (8 + 2 * slot) & 3;
 }
 
 #endif

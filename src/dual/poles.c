@@ -3,7 +3,7 @@
  * One pass over the tetrahedra offers each circumcentre to the four vertices as the farthest Voronoi vertex; a second
  * one offers it as the farthest on the other side, where the vector to it makes an obtuse angle with the vector to the
  * first. Equal distances are decided by the centre and then by the tetrahedron's own points, never by its place in
- * memory.
+ * memory: the best tetrahedron is the greatest in a total order, whichever thread offers it and when.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.8. */
@@ -20,6 +20,7 @@
 enum { NO_TET = UINT32_MAX };
 
 typedef struct {
+    int threads;
     const brio_tetrahedron *tet;
     const double *points;
     size_t num_tets, num_samples;
@@ -31,9 +32,8 @@ static const double *centre_of(const finder *f, uint32_t tet) {
     return f->centre + 3 * (size_t)tet;
 }
 
-static void find_centres(const brio_context *ctx, finder *f) {
-    (void)ctx; /* without OpenMP */
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
+static void find_centres(finder *f) {
+    BRIO_OMP(parallel for schedule(static) num_threads(f->threads))
     for (size_t tet = 0; tet < f->num_tets; tet++) {
         double r[4][4] = {{0}};
         for (int i = 0; i < 4; i++) memcpy(r[i], f->points + 3 * (size_t)f->tet[tet].vertex[i], 3 * sizeof **r);
@@ -66,14 +66,17 @@ static int compare_tets(const finder *f, uint32_t s, uint32_t t) {
     return sign;
 }
 
+static bool farther(const finder *f, uint32_t tet, double distance, uint32_t than, const double *sample) {
+    double other = square_distance(centre_of(f, than), sample);
+    return distance > other || (distance == other && compare_tets(f, tet, than) > 0);
+}
+
 /* Keeps the farther of the best tetrahedron so far and this one. */
 static inline void offer(const finder *f, uint32_t *best, uint32_t tet, const double *sample) {
-    if (*best == NO_TET) {
-        *best = tet;
-        return;
-    }
-    double now = square_distance(centre_of(f, *best), sample), then = square_distance(centre_of(f, tet), sample);
-    if (then > now || (then == now && compare_tets(f, tet, *best) > 0)) *best = tet;
+    double distance = square_distance(centre_of(f, tet), sample);
+    uint32_t now = __atomic_load_n(best, __ATOMIC_RELAXED);
+    while (now == NO_TET || farther(f, tet, distance, now, sample))
+        if (__atomic_compare_exchange_n(best, &now, tet, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) break;
 }
 
 static bool opposite(const finder *f, uint32_t first, uint32_t tet, const double *s) {
@@ -82,6 +85,7 @@ static bool opposite(const finder *f, uint32_t first, uint32_t tet, const double
 }
 
 static void offer_all(finder *f, int side) {
+    BRIO_OMP(parallel for schedule(static) num_threads(f->threads))
     for (size_t tet = 0; tet < f->num_tets; tet++) {
         if (isnan(f->centre[3 * tet])) continue;
         for (int i = 0; i < 4; i++) {
@@ -126,8 +130,9 @@ static brio_status sort_poles(brio_context *ctx, const finder *f, uint32_t *list
     double *centres = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, keys, count));
     BRIO_TRY(BRIO_ALLOC(ctx, centres, 3 * count));
+    BRIO_OMP(parallel for num_threads(f->threads))
     for (size_t p = 0; p < count; p++) memcpy(centres + 3 * p, centre_of(f, list[p]), 3 * sizeof *centres);
-    brio_hilbert_keys(centres, count, BITS, keys);
+    brio_hilbert_keys(centres, count, BITS, f->threads, keys);
     BRIO_TRY(brio_radix_sort(ctx, keys, list, count, 3 * BITS));
     for (size_t begin = 0, end; begin < count; begin = end) {
         for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;
@@ -156,6 +161,7 @@ done:
 }
 
 static void fill_poles(const finder *f, const uint32_t *list, brio_poles *poles) {
+    BRIO_OMP(parallel for num_threads(f->threads))
     for (size_t p = 0; p < poles->count; p++) {
         const double *position[4];
         memcpy(poles->centre + 3 * p, centre_of(f, list[p]), 3 * sizeof *poles->centre);
@@ -177,7 +183,9 @@ static brio_status number_poles(brio_context *ctx, finder *f, brio_poles *poles)
     BRIO_TRY(BRIO_ALLOC(ctx, poles->bounding, poles->count));
     fill_poles(f, list, poles);
     BRIO_TRY(BRIO_ALLOC(ctx, number, f->num_tets));
+    BRIO_OMP(parallel for num_threads(f->threads))
     for (size_t p = 0; p < poles->count; p++) number[list[p]] = (uint32_t)p;
+    BRIO_OMP(parallel for num_threads(f->threads))
     for (size_t i = 0; i < 2 * f->num_samples; i++)
         f->best[i] = f->best[i] == NO_TET ? BRIO_NO_POLE : number[f->best[i]];
 done:
@@ -189,7 +197,8 @@ done:
 brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
                             const brio_pole_filter *filter, brio_poles *out) {
     brio_status status = BRIO_OK;
-    finder f = {.tet = brio_triangulation_tetrahedra(t),
+    finder f = {.threads = brio_context_threads(ctx),
+                .tet = brio_triangulation_tetrahedra(t),
                 .points = points,
                 .num_tets = brio_triangulation_stats(t)->tetrahedra,
                 .num_samples = num_samples};
@@ -197,7 +206,7 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
     BRIO_TRY(BRIO_ALLOC(ctx, f.centre, 3 * f.num_tets));
     BRIO_TRY(BRIO_ALLOC(ctx, f.best, 2 * num_samples));
     for (size_t i = 0; i < 2 * num_samples; i++) f.best[i] = NO_TET;
-    find_centres(ctx, &f);
+    find_centres(&f);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
     offer_all(&f, 0);
     offer_all(&f, 1);

@@ -27,6 +27,7 @@ brio_status brio_builder_start(brio_builder *b, brio_context *ctx, const char *n
 static brio_status set_vertex_capacity(brio_builder *b, size_t capacity) {
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_RESIZE(b->ctx, b->mesh->vertices, 3 * capacity));
+    brio_expect_sequence(b->mesh->vertices);
     for (size_t i = 0; i < b->mesh->num_properties; i++) {
         brio_property *p = &b->mesh->properties[i];
         BRIO_TRY(brio_resize_to(b->ctx, &p->data, capacity, brio_scalar_size(p->type)));

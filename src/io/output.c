@@ -90,13 +90,17 @@ static brio_status write_all(brio_output *out, const char *bytes, size_t size) {
     return BRIO_OK;
 }
 
+static brio_status report(brio_output *out) {
+    double share = out->expected ? (double)out->written / (double)out->expected : 0;
+    return brio_progress(out->ctx, "write", share < 1 ? share : 1);
+}
+
 static brio_status flush(brio_output *out) {
     brio_status status = BRIO_OK;
     size_t used = out->used;
     out->used = 0;
     BRIO_TRY(write_all(out, out->buffer, used));
-    double share = out->expected ? (double)out->written / (double)out->expected : 0;
-    BRIO_TRY(brio_progress(out->ctx, "write", share < 1 ? share : 1));
+    BRIO_TRY(report(out));
 done:
     return status;
 }
@@ -137,7 +141,14 @@ brio_status brio_output_bytes(brio_output *out, const void *bytes, size_t size) 
     brio_status status = BRIO_OK;
     const char *p = bytes;
     while (size) {
-        if (out->used == BLOCK) BRIO_TRY(flush(out));
+        if (out->used == BLOCK || (out->used && size >= BLOCK)) BRIO_TRY(flush(out));
+        if (size >= BLOCK) { /* by way of no buffer */
+            BRIO_TRY(write_all(out, p, BLOCK));
+            BRIO_TRY(report(out));
+            p += BLOCK;
+            size -= BLOCK;
+            continue;
+        }
         size_t part = size < BLOCK - out->used ? size : BLOCK - out->used;
         memcpy(out->buffer + out->used, p, part);
         out->used += part;

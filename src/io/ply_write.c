@@ -1,4 +1,8 @@
-/* Writes PLY files: binary in this machine's byte order, or text. */
+/* Writes PLY files: binary in this machine's byte order, or text.
+ *
+ * The place of every binary row is known beforehand: threads encode chunks of them, which are written as a whole. */
+#include "base/memory.h"
+#include "base/parallel.h"
 #include "io/formats.h"
 #include "io/ply_header.h"
 #include "io/scalar.h"
@@ -39,6 +43,93 @@ done:
     return status;
 }
 
+/* --- binary rows --- */
+
+enum { CHUNK = 1 << 16 }; /* rows */
+
+static size_t vertex_size(const brio_write_job *job) {
+    size_t size = 3 * (job->options->float32 ? sizeof(float) : sizeof(double));
+    for (size_t i = 0; i < job->mesh->num_properties; i++) size += brio_scalar_size(job->mesh->properties[i].type);
+    return size;
+}
+
+static void encode_vertex(const brio_write_job *job, size_t v, char *bytes) {
+    const double *p = job->mesh->vertices + 3 * v;
+    float rounded[3] = {(float)p[0], (float)p[1], (float)p[2]};
+    size_t size = job->options->float32 ? sizeof rounded : 3 * sizeof *p;
+    memcpy(bytes, job->options->float32 ? (const void *)rounded : p, size);
+    for (size_t i = 0; i < job->mesh->num_properties; i++) {
+        const brio_property *property = &job->mesh->properties[i];
+        bytes += size;
+        size = brio_scalar_size(property->type);
+        memcpy(bytes, (const char *)property->data + v * size, size);
+    }
+}
+
+static brio_status write_binary_vertices(brio_output *out, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
+    size_t size = vertex_size(job);
+    char *bytes = NULL;
+    if (!m->num_properties && !job->options->float32)
+        return brio_output_bytes(out, m->vertices, 3 * m->num_vertices * sizeof *m->vertices);
+    BRIO_TRY(BRIO_ALLOC(out->ctx, bytes, CHUNK * size));
+    for (size_t begin = 0; begin < m->num_vertices; begin += CHUNK) {
+        size_t count = m->num_vertices - begin < CHUNK ? m->num_vertices - begin : CHUNK;
+        BRIO_OMP(parallel for num_threads(brio_context_threads(out->ctx)))
+        for (size_t i = 0; i < count; i++) encode_vertex(job, begin + i, bytes + i * size);
+        BRIO_TRY(brio_output_bytes(out, bytes, count * size));
+    }
+done:
+    brio_release(out->ctx, bytes);
+    return status;
+}
+
+static void encode_list(const uint32_t *items, size_t count, bool long_list, char *bytes) {
+    uint32_t wide = (uint32_t)count;
+    uint8_t narrow = (uint8_t)count;
+    size_t size = long_list ? sizeof wide : sizeof narrow;
+    memcpy(bytes, long_list ? (const void *)&wide : &narrow, size);
+    memcpy(bytes + size, items, count * sizeof *items);
+}
+
+static brio_status write_binary_faces(brio_output *out, const brio_mesh *m, bool long_lists) {
+    brio_status status = BRIO_OK;
+    size_t head = long_lists ? sizeof(uint32_t) : sizeof(uint8_t), capacity = 0;
+    char *bytes = NULL;
+    for (size_t begin = 0; begin < m->num_faces; begin += CHUNK) {
+        size_t end = m->num_faces - begin < CHUNK ? m->num_faces : begin + CHUNK;
+        const uint64_t *offsets = m->face_offsets, first = offsets[begin];
+        size_t size = (end - begin) * head + (size_t)(offsets[end] - first) * sizeof(uint32_t);
+        BRIO_TRY(BRIO_RESERVE(out->ctx, bytes, capacity, size));
+        BRIO_OMP(parallel for num_threads(brio_context_threads(out->ctx)))
+        for (size_t f = begin; f < end; f++)
+            encode_list(m->face_vertices + offsets[f], (size_t)(offsets[f + 1] - offsets[f]), long_lists,
+                        bytes + (f - begin) * head + (size_t)(offsets[f] - first) * sizeof(uint32_t));
+        BRIO_TRY(brio_output_bytes(out, bytes, size));
+    }
+done:
+    brio_release(out->ctx, bytes);
+    return status;
+}
+
+static brio_status write_binary(brio_output *out, const brio_write_job *job, bool long_lists) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
+    BRIO_TRY(write_binary_vertices(out, job));
+    BRIO_TRY(write_binary_faces(out, m, long_lists));
+    for (size_t t = 0; t < m->num_tetrahedra; t++) {
+        char bytes[1 + 4 * sizeof(uint32_t)];
+        encode_list(m->tetrahedra + 4 * t, 4, false, bytes);
+        BRIO_TRY(brio_output_bytes(out, bytes, sizeof bytes));
+    }
+    if (m->num_edges) BRIO_TRY(brio_output_bytes(out, m->edges, 2 * m->num_edges * sizeof *m->edges));
+done:
+    return status;
+}
+
+/* --- text --- */
+
 static brio_status write_text_vertex(brio_output *out, const brio_write_job *job, size_t v) {
     brio_status status = BRIO_OK;
     const double *p = job->mesh->vertices + 3 * v;
@@ -53,24 +144,6 @@ done:
     return status;
 }
 
-static brio_status write_binary_vertex(brio_output *out, const brio_write_job *job, size_t v) {
-    brio_status status = BRIO_OK;
-    const double *p = job->mesh->vertices + 3 * v;
-    if (job->options->float32) {
-        float rounded[3] = {(float)p[0], (float)p[1], (float)p[2]};
-        BRIO_TRY(brio_output_bytes(out, rounded, sizeof rounded));
-    } else {
-        BRIO_TRY(brio_output_bytes(out, p, 3 * sizeof *p));
-    }
-    for (size_t i = 0; i < job->mesh->num_properties; i++) {
-        const brio_property *property = &job->mesh->properties[i];
-        size_t size = brio_scalar_size(property->type);
-        BRIO_TRY(brio_output_bytes(out, (const char *)property->data + v * size, size));
-    }
-done:
-    return status;
-}
-
 static brio_status write_text_list(brio_output *out, const uint32_t *items, size_t count) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_output_integer(out, 0, (int64_t)count));
@@ -80,27 +153,30 @@ done:
     return status;
 }
 
-static brio_status write_list(brio_output *out, const brio_write_job *job, const uint32_t *items, size_t count,
-                              bool long_list) {
+static brio_status write_text_edge(brio_output *out, const uint32_t *edge) {
     brio_status status = BRIO_OK;
-    if (job->options->ascii) return write_text_list(out, items, count);
-    uint32_t wide = (uint32_t)count;
-    uint8_t narrow = (uint8_t)count;
-    BRIO_TRY(long_list ? brio_output_bytes(out, &wide, sizeof wide) : brio_output_bytes(out, &narrow, sizeof narrow));
-    BRIO_TRY(brio_output_bytes(out, items, count * sizeof *items));
-done:
-    return status;
-}
-
-static brio_status write_edge(brio_output *out, const brio_write_job *job, const uint32_t *edge) {
-    brio_status status = BRIO_OK;
-    if (!job->options->ascii) return brio_output_bytes(out, edge, 2 * sizeof *edge);
     BRIO_TRY(brio_output_integer(out, 0, edge[0]));
     BRIO_TRY(brio_output_integer(out, ' ', edge[1]));
     BRIO_TRY(brio_output_string(out, "\n"));
 done:
     return status;
 }
+
+static brio_status write_text(brio_output *out, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
+    for (size_t v = 0; v < m->num_vertices; v++) BRIO_TRY(write_text_vertex(out, job, v));
+    for (size_t f = 0; f < m->num_faces; f++) {
+        uint64_t from = m->face_offsets[f], to = m->face_offsets[f + 1];
+        BRIO_TRY(write_text_list(out, m->face_vertices + from, (size_t)(to - from)));
+    }
+    for (size_t t = 0; t < m->num_tetrahedra; t++) BRIO_TRY(write_text_list(out, m->tetrahedra + 4 * t, 4));
+    for (size_t e = 0; e < m->num_edges; e++) BRIO_TRY(write_text_edge(out, m->edges + 2 * e));
+done:
+    return status;
+}
+
+/* --- file --- */
 
 brio_status brio_ply_write(brio_output *out, const brio_write_job *job) {
     brio_status status = BRIO_OK;
@@ -110,14 +186,7 @@ brio_status brio_ply_write(brio_output *out, const brio_write_job *job) {
     BRIO_REQUIRE(out->ctx, corners <= INT32_MAX, BRIO_ERR_ARGUMENT, "%s: a face of %zu corners does not fit a PLY file",
                  out->name, corners);
     BRIO_TRY(write_header(out, job, long_lists));
-    for (size_t v = 0; v < m->num_vertices; v++)
-        BRIO_TRY(job->options->ascii ? write_text_vertex(out, job, v) : write_binary_vertex(out, job, v));
-    for (size_t f = 0; f < m->num_faces; f++) {
-        uint64_t from = m->face_offsets[f], to = m->face_offsets[f + 1];
-        BRIO_TRY(write_list(out, job, m->face_vertices + from, (size_t)(to - from), long_lists));
-    }
-    for (size_t t = 0; t < m->num_tetrahedra; t++) BRIO_TRY(write_list(out, job, m->tetrahedra + 4 * t, 4, false));
-    for (size_t e = 0; e < m->num_edges; e++) BRIO_TRY(write_edge(out, job, m->edges + 2 * e));
+    BRIO_TRY(job->options->ascii ? write_text(out, job) : write_binary(out, job, long_lists));
 done:
     return status;
 }

@@ -5,7 +5,7 @@
  * construction from Gray codes, written out for three dimensions; twelve of the 24 orientations occur). */
 #include "order/hilbert.h"
 #include "base/parallel.h"
-#include <math.h>
+#include "order/cube.h"
 
 /* STATE[s][octant] = 8 * next state + rank; octant = 4 x + 2 y + z of the next bits. */
 static const uint8_t STATE[12][8] = {
@@ -56,65 +56,32 @@ uint64_t brio_hilbert_key(uint32_t x, uint32_t y, uint32_t z, int bits) {
     return key_of(&two, x, y, z, bits);
 }
 
-/* The cube of points. Coordinates are halved first, so that its side cannot overflow. */
-typedef struct {
-    double low[3], high[3], scale, last;
-} cube;
-
-static void cube_new(cube *c, const double *p) {
-    for (int k = 0; k < 3; k++) c->low[k] = c->high[k] = p[k] * 0.5;
+static inline uint64_t cube_key(const brio_cube *c, const two_levels *two, const double *p, int bits) {
+    return key_of(two, brio_cube_cell(c, p, 0), brio_cube_cell(c, p, 1), brio_cube_cell(c, p, 2), bits);
 }
 
-static inline void cube_add(cube *c, const double *p) {
-    for (int k = 0; k < 3; k++) {
-        double x = p[k] * 0.5;
-        c->low[k] = x < c->low[k] ? x : c->low[k];
-        c->high[k] = x > c->high[k] ? x : c->high[k];
-    }
-}
-
-/* Divides the cube into 2^bits cells a side; false when it is a point. */
-static bool cube_divide(cube *c, int bits) {
-    double side = fmax(c->high[0] - c->low[0], fmax(c->high[1] - c->low[1], c->high[2] - c->low[2]));
-    double cells = ldexp(1, bits);
-    c->last = cells - 1;
-    c->scale = side > 0 ? fmin(cells / side, 0x1p1000) : 0;
-    return side > 0;
-}
-
-static inline uint64_t cube_key(const cube *c, const two_levels *two, const double *p, int bits) {
-    uint32_t cell[3];
-    for (int k = 0; k < 3; k++) {
-        double x = (p[k] * 0.5 - c->low[k]) * c->scale;
-        cell[k] = (uint32_t)(int64_t)(x < c->last ? x : c->last);
-    }
-    return key_of(two, cell[0], cell[1], cell[2], bits);
-}
-
-/* The cube of rows of a matrix, or of those that the low halves of the items name. */
-static cube cube_of(const double *rows, size_t stride, const uint64_t *items, size_t n, int threads) {
-    cube first, all;
-    cube_new(&first, rows + stride * (items ? (uint32_t)items[0] : 0));
+/* The cube of all points, or of those that the low halves of the items name. */
+static brio_cube cube_of(const double *points, const uint64_t *items, size_t n, int threads) {
+    brio_cube first, all;
+    brio_cube_new(&first, points + 3 * (items ? (size_t)(uint32_t)items[0] : 0));
     all = first;
     BRIO_OMP(parallel num_threads(threads)) {
-        cube own = first;
+        brio_cube own = first;
         BRIO_OMP(for nowait)
-        for (size_t i = 0; i < n; i++) cube_add(&own, rows + stride * (items ? (uint32_t)items[i] : i));
+        for (size_t i = 0; i < n; i++) brio_cube_add(&own, points + 3 * (items ? (size_t)(uint32_t)items[i] : i));
         BRIO_OMP(critical(brio_cube))
-        for (int k = 0; k < 3; k++) {
-            all.low[k] = fmin(all.low[k], own.low[k]);
-            all.high[k] = fmax(all.high[k], own.high[k]);
-        }
+        brio_cube_join(&all, &own);
     }
     return all;
 }
 
-void brio_hilbert_keys(const double *points, size_t n, int bits, uint64_t *keys) {
+void brio_hilbert_keys(const double *points, size_t n, int bits, int threads, uint64_t *keys) {
     if (!n) return;
     two_levels two;
     compose(&two);
-    cube c = cube_of(points, 3, NULL, n, 1);
-    cube_divide(&c, bits);
+    brio_cube c = cube_of(points, NULL, n, threads);
+    brio_cube_divide(&c, bits);
+    BRIO_OMP(parallel for num_threads(threads))
     for (size_t i = 0; i < n; i++) keys[i] = cube_key(&c, &two, points + 3 * i, bits);
 }
 
@@ -122,39 +89,12 @@ bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bit
     if (!n) return false;
     two_levels two;
     compose(&two);
-    cube c = cube_of(points, 3, items, n, threads);
-    if (!cube_divide(&c, bits)) return false;
+    brio_cube c = cube_of(points, items, n, threads);
+    if (!brio_cube_divide(&c, bits)) return false;
     BRIO_OMP(parallel for num_threads(threads))
     for (size_t i = 0; i < n; i++) {
         uint64_t index = (uint32_t)items[i];
         items[i] = cube_key(&c, &two, points + 3 * index, bits) << 32 | index;
     }
     return true;
-}
-
-void brio_hilbert_variant(const double *rows, size_t stride, size_t n, int variant, int threads, uint32_t *key) {
-    enum { BITS = 10 };
-    two_levels two;
-    double room = 0;
-    if (!n) return;
-    compose(&two);
-    cube c = cube_of(rows, stride, NULL, n, threads);
-    for (int k = 0; k < 3; k++) room = fmax(room, c.high[k] - c.low[k]);
-    for (int k = 0; k < 3; k++) { /* the golden ratio spreads the variants over the room that the larger cube gives */
-        double part = fmod(0.618033988749895 * (double)(3 * variant + k + 1), 1);
-        c.low[k] -= 0.6 * room * part;
-        c.high[k] = c.low[k] + 1.6 * room;
-    }
-    cube_divide(&c, BITS);
-    BRIO_OMP(parallel for num_threads(threads))
-    for (size_t i = 0; i < n; i++) {
-        double turned[3];
-        cube about = c;
-        for (int k = 0; k < 3; k++) {
-            int from = (k + variant) % 3;
-            turned[k] = rows[stride * i + (size_t)from];
-            about.low[k] = c.low[from];
-        }
-        key[i] = (uint32_t)cube_key(&about, &two, turned, BITS);
-    }
 }

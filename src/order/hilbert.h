@@ -11,15 +11,10 @@ uint64_t brio_hilbert_key(uint32_t x, uint32_t y, uint32_t z, int bits);
 
 /** keys[i] = key of point i in the smallest cube that holds the #P by 3 points; bits at most BRIO_HILBERT_MAX_BITS. Any
  *  finite coordinates. */
-void brio_hilbert_keys(const double *points, size_t num_points, int bits, uint64_t *keys);
+void brio_hilbert_keys(const double *points, size_t num_points, int bits, int threads, uint64_t *keys);
 
 /** The same for some of the points: the low half of items[i] is an index of a point, the high half becomes its key in
  *  the smallest cube that holds them all; bits at most 10. False when they are all at one position. */
 bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bits, int threads);
-
-/** key[i] = key of row i (its first three of `stride` doubles) along a curve of 10 levels through a cube that is larger
- *  than that of the rows and placed differently for each `variant`, its axes in turn: curves that cut space elsewhere.
- */
-void brio_hilbert_variant(const double *rows, size_t stride, size_t n, int variant, int threads, uint32_t *key);
 
 #endif

@@ -4,7 +4,7 @@
  * less the difference of weights, the centre is
  *     a + (l_b c x d + l_c d x b + l_d b x c) / (2 det [b, c, d]).
  * A numerator and the determinant carry an error of a few units in the last place of their permanents; when that leaves
- * the quotient less certain than RELATIVE_GOAL, the same formula is evaluated in double-doubles, and at last in exact
+ * the quotient less certain than the goal, the same formula is evaluated in double-doubles, and at last in exact
  * dyadic numbers. Differences are first scaled by a power of two to at most 1, so that nothing overflows on the way. */
 #include "predicates/circumcentre.h"
 #include "brio/brio.h"
@@ -12,8 +12,9 @@
 #include "predicates/dyadic.h"
 #include "predicates/predicates.h"
 
-/* An error of 2^-44 of the centre's distance is what doubles reach for tetrahedra of ordinary shape. */
-static const double RELATIVE_GOAL = 0x1p-44;
+/* An error of 2^-44 of the centre's distance is what doubles reach for tetrahedra of ordinary shape; 2^-30 is enough for
+ * angles, and doubles reach it for nearly flat ones too. */
+static const double FINE_GOAL = 0x1p-44, ROUGH_GOAL = 0x1p-30;
 /* First-order error of each expression below: at most 20 roundings along a path; double-doubles 80 u^2. */
 static const double DOUBLE_BOUND = 20 * 0x1p-53, DD_BOUND = 0x1p-99;
 
@@ -40,21 +41,23 @@ static permanents permanents_of(double r[3][3], double lift[3]) {
 }
 
 /* The quotients with their error from the errors of numerator and determinant; false when that is too large. */
-static bool divide(const double numerator[3], double determinant, const permanents *p, double bound, solution *s) {
+static bool divide(const double numerator[3], double determinant, const permanents *p, double bound, double goal,
+                   solution *s) {
     double slack = fabs(determinant) - bound * p->determinant - 0x1p-900, most = 0;
     if (!(slack > 0)) return false;
+    double inverse = 1 / slack, share = bound * p->determinant * inverse * (1 + 0x1p-50) + 0x1p-52;
     s->error = 0;
     for (int k = 0; k < 3; k++) {
         s->offset[k] = 0.5 * (numerator[k] / determinant);
-        double error = 0.5 * (bound * p->numerator[k] + 0x1p-900) / slack +
-                       fabs(s->offset[k]) * (bound * p->determinant / slack + 0x1p-52);
-        s->error = fmax(s->error, error);
-        most = fmax(most, fabs(s->offset[k]));
+        double size = fabs(s->offset[k]);
+        double error = 0.5 * (bound * p->numerator[k] + 0x1p-900) * inverse * (1 + 0x1p-50) + size * share;
+        s->error = s->error > error ? s->error : error;
+        most = most > size ? most : size;
     }
-    return s->error <= RELATIVE_GOAL * most && most < INFINITY;
+    return s->error <= goal * most && most < INFINITY;
 }
 
-static bool solve_double(double r[3][3], const double weight[3], solution *s, permanents *p) {
+static bool solve_double(double r[3][3], const double weight[3], double goal, solution *s, permanents *p) {
     double lift[3], magnitude[3], numerator[3] = {0, 0, 0}, determinant = 0;
     for (int i = 0; i < 3; i++) {
         double square = r[i][0] * r[i][0] + r[i][1] * r[i][1] + r[i][2] * r[i][2];
@@ -68,10 +71,11 @@ static bool solve_double(double r[3][3], const double weight[3], solution *s, pe
         numerator[0] += lift[i] * x, numerator[1] += lift[i] * y, numerator[2] += lift[i] * z;
         if (i == 0) determinant = r[0][0] * x + r[0][1] * y + r[0][2] * z;
     }
-    return divide(numerator, determinant, p, DOUBLE_BOUND, s);
+    return divide(numerator, determinant, p, DOUBLE_BOUND, goal, s);
 }
 
-BRIO_INLINE bool solve_dd(brio_dd r[3][3], const brio_dd weight[3], const permanents *p, solution *s, const bool fma) {
+BRIO_INLINE bool solve_dd(brio_dd r[3][3], const brio_dd weight[3], const permanents *p, double goal, solution *s,
+                          const bool fma) {
     brio_dd numerator[3] = {{0, 0}, {0, 0}, {0, 0}}, determinant = {0, 0};
     for (int i = 0; i < 3; i++) {
         brio_dd *u = r[(i + 1) % 3], *v = r[(i + 2) % 3], cross[3];
@@ -85,14 +89,15 @@ BRIO_INLINE bool solve_dd(brio_dd r[3][3], const brio_dd weight[3], const perman
             if (i == 0) determinant = dd_add(determinant, dd_multiply(r[0][k], cross[k], fma));
         }
     }
-    return divide((double[]){numerator[0].hi, numerator[1].hi, numerator[2].hi}, determinant.hi, p, DD_BOUND, s);
+    return divide((double[]){numerator[0].hi, numerator[1].hi, numerator[2].hi}, determinant.hi, p, DD_BOUND, goal, s);
 }
 
-static bool solve_dd_plain(brio_dd r[3][3], const brio_dd w[3], const permanents *p, solution *s) {
-    return solve_dd(r, w, p, s, false);
+static bool solve_dd_plain(brio_dd r[3][3], const brio_dd w[3], const permanents *p, double goal, solution *s) {
+    return solve_dd(r, w, p, goal, s, false);
 }
-BRIO_TARGET_FMA static bool solve_dd_fma(brio_dd r[3][3], const brio_dd w[3], const permanents *p, solution *s) {
-    return solve_dd(r, w, p, s, true);
+BRIO_TARGET_FMA static bool solve_dd_fma(brio_dd r[3][3], const brio_dd w[3], const permanents *p, double goal,
+                                         solution *s) {
+    return solve_dd(r, w, p, goal, s, true);
 }
 
 /* x = 1/2 numerator / determinant of exact numbers, scaled by 2^-exponent. */
@@ -138,12 +143,17 @@ static bool solve_exact(const double *const p[4], bool weighted, int exponent, s
     return true;
 }
 
+static inline void order_two(const double **p, const double **q) {
+    const double *a = *p, *b = *q;
+    bool swap = a[0] != b[0] ? a[0] > b[0] : brio_lexicographic(a, b) > 0;
+    *p = swap ? b : a;
+    *q = swap ? a : b;
+}
+
 static void sort_ascending(const double *p[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {
-            const double *swap = p[j];
-            p[j] = p[j - 1], p[j - 1] = swap;
-        }
+    order_two(&p[0], &p[1]), order_two(&p[2], &p[3]);
+    order_two(&p[0], &p[2]), order_two(&p[1], &p[3]);
+    order_two(&p[1], &p[2]);
 }
 
 /* 2^e for exponents of normal numbers, sparing a library call. */
@@ -162,47 +172,145 @@ static bool ordinary(int exponent) {
 static int exponent_of(const double *const p[4]) {
     double most = 0;
     for (int i = 1; i < 4; i++)
-        for (int k = 0; k < 3; k++) most = fmax(most, fabs(p[i][k] * 0.5 - p[0][k] * 0.5));
-    int exponent;
-    frexp(most, &exponent);
-    return exponent + 1;
+        for (int k = 0; k < 3; k++) {
+            double half = fabs(p[i][k] * 0.5 - p[0][k] * 0.5);
+            most = half > most ? half : most;
+        }
+    uint64_t bits;
+    __builtin_memcpy(&bits, &most, sizeof bits);
+    return (int)(bits >> 52) - 1021; /* -1021 for subnormal numbers */
 }
 
-static bool solve(const double *const p[4], bool weighted, int exponent, solution *s) {
+/* In double-doubles; scale is exact and finite. */
+static bool solve_finely(const double *const p[4], bool weighted, double scale, const permanents *permanent,
+                         double goal, solution *s) {
+    brio_dd r[3][3], weight[3] = {{0, 0}, {0, 0}, {0, 0}};
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) r[i][k] = dd_difference(p[i + 1][k] * scale, p[0][k] * scale);
+        if (weighted) weight[i] = dd_difference(p[i + 1][3] * scale * scale, p[0][3] * scale * scale);
+    }
+    return dd_have_fma() ? solve_dd_fma(r, weight, permanent, goal, s) : solve_dd_plain(r, weight, permanent, goal, s);
+}
+
+static bool solve(const double *const p[4], bool weighted, double goal, int exponent, solution *s) {
     double r[3][3], weight[3] = {0, 0, 0}, scale;
-    brio_dd rr[3][3], ww[3] = {{0, 0}, {0, 0}, {0, 0}};
     permanents permanent;
     if (!ordinary(exponent)) return solve_exact(p, weighted, exponent, s);
-    scale = power_of_two(-exponent); /* exact and finite */
+    scale = power_of_two(-exponent);
     for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) {
-            rr[i][k] = dd_difference(p[i + 1][k] * scale, p[0][k] * scale);
-            r[i][k] = rr[i][k].hi;
-        }
-        if (weighted) ww[i] = dd_difference(p[i + 1][3] * scale * scale, p[0][3] * scale * scale);
-        weight[i] = ww[i].hi;
+        for (int k = 0; k < 3; k++) r[i][k] = p[i + 1][k] * scale - p[0][k] * scale;
+        if (weighted) weight[i] = p[i + 1][3] * scale * scale - p[0][3] * scale * scale;
     }
-    if (solve_double(r, weight, s, &permanent)) return true;
-    bool done = dd_have_fma() ? solve_dd_fma(rr, ww, &permanent, s) : solve_dd_plain(rr, ww, &permanent, s);
-    return done || solve_exact(p, weighted, exponent, s);
+    return solve_double(r, weight, goal, s, &permanent) || solve_finely(p, weighted, scale, &permanent, goal, s) ||
+           solve_exact(p, weighted, exponent, s);
+}
+
+static bool find_centre(const double *p[4], bool weighted, double goal, double centre[3], double *error) {
+    solution s;
+    sort_ascending(p);
+    int exponent = exponent_of(p);
+    if (!solve(p, weighted, goal, exponent, &s)) return false;
+    double unit = ordinary(exponent) ? power_of_two(exponent) : 1, far = 0;
+    *error = ordinary(exponent) ? s.error * unit : ldexp(s.error, exponent);
+    for (int k = 0; k < 3; k++) {
+        centre[k] = p[0][k] + (ordinary(exponent) ? s.offset[k] * unit : ldexp(s.offset[k], exponent));
+        if (!isfinite(centre[k])) return false;
+        far = far > fabs(centre[k]) ? far : fabs(centre[k]);
+    }
+    *error += 0x1p-53 * far;
+    return true;
 }
 
 bool brio_centre(const double *a, const double *b, const double *c, const double *d, bool weighted, double centre[3],
                  double *error) {
     const double *p[4] = {a, b, c, d};
-    solution s;
-    sort_ascending(p);
-    int exponent = exponent_of(p);
-    if (!solve(p, weighted, exponent, &s)) return false;
-    double unit = ordinary(exponent) ? power_of_two(exponent) : 1;
-    double worst = ordinary(exponent) ? s.error * unit : ldexp(s.error, exponent);
-    for (int k = 0; k < 3; k++) {
-        centre[k] = p[0][k] + (ordinary(exponent) ? s.offset[k] * unit : ldexp(s.offset[k], exponent));
-        if (!isfinite(centre[k])) return false;
+    double ignored;
+    return find_centre(p, weighted, FINE_GOAL, centre, error ? error : &ignored);
+}
+
+/* --- several at once --- */
+
+typedef double lanes __attribute__((vector_size(8 * BRIO_CENTRES)));
+typedef int64_t lane_mask __attribute__((vector_size(8 * BRIO_CENTRES)));
+
+/* most = the larger of most and |x|, lane by lane. Vectors are passed by address: their registers depend on the
+ * instruction set. */
+BRIO_INLINE void take_larger(lanes *most, const lanes *x) {
+    lanes size = (lanes)((lane_mask)*x & INT64_MAX);
+    lane_mask more = size > *most;
+    *most = (lanes)(((lane_mask)size & more) | ((lane_mask)*most & ~more));
+}
+
+/* The quotients and a bound of their errors, from the differences r to the first points; in doubles, unscaled, with the
+ * permanents bounded by the largest difference in each coordinate. Where a lane is no number its error is none. */
+BRIO_INLINE void solve_lanes(const lanes r[3][3], lanes offset[3], lanes *error, lanes *far) {
+    lanes zero = {0}, one = zero + 1, determinant = zero, lifts = zero, numerator[3] = {zero, zero, zero};
+    lanes size[3] = {zero, zero, zero}, slack = zero;
+    for (int i = 0; i < 3; i++) {
+        const lanes *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
+        lanes lift = r[i][0] * r[i][0] + r[i][1] * r[i][1] + r[i][2] * r[i][2];
+        lanes x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+        numerator[0] += lift * x, numerator[1] += lift * y, numerator[2] += lift * z;
+        if (i == 0) determinant = r[0][0] * x + r[0][1] * y + r[0][2] * z;
+        lifts += lift;
+        for (int k = 0; k < 3; k++) take_larger(&size[k], &r[i][k]);
     }
-    worst += 0x1p-53 * fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2])));
-    if (error) *error = worst;
-    return true;
+    lanes permanent = 6 * size[0] * size[1] * size[2];
+    take_larger(&slack, &determinant);
+    slack -= DOUBLE_BOUND * permanent + 0x1p-900;
+    lanes inverse = one / slack, share = DOUBLE_BOUND * permanent * inverse * (1 + 0x1p-50) + 0x1p-52;
+    *error = zero, *far = zero;
+    for (int k = 0; k < 3; k++) {
+        lanes most = 2 * lifts * size[(k + 1) % 3] * size[(k + 2) % 3];
+        offset[k] = 0.5 * (numerator[k] / determinant);
+        lanes own = 0.5 * (DOUBLE_BOUND * most + 0x1p-900) * inverse * (1 + 0x1p-50), length = zero;
+        take_larger(&length, &offset[k]);
+        own += length * share;
+        take_larger(error, &own);
+        take_larger(far, &length);
+    }
+    lane_mask bad = ~(slack > zero) | ~(*error <= ROUGH_GOAL * *far) | ~(*far < 0x1p900);
+    *error = (lanes)((lane_mask)*error | bad);
+}
+
+BRIO_INLINE void rough_centres(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
+    lanes base[3], r[3][3], offset[3], worst, far, farthest = {0};
+    for (int n = 0; n < BRIO_CENTRES; n++) {
+        sort_ascending(p[n]);
+        for (int k = 0; k < 3; k++) {
+            base[k][n] = p[n][0][k];
+            for (int i = 0; i < 3; i++) r[i][k][n] = p[n][i + 1][k];
+        }
+    }
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) r[i][k] -= base[k];
+    solve_lanes((const lanes(*)[3])r, offset, &worst, &far);
+    for (int k = 0; k < 3; k++) offset[k] += base[k];
+    for (int k = 0; k < 3; k++) take_larger(&farthest, &offset[k]);
+    worst += 0x1p-53 * farthest;
+    for (int n = 0; n < BRIO_CENTRES; n++) {
+        for (int k = 0; k < 3; k++) centre[n][k] = offset[k][n];
+        error[n] = worst[n];
+    }
+}
+
+static void rough_centres_plain(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
+    rough_centres(p, centre, error);
+}
+BRIO_TARGET_FMA static void rough_centres_wide(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
+    rough_centres(p, centre, error);
+}
+
+void brio_rough_centres(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
+    if (dd_have_fma())
+        rough_centres_wide(p, centre, error);
+    else
+        rough_centres_plain(p, centre, error);
+    for (int n = 0; n < BRIO_CENTRES; n++) {
+        if (error[n] < INFINITY || find_centre(p[n], false, ROUGH_GOAL, centre[n], &error[n])) continue;
+        centre[n][0] = NAN;
+        error[n] = INFINITY;
+    }
 }
 
 brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d, const double *weights,

@@ -10,4 +10,11 @@
 bool brio_centre(const double *a, const double *b, const double *c, const double *d, bool weighted, double centre[3],
                  double *error);
 
+enum { BRIO_CENTRES = 4 };
+
+/** Several centres without weights, each of its four records of coordinates at most 1, to 2^-30 of its distance to the lexicographically first
+ *  record, plus one rounding; centre[n][0] is NaN and error[n] infinite where there is none. Sorts the p[n]. The bits of
+ *  each depend on nothing else. */
+void brio_rough_centres(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error);
+
 #endif

@@ -53,11 +53,11 @@ static double border_distance(const double *axis, double sine, const double *in,
 static double reach(const brio_cocones *c, uint32_t p, const uint32_t tet[2]) {
     const brio_pole_vectors *v = c->dual;
     const double *axis = v->vector + 3 * (size_t)p;
-    double end[2][3], way[3], back[3], middle[3], sine = sin(c->theta);
+    double end[2][3], way[3], back[3], middle[3], sine = sin(c->dual->theta);
     bool inside[2], ray = tet[1] >= v->num_finite;
     for (int i = 0; i < 2; i++) {
         brio_towards_centre(v, tet[i], p, end[i]);
-        inside[i] = brio_side_of(c, tet[i], brio_slot_of_vertex(v->t.tet[tet[i]].vertex, p)) == BRIO_SIDE_COCONE;
+        inside[i] = brio_side_of(v, tet[i], brio_slot_of_vertex(v->t.tet[tet[i]].vertex, p)) == BRIO_SIDE_COCONE;
     }
     if (isnan(end[0][0] + end[1][0]) || (ray && inside[1])) return INFINITY;
     for (int k = 0; k < 3; k++) way[k] = ray ? end[1][k] : end[1][k] - end[0][k], back[k] = -way[k];

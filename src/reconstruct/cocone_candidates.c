@@ -7,74 +7,52 @@
  * its direction. So the test needs two bits for each tetrahedron and each of its vertices.
  *
  * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000.
- *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.2.
- * Differs from the paper: the error bounds of the centres count in favour of the triangle, so that rounding loses
- * none. */
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.2. */
 #include "reconstruct/cocone_candidates.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 
-static brio_side side_of(const brio_pole_vectors *v, size_t tet, size_t p, double sine) {
-    const double *axis = v->vector + 3 * p;
-    double to[3];
-    brio_towards_centre(v, tet, p, to);
-    double along = to[0] * axis[0] + to[1] * axis[1] + to[2] * axis[2];
-    double length = sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2]);
-    double limit = sine * length + 4 * v->error[tet] + 0x1p-48 * length;
-    return along > limit ? BRIO_SIDE_POLE : along < -limit ? BRIO_SIDE_ANTIPOLE : BRIO_SIDE_COCONE;
-}
-
-static void find_sides(const brio_context *ctx, brio_cocones *c) {
-    const brio_pole_vectors *v = c->dual;
-    double sine = sin(c->theta);
-    (void)ctx; /* without OpenMP */
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
-    for (size_t tet = 0; tet < v->t.count; tet++) {
-        int bits = 0;
-        for (int i = 0; i < (tet < v->num_finite ? 4 : 3); i++)
-            bits |= (int)side_of(v, tet, v->t.tet[tet].vertex[i], sine) << 2 * i;
-        c->sides[tet] = (uint8_t)bits;
-    }
-}
-
-brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, double theta, brio_cocones *out) {
-    brio_status status = BRIO_OK;
-    *out = (brio_cocones){.dual = dual, .theta = theta};
-    BRIO_TRY(BRIO_ALLOC(ctx, out->sides, dual->t.count));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->candidates, dual->t.count));
-    find_sides(ctx, out);
-done:
-    return status;
+brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, brio_cocones *out) {
+    *out = (brio_cocones){.dual = dual};
+    return BRIO_ALLOC_ZERO(ctx, out->candidates, dual->t.count);
 }
 
 void brio_cocones_free(brio_context *ctx, brio_cocones *c) {
-    brio_release(ctx, c->sides);
     brio_release(ctx, c->candidates);
     *c = (brio_cocones){0};
 }
 
-static bool passes(const brio_cocones *c, uint32_t facet) {
+/* Whether the Voronoi edge of a facet meets the co-cones of its samples, or of those that are no boundary samples. */
+static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_t *boundary) {
     const uint32_t *v = c->dual->t.tet[brio_tet_of(facet)].vertex;
-    int asked = 0;
     for (int k = 0; k < 3; k++) {
         uint32_t p = v[BRIO_FACET[brio_slot_of(facet)][k]];
         if (p == BRIO_INFINITE) return false;
-        if (c->boundary && c->boundary[p]) continue;
-        if (!brio_meets_cocone(c, facet, p)) return false;
-        asked++;
+        if (!(boundary && boundary[p]) && !brio_meets_cocone(c, facet, p)) return false;
     }
-    return asked > 0;
+    return true;
+}
+
+static bool passes(const brio_cocones *c, uint32_t facet) {
+    return meets_all(c, facet, c->boundary) &&
+           (!c->boundary || !brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
+}
+
+static inline void mark(const brio_cocones *c, uint32_t facet) {
+    __atomic_fetch_or(&c->candidates[brio_tet_of(facet)], (uint8_t)(1 << brio_slot_of(facet)), __ATOMIC_RELAXED);
 }
 
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
-    size_t sides = 0;
+    size_t found = 0;
     (void)ctx; /* without OpenMP */
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : sides))
-    for (size_t tet = 0; tet < c->dual->t.count; tet++) {
-        int bits = 0;
-        for (int i = 0; i < 4; i++)
-            if (passes(c, brio_facet_of((uint32_t)tet, i))) bits |= 1 << i, sides++;
-        c->candidates[tet] = (uint8_t)bits;
-    }
-    *count = sides / 2;
+    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
+    for (size_t tet = 0; tet < c->dual->t.count; tet++)
+        for (int i = 0; i < 4; i++) {
+            uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&c->dual->t, facet);
+            if (mate < facet || !passes(c, facet)) continue;
+            mark(c, facet);
+            mark(c, mate);
+            found++;
+        }
+    *count = found;
 }

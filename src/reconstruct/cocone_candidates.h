@@ -4,40 +4,39 @@
 
 #include "dual/pole_vectors.h"
 
-/** Where a Voronoi vertex lies as seen from a sample: in the cone about the direction to its pole, in the opposite one,
- *  or in the co-cone between them. A place too close to the border to tell counts as in the co-cone. */
-typedef enum { BRIO_SIDE_COCONE = 0, BRIO_SIDE_POLE = 1, BRIO_SIDE_ANTIPOLE = 2 } brio_side;
-
 /** What the co-cones make of a Delaunay triangulation. */
 typedef struct {
     const brio_pole_vectors *dual;
     const uint8_t *boundary; /* #P: 1 for samples that take no part in the test; or NULL */
-    double theta;
-    uint8_t *sides;      /* #T: two bits for each slot, the side of the Voronoi vertex as its sample sees it */
-    uint8_t *candidates; /* #T: bit i tells whether facet i is a candidate; set on both sides of a facet */
+    uint8_t *candidates;     /* #T: bit i tells whether facet i is a candidate; set on both sides of a facet */
 } brio_cocones;
 
-/** Finds the sides.   theta  in (0, pi/2).   Keeps dual; what it holds is to be freed on failure too. */
-brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, double theta, brio_cocones *out);
+/** Keeps dual; what it holds is to be freed on failure too. Finds no candidates yet. */
+brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, brio_cocones *out);
 void brio_cocones_free(brio_context *ctx, brio_cocones *c);
 
-/** Finds the candidates, for the first time or after `boundary` has changed: the facets whose dual Voronoi edge meets
- *  the co-cone of each of their samples that take part, which at least one does.
- *  count  receives the number of candidates. */
+/** Finds the candidates, once: the facets whose dual Voronoi edge meets the co-cone of each of their samples that take
+ *  part or, where none does, of each of their samples.   count  receives the number of candidates. */
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count);
-
-static inline int brio_side_of(const brio_cocones *c, size_t tet, int slot) {
-    return c->sides[tet] >> 2 * slot & 3;
-}
 
 /** Whether the Voronoi edge of facet `slot` of a tetrahedron meets the co-cone of its sample v: unless both ends lie in
  *  one cone. (A cone is convex, so the edge then stays in it; between the two cones it crosses the co-cone.) */
 static inline bool brio_meets_cocone(const brio_cocones *c, uint32_t facet, uint32_t v) {
     const brio_tetrahedron *tet = c->dual->t.tet;
     uint32_t here = brio_tet_of(facet), there = brio_tet_of(*brio_mate(&c->dual->t, facet));
-    int a = brio_side_of(c, here, brio_slot_of_vertex(tet[here].vertex, v));
-    int b = brio_side_of(c, there, brio_slot_of_vertex(tet[there].vertex, v));
+    int a = brio_side_of(c->dual, here, brio_slot_of_vertex(tet[here].vertex, v));
+    int b = brio_side_of(c->dual, there, brio_slot_of_vertex(tet[there].vertex, v));
     return a != b || a == BRIO_SIDE_COCONE;
+}
+
+/** Whether all samples of a facet are boundary samples. */
+static inline bool brio_is_among_boundary(const brio_cocones *c, uint32_t facet) {
+    const uint32_t *v = c->dual->t.tet[brio_tet_of(facet)].vertex;
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = v[BRIO_FACET[brio_slot_of(facet)][k]];
+        if (!c->boundary || (p != BRIO_INFINITE && !c->boundary[p])) return false;
+    }
+    return true;
 }
 
 static inline bool brio_is_candidate(const brio_cocones *c, uint32_t facet) {

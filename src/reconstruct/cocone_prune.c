@@ -10,6 +10,7 @@
  * Differs from the paper: what the votes of the samples hold to be surface is kept. */
 #include "reconstruct/cocone_prune.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 
 typedef struct {
     brio_context *ctx;
@@ -45,26 +46,40 @@ static facet_edge next_candidate(const pruning *x, facet_edge e) {
     return e;
 }
 
-/* Whether the angle from one candidate to the next round their edge is more than 3 pi / 2. */
-static bool is_wide(const pruning *x, facet_edge from, facet_edge to) {
+/* The part of the apexes' dot product across the edge, times its squared length: negative when the two triangles make
+ * more than a right angle. */
+static double across(const pruning *x, facet_edge e, facet_edge f) {
     const double *points = x->cocones->dual->points;
-    const double *a = points + 3 * (size_t)from.from, *b = points + 3 * (size_t)from.to;
-    const double *p = points + 3 * (size_t)from.apex, *q = points + 3 * (size_t)to.apex;
+    const double *a = points + 3 * (size_t)e.from, *b = points + 3 * (size_t)e.to;
+    const double *p = points + 3 * (size_t)e.apex, *q = points + 3 * (size_t)f.apex;
     double pq = 0, pe = 0, qe = 0, ee = 0;
-    if (from.facet == to.facet) return true; /* a single one */
     for (int k = 0; k < 3; k++) {
         pq += (p[k] - a[k]) * (q[k] - a[k]);
         pe += (p[k] - a[k]) * (b[k] - a[k]);
         qe += (q[k] - a[k]) * (b[k] - a[k]);
         ee += (b[k] - a[k]) * (b[k] - a[k]);
     }
-    return pq * ee > pe * qe && brio_orient3d(a, b, p, q) < 0;
+    return pq * ee - pe * qe;
 }
 
+/* Whether the angle from one candidate to the next round their edge is more than 3 pi / 2. */
+static bool is_wide(const pruning *x, facet_edge from, facet_edge to) {
+    const double *points = x->cocones->dual->points;
+    if (from.facet == to.facet) return true; /* a single one */
+    return across(x, from, to) > 0 && brio_orient3d(points + 3 * (size_t)from.from, points + 3 * (size_t)from.to,
+                                                    points + 3 * (size_t)from.apex, points + 3 * (size_t)to.apex) < 0;
+}
+
+/* Two candidates at more than a right angle leave no room for a wide gap, so that most walks end early. */
 static bool is_sharp(const pruning *x, facet_edge first) {
     const uint8_t *boundary = x->cocones->boundary;
     facet_edge e = first;
     if (boundary && boundary[e.from] && boundary[e.to]) return false;
+    do {
+        facet_edge next = next_candidate(x, e);
+        if (next.facet != first.facet && across(x, first, next) < 0) return false;
+        e = next;
+    } while (e.facet != first.facet);
     do {
         facet_edge next = next_candidate(x, e);
         if (is_wide(x, e, next)) return true;
@@ -73,11 +88,14 @@ static bool is_sharp(const pruning *x, facet_edge first) {
     return false;
 }
 
+static bool has_sharp_edge(const pruning *x, uint32_t facet) {
+    return is_sharp(x, edge_of(x, facet, 0)) || is_sharp(x, edge_of(x, facet, 1)) || is_sharp(x, edge_of(x, facet, 2));
+}
+
 /* Whether the samples of a candidate see the outside on one of its sides and the inside on the other. */
-static bool is_surface(const pruning *x, uint32_t facet) {
-    int here = brio_tet_vote(x->labels, brio_tet_of(facet));
-    int there = brio_tet_vote(x->labels, brio_tet_of(*brio_mate(x->t, facet)));
-    return (here > 0 && there < 0) || (here < 0 && there > 0);
+static inline bool is_surface(const pruning *x, uint32_t facet) {
+    uint8_t here = x->labels->label[brio_tet_of(facet)], there = x->labels->label[brio_tet_of(*brio_mate(x->t, facet))];
+    return here != there && here != BRIO_LABEL_NONE && there != BRIO_LABEL_NONE;
 }
 
 static brio_status push(pruning *x, uint32_t facet) {
@@ -102,24 +120,34 @@ done:
     return status;
 }
 
+/* Finds the candidates that have a sharp edge to begin with. What is dropped does not depend on the order, since edges
+ * only get sharper. */
+static brio_status find_sharp(pruning *x) {
+    brio_status status = BRIO_OK;
+    BRIO_OMP(parallel for schedule(dynamic, 4096) num_threads(brio_context_threads(x->ctx)))
+    for (size_t tet = 0; tet < x->t->count; tet++)
+        for (int i = 0; x->cocones->candidates[tet] && i < 4; i++) {
+            uint32_t facet = brio_facet_of((uint32_t)tet, i);
+            if (!brio_is_candidate(x->cocones, facet) || *brio_mate(x->t, facet) < facet) continue;
+            if (is_surface(x, facet) || !has_sharp_edge(x, facet)) continue;
+            BRIO_OMP(critical(brio_prune_stack)) {
+                brio_status own = push(x, facet);
+                if (own != BRIO_OK) status = own;
+            }
+        }
+    return status;
+}
+
 brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *l, size_t *dropped) {
     brio_status status = BRIO_OK;
     pruning x = {.ctx = ctx, .labels = l, .cocones = l->cocones, .t = &l->cocones->dual->t};
     *dropped = 0;
-    for (size_t tet = 0; tet < x.t->count; tet++)
-        for (int i = 0; x.cocones->candidates[tet] && i < 4; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            if (brio_is_candidate(x.cocones, facet) && *brio_mate(x.t, facet) > facet) BRIO_TRY(push(&x, facet));
-        }
+    BRIO_TRY(find_sharp(&x));
     while (x.size > 0) {
         uint32_t facet = x.stack[--x.size];
-        if (!brio_is_candidate(x.cocones, facet)) continue;
-        for (int k = 0; k < 3; k++) {
-            if (!is_sharp(&x, edge_of(&x, facet, k))) continue;
-            BRIO_TRY(drop(&x, facet));
-            ++*dropped;
-            break;
-        }
+        if (!brio_is_candidate(x.cocones, facet) || !has_sharp_edge(&x, facet)) continue;
+        BRIO_TRY(drop(&x, facet));
+        ++*dropped;
     }
 done:
     brio_release(ctx, x.stack);

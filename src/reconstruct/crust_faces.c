@@ -6,6 +6,9 @@
  * one cycle round its vertex. Hull vertices are outer, so every ring closes: the crust is a closed oriented 2-manifold
  * whatever the coordinates are. It stays combinatorial: no vertices are merged, no faces dropped.
  *
+ * Blocks of tetrahedra count what they will write, and then write it where the counts say, so that threads leave no
+ * trace. A face belongs to the first tetrahedron of its ring.
+ *
  * Cutting a face into triangles by diagonals keeps all this, since two faces share at most one edge.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3. */
@@ -15,24 +18,34 @@
 #include "predicates/circumcentre.h"
 #include "reconstruct/labelling.h"
 #include "surface/split_vertices.h"
+#include "triangulation/ring.h"
 #include <math.h>
 #include <string.h>
 
+enum { NO_VERTEX = UINT32_MAX, BLOCK = 1 << 13, AHEAD = 8 };
+
+/* What a block of tetrahedra makes, and then what the blocks before it make. */
+typedef struct {
+    size_t vertices, faces, corners, rings, left_out;
+} block_counts;
+
 typedef struct {
     const brio_pole_graph *g;
+    int threads;
     const uint8_t *label;
     const brio_crust_options *options;
     uint32_t *number; /* of the crust vertex of each finite tetrahedron, or NO_VERTEX */
+    uint16_t *leads;  /* of each finite tetrahedron, bit 4 i + j for the edge from slot i to j whose face it makes */
     brio_mesh *mesh;
-    uint64_t *offsets;
-    uint32_t *indices;
-    size_t num_faces, faces_capacity, num_indices, indices_capacity;
-    brio_crust_counts counts;
-    uint32_t *ring;
-    size_t ring_size, ring_capacity;
+    block_counts *blocks; /* num_blocks + 1 */
+    size_t num_blocks;
 } builder;
 
-enum { NO_VERTEX = UINT32_MAX };
+static size_t block_begin(const builder *b, size_t block) {
+    return block < b->num_blocks ? block * BLOCK : b->g->num_finite;
+}
+
+/* --- vertices --- */
 
 static bool inner(const builder *b, uint32_t pole) {
     return b->label[pole] == BRIO_LABEL_INNER;
@@ -60,76 +73,59 @@ static brio_status add_spacing(builder *b) {
     void *data;
     BRIO_TRY(brio_mesh_add_property(b->mesh, "spacing", BRIO_FLOAT64, &data));
     double *spacing = data;
+    BRIO_OMP(parallel for num_threads(b->threads))
     for (size_t tet = 0; tet < b->g->num_finite; tet++)
         if (b->number[tet] != NO_VERTEX) spacing[b->number[tet]] = vertex_spacing(b, b->g->power.tet[tet].vertex);
 done:
     return status;
 }
 
+static void count_vertices(const builder *b, size_t block) {
+    for (size_t tet = block_begin(b, block); tet < block_begin(b, block + 1); tet++) {
+        int inside = 0;
+        for (int i = 0; i < 4; i++) inside += inner(b, b->g->power.tet[tet].vertex[i]);
+        b->number[tet] = inside % 4 ? 0 : NO_VERTEX;
+        b->blocks[block].vertices += inside % 4 != 0;
+    }
+}
+
+static void fill_vertices(const builder *b, size_t block) {
+    size_t count = b->blocks[block].vertices;
+    for (size_t tet = block_begin(b, block); tet < block_begin(b, block + 1); tet++) {
+        if (b->number[tet] == NO_VERTEX) continue;
+        b->number[tet] = (uint32_t)count;
+        vertex_position(b, b->g->power.tet[tet].vertex, b->mesh->vertices + 3 * count++);
+    }
+}
+
+/* Turns the counts of the blocks into what is before each of them; the last entry is the total. */
+static void sum_blocks(builder *b) {
+    block_counts sum = {0, 0, 0, 0, 0};
+    for (size_t i = 0; i <= b->num_blocks; i++) {
+        block_counts own = b->blocks[i];
+        b->blocks[i] = sum;
+        sum.vertices += own.vertices;
+        sum.faces += own.faces;
+        sum.corners += own.corners;
+        sum.rings += own.rings;
+        sum.left_out += own.left_out;
+    }
+}
+
 static brio_status make_vertices(builder *b) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = b->g->ctx;
-    const brio_tetrahedron *power = b->g->power.tet;
-    size_t count = 0;
-    BRIO_TRY(BRIO_ALLOC(ctx, b->number, b->g->num_finite));
-    for (size_t tet = 0; tet < b->g->num_finite; tet++) {
-        int inside = 0;
-        for (int i = 0; i < 4; i++) inside += inner(b, power[tet].vertex[i]);
-        b->number[tet] = inside % 4 ? (uint32_t)count++ : NO_VERTEX;
-    }
-    BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, count));
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
-    for (size_t tet = 0; tet < b->g->num_finite; tet++)
-        if (b->number[tet] != NO_VERTEX)
-            vertex_position(b, power[tet].vertex, b->mesh->vertices + 3 * (size_t)b->number[tet]);
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) count_vertices(b, block);
+    sum_blocks(b);
+    BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, b->blocks[b->num_blocks].vertices));
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) fill_vertices(b, block);
+    memset(b->blocks, 0, (b->num_blocks + 1) * sizeof *b->blocks);
 done:
     return status;
 }
 
-/* The ring of tetrahedra round the edge from slot i to slot j of `tet`, counterclockwise seen from the far end; *leads
- * tells whether `tet` is the first of them in memory, and the ring is complete only then. */
-static brio_status walk_ring(builder *b, uint32_t tet, int i, int j, bool *leads) {
-    const brio_tetrahedra *t = &b->g->power;
-    uint32_t from = tet, leave = t->tet[tet].vertex[BRIO_EDGE[i][j][0]], pivot = t->tet[tet].vertex[BRIO_EDGE[i][j][1]];
-    b->ring_size = 0;
-    *leads = false;
-    do {
-        brio_status status = BRIO_RESERVE(b->g->ctx, b->ring, b->ring_capacity, b->ring_size + 1);
-        if (status != BRIO_OK) return status;
-        b->ring[b->ring_size++] = b->number[from];
-        uint32_t mate = t->tet[from].mate[brio_slot_of_vertex(t->tet[from].vertex, leave)];
-        from = brio_tet_of(mate);
-        if (from < tet) return BRIO_OK;
-        leave = pivot;
-        pivot = brio_apex(t, mate);
-    } while (from != tet);
-    *leads = true;
-    return BRIO_OK;
-}
-
-static brio_status add_face(builder *b, const uint32_t *v, size_t n) {
-    brio_context *ctx = b->g->ctx;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(ctx, b->offsets, b->faces_capacity, b->num_faces + 2));
-    BRIO_TRY(BRIO_RESERVE(ctx, b->indices, b->indices_capacity, b->num_indices + n));
-    memcpy(b->indices + b->num_indices, v, n * sizeof *v);
-    b->num_indices += n;
-    b->offsets[++b->num_faces] = b->num_indices;
-done:
-    return status;
-}
-
-static brio_status add_ring(builder *b) {
-    brio_status status = BRIO_OK;
-    b->counts.faces++;
-    if (!b->options->triangulate) return add_face(b, b->ring, b->ring_size);
-    for (size_t i = 1; i + 1 < b->ring_size; i++) {
-        uint32_t triangle[3] = {b->ring[0], b->ring[i], b->ring[i + 1]};
-        BRIO_TRY(add_face(b, triangle, 3));
-    }
-done:
-    return status;
-}
+/* --- faces --- */
 
 /* A pair of large balls that intersect deeply: no sample is where they meet. Deep is what well sampled surfaces do not
  * have, an angle over pi / 4 [Choi 2003, lemma 38]. */
@@ -139,29 +135,103 @@ static bool spans_hole(const builder *b, uint32_t p, uint32_t q) {
     return fmin(b->g->poles->square[p], b->g->poles->square[q]) > limit * limit;
 }
 
-static brio_status add_face_between(builder *b, uint32_t tet, int i, int j) {
+static void count_face(const builder *b, uint32_t tet, int i, int j, block_counts *counts) {
     const uint32_t *v = b->g->power.tet[tet].vertex;
-    bool leads;
-    brio_status status = walk_ring(b, tet, i, j, &leads);
-    if (status != BRIO_OK || !leads) return status;
-    if (!spans_hole(b, v[i], v[j])) return add_ring(b);
-    b->counts.left_out++;
-    return BRIO_OK;
+    size_t size = brio_ring_size(&b->g->power, tet, i, j);
+    if (!size) return;
+    if (spans_hole(b, v[i], v[j])) {
+        counts->left_out++;
+        return;
+    }
+    b->leads[tet] |= (uint16_t)(1 << (4 * i + j));
+    counts->rings++;
+    counts->faces += b->options->triangulate ? size - 2 : 1;
+    counts->corners += b->options->triangulate ? 3 * (size - 2) : size;
+}
+
+static void count_faces(const builder *b, size_t block) {
+    block_counts counts = {0, 0, 0, 0, 0};
+    size_t end = block_begin(b, block + 1);
+    for (size_t tet = block_begin(b, block); tet < end; tet++) {
+        bool inside[4];
+        if (tet + AHEAD < end && b->number[tet + AHEAD] != NO_VERTEX) brio_ring_fetch(&b->g->power, tet + AHEAD);
+        b->leads[tet] = 0;
+        if (b->number[tet] == NO_VERTEX) continue;
+        for (int i = 0; i < 4; i++) inside[i] = inner(b, b->g->power.tet[tet].vertex[i]);
+        for (int i = 0; i < 4; i++)
+            for (int j = 0; j < 4; j++)
+                if (inside[i] && !inside[j]) count_face(b, (uint32_t)tet, i, j, &counts);
+    }
+    b->blocks[block] = counts;
+}
+
+/* Where the next face of a block goes. */
+typedef struct {
+    uint32_t *corner;
+    uint64_t *end; /* of its corners, in the mesh's offsets */
+    uint64_t corners;
+} cursor;
+
+static void end_face(cursor *c, size_t size) {
+    c->corners += size;
+    *c->end++ = c->corners;
+}
+
+static void fill_polygon(const builder *b, uint32_t tet, int i, int j, cursor *c) {
+    size_t size = 1;
+    brio_ring r = brio_ring_second(&b->g->power, tet, i, j);
+    *c->corner++ = b->number[tet];
+    do {
+        *c->corner++ = b->number[r.tet];
+        size++;
+    } while (brio_ring_next(&r));
+    end_face(c, size);
+}
+
+static void fill_triangles(const builder *b, uint32_t tet, int i, int j, cursor *c) {
+    brio_ring r = brio_ring_second(&b->g->power, tet, i, j);
+    uint32_t before = b->number[r.tet];
+    while (brio_ring_next(&r)) {
+        c->corner[0] = b->number[tet], c->corner[1] = before, c->corner[2] = b->number[r.tet];
+        before = b->number[r.tet];
+        c->corner += 3;
+        end_face(c, 3);
+    }
+}
+
+static void fill_faces(const builder *b, size_t block) {
+    const block_counts *at = &b->blocks[block];
+    cursor c = {b->mesh->face_vertices + at->corners, b->mesh->face_offsets + at->faces + 1, at->corners};
+    size_t end = block_begin(b, block + 1);
+    for (size_t tet = block_begin(b, block); tet < end; tet++) {
+        if (tet + AHEAD < end && b->leads[tet + AHEAD]) brio_ring_fetch(&b->g->power, tet + AHEAD);
+        for (unsigned left = b->leads[tet]; left; left &= left - 1) {
+            int bit = __builtin_ctz(left);
+            if (b->options->triangulate)
+                fill_triangles(b, (uint32_t)tet, bit / 4, bit % 4, &c);
+            else
+                fill_polygon(b, (uint32_t)tet, bit / 4, bit % 4, &c);
+        }
+    }
 }
 
 static brio_status make_faces(builder *b) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedron *power = b->g->power.tet;
-    BRIO_TRY(BRIO_RESERVE(b->g->ctx, b->offsets, b->faces_capacity, 1));
-    b->offsets[0] = 0;
-    for (size_t tet = 0; tet < b->g->num_finite; tet++) {
-        if (b->number[tet] == NO_VERTEX) continue;
-        if (tet % 65536 == 0) BRIO_TRY(brio_progress(b->g->ctx, "crust", (double)tet / (double)b->g->num_finite));
-        for (int i = 0; i < 4; i++)
-            for (int j = 0; j < 4; j++)
-                if (inner(b, power[tet].vertex[i]) && !inner(b, power[tet].vertex[j]))
-                    BRIO_TRY(add_face_between(b, (uint32_t)tet, i, j));
-    }
+    brio_context *ctx = b->g->ctx;
+    brio_mesh *m = b->mesh;
+    BRIO_TRY(brio_progress(ctx, "crust", 0.4));
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) count_faces(b, block);
+    sum_blocks(b);
+    const block_counts *total = &b->blocks[b->num_blocks];
+    BRIO_REQUIRE(ctx, total->faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all faces span holes");
+    BRIO_TRY(brio_progress(ctx, "crust", 0.8));
+    BRIO_TRY(BRIO_ALLOC(ctx, m->face_offsets, total->faces + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, m->face_vertices, total->corners));
+    m->face_offsets[0] = 0;
+    m->num_faces = total->faces;
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) fill_faces(b, block);
 done:
     return status;
 }
@@ -169,19 +239,21 @@ done:
 brio_status brio_crust_faces(const brio_pole_graph *g, const uint8_t *label, const brio_crust_options *options,
                              brio_mesh *mesh, brio_crust_counts *counts) {
     brio_status status = BRIO_OK;
-    builder b = {.g = g, .label = label, .options = options, .mesh = mesh};
+    brio_context *ctx = g->ctx;
+    builder b = {.g = g, .threads = brio_context_threads(ctx), .label = label, .options = options, .mesh = mesh};
+    b.num_blocks = (g->num_finite + BLOCK - 1) / BLOCK;
+    BRIO_TRY(BRIO_ALLOC(ctx, b.number, g->num_finite));
+    BRIO_TRY(BRIO_ALLOC(ctx, b.leads, g->num_finite));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.blocks, b.num_blocks + 1));
     BRIO_TRY(make_vertices(&b));
-    BRIO_REQUIRE(g->ctx, mesh->num_vertices > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole with a cell is inner");
+    BRIO_REQUIRE(ctx, mesh->num_vertices > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole with a cell is inner");
     if (options->spacing) BRIO_TRY(add_spacing(&b));
     BRIO_TRY(make_faces(&b));
-    BRIO_REQUIRE(g->ctx, b.num_faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all faces span holes");
-    BRIO_TRY(brio_mesh_set_faces(mesh, b.offsets, b.indices, b.num_faces));
-    if (b.counts.left_out) BRIO_TRY(brio_mesh_split_vertices(g->ctx, mesh));
-    *counts = b.counts;
+    *counts = (brio_crust_counts){b.blocks[b.num_blocks].rings, b.blocks[b.num_blocks].left_out};
+    if (counts->left_out) BRIO_TRY(brio_mesh_split_vertices(ctx, mesh));
 done:
-    brio_release(g->ctx, b.number);
-    brio_release(g->ctx, b.offsets);
-    brio_release(g->ctx, b.indices);
-    brio_release(g->ctx, b.ring);
+    brio_release(ctx, b.number);
+    brio_release(ctx, b.leads);
+    brio_release(ctx, b.blocks);
     return status;
 }

@@ -21,7 +21,7 @@ typedef struct {
     const brio_tet_labels *labels;
     const brio_tetrahedra *t;
     uint32_t *tet; /* the tetrahedra that may change */
-    size_t count, capacity;
+    size_t count;
     double *gain; /* of each tetrahedron: the area that its change saves; 0 for those that may not change */
 } flattening;
 
@@ -59,10 +59,11 @@ static bool is_best(const flattening *x, uint32_t tet) {
 
 static brio_status collect(brio_context *ctx, flattening *x) {
     brio_status status = BRIO_OK;
-    for (size_t tet = 0; tet < x->labels->cocones->dual->num_finite; tet++) {
-        if (!x->labels->cocones->candidates[tet] || brio_tet_vote(x->labels, tet)) continue;
-        BRIO_TRY(BRIO_RESERVE(ctx, x->tet, x->capacity, x->count + 1));
-        x->tet[x->count++] = (uint32_t)tet;
+    BRIO_TRY(BRIO_ALLOC(ctx, x->tet, x->labels->num_undecided));
+    for (size_t n = 0; n < x->labels->num_undecided; n++) {
+        uint32_t tet = x->labels->undecided[n];
+        bool finite = tet < x->labels->cocones->dual->num_finite;
+        if (finite && x->labels->cocones->candidates[tet]) x->tet[x->count++] = tet;
     }
 done:
     return status;

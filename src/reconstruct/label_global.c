@@ -7,7 +7,7 @@
  * cut between the certain poles and their complements, a pole on the side of the source is outer and one whose
  * complement is there is inner, in a labelling of least energy; the others stay open.
  *
- * Open poles begin with their greedy labels, and sets of them are toggled while that lowers the energy. Around the
+ * Certain here are also the poles beyond the box of the samples. Open poles begin with their greedy labels, and sets of them are toggled while that lowers the energy. Around the
  * present labels the energy of a set is that of a cut but for the violated edges, which want exactly one end toggled;
  * counted as a gain at one end and a loss at the other they bound the energy from above, equal when nothing is toggled.
  * So the set of least bound is no loss. The ends are drawn anew for each move.
@@ -221,6 +221,23 @@ done:
 
 /* --- the whole --- */
 
+/* A solid is inside the convex hull of its surface, so a pole beyond the box of the samples is outer. Only now: given to
+ * the greedy labelling, whose mistakes spread, more certain poles were seen to mislead it on sparse samples. */
+static void settle_beyond_box(problem *pr) {
+    const brio_pole_graph *g = pr->g;
+    for (size_t k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t s = 0; s < g->num_samples; s++) {
+            low = fmin(low, g->samples[3 * s + k]);
+            high = fmax(high, g->samples[3 * s + k]);
+        }
+        for (size_t p = 0; p < g->poles->count; p++) {
+            double x = g->poles->centre[3 * p + k];
+            if (x < low || x > high) pr->certain[p] = 1, pr->label[p] = BRIO_LABEL_OUTER;
+        }
+    }
+}
+
 static brio_status minimise(problem *pr, brio_labelling_stats *stats) {
     brio_status status = BRIO_OK;
     size_t n = pr->g->poles->count;
@@ -242,10 +259,11 @@ brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_lab
     brio_status status = BRIO_OK;
     problem pr = {.g = g, .ctx = g->ctx, .label = label};
     BRIO_TRY(brio_label_greedy(g, label, stats));
-    stats->energy_greedy = brio_label_energy(g, label);
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, pr.certain, g->poles->count));
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, pr.open, g->poles->count));
     brio_label_certain(g, pr.certain);
+    settle_beyond_box(&pr);
+    stats->energy_greedy = brio_label_energy(g, label);
     BRIO_TRY(collect_edges(&pr));
     BRIO_TRY(minimise(&pr, stats));
     stats->energy = brio_label_energy(g, label);

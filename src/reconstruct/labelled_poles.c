@@ -10,6 +10,7 @@
  * the power diagram's dual are outer, without which the crust of small or clustered inputs would not close. */
 #include "reconstruct/labelled_poles.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "dual/spacing.h"
 #include "reconstruct/label_solid.h"
 #include <math.h>
@@ -81,7 +82,7 @@ static brio_status prepare(brio_labelled_poles *l, const double *points, double 
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
     for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
     frexp(most, &l->exponent);
-    for (size_t i = 0; i < 3 * n; i++) l->points[i] = ldexp(points[i], -l->exponent);
+    brio_scale(l->ctx, points, 3 * n, -l->exponent, l->points);
     bounding_corners(l->points, n, ldexp(margin, -l->exponent), l->points + 3 * n);
 done:
     return status;
@@ -160,8 +161,8 @@ static void count_labels(brio_labelled_poles *l) {
 
 typedef brio_status (*label_fn)(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
 
-static const label_fn labellings[BRIO_LABELING_END] = {brio_label_greedy, brio_label_naive, brio_label_theoretical,
-                                                       brio_label_global};
+static const label_fn labellings[BRIO_LABELING_END] = {brio_label_global, brio_label_greedy, brio_label_naive,
+                                                       brio_label_theoretical};
 
 static brio_status label_along_graph(brio_labelled_poles *l, brio_labeling labeling) {
     brio_status status = BRIO_OK;

@@ -10,7 +10,7 @@ typedef struct {
     size_t unreached;             /* left to the greedy labelling by another one */
     size_t open;                  /* not settled by roof duality */
     size_t toggled;               /* of these, the ones that differ from the greedy labelling in the end */
-    double energy_greedy, energy; /* sum of the violated weights, of the greedy labelling and in the end */
+    double energy_greedy, energy; /* sum of the violated weights, of the greedy labels to begin with and in the end */
 } brio_labelling_stats;
 
 /* Every labelling gives label[p] to every pole, hidden ones too; *label is BRIO_LABEL_NONE throughout to begin with.
@@ -26,7 +26,8 @@ brio_status brio_label_naive(const brio_pole_graph *g, uint8_t *label, brio_labe
 /** Breadth first from one sample of the hull; the graph has the edges of weight over BRIO_THEORETICAL_WEIGHT. */
 brio_status brio_label_theoretical(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
 
-/** Of least energy as far as roof duality tells; of no more energy than the greedy one. */
+/** Of least energy as far as roof duality tells, poles beyond the box of the samples being outer; of no more energy than
+ *  the greedy labels with these poles outer. */
 brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
 
 /** -cos of pi / 4: the balls of the theoretical algorithm's neighbours intersect at a larger angle. */

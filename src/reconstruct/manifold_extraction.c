@@ -18,58 +18,150 @@
  * as the largest one of a candidate at its corners. From 1.5 on the closed models of the tests come out closed. */
 static const double FILLING = 1.5;
 
+/* Among boundary samples, a triangle over SUSPECT times as long as the shortest ones around may span an opening of the
+ * surface. Such triangles together are one when one of them is over OPENING times as long and there would be room for
+ * MISSING samples; at sharp edges, where samples are too few as well, there is not (club: 16 samples at the opening, 4
+ * at the largest sharp edge). */
+static const double SUSPECT = 1.5, OPENING = 4, MISSING = 8;
+
 typedef struct {
     brio_context *ctx;
     const brio_tet_labels *labels;
     const brio_tetrahedra *t;
-    uint8_t *face;      /* of each outer tetrahedron: bit i tells whether facet i is a face */
+    uint32_t *boundary; /* the facets of the boundary, seen from outside */
+    size_t num_boundary;
+    uint8_t *face;   /* of each outer tetrahedron: bit i tells whether facet i is a face */
+    size_t num_gaps; /* facets of the boundary that are no candidates */
+    double
+        *size_at; /* of each sample at a gap: squared radius of the largest circle round a candidate there; else -1 */
+    double *shortest;   /* of each sample at a gap: squared length of the shortest candidate there */
     uint32_t *facet_of; /* of each sample: a boundary facet seen from outside; BRIO_INFINITE for none */
-    uint32_t *queue;    /* samples to look at */
+    uint32_t *gap;      /* facets of the gaps that stay open */
+    size_t gap_size;
+    uint32_t *queue; /* samples to look at */
     size_t size, capacity;
-    double *size_at; /* of each sample: squared radius of the largest circle round a candidate there */
 } extraction;
+
+/* --- which facets are faces --- */
 
 static bool is_face(const extraction *x, uint32_t facet) {
     return x->face[brio_tet_of(facet)] >> brio_slot_of(facet) & 1;
 }
 
+static void set_face(extraction *x, uint32_t facet) {
+    x->face[brio_tet_of(facet)] |= (uint8_t)(1 << brio_slot_of(facet));
+}
+
+static void clear_face(extraction *x, uint32_t facet) {
+    x->face[brio_tet_of(facet)] &= (uint8_t) ~(1 << brio_slot_of(facet));
+}
+
+static uint32_t corner_of(const extraction *x, uint32_t facet, int k) {
+    return x->t->tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
+}
+
 static double circle_square(const extraction *x, uint32_t facet) {
-    const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
-    const double *corner[3];
-    for (int k = 0; k < 3; k++)
-        corner[k] = x->labels->cocones->dual->points + 3 * (size_t)v[BRIO_FACET[brio_slot_of(facet)][k]];
-    return brio_circle_square(corner[0], corner[1], corner[2]);
+    const double *points = x->labels->cocones->dual->points;
+    return brio_circle_square(points + 3 * (size_t)corner_of(x, facet, 0), points + 3 * (size_t)corner_of(x, facet, 1),
+                              points + 3 * (size_t)corner_of(x, facet, 2));
+}
+
+/* Square of the longest edge. */
+static double length_square(const extraction *x, uint32_t facet) {
+    const double *points = x->labels->cocones->dual->points;
+    double most = 0;
+    for (int k = 0; k < 3; k++) {
+        const double *p = points + 3 * (size_t)corner_of(x, facet, k);
+        const double *q = points + 3 * (size_t)corner_of(x, facet, (k + 1) % 3);
+        double d = (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]);
+        most = d > most ? d : most;
+    }
+    return most;
 }
 
 static bool is_finite(const extraction *x, uint32_t facet) {
     return brio_slot_of(facet) == 3 || x->t->tet[brio_tet_of(facet)].vertex[3] != BRIO_INFINITE;
 }
 
-/* Finds the boundary: a facet of each sample, the candidates as faces, and how large these are. */
 static void choose_candidates(extraction *x) {
-    for (size_t tet = 0; tet < x->t->count; tet++)
-        for (int i = 0; i < 4 && x->labels->label[tet] == BRIO_LABEL_OUTER; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            const uint32_t *v = x->t->tet[tet].vertex;
-            if (!brio_is_boundary(x->labels, facet)) continue;
-            bool candidate = brio_is_candidate(x->labels->cocones, facet);
-            double size = candidate ? circle_square(x, facet) : 0;
-            if (candidate) x->face[tet] |= (uint8_t)(1 << i);
-            for (int k = 0; k < 3; k++) {
-                uint32_t p = v[BRIO_FACET[i][k]];
-                if (p == BRIO_INFINITE) continue;
-                x->facet_of[p] = facet;
-                x->size_at[p] = fmax(x->size_at[p], size);
-            }
+    for (size_t n = 0; n < x->num_boundary; n++) {
+        if (brio_is_candidate(x->labels->cocones, x->boundary[n]))
+            set_face(x, x->boundary[n]);
+        else
+            x->num_gaps++;
+    }
+}
+
+/* Finds how large the candidates at each sample of a gap are, and a boundary facet of each sample. */
+static brio_status measure_gaps(extraction *x) {
+    brio_status status = BRIO_OK;
+    const uint8_t *boundary = x->labels->cocones->boundary;
+    size_t num_points = x->labels->cocones->dual->num_points;
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->size_at, num_points));
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->shortest, num_points));
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->facet_of, num_points));
+    for (size_t p = 0; p < num_points; p++)
+        x->size_at[p] = -1, x->shortest[p] = INFINITY, x->facet_of[p] = BRIO_INFINITE;
+    for (size_t n = 0; n < x->num_boundary; n++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t p = corner_of(x, x->boundary[n], k);
+            if (p == BRIO_INFINITE) continue;
+            x->facet_of[p] = x->boundary[n];
+            if (!is_face(x, x->boundary[n]) || (boundary && boundary[p])) x->size_at[p] = 0;
         }
+    for (size_t n = 0; n < x->num_boundary; n++) {
+        uint32_t facet = x->boundary[n];
+        double size = -1, length = 0;
+        for (int k = 0; k < 3 && is_face(x, facet); k++) {
+            double *most = x->size_at + corner_of(x, facet, k), *least = x->shortest + corner_of(x, facet, k);
+            if (*most < 0) continue;
+            if (size < 0) size = circle_square(x, facet), length = length_square(x, facet);
+            *most = *most < size ? size : *most;
+            *least = *least > length ? length : *least;
+        }
+    }
+done:
+    return status;
 }
 
 /* Whether a facet of the boundary that is no candidate is as small as the candidates around it. */
-static bool fills_small_hole(const extraction *x, uint32_t facet) {
-    const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
+static bool is_small(const extraction *x, uint32_t facet) {
     double size = 0;
-    for (int k = 0; k < 3; k++) size = fmax(size, x->size_at[v[BRIO_FACET[brio_slot_of(facet)][k]]]);
+    for (int k = 0; k < 3; k++) size = fmax(size, x->size_at[corner_of(x, facet, k)]);
     return circle_square(x, facet) <= FILLING * FILLING * size;
+}
+
+/* Squared length of the longest of the shortest candidates of a facet's samples: how far they are from each other. */
+static double spacing_square(const extraction *x, uint32_t facet) {
+    double most = 0;
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = corner_of(x, facet, k);
+        if (p != BRIO_INFINITE && x->shortest[p] > most && x->shortest[p] < INFINITY) most = x->shortest[p];
+    }
+    return most;
+}
+
+/* Whether a facet of the boundary is over so many times as long as the spacing of its samples. */
+static bool is_longer(const extraction *x, uint32_t facet, double times) {
+    return length_square(x, facet) > times * times * spacing_square(x, facet);
+}
+
+static double area(const extraction *x, uint32_t facet) {
+    const double *points = x->labels->cocones->dual->points;
+    return brio_triangle_area(points + 3 * (size_t)corner_of(x, facet, 0), points + 3 * (size_t)corner_of(x, facet, 1),
+                              points + 3 * (size_t)corner_of(x, facet, 2));
+}
+
+/* Takes the candidates among boundary samples that are longer than those around them, and may span an opening, for gaps
+ * until it is known how long the longest of them is. */
+static void suspect_long_candidates(extraction *x) {
+    for (size_t n = 0; n < x->num_boundary; n++) {
+        uint32_t facet = x->boundary[n];
+        if (is_face(x, facet) && brio_is_among_boundary(x->labels->cocones, facet) && is_longer(x, facet, SUSPECT)) {
+            clear_face(x, facet);
+            x->num_gaps++;
+        }
+    }
 }
 
 static brio_status push(extraction *x, uint32_t v) {
@@ -80,24 +172,54 @@ done:
     return status;
 }
 
-/* Adds the facets of the boundary that fill holes; the samples of the others are to be looked at. */
+/* Adds to x->gap all facets of the gap among boundary samples that a facet belongs to, across the edges of the boundary,
+ * as faces for now. Whether it is too large for a place where samples are merely too few. */
+static bool collect_gap(extraction *x, uint32_t first) {
+    bool is_long = false;
+    double missing = 0; /* samples of this spacing that the gap has room for */
+    size_t next = x->gap_size;
+    x->gap[x->gap_size++] = first;
+    set_face(x, first);
+    for (; next < x->gap_size; next++) {
+        uint32_t facet = x->gap[next];
+        bool finite = is_finite(x, facet);
+        missing += finite ? area(x, facet) / spacing_square(x, facet) : INFINITY;
+        is_long = is_long || !finite || is_longer(x, facet, OPENING);
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = corner_of(x, facet, k), b = corner_of(x, facet, (k + 1) % 3);
+            uint32_t other = brio_next_round_edge(x->labels, facet, a, b);
+            if (is_face(x, other) || !brio_is_among_boundary(x->labels->cocones, other)) continue;
+            set_face(x, other);
+            x->gap[x->gap_size++] = other;
+        }
+    }
+    return is_long && missing > MISSING;
+}
+
+/* Fills the gaps that are no openings, or all that are finite; the samples of the others are to be looked at. */
 static brio_status choose_fillings(extraction *x, bool all) {
     brio_status status = BRIO_OK;
-    for (size_t tet = 0; tet < x->t->count; tet++)
-        for (int i = 0; i < 4 && x->labels->label[tet] == BRIO_LABEL_OUTER; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            const uint32_t *v = x->t->tet[tet].vertex;
-            if (is_face(x, facet) || !brio_is_boundary(x->labels, facet)) continue;
-            if (is_finite(x, facet) && (all || fills_small_hole(x, facet))) {
-                x->face[tet] |= (uint8_t)(1 << i);
-                continue;
-            }
-            for (int k = 0; k < 3; k++)
-                if (v[BRIO_FACET[i][k]] != BRIO_INFINITE) BRIO_TRY(push(x, v[BRIO_FACET[i][k]]));
-        }
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->gap, x->num_gaps));
+    for (size_t n = 0; n < x->num_boundary; n++) {
+        uint32_t facet = x->boundary[n];
+        size_t begin = x->gap_size;
+        if (is_face(x, facet)) continue;
+        if (is_finite(x, facet) && (all || (!brio_is_among_boundary(x->labels->cocones, facet) && is_small(x, facet))))
+            set_face(x, facet);
+        else if (!brio_is_among_boundary(x->labels->cocones, facet))
+            x->gap[x->gap_size++] = facet;
+        else if (!collect_gap(x, facet))
+            x->gap_size = begin;
+    }
+    for (size_t n = 0; n < x->gap_size; n++) clear_face(x, x->gap[n]);
+    for (size_t n = 0; n < x->gap_size; n++)
+        for (int k = 0; k < 3; k++)
+            if (corner_of(x, x->gap[n], k) != BRIO_INFINITE) BRIO_TRY(push(x, corner_of(x, x->gap[n], k)));
 done:
     return status;
 }
+
+/* --- one fan a sample --- */
 
 /* A fan of faces: its first face, counterclockwise, and the number of faces. */
 typedef struct {
@@ -142,7 +264,7 @@ static brio_status keep_fan(extraction *x, uint32_t v, fan kept) {
     for (size_t n = 0; n == 0 || facet != kept.first; n++) {
         if (n >= kept.length && is_face(x, facet)) {
             const uint32_t *corner = x->t->tet[brio_tet_of(facet)].vertex;
-            x->face[brio_tet_of(facet)] &= (uint8_t) ~(1 << brio_slot_of(facet));
+            clear_face(x, facet);
             for (int k = 0; k < 3; k++) BRIO_TRY(push(x, corner[BRIO_FACET[brio_slot_of(facet)][k]]));
         }
         facet = brio_next_round_vertex(x->labels, facet, v);
@@ -167,38 +289,40 @@ done:
     return status;
 }
 
-static brio_status write_faces(extraction *x, brio_mesh *mesh) {
+static brio_status write_faces(extraction *x, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
     size_t count = 0;
-    for (size_t tet = 0; tet < x->t->count; tet++) count += (size_t)__builtin_popcount(x->face[tet]);
-    BRIO_TRY(BRIO_ALLOC(x->ctx, mesh->face_offsets, count + 1));
-    BRIO_TRY(BRIO_ALLOC(x->ctx, mesh->face_vertices, 3 * count));
-    uint32_t *corner = mesh->face_vertices;
-    for (size_t tet = 0; tet < x->t->count; tet++)
-        for (int i = 0; i < 4; i++)
-            for (int k = 0; k < 3 && x->face[tet] >> i & 1; k++) *corner++ = x->t->tet[tet].vertex[BRIO_FACET[i][k]];
-    for (size_t f = 0; f <= count; f++) mesh->face_offsets[f] = 3 * f;
-    mesh->num_faces = count;
+    for (size_t n = 0; n < x->num_boundary; n++)
+        if (is_face(x, x->boundary[n])) x->boundary[count++] = x->boundary[n];
+    BRIO_TRY(BRIO_ALLOC(x->ctx, *faces, 3 * count));
+    *num_faces = count;
+    for (size_t n = 0; n < count; n++)
+        for (int k = 0; k < 3; k++) (*faces)[3 * n + (size_t)k] = corner_of(x, x->boundary[n], k);
 done:
     return status;
 }
 
-brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, brio_mesh *mesh) {
+brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, uint32_t **faces,
+                               size_t *num_faces) {
     brio_status status = BRIO_OK;
-    size_t n = l->cocones->dual->num_points;
     extraction x = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
+    BRIO_TRY(brio_boundary_facets(ctx, l, &x.boundary, &x.num_boundary));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.face, x.t->count));
-    BRIO_TRY(BRIO_ALLOC(ctx, x.facet_of, n));
-    for (size_t v = 0; v < n; v++) x.facet_of[v] = BRIO_INFINITE;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.size_at, n));
     choose_candidates(&x);
-    BRIO_TRY(choose_fillings(&x, !candidates_only));
-    BRIO_TRY(drop_small_fans(&x));
-    BRIO_TRY(write_faces(&x, mesh));
+    if (x.num_gaps > 0 || l->cocones->boundary) {
+        BRIO_TRY(measure_gaps(&x));
+        suspect_long_candidates(&x);
+        BRIO_TRY(choose_fillings(&x, !candidates_only));
+        BRIO_TRY(drop_small_fans(&x));
+    }
+    BRIO_TRY(write_faces(&x, faces, num_faces));
 done:
+    brio_release(ctx, x.boundary);
     brio_release(ctx, x.face);
     brio_release(ctx, x.facet_of);
     brio_release(ctx, x.size_at);
+    brio_release(ctx, x.shortest);
+    brio_release(ctx, x.gap);
     brio_release(ctx, x.queue);
     return status;
 }

@@ -10,10 +10,11 @@
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, size_t *changed);
 
-/** Writes the triangles between outer and inner tetrahedra, all of them or the candidates only, as faces of a mesh that
- *  are seen counterclockwise from outside. Of candidates that meet in a sample as several fans only the largest fan is
- *  kept. The labels have been through brio_make_manifold.   mesh  without faces; its vertices are the samples.
+/** Lists the triangles between outer and inner tetrahedra, all of them or the candidates only, counterclockwise as seen
+ *  from outside. Of candidates that meet in a sample as several fans only the largest fan is kept. The labels have been
+ *  through brio_make_manifold.   faces  *num_faces by 3, owned by the caller (brio_release), on failure too.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, brio_mesh *mesh);
+brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, uint32_t **faces,
+                               size_t *num_faces);
 
 #endif

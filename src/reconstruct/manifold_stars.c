@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "reconstruct/label_boundary.h"
 #include "reconstruct/manifold_extraction.h"
+#include "surface/edge_rings.h"
 #include "triangulation/star.h"
 #include <stdlib.h>
 
@@ -56,46 +57,89 @@ done:
     return status;
 }
 
-/* Walks round v from one of its boundary facets, seen from outside. Whether it meets all of them, and the walk inside
- * goes along with the one outside at each edge. */
-static bool is_one_fan(const repair *r, uint32_t v, uint32_t start, uint32_t degree) {
-    uint32_t facet = start, met = 0;
-    do {
-        uint32_t next = brio_next_round_vertex(r->labels, facet, v);
-        uint32_t shared = brio_corner_after(r->t, next, v);
-        if (brio_next_round_edge(r->labels, *brio_mate(r->t, facet), v, shared) != *brio_mate(r->t, next)) return false;
-        facet = next;
-        met++;
-    } while (facet != start && met < degree);
-    return facet == start && met == degree;
+/* A facet of the boundary at a sample: in the upper half its corner after the sample, counterclockwise from outside, in
+ * the lower half the one before. */
+typedef uint64_t fan_corner;
+
+/* The corner of a fan that begins at a vertex; `count` for none. */
+static size_t corner_that_begins(const fan_corner *fan, size_t count, bool sorted, uint32_t at) {
+    size_t low = 0, high = count;
+    if (!sorted) {
+        while (low < count && fan[low] >> 32 != at) low++;
+        return low;
+    }
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (fan[middle] >> 32 < at)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < count && fan[low] >> 32 == at ? low : count;
+}
+
+/* Whether the facets at a sample are one closed fan: going from each to the one that begins where it ends comes back to
+ * the first only after all of them. */
+static bool is_one_fan(fan_corner *fan, size_t count) {
+    enum { FEW = 16 };
+    if (count > FEW) brio_sort_keys(fan, count);
+    uint32_t first = (uint32_t)(fan[0] >> 32), at = (uint32_t)fan[0];
+    for (size_t n = 1; n < count; n++) {
+        size_t next = at == first ? count : corner_that_begins(fan, count, count > FEW, at);
+        if (next == count) return false;
+        at = (uint32_t)fan[next];
+    }
+    return at == first;
+}
+
+/* Deals the corners of the boundary to their samples: those of v end before end[v]. */
+static void deal_corners(const repair *r, const uint32_t *facets, size_t count, uint32_t *end, fan_corner *corner) {
+    size_t n = r->labels->cocones->dual->num_points;
+    uint32_t sum = 0;
+    for (int writing = 0; writing < 2; writing++) {
+        for (size_t f = 0; f < count; f++) {
+            const uint32_t *v = r->t->tet[brio_tet_of(facets[f])].vertex;
+            const uint8_t *slot = BRIO_FACET[brio_slot_of(facets[f])];
+            for (int k = 0; k < 3; k++) {
+                uint32_t p = v[slot[k]], after = v[slot[(k + 1) % 3]], before = v[slot[(k + 2) % 3]];
+                if (p == BRIO_INFINITE) continue;
+                if (writing) corner[end[p]] = (uint64_t)after << 32 | before;
+                end[p]++;
+            }
+        }
+        for (size_t v = 0; v < n && !writing; v++) {
+            uint32_t degree = end[v];
+            end[v] = sum;
+            sum += degree;
+        }
+    }
 }
 
 /* Fills the queue with the samples where the boundary is not one fan. */
 static brio_status enqueue_singular(repair *r) {
     brio_status status = BRIO_OK;
-    size_t n = r->labels->cocones->dual->num_points;
-    uint32_t *facet_of = NULL, *degree = NULL;
-    BRIO_TRY(BRIO_ALLOC(r->ctx, facet_of, n));
-    BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, degree, n));
-    for (size_t tet = 0; tet < r->t->count; tet++)
-        for (int i = 0; i < 4 && r->labels->label[tet] == BRIO_LABEL_OUTER; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            if (!brio_is_boundary(r->labels, facet)) continue;
-            for (int k = 0; k < 3; k++) {
-                uint32_t v = r->t->tet[tet].vertex[BRIO_FACET[i][k]];
-                if (v == BRIO_INFINITE) continue;
-                facet_of[v] = facet;
-                degree[v]++;
-            }
-        }
-    BRIO_OMP(parallel for schedule(static, 1024) num_threads(brio_context_threads(r->ctx)))
+    size_t n = r->labels->cocones->dual->num_points, count;
+    uint32_t *facets = NULL, *end = NULL;
+    fan_corner *corner = NULL;
+    uint8_t *singular = NULL;
+    BRIO_TRY(brio_boundary_facets(r->ctx, r->labels, &facets, &count));
+    BRIO_REQUIRE(r->ctx, 3 * count < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu triangles, 2^32 / 3 is the limit", count);
+    BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, end, n));
+    BRIO_TRY(BRIO_ALLOC(r->ctx, corner, 3 * count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, singular, n));
+    deal_corners(r, facets, count, end, corner);
+    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(r->ctx)))
+    for (size_t v = 0; v < n; v++) {
+        size_t begin = v ? end[v - 1] : 0;
+        singular[v] = end[v] > begin && !is_one_fan(corner + begin, end[v] - begin);
+    }
     for (size_t v = 0; v < n; v++)
-        if (degree[v] && is_one_fan(r, (uint32_t)v, facet_of[v], degree[v])) degree[v] = 0;
-    for (size_t v = 0; v < n; v++)
-        if (degree[v]) BRIO_TRY(enqueue(r, (uint32_t)v));
+        if (singular[v]) BRIO_TRY(enqueue(r, (uint32_t)v));
 done:
-    brio_release(r->ctx, facet_of);
-    brio_release(r->ctx, degree);
+    brio_release(r->ctx, facets);
+    brio_release(r->ctx, end);
+    brio_release(r->ctx, corner);
+    brio_release(r->ctx, singular);
     return status;
 }
 
@@ -197,7 +241,6 @@ static brio_status prepare(repair *r) {
     const brio_pole_vectors *v = r->labels->cocones->dual;
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->tet_of_vertex, v->num_points));
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->visits, v->num_points));
-    BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->waiting, v->num_points));
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->fixed, r->t->count));
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->piece_of, r->t->count));
     BRIO_TRY(brio_star_new(r->ctx, r->t->count, &r->star));
@@ -208,20 +251,28 @@ done:
     return status;
 }
 
+static brio_status mend_stars(repair *r) {
+    brio_status status = BRIO_OK;
+    for (size_t begin = 0, end; begin < r->size; begin = end) {
+        end = r->size;
+        brio_sort_by_position(r->labels->cocones->dual->points, r->queue + begin, end - begin);
+        for (size_t n = begin; n < end; n++) {
+            r->waiting[r->queue[n]] = 0;
+            BRIO_TRY(mend_star(r, r->queue[n]));
+        }
+    }
+done:
+    return status;
+}
+
 brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, size_t *changed) {
     brio_status status = BRIO_OK;
     repair r = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
-    BRIO_TRY(prepare(&r));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, l->cocones->dual->num_points));
     BRIO_TRY(enqueue_singular(&r));
     BRIO_TRY(brio_progress(ctx, "manifold", 0.5));
-    for (size_t begin = 0, end; begin < r.size; begin = end) {
-        end = r.size;
-        brio_sort_by_position(l->cocones->dual->points, r.queue + begin, end - begin);
-        for (size_t n = begin; n < end; n++) {
-            r.waiting[r.queue[n]] = 0;
-            BRIO_TRY(mend_star(&r, r.queue[n]));
-        }
-    }
+    if (r.size > 0) BRIO_TRY(prepare(&r));
+    BRIO_TRY(mend_stars(&r));
     *changed = r.changed;
 done:
     brio_release(ctx, r.tet_of_vertex);

@@ -1,129 +1,203 @@
-/* The graph of poles: deep edges between neighbours in one array, read off the star of each pole once. */
+/* The graph of poles.
+ *
+ * An edge of the regular triangulation is read off the first tetrahedron of its ring. Most of the others see from their
+ * own facets that a neighbour in the ring comes before them; only the rest walk round. One pass over the tetrahedra
+ * counts the edges of each pole and remembers which tetrahedron leads which, a second one deals the edges out, and the
+ * short list of each pole is sorted, so that the threads leave no trace. */
 #include "reconstruct/pole_graph.h"
 #include "base/memory.h"
+#include "base/parallel.h"
+#include "surface/edge_rings.h"
+#include "triangulation/ring.h"
 #include <math.h>
+#include <string.h>
 
-enum { NONE = UINT32_MAX };
+enum { STEP = 1 << 21, AHEAD = 8 }; /* tetrahedra between two looks at the caller's wish to stop, and to fetch ahead */
 
 /* Workspace of the construction. */
 typedef struct {
     brio_pole_graph *g;
+    int threads;
     const uint32_t *representative;
-    uint32_t *vertex_tet;                 /* a tetrahedron of each pole with a cell */
-    uint32_t *first_hidden, *next_hidden; /* list of the hidden poles of each representative */
-    uint32_t *seen;                       /* last pole whose neighbours this one was offered to */
-    brio_star star;
     double least_weight;
-    size_t num_edges, pole_capacity, weight_capacity;
+    uint8_t *leads;  /* of each finite tetrahedron, a bit for each of its edges that it leads and that is deep */
+    size_t *place;   /* of each pole, where its next edge goes */
+    uint64_t *edges; /* (pole, bits of the weight) */
 } builder;
 
-static brio_status filled(brio_context *ctx, uint32_t **array, size_t n, uint32_t value) {
-    brio_status status = BRIO_ALLOC(ctx, *array, n);
-    if (status == BRIO_OK)
-        for (size_t i = 0; i < n; i++) (*array)[i] = value;
-    return status;
-}
+static const uint8_t PAIR[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
 static const double *centre_of(const brio_pole_graph *g, uint32_t p) {
     return g->poles->centre + 3 * (size_t)p;
 }
 
-double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
+static inline double weight_of(const brio_pole_graph *g, uint32_t p, uint32_t q) {
     const double *a = centre_of(g, p), *b = centre_of(g, q);
     double pp = g->poles->square[p], qq = g->poles->square[q], x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
     return (pp + qq - (x * x + y * y + z * z)) / (2 * sqrt(pp * qq));
 }
 
-/* Room for one more edge is there; written always, counted when it is deep enough. */
-static inline void add_edge(builder *b, uint32_t p, uint32_t q) {
-    double weight = brio_pole_graph_weight(b->g, p, q);
-    b->g->edge_pole[b->num_edges] = q;
-    b->g->edge_weight[b->num_edges] = (float)fmin(weight, 1);
-    b->num_edges += weight > b->least_weight;
+double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
+    return weight_of(g, p, q);
 }
 
-static brio_status reserve_edges(builder *b, size_t more) {
-    brio_context *ctx = b->g->ctx;
-    brio_status status = BRIO_RESERVE(ctx, b->g->edge_pole, b->pole_capacity, b->num_edges + more);
-    if (status != BRIO_OK) return status;
-    return BRIO_RESERVE(ctx, b->g->edge_weight, b->weight_capacity, b->num_edges + more);
+/* --- neighbours --- */
+
+static void count_edge(const builder *b, uint32_t p, uint32_t q) {
+    __atomic_fetch_add(&b->place[p], 1, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&b->place[q], 1, __ATOMIC_RELAXED);
 }
 
-static brio_status add_neighbours(builder *b, uint32_t p) {
-    brio_pole_graph *g = b->g;
+static void put_edge(const builder *b, uint32_t p, uint32_t q, double weight) {
+    float w = (float)fmin(weight, 1);
+    uint32_t bits;
+    memcpy(&bits, &w, sizeof bits);
+    b->edges[__atomic_fetch_add(&b->place[p], 1, __ATOMIC_RELAXED)] = (uint64_t)q << 32 | bits;
+    b->edges[__atomic_fetch_add(&b->place[q], 1, __ATOMIC_RELAXED)] = (uint64_t)p << 32 | bits;
+}
+
+static void count_tetrahedron(const builder *b, uint32_t tet) {
+    const uint32_t *v = b->g->power.tet[tet].vertex;
+    b->leads[tet] = 0;
+    for (int e = 0; e < 6; e++) {
+        uint32_t p = v[PAIR[e][0]], q = v[PAIR[e][1]];
+        if (!brio_ring_may_lead(&b->g->power, tet, PAIR[e][0], PAIR[e][1])) continue;
+        if (!(weight_of(b->g, p, q) > b->least_weight)) continue;
+        if (!brio_ring_size(&b->g->power, tet, PAIR[e][0], PAIR[e][1])) continue;
+        b->leads[tet] |= (uint8_t)(1 << e);
+        count_edge(b, p, q);
+    }
+}
+
+static void put_tetrahedron(const builder *b, uint32_t tet) {
+    const uint32_t *v = b->g->power.tet[tet].vertex;
+    for (int e = 0; e < 6; e++) {
+        uint32_t p = v[PAIR[e][0]], q = v[PAIR[e][1]];
+        if (b->leads[tet] >> e & 1) put_edge(b, p, q, weight_of(b->g, p, q));
+    }
+}
+
+static void put_hidden(const builder *b, uint32_t p, bool count) {
+    uint32_t r = b->representative[p];
+    double weight;
+    if (r == p || !((weight = weight_of(b->g, p, r)) > b->least_weight)) return;
+    if (count)
+        count_edge(b, p, r);
+    else
+        put_edge(b, p, r, weight);
+}
+
+/* Counts all edges, or deals them out. */
+static brio_status pass(const builder *b, bool count, double from, double to) {
+    const brio_pole_graph *g = b->g;
     brio_status status = BRIO_OK;
-    if (b->representative[p] != p) {
-        BRIO_TRY(reserve_edges(b, 1));
-        add_edge(b, p, b->representative[p]);
-        goto done;
-    }
-    for (uint32_t q = b->first_hidden[p]; q != NONE; q = b->next_hidden[q]) {
-        BRIO_TRY(reserve_edges(b, 1));
-        add_edge(b, p, q);
-    }
-    BRIO_TRY(brio_star_collect(g->ctx, &g->power, p, b->vertex_tet[p], SIZE_MAX, &b->star));
-    BRIO_TRY(reserve_edges(b, b->star.size + 1)); /* fewer neighbours than tetrahedra */
-    b->seen[p] = p;
-    for (size_t n = 0; n < b->star.size; n++)
-        for (size_t i = 0; i < 4; i++) {
-            uint32_t q = g->power.tet[b->star.tet[n]].vertex[i];
-            if (q == BRIO_INFINITE || b->seen[q] == p) continue;
-            b->seen[q] = p;
-            add_edge(b, p, q);
+    for (size_t begin = 0; begin < g->num_finite; begin += STEP) {
+        size_t end = g->num_finite - begin < STEP ? g->num_finite : begin + STEP;
+        BRIO_TRY(brio_progress(g->ctx, "label", from + (to - from) * (double)begin / (double)g->num_finite));
+        BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
+        for (size_t tet = begin; tet < end; tet++) {
+            if (count) {
+                if (tet + AHEAD < end) brio_ring_fetch(&g->power, tet + AHEAD);
+                count_tetrahedron(b, (uint32_t)tet);
+            } else if (b->leads[tet]) {
+                put_tetrahedron(b, (uint32_t)tet);
+            }
         }
+    }
+    BRIO_OMP(parallel for num_threads(b->threads))
+    for (size_t p = 0; p < g->poles->count; p++) put_hidden(b, (uint32_t)p, count);
 done:
     return status;
 }
 
-static brio_status add_all_neighbours(builder *b) {
-    brio_pole_graph *g = b->g;
-    brio_context *ctx = g->ctx;
-    brio_status status = BRIO_OK;
-    size_t n = g->poles->count;
-    BRIO_TRY(filled(ctx, &b->vertex_tet, n, NONE));
-    BRIO_TRY(filled(ctx, &b->first_hidden, n, NONE));
-    BRIO_TRY(filled(ctx, &b->next_hidden, n, NONE));
-    BRIO_TRY(filled(ctx, &b->seen, n, NONE));
-    BRIO_TRY(brio_star_new(ctx, g->power.count, &b->star));
-    for (size_t i = 0; i < 4 * g->power.count; i++) {
-        uint32_t v = g->power.tet[i / 4].vertex[i % 4];
-        if (v != BRIO_INFINITE) b->vertex_tet[v] = (uint32_t)(i / 4);
-    }
-    for (size_t p = n; p-- > 0;) {
-        uint32_t r = b->representative[p];
-        if (r == p) continue;
-        b->next_hidden[p] = b->first_hidden[r];
-        b->first_hidden[r] = (uint32_t)p;
-    }
-    BRIO_TRY(BRIO_ALLOC(ctx, g->first_edge, n + 1));
+/* first[p] = sum of the counts before p; counts become places. */
+static void first_places(size_t *first, size_t *count, size_t n) {
+    first[0] = 0;
     for (size_t p = 0; p < n; p++) {
-        if (p % 65536 == 0) BRIO_TRY(brio_progress(ctx, "label", 0.5 * (double)p / (double)n));
-        g->first_edge[p] = b->num_edges;
-        BRIO_TRY(add_neighbours(b, (uint32_t)p));
+        first[p + 1] = first[p] + count[p];
+        count[p] = first[p];
     }
-    g->first_edge[n] = b->num_edges;
+}
+
+static void sort_edges(const builder *b) {
+    const brio_pole_graph *g = b->g;
+    BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
+    for (size_t p = 0; p < g->poles->count; p++) {
+        brio_sort_keys(b->edges + g->first_edge[p], g->first_edge[p + 1] - g->first_edge[p]);
+        for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++) {
+            uint32_t bits = (uint32_t)b->edges[e];
+            g->edge_pole[e] = (uint32_t)(b->edges[e] >> 32);
+            memcpy(&g->edge_weight[e], &bits, sizeof bits);
+        }
+    }
+}
+
+static brio_status list_neighbours(brio_pole_graph *g, const uint32_t *representative, double least_weight) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = g->ctx;
+    size_t n = g->poles->count;
+    builder b = {
+        .g = g, .threads = brio_context_threads(ctx), .representative = representative, .least_weight = least_weight};
+    BRIO_TRY(BRIO_ALLOC(ctx, b.leads, g->num_finite));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.place, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, g->first_edge, n + 1));
+    BRIO_TRY(pass(&b, true, 0, 0.3));
+    first_places(g->first_edge, b.place, n);
+    BRIO_TRY(BRIO_ALLOC(ctx, b.edges, g->first_edge[n]));
+    BRIO_TRY(pass(&b, false, 0.3, 0.4));
+    BRIO_TRY(BRIO_ALLOC(ctx, g->edge_pole, g->first_edge[n]));
+    BRIO_TRY(BRIO_ALLOC(ctx, g->edge_weight, g->first_edge[n]));
+    sort_edges(&b);
 done:
-    brio_release(ctx, b->vertex_tet);
-    brio_release(ctx, b->first_hidden);
-    brio_release(ctx, b->next_hidden);
-    brio_release(ctx, b->seen);
-    brio_star_free(ctx, &b->star);
+    brio_release(ctx, b.leads);
+    brio_release(ctx, b.place);
+    brio_release(ctx, b.edges);
     return status;
 }
 
-static brio_status list_samples(brio_pole_graph *g) {
+/* --- opposite poles --- */
+
+static double dot_from(const double *o, const double *p, const double *q) {
+    return (p[0] - o[0]) * (q[0] - o[0]) + (p[1] - o[1]) * (q[1] - o[1]) + (p[2] - o[2]) * (q[2] - o[2]);
+}
+
+/* The other pole of sample i / 2 than the one on side i % 2, and the weight of the edge between them. */
+static void set_opposite(brio_pole_graph *g, size_t e, size_t i) {
+    uint32_t p = g->poles->of_sample[i], q = g->poles->of_sample[i ^ 1];
+    const double *s = g->samples + 3 * (i / 2), *a = centre_of(g, p), *b = centre_of(g, q);
+    double weight = -dot_from(s, a, b) / sqrt(dot_from(s, a, a) * dot_from(s, b, b));
+    g->opposite_pole[e] = q;
+    g->opposite_weight[e] = weight > 0 ? fmin(weight, 1) : 0;
+}
+
+static bool has_both(const brio_pole_graph *g, size_t i) {
+    return g->poles->of_sample[i] != BRIO_NO_POLE && g->poles->of_sample[i ^ 1] != BRIO_NO_POLE;
+}
+
+static brio_status list_opposite(brio_pole_graph *g) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(filled(g->ctx, &g->first_of_pole, g->poles->count, NONE));
-    BRIO_TRY(filled(g->ctx, &g->next_of_pole, 2 * g->num_samples, NONE));
-    for (size_t i = 2 * g->num_samples; i-- > 0;) {
-        uint32_t p = g->poles->of_sample[i];
-        if (p == BRIO_NO_POLE) continue;
-        g->next_of_pole[i] = g->first_of_pole[p];
-        g->first_of_pole[p] = (uint32_t)i;
-    }
+    brio_context *ctx = g->ctx;
+    size_t n = g->poles->count, *place = NULL, *pairs = NULL; /* 2 sample + side of each edge */
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, place, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, g->first_opposite, n + 1));
+    for (size_t i = 0; i < 2 * g->num_samples; i++)
+        if (has_both(g, i)) place[g->poles->of_sample[i]]++;
+    first_places(g->first_opposite, place, n);
+    size_t num_edges = g->first_opposite[n];
+    BRIO_TRY(BRIO_ALLOC(ctx, pairs, num_edges));
+    BRIO_TRY(BRIO_ALLOC(ctx, g->opposite_pole, num_edges));
+    BRIO_TRY(BRIO_ALLOC(ctx, g->opposite_weight, num_edges));
+    for (size_t i = 0; i < 2 * g->num_samples; i++)
+        if (has_both(g, i)) pairs[place[g->poles->of_sample[i]]++] = i;
+    BRIO_OMP(parallel for num_threads(brio_context_threads(ctx)))
+    for (size_t e = 0; e < num_edges; e++) set_opposite(g, e, pairs[e]);
 done:
+    brio_release(ctx, place);
+    brio_release(ctx, pairs);
     return status;
 }
+
+/* --- the graph --- */
 
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
                                 const brio_triangulation *power, double least_weight, brio_pole_graph *g) {
@@ -135,31 +209,17 @@ brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, cons
     g->power = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(power),
                                  .count = stats->tetrahedra + stats->hull_facets,
                                  .infinite = BRIO_INFINITE};
-    builder b = {.g = g, .representative = brio_triangulation_representatives(power), .least_weight = least_weight};
-    BRIO_TRY(list_samples(g));
-    BRIO_TRY(add_all_neighbours(&b));
+    BRIO_TRY(list_opposite(g));
+    BRIO_TRY(list_neighbours(g, brio_triangulation_representatives(power), least_weight));
 done:
     return status;
 }
 
 void brio_pole_graph_free(brio_pole_graph *g) {
-    brio_release(g->ctx, g->first_of_pole);
-    brio_release(g->ctx, g->next_of_pole);
+    brio_release(g->ctx, g->first_opposite);
+    brio_release(g->ctx, g->opposite_pole);
+    brio_release(g->ctx, g->opposite_weight);
     brio_release(g->ctx, g->first_edge);
     brio_release(g->ctx, g->edge_pole);
     brio_release(g->ctx, g->edge_weight);
-}
-
-static double dot_from(const double *o, const double *p, const double *q) {
-    return (p[0] - o[0]) * (q[0] - o[0]) + (p[1] - o[1]) * (q[1] - o[1]) + (p[2] - o[2]) * (q[2] - o[2]);
-}
-
-void brio_pole_graph_opposite(const brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit, void *user) {
-    for (uint32_t i = g->first_of_pole[p]; i != NONE; i = g->next_of_pole[i]) {
-        uint32_t q = g->poles->of_sample[i ^ 1];
-        if (q == BRIO_NO_POLE) continue;
-        const double *s = g->samples + 3 * (size_t)(i / 2), *a = centre_of(g, p), *b = centre_of(g, q);
-        double weight = -dot_from(s, a, b) / sqrt(dot_from(s, a, a) * dot_from(s, b, b));
-        if (weight > 0) visit(q, fmin(weight, 1), user);
-    }
 }

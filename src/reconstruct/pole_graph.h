@@ -17,9 +17,10 @@ typedef struct {
     size_t num_samples;
     brio_tetrahedra power; /* the regular triangulation of the polar balls, caller's indices */
     size_t num_finite;
-    uint32_t *first_of_pole; /* list of the (sample, side) pairs of each pole: 2 sample + side */
-    uint32_t *next_of_pole;
-    size_t *first_edge; /* #poles + 1: the edges to deeply intersecting neighbours of each pole */
+    size_t *first_opposite; /* #poles + 1: the opposite poles of each pole, by sample and side */
+    uint32_t *opposite_pole;
+    double *opposite_weight; /* 0: no edge */
+    size_t *first_edge; /* #poles + 1: the edges to deeply intersecting neighbours of each pole, by their numbers */
     uint32_t *edge_pole;
     float *edge_weight;
 } brio_pole_graph;
@@ -39,6 +40,10 @@ typedef void (*brio_pole_visit_fn)(uint32_t other, double weight, void *user);
 
 /** Visits the opposite poles of p; the weight is -cos of the angle at the sample, edges that are not positive are left
  *  out. */
-void brio_pole_graph_opposite(const brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit, void *user);
+static inline void brio_pole_graph_opposite(const brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit,
+                                            void *user) {
+    for (size_t e = g->first_opposite[p]; e < g->first_opposite[p + 1]; e++)
+        if (g->opposite_weight[e] > 0) visit(g->opposite_pole[e], g->opposite_weight[e], user);
+}
 
 #endif

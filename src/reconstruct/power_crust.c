@@ -5,6 +5,7 @@
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7. */
 #include "reconstruct/power_crust.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "reconstruct/crust_faces.h"
 #include "reconstruct/sample_normals.h"
 #include "surface/simplify.h"
@@ -50,7 +51,7 @@ brio_status brio_make_crust(brio_labelled_poles *l, const brio_surface_options *
     l->ctx->progress_to = 1;
     if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh));
     drop_properties(mesh);
-    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) mesh->vertices[i] = ldexp(mesh->vertices[i], l->exponent);
+    brio_scale(l->ctx, mesh->vertices, 3 * mesh->num_vertices, l->exponent, mesh->vertices);
 done:
     return status;
 }

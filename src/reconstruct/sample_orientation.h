@@ -6,8 +6,8 @@
 
 /** turned[p] = 1 when the vector to the pole of sample p points inwards. Agrees along the candidates and between the
  *  sheets of a surface as well as they allow; where there is an outside, the hull is there.
- *  num_candidates  as brio_cocones_select gave it.   turned  #P, owned by the caller (brio_release).
+ *  turned  #P, owned by the caller (brio_release).
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
-brio_status brio_orient_samples(brio_context *ctx, const brio_cocones *c, size_t num_candidates, uint8_t **turned);
+brio_status brio_orient_samples(brio_context *ctx, const brio_cocones *c, uint8_t **turned);
 
 #endif

@@ -13,24 +13,41 @@
  * samples do not have. */
 #include "reconstruct/tetrahedron_labels.h"
 #include "base/memory.h"
+#include "base/parallel.h"
 
 int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
     const brio_tetrahedron *t = l->cocones->dual->t.tet;
     int vote = 0;
     for (int i = 0; i < 4; i++) {
-        int side = brio_side_of(l->cocones, tet, i); /* of the infinite vertex: BRIO_SIDE_COCONE */
+        int side = brio_side_of(l->cocones->dual, tet, i); /* of the infinite vertex: BRIO_SIDE_COCONE */
         if (side == BRIO_SIDE_COCONE) continue;
         vote += (side == BRIO_SIDE_POLE) != l->turned[t[tet].vertex[i]] ? 1 : -1;
     }
     return vote;
 }
 
-static void label_by_votes(brio_tet_labels *l) {
+/* Returns the number of undecided tetrahedra. */
+static size_t label_by_votes(const brio_context *ctx, brio_tet_labels *l) {
+    size_t undecided = 0, num_finite = l->cocones->dual->num_finite;
+    (void)ctx; /* without OpenMP */
+    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : undecided))
     for (size_t tet = 0; tet < l->cocones->dual->t.count; tet++) {
-        int vote = brio_tet_vote(l, tet);
+        int vote = l->watertight && tet >= num_finite ? 1 : brio_tet_vote(l, tet);
         l->label[tet] = vote > 0 ? BRIO_LABEL_OUTER : vote < 0 ? BRIO_LABEL_INNER : BRIO_LABEL_NONE;
-        if (l->watertight && tet >= l->cocones->dual->num_finite) l->label[tet] = BRIO_LABEL_OUTER;
+        undecided += vote == 0;
     }
+    return undecided;
+}
+
+brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *l) {
+    brio_status status = BRIO_OK;
+    size_t count = l->cocones->dual->t.count;
+    BRIO_TRY(BRIO_ALLOC(ctx, l->label, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, l->undecided, label_by_votes(ctx, l)));
+    for (size_t tet = 0; tet < count; tet++)
+        if (l->label[tet] == BRIO_LABEL_NONE) l->undecided[l->num_undecided++] = (uint32_t)tet;
+done:
+    return status;
 }
 
 /* Workspace of the spreading: the tetrahedra that the last wave reached, and the new labels of those of this one. */
@@ -70,14 +87,26 @@ static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
     return inner > 0 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
 }
 
+/* Whether a tetrahedron has a neighbour with a label across a facet that is no candidate. */
+static bool is_next_to_label(const brio_tet_labels *l, uint32_t tet) {
+    for (int i = 0; i < 4; i++) {
+        uint8_t label = l->label[brio_tet_of(l->cocones->dual->t.tet[tet].mate[i])];
+        if ((label == BRIO_LABEL_INNER || label == BRIO_LABEL_OUTER) &&
+            !brio_is_candidate(l->cocones, brio_facet_of(tet, i)))
+            return true;
+    }
+    return false;
+}
+
 /* Passes labels on in waves; within a wave none depends on another, so that the order of the tetrahedra is of no
  * importance. */
-static brio_status spread(brio_context *ctx, brio_tet_labels *l) {
+brio_status brio_tet_labels_spread(brio_context *ctx, brio_tet_labels *l) {
     brio_status status = BRIO_OK;
     wave w = {0};
-    for (size_t tet = 0; tet < l->cocones->dual->t.count; tet++)
-        if (l->label[tet] == BRIO_LABEL_INNER || l->label[tet] == BRIO_LABEL_OUTER)
-            BRIO_TRY(reach_from(ctx, l, tet, &w));
+    BRIO_TRY(BRIO_RESERVE(ctx, w.reached, w.capacity, l->num_undecided));
+    for (size_t n = 0; n < l->num_undecided; n++)
+        if (is_next_to_label(l, l->undecided[n])) w.reached[w.size++] = l->undecided[n];
+    for (size_t n = 0; n < w.size; n++) l->label[w.reached[n]] = REACHED;
     for (size_t begin = 0, end; begin < w.size; begin = end) {
         end = w.size;
         BRIO_TRY(BRIO_RESERVE(ctx, w.news, w.news_capacity, end - begin));
@@ -85,19 +114,16 @@ static brio_status spread(brio_context *ctx, brio_tet_labels *l) {
         for (size_t n = begin; n < end; n++) l->label[w.reached[n]] = w.news[n - begin];
         for (size_t n = begin; n < end; n++) BRIO_TRY(reach_from(ctx, l, w.reached[n], &w));
     }
+    for (size_t n = 0; n < l->num_undecided; n++)
+        if (l->label[l->undecided[n]] == BRIO_LABEL_NONE) l->label[l->undecided[n]] = BRIO_LABEL_INNER;
 done:
     brio_release(ctx, w.reached);
     brio_release(ctx, w.news);
     return status;
 }
 
-brio_status brio_tet_labels_find(brio_context *ctx, brio_tet_labels *l) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, l->label, l->cocones->dual->t.count));
-    label_by_votes(l);
-    BRIO_TRY(spread(ctx, l));
-    for (size_t tet = 0; tet < l->cocones->dual->t.count; tet++)
-        if (l->label[tet] == BRIO_LABEL_NONE) l->label[tet] = BRIO_LABEL_INNER;
-done:
-    return status;
+void brio_tet_labels_free(brio_context *ctx, brio_tet_labels *l) {
+    brio_release(ctx, l->label);
+    brio_release(ctx, l->undecided);
+    *l = (brio_tet_labels){0};
 }

@@ -121,7 +121,7 @@ done:
 }
 
 brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size_t num_atoms, double level,
-                                 double blobbiness, size_t resolution, brio_mesh **out) {
+                                 double blobbiness, size_t resolution, bool conforming, brio_mesh **out) {
     brio_status status = BRIO_OK;
     density d = {.level = level, .blobbiness = blobbiness, .low = {INFINITY, INFINITY, INFINITY}};
     brio_implicit_grid grid = {.value = below_level, .user = &d};
@@ -141,7 +141,7 @@ brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size
     choose_buckets(&d, extent, reach, num_atoms);
     BRIO_TRY(fill_buckets(ctx, &d, atoms, num_atoms));
     choose_grid(&d, extent, reach, resolution, &grid);
-    BRIO_TRY(brio_iso_surface(ctx, &grid, out));
+    BRIO_TRY(conforming ? brio_conforming_iso_surface(ctx, &grid, out) : brio_iso_surface(ctx, &grid, out));
 done:
     brio_release(ctx, d.atoms);
     brio_release(ctx, d.start);

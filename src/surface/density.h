@@ -15,9 +15,10 @@ typedef struct brio_atom {
  *  blobbiness  B, at most 100: the larger, the more the surface is that of the balls.
  *  resolution  at most 2^15: cells along the longest side of the box round the surface; 0: cells of half a unit of
  *  length, but no more than 1024.   Memory: the mesh, two layers of cells, 40 bytes an atom.
+ *  conforming  made of Delaunay triangles: brio_conforming_iso_surface.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no atoms; a number out of its range),
  *  BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size_t num_atoms, double level,
-                                 double blobbiness, size_t resolution, brio_mesh **out);
+                                 double blobbiness, size_t resolution, bool conforming, brio_mesh **out);
 
 #endif

@@ -5,6 +5,7 @@
  * neighbours, in ascending order. Buckets are short in any surface worth the name, so this is linear in practice;
  * heapsort bounds the buckets of the others. */
 #include "surface/edge_rings.h"
+#include "base/parallel.h"
 
 enum { SHORT_BUCKET = 24 };
 
@@ -53,7 +54,11 @@ brio_status brio_mesh_check_faces(brio_context *ctx, const brio_mesh *mesh) {
     BRIO_REQUIRE(ctx, offsets[mesh->num_faces] < UINT32_MAX && mesh->num_faces < UINT32_MAX, BRIO_ERR_TOO_LARGE,
                  "%zu faces with %llu corners are more than 32-bit indices can name", mesh->num_faces,
                  (unsigned long long)offsets[mesh->num_faces]);
-    for (size_t f = 0; f < mesh->num_faces; f++)
+    bool sound = true;
+    BRIO_OMP(parallel for num_threads(brio_context_threads(ctx)) reduction(&& : sound))
+    for (uint64_t h = 0; h < offsets[mesh->num_faces]; h++)
+        sound = sound && mesh->face_vertices[h] < mesh->num_vertices;
+    for (size_t f = 0; !sound && f < mesh->num_faces; f++)
         for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++)
             BRIO_REQUIRE(ctx, mesh->face_vertices[h] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
                          "face %zu: vertex %u of a mesh of %zu vertices", f, mesh->face_vertices[h],
@@ -72,23 +77,33 @@ static edge edge_of(const uint32_t *corners, uint64_t first, uint64_t end, uint6
     return u < v ? (edge){u, v} : (edge){v, u};
 }
 
-/* Half-edges as keys (higher vertex, half-edge), the bucket of each lower vertex after that of the one before.
+/* Half-edges as keys (higher vertex, half-edge), the bucket of each lower vertex after that of the one before; in a
+ * bucket the order is left to the threads.
  * bucket_end  #V, zeroed. */
-static void deal_into_buckets(const brio_mesh *mesh, uint32_t *bucket_end, uint64_t *keys) {
+static void deal_into_buckets(const brio_mesh *mesh, int threads, uint32_t *bucket_end, uint64_t *keys) {
     const uint64_t *offsets = mesh->face_offsets;
+    BRIO_OMP(parallel for num_threads(threads))
     for (size_t f = 0; f < mesh->num_faces; f++)
-        for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++)
-            bucket_end[edge_of(mesh->face_vertices, offsets[f], offsets[f + 1], h).lower]++;
+        for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++) {
+            uint32_t *count = &bucket_end[edge_of(mesh->face_vertices, offsets[f], offsets[f + 1], h).lower];
+            if (threads == 1)
+                ++*count;
+            else
+                __atomic_fetch_add(count, 1, __ATOMIC_RELAXED);
+        }
     uint32_t start = 0;
     for (size_t v = 0; v < mesh->num_vertices; v++) {
         uint32_t count = bucket_end[v];
         bucket_end[v] = start;
         start += count;
     }
+    BRIO_OMP(parallel for num_threads(threads))
     for (size_t f = 0; f < mesh->num_faces; f++)
         for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++) {
             edge e = edge_of(mesh->face_vertices, offsets[f], offsets[f + 1], h);
-            keys[bucket_end[e.lower]++] = (uint64_t)e.higher << 32 | h;
+            uint32_t *end = &bucket_end[e.lower];
+            uint32_t at = threads == 1 ? (*end)++ : __atomic_fetch_add(end, 1, __ATOMIC_RELAXED);
+            keys[at] = (uint64_t)e.higher << 32 | h;
         }
 }
 
@@ -110,8 +125,11 @@ brio_status brio_edge_rings(brio_context *ctx, const brio_mesh *mesh, uint32_t *
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, bucket_end, mesh->num_vertices));
     BRIO_TRY(BRIO_ALLOC(ctx, keys, corners));
     BRIO_TRY(BRIO_ALLOC(ctx, *ring, corners));
-    deal_into_buckets(mesh, bucket_end, keys);
-    for (size_t v = 0, start = 0; v < mesh->num_vertices; start = bucket_end[v++]) {
+    int threads = brio_context_threads(ctx);
+    deal_into_buckets(mesh, threads, bucket_end, keys);
+    BRIO_OMP(parallel for schedule(dynamic, 4096) num_threads(threads))
+    for (size_t v = 0; v < mesh->num_vertices; v++) {
+        uint32_t start = v ? bucket_end[v - 1] : 0;
         brio_sort_keys(keys + start, bucket_end[v] - start);
         link_bucket(keys + start, bucket_end[v] - start, *ring);
     }

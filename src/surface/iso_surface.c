@@ -47,31 +47,36 @@ typedef struct {
 
 /* --- layers --- */
 
-static void node_position(const brio_implicit_grid *grid, uint32_t x, uint32_t y, uint32_t z, double *p) {
-    p[0] = grid->low[0] + x * grid->cell;
-    p[1] = grid->low[1] + y * grid->cell;
-    p[2] = grid->low[2] + z * grid->cell;
+void brio_implicit_node(const brio_implicit_grid *grid, const uint32_t node[3], double *p) {
+    for (int k = 0; k < 3; k++) p[k] = grid->low[k] + node[k] * grid->cell;
+}
+
+brio_status brio_implicit_layer(brio_context *ctx, const brio_implicit_grid *grid, uint32_t z, double *values) {
+    brio_status status = BRIO_OK;
+    const uint32_t *cells = grid->cells;
+    size_t row = (size_t)cells[0] + 1;
+    bool closed = true, is_large = row * cells[1] >= PARALLEL_FROM;
+    BRIO_OMP(parallel for if (is_large) num_threads(brio_context_threads(ctx)) schedule(dynamic, 8)
+                 reduction(&& : closed))
+    for (uint32_t y = 0; y <= cells[1]; y++) {
+        bool border_row = z == 0 || z == cells[2] || y == 0 || y == cells[1];
+        for (uint32_t x = 0; x <= cells[0]; x++) {
+            double p[3];
+            brio_implicit_node(grid, (const uint32_t[3]){x, y, z}, p);
+            double value = grid->value(p, grid->user);
+            values[y * row + x] = value;
+            if (value < 0 && (border_row || x == 0 || x == cells[0])) closed = false;
+        }
+    }
+    BRIO_REQUIRE(ctx, closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
+done:
+    return status;
 }
 
 /* Evaluates layer z into the upper slot and forgets the edges of the layer that was there. */
 static brio_status fill_upper_layer(marcher *m, uint32_t z) {
     brio_status status = BRIO_OK;
-    const brio_implicit_grid *grid = m->grid;
-    const uint32_t *cells = grid->cells;
-    bool closed = true;
-    BRIO_OMP(parallel for if (m->layer >= PARALLEL_FROM) num_threads(brio_context_threads(m->ctx))
-                 schedule(dynamic, 8) reduction(&& : closed))
-    for (uint32_t y = 0; y <= cells[1]; y++) {
-        bool border_row = z == 0 || z == cells[2] || y == 0 || y == cells[1];
-        for (uint32_t x = 0; x <= cells[0]; x++) {
-            double p[3];
-            node_position(grid, x, y, z, p);
-            double value = grid->value(p, grid->user);
-            m->value[1][y * m->row + x] = value;
-            if (value < 0 && (border_row || x == 0 || x == cells[0])) closed = false;
-        }
-    }
-    BRIO_REQUIRE(m->ctx, closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
+    BRIO_TRY(brio_implicit_layer(m->ctx, m->grid, z, m->value[1]));
     for (size_t i = 0; i < m->layer * DIRECTIONS; i++) m->edge_vertex[1][i] = NO_VERTEX;
 done:
     return status;
@@ -88,10 +93,9 @@ static void upper_layer_becomes_lower(marcher *m) {
 
 /* --- vertices --- */
 
-/* Where on the edge from a (value f_a) to b (value f_b, of the other sign) the function is zero: regula falsi in the
- * Illinois variant, which halves the value of an end that stays, so that both ends close in. */
-static void place_on_edge(const brio_implicit_grid *grid, const double *a, const double *b, double f_a, double f_b,
-                          double *p) {
+/* Regula falsi in the Illinois variant, which halves the value of an end that stays, so that both ends close in. */
+void brio_implicit_root(const brio_implicit_grid *grid, const double *a, const double *b, double f_a, double f_b,
+                        double *p) {
     double s = 0, t = 1, root = 0.5;
     for (int step = 0, side = 0; step < ROOT_STEPS; step++) {
         root = f_a == f_b ? 0.5 * (s + t) : s + (t - s) * (f_a / (f_a - f_b));
@@ -128,9 +132,9 @@ static brio_status vertex_on_edge(marcher *m, const uint32_t cube[3], uint32_t c
     if (*slot == NO_VERTEX) {
         BRIO_REQUIRE(m->ctx, m->num_vertices < NO_VERTEX, BRIO_ERR_TOO_LARGE, "a surface of 2^32 vertices");
         BRIO_TRY(BRIO_RESERVE(m->ctx, m->vertices, m->vertex_capacity, 3 * m->num_vertices + 3));
-        for (int end = 0; end < 2; end++) node_position(m->grid, at[end][0], at[end][1], at[end][2], p[end]);
-        place_on_edge(m->grid, p[0], p[1], m->value[low >> 2][node[0]], m->value[high >> 2][node[1]],
-                      m->vertices + 3 * m->num_vertices);
+        for (int end = 0; end < 2; end++) brio_implicit_node(m->grid, at[end], p[end]);
+        brio_implicit_root(m->grid, p[0], p[1], m->value[low >> 2][node[0]], m->value[high >> 2][node[1]],
+                           m->vertices + 3 * m->num_vertices);
         *slot = (uint32_t)m->num_vertices++;
     }
     *out = *slot;
@@ -195,22 +199,22 @@ done:
 
 /* --- all of it --- */
 
-/* Moves the arrays of the marcher into a mesh. */
-static brio_status make_mesh(marcher *m, brio_mesh **out) {
+brio_status brio_mesh_of_triangles(brio_context *ctx, double **vertices, size_t num_vertices, uint32_t **triangles,
+                                   size_t num_triangles, brio_mesh **out) {
     brio_status status = BRIO_OK;
     brio_mesh *mesh = NULL;
     *out = NULL;
-    BRIO_TRY(BRIO_RESIZE(m->ctx, m->vertices, 3 * m->num_vertices));
-    BRIO_TRY(BRIO_RESIZE(m->ctx, m->triangles, 3 * m->num_triangles));
-    BRIO_TRY(brio_mesh_new(m->ctx, &mesh));
-    BRIO_TRY(BRIO_ALLOC(m->ctx, mesh->face_offsets, m->num_triangles + 1));
-    for (size_t f = 0; f <= m->num_triangles; f++) mesh->face_offsets[f] = 3 * f;
-    mesh->num_vertices = m->num_vertices;
-    mesh->vertices = m->vertices;
-    mesh->num_faces = m->num_triangles;
-    mesh->face_vertices = m->triangles;
-    m->vertices = NULL;
-    m->triangles = NULL;
+    BRIO_TRY(BRIO_RESIZE(ctx, *vertices, 3 * num_vertices));
+    BRIO_TRY(BRIO_RESIZE(ctx, *triangles, 3 * num_triangles));
+    BRIO_TRY(brio_mesh_new(ctx, &mesh));
+    BRIO_TRY(BRIO_ALLOC(ctx, mesh->face_offsets, num_triangles + 1));
+    for (size_t f = 0; f <= num_triangles; f++) mesh->face_offsets[f] = 3 * f;
+    mesh->num_vertices = num_vertices;
+    mesh->vertices = *vertices;
+    mesh->num_faces = num_triangles;
+    mesh->face_vertices = *triangles;
+    *vertices = NULL;
+    *triangles = NULL;
     *out = mesh;
     mesh = NULL;
 done:
@@ -234,7 +238,7 @@ brio_status brio_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, 
         BRIO_TRY(march_layer(&m, z));
         BRIO_TRY(brio_progress(ctx, "surface", (z + 1.0) / grid->cells[2]));
     }
-    BRIO_TRY(make_mesh(&m, out));
+    BRIO_TRY(brio_mesh_of_triangles(ctx, &m.vertices, m.num_vertices, &m.triangles, m.num_triangles, out));
 done:
     for (int i = 0; i < 2; i++) {
         brio_release(ctx, m.value[i]);

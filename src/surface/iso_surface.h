@@ -22,4 +22,25 @@ typedef struct brio_implicit_grid {
  *  BRIO_ERR_CANCELLED. */
 brio_status brio_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out);
 
+/** The same with Delaunay triangles: each is a facet of the Delaunay triangulation of the mesh's vertices. These are on
+ *  the edges of the grid, so that there are about a third as many; at least a thousandth of an edge from its ends.
+ *  Memory: the mesh, two layers of nodes, and the triangulation of the cells between them.
+ *  Returns as brio_iso_surface. */
+brio_status brio_conforming_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out);
+
+/* What the two have in common. */
+
+void brio_implicit_node(const brio_implicit_grid *grid, const uint32_t node[3], double *p);
+
+/** Evaluates the nodes of layer z; BRIO_ERR_ARGUMENT when one on the border of the grid is inside. */
+brio_status brio_implicit_layer(brio_context *ctx, const brio_implicit_grid *grid, uint32_t z, double *values);
+
+/** Where on the edge from a (value f_a) to b (value f_b, of the other sign) the function is zero. */
+void brio_implicit_root(const brio_implicit_grid *grid, const double *a, const double *b, double f_a, double f_b,
+                        double *p);
+
+/** A mesh that takes the two arrays over; they are then NULL. */
+brio_status brio_mesh_of_triangles(brio_context *ctx, double **vertices, size_t num_vertices, uint32_t **triangles,
+                                   size_t num_triangles, brio_mesh **out);
+
 #endif

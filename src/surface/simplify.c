@@ -6,7 +6,9 @@
  *     not three each, so that the surface stays the one it was;
  *   - no triangle round it turns over or loses its area. (Needles must be let be: the crust is full of them, and each
  *     is on the way to a better shape.)
- * A heap holds the edges by their error. An entry is out of date when one of the ends has changed since.
+ * Lists hold the edges by their error, a hundredth of it to a list; the first list that is not empty has become a heap,
+ * which also takes what comes back below it. So the order is that of one heap, and the heap stays in the cache. An entry
+ * is out of date when one of the ends has changed since.
  *
  * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
  *           Dey, Edelsbrunner, Guha, Nekhayev. Topology preserving edge contraction. Publ. Inst. Math. Beograd 1999 (the
@@ -23,9 +25,12 @@ enum { NONE = UINT32_MAX };
 /* A triangle may turn by less than acos of this. */
 static const double LEAST_COSINE = 0.2;
 
+enum { LISTS = 1 << 15 };
+
 typedef struct {
     float error;
     uint32_t half_edge, version; /* of both ends, added */
+    uint32_t next;               /* in its list */
 } entry;
 
 typedef struct {
@@ -41,6 +46,11 @@ typedef struct {
     uint8_t *boundary;
     double *spacing;
     brio_quadric *quadric;
+    uint32_t *list; /* LISTS first entries, or NONE */
+    entry *pool;    /* of all lists */
+    size_t pool_size, pool_capacity;
+    uint32_t unused; /* entries of the pool that no list has */
+    uint32_t level;  /* the list that has become the heap */
     entry *heap;
     size_t heap_size, heap_capacity;
 } simplifier;
@@ -93,6 +103,65 @@ static entry heap_pop(simplifier *s) {
     return top;
 }
 
+/* --- lists --- */
+
+/* Grows with the error, from the exponent and seven more bits. */
+static uint32_t level_of(float error) {
+    uint32_t bits;
+    memcpy(&bits, &error, sizeof bits);
+    return bits >> 16 & (LISTS - 1);
+}
+
+static brio_status queue_push(simplifier *s, entry e) {
+    uint32_t level = level_of(e.error), at = s->unused;
+    if (level <= s->level) return heap_push(s, e);
+    if (at == NONE) {
+        brio_status status = BRIO_RESERVE(s->ctx, s->pool, s->pool_capacity, s->pool_size + 1);
+        if (status != BRIO_OK) return status;
+        at = (uint32_t)s->pool_size++;
+    } else {
+        s->unused = s->pool[at].next;
+    }
+    e.next = s->list[level];
+    s->pool[at] = e;
+    s->list[level] = at;
+    return BRIO_OK;
+}
+
+static bool up_to_date(const simplifier *s, const entry *e) {
+    if (s->vertex[e->half_edge] == NONE) return false;
+    return s->version[s->vertex[e->half_edge]] + s->version[end_of(s, e->half_edge)] == e->version;
+}
+
+/* Makes the next list the heap. */
+static brio_status next_level(simplifier *s) {
+    brio_status status = BRIO_OK;
+    s->level++;
+    for (uint32_t i = s->list[s->level], next; i != NONE; i = next) {
+        next = s->pool[i].next;
+        if (up_to_date(s, &s->pool[i])) BRIO_TRY(heap_push(s, s->pool[i]));
+        s->pool[i].next = s->unused;
+        s->unused = i;
+    }
+    s->list[s->level] = NONE;
+done:
+    return status;
+}
+
+/* The edge of the least error; *found is false when none is left. */
+static brio_status queue_pop(simplifier *s, entry *e, bool *found) {
+    brio_status status = BRIO_OK;
+    *found = false;
+    for (;;) {
+        while (!s->heap_size && s->level + 1 < LISTS) BRIO_TRY(next_level(s));
+        if (!s->heap_size) break;
+        *e = heap_pop(s);
+        if ((*found = up_to_date(s, e))) break;
+    }
+done:
+    return status;
+}
+
 /* --- the point of a collapse, and its error --- */
 
 /* The squared distance, weighted by area, of the best point for the edge of h, which goes to `point`. */
@@ -130,7 +199,7 @@ static brio_status offer(simplifier *s, uint32_t h) {
     brio_quadric sum;
     double point[3], error = best_point(s, h, &sum, point), allowed = s->options->tolerance * spacing;
     if (error > allowed * allowed * sum.area) return BRIO_OK;
-    return heap_push(s, (entry){(float)error, h, s->version[u] + s->version[v]});
+    return queue_push(s, (entry){(float)error, h, s->version[u] + s->version[v], NONE});
 }
 
 /* --- what a collapse must not do --- */
@@ -232,7 +301,8 @@ static brio_status collapse(simplifier *s, uint32_t h, const brio_quadric *sum, 
     s->quadric[kept] = *sum;
     s->spacing[kept] = fmin(s->spacing[kept], s->spacing[gone]);
     s->half_edge[gone] = NONE;
-    s->version[kept]++;
+    /* above both, so that no old entry of an edge that changed its end is taken for a new one */
+    s->version[kept] = (s->version[kept] > s->version[gone] ? s->version[kept] : s->version[gone]) + 1;
     g = s->half_edge[kept];
     do BRIO_TRY(offer(s, g));
     while ((g = turn(s, g)) != s->half_edge[kept]);
@@ -280,6 +350,9 @@ static brio_status prepare(simplifier *s) {
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->seen, n));
     BRIO_TRY(BRIO_ALLOC(ctx, s->spacing, n));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->quadric, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, s->list, LISTS));
+    for (size_t i = 0; i < LISTS; i++) s->list[i] = NONE;
+    s->unused = NONE;
     for (size_t v = 0; v < n; v++) s->half_edge[v] = NONE, s->spacing[v] = s->options->spacing[v];
     for (uint32_t h = 0; h < s->num_half_edges; h++) {
         uint32_t v = s->vertex[h];
@@ -323,6 +396,8 @@ static void simplifier_free(simplifier *s) {
     brio_release(s->ctx, s->boundary);
     brio_release(s->ctx, s->spacing);
     brio_release(s->ctx, s->quadric);
+    brio_release(s->ctx, s->list);
+    brio_release(s->ctx, s->pool);
     brio_release(s->ctx, s->heap);
 }
 
@@ -330,14 +405,15 @@ brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_si
     brio_status status = BRIO_OK;
     simplifier s = {.ctx = ctx, .mesh = mesh, .options = options};
     BRIO_TRY(prepare(&s));
-    for (size_t step = 0; s.heap_size && s.num_faces > options->target_faces; step++) {
-        entry e = heap_pop(&s);
+    for (size_t step = 0; s.num_faces > options->target_faces; step++) {
+        entry e;
+        bool found;
         brio_quadric sum;
         double point[3];
         if (step % 65536 == 0)
             BRIO_TRY(brio_progress(ctx, "simplify", 1 - (double)s.num_faces / (double)mesh->num_faces));
-        if (s.vertex[e.half_edge] == NONE) continue;
-        if (s.version[s.vertex[e.half_edge]] + s.version[end_of(&s, e.half_edge)] != e.version) continue;
+        BRIO_TRY(queue_pop(&s, &e, &found));
+        if (!found) break;
         best_point(&s, e.half_edge, &sum, point);
         if (allowed(&s, e.half_edge, point)) BRIO_TRY(collapse(&s, e.half_edge, &sum, point));
     }

@@ -4,14 +4,6 @@
 
 #include "base/memory.h"
 
-/** Edges between vertices. Zeroed to begin with. */
-typedef struct brio_edges {
-    size_t count;
-    uint32_t *ends; /* count by 2 */
-} brio_edges;
-
-void brio_edges_free(brio_context *ctx, brio_edges *edges);
-
 /** All edges of a mesh of polygons, each once, in the order of their first half-edges.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 brio_status brio_mesh_edges(brio_context *ctx, const brio_mesh *mesh, brio_edges *out);

@@ -11,11 +11,6 @@
 #include "surface/spanning_subgraph.h"
 #include <math.h>
 
-void brio_edges_free(brio_context *ctx, brio_edges *edges) {
-    brio_release(ctx, edges->ends);
-    *edges = (brio_edges){0};
-}
-
 brio_status brio_mesh_edges(brio_context *ctx, const brio_mesh *mesh, brio_edges *out) {
     brio_status status = BRIO_OK;
     const uint64_t *offsets = mesh->face_offsets;

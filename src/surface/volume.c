@@ -4,7 +4,8 @@
  * The surface is made in steps of cells, where the grid is straight, and its vertices are then carried to space. So
  * that it closes where the part above the level runs out of the volume, that part is cut by a box half a cell inside
  * the border: the function is the greater of the field's distance below the level and the distance out of the box, the
- * latter in the scale of the values.
+ * latter in the scale of the values. A surface of Delaunay triangles cannot be carried over, since balls do not stay
+ * balls; its grid is one of cubes in space.
  *
  * Based on: Catmull, Rom. A class of local interpolating splines. Computer Aided Geometric Design 1974. */
 #include "surface/volume.h"
@@ -61,9 +62,10 @@ double brio_volume_at(const brio_volume *volume, const double *place) {
 
 typedef struct {
     const brio_volume *volume;
-    double level, scale; /* of the distance out of the box */
-    double stretch[3];   /* steps of the volume in a cell, along each axis */
-    double cells[3];     /* number of them */
+    double level, scale;  /* of the distance out of the box */
+    double stretch[3];    /* steps of the volume in a cell, along each axis */
+    double cells[3];      /* number of them */
+    double inverse[3][3]; /* from space, the origin subtracted, to steps of the volume */
 } level_set;
 
 /* p is in cells. */
@@ -77,12 +79,26 @@ static double below_level(const double *p, const void *user) {
     return fmax(s->level - brio_volume_at(s->volume, place), s->scale * outside);
 }
 
+static double below_level_in_space(const double *p, const void *user) {
+    const level_set *s = user;
+    double q[3] = {0};
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 3; i++) q[k] += s->inverse[k][i] * (p[i] - s->volume->origin[i]);
+        q[k] /= s->stretch[k];
+    }
+    return below_level(q, user);
+}
+
+static double step_length(const brio_volume *volume, int axis) {
+    const double *s = volume->step[axis];
+    return sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+}
+
 /* Cells of about the same length along all axes, `resolution` of them along the longest. */
 static void choose_cells(const brio_volume *volume, size_t resolution, uint32_t cells[3]) {
     double length[3], longest = 0;
     for (int k = 0; k < 3; k++) {
-        const double *s = volume->step[k];
-        length[k] = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]) * (volume->size[k] - 1);
+        length[k] = step_length(volume, k) * (volume->size[k] - 1);
         longest = fmax(longest, length[k]);
     }
     for (int k = 0; k < 3; k++)
@@ -99,11 +115,62 @@ static void carry_to_space(const level_set *s, brio_mesh *mesh) {
     }
 }
 
+/* The rows of the inverse are the cross products of two steps, over the volume of the three. */
+static void invert_steps(const brio_volume *volume, double inverse[3][3]) {
+    for (int k = 0; k < 3; k++) {
+        const double *u = volume->step[(k + 1) % 3], *v = volume->step[(k + 2) % 3], *w = volume->step[k];
+        double across = 0;
+        for (int i = 0; i < 3; i++) {
+            inverse[k][i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+            across += inverse[k][i] * w[i];
+        }
+        for (int i = 0; i < 3; i++) inverse[k][i] /= across;
+    }
+}
+
+/* A grid of cubes in space round the volume, with a cell to spare. */
+static void choose_cubes(level_set *s, size_t resolution, brio_implicit_grid *grid) {
+    const brio_volume *volume = s->volume;
+    double length[3], longest = 0, shortest_step = INFINITY, high[3];
+    for (int k = 0; k < 3; k++) {
+        length[k] = step_length(volume, k) * (volume->size[k] - 1);
+        longest = fmax(longest, length[k]);
+        shortest_step = fmin(shortest_step, step_length(volume, k));
+    }
+    grid->cell = resolution ? longest / (double)resolution : shortest_step;
+    for (int i = 0; i < 3; i++) {
+        grid->low[i] = high[i] = volume->origin[i];
+        for (int k = 0; k < 3; k++) {
+            double reach = volume->step[k][i] * (volume->size[k] - 1);
+            grid->low[i] += fmin(reach, 0);
+            high[i] += fmax(reach, 0);
+        }
+        grid->low[i] -= grid->cell;
+        grid->cells[i] = (uint32_t)ceil((high[i] - grid->low[i]) / grid->cell) + 1;
+    }
+    for (int k = 0; k < 3; k++) {
+        s->cells[k] = length[k] / grid->cell;
+        s->stretch[k] = (volume->size[k] - 1) / s->cells[k];
+    }
+    invert_steps(volume, s->inverse);
+    grid->value = below_level_in_space;
+}
+
+static void choose_grid(level_set *s, size_t resolution, brio_implicit_grid *grid) {
+    choose_cells(s->volume, resolution, grid->cells);
+    for (int k = 0; k < 3; k++) {
+        s->cells[k] = grid->cells[k];
+        s->stretch[k] = (s->volume->size[k] - 1) / s->cells[k];
+    }
+    grid->cell = 1;
+    grid->value = below_level;
+}
+
 brio_status brio_volume_surface(brio_context *ctx, const brio_volume *volume, double level, size_t resolution,
-                                brio_mesh **out) {
+                                bool conforming, brio_mesh **out) {
     brio_status status = BRIO_OK;
     level_set s = {.volume = volume, .level = level};
-    brio_implicit_grid grid = {.value = below_level, .user = &s, .cell = 1};
+    brio_implicit_grid grid = {.user = &s};
     double mean;
     *out = NULL;
     for (int k = 0; k < 3; k++)
@@ -113,11 +180,11 @@ brio_status brio_volume_surface(brio_context *ctx, const brio_volume *volume, do
                  MOST_RESOLUTION);
     brio_volume_statistics(volume, &mean, &s.scale);
     if (!(s.scale > 0)) s.scale = 1;
-    choose_cells(volume, resolution, grid.cells);
-    for (int k = 0; k < 3; k++) {
-        s.cells[k] = grid.cells[k];
-        s.stretch[k] = (volume->size[k] - 1) / s.cells[k];
+    if (conforming) {
+        choose_cubes(&s, resolution, &grid);
+        return brio_conforming_iso_surface(ctx, &grid, out);
     }
+    choose_grid(&s, resolution, &grid);
     BRIO_TRY(brio_iso_surface(ctx, &grid, out));
     carry_to_space(&s, *out);
 done:

@@ -23,9 +23,10 @@ double brio_volume_at(const brio_volume *volume, const double *place);
 /** The surface of the part of a volume whose values are above a level, closed along the sides of the volume by flat
  *  pieces half a cell from its border. Closed, manifold, oriented, seen counterclockwise from outside.
  *  resolution  cells along the longest side; 0: one for each step.   Memory: the mesh and two layers of cells.
+ *  conforming  made of Delaunay triangles: brio_conforming_iso_surface.
  *  Returns BRIO_OK (no faces when nothing is above the level), BRIO_ERR_NO_ANSWER (a volume less than two values wide),
  *  BRIO_ERR_ARGUMENT (a resolution above 2^15), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_volume_surface(brio_context *ctx, const brio_volume *volume, double level, size_t resolution,
-                                brio_mesh **out);
+                                bool conforming, brio_mesh **out);
 
 #endif

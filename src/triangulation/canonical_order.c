@@ -10,7 +10,9 @@
  * The array is permuted in place, block by block: what belongs into a block is gathered aside with its facets and
  * vertices renamed, what else lives there moves to the slots that this left free, and the block is written. The reads
  * of a block are independent, which following cycles would not be. Two numbers a tetrahedron are added, no second copy.
- */
+ *
+ * In scratch files (one thread, memory short, disk not) the tetrahedra are copied into a second array instead, in the
+ * order of their places and reading ahead: moving them in place would read and write most pages many times. */
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "triangulation/kernel.h"
@@ -45,6 +47,7 @@ typedef struct {
     uint32_t *end;
     size_t buckets, live;
     int threads;
+    brio_read_ahead *read_ahead; /* of the scratch files, which one thread works on */
 } sorter;
 
 /* The tetrahedra of one bucket, in a thread's hands. */
@@ -53,6 +56,28 @@ typedef struct {
     uint32_t *name;
     size_t key_capacity, name_capacity;
 } bucket;
+
+/* --- scratch files --- */
+
+enum { FAR_AHEAD = 1 << 13 };
+
+/* The loop is at tetrahedron t of a sequence. */
+static inline void expect_in_sequence(const sorter *s, size_t t) {
+    if (t + FAR_AHEAD < s->k->t.count) brio_expect(s->read_ahead, &s->k->t.tet[t + FAR_AHEAD]);
+}
+
+/* The loop is at place x: its tetrahedron comes from wherever the insertion put it. */
+static inline void expect_at_place(const sorter *s, size_t x) {
+    s->read_ahead->now++;
+    if (x + 2 * FAR_AHEAD < s->live) brio_expect(s->read_ahead, &s->order[x + 2 * FAR_AHEAD]);
+    if (x + FAR_AHEAD >= s->live) return;
+    uint32_t slot = s->order[x + FAR_AHEAD];
+    brio_expect(s->read_ahead, &s->k->t.tet[slot]);
+    brio_expect(s->read_ahead, &s->place[slot]);
+    brio_expect(s->read_ahead, &s->k->state[slot]);
+}
+
+/* --- places --- */
 
 /* One more in a bucket; what was there before. */
 static inline uint32_t count_one(const sorter *s, size_t b) {
@@ -67,6 +92,7 @@ static void fill_buckets(sorter *s) {
     BRIO_OMP(parallel for num_threads(s->threads))
     for (size_t t = 0; t < k->t.count; t++) {
         const uint32_t *v = k->t.tet[t].vertex;
+        expect_in_sequence(s, t);
         if (k->state[t] == TET_UNUSED) {
             s->place[t] = NOWHERE;
             k->state[t] = SLOT_FREE;
@@ -159,6 +185,8 @@ static brio_status sort_some(sorter *s, size_t from, size_t to) {
     brio_status status = BRIO_OK;
     size_t last = to ? s->end[to - 1] : 0;
     for (size_t i = from, begin = from ? s->end[from - 1] : 0; i < to && status == BRIO_OK; begin = s->end[i++]) {
+        if (s->read_ahead->active)
+            for (size_t a = begin; a < s->end[i]; a++) expect_at_place(s, a);
         for (size_t a = begin; a < s->end[i] && a + AHEAD < last; a++)
             __builtin_prefetch(&s->k->t.tet[s->order[a + AHEAD]]);
         status = sort_bucket(s, &b, begin, s->end[i]);
@@ -348,9 +376,28 @@ done:
     return status;
 }
 
+/* Where disk is there for the asking, into a second array: that reads once what moving in place reads and writes again
+ * and again. */
+static brio_status copy_all(sorter *s) {
+    brio_kernel *k = s->k;
+    brio_tetrahedron *out = NULL;
+    brio_status status = BRIO_ALLOC(k->ctx, out, s->live);
+    if (status != BRIO_OK) return status;
+    for (size_t x = 0, b = 0; x < s->live; x++) {
+        while (s->end[b] <= x) b++;
+        expect_at_place(s, x);
+        rename_one(s, s->order[x], &out[x]);
+        out[x].vertex[0] = k->caller[b < k->num_points + 2 ? b : b - k->num_points - 2];
+    }
+    brio_release(k->ctx, k->t.tet);
+    k->t.tet = out;
+    return BRIO_OK;
+}
+
 brio_status brio_kernel_sort(brio_kernel *k) {
     sorter s = {.k = k, .buckets = 2 * (k->num_points + 2), .live = k->t.count - k->num_unused};
-    int threads = brio_context_threads(k->ctx), most = (int)(s.live / BLOCK) + 1;
+    s.read_ahead = &k->read_ahead;
+    int threads = k->read_ahead.active ? 1 : brio_context_threads(k->ctx), most = (int)(s.live / BLOCK) + 1;
     s.threads = threads < most ? threads : most;
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.order, s.live + AHEAD));
@@ -358,7 +405,7 @@ brio_status brio_kernel_sort(brio_kernel *k) {
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.end, s.buckets));
     fill_buckets(&s);
     BRIO_TRY(sort_buckets(&s));
-    BRIO_TRY(move_all(&s));
+    BRIO_TRY(k->read_ahead.active ? copy_all(&s) : move_all(&s));
     k->t.count = k->capacity = s.live;
     k->num_unused = 0;
     k->stats.hull_facets = s.live - s.end[k->num_points + 1];

@@ -6,22 +6,28 @@
 #include "base/parallel.h"
 #include "order/order.h"
 #include "triangulation/kernel.h"
+#include "triangulation/recorder.h"
 #include "triangulation/triangulation.h"
 #include <string.h>
 
 enum { PROGRESS_EVERY = 8192, PARALLEL_FROM = 1 << 15 };
 
 brio_options brio_options_default(void) {
-    return (brio_options){
-        .order = BRIO_ORDER_BRIO, .round_ratio = 0.125, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
+    return (brio_options){.order = BRIO_ORDER_BRIO, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
 }
 
 static brio_status check_options(brio_context *ctx, size_t n, const brio_options *o) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
     BRIO_REQUIRE(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
-    BRIO_REQUIRE(ctx, o->round_ratio > 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
+    BRIO_REQUIRE(ctx, o->round_ratio >= 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
                  "round ratio %g is not between 0 and 1", o->round_ratio);
+    BRIO_REQUIRE(ctx, (unsigned)o->locate < BRIO_LOCATE_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
+                 (int)o->locate);
+    BRIO_REQUIRE(ctx, o->edges || !o->num_edges, BRIO_ERR_ARGUMENT, "%zu edges, but no array of them", o->num_edges);
+    for (size_t i = 0; i < 2 * o->num_edges; i++)
+        BRIO_REQUIRE(ctx, o->edges[i] < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, o->edges[i],
+                     n);
     BRIO_REQUIRE(ctx, o->max_tetrahedra <= UINT32_C(1) << 30, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
                  o->max_tetrahedra);
 done:
@@ -78,36 +84,48 @@ brio_status brio_records_new(brio_context *ctx, const double *points, const doub
 /* --- construction --- */
 
 static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *points, const double *weights, size_t n,
-                              const brio_options *options) {
+                              const brio_options *options, brio_round_ends *rounds) {
     brio_status status = BRIO_OK;
     memset(k, 0, sizeof *k);
     k->ctx = ctx;
     k->num_points = n;
     k->weighted = weights != NULL;
     k->engine = brio_engine_choose(k->weighted);
+    brio_read_ahead_start(&k->read_ahead, ctx);
+    k->goes_on = k->read_ahead.active && options->order != BRIO_ORDER_RANDOM;
+    k->locator = brio_locator_choose(options->locate);
     k->max_tetrahedra = options->max_tetrahedra;
     k->stats.points = n;
     k->t.infinite = (uint32_t)n + 2;
     double start = brio_seconds();
     BRIO_TRY(BRIO_ALLOC(ctx, k->caller, n + 3));
     BRIO_TRY(brio_progress(ctx, "order", 0));
-    bool follows_curve = options->order == BRIO_ORDER_BRIO || options->order == BRIO_ORDER_HILBERT;
-    if (brio_context_threads(ctx) > 1 && follows_curve) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, k->rank, n + 3));
-    BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller, k->rank));
+    bool parallel = brio_context_threads(ctx) > 1 && options->locate == BRIO_LOCATE_WALK;
+    if (parallel && brio_order_has_ranks(options->order)) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, k->rank, n + 3));
+    BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller, k->rank, rounds));
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
     k->record[n + 2][3] = INFINITY; /* the infinite vertex, as conflict_lanes.h knows it */
     k->t.record = k->record;
     k->stats.order_seconds = brio_seconds() - start;
-    BRIO_TRY(BRIO_ALLOC(ctx, k->representative, n + 3));
-    for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;
-    BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.local, n + 3));
-    BRIO_TRY(BRIO_ALLOC(ctx, k->cavity.table, BRIO_TABLE));
-    BRIO_TRY(brio_cavity_reserve(ctx, &k->cavity, 64));
+    status = brio_kernel_workspace(k);
 done:
     return status;
 }
 
-static void kernel_free(brio_kernel *k) {
+brio_status brio_kernel_workspace(brio_kernel *k) {
+    brio_status status = BRIO_OK;
+    size_t n = k->num_points;
+    BRIO_TRY(BRIO_ALLOC(k->ctx, k->representative, n + 3));
+    for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;
+    BRIO_TRY(BRIO_ALLOC(k->ctx, k->cavity.local, n + 3));
+    BRIO_TRY(BRIO_ALLOC(k->ctx, k->cavity.table, BRIO_TABLE));
+    status = brio_cavity_reserve(k->ctx, &k->cavity, 64);
+done:
+    return status;
+}
+
+void brio_kernel_free(brio_kernel *k) {
+    if (k->locator->free) k->locator->free(k);
     brio_cavity_free(k->ctx, &k->cavity);
     brio_release(k->ctx, k->t.tet);
     brio_release(k->ctx, k->state);
@@ -119,29 +137,43 @@ static void kernel_free(brio_kernel *k) {
     brio_release(k->ctx, k->representative);
 }
 
-/* Where the records from `begin` on stop to follow the curve. */
-static size_t end_of_run(const brio_kernel *k, size_t begin) {
-    size_t end = begin + 1;
-    while (end < k->num_points && k->rank[end] > k->rank[end - 1]) end++;
-    return end;
+static inline size_t least(size_t a, size_t b) {
+    return a < b ? a : b;
 }
 
-static brio_status insert_all(brio_kernel *k) {
+/* Where the records from `begin` on stop to follow the curve, at most `end`. */
+static size_t end_of_run(const brio_kernel *k, size_t begin, size_t end) {
+    size_t i = begin + 1;
+    while (i < end && k->rank[i] > k->rank[i - 1]) i++;
+    return i;
+}
+
+static brio_status insert_all(brio_kernel *k, const brio_options *options, brio_recorder *recorder) {
     brio_status status = BRIO_OK;
+    size_t n = k->num_points, p, end;
+    recorder->start = brio_seconds();
     BRIO_TRY(brio_kernel_start(k));
-    if (k->dimension <= 0) goto done;
+    if (k->dimension <= 0) {
+        status = brio_recorder_note(recorder, k, n);
+        goto done;
+    }
+    if (k->locator->start) BRIO_TRY(k->locator->start(k, options));
     bool parallel = k->rank && k->dimension == 3;
-    for (size_t p = (size_t)k->dimension + 1, end; p < k->num_points; p = end) {
-        end = p + PROGRESS_EVERY - p % PROGRESS_EVERY < k->num_points ? p + PROGRESS_EVERY - p % PROGRESS_EVERY
-                                                                      : k->num_points;
-        BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)k->num_points));
+    p = (size_t)k->dimension + 1;
+    BRIO_TRY(brio_recorder_note(recorder, k, p));
+    for (; p < n; p = end) {
+        BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)n));
+        end = least(brio_recorder_next(recorder, p), n);
         if (parallel) {
-            end = end_of_run(k, p);
+            end = end_of_run(k, p, end);
             BRIO_TRY(brio_kernel_insert_parallel(k, p, end));
         } else {
+            end = least(end, p + PROGRESS_EVERY - p % PROGRESS_EVERY);
             for (size_t q = p; q < end; q++) BRIO_TRY(brio_kernel_insert(k, (uint32_t)q));
         }
+        BRIO_TRY(brio_recorder_note(recorder, k, end));
     }
+    if (k->locator->free) k->locator->free(k); /* the sort needs the room */
     status = brio_progress(k->ctx, "insert", 1);
 done:
     return status;
@@ -149,7 +181,7 @@ done:
 
 /* --- result --- */
 
-static brio_status triangulation_new(brio_kernel *k, brio_triangulation **out) {
+static brio_status triangulation_new(brio_kernel *k, brio_recorder *recorder, brio_triangulation **out) {
     brio_context *ctx = k->ctx;
     brio_triangulation *t = NULL;
     brio_status status = BRIO_OK;
@@ -164,6 +196,9 @@ static brio_status triangulation_new(brio_kernel *k, brio_triangulation **out) {
     t->tet = k->t.tet;
     t->stats = k->stats;
     k->t.tet = NULL;
+    t->round = recorder->list;
+    t->num_rounds = recorder->count;
+    recorder->list = NULL;
     *out = t;
     t = NULL;
 done:
@@ -175,21 +210,24 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
                           const brio_options *options, brio_triangulation **out) {
     brio_options standard = brio_options_default();
     brio_kernel kernel;
+    brio_recorder recorder = {0};
     brio_status status = BRIO_OK;
     *out = NULL;
     if (!options) options = &standard;
     BRIO_TRY(check_options(ctx, num_points, options));
-    status = kernel_new(&kernel, ctx, points, weights, num_points, options);
+    recorder.every = options->record_every;
+    status = kernel_new(&kernel, ctx, points, weights, num_points, options, &recorder.rounds);
     double start = brio_seconds();
-    if (status == BRIO_OK) status = insert_all(&kernel);
+    if (status == BRIO_OK) status = insert_all(&kernel, options, &recorder);
     if (status == BRIO_OK) status = brio_kernel_represent(&kernel);
     brio_release(ctx, kernel.record); /* only names matter from here on */
     kernel.record = NULL;
     if (kernel.dimension < 3) kernel.t.count = 0;
     if (status == BRIO_OK && kernel.t.count > 0) status = brio_kernel_sort(&kernel);
     kernel.stats.insert_seconds = brio_seconds() - start;
-    if (status == BRIO_OK) status = triangulation_new(&kernel, out);
-    kernel_free(&kernel);
+    if (status == BRIO_OK) status = triangulation_new(&kernel, &recorder, out);
+    brio_kernel_free(&kernel);
+    brio_release(ctx, recorder.list);
 done:
     return status;
 }
@@ -198,6 +236,7 @@ void brio_triangulation_free(brio_triangulation *t) {
     if (!t) return;
     brio_release(t->ctx, t->tet);
     brio_release(t->ctx, t->representative);
+    brio_release(t->ctx, t->round);
     brio_release(t->ctx, t);
 }
 
@@ -209,4 +248,8 @@ const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triangulation *
 }
 const uint32_t *brio_triangulation_representatives(const brio_triangulation *t) {
     return t->representative;
+}
+const brio_round *brio_triangulation_rounds(const brio_triangulation *t, size_t *count) {
+    *count = t->num_rounds;
+    return t->round;
 }

@@ -37,26 +37,31 @@ static bool absorbed(brio_kernel *k, uint32_t p, uint32_t v) {
     return true;
 }
 
-/* A short walk, which is best nearly always; where walks are long again and again, the descent, with a walk tried now
- * and then. */
-static brio_status locate(brio_kernel *k, const double *point, uint32_t *tet) {
-    enum { SHORT_WALK = 40, DESCENTS = 64 };
-    if (k->long_walks == 0 || k->cavity.num_created == 0) {
-        uint64_t most = k->cavity.num_created ? SHORT_WALK : UINT64_MAX;
-        *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, most);
-        if (*tet != BRIO_NO_TET) return BRIO_OK;
-        if (k->walk.blocked) return BRIO_DEFERRED;
-        k->long_walks = DESCENTS;
+/* Around a point is where the next ones go. */
+static void expect_neighbours(brio_kernel *k) {
+    const brio_cavity *c = &k->cavity;
+    k->read_ahead.now++;
+    for (size_t i = 0; i < c->num_created; i++) {
+        const brio_tetrahedron *t = &k->t.tet[c->created[i]];
+        brio_expect(&k->read_ahead, &k->t.tet[brio_tet_of(t->mate[0])]);
+        brio_expect(&k->read_ahead, k->record[t->vertex[1]]);
     }
-    k->long_walks--;
-    k->star.mark = k->state;
-    return brio_locate_descent(k, point, tet);
+}
+
+/* Every so manieth location is timed and stands for the others: a clock costs as much as a walk step. */
+static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
+    enum { TIMED = 64 };
+    if (p % TIMED) return k->locator->locate(k, p, tet);
+    double start = brio_seconds();
+    brio_status status = k->locator->locate(k, p, tet);
+    k->stats.locate_seconds += TIMED * (brio_seconds() - start);
+    return status;
 }
 
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
     const double *point = k->record[p];
     uint32_t tet;
-    brio_status located = locate(k, point, &tet);
+    brio_status located = locate(k, p, &tet);
     if (located != BRIO_OK) return located;
     if (!brio_is_infinite(&k->t, tet)) {
         uint32_t v = vertex_at(k, tet, point);
@@ -67,6 +72,9 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
             return BRIO_OK;
         }
     }
+    if (!brio_owns(&k->t, tet)) return BRIO_DEFERRED;
     brio_status status = k->engine->dig(k, tet, p);
-    return status == BRIO_OK ? brio_cavity_fill(k, p) : status;
+    if (status == BRIO_OK) status = brio_cavity_fill(k, p);
+    if (status == BRIO_OK && k->goes_on) expect_neighbours(k);
+    return status == BRIO_OK && k->locator->filled ? k->locator->filled(k, p) : status;
 }

@@ -4,8 +4,10 @@
 #ifndef BRIO_TRIANGULATION_KERNEL_H
 #define BRIO_TRIANGULATION_KERNEL_H
 
+#include "base/read_ahead.h"
 #include "triangulation/engine.h"
 #include "triangulation/locate.h"
+#include "triangulation/locator.h"
 #include "triangulation/star.h"
 #include "triangulation/tetrahedra.h"
 
@@ -47,9 +49,13 @@ struct brio_kernel {
     brio_filter filter;
     const brio_engine *engine;
     brio_walk walk;
-    unsigned long_walks; /* how often of late a walk was given up, see insert.c */
-    brio_star star;      /* workspace of the descent; its marks are the states */
+    const brio_locator *locator; /* the strategy of point location */
+    void *location;              /* what it keeps */
+    unsigned long_walks;         /* how often of late a walk was given up, see locator.c */
+    brio_star star;              /* workspace of the descent; its marks are the states */
     brio_cavity cavity;
+    brio_read_ahead read_ahead;
+    bool goes_on; /* in scratch files: the next point is often close to the last one */
     brio_stats stats;
 };
 
@@ -57,6 +63,12 @@ struct brio_kernel {
 #define BRIO_DEFERRED ((brio_status)-1)
 
 typedef enum { TET_PLAIN = 0, TET_CAVITY = 1, TET_UNUSED = 2 } brio_tet_state;
+
+/** Room for what the insertion of k->num_points records needs, before any tetrahedra. */
+brio_status brio_kernel_workspace(brio_kernel *k);
+
+/** Frees all that a kernel holds, but not the kernel. */
+void brio_kernel_free(brio_kernel *k);
 
 /** Finds four points in general position, or the dimension that they have instead; adds apexes off the points' affine
  *  hull so that every input of at least two distinct positions becomes three-dimensional; makes the first tetrahedron.
@@ -74,6 +86,13 @@ brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end
 
 /** Inserts record p, which is not yet in: as a vertex, a duplicate, or a hidden point. */
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p);
+
+/** The vertex that took the place of record p, or a record on the way to it: p itself for a vertex. */
+static inline uint32_t brio_alive(const brio_kernel *k, uint32_t p) {
+    uint32_t *representative = k->representative;
+    while (representative[p] != p) p = representative[p] = representative[representative[p]];
+    return p;
+}
 
 /** A tetrahedron in conflict with p near the last insertion, or what brio_locate_walk gives. */
 brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet);

@@ -57,6 +57,7 @@ static brio_status collect_last(brio_kernel *k, uint32_t v) {
 
 brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) {
     candidate best = {k->t.infinite, BRIO_NO_TET, INFINITY};
+    offer(&k->t, &best, k->walk.start, p);
     for (size_t b = 0; b < k->cavity.num_created; b++) offer(&k->t, &best, k->cavity.created[b], p);
     if (best.square > 0 && best.vertex != k->t.infinite) {
         brio_status status = collect_last(k, best.vertex);

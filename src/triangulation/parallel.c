@@ -1,41 +1,49 @@
-/* Parallel insertion: each thread owns a part of the points.
+/* Parallel insertion: each thread holds the part of the points where it works.
  *
- * A pass divides the points into zones, one a thread. A thread walks through and destroys only tetrahedra all of whose
- * finite vertices are in its zone, and inserts its points in their order; a point whose walk or cavity would leave the
- * zone is deferred. The tetrahedra round a cavity share three vertices with it, so no other thread can destroy them,
- * and what it reads there does not change: their mates are written only through the facet that both share. So threads
- * need no locks and share nothing but the count of slots, taken in large stretches. The first pass divides the curve
- * that the points follow. Deferred points lie along the borders of its zones; each later pass takes another curve,
- * which cuts space elsewhere. What is left at the end is inserted by one thread.
+ * A curve through the points is divided into segments, many more than threads. Each thread inserts a part of the points
+ * that follow the curve. It walks through and destroys only tetrahedra all of whose finite vertices are in segments that
+ * it holds, its zone: it takes a segment when it first meets a vertex there, and gives it back when it has moved on. A
+ * point whose walk or cavity meets a segment of another thread is deferred, since that thread is at work there now;
+ * later it will not be. The tetrahedra round a cavity share three vertices with it, so no other thread can destroy them,
+ * and what is read of them does not change: their mates are written only through the facet that both share. So threads
+ * never wait for each other, and share nothing but the segments' marks and the count of slots, taken in large stretches.
+ * What is left when a thread has tried all its points again goes into another pass, and at the end to one thread.
  *
  * The result is the one triangulation that exact predicates and the symbolic perturbation determine, whatever was
  * deferred.
  *
- * Based on: Marot, Pellerin, Remacle. One machine, one minute, three billion tetrahedra. IJNME 2019.
- * Differs from the paper: a walk that is blocked starts again from one of the hints that were located along the zone.
+ * Based on: Marot, Pellerin, Remacle. One machine, one minute, three billion tetrahedra. IJNME 2019, for the ownership
+ *           by vertices; Batista, Millman, Pion, Singler. Parallel geometric algorithms for multi-core computers. CGTA
+ *           2010, for giving up instead of waiting.
+ * Differs from both: zones of the curve are not fixed for a pass but follow the thread, and locks are neither of
+ * tetrahedra nor of vertices but of segments, kept from one insertion to the next.
  */
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "base/sort.h"
-#include "order/hilbert.h"
 #include "triangulation/kernel.h"
 #include <string.h>
 
 enum {
     STRETCH = 4096, /* slots taken at once */
     LEAST = 512,    /* points to insert that are worth a thread */
-    CROWD = 4096,   /* points in all that make a zone which is not all border */
-    PASSES = 6,     /* then one thread goes on */
-    HINTS = 32,     /* tetrahedra located along a zone before its pass */
+    CROWD = 256,    /* points in all that are worth a thread */
+    PASSES = 4,     /* then one thread goes on */
+    RETRIES = 4,    /* of a thread's deferred points in a pass */
+    STARTS = 32,    /* places along a thread's part where it may begin */
+    SEGMENT = 4,    /* vertices in a segment when a pass begins */
+    MOST_SEGMENTS = 1 << 16,
     PROGRESS_EVERY = 4096
 };
 
 /* What the threads of a pass share. */
 typedef struct brio_team {
     brio_kernel *main;
-    uint32_t first; /* the records to insert: from `first` on, or those listed; zone by zone, along the curve in each */
+    uint32_t first; /* the records to insert, along the curve: from `first` on, or those listed */
     uint32_t *list;
     size_t count;
+    int shift; /* of ranks to segments */
+    size_t segments;
+    uint8_t *taken; /* of each segment */
     size_t next_slot, last_slot;
     int stop; /* some thread failed */
 } brio_team;
@@ -45,9 +53,9 @@ typedef struct {
     brio_kernel kernel;
     brio_zone zone;
     size_t begin, end; /* of the records to insert */
+    bool placed;       /* it has a tetrahedron to start from */
     uint32_t *deferred;
     size_t num_deferred, deferred_capacity;
-    uint32_t hint[HINTS];
     brio_status status;
 } worker;
 
@@ -86,21 +94,39 @@ brio_status brio_team_reserve(brio_kernel *k, size_t more) {
 
 /* --- one thread --- */
 
-/* Inserts a point; where its walk is blocked, once more from the hint of its part of the zone. */
-static brio_status try_point(worker *w, size_t i) {
-    brio_kernel *k = &w->kernel;
-    uint32_t p = record_of(k->team, i);
+/* Inserts a record, or BRIO_DEFERRED. Where the next walk starts stays in the zone. */
+static brio_status insert_in_zone(brio_kernel *k, uint32_t p) {
+    brio_zone *zone = k->t.zone;
+    if (!brio_zone_has(zone, p)) return BRIO_DEFERRED;
+    uint64_t created = k->stats.created;
     brio_status status = brio_kernel_insert(k, p);
-    if (status == BRIO_DEFERRED && k->walk.blocked) {
-        uint32_t hint = w->hint[(i - w->begin) * HINTS / (w->end - w->begin)];
-        if (hint != BRIO_NO_TET && k->state[hint] != TET_UNUSED) {
-            k->walk.start = hint;
-            status = brio_kernel_insert(k, p);
-        }
-    }
-    if (status != BRIO_DEFERRED) return status;
-    status = BRIO_RESERVE(k->ctx, w->deferred, w->deferred_capacity, w->num_deferred + 1);
+    brio_owns(&k->t, k->walk.start);
+    if (brio_zone_tidy(zone) && k->stats.created == created)
+        k->cavity.num_created = 0; /* the last star is no longer held */
+    return status;
+}
+
+static brio_status defer(worker *w, uint32_t p) {
+    brio_status status = BRIO_RESERVE(w->kernel.ctx, w->deferred, w->deferred_capacity, w->num_deferred + 1);
     if (status == BRIO_OK) w->deferred[w->num_deferred++] = p;
+    return status;
+}
+
+static brio_status try_point(worker *w, uint32_t p) {
+    brio_status status = w->placed ? insert_in_zone(&w->kernel, p) : BRIO_DEFERRED;
+    return status == BRIO_DEFERRED ? defer(w, p) : status;
+}
+
+/* Once more what was deferred. */
+static brio_status try_again(worker *w) {
+    brio_status status = BRIO_OK;
+    size_t count = w->num_deferred;
+    w->num_deferred = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (__atomic_load_n(&w->kernel.team->stop, __ATOMIC_RELAXED)) break;
+        BRIO_TRY(try_point(w, w->deferred[i]));
+    }
+done:
     return status;
 }
 
@@ -114,13 +140,15 @@ static brio_status report(const worker *w, size_t i) {
 static brio_status work(worker *w, bool reports) {
     brio_team *team = w->kernel.team;
     brio_status status = BRIO_OK;
-    w->num_deferred = 0;
     for (size_t i = w->begin; i < w->end && !__atomic_load_n(&team->stop, __ATOMIC_RELAXED); i++) {
-        BRIO_TRY(try_point(w, i));
+        BRIO_TRY(try_point(w, record_of(team, i)));
         if (reports && (i - w->begin) % PROGRESS_EVERY == 0) BRIO_TRY(report(w, i));
     }
+    w->kernel.stats.deferred = w->num_deferred;
+    for (int i = 0; i < RETRIES && w->num_deferred && w->placed; i++) BRIO_TRY(try_again(w));
 done:
     if (status != BRIO_OK) __atomic_store_n(&team->stop, 1, __ATOMIC_RELAXED);
+    brio_zone_leave(&w->zone);
     return status;
 }
 
@@ -155,7 +183,8 @@ static brio_status leave_team(worker *w, brio_team *team) {
     main->stats.created += k->stats.created;
     main->stats.destroyed += k->stats.destroyed;
     main->stats.insphere_calls += k->stats.insphere_calls;
-    main->stats.deferred += w->num_deferred;
+    main->stats.deferred += k->stats.deferred;
+    main->stats.locate_seconds += k->stats.locate_seconds;
     main->walk.steps += k->walk.steps;
     main->filter.unsettled += k->filter.unsettled;
     if (k->stats.created) main->walk.start = k->walk.start;
@@ -169,78 +198,57 @@ static void worker_free(worker *w) {
     brio_release(w->kernel.ctx, w->kernel.star.tet);
     brio_release(w->kernel.ctx, w->kernel.unused);
     brio_release(w->kernel.ctx, w->deferred);
+    brio_zone_free(w->kernel.ctx, &w->zone);
 }
 
 /* --- passes --- */
 
-/* Locates tetrahedra along the worker's zone that are its own. */
-static void place_hints(worker *w, brio_team *team) {
-    brio_kernel *main = team->main;
+/* Finds a tetrahedron along the worker's part that it can hold; whether there is one. */
+static bool place_worker(worker *w, brio_team *team) {
+    brio_kernel *k = &w->kernel, *main = team->main;
     size_t n = w->end - w->begin;
-    w->kernel.walk.start = BRIO_NO_TET;
-    for (size_t h = 0; h < HINTS; h++) {
-        const double *p = main->record[record_of(team, w->begin + h * n / HINTS)];
-        uint32_t tet = main->engine->walk(&main->t, &main->filter, &main->walk, p, UINT64_MAX);
-        bool own = brio_owns(&w->kernel.t, tet);
-        main->walk.start = tet;
-        w->hint[h] = own ? tet : BRIO_NO_TET;
-        if (own && w->kernel.walk.start == BRIO_NO_TET) w->kernel.walk.start = tet;
+    for (size_t i = 0; i < STARTS && n; i++) {
+        const double *p = main->record[record_of(team, w->begin + i * n / STARTS)];
+        k->walk.start = main->walk.start = main->engine->walk(&main->t, &main->filter, &main->walk, p, UINT64_MAX);
+        if (brio_owns(&k->t, k->walk.start)) return true;
+        brio_zone_leave(&w->zone);
     }
-    if (w->kernel.walk.start == BRIO_NO_TET) w->kernel.walk.start = main->walk.start; /* blocked there at once */
+    return false;
 }
 
-/* Sorts the listed records along another curve; *key receives the keys of all records before `end`. */
-static brio_status list_along(brio_team *team, size_t end, int variant, int threads, uint32_t **key) {
-    brio_kernel *k = team->main;
-    uint64_t *items = NULL, *spare = NULL;
+/* Segments of the curve so that each has some vertices already. */
+static brio_status divide_curve(brio_team *team, size_t inserted) {
+    size_t points = team->main->num_points,
+           most = inserted / SEGMENT < MOST_SEGMENTS ? inserted / SEGMENT : MOST_SEGMENTS;
+    team->shift = 0;
+    while (points >> team->shift > most) team->shift++;
+    team->segments = (points >> team->shift) + 1;
+    brio_release(team->main->ctx, team->taken);
+    return BRIO_ALLOC_ZERO(team->main->ctx, team->taken, team->segments);
+}
+
+static brio_status start_pass(brio_team *team, worker *workers, int threads) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(k->ctx, *key, end));
-    BRIO_TRY(BRIO_ALLOC(k->ctx, items, team->count));
-    BRIO_TRY(BRIO_ALLOC(k->ctx, spare, team->count));
-    brio_hilbert_variant(*k->record, 4, end, variant, threads, *key);
-    for (size_t i = 0; i < team->count; i++) items[i] = (uint64_t)(*key)[team->list[i]] << 32 | team->list[i];
-    BRIO_TRY(brio_sort_items(k->ctx, items, spare, team->count, 30, threads));
-    for (size_t i = 0; i < team->count; i++) team->list[i] = (uint32_t)items[i];
-done:
-    brio_release(k->ctx, items);
-    brio_release(k->ctx, spare);
-    return status;
-}
-
-/* Cuts the curve where it divides the records to insert into about equal parts, never between equal ranks. */
-static void cut_curve(brio_team *team, worker *workers, int zones, const uint32_t *rank) {
-    for (int z = 0; z < zones; z++) {
-        worker *w = &workers[z];
-        size_t at = team->count * (size_t)z / (size_t)zones;
-        if (z && at < workers[z - 1].begin) at = workers[z - 1].begin;
-        while (z && at > workers[z - 1].begin && rank[record_of(team, at)] == rank[record_of(team, at - 1)]) at--;
-        w->begin = at;
-        w->end = team->count;
-        w->zone = (brio_zone){rank, z ? rank[record_of(team, at)] : 0, UINT32_MAX};
-        w->zone.size -= w->zone.low;
-        if (!z) continue;
-        workers[z - 1].end = at;
-        workers[z - 1].zone.size = w->zone.low - workers[z - 1].zone.low;
-    }
-}
-
-static brio_status start_pass(brio_team *team, worker *workers, int zones, const uint32_t *rank) {
-    brio_status status = BRIO_OK;
-    cut_curve(team, workers, zones, rank);
-    for (int z = 0; z < zones; z++) {
-        BRIO_TRY(join_team(&workers[z], team));
-        workers[z].kernel.t.zone = &workers[z].zone;
-        if (workers[z].begin < workers[z].end) place_hints(&workers[z], team);
+    for (int i = 0; i < threads; i++) {
+        worker *w = &workers[i];
+        w->begin = brio_part(team->count, i, threads);
+        w->end = brio_part(team->count, i + 1, threads);
+        w->num_deferred = 0;
+        BRIO_TRY(join_team(w, team));
+        brio_zone_free(team->main->ctx, &w->zone);
+        BRIO_TRY(brio_zone_new(team->main->ctx, team->main->rank, team->shift, team->segments, team->taken, &w->zone));
+        w->kernel.t.zone = &w->zone;
+        w->placed = place_worker(w, team);
     }
 done:
     return status;
 }
 
 /* Slots for a pass: as many a point as up to now, and some more. */
-static brio_status reserve_slots(brio_team *team, size_t begin, int zones) {
+static brio_status reserve_slots(brio_team *team, size_t inserted, int threads) {
     brio_kernel *main = team->main;
-    double each = (double)(main->t.count - main->num_unused) / (double)begin;
-    size_t more = (size_t)(1.04 * each * (double)team->count) + (size_t)zones * 2 * STRETCH, room;
+    double each = (double)(main->t.count - main->num_unused) / (double)inserted;
+    size_t more = (size_t)(1.04 * each * (double)team->count) + (size_t)threads * 2 * STRETCH, room;
     room = main->max_tetrahedra - main->t.count;
     brio_status status = brio_kernel_reserve(main, more < room ? more : room);
     team->next_slot = main->t.count;
@@ -249,39 +257,32 @@ static brio_status reserve_slots(brio_team *team, size_t begin, int zones) {
 }
 
 /* One pass over the team's records; afterwards the deferred ones are in *left. */
-static brio_status run_pass(brio_team *team, worker *workers, int zones, uint32_t **left, size_t *num_left) {
+static brio_status run_pass(brio_team *team, worker *workers, int threads, uint32_t **left, size_t *num_left) {
     brio_status status = BRIO_OK;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(zones))
-    for (int z = 0; z < zones; z++) workers[z].status = work(&workers[z], brio_thread() == 0);
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(threads))
+    for (int w = 0; w < threads; w++) workers[w].status = work(&workers[w], brio_thread() == 0);
     size_t total = 0;
-    for (int z = 0; z < zones; z++) {
-        BRIO_TRY(workers[z].status);
-        BRIO_TRY(leave_team(&workers[z], team));
-        total += workers[z].num_deferred;
+    for (int w = 0; w < threads; w++) {
+        BRIO_TRY(workers[w].status);
+        BRIO_TRY(leave_team(&workers[w], team));
+        total += workers[w].num_deferred;
     }
     team->main->t.count = team->next_slot;
     team->main->cavity.num_created = 0; /* its last star may be gone */
     BRIO_TRY(BRIO_ALLOC(team->main->ctx, *left, total));
     *num_left = 0;
-    for (int z = 0; z < zones; z++) {
-        if (!workers[z].num_deferred) continue;
-        memcpy(*left + *num_left, workers[z].deferred, workers[z].num_deferred * sizeof **left);
-        *num_left += workers[z].num_deferred;
+    for (int w = 0; w < threads; w++) {
+        if (!workers[w].num_deferred) continue;
+        memcpy(*left + *num_left, workers[w].deferred, workers[w].num_deferred * sizeof **left);
+        *num_left += workers[w].num_deferred;
     }
 done:
     return status;
 }
 
-/* Whether to insert that many points by threads saves more time than the keys of all points along another curve take.
- */
-static bool pays(size_t count, size_t points, int threads) {
-    enum { KEYS_AN_INSERTION = 60 };
-    return count * KEYS_AN_INSERTION * (size_t)(threads - 1) > points;
-}
-
-static int useful_zones(size_t count, size_t points, int most) {
-    size_t zones = count / LEAST < points / CROWD ? count / LEAST : points / CROWD;
-    return zones < (size_t)most ? (int)zones : most;
+static int useful_threads(size_t count, size_t inserted, int most) {
+    size_t threads = count / LEAST < inserted / CROWD ? count / LEAST : inserted / CROWD;
+    return threads < (size_t)most ? (int)threads : most;
 }
 
 brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end) {
@@ -289,21 +290,18 @@ brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end
     brio_team team = {.main = k, .first = (uint32_t)begin, .count = end - begin};
     int most = brio_context_threads(k->ctx);
     worker *workers = NULL;
-    uint32_t *key = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, workers, (size_t)most));
     for (int w = 0; w < most; w++) workers[w].kernel.ctx = k->ctx;
     for (int pass = 0; pass < PASSES; pass++) {
-        int zones = useful_zones(team.count, end, most);
+        size_t inserted = end - team.count, num_left = 0;
+        int threads = useful_threads(team.count, inserted, most);
         uint32_t *left = NULL;
-        size_t num_left = 0;
-        if (zones < 2 || (pass > 0 && !pays(team.count, end, most))) break;
-        BRIO_TRY(reserve_slots(&team, begin, zones));
-        if (pass > 0) BRIO_TRY(list_along(&team, end, pass, most, &key));
-        BRIO_TRY(start_pass(&team, workers, zones, key ? key : k->rank));
-        BRIO_TRY(run_pass(&team, workers, zones, &left, &num_left));
+        if (threads < 2) break;
+        BRIO_TRY(reserve_slots(&team, inserted, threads));
+        BRIO_TRY(divide_curve(&team, inserted));
+        BRIO_TRY(start_pass(&team, workers, threads));
+        BRIO_TRY(run_pass(&team, workers, threads, &left, &num_left));
         bool stuck = num_left > team.count / 2;
-        brio_release(k->ctx, key);
-        key = NULL;
         brio_release(k->ctx, team.list);
         team.list = left;
         team.count = num_left;
@@ -314,7 +312,7 @@ brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end
 done:
     for (int w = 0; workers && w < most; w++) worker_free(&workers[w]);
     brio_release(k->ctx, workers);
-    brio_release(k->ctx, key);
     brio_release(k->ctx, team.list);
+    brio_release(k->ctx, team.taken);
     return status;
 }

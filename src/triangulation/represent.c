@@ -11,6 +11,7 @@
 #include "base/sort.h"
 #include "triangulation/kernel.h"
 #include "triangulation/nearest_vertex.h"
+#include "triangulation/vertex_tets.h"
 
 typedef struct {
     brio_kernel *k;
@@ -20,16 +21,10 @@ typedef struct {
     size_t num_hidden;
 } workspace;
 
-/* Follows the points that took each other's place to one that is still a vertex. */
-static uint32_t alive(const brio_kernel *k, uint32_t p) {
-    while (k->representative[p] != p) p = k->representative[p];
-    return p;
-}
-
 static brio_status represent_one(workspace *w, uint32_t p) {
     brio_kernel *k = w->k;
     const double *x = k->record[p];
-    k->walk.start = w->vertex_tet[alive(k, p)];
+    k->walk.start = w->vertex_tet[brio_alive(k, p)];
     uint32_t tet = k->engine->walk(&k->t, &k->filter, &k->walk, x, UINT64_MAX);
     const uint32_t *v = k->t.tet[tet].vertex;
     for (int i = 0; i < 4; i++)
@@ -73,9 +68,7 @@ static brio_status represent_weighted(brio_kernel *k) {
     if (!not_vertices) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.hidden, not_vertices));
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.vertex_tet, k->num_points + 3));
-    for (size_t t = 0; t < k->t.count; t++)
-        if (k->state[t] == TET_PLAIN)
-            for (int i = 0; i < 4; i++) w.vertex_tet[k->t.tet[t].vertex[i]] = (uint32_t)t;
+    brio_vertex_tets_fill(k, w.vertex_tet);
     BRIO_TRY(brio_nearest_new(k, w.vertex_tet, &w.nearest));
     for (uint32_t p = 0; p < k->num_points; p++)
         if (k->representative[p] != p) BRIO_TRY(represent_one(&w, p));

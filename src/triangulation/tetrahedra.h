@@ -18,6 +18,7 @@
 
 #include "base/context.h"
 #include "predicates/predicates.h"
+#include "triangulation/zone.h"
 
 typedef double brio_record[4];
 
@@ -26,19 +27,8 @@ typedef struct {
     size_t count;
     uint32_t infinite;
     const brio_record *record;
-    const struct brio_zone *zone; /* what this thread may change; NULL outside of parallel passes */
+    brio_zone *zone; /* what this thread may change; NULL outside of parallel passes */
 } brio_tetrahedra;
-
-/* A part of the points: those from `low` below `low` + `size` along a curve. */
-typedef struct brio_zone {
-    const uint32_t *rank; /* of each vertex along the curve */
-    uint32_t low, size;
-} brio_zone;
-
-/* The infinite vertex is in every zone. */
-static inline bool brio_in_zone(const brio_tetrahedra *t, uint32_t v) {
-    return v == t->infinite || t->zone->rank[v] - t->zone->low < t->zone->size;
-}
 
 static inline uint32_t brio_facet_of(uint32_t tet, int i) {
     return 4 * tet + (uint32_t)i;
@@ -78,12 +68,13 @@ static inline int brio_slot_of_vertex(const uint32_t v4[4], uint32_t v) {
     return v4[0] == v ? 0 : v4[1] == v ? 1 : v4[2] == v ? 2 : v4[3] == v ? 3 : 4;
 }
 
-/* Whether this thread may destroy a tetrahedron: all its vertices are in its zone. No other thread destroys it then,
- * nor any that shares a facet with it, see parallel.c. */
+/* Whether this thread may destroy a tetrahedron: all its finite vertices are in its zone, which grows where it can. No
+ * other thread destroys it then, nor any that shares a facet with it, see parallel.c. */
 static inline bool brio_owns(const brio_tetrahedra *t, uint32_t tet) {
     const uint32_t *v = t->tet[tet].vertex;
     if (!t->zone) return true;
-    return brio_in_zone(t, v[0]) && brio_in_zone(t, v[1]) && brio_in_zone(t, v[2]) && brio_in_zone(t, v[3]);
+    return brio_zone_has(t->zone, v[0]) && brio_zone_has(t->zone, v[1]) && brio_zone_has(t->zone, v[2]) &&
+           (v[3] == t->infinite || brio_zone_has(t->zone, v[3]));
 }
 
 /* Whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the plane of

@@ -9,6 +9,8 @@ struct brio_triangulation {
     brio_tetrahedron *tet;    /* finite ones first; vertices are the caller's indices or BRIO_INFINITE */
     uint32_t *representative; /* of each point of the caller */
     brio_stats stats;
+    brio_round *round; /* NULL when nothing was recorded */
+    size_t num_rounds;
 };
 
 /** A private copy of the caller's points as records, -0 made 0; BRIO_ERR_NOT_FINITE names the first bad one.

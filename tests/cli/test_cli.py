@@ -22,8 +22,10 @@ COMMANDS = ["delaunay", "surface", "medial", "offset", "check", "compare", "info
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
-    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--round-ratio", "--locate", "--verify"],
-    "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--simplify", "--labeling",
+    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate",
+                 "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify"],
+    "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
+                "--labeling",
                 "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
     "medial": ["--sides", "--labeling", "--simplify", "--scale", "--redundancy", "--crust", "--sampling-density",
                "--sharp"],
@@ -33,7 +35,7 @@ OWN_OPTIONS = {
     "compare": ["--samples"],
     "info": [],
     "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--level", "--sigma",
-                 "--resolution", "--blobbiness"],
+                 "--resolution", "--blobbiness", "--delaunay-conforming"],
     "subdivide": ["--levels"],
 }
 
@@ -201,11 +203,6 @@ class Usage(CliTest):
         for option in [("--noise", "0.5"), ("--views", "3"), ("--truth", "t.ply")]:
             self.usage("scan", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
 
-    def test_names_of_later_versions(self):
-        for arguments in [("delaunay", "--order", "octree"), ("delaunay", "--order", "brio-kdtree"),
-                          ("delaunay", "--locate", "jump"), ("delaunay", "--block-size", "8")]:
-            self.usage("not available in this version", arguments[0], "a.xyz", *arguments[1:])
-
     def test_output_without_a_known_extension(self):
         self.usage("--format", "delaunay", "a.xyz", "-o", "out.npy")
 
@@ -352,6 +349,31 @@ class Memory(CliTest):
         run = self.expect(4, "delaunay", points, "--max-memory", "20M")
         self.assertRegex(run.err, "about .* needed")
         self.assertLess(time.monotonic() - start, 2)
+
+    def assert_estimated(self, estimate, *arguments):
+        peak = self.facts(*arguments)["peak_bytes"]
+        self.assertLess(abs(estimate - peak), 0.15 * peak, arguments)
+
+    def test_estimates_are_within_15_per_cent_of_the_peak(self):
+        if self.facts("generate", "cube", "-n", "10")["peak_bytes"] > 12 << 20:
+            self.skipTest("this build takes memory for itself")
+        for kind in ["cube", "scan", "grid", "sphere", "torus"]:
+            points = self.cloud(f"{kind}.ply", 60000, kind)
+            for threads in ["1", "2"]:
+                estimates = self.facts("info", points, "--threads", threads)["estimate_bytes"]
+                self.assert_estimated(estimates["delaunay"], "delaunay", points, "--threads", threads)
+        surface = self.path("surface.ply")
+        points = self.cloud("few.ply", 20000, "scan")
+        self.assert_estimated(self.facts("info", points)["estimate_bytes"]["surface"], "surface", points, "-o", surface)
+        self.facts("surface", points, "-o", surface, "--method", "cocone")
+        self.assert_estimated(self.facts("info", surface)["estimate_bytes"]["subdivide"],
+                              "subdivide", surface, "-o", self.path("fine.ply"))
+
+    def test_limit_between_two_estimates(self):
+        """Weights that hide most points take less memory: the estimate knows."""
+        points = self.cloud("a.ply", 60000)
+        self.expect(4, "delaunay", points, "--max-memory", "18M")
+        self.facts("delaunay", points, "--max-memory", "18M", "--weights-mod", "-3")
 
     def test_memory_that_the_system_refuses(self):
         points = self.cloud("a.ply", 200000)
@@ -644,6 +666,35 @@ class Json(CliTest):
         self.assertEqual(facts["created"] - facts["destroyed"], facts["tetrahedra"] + facts["hull_facets"])
         self.assertNotIn("verified", facts)
 
+    def test_orders(self):
+        points = self.cloud("a.ply", 6000)
+        orders = [["brio"], ["brio-octree"], ["brio-kdtree"], ["octree"], ["hilbert"], ["random"], ["input"],
+                  ["brio-octree", "--block-size", "50"], ["octree", "--block-size", "1"],
+                  ["brio-kdtree", "--round-ratio", "0.3"]]
+        runs = [self.facts("delaunay", points, "--threads", "1", "--order", *order) for order in orders]
+        self.assertEqual(len({run["checksum"] for run in runs}), 1)
+        self.assertEqual(len({run["created"] for run in runs}), len(runs))
+        for order in ["brio", "hilbert", "random", "input"]:
+            self.usage("octree", "delaunay", points, "--order", order, "--block-size", "9")
+        for order in ["octree", "hilbert", "random", "input"]:
+            self.usage("has no rounds", "delaunay", points, "--order", order, "--round-ratio", "0.3")
+
+    def test_counters_of_rounds(self):
+        points = self.cloud("a.ply", 9000)
+        keys = "points tetrahedra created destroyed walk_steps insphere_calls history".split()
+        for arguments in [["--rounds"], ["--rounds", "--order", "brio-octree"], ["--rounds", "--order", "hilbert"],
+                          ["--record-every", "4000"]]:
+            facts = self.facts("delaunay", points, *arguments)
+            for entry in facts["rounds"]:
+                self.assert_schema(entry, {**{key: count for key in keys}, "seconds": number})
+                self.assertEqual(entry["created"] - entry["destroyed"], entry["tetrahedra"])
+            self.assertEqual(facts["rounds"][-1]["created"], facts["created"])
+        self.assertEqual([entry["points"] for entry in facts["rounds"]], [4000, 8000, 9000])
+        table = self.expect(0, "delaunay", points, "--rounds").text.split("\nrounds")[1]
+        self.assertRegex(table, r"\A +\n +points +tetrahedra .*seconds\n( +[0-9.]+){8}\n")
+        self.assertNotIn("rounds", self.facts("delaunay", points))
+        self.usage("only one of", "delaunay", points, "--rounds", "--record-every", "9")
+
     def test_surface(self):
         points = self.cloud("a.ply", 2000, "sphere")
         facts = self.facts("surface", points, "-o", self.path("out.ply"))
@@ -771,6 +822,15 @@ class Json(CliTest):
             self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
         bounded = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--boundaries")
         self.assertLess(bounded["boundary_samples"], 100)
+        pieces = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--pieces", "4")
+        self.assertEqual((pieces["faces"], pieces["unmatched"]), (3996, 0))
+        self.assertGreaterEqual(pieces["pieces"], 4)
+
+    def test_theta_without_a_guarantee_warns(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        for theta, warns in (("0.25", True), ("0.26", False)):
+            done = self.expect(0, "surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--theta", theta)
+            self.assertEqual("no guarantee holds" in done.err, warns)
 
     def test_labelings(self):
         points = self.cloud("a.ply", 2000, "sphere")
@@ -813,9 +873,9 @@ class Json(CliTest):
         self.expect(0, "check", twice)
 
     def test_options_of_another_surface_method(self):
-        for option in [("--theta", "0.3"), ("--boundaries",), ("--density",)]:
+        for option in [("--theta", "0.3"), ("--boundaries",), ("--density",), ("--pieces", "3")]:
             self.usage("cocone", "surface", "a.xyz", "-o", "x.ply", *option)
-        for option in [("--triangulate",), ("--simplify",), ("--labeling", "global"), ("-R", "0.3"), ("--sharp",),
+        for option in [("--triangulate",), ("--simplify",), ("--labeling", "greedy"), ("-R", "0.3"), ("--sharp",),
                        ("--open", "4"), ("--normals", "n.ply")]:
             self.usage("power-crust", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", *option)
         self.usage("pi/2", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", "--theta", "2")
@@ -1046,8 +1106,46 @@ class Answers(CliTest):
     def test_every_order_and_number_of_threads_gives_the_same(self):
         points = self.cloud("a.ply", 3000)
         runs = [[], ["--order", "hilbert"], ["--order", "random"], ["--order", "input"], ["--threads", "1"],
-                ["--seed", "99"], ["--round-ratio", "0.5"], ["--locate", "walk"]]
+                ["--seed", "99"], ["--round-ratio", "0.5"], ["--locate", "walk"], ["--locate", "jump"],
+                ["--locate", "hierarchy"], ["--locate", "history"], ["--locate", "history", "--all-conflicts"]]
         self.assertEqual(len({self.facts("delaunay", points, *run)["checksum"] for run in runs}), 1)
+
+    def test_every_location_gives_the_same(self):
+        mesh = self.path("torus.ply")
+        self.expect(0, "generate", "iso", self.ball_map("a.map"), "--level", "-6", "-o", mesh)
+        plain = self.facts("delaunay", mesh)["checksum"]
+        for location in ["walk", "jump", "hierarchy", "history", "trace", "neighbour"]:
+            facts = self.facts("delaunay", mesh, "--locate", location, "--verify")
+            self.assertTrue(facts["checksum"] == plain and facts["verified"], location)
+            self.assertEqual("subgraph" in facts, location in ("trace", "neighbour"))
+            self.assertEqual(facts["trace_intersections"] > 0, location == "trace")
+        for kind in ["bounded", "mst", "tree", "all"]:
+            facts = self.facts("delaunay", mesh, "--locate", "trace", "--subgraph", kind)
+            self.assertEqual((facts["checksum"], facts["subgraph"]["kind"]), (plain, kind))
+        self.assertEqual(self.facts("delaunay", mesh, "--locate", "trace")["subgraph"]["max_degree"], 3)
+
+    def test_meshes_to_go_along(self):
+        faces = OCTAHEDRON_FACES + [(0, 1, 2)]  # edges of three faces
+        mesh = self.off("m.off", OCTAHEDRON + [(9, 9, 9), (1, 0, 0)], faces)
+        plain = self.facts("delaunay", mesh)["checksum"]
+        facts = self.facts("delaunay", mesh, "--locate", "trace", "-o", self.path("t.ply"))
+        self.assertEqual((facts["checksum"], facts["subgraph"]["kind"], facts["duplicates"]), (plain, "mst", 1))
+        self.assertEqual(self.facts("info", self.path("t.ply"))["faces"], 0)
+        self.expect(3, "delaunay", mesh, "--locate", "trace", "--subgraph", "bounded")
+        points = self.expect(2, "delaunay", self.xyz("p.xyz", CUBE), "--locate", "trace")
+        self.assertIn("found no faces", points.err)
+        self.usage("--locate trace and neighbour", "delaunay", mesh, "--subgraph", "mst")
+        self.expect(4, "delaunay", self.cloud("c.ply", 2000), "--locate", "history", "--max-memory", "1M")
+
+    def test_history_is_counted(self):
+        points = self.cloud("a.ply", 3000)
+        plain = self.facts("delaunay", points)
+        path = self.facts("delaunay", points, "--locate", "history")
+        conflicts = self.facts("delaunay", points, "--locate", "history", "--all-conflicts")
+        self.assertEqual((plain["history"], plain["history_tests"]), (0, 0))
+        self.assertEqual(path["history"], path["created"])
+        self.assertGreater(path["history_tests"], 3000)
+        self.assertGreater(conflicts["history_tests"], path["history_tests"])
 
     def test_threads_are_those_asked_for(self):
         self.assertEqual(self.facts("delaunay", self.xyz("a.xyz", CUBE), "--threads", "1")["threads"], 1)
@@ -1125,6 +1223,7 @@ class Answers(CliTest):
     def test_generate_iso_from_a_map(self):
         ball = self.ball_map("a.map")
         facts = self.facts("generate", "iso", ball, "--level", "-6", "-o", self.path("s.ply"))
+        self.assertEqual(facts["input"], ball)
         certificate = self.facts("check", self.path("s.ply"))["certificate"]
         self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
         self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
@@ -1135,6 +1234,14 @@ class Answers(CliTest):
             piped = self.expect(0, "generate", "iso", "-", "--level", "-6", "-o", "-", "--format", "off", "--quiet",
                                 stdin=f.read())
         self.assertTrue(piped.out.startswith(b"OFF"))
+
+    def test_generate_iso_of_delaunay_triangles(self):
+        ball, mesh = self.ball_map("a.map"), self.path("s.ply")
+        self.facts("generate", "iso", ball, "--level", "-6", "--delaunay-conforming", "-o", mesh)
+        certificate = self.facts("check", mesh, "--self-intersections")["certificate"]
+        self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
+        self.assertEqual(certificate["self_intersections"], 0)
+        self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
 
     def test_generate_iso_from_atoms(self):
         atom = "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"

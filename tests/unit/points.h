@@ -50,6 +50,18 @@ static inline void sphere_points(uint64_t seed, size_t n, double *points) {
     }
 }
 
+/* A depth map of side^2 pixels of some bumps, its rays in single precision and its depths in steps, as depth cameras have
+ * them: many points are coplanar, and many rows collinear. */
+static inline void depth_points(uint64_t seed, size_t side, double *points) {
+    brio_rng rng = brio_rng_new(seed);
+    for (size_t i = 0; i < side * side; i++) {
+        double u = (double)(i % side) / (double)side - 0.5, v = (double)(i / side) / (double)side - 0.5;
+        double depth = 2 + 0.3 * sin(9 * u) * cos(7 * v) + 0.01 * brio_rng_double(&rng);
+        float steps = (float)(floor(depth * 128) / 128);
+        points[3 * i] = (float)u * steps, points[3 * i + 1] = (float)v * steps, points[3 * i + 2] = steps;
+    }
+}
+
 static inline void torus_points(uint64_t seed, size_t n, double *points) {
     brio_rng rng = brio_rng_new(seed);
     for (size_t i = 0; i < n;) {

@@ -6,6 +6,7 @@
 #include "known_surfaces.h"
 #include "points.h"
 #include "reconstruct/cocone_candidates.h"
+#include <time.h>
 
 static const double PI = 3.141592653589793, THETA = 0.39269908169872414;
 
@@ -161,6 +162,71 @@ static void a_sheet_is_one_open_piece(void) {
         p[3 * i] = x, p[3 * i + 1] = y, p[3 * i + 2] = 2 * sin(0.2 * x) * cos(0.15 * y);
     }
     expect_surface(p, 2500, &o, (expectation){0, 1, 1, 0, 0});
+}
+
+/* Samples of the torus of radii 1 and 0.4 that are not in one of `holes` balls round its outer equator. */
+static size_t pierced_torus(int holes, double *p) {
+    size_t count = 0;
+    torus_points(4, 12000, p);
+    for (size_t i = 0; i < 12000; i++) {
+        double least = 9;
+        for (int h = 0; h < holes; h++) {
+            double x = p[3 * i] - 1.4 * cos(2 * h), y = p[3 * i + 1] - 1.4 * sin(2 * h), z = p[3 * i + 2];
+            least = fmin(least, sqrt(x * x + y * y + z * z));
+        }
+        if (least > 0.42) memmove(p + 3 * count++, p + 3 * i, 3 * sizeof *p);
+    }
+    return count;
+}
+
+static void holes_cut_into_a_torus_are_loops_and_the_tight_cocone_closes_them(void) {
+    static double p[3 * 12000];
+    for (int holes = 0; holes < 4; holes++) {
+        brio_cocone_options o = brio_cocone_options_default();
+        size_t n = pierced_torus(holes, p);
+        o.boundaries = 1;
+        expect_surface(p, n, &o, (expectation){holes == 0, 1, (size_t)holes, 1, 0});
+        o.boundaries = 0;
+        o.tight = 1;
+        expect_surface(p, n, &o, (expectation){1, 1, 0, 1, 0});
+    }
+}
+
+/* Jittered samples of the faces of a cube, none on its edges. */
+static void sharp_edges_are_no_openings(void) {
+    static double p[3 * 6 * 900];
+    brio_rng rng = brio_rng_new(2);
+    for (size_t i = 0; i < 5400; i++) {
+        size_t face = i / 900, axis = face / 2;
+        p[3 * i + axis] = face % 2 ? 30 : 0;
+        p[3 * i + (axis + 1) % 3] = (double)(i % 30) + 0.3 + 0.4 * brio_rng_double(&rng);
+        p[3 * i + (axis + 2) % 3] = (double)(i / 30 % 30) + 0.3 + 0.4 * brio_rng_double(&rng);
+    }
+    brio_cocone_options o = brio_cocone_options_default();
+    o.boundaries = 1;
+    expect_surface(p, 5400, &o, (expectation){1, 1, 0, 0, 27000});
+}
+
+/* A cone with so many samples round its base sees its tip from all of them. */
+static void a_vertex_of_high_degree_costs_no_more(void) {
+    enum { N = 20000 };
+    static double p[3 * (N + 2)];
+    brio_context *ctx = new_context();
+    for (int tight = 0; tight < 2; tight++) {
+        brio_cocone_options o = brio_cocone_options_default();
+        brio_mesh *mesh = NULL;
+        o.tight = tight;
+        for (size_t i = 0; i < N; i++)
+            p[3 * i] = cos(2 * PI * (double)i / N), p[3 * i + 1] = sin(2 * PI * (double)i / N), p[3 * i + 2] = 0;
+        p[3 * N] = p[3 * N + 1] = 0, p[3 * N + 2] = 1;
+        p[3 * N + 3] = p[3 * N + 4] = 0, p[3 * N + 5] = -1;
+        double start = (double)clock();
+        brio_status status = brio_cocone(ctx, p, N + 2, &o, &mesh, NULL);
+        EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER);
+        EXPECT(((double)clock() - start) / CLOCKS_PER_SEC < 5);
+        brio_mesh_free(mesh);
+    }
+    brio_context_free(ctx);
 }
 
 /* --- what the result depends on --- */
@@ -411,10 +477,10 @@ static void check_result(const theory *x) {
 
 static void check_theory(const known_surface *surface) {
     theory x = {.ctx = new_context(), .surface = surface};
-    x.points = surface->sample(11, &x.n);
+    x.points = surface->sample(surface->r, 11, &x.n);
     EXPECT(brio_delaunay(x.ctx, x.points, NULL, x.n, NULL, &x.t) == BRIO_OK);
-    EXPECT(brio_pole_vectors_find(x.ctx, x.t, x.points, x.n, &x.dual) == BRIO_OK);
-    EXPECT(brio_cocones_new(x.ctx, &x.dual, THETA, &x.cocones) == BRIO_OK);
+    EXPECT(brio_pole_vectors_find(x.ctx, x.t, x.points, x.n, THETA, &x.dual) == BRIO_OK);
+    EXPECT(brio_cocones_new(x.ctx, &x.dual, &x.cocones) == BRIO_OK);
     brio_cocones_select(x.ctx, &x.cocones, &x.candidates);
     check_cells(&x);
     check_candidates(&x);
@@ -435,6 +501,10 @@ static void theory_holds_on_a_torus(void) {
     check_theory(&known_torus);
 }
 
+static void theory_holds_on_a_plate_of_genus_3(void) {
+    check_theory(&known_plate);
+}
+
 int main(void) {
     RUN(small_inputs_are_manifold_oriented);
     RUN(large_noise_is_manifold_oriented);
@@ -443,11 +513,15 @@ int main(void) {
     RUN(nested_spheres_bound_a_shell);
     RUN(a_bowl_is_open_and_the_tight_cocone_closes_it);
     RUN(a_sheet_is_one_open_piece);
+    RUN(holes_cut_into_a_torus_are_loops_and_the_tight_cocone_closes_them);
+    RUN(sharp_edges_are_no_openings);
+    RUN(a_vertex_of_high_degree_costs_no_more);
     RUN(shuffled_samples_give_the_same_faces);
     RUN(duplicates_and_scale_change_nothing);
     RUN(density_of_a_sphere_is_measured);
     RUN(theory_holds_on_a_sphere);
     RUN(theory_holds_on_a_torus);
+    RUN(theory_holds_on_a_plate_of_genus_3);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
 }

@@ -1,5 +1,7 @@
-/* Insertion orders: permutations, the curve's continuity, the share of each round. */
+/* Insertion orders: permutations, the curve's continuity, the share of each round, what the blocks are. */
+#include "failing_allocator.h"
 #include "harness.h"
+#include "order/blocks.h"
 #include "order/hilbert.h"
 #include "order/order.h"
 #include "points.h"
@@ -23,50 +25,399 @@ static void curve_visits_each_cell_once_in_unit_steps(void) {
     }
 }
 
+/* --- every order --- */
+
+enum { MOST = 40000 };
+static double points[3 * MOST];
+static uint32_t order[MOST], other[MOST], rank[MOST], index_of[MOST], spare[MOST];
+
+static brio_options options_of(int kind, size_t block_size) {
+    brio_options o = brio_options_default();
+    o.order = (brio_order)kind;
+    o.block_size = block_size;
+    return o;
+}
+
+/* Points of every kind that could be hard to tell apart; the names are for messages. */
+static const char *hard_points(int set, size_t n) {
+    switch (set) {
+    case 0:
+        uniform_points(1, n, points);
+        return "uniform";
+    case 1:
+        integer_points(1, n, 3, points);
+        return "lattice with duplicates";
+    case 2:
+        for (size_t i = 0; i < 3 * n; i++) points[i] = i % 2 ? 1.7e308 : -1.7e308;
+        return "far apart";
+    case 3:
+        clustered_points(5, n, points);
+        return "clusters";
+    case 4:
+        integer_points(2, n, 100, points);
+        for (size_t i = 0; i < n; i++) points[3 * i + 2] = 7;
+        return "in a plane";
+    case 5:
+        for (size_t i = 0; i < 3 * n; i++) points[i] = -0.1;
+        return "at one position";
+    case 6:
+        for (size_t i = 0; i < n; i++)
+            for (int c = 0; c < 3; c++) points[3 * i + (size_t)c] = ldexp(1, -(int)(i % 2000));
+        return "halved again and again";
+    case 7:
+        uniform_points(1, n, points);
+        for (size_t i = 0; i < n; i += 3) points[3 * i + i % 2] = i % 4 ? NAN : i % 8 ? INFINITY : -INFINITY;
+        return "not finite";
+    default:
+        return NULL;
+    }
+}
+
+static bool is_permutation(const uint32_t *a, size_t n) {
+    static char seen[MOST];
+    memset(seen, 0, n);
+    for (size_t i = 0; i < n; i++)
+        if (a[i] >= n || seen[a[i]]++) return false;
+    return true;
+}
+
 static void every_order_is_a_permutation(void) {
-    enum { N = 5000 };
-    static double p[3 * N];
-    static uint32_t order[N];
     brio_context *ctx = new_context();
-    for (int set = 0; set < 3; set++) {
-        if (set == 0) uniform_points(1, N, p);
-        if (set == 1) integer_points(1, N, 3, p);
-        if (set == 2)
-            for (size_t i = 0; i < 3 * N; i++) p[i] = i % 2 ? 1.7e308 : -1.7e308;
+    for (int set = 0; hard_points(set, 0); set++)
+        for (size_t n = 0; n <= 5000; n = n < 3 ? n + 1 : 5000 + (n == 5000))
+            for (int kind = 0; kind < BRIO_ORDER_END; kind++)
+                for (size_t block_size = 0; block_size < 100; block_size = block_size * 10 + 1) {
+                    const char *name = hard_points(set, n);
+                    brio_options o = options_of(kind, block_size);
+                    EXPECT(brio_order_points(ctx, points, n, &o, order, NULL, NULL) == BRIO_OK);
+                    EXPECT(is_permutation(order, n), "order %d of %zu points %s", kind, n, name);
+                }
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void number_of_threads_does_not_matter(void) {
+    brio_context *ctx = new_context();
+    for (int set = 0; set < 4; set++)
         for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
-            brio_options o = brio_options_default();
-            o.order = (brio_order)kind;
-            EXPECT(brio_order_points(ctx, p, N, &o, order, NULL) == BRIO_OK);
-            static char seen[N];
-            memset(seen, 0, N);
-            for (size_t i = 0; i < N; i++) EXPECT(order[i] < N && !seen[order[i]]++);
+            hard_points(set, MOST);
+            brio_options o = options_of(kind, 0);
+            brio_context_set_threads(ctx, 1);
+            EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, NULL) == BRIO_OK);
+            brio_context_set_threads(ctx, 3);
+            EXPECT(brio_order_points(ctx, points, MOST, &o, other, NULL, NULL) == BRIO_OK);
+            EXPECT(!memcmp(order, other, sizeof order), "order %d of set %d", kind, set);
         }
+    brio_context_free(ctx);
+}
+
+static void seed_decides_every_random_choice(void) {
+    brio_context *ctx = new_context();
+    uniform_points(1, MOST, points);
+    for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
+        brio_options o = options_of(kind, 0);
+        bool random = kind != BRIO_ORDER_HILBERT && kind != BRIO_ORDER_INPUT;
+        EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, NULL) == BRIO_OK);
+        EXPECT(brio_order_points(ctx, points, MOST, &o, other, NULL, NULL) == BRIO_OK);
+        EXPECT(!memcmp(order, other, sizeof order), "order %d", kind);
+        o.seed++;
+        EXPECT(brio_order_points(ctx, points, MOST, &o, other, NULL, NULL) == BRIO_OK);
+        EXPECT((memcmp(order, other, sizeof order) != 0) == random, "order %d", kind);
+    }
+    brio_context_free(ctx);
+}
+
+static brio_status order_everything(brio_context *ctx) {
+    brio_status status = BRIO_OK;
+    for (int kind = 0; kind < BRIO_ORDER_END && status == BRIO_OK; kind++) {
+        brio_options o = options_of(kind, 10);
+        status = brio_order_points(ctx, points, 1000, &o, order, rank, NULL);
+    }
+    return status;
+}
+
+static void refused_memory_is_a_status(void) {
+    uniform_points(1, 1000, points);
+    expect_clean_failures(order_everything);
+}
+
+/* --- rounds --- */
+
+/* Each round has the share 1 - ratio of the points that are left, within what chance does; the first one or two points.
+ */
+static void rounds_shrink_by_the_ratio(void) {
+    const struct {
+        int kind;
+        double given, ratio;
+    } rows[] = {{BRIO_ORDER_BRIO, 0, 0.125},
+                {BRIO_ORDER_BRIO_OCTREE, 0, 0.5},
+                {BRIO_ORDER_BRIO_KDTREE, 0, 0.5},
+                {BRIO_ORDER_BRIO_OCTREE, 0.3, 0.3},
+                {BRIO_ORDER_BRIO, 0.7, 0.7}};
+    brio_context *ctx = new_context();
+    uniform_points(3, MOST, points);
+    for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
+        brio_options o = options_of(rows[row].kind, 0);
+        brio_round_ends rounds;
+        o.round_ratio = rows[row].given;
+        EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
+        EXPECT(rounds.count > 1 && rounds.end[rounds.count - 1] == MOST);
+        EXPECT(MOST * pow(rows[row].ratio, rounds.count) < 1 && MOST * pow(rows[row].ratio, rounds.count - 1) >= 1);
+        for (int r = rounds.count - 1; r > 0; r--) {
+            double left = (double)rounds.end[r], before = (double)rounds.end[r - 1], expected = rows[row].ratio * left;
+            EXPECT(fabs(before - expected) <= 5 * sqrt(left) / 2, "row %zu: %g of %g", row, before, left);
+        }
+    }
+    brio_context_free(ctx);
+}
+
+/* The round is the point's own: orders of the same ratio agree on it. */
+static void round_follows_from_the_index(void) {
+    static uint8_t round_of[MOST];
+    brio_round_ends rounds;
+    brio_context *ctx = new_context();
+    uniform_points(3, MOST, points);
+    for (int kind = BRIO_ORDER_BRIO_OCTREE; kind <= BRIO_ORDER_BRIO_KDTREE; kind++) {
+        brio_options o = options_of(kind, 0);
+        EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
+        for (size_t i = 0, r = 0; i < MOST; i++) {
+            while (i >= rounds.end[r]) r++;
+            EXPECT(kind == BRIO_ORDER_BRIO_OCTREE || round_of[order[i]] == r);
+            round_of[order[i]] = (uint8_t)r;
+        }
+    }
+    brio_context_free(ctx);
+}
+
+static void ranks_rise_inside_rounds(void) {
+    brio_context *ctx = new_context();
+    uniform_points(3, MOST, points);
+    for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
+        brio_options o = options_of(kind, 500);
+        brio_round_ends rounds;
+        if (!brio_order_has_ranks(o.order)) continue;
+        EXPECT(brio_order_points(ctx, points, MOST, &o, order, rank, &rounds) == BRIO_OK);
+        EXPECT(is_permutation(rank, MOST));
+        for (int r = 0; r < rounds.count; r++)
+            for (size_t i = (r ? rounds.end[r - 1] : 0) + 1; i < rounds.end[r]; i++) EXPECT(rank[i] > rank[i - 1]);
     }
     brio_context_free(ctx);
 }
 
 /* With ratio 1/2 half of the points are in the last round: the positions at which the curve starts anew tell the
  * rounds. */
-static void rounds_have_their_share(void) {
-    enum { N = 40000 };
-    static double p[3 * N];
-    static uint32_t order[N];
-    static uint64_t key[N];
-    uniform_points(3, N, p);
-    brio_hilbert_keys(p, N, 7, key); /* coarser than the order's own curve */
-    brio_options o = brio_options_default();
+static void rounds_follow_the_curve(void) {
+    static uint64_t key[MOST];
+    uniform_points(3, MOST, points);
+    brio_hilbert_keys(points, MOST, 7, 2, key); /* coarser than the order's own curve */
+    brio_options o = options_of(BRIO_ORDER_BRIO, 0);
     o.round_ratio = 0.5;
     brio_context *ctx = new_context();
-    EXPECT(brio_order_points(ctx, p, N, &o, order, NULL) == BRIO_OK);
-    size_t last = N - 1;
-    while (last > 0 && key[order[last - 1]] <= key[order[last]]) last--;
-    EXPECT(last > 0.48 * N && last < 0.52 * N, "last round starts at %zu", last);
+    brio_round_ends rounds;
+    EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
+    for (int r = 1; r < rounds.count; r++)
+        for (size_t i = rounds.end[r - 1] + 1; i < rounds.end[r]; i++) EXPECT(key[order[i - 1]] <= key[order[i]]);
+    EXPECT(rounds.end[rounds.count - 2] > 0.48 * MOST && rounds.end[rounds.count - 2] < 0.52 * MOST);
     brio_context_free(ctx);
+}
+
+/* --- blocks --- */
+
+static brio_block blocks[MOST]; /* blocks[i] begins at place i, or is empty */
+
+static void keep_block(uint32_t *index, const brio_block *block, const void *user) {
+    (void)index, (void)user;
+    blocks[block->begin] = *block;
+}
+
+/* Divides the points by one of the trees and checks what holds for both; points moved, by the number of points. */
+static double make_blocks(bool octree, size_t n, size_t block_size) {
+    brio_context *ctx = new_context();
+    double work = 0;
+    memset(blocks, 0, sizeof blocks);
+    brio_status status = octree ? brio_octree_blocks(ctx, points, n, block_size, 2, index_of, spare, keep_block, NULL)
+                                : brio_kdtree_blocks(ctx, points, n, block_size, 2, index_of, keep_block, NULL);
+    EXPECT(status == BRIO_OK && is_permutation(index_of, n));
+    for (size_t begin = 0; begin < n;) {
+        const brio_block *b = &blocks[begin];
+        EXPECT(b->begin == begin && b->end > begin && b->end - begin <= block_size && b->end <= n);
+        if (b->end <= begin) break;
+        work += (double)b->passes * (double)(b->end - begin);
+        begin = b->end;
+    }
+    brio_context_free(ctx);
+    return work / (double)n;
+}
+
+static void blocks_are_never_too_large(void) {
+    for (int set = 0; hard_points(set, 0); set++)
+        for (int octree = 0; octree < 2; octree++)
+            for (size_t block_size = 1; block_size < 10000; block_size *= 9) {
+                hard_points(set, 5000);
+                make_blocks(octree, 5000, block_size);
+            }
+}
+
+/* Number of a point's cell in the cube [0, 1]^3 divided three times, depth first. */
+static unsigned cell_of(const double *p) {
+    unsigned cell = 0;
+    for (int level = 1; level <= 3; level++)
+        for (int c = 0; c < 3; c++) cell = cell << 1 | ((unsigned)(p[c] * 8) >> (3 - level) & 1);
+    return cell;
+}
+
+/* Blocks of evenly spread points are the cells of the octree that have few points and whose parents have many, and they
+ * come in the order of the cells. */
+static void octree_blocks_are_cells_depth_first(void) {
+    enum { N = 20000, BLOCK = 100 };
+    static unsigned in_cell[4][512]; /* points of the cells of each level */
+    uniform_points(8, N, points);
+    for (size_t c = 0; c < 3; c++) points[c] = 0, points[3 + c] = 1 - 0x1p-53;
+    memset(in_cell, 0, sizeof in_cell);
+    for (size_t i = 0; i < N; i++)
+        for (int level = 0; level < 4; level++) in_cell[level][cell_of(points + 3 * i) >> 3 * (3 - level)]++;
+    make_blocks(true, N, BLOCK);
+    unsigned next = 0;
+    for (size_t begin = 0; begin < N; begin = blocks[begin].end) {
+        unsigned first = cell_of(points + 3 * (size_t)index_of[begin]), last = first;
+        for (size_t i = begin; i < blocks[begin].end; i++) {
+            unsigned cell = cell_of(points + 3 * (size_t)index_of[i]);
+            first = cell < first ? cell : first, last = cell > last ? cell : last;
+        }
+        int level = 3;
+        while (first >> 3 * (3 - level) != last >> 3 * (3 - level)) level--;
+        EXPECT(first >= next && blocks[begin].passes == 1);
+        EXPECT(in_cell[level][first >> 3 * (3 - level)] == blocks[begin].end - begin, "block at %zu", begin);
+        EXPECT(in_cell[level - 1][first >> 3 * (4 - level)] > BLOCK, "block at %zu", begin);
+        next = last + 1;
+    }
+}
+
+typedef struct {
+    double low, high;
+} interval;
+
+/* Of coordinate c of the points index_of[begin, end). */
+static interval extent(size_t begin, size_t end, size_t c) {
+    interval e = {INFINITY, -INFINITY};
+    for (size_t i = begin; i < end; i++) {
+        double x = points[3 * (size_t)index_of[i] + c];
+        e.low = fmin(e.low, x), e.high = fmax(e.high, x);
+    }
+    return e;
+}
+
+static double longest_side(size_t begin, size_t end) {
+    double side = 0;
+    for (size_t c = 0; c < 3; c++) side = fmax(side, extent(begin, end, c).high - extent(begin, end, c).low);
+    return side;
+}
+
+/* Whether a plane across the longest side has index_of[begin, middle) on one side and index_of[middle, end) on the
+ * other. */
+static bool plane_between(size_t begin, size_t middle, size_t end) {
+    double side = longest_side(begin, end);
+    for (size_t c = 0; c < 3; c++) {
+        interval a = extent(begin, middle, c), b = extent(middle, end, c);
+        if (b.high - a.low >= 0.999999 * side && a.high <= b.low) return true;
+    }
+    return false;
+}
+
+/* A cluster is divided as the whole is, however small it is: its blocks are cells of its own cube. */
+static void octree_divides_clusters(void) {
+    enum { N = 5000 };
+    for (int bits = 20; bits <= 50; bits += 15) {
+        double size = ldexp(1, -bits);
+        uniform_points(6, N, points);
+        for (size_t i = 0; i < 3 * (N - 10); i++) points[i] = 1 + points[i] * size;
+        make_blocks(true, N, 200);
+        for (size_t b = 0; b < N; b = blocks[b].end)
+            if (blocks[b].end - b > 10) EXPECT(longest_side(b, blocks[b].end) <= 0.5 * size, "block at %zu", b);
+    }
+}
+
+static void expect_halves(size_t begin, size_t end) {
+    if (blocks[begin].end == end) return;
+    size_t middle = begin + (end - begin) / 2;
+    EXPECT(plane_between(begin, middle, end), "%zu to %zu", begin, end);
+    expect_halves(begin, middle);
+    expect_halves(middle, end);
+}
+
+static void kdtree_cells_are_halved_by_planes(void) {
+    uniform_points(4, 20000, points);
+    make_blocks(false, 20000, 50);
+    expect_halves(0, 20000);
+    integer_points(1, 5000, 12, points);
+    make_blocks(false, 5000, 50);
+    expect_halves(0, 5000);
+    for (int scale = 0; scale < 2; scale++) { /* a cluster that the steps of the whole cube do not resolve */
+        uniform_points(4, 5000, points);
+        for (size_t i = 0; i < 3 * 1250; i++) points[i] *= scale ? 0x1p-60 : 0x1p-40;
+        make_blocks(false, 5000, 50);
+        expect_halves(0, 5000);
+        for (size_t i = 0; i < 1250; i++) EXPECT(index_of[i] < 1250);
+    }
+}
+
+/* What a block is to a round: its points stand together, the blocks in their order, the points not in theirs. */
+static void rounds_visit_blocks_in_turn(void) {
+    enum { N = 30000, BLOCK = 300 };
+    static uint32_t block_of[N];
+    const int kinds[] = {BRIO_ORDER_OCTREE, BRIO_ORDER_BRIO_OCTREE, BRIO_ORDER_BRIO_KDTREE};
+    brio_context *ctx = new_context();
+    for (int set = 0; set < 4; set += 3)
+        for (int i = 0; i < 3; i++) {
+            brio_round_ends rounds;
+            brio_options o = options_of(kinds[i], BLOCK);
+            size_t rises = 0, pairs = 0;
+            hard_points(set, N);
+            make_blocks(kinds[i] != BRIO_ORDER_BRIO_KDTREE, N, BLOCK);
+            for (size_t b = 0; b < N; b = blocks[b].end)
+                for (size_t j = b; j < blocks[b].end; j++) block_of[index_of[j]] = (uint32_t)b;
+            EXPECT(brio_order_points(ctx, points, N, &o, order, NULL, &rounds) == BRIO_OK);
+            for (int r = 0; r < rounds.count; r++)
+                for (size_t j = (r ? rounds.end[r - 1] : 0) + 1; j < rounds.end[r]; j++) {
+                    uint32_t before = block_of[order[j - 1]], now = block_of[order[j]];
+                    EXPECT(before <= now, "order %d, round %d", kinds[i], r);
+                    if (before == now) pairs++, rises += order[j] > order[j - 1];
+                }
+            EXPECT(pairs > N / 2 && fabs((double)rises / (double)pairs - 0.5) < 0.02, "%zu of %zu", rises, pairs);
+        }
+    brio_context_free(ctx);
+}
+
+/* The octree passes over each point about as often for many points as for few; a tree that sorts would pass more often. */
+static void octree_work_is_linear(void) {
+    uniform_points(2, MOST, points);
+    for (size_t n = 5000; n <= MOST; n *= 2) EXPECT(make_blocks(true, n, 200) <= 1.5, "%zu points", n);
+    sphere_points(2, MOST, points);
+    for (size_t n = 5000; n <= MOST; n *= 2) EXPECT(make_blocks(true, n, 20) <= 3, "%zu points", n);
+    clustered_points(2, MOST, points);
+    for (size_t n = 5000; n <= MOST; n *= 2) EXPECT(make_blocks(true, n, 20) <= 5, "%zu points", n);
+    for (size_t n = 5000; n <= MOST; n *= 2) { /* a cluster takes one pass more, however small it is */
+        uniform_points(2, n, points);
+        for (size_t i = 0; i < 3 * (n - 10); i++) points[i] = 1 + points[i] * 0x1p-40;
+        EXPECT(make_blocks(true, n, 200) <= 3, "%zu points", n);
+    }
 }
 
 int main(void) {
     RUN(curve_visits_each_cell_once_in_unit_steps);
     RUN(every_order_is_a_permutation);
-    RUN(rounds_have_their_share);
+    RUN(number_of_threads_does_not_matter);
+    RUN(seed_decides_every_random_choice);
+    RUN(refused_memory_is_a_status);
+    RUN(rounds_shrink_by_the_ratio);
+    RUN(round_follows_from_the_index);
+    RUN(ranks_rise_inside_rounds);
+    RUN(rounds_follow_the_curve);
+    RUN(blocks_are_never_too_large);
+    RUN(octree_blocks_are_cells_depth_first);
+    RUN(octree_divides_clusters);
+    RUN(kdtree_cells_are_halved_by_planes);
+    RUN(rounds_visit_blocks_in_turn);
+    RUN(octree_work_is_linear);
     return harness_end();
 }

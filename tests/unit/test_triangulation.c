@@ -135,6 +135,7 @@ static void expect_one_answer(const double *p, const double *w, size_t n) {
     for (int order = 0; order < BRIO_ORDER_END; order++) {
         brio_options o = brio_options_default();
         o.order = (brio_order)order;
+        o.block_size = 64; /* many blocks, also of few points */
         o.seed = 5;
         EXPECT(checksum_of(ctx, p, w, n, &o) == sum, "order %d", order);
     }
@@ -161,6 +162,22 @@ static void order_shuffle_and_scale_do_not_matter(void) {
     expect_one_answer(p, NULL, 1500);
     clustered_points(4, 2000, p);
     expect_one_answer(p, NULL, 2000);
+    depth_points(5, 50, p);
+    expect_one_answer(p, NULL, 2500);
+    for (size_t i = 0; i < 2500; i++) w[i] = 1e-4 * p[(7 * i) % 2500];
+    expect_one_answer(p, w, 2500);
+}
+
+static void nothing_matters_on_a_scan_either(void) {
+    static double w[MOST];
+    brio_context *ctx = new_context();
+    brio_mesh *scan;
+    EXPECT(brio_generate(ctx, BRIO_KIND_SCAN, 2500, NULL, &scan) == BRIO_OK && scan->num_vertices < MOST);
+    for (size_t i = 0; i < scan->num_vertices; i++) w[i] = ldexp((double)(i * 7919 % 1000), -20);
+    expect_one_answer(scan->vertices, NULL, scan->num_vertices);
+    expect_one_answer(scan->vertices, w, scan->num_vertices);
+    brio_mesh_free(scan);
+    brio_context_free(ctx);
 }
 
 static void equal_weights_change_nothing(void) {
@@ -498,6 +515,7 @@ static void representatives_survive_subnormal_distances(void) {
 int main(void) {
     RUN(small_grids_match_brute_force);
     RUN(order_shuffle_and_scale_do_not_matter);
+    RUN(nothing_matters_on_a_scan_either);
     RUN(equal_weights_change_nothing);
     RUN(output_order_repeats);
     RUN(many_points_hidden_at_once);

@@ -283,7 +283,7 @@ static map_plan ball_plan(void) {
 static brio_mesh *surface_of(const map_plan *plan, double level, size_t resolution) {
     brio_volume v = read_plan(plan);
     brio_mesh *mesh = NULL;
-    EXPECT(brio_volume_surface(io_ctx, &v, level, resolution, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_volume_surface(io_ctx, &v, level, resolution, false, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
     brio_volume_free(io_ctx, &v);
     return mesh;
 }
@@ -359,11 +359,11 @@ static void volumes_without_surface(void) {
     brio_mesh_free(mesh);
     plan.size[1] = 1;
     brio_volume v = read_plan(&plan);
-    EXPECT(brio_volume_surface(io_ctx, &v, 0, 0, &mesh) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(brio_volume_surface(io_ctx, &v, 0, 0, false, &mesh) == BRIO_ERR_NO_ANSWER && !mesh);
     EXPECT(strstr(brio_message(io_ctx), "6 x 1 x 4"), "%s", brio_message(io_ctx));
     v.size[0] = 3; /* of the same 24 values */
     v.size[1] = 2;
-    EXPECT(brio_volume_surface(io_ctx, &v, 0, 40000, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_volume_surface(io_ctx, &v, 0, 40000, false, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
     brio_volume_free(io_ctx, &v);
 }
 
@@ -439,7 +439,7 @@ static void lone_atom_is_the_ball_of_its_radius(void) {
     const brio_atom atom = {{1, 2, 3}, 1.7};
     for (double blobbiness = 0.5; blobbiness < 20; blobbiness *= 2) {
         brio_mesh *mesh = NULL;
-        EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, blobbiness, 40, &mesh) == BRIO_OK);
+        EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, blobbiness, 40, false, &mesh) == BRIO_OK);
         brio_certificate c = certify(mesh);
         EXPECT(c.genus == 0 && c.components == 1);
         for (size_t i = 0; i < mesh->num_vertices; i++) {
@@ -474,7 +474,7 @@ static void vertices_have_the_level(void) {
     }
     for (int l = 0; l < 3; l++) {
         brio_mesh *mesh = NULL;
-        EXPECT(brio_density_surface(io_ctx, atoms, ATOMS, levels[l], 2, 40, &mesh) == BRIO_OK);
+        EXPECT(brio_density_surface(io_ctx, atoms, ATOMS, levels[l], 2, 40, false, &mesh) == BRIO_OK);
         brio_certificate c = certify(mesh);
         for (size_t i = 0; i < mesh->num_vertices; i++) {
             double found = density_at(atoms, ATOMS, 2, mesh->vertices + 3 * i) / levels[l];
@@ -489,26 +489,26 @@ static void vertices_have_the_level(void) {
 static void atoms_far_apart(void) {
     const brio_atom atoms[2] = {{{-9999, -9999, -9999}, 1.5}, {{9999, 9999, 9999}, 1.5}};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_density_surface(io_ctx, atoms, 2, 1, 2, 30, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_density_surface(io_ctx, atoms, 2, 1, 2, 30, false, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
     brio_mesh_free(mesh);
 }
 
 static void level_above_all_densities(void) {
     const brio_atom atom = {{0, 0, 0}, 1};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1e9, 2, 0, &mesh) == BRIO_OK && mesh->num_faces == 0);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1e9, 2, 0, false, &mesh) == BRIO_OK && mesh->num_faces == 0);
     brio_mesh_free(mesh);
 }
 
 static void density_arguments(void) {
     const brio_atom atom = {{0, 0, 0}, 1};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_density_surface(io_ctx, NULL, 0, 1, 2, 0, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 0, 2, 0, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, -1, 2, 0, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 0, 0, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 1e9, 0, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 2, 40000, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_density_surface(io_ctx, NULL, 0, 1, 2, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, 0, 2, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, -1, 2, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 0, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 1e9, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 2, 40000, false, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
 }
 
 /* --- files to surfaces --- */
@@ -552,7 +552,7 @@ static void level_in_deviations(void) {
     o.level = 1.25;
     o.deviations = 1;
     EXPECT(generate("ball.dat", &o, &mesh) == BRIO_OK); /* known by its content */
-    EXPECT(brio_volume_surface(io_ctx, &v, mean + 1.25 * deviation, 0, &same) == BRIO_OK);
+    EXPECT(brio_volume_surface(io_ctx, &v, mean + 1.25 * deviation, 0, false, &same) == BRIO_OK);
     EXPECT(io_same_points(mesh, same) && mesh->num_faces == same->num_faces);
     brio_mesh_free(mesh);
     brio_mesh_free(same);

@@ -1,0 +1,101 @@
+"""The thesis' class of data: raw scans, in translated copies, and a molecular iso-surface refined by subdivision."""
+import os
+import subprocess
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+SHARED = os.path.join(os.environ.get('BRIO_SHARED', os.path.join(HERE, '..', '..', '..', 'shared')), 'data')
+SCALARS = {'char': 'i1', 'uchar': 'u1', 'short': '<i2', 'ushort': '<u2', 'int': '<i4', 'uint': '<u4', 'float': '<f4',
+           'double': '<f8', 'int8': 'i1', 'uint8': 'u1', 'int32': '<i4', 'uint32': '<u4', 'float32': '<f4',
+           'float64': '<f8'}
+
+
+def read_points(path):
+    """x, y, z of a binary little-endian PLY."""
+    with open(path, 'rb') as f:
+        row, count, vertex = [], 0, False
+        for line in iter(f.readline, b'end_header\n'):
+            w = line.decode().split()
+            if w[0] == 'element':
+                vertex = w[1] == 'vertex'
+                count = int(w[2]) if vertex else count
+            elif w[0] == 'property' and vertex:
+                row.append((w[2], SCALARS[w[1]]))
+        a = np.fromfile(f, np.dtype(row), count)
+    return np.stack([a[c] for c in 'xyz'], 1)
+
+
+def _header(n):
+    lines = ['ply', 'format binary_little_endian 1.0', f'element vertex {n}'] + [f'property float {c}' for c in 'xyz']
+    return ('\n'.join(lines) + '\nend_header\n').encode()
+
+
+def write_copies(points, copies, path):
+    """Copies beside each other along x, an eighth of the width apart, in single precision as scans have it."""
+    step = 1.125 * (points[:, 0].max() - points[:, 0].min())
+    with open(path, 'wb') as f:
+        f.write(_header(copies * len(points)))
+        for i in range(copies):
+            (points + np.array([i * step, 0, 0])).astype('<f4').tofile(f)
+
+
+class Data:
+    """Sets by name, each made when it is first asked for, all removed by close()."""
+
+    def __init__(self, brio, folder, shrink):
+        self.brio, self.folder, self.shrink, self.made = brio, folder, shrink, {}
+
+    def _scan(self):
+        real = os.path.join(SHARED, 'scan', 'happy_raw.ply')
+        if os.path.exists(real): return read_points(real)[::self.shrink]
+        print('happy_raw is not here; a simulated scan stands in')
+        path = os.path.join(self.folder, 'simulated.ply')
+        self._call('generate', 'scan', '-n', str(1100000 // self.shrink), '-o', path)
+        points = read_points(path)
+        os.remove(path)
+        return points
+
+    def _call(self, *arguments):
+        subprocess.run([self.brio, *arguments, '--quiet'], check=True)
+
+    def _surface(self, path, levels):
+        """An iso-surface of about an eighth of MTD's density, so that one level of subdivision gives B-1's size."""
+        level0, volume = os.path.join(self.folder, 'iso.ply'), os.path.join(SHARED, 'volume', '3ek3-2fofc.map')
+        if not os.path.exists(level0):
+            self._call('generate', 'iso', volume, '--sigma', '--level', '1', '-n', str(131000 // self.shrink), '-o', level0)
+        if levels == 0:
+            write_copies(read_points(level0), 1, path)
+            return
+        fine = path + '.fine.ply'
+        self._call('subdivide', level0, '--levels', str(levels), '-o', fine)
+        write_copies(read_points(fine), 1, path)
+        os.remove(fine)
+
+    def path(self, name):
+        """happy-COPIES, part-K (every Kth point of happy), mtd, b1, b2, or uniform-N."""
+        if name in self.made: return self.made[name]
+        path = os.path.join(self.folder, name + '.ply')
+        kind, _, number = name.partition('-')
+        if kind == 'happy':
+            write_copies(self._scan(), int(number), path)
+        elif kind == 'part':
+            write_copies(self._scan()[::int(number)], 1, path)
+        elif kind == 'uniform':
+            self._call('generate', 'cube', '-n', number, '-o', path)
+        else:
+            self._surface(path, {'mtd': 0, 'b1': 1, 'b2': 2}[name])
+        self.made[name] = path
+        return path
+
+    def points(self, name):
+        with open(self.path(name), 'rb') as f:
+            for line in iter(f.readline, b'end_header\n'):
+                if line.startswith(b'element vertex'): return int(line.split()[2])
+
+    def drop(self, name):
+        """Frees the disk of a large set."""
+        if name in self.made: os.remove(self.made.pop(name))
+
+    def close(self):
+        for name in list(self.made): self.drop(name)
+        if os.path.exists(os.path.join(self.folder, 'iso.ply')): os.remove(os.path.join(self.folder, 'iso.ply'))

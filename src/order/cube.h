@@ -1,0 +1,48 @@
+/* The smallest cube round points, cut into a grid of cells. Coordinates are halved first, so that its side cannot
+ * overflow; those that are not finite land in some cell. */
+#ifndef BRIO_ORDER_CUBE_H
+#define BRIO_ORDER_CUBE_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct {
+    double low[3], high[3], scale, last;
+} brio_cube;
+
+static inline void brio_cube_new(brio_cube *c, const double *p) {
+    for (int k = 0; k < 3; k++) c->low[k] = c->high[k] = p[k] * 0.5;
+}
+
+static inline void brio_cube_add(brio_cube *c, const double *p) {
+    for (int k = 0; k < 3; k++) {
+        double x = p[k] * 0.5;
+        c->low[k] = x < c->low[k] ? x : c->low[k];
+        c->high[k] = x > c->high[k] ? x : c->high[k];
+    }
+}
+
+static inline void brio_cube_join(brio_cube *c, const brio_cube *other) {
+    for (int k = 0; k < 3; k++) {
+        c->low[k] = fmin(c->low[k], other->low[k]);
+        c->high[k] = fmax(c->high[k], other->high[k]);
+    }
+}
+
+/** Divides the cube into 2^bits cells a side; false when it is a point. */
+static inline bool brio_cube_divide(brio_cube *c, int bits) {
+    double side = fmax(c->high[0] - c->low[0], fmax(c->high[1] - c->low[1], c->high[2] - c->low[2]));
+    double cells = ldexp(1, bits);
+    c->last = cells - 1;
+    c->scale = side > 0 ? fmin(cells / side, 0x1p1000) : 0;
+    return side > 0;
+}
+
+/** Coordinate k of the cell that holds a point. */
+static inline uint32_t brio_cube_cell(const brio_cube *c, const double *p, int k) {
+    double x = (p[k] * 0.5 - c->low[k]) * c->scale;
+    return (uint32_t)(int64_t)(x < c->last ? x : c->last);
+}
+
+#endif

@@ -1,0 +1,145 @@
+/* Blocks of points by a k-d tree: a cell with more points than a block may have is halved at the median across the longest
+ * side of its points' box.
+ *
+ * Coordinates are kept beside the indices, in 2^32 steps of a cube round the points, and taken anew from the cube of a cell
+ * that has become so small that the steps show: clusters of any size are resolved, and memory is read in sequence. The
+ * medians are found by selection; where coordinates are equal the index decides, so that duplicates are halved as
+ * anything else is. n log n in all.
+ *
+ * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, sections 5.3 and 5.8.
+ *           Hoare. Algorithm 65: find. CACM 1961.
+ * Differs from the paper: selection in place of sorting. */
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "order/blocks.h"
+#include "order/cube.h"
+
+enum { STEP_BITS = 32, FEW_STEPS = 1 << 10, POINTS_A_TASK = 1 << 13, SAMPLE = 31 };
+
+typedef struct {
+    uint32_t step[3], index;
+} node;
+
+typedef struct {
+    const double *points;
+    node *nodes;
+    uint32_t *index;
+    size_t block_size;
+    brio_block_fn visit;
+    const void *user;
+} kdtree;
+
+/* --- the median --- */
+
+/* No two nodes have the same key. */
+static inline uint64_t key_of(const node *a, int axis) {
+    return (uint64_t)a->step[axis] << 32 | a->index;
+}
+
+static inline void swap_nodes(node *a, node *b) {
+    node swap = *a;
+    *a = *b, *b = swap;
+}
+
+/* A node that is likely to have `half` of the n nodes before it. */
+static size_t choose_pivot(const node *nodes, size_t n, size_t half, int axis) {
+    size_t sample[SAMPLE], size = n < 8 * SAMPLE ? 3 : SAMPLE;
+    brio_rng rng = brio_rng_new(n);
+    for (size_t i = 0, j; i < size; i++) {
+        size_t drawn = brio_rng_below(&rng, (uint32_t)n);
+        for (j = i; j > 0 && key_of(&nodes[sample[j - 1]], axis) > key_of(&nodes[drawn], axis); j--)
+            sample[j] = sample[j - 1];
+        sample[j] = drawn;
+    }
+    return sample[half * size / n];
+}
+
+/* Brings the nodes with keys below the pivot's to the front, and the pivot behind them; their number. */
+static size_t divide_by_pivot(node *nodes, size_t n, size_t pivot, int axis) {
+    size_t front = 0;
+    uint64_t key = key_of(&nodes[pivot], axis);
+    swap_nodes(&nodes[pivot], &nodes[n - 1]);
+    for (size_t i = 0; i < n - 1; i++) { /* always moves, so that there is no branch to guess */
+        bool before = key_of(&nodes[i], axis) < key;
+        swap_nodes(&nodes[i], &nodes[front]);
+        front += before;
+    }
+    swap_nodes(&nodes[front], &nodes[n - 1]);
+    return front;
+}
+
+/* Brings the `half` nodes with the least keys to the front. */
+static void select_least(node *nodes, size_t n, size_t half, int axis) {
+    while (half > 0 && half < n) {
+        size_t front = divide_by_pivot(nodes, n, choose_pivot(nodes, n, half, axis), axis);
+        if (half <= front)
+            n = front;
+        else
+            nodes += front + 1, half -= front + 1, n -= front + 1;
+    }
+}
+
+/* --- cells --- */
+
+/* The longest side of the nodes' box, in steps. */
+static uint32_t longest_side(const node *nodes, size_t n, int *axis) {
+    uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
+    for (size_t i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++) {
+            low[c] = nodes[i].step[c] < low[c] ? nodes[i].step[c] : low[c];
+            high[c] = nodes[i].step[c] > high[c] ? nodes[i].step[c] : high[c];
+        }
+    *axis = 0;
+    for (int c = 1; c < 3; c++)
+        if (high[c] - low[c] > high[*axis] - low[*axis]) *axis = c;
+    return high[*axis] - low[*axis];
+}
+
+/* Takes the coordinates in steps of the nodes' own cube. */
+static void take_steps(const kdtree *k, node *nodes, size_t n) {
+    brio_cube cube;
+    brio_cube_new(&cube, k->points + 3 * (size_t)nodes[0].index);
+    for (size_t i = 1; i < n; i++) brio_cube_add(&cube, k->points + 3 * (size_t)nodes[i].index);
+    brio_cube_divide(&cube, STEP_BITS);
+    for (size_t i = 0; i < n; i++)
+        for (int c = 0; c < 3; c++) nodes[i].step[c] = brio_cube_cell(&cube, k->points + 3 * (size_t)nodes[i].index, c);
+}
+
+static void visit_block(const kdtree *k, size_t begin, size_t end, int passes) {
+    brio_block block = {begin, end, passes};
+    for (size_t i = begin; i < end; i++) k->index[i] = k->nodes[i].index;
+    k->visit(k->index, &block, k->user);
+}
+
+static void divide(const kdtree *k, size_t begin, size_t end, int passes) {
+    node *nodes = k->nodes + begin;
+    size_t n = end - begin, middle = begin + n / 2;
+    int axis;
+    if (n <= k->block_size) {
+        visit_block(k, begin, end, passes);
+        return;
+    }
+    if (longest_side(nodes, n, &axis) < FEW_STEPS) {
+        take_steps(k, nodes, n);
+        longest_side(nodes, n, &axis);
+    }
+    select_least(nodes, n, n / 2, axis);
+    BRIO_OMP(task if (n > POINTS_A_TASK))
+    divide(k, begin, middle, passes + 1);
+    divide(k, middle, end, passes + 1);
+}
+
+brio_status brio_kdtree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, int threads,
+                               uint32_t *index, brio_block_fn visit, const void *user) {
+    kdtree k = {points, NULL, index, block_size, visit, user};
+    if (n == 0) return BRIO_OK;
+    brio_status status = BRIO_ALLOC(ctx, k.nodes, n);
+    if (status != BRIO_OK) return status;
+    for (size_t i = 0; i < n; i++) k.nodes[i] = (node){{0, 0, 0}, (uint32_t)i};
+    BRIO_OMP(parallel num_threads(threads))
+    BRIO_OMP(single)
+    divide(&k, 0, n, 0);
+    brio_release(ctx, k.nodes);
+    return BRIO_OK;
+}

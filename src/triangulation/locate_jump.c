@@ -1,0 +1,59 @@
+/* Point location by jump-and-walk, as in the program pyramid.
+ *
+ * The walk starts from the nearest of the last inserted vertex and i^(1/4) vertices drawn at random from the i points
+ * inserted so far, which leaves an expected walk of O(i^(1/4)) steps among uniform points.
+ *
+ * Based on: Muecke, Saias, Zhu. Fast randomized point location without preprocessing in two- and three-dimensional
+ *           Delaunay triangulations. CGTA 1999. */
+#include "base/memory.h"
+#include "base/rng.h"
+#include "triangulation/kernel.h"
+#include "triangulation/vertex_tets.h"
+
+typedef struct {
+    uint32_t *vertex_tet, last;
+    brio_rng rng;
+} jump;
+
+static brio_status start_jump(brio_kernel *k, const brio_options *options) {
+    jump *own = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, own, 1));
+    k->location = own;
+    own->rng = brio_rng_new(options->seed);
+    BRIO_TRY(BRIO_ALLOC(k->ctx, own->vertex_tet, k->num_points + 3));
+    brio_vertex_tets_fill(k, own->vertex_tet);
+done:
+    return status;
+}
+
+static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
+    jump *own = k->location;
+    const double *point = k->record[p];
+    uint32_t best = own->last;
+    double least = brio_square_distance(point, k->record[best]);
+    for (int samples = (int)sqrt(sqrt(p)); samples > 0; samples--) {
+        uint32_t v = brio_rng_below(&own->rng, p);
+        double square = brio_square_distance(point, k->record[v]);
+        if (k->representative[v] == v && square < least) best = v, least = square;
+    }
+    k->walk.start = own->vertex_tet[best];
+    *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, UINT64_MAX);
+    return BRIO_OK;
+}
+
+static brio_status filled(brio_kernel *k, uint32_t p) {
+    jump *own = k->location;
+    brio_vertex_tets_filled(k, own->vertex_tet);
+    own->last = p;
+    return BRIO_OK;
+}
+
+static void free_jump(brio_kernel *k) {
+    jump *own = k->location;
+    if (own) brio_release(k->ctx, own->vertex_tet);
+    brio_release(k->ctx, own);
+    k->location = NULL;
+}
+
+const brio_locator brio_locator_jump = {start_jump, locate, filled, free_jump};

@@ -1,0 +1,59 @@
+/* Point location by a walk along a segment, of whose start the tetrahedron is known.
+ *
+ * A visibility walk: from a tetrahedron step across a facet that has the end strictly on its other side. Of such facets
+ * the one is taken that the line through the segment meets, borders included; a tetrahedron that touches the segment
+ * has one, at the last point that they share, and the next tetrahedron touches the segment there, too. So the walk
+ * visits tetrahedra that touch the segment alone, whatever it runs through, vertices and edges included, and ends as
+ * every visibility walk among the tetrahedra of a regular triangulation does. A segment that starts outside of the
+ * hull has no tetrahedra there: the walk begins next to the hull facet that its start sees, and is an ordinary
+ * visibility walk until it meets the line.
+ *
+ * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
+#include "triangulation/locate_segment.h"
+
+/* Whether the line through u and w meets the closed triangle of a facet; w is off its plane. */
+static bool line_meets(brio_kernel *k, const uint32_t *v, int slot, const double *u, const double *w) {
+    unsigned sides = 0;
+    for (int i = 0; i < 3; i++) {
+        const double *a = k->t.record[v[BRIO_FACET[slot][i]]], *b = k->t.record[v[BRIO_FACET[slot][(i + 1) % 3]]];
+        int side = brio_orient3d_sign(&k->filter, u, w, a, b);
+        sides |= side > 0 ? 1u : side < 0 ? 2u : 0u;
+    }
+    return sides != 3;
+}
+
+/* The slots of the facets that have w strictly on their other side, as bits. */
+static unsigned facets_before(brio_kernel *k, const uint32_t *v, int came_through, const double *w) {
+    const brio_record *r = k->t.record;
+    unsigned before = 0;
+    for (int i = 0; i < 4; i++) {
+        if (i == came_through) continue;
+        const uint8_t *facet = BRIO_FACET[i];
+        bool beyond = brio_orient3d_sign(&k->filter, r[v[facet[0]]], r[v[facet[1]]], r[v[facet[2]]], w) < 0;
+        before |= (unsigned)beyond << i;
+    }
+    return before;
+}
+
+/* Of those facets the one to cross. */
+static int facet_ahead(brio_kernel *k, const uint32_t *v, unsigned before, const double *u, const double *w) {
+    int any = __builtin_ctz(before);
+    if ((before & (before - 1)) == 0) return any;
+    for (; before; before &= before - 1)
+        if (line_meets(k, v, __builtin_ctz(before), u, w)) return __builtin_ctz(before);
+    return any;
+}
+
+uint32_t brio_locate_segment(brio_kernel *k, uint32_t tet, const double *u, const double *w, uint64_t *entered) {
+    int came_through = 4;
+    if (brio_is_infinite(&k->t, tet)) tet = brio_tet_of(k->t.tet[tet].mate[3]);
+    for (;; ++*entered) {
+        const uint32_t *v = k->t.tet[tet].vertex;
+        if (v[3] == k->t.infinite) return tet;
+        unsigned before = facets_before(k, v, came_through, w);
+        if (!before) return tet;
+        uint32_t mate = k->t.tet[tet].mate[facet_ahead(k, v, before, u, w)];
+        tet = brio_tet_of(mate);
+        came_through = brio_slot_of(mate);
+    }
+}

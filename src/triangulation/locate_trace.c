@@ -1,0 +1,125 @@
+/* Point location by tracing edges: Tracing DT.
+ *
+ * When N(h) points are in, h = 1, 2, ..., a graph over all points is traced through the triangulation: from its vertices
+ * along the edges to all other points, whose tetrahedra are remembered. Later a point is located from the tetrahedron
+ * where it was last traced, by the history DAG. N(h) = n / ln ln ... ln n, with h logarithms, so that there are log* n
+ * tracings, and between two of them locations cost O(n) together, when points come in random order. A tracing crosses
+ * O(n) triangles when the edges are Delaunay edges of all points and their degrees are bounded.
+ *
+ * Based on: Choi. Practical Delaunay triangulation algorithms for surface reconstruction and related problems. 2003,
+ *           chapter 4.
+ * Differs from the paper: the graph is traversed breadth first from all vertices at once, so that each point that is
+ * not in yet is the end of one walk, and edges between others are not walked; a component of the graph without a
+ * vertex is entered through one location in the history DAG. Points without edges are never traced. */
+#include "base/memory.h"
+#include "triangulation/history.h"
+#include "triangulation/locate_segment.h"
+#include "triangulation/point_graph.h"
+#include "triangulation/vertex_tets.h"
+
+typedef struct {
+    brio_history history;
+    brio_point_graph graph;
+    uint32_t *node;   /* of the history DAG, where each record was last traced */
+    double logarithm; /* of the number of points, so many times as the next tracing tells */
+} trace;
+
+/* One tracing. */
+typedef struct {
+    brio_kernel *k;
+    trace *own;
+    uint32_t *tet;   /* of each record that was found, else BRIO_NO_TET */
+    uint32_t *queue; /* the records that were found, of which [0, head) were traced from */
+    size_t head, tail;
+} tracing;
+
+static brio_status start_trace(brio_kernel *k, const brio_options *options) {
+    trace *own = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, own, 1));
+    k->location = own;
+    own->logarithm = log((double)k->num_points);
+    BRIO_TRY(brio_history_new(k, options, &own->history));
+    BRIO_TRY(brio_point_graph_new(k, options, &own->graph));
+    BRIO_TRY(BRIO_ALLOC(k->ctx, own->node, k->num_points));
+    for (size_t p = 0; p < k->num_points; p++) own->node[p] = BRIO_HISTORY_ROOT;
+done:
+    return status;
+}
+
+static void found(tracing *t, uint32_t p, uint32_t tet) {
+    t->tet[p] = tet;
+    t->queue[t->tail++] = p;
+}
+
+/* From the records in the queue to all that their edges reach. */
+static void trace_edges(tracing *t) {
+    brio_kernel *k = t->k;
+    const brio_point_graph *graph = &t->own->graph;
+    while (t->head < t->tail) {
+        uint32_t u = t->queue[t->head++];
+        for (uint32_t e = graph->first[u]; e < graph->first[u + 1]; e++) {
+            uint32_t w = graph->neighbour[e];
+            if (t->tet[w] != BRIO_NO_TET) continue;
+            found(t, w, brio_locate_segment(k, t->tet[u], k->record[u], k->record[w], &k->stats.trace_intersections));
+        }
+    }
+}
+
+/* The vertices first, then what they are not connected to. */
+static void trace_all(tracing *t) {
+    brio_kernel *k = t->k;
+    const brio_point_graph *graph = &t->own->graph;
+    for (size_t p = 0; p < k->num_points + 3; p++) t->tet[p] = BRIO_NO_TET;
+    brio_vertex_tets_fill(k, t->tet);
+    for (uint32_t p = 0; p < k->num_points; p++)
+        if (t->tet[p] != BRIO_NO_TET) t->queue[t->tail++] = p;
+    trace_edges(t);
+    for (uint32_t p = 0; p < k->num_points; p++) {
+        if (t->tet[p] != BRIO_NO_TET || graph->first[p] == graph->first[p + 1]) continue;
+        found(t, p, brio_history_path(k, &t->own->history, t->own->node[p], k->record[p]));
+        trace_edges(t);
+    }
+    for (size_t i = 0; i < t->tail; i++) t->own->node[t->queue[i]] = t->own->history.node_of[t->tet[t->queue[i]]];
+}
+
+static brio_status trace_now(brio_kernel *k, trace *own) {
+    tracing t = {.k = k, .own = own};
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(k->ctx, t.tet, k->num_points + 3));
+    BRIO_TRY(BRIO_ALLOC(k->ctx, t.queue, k->num_points));
+    trace_all(&t);
+done:
+    brio_release(k->ctx, t.tet);
+    brio_release(k->ctx, t.queue);
+    return status;
+}
+
+static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
+    trace *own = k->location;
+    if (own->logarithm > 1 && (double)p >= (double)k->num_points / own->logarithm) {
+        brio_status status = trace_now(k, own);
+        if (status != BRIO_OK) return status;
+        own->logarithm = log(own->logarithm);
+    }
+    return brio_history_locate(k, &own->history, own->node[p], k->record[p], tet);
+}
+
+static brio_status filled(brio_kernel *k, uint32_t p) {
+    trace *own = k->location;
+    (void)p;
+    return brio_history_add(k, &own->history);
+}
+
+static void free_trace(brio_kernel *k) {
+    trace *own = k->location;
+    if (own) {
+        brio_history_free(k->ctx, &own->history);
+        brio_point_graph_free(k->ctx, &own->graph);
+        brio_release(k->ctx, own->node);
+    }
+    brio_release(k->ctx, own);
+    k->location = NULL;
+}
+
+const brio_locator brio_locator_trace = {start_trace, locate, filled, free_trace};

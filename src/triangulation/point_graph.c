@@ -1,0 +1,31 @@
+/* Lists of neighbours from pairs of points: counted, summed, filled. */
+#include "triangulation/point_graph.h"
+#include "base/memory.h"
+#include <string.h>
+
+void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph) {
+    brio_release(ctx, graph->first);
+    brio_release(ctx, graph->neighbour);
+}
+
+brio_status brio_point_graph_new(const brio_kernel *k, const brio_options *options, brio_point_graph *out) {
+    brio_status status = BRIO_OK;
+    size_t n = k->num_points, ends = 2 * options->num_edges;
+    uint32_t *record = NULL, *first, sum = 0;
+    memset(out, 0, sizeof *out);
+    BRIO_REQUIRE(k->ctx, options->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1",
+                 options->num_edges);
+    BRIO_TRY(BRIO_ALLOC(k->ctx, record, n));
+    for (uint32_t p = 0; p < n; p++) record[k->caller[p]] = p;
+    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, out->first, n + 1));
+    BRIO_TRY(BRIO_ALLOC(k->ctx, out->neighbour, ends));
+    first = out->first;
+    for (size_t i = 0; i < ends; i++) first[record[options->edges[i]]]++;
+    for (size_t p = 0; p < n; p++) first[p] = sum += first[p]; /* the end of its list, and filling moves it back */
+    first[n] = sum;
+    for (size_t i = 0; i < ends; i++)
+        out->neighbour[--first[record[options->edges[i]]]] = record[options->edges[i ^ 1]];
+done:
+    brio_release(k->ctx, record);
+    return status;
+}

@@ -1,0 +1,42 @@
+/* The counters in the course of the insertion: at the end of each round, at each doubling, or after every so many points.
+ * When nothing is recorded, nothing is asked of an insertion: the entries that are due only cut the runs of insertions. */
+#include "triangulation/recorder.h"
+#include "base/memory.h"
+
+enum { FIRST_DOUBLING = 4096 };
+
+size_t brio_recorder_next(const brio_recorder *r, size_t inserted) {
+    size_t next = FIRST_DOUBLING;
+    if (r->every == 0) return SIZE_MAX;
+    if (r->every != BRIO_RECORD_ROUNDS) {
+        uint64_t left = r->every - inserted % r->every;
+        return left < SIZE_MAX - inserted ? inserted + (size_t)left : SIZE_MAX;
+    }
+    if (r->rounds.count > 1) {
+        int i = 0;
+        while (i < r->rounds.count && r->rounds.end[i] <= inserted) i++;
+        return i < r->rounds.count ? r->rounds.end[i] : SIZE_MAX;
+    }
+    while (next <= inserted) next *= 2;
+    return next;
+}
+
+brio_status brio_recorder_note(brio_recorder *r, const brio_kernel *k, size_t inserted) {
+    brio_status status = BRIO_OK;
+    bool due = inserted > 0 && brio_recorder_next(r, inserted - 1) == inserted;
+    if (r->every == 0 || !(due || inserted == k->num_points)) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(k->ctx, r->list, r->capacity, r->count + 1));
+    r->list[r->count++] = (brio_round){
+        .points = inserted,
+        .tetrahedra = (size_t)(k->stats.created - k->stats.destroyed),
+        .created = k->stats.created,
+        .destroyed = k->stats.destroyed,
+        .walk_steps = k->walk.steps,
+        .insphere_calls = k->stats.insphere_calls,
+        .history = k->stats.history,
+        .locate_seconds = k->stats.locate_seconds,
+        .seconds = brio_seconds() - r->start,
+    };
+done:
+    return status;
+}

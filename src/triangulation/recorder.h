@@ -1,0 +1,22 @@
+/* The counters in the course of the insertion, for brio_triangulation_rounds. */
+#ifndef BRIO_TRIANGULATION_RECORDER_H
+#define BRIO_TRIANGULATION_RECORDER_H
+
+#include "order/rounds.h"
+#include "triangulation/kernel.h"
+
+typedef struct {
+    uint64_t every; /* as brio_options.record_every */
+    brio_round_ends rounds;
+    double start; /* of the insertion */
+    brio_round *list;
+    size_t count, capacity;
+} brio_recorder;
+
+/** The number of points after which the next entry is due, when `inserted` are in; may be more than there are. */
+size_t brio_recorder_next(const brio_recorder *r, size_t inserted);
+
+/** Adds an entry when one is due, or when all points are in. */
+brio_status brio_recorder_note(brio_recorder *r, const brio_kernel *k, size_t inserted);
+
+#endif

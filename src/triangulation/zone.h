@@ -1,0 +1,43 @@
+/* What a thread may change while others work on the same triangulation: its zone.
+ *
+ * A space-filling curve through the points is divided into segments. A thread holds segments, each held by one thread at
+ * most; it takes one when it meets a vertex there and gives it back some insertions later. A segment that another
+ * thread holds is never waited for. */
+#ifndef BRIO_TRIANGULATION_ZONE_H
+#define BRIO_TRIANGULATION_ZONE_H
+
+#include "base/context.h"
+
+typedef struct brio_zone {
+    const uint32_t *rank; /* of each vertex along the curve */
+    int shift;            /* of a rank, to its segment */
+    uint8_t *taken;       /* of each segment, shared by all threads: whether one holds it */
+    uint8_t *held;        /* of each segment: when this thread last met it, 0: it does not hold it */
+    uint32_t *segment;    /* those it holds, count of them */
+    size_t count;
+    uint8_t now; /* number of the insertion, never 0 */
+} brio_zone;
+
+/** A zone without segments. taken  of `segments` bytes, the caller's. */
+brio_status brio_zone_new(brio_context *ctx, const uint32_t *rank, int shift, size_t segments, uint8_t *taken,
+                          brio_zone *out);
+void brio_zone_free(brio_context *ctx, brio_zone *zone);
+
+/** Takes a segment that this thread does not hold; false when another thread does. */
+bool brio_zone_take(brio_zone *zone, uint32_t segment);
+
+/** Ends an insertion. Where many segments are held, gives back those that it did not meet; whether there were any. */
+bool brio_zone_tidy(brio_zone *zone);
+
+/** Gives back all segments. */
+void brio_zone_leave(brio_zone *zone);
+
+/** Whether a vertex is in the zone, which grows by its segment where that is free. */
+static inline bool brio_zone_has(brio_zone *zone, uint32_t vertex) {
+    uint32_t segment = zone->rank[vertex] >> zone->shift;
+    if (!zone->held[segment] && !brio_zone_take(zone, segment)) return false;
+    zone->held[segment] = zone->now;
+    return true;
+}
+
+#endif

@@ -1,0 +1,208 @@
+/* Iso-surfaces of Delaunay triangles: closed, manifold, and facets of the triangulation of their vertices, ties and
+ * sheets that touch included. */
+#include "failing_allocator.h"
+#include "surface/iso_surface.h"
+#include "surfaces.h"
+#include <string.h>
+
+static brio_context *ctx;
+
+/* --- what a surface is held against --- */
+
+typedef struct {
+    uint32_t v[3];
+} triangle;
+
+static triangle sorted(uint32_t a, uint32_t b, uint32_t c) {
+    uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    triangle t = {{low < c ? low : c, 0, high > c ? high : c}};
+    t.v[1] = a ^ b ^ c ^ t.v[0] ^ t.v[2];
+    return t;
+}
+
+static int compare_triangles(const void *a, const void *b) {
+    const triangle *s = a, *t = b;
+    for (int k = 0; k < 3; k++)
+        if (s->v[k] != t->v[k]) return s->v[k] < t->v[k] ? -1 : 1;
+    return 0;
+}
+
+/* How many faces are no facets of the Delaunay triangulation of the vertices; those at the same place are one. */
+static size_t faces_not_delaunay(const brio_mesh *mesh) {
+    brio_triangulation *t = NULL;
+    EXPECT(brio_delaunay(ctx, mesh->vertices, NULL, mesh->num_vertices, NULL, &t) == BRIO_OK);
+    const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
+    const uint32_t *name = brio_triangulation_representatives(t);
+    size_t n = brio_triangulation_stats(t)->tetrahedra, wrong = 0;
+    triangle *facets = malloc((4 * n + 1) * sizeof *facets);
+    for (size_t i = 0; i < 4 * n; i++) {
+        const uint32_t *v = tet[i / 4].vertex;
+        facets[i] = sorted(v[(i + 1) % 4], v[(i + 2) % 4], v[(i + 3) % 4]);
+    }
+    qsort(facets, 4 * n, sizeof *facets, compare_triangles);
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        const uint32_t *v = mesh->face_vertices + 3 * f;
+        triangle face = sorted(name[v[0]], name[v[1]], name[v[2]]);
+        wrong += bsearch(&face, facets, 4 * n, sizeof *facets, compare_triangles) == NULL;
+    }
+    free(facets);
+    brio_triangulation_free(t);
+    return wrong;
+}
+
+static brio_mesh *expect_conforming(const brio_implicit_grid *grid, brio_certificate *out) {
+    brio_mesh *mesh = NULL;
+    int64_t crossings = -1;
+    brio_certificate c;
+    EXPECT(brio_conforming_iso_surface(ctx, grid, &mesh) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
+    EXPECT(c.closed && c.manifold && c.oriented && c.volume > 0);
+    size_t wrong = faces_not_delaunay(mesh);
+    EXPECT(wrong == 0, "%zu of %zu faces", wrong, mesh->num_faces);
+    EXPECT(brio_mesh_self_intersections(ctx, mesh, &crossings) == BRIO_OK);
+    if (out) *out = c;
+    brio_certificate_free(&c);
+    return mesh;
+}
+
+/* --- smooth surfaces --- */
+
+static void chains_of_every_genus(void) {
+    for (int genus = 0; genus < 5; genus++) {
+        chain shape = {.genus = genus, .radius = 0.45, .bend = {0.1, 0.2, 0.05}, .phase = {1, 2, 3}};
+        brio_implicit_grid grid = {.value = chain_value, .user = &shape, .low = {-2.01, -2.02, -2.03}, .cell = 0.17};
+        brio_certificate c;
+        for (int k = 0; k < 3; k++) grid.cells[k] = (uint32_t)((4.1 + (k == 0 ? 2 * genus : 0)) / grid.cell);
+        brio_mesh *mesh = expect_conforming(&grid, &c);
+        EXPECT(c.genus == genus && c.components == 1, "genus %lld, not %d", (long long)c.genus, genus);
+        brio_mesh_free(mesh);
+    }
+}
+
+static double ball(const double *p, const void *user) {
+    (void)user;
+    return sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) - 1;
+}
+
+/* Vertices are on the surface, and the volume closes in on that of the ball with the square of the cell. */
+static void vertices_are_on_the_surface(void) {
+    double last = 1;
+    for (uint32_t n = 10; n <= 40; n *= 2) {
+        brio_implicit_grid grid = {ball, NULL, {-1.21, -1.22, -1.23}, 2.5 / n, {n, n, n}};
+        brio_certificate c;
+        brio_mesh *mesh = expect_conforming(&grid, &c);
+        for (size_t v = 0; v < mesh->num_vertices; v++)
+            EXPECT(fabs(ball(mesh->vertices + 3 * v, NULL)) < grid.cell / 1000, "vertex %zu", v);
+        double off = fabs(c.volume / (4.0 / 3 * 3.14159265358979) - 1);
+        EXPECT(off < last / 3, "%g after %g", off, last);
+        last = off;
+        brio_mesh_free(mesh);
+    }
+}
+
+/* --- rough ones --- */
+
+/* Random numbers at the nodes, linear between them; `step` is what they are rounded to. */
+typedef struct {
+    uint32_t size;
+    double *node;
+} noise;
+
+static double noise_value(const double *p, const void *user) {
+    const noise *n = user;
+    uint32_t low[3];
+    double t[3], sum = 0;
+    for (int k = 0; k < 3; k++) {
+        low[k] = (uint32_t)fmin(fmax(floor(p[k]), 0), n->size - 2);
+        t[k] = p[k] - low[k];
+    }
+    for (unsigned c = 0; c < 8; c++) {
+        size_t at = 0;
+        double weight = 1;
+        for (int k = 2; k >= 0; k--) {
+            unsigned bit = c >> k & 1;
+            at = at * n->size + low[k] + bit;
+            weight *= bit ? t[k] : 1 - t[k];
+        }
+        sum += weight * n->node[at];
+    }
+    return sum;
+}
+
+static noise noise_new(uint32_t size, double step, uint64_t seed) {
+    noise n = {size, malloc((size_t)size * size * size * sizeof(double))};
+    brio_rng rng = brio_rng_new(seed);
+    for (size_t i = 0; i < (size_t)size * size * size; i++) {
+        uint32_t at[3] = {(uint32_t)(i % size), (uint32_t)(i / size % size), (uint32_t)(i / size / size)};
+        bool border = false;
+        for (int k = 0; k < 3; k++) border |= at[k] == 0 || at[k] == size - 1;
+        double value = 2 * brio_rng_double(&rng) - 1;
+        if (step > 0) value = step * (floor(value / step) + 0.5);
+        n.node[i] = border ? 1 : value;
+    }
+    return n;
+}
+
+/* No two nodes agree, and every way for sheets to touch occurs. */
+static void noise_of_every_roughness(void) {
+    const double steps[] = {0, 0.25, 1};
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        noise n = noise_new(9, steps[seed % 3], seed);
+        brio_implicit_grid grid = {noise_value, &n, {0, 0, 0}, 1, {8, 8, 8}};
+        brio_mesh_free(expect_conforming(&grid, NULL));
+        free(n.node);
+    }
+}
+
+/* Nodes on the surface count as outside, and no vertex is at a node. */
+static void nodes_on_the_surface(void) {
+    noise n = noise_new(7, 0, 3);
+    for (size_t i = 0; i < 343; i += 2)
+        if (n.node[i] < 0.5) n.node[i] = 0;
+    brio_implicit_grid grid = {noise_value, &n, {0, 0, 0}, 1, {6, 6, 6}};
+    brio_mesh *mesh = expect_conforming(&grid, NULL);
+    for (size_t v = 0; v < mesh->num_vertices; v++) {
+        double off = 0;
+        for (size_t k = 0; k < 3; k++)
+            off = fmax(off, fabs(mesh->vertices[3 * v + k] - rint(mesh->vertices[3 * v + k])));
+        EXPECT(off > 0.0009, "vertex %zu", v);
+    }
+    brio_mesh_free(mesh);
+    free(n.node);
+}
+
+/* --- refusals, and memory --- */
+
+static void nothing_inside_and_inside_on_the_border(void) {
+    brio_implicit_grid empty = {ball, NULL, {2, 2, 2}, 0.1, {4, 4, 4}}, open = {ball, NULL, {0, 0, 0}, 0.1, {4, 4, 4}};
+    brio_mesh *mesh = NULL;
+    EXPECT(brio_conforming_iso_surface(ctx, &empty, &mesh) == BRIO_OK && mesh->num_faces == 0);
+    brio_mesh_free(mesh);
+    EXPECT(brio_conforming_iso_surface(ctx, &open, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+}
+
+static brio_status work(brio_context *failing) {
+    brio_mesh *mesh = NULL;
+    brio_implicit_grid grid = {ball, NULL, {-1.21, -1.22, -1.23}, 0.5, {5, 5, 5}};
+    brio_status status = brio_conforming_iso_surface(failing, &grid, &mesh);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void memory_fails_cleanly(void) {
+    expect_clean_failures(work);
+}
+
+int main(void) {
+    if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
+    brio_context_set_threads(ctx, 1);
+    RUN(chains_of_every_genus);
+    RUN(vertices_are_on_the_surface);
+    RUN(noise_of_every_roughness);
+    RUN(nodes_on_the_surface);
+    RUN(nothing_inside_and_inside_on_the_border);
+    RUN(memory_fails_cleanly);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+    return harness_end();
+}

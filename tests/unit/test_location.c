@@ -1,0 +1,537 @@
+/* Strategies of point location: one answer whichever is used, right searches, few steps, clean ends. */
+#include "base/memory.h"
+#include "failing_allocator.h"
+#include "harness.h"
+#include "kernel.h"
+#include "points.h"
+#include "triangulation/history.h"
+#include "triangulation/locate_segment.h"
+
+enum { N = 400, EDGES = 2 * N, SETS = 7 };
+
+static double points[3 * N], weights[N];
+static uint32_t edges[2 * EDGES];
+
+static const char *const names[] = {"walk", "jump", "hierarchy", "history", "trace", "neighbour"};
+
+/* The strategies, and those of the history DAG once more with its other search. */
+enum { STRATEGIES = BRIO_LOCATE_END + 2 };
+
+static brio_options strategy(int s) {
+    brio_options o = brio_options_default();
+    o.all_conflicts = s >= BRIO_LOCATE_END;
+    o.locate = !o.all_conflicts ? (brio_location)s : s == BRIO_LOCATE_END ? BRIO_LOCATE_HISTORY : BRIO_LOCATE_TRACE;
+    o.edges = edges;
+    o.num_edges = EDGES;
+    return o;
+}
+
+static void scan_points(size_t n, double *to) {
+    brio_context *ctx = new_context();
+    brio_mesh *mesh;
+    EXPECT(brio_generate(ctx, BRIO_KIND_SCAN, n + n / 4, NULL, &mesh) == BRIO_OK && mesh->num_vertices >= n);
+    memcpy(to, mesh->vertices, 3 * n * sizeof *to);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
+/* Edges between points that follow one another, with gaps, and a few at random, loops and repetitions among them. */
+static void make_edges(size_t n) {
+    brio_rng rng = brio_rng_new(5);
+    for (uint32_t i = 0; i < EDGES; i++) {
+        bool chain = i % N < n - 1 && i % 10 && i % 200 > 20;
+        edges[2 * i] = chain ? i % N : brio_rng_below(&rng, (uint32_t)n);
+        edges[2 * i + 1] = chain ? i % N + 1 : i % 3 ? edges[2 * i] : brio_rng_below(&rng, (uint32_t)n);
+    }
+}
+
+static void make_set(int set) {
+    double unit = 1e-3;
+    if (set == 0) uniform_points(1, N, points);
+    if (set == 1) scan_points(N, points), unit = 0.02;
+    if (set == 2) integer_points(2, N, 8, points), unit = 1;
+    if (set == 3) scan_points(N, points), unit = 0.02;
+    for (size_t i = 0; i < N && set == 3; i++) points[3 * i + 2] = floor(points[3 * i + 2] * 32) / 32;
+    if (set == 4) clustered_points(3, N, points);
+    if (set == 5) sphere_points(4, N, points), unit = 0.02; /* in convex position: none is ever hidden */
+    if (set == 6) integer_points(6, N, 40, points), unit = 4;
+    for (size_t i = 0; i < N && set == 6; i++) points[3 * i + 2] = 3;
+    integer_weights(7, N, 6, weights);
+    for (size_t i = 0; i < N; i++) weights[i] *= unit;
+    make_edges(N);
+}
+
+typedef struct {
+    uint64_t arrays, checksum; /* of all that is returned; of the set of tetrahedra */
+    brio_stats stats;
+} result;
+
+static result run(const double *p, const double *w, size_t n, const brio_options *o) {
+    brio_context *ctx = new_context();
+    brio_triangulation *t = NULL;
+    result r = {0};
+    brio_context_set_threads(ctx, 2);
+    EXPECT(brio_delaunay(ctx, p, w, n, o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    if (t) {
+        EXPECT(brio_triangulation_check(ctx, t, p, w, n) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_triangulation_checksum(ctx, t, p, &r.checksum) == BRIO_OK);
+        r.stats = *brio_triangulation_stats(t);
+        const uint32_t *number = (const uint32_t *)brio_triangulation_tetrahedra(t);
+        for (size_t i = 0; i < 8 * (r.stats.tetrahedra + r.stats.hull_facets); i++)
+            r.arrays = brio_mix(r.arrays + number[i]);
+        for (size_t i = 0; i < n; i++) r.arrays = brio_mix(r.arrays + brio_triangulation_representatives(t)[i]);
+    }
+    brio_triangulation_free(t);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+    return r;
+}
+
+static void expect_same(const result *found, const result *expected, int set, int s, int order) {
+    const char *name = names[s < BRIO_LOCATE_END ? s : s - BRIO_LOCATE_END + BRIO_LOCATE_HISTORY];
+    EXPECT(found->checksum == expected->checksum, "set %d, %s, order %d", set, name, order);
+    EXPECT(found->stats.vertices == expected->stats.vertices && found->stats.hidden == expected->stats.hidden &&
+               found->stats.duplicates == expected->stats.duplicates,
+           "set %d, %s, order %d", set, name, order);
+}
+
+static void every_strategy_in_every_order_gives_one_triangulation(void) {
+    for (int set = 0; set < SETS; set++) {
+        make_set(set);
+        for (int weighted = 0; weighted < 2; weighted++) {
+            const double *w = weighted ? weights : NULL;
+            result first = {0};
+            for (int order = 0; order < BRIO_ORDER_END; order++) {
+                result walk = {0};
+                for (int s = 0; s < STRATEGIES; s++) {
+                    brio_options o = strategy(s);
+                    o.order = (brio_order)order;
+                    result r = run(points, w, N, &o);
+                    if (s == 0) walk = r;
+                    if (s == 0 && order == 0) first = r;
+                    EXPECT(r.arrays == walk.arrays, "set %d, strategy %d, order %d", set, s, order);
+                    expect_same(&r, &first, set, s, order);
+                }
+            }
+            EXPECT((first.stats.hidden > 0) == (weighted && set != 5), "set %d hides nothing", set);
+        }
+    }
+}
+
+static void strategies_count_what_they_do(void) {
+    make_set(1);
+    for (int s = 0; s < STRATEGIES; s++) {
+        brio_options o = strategy(s);
+        brio_stats stats = run(points, NULL, N, &o).stats;
+        bool history = o.locate == BRIO_LOCATE_HISTORY || o.locate == BRIO_LOCATE_TRACE;
+        EXPECT(stats.history == (history ? stats.created : 0), "strategy %d", s);
+        EXPECT((stats.history_tests > 0) == history, "strategy %d", s);
+        EXPECT((stats.trace_intersections > 0) == (o.locate == BRIO_LOCATE_TRACE), "strategy %d", s);
+        EXPECT((stats.walk_steps > 0) == !history, "strategy %d", s);
+    }
+}
+
+/* In random order the point inserted last is anywhere: what a strategy starts from decides. */
+static void walks_are_short(void) {
+    enum { MANY = 8000 };
+    double *many = malloc(3 * MANY * sizeof *many);
+    uint32_t *chain = malloc(2 * MANY * sizeof *chain);
+    uniform_points(1, MANY, many);
+    for (size_t i = 1; i < MANY; i += 2) /* pairs of points close together */
+        for (size_t c = 0; c < 3; c++) many[3 * i + c] = many[3 * i - 3 + c] + 1e-5 * many[3 * i + c];
+    for (uint32_t i = 0; i + 1 < MANY; i += 2) chain[i] = i, chain[i + 1] = i + 1;
+    for (int s = BRIO_LOCATE_JUMP; s <= BRIO_LOCATE_NEIGHBOUR; s++) {
+        brio_options o = brio_options_default();
+        o.order = BRIO_ORDER_RANDOM, o.locate = (brio_location)s, o.edges = chain, o.num_edges = MANY / 2;
+        result r = run(many, NULL, MANY, &o);
+        double steps = (double)r.stats.walk_steps / MANY;
+        EXPECT(steps < 30, "%s: %g steps a point", names[s], steps);
+        o.num_edges = 0;
+        r = run(many, NULL, MANY, &o);
+        EXPECT(s != BRIO_LOCATE_NEIGHBOUR || (double)r.stats.walk_steps / MANY > 35, "without edges");
+    }
+    free(many);
+    free(chain);
+}
+
+/* --- searches --- */
+
+/* A search for p against all live tetrahedra. */
+static void expect_searches_right(brio_kernel *k, brio_history *h, const double *p) {
+    uint32_t tet = brio_history_path(k, h, BRIO_HISTORY_ROOT, p);
+    EXPECT(k->state[tet] == TET_PLAIN && kernel_holds(k, tet, p));
+    EXPECT(brio_history_path(k, h, h->node_of[tet], p) == tet);
+    EXPECT(brio_history_conflicts(k, h, BRIO_HISTORY_ROOT, p) == BRIO_OK);
+    bool any = false, listed = false;
+    for (uint32_t t = 0; t < k->t.count; t++)
+        any |= k->state[t] == TET_PLAIN && brio_in_conflict(&k->t, &k->filter, t, p, k->weighted);
+    for (size_t i = 0; i < h->num_conflicts; i++) {
+        uint32_t found = h->conflict[i];
+        EXPECT(k->state[found] == TET_PLAIN && brio_in_conflict(&k->t, &k->filter, found, p, k->weighted));
+        for (size_t j = 0; j < i; j++) EXPECT(h->conflict[j] != found);
+        listed |= found == tet;
+    }
+    EXPECT(any == (h->num_conflicts > 0));
+    if (brio_in_conflict(&k->t, &k->filter, tet, p, k->weighted) && !brio_is_infinite(&k->t, tet)) EXPECT(listed);
+}
+
+static void history_searches_find_what_brute_force_finds(void) {
+    for (int set = 0; set < SETS; set++) {
+        for (int weighted = 0; weighted < 2; weighted++) {
+            make_set(set);
+            brio_context *ctx = new_context();
+            brio_kernel k;
+            brio_options o = strategy(BRIO_LOCATE_HISTORY);
+            kernel_begin(&k, ctx, points, weighted ? weights : NULL, N, &o);
+            for (uint32_t end = 4, begin = 0; end < N; begin = end, end += 120) {
+                kernel_insert(&k, begin, end);
+                for (uint32_t p = end; p < N; p += 23) {
+                    bool vertex = false;
+                    for (uint32_t v = 0; v < end; v++) vertex |= brio_same_position(k.record[v], k.record[p]);
+                    if (!vertex) expect_searches_right(&k, k.location, k.record[p]);
+                }
+            }
+            brio_kernel_free(&k);
+            EXPECT(brio_context_memory(ctx) == 0);
+            brio_context_free(ctx);
+        }
+    }
+}
+
+/* Whether the open segment v w crosses the open triangle. */
+static bool crosses(const double *v, const double *w, const double *const *triangle) {
+    const double *a = triangle[0], *b = triangle[1], *c = triangle[2];
+    if (brio_orient3d(a, b, c, v) * brio_orient3d(a, b, c, w) >= 0) return false;
+    int x = brio_orient3d(v, w, a, b), y = brio_orient3d(v, w, b, c), z = brio_orient3d(v, w, c, a);
+    return x != 0 && x == y && y == z;
+}
+
+/* Among lattice points segments run through vertices, along edges and in facets; some start or end outside. */
+static void segments_lead_to_their_ends(void) {
+    for (int set = 0; set < SETS; set++) {
+        make_set(set);
+        brio_context *ctx = new_context();
+        brio_kernel k;
+        brio_options o = strategy(BRIO_LOCATE_HISTORY);
+        uint64_t entered = 0;
+        kernel_begin(&k, ctx, points, NULL, N, &o);
+        kernel_insert(&k, 0, 80);
+        brio_rng rng = brio_rng_new((uint64_t)set);
+        for (int i = 0; i < 1500; i++) {
+            const double *u = k.record[brio_rng_below(&rng, N)], *w = k.record[brio_rng_below(&rng, N)];
+            uint32_t from = brio_history_path(&k, k.location, BRIO_HISTORY_ROOT, u);
+            EXPECT(kernel_holds(&k, brio_locate_segment(&k, from, u, w, &entered), w), "set %d, segment %d", set, i);
+        }
+        EXPECT(entered > 1500);
+        brio_kernel_free(&k);
+        brio_context_free(ctx);
+    }
+}
+
+/* Between points in general position inside of the hull. */
+static void segments_enter_what_they_cross(void) {
+    static double ends[6 * 100];
+    brio_context *ctx = new_context();
+    brio_kernel k;
+    brio_options o = strategy(BRIO_LOCATE_HISTORY);
+    uniform_points(1, N, points);
+    uniform_points(2, 200, ends);
+    kernel_begin(&k, ctx, points, NULL, N, &o);
+    kernel_insert(&k, 0, N);
+    for (int i = 0; i < 100; i++) {
+        double u[4] = {0}, w[4] = {0};
+        for (int c = 0; c < 3; c++) u[c] = 0.3 + 0.4 * ends[6 * i + c], w[c] = 0.3 + 0.4 * ends[6 * i + 3 + c];
+        uint64_t entered = 0, crossed = 0;
+        uint32_t from = brio_history_path(&k, k.location, BRIO_HISTORY_ROOT, u);
+        brio_locate_segment(&k, from, u, w, &entered);
+        for (size_t f = 0; f < 4 * k.t.count; f++) {
+            const uint32_t *v = k.t.tet[f / 4].vertex;
+            if (k.state[f / 4] != TET_PLAIN || v[3] == k.t.infinite || *brio_mate(&k.t, (uint32_t)f) < f) continue;
+            const double *triangle[3];
+            for (size_t c = 0; c < 3; c++) triangle[c] = k.record[v[(f + 1 + c) % 4]];
+            crossed += crosses(u, w, triangle);
+        }
+        EXPECT(entered == crossed, "segment %d enters %d, crosses %d", i, (int)entered, (int)crossed);
+    }
+    brio_kernel_free(&k);
+    brio_context_free(ctx);
+}
+
+/* --- tracing --- */
+
+/* Inserts all points in their order, tracing the chain of points from `first` on; lists how many were in when something
+ * was traced. */
+static size_t list_tracings(uint32_t first, uint32_t tracings[8]) {
+    brio_context *ctx = new_context();
+    brio_kernel k;
+    brio_options o = strategy(BRIO_LOCATE_TRACE);
+    size_t count = 0;
+    for (uint32_t i = first; i + 1 < N; i++) edges[2 * (i - first)] = i, edges[2 * (i - first) + 1] = i + 1;
+    o.num_edges = N - 1 - first;
+    uniform_points(1, N, points);
+    kernel_begin(&k, ctx, points, NULL, N, &o);
+    for (uint32_t p = (uint32_t)k.dimension + 1; p < N; p++) {
+        uint64_t before = k.stats.trace_intersections;
+        kernel_insert(&k, p, p + 1);
+        if (k.stats.trace_intersections > before && count < 8) tracings[count++] = p;
+    }
+    brio_kernel_free(&k);
+    brio_context_free(ctx);
+    return count;
+}
+
+static void edges_are_traced_when_so_many_points_are_in(void) {
+    uint32_t tracings[8], expected[2] = {(uint32_t)ceil(N / log(N)), (uint32_t)ceil(N / log(log(N)))};
+    EXPECT(list_tracings(0, tracings) == 2 && !memcmp(tracings, expected, sizeof expected));
+    EXPECT(list_tracings(N - 50, tracings) == 2 && !memcmp(tracings, expected, sizeof expected), "none was a vertex");
+}
+
+/* The corners of a tetrahedron; false when one is infinite. */
+static bool corners_of(const brio_tetrahedron *tet, const double *corner[4]) {
+    for (int i = 0; i < 4; i++) corner[i] = points + 3 * (size_t)tet->vertex[i];
+    return tet->vertex[3] != BRIO_INFINITE;
+}
+
+static bool in_region(const double *p, const double *const *own, const double *const *other) {
+    return brio_insphere(own[0], own[1], own[2], own[3], p, NULL) > 0 ||
+           brio_insphere(other[0], other[1], other[2], other[3], p, NULL) > 0;
+}
+
+enum { ALL = 150, PART = 40 };
+static bool edge_of_all[ALL][ALL];
+
+/* All edges of D(S) against facet i of a tetrahedron of D(R): the number that cross it. */
+static size_t expect_lemma_7(const brio_tetrahedron *part, size_t tet, int i) {
+    const double *own[4], *other[4];
+    size_t crossings = 0;
+    if (!corners_of(&part[tet], own) || !corners_of(&part[part[tet].mate[i] >> 2], other)) return 0;
+    const double *triangle[3] = {own[(i + 1) & 3], own[(i + 2) & 3], own[(i + 3) & 3]};
+    for (size_t a = 0; a < ALL; a++)
+        for (size_t b = 0; b < ALL; b++) {
+            const double *v = points + 3 * a, *w = points + 3 * b;
+            if (!edge_of_all[a][b] || !crosses(v, w, triangle)) continue;
+            crossings++;
+            EXPECT(in_region(v, own, other) || in_region(w, own, other), "edge %zu %zu", a, b);
+        }
+    return crossings;
+}
+
+/* Lemma 7: an edge of D(S) that crosses a triangle of D(R), R a part of S, has an end in one of the two spheres of the
+ * tetrahedra at the triangle. */
+static void edges_end_in_the_regions_of_the_triangles_they_cross(void) {
+    size_t crossings = 0;
+    for (int set = 0; set < 6; set++) {
+        brio_context *ctx = new_context();
+        brio_triangulation *all = NULL, *part = NULL;
+        make_set(set);
+        EXPECT(brio_delaunay(ctx, points, NULL, ALL, NULL, &all) == BRIO_OK);
+        EXPECT(brio_delaunay(ctx, points, NULL, PART, NULL, &part) == BRIO_OK);
+        memset(edge_of_all, 0, sizeof edge_of_all);
+        for (size_t t = 0; t < brio_triangulation_stats(all)->tetrahedra; t++) {
+            const uint32_t *v = brio_triangulation_tetrahedra(all)[t].vertex;
+            for (int i = 0; i < 4; i++)
+                for (int j = 0; j < 4; j++) edge_of_all[v[i]][v[j]] |= v[i] < v[j];
+        }
+        for (size_t t = 0; t < brio_triangulation_stats(part)->tetrahedra; t++)
+            for (int i = 0; i < 4; i++) crossings += expect_lemma_7(brio_triangulation_tetrahedra(part), t, i);
+        brio_triangulation_free(all);
+        brio_triangulation_free(part);
+        brio_context_free(ctx);
+    }
+    EXPECT(crossings > 1000, "%zu crossings", crossings);
+}
+
+/* The edges of the convex hull of points on a sphere: a surface of Delaunay triangles. */
+static uint32_t *hull_edges(const double *p, size_t n, size_t *num_edges) {
+    brio_context *ctx = new_context();
+    brio_triangulation *t = NULL;
+    EXPECT(brio_delaunay(ctx, p, NULL, n, NULL, &t) == BRIO_OK);
+    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t) + s->tetrahedra;
+    uint32_t *edge = malloc(6 * s->hull_facets * sizeof *edge);
+    *num_edges = 0;
+    for (size_t i = 0; i < s->hull_facets; i++)
+        for (int a = 0; a < 3; a++) {
+            uint32_t u = tet[i].vertex[a], v = tet[i].vertex[(a + 1) % 3];
+            if (u > v) continue; /* the facet beside it has it the other way round */
+            edge[2 * *num_edges] = u, edge[2 * *num_edges + 1] = v;
+            ++*num_edges;
+        }
+    brio_triangulation_free(t);
+    brio_context_free(ctx);
+    return edge;
+}
+
+/* Lemma 8 and theorem 11: what tracing crosses, and the history tests that are left, are O(1) a point, while those
+ * from the root grow. */
+static void tracing_is_linear_on_a_sphere(void) {
+    enum { SIZES = 4, LEAST = 400 };
+    double crossed[SIZES], tests[SIZES], from_root[SIZES];
+    size_t n = LEAST, num_edges;
+    for (int i = 0; i < SIZES; i++, n *= 3) {
+        double *p = malloc(3 * n * sizeof *p);
+        sphere_points(9, n, p);
+        uint32_t *edge = hull_edges(p, n, &num_edges);
+        brio_options o = brio_options_default();
+        o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATE_TRACE, o.edges = edge, o.num_edges = num_edges;
+        result traced = run(p, NULL, n, &o);
+        o.locate = BRIO_LOCATE_HISTORY;
+        result plain = run(p, NULL, n, &o);
+        EXPECT(traced.arrays == plain.arrays);
+        crossed[i] = (double)traced.stats.trace_intersections / (double)n;
+        tests[i] = (double)traced.stats.history_tests / (double)n;
+        from_root[i] = (double)plain.stats.history_tests / (double)n;
+        free(edge);
+        free(p);
+        EXPECT(crossed[i] < 1.2 * crossed[0] && crossed[i] > 1, "%zu points: %g crossed a point", n, crossed[i]);
+    }
+    EXPECT(tests[3] - tests[1] < 0.2 * (from_root[3] - from_root[1]), "%g tests, %g from the root", tests[3],
+           from_root[3]);
+}
+
+/* --- hostile --- */
+
+static void few_points_are_answered(void) {
+    static const double shape[3][12] = {
+        {0}, {0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0}, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}};
+    for (size_t n = 0; n <= 12; n++)
+        for (int kind = 0; kind < 4; kind++) {
+            uniform_points(n, n, points);
+            for (size_t i = 0; i < 3 * n && kind < 3; i++) points[i] = shape[kind][i % 12];
+            uint32_t edge[4] = {0, (uint32_t)n / 2, 0, (uint32_t)n / 3};
+            result expected = run(points, NULL, n, NULL);
+            for (int s = 0; s < STRATEGIES; s++) {
+                brio_options o = strategy(s);
+                o.edges = edge, o.num_edges = n ? 2 : 0;
+                EXPECT(run(points, NULL, n, &o).arrays == expected.arrays, "%zu points, strategy %d", n, s);
+            }
+        }
+}
+
+static void coincident_points_are_answered(void) {
+    for (int weighted = 0; weighted < 2; weighted++) {
+        make_set(0);
+        for (size_t i = 8; i < N; i++) memcpy(points + 3 * i, points + 3 * (i % 8), 3 * sizeof *points);
+        for (size_t i = 0; i < N; i++) weights[i] = (double)(i % 50 / 2) * 0.01;
+        result expected = run(points, weighted ? weights : NULL, N, NULL);
+        EXPECT(expected.stats.duplicates >= N - 8);
+        for (int s = 0; s < STRATEGIES; s++) {
+            brio_options o = strategy(s);
+            o.order = BRIO_ORDER_INPUT;
+            result r = run(points, weighted ? weights : NULL, N, &o);
+            expect_same(&r, &expected, 0, s, BRIO_ORDER_INPUT);
+        }
+    }
+}
+
+/* Each point hides the ones before it, so that what stands for a hidden point is many steps away. */
+static void chains_of_hidden_points_are_answered(void) {
+    make_set(0);
+    for (size_t i = 8; i < N; i++)
+        for (size_t c = 0; c < 3; c++) points[3 * i + c] = 0.4 + 0.2 * points[3 * i + c];
+    for (size_t i = 0; i < N; i++) weights[i] = i < 8 ? 0 : 1e-3 * (double)i;
+    result expected = run(points, weights, N, NULL);
+    EXPECT(expected.stats.hidden > N / 2, "%zu hidden", expected.stats.hidden);
+    for (int s = 0; s < STRATEGIES; s++) {
+        brio_options o = strategy(s);
+        o.order = BRIO_ORDER_INPUT;
+        result r = run(points, weights, N, &o);
+        expect_same(&r, &expected, 0, s, BRIO_ORDER_INPUT);
+    }
+}
+
+static brio_status status_of(brio_context *ctx, const brio_options *o) {
+    brio_triangulation *t = NULL;
+    brio_status status = brio_delaunay(ctx, points, NULL, N, o, &t);
+    EXPECT((status == BRIO_OK) == (t != NULL));
+    brio_triangulation_free(t);
+    EXPECT(brio_context_memory(ctx) == 0);
+    return status;
+}
+
+static void wrong_options_are_refused(void) {
+    brio_context *ctx = new_context();
+    make_set(0);
+    brio_options o = strategy(BRIO_LOCATE_TRACE);
+    edges[2 * EDGES - 1] = N;
+    EXPECT(status_of(ctx, &o) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "edge 799 ends at point 400 of 400"),
+           "%s", brio_message(ctx));
+    o.num_edges--;
+    EXPECT(status_of(ctx, &o) == BRIO_OK);
+    o.edges = NULL;
+    EXPECT(status_of(ctx, &o) == BRIO_ERR_ARGUMENT);
+    o.num_edges = 0;
+    EXPECT(status_of(ctx, &o) == BRIO_OK);
+    o.locate = BRIO_LOCATE_END;
+    EXPECT(status_of(ctx, &o) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "location strategy 6"), "%s",
+           brio_message(ctx));
+    brio_context_free(ctx);
+}
+
+static int cancel_at(const char *stage, double fraction, void *user) {
+    return !strcmp(stage, "insert") && fraction >= *(double *)user;
+}
+
+static void cancelled_strategies_free_everything(void) {
+    enum { MANY = 20000 };
+    double *many = malloc(3 * MANY * sizeof *many);
+    uniform_points(3, MANY, many);
+    make_edges(N);
+    for (int s = 1; s < STRATEGIES; s++)
+        for (double fraction = 0; fraction < 0.5; fraction += 0.4) {
+            brio_context *ctx = new_context();
+            brio_triangulation *t;
+            brio_options o = strategy(s);
+            brio_context_set_progress(ctx, cancel_at, &fraction);
+            EXPECT(brio_delaunay(ctx, many, NULL, MANY, &o, &t) == BRIO_ERR_CANCELLED && !t, "strategy %d", s);
+            EXPECT(brio_context_memory(ctx) == 0);
+            brio_context_free(ctx);
+        }
+    free(many);
+}
+
+static void few_tetrahedra_allowed_is_a_status(void) {
+    make_set(0);
+    for (int s = 0; s < STRATEGIES; s++) {
+        brio_context *ctx = new_context();
+        brio_options o = strategy(s);
+        o.max_tetrahedra = 1000;
+        EXPECT(status_of(ctx, &o) == BRIO_ERR_TOO_LARGE);
+        brio_context_free(ctx);
+    }
+}
+
+static int failing_strategy;
+
+static brio_status triangulate(brio_context *ctx) {
+    brio_options o = strategy(failing_strategy);
+    brio_triangulation *t;
+    brio_status status = brio_delaunay(ctx, points, weights, N, &o, &t);
+    brio_triangulation_free(t);
+    return status;
+}
+
+static void failed_allocations_free_everything(void) {
+    make_set(6);
+    for (failing_strategy = 1; failing_strategy < STRATEGIES; failing_strategy++) expect_clean_failures(triangulate);
+}
+
+int main(void) {
+    RUN(every_strategy_in_every_order_gives_one_triangulation);
+    RUN(strategies_count_what_they_do);
+    RUN(walks_are_short);
+    RUN(history_searches_find_what_brute_force_finds);
+    RUN(segments_lead_to_their_ends);
+    RUN(segments_enter_what_they_cross);
+    RUN(edges_are_traced_when_so_many_points_are_in);
+    RUN(edges_end_in_the_regions_of_the_triangles_they_cross);
+    RUN(tracing_is_linear_on_a_sphere);
+    RUN(few_points_are_answered);
+    RUN(coincident_points_are_answered);
+    RUN(chains_of_hidden_points_are_answered);
+    RUN(wrong_options_are_refused);
+    RUN(cancelled_strategies_free_everything);
+    RUN(few_tetrahedra_allowed_is_a_status);
+    RUN(failed_allocations_free_everything);
+    return harness_end();
+}

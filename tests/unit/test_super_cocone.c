@@ -1,0 +1,228 @@
+/* The super co-cone: on dense samples the same triangles as the whole, on anything a manifold, in less memory. */
+#include "base/memory.h"
+#include "failing_allocator.h"
+#include "harness.h"
+#include "points.h"
+#include "reconstruct/octree_pieces.h"
+#include "reconstruct/seams.h"
+
+static int compare_triples(const void *a, const void *b) {
+    return memcmp(a, b, 3 * sizeof(uint32_t));
+}
+
+/* The faces with their vertices renamed, as a sorted list of triples that begin with their least vertex. */
+static uint32_t *sorted_faces(const brio_mesh *mesh, const size_t *name) {
+    uint32_t *list = malloc(12 * mesh->num_faces + 1);
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        uint32_t v[3];
+        int least = 0;
+        for (int k = 0; k < 3; k++) {
+            v[k] = mesh->face_vertices[3 * f + (size_t)k];
+            if (name) v[k] = (uint32_t)name[v[k]];
+            if (v[k] < v[least]) least = k;
+        }
+        for (int k = 0; k < 3; k++) list[3 * f + (size_t)k] = v[(k + least) % 3];
+    }
+    qsort(list, mesh->num_faces, 12, compare_triples);
+    return list;
+}
+
+static void expect_same_faces(const brio_mesh *a, const size_t *name, const brio_mesh *b) {
+    uint32_t *x = sorted_faces(a, name), *y = sorted_faces(b, NULL);
+    EXPECT(a->num_faces == b->num_faces && !memcmp(x, y, 12 * a->num_faces), "%zu and %zu faces", a->num_faces,
+           b->num_faces);
+    free(x);
+    free(y);
+}
+
+static void dense_samples_give_the_faces_of_the_whole(void) {
+    static double p[3 * 8000];
+    brio_context *ctx = new_context();
+    for (int sphere = 0; sphere < 2; sphere++) {
+        brio_cocone_options o = brio_cocone_options_default();
+        brio_mesh *whole, *pieces;
+        brio_cocone_stats s, t;
+        sphere ? sphere_points(3, 8000, p) : torus_points(3, 8000, p);
+        EXPECT(brio_cocone(ctx, p, 8000, &o, &whole, &s) == BRIO_OK);
+        for (o.pieces = 2; o.pieces < 20; o.pieces += 7) {
+            EXPECT(brio_cocone(ctx, p, 8000, &o, &pieces, &t) == BRIO_OK, "%s", brio_message(ctx));
+            EXPECT(t.pieces >= o.pieces && t.unmatched == 0 && t.samples == s.samples && t.unused == 0);
+            expect_same_faces(whole, NULL, pieces);
+            brio_mesh_free(pieces);
+        }
+        brio_mesh_free(whole);
+    }
+    brio_context_free(ctx);
+}
+
+static void order_of_samples_and_duplicates_change_nothing(void) {
+    static double p[3 * 8000], q[3 * 8000];
+    static size_t to[8000];
+    brio_context *ctx = new_context();
+    brio_cocone_options o = brio_cocone_options_default();
+    brio_mesh *a, *b, *c;
+    brio_cocone_stats s;
+    brio_rng rng = brio_rng_new(5);
+    o.pieces = 5;
+    torus_points(4, 4000, p);
+    for (size_t i = 0; i < 12000; i++) p[i] += 0.02 * brio_rng_double(&rng);
+    memcpy(p + 12000, p, 12000 * sizeof *p);
+    shuffle_points(6, 4000, p, q, to);
+    EXPECT(brio_cocone(ctx, p, 4000, &o, &a, NULL) == BRIO_OK);
+    EXPECT(brio_cocone(ctx, q, 4000, &o, &b, NULL) == BRIO_OK);
+    EXPECT(brio_cocone(ctx, p, 8000, &o, &c, &s) == BRIO_OK && s.samples == 4000);
+    expect_same_faces(a, to, b);
+    EXPECT(c->num_faces >= a->num_faces * 99 / 100);
+    brio_mesh_free(a);
+    brio_mesh_free(b);
+    brio_mesh_free(c);
+    brio_context_free(ctx);
+}
+
+static void anything_is_manifold_oriented(void) {
+    static double p[3 * 700];
+    brio_context *ctx = new_context();
+    int surfaces = 0;
+    brio_context_set_threads(ctx, 1);
+    for (uint64_t trial = 0; trial < 200; trial++) {
+        brio_cocone_options o = brio_cocone_options_default();
+        brio_certificate c = {0};
+        brio_mesh *mesh;
+        brio_cocone_stats s;
+        size_t n = 4 + trial * 3;
+        o.pieces = 2 + trial % 9;
+        o.boundaries = trial >> 1 & 1;
+        o.density = trial >> 2 & 1;
+        trial % 3 ? integer_points(trial, n, 3 + (uint32_t)(trial % 7), p) : clustered_points(trial, n, p);
+        brio_status status = brio_cocone(ctx, p, n, &o, &mesh, &s);
+        EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "%s", brio_message(ctx));
+        if (status != BRIO_OK) continue;
+        EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
+        EXPECT(c.manifold && c.oriented, "trial %d: manifold %d oriented %d", (int)trial, c.manifold, c.oriented);
+        surfaces++;
+        brio_certificate_free(&c);
+        brio_mesh_free(mesh);
+    }
+    EXPECT(surfaces > 100, "%d", surfaces);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void pieces_need_a_quarter_of_the_memory(void) {
+    static double p[3 * 80000];
+    brio_context *whole = new_context(), *parts = new_context();
+    brio_cocone_options o = brio_cocone_options_default();
+    brio_mesh *mesh;
+    torus_points(3, 80000, p);
+    EXPECT(brio_cocone(whole, p, 80000, &o, &mesh, NULL) == BRIO_OK);
+    brio_mesh_free(mesh);
+    o.pieces = 24;
+    EXPECT(brio_cocone(parts, p, 80000, &o, &mesh, NULL) == BRIO_OK);
+    brio_mesh_free(mesh);
+    EXPECT(brio_context_memory_peak(parts) < brio_context_memory_peak(whole) / 4, "%zu of %zu",
+           brio_context_memory_peak(parts), brio_context_memory_peak(whole));
+    brio_context_free(whole);
+    brio_context_free(parts);
+}
+
+/* --- the parts --- */
+
+static void pieces_cover_all_samples_once(void) {
+    static double p[3 * 5000];
+    brio_context *ctx = new_context();
+    for (int kind = 0; kind < 3; kind++)
+        for (size_t wanted = 1; wanted < 5000; wanted = wanted * 3 + 1) {
+            brio_pieces pieces;
+            size_t count = 0;
+            kind == 0   ? uniform_points(1, 5000, p)
+            : kind == 1 ? clustered_points(2, 5000, p)
+                        : integer_points(3, 5000, 2, p);
+            EXPECT(brio_pieces_new(ctx, p, 5000, wanted, &pieces) == BRIO_OK);
+            for (size_t i = 0; i < pieces.num_pieces; i++) {
+                const brio_piece *piece = &pieces.pieces[i];
+                EXPECT(piece->begin == count && piece->end > piece->begin);
+                EXPECT(kind > 0 || piece->end - piece->begin <= (5000 + wanted - 1) / wanted);
+                count = piece->end;
+            }
+            EXPECT(count == 5000, "%zu of 5000 samples in %zu pieces", count, pieces.num_pieces);
+            brio_pieces_free(ctx, &pieces);
+        }
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void triangles_that_one_piece_denies_are_left_out(void) {
+    static const uint32_t piece_of[5] = {0, 0, 1, 1, 2};
+    static const uint32_t found[5][3] = {{1, 2, 0}, {2, 0, 1}, {3, 1, 2}, {4, 2, 0}, {2, 0, 4}};
+    brio_context *ctx = new_context();
+    brio_triangles seam = {0}, faces = {0};
+    uint8_t frayed[5] = {0};
+    size_t unmatched;
+    for (int i = 0; i < 5; i++) EXPECT(brio_triangles_add(ctx, &seam, found[i]) == BRIO_OK);
+    EXPECT(brio_match_seams(ctx, piece_of, &seam, &faces, frayed, &unmatched) == BRIO_OK);
+    EXPECT(unmatched == 2 && faces.count == 1 && faces.corner[0][0] == 0 && faces.corner[0][1] == 1);
+    EXPECT(frayed[0] && frayed[1] && frayed[2] && frayed[3] && frayed[4]);
+    brio_release(ctx, seam.corner);
+    brio_release(ctx, faces.corner);
+    brio_context_free(ctx);
+}
+
+/* A wheel of six triangles round sample 0 without two of them: fans of three and of one. */
+static void the_longest_fan_stays(void) {
+    brio_context *ctx = new_context();
+    brio_triangles faces = {0};
+    double p[21] = {0};
+    uint8_t frayed[7] = {1};
+    for (uint32_t i = 0; i < 6; i++)
+        if (i != 0 && i != 2)
+            EXPECT(brio_triangles_add(ctx, &faces, (uint32_t[3]){0, 1 + i, 1 + (i + 1) % 6}) == BRIO_OK);
+    EXPECT(brio_trim_fans(ctx, p, 7, frayed, &faces) == BRIO_OK);
+    EXPECT(faces.count == 3 && faces.corner[0][1] == 4);
+    brio_release(ctx, faces.corner);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static brio_status small_pieces(brio_context *ctx) {
+    double p[3 * 90];
+    brio_mesh *mesh;
+    brio_cocone_options o = brio_cocone_options_default();
+    o.boundaries = o.density = 1;
+    o.pieces = 3;
+    sphere_points(3, 90, p);
+    brio_status status = brio_cocone(ctx, p, 90, &o, &mesh, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void every_failed_allocation_is_a_status(void) {
+    expect_clean_failures(small_pieces);
+}
+
+static void hopeless_inputs_say_so(void) {
+    const double flat[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, .5, .5, 0}, bad[6] = {0, 0, 0, 1, NAN, 0};
+    brio_context *ctx = new_context();
+    brio_cocone_options o = brio_cocone_options_default();
+    brio_mesh *mesh;
+    o.pieces = 3;
+    EXPECT(brio_cocone(ctx, NULL, 0, &o, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(brio_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(brio_cocone(ctx, bad, 2, &o, &mesh, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
+    o.tight = 1;
+    EXPECT(brio_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+int main(void) {
+    RUN(dense_samples_give_the_faces_of_the_whole);
+    RUN(order_of_samples_and_duplicates_change_nothing);
+    RUN(anything_is_manifold_oriented);
+    RUN(pieces_need_a_quarter_of_the_memory);
+    RUN(pieces_cover_all_samples_once);
+    RUN(triangles_that_one_piece_denies_are_left_out);
+    RUN(the_longest_fan_stays);
+    RUN(every_failed_allocation_is_a_status);
+    RUN(hopeless_inputs_say_so);
+    return harness_end();
+}
