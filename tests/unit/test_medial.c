@@ -441,6 +441,50 @@ static void wrong_options_are_refused(void) {
     brio_context_free(ctx);
 }
 
+typedef struct {
+    int left; /* calls until the one that cancels */
+    double last;
+} canceller;
+
+static int cancel_later(const char *stage, double fraction, void *user) {
+    canceller *c = user;
+    EXPECT(fraction >= c->last && fraction <= 1, "%s: %g after %g", stage, fraction, c->last);
+    c->last = fraction;
+    return c->left-- == 0;
+}
+
+/* At every call of the progress function, which never goes back. */
+static void work_can_be_cancelled_at_any_time(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_box, 0.2, 1);
+    brio_mesh *box = box_mesh(ctx, false, false, 6), *shape, *crust, *offset;
+    brio_medial_options medial = brio_medial_options_default();
+    brio_surface_options surface = brio_surface_options_default();
+    size_t held = brio_context_memory(ctx);
+    medial.solid = surface.solid = box;
+    medial.redundancy = 0.01;
+    surface.simplify = 1;
+    for (int kind = 0; kind < 2; kind++) {
+        brio_status status = BRIO_ERR_CANCELLED;
+        int calls = 0;
+        for (; status == BRIO_ERR_CANCELLED && calls < 500; calls++) {
+            canceller at = {calls, 0};
+            brio_context_set_progress(ctx, cancel_later, &at);
+            status = kind ? brio_offset_surface(ctx, c.points, c.count, 0.1, &surface, &offset, NULL)
+                          : brio_power_shape(ctx, c.points, c.count, &medial, &shape, &crust, NULL);
+            if (status != BRIO_OK) EXPECT(status == BRIO_ERR_CANCELLED && brio_context_memory(ctx) == held);
+        }
+        EXPECT(status == BRIO_OK && calls > 5, "%d calls", calls);
+        held = brio_context_memory(ctx);
+    }
+    brio_mesh_free(shape);
+    brio_mesh_free(crust);
+    brio_mesh_free(offset);
+    brio_mesh_free(box);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
 static brio_status small_shape(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *shape, *crust;
@@ -472,6 +516,7 @@ int main(void) {
     RUN(winding_numbers_of_a_curved_mesh_are_right);
     RUN(small_inputs_have_shapes_and_closed_crusts_or_say_so);
     RUN(wrong_options_are_refused);
+    RUN(work_can_be_cancelled_at_any_time);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
 }
