@@ -534,7 +534,7 @@ typedef struct brio_medial_stats {
  *  crust    NULL, or receives the power crust of the balls, after simplification: closed, manifold, oriented; owned by
  *           the caller.
  *  Every ball left out by simplification is within max ((S - 1) (R - r), E R) of a larger one that stays, r and R being
- *  their radii.
+ *  their radii; those without a cell, which lie within the union of the others, go first.
  *  Cost: as brio_power_crust; one more triangulation of the poles with simplification.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid, none is on the side asked for, or the mesh `solid` is
  *  not closed), and as brio_delaunay.
