@@ -34,7 +34,7 @@ static inline bool divide(brio_kernel *k, const uint32_t *facet, size_t count, u
     for (; conflicts; conflicts &= conflicts - 1) {
         uint32_t entry = facet[__builtin_ctz(conflicts)], tet = brio_tet_of(entry);
         entries[num_tets] = entry;
-        if (!brio_owns(&k->t, tet)) {
+        if (!brio_owns_beyond(&k->t, entry)) {
             own = false;
             break;
         }

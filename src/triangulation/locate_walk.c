@@ -11,10 +11,10 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w
                           uint64_t most_steps) {
     uint32_t tet = brio_walk_begin(t, walk);
     int came_through = 4;
+    if ((walk->blocked = !brio_owns(t, tet))) return BRIO_NO_TET;
     for (uint64_t steps = 0;; steps++, walk->steps++) {
         if (steps > most_steps) return BRIO_NO_TET;
         const uint32_t *v = t->tet[tet].vertex;
-        if (t->zone && (walk->blocked = !brio_owns(t, tet))) return BRIO_NO_TET;
         if (v[3] == t->infinite) return tet;
         walk->random = brio_walk_random(walk->random);
         int first = (int)(walk->random >> 30), i = 0;
@@ -24,6 +24,7 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w
             const uint8_t *facet = BRIO_FACET[slot];
             if (brio_orient3d_sign(f, t->record[v[facet[0]]], t->record[v[facet[1]]], t->record[v[facet[2]]], p) < 0) {
                 uint32_t mate = t->tet[tet].mate[slot];
+                if ((walk->blocked = !brio_owns_beyond(t, mate))) return BRIO_NO_TET;
                 tet = brio_tet_of(mate);
                 came_through = brio_slot_of(mate);
                 break;

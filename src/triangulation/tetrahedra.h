@@ -77,6 +77,12 @@ static inline bool brio_owns(const brio_tetrahedra *t, uint32_t tet) {
            (v[3] == t->infinite || brio_zone_has(t->zone, v[3]));
 }
 
+/* The same for the tetrahedron of a facet whose mate's tetrahedron the thread owns: one vertex is new. */
+static inline bool brio_owns_beyond(const brio_tetrahedra *t, uint32_t facet) {
+    uint32_t apex = brio_apex(t, facet);
+    return !t->zone || apex == t->infinite || brio_zone_has(t->zone, apex);
+}
+
 /* Whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the plane of
  * a hull facet the finite neighbour decides. Ties are broken, so that the answer is never on the border. */
 static inline bool brio_in_conflict(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p,

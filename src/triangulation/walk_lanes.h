@@ -37,9 +37,9 @@ static uint32_t walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w, con
     uint32_t tet = brio_walk_begin(t, w);
     unsigned ahead = 15; /* all facets but the one that the walk came through */
     __m256d bound = _mm256_set1_pd(f->orient_static);
+    if ((w->blocked = !brio_owns(t, tet))) return BRIO_NO_TET;
     for (uint64_t steps = 0; steps <= most_steps; steps++, w->steps++) {
         const uint32_t *v = t->tet[tet].vertex;
-        if (t->zone && (w->blocked = !brio_owns(t, tet))) return BRIO_NO_TET;
         if (v[3] == t->infinite) return tet;
         __m256d xyz[3];
         vertices_about(t, v, p, xyz);
@@ -56,6 +56,7 @@ static uint32_t walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w, con
         unsigned first = w->random >> 30;
         unsigned slot = (first + (unsigned)__builtin_ctz((beyond | beyond << 4) >> first)) & 3;
         uint32_t mate = t->tet[tet].mate[slot];
+        if ((w->blocked = !brio_owns_beyond(t, mate))) return BRIO_NO_TET;
         tet = brio_tet_of(mate);
         ahead = 15u ^ 1u << brio_slot_of(mate);
     }
