@@ -239,8 +239,11 @@ static void adopt(flow *f, uint32_t v) {
 
 /* --- the whole --- */
 
-static brio_status run(flow *f) {
+/* Whether it ended within `work` looks at the arcs of orphans. */
+static brio_status run(flow *f, uint64_t work, bool *ended) {
     brio_status status = BRIO_OK;
+    uint64_t done_work = 0;
+    *ended = false;
     while (f->active_head != NO_NODE) {
         uint32_t v = f->active_head, arc = f->side[v] == FREE ? NO_ARC : grow(f, v);
         if (arc == NO_ARC) {
@@ -249,14 +252,20 @@ static brio_status run(flow *f) {
         }
         if (f->time++ % 4096 == 0) BRIO_TRY(brio_progress(f->ctx, "label", 0.75));
         augment(f, arc);
-        while (f->num_orphans) adopt(f, pop_orphan(f));
+        while (f->num_orphans) {
+            uint32_t orphan = pop_orphan(f);
+            done_work += f->first[orphan + 1] - f->first[orphan];
+            adopt(f, orphan);
+        }
+        if (done_work > work) return BRIO_OK;
     }
+    *ended = true;
 done:
     return status;
 }
 
 brio_status brio_max_flow(brio_context *ctx, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
-                          int64_t *terminal, uint8_t *side) {
+                          int64_t *terminal, uint8_t *side, uint64_t work, bool *ended) {
     brio_status status = BRIO_OK;
     flow f = {.ctx = ctx, .num_nodes = num_nodes, .terminal = terminal, .side = side};
     BRIO_REQUIRE(ctx, num_nodes < ORPHAN && num_edges < ORPHAN / 2, BRIO_ERR_TOO_LARGE,
@@ -268,7 +277,7 @@ brio_status brio_max_flow(brio_context *ctx, size_t num_nodes, const brio_flow_e
     BRIO_TRY(BRIO_ALLOC(ctx, f.next_active, num_nodes));
     BRIO_TRY(BRIO_ALLOC(ctx, f.orphans, num_nodes));
     plant(&f);
-    BRIO_TRY(run(&f));
+    BRIO_TRY(run(&f, work, ended));
 done:
     brio_release(ctx, f.first);
     brio_release(ctx, f.head);

@@ -136,12 +136,13 @@ static void cuts_are_minimal_and_least(void) {
         size_t n = brio_rng_below(&rng, 21);
         int64_t terminal[NODES], used[NODES], best = INT64_MAX;
         uint8_t side[NODES];
+        bool ended;
         unsigned from_source = 0, to_sink = 0, all_sources = 255, all_sinks = 255;
         for (size_t i = 0; i < n; i++)
             e[i] = (brio_flow_edge){brio_rng_below(&rng, NODES), brio_rng_below(&rng, NODES),
                                     (int32_t)brio_rng_below(&rng, 6)};
         for (int v = 0; v < NODES; v++) used[v] = terminal[v] = (int64_t)brio_rng_below(&rng, 9) - 4;
-        EXPECT(brio_max_flow(ctx, NODES, e, n, used, side) == BRIO_OK);
+        EXPECT(brio_max_flow(ctx, NODES, e, n, used, side, UINT64_MAX, &ended) == BRIO_OK && ended);
         for (unsigned s = 0; s < 256; s++) {
             int64_t value = cut_value(s, e, n, terminal);
             if (value < best) best = value, all_sources = 255, all_sinks = 255;
