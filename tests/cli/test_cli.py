@@ -686,12 +686,12 @@ class Json(CliTest):
                           ["--record-every", "4000"]]:
             facts = self.facts("delaunay", points, *arguments)
             for entry in facts["rounds"]:
-                self.assert_schema(entry, {**{key: count for key in keys}, "seconds": number})
+                self.assert_schema(entry, {**{key: count for key in keys}, "locate_seconds": number, "seconds": number})
                 self.assertEqual(entry["created"] - entry["destroyed"], entry["tetrahedra"])
             self.assertEqual(facts["rounds"][-1]["created"], facts["created"])
         self.assertEqual([entry["points"] for entry in facts["rounds"]], [4000, 8000, 9000])
         table = self.expect(0, "delaunay", points, "--rounds").text.split("\nrounds")[1]
-        self.assertRegex(table, r"\A +\n +points +tetrahedra .*seconds\n( +[0-9.]+){8}\n")
+        self.assertRegex(table, r"\A +\n +points +tetrahedra .*history +locate_seconds +seconds\n( +[0-9.]+){9}\n")
         self.assertNotIn("rounds", self.facts("delaunay", points))
         self.usage("only one of", "delaunay", points, "--rounds", "--record-every", "9")
 
