@@ -365,6 +365,9 @@ class Memory(CliTest):
         surface = self.path("surface.ply")
         points = self.cloud("few.ply", 20000, "scan")
         self.assert_estimated(self.facts("info", points)["estimate_bytes"]["surface"], "surface", points, "-o", surface)
+        self.assert_estimated(self.facts("info", points)["estimate_bytes"]["medial"], "medial", points)
+        self.assert_estimated(self.facts("info", points)["estimate_bytes"]["offset"], "offset", points, "-o", surface,
+                              "--distance", "0.01")
         self.facts("surface", points, "-o", surface, "--method", "cocone")
         self.assert_estimated(self.facts("info", surface)["estimate_bytes"]["subdivide"],
                               "subdivide", surface, "-o", self.path("fine.ply"))
@@ -899,7 +902,8 @@ class Json(CliTest):
         facts = self.facts("info", self.cloud("a.ply", 500))
         self.assert_schema(facts, {**COMMON_FACTS, "points": count, "faces": count, "tetrahedra": count,
                                    "box": {"min": vector, "max": vector}, "duplicates": count, "spacing": number,
-                                   "estimate_bytes": {"delaunay": count, "surface": count}, "properties": dict})
+                                   "estimate_bytes": {"delaunay": count, "surface": count, "medial": count,
+                                                      "offset": count}, "properties": dict})
 
     def test_generate(self):
         facts = self.facts("generate", "ball", "-n", "50", "-o", self.path("b.xyz"))
