@@ -325,7 +325,7 @@ class NoAnswer(CliTest):
         for command in (["medial"], ["offset", "--distance", "0.1"]):
             run = self.expect(3, *command, mesh, "-o", self.path("out.ply"))
             self.assertIn("along 3 edges", run.err)
-            self.assertIn("--labeling greedy", run.err)
+            self.assertIn("--labeling global", run.err)
         self.assert_only(self.folder, "m.off")
 
     def test_offset_that_swallows_everything(self):
