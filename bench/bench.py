@@ -15,7 +15,7 @@ import re
 import statistics
 import subprocess
 import tempfile
-import numpy as np
+from points import read_points
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DATA = os.path.join(os.environ.get('BRIO_SHARED', os.path.join(HERE, '..', '..', 'shared')), 'data')
@@ -29,8 +29,6 @@ GENERATED = {'uniform': ('cube', -30), 'ball': ('ball', -30), 'clusters': ('clus
 MOMENT_SIZES = [1000, 3000]  # n^2 / 2 tetrahedra
 SCANS = ['happy_raw', 'dragon_raw', 'bunny_raw', 'csite4', 'autzen']
 OTHER_NAMES = {'grid_100': 'grid_1m'}
-SCALARS = {'char': 'i1', 'uchar': 'u1', 'short': '<i2', 'ushort': '<u2', 'int': '<i4', 'uint': '<u4', 'float': '<f4',
-           'double': '<f8'}
 
 Set = collections.namedtuple('Set', 'distribution n ply exponent')  # n is None for a file, ply for a generated set
 Program = collections.namedtuple('Program', 'name threads command')
@@ -83,28 +81,13 @@ def sets_of(names, sizes, files):
     return sets
 
 
-def points_of(path):
-    """x, y, z of a binary little-endian PLY."""
-    with open(path, 'rb') as f:
-        row, count, vertex = [], 0, False
-        for line in iter(f.readline, b'end_header\n'):
-            w = line.decode().split()
-            if w[0] == 'element':
-                vertex = w[1] == 'vertex'
-                count = int(w[2]) if vertex else count
-            elif w[0] == 'property' and vertex:
-                row.append((w[2], SCALARS[w[1]]))
-        a = np.fromfile(f, np.dtype(row), count)
-    return np.stack([a[c].astype('<f8') for c in 'xyz'], 1)
-
-
 def prepare(brio, s, folder):
     """The set as a PLY for brio and as raw doubles for the peers, and its number of points."""
     ply, raw = s.ply or os.path.join(folder, 'points.ply'), os.path.join(folder, 'points.f64')
     if s.n is not None:
         kind = GENERATED[s.distribution][0]
         subprocess.run([brio, 'generate', kind, '-n', str(s.n), '-o', ply, '--quiet'], check=True)
-    points = points_of(ply)
+    points = read_points(ply).astype('<f8')
     points.tofile(raw)
     return ply, raw, len(points)
 

@@ -10,9 +10,8 @@ const option_choice cli_labelings[] = {{"global", BRIO_LABELING_GLOBAL},
                                        {NULL, 0}};
 
 const option_choice cli_labelings_or_mesh[] = {
-    {"mesh", LABELS_OF_MESH},         {"greedy", BRIO_LABELING_GREEDY},
-    {"naive", BRIO_LABELING_NAIVE},   {"theoretical", BRIO_LABELING_THEORETICAL},
-    {"global", BRIO_LABELING_GLOBAL}, {NULL, 0}};
+    {"mesh", LABELS_OF_MESH},       {"global", BRIO_LABELING_GLOBAL},           {"greedy", BRIO_LABELING_GREEDY},
+    {"naive", BRIO_LABELING_NAIVE}, {"theoretical", BRIO_LABELING_THEORETICAL}, {NULL, 0}};
 
 brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, bool *by_mesh) {
     if (*labeling == LABELS_OF_MESH && !input->num_faces)
@@ -24,7 +23,7 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
 
 void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool by_mesh) {
     if (status == BRIO_ERR_NO_ANSWER && by_mesh && labeling == LABELS_OF_INPUT && !r->common.quiet)
-        fputs("brio: --labeling greedy goes by the points of a mesh alone\n", stderr);
+        fputs("brio: --labeling global goes by the points of a mesh alone\n", stderr);
 }
 
 bool cli_has_power_crust_options(const power_crust_options *a) {

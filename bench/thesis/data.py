@@ -1,28 +1,14 @@
 """The thesis' class of data: raw scans, in translated copies, and a molecular iso-surface refined by subdivision."""
 import os
 import subprocess
+import sys
 import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SHARED = os.path.join(os.environ.get('BRIO_SHARED', os.path.join(HERE, '..', '..', '..', 'shared')), 'data')
-SCALARS = {'char': 'i1', 'uchar': 'u1', 'short': '<i2', 'ushort': '<u2', 'int': '<i4', 'uint': '<u4', 'float': '<f4',
-           'double': '<f8', 'int8': 'i1', 'uint8': 'u1', 'int32': '<i4', 'uint32': '<u4', 'float32': '<f4',
-           'float64': '<f8'}
 
-
-def read_points(path):
-    """x, y, z of a binary little-endian PLY."""
-    with open(path, 'rb') as f:
-        row, count, vertex = [], 0, False
-        for line in iter(f.readline, b'end_header\n'):
-            w = line.decode().split()
-            if w[0] == 'element':
-                vertex = w[1] == 'vertex'
-                count = int(w[2]) if vertex else count
-            elif w[0] == 'property' and vertex:
-                row.append((w[2], SCALARS[w[1]]))
-        a = np.fromfile(f, np.dtype(row), count)
-    return np.stack([a[c] for c in 'xyz'], 1)
+sys.path.append(os.path.join(HERE, '..'))
+from points import read_points
 
 
 def _header(n):

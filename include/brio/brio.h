@@ -318,7 +318,8 @@ BRIO_API brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *verti
 /** Gives a mesh polygons (copied): offsets #F + 1, indices offsets[#F]. */
 BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices,
                                          size_t num_faces);
-/** Gives a mesh tetrahedra (copied): #T by 4. */
+/** Gives a mesh tetrahedra (copied): the four vertices of each are at tetrahedra + stride * i (4 where they are packed, 8
+ *  for a view of a triangulation). */
 BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t stride,
                                               size_t num_tetrahedra);
 /** Gives a mesh edges (copied): #E by 2. */
@@ -436,7 +437,7 @@ typedef struct brio_surface_options {
     int triangulate;        /* 1: cut the polygons into triangles; default 0 */
     brio_labeling labeling; /* default global */
     /* A closed mesh in the unit of the points, its vertices being the points or not: poles within it are inner, whatever
-       the labeling; default NULL. BRIO_ERR_NO_ANSWER when it is not closed. */
+     * the labeling; default NULL. BRIO_ERR_NO_ANSWER when it is not closed. */
     const brio_mesh *solid;
     /* Cells of samples whose radius in the co-cone is over 1.3 R / (1 - R) times the distance to the nearer pole are
      * badly shaped, for a surface that is an R-sample; R in (0, 1), smaller for more of them; default 0: none is. */
@@ -575,15 +576,15 @@ typedef struct brio_cocone_stats {
  *  mesh is manifold and oriented as a combinatorial object, for every input; the tight co-cone is closed besides. On an
  *  r-sample of a smooth closed surface, r <= 0.08, the co-cone is homeomorphic to it and within 1.3 r / (1 - r) of the
  *  local feature size (theorem 19 of [Choi 2003]). Does not guarantee: a closed mesh on sparser samples, absence of
- *  self-intersections, that every sample is used. points  #P by 3.   options  NULL for the defaults.   stats  may be
- *  NULL. out     owned by the caller. Its vertices are the points, with the same indices; those that no face has are
- *  left
+ *  self-intersections, that every sample is used.
+ *  points  #P by 3.   options  NULL for the defaults.   stats  may be NULL.
+ *  out     owned by the caller. Its vertices are the points, with the same indices; those that no face has are left
  *          where they are. With options.density: "feature_size", the distance to the nearest pole; "r", an estimate
  *          of the sampling density there (0 where the sample is on no face); "boundary", 1 for a boundary sample (with
  *          options.boundaries too).
  *  Cost: one triangulation; about 50 bytes a tetrahedron more. In N pieces the memory is that of 1/N of the samples and
- *  their surroundings, and 80 bytes a point; on a dense sample the triangles are the same. Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found,
- *  or no inside), and as brio_delaunay.
+ *  their surroundings, and 80 bytes a point; on a dense sample the triangles are the same.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found, or no inside), and as brio_delaunay.
  *  Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
  *            [Dey Giesen Hudson 2001], [Dey Goswami 2003]. */
 BRIO_API brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points,
@@ -663,7 +664,7 @@ BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, 
                                    brio_mesh **out);
 
 /** The surface that BRIO_KIND_SCAN scans, as a closed triangle mesh on a grid of `resolution` cells along the longest
- *  side of its box (0: 160). */
+ *  side of its box (0: 160).   Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out);
 
 typedef struct brio_iso_options {

@@ -1,4 +1,4 @@
-/* Sorting: least-significant-digit radix sort of pairs, and heap sort of indices. */
+/* Least-significant-digit radix sorts: of pairs, of items, of rows by their first number. */
 #include "base/sort.h"
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -134,34 +134,6 @@ brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare,
     if (passes % 2) memcpy(items, spare, n * sizeof *items);
     brio_release(ctx, count);
     return BRIO_OK;
-}
-
-static void sift_down(uint32_t *a, size_t root, size_t n, brio_compare_fn compare, const void *user) {
-    uint32_t moved = a[root];
-    for (size_t child; (child = 2 * root + 1) < n; root = child) {
-        if (child + 1 < n && compare(a[child], a[child + 1], user) < 0) child++;
-        if (compare(moved, a[child], user) >= 0) break;
-        a[root] = a[child];
-    }
-    a[root] = moved;
-}
-
-void brio_sort_indices(uint32_t *a, size_t n, brio_compare_fn compare, const void *user) {
-    if (n <= 24) {
-        for (size_t i = 1; i < n; i++) {
-            uint32_t moved = a[i];
-            size_t j = i;
-            for (; j > 0 && compare(moved, a[j - 1], user) < 0; j--) a[j] = a[j - 1];
-            a[j] = moved;
-        }
-        return;
-    }
-    for (size_t i = n / 2; i-- > 0;) sift_down(a, i, n, compare, user);
-    for (size_t i = n; i-- > 1;) {
-        uint32_t top = a[0];
-        a[0] = a[i], a[i] = top;
-        sift_down(a, 0, i, compare, user);
-    }
 }
 
 uint64_t brio_double_key(double x) {

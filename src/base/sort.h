@@ -1,4 +1,4 @@
-/* Sorting: linear-time radix sort of keys with their values, and a comparison sort of indices. */
+/* Sorting: radix sorts in linear time (sort.c), and in place, of keys and of indices (heap_sort.c). */
 #ifndef BRIO_BASE_SORT_H
 #define BRIO_BASE_SORT_H
 
@@ -10,6 +10,9 @@ brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values,
 /** Sorts n items by the `bits` bits from bit 32 on, stable; spare holds n items, too. Each thread takes at least some
  *  thousands. */
 brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare, size_t n, int bits, int threads);
+
+/** Sorts 64-bit keys in place, in O(n log n) for every input. */
+void brio_sort_keys(uint64_t *keys, size_t n);
 
 /** Negative, zero or positive, as the first index sorts before, with or after the second. */
 typedef int (*brio_compare_fn)(uint32_t, uint32_t, const void *user);

@@ -10,13 +10,10 @@
  *           most 1.3 r / (1 - r) times the local feature size, for which the distance to the nearer pole stands here.
  */
 #include "dual/cell_shape.h"
+#include "base/vector.h"
 #include <math.h>
 
 static const double SQUARED_SINE = 0.14644660940672624; /* of pi / 8 */
-
-static double dot(const double *a, const double *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static void subtract(const double *a, const double *b, double *difference) {
     for (int k = 0; k < 3; k++) difference[k] = a[k] - b[k];
@@ -24,13 +21,13 @@ static void subtract(const double *a, const double *b, double *difference) {
 
 /* Largest squared length of a point of the segment from a to b that is in the co-cone across n; 0 when none is. */
 static double reach_in_cocone(const double *a, const double *b, const double *n) {
-    double d[3], limit = SQUARED_SINE * dot(n, n), most = 0;
+    double d[3], limit = SQUARED_SINE * brio_dot(n, n), most = 0;
     subtract(b, a, d);
     /* in the co-cone: (x.n)^2 - limit x.x <= 0, for x = a + t d the polynomial (q2 t + 2 q1) t + q0 */
-    double an = dot(a, n), dn = dot(d, n), aa = dot(a, a), ad = dot(a, d), dd = dot(d, d);
+    double an = brio_dot(a, n), dn = brio_dot(d, n), aa = brio_dot(a, a), ad = brio_dot(a, d), dd = brio_dot(d, d);
     double q2 = dn * dn - limit * dd, q1 = an * dn - limit * ad, q0 = an * an - limit * aa;
     if (q0 <= 0) most = aa;
-    if (q2 + 2 * q1 + q0 <= 0) most = fmax(most, dot(b, b));
+    if (q2 + 2 * q1 + q0 <= 0) most = fmax(most, brio_dot(b, b));
     double discriminant = q1 * q1 - q2 * q0;
     if (discriminant < 0) return most;
     double sum = -(q1 + copysign(sqrt(discriminant), q1)), root[2] = {sum / q2, q0 / sum};
@@ -45,7 +42,7 @@ static void offer_edge(const brio_cells *c, uint32_t s, const double *from, cons
     if (s >= c->num_samples || c->pole_of[2 * (size_t)s] == UINT32_MAX) return;
     subtract(from, sample, a);
     subtract(to, sample, b);
-    if (dot(a, a) <= square[s] && dot(b, b) <= square[s]) return;
+    if (brio_dot(a, a) <= square[s] && brio_dot(b, b) <= square[s]) return;
     subtract(c->centre + 3 * (size_t)c->pole_of[2 * (size_t)s], sample, n);
     square[s] = fmax(square[s], reach_in_cocone(a, b, n));
 }
@@ -66,5 +63,5 @@ bool brio_cell_is_bad(const brio_cells *c, size_t s, double radius, double densi
     double pole[3];
     if (c->pole_of[2 * s + 1] == UINT32_MAX) return false;
     subtract(c->centre + 3 * (size_t)c->pole_of[2 * s + 1], c->points + 3 * s, pole);
-    return radius > 1.3 * density / (1 - density) * sqrt(dot(pole, pole));
+    return radius > 1.3 * density / (1 - density) * sqrt(brio_dot(pole, pole));
 }

@@ -9,6 +9,7 @@
 #include "dual/feature_size.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/vector.h"
 #include <string.h>
 
 enum { LEAF = 8 };
@@ -73,11 +74,6 @@ static void build(pole_tree *t, size_t begin, size_t end) {
     build(t, middle + 1, end);
 }
 
-static double square_distance(const double *p, const double *q) {
-    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
-    return x * x + y * y + z * z;
-}
-
 static inline double least(double a, double b) {
     return b < a ? b : a;
 }
@@ -85,12 +81,12 @@ static inline double least(double a, double b) {
 /* The least of `best` and the squared distances from p to the poles of a range. */
 static double nearest(const pole_tree *t, const double *p, size_t begin, size_t end, double best) {
     if (end - begin <= LEAF) {
-        for (size_t i = begin; i < end; i++) best = least(best, square_distance(p, t->pole[i]));
+        for (size_t i = begin; i < end; i++) best = least(best, brio_square_distance(p, t->pole[i]));
         return best;
     }
     size_t middle = begin + (end - begin) / 2;
     double across = p[t->axis[middle]] - t->pole[middle][t->axis[middle]];
-    best = least(best, square_distance(p, t->pole[middle]));
+    best = least(best, brio_square_distance(p, t->pole[middle]));
     bool below = across < 0;
     best = below ? nearest(t, p, begin, middle, best) : nearest(t, p, middle + 1, end, best);
     if (across * across >= best) return best;
@@ -102,7 +98,7 @@ static double nearest_of(const pole_tree *t, const brio_pole_vectors *v, size_t 
     double best = INFINITY;
     for (int side = 0; side < 2; side++) {
         size_t own = v->pole[2 * p + (size_t)side];
-        if (own < v->num_finite) best = least(best, square_distance(v->points + 3 * p, v->centre + 3 * own));
+        if (own < v->num_finite) best = least(best, brio_square_distance(v->points + 3 * p, v->centre + 3 * own));
     }
     return nearest(t, v->points + 3 * p, 0, t->count, best);
 }

@@ -11,6 +11,7 @@
 #include "dual/pole_vectors.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "dual/position_order.h"
 #include "predicates/circumcentre.h"
 #include <string.h>
 
@@ -48,27 +49,6 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
 
 /* --- which of two Voronoi vertices is farther --- */
 
-/* Positions of the vertices of a finite tetrahedron, ascending. */
-static void sorted_positions(const brio_pole_vectors *v, uint32_t tet, const double *p[4]) {
-    for (int i = 0; i < 4; i++) p[i] = v->points + 3 * (size_t)v->t.tet[tet].vertex[i];
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {
-            const double *swap = p[j];
-            p[j] = p[j - 1], p[j - 1] = swap;
-        }
-}
-
-/* Orders Voronoi vertices at the same distance by what does not depend on the order of anything. */
-static int compare_tets(const brio_pole_vectors *v, uint32_t s, uint32_t t) {
-    const double *p[4], *q[4];
-    int sign = brio_lexicographic(v->centre + 3 * (size_t)s, v->centre + 3 * (size_t)t);
-    if (sign) return sign;
-    sorted_positions(v, s, p);
-    sorted_positions(v, t, q);
-    for (int i = 0; i < 4 && !sign; i++) sign = brio_lexicographic(p[i], q[i]);
-    return sign;
-}
-
 /* Makes a tetrahedron, whose centre lies at `to` from sample p, the pole of p unless there is a farther one. Threads
  * may offer at once: the farthest one wins, whoever comes first. */
 static inline void offer(const brio_pole_vectors *v, uint32_t *pole, size_t p, uint32_t tet, const double *to) {
@@ -80,7 +60,9 @@ static inline void offer(const brio_pole_vectors *v, uint32_t *pole, size_t p, u
             if (now >= v->num_finite) return; /* on the hull */
             brio_towards_centre(v, now, p, other);
             double there = square(other);
-            if (far < there || (far == there && compare_tets(v, tet, now) <= 0)) return;
+            if (far < there ||
+                (far == there && brio_compare_by_position(v->points, v->t.tet, v->centre, tet, now) <= 0))
+                return;
         }
         if (__atomic_compare_exchange_n(pole, &now, tet, true, __ATOMIC_RELEASE, __ATOMIC_ACQUIRE)) return;
     }

@@ -11,7 +11,9 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/sort.h"
+#include "base/vector.h"
 #include "dual/cell_shape.h"
+#include "dual/position_order.h"
 #include "order/hilbert.h"
 #include "predicates/circumcentre.h"
 #include "predicates/predicates.h"
@@ -41,39 +43,18 @@ static void find_centres(finder *f) {
     }
 }
 
-static double square_distance(const double *p, const double *q) {
-    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
-    return x * x + y * y + z * z;
-}
-
-/* Positions of a tetrahedron's vertices, ascending. */
-static void sorted_positions(const finder *f, uint32_t tet, const double *p[4]) {
-    for (int i = 0; i < 4; i++) p[i] = f->points + 3 * (size_t)f->tet[tet].vertex[i];
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {
-            const double *swap = p[j];
-            p[j] = p[j - 1], p[j - 1] = swap;
-        }
-}
-
 static int compare_tets(const finder *f, uint32_t s, uint32_t t) {
-    const double *p[4], *q[4];
-    int sign = brio_lexicographic(centre_of(f, s), centre_of(f, t));
-    if (sign) return sign;
-    sorted_positions(f, s, p);
-    sorted_positions(f, t, q);
-    for (int i = 0; i < 4 && !sign; i++) sign = brio_lexicographic(p[i], q[i]);
-    return sign;
+    return brio_compare_by_position(f->points, f->tet, f->centre, s, t);
 }
 
 static bool farther(const finder *f, uint32_t tet, double distance, uint32_t than, const double *sample) {
-    double other = square_distance(centre_of(f, than), sample);
+    double other = brio_square_distance(centre_of(f, than), sample);
     return distance > other || (distance == other && compare_tets(f, tet, than) > 0);
 }
 
 /* Keeps the farther of the best tetrahedron so far and this one. */
 static inline void offer(const finder *f, uint32_t *best, uint32_t tet, const double *sample) {
-    double distance = square_distance(centre_of(f, tet), sample);
+    double distance = brio_square_distance(centre_of(f, tet), sample);
     uint32_t now = __atomic_load_n(best, __ATOMIC_RELAXED);
     while (now == NO_TET || farther(f, tet, distance, now, sample))
         if (__atomic_compare_exchange_n(best, &now, tet, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) break;
@@ -165,8 +146,8 @@ static void fill_poles(const finder *f, const uint32_t *list, brio_poles *poles)
     for (size_t p = 0; p < poles->count; p++) {
         const double *position[4];
         memcpy(poles->centre + 3 * p, centre_of(f, list[p]), 3 * sizeof *poles->centre);
-        sorted_positions(f, list[p], position);
-        poles->square[p] = square_distance(poles->centre + 3 * p, position[0]);
+        brio_sorted_positions(f->points, f->tet + list[p], position);
+        poles->square[p] = brio_square_distance(poles->centre + 3 * p, position[0]);
         poles->bounding[p] = 0;
         for (int i = 0; i < 4; i++)
             if (f->tet[list[p]].vertex[i] >= f->num_samples) poles->bounding[p] = 1;

@@ -2,6 +2,7 @@
  * samples in it, and those across a smooth surface are longer. */
 #include "dual/spacing.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include <math.h>
 
 enum { NEAREST = 6 };
@@ -23,11 +24,7 @@ static void offer(neighbours *n, uint32_t sample, float square) {
 }
 
 static void offer_edge(neighbours *list, const double *points, uint32_t a, uint32_t b) {
-    double square = 0;
-    for (size_t k = 0; k < 3; k++) {
-        double d = points[3 * (size_t)a + k] - points[3 * (size_t)b + k];
-        square += d * d;
-    }
+    double square = brio_square_distance(points + 3 * (size_t)a, points + 3 * (size_t)b);
     offer(&list[a], b, (float)square);
     offer(&list[b], a, (float)square);
 }

@@ -7,6 +7,7 @@
  * the quotient less certain than the goal, the same formula is evaluated in double-doubles, and at last in exact
  * dyadic numbers. Differences are first scaled by a power of two to at most 1, so that nothing overflows on the way. */
 #include "predicates/circumcentre.h"
+#include "base/scale.h"
 #include "brio/brio.h"
 #include "predicates/double_double.h"
 #include "predicates/dyadic.h"
@@ -156,14 +157,6 @@ static void sort_ascending(const double *p[4]) {
     order_two(&p[1], &p[2]);
 }
 
-/* 2^e for exponents of normal numbers, sparing a library call. */
-static double power_of_two(int e) {
-    uint64_t bits = (uint64_t)(e + 1023) << 52;
-    double x;
-    __builtin_memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
 static bool ordinary(int exponent) {
     return exponent > -400 && exponent < 400;
 }
@@ -196,7 +189,7 @@ static bool solve(const double *const p[4], bool weighted, double goal, int expo
     double r[3][3], weight[3] = {0, 0, 0}, scale;
     permanents permanent;
     if (!ordinary(exponent)) return solve_exact(p, weighted, exponent, s);
-    scale = power_of_two(-exponent);
+    scale = brio_power_of_two(-exponent);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) r[i][k] = p[i + 1][k] * scale - p[0][k] * scale;
         if (weighted) weight[i] = p[i + 1][3] * scale * scale - p[0][3] * scale * scale;
@@ -210,7 +203,7 @@ static bool find_centre(const double *p[4], bool weighted, double goal, double c
     sort_ascending(p);
     int exponent = exponent_of(p);
     if (!solve(p, weighted, goal, exponent, &s)) return false;
-    double unit = ordinary(exponent) ? power_of_two(exponent) : 1, far = 0;
+    double unit = ordinary(exponent) ? brio_power_of_two(exponent) : 1, far = 0;
     *error = ordinary(exponent) ? s.error * unit : ldexp(s.error, exponent);
     for (int k = 0; k < 3; k++) {
         centre[k] = p[0][k] + (ordinary(exponent) ? s.offset[k] * unit : ldexp(s.offset[k], exponent));

@@ -5,6 +5,7 @@
  * the sum 256. That decides a zero in tens of nanoseconds, where dyadic numbers take a microsecond. Other calls are
  * declined. */
 #include "predicates/predicates.h"
+#include "base/scale.h"
 #include <string.h>
 
 typedef __int128 wide;
@@ -39,13 +40,6 @@ static inline bool exact_difference(double a, double b, double *d) {
     return (a - (s - t)) - (b + t) == 0;
 }
 
-static double power_of_two(int e) {
-    uint64_t bits = (uint64_t)(e + 1023) << 52;
-    double x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
 /* Rows of integers relative to the last point; false when the points are on no grid of WIDE_BITS. */
 static bool grid_rows(const double *const *p, int count, const double *origin, bool weighted, int64_t (*row)[3],
                       wide *weight) {
@@ -71,7 +65,7 @@ static bool grid_rows(const double *const *p, int count, const double *origin, b
         }
     }
     if (s.high - grid > WIDE_BITS || grid < -500 || grid > 400) return false;
-    double unit = power_of_two(-grid);
+    double unit = brio_power_of_two(-grid);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++) row[i][k] = (int64_t)(d[i][k] * unit);
         if (weighted) weight[i] = (wide)(w[i] * unit * unit);

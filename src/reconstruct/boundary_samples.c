@@ -9,6 +9,7 @@
  * Based on: Dey, Giesen. Detecting undersampling in surface reconstruction. SoCG 2001. */
 #include "reconstruct/boundary_samples.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include <math.h>
 
 /* Radius over height, and the cosine of the angle between axes (pi / 6), for interior samples. A ratio of 0.8 finds the
@@ -33,19 +34,15 @@ typedef struct {
 
 /* --- radius --- */
 
-static double dot(const double *u, const double *v) {
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
-
 /* How far from the sample the way from `in`, in its co-cone, along `way` leaves it: the one positive root t of
  * (x . axis)^2 = sine^2 |x|^2 at x = in + t way. All relative to the sample. */
 static double border_distance(const double *axis, double sine, const double *in, const double *way) {
-    double along = dot(in, axis), slope = dot(way, axis), s = sine * sine;
-    double a = slope * slope - s * dot(way, way), b = along * slope - s * dot(in, way);
-    double c = fmin(along * along - s * dot(in, in), 0), root = sqrt(fmax(b * b - a * c, 0));
+    double along = brio_dot(in, axis), slope = brio_dot(way, axis), s = sine * sine;
+    double a = slope * slope - s * brio_dot(way, way), b = along * slope - s * brio_dot(in, way);
+    double c = fmin(along * along - s * brio_dot(in, in), 0), root = sqrt(fmax(b * b - a * c, 0));
     double t = b > 0 ? -c / (b + root) : a > 0 ? (root - b) / a : 0;
     double x[3] = {in[0] + t * way[0], in[1] + t * way[1], in[2] + t * way[2]};
-    return sqrt(dot(x, x));
+    return sqrt(brio_dot(x, x));
 }
 
 /* How far from p the Voronoi edge between two tetrahedra reaches within the co-cone of p, which it meets. At least the
@@ -61,10 +58,10 @@ static double reach(const brio_cocones *c, uint32_t p, const uint32_t tet[2]) {
     }
     if (isnan(end[0][0] + end[1][0]) || (ray && inside[1])) return INFINITY;
     for (int k = 0; k < 3; k++) way[k] = ray ? end[1][k] : end[1][k] - end[0][k], back[k] = -way[k];
-    double t = inside[0] ? 0 : inside[1] ? 1 : -dot(end[0], axis) / dot(way, axis);
+    double t = inside[0] ? 0 : inside[1] ? 1 : -brio_dot(end[0], axis) / brio_dot(way, axis);
     for (int k = 0; k < 3; k++) middle[k] = end[0][k] + t * way[k];
-    double first = inside[0] ? sqrt(dot(end[0], end[0])) : border_distance(axis, sine, middle, back);
-    double second = inside[1] ? sqrt(dot(end[1], end[1])) : border_distance(axis, sine, middle, way);
+    double first = inside[0] ? sqrt(brio_dot(end[0], end[0])) : border_distance(axis, sine, middle, back);
+    double second = inside[1] ? sqrt(brio_dot(end[1], end[1])) : border_distance(axis, sine, middle, way);
     return fmax(first, second);
 }
 
@@ -72,7 +69,7 @@ static double reach(const brio_cocones *c, uint32_t p, const uint32_t tet[2]) {
 
 static double axis_cosine(const brio_cocones *c, uint32_t p, uint32_t q) {
     const double *u = c->dual->vector + 3 * (size_t)p, *v = c->dual->vector + 3 * (size_t)q;
-    return fabs(dot(u, v));
+    return fabs(brio_dot(u, v));
 }
 
 /* Called for a facet whose Voronoi edge meets the co-cone of its corner k. */
@@ -109,7 +106,7 @@ static double height(const brio_pole_vectors *v, size_t p) {
     double to[3];
     if (pole == BRIO_INFINITE) return INFINITY;
     brio_towards_centre(v, pole, p, to);
-    return sqrt(dot(to, to));
+    return sqrt(brio_dot(to, to));
 }
 
 /* Notes which samples a later interior one makes interior. */

@@ -211,3 +211,8 @@ done:
     brio_release(g->ctx, l.heap);
     return status;
 }
+
+brio_status brio_label_finish(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
+    for (size_t p = 0; p < g->poles->count; p++) stats->unreached += label[p] == BRIO_LABEL_NONE;
+    return stats->unreached ? brio_label_greedy(g, label, stats) : BRIO_OK;
+}

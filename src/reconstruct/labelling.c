@@ -62,8 +62,3 @@ void brio_label_spread(const brio_pole_graph *g, const uint8_t *certain, uint8_t
         brio_pole_graph_opposite(g, p, reach, &s);
     }
 }
-
-brio_status brio_label_finish(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
-    for (size_t p = 0; p < g->poles->count; p++) stats->unreached += label[p] == BRIO_LABEL_NONE;
-    return stats->unreached ? brio_label_greedy(g, label, stats) : BRIO_OK;
-}

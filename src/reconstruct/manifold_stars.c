@@ -11,6 +11,7 @@
  * Invariant: a fixed tetrahedron is outer. */
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/sort.h"
 #include "reconstruct/label_boundary.h"
 #include "reconstruct/manifold_extraction.h"
 #include "surface/edge_rings.h"

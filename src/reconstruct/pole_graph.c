@@ -7,6 +7,7 @@
 #include "reconstruct/pole_graph.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/sort.h"
 #include "surface/edge_rings.h"
 #include "triangulation/ring.h"
 #include <math.h>

@@ -15,6 +15,7 @@
  * Threads share the work. Nothing depends on its order: a root is the first element of its set, counts are whole
  * numbers, and areas and volumes are summed in parts of their own. */
 #include "base/parallel.h"
+#include "base/sort.h"
 #include "surface/edge_rings.h"
 #include "surface/union_find.h"
 #include <math.h>

@@ -9,6 +9,7 @@
 #include "surface/closest_point.h"
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "base/vector.h"
 #include <math.h>
 #include <string.h>
 
@@ -192,26 +193,17 @@ void brio_triangle_tree_free(brio_context *ctx, brio_triangle_tree *tree) {
 
 /* --- one triangle --- */
 
-static double dot(const double *a, const double *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double square_distance(const double *a, const double *b) {
-    double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return dot(d, d);
-}
-
 /* The point of segment ab nearest to p, which may be one point only. */
 static void closest_on_segment(const double *a, const double *b, const double *p, double *closest) {
     double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    double length = dot(u, u), t = length > 0 ? fmin(fmax(dot(w, u) / length, 0), 1) : 0;
+    double length = brio_dot(u, u), t = length > 0 ? fmin(fmax(brio_dot(w, u) / length, 0), 1) : 0;
     for (int k = 0; k < 3; k++) closest[k] = t < 1 ? a[k] + t * u[k] : b[k];
 }
 
 /* Whether p lies over the inside of triangle (a, a+u, a+v); if so, its foot in the plane. */
 static bool closest_inside(const double *a, const double *u, const double *v, const double *p, double *closest) {
     double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
+    double uu = brio_dot(u, u), uv = brio_dot(u, v), vv = brio_dot(v, v), wu = brio_dot(w, u), wv = brio_dot(w, v);
     double determinant = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
     if (!(determinant > 0 && s >= 0 && t >= 0 && s + t <= determinant)) return false;
     for (int k = 0; k < 3; k++) closest[k] = a[k] + s / determinant * u[k] + t / determinant * v[k];
@@ -225,9 +217,9 @@ static void closest_on_triangle(const double *a, const double *b, const double *
     double other[3];
     closest_on_segment(a, b, p, closest);
     closest_on_segment(b, c, p, other);
-    if (square_distance(p, other) < square_distance(p, closest)) memcpy(closest, other, sizeof other);
+    if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
     closest_on_segment(c, a, p, other);
-    if (square_distance(p, other) < square_distance(p, closest)) memcpy(closest, other, sizeof other);
+    if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
 }
 
 /* --- searching --- */
@@ -266,7 +258,7 @@ double brio_closest_point(const brio_triangle_tree *tree, const double *p, doubl
             const uint32_t *c = tree->triangles[t];
             closest_on_triangle(tree->vertices + 3 * (size_t)c[0], tree->vertices + 3 * (size_t)c[1],
                                 tree->vertices + 3 * (size_t)c[2], p, q);
-            double distance = square_distance(p, q);
+            double distance = brio_square_distance(p, q);
             if (distance >= best) continue;
             best = distance;
             *triangle = t;

@@ -6,42 +6,7 @@
  * heapsort bounds the buckets of the others. */
 #include "surface/edge_rings.h"
 #include "base/parallel.h"
-
-enum { SHORT_BUCKET = 24 };
-
-static void insertion_sort(uint64_t *keys, size_t count) {
-    for (size_t i = 1; i < count; i++) {
-        uint64_t key = keys[i];
-        size_t j = i;
-        for (; j > 0 && keys[j - 1] > key; j--) keys[j] = keys[j - 1];
-        keys[j] = key;
-    }
-}
-
-/* Restores the heap under `root` after its key has shrunk. */
-static void sift_down(uint64_t *keys, size_t root, size_t count) {
-    uint64_t key = keys[root];
-    for (size_t child; (child = 2 * root + 1) < count; root = child) {
-        if (child + 1 < count && keys[child + 1] > keys[child]) child++;
-        if (keys[child] <= key) break;
-        keys[root] = keys[child];
-    }
-    keys[root] = key;
-}
-
-void brio_sort_keys(uint64_t *keys, size_t count) {
-    if (count <= SHORT_BUCKET) {
-        insertion_sort(keys, count);
-        return;
-    }
-    for (size_t i = count / 2; i-- > 0;) sift_down(keys, i, count);
-    for (size_t last = count - 1; last > 0; last--) {
-        uint64_t key = keys[0];
-        keys[0] = keys[last];
-        keys[last] = key;
-        sift_down(keys, 0, last);
-    }
-}
+#include "base/sort.h"
 
 brio_status brio_mesh_check_faces(brio_context *ctx, const brio_mesh *mesh) {
     brio_status status = BRIO_OK;

@@ -5,9 +5,6 @@
 
 #include "base/memory.h"
 
-/** Sorts 64-bit keys in place, in O(n log n) for every input. */
-void brio_sort_keys(uint64_t *keys, size_t count);
-
 /** BRIO_OK when the faces of a mesh are sound: offsets that ascend from 0, vertices that exist, and no more corners
  *  than 32 bits can name. Otherwise BRIO_ERR_ARGUMENT or BRIO_ERR_TOO_LARGE, with the first face that is not. */
 brio_status brio_mesh_check_faces(brio_context *ctx, const brio_mesh *mesh);

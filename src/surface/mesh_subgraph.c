@@ -3,11 +3,6 @@
  * The trees are made from all edges; the subgraph of bounded degree goes by the triangles. */
 #include "surface/spanning_subgraph.h"
 
-void brio_edges_free(brio_context *ctx, brio_edges *edges) {
-    brio_release(ctx, edges->ends);
-    *edges = (brio_edges){0};
-}
-
 static brio_status spanning_tree(brio_context *ctx, const brio_mesh *mesh, brio_subgraph kind, brio_edges *out) {
     brio_status status = BRIO_OK;
     brio_edges all = {0};

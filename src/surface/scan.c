@@ -14,6 +14,7 @@
 #include "surface/scan.h"
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "base/vector.h"
 #include "surface/sculpture.h"
 #include <math.h>
 #include <string.h>
@@ -56,18 +57,8 @@ typedef struct {
 
 /* --- vectors --- */
 
-static double dot(const double *a, const double *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double *a, const double *b, double *out) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static void normalise(double *a) {
-    double length = sqrt(dot(a, a));
+    double length = sqrt(brio_dot(a, a));
     for (int k = 0; k < 3; k++) a[k] /= length;
 }
 
@@ -96,9 +87,9 @@ static sensor sensor_of_view(const scanner *s, int view) {
         e.forward[k] = -towards[k];
     }
     double other[3] = {fabs(z) > 0.9, 0, fabs(z) <= 0.9}, right[3], up[3];
-    cross(e.forward, other, right);
+    brio_cross(e.forward, other, right);
     normalise(right);
-    cross(right, e.forward, up);
+    brio_cross(right, e.forward, up);
     brio_rng rng = brio_rng_new(s->seed + (uint64_t)view);
     double roll = full_turn * brio_rng_double(&rng), c = cos(roll), q = sin(roll);
     for (int k = 0; k < 3; k++) {
@@ -135,7 +126,7 @@ static double incidence(const double *p, const double *ray) {
         q[k] -= 2 * h;
         normal[k] -= brio_sculpture(q, NULL);
     }
-    return -dot(normal, ray) / sqrt(dot(normal, normal));
+    return -brio_dot(normal, ray) / sqrt(brio_dot(normal, normal));
 }
 
 /* Distance along the ray at which the scanner sees the surface; 0 when it does not. */
@@ -187,7 +178,7 @@ static bool measure(const scanner *s, const sensor *e, double raster, int view, 
     ray_of_pixel(s, e, raster, pixel, ray);
     double t = trace(s, e, ray);
     if (t == 0) return false;
-    double spacing = 2 * s->half_width / raster * t * dot(ray, e->forward);
+    double spacing = 2 * s->half_width / raster * t * brio_dot(ray, e->forward);
     brio_rng rng = brio_rng_new(brio_mix(s->seed ^ (uint64_t)view) + pixel);
     walk(e->position, ray, t + s->noise * spacing * gaussian(&rng), p);
     return true;

@@ -15,6 +15,7 @@
  *           link condition). */
 #include "surface/simplify.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "surface/edge_rings.h"
 #include "surface/quadric.h"
 #include <math.h>
@@ -228,10 +229,6 @@ static void normal_of(const double *a, const double *b, const double *c, double 
     n[2] = u[0] * v[1] - u[1] * v[0];
 }
 
-static double dot(const double *a, const double *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void normal_before(const simplifier *s, uint32_t h, double *n) {
     normal_of(at(s, s->vertex[h]), at(s, end_of(s, h)), at(s, s->vertex[before_in_triangle(h)]), n);
 }
@@ -252,10 +249,10 @@ static bool keeps_its_side(const simplifier *s, uint32_t g, const double *point,
     double old[3], new[3];
     normal_before(s, g, old);
     normal_of(point, b, c, new);
-    const double *side = dot(old, together) > 0 ? old : together;
-    double size = sqrt(dot(new, new));
-    if (!(size > 0) && dot(old, old) > 0) return false;
-    return dot(new, side) >= LEAST_COSINE * size * sqrt(dot(side, side));
+    const double *side = brio_dot(old, together) > 0 ? old : together;
+    double size = sqrt(brio_dot(new, new));
+    if (!(size > 0) && brio_dot(old, old) > 0) return false;
+    return brio_dot(new, side) >= LEAST_COSINE * size * sqrt(brio_dot(side, side));
 }
 
 /* The same for all triangles round the start of h but the two at its edge. */

@@ -1,15 +1,21 @@
 /* Spanning trees of a graph: breadth-first, and minimum by length.
  *
  * The minimum spanning tree takes the edges by length, shortest first, and keeps each that joins two trees; trees are
- * known by a union-find structure with union by rank and path halving. The sort is by digits, so that all of it is
- * linear but for the inverse of Ackermann's function.
+ * known by a union-find structure. The sort is by digits, so that finding the trees is all that is not linear, and no
+ * more than a logarithm above it.
  *
  * Based on: Kruskal. On the shortest spanning subtree of a graph and the traveling salesman problem. Proceedings of the
- * American Mathematical Society 1956. Tarjan, van Leeuwen. Worst-case analysis of set union algorithms. JACM 1984. */
+ * American Mathematical Society 1956. */
 #include "base/sort.h"
 #include "surface/edge_rings.h"
 #include "surface/spanning_subgraph.h"
+#include "surface/union_find.h"
 #include <math.h>
+
+void brio_edges_free(brio_context *ctx, brio_edges *edges) {
+    brio_release(ctx, edges->ends);
+    *edges = (brio_edges){0};
+}
 
 brio_status brio_mesh_edges(brio_context *ctx, const brio_mesh *mesh, brio_edges *out) {
     brio_status status = BRIO_OK;
@@ -130,23 +136,11 @@ static double squared_length(const double *a, const double *b, int scale) {
     return sum;
 }
 
-static uint32_t find_root(uint32_t *parent, uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-}
-
-static void join_by_length(const brio_edges *edges, const uint32_t *order, uint32_t *parent, uint8_t *rank,
-                           brio_edges *out) {
+static void join_by_length(const brio_edges *edges, const uint32_t *order, uint32_t *parent, brio_edges *out) {
     for (size_t i = 0; i < edges->count; i++) {
         const uint32_t *ends = edges->ends + 2 * (size_t)order[i];
-        uint32_t a = find_root(parent, ends[0]), b = find_root(parent, ends[1]);
-        if (a == b) continue;
-        if (rank[a] < rank[b]) {
-            parent[a] = b;
-        } else {
-            parent[b] = a;
-            rank[a] += rank[a] == rank[b];
-        }
+        if (brio_find(parent, ends[0]) == brio_find(parent, ends[1])) continue;
+        brio_unite(parent, ends[0], ends[1], true);
         add_edge(out, ends[0], ends[1]);
     }
 }
@@ -156,13 +150,11 @@ brio_status brio_minimum_spanning_tree(brio_context *ctx, const brio_edges *edge
     brio_status status = BRIO_OK;
     uint64_t *keys = NULL;
     uint32_t *order = NULL, *parent = NULL;
-    uint8_t *rank = NULL;
     *out = (brio_edges){0};
     BRIO_TRY(check_edges(ctx, edges, num_vertices));
     BRIO_TRY(BRIO_ALLOC(ctx, keys, edges->count));
     BRIO_TRY(BRIO_ALLOC(ctx, order, edges->count));
     BRIO_TRY(BRIO_ALLOC(ctx, parent, num_vertices));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, rank, num_vertices));
     BRIO_TRY(start_forest(ctx, edges, num_vertices, out));
     int scale = scale_of(edges, points);
     for (size_t e = 0; e < edges->count; e++) {
@@ -172,13 +164,12 @@ brio_status brio_minimum_spanning_tree(brio_context *ctx, const brio_edges *edge
     }
     BRIO_TRY(brio_radix_sort(ctx, keys, order, edges->count, 64));
     for (size_t v = 0; v < num_vertices; v++) parent[v] = (uint32_t)v;
-    join_by_length(edges, order, parent, rank, out);
+    join_by_length(edges, order, parent, out);
     BRIO_TRY(BRIO_RESIZE(ctx, out->ends, 2 * out->count));
 done:
     brio_release(ctx, keys);
     brio_release(ctx, order);
     brio_release(ctx, parent);
-    brio_release(ctx, rank);
     if (status != BRIO_OK) brio_edges_free(ctx, out);
     return status;
 }

@@ -10,31 +10,18 @@
 #include "base/memory.h"
 #include "predicates/predicates.h"
 #include "surface/edge_rings.h"
+#include "surface/union_find.h"
 #include <string.h>
 
-static uint32_t find(uint32_t *parent, uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-/* To the lower index, so that a fan is known by its first corner. */
-static void unite(uint32_t *parent, uint32_t i, uint32_t j) {
-    i = find(parent, i);
-    j = find(parent, j);
-    if (i < j)
-        parent[j] = i;
-    else
-        parent[i] = j;
-}
-
+/* A set is known by its least element: a fan by its first corner. */
 static void join_corners(const brio_mesh *m, const uint32_t *ring, const uint32_t *next, uint32_t *fan) {
     const uint32_t *v = m->face_vertices;
     for (uint32_t h = 0; h < m->face_offsets[m->num_faces]; h++) {
         uint32_t g = ring[h];
         if (g <= h || ring[g] != h) continue;
         bool same_way = v[h] == v[g];
-        unite(fan, h, same_way ? g : next[g]);
-        unite(fan, next[h], same_way ? next[g] : g);
+        brio_unite(fan, h, same_way ? g : next[g], true);
+        brio_unite(fan, next[h], same_way ? next[g] : g, true);
     }
 }
 
@@ -134,7 +121,7 @@ static brio_status split_fans(brio_context *ctx, brio_mesh *m, uint32_t *ring) {
         }
     if (corners) join_corners(m, ring, next, fan);
     for (uint32_t h = 0; h < corners; h++) {
-        uint32_t first = find(fan, h);
+        uint32_t first = brio_find(fan, h);
         if (first == h) from[count] = m->face_vertices[h], next[h] = (uint32_t)count++; /* next: now the fan's number */
         ring[h] = next[first]; /* ring: now the new vertex of the corner */
     }

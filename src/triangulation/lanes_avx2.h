@@ -1,4 +1,4 @@
-/* Four doubles side by side: the vector operations of conflict_lanes.h and sides_lanes.h in AVX2. */
+/* Four doubles side by side: the vector operations of conflict_lanes.h in AVX2. */
 #ifndef BRIO_TRIANGULATION_LANES_AVX2_H
 #define BRIO_TRIANGULATION_LANES_AVX2_H
 

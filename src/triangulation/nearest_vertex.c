@@ -7,6 +7,7 @@
  * of the point only those neighbours matter (the rivals) whose distance hardly differed. */
 #include "triangulation/nearest_vertex.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include <string.h>
 
 enum { LARGE_STAR = 256 };
@@ -45,18 +46,13 @@ static uint32_t nearer(const brio_kernel *k, const double *x, uint32_t u, uint32
     return sign < 0 ? u : v;
 }
 
-static double square_distance(const double *p, const double *q) {
-    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
-    return x * x + y * y + z * z;
-}
-
 /* Holds neighbour u against vertex m->vertex as seen from m->centre: a rival, or a bound of the radius. */
 static brio_status remember(brio_nearest *n, brio_nearest_memory *m, uint32_t u) {
     const double *a = n->k->record[m->vertex], *b = n->k->record[u];
-    double to_a = square_distance(m->centre, a), to_b = square_distance(m->centre, b);
+    double to_a = brio_square_distance(m->centre, a), to_b = brio_square_distance(m->centre, b);
     double margin = to_b - b[3] - (to_a - a[3]);
     if (margin > TRUSTED * (to_a + to_b + fabs(a[3]) + fabs(b[3])) + UNDERFLOW) {
-        m->radius = fmin(m->radius, margin / (4 * sqrt(square_distance(a, b))));
+        m->radius = fmin(m->radius, margin / (4 * sqrt(brio_square_distance(a, b))));
         return BRIO_OK;
     }
     brio_status status = BRIO_RESERVE(n->k->ctx, m->rival, m->capacity, m->num_rivals + 1);
@@ -82,7 +78,7 @@ done:
 
 static const brio_nearest_memory *recall(const brio_nearest *n, uint32_t v, const double *x) {
     const brio_nearest_memory *m = &n->memory[v % BRIO_NEAREST_MEMORIES];
-    return m->vertex == v && sqrt(square_distance(x, m->centre)) < m->radius ? m : NULL;
+    return m->vertex == v && sqrt(brio_square_distance(x, m->centre)) < m->radius ? m : NULL;
 }
 
 /* The nearest of a vertex and its neighbours. */

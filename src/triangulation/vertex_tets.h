@@ -2,6 +2,7 @@
 #ifndef BRIO_TRIANGULATION_VERTEX_TETS_H
 #define BRIO_TRIANGULATION_VERTEX_TETS_H
 
+#include "base/vector.h"
 #include "triangulation/kernel.h"
 
 /** vertex_tet[v] = a tetrahedron of v, for all vertices, the infinite one included; others are left as they are. */
@@ -15,12 +16,6 @@ static inline void brio_vertex_tets_fill(const brio_kernel *k, uint32_t *vertex_
 static inline void brio_vertex_tets_filled(const brio_kernel *k, uint32_t *vertex_tet) {
     for (size_t b = 0; b < k->cavity.num_created; b++)
         for (int i = 0; i < 4; i++) vertex_tet[k->t.tet[k->cavity.created[b]].vertex[i]] = k->cavity.created[b];
-}
-
-/** Infinite where doubles overflow: such a vertex is never the nearest. */
-static inline double brio_square_distance(const double *p, const double *q) {
-    double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
-    return x * x + y * y + z * z;
 }
 
 #endif

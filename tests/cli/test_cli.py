@@ -325,7 +325,7 @@ class NoAnswer(CliTest):
         for command in (["medial"], ["offset", "--distance", "0.1"]):
             run = self.expect(3, *command, mesh, "-o", self.path("out.ply"))
             self.assertIn("along 3 edges", run.err)
-            self.assertIn("--labeling greedy", run.err)
+            self.assertIn("--labeling global", run.err)
         self.assert_only(self.folder, "m.off")
 
     def test_offset_that_swallows_everything(self):
@@ -365,6 +365,9 @@ class Memory(CliTest):
         surface = self.path("surface.ply")
         points = self.cloud("few.ply", 20000, "scan")
         self.assert_estimated(self.facts("info", points)["estimate_bytes"]["surface"], "surface", points, "-o", surface)
+        self.assert_estimated(self.facts("info", points)["estimate_bytes"]["medial"], "medial", points)
+        self.assert_estimated(self.facts("info", points)["estimate_bytes"]["offset"], "offset", points, "-o", surface,
+                              "--distance", "0.01")
         self.facts("surface", points, "-o", surface, "--method", "cocone")
         self.assert_estimated(self.facts("info", surface)["estimate_bytes"]["subdivide"],
                               "subdivide", surface, "-o", self.path("fine.ply"))
@@ -686,12 +689,12 @@ class Json(CliTest):
                           ["--record-every", "4000"]]:
             facts = self.facts("delaunay", points, *arguments)
             for entry in facts["rounds"]:
-                self.assert_schema(entry, {**{key: count for key in keys}, "seconds": number})
+                self.assert_schema(entry, {**{key: count for key in keys}, "locate_seconds": number, "seconds": number})
                 self.assertEqual(entry["created"] - entry["destroyed"], entry["tetrahedra"])
             self.assertEqual(facts["rounds"][-1]["created"], facts["created"])
         self.assertEqual([entry["points"] for entry in facts["rounds"]], [4000, 8000, 9000])
         table = self.expect(0, "delaunay", points, "--rounds").text.split("\nrounds")[1]
-        self.assertRegex(table, r"\A +\n +points +tetrahedra .*seconds\n( +[0-9.]+){8}\n")
+        self.assertRegex(table, r"\A +\n +points +tetrahedra .*history +locate_seconds +seconds\n( +[0-9.]+){9}\n")
         self.assertNotIn("rounds", self.facts("delaunay", points))
         self.usage("only one of", "delaunay", points, "--rounds", "--record-every", "9")
 
@@ -899,7 +902,8 @@ class Json(CliTest):
         facts = self.facts("info", self.cloud("a.ply", 500))
         self.assert_schema(facts, {**COMMON_FACTS, "points": count, "faces": count, "tetrahedra": count,
                                    "box": {"min": vector, "max": vector}, "duplicates": count, "spacing": number,
-                                   "estimate_bytes": {"delaunay": count, "surface": count}, "properties": dict})
+                                   "estimate_bytes": {"delaunay": count, "surface": count, "medial": count,
+                                                      "offset": count}, "properties": dict})
 
     def test_generate(self):
         facts = self.facts("generate", "ball", "-n", "50", "-o", self.path("b.xyz"))

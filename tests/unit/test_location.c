@@ -286,61 +286,6 @@ static void edges_are_traced_when_so_many_points_are_in(void) {
     EXPECT(list_tracings(N - 50, tracings) == 2 && !memcmp(tracings, expected, sizeof expected), "none was a vertex");
 }
 
-/* The corners of a tetrahedron; false when one is infinite. */
-static bool corners_of(const brio_tetrahedron *tet, const double *corner[4]) {
-    for (int i = 0; i < 4; i++) corner[i] = points + 3 * (size_t)tet->vertex[i];
-    return tet->vertex[3] != BRIO_INFINITE;
-}
-
-static bool in_region(const double *p, const double *const *own, const double *const *other) {
-    return brio_insphere(own[0], own[1], own[2], own[3], p, NULL) > 0 ||
-           brio_insphere(other[0], other[1], other[2], other[3], p, NULL) > 0;
-}
-
-enum { ALL = 150, PART = 40 };
-static bool edge_of_all[ALL][ALL];
-
-/* All edges of D(S) against facet i of a tetrahedron of D(R): the number that cross it. */
-static size_t expect_lemma_7(const brio_tetrahedron *part, size_t tet, int i) {
-    const double *own[4], *other[4];
-    size_t crossings = 0;
-    if (!corners_of(&part[tet], own) || !corners_of(&part[part[tet].mate[i] >> 2], other)) return 0;
-    const double *triangle[3] = {own[(i + 1) & 3], own[(i + 2) & 3], own[(i + 3) & 3]};
-    for (size_t a = 0; a < ALL; a++)
-        for (size_t b = 0; b < ALL; b++) {
-            const double *v = points + 3 * a, *w = points + 3 * b;
-            if (!edge_of_all[a][b] || !crosses(v, w, triangle)) continue;
-            crossings++;
-            EXPECT(in_region(v, own, other) || in_region(w, own, other), "edge %zu %zu", a, b);
-        }
-    return crossings;
-}
-
-/* Lemma 7: an edge of D(S) that crosses a triangle of D(R), R a part of S, has an end in one of the two spheres of the
- * tetrahedra at the triangle. */
-static void edges_end_in_the_regions_of_the_triangles_they_cross(void) {
-    size_t crossings = 0;
-    for (int set = 0; set < 6; set++) {
-        brio_context *ctx = new_context();
-        brio_triangulation *all = NULL, *part = NULL;
-        make_set(set);
-        EXPECT(brio_delaunay(ctx, points, NULL, ALL, NULL, &all) == BRIO_OK);
-        EXPECT(brio_delaunay(ctx, points, NULL, PART, NULL, &part) == BRIO_OK);
-        memset(edge_of_all, 0, sizeof edge_of_all);
-        for (size_t t = 0; t < brio_triangulation_stats(all)->tetrahedra; t++) {
-            const uint32_t *v = brio_triangulation_tetrahedra(all)[t].vertex;
-            for (int i = 0; i < 4; i++)
-                for (int j = 0; j < 4; j++) edge_of_all[v[i]][v[j]] |= v[i] < v[j];
-        }
-        for (size_t t = 0; t < brio_triangulation_stats(part)->tetrahedra; t++)
-            for (int i = 0; i < 4; i++) crossings += expect_lemma_7(brio_triangulation_tetrahedra(part), t, i);
-        brio_triangulation_free(all);
-        brio_triangulation_free(part);
-        brio_context_free(ctx);
-    }
-    EXPECT(crossings > 1000, "%zu crossings", crossings);
-}
-
 /* The edges of the convex hull of points on a sphere: a surface of Delaunay triangles. */
 static uint32_t *hull_edges(const double *p, size_t n, size_t *num_edges) {
     brio_context *ctx = new_context();
@@ -524,7 +469,6 @@ int main(void) {
     RUN(segments_lead_to_their_ends);
     RUN(segments_enter_what_they_cross);
     RUN(edges_are_traced_when_so_many_points_are_in);
-    RUN(edges_end_in_the_regions_of_the_triangles_they_cross);
     RUN(tracing_is_linear_on_a_sphere);
     RUN(few_points_are_answered);
     RUN(coincident_points_are_answered);

@@ -3,7 +3,7 @@
 #include "harness.h"
 #include "points.h"
 
-enum { POINTS = 60, SETS = 24 };
+enum { SIDE = 4, POINTS = SIDE * SIDE * SIDE, SETS = 36 };
 
 static brio_context *ctx;
 
@@ -25,12 +25,31 @@ static size_t num_facets(const brio_triangulation *t) {
     return 4 * (s->tetrahedra + s->hull_facets);
 }
 
+/* A cubic lattice in any order: nothing but ties. */
+static void lattice_points(uint64_t seed, size_t n, double *points) {
+    double rows[3 * POINTS];
+    size_t to[POINTS];
+    for (size_t i = 0; i < n; i++) {
+        rows[3 * i] = (double)(i % SIDE), rows[3 * i + 1] = (double)(i / SIDE % SIDE);
+        rows[3 * i + 2] = (double)(i / SIDE / SIDE);
+    }
+    shuffle_points(seed, n, rows, points, to);
+}
+
+/* The pixels of a depth camera in any order: many in a plane or on a line. */
+static void pixel_points(uint64_t seed, size_t n, double *points) {
+    double rows[3 * POINTS];
+    size_t to[POINTS];
+    depth_points(seed, 2 * SIDE, rows);
+    shuffle_points(seed, n, rows, points, to);
+}
+
 static nested *nested_new(uint64_t seed) {
     nested *s = calloc(1, sizeof *s);
     brio_rng rng = brio_rng_new(seed);
-    void (*const makers[])(uint64_t, size_t, double *) = {uniform_points, sphere_points, torus_points,
-                                                          clustered_points};
-    makers[seed % 4](seed, POINTS, s->points);
+    void (*const makers[])(uint64_t, size_t, double *) = {uniform_points,   sphere_points,  torus_points,
+                                                          clustered_points, lattice_points, pixel_points};
+    makers[seed % 6](seed, POINTS, s->points);
     s->first = 5 + brio_rng_below(&rng, POINTS - 10);
     s->whole = delaunay(s->points, POINTS);
     s->part = delaunay(s->points, s->first);

@@ -1,0 +1,21 @@
+/* Vectors of three doubles. Sums run from x to z everywhere, so that the same points give the same bits. */
+#ifndef BRIO_BASE_VECTOR_H
+#define BRIO_BASE_VECTOR_H
+
+static inline double brio_dot(const double *a, const double *b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/** Infinite where doubles overflow. */
+static inline double brio_square_distance(const double *a, const double *b) {
+    double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return brio_dot(d, d);
+}
+
+static inline void brio_cross(const double *a, const double *b, double *out) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+#endif
