@@ -33,26 +33,44 @@ static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_
     return true;
 }
 
-static bool passes(const brio_cocones *c, uint32_t facet) {
-    return meets_all(c, facet, c->boundary) &&
-           (!c->boundary || !brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
+/* The same for all samples of a facet without infinite vertex. The mate has the same vertices the other way round, so
+ * that one of them tells where the others are; and of the two bits of a side one is set at most, so that a side in
+ * common leaves a bit. */
+static inline bool meets_every(const brio_pole_vectors *v, uint32_t facet, uint32_t mate) {
+    static const uint8_t ROUND[5] = {0, 1, 2, 0, 1};
+    const brio_tetrahedron *here = &v->t.tet[brio_tet_of(facet)], *there = &v->t.tet[brio_tet_of(mate)];
+    const uint8_t *a = BRIO_FACET[brio_slot_of(facet)], *b = BRIO_FACET[brio_slot_of(mate)];
+    unsigned x = v->sides[brio_tet_of(facet)], y = v->sides[brio_tet_of(mate)];
+    uint32_t first = here->vertex[a[0]];
+    int k = (there->vertex[b[1]] == first) + 2 * (there->vertex[b[2]] == first);
+    unsigned common = (x >> 2 * a[0] & y >> 2 * b[k]) | (x >> 2 * a[1] & y >> 2 * b[ROUND[k + 2]]) |
+                      (x >> 2 * a[2] & y >> 2 * b[ROUND[k + 1]]);
+    return !(common & 3);
 }
 
-static inline void mark(const brio_cocones *c, uint32_t facet) {
-    __atomic_fetch_or(&c->candidates[brio_tet_of(facet)], (uint8_t)(1 << brio_slot_of(facet)), __ATOMIC_RELAXED);
+static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
+    if (!c->boundary) return meets_every(c->dual, facet, mate);
+    return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
+}
+
+static inline void mark(const brio_cocones *c, uint32_t tet, int bits) {
+    __atomic_fetch_or(&c->candidates[tet], (uint8_t)bits, __ATOMIC_RELAXED);
 }
 
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
-    size_t found = 0;
+    size_t found = 0, num_finite = c->dual->num_finite;
     (void)ctx; /* without OpenMP */
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
-    for (size_t tet = 0; tet < c->dual->t.count; tet++)
-        for (int i = 0; i < 4; i++) {
+    for (size_t tet = 0; tet < c->dual->t.count; tet++) {
+        int bits = 0;
+        for (int i = tet < num_finite ? 0 : 3; i < 4; i++) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&c->dual->t, facet);
-            if (mate < facet || !passes(c, facet)) continue;
-            mark(c, facet);
-            mark(c, mate);
+            if (mate < facet || !passes(c, facet, mate)) continue;
+            bits |= 1 << i;
+            mark(c, brio_tet_of(mate), 1 << brio_slot_of(mate));
             found++;
         }
+        if (bits) mark(c, (uint32_t)tet, bits);
+    }
     *count = found;
 }
