@@ -87,6 +87,11 @@ static inline uint64_t key_of(double square, uint32_t tet) {
     return (bits & HULL_KEY) | tet;
 }
 
+/* A quick look, which most keys do not pass. */
+static inline bool may_be_farther(uint64_t key, const uint64_t *pole) {
+    return key >> 32 >= __atomic_load_n(pole, __ATOMIC_RELAXED) >> 32;
+}
+
 /* Whether a key is that of a farther Voronoi vertex than another. */
 static inline bool is_farther(const search *s, uint64_t key, uint64_t than) {
     if (key >> 32 != than >> 32) return key >> 32 > than >> 32;
@@ -146,9 +151,13 @@ static void find_poles(const brio_context *ctx, const search *s) {
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t first = 0; first < v->num_finite; first += BRIO_CENTRES) {
         size_t end = first + find_centres(s, first);
-        for (size_t tet = first; tet < end; tet++)
-            for (int i = 0; i < 4 && !isnan(s->square[tet]); i++)
-                offer(s, s->farther + 2 * (size_t)v->t.tet[tet].vertex[i], key_of(s->square[tet], (uint32_t)tet));
+        for (size_t tet = first; tet < end; tet++) {
+            uint64_t key = key_of(s->square[tet], (uint32_t)tet);
+            for (int i = 0; i < 4 && !isnan(s->square[tet]); i++) {
+                uint64_t *farther = s->farther + 2 * (size_t)v->t.tet[tet].vertex[i];
+                if (may_be_farther(key, farther)) offer(s, farther, key);
+            }
+        }
     }
 }
 
@@ -167,18 +176,23 @@ static void find_vectors(const brio_context *ctx, const search *s) {
 typedef double slots __attribute__((vector_size(32)));
 typedef int64_t slot_bits __attribute__((vector_size(32)));
 
-/* How far each Voronoi vertex lies along the axis of each of its samples; 0 for the infinite vertex. */
+/* How far a Voronoi vertex lies along the axis of each of its samples; 0 for the infinite vertex. */
 BRIO_INLINE void measure_along(const brio_pole_vectors *v, size_t tet, slots *along) {
-    slots from[3] = {{0}}, axis[3] = {{0}}, sum = {0};
-    bool ray = tet >= v->num_finite;
-    for (int i = 0; i < 4 - ray; i++) {
-        size_t p = v->t.tet[tet].vertex[i];
-        for (size_t k = 0; k < 3; k++) {
-            from[k][i] = ray ? 0 : v->points[3 * p + k];
-            axis[k][i] = v->vector[3 * p + k];
-        }
+    const uint32_t *vertex = v->t.tet[tet].vertex;
+    const double *centre = v->centre + 3 * tet, *x[4], *n[4];
+    slots sum = {0};
+    for (int i = 0; i < 4; i++) {
+        size_t p = vertex[i] != BRIO_INFINITE ? vertex[i] : vertex[0];
+        x[i] = v->points + 3 * p;
+        n[i] = v->vector + 3 * p;
     }
-    for (size_t k = 0; k < 3; k++) sum += (v->centre[3 * tet + k] - from[k]) * axis[k];
+    if (tet < v->num_finite) {
+        for (int k = 0; k < 3; k++)
+            sum +=
+                (centre[k] - (slots){x[0][k], x[1][k], x[2][k], x[3][k]}) * (slots){n[0][k], n[1][k], n[2][k], n[3][k]};
+    } else {
+        for (int k = 0; k < 3; k++) sum += centre[k] * (slots){n[0][k], n[1][k], n[2][k], 0};
+    }
     *along = sum;
 }
 
@@ -194,8 +208,10 @@ BRIO_INLINE int sides_of(const search *s, size_t tet, double sine) {
     slot_bits bits = ((along > limit) & pole) | ((along < -limit) & antipole);
     bits +=
         ((across > most * 0x1p-8) & depth) + ((across > most * 0x1p-6) & depth) + ((across > most * 0x1p-4) & depth);
-    for (int i = 0; i < 4 && tet < v->num_finite; i++)
-        if (along[i] < 0) offer(s, s->farther + 2 * (size_t)v->t.tet[tet].vertex[i] + 1, key_of(most, (uint32_t)tet));
+    for (int i = 0; i < 4 && tet < v->num_finite; i++) {
+        uint64_t *farther = s->farther + 2 * (size_t)v->t.tet[tet].vertex[i] + 1, key = key_of(most, (uint32_t)tet);
+        if ((along[i] < 0) & may_be_farther(key, farther)) offer(s, farther, key);
+    }
     return (int)(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
