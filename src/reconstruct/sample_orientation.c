@@ -114,20 +114,25 @@ static int compare_links(uint32_t i, uint32_t j, const void *user) {
     return sign ? sign : (int)f->kind[i] - (int)f->kind[j];
 }
 
+/* Whether a link is one of a class, and between pieces that were apart before it; others can change nothing. */
+static inline bool is_of(const forest *f, size_t i, int class, const uint32_t *root) {
+    return (f->kind[i] & ~OPPOSITE) == class && root[f->link[i].a] != root[f->link[i].b];
+}
+
 /* Joins along the links of a class in any order; false at a contradiction. */
-static bool join_unsorted(forest *f, int class) {
+static bool join_unsorted(forest *f, int class, const uint32_t *root) {
     for (size_t i = 0; i < f->num_links; i++)
-        if ((f->kind[i] & ~OPPOSITE) == class && !join(f, i)) return false;
+        if (is_of(f, i, class, root) && !join(f, i)) return false;
     return true;
 }
 
-static brio_status join_sorted(forest *f, int class) {
+static brio_status join_sorted(forest *f, int class, const uint32_t *root) {
     brio_status status = BRIO_OK;
     uint32_t *order = NULL;
     uint64_t *keys = NULL;
     size_t count = 0, capacity = 0;
     for (size_t i = 0; i < f->num_links; i++) {
-        if ((f->kind[i] & ~OPPOSITE) != class) continue;
+        if (!is_of(f, i, class, root)) continue;
         BRIO_TRY(BRIO_RESERVE(f->ctx, order, capacity, count + 1));
         order[count++] = (uint32_t)i;
     }
@@ -149,26 +154,27 @@ done:
 static brio_status join_links(forest *f) {
     brio_status status = BRIO_OK;
     size_t n = f->cocones->dual->num_points;
-    uint32_t *parent = NULL;
+    uint32_t *root = NULL; /* of each sample, before the class at hand */
     uint8_t *opposite = NULL;
     BRIO_REQUIRE(f->ctx, f->num_links < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu links between samples, 2^32 is the limit",
                  f->num_links);
-    BRIO_TRY(BRIO_ALLOC(f->ctx, parent, n));
+    BRIO_TRY(BRIO_ALLOC(f->ctx, root, n));
     BRIO_TRY(BRIO_ALLOC(f->ctx, opposite, n));
     for (int class = 0; class < BRIO_DEPTHS && f->num_links > 0 && f->num_pieces > 1; class ++) {
         size_t pieces = f->num_pieces;
-        memcpy(parent, f->parent, n * sizeof *parent);
+        memcpy(root, f->parent, n * sizeof *root);
         memcpy(opposite, f->opposite, n * sizeof *opposite);
-        if (join_unsorted(f, class)) continue;
-        f->num_pieces = pieces;
-        memcpy(f->parent, parent, n * sizeof *parent);
-        memcpy(f->opposite, opposite, n * sizeof *opposite);
-        BRIO_TRY(join_sorted(f, class));
+        if (!join_unsorted(f, class, root)) {
+            f->num_pieces = pieces;
+            memcpy(f->parent, root, n * sizeof *root);
+            memcpy(f->opposite, opposite, n * sizeof *opposite);
+            BRIO_TRY(join_sorted(f, class, root));
+        }
+        flatten(f);
     }
     f->num_links = 0;
-    flatten(f);
 done:
-    brio_release(f->ctx, parent);
+    brio_release(f->ctx, root);
     brio_release(f->ctx, opposite);
     return status;
 }
