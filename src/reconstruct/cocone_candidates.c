@@ -63,8 +63,19 @@ static inline bool meets_every(const brio_pole_vectors *v, uint32_t facet, uint3
 }
 
 static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
-    if (!c->boundary) return !misses_surely(c->dual, facet, mate) && meets_every(c->dual, facet, mate);
+    if (!c->boundary) return meets_every(c->dual, facet, mate);
     return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
+}
+
+/* The facets of a tetrahedron to look at closer, a bit each: of a facet and its mate the lesser one, unless no closer
+ * look is needed. */
+static inline int open_facets(const brio_cocones *c, size_t tet) {
+    int bits = 0;
+    for (int i = 0; i < 4; i++) {
+        uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&c->dual->t, facet);
+        bits |= ((facet < mate) & !(misses_surely(c->dual, facet, mate) & !c->boundary)) << i;
+    }
+    return tet < c->dual->num_finite ? bits : bits & 8; /* the others have the infinite vertex */
 }
 
 static inline void mark(const brio_cocones *c, uint32_t tet, int bits) {
@@ -72,14 +83,14 @@ static inline void mark(const brio_cocones *c, uint32_t tet, int bits) {
 }
 
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
-    size_t found = 0, num_finite = c->dual->num_finite;
+    size_t found = 0;
     (void)ctx; /* without OpenMP */
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
     for (size_t tet = 0; tet < c->dual->t.count; tet++) {
         int bits = 0;
-        for (int i = tet < num_finite ? 0 : 3; i < 4; i++) {
+        for (int open = open_facets(c, tet), i = 0; open >> i; i++) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&c->dual->t, facet);
-            if (mate < facet || !passes(c, facet, mate)) continue;
+            if (!(open >> i & 1) || !passes(c, facet, mate)) continue;
             bits |= 1 << i;
             mark(c, brio_tet_of(mate), 1 << brio_slot_of(mate));
             found++;
