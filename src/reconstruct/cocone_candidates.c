@@ -12,6 +12,9 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
+/* Tetrahedra that are looked at together. */
+enum { BLOCK = 64 };
+
 brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, brio_cocones *out) {
     *out = (brio_cocones){.dual = dual};
     return BRIO_ALLOC_ZERO(ctx, out->candidates, dual->t.count);
@@ -67,35 +70,44 @@ static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
     return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
 }
 
-/* The facets of a tetrahedron to look at closer, a bit each: of a facet and its mate the lesser one, unless no closer
- * look is needed. */
-static inline int open_facets(const brio_cocones *c, size_t tet) {
-    int bits = 0;
-    for (int i = 0; i < 4; i++) {
-        uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&c->dual->t, facet);
-        bits |= ((facet < mate) & !(misses_surely(c->dual, facet, mate) & !c->boundary)) << i;
-    }
-    return tet < c->dual->num_finite ? bits : bits & 8; /* the others have the infinite vertex */
+/* Lists the facets of the tetrahedra [from, to) to look at closer: of a facet and its mate the lesser one, unless no
+ * closer look is needed. Their mates are fetched meanwhile. */
+static size_t list_open_facets(const brio_cocones *c, size_t from, size_t to, uint32_t *open) {
+    const brio_pole_vectors *v = c->dual;
+    size_t count = 0;
+    for (size_t tet = from; tet < to; tet++)
+        for (int i = tet < v->num_finite ? 0 : 3; i < 4; i++) { /* the others have the infinite vertex */
+            uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&v->t, facet);
+            open[count] = facet;
+            count += (facet < mate) & !(misses_surely(v, facet, mate) & !c->boundary);
+        }
+    for (size_t n = 0; n < count; n++) __builtin_prefetch(&v->t.tet[brio_tet_of(*brio_mate(&v->t, open[n]))]);
+    return count;
 }
 
-static inline void mark(const brio_cocones *c, uint32_t tet, int bits) {
-    __atomic_fetch_or(&c->candidates[tet], (uint8_t)bits, __ATOMIC_RELAXED);
+static inline void mark(const brio_cocones *c, uint32_t facet) {
+    __atomic_fetch_or(&c->candidates[brio_tet_of(facet)], (uint8_t)(1 << brio_slot_of(facet)), __ATOMIC_RELAXED);
+}
+
+/* Returns the number of candidates among the facets of the tetrahedra [from, to) that are less than their mates. */
+static size_t select_from(const brio_cocones *c, size_t from, size_t to) {
+    uint32_t open[4 * BLOCK];
+    size_t found = 0, count = list_open_facets(c, from, to, open);
+    for (size_t n = 0; n < count; n++) {
+        uint32_t mate = *brio_mate(&c->dual->t, open[n]);
+        if (!passes(c, open[n], mate)) continue;
+        mark(c, open[n]);
+        mark(c, mate);
+        found++;
+    }
+    return found;
 }
 
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
-    size_t found = 0;
+    size_t found = 0, size = c->dual->t.count;
     (void)ctx; /* without OpenMP */
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
-    for (size_t tet = 0; tet < c->dual->t.count; tet++) {
-        int bits = 0;
-        for (int open = open_facets(c, tet), i = 0; open >> i; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&c->dual->t, facet);
-            if (!(open >> i & 1) || !passes(c, facet, mate)) continue;
-            bits |= 1 << i;
-            mark(c, brio_tet_of(mate), 1 << brio_slot_of(mate));
-            found++;
-        }
-        if (bits) mark(c, (uint32_t)tet, bits);
-    }
+    for (size_t from = 0; from < size; from += BLOCK)
+        found += select_from(c, from, from + BLOCK < size ? from + BLOCK : size);
     *count = found;
 }

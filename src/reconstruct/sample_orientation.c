@@ -25,7 +25,7 @@ typedef struct {
     uint32_t a, b, tet; /* tet is NO_TET on an edge */
 } sample_link;
 
-enum { KEY_BITS = 32, LINKS_OF_POLE = 3 };
+enum { KEY_BITS = 32, LINKS_OF_POLE = 3, AHEAD = 16 };
 
 static const uint32_t NO_TET = UINT32_MAX;
 
@@ -222,6 +222,7 @@ static brio_status link_poles(forest *f) {
     f->num_links = LINKS_OF_POLE * poles;
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(f->ctx)))
     for (size_t i = 0; i < poles; i++) {
+        if (i + AHEAD < poles && v->pole[i + AHEAD] != BRIO_INFINITE) __builtin_prefetch(&v->t.tet[v->pole[i + AHEAD]]);
         sample_link *link = f->link + LINKS_OF_POLE * i;
         uint8_t *kind = f->kind + LINKS_OF_POLE * i;
         if (v->pole[i] != BRIO_INFINITE)
