@@ -79,6 +79,8 @@ typedef struct {
     uint64_t *farther; /* of each sample, as v->pole: the keys */
 } search;
 
+enum { AHEAD = 8 }; /* tetrahedra between fetching and using */
+
 static const uint64_t NO_KEY = BRIO_INFINITE, HULL_KEY = (uint64_t)UINT32_MAX << 32;
 
 static inline uint64_t key_of(double square, uint32_t tet) {
@@ -215,12 +217,27 @@ BRIO_INLINE int sides_of(const search *s, size_t tet, double sine) {
     return (int)(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
+/* Fetches what sides_of needs of the samples of a tetrahedron. */
+static inline void expect_samples(const brio_pole_vectors *v, size_t tet) {
+    for (int i = 0; i < 4 && tet < v->num_finite; i++) {
+        __builtin_prefetch(v->points + 3 * (size_t)v->t.tet[tet].vertex[i]);
+        __builtin_prefetch(v->vector + 3 * (size_t)v->t.tet[tet].vertex[i]);
+    }
+}
+
 /* The sides of the tetrahedra [from, to). */
+BRIO_INLINE void find_sides_of(const search *s, size_t from, size_t to, double sine) {
+    for (size_t tet = from; tet < to; tet++) {
+        expect_samples(s->v, tet + AHEAD);
+        s->v->sides[tet] = (uint16_t)sides_of(s, tet, sine);
+    }
+}
+
 static void find_sides_plain(const search *s, size_t from, size_t to, double sine) {
-    for (size_t tet = from; tet < to; tet++) s->v->sides[tet] = (uint16_t)sides_of(s, tet, sine);
+    find_sides_of(s, from, to, sine);
 }
 BRIO_TARGET_FMA static void find_sides_wide(const search *s, size_t from, size_t to, double sine) {
-    for (size_t tet = from; tet < to; tet++) s->v->sides[tet] = (uint16_t)sides_of(s, tet, sine);
+    find_sides_of(s, from, to, sine);
 }
 
 /* The sides, and the poles on the other side. */

@@ -69,7 +69,9 @@ static void flatten(forest *f) {
 /* Whether a link agrees with those before it. */
 static inline bool join(forest *f, size_t i) {
     uint8_t sign_a, sign_b, opposite = f->kind[i] >= OPPOSITE;
-    uint32_t a = find_root(f, f->link[i].a, &sign_a), b = find_root(f, f->link[i].b, &sign_b);
+    uint32_t a = f->link[i].a, b = f->link[i].b;
+    if (f->parent[a] == f->parent[b]) return (f->opposite[a] ^ f->opposite[b]) == opposite;
+    a = find_root(f, a, &sign_a), b = find_root(f, b, &sign_b);
     if (a == b) return (sign_a ^ sign_b) == opposite;
     f->parent[b] = a;
     f->opposite[b] = sign_a ^ sign_b ^ opposite;
