@@ -75,12 +75,12 @@ static int compare_tets(const brio_pole_vectors *v, uint32_t s, uint32_t t) {
 typedef struct {
     brio_pole_vectors *v;
     double *square;    /* of each Voronoi vertex: its squared distance from its samples; NaN where there is none */
-    double *error;     /* bounds the error of each of its coordinates; of a direction too */
     uint64_t *farther; /* of each sample, as v->pole: the keys */
 } search;
 
 enum { AHEAD = 8 }; /* tetrahedra between fetching and using */
 
+static const double ROUGH = 0x1p-30 + 0x1p-50;
 static const uint64_t NO_KEY = BRIO_INFINITE, HULL_KEY = (uint64_t)UINT32_MAX << 32;
 
 static inline uint64_t key_of(double square, uint32_t tet) {
@@ -121,7 +121,6 @@ static void find_hull_vectors(search *s) {
         double *normal = v->centre + 3 * tet;
         outward_normal(v, v->t.tet[tet].vertex, normal);
         s->square[tet] = square(normal);
-        s->error[tet] = 0x1p-48;
         for (int i = 0; i < 3; i++) {
             size_t p = v->t.tet[tet].vertex[i];
             for (size_t k = 0; k < 3; k++) v->vector[3 * p + k] += (normal[k] + ROUND) - ROUND;
@@ -142,7 +141,6 @@ static size_t find_centres(const search *s, size_t first) {
     for (size_t n = 0; n < count; n++) {
         memcpy(v->centre + 3 * (first + n), centre[n].at, sizeof centre[n].at);
         s->square[first + n] = centre[n].square;
-        s->error[first + n] = centre[n].error;
     }
     return count;
 }
@@ -198,12 +196,18 @@ BRIO_INLINE void measure_along(const brio_pole_vectors *v, size_t tet, slots *al
     *along = sum;
 }
 
+/* Bounds the error of each coordinate of a centre at a distance from its samples (brio_rough_centres, for coordinates of
+ * at most 1), or of a direction, and what rounding adds to its place along an axis. */
+static inline double error_of(const brio_pole_vectors *v, size_t tet, double distance) {
+    return tet < v->num_finite ? ROUGH * distance + 0x1p-53 * (1 + distance) : 0x1p-48;
+}
+
 /* The side and the depth of a Voronoi vertex for each of its samples, and offers it as the pole on their other side. Its
  * distance is the same from all, but for the error. */
 BRIO_INLINE int sides_of(const search *s, size_t tet, double sine) {
     static const slot_bits pole = {1, 4, 16, 64}, antipole = {2, 8, 32, 128}, depth = {256, 1024, 4096, 16384};
     const brio_pole_vectors *v = s->v;
-    double most = s->square[tet], length = sqrt(most), limit = sine * length + 6 * s->error[tet] + 0x1p-48 * length;
+    double most = s->square[tet], length = sqrt(most), limit = sine * length + 6 * error_of(v, tet, length);
     slots along;
     measure_along(v, tet, &along);
     slots across = most - along * along; /* squared distance from the axis */
@@ -258,7 +262,6 @@ static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     brio_status status = BRIO_OK;
     search s = {.v = v};
     BRIO_TRY(BRIO_ALLOC(ctx, s.square, v->t.count));
-    BRIO_TRY(BRIO_ALLOC(ctx, s.error, v->t.count));
     BRIO_TRY(BRIO_ALLOC(ctx, s.farther, 2 * v->num_points));
     for (size_t i = 0; i < 2 * v->num_points; i++) s.farther[i] = NO_KEY;
     find_hull_vectors(&s);
@@ -269,7 +272,6 @@ static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = (uint32_t)s.farther[i];
 done:
     brio_release(ctx, s.square);
-    brio_release(ctx, s.error);
     brio_release(ctx, s.farther);
     return status;
 }

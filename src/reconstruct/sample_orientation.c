@@ -145,7 +145,12 @@ static brio_status join_sorted(forest *f, int class, const uint32_t *root) {
         for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;
         brio_sort_indices(order + begin, end - begin, compare_links, f);
     }
-    for (size_t i = 0; i < count; i++) join(f, order[i]);
+    for (size_t i = 0; i < count; i++) {
+        if (i + 2 * AHEAD < count) __builtin_prefetch(&f->link[order[i + 2 * AHEAD]]);
+        if (i + AHEAD < count) __builtin_prefetch(&f->parent[f->link[order[i + AHEAD]].a]);
+        if (i + AHEAD < count) __builtin_prefetch(&f->parent[f->link[order[i + AHEAD]].b]);
+        join(f, order[i]);
+    }
 done:
     brio_release(f->ctx, order);
     brio_release(f->ctx, keys);
