@@ -3,7 +3,7 @@
 #include "points.h"
 #include <string.h>
 
-enum { N = 6000 };
+enum { N = 3000 };
 
 static double points[3 * N];
 
@@ -61,18 +61,18 @@ static void a_torus_is_the_same_by_threads(void) {
 
 /* Every Voronoi vertex is that of hundreds of tetrahedra, up to rounding: poles are decided by ties. */
 static void a_sphere_is_the_same_by_threads(void) {
-    sphere_points(2, 3000, points);
-    expect_one_answer(3000);
+    sphere_points(2, 1500, points);
+    expect_one_answer(1500);
 }
 
 static void a_grid_is_the_same_by_threads(void) {
-    integer_points(3, 3000, 14, points);
-    expect_one_answer(3000);
+    integer_points(3, 1500, 11, points);
+    expect_one_answer(1500);
 }
 
 static void clusters_are_the_same_by_threads(void) {
-    clustered_points(4, 2000, points);
-    expect_one_answer(2000);
+    clustered_points(4, 1000, points);
+    expect_one_answer(1000);
 }
 
 int main(void) {
