@@ -43,16 +43,16 @@ static void expect_same_faces(const brio_mesh *a, const size_t *name, const brio
 }
 
 static void dense_samples_give_the_faces_of_the_whole(void) {
-    static double p[3 * 6000];
+    static double p[3 * 4000];
     brio_context *ctx = serial_context();
     for (int sphere = 0; sphere < 2; sphere++) {
         brio_cocone_options o = brio_cocone_options_default();
         brio_mesh *whole, *pieces;
         brio_cocone_stats s, t;
-        sphere ? sphere_points(3, 6000, p) : torus_points(3, 6000, p);
-        EXPECT(brio_cocone(ctx, p, 6000, &o, &whole, &s) == BRIO_OK);
+        sphere ? sphere_points(3, 4000, p) : torus_points(3, 4000, p);
+        EXPECT(brio_cocone(ctx, p, 4000, &o, &whole, &s) == BRIO_OK);
         for (o.pieces = 2; o.pieces < 20; o.pieces += 7) {
-            EXPECT(brio_cocone(ctx, p, 6000, &o, &pieces, &t) == BRIO_OK, "%s", brio_message(ctx));
+            EXPECT(brio_cocone(ctx, p, 4000, &o, &pieces, &t) == BRIO_OK, "%s", brio_message(ctx));
             EXPECT(t.pieces >= o.pieces && t.unmatched == 0 && t.samples == s.samples && t.unused == 0);
             expect_same_faces(whole, NULL, pieces);
             brio_mesh_free(pieces);
