@@ -2,7 +2,8 @@
  *
  * One pass over the tetrahedra computes the centres and offers each to its four samples as the farther pole; another
  * one, with the directions known, tells on which side of its samples each centre lies and offers it as the pole on the
- * other side. Samples on the hull have an unbounded cell: the sum of the unit outward normals of their hull facets
+ * other side. The distance of a centre is the same from all four, so it is kept with the tetrahedron; and what is on
+ * offer is one word with the distance in its upper half. Samples on the hull have an unbounded cell: the sum of the unit outward normals of their hull facets
  * stands for the direction to the pole. The error bounds of the centres count in favour of the co-cone, so that
  * rounding loses no triangle.
  *

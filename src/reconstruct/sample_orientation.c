@@ -9,7 +9,8 @@
  *
  * Links that agree with each other can be joined in any order with the same result. So they are not sorted but dealt
  * into a few classes by weight, and only a class with a contradiction is undone and joined again in the order of
- * weights.
+ * weights. Links within a piece of the classes before can change nothing and are left out, contradictions among them
+ * too.
  *
  * Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH 1992,
  *           for signs along a spanning tree of parallel normals. */
