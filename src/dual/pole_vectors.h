@@ -17,7 +17,6 @@ typedef struct {
     const double *points;
     double theta;    /* half the opening of the co-cones */
     double *centre;  /* #T by 3; of an infinite tetrahedron the unit direction; NaN where doubles cannot hold it */
-    double *error;   /* #T: bounds the error of each coordinate; of a direction too */
     double *vector;  /* #P by 3, unit: from the sample to the farther pole or, on the hull, the sum of the unit outward
                        normals of its hull facets; zero for points that are no vertices */
     uint32_t *pole;  /* #P by 2: the farther pole (on the hull an infinite tetrahedron) and the farthest Voronoi vertex

@@ -266,44 +266,59 @@ BRIO_INLINE void solve_lanes(const lanes r[3][3], lanes offset[3], lanes *error,
     *error = (lanes)((lane_mask)*error | bad);
 }
 
-BRIO_INLINE void rough_centres(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
-    lanes base[3], r[3][3], offset[3], worst, far, farthest = {0};
-    for (int n = 0; n < BRIO_CENTRES; n++) {
-        sort_ascending(p[n]);
-        for (int k = 0; k < 3; k++) {
-            base[k][n] = p[n][0][k];
-            for (int i = 0; i < 3; i++) r[i][k][n] = p[n][i + 1][k];
-        }
+/* Swaps the points a and b in the lanes where a is lexicographically greater. */
+BRIO_INLINE void order_lanes(lanes a[3], lanes b[3]) {
+    lane_mask later = (a[1] > b[1]) | ((a[1] == b[1]) & (a[2] > b[2]));
+    lane_mask swap = (a[0] > b[0]) | ((a[0] == b[0]) & later);
+    for (int k = 0; k < 3; k++) {
+        lane_mask change = ((lane_mask)a[k] ^ (lane_mask)b[k]) & swap;
+        a[k] = (lanes)((lane_mask)a[k] ^ change);
+        b[k] = (lanes)((lane_mask)b[k] ^ change);
     }
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) r[i][k] -= base[k];
-    solve_lanes((const lanes(*)[3])r, offset, &worst, &far);
-    for (int k = 0; k < 3; k++) offset[k] += base[k];
+}
+
+BRIO_INLINE void rough_centres(const double *const p[BRIO_CENTRES][4], brio_rough_centre *c) {
+    lanes r[4][3], offset[3], worst, far, farthest = {0};
+    for (int n = 0; n < BRIO_CENTRES; n++)
+        for (int i = 0; i < 4; i++)
+            for (int k = 0; k < 3; k++) r[i][k][n] = p[n][i][k];
+    order_lanes(r[0], r[1]), order_lanes(r[2], r[3]);
+    order_lanes(r[0], r[2]), order_lanes(r[1], r[3]);
+    order_lanes(r[1], r[2]);
+    for (int i = 1; i < 4; i++)
+        for (int k = 0; k < 3; k++) r[i][k] -= r[0][k];
+    solve_lanes((const lanes(*)[3])(r + 1), offset, &worst, &far);
+    lanes square = offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2];
+    for (int k = 0; k < 3; k++) offset[k] += r[0][k];
     for (int k = 0; k < 3; k++) take_larger(&farthest, &offset[k]);
     worst += 0x1p-53 * farthest;
-    for (int n = 0; n < BRIO_CENTRES; n++) {
-        for (int k = 0; k < 3; k++) centre[n][k] = offset[k][n];
-        error[n] = worst[n];
-    }
+    for (int n = 0; n < BRIO_CENTRES; n++)
+        c[n] = (brio_rough_centre){{offset[0][n], offset[1][n], offset[2][n]}, square[n], worst[n]};
 }
 
-static void rough_centres_plain(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
-    rough_centres(p, centre, error);
+static void rough_centres_plain(const double *const p[BRIO_CENTRES][4], brio_rough_centre *centre) {
+    rough_centres(p, centre);
 }
-BRIO_TARGET_FMA static void rough_centres_wide(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
-    rough_centres(p, centre, error);
+BRIO_TARGET_FMA static void rough_centres_wide(const double *const p[BRIO_CENTRES][4], brio_rough_centre *centre) {
+    rough_centres(p, centre);
 }
 
-void brio_rough_centres(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error) {
+/* One that the lanes could not find. */
+static brio_rough_centre rough_centre(const double *const p[4]) {
+    const double *q[4] = {p[0], p[1], p[2], p[3]};
+    brio_rough_centre c = {{0, 0, 0}, 0, 0};
+    if (!find_centre(q, false, ROUGH_GOAL, c.at, &c.error)) return (brio_rough_centre){{NAN, 0, 0}, NAN, INFINITY};
+    for (int k = 0; k < 3; k++) c.square += (c.at[k] - q[0][k]) * (c.at[k] - q[0][k]);
+    return c;
+}
+
+void brio_rough_centres(const double *const p[BRIO_CENTRES][4], brio_rough_centre *centre) {
     if (dd_have_fma())
-        rough_centres_wide(p, centre, error);
+        rough_centres_wide(p, centre);
     else
-        rough_centres_plain(p, centre, error);
-    for (int n = 0; n < BRIO_CENTRES; n++) {
-        if (error[n] < INFINITY || find_centre(p[n], false, ROUGH_GOAL, centre[n], &error[n])) continue;
-        centre[n][0] = NAN;
-        error[n] = INFINITY;
-    }
+        rough_centres_plain(p, centre);
+    for (int n = 0; n < BRIO_CENTRES; n++)
+        if (!(centre[n].error < INFINITY)) centre[n] = rough_centre(p[n]);
 }
 
 brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d, const double *weights,

@@ -12,9 +12,14 @@ bool brio_centre(const double *a, const double *b, const double *c, const double
 
 enum { BRIO_CENTRES = 4 };
 
-/** Several centres without weights, each of its four records of coordinates at most 1, to 2^-30 of its distance to the lexicographically first
- *  record, plus one rounding; centre[n][0] is NaN and error[n] infinite where there is none. Sorts the p[n]. The bits of
- *  each depend on nothing else. */
-void brio_rough_centres(const double *p[BRIO_CENTRES][4], double (*centre)[3], double *error);
+/** at  NaN in the first coordinate where there is none that doubles can hold.
+ *  square  of its distance to the four records.   error  bounds that of each coordinate; infinite where there is none. */
+typedef struct {
+    double at[3], square, error;
+} brio_rough_centre;
+
+/** Several centres without weights, each of its four records of coordinates at most 1, to 2^-30 of its distance to the
+ *  lexicographically first record, plus one rounding. The bits of each depend on nothing but its set of records. */
+void brio_rough_centres(const double *const p[BRIO_CENTRES][4], brio_rough_centre *centre);
 
 #endif

@@ -12,6 +12,9 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
+/* Tetrahedra that are looked at together. */
+enum { BLOCK = 64 };
+
 brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, brio_cocones *out) {
     *out = (brio_cocones){.dual = dual};
     return BRIO_ALLOC_ZERO(ctx, out->candidates, dual->t.count);
@@ -33,26 +36,78 @@ static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_
     return true;
 }
 
-static bool passes(const brio_cocones *c, uint32_t facet) {
-    return meets_all(c, facet, c->boundary) &&
-           (!c->boundary || !brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
+/* How many samples of a facet see the Voronoi vertex of its tetrahedron in the cone to their pole, and in the upper half
+ * how many in the other one. */
+static inline uint32_t count_sides(const brio_pole_vectors *v, uint32_t facet) {
+    uint32_t sides = v->sides[brio_tet_of(facet)] & 0xff & ~(3u << 2 * brio_slot_of(facet));
+    uint32_t apart = (sides & 0x55) | (sides & 0xaa) << 15;
+    return apart * 0x55 >> 6 & 0x30003; /* the four bits of each half added up */
+}
+
+/* Whether both ends of a facet's Voronoi edge lie in the same cone of one of its samples, whichever that is: four times
+ * the same side for three samples. This tells of most facets far from the surface without a look at the mate. */
+static inline bool misses_surely(const brio_pole_vectors *v, uint32_t facet, uint32_t mate) {
+    return (count_sides(v, facet) + count_sides(v, mate)) & 0x40004;
+}
+
+/* The same for all samples of a facet without infinite vertex. The mate has the same vertices the other way round, so
+ * that one of them tells where the others are; and of the two bits of a side one is set at most, so that a side in
+ * common leaves a bit. */
+static inline bool meets_every(const brio_pole_vectors *v, uint32_t facet, uint32_t mate) {
+    static const uint8_t ROUND[5] = {0, 1, 2, 0, 1};
+    const brio_tetrahedron *here = &v->t.tet[brio_tet_of(facet)], *there = &v->t.tet[brio_tet_of(mate)];
+    const uint8_t *a = BRIO_FACET[brio_slot_of(facet)], *b = BRIO_FACET[brio_slot_of(mate)];
+    unsigned x = v->sides[brio_tet_of(facet)], y = v->sides[brio_tet_of(mate)];
+    uint32_t first = here->vertex[a[0]];
+    int k = (there->vertex[b[1]] == first) + 2 * (there->vertex[b[2]] == first);
+    unsigned common = (x >> 2 * a[0] & y >> 2 * b[k]) | (x >> 2 * a[1] & y >> 2 * b[ROUND[k + 2]]) |
+                      (x >> 2 * a[2] & y >> 2 * b[ROUND[k + 1]]);
+    return !(common & 3);
+}
+
+static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
+    if (!c->boundary) return meets_every(c->dual, facet, mate);
+    return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
+}
+
+/* Lists the facets of the tetrahedra [from, to) to look at closer: of a facet and its mate the lesser one, unless no
+ * closer look is needed. Their mates are fetched meanwhile. */
+static size_t list_open_facets(const brio_cocones *c, size_t from, size_t to, uint32_t *open) {
+    const brio_pole_vectors *v = c->dual;
+    size_t count = 0;
+    for (size_t tet = from; tet < to; tet++)
+        for (int i = tet < v->num_finite ? 0 : 3; i < 4; i++) { /* the others have the infinite vertex */
+            uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&v->t, facet);
+            open[count] = facet;
+            count += (facet < mate) & !(misses_surely(v, facet, mate) & !c->boundary);
+        }
+    for (size_t n = 0; n < count; n++) __builtin_prefetch(&v->t.tet[brio_tet_of(*brio_mate(&v->t, open[n]))]);
+    return count;
 }
 
 static inline void mark(const brio_cocones *c, uint32_t facet) {
     __atomic_fetch_or(&c->candidates[brio_tet_of(facet)], (uint8_t)(1 << brio_slot_of(facet)), __ATOMIC_RELAXED);
 }
 
+/* Returns the number of candidates among the facets of the tetrahedra [from, to) that are less than their mates. */
+static size_t select_from(const brio_cocones *c, size_t from, size_t to) {
+    uint32_t open[4 * BLOCK];
+    size_t found = 0, count = list_open_facets(c, from, to, open);
+    for (size_t n = 0; n < count; n++) {
+        uint32_t mate = *brio_mate(&c->dual->t, open[n]);
+        if (!passes(c, open[n], mate)) continue;
+        mark(c, open[n]);
+        mark(c, mate);
+        found++;
+    }
+    return found;
+}
+
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
-    size_t found = 0;
+    size_t found = 0, size = c->dual->t.count;
     (void)ctx; /* without OpenMP */
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
-    for (size_t tet = 0; tet < c->dual->t.count; tet++)
-        for (int i = 0; i < 4; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&c->dual->t, facet);
-            if (mate < facet || !passes(c, facet)) continue;
-            mark(c, facet);
-            mark(c, mate);
-            found++;
-        }
+    for (size_t from = 0; from < size; from += BLOCK)
+        found += select_from(c, from, from + BLOCK < size ? from + BLOCK : size);
     *count = found;
 }

@@ -11,6 +11,7 @@
 #include "reconstruct/cocone_prune.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "reconstruct/label_boundary.h"
 
 typedef struct {
     brio_context *ctx;
@@ -38,7 +39,7 @@ static facet_edge next_candidate(const pruning *x, facet_edge e) {
     uint32_t facet = e.facet;
     do {
         const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
-        int last = 6 - brio_slot_of_vertex(v, e.from) - brio_slot_of_vertex(v, e.to) - brio_slot_of(facet);
+        int last = brio_last_slot(v, e.from, e.to, brio_slot_of(facet));
         e.apex = v[brio_slot_of(facet)];
         facet = *brio_mate(x->t, brio_facet_of(brio_tet_of(facet), last));
     } while (!brio_is_candidate(x->cocones, facet));

@@ -17,7 +17,9 @@ static inline bool brio_is_boundary(const brio_tet_labels *l, uint32_t facet) {
 
 /** The slots other than those of vertices a and b, less the slot `but`. */
 static inline int brio_last_slot(const uint32_t v[4], uint32_t a, uint32_t b, int but) {
-    return 6 - brio_slot_of_vertex(v, a) - brio_slot_of_vertex(v, b) - but;
+    int others = 0; /* without branches, which no processor could foresee */
+    for (int k = 1; k < 4; k++) others += k * ((v[k] == a) | (v[k] == b));
+    return 6 - others - but;
 }
 
 /** The next boundary facet round edge ab from a boundary facet, both seen from tetrahedra of the same label, which fill

@@ -350,9 +350,9 @@ brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_lab
     BRIO_TRY(BRIO_ALLOC(g->ctx, pr.number, n));
     BRIO_TRY(BRIO_ALLOC(g->ctx, pr.pole, n));
     BRIO_TRY(BRIO_ALLOC(g->ctx, before, n));
-    stats->energy_greedy = brio_label_energy(g, label);
     brio_label_certain(g, pr.certain);
     settle_beyond_box(&pr);
+    stats->energy_greedy = brio_label_energy(g, label);
     memcpy(before, label, n);
     BRIO_TRY(minimise(&pr, before));
     for (size_t p = 0; p < n; p++) stats->open += pr.open[p], stats->toggled += label[p] != before[p];

@@ -18,7 +18,7 @@
 #include "triangulation/star.h"
 #include <stdlib.h>
 
-enum { PATIENCE = 8, NO_PIECE = UINT32_MAX };
+enum { AHEAD = 16, PATIENCE = 8, NO_PIECE = UINT32_MAX };
 
 /* A part of a star that hangs together. */
 typedef struct {
@@ -99,6 +99,7 @@ static void deal_corners(const repair *r, const uint32_t *facets, size_t count, 
     uint32_t sum = 0;
     for (int writing = 0; writing < 2; writing++) {
         for (size_t f = 0; f < count; f++) {
+            if (f + AHEAD < count) __builtin_prefetch(&r->t->tet[brio_tet_of(facets[f + AHEAD])]);
             const uint32_t *v = r->t->tet[brio_tet_of(facets[f])].vertex;
             const uint8_t *slot = BRIO_FACET[brio_slot_of(facets[f])];
             for (int k = 0; k < 3; k++) {

@@ -9,7 +9,8 @@
  *
  * Links that agree with each other can be joined in any order with the same result. So they are not sorted but dealt
  * into a few classes by weight, and only a class with a contradiction is undone and joined again in the order of
- * weights.
+ * weights. Links within a piece of the classes before can change nothing and are left out, contradictions among them
+ * too.
  *
  * Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH 1992,
  *           for signs along a spanning tree of parallel normals. */
@@ -25,7 +26,7 @@ typedef struct {
     uint32_t a, b, tet; /* tet is NO_TET on an edge */
 } sample_link;
 
-enum { KEY_BITS = 32, LINKS_OF_POLE = 3 };
+enum { KEY_BITS = 32, LINKS_OF_POLE = 3, AHEAD = 16 };
 
 static const uint32_t NO_TET = UINT32_MAX;
 
@@ -69,7 +70,9 @@ static void flatten(forest *f) {
 /* Whether a link agrees with those before it. */
 static inline bool join(forest *f, size_t i) {
     uint8_t sign_a, sign_b, opposite = f->kind[i] >= OPPOSITE;
-    uint32_t a = find_root(f, f->link[i].a, &sign_a), b = find_root(f, f->link[i].b, &sign_b);
+    uint32_t a = f->link[i].a, b = f->link[i].b;
+    if (f->parent[a] == f->parent[b]) return (f->opposite[a] ^ f->opposite[b]) == opposite;
+    a = find_root(f, a, &sign_a), b = find_root(f, b, &sign_b);
     if (a == b) return (sign_a ^ sign_b) == opposite;
     f->parent[b] = a;
     f->opposite[b] = sign_a ^ sign_b ^ opposite;
@@ -114,20 +117,25 @@ static int compare_links(uint32_t i, uint32_t j, const void *user) {
     return sign ? sign : (int)f->kind[i] - (int)f->kind[j];
 }
 
+/* Whether a link is one of a class, and between pieces that were apart before it; others can change nothing. */
+static inline bool is_of(const forest *f, size_t i, int class, const uint32_t *root) {
+    return (f->kind[i] & ~OPPOSITE) == class && root[f->link[i].a] != root[f->link[i].b];
+}
+
 /* Joins along the links of a class in any order; false at a contradiction. */
-static bool join_unsorted(forest *f, int class) {
+static bool join_unsorted(forest *f, int class, const uint32_t *root) {
     for (size_t i = 0; i < f->num_links; i++)
-        if ((f->kind[i] & ~OPPOSITE) == class && !join(f, i)) return false;
+        if (is_of(f, i, class, root) && !join(f, i)) return false;
     return true;
 }
 
-static brio_status join_sorted(forest *f, int class) {
+static brio_status join_sorted(forest *f, int class, const uint32_t *root) {
     brio_status status = BRIO_OK;
     uint32_t *order = NULL;
     uint64_t *keys = NULL;
     size_t count = 0, capacity = 0;
     for (size_t i = 0; i < f->num_links; i++) {
-        if ((f->kind[i] & ~OPPOSITE) != class) continue;
+        if (!is_of(f, i, class, root)) continue;
         BRIO_TRY(BRIO_RESERVE(f->ctx, order, capacity, count + 1));
         order[count++] = (uint32_t)i;
     }
@@ -138,7 +146,12 @@ static brio_status join_sorted(forest *f, int class) {
         for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;
         brio_sort_indices(order + begin, end - begin, compare_links, f);
     }
-    for (size_t i = 0; i < count; i++) join(f, order[i]);
+    for (size_t i = 0; i < count; i++) {
+        if (i + 2 * AHEAD < count) __builtin_prefetch(&f->link[order[i + 2 * AHEAD]]);
+        if (i + AHEAD < count) __builtin_prefetch(&f->parent[f->link[order[i + AHEAD]].a]);
+        if (i + AHEAD < count) __builtin_prefetch(&f->parent[f->link[order[i + AHEAD]].b]);
+        join(f, order[i]);
+    }
 done:
     brio_release(f->ctx, order);
     brio_release(f->ctx, keys);
@@ -149,26 +162,27 @@ done:
 static brio_status join_links(forest *f) {
     brio_status status = BRIO_OK;
     size_t n = f->cocones->dual->num_points;
-    uint32_t *parent = NULL;
+    uint32_t *root = NULL; /* of each sample, before the class at hand */
     uint8_t *opposite = NULL;
     BRIO_REQUIRE(f->ctx, f->num_links < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu links between samples, 2^32 is the limit",
                  f->num_links);
-    BRIO_TRY(BRIO_ALLOC(f->ctx, parent, n));
+    BRIO_TRY(BRIO_ALLOC(f->ctx, root, n));
     BRIO_TRY(BRIO_ALLOC(f->ctx, opposite, n));
     for (int class = 0; class < BRIO_DEPTHS && f->num_links > 0 && f->num_pieces > 1; class ++) {
         size_t pieces = f->num_pieces;
-        memcpy(parent, f->parent, n * sizeof *parent);
+        memcpy(root, f->parent, n * sizeof *root);
         memcpy(opposite, f->opposite, n * sizeof *opposite);
-        if (join_unsorted(f, class)) continue;
-        f->num_pieces = pieces;
-        memcpy(f->parent, parent, n * sizeof *parent);
-        memcpy(f->opposite, opposite, n * sizeof *opposite);
-        BRIO_TRY(join_sorted(f, class));
+        if (!join_unsorted(f, class, root)) {
+            f->num_pieces = pieces;
+            memcpy(f->parent, root, n * sizeof *root);
+            memcpy(f->opposite, opposite, n * sizeof *opposite);
+            BRIO_TRY(join_sorted(f, class, root));
+        }
+        flatten(f);
     }
     f->num_links = 0;
-    flatten(f);
 done:
-    brio_release(f->ctx, parent);
+    brio_release(f->ctx, root);
     brio_release(f->ctx, opposite);
     return status;
 }
@@ -216,6 +230,7 @@ static brio_status link_poles(forest *f) {
     f->num_links = LINKS_OF_POLE * poles;
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(f->ctx)))
     for (size_t i = 0; i < poles; i++) {
+        if (i + AHEAD < poles && v->pole[i + AHEAD] != BRIO_INFINITE) __builtin_prefetch(&v->t.tet[v->pole[i + AHEAD]]);
         sample_link *link = f->link + LINKS_OF_POLE * i;
         uint8_t *kind = f->kind + LINKS_OF_POLE * i;
         if (v->pole[i] != BRIO_INFINITE)

@@ -11,6 +11,13 @@
 
 static const double PI = 3.141592653589793, THETA = 0.39269908169872414;
 
+/* What threads do is for test_parallel_cocone; here they would only wait for each other. */
+static brio_context *serial_context(void) {
+    brio_context *ctx = new_context();
+    brio_context_set_threads(ctx, 1);
+    return ctx;
+}
+
 /* --- any input --- */
 
 static int is_certified(brio_context *ctx, const double *p, size_t n, const brio_cocone_options *o, uint64_t trial) {
@@ -33,8 +40,7 @@ static int is_certified(brio_context *ctx, const double *p, size_t n, const brio
 static void small_inputs_are_manifold_oriented(void) {
     double p[3 * 40];
     int surfaces = 0;
-    brio_context *ctx = new_context();
-    brio_context_set_threads(ctx, 1);
+    brio_context *ctx = serial_context();
     for (uint64_t trial = 0; trial < 10000; trial++) {
         brio_cocone_options o = brio_cocone_options_default();
         size_t n = 4 + trial % 37;
@@ -54,7 +60,7 @@ static void small_inputs_are_manifold_oriented(void) {
 
 static void large_noise_is_manifold_oriented(void) {
     static double p[3 * 20000];
-    brio_context *ctx = new_context();
+    brio_context *ctx = serial_context();
     brio_cocone_options o = brio_cocone_options_default();
     for (int tight = 0; tight < 2; tight++) {
         o.tight = tight;
@@ -69,7 +75,7 @@ static void large_noise_is_manifold_oriented(void) {
 static void inputs_without_a_surface_say_so(void) {
     const double three[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, flat[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, .5, .5, 0};
     const double bad[9] = {0, 0, 0, 1, NAN, 0, 0, 1, INFINITY};
-    brio_context *ctx = new_context();
+    brio_context *ctx = serial_context();
     brio_cocone_options o = brio_cocone_options_default();
     brio_mesh *mesh;
     EXPECT(brio_cocone(ctx, NULL, 0, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
@@ -94,7 +100,7 @@ typedef struct {
 } expectation;
 
 static void expect_surface(const double *p, size_t n, const brio_cocone_options *o, expectation e) {
-    brio_context *ctx = new_context();
+    brio_context *ctx = serial_context();
     brio_mesh *mesh;
     brio_certificate c = {0};
     brio_cocone_stats s;
@@ -212,7 +218,7 @@ static void sharp_edges_are_no_openings(void) {
 static void a_vertex_of_high_degree_costs_no_more(void) {
     enum { N = 20000 };
     static double p[3 * (N + 2)];
-    brio_context *ctx = new_context();
+    brio_context *ctx = serial_context();
     for (int tight = 0; tight < 2; tight++) {
         brio_cocone_options o = brio_cocone_options_default();
         brio_mesh *mesh = NULL;
@@ -235,7 +241,7 @@ static void a_vertex_of_high_degree_costs_no_more(void) {
 static void shuffled_samples_give_the_same_faces(void) {
     static double p[3 * 3000], q[3 * 3000];
     static size_t to[3000];
-    brio_context *ctx = new_context();
+    brio_context *ctx = serial_context();
     for (int noisy = 0; noisy < 2; noisy++) {
         brio_mesh *a, *b;
         torus_points(2, 3000, p);
@@ -255,7 +261,7 @@ static void duplicates_and_scale_change_nothing(void) {
     static double p[3 * 2000], q[3 * 4000];
     torus_points(2, 2000, p);
     for (int i = 0; i < 12000; i++) q[i] = p[i % 6000] * 0x1p-400;
-    brio_context *ctx = new_context();
+    brio_context *ctx = serial_context();
     brio_mesh *a, *b;
     brio_cocone_stats s;
     EXPECT(brio_cocone(ctx, p, 2000, NULL, &a, NULL) == BRIO_OK);
@@ -271,7 +277,7 @@ static void density_of_a_sphere_is_measured(void) {
     static double p[3 * 3000];
     sphere_points(1, 3000, p);
     for (int i = 0; i < 9000; i++) p[i] *= 3;
-    brio_context *ctx = new_context();
+    brio_context *ctx = serial_context();
     brio_cocone_options o = brio_cocone_options_default();
     brio_mesh *mesh;
     brio_cocone_stats s;
@@ -348,7 +354,8 @@ static void check_cells(const theory *x) {
     }
 }
 
-/* Whether the Voronoi edge of a facet crosses the surface, looked at in 64 places near the facet. */
+/* Whether the Voronoi edge of a facet crosses the surface, looked at in 64 places near the facet; unless its ends are on
+ * both sides, or on one side and together farther from the surface than from each other: values are distances. */
 static bool is_restricted(const theory *x, uint32_t facet) {
     uint32_t here = brio_tet_of(facet), there = brio_tet_of(*brio_mate(&x->dual.t, facet));
     double a[3], b[3], reach = 4 * x->surface->feature_size;
@@ -358,7 +365,10 @@ static bool is_restricted(const theory *x, uint32_t facet) {
         a[k] = end[0][k], b[k] = end[1][k];
         if (there >= x->dual.num_finite) b[k] = a[k] + reach * end[1][k];
     }
-    double first = x->surface->value(a);
+    double first = x->surface->value(a), last = x->surface->value(b), square = 0;
+    for (int k = 0; k < 3; k++) square += (b[k] - a[k]) * (b[k] - a[k]);
+    if ((last < 0) != (first < 0)) return true;
+    if (fabs(first) + fabs(last) > sqrt(square) + 1e-9) return false;
     for (int i = 1; i <= 64; i++) {
         double y[3], s = i / 64.0;
         for (int k = 0; k < 3; k++) y[k] = a[k] + s * (b[k] - a[k]);
@@ -448,7 +458,7 @@ static void check_result(const theory *x) {
 }
 
 static void check_theory(const known_surface *surface) {
-    theory x = {.ctx = new_context(), .surface = surface};
+    theory x = {.ctx = serial_context(), .surface = surface};
     x.points = surface->sample(surface->r, 11, &x.n);
     EXPECT(brio_delaunay(x.ctx, x.points, NULL, x.n, NULL, &x.t) == BRIO_OK);
     EXPECT(brio_pole_vectors_find(x.ctx, x.t, x.points, x.n, THETA, &x.dual) == BRIO_OK);
