@@ -112,10 +112,19 @@ done:
     return status;
 }
 
+/* The next run of chunks of a partition from *begin on, which becomes its beginning: its length, or 0. */
+static size_t next_run(const distribution *d, size_t p, size_t *begin) {
+    size_t c = *begin;
+    while (c < d->num_chunks && d->owner[c] != p) c++;
+    *begin = c;
+    while (c < d->num_chunks && d->owner[c] == p) c++;
+    return c - *begin;
+}
+
 static void expect_partition(const distribution *d, size_t p) {
     size_t bytes = CHUNK * sizeof(entry);
-    for (size_t c = 0; c < d->num_chunks; c++)
-        if (d->owner[c] == p) brio_block_expect(d->chunks, c * bytes, bytes);
+    for (size_t c = 0, run; (run = next_run(d, p, &c)) > 0; c += run)
+        brio_block_expect(d->chunks, c * bytes, run * bytes);
 }
 
 static brio_status read_partition(distribution *d, size_t p) {
@@ -125,10 +134,9 @@ static brio_status read_partition(distribution *d, size_t p) {
     size_t n = 0, bytes = CHUNK * sizeof(entry);
     BRIO_TRY(reserve_entries(d, part->count));
     if (p + 1 < PARTITIONS) expect_partition(d, p + 1);
-    for (size_t c = 0; c < d->num_chunks; c++) {
-        if (d->owner[c] != p) continue;
-        BRIO_TRY(brio_block_read(ctx, d->chunks, c * bytes, &d->entries[n], bytes));
-        n += CHUNK;
+    for (size_t c = 0, run; (run = next_run(d, p, &c)) > 0; c += run) {
+        BRIO_TRY(brio_block_read(ctx, d->chunks, c * bytes, &d->entries[n], run * bytes));
+        n += run * CHUNK;
     }
     if (n < part->count) memcpy(&d->entries[n], part->last, (part->count - n) * sizeof(entry));
 done:
