@@ -188,6 +188,11 @@ void brio_release(brio_context *ctx, void *block) {
         account_sub(ctx, h.size);
 }
 
+void brio_expect_random(const void *block) {
+    const block_header *h = (const block_header *)((const char *)block - HEADER);
+    if (h->kind == KIND_FILE) madvise((char *)block - HEADER, h->size, MADV_RANDOM);
+}
+
 void brio_expect_sequence(const void *block) {
     const block_header *h = (const block_header *)((const char *)block - HEADER);
     if (h->kind == KIND_FILE) madvise((char *)block - HEADER, h->size, MADV_NORMAL);

@@ -22,6 +22,9 @@ size_t brio_machine_memory(void);
  *  read a single page. Nothing for blocks in memory. */
 void brio_expect_sequence(const void *block);
 
+/** What holds for every block at first, again. */
+void brio_expect_random(const void *block);
+
 /** Copies the bytes [offset, offset + size) of a block. Those of a scratch file come and go by whole calls, without a
  *  fault for each page, and do not stay in memory: for what is read or written in sequence. */
 brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset, void *to, size_t size);
