@@ -1,4 +1,4 @@
-/* Reading ahead in scratch files, by stretches of 64 KiB.
+/* Reading ahead in scratch files, by stretches of 32 KiB.
  *
  * A fault reads one page and waits for the disk (memory.h). Who knows what comes next says so here, and it is read
  * meanwhile. A stretch that was asked for a short while ago is not asked for again. */
@@ -10,7 +10,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { BRIO_STRETCH_BITS = 16, BRIO_STRETCHES = 2048, BRIO_STRETCH_KEEPS = 1 << 14 };
+enum { BRIO_STRETCH_BITS = 15, BRIO_STRETCHES = 2048, BRIO_STRETCH_KEEPS = 1 << 14 };
 
 typedef struct {
     bool active;  /* arrays are in scratch files */
