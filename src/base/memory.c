@@ -132,6 +132,7 @@ static void *map_file(brio_context *ctx, size_t size, int *file, brio_status *st
     void *base = error ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, *file, 0);
     if (base != MAP_FAILED) {
         madvise(base, size, MADV_RANDOM);
+        posix_fadvise(*file, 0, 0, POSIX_FADV_RANDOM);
         return base;
     }
     *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s", ctx->scratch, size,
@@ -187,9 +188,72 @@ void brio_release(brio_context *ctx, void *block) {
         account_sub(ctx, h.size);
 }
 
+void brio_expect_random(const void *block) {
+    const block_header *h = (const block_header *)((const char *)block - HEADER);
+    if (h->kind == KIND_FILE) madvise((char *)block - HEADER, h->size, MADV_RANDOM);
+}
+
 void brio_expect_sequence(const void *block) {
     const block_header *h = (const block_header *)((const char *)block - HEADER);
     if (h->kind == KIND_FILE) madvise((char *)block - HEADER, h->size, MADV_NORMAL);
+}
+
+/* One call may move less than it was asked to. */
+static brio_status move_bytes(brio_context *ctx, int file, size_t offset, char *in, const char *out, size_t size) {
+    while (size > 0) {
+        ssize_t n = in ? pread(file, in, size, (off_t)offset) : pwrite(file, out, size, (off_t)offset);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0)
+            return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot %s a scratch file: %s", ctx->scratch,
+                             in ? "read" : "write", n ? strerror(errno) : "it ends early");
+        offset += (size_t)n, size -= (size_t)n;
+        if (in) in += n;
+        if (out) out += n;
+    }
+    return BRIO_OK;
+}
+
+/* Has the stretch that ends here written, waits for the one before and lets its pages go: what is written in sequence
+ * would otherwise fill the memory with pages that have to be written before they can be taken. */
+static void write_behind(int file, size_t begin, size_t end) {
+    enum { STRETCH = 1 << 22 };
+    for (size_t at = round_up(begin + 1, STRETCH); at <= end; at += STRETCH) {
+        sync_file_range(file, (off_t)(at - STRETCH), STRETCH, SYNC_FILE_RANGE_WRITE);
+        if (at < 2 * (size_t)STRETCH) continue;
+        off_t before = (off_t)(at - 2 * (size_t)STRETCH);
+        sync_file_range(file, before, STRETCH,
+                        SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+        posix_fadvise(file, before, STRETCH, POSIX_FADV_DONTNEED);
+    }
+}
+
+void brio_block_expect(const void *block, size_t offset, size_t size) {
+    const block_header *h = (const block_header *)((const char *)block - HEADER);
+    if (h->kind == KIND_FILE) posix_fadvise(h->file, (off_t)(HEADER + offset), (off_t)size, POSIX_FADV_WILLNEED);
+}
+
+brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset, void *to, size_t size) {
+    const block_header *h = (const block_header *)((const char *)block - HEADER);
+    brio_status status = BRIO_OK;
+    if (h->kind == KIND_FILE) {
+        status = move_bytes(ctx, h->file, HEADER + offset, to, NULL, size);
+        posix_fadvise(h->file, (off_t)(HEADER + offset), (off_t)size, POSIX_FADV_DONTNEED);
+    } else {
+        memcpy(to, (const char *)block + offset, size);
+    }
+    return status;
+}
+
+brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, const void *from, size_t size) {
+    const block_header *h = header_of(block);
+    brio_status status = BRIO_OK;
+    if (h->kind == KIND_FILE) {
+        status = move_bytes(ctx, h->file, HEADER + offset, NULL, from, size);
+        write_behind(h->file, HEADER + offset, HEADER + offset + size);
+    } else {
+        memcpy((char *)block + offset, from, size);
+    }
+    return status;
 }
 
 /* Grows or shrinks a mapping in place of copying it. */

@@ -22,6 +22,17 @@ size_t brio_machine_memory(void);
  *  read a single page. Nothing for blocks in memory. */
 void brio_expect_sequence(const void *block);
 
+/** What holds for every block at first, again. */
+void brio_expect_random(const void *block);
+
+/** Copies the bytes [offset, offset + size) of a block. Those of a scratch file come and go by whole calls, without a
+ *  fault for each page, and do not stay in memory: for what is read or written in sequence. */
+brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset, void *to, size_t size);
+brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, const void *from, size_t size);
+
+/** These bytes will be read soon. */
+void brio_block_expect(const void *block, size_t offset, size_t size);
+
 static inline brio_status brio_resize_to(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
     brio_status status = BRIO_OK;
     void *block;

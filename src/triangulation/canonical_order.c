@@ -11,33 +11,20 @@
  * vertices renamed, what else lives there moves to the slots that this left free, and the block is written. The reads
  * of a block are independent, which following cycles would not be. Two numbers a tetrahedron are added, no second copy.
  *
- * In scratch files (one thread, memory short, disk not) the tetrahedra are copied into a second array instead, in the
- * order of their places and reading ahead: moving them in place would read and write most pages many times. */
+ * In scratch files it is done by partitions instead (canonical_files.c). */
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "triangulation/canonical_turn.h"
 #include "triangulation/kernel.h"
 #include <string.h>
 
-enum { BLOCK = 1 << 13, STEPS = 32, FEW = 48, AHEAD = 24 };
+enum { BLOCK = 1 << 13, STEPS = 32, AHEAD = 24 };
 
 static const uint32_t NOWHERE = UINT32_MAX;
 
 /* The states while things move: the turn of the tetrahedron that was in the slot at the end of the insertion, and what
  * the slot holds now: still that one, another one, already turned, or nothing. */
 enum { TURN = 15, SLOT_MOVED = 16, SLOT_FREE = 32 };
-
-/* The even permutations of four slots: TURNED[r][i] comes to slot i; and back. */
-static const uint8_t TURNED[12][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2},
-                                      {1, 3, 2, 0}, {1, 2, 0, 3}, {2, 0, 1, 3}, {2, 1, 3, 0},
-                                      {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 2, 1, 0}, {3, 1, 0, 2}};
-static const uint8_t BACK[12][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 0, 3, 2}, {3, 0, 2, 1}, {2, 0, 1, 3},
-                                    {1, 2, 0, 3}, {3, 1, 0, 2}, {2, 3, 0, 1}, {1, 3, 2, 0}, {3, 2, 1, 0}, {2, 1, 3, 0}};
-
-/* The latest finite vertex: its slot. */
-static inline unsigned latest_slot(const uint32_t *v, uint32_t infinite) {
-    unsigned low = v[1] > v[0], high = v[3] != infinite && v[3] > v[2] ? 3 : 2;
-    return v[high] > v[low] ? high : low;
-}
 
 /* Workspace: bucket b of tetrahedra holds places end[b - 1] to end[b]. */
 typedef struct {
@@ -47,7 +34,6 @@ typedef struct {
     uint32_t *end;
     size_t buckets, live;
     int threads;
-    brio_read_ahead *read_ahead; /* of the scratch files, which one thread works on */
 } sorter;
 
 /* The tetrahedra of one bucket, in a thread's hands. */
@@ -56,26 +42,6 @@ typedef struct {
     uint32_t *name;
     size_t key_capacity, name_capacity;
 } bucket;
-
-/* --- scratch files --- */
-
-enum { FAR_AHEAD = 1 << 13 };
-
-/* The loop is at tetrahedron t of a sequence. */
-static inline void expect_in_sequence(const sorter *s, size_t t) {
-    if (t + FAR_AHEAD < s->k->t.count) brio_expect(s->read_ahead, &s->k->t.tet[t + FAR_AHEAD]);
-}
-
-/* The loop is at place x: its tetrahedron comes from wherever the insertion put it. */
-static inline void expect_at_place(const sorter *s, size_t x) {
-    s->read_ahead->now++;
-    if (x + 2 * FAR_AHEAD < s->live) brio_expect(s->read_ahead, &s->order[x + 2 * FAR_AHEAD]);
-    if (x + FAR_AHEAD >= s->live) return;
-    uint32_t slot = s->order[x + FAR_AHEAD];
-    brio_expect(s->read_ahead, &s->k->t.tet[slot]);
-    brio_expect(s->read_ahead, &s->place[slot]);
-    brio_expect(s->read_ahead, &s->k->state[slot]);
-}
 
 /* --- places --- */
 
@@ -92,13 +58,12 @@ static void fill_buckets(sorter *s) {
     BRIO_OMP(parallel for num_threads(s->threads))
     for (size_t t = 0; t < k->t.count; t++) {
         const uint32_t *v = k->t.tet[t].vertex;
-        expect_in_sequence(s, t);
         if (k->state[t] == TET_UNUSED) {
             s->place[t] = NOWHERE;
             k->state[t] = SLOT_FREE;
             continue;
         }
-        s->place[t] = v[latest_slot(v, infinite)] + (v[3] == infinite ? first_infinite : 0);
+        s->place[t] = v[brio_latest_slot(v, infinite)] + (v[3] == infinite ? first_infinite : 0);
         count_one(s, s->place[t]);
     }
     for (size_t b = 0; b < s->buckets; b++) {
@@ -111,52 +76,6 @@ static void fill_buckets(sorter *s) {
         if (s->place[t] != NOWHERE) s->order[count_one(s, s->place[t])] = (uint32_t)t;
 }
 
-/* How a tetrahedron is turned, and its key: the second and third vertex then. */
-static inline uint64_t key_of(const uint32_t *v, uint32_t infinite, uint8_t *turn) {
-    unsigned first = 3 * latest_slot(v, infinite), r = first;
-    if (v[3] == infinite) {
-        r += first == 3 ? 2 : 0;
-    } else {
-        const uint8_t *from = TURNED[first];
-        uint32_t a = v[from[1]], b = v[from[2]], c = v[from[3]];
-        unsigned later = b > a;
-        r += c > (later ? b : a) ? 2 : later;
-    }
-    *turn = (uint8_t)r;
-    return (uint64_t)v[TURNED[r][1]] << 32 | v[TURNED[r][2]];
-}
-
-static void sift_down(uint64_t *key, uint32_t *name, size_t root, size_t n) {
-    uint64_t moved = key[root];
-    uint32_t moved_name = name[root];
-    for (size_t child; (child = 2 * root + 1) < n; root = child) {
-        if (child + 1 < n && key[child] < key[child + 1]) child++;
-        if (moved >= key[child]) break;
-        key[root] = key[child], name[root] = name[child];
-    }
-    key[root] = moved, name[root] = moved_name;
-}
-
-static void heap_sort(uint64_t *key, uint32_t *name, size_t n) {
-    for (size_t i = n / 2; i-- > 0;) sift_down(key, name, i, n);
-    for (size_t i = n; i-- > 1;) {
-        uint64_t top = key[0];
-        uint32_t top_name = name[0];
-        key[0] = key[i], name[0] = name[i];
-        key[i] = top, name[i] = top_name;
-        sift_down(key, name, 0, i);
-    }
-}
-
-/* out[rank of key[i]] = name[i], by counting the smaller keys: no branch depends on them. */
-static void sort_few(const uint64_t *key, const uint32_t *name, size_t n, uint32_t *out) {
-    for (size_t i = 0; i < n; i++) {
-        size_t rank = 0;
-        for (size_t j = 0; j < n; j++) rank += key[j] < key[i];
-        out[rank] = name[i];
-    }
-}
-
 /* Sorts the tetrahedra of the places [begin, end) and tells each its place and turn. */
 static brio_status sort_bucket(sorter *s, bucket *b, size_t begin, size_t end) {
     size_t n = end - begin;
@@ -166,15 +85,10 @@ static brio_status sort_bucket(sorter *s, bucket *b, size_t begin, size_t end) {
     if (status == BRIO_OK) status = BRIO_RESERVE(s->k->ctx, b->name, b->name_capacity, n);
     if (status != BRIO_OK) return status;
     for (size_t i = 0; i < n; i++) {
-        b->key[i] = key_of(tets[order[i]].vertex, infinite, &s->k->state[order[i]]);
+        b->key[i] = brio_turn_key(tets[order[i]].vertex, infinite, &s->k->state[order[i]]);
         b->name[i] = order[i];
     }
-    if (n <= FEW) {
-        sort_few(b->key, b->name, n, order);
-    } else {
-        heap_sort(b->key, b->name, n);
-        memcpy(order, b->name, n * sizeof *order);
-    }
+    brio_sort_names(b->key, b->name, n, order);
     for (size_t i = 0; i < n; i++) s->place[order[i]] = (uint32_t)(begin + i);
     return BRIO_OK;
 }
@@ -185,8 +99,6 @@ static brio_status sort_some(sorter *s, size_t from, size_t to) {
     brio_status status = BRIO_OK;
     size_t last = to ? s->end[to - 1] : 0;
     for (size_t i = from, begin = from ? s->end[from - 1] : 0; i < to && status == BRIO_OK; begin = s->end[i++]) {
-        if (s->read_ahead->active)
-            for (size_t a = begin; a < s->end[i]; a++) expect_at_place(s, a);
         for (size_t a = begin; a < s->end[i] && a + AHEAD < last; a++)
             __builtin_prefetch(&s->k->t.tet[s->order[a + AHEAD]]);
         status = sort_bucket(s, &b, begin, s->end[i]);
@@ -226,7 +138,7 @@ static inline uint32_t place_of(const sorter *s, uint32_t slot) {
 /* The slots of the tetrahedron in a slot, in the order in which it will stand. */
 static inline const uint8_t *turn_of(const sorter *s, uint32_t slot) {
     unsigned state = load_state(s, slot);
-    return TURNED[state & SLOT_MOVED ? 0 : state & TURN];
+    return BRIO_TURNED[state & SLOT_MOVED ? 0 : state & TURN];
 }
 
 /* The tetrahedron in a slot as it will stand, but for its first vertex. */
@@ -236,7 +148,7 @@ static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *
     const uint8_t *from = turn_of(s, slot);
     for (int i = 0; i < 4; i++) {
         uint32_t facet = old->mate[from[i]], other = brio_tet_of(facet);
-        out->mate[i] = brio_facet_of(s->place[other], BACK[load_state(s, other) & TURN][brio_slot_of(facet)]);
+        out->mate[i] = brio_facet_of(s->place[other], BRIO_BACK[load_state(s, other) & TURN][brio_slot_of(facet)]);
     }
     for (int i = 1; i < 4; i++) {
         uint32_t v = old->vertex[from[i]];
@@ -376,28 +288,10 @@ done:
     return status;
 }
 
-/* Where disk is there for the asking, into a second array: that reads once what moving in place reads and writes again
- * and again. */
-static brio_status copy_all(sorter *s) {
-    brio_kernel *k = s->k;
-    brio_tetrahedron *out = NULL;
-    brio_status status = BRIO_ALLOC(k->ctx, out, s->live);
-    if (status != BRIO_OK) return status;
-    for (size_t x = 0, b = 0; x < s->live; x++) {
-        while (s->end[b] <= x) b++;
-        expect_at_place(s, x);
-        rename_one(s, s->order[x], &out[x]);
-        out[x].vertex[0] = k->caller[b < k->num_points + 2 ? b : b - k->num_points - 2];
-    }
-    brio_release(k->ctx, k->t.tet);
-    k->t.tet = out;
-    return BRIO_OK;
-}
-
 brio_status brio_kernel_sort(brio_kernel *k) {
+    if (k->read_ahead.active) return brio_kernel_sort_files(k);
     sorter s = {.k = k, .buckets = 2 * (k->num_points + 2), .live = k->t.count - k->num_unused};
-    s.read_ahead = &k->read_ahead;
-    int threads = k->read_ahead.active ? 1 : brio_context_threads(k->ctx), most = (int)(s.live / BLOCK) + 1;
+    int threads = brio_context_threads(k->ctx), most = (int)(s.live / BLOCK) + 1;
     s.threads = threads < most ? threads : most;
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.order, s.live + AHEAD));
@@ -405,7 +299,7 @@ brio_status brio_kernel_sort(brio_kernel *k) {
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.end, s.buckets));
     fill_buckets(&s);
     BRIO_TRY(sort_buckets(&s));
-    BRIO_TRY(k->read_ahead.active ? copy_all(&s) : move_all(&s));
+    BRIO_TRY(move_all(&s));
     k->t.count = k->capacity = s.live;
     k->num_unused = 0;
     k->stats.hull_facets = s.live - s.end[k->num_points + 1];

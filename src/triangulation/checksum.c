@@ -39,6 +39,7 @@ static uint64_t hash_of(uint32_t r[4]) {
 
 brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulation *t, const double *points,
                                         uint64_t *checksum) {
+    enum { EXPECTED = 1 << 14 }; /* so many tetrahedra are read ahead */
     brio_status status = BRIO_OK;
     uint32_t *rank = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, rank, t->stats.points));
@@ -46,6 +47,8 @@ brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulat
     uint64_t sum = brio_mix(t->stats.vertices);
     for (size_t tet = 0; tet < t->stats.tetrahedra; tet++) {
         uint32_t r[4];
+        if (tet % EXPECTED == 0)
+            brio_block_expect(t->tet, (tet + EXPECTED) * sizeof *t->tet, EXPECTED * sizeof *t->tet);
         for (int i = 0; i < 4; i++) r[i] = rank[t->tet[tet].vertex[i]];
         sum += hash_of(r);
     }

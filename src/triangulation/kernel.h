@@ -115,4 +115,7 @@ brio_status brio_kernel_represent(brio_kernel *k);
  *  the states are given back. */
 brio_status brio_kernel_sort(brio_kernel *k);
 
+/** The same in scratch files, which are read and written in sequence. */
+brio_status brio_kernel_sort_files(brio_kernel *k);
+
 #endif

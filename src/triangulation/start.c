@@ -5,6 +5,7 @@
  * tetrahedron then has all apexes, its orthosphere meets the points' plane (line) in the orthocircle of its other
  * vertices, and the symbolic perturbation skips the apexes, so the link of the apexes is the perturbed regular
  * triangulation of the points in their own dimension, with the same hidden points. */
+#include "base/memory.h"
 #include "triangulation/kernel.h"
 #include <string.h>
 
@@ -109,12 +110,19 @@ static void first_tetrahedron(brio_kernel *k, uint32_t corner[4]) {
     k->walk.start = 0;
 }
 
+/* Reads all records once, in their order. */
+static void choose_filter(brio_kernel *k, size_t records) {
+    brio_expect_sequence(k->record);
+    brio_filter_for(&k->filter, (const brio_record *)k->record, records, k->weighted);
+    brio_expect_random(k->record);
+}
+
 brio_status brio_kernel_start(brio_kernel *k) {
     if (k->num_points == 0) {
         k->dimension = -1;
         return BRIO_OK;
     }
-    brio_filter_for(&k->filter, (const brio_record *)k->record, k->num_points, k->weighted);
+    choose_filter(k, k->num_points);
     int count = general_position(k);
     k->dimension = count - 1;
     if (k->dimension == 0) return BRIO_OK;
@@ -124,7 +132,7 @@ brio_status brio_kernel_start(brio_kernel *k) {
         place_apex(k, corner, count, (uint32_t)k->num_points + (uint32_t)apex, step);
     if (k->dimension < 3) {
         size_t records = k->num_points + (size_t)(3 - k->dimension);
-        brio_filter_for(&k->filter, (const brio_record *)k->record, records, k->weighted);
+        choose_filter(k, records);
     }
     brio_status status = brio_kernel_reserve(k, 5);
     if (status == BRIO_OK) first_tetrahedron(k, corner);
