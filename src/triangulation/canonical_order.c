@@ -51,29 +51,56 @@ static inline uint32_t count_one(const sorter *s, size_t b) {
     return __atomic_fetch_add(&s->end[b], 1, __ATOMIC_RELAXED);
 }
 
-/* Buckets: finite tetrahedra by latest vertex, then infinite ones. */
-static void fill_buckets(sorter *s) {
+/* place = bucket of the tetrahedron in a slot: finite ones by latest vertex, then infinite ones. */
+static inline void find_bucket(sorter *s, size_t slot) {
     const brio_kernel *k = s->k;
-    uint32_t sum = 0, infinite = k->t.infinite, first_infinite = (uint32_t)k->num_points + 2;
-    BRIO_OMP(parallel for num_threads(s->threads))
-    for (size_t t = 0; t < k->t.count; t++) {
-        const uint32_t *v = k->t.tet[t].vertex;
-        if (k->state[t] == TET_UNUSED) {
-            s->place[t] = NOWHERE;
-            k->state[t] = SLOT_FREE;
-            continue;
-        }
-        s->place[t] = v[brio_latest_slot(v, infinite)] + (v[3] == infinite ? first_infinite : 0);
-        count_one(s, s->place[t]);
+    const uint32_t *v = k->t.tet[slot].vertex;
+    uint32_t infinite = k->t.infinite, first_infinite = (uint32_t)k->num_points + 2;
+    if (k->state[slot] == TET_UNUSED) {
+        s->place[slot] = NOWHERE;
+        k->state[slot] = SLOT_FREE;
+        return;
     }
+    s->place[slot] = v[brio_latest_slot(v, infinite)] + (v[3] == infinite ? first_infinite : 0);
+    __builtin_prefetch(&s->end[s->place[slot]], 1);
+}
+
+/* Counts the tetrahedra of each bucket, those in the slots from `from` to `to`; the counters are fetched ahead, since an
+ * atomic addition waits for its own. */
+static void count_buckets(sorter *s, size_t from, size_t to) {
+    for (size_t t = from; t < to + AHEAD; t++) {
+        if (t < to) find_bucket(s, t);
+        if (t >= from + AHEAD && s->place[t - AHEAD] != NOWHERE) count_one(s, s->place[t - AHEAD]);
+    }
+}
+
+/* Lists the tetrahedra of each bucket, those in the slots from `from` to `to`. */
+static void list_buckets(sorter *s, size_t from, size_t to) {
+    for (size_t t = from; t < to; t++) {
+        size_t soon = t + AHEAD / 2, later = t + AHEAD;
+        if (later < to && s->place[later] != NOWHERE) __builtin_prefetch(&s->end[s->place[later]], 1);
+        if (soon < to && s->place[soon] != NOWHERE) {
+            uint32_t end = __atomic_load_n(&s->end[s->place[soon]], __ATOMIC_RELAXED);
+            __builtin_prefetch(&s->order[end], 1);
+        }
+        if (s->place[t] != NOWHERE) s->order[count_one(s, s->place[t])] = (uint32_t)t;
+    }
+}
+
+static void fill_buckets(sorter *s) {
+    size_t count = s->k->t.count;
+    uint32_t sum = 0;
+    BRIO_OMP(parallel for schedule(static, 1) num_threads(s->threads))
+    for (int i = 0; i < s->threads; i++)
+        count_buckets(s, brio_part(count, i, s->threads), brio_part(count, i + 1, s->threads));
     for (size_t b = 0; b < s->buckets; b++) {
         uint32_t c = s->end[b];
         s->end[b] = sum;
         sum += c;
     }
-    BRIO_OMP(parallel for num_threads(s->threads))
-    for (size_t t = 0; t < k->t.count; t++)
-        if (s->place[t] != NOWHERE) s->order[count_one(s, s->place[t])] = (uint32_t)t;
+    BRIO_OMP(parallel for schedule(static, 1) num_threads(s->threads))
+    for (int i = 0; i < s->threads; i++)
+        list_buckets(s, brio_part(count, i, s->threads), brio_part(count, i + 1, s->threads));
 }
 
 /* Sorts the tetrahedra of the places [begin, end) and tells each its place and turn. */

@@ -91,23 +91,30 @@ static void represent_coincident(brio_kernel *k) {
     k->stats.duplicates = k->num_points - 1;
 }
 
+/* Whether record p stands before the vertex that represents it, at its position and as heavy. */
+static bool is_earlier_twin(const brio_kernel *k, uint32_t p) {
+    uint32_t v = k->representative[p];
+    return p < v && k->representative[v] == v && brio_same_position(k->record[p], k->record[v]) &&
+           (!k->weighted || k->record[p][3] == k->record[v][3]);
+}
+
+static bool has_earlier_twin(const brio_kernel *k) {
+    for (uint32_t p = 0; p < k->num_points; p++)
+        if (is_earlier_twin(k, p)) return true;
+    return false;
+}
+
 /* In a parallel pass a later one of coincident points may come first and become the vertex. The first in the order
  * takes its place back, so that the order of the tetrahedra does not tell. */
 static brio_status restore_first(brio_kernel *k) {
     uint32_t *first = NULL;
-    size_t changed = 0;
     brio_status status = BRIO_ALLOC(k->ctx, first, k->num_points + 3);
     if (status != BRIO_OK) return status;
     for (uint32_t v = 0; v < k->num_points + 3; v++) first[v] = v;
-    for (uint32_t p = 0; p < k->num_points; p++) {
-        uint32_t v = k->representative[p];
-        bool same = k->representative[v] == v && p < first[v] && brio_same_position(k->record[p], k->record[v]);
-        if (!same || (k->weighted && k->record[p][3] != k->record[v][3])) continue;
-        first[v] = p;
-        changed++;
-    }
+    for (uint32_t p = (uint32_t)k->num_points; p-- > 0;)
+        if (is_earlier_twin(k, p)) first[k->representative[p]] = p;
     BRIO_OMP(parallel for num_threads(brio_context_threads(k->ctx)))
-    for (size_t t = 0; t < (changed ? k->t.count : 0); t++)
+    for (size_t t = 0; t < k->t.count; t++)
         for (int i = 0; i < 4; i++) k->t.tet[t].vertex[i] = first[k->t.tet[t].vertex[i]];
     for (uint32_t p = 0; p < k->num_points; p++) {
         uint32_t v = k->representative[p];
@@ -121,7 +128,7 @@ static brio_status restore_first(brio_kernel *k) {
 }
 
 brio_status brio_kernel_represent(brio_kernel *k) {
-    brio_status status = k->rank && k->dimension == 3 ? restore_first(k) : BRIO_OK;
+    brio_status status = k->rank && k->dimension == 3 && has_earlier_twin(k) ? restore_first(k) : BRIO_OK;
     if (status != BRIO_OK) return status;
     if (k->dimension == 0)
         represent_coincident(k);
