@@ -1,20 +1,18 @@
 /* Counted memory: small blocks from the allocator, large ones in mappings that grow without copying.
  *
- * Invariants: a block's header tells how it was made; `live` is the sum of the sizes of anonymous blocks; a mapped
- * file is allocated on disk (posix_fallocate) before its pages can be touched, so that a full disk is a status.
+ * Invariants: a block's header, the 64 bytes before it, tells how it was made; a mapped block starts a page; `live` is
+ * the sum of the sizes of anonymous blocks.
  *
  * A fault on a mapped file reads a single page, unless the block is read in sequence: the system would read what its
  * device is set to, up to megabytes, and where memory is short these throw out what is used. What is needed next is
  * asked for where that is known (read_ahead.h). */
 #define _GNU_SOURCE
 #include "base/memory.h"
+#include "base/scratch_file.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/types.h>
 #include <unistd.h>
 
 /* The thread sanitizer does not see mremap: pages that moved away would still count as the old block's. */
@@ -27,27 +25,38 @@
 #define BRIO_COPIES_INSTEAD 0
 #endif
 
-enum { HEADER = 64, MAP_FROM = 1 << 20, PAGE = 1 << 14 };
+enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = 1 << 20, PAGE = 1 << 14 };
 
 typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
 typedef struct {
-    size_t size; /* of the whole block, header included */
-    int file;    /* descriptor of KIND_FILE */
+    size_t size;            /* of the whole block, with what is in front of it */
+    brio_scratch_file file; /* of KIND_FILE */
     block_kind kind;
 } block_header;
 
-static block_header *header_of(void *block) {
+static block_header *header_of(const void *block) {
     return (block_header *)((char *)block - HEADER);
+}
+
+/* The bytes in front of a block: its header, and in mappings what fills the page. */
+static size_t front_of(block_kind kind) {
+    return kind == KIND_HEAP ? HEADER : FRONT;
+}
+
+static char *base_of(const void *block) {
+    return (char *)block - front_of(header_of(block)->kind);
 }
 
 /* --- the account --- */
 
+size_t brio_memory_limit(const brio_context *ctx) {
+    return ctx->caller_limit && ctx->caller_limit < ctx->machine_limit ? ctx->caller_limit : ctx->machine_limit;
+}
+
 static bool account_add(brio_context *ctx, size_t bytes) {
     size_t live = __atomic_add_fetch(&ctx->live, bytes, __ATOMIC_RELAXED);
-    size_t limit = ctx->machine_limit;
-    if (ctx->caller_limit && ctx->caller_limit < limit) limit = ctx->caller_limit;
-    if (live > limit) {
+    if (live > brio_memory_limit(ctx)) {
         __atomic_sub_fetch(&ctx->live, bytes, __ATOMIC_RELAXED);
         return false;
     }
@@ -119,8 +128,9 @@ static size_t round_up(size_t size, size_t unit) {
     return (size + unit - 1) / unit * unit;
 }
 
+/* Of a mapping for so many bytes and a header. */
 static size_t mapped_size(size_t size) {
-    return round_up(size, PAGE);
+    return round_up(size - HEADER + FRONT, PAGE);
 }
 
 /* Pages of the usual size: clearing a huge page at its first touch drives everything else out of the caches, which cost
@@ -130,42 +140,34 @@ static void *map_anonymous(size_t size) {
     return base == MAP_FAILED ? NULL : base;
 }
 
-static void *map_file(brio_context *ctx, size_t size, int *file, brio_status *status) {
-    *file = open(ctx->scratch, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (*file < 0) {
-        char name[4096];
-        snprintf(name, sizeof name, "%s/brio-XXXXXX", ctx->scratch);
-        *file = mkstemp(name);
-        if (*file >= 0) unlink(name);
-    }
-    int error = *file < 0 ? errno : posix_fallocate(*file, 0, (off_t)size);
-    void *base = error ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, *file, 0);
+static void *map_file(brio_context *ctx, size_t size, brio_scratch_file *file, brio_status *status) {
+    *status = brio_scratch_open(ctx, size, file);
+    if (*status != BRIO_OK) return NULL;
+    void *base = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, file->cached, 0);
     if (base != MAP_FAILED) {
         madvise(base, size, MADV_RANDOM);
-        posix_fadvise(*file, 0, 0, POSIX_FADV_RANDOM);
         return base;
     }
-    *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s", ctx->scratch, size,
-                        strerror(error ? error : errno));
-    if (*file >= 0) close(*file);
+    *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file of %zu bytes cannot be mapped: %s", ctx->scratch,
+                        size, strerror(errno));
+    brio_scratch_close(file);
     return NULL;
 }
 
 /* --- one block --- */
 
 static brio_status refuse(brio_context *ctx, size_t size) {
-    size_t limit = ctx->machine_limit;
-    if (ctx->caller_limit && ctx->caller_limit < limit) limit = ctx->caller_limit;
     return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "out of memory: %zu bytes more, %zu in use, limit %zu", size,
-                     brio_context_memory(ctx), limit);
+                     brio_context_memory(ctx), brio_memory_limit(ctx));
 }
 
-static void *block_new(brio_context *ctx, size_t size, brio_status *status) {
-    block_header h = {size, -1, KIND_HEAP};
+/* A new block of so many bytes with its header; in a scratch file where the context has these and it may be. */
+static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_status *status) {
+    block_header h = {size, {-1, -1}, KIND_HEAP};
     char *base = NULL;
-    bool mapped = !ctx->custom && size >= MAP_FROM;
+    bool mapped = !ctx->custom && (size >= MAP_FROM || in_memory);
     if (mapped) {
-        h.kind = ctx->scratch ? KIND_FILE : KIND_MAPPED;
+        h.kind = ctx->scratch && !in_memory ? KIND_FILE : KIND_MAPPED;
         h.size = mapped_size(size);
     }
     if (h.kind == KIND_FILE) {
@@ -181,90 +183,61 @@ static void *block_new(brio_context *ctx, size_t size, brio_status *status) {
             return NULL;
         }
     }
-    memcpy(base, &h, sizeof h);
-    return base + HEADER;
+    char *block = base + front_of(h.kind);
+    memcpy(block - HEADER, &h, sizeof h);
+    return block;
 }
 
 void brio_release(brio_context *ctx, void *block) {
     if (!block) return;
     block_header h = *header_of(block);
     if (h.kind == KIND_HEAP)
-        ctx->allocator.free(header_of(block), ctx->allocator.user);
+        ctx->allocator.free(base_of(block), ctx->allocator.user);
     else
-        munmap(header_of(block), h.size);
+        munmap(base_of(block), h.size);
     if (h.kind == KIND_FILE)
-        close(h.file);
+        brio_scratch_close(&h.file);
     else
         account_sub(ctx, h.size);
 }
 
+/* --- blocks in scratch files --- */
+
 void brio_expect_random(const void *block) {
-    const block_header *h = (const block_header *)((const char *)block - HEADER);
-    if (h->kind == KIND_FILE) madvise((char *)block - HEADER, h->size, MADV_RANDOM);
+    const block_header *h = header_of(block);
+    if (h->kind == KIND_FILE) madvise(base_of(block), h->size, MADV_RANDOM);
 }
 
 void brio_expect_sequence(const void *block) {
-    const block_header *h = (const block_header *)((const char *)block - HEADER);
-    if (h->kind == KIND_FILE) madvise((char *)block - HEADER, h->size, MADV_NORMAL);
+    const block_header *h = header_of(block);
+    if (h->kind == KIND_FILE) madvise(base_of(block), h->size, MADV_NORMAL);
 }
 
-/* One call may move less than it was asked to. */
-static brio_status move_bytes(brio_context *ctx, int file, size_t offset, char *in, const char *out, size_t size) {
-    while (size > 0) {
-        ssize_t n = in ? pread(file, in, size, (off_t)offset) : pwrite(file, out, size, (off_t)offset);
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0)
-            return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot %s a scratch file: %s", ctx->scratch,
-                             in ? "read" : "write", n ? strerror(errno) : "it ends early");
-        offset += (size_t)n, size -= (size_t)n;
-        if (in) in += n;
-        if (out) out += n;
-    }
-    return BRIO_OK;
-}
-
-/* Has the stretch that ends here written, waits for the one before and lets its pages go: what is written in sequence
- * would otherwise fill the memory with pages that have to be written before they can be taken. */
-static void write_behind(int file, size_t begin, size_t end) {
-    enum { STRETCH = 1 << 22 };
-    for (size_t at = round_up(begin + 1, STRETCH); at <= end; at += STRETCH) {
-        sync_file_range(file, (off_t)(at - STRETCH), STRETCH, SYNC_FILE_RANGE_WRITE);
-        if (at < 2 * (size_t)STRETCH) continue;
-        off_t before = (off_t)(at - 2 * (size_t)STRETCH);
-        sync_file_range(file, before, STRETCH,
-                        SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
-        posix_fadvise(file, before, STRETCH, POSIX_FADV_DONTNEED);
-    }
+void brio_block_direct(void *block, bool direct) {
+    block_header *h = header_of(block);
+    if (h->kind == KIND_FILE) brio_scratch_direct(&h->file, direct);
 }
 
 void brio_block_expect(const void *block, size_t offset, size_t size) {
-    const block_header *h = (const block_header *)((const char *)block - HEADER);
-    if (h->kind == KIND_FILE) posix_fadvise(h->file, (off_t)(HEADER + offset), (off_t)size, POSIX_FADV_WILLNEED);
+    const block_header *h = header_of(block);
+    if (h->kind == KIND_FILE) brio_scratch_expect(&h->file, FRONT + offset, size);
 }
 
 brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset, void *to, size_t size) {
-    const block_header *h = (const block_header *)((const char *)block - HEADER);
-    brio_status status = BRIO_OK;
-    if (h->kind == KIND_FILE) {
-        status = move_bytes(ctx, h->file, HEADER + offset, to, NULL, size);
-        posix_fadvise(h->file, (off_t)(HEADER + offset), (off_t)size, POSIX_FADV_DONTNEED);
-    } else {
-        memcpy(to, (const char *)block + offset, size);
-    }
-    return status;
+    const block_header *h = header_of(block);
+    if (h->kind == KIND_FILE) return brio_scratch_read(ctx, &h->file, FRONT + offset, to, size);
+    memcpy(to, (const char *)block + offset, size);
+    return BRIO_OK;
 }
 
 brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, const void *from, size_t size) {
     const block_header *h = header_of(block);
-    brio_status status = BRIO_OK;
-    if (h->kind == KIND_FILE) {
-        status = move_bytes(ctx, h->file, HEADER + offset, NULL, from, size);
-        write_behind(h->file, HEADER + offset, HEADER + offset + size);
-    } else {
-        memcpy((char *)block + offset, from, size);
-    }
-    return status;
+    if (h->kind == KIND_FILE) return brio_scratch_write(ctx, &h->file, FRONT + offset, from, size);
+    memcpy((char *)block + offset, from, size);
+    return BRIO_OK;
 }
+
+/* --- blocks that grow --- */
 
 /* Grows or shrinks a mapping in place of copying it. */
 static void *block_remap(brio_context *ctx, void *block, size_t size, brio_status *status) {
@@ -272,33 +245,35 @@ static void *block_remap(brio_context *ctx, void *block, size_t size, brio_statu
     size_t target = mapped_size(size);
     if (target == h.size) return block;
     bool grows = target > h.size, file = h.kind == KIND_FILE;
-    int error = file && grows ? posix_fallocate(h.file, 0, (off_t)target) : 0;
-    if (error) {
-        *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s",
-                            ctx->scratch ? ctx->scratch : "scratch", target, strerror(error));
-        return NULL;
+    if (file && grows) {
+        *status = brio_scratch_grow(ctx, &h.file, target);
+        if (*status != BRIO_OK) return NULL;
     }
     if (!file && grows && !account_add(ctx, target - h.size)) {
         *status = refuse(ctx, target - h.size);
         return NULL;
     }
-    char *base = mremap(header_of(block), h.size, target, MREMAP_MAYMOVE);
+    char *base = mremap(base_of(block), h.size, target, MREMAP_MAYMOVE);
     if (base == MAP_FAILED) {
         if (!file && grows) account_sub(ctx, target - h.size);
         *status = refuse(ctx, target);
         return NULL;
     }
     if (!file && !grows) account_sub(ctx, h.size - target);
-    if (file && !grows && ftruncate(h.file, (off_t)target) != 0) errno = 0;
-    ((block_header *)base)->size = target;
-    return base + HEADER;
+    if (file && !grows && ftruncate(h.file.cached, (off_t)target) != 0) errno = 0;
+    header_of(base + FRONT)->size = target;
+    return base + FRONT;
+}
+
+static size_t bytes_in(const void *block) {
+    return header_of(block)->size - front_of(header_of(block)->kind);
 }
 
 static void *block_move(brio_context *ctx, void *block, size_t size, brio_status *status) {
-    size_t old = header_of(block)->size;
-    void *moved = block_new(ctx, size, status);
+    size_t old = bytes_in(block);
+    void *moved = block_new(ctx, size, false, status);
     if (!moved) return NULL;
-    memcpy(moved, block, (old < size ? old : size) - HEADER);
+    memcpy(moved, block, old < size - HEADER ? old : size - HEADER);
     brio_release(ctx, block);
     return moved;
 }
@@ -320,19 +295,31 @@ static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_sta
     return base + HEADER;
 }
 
+/* Bytes of a block with its header. */
+static bool block_bytes(brio_context *ctx, size_t count, size_t size, size_t *bytes, brio_status *status) {
+    bool fits = !__builtin_mul_overflow(count, size, bytes) && *bytes <= SIZE_MAX / 2;
+    if (!fits) *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "out of memory: %zu objects of %zu bytes", count, size);
+    *bytes += HEADER;
+    return fits;
+}
+
 void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, brio_status *status) {
     size_t bytes;
-    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2) {
-        *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "out of memory: %zu objects of %zu bytes", count, size);
-        return NULL;
-    }
-    bytes += HEADER;
-    if (!block) return block_new(ctx, bytes, status);
+    if (!block_bytes(ctx, count, size, &bytes, status)) return NULL;
+    if (!block) return block_new(ctx, bytes, false, status);
     block_kind kind = header_of(block)->kind;
     bool mapped = !ctx->custom && bytes >= MAP_FROM;
     if (kind != KIND_HEAP && mapped && !BRIO_COPIES_INSTEAD) return block_remap(ctx, block, bytes, status);
     if (kind == KIND_HEAP && !mapped) return block_realloc(ctx, block, bytes, status);
     return block_move(ctx, block, bytes, status);
+}
+
+brio_status brio_in_memory(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
+    brio_status status = BRIO_OK;
+    size_t bytes;
+    void *block = block_bytes(ctx, count, size, &bytes, &status) ? block_new(ctx, bytes, true, &status) : NULL;
+    memcpy(pointer_to_block, &block, sizeof block);
+    return status;
 }
 
 brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {

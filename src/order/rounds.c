@@ -50,6 +50,7 @@ brio_status brio_divide_into_rounds(brio_context *ctx, const uint32_t *index, si
     brio_status status = BRIO_OK;
     rounds->count = set_rounds(n, ratio, least);
     BRIO_TRY(BRIO_ALLOC(ctx, back, n));
+    brio_expect_sequence(back);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, place, (size_t)threads));
     BRIO_OMP(parallel for schedule(static, 1) num_threads(threads))
     for (int t = 0; t < threads; t++)

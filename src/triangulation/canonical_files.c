@@ -7,7 +7,8 @@
  * neighbours of a partition, which are near in space and so near in the file.
  *
  * A partition is a list of chunks, which lie in one file in the order in which they were filled: nothing has to be
- * counted beforehand, and a partition of any size has room.
+ * counted beforehand, and a partition of any size has room. There are as many partitions as a quarter of the memory asks
+ * for, and no more, since the fewer there are the longer are the chunks, which are read one by one.
  *
  * Based on: Aggarwal, Vitter. The input/output complexity of sorting and related problems. CACM 1988 (the distribution
  * sort). */
@@ -15,13 +16,18 @@
 #include "triangulation/canonical_turn.h"
 #include "triangulation/kernel.h"
 
-enum { CHUNK = 512, RANGES = 256, PARTITIONS = 2 * RANGES };
-
 /* A tetrahedron, turned but not renamed, and the slot where the insertion left it. */
 typedef struct {
     brio_tetrahedron tet;
     uint32_t slot;
 } entry;
+
+enum {
+    ALIGNED = 1024,    /* so many entries, or tetrahedra, fill whole pages */
+    LEAST_RANGES = 8,  /* for finite tetrahedra, and as many for infinite ones */
+    MOST_RANGES = 256, /* the same */
+    MOST_CHUNK = 16    /* times ALIGNED */
+};
 
 /* The tetrahedra whose latest vertices are in a range: finite ones, or infinite ones. */
 typedef struct {
@@ -31,28 +37,59 @@ typedef struct {
 
 typedef struct {
     brio_kernel *k;
-    size_t live, range;         /* vertices of a partition */
-    partition part[PARTITIONS]; /* finite ones first */
-    entry *chunks;              /* the full ones */
-    uint16_t *owner;            /* of each full chunk: its partition */
+    size_t live;
+    size_t ranges, range;            /* of latest vertices; vertices in each */
+    size_t chunk;                    /* entries in each */
+    size_t most;                     /* entries of the largest partition, whole chunks */
+    bool in_memory;                  /* whether that fits in memory, as it should */
+    partition part[2 * MOST_RANGES]; /* finite ones first */
+    entry *last;                     /* the chunks that are being filled, side by side */
+    entry *chunks;                   /* the full ones */
+    uint16_t *owner;                 /* of each full chunk: its partition */
     size_t num_chunks, chunk_capacity, owner_capacity;
     uint32_t *place; /* of each slot; its turn is its state */
     entry *entries;  /* of the partition at hand */
     brio_tetrahedron *sorted;
+    size_t carried;               /* tetrahedra at the front of `sorted`: too few to fill a page */
     uint32_t *end, *order, *name; /* of its buckets; of its entries, by bucket */
     uint64_t *key;
-    size_t capacity; /* of entries, and so of the others */
 } distribution;
 
 /* --- distribution --- */
 
+/* Bytes for a partition, and for the chunks that are being filled. */
+static size_t budget(const brio_context *ctx) {
+    enum { LEAST = 1 << 20, MOST = 1 << 28 };
+    size_t quarter = brio_memory_limit(ctx) / 4;
+    return quarter < LEAST ? LEAST : quarter > MOST ? MOST : quarter;
+}
+
+static size_t between(size_t least, size_t x, size_t most) {
+    return x < least ? least : x > most ? most : x;
+}
+
+static void choose_partitions(distribution *d) {
+    size_t bytes = budget(d->k->ctx), chunks = bytes / (ALIGNED * sizeof(entry));
+    size_t each = sizeof *d->entries + sizeof *d->sorted + sizeof *d->order + sizeof *d->name + sizeof *d->key;
+    d->ranges = between(LEAST_RANGES, d->live * each / bytes + 1, chunks / 2 < MOST_RANGES ? chunks / 2 : MOST_RANGES);
+    d->range = (d->k->num_points + 2) / d->ranges + 1;
+    d->chunk = between(1, chunks / (2 * d->ranges), MOST_CHUNK) * ALIGNED;
+}
+
+/* The three passes are about as long. */
+static brio_status tell_progress(const distribution *d, int pass, size_t done, size_t all) {
+    return brio_progress(d->k->ctx, "sort", (pass + (double)done / (double)all) / 3);
+}
+
 static brio_status flush_chunk(distribution *d, size_t p) {
     brio_context *ctx = d->k->ctx;
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(ctx, d->chunks, d->chunk_capacity, (d->num_chunks + 1) * CHUNK));
+    bool first = !d->chunks;
+    BRIO_TRY(BRIO_RESERVE(ctx, d->chunks, d->chunk_capacity, (d->num_chunks + 1) * d->chunk));
+    if (first) brio_block_direct(d->chunks, true);
     BRIO_TRY(BRIO_RESERVE(ctx, d->owner, d->owner_capacity, d->num_chunks + 1));
     d->owner[d->num_chunks] = (uint16_t)p;
-    size_t bytes = CHUNK * sizeof(entry);
+    size_t bytes = d->chunk * sizeof(entry);
     status = brio_block_write(ctx, d->chunks, d->num_chunks++ * bytes, d->part[p].last, bytes);
 done:
     return status;
@@ -63,51 +100,71 @@ static brio_status append(distribution *d, const brio_tetrahedron *t, uint32_t s
     uint8_t turn;
     brio_turn_key(t->vertex, k->t.infinite, &turn);
     const uint8_t *from = BRIO_TURNED[turn];
-    size_t p = t->vertex[from[0]] / d->range + (t->vertex[3] == k->t.infinite ? RANGES : 0);
+    size_t p = t->vertex[from[0]] / d->range + (t->vertex[3] == k->t.infinite ? d->ranges : 0);
     partition *part = &d->part[p];
-    if (!part->last) {
-        brio_status status = BRIO_ALLOC(k->ctx, part->last, CHUNK);
-        if (status != BRIO_OK) return status;
-    }
-    entry *e = &part->last[part->count++ % CHUNK];
+    entry *e = &part->last[part->count++ % d->chunk];
     for (int i = 0; i < 4; i++) e->tet.vertex[i] = t->vertex[from[i]], e->tet.mate[i] = t->mate[from[i]];
     e->slot = slot;
     k->state[slot] = turn;
-    return part->count % CHUNK ? BRIO_OK : flush_chunk(d, p);
+    return part->count % d->chunk ? BRIO_OK : flush_chunk(d, p);
+}
+
+/* Writes the chunks that are not full, and tells where partitions begin. */
+static brio_status flush_all(distribution *d) {
+    brio_status status = BRIO_OK;
+    for (size_t p = 0, begin = 0; p < 2 * d->ranges; begin += d->part[p++].count) {
+        partition *part = &d->part[p];
+        size_t rest = part->count % d->chunk, whole = part->count - rest + (rest ? d->chunk : 0);
+        if (rest) BRIO_TRY(flush_chunk(d, p));
+        part->begin = begin;
+        if (whole > d->most) d->most = whole;
+    }
+done:
+    return status;
 }
 
 static brio_status distribute(distribution *d) {
     brio_kernel *k = d->k;
-    enum { AT_ONCE = 8192 };
+    enum { AT_ONCE = 1 << 15 };
     brio_tetrahedron *some = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(k->ctx, some, AT_ONCE));
+    BRIO_TRY(BRIO_ALLOC_IN_MEMORY(k->ctx, some, AT_ONCE));
+    BRIO_TRY(BRIO_ALLOC_IN_MEMORY(k->ctx, d->last, 2 * d->ranges * d->chunk));
+    for (size_t p = 0; p < 2 * d->ranges; p++) d->part[p].last = d->last + p * d->chunk;
+    brio_block_direct(k->t.tet, true);
+    brio_expect_sequence(k->state);
     for (size_t begin = 0; begin < k->t.count; begin += AT_ONCE) {
-        if (begin + 2 * AT_ONCE < k->t.count)
-            brio_block_expect(k->t.tet, (begin + AT_ONCE) * sizeof *some, AT_ONCE * sizeof *some);
         size_t n = k->t.count - begin < AT_ONCE ? k->t.count - begin : AT_ONCE;
+        BRIO_TRY(tell_progress(d, 0, begin, k->t.count));
         BRIO_TRY(brio_block_read(k->ctx, k->t.tet, begin * sizeof *some, some, n * sizeof *some));
         for (size_t i = 0; i < n; i++)
             if (k->state[begin + i] != TET_UNUSED) BRIO_TRY(append(d, &some[i], (uint32_t)(begin + i)));
     }
-    for (size_t p = 0, begin = 0; p < PARTITIONS; begin += d->part[p++].count) d->part[p].begin = begin;
+    brio_expect_random(k->state);
+    status = flush_all(d);
 done:
     brio_release(k->ctx, some);
+    brio_release(k->ctx, d->last);
+    d->last = NULL;
     return status;
 }
 
 /* --- one partition --- */
 
-static brio_status reserve_entries(distribution *d, size_t n) {
+/* Room for a partition: in memory, unless one vertex is the latest of very many tetrahedra. */
+static brio_status reserve_entries(distribution *d) {
     brio_context *ctx = d->k->ctx;
+    size_t n = d->most;
+    d->in_memory = n * (sizeof *d->entries + sizeof *d->sorted) <= 2 * budget(ctx);
+    brio_status (*room)(brio_context *, void *, size_t, size_t) = d->in_memory ? brio_in_memory : brio_resize_to;
     brio_status status = BRIO_OK;
-    if (n <= d->capacity) return BRIO_OK;
-    BRIO_TRY(BRIO_RESIZE(ctx, d->entries, n));
-    BRIO_TRY(BRIO_RESIZE(ctx, d->sorted, n));
-    BRIO_TRY(BRIO_RESIZE(ctx, d->order, n));
-    BRIO_TRY(BRIO_RESIZE(ctx, d->name, n));
-    BRIO_TRY(BRIO_RESIZE(ctx, d->key, n));
-    d->capacity = n;
+    if (d->chunks) brio_block_direct(d->chunks, d->in_memory);
+    BRIO_TRY(room(ctx, &d->entries, n, sizeof *d->entries));
+    BRIO_TRY(room(ctx, &d->sorted, n + ALIGNED, sizeof *d->sorted));
+    BRIO_TRY(room(ctx, &d->order, n, sizeof *d->order));
+    BRIO_TRY(room(ctx, &d->name, n, sizeof *d->name));
+    BRIO_TRY(room(ctx, &d->key, n, sizeof *d->key));
+    BRIO_TRY(room(ctx, &d->end, d->range, sizeof *d->end));
 done:
     return status;
 }
@@ -121,31 +178,18 @@ static size_t next_run(const distribution *d, size_t p, size_t *begin) {
     return c - *begin;
 }
 
-static void expect_partition(const distribution *d, size_t p) {
-    size_t bytes = CHUNK * sizeof(entry);
-    for (size_t c = 0, run; (run = next_run(d, p, &c)) > 0; c += run)
-        brio_block_expect(d->chunks, c * bytes, run * bytes);
-}
-
 static brio_status read_partition(distribution *d, size_t p) {
-    brio_context *ctx = d->k->ctx;
-    const partition *part = &d->part[p];
     brio_status status = BRIO_OK;
-    size_t n = 0, bytes = CHUNK * sizeof(entry);
-    BRIO_TRY(reserve_entries(d, part->count));
-    if (p + 1 < PARTITIONS) expect_partition(d, p + 1);
-    for (size_t c = 0, run; (run = next_run(d, p, &c)) > 0; c += run) {
-        BRIO_TRY(brio_block_read(ctx, d->chunks, c * bytes, &d->entries[n], run * bytes));
-        n += run * CHUNK;
-    }
-    if (n < part->count) memcpy(&d->entries[n], part->last, (part->count - n) * sizeof(entry));
+    size_t n = 0, bytes = d->chunk * sizeof(entry);
+    for (size_t c = 0, run; (run = next_run(d, p, &c)) > 0; c += run, n += run * d->chunk)
+        BRIO_TRY(brio_block_read(d->k->ctx, d->chunks, c * bytes, &d->entries[n], run * bytes));
 done:
     return status;
 }
 
 /* Lists the entries at hand by their latest vertices; bucket b ends at end[b]. */
 static void fill_buckets(distribution *d, size_t p) {
-    size_t n = d->part[p].count, first = p % RANGES * d->range;
+    size_t n = d->part[p].count, first = p % d->ranges * d->range;
     memset(d->end, 0, d->range * sizeof *d->end);
     for (size_t i = 0; i < n; i++) d->end[d->entries[i].tet.vertex[0] - first]++;
     uint32_t sum = 0;
@@ -160,7 +204,8 @@ static void fill_buckets(distribution *d, size_t p) {
 /* Tells each slot of a partition its place. */
 static brio_status sort_partition(distribution *d, size_t p) {
     if (!d->part[p].count) return BRIO_OK;
-    brio_status status = read_partition(d, p);
+    brio_status status = tell_progress(d, 1, d->part[p].begin, d->live);
+    if (status == BRIO_OK) status = read_partition(d, p);
     if (status != BRIO_OK) return status;
     fill_buckets(d, p);
     for (size_t i = 0; i < d->part[p].count; i++) {
@@ -169,8 +214,11 @@ static brio_status sort_partition(distribution *d, size_t p) {
     }
     for (size_t b = 0, begin = 0; b < d->range; begin = d->end[b++])
         brio_sort_names(d->key + begin, d->name + begin, d->end[b] - begin, d->order + begin);
-    for (size_t i = 0; i < d->part[p].count; i++)
-        d->place[d->entries[d->order[i]].slot] = (uint32_t)(d->part[p].begin + i);
+    for (size_t i = 0; i < d->part[p].count; i++) {
+        uint32_t *place = &d->place[d->entries[d->order[i]].slot];
+        brio_expect(&d->k->read_ahead, place);
+        *place = (uint32_t)(d->part[p].begin + i);
+    }
     return BRIO_OK;
 }
 
@@ -196,20 +244,43 @@ static void expect_neighbours(distribution *d, size_t n) {
         }
 }
 
+/* Writes what is sorted as far as it fills pages; `end` is its last place. */
+static brio_status write_pages(distribution *d, brio_tetrahedron *out, size_t end) {
+    size_t begin = end - d->carried, whole = d->carried / ALIGNED * ALIGNED;
+    brio_status status = brio_block_write(d->k->ctx, out, begin * sizeof *out, d->sorted, whole * sizeof *out);
+    d->carried -= whole;
+    memmove(d->sorted, d->sorted + whole, d->carried * sizeof *out);
+    return status;
+}
+
 static brio_status write_partition(distribution *d, size_t p, brio_tetrahedron *out) {
     const partition *part = &d->part[p];
     if (!part->count) return BRIO_OK;
-    brio_status status = read_partition(d, p);
+    brio_status status = tell_progress(d, 2, part->begin, d->live);
+    if (status == BRIO_OK) status = read_partition(d, p);
     if (status != BRIO_OK) return status;
     expect_neighbours(d, part->count);
+    brio_tetrahedron *sorted = d->sorted + d->carried;
     for (size_t i = 0; i < part->count; i++)
-        rename_one(d, &d->entries[i].tet, &d->sorted[d->place[d->entries[i].slot] - part->begin]);
-    return brio_block_write(d->k->ctx, out, part->begin * sizeof *out, d->sorted, part->count * sizeof *out);
+        rename_one(d, &d->entries[i].tet, &sorted[d->place[d->entries[i].slot] - part->begin]);
+    d->carried += part->count;
+    return write_pages(d, out, part->begin + part->count);
+}
+
+static brio_status write_all(distribution *d, brio_tetrahedron *out) {
+    brio_status status = BRIO_OK;
+    brio_block_direct(out, d->in_memory);
+    for (size_t p = 0; p < 2 * d->ranges; p++) BRIO_TRY(write_partition(d, p, out));
+    brio_block_direct(out, false);
+    status =
+        brio_block_write(d->k->ctx, out, (d->live - d->carried) * sizeof *out, d->sorted, d->carried * sizeof *out);
+done:
+    return status;
 }
 
 static void distribution_free(distribution *d) {
     brio_context *ctx = d->k->ctx;
-    for (size_t p = 0; p < PARTITIONS; p++) brio_release(ctx, d->part[p].last);
+    brio_release(ctx, d->last);
     brio_release(ctx, d->chunks);
     brio_release(ctx, d->owner);
     brio_release(ctx, d->place);
@@ -222,19 +293,20 @@ static void distribution_free(distribution *d) {
 }
 
 brio_status brio_kernel_sort_files(brio_kernel *k) {
-    distribution d = {.k = k, .live = k->t.count - k->num_unused, .range = (k->num_points + 2) / RANGES + 1};
+    distribution d = {.k = k, .live = k->t.count - k->num_unused};
     brio_status status = BRIO_OK;
+    choose_partitions(&d);
     BRIO_TRY(distribute(&d));
     brio_release(k->ctx, k->t.tet);
     k->t.tet = NULL;
     BRIO_TRY(BRIO_ALLOC(k->ctx, d.place, k->t.count));
-    BRIO_TRY(BRIO_ALLOC(k->ctx, d.end, d.range));
-    for (size_t p = 0; p < PARTITIONS; p++) BRIO_TRY(sort_partition(&d, p));
+    BRIO_TRY(reserve_entries(&d));
+    for (size_t p = 0; p < 2 * d.ranges; p++) BRIO_TRY(sort_partition(&d, p));
     BRIO_TRY(BRIO_ALLOC(k->ctx, k->t.tet, d.live));
-    for (size_t p = 0; p < PARTITIONS; p++) BRIO_TRY(write_partition(&d, p, k->t.tet));
+    BRIO_TRY(write_all(&d, k->t.tet));
     k->t.count = k->capacity = d.live;
     k->num_unused = 0;
-    k->stats.tetrahedra = d.part[RANGES].begin;
+    k->stats.tetrahedra = d.part[d.ranges].begin;
     k->stats.hull_facets = d.live - k->stats.tetrahedra;
     brio_release(k->ctx, k->state);
     k->state = NULL;

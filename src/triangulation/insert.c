@@ -37,10 +37,13 @@ static bool absorbed(brio_kernel *k, uint32_t p, uint32_t v) {
     return true;
 }
 
-/* Around a point is where the next ones go. */
-static void expect_neighbours(brio_kernel *k) {
+/* Around a point is where the next ones go; fresh slots are taken in sequence, and so are the points. */
+static void expect_neighbours(brio_kernel *k, uint32_t p) {
+    enum { SOON = 512 };
     const brio_cavity *c = &k->cavity;
     k->read_ahead.now++;
+    if (p + SOON < k->num_points) brio_expect(&k->read_ahead, k->record[p + SOON]);
+    if (k->t.count + SOON < k->capacity) brio_expect(&k->read_ahead, &k->t.tet[k->t.count + SOON]);
     for (size_t i = 0; i < c->num_created; i++) {
         const brio_tetrahedron *t = &k->t.tet[c->created[i]];
         brio_expect(&k->read_ahead, &k->t.tet[brio_tet_of(t->mate[0])]);
@@ -75,6 +78,6 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
     if (!brio_owns(&k->t, tet)) return BRIO_DEFERRED;
     brio_status status = k->engine->dig(k, tet, p);
     if (status == BRIO_OK) status = brio_cavity_fill(k, p);
-    if (status == BRIO_OK && k->goes_on) expect_neighbours(k);
+    if (status == BRIO_OK && k->goes_on) expect_neighbours(k, p);
     return status == BRIO_OK && k->locator->filled ? k->locator->filled(k, p) : status;
 }

@@ -61,10 +61,41 @@ static void scratch_block_grows_and_is_not_counted(void) {
     brio_context_free(ctx);
 }
 
+/* What goes past the cache and what goes through it, or through the mapping, are the same bytes. */
+static void scratch_block_is_one_whatever_way_it_is_reached(void) {
+    enum { BYTES = 3 << 20, PAGE = 4096 };
+    brio_context *ctx;
+    brio_context_new(NULL, &ctx);
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+    size_t before = brio_context_memory(ctx);
+    unsigned char *block, *memory;
+    EXPECT(BRIO_ALLOC(ctx, block, BYTES) == BRIO_OK);
+    EXPECT(BRIO_ALLOC_IN_MEMORY(ctx, memory, BYTES) == BRIO_OK);
+    EXPECT((uintptr_t)memory % PAGE == 0 && (uintptr_t)block % PAGE == 0);
+    for (size_t i = 0; i < BYTES; i++) block[i] = (unsigned char)(i * 7 / 5);
+    for (int direct = 1; direct >= 0; direct--) {
+        brio_block_direct(block, direct);
+        EXPECT(brio_block_read(ctx, block, PAGE, memory, BYTES - PAGE) == BRIO_OK);
+        EXPECT(!memcmp(memory, block + PAGE, BYTES - PAGE));
+        memset(memory, direct + 1, BYTES);
+        EXPECT(brio_block_write(ctx, block, 2 * PAGE, memory, 3 * PAGE) == BRIO_OK);
+        EXPECT(brio_block_write(ctx, block, 9 * PAGE + 5, memory, 70) == BRIO_OK);
+        EXPECT(block[2 * PAGE] == direct + 1 && block[5 * PAGE - 1] == direct + 1);
+        EXPECT(block[9 * PAGE + 5] == direct + 1 && block[9 * PAGE + 74] == direct + 1);
+        EXPECT(block[2 * PAGE - 1] == (unsigned char)((2 * PAGE - 1) * 7 / 5));
+        EXPECT(block[9 * PAGE + 75] == (unsigned char)((9 * PAGE + 75) * 7 / 5));
+    }
+    brio_release(ctx, block);
+    brio_release(ctx, memory);
+    EXPECT(brio_context_memory(ctx) == before);
+    brio_context_free(ctx);
+}
+
 int main(void) {
     RUN(grown_block_keeps_what_it_held);
     RUN(limit_is_a_status_and_keeps_the_block);
     RUN(size_overflow_is_a_status);
     RUN(scratch_block_grows_and_is_not_counted);
+    RUN(scratch_block_is_one_whatever_way_it_is_reached);
     return harness_end();
 }

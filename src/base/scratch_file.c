@@ -1,0 +1,119 @@
+/* Scratch files: room on disk, and transfers by whole calls.
+ *
+ * What is read or written once, in sequence, has no use for the system's cache, which costs a copy, and room that other
+ * arrays need: transfers of whole pages pass it by where the file system can do that. Otherwise they go through the
+ * cache, and what has been transferred is let go at once. */
+#define _GNU_SOURCE
+#include "base/scratch_file.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+static brio_status no_room(brio_context *ctx, size_t size, int error) {
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s",
+                     ctx->scratch ? ctx->scratch : "scratch", size, strerror(error));
+}
+
+brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {
+    int file = open(ctx->scratch, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (file < 0) {
+        char name[4096];
+        snprintf(name, sizeof name, "%s/brio-XXXXXX", ctx->scratch);
+        file = mkstemp(name);
+        if (file >= 0) unlink(name);
+    }
+    if (file < 0) return no_room(ctx, size, errno);
+    *out = (brio_scratch_file){file, -1};
+    brio_status status = brio_scratch_grow(ctx, out, size);
+    if (status != BRIO_OK) brio_scratch_close(out);
+    /* a fault reads a single page unless the block is read in sequence, see memory.c */
+    if (status == BRIO_OK) posix_fadvise(file, 0, 0, POSIX_FADV_RANDOM);
+    return status;
+}
+
+brio_status brio_scratch_grow(brio_context *ctx, const brio_scratch_file *f, size_t size) {
+    int error = posix_fallocate(f->cached, 0, (off_t)size);
+    return error ? no_room(ctx, size, error) : BRIO_OK;
+}
+
+void brio_scratch_close(brio_scratch_file *f) {
+    close(f->cached);
+    if (f->direct >= 0) close(f->direct);
+}
+
+void brio_scratch_direct(brio_scratch_file *f, bool direct) {
+    char name[64];
+    if (direct == (f->direct >= 0)) return;
+    snprintf(name, sizeof name, "/proc/self/fd/%d", f->cached);
+    if (!direct) close(f->direct);
+    f->direct = direct ? open(name, O_RDWR | O_DIRECT | O_CLOEXEC) : -1;
+}
+
+/* --- transfers --- */
+
+static bool whole_pages(size_t offset, const void *memory, size_t size) {
+    return (offset | (uintptr_t)memory | size) % BRIO_SCRATCH_PAGE == 0;
+}
+
+/* One call, which may move less than it was asked to. */
+static ssize_t transfer(int file, size_t offset, char *in, const char *out, size_t size) {
+    return in ? pread(file, in, size, (off_t)offset) : pwrite(file, out, size, (off_t)offset);
+}
+
+/* Moves all bytes, and tells whether they went past the cache. */
+static brio_status transfer_all(brio_context *ctx, const brio_scratch_file *f, size_t offset, char *in, const char *out,
+                                size_t size, bool *direct) {
+    *direct = f->direct >= 0;
+    while (size > 0) {
+        bool past = f->direct >= 0 && whole_pages(offset, in ? in : out, size);
+        ssize_t n = transfer(past ? f->direct : f->cached, offset, in, out, size);
+        if (n < 0 && errno == EINVAL && past) n = transfer(f->cached, offset, in, out, size), past = false;
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0)
+            return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot %s a scratch file: %s", ctx->scratch,
+                             in ? "read" : "write", n ? strerror(errno) : "it ends early");
+        *direct &= past;
+        offset += (size_t)n, size -= (size_t)n;
+        if (in) in += n;
+        if (out) out += n;
+    }
+    return BRIO_OK;
+}
+
+/* Has the stretch that ends here written, waits for the one before and lets its pages go: what is written in sequence
+ * would otherwise fill the memory with pages that have to be written before they can be taken. */
+static void write_behind(int file, size_t begin, size_t end) {
+    enum { STRETCH = 1 << 22 };
+    for (size_t at = (begin / STRETCH + 1) * STRETCH; at <= end; at += STRETCH) {
+        sync_file_range(file, (off_t)(at - STRETCH), STRETCH, SYNC_FILE_RANGE_WRITE);
+        if (at < 2 * (size_t)STRETCH) continue;
+        off_t before = (off_t)(at - 2 * (size_t)STRETCH);
+        sync_file_range(file, before, STRETCH,
+                        SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+        posix_fadvise(file, before, STRETCH, POSIX_FADV_DONTNEED);
+    }
+}
+
+brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, size_t offset, void *to, size_t size) {
+    bool direct;
+    brio_status status = transfer_all(ctx, f, offset, to, NULL, size, &direct);
+    if (!direct) posix_fadvise(f->cached, (off_t)offset, (off_t)size, POSIX_FADV_DONTNEED);
+    return status;
+}
+
+brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, size_t offset, const void *from,
+                               size_t size) {
+    bool direct;
+    brio_status status = transfer_all(ctx, f, offset, NULL, from, size, &direct);
+    if (!direct) write_behind(f->cached, offset, offset + size);
+    return status;
+}
+
+void brio_scratch_expect(const brio_scratch_file *f, size_t offset, size_t size) {
+    posix_fadvise(f->cached, (off_t)offset, (off_t)size, POSIX_FADV_WILLNEED);
+}
