@@ -1,14 +1,17 @@
 """The plots, by gnuplot: one SVG a figure."""
+import glob
+import os
 import shutil
 import subprocess
 
-HEAD = '''set terminal svg size 700,450 background "white"
-set key top left
-set grid
-set xlabel "points inserted"
+HEAD = '''set terminal svg size 800,450 background "white" font "sans-serif,13"
+set key outside right top Left reverse
+set grid linecolor "#dddddd"
+set xlabel "points inserted, thousands"
 set title "{title}"
 set ylabel "{y}"
 '''
+LOGARITHMIC = 'set logscale xy\n'  # sets from a hundred thousand points to tens of millions
 
 
 def _columns(kind, r):
@@ -30,17 +33,23 @@ def _script(figure, results, path):
         for more, points in _columns(figure.kind, r):
             if not points: continue
             name = f'$c{len(blocks)}'
-            blocks.append(f'{name} << EOD\n' + ''.join(f'{a} {b}\n' for a, b in points) + 'EOD\n')
+            blocks.append(f'{name} << EOD\n' + ''.join(f'{a / 1e3} {b}\n' for a, b in points) + 'EOD\n')
             curves.append(f'{name} using 1:2 with lines linewidth 2 title "{label}{more}"')
     if not curves: return ''
-    return HEAD.format(title=f'{figure.name}: {figure.title}', y=y) + ''.join(blocks) + \
+    head = HEAD.format(title=f'{figure.name}: {figure.title}', y=y) + (LOGARITHMIC if figure.name == 'headline' else '')
+    return head + ''.join(blocks) + \
         f'set output "{path}"\nplot ' + ', '.join(curves) + '\n'
 
 
-def draw(found, folder):
-    if not shutil.which('gnuplot'):
-        print('gnuplot is not installed: no plots')
-        return
-    for figure, results in found:
-        script = _script(figure, results, f'{folder}/figure-{figure.name}.svg')
-        if script: subprocess.run(['gnuplot'], input=script.encode(), check=True)
+def clear(folder):
+    """Removes the plots of an earlier call, which a report would take for its own."""
+    for old in glob.glob(f'{folder}/figure-*.svg'): os.remove(old)
+
+
+def path(figure, folder): return f'{folder}/figure-{figure.name}.svg'
+
+
+def draw(figure, results, folder):
+    if figure.kind == 'table': return
+    script = _script(figure, results, path(figure, folder))
+    if script and shutil.which('gnuplot'): subprocess.run(['gnuplot'], input=script.encode(), check=True)

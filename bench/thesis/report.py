@@ -1,7 +1,10 @@
 """The report: each claim of the thesis beside what was found here."""
 import os
 import platform
+import shutil
 import subprocess
+import plot
+from verdicts import FINISHES
 
 
 def _machine():
@@ -12,10 +15,27 @@ def _machine():
     return model
 
 
-def _commit():
+def commit():
     here = os.path.dirname(os.path.abspath(__file__))
     command = ['git', '-C', here, 'describe', '--always', '--dirty']
     return subprocess.run(command, capture_output=True, text=True).stdout.strip() or 'unknown'
+
+
+WORDS = {True: 'holds', False: 'does not hold', None: 'not shown'}
+HEAD = '''# The experiments of the thesis
+
+Written by `make thesis` (bench/thesis): chapters 4 and 5 of [Choi 2003] with the strategies of this program in place of
+the programs that were compared there. hull is `--locate history`, CGAL `hierarchy`, pyramid `jump`, its simplified form
+`walk`; a BRIO is `--order brio-octree`, pure locality `octree`; the first three sections take the tuned `brio`. Each run
+has one thread. Times are seconds of reading, order and insertion, the sort of the result included.
+
+Memory is held by a memory cgroup, which counts the pages of scratch and input files too; arrays are in scratch files
+then. Limits are shares of what the same work takes without one. A run is stopped after {patience:g} times the first
+limited run of its figure, in the headline at {finishes} times its time without a limit, beyond which it does not count as
+finished. *Not shown* is what was stopped, or left out, too early to tell.
+
+{machine}, commit {commit}; {size}; {minutes:.0f} minutes in all.
+'''
 
 
 def _row(label, r):
@@ -25,24 +45,37 @@ def _row(label, r):
     return f'| {label} | {r["points"]:,} | {memory} | {wall} | ' + ' | '.join(numbers) + ' |\n'
 
 
-def write(path, found, options, no_limits):
+def _section(f, g, results, verdict, images):
+    holds, words = verdict
+    f.write(f'\n## {g.name}: {g.title}\n\nThesis: {g.claim}\n\nHere: **{WORDS[holds]}**. {words}.\n')
+    if not results: return
+    f.write('\n| run | points | memory, MiB | seconds | tetrahedra | created | destroyed | history |\n'
+            '|---|--:|--:|--:|--:|--:|--:|--:|\n')
+    for label, r in results.items(): f.write(_row(label, r))
+    if images is not None: f.write(f'\n![{g.title}]({images}figure-{g.name}.svg)\n')
+
+
+def write(path, found, bench, images):
+    """The report, with its plots in a folder beside it: images, '' or 'folder/'."""
+    o = bench.options
+    verdicts = {g.name: g.verdict(results) if results else (None, 'Left out') for g, results in found}
     with open(path, 'w') as f:
-        f.write('# The experiments of the thesis\n\n'
-                'Written by `make thesis` (bench/thesis): chapters 4 and 5 of [Choi 2003] with the strategies of this\n'
-                'program in place of the programs that were compared there: hull is `--locate history`, CGAL `hierarchy`,\n'
-                'pyramid `jump`, its simplified form `walk`; BRIO is `brio-octree` (`brio` in the last three), pure\n'
-                'locality `octree`. One thread; seconds of reading, order and insertion, the sort of the result included.\n'
-                'Memory is held by a memory cgroup, which counts the pages of scratch and input files; MiB in the tables.\n\n')
-        f.write(f'{_machine()}, commit {_commit()}, every {options.shrink}th point, at most {options.limit:g} s a run.\n')
-        if no_limits: f.write(f'\nFigures with little memory were left out: {no_limits}.\n')
-        f.write('\n| figure | claim | here |\n|---|---|---|\n')
-        verdicts = {g.name: g.verdict(results) if results else (None, 'left out') for g, results in found}
-        words = {True: 'holds', False: 'does not hold', None: 'not shown'}
-        for g, _ in found: f.write(f'| {g.name} | {g.claim} | {words[verdicts[g.name][0]]} |\n')
+        size = 'all points' if o.shrink == 1 else f'every {o.shrink}th point'
+        f.write(HEAD.format(patience=o.patience, finishes=FINISHES, machine=_machine(), commit=bench.commit, size=size,
+                            minutes=bench.minutes()))
+        if bench.no_limits: f.write(f'\nRuns with little memory were left out: {bench.no_limits}.\n')
+        if bench.left_out: f.write(f'\nLeft out, the time being over: {"; ".join(bench.left_out)}.\n')
+        f.write('\n| figure | claim of the thesis | here |\n|---|---|---|\n')
+        for g, _ in found: f.write(f'| {g.name} | {g.claim} | {WORDS[verdicts[g.name][0]]} |\n')
         for g, results in found:
-            f.write(f'\n## {g.name}: {g.title}\n\nThesis: {g.claim}\n\n')
-            f.write(f'Here: **{words[verdicts[g.name][0]]}**. {verdicts[g.name][1]}.\n\n')
-            if not results: continue
-            f.write('| run | points | memory | seconds | tetrahedra | created | destroyed | history |\n'
-                    '|---|---|---|---|---|---|---|---|\n')
-            for label, r in results.items(): f.write(_row(label, r))
+            drawn = os.path.exists(plot.path(g, o.out))
+            _section(f, g, results, verdicts[g.name], images if drawn else None)
+
+
+def publish(path, found, bench):
+    """The report elsewhere, with the plots in images/thesis beside it."""
+    folder = os.path.join(os.path.dirname(path) or '.', 'images', 'thesis')
+    os.makedirs(folder, exist_ok=True)
+    for g, _ in found:
+        if os.path.exists(plot.path(g, bench.options.out)): shutil.copy(plot.path(g, bench.options.out), folder)
+    write(path, found, bench, 'images/thesis/')

@@ -3,7 +3,7 @@
 
 Every run is one process with its arrays in scratch files; runs that name a share of memory are held to it by a memory
 cgroup (root, v1 or v2). Where none can be made those runs are left out, and the report says so. A run over its time is
-stopped, and counts as stopped. OUT/runs.csv has a line a run, OUT/curves.csv the course of each, OUT/figure-*.svg the
+stopped, and counts as stopped, with the share of its points that it had inserted. OUT/runs.csv has a line a run, OUT/curves.csv the course of each, OUT/figure-*.svg the
 plots, OUT/thesis-experiments.md the claims of the thesis beside what was found."""
 import argparse
 import csv
@@ -12,6 +12,7 @@ import os
 import shutil
 import sys
 import tempfile
+import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -20,6 +21,7 @@ import figures
 import limits
 import plot
 import report
+import verdicts
 
 LEAST_MEMORY = 12 << 20  # below, the program itself hardly fits
 COLUMNS = ['figure', 'label', 'set', 'points', 'order_name', 'locate', 'memory', 'status', 'reached', 'wall', 'order',
@@ -35,23 +37,26 @@ def options_of_call():
     a.add_argument('--full', action='store_true', help='full sizes (default: a fourth)')
     a.add_argument('--shrink', type=int, help='every so manieth point only')
     a.add_argument('--copies', type=int, nargs='+', help='numbers of copies of the scan (default 1 2 4, full 1 2 4 10)')
+    a.add_argument('--headline', type=int, nargs='+', metavar='COPIES', help='the same for the headline (default 10 20)')
     a.add_argument('--memory', type=int, metavar='MIB', help='of figures 5.5, 5.6 (4 times) and the headline (full: 256)')
     a.add_argument('--only', nargs='+', metavar='FIGURE', help='4.5 5.1 ... 5.8-order 5.8-blocks eighth-happy headline')
-    a.add_argument('--limit', type=float, metavar='S', help='most seconds a run (default 60, full 1800)')
+    a.add_argument('--minutes', type=float, help='most of all runs together; the rest is left out (default 10, full 45)')
     a.add_argument('--patience', type=float, default=6, metavar='X',
-                   help='most seconds of a run, as a multiple of the first of its figure (default 6)')
+                   help='most time of a limited run, as a multiple of the first one of its figure (default 6)')
     o = a.parse_args()
     o.shrink = o.shrink or (1 if o.full else 4)
     o.copies = o.copies or ([1, 2, 4, 10] if o.full else [1, 2, 4])
+    o.headline = o.headline or [10, 20]
     o.memory = (o.memory or 256 // o.shrink) << 20
-    o.limit = o.limit or (1800 if o.full else 60)
+    o.minutes = o.minutes or (45 if o.full else 10)
     o.scratch = o.scratch or o.out
     return o
 
 
 class Bench:
     def __init__(self, options):
-        self.options, self.no_limits, self.peaks = options, limits.reason(), {}
+        self.options, self.no_limits, self.free = options, limits.reason(), {}
+        self.left_out, self.begin, self.commit = [], time.monotonic(), report.commit()
         os.makedirs(options.out, exist_ok=True)
         self.folder = tempfile.mkdtemp(prefix='thesis-', dir=options.scratch)
         self.data = data.Data(os.path.abspath(options.brio), self.folder, options.shrink)
@@ -66,15 +71,36 @@ class Bench:
                 '--order', r.order, '--locate', r.locate, *r.options, *(
                     [] if r.share else ['--record-every', str(max(1, points // 40))])]
 
+    def without_limit(self, name, locate):
+        """What a BRIO takes without a limit."""
+        if (name, locate) not in self.free:
+            self.measure(figures.run('', name, 'brio-octree', locate), None, self.seconds_left())
+        return self.free.get((name, locate))
+
     def memory(self, r):
         """Bytes of a run: its share of the peak without a limit, or what it names."""
-        if not r.share or r.share > 1: return r.share
-        key = r.set, r.locate
-        if key not in self.peaks:
-            done = self.measure(figures.run('', r.set, 'brio-octree', r.locate), None, None)
-            if done['status'] != 'done': sys.exit(f'{r.set}, {r.locate}: {done["status"]} without a limit')
-            self.peaks[key] = done['peak_bytes']
-        return max(LEAST_MEMORY, int(r.share * self.peaks[key]))
+        share, locate = r.share if isinstance(r.share, tuple) else (r.share, r.locate)
+        if not share or share > 1: return share
+        free = self.without_limit(r.set, locate)
+        return free and max(LEAST_MEMORY, int(share * free['peak_bytes']))
+
+    def minutes(self):
+        return (time.monotonic() - self.begin) / 60
+
+    def seconds_left(self):
+        return 60 * (self.options.minutes - self.minutes())
+
+    def most_seconds(self, r, memory, results, first):
+        """When a run is stopped: by its clock, or by the first limited run of its figure, seconds a point."""
+        most = self.seconds_left()
+        if r.clock in results:
+            clock = results[r.clock]
+            most = min(most, 10 + 1.2 * verdicts.FINISHES * clock['wall'] / clock['points'] * self.data.points(r.set))
+        elif memory:
+            free = None if first else self.without_limit(r.set, r.locate)
+            if free: first = 3 * free['wall'] / free['points']
+            most = min(most, max(20, self.options.patience * (first or 0) * self.data.points(r.set)))
+        return most
 
     def measure(self, r, memory, most_seconds):
         """A dict of what a run gave."""
@@ -91,18 +117,29 @@ class Bench:
             result.update({k: facts[k] for k in COLUMNS if k in facts}, rounds=facts.get('rounds', []))
             result.update(order=facts['seconds']['order'], insert=facts['seconds']['insert'], reached=100,
                           wall=facts['seconds']['read'] + facts['seconds']['order'] + facts['seconds']['insert'])
+            if not memory and r.order.startswith('brio'): self.free[r.set, r.locate] = result
             if result['rounds']: result['curve'] = [(x['points'], x['seconds']) for x in result['rounds']]
         return result
+
+    def possible(self, f, r, results):
+        """Whether a run can be made, and would tell something."""
+        if r.share and self.no_limits: return False
+        if r.needs and results.get(r.needs, {}).get('status') != 'done': return False
+        if self.seconds_left() > 10: return True
+        self.left_out.append(f'{f.name}: {r.label}')
+        return False
 
     def figure(self, f, write):
         """label: result of each run of a figure."""
         results, first = {}, None
         for r in f.runs:
-            if r.share and self.no_limits: continue
+            if not self.possible(f, r, results): continue
             memory = self.memory(r)
-            most = max(30, self.options.patience * first) if first and memory else self.options.limit
-            result = self.measure(r, memory, min(most, self.options.limit))
-            if memory and result['status'] == 'done': first = first or result['wall']
+            if r.share and not memory: continue
+            result = self.measure(r, memory, self.most_seconds(r, memory, results, first))
+            free = self.free.get((r.set, r.locate))
+            result['needed'] = free['peak_bytes'] if free else ''
+            if memory and result['status'] == 'done': first = first or result['wall'] / result['points']
             write(f, r, result)
             results[r.label] = result
             print(f'{f.name:14} {r.label:18} {result["points"]:>9} points  {result["status"]:8} {result["wall"]:8.1f} s',
@@ -113,6 +150,7 @@ class Bench:
 def main():
     o = options_of_call()
     bench = Bench(o)
+    plot.clear(o.out)
     if bench.no_limits: print(f'{bench.no_limits}: the runs with little memory are left out')
     found = []
     try:
@@ -130,12 +168,12 @@ def main():
                 if not result['rounds']: curves.writerows([f.name, r.label, p, s, '', '', ''] for p, s in result['curve'])
                 a.flush(), b.flush()
 
-            for f in figures.figures(2000000 // o.shrink, o.memory, o.copies):
+            for f in figures.figures(2000000 // o.shrink, o.memory, o.copies, o.headline):
                 if o.only and f.name not in o.only: continue
                 found.append((f, bench.figure(f, write)))
-                report.write(f'{o.out}/thesis-experiments.md', found, o, bench.no_limits)
-        if o.report: shutil.copy(f'{o.out}/thesis-experiments.md', o.report)
-        plot.draw(found, o.out)
+                plot.draw(*found[-1], o.out)
+                report.write(f'{o.out}/thesis-experiments.md', found, bench, '')
+        if o.report: report.publish(o.report, found, bench)
     finally:
         bench.close()
 

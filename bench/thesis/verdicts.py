@@ -1,0 +1,191 @@
+"""Whether a claim of the thesis holds in what was measured here: (True, False, or None where it was not shown; the words).
+
+Each takes the results of a figure, a dict a run, by label."""
+import math
+
+SLOWER = 5     # times its early time a point: a run thrashes
+FINISHES = 5   # times the time without a limit: a run that takes longer does not count as finished
+NOISE = 1.05   # ratios nearer to 1 say nothing
+
+
+def is_done(results, *labels): return all(label in results and results[label]['status'] == 'done' for label in labels)
+
+
+def million(r): return f'{r["points"] / 1e6:.2f} M points'
+
+
+def mib(n): return f'{n / 2**20:.0f} MiB'
+
+
+def outcome(label, r):
+    if r['status'] == 'done': return f'{label} took {r["wall"]:.1f} s'
+    return f'{label} was {r["status"]} after {r["wall"]:.0f} s with {r["reached"]} % of the points inserted'
+
+
+def missing(results, *labels):
+    return None, '; '.join(outcome(k, results[k]) if k in results else f'{k} was left out' for k in labels
+                           if not is_done(results, k))
+
+
+def both(*verdicts):
+    known = [v for v, _ in verdicts if v is not None]
+    return (all(known) if len(known) == len(verdicts) else None if all(known) else False), '. '.join(w for _, w in verdicts)
+
+
+def an_insertion(r): return f'{r["created"] / r["vertices"]:.1f} tetrahedra created an insertion'
+
+
+def slower(results, slow, fast, times):
+    """Whether one run took so many times another's time, or was stopped after that."""
+    if not is_done(results, fast) or slow not in results: return missing(results, fast, slow)
+    a, b = results[slow], results[fast]
+    ratio = a['wall'] / b['wall']
+    words = f'{outcome(slow, a)}, {outcome(fast, b)}: {ratio:.1f} times' + ('' if a['status'] == 'done' else ' by then')
+    if a['status'] == 'done': return ratio >= times, words
+    return (True if ratio >= times else None), words
+
+
+def linear_tetrahedra(results):
+    done = {k: r for k, r in results.items() if r['status'] == 'done'}
+    if not done: return missing(results, *results)
+    a_point = [r['tetrahedra'] / r['vertices'] for r in done.values()]
+    words = '; '.join(f'{k}: {r["tetrahedra"] / r["vertices"]:.2f} a point, {r["created"] / r["vertices"]:.1f} created and '
+                      f'{r["destroyed"] / r["vertices"]:.1f} destroyed an insertion, infinite ones included' for k, r in done.items())
+    return all(5.5 <= v <= 7.5 for v in a_point), words
+
+
+def location_share(results):
+    shares = {k: r['rounds'][-1]['locate_seconds'] / r['rounds'][-1]['seconds'] for k, r in results.items()
+              if r['status'] == 'done' and r['rounds']}
+    words = '; '.join(f'{k} spends {v:.0%} of its time in location' for k, v in shares.items())
+    return bool(shares) and all(0.1 < v < 0.75 for v in shares.values()), words
+
+
+def near_linear(results, label, first=0.25):
+    """Whether the last part of the insertion goes on as fast as the part before it, within a factor of 2."""
+    r = results.get(label)
+    if not r or r['status'] != 'done' or len(r['curve']) < 8: return None, f'{label}: too short to tell'
+    begin, end = r['curve'][0], r['curve'][-1]
+    cut = min(r['curve'], key=lambda c: abs(c[0] - first * end[0]))
+    early, late = (cut[1] - begin[1]) / max(1, cut[0] - begin[0]), (end[1] - cut[1]) / max(1, end[0] - cut[0])
+    if early <= 0: return None, f'{label}: too short to tell'
+    words = f'{label} takes {1e6 * early:.1f} s a million points up to a quarter of them and {1e6 * late:.1f} s after'
+    if late < 2 * early: return True, words
+    return False, words + ': the first quarter still fits in the memory'
+
+
+def history_sizes(results):
+    if not is_done(results, 'BRIO', 'octree'): return missing(results, 'BRIO', 'octree')
+    nodes = {k: r['history'] / r['vertices'] for k, r in results.items() if r['status'] == 'done'}
+    return nodes['BRIO'] < nodes['octree'], '; '.join(f'{k}: {v:.1f} nodes a point' for k, v in nodes.items())
+
+
+def copies_scale(results):
+    done = {k: r for k, r in results.items() if r['status'] == 'done'}
+    if not done: return missing(results, *results)
+    rates = {k: r['wall'] / r['points'] * 1e6 for k, r in done.items()}
+    words = '; '.join(f'{million(r)} in {r["wall"]:.1f} s ({rates[k]:.1f} s a million)' for k, r in done.items())
+    words += ''.join('; ' + outcome(k, r) for k, r in results.items() if k not in done)
+    linear = max(rates.values()) < 3 * min(rates.values())
+    if len(done) < len(results): return False, words
+    if linear: return True, words
+    return False, words + '. They all finish; the smallest sets fit in the memory, and so are faster a point'
+
+
+def onset(r):
+    """The number of points at which a run began to take SLOWER times its early time a point; None if it did not."""
+    c = r['curve']
+    if len(c) < 5: return None
+    tenth = c[len(c) // 10 + 1]
+    base = (tenth[1] - c[0][1]) / max(1, tenth[0] - c[0][0])
+    return next((a[0] for a, b in zip(c, c[1:]) if base and b[0] > a[0] and (b[1] - a[1]) / (b[0] - a[0]) > SLOWER * base), None)
+
+
+def thrash_in_turn(results):
+    """Whether all runs thrash, each at more points than the one before it."""
+    starts, words = [], []
+    for label, r in results.items():
+        starts.append(onset(r))
+        begins = 'no thrashing' if starts[-1] is None else f'thrashing from {starts[-1]:,.0f} points on'
+        words.append(f'{outcome(label, r)}, {begins}; without a limit it takes {mib(r["needed"])}')
+    words = '. '.join(words)
+    late = [math.inf if s is None else s for s in starts]
+    if late == sorted(late) and None not in starts: return True, words
+    calm = [k for k, s in zip(results, starts) if s is None]
+    if calm: return False, words + f'. Here {" and ".join(calm)} did not slow down by a factor of {SLOWER} before the end'
+    return False, words + '. All thrash, but in another turn: what counts is how much of the structure an insertion meets, ' \
+        'not how large it is, and most nodes of a history are old ones that are no longer met'
+
+
+def order_time(results):
+    if not is_done(results, 'octree blocks', 'k-d tree blocks'): return missing(results, 'octree blocks', 'k-d tree blocks')
+    a, b = results['octree blocks'], results['k-d tree blocks']
+    alike = max(a['insert'], b['insert']) < 1.25 * min(a['insert'], b['insert'])
+    words = (f'{million(a)}: order in {a["order"]:.2f} s with an octree, {b["order"]:.2f} s with a k-d tree; insertion '
+             f'{a["insert"]:.1f} and {b["insert"]:.1f} s')
+    return alike and a['order'] <= 120 * a['points'] / 1e7, words
+
+
+def block_sizes(results):
+    times = {k: r['order'] + r['insert'] for k, r in results.items() if r['status'] == 'done'}
+    if not times: return missing(results, *results)
+    return max(times.values()) < 1.25 * min(times.values()), '; '.join(f'{k}: {v:.2f} s' for k, v in times.items())
+
+
+def faster(results, fast, slow):
+    """Whether one order is the faster one; where it is not, what else was measured of both."""
+    if not is_done(results, fast, slow): return missing(results, fast, slow)
+    a, b = results[fast], results[slow]
+    ratio = b['wall'] / a['wall']
+    words = f'{outcome(fast, a)}, {outcome(slow, b)}: {ratio:.2f} times'
+    if ratio >= NOISE: return True, words
+    words += f'. {fast}: {an_insertion(a)}; {slow}: {an_insertion(b)}'
+    if ratio > 1 / NOISE: return None, words + '. The times differ by less than two runs of one of them do'
+    if b['created'] < a['created']:
+        return False, words + f'. The fewer tetrahedra of {slow} mean fewer pages to read and write; that weighs more ' \
+            f'than the rounds, each of which goes through the whole once'
+    return False, words + f'. The fewer tetrahedra of {fast} weigh less than its rounds, each of which goes through the ' \
+        f'whole once, while {slow} goes through it once'
+
+
+def wasted_search(results):
+    if not is_done(results, 'walk', 'jump'): return missing(results, 'walk', 'jump')
+    a, b = results['walk'], results['jump']
+    samples = round(a['points'] ** 0.25)
+    words = (f'{outcome("walk", a)}, {outcome("jump", b)}: {b["wall"] / a["wall"]:.2f} times; {a["walk_steps"] / a["points"]:.1f} '
+             f'steps an insertion from the last point, {b["walk_steps"] / b["points"]:.1f} from the closest of up to {samples} samples')
+    if b['wall'] >= NOISE * a['wall']: return True, words + ': the search is wasted with a BRIO'
+    return False, words + '. The search is wasted here too, it saves no steps; but it reads only the coordinates of a few ' \
+        'points, which costs little beside an insertion'
+
+
+def within(results, limited, free, times):
+    if not is_done(results, free) or limited not in results: return missing(results, free, limited)
+    a, b = results[limited], results[free]
+    if a['status'] != 'done': return False, outcome(limited, a)
+    took = [r['order'] + r['insert'] for r in (a, b)]
+    return took[0] <= times * took[1], (f'{limited}: order and insertion in {took[0]:.1f} s in {mib(a["memory"])}; without a '
+                                        f'limit {took[1]:.1f} s in {mib(b["peak_bytes"])}: {took[0] / took[1]:.2f} times')
+
+
+def largest(results, order):
+    """The largest set of an order that finished, in the sense of FINISHES, or None; and how the others ended."""
+    free, best, words = results.get(f'{order}, free'), None, []
+    for label, r in results.items():
+        if not label.startswith(order + ', ') or r is free: continue
+        times = (r['wall'] / r['points']) / (free['wall'] / free['points'])
+        finished = r['status'] == 'done' and times <= FINISHES
+        words.append(f'{million(r)}: {outcome(label, r)}, {times:.1f} times the time without a limit')
+        if finished and (not best or r['points'] > best['points']): best = r
+    return best, words
+
+
+def headline(results):
+    if not is_done(results, 'BRIO, free', 'random, free'): return missing(results, 'BRIO, free', 'random, free')
+    (brio, words), (random, more) = largest(results, 'BRIO'), largest(results, 'random')
+    words = '; '.join(words + more)
+    if not brio: return False, words
+    words = f'In {mib(brio["memory"])} a BRIO finishes {million(brio)} in {brio["wall"]:.0f} s, {{}}. {words}'
+    if not random: return True, words.format('random order not even the smallest set')
+    factor = brio['points'] / random['points']
+    return factor >= 20, words.format(f'random order {million(random)} in {random["wall"]:.0f} s: a factor of {factor:.0f}')
