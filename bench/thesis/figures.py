@@ -22,7 +22,7 @@ def run(label, data, order, locate='walk', share=None, options=(), clock=None, n
 
 def eighth(name, title, data):
     return Figure(name, 'time', f'{title} in an eighth of the memory', [
-        run('free', data, 'brio'), run('BRIO', data, 'brio', 'walk', 0.125), run('random', data, 'random', 'jump', 0.125)],
+        run('free', data, 'brio'), run('BRIO', data, 'brio', 'walk', 0.125), run('random', data, 'random', 'hierarchy', 0.125)],
         'A BRIO takes at most 3 times its time without a limit, random order 5 times a BRIO or is stopped.',
         lambda r: both(within(r, 'BRIO', 'free', 3), slower(r, 'random', 'BRIO', 5)))
 
@@ -30,10 +30,10 @@ def eighth(name, title, data):
 def most_points(memory, copies, parts):
     """The headline. Random order has the strategy of location that is best for it."""
     random = [(f'1/{p}', f'part-{p}') for p in parts] + [('1', 'happy-1'), ('2', 'happy-2')]
-    ladder = [run(f'random, {name}', data, 'random', 'jump', memory, clock='random, free',
+    ladder = [run(f'random, {name}', data, 'random', 'hierarchy', memory, clock='random, free',
                   needs=f'random, {random[i - 1][0]}' if i else None) for i, (name, data) in enumerate(random)]
     return Figure('headline', 'time', f'most points in {memory >> 20} MiB', [
-        run('BRIO, free', f'happy-{copies[0]}', 'brio'), run('random, free', 'happy-1', 'random', 'jump'),
+        run('BRIO, free', f'happy-{copies[0]}', 'brio'), run('random, free', 'happy-1', 'random', 'hierarchy'),
         *[run(f'BRIO, {c} copies', f'happy-{c}', 'brio', 'walk', memory, clock='BRIO, free') for c in copies], *ladder],
         '10.6 M points with a BRIO, about 0.5 M in random order: a factor of 20.', headline)
 

@@ -100,6 +100,7 @@ def run(command, limit=None, most_seconds=None):
     """Runs a program, in `limit` bytes of memory if given, at most so many seconds."""
     done = Done()
     group = Group(limit) if limit else None
+    process = None
     try:
         start = time.monotonic()
         process = subprocess.Popen(command + ['--progress'], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -115,5 +116,8 @@ def run(command, limit=None, most_seconds=None):
         follower.join()
         done.seconds = time.monotonic() - start
     finally:
+        if process and process.poll() is None:  # interrupted
+            process.kill()
+            process.wait()
         if group: group.__exit__()
     return done
