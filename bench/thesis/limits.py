@@ -79,7 +79,7 @@ def reason():
     try:
         with Group(1 << 30): return ''
     except OSError as e:
-        return f'no memory cgroup can be made here ({e})'
+        return f'no memory cgroup can be made here ({e.strerror or e})'
 
 
 class Done:

@@ -37,7 +37,7 @@ def options_of_call():
     a.add_argument('--full', action='store_true', help='full sizes (default: a fourth)')
     a.add_argument('--shrink', type=int, help='every so manieth point only')
     a.add_argument('--copies', type=int, nargs='+', help='numbers of copies of the scan (default 1 2 4, full 1 2 4 10)')
-    a.add_argument('--headline', type=int, nargs='+', metavar='COPIES', help='the same for the headline (default 10 20)')
+    a.add_argument('--headline', type=int, nargs='+', metavar='COPIES', help='the same for the headline (default 5 10, full 10 20)')
     a.add_argument('--memory', type=int, metavar='MIB', help='of figures 5.5, 5.6 (4 times) and the headline (full: 256)')
     a.add_argument('--only', nargs='+', metavar='FIGURE', help='4.5 5.1 ... 5.8-order 5.8-blocks eighth-happy headline')
     a.add_argument('--minutes', type=float, help='most of all runs together; the rest is left out (default 10, full 45)')
@@ -46,7 +46,7 @@ def options_of_call():
     o = a.parse_args()
     o.shrink = o.shrink or (1 if o.full else 4)
     o.copies = o.copies or ([1, 2, 4, 10] if o.full else [1, 2, 4])
-    o.headline = o.headline or [10, 20]
+    o.headline = o.headline or ([10, 20] if o.full else [5, 10])
     o.memory = (o.memory or 256 // o.shrink) << 20
     o.minutes = o.minutes or (45 if o.full else 10)
     o.scratch = o.scratch or o.out

@@ -66,8 +66,6 @@ brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values,
     BRIO_TRY(BRIO_ALLOC(ctx, count, (size_t)threads));
     BRIO_TRY(BRIO_ALLOC(ctx, spare.key, n));
     BRIO_TRY(BRIO_ALLOC(ctx, spare.value, n));
-    brio_expect_sequence(spare.key);
-    brio_expect_sequence(spare.value);
     BRIO_OMP(parallel num_threads(threads)) {
         bool last = sort_pairs((pairs){keys, values}, spare, n, bits, count, &moved);
         if (brio_thread() == 0) in_spare = last;
@@ -150,7 +148,6 @@ brio_status brio_sort_rows(brio_context *ctx, const double *rows, size_t stride,
     uint64_t *keys = NULL;
     brio_status status = BRIO_ALLOC(ctx, keys, n);
     if (status != BRIO_OK) return status;
-    brio_expect_sequence(keys);
     for (size_t i = 0; i < n; i++) keys[i] = brio_double_key(rows[stride * indices[i]]);
     status = brio_radix_sort(ctx, keys, indices, n, 64);
     for (size_t begin = 0, end; status == BRIO_OK && begin < n; begin = end) {

@@ -30,10 +30,7 @@ typedef struct {
 } maker;
 
 static brio_status need_room(const maker *m, uint32_t **indices) {
-    if (*indices) return BRIO_OK;
-    brio_status status = BRIO_ALLOC(m->ctx, *indices, m->n);
-    if (status == BRIO_OK) brio_expect_sequence(*indices);
-    return status;
+    return *indices ? BRIO_OK : BRIO_ALLOC(m->ctx, *indices, m->n);
 }
 
 static bool has_rounds(brio_order order) {

@@ -19,7 +19,6 @@ static brio_status lexicographic_ranks(brio_context *ctx, const brio_triangulati
     size_t n = 0;
     uint32_t *vertex = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, vertex, t->stats.vertices));
-    brio_expect_sequence(vertex);
     for (size_t p = 0; p < t->stats.points; p++)
         if (t->representative[p] == p) vertex[n++] = (uint32_t)p;
     BRIO_TRY(brio_sort_rows(ctx, points, 3, vertex, n, compare_points, points));

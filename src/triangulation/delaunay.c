@@ -100,7 +100,6 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     k->t.infinite = (uint32_t)n + 2;
     double start = brio_seconds();
     BRIO_TRY(BRIO_ALLOC(ctx, k->caller, n + 3));
-    brio_expect_sequence(k->caller);
     BRIO_TRY(brio_progress(ctx, "order", 0));
     bool parallel = brio_context_threads(ctx) > 1 && options->locate == BRIO_LOCATE_WALK;
     if (parallel && brio_order_has_ranks(options->order)) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, k->rank, n + 3));
@@ -120,6 +119,7 @@ brio_status brio_kernel_workspace(brio_kernel *k) {
     BRIO_TRY(BRIO_ALLOC(k->ctx, k->representative, n + 3));
     brio_expect_sequence(k->representative);
     for (uint32_t i = 0; i < n + 3; i++) k->representative[i] = i;
+    brio_expect_random(k->representative);
     BRIO_TRY(BRIO_ALLOC(k->ctx, k->cavity.local, n + 3));
     BRIO_TRY(BRIO_ALLOC(k->ctx, k->cavity.table, BRIO_TABLE));
     status = brio_cavity_reserve(k->ctx, &k->cavity, 64);
@@ -195,7 +195,6 @@ static brio_status triangulation_new(brio_kernel *k, brio_recorder *recorder, br
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
     BRIO_TRY(BRIO_ALLOC(ctx, t->representative, k->num_points));
-    brio_expect_sequence(t->representative);
     for (size_t p = 0; p < k->num_points; p++) t->representative[k->caller[p]] = k->caller[k->representative[p]];
     t->tet = k->t.tet;
     t->stats = k->stats;

@@ -127,6 +127,12 @@ static brio_status restore_first(brio_kernel *k) {
     return BRIO_OK;
 }
 
+static void count_duplicates(brio_kernel *k) {
+    brio_expect_sequence(k->representative);
+    for (uint32_t p = 0; p < k->num_points; p++) k->stats.duplicates += k->representative[p] != p;
+    brio_expect_random(k->representative);
+}
+
 brio_status brio_kernel_represent(brio_kernel *k) {
     brio_status status = k->rank && k->dimension == 3 && has_earlier_twin(k) ? restore_first(k) : BRIO_OK;
     if (status != BRIO_OK) return status;
@@ -135,7 +141,7 @@ brio_status brio_kernel_represent(brio_kernel *k) {
     else if (k->weighted && k->dimension > 0)
         status = represent_weighted(k);
     else
-        for (uint32_t p = 0; p < k->num_points; p++) k->stats.duplicates += k->representative[p] != p;
+        count_duplicates(k);
     k->stats.vertices = k->num_points - k->stats.duplicates - k->stats.hidden;
     return status;
 }
