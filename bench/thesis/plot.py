@@ -32,9 +32,10 @@ def _script(figure, results, path):
     for label, r in results.items():
         for more, points in _columns(figure.kind, r):
             if not points: continue
-            name = f'$c{len(blocks)}'
+            n, name = len(blocks), f'$c{len(blocks)}'
             blocks.append(f'{name} << EOD\n' + ''.join(f'{a / 1e3} {b}\n' for a, b in points) + 'EOD\n')
-            curves.append(f'{name} using 1:2 with lines linewidth 2 title "{label}{more}"')
+            curves.append(f'{name} using 1:2 with lines linewidth 2 linetype {n % 8 + 1} '
+                          f'dashtype {n // 8 + 1} title "{label}{more}"')
     if not curves: return ''
     head = HEAD.format(title=f'{figure.name}: {figure.title}', y=y) + (LOGARITHMIC if figure.name == 'headline' else '')
     return head + ''.join(blocks) + \

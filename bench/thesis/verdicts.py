@@ -12,7 +12,7 @@ NOISE = 1.05   # ratios nearer to 1 say nothing
 def is_done(results, *labels): return all(label in results and results[label]['status'] == 'done' for label in labels)
 
 
-def million(r): return f'{r["points"] / 1e6:.2f} M points'
+def million(r): return f'{r["points"] / 1e6:.3g} M points'
 
 
 def mib(n): return f'{n / 2**20:.0f} MiB'
@@ -179,23 +179,23 @@ def within(results, limited, free, times):
 
 
 def largest(results, order):
-    """The largest set of an order that finished, in the sense of FINISHES, or None; and how the others ended."""
+    """The largest set of an order that finished, in the sense of FINISHES, or None; and how long each took."""
     free, best, words = results.get(f'{order}, free'), None, []
     for label, r in results.items():
         if not label.startswith(order + ', ') or r is free: continue
         times = (r['wall'] / r['points']) / (free['wall'] / free['points'])
-        finished = r['status'] == 'done' and times <= FINISHES
-        words.append(f'{million(r)}: {outcome(label, r)}, {times:.1f} times the time without a limit')
-        if finished and (not best or r['points'] > best['points']): best = r
-    return best, words
+        done = r['status'] == 'done'
+        words.append(f'{million(r)} {times:.1f}' + ('' if done else f' ({r["status"]} with {r["reached"]} % of them inserted)'))
+        if done and times <= FINISHES and (not best or r['points'] > best['points']): best = r
+    return best, ', '.join(words)
 
 
 def headline(results):
     if not is_done(results, 'BRIO, free', 'random, free'): return missing(results, 'BRIO, free', 'random, free')
     (brio, words), (random, more) = largest(results, 'BRIO'), largest(results, 'random')
-    words = '; '.join(words + more)
+    words = f'Times as multiples of the time a point without a limit, BRIO: {words}; random order: {more}'
     if not brio: return False, words
-    words = f'In {mib(brio["memory"])} a BRIO finishes {million(brio)} in {brio["wall"]:.0f} s, {{}}. {words}'
-    if not random: return True, words.format('random order not even the smallest set')
+    first = f'In {mib(brio["memory"])} a BRIO finishes {million(brio)} in {brio["wall"]:.0f} s, random order '
+    if not random: return True, f'{first}not even the smallest set. {words}'
     factor = brio['points'] / random['points']
-    return factor >= 20, words.format(f'random order {million(random)} in {random["wall"]:.0f} s: a factor of {factor:.0f}')
+    return round(factor) >= 20, f'{first}{million(random)} in {random["wall"]:.0f} s: a factor of {factor:.0f}. {words}'
