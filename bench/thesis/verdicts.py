@@ -81,7 +81,8 @@ def near_linear(results, label, first=0.25):
     if early <= 0: return None, f'{label}: too short to tell'
     words = f'{label} takes {1e6 * early:.1f} s a million points up to a quarter of them and {1e6 * late:.1f} s after'
     if late < 2 * early: return True, words
-    return False, words + ': the first quarter still fits in the memory'
+    if not r['memory'] or not r['needed']: return False, words
+    return False, words + f'. The memory holds {r["memory"] / r["needed"]:.0%} of what is needed in the end: the early rounds fit'
 
 
 def history_sizes(results):
@@ -99,7 +100,7 @@ def copies_scale(results):
     linear = max(rates.values()) < 3 * min(rates.values())
     if len(done) < len(results): return False, words
     if linear: return True, words
-    return False, words + '. They all finish; the smallest sets fit in the memory, and so are faster a point'
+    return False, words + '. They all finish; the more points there are, the smaller is the part of them that the memory holds'
 
 
 def onset(r):
@@ -123,8 +124,8 @@ def thrash_in_turn(results):
     if late == sorted(late) and None not in starts: return True, words
     calm = [k for k, s in zip(results, starts) if s is None]
     if calm: return False, words + f'. Here {" and ".join(calm)} did not slow down by a factor of {SLOWER} before the end'
-    return False, words + '. All thrash, but in another turn: what counts is how much of the structure an insertion meets, ' \
-        'not how large it is, and most nodes of a history are old ones that are no longer met'
+    return False, words + '. All thrash, but in another turn than that of their sizes: it is not the size of the structure ' \
+        'alone that counts, but how many of its pages an insertion meets'
 
 
 def order_time(results):
@@ -165,8 +166,10 @@ def wasted_search(results):
     words = (f'{outcome("walk", a)}, {outcome("jump", b)}: {b["wall"] / a["wall"]:.2f} times; {a["walk_steps"] / a["points"]:.1f} '
              f'steps an insertion from the last point, {b["walk_steps"] / b["points"]:.1f} from the closest of up to {samples} samples')
     if b['wall'] >= NOISE * a['wall']: return True, words + ': the search is wasted with a BRIO'
-    return False, words + '. The search is wasted here too, it saves no steps; but it reads only the coordinates of a few ' \
-        'points, which costs little beside an insertion'
+    saved = 1 - b['walk_steps'] / a['walk_steps']
+    gain = f'saves {saved:.0%} of the steps' if saved > 0 else 'saves no steps'
+    return False, words + f'. The search {gain}, and reads no more than the coordinates of {samples} points, which costs little ' \
+        'beside an insertion'
 
 
 def within(results, limited, free, times):
