@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """thesis.py BRIO [options]: the experiments of chapters 4 and 5 of the thesis, as tables, plots and verdicts.
 
-Every run is one process with its arrays in scratch files; runs that name a share of memory are held to it by a memory
-cgroup (root, v1 or v2). Where none can be made those runs are left out, and the report says so. A run over its time is
-stopped, and counts as stopped, with the share of its points that it had inserted. OUT/runs.csv has a line a run, OUT/curves.csv the course of each, OUT/figure-*.svg the
-plots, OUT/thesis-experiments.md the claims of the thesis beside what was found."""
+Every run is one process. Runs that name a share of memory have their arrays in scratch files, and are held to it by a
+memory cgroup (root, v1 or v2). Where none can be made those runs are left out, and the report says so. A run over its
+time is stopped, and counts as stopped, with the share of its points that it had inserted. OUT/runs.csv has a line a run,
+OUT/curves.csv the course of each, OUT/figure-*.svg the plots, OUT/thesis-experiments.md the claims of the thesis beside
+what was found."""
 import argparse
 import csv
 import json
