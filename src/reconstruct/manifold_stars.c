@@ -159,7 +159,7 @@ static brio_status collect_piece(repair *r, uint32_t v, uint32_t first) {
     while (size > 0) {
         uint32_t tet = r->stack[--size];
         p.fixed |= r->fixed[tet];
-        const double *centre = r->labels->cocones->dual->centre + 3 * (size_t)tet;
+        const double *centre = r->labels->cocones->dual->centre + 4 * (size_t)tet;
         if (!p.mark || brio_lexicographic(centre, p.mark) > 0) p.mark = centre;
         p.weight += 1 + (uint64_t)abs(brio_tet_vote(r->labels, tet));
         for (int i = 0; i < 4; i++) {

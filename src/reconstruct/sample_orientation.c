@@ -82,7 +82,7 @@ static inline bool join(forest *f, size_t i) {
 
 /* Square of the cosine of the angle at which a sample sees the Voronoi vertex of a tetrahedron from its axis. */
 static double depth(const brio_pole_vectors *v, size_t tet, size_t p) {
-    const double *axis = v->vector + 3 * p;
+    const double *axis = v->plane + 4 * p;
     double to[3];
     brio_towards_centre(v, tet, p, to);
     double along = to[0] * axis[0] + to[1] * axis[1] + to[2] * axis[2];
@@ -90,7 +90,7 @@ static double depth(const brio_pole_vectors *v, size_t tet, size_t p) {
 }
 
 static double cosine_of(const brio_pole_vectors *v, size_t p, size_t q) {
-    const double *a = v->vector + 3 * p, *b = v->vector + 3 * q;
+    const double *a = v->plane + 4 * p, *b = v->plane + 4 * q;
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 

@@ -350,7 +350,7 @@ static void check_cells(const theory *x) {
     for (size_t p = 0; p < x->n; p++) {
         double normal[3];
         x->surface->normal(x->points + 3 * p, normal);
-        EXPECT(angle(x->dual.vector + 3 * p, normal) <= 2 * asin(r_over(r)) + 1e-9, "lemma 6 at sample %zu", p);
+        EXPECT(angle(x->dual.plane + 4 * p, normal) <= 2 * asin(r_over(r)) + 1e-9, "lemma 6 at sample %zu", p);
     }
 }
 
@@ -360,7 +360,7 @@ static bool is_restricted(const theory *x, uint32_t facet) {
     uint32_t here = brio_tet_of(facet), there = brio_tet_of(*brio_mate(&x->dual.t, facet));
     double a[3], b[3], reach = 4 * x->surface->feature_size;
     if (here >= x->dual.num_finite) here = there, there = brio_tet_of(facet);
-    const double *end[2] = {x->dual.centre + 3 * (size_t)here, x->dual.centre + 3 * (size_t)there};
+    const double *end[2] = {x->dual.centre + 4 * (size_t)here, x->dual.centre + 4 * (size_t)there};
     for (int k = 0; k < 3; k++) {
         a[k] = end[0][k], b[k] = end[1][k];
         if (there >= x->dual.num_finite) b[k] = a[k] + reach * end[1][k];
