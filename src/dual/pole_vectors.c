@@ -57,6 +57,7 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
 typedef struct {
     brio_pole_vectors *v;
     uint64_t *farther; /* of each sample, as v->pole: the keys */
+    bool alone;        /* one thread: nobody else offers */
 } search;
 
 enum { AHEAD = 8 }; /* tetrahedra between fetching and using */
@@ -91,8 +92,12 @@ static inline bool is_farther(const search *s, uint64_t key, uint64_t than) {
  * comes first. */
 static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uint64_t key) {
     uint64_t now = __atomic_load_n(pole, __ATOMIC_RELAXED);
-    while (is_farther(s, key, now))
-        if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return;
+    while (is_farther(s, key, now)) {
+        if (s->alone)
+            *pole = now = key;
+        else if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+            return;
+    }
 }
 
 /* --- the passes --- */
@@ -275,7 +280,7 @@ static void find_sides(const brio_context *ctx, const search *s) {
 
 static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     brio_status status = BRIO_OK;
-    search s = {.v = v};
+    search s = {.v = v, .alone = brio_context_threads(ctx) == 1};
     BRIO_TRY(BRIO_ALLOC(ctx, s.farther, 2 * v->num_points));
     for (size_t i = 0; i < 2 * v->num_points; i++) s.farther[i] = NO_KEY;
     find_hull_vectors(&s);

@@ -20,9 +20,9 @@ static const double SIGNIFICANT = 1e-9;
 typedef struct {
     const brio_tet_labels *labels;
     const brio_tetrahedra *t;
-    uint32_t *tet; /* the tetrahedra that may change */
+    uint32_t *tet; /* the tetrahedra that may change, ascending */
     size_t count;
-    double *gain; /* of each tetrahedron: the area that its change saves; 0 for those that may not change */
+    double *gain; /* of each of these: the area that its change saves; 0 where it may not change */
 } flattening;
 
 static double area(const flattening *x, uint32_t facet) {
@@ -33,27 +33,46 @@ static double area(const flattening *x, uint32_t facet) {
     return brio_triangle_area(corner[0], corner[1], corner[2]);
 }
 
-/* The area that is saved when a tetrahedron changes sides; 0 unless one pair of candidates then gives way to another.
- */
-static double gain_of(const flattening *x, uint32_t tet) {
-    double saved = 0, all = 0;
+/* Whether one pair of candidates gives way to another when a tetrahedron changes sides. */
+static bool may_change(const flattening *x, uint32_t tet) {
     int leaving = 0;
     for (int i = 0; i < 4; i++) {
-        uint32_t facet = brio_facet_of(tet, i);
-        bool leaves = brio_is_boundary(x->labels, facet);
-        if (!leaves && !brio_is_candidate(x->labels->cocones, facet)) return 0;
-        double size = area(x, facet);
-        saved += leaves ? size : -size;
-        all += size;
+        bool leaves = brio_is_boundary(x->labels, brio_facet_of(tet, i));
+        if (!leaves && !brio_is_candidate(x->labels->cocones, brio_facet_of(tet, i))) return false;
         leaving += leaves;
     }
-    return leaving == 2 && saved > SIGNIFICANT * all ? saved : 0;
+    return leaving == 2;
 }
 
-static bool is_best(const flattening *x, uint32_t tet) {
-    bool best = x->gain[tet] > 0;
-    for (int i = 0; i < 4; i++)
-        best = best && x->gain[tet] > (1 + SIGNIFICANT) * x->gain[brio_tet_of(x->t->tet[tet].mate[i])];
+/* The area that is saved when a tetrahedron changes sides; 0 for one that may not. */
+static double gain_of(const flattening *x, uint32_t tet) {
+    double saved = 0, all = 0;
+    if (!may_change(x, tet)) return 0;
+    for (int i = 0; i < 4; i++) {
+        double size = area(x, brio_facet_of(tet, i));
+        saved += brio_is_boundary(x->labels, brio_facet_of(tet, i)) ? size : -size;
+        all += size;
+    }
+    return saved > SIGNIFICANT * all ? saved : 0;
+}
+
+/* The gain of any tetrahedron. */
+static double find_gain(const flattening *x, uint32_t tet) {
+    size_t low = 0, high = x->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (x->tet[middle] < tet)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < x->count && x->tet[low] == tet ? x->gain[low] : 0;
+}
+
+static bool is_best(const flattening *x, size_t n) {
+    bool best = x->gain[n] > 0;
+    for (int i = 0; i < 4 && best; i++)
+        best = x->gain[n] > (1 + SIGNIFICANT) * find_gain(x, brio_tet_of(x->t->tet[x->tet[n]].mate[i]));
     return best;
 }
 
@@ -72,10 +91,10 @@ done:
 /* One round; the number of changes. */
 static size_t change_best(flattening *x) {
     size_t changes = 0;
-    for (size_t n = 0; n < x->count; n++) x->gain[x->tet[n]] = gain_of(x, x->tet[n]);
+    for (size_t n = 0; n < x->count; n++) x->gain[n] = gain_of(x, x->tet[n]);
     for (size_t n = 0; n < x->count; n++) {
         uint8_t *label = &x->labels->label[x->tet[n]];
-        if (!is_best(x, x->tet[n])) continue;
+        if (!is_best(x, n)) continue;
         *label = *label == BRIO_LABEL_OUTER ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
         changes++;
     }
@@ -86,7 +105,7 @@ brio_status brio_flatten(brio_context *ctx, const brio_tet_labels *l) {
     brio_status status = BRIO_OK;
     flattening x = {.labels = l, .t = &l->cocones->dual->t};
     BRIO_TRY(collect(ctx, &x));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.gain, x.t->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, x.gain, x.count));
     for (int round = 0; round < ROUNDS; round++)
         if (change_best(&x) == 0) break;
 done:

@@ -30,12 +30,12 @@ typedef struct {
     const brio_tetrahedra *t;
     uint32_t *boundary; /* the facets of the boundary, seen from outside */
     size_t num_boundary;
-    uint8_t *face;   /* of each outer tetrahedron: bit i tells whether facet i is a face */
-    size_t num_gaps; /* facets of the boundary that are no candidates */
-    double
-        *size_at; /* of each sample at a gap: squared radius of the largest circle round a candidate there; else -1 */
+    uint8_t *face;      /* of each outer tetrahedron: bit i tells whether facet i is a face */
+    size_t num_gaps;    /* facets of the boundary that are no candidates */
+    uint8_t *at_gap;    /* of each sample: 1 at a gap, and for boundary samples */
+    double *size_at;    /* of each sample at a gap: squared radius of the largest circle round a candidate there */
     double *shortest;   /* of each sample at a gap: squared length of the shortest candidate there */
-    uint32_t *facet_of; /* of each sample: a boundary facet seen from outside; BRIO_INFINITE for none */
+    uint32_t *facet_of; /* of each sample in the queue: a boundary facet seen from outside */
     uint32_t *gap;      /* facets of the gaps that stay open */
     size_t gap_size;
     uint32_t *queue; /* samples to look at */
@@ -92,33 +92,43 @@ static void choose_candidates(extraction *x) {
     }
 }
 
-/* Finds how large the candidates at each sample of a gap are, and a boundary facet of each sample. */
+/* Marks the samples of a facet. */
+static void mark_gap(extraction *x, uint32_t facet) {
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = corner_of(x, facet, k);
+        if (p != BRIO_INFINITE) x->at_gap[p] = 1, x->size_at[p] = 0, x->shortest[p] = INFINITY;
+    }
+}
+
+/* Lets a candidate count at those of its samples that are at gaps. */
+static void measure_candidate(extraction *x, uint32_t facet) {
+    double size = circle_square(x, facet), length = length_square(x, facet);
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = corner_of(x, facet, k);
+        if (!x->at_gap[p]) continue;
+        x->size_at[p] = fmax(x->size_at[p], size);
+        x->shortest[p] = fmin(x->shortest[p], length);
+    }
+}
+
+/* Finds how large the candidates at each sample of a gap are. Other samples' places in the arrays are never touched. */
 static brio_status measure_gaps(extraction *x) {
     brio_status status = BRIO_OK;
     const uint8_t *boundary = x->labels->cocones->boundary;
     size_t num_points = x->labels->cocones->dual->num_points;
+    BRIO_TRY(BRIO_ALLOC_ZERO(x->ctx, x->at_gap, num_points));
     BRIO_TRY(BRIO_ALLOC(x->ctx, x->size_at, num_points));
     BRIO_TRY(BRIO_ALLOC(x->ctx, x->shortest, num_points));
     BRIO_TRY(BRIO_ALLOC(x->ctx, x->facet_of, num_points));
-    for (size_t p = 0; p < num_points; p++)
-        x->size_at[p] = -1, x->shortest[p] = INFINITY, x->facet_of[p] = BRIO_INFINITE;
     for (size_t n = 0; n < x->num_boundary; n++)
-        for (int k = 0; k < 3; k++) {
-            uint32_t p = corner_of(x, x->boundary[n], k);
-            if (p == BRIO_INFINITE) continue;
-            x->facet_of[p] = x->boundary[n];
-            if (!is_face(x, x->boundary[n]) || (boundary && boundary[p])) x->size_at[p] = 0;
-        }
+        if (!is_face(x, x->boundary[n])) mark_gap(x, x->boundary[n]);
+    for (size_t p = 0; boundary && p < num_points; p++)
+        if (boundary[p]) x->at_gap[p] = 1, x->size_at[p] = 0, x->shortest[p] = INFINITY;
     for (size_t n = 0; n < x->num_boundary; n++) {
         uint32_t facet = x->boundary[n];
-        double size = -1, length = 0;
-        for (int k = 0; k < 3 && is_face(x, facet); k++) {
-            double *most = x->size_at + corner_of(x, facet, k), *least = x->shortest + corner_of(x, facet, k);
-            if (*most < 0) continue;
-            if (size < 0) size = circle_square(x, facet), length = length_square(x, facet);
-            *most = *most < size ? size : *most;
-            *least = *least > length ? length : *least;
-        }
+        if (!is_face(x, facet)) continue;
+        if (x->at_gap[corner_of(x, facet, 0)] | x->at_gap[corner_of(x, facet, 1)] | x->at_gap[corner_of(x, facet, 2)])
+            measure_candidate(x, facet);
     }
 done:
     return status;
@@ -164,10 +174,16 @@ static void suspect_long_candidates(extraction *x) {
     }
 }
 
-static brio_status push(extraction *x, uint32_t v) {
+/* The samples of a facet of the boundary are to be looked at. */
+static brio_status push_corners(extraction *x, uint32_t facet) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(x->ctx, x->queue, x->capacity, x->size + 1));
-    x->queue[x->size++] = v;
+    BRIO_TRY(BRIO_RESERVE(x->ctx, x->queue, x->capacity, x->size + 3));
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = corner_of(x, facet, k);
+        if (p == BRIO_INFINITE) continue;
+        x->facet_of[p] = facet;
+        x->queue[x->size++] = p;
+    }
 done:
     return status;
 }
@@ -212,9 +228,7 @@ static brio_status choose_fillings(extraction *x, bool all) {
             x->gap_size = begin;
     }
     for (size_t n = 0; n < x->gap_size; n++) clear_face(x, x->gap[n]);
-    for (size_t n = 0; n < x->gap_size; n++)
-        for (int k = 0; k < 3; k++)
-            if (corner_of(x, x->gap[n], k) != BRIO_INFINITE) BRIO_TRY(push(x, corner_of(x, x->gap[n], k)));
+    for (size_t n = 0; n < x->gap_size; n++) BRIO_TRY(push_corners(x, x->gap[n]));
 done:
     return status;
 }
@@ -263,9 +277,8 @@ static brio_status keep_fan(extraction *x, uint32_t v, fan kept) {
     uint32_t facet = kept.first;
     for (size_t n = 0; n == 0 || facet != kept.first; n++) {
         if (n >= kept.length && is_face(x, facet)) {
-            const uint32_t *corner = x->t->tet[brio_tet_of(facet)].vertex;
             clear_face(x, facet);
-            for (int k = 0; k < 3; k++) BRIO_TRY(push(x, corner[BRIO_FACET[brio_slot_of(facet)][k]]));
+            BRIO_TRY(push_corners(x, facet));
         }
         facet = brio_next_round_vertex(x->labels, facet, v);
     }
@@ -302,11 +315,10 @@ done:
     return status;
 }
 
-brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, uint32_t **faces,
-                               size_t *num_faces) {
+brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, uint32_t *facets,
+                               size_t num_facets, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
-    extraction x = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
-    BRIO_TRY(brio_boundary_facets(ctx, l, &x.boundary, &x.num_boundary));
+    extraction x = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t, .boundary = facets, .num_boundary = num_facets};
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.face, x.t->count));
     choose_candidates(&x);
     if (x.num_gaps > 0 || l->cocones->boundary) {
@@ -317,8 +329,8 @@ brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool
     }
     BRIO_TRY(write_faces(&x, faces, num_faces));
 done:
-    brio_release(ctx, x.boundary);
     brio_release(ctx, x.face);
+    brio_release(ctx, x.at_gap);
     brio_release(ctx, x.facet_of);
     brio_release(ctx, x.size_at);
     brio_release(ctx, x.shortest);
