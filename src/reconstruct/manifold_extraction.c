@@ -11,12 +11,20 @@
  * turn the whole surface inside out. */
 #include "reconstruct/manifold_extraction.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "reconstruct/label_boundary.h"
 #include "reconstruct/triangle.h"
 
 /* A facet of the boundary that is no candidate fills a small hole when its circle is at most this many times as large
  * as the largest one of a candidate at its corners. From 1.5 on the closed models of the tests come out closed. */
 static const double FILLING = 1.5;
+
+/* A gap of several facets, too, is a lapse rather than an opening where the samples could not show one: when none of its
+ * edges is over LONG times as long as the mean edge of the faces at its corners, and its area is under that of a
+ * disc of this radius, so that nowhere in it is the next sample farther than a spacing away. (What is left of the club's
+ * opening, which other faces span, has an edge of 3.4 times the mean; of the 258 gaps of ten raw scans of the bunny,
+ * 232 are lapses, and none of the four with over ten edges.) */
+static const double LONG = 2.5, DISC = 3.141592653589793;
 
 /* Among boundary samples, a triangle over SUSPECT times as long as the shortest ones around may span an opening of the
  * surface. Such triangles together are one when one of them is over OPENING times as long and there would be room for
@@ -35,6 +43,8 @@ typedef struct {
     uint8_t *at_gap;    /* of each sample: 1 at a gap, and for boundary samples */
     double *size_at;    /* of each sample at a gap: squared radius of the largest circle round a candidate there */
     double *shortest;   /* of each sample at a gap: squared length of the shortest candidate there */
+    double *edge_sum;   /* of each sample at a gap: the lengths of the faces' edges there, each once a face */
+    uint32_t *edges;    /* of each sample at a gap: how many these are */
     uint32_t *facet_of; /* of each sample in the queue: a boundary facet seen from outside */
     uint32_t *gap;      /* facets of the gaps that stay open */
     size_t gap_size;
@@ -66,17 +76,20 @@ static double circle_square(const extraction *x, uint32_t facet) {
                               points + 3 * (size_t)corner_of(x, facet, 2));
 }
 
+/* Length of the edge from corner k to the next. */
+static double edge_length(const extraction *x, uint32_t facet, int k) {
+    const double *points = x->labels->cocones->dual->points;
+    const double *p = points + 3 * (size_t)corner_of(x, facet, k);
+    const double *q = points + 3 * (size_t)corner_of(x, facet, (k + 1) % 3);
+    return sqrt(brio_square_distance(p, q));
+}
+
 /* Square of the longest edge. */
 static double length_square(const extraction *x, uint32_t facet) {
-    const double *points = x->labels->cocones->dual->points;
-    double most = 0;
-    for (int k = 0; k < 3; k++) {
-        const double *p = points + 3 * (size_t)corner_of(x, facet, k);
-        const double *q = points + 3 * (size_t)corner_of(x, facet, (k + 1) % 3);
-        double d = (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]);
-        most = d > most ? d : most;
-    }
-    return most;
+    const double *points = x->labels->cocones->dual->points, *p[3];
+    for (int k = 0; k < 3; k++) p[k] = points + 3 * (size_t)corner_of(x, facet, k);
+    double ab = brio_square_distance(p[0], p[1]), bc = brio_square_distance(p[1], p[2]);
+    return fmax(fmax(ab, bc), brio_square_distance(p[2], p[0]));
 }
 
 static bool is_finite(const extraction *x, uint32_t facet) {
@@ -92,12 +105,16 @@ static void choose_candidates(extraction *x) {
     }
 }
 
-/* Marks the samples of a facet. */
-static void mark_gap(extraction *x, uint32_t facet) {
-    for (int k = 0; k < 3; k++) {
-        uint32_t p = corner_of(x, facet, k);
-        if (p != BRIO_INFINITE) x->at_gap[p] = 1, x->size_at[p] = 0, x->shortest[p] = INFINITY;
-    }
+static bool is_face_at_gap(const extraction *x, uint32_t facet) {
+    return is_face(x, facet) &&
+           (x->at_gap[corner_of(x, facet, 0)] | x->at_gap[corner_of(x, facet, 1)] | x->at_gap[corner_of(x, facet, 2)]);
+}
+
+static void begin_measuring(extraction *x, uint32_t p) {
+    x->at_gap[p] = 1;
+    x->size_at[p] = x->edge_sum[p] = 0;
+    x->shortest[p] = INFINITY;
+    x->edges[p] = 0;
 }
 
 /* Lets a candidate count at those of its samples that are at gaps. */
@@ -119,17 +136,18 @@ static brio_status measure_gaps(extraction *x) {
     BRIO_TRY(BRIO_ALLOC_ZERO(x->ctx, x->at_gap, num_points));
     BRIO_TRY(BRIO_ALLOC(x->ctx, x->size_at, num_points));
     BRIO_TRY(BRIO_ALLOC(x->ctx, x->shortest, num_points));
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->edge_sum, num_points));
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->edges, num_points));
     BRIO_TRY(BRIO_ALLOC(x->ctx, x->facet_of, num_points));
     for (size_t n = 0; n < x->num_boundary; n++)
-        if (!is_face(x, x->boundary[n])) mark_gap(x, x->boundary[n]);
+        for (int k = 0; k < 3 && !is_face(x, x->boundary[n]); k++) {
+            uint32_t p = corner_of(x, x->boundary[n], k);
+            if (p != BRIO_INFINITE) begin_measuring(x, p);
+        }
     for (size_t p = 0; boundary && p < num_points; p++)
-        if (boundary[p]) x->at_gap[p] = 1, x->size_at[p] = 0, x->shortest[p] = INFINITY;
-    for (size_t n = 0; n < x->num_boundary; n++) {
-        uint32_t facet = x->boundary[n];
-        if (!is_face(x, facet)) continue;
-        if (x->at_gap[corner_of(x, facet, 0)] | x->at_gap[corner_of(x, facet, 1)] | x->at_gap[corner_of(x, facet, 2)])
-            measure_candidate(x, facet);
-    }
+        if (boundary[p]) begin_measuring(x, (uint32_t)p);
+    for (size_t n = 0; n < x->num_boundary; n++)
+        if (is_face_at_gap(x, x->boundary[n])) measure_candidate(x, x->boundary[n]);
 done:
     return status;
 }
@@ -212,20 +230,97 @@ static bool collect_gap(extraction *x, uint32_t first) {
     return is_long && missing > MISSING;
 }
 
-/* Fills the gaps that are no openings, or all that are finite; the samples of the others are to be looked at. */
-static brio_status choose_fillings(extraction *x, bool all) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(x->ctx, x->gap, x->num_gaps));
+/* Fills the facets that are no larger than the candidates around them, or all that are finite; x->gap receives the
+ * facets of openings among boundary samples. */
+static void fill_small_facets(extraction *x, bool all) {
     for (size_t n = 0; n < x->num_boundary; n++) {
         uint32_t facet = x->boundary[n];
         size_t begin = x->gap_size;
         if (is_face(x, facet)) continue;
-        if (is_finite(x, facet) && (all || (!brio_is_among_boundary(x->labels->cocones, facet) && is_small(x, facet))))
+        if (brio_is_among_boundary(x->labels->cocones, facet)) {
+            if (all && is_finite(x, facet))
+                set_face(x, facet);
+            else if (!collect_gap(x, facet))
+                x->gap_size = begin;
+        } else if (is_finite(x, facet) && (all || is_small(x, facet))) {
             set_face(x, facet);
-        else if (!brio_is_among_boundary(x->labels->cocones, facet))
-            x->gap[x->gap_size++] = facet;
-        else if (!collect_gap(x, facet))
-            x->gap_size = begin;
+        }
+    }
+    for (size_t n = 0; n < x->gap_size; n++) clear_face(x, x->gap[n]);
+}
+
+/* Lets the edges of a face count at those of its samples that are at gaps. */
+static void measure_edges(extraction *x, uint32_t facet) {
+    double length[3];
+    for (int k = 0; k < 3; k++) length[k] = edge_length(x, facet, k);
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = corner_of(x, facet, k);
+        if (!x->at_gap[p]) continue;
+        x->edge_sum[p] += length[k] + length[(k + 2) % 3];
+        x->edges[p] += 2;
+    }
+}
+
+/* What is known of a gap: over all corners of its facets the mean of the faces' mean edges there; its area; its longest
+ * edge. */
+typedef struct {
+    double spacing_sum, area, longest;
+    size_t corners;
+    bool may_close; /* no facet is infinite, or of an opening among boundary samples */
+} gap_shape;
+
+static void add_to_shape(const extraction *x, uint32_t facet, gap_shape *s) {
+    if (!is_finite(x, facet) || brio_is_among_boundary(x->labels->cocones, facet)) {
+        s->may_close = false;
+        return;
+    }
+    s->area += area(x, facet);
+    s->longest = fmax(s->longest, sqrt(length_square(x, facet)));
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = corner_of(x, facet, k);
+        if (x->edges[p] == 0) continue;
+        s->spacing_sum += x->edge_sum[p] / x->edges[p];
+        s->corners++;
+    }
+}
+
+static bool is_lapse(const gap_shape *s) {
+    double spacing = s->corners > 0 ? s->spacing_sum / (double)s->corners : 0;
+    return s->may_close && s->longest <= LONG * spacing && s->area <= DISC * spacing * spacing;
+}
+
+/* Adds to x->gap all facets of the gap that a facet belongs to, across the edges of the boundary, as faces for now.
+ * Whether it is a lapse. */
+static bool collect_lapse(extraction *x, uint32_t first) {
+    gap_shape shape = {.may_close = true};
+    size_t next = x->gap_size;
+    x->gap[x->gap_size++] = first;
+    set_face(x, first);
+    for (; next < x->gap_size; next++) {
+        uint32_t facet = x->gap[next];
+        add_to_shape(x, facet, &shape);
+        for (int k = 0; k < 3; k++) {
+            uint32_t other =
+                brio_next_round_edge(x->labels, facet, corner_of(x, facet, k), corner_of(x, facet, (k + 1) % 3));
+            if (is_face(x, other)) continue;
+            set_face(x, other);
+            x->gap[x->gap_size++] = other;
+        }
+    }
+    return is_lapse(&shape);
+}
+
+/* Fills the gaps that are no openings, or all that are finite; the samples of the others are to be looked at. */
+static brio_status choose_fillings(extraction *x, bool all) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(x->ctx, x->gap, x->num_gaps));
+    fill_small_facets(x, all);
+    x->gap_size = 0;
+    for (size_t n = 0; n < x->num_boundary; n++)
+        if (is_face_at_gap(x, x->boundary[n])) measure_edges(x, x->boundary[n]);
+    for (size_t n = 0; n < x->num_boundary; n++) {
+        size_t begin = x->gap_size;
+        if (!is_face(x, x->boundary[n]) && collect_lapse(x, x->boundary[n])) x->gap_size = begin;
     }
     for (size_t n = 0; n < x->gap_size; n++) clear_face(x, x->gap[n]);
     for (size_t n = 0; n < x->gap_size; n++) BRIO_TRY(push_corners(x, x->gap[n]));
@@ -334,6 +429,8 @@ done:
     brio_release(ctx, x.facet_of);
     brio_release(ctx, x.size_at);
     brio_release(ctx, x.shortest);
+    brio_release(ctx, x.edge_sum);
+    brio_release(ctx, x.edges);
     brio_release(ctx, x.gap);
     brio_release(ctx, x.queue);
     return status;
