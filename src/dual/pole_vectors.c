@@ -93,10 +93,11 @@ static inline bool is_farther(const search *s, uint64_t key, uint64_t than) {
 static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uint64_t key) {
     uint64_t now = __atomic_load_n(pole, __ATOMIC_RELAXED);
     while (is_farther(s, key, now)) {
-        if (s->alone)
-            *pole = now = key;
-        else if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+        if (s->alone) {
+            *pole = key;
             return;
+        }
+        if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return;
     }
 }
 

@@ -14,9 +14,9 @@ brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, uint32_t *
 
 /** Lists the triangles between outer and inner tetrahedra, all of them or the candidates only, counterclockwise as seen
  *  from outside. Of candidates that meet in a sample as several fans only the largest fan is kept.
- *  facets  from brio_make_manifold; overwritten.
+ *  facets  from brio_make_manifold.
  *  faces  *num_faces by 3, owned by the caller (brio_release), on failure too.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, uint32_t *facets,
-                               size_t num_facets, uint32_t **faces, size_t *num_faces);
+brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only,
+                               const uint32_t *facets, size_t num_facets, uint32_t **faces, size_t *num_faces);
 
 #endif
