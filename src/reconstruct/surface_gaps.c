@@ -41,7 +41,9 @@ typedef struct {
     double *shortest;  /* squared length of the candidate there that is shortest; infinite for none */
     double *edges;     /* the lengths of the faces' edges there, each once a face */
     uint32_t *degree;  /* how many these are */
-    uint32_t *open;    /* facets of the gaps that stay open */
+    uint32_t *facet;   /* the facets that are no faces to begin with, ascending */
+    size_t num_facets;
+    uint32_t *open; /* facets of the gaps that stay open */
     size_t num_open;
 } gaps;
 
@@ -122,13 +124,13 @@ static brio_status measure_gaps(brio_context *ctx, gaps *g) {
     BRIO_TRY(BRIO_ALLOC(ctx, g->shortest, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, g->edges, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, g->degree, num_points));
-    for (size_t n = 0; n < c->num_facets; n++) {
-        bool is_face = brio_is_face(c, c->facets[n]);
-        for (int k = 0; k < 3 && (boundary || !is_face); k++) {
+    for (size_t n = 0; n < g->num_facets; n++)
+        for (int k = 0; k < 3; k++) measure_candidates(g, brio_corner_of(c, g->facet[n], k), g->facet[n]);
+    for (size_t n = 0; n < c->num_facets && boundary; n++)
+        for (int k = 0; k < 3; k++) {
             uint32_t p = brio_corner_of(c, c->facets[n], k);
-            if (!is_face || boundary[p]) measure_candidates(g, p, c->facets[n]);
+            if (p != BRIO_INFINITE && boundary[p]) measure_candidates(g, p, c->facets[n]);
         }
-    }
 done:
     return status;
 }
@@ -198,8 +200,8 @@ static bool is_small(const gaps *g, uint32_t facet) {
  * boundary samples that are no openings. */
 static void fill_facets(gaps *g, bool all) {
     const brio_face_choice *c = g->choice;
-    for (size_t n = 0; n < c->num_facets; n++) {
-        uint32_t facet = c->facets[n];
+    for (size_t n = 0; n < g->num_facets; n++) {
+        uint32_t facet = g->facet[n];
         size_t begin = g->num_open;
         if (brio_is_face(c, facet)) continue;
         if (is_finite(g, facet) && (all || (!is_among_boundary(g, facet) && is_small(g, facet))))
@@ -273,9 +275,9 @@ static brio_status fill_lapses(brio_context *ctx, gaps *g) {
     const brio_face_choice *c = g->choice;
     gap *list = NULL;
     size_t count = 0, capacity = 0, left = 0;
-    for (size_t n = 0; n < c->num_facets; n++) {
-        if (brio_is_face(c, c->facets[n])) continue;
-        collect_gap(g, c->facets[n]);
+    for (size_t n = 0; n < g->num_facets; n++) {
+        if (brio_is_face(c, g->facet[n])) continue;
+        collect_gap(g, g->facet[n]);
         BRIO_TRY(BRIO_RESERVE(ctx, list, capacity, count + 1));
         list[count++] = (gap){.end = g->num_open};
     }
@@ -295,10 +297,19 @@ done:
     return status;
 }
 
-static size_t count_gaps(const brio_face_choice *c) {
+/* Lists the facets that are no faces. */
+static brio_status list_facets(brio_context *ctx, gaps *g) {
+    brio_status status = BRIO_OK;
+    const brio_face_choice *c = g->choice;
     size_t count = 0;
     for (size_t n = 0; n < c->num_facets; n++) count += !brio_is_face(c, c->facets[n]);
-    return count;
+    brio_release(ctx, g->facet);
+    g->num_facets = 0;
+    BRIO_TRY(BRIO_ALLOC(ctx, g->facet, count));
+    for (size_t n = 0; g->num_facets < count; n++)
+        if (!brio_is_face(c, c->facets[n])) g->facet[g->num_facets++] = c->facets[n];
+done:
+    return status;
 }
 
 brio_status brio_fill_gaps(brio_context *ctx, const brio_face_choice *c, bool all, uint32_t **open, size_t *num_open) {
@@ -306,13 +317,18 @@ brio_status brio_fill_gaps(brio_context *ctx, const brio_face_choice *c, bool al
     gaps g = {.choice = c, .points = c->labels->cocones->dual->points};
     *open = NULL;
     *num_open = 0;
-    if (count_gaps(c) == 0 && !c->labels->cocones->boundary) return BRIO_OK;
+    BRIO_TRY(list_facets(ctx, &g));
+    if (g.num_facets == 0 && !c->labels->cocones->boundary) goto done;
     BRIO_TRY(measure_gaps(ctx, &g));
-    if (c->labels->cocones->boundary) suspect_long_candidates(&g);
-    BRIO_TRY(BRIO_ALLOC(ctx, g.open, count_gaps(c)));
+    if (c->labels->cocones->boundary) {
+        suspect_long_candidates(&g);
+        BRIO_TRY(list_facets(ctx, &g));
+    }
+    BRIO_TRY(BRIO_ALLOC(ctx, g.open, g.num_facets));
     fill_facets(&g, all);
     BRIO_TRY(fill_lapses(ctx, &g));
 done:
+    brio_release(ctx, g.facet);
     brio_release(ctx, g.measured);
     brio_release(ctx, g.size);
     brio_release(ctx, g.shortest);
