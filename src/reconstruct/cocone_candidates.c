@@ -74,39 +74,50 @@ static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
     return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
 }
 
-/* Lists the facets of the tetrahedra [from, to) to look at closer: of a facet and its mate the lesser one, unless no
- * closer look is needed. Their mates are fetched meanwhile. */
+/* Lists the facet in slot i of a tetrahedron, with its own counts, if it is to be looked at closer: of a facet and its mate
+ * the lesser one, unless no closer look is needed. */
+static inline size_t list_if_open(const brio_pole_vectors *v, const side_counts counts, uint8_t all, size_t tet, int i,
+                                  uint8_t here, uint32_t *open) {
+    uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = v->t.tet[tet].mate[i];
+    uint8_t there = counts[v->sides[brio_tet_of(mate)] & all][brio_slot_of(mate)];
+    *open = facet;
+    return (facet < mate) & !misses_surely(here, there);
+}
+
+/* Lists the facets of the tetrahedra [from, to) to look at closer. Their mates are fetched meanwhile. */
 static size_t list_open_facets(const brio_cocones *c, const side_counts counts, size_t from, size_t to,
                                uint32_t *open) {
-    const brio_pole_vectors *v = c->dual;
+    const brio_pole_vectors v = *c->dual;
     uint8_t all = c->boundary ? 0 : 0xff; /* boundary samples do not count */
     size_t count = 0;
     for (size_t tet = from; tet < to; tet++) {
-        const uint8_t *here = counts[v->sides[tet] & all];
-        for (int i = tet < v->num_finite ? 0 : 3; i < 4; i++) { /* the others have the infinite vertex */
-            uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = v->t.tet[tet].mate[i];
-            uint8_t there = counts[v->sides[brio_tet_of(mate)] & all][brio_slot_of(mate)];
-            open[count] = facet;
-            count += (facet < mate) & !misses_surely(here[i], there);
-        }
+        const uint8_t *here = counts[v.sides[tet] & all];
+        for (int i = 0; i < 3 && tet < v.num_finite; i++) /* of the others these have the infinite vertex */
+            count += list_if_open(&v, counts, all, tet, i, here[i], open + count);
+        count += list_if_open(&v, counts, all, tet, 3, here[3], open + count);
     }
-    for (size_t n = 0; n < count; n++) __builtin_prefetch(&v->t.tet[brio_tet_of(*brio_mate(&v->t, open[n]))]);
+    for (size_t n = 0; n < count; n++) __builtin_prefetch(&v.t.tet[brio_tet_of(*brio_mate(&v.t, open[n]))]);
     return count;
 }
 
-static inline void mark(const brio_cocones *c, uint32_t facet) {
-    __atomic_fetch_or(&c->candidates[brio_tet_of(facet)], (uint8_t)(1 << brio_slot_of(facet)), __ATOMIC_RELAXED);
+/* Marks a facet; `alone`: no other thread does. */
+static inline void mark(const brio_cocones *c, uint32_t facet, bool alone) {
+    uint8_t *candidates = &c->candidates[brio_tet_of(facet)], bit = (uint8_t)(1 << brio_slot_of(facet));
+    if (alone)
+        *candidates |= bit;
+    else
+        __atomic_fetch_or(candidates, bit, __ATOMIC_RELAXED);
 }
 
 /* Returns the number of candidates among the facets of the tetrahedra [from, to) that are less than their mates. */
-static size_t select_from(const brio_cocones *c, const side_counts counts, size_t from, size_t to) {
+static size_t select_from(const brio_cocones *c, const side_counts counts, size_t from, size_t to, bool alone) {
     uint32_t open[4 * BLOCK];
     size_t found = 0, count = list_open_facets(c, counts, from, to, open);
     for (size_t n = 0; n < count; n++) {
         uint32_t mate = *brio_mate(&c->dual->t, open[n]);
         if (!passes(c, open[n], mate)) continue;
-        mark(c, open[n]);
-        mark(c, mate);
+        mark(c, open[n], alone);
+        mark(c, mate, alone);
         found++;
     }
     return found;
@@ -115,10 +126,10 @@ static size_t select_from(const brio_cocones *c, const side_counts counts, size_
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
     size_t found = 0, size = c->dual->t.count;
     side_counts counts;
-    (void)ctx; /* without OpenMP */
+    bool alone = brio_context_threads(ctx) == 1;
     count_sides(counts);
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
     for (size_t from = 0; from < size; from += BLOCK)
-        found += select_from(c, (const uint8_t(*)[4])counts, from, from + BLOCK < size ? from + BLOCK : size);
+        found += select_from(c, (const uint8_t(*)[4])counts, from, from + BLOCK < size ? from + BLOCK : size, alone);
     *count = found;
 }

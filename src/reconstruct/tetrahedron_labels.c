@@ -22,17 +22,18 @@ static inline int count_bits(unsigned bits) {
 
 /* The votes of the first `count` slots: those in whose cone to the pole the centre lies are for outer, those that see it
  * in the other one for inner; where the axis is turned, the other way round. */
-static inline int vote_of(const brio_tet_labels *l, size_t tet, int count) {
-    const uint32_t *v = l->cocones->dual->t.tet[tet].vertex;
-    unsigned sides = l->cocones->dual->sides[tet], turned = 0;
-    for (int i = 0; i < count; i++) turned |= (unsigned)l->turned[v[i]] << i;
-    unsigned change = ((sides >> 4 ^ sides) & turned) * 0x11;
+static inline int vote_of(const brio_pole_vectors *v, const uint8_t *turned, size_t tet, int count) {
+    const uint32_t *vertex = v->t.tet[tet].vertex;
+    unsigned sides = v->sides[tet], turn = 0;
+    for (int i = 0; i < count; i++) turn |= (unsigned)turned[vertex[i]] << i;
+    unsigned change = ((sides >> 4 ^ sides) & turn) * 0x11;
     sides ^= change;
     return count_bits(sides & 15) - count_bits(sides >> 4 & 15);
 }
 
 int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
-    return vote_of(l, tet, tet < l->cocones->dual->num_finite ? 4 : 3);
+    const brio_pole_vectors *v = l->cocones->dual;
+    return vote_of(v, l->turned, tet, tet < v->num_finite ? 4 : 3);
 }
 
 static inline uint8_t label_of(int vote) {
@@ -40,15 +41,20 @@ static inline uint8_t label_of(int vote) {
 }
 
 /* Labels the tetrahedra [from, to); returns the number of undecided ones. */
-static size_t label_by_votes(brio_tet_labels *l, size_t from, size_t to) {
-    size_t undecided = 0, finite = l->cocones->dual->num_finite;
-    for (size_t tet = from; tet < to && tet < finite; tet++) {
-        l->label[tet] = label_of(vote_of(l, tet, 4));
-        undecided += l->label[tet] == BRIO_LABEL_NONE;
+static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
+    const brio_pole_vectors v = *l->cocones->dual;
+    uint8_t *label = l->label;
+    const uint8_t *turned = l->turned;
+    size_t undecided = 0;
+    for (size_t tet = from; tet < to && tet < v.num_finite; tet++) {
+        int vote = vote_of(&v, turned, tet, 4);
+        label[tet] = label_of(vote);
+        undecided += vote == 0;
     }
-    for (size_t tet = from < finite ? finite : from; tet < to; tet++) {
-        l->label[tet] = label_of(l->watertight ? 1 : vote_of(l, tet, 3));
-        undecided += l->label[tet] == BRIO_LABEL_NONE;
+    for (size_t tet = from < v.num_finite ? v.num_finite : from; tet < to; tet++) {
+        int vote = l->watertight ? 1 : vote_of(&v, turned, tet, 3);
+        label[tet] = label_of(vote);
+        undecided += vote == 0;
     }
     return undecided;
 }
