@@ -56,8 +56,8 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
  * distance over its tetrahedron, so that one look tells for most that they are nearer. */
 typedef struct {
     brio_pole_vectors *v;
-    uint64_t *farther; /* of each sample, as v->pole: the keys */
-    bool alone;        /* one thread: nobody else offers */
+    uint64_t *farther[2]; /* of each sample: the keys of the farther pole, and of that on its other side */
+    bool alone;           /* one thread: nobody else offers */
 } search;
 
 enum { AHEAD = 8 }; /* tetrahedra between fetching and using */
@@ -115,7 +115,7 @@ static void find_hull_vectors(search *s) {
         for (int i = 0; i < 3; i++) {
             size_t p = v->t.tet[tet].vertex[i];
             for (size_t k = 0; k < 3; k++) v->plane[4 * p + k] += (normal[k] + ROUND) - ROUND;
-            s->farther[2 * p] = HULL_KEY | tet;
+            s->farther[0][p] = HULL_KEY | tet;
         }
     }
 }
@@ -137,7 +137,7 @@ static size_t find_centres(const brio_pole_vectors *v, size_t first) {
 
 static void find_poles(const brio_context *ctx, const search *s) {
     const brio_pole_vectors *v = s->v;
-    uint64_t *farther = s->farther;
+    uint64_t *farther = s->farther[0];
     (void)ctx; /* without OpenMP */
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t first = 0; first < v->num_finite; first += BRIO_CENTRES) {
@@ -148,8 +148,7 @@ static void find_poles(const brio_context *ctx, const search *s) {
             if (isnan(v->centre[4 * tet + 3])) continue;
             memcpy(vertex, v->t.tet[tet].vertex, sizeof vertex);
             for (int i = 0; i < 4; i++)
-                if (may_be_farther(key, farther + 2 * (size_t)vertex[i]))
-                    offer(s, farther + 2 * (size_t)vertex[i], key);
+                if (may_be_farther(key, farther + vertex[i])) offer(s, farther + vertex[i], key);
         }
     }
 }
@@ -159,7 +158,7 @@ static void find_planes(const brio_context *ctx, const search *s) {
     (void)ctx; /* without OpenMP */
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t p = 0; p < v->num_points; p++) {
-        uint32_t pole = (uint32_t)s->farther[2 * p];
+        uint32_t pole = (uint32_t)s->farther[0][p];
         double *plane = v->plane + 4 * p;
         const double *x = v->points + 3 * p;
         if (pole < v->num_finite) brio_towards_centre(v, pole, p, plane);
@@ -229,15 +228,21 @@ BRIO_INLINE uint32_t look_at_samples(const brio_pole_vectors *v, size_t tet, boo
     return (uint32_t)(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
+/* Offers a pole to a sample on whose other side it is. */
+BRIO_INLINE void offer_if(bool behind, const search *s, uint32_t p, uint64_t key) {
+    if (behind & may_be_farther(key, s->farther[1] + p)) offer(s, s->farther[1] + p, key);
+}
+
 /* What a finite Voronoi vertex is to its samples, and offers it as the pole on their other side. Its distance is the same
  * from all, but for the error. */
 BRIO_INLINE uint16_t sides_of(const search *s, size_t tet, double sine) {
-    uint32_t bits = look_at_samples(s->v, tet, true, sine), behind = bits >> 16, vertex[4];
-    uint64_t key = key_of(s->v->centre[4 * tet + 3], (uint32_t)tet), *antipole = s->farther + 1;
-    memcpy(vertex, s->v->t.tet[tet].vertex, sizeof vertex);
-    _Pragma("GCC unroll 4") for (int i = 0; i < 4;
-                                 i++) if ((behind >> i & 1) & may_be_farther(key, antipole + 2 * (size_t)vertex[i]))
-        offer(s, antipole + 2 * (size_t)vertex[i], key);
+    uint32_t bits = look_at_samples(s->v, tet, true, sine);
+    uint64_t key = key_of(s->v->centre[4 * tet + 3], (uint32_t)tet);
+    const uint32_t *vertex = s->v->t.tet[tet].vertex;
+    offer_if(bits >> 16 & 1, s, vertex[0], key);
+    offer_if(bits >> 17 & 1, s, vertex[1], key);
+    offer_if(bits >> 18 & 1, s, vertex[2], key);
+    offer_if(bits >> 19 & 1, s, vertex[3], key);
     return (uint16_t)bits;
 }
 
@@ -282,16 +287,18 @@ static void find_sides(const brio_context *ctx, const search *s) {
 static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     brio_status status = BRIO_OK;
     search s = {.v = v, .alone = brio_context_threads(ctx) == 1};
-    BRIO_TRY(BRIO_ALLOC(ctx, s.farther, 2 * v->num_points));
-    for (size_t i = 0; i < 2 * v->num_points; i++) s.farther[i] = NO_KEY;
+    for (int side = 0; side < 2; side++) {
+        BRIO_TRY(BRIO_ALLOC(ctx, s.farther[side], v->num_points));
+        for (size_t p = 0; p < v->num_points; p++) s.farther[side][p] = NO_KEY;
+    }
     find_hull_vectors(&s);
     find_poles(ctx, &s);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
     find_planes(ctx, &s);
     find_sides(ctx, &s);
-    for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = (uint32_t)s.farther[i];
+    for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = (uint32_t)s.farther[i % 2][i / 2];
 done:
-    brio_release(ctx, s.farther);
+    for (int side = 0; side < 2; side++) brio_release(ctx, s.farther[side]);
     return status;
 }
 

@@ -66,17 +66,18 @@ static void flatten(forest *f) {
     for (size_t p = 0; p < f->cocones->dual->num_points; p++) f->up[p] = find_root(f, (uint32_t)p);
 }
 
-/* Lets the signs of two samples be the same, or opposite; false where that contradicts what was joined before. */
-static inline bool join(forest *f, uint32_t a, uint32_t b, uint32_t opposite) {
-    uint32_t root_a = find_root(f, a), root_b = find_root(f, b);
-    if (root_a >> 1 == root_b >> 1) return ((root_a ^ root_b) & 1) == opposite;
-    f->up[root_b >> 1] = root_a ^ (root_b & 1) ^ opposite;
+/* Lets the sign of a sample be that of a root, found for another one, or opposite; false where that contradicts what was
+ * joined before. The root stays one. */
+static inline bool join_to_root(forest *f, uint32_t root, uint32_t p, uint32_t opposite) {
+    uint32_t other = find_root(f, p);
+    if (root >> 1 == other >> 1) return ((root ^ other) & 1) == opposite;
+    f->up[other >> 1] = root ^ (other & 1) ^ opposite;
     f->num_pieces--;
     return true;
 }
 
 static inline bool join_link(forest *f, size_t i) {
-    return join(f, f->link[i].a, f->link[i].b, f->kind[i] >= OPPOSITE);
+    return join_to_root(f, find_root(f, f->link[i].a), f->link[i].b, f->kind[i] >= OPPOSITE);
 }
 
 /* Square of the cosine of the angle at which a sample sees the Voronoi vertex of a tetrahedron from its axis. */
@@ -210,10 +211,12 @@ static bool join_samples_of(forest *f, size_t tet) {
     const uint32_t *v = f->cocones->dual->t.tet[tet].vertex;
     unsigned sides = f->cocones->dual->sides[tet], antipole = sides >> 4 & 15, worst = sides >> 8 & sides >> 12;
     unsigned left = (sides | antipole) & 15 & ~worst;
-    if (left == 0) return true;
-    for (int first = __builtin_ctz(left); left &= left - 1;) {
+    if ((left & (left - 1)) == 0) return true;
+    int first = __builtin_ctz(left);
+    uint32_t root = find_root(f, v[first]) ^ (antipole >> first & 1);
+    while (left &= left - 1) {
         int other = __builtin_ctz(left);
-        if (!join(f, v[first], v[other], (antipole >> first ^ antipole >> other) & 1)) return false;
+        if (!join_to_root(f, root, v[other], antipole >> other & 1)) return false;
     }
     return true;
 }
