@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""quality.py BRIO OUT.csv OUT.md [--only NAME ...]: what brio's surfaces of the shared data are worth.
+"""quality.py BRIO OUT.csv OUT.md [--only NAME ...] [--methods NAME ...]: what brio's surfaces of the shared data are worth.
 
 Every set is reconstructed by `brio surface`: the power crust with its defaults throughout, with --sharp where edges are
-sharp, the co-cones on the models. Surfaces of models are judged by meshq.py, an independent program beside the data, the
+sharp, the co-cones on models and scans. Surfaces of models are judged by meshq.py, an independent program beside the data, the
 others by the certificate that brio prints. OUT.csv has one line a surface, no times, and is the same on every machine;
-OUT.md shows it beside other programs' figures. With --only the lines of all other sets stay as they are in OUT.csv.
+OUT.md shows it beside other programs' figures. With --only and --methods all other lines stay as they are in OUT.csv.
 
 Needs the system's Python with numpy and scipy (the judge does). Where the shared data are not there, says so and leaves
 the files as they are."""
@@ -57,7 +57,7 @@ Task = collections.namedtuple('Task', 'name path method')
 
 # --- what is to be done ---
 
-def tasks_of(only):
+def tasks_of(only, wanted):
     """Each surface to make, folder by folder, and the sets in the order of their names."""
     tasks = []
     for folder in ['model', 'scan', 'lidar', 'hostile']:
@@ -68,9 +68,9 @@ def tasks_of(only):
         for file in sorted(os.listdir(where)):
             name = os.path.splitext(file)[0]
             if name == 'anchor_truth' or (only and name not in only): continue
-            methods = [m for m in METHODS if folder == 'model' or m == 'power crust']
+            methods = [m for m in METHODS if m == 'power crust' or folder == 'model' or (folder == 'scan' and 'cone' in m)]
             tasks += [Task(f'{folder}/{name}', os.path.join(where, file), m) for m in methods
-                      if m != 'power crust, sharp' or name in SHARP]
+                      if (m != 'power crust, sharp' or name in SHARP) and (not wanted or m in wanted)]
     return tasks
 
 
@@ -189,7 +189,8 @@ those of the README beside the shared data: the same samples, the same judge.
 
 ## Models without a truth, scans, lidar
 
-Scans of open surfaces: the power crust closes them; what matters here is that the result is sound.
+Scans of open surfaces: the power crust and the tight co-cone close them, the co-cone leaves them open; what matters here
+is that the result is sound.
 
 ''' + '\n'.join(others_table(others)) + f'''
 
@@ -208,6 +209,7 @@ def main():
     parser.add_argument('csv')
     parser.add_argument('page')
     parser.add_argument('--only', nargs='+')
+    parser.add_argument('--methods', nargs='+', choices=METHODS)
     options = parser.parse_args()
     reason = reason_to_skip()
     if reason:
@@ -215,11 +217,11 @@ def main():
         return 0
     done = {}
     with concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool:
-        for row in pool.map(lambda task: examine(options.brio, task), tasks_of(options.only)):
+        for row in pool.map(lambda task: examine(options.brio, task), tasks_of(options.only, options.methods)):
             print(f"{row['set']:36} {row['method']:20} {topology_of(row):32} chamfer {row['chamfer']}", flush=True)
             done[row['set'], row['method']] = row
-    if options.only: done = {**rows_of(options.csv), **done}
-    rows = [done[task.name, task.method] for task in tasks_of(None) if (task.name, task.method) in done]
+    if options.only or options.methods: done = {**rows_of(options.csv), **done}
+    rows = [done[task.name, task.method] for task in tasks_of(None, None) if (task.name, task.method) in done]
     with open(options.csv, 'w', newline='') as f:
         writer = csv.DictWriter(f, COLUMNS, lineterminator='\n')
         writer.writeheader()

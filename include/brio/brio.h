@@ -583,7 +583,7 @@ typedef struct brio_cocone_stats {
  *          of the sampling density there (0 where the sample is on no face); "boundary", 1 for a boundary sample (with
  *          options.boundaries too).
  *  Cost: one triangulation; about 50 bytes a tetrahedron more. In N pieces the memory is that of 1/N of the samples and
- *  their surroundings, and 80 bytes a point; on a dense sample the triangles are the same.
+ *  their surroundings, and 60 bytes a point; on a dense sample the triangles are the same.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found, or no inside), and as brio_delaunay.
  *  Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
  *            [Dey Giesen Hudson 2001], [Dey Goswami 2003]. */

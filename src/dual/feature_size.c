@@ -98,7 +98,7 @@ static double nearest_of(const pole_tree *t, const brio_pole_vectors *v, size_t 
     double best = INFINITY;
     for (int side = 0; side < 2; side++) {
         size_t own = v->pole[2 * p + (size_t)side];
-        if (own < v->num_finite) best = least(best, brio_square_distance(v->points + 3 * p, v->centre + 3 * own));
+        if (own < v->num_finite) best = least(best, brio_square_distance(v->points + 3 * p, v->centre + 4 * own));
     }
     return nearest(t, v->points + 3 * p, 0, t->count, best);
 }
@@ -113,7 +113,7 @@ static brio_status collect_poles(brio_context *ctx, const brio_pole_vectors *v, 
     BRIO_TRY(BRIO_ALLOC(ctx, tree->pole, tree->count));
     BRIO_TRY(BRIO_ALLOC(ctx, tree->axis, tree->count));
     for (size_t tet = 0, n = 0; tet < v->num_finite; tet++)
-        if (is_pole[tet]) memcpy(tree->pole[n++], v->centre + 3 * tet, sizeof *tree->pole);
+        if (is_pole[tet]) memcpy(tree->pole[n++], v->centre + 4 * tet, sizeof *tree->pole);
 done:
     brio_release(ctx, is_pole);
     return status;

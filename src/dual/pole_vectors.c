@@ -2,10 +2,11 @@
  *
  * One pass over the tetrahedra computes the centres and offers each to its four samples as the farther pole; another
  * one, with the directions known, tells on which side of its samples each centre lies and offers it as the pole on the
- * other side. The distance of a centre is the same from all four, so it is kept with the tetrahedron; and what is on
- * offer is one word with the distance in its upper half. Samples on the hull have an unbounded cell: the sum of the unit outward normals of their hull facets
- * stands for the direction to the pole. The error bounds of the centres count in favour of the co-cone, so that
- * rounding loses no triangle.
+ * other side. The distance of a centre is the same from all four, so it is kept with the centre; and what is on offer is
+ * one word with the distance in its upper half. A sample is kept as the plane through it across its axis, one load: how
+ * far a centre lies along the axis is its height above that plane. Samples on the hull have an unbounded cell: the sum
+ * of the unit outward normals of their hull facets stands for the direction to the pole. The error bounds of the centres
+ * count in favour of the co-cone, so that rounding loses no triangle.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999.
  *           Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000. */
@@ -55,8 +56,8 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
  * distance over its tetrahedron, so that one look tells for most that they are nearer. */
 typedef struct {
     brio_pole_vectors *v;
-    double *square;    /* of each Voronoi vertex: its squared distance from its samples; NaN where there is none */
-    uint64_t *farther; /* of each sample, as v->pole: the keys */
+    uint64_t *farther[2]; /* of each sample: the keys of the farther pole, and of that on its other side */
+    bool alone;           /* one thread: nobody else offers */
 } search;
 
 enum { AHEAD = 8 }; /* tetrahedra between fetching and using */
@@ -78,19 +79,26 @@ static inline bool may_be_farther(uint64_t key, const uint64_t *pole) {
 /* Whether a key is that of a farther Voronoi vertex than another. */
 static inline bool is_farther(const search *s, uint64_t key, uint64_t than) {
     if (key >> 32 != than >> 32) return key >> 32 > than >> 32;
-    uint32_t tet = (uint32_t)key, other = (uint32_t)than;
     if (than == NO_KEY) return true;
-    return s->square[tet] != s->square[other]
-               ? s->square[tet] > s->square[other]
-               : brio_compare_by_position(s->v->points, s->v->t.tet, s->v->centre, tet, other) > 0;
+    const double *a = s->v->centre + 4 * (size_t)(uint32_t)key, *b = s->v->centre + 4 * (size_t)(uint32_t)than;
+    if (a[3] != b[3]) return a[3] > b[3];
+    int sign = brio_lexicographic(a, b);
+    const brio_tetrahedron *tet = s->v->t.tet;
+    if (sign == 0) sign = brio_compare_corners(s->v->points, tet + (uint32_t)key, tet + (uint32_t)than);
+    return sign > 0;
 }
 
 /* Makes a tetrahedron a pole unless there is a farther one. Threads may offer at once: the farthest one wins, whoever
  * comes first. */
-static inline void offer(const search *s, uint64_t *pole, uint64_t key) {
+static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uint64_t key) {
     uint64_t now = __atomic_load_n(pole, __ATOMIC_RELAXED);
-    while (is_farther(s, key, now))
+    while (is_farther(s, key, now)) {
+        if (s->alone) {
+            *pole = key;
+            return;
+        }
         if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return;
+    }
 }
 
 /* --- the passes --- */
@@ -101,20 +109,19 @@ static void find_hull_vectors(search *s) {
     static const double ROUND = 0x1.8p16;
     brio_pole_vectors *v = s->v;
     for (size_t tet = v->num_finite; tet < v->t.count; tet++) {
-        double *normal = v->centre + 3 * tet;
+        double *normal = v->centre + 4 * tet;
         outward_normal(v, v->t.tet[tet].vertex, normal);
-        s->square[tet] = square(normal);
+        normal[3] = square(normal);
         for (int i = 0; i < 3; i++) {
             size_t p = v->t.tet[tet].vertex[i];
-            for (size_t k = 0; k < 3; k++) v->vector[3 * p + k] += (normal[k] + ROUND) - ROUND;
-            s->farther[2 * p] = HULL_KEY | tet;
+            for (size_t k = 0; k < 3; k++) v->plane[4 * p + k] += (normal[k] + ROUND) - ROUND;
+            s->farther[0][p] = HULL_KEY | tet;
         }
     }
 }
 
 /* The centres of the tetrahedra from `first` on, up to BRIO_CENTRES of them. */
-static size_t find_centres(const search *s, size_t first) {
-    const brio_pole_vectors *v = s->v;
+static size_t find_centres(const brio_pole_vectors *v, size_t first) {
     const double *p[BRIO_CENTRES][4];
     brio_rough_centre centre[BRIO_CENTRES];
     size_t count = v->num_finite - first < BRIO_CENTRES ? v->num_finite - first : BRIO_CENTRES;
@@ -122,36 +129,41 @@ static size_t find_centres(const search *s, size_t first) {
         for (int i = 0; i < 4; i++) p[n][i] = v->points + 3 * (size_t)v->t.tet[first + (n < count ? n : 0)].vertex[i];
     brio_rough_centres((const double *const(*)[4])p, centre);
     for (size_t n = 0; n < count; n++) {
-        memcpy(v->centre + 3 * (first + n), centre[n].at, sizeof centre[n].at);
-        s->square[first + n] = centre[n].square;
+        memcpy(v->centre + 4 * (first + n), centre[n].at, sizeof centre[n].at);
+        v->centre[4 * (first + n) + 3] = centre[n].square;
     }
     return count;
 }
 
 static void find_poles(const brio_context *ctx, const search *s) {
     const brio_pole_vectors *v = s->v;
+    uint64_t *farther = s->farther[0];
     (void)ctx; /* without OpenMP */
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t first = 0; first < v->num_finite; first += BRIO_CENTRES) {
-        size_t end = first + find_centres(s, first);
+        size_t end = first + find_centres(v, first);
         for (size_t tet = first; tet < end; tet++) {
-            uint64_t key = key_of(s->square[tet], (uint32_t)tet);
-            for (int i = 0; i < 4 && !isnan(s->square[tet]); i++) {
-                uint64_t *farther = s->farther + 2 * (size_t)v->t.tet[tet].vertex[i];
-                if (may_be_farther(key, farther)) offer(s, farther, key);
-            }
+            uint32_t vertex[4];
+            uint64_t key = key_of(v->centre[4 * tet + 3], (uint32_t)tet);
+            if (isnan(v->centre[4 * tet + 3])) continue;
+            memcpy(vertex, v->t.tet[tet].vertex, sizeof vertex);
+            for (int i = 0; i < 4; i++)
+                if (may_be_farther(key, farther + vertex[i])) offer(s, farther + vertex[i], key);
         }
     }
 }
 
-static void find_vectors(const brio_context *ctx, const search *s) {
+static void find_planes(const brio_context *ctx, const search *s) {
     const brio_pole_vectors *v = s->v;
     (void)ctx; /* without OpenMP */
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
     for (size_t p = 0; p < v->num_points; p++) {
-        uint32_t pole = (uint32_t)s->farther[2 * p];
-        if (pole < v->num_finite) brio_towards_centre(v, pole, p, v->vector + 3 * p);
-        make_unit(v->vector + 3 * p);
+        uint32_t pole = (uint32_t)s->farther[0][p];
+        double *plane = v->plane + 4 * p;
+        const double *x = v->points + 3 * p;
+        if (pole < v->num_finite) brio_towards_centre(v, pole, p, plane);
+        make_unit(plane);
+        plane[3] = -(plane[0] * x[0] + plane[1] * x[1] + plane[2] * x[2]);
     }
 }
 
@@ -159,65 +171,96 @@ static void find_vectors(const brio_context *ctx, const search *s) {
 typedef double slots __attribute__((vector_size(32)));
 typedef int64_t slot_bits __attribute__((vector_size(32)));
 
+#ifdef __clang__
+#define CHOOSE(a, b, i, j, k, l) __builtin_shufflevector(a, b, i, j, k, l)
+#else
+#define CHOOSE(a, b, i, j, k, l) __builtin_shuffle(a, b, (slot_bits){i, j, k, l})
+#endif
+
+/* The sum of each row. */
+BRIO_INLINE void add_rows(const slots row[4], slots *sum) {
+    slots a = CHOOSE(row[0], row[1], 0, 4, 2, 6) + CHOOSE(row[0], row[1], 1, 5, 3, 7);
+    slots b = CHOOSE(row[2], row[3], 0, 4, 2, 6) + CHOOSE(row[2], row[3], 1, 5, 3, 7);
+    *sum = CHOOSE(a, b, 0, 1, 4, 5) + CHOOSE(a, b, 2, 3, 6, 7);
+}
+
+/* row = the products of a sample's plane with the coordinates of a centre, whose sum is how far the centre lies along the
+ * sample's axis. */
+BRIO_INLINE void multiply_plane(const brio_pole_vectors *v, uint32_t p, const slots *centre, slots *row) {
+    memcpy(row, v->plane + 4 * (size_t)p, sizeof *row);
+    *row *= *centre;
+}
+
 /* How far a Voronoi vertex lies along the axis of each of its samples; 0 for the infinite vertex. */
-BRIO_INLINE void measure_along(const brio_pole_vectors *v, size_t tet, slots *along) {
+BRIO_INLINE void measure_along(const brio_pole_vectors *v, size_t tet, bool finite, slots *along) {
     const uint32_t *vertex = v->t.tet[tet].vertex;
-    const double *centre = v->centre + 3 * tet, *x[4], *n[4];
-    slots sum = {0};
-    for (int i = 0; i < 4; i++) {
-        size_t p = vertex[i] != BRIO_INFINITE ? vertex[i] : vertex[0];
-        x[i] = v->points + 3 * p;
-        n[i] = v->vector + 3 * p;
-    }
-    if (tet < v->num_finite) {
-        for (int k = 0; k < 3; k++)
-            sum +=
-                (centre[k] - (slots){x[0][k], x[1][k], x[2][k], x[3][k]}) * (slots){n[0][k], n[1][k], n[2][k], n[3][k]};
-    } else {
-        for (int k = 0; k < 3; k++) sum += centre[k] * (slots){n[0][k], n[1][k], n[2][k], 0};
-    }
-    *along = sum;
+    slots centre, row[4];
+    memcpy(&centre, v->centre + 4 * tet, sizeof centre);
+    centre[3] = finite;
+    multiply_plane(v, vertex[0], &centre, &row[0]);
+    multiply_plane(v, vertex[1], &centre, &row[1]);
+    multiply_plane(v, vertex[2], &centre, &row[2]);
+    row[3] = (slots){0};
+    if (finite) multiply_plane(v, vertex[3], &centre, &row[3]);
+    add_rows(row, along);
 }
 
 /* Bounds the error of each coordinate of a centre at a distance from its samples (brio_rough_centres, for coordinates of
- * at most 1), or of a direction, and what rounding adds to its place along an axis. */
-static inline double error_of(const brio_pole_vectors *v, size_t tet, double distance) {
-    return tet < v->num_finite ? ROUGH * distance + 0x1p-53 * (1 + distance) : 0x1p-48;
+ * at most 1), or of a direction, and what rounding adds to its place along an axis: a sum of four products, of which
+ * the fourth is rounded as often before. */
+static inline double error_of(double distance, bool finite) {
+    return finite ? ROUGH * distance + 0x1p-50 * (1 + distance) : 0x1p-48;
 }
 
-/* The side and the depth of a Voronoi vertex for each of its samples, and offers it as the pole on their other side. Its
- * distance is the same from all, but for the error. */
-BRIO_INLINE int sides_of(const search *s, size_t tet, double sine) {
-    static const slot_bits pole = {1, 4, 16, 64}, antipole = {2, 8, 32, 128}, depth = {256, 1024, 4096, 16384};
-    const brio_pole_vectors *v = s->v;
-    double most = s->square[tet], length = sqrt(most), limit = sine * length + 6 * error_of(v, tet, length);
+/* The side and the depth of a Voronoi vertex for each of its samples and, above, which of them have it on the other side
+ * of their planes. */
+BRIO_INLINE uint32_t look_at_samples(const brio_pole_vectors *v, size_t tet, bool finite, double sine) {
+    static const slot_bits POLE = {1, 2, 4, 8}, ANTIPOLE = {16, 32, 64, 128},
+                           BEHIND = {1 << 16, 2 << 16, 4 << 16, 8 << 16};
+    static const slot_bits DEPTH_LOW = {256, 512, 1024, 2048}, DEPTH_HIGH = {4096, 8192, 16384, 32768};
+    double most = v->centre[4 * tet + 3], length = sqrt(most), limit = sine * length + 6 * error_of(length, finite);
     slots along;
-    measure_along(v, tet, &along);
+    measure_along(v, tet, finite, &along);
     slots across = most - along * along; /* squared distance from the axis */
-    slot_bits bits = ((along > limit) & pole) | ((along < -limit) & antipole);
-    bits +=
-        ((across > most * 0x1p-8) & depth) + ((across > most * 0x1p-6) & depth) + ((across > most * 0x1p-4) & depth);
-    for (int i = 0; i < 4 && tet < v->num_finite; i++) {
-        uint64_t *farther = s->farther + 2 * (size_t)v->t.tet[tet].vertex[i] + 1, key = key_of(most, (uint32_t)tet);
-        if ((along[i] < 0) & may_be_farther(key, farther)) offer(s, farther, key);
-    }
-    return (int)(bits[0] | bits[1] | bits[2] | bits[3]);
+    slot_bits over_4 = across > most * 0x1p-4, over_6 = across > most * 0x1p-6, over_8 = across > most * 0x1p-8;
+    slot_bits bits = ((along > limit) & POLE) | ((along < -limit) & ANTIPOLE) | ((along < 0) & BEHIND) |
+                     ((over_4 ^ over_6 ^ over_8) & DEPTH_LOW) | (over_6 & DEPTH_HIGH);
+    return (uint32_t)(bits[0] | bits[1] | bits[2] | bits[3]);
+}
+
+/* Offers a pole to a sample on whose other side it is. */
+BRIO_INLINE void offer_if(bool behind, const search *s, uint32_t p, uint64_t key) {
+    if (behind & may_be_farther(key, s->farther[1] + p)) offer(s, s->farther[1] + p, key);
+}
+
+/* What a finite Voronoi vertex is to its samples, and offers it as the pole on their other side. Its distance is the same
+ * from all, but for the error. */
+BRIO_INLINE uint16_t sides_of(const search *s, size_t tet, double sine) {
+    uint32_t bits = look_at_samples(s->v, tet, true, sine);
+    uint64_t key = key_of(s->v->centre[4 * tet + 3], (uint32_t)tet);
+    const uint32_t *vertex = s->v->t.tet[tet].vertex;
+    offer_if(bits >> 16 & 1, s, vertex[0], key);
+    offer_if(bits >> 17 & 1, s, vertex[1], key);
+    offer_if(bits >> 18 & 1, s, vertex[2], key);
+    offer_if(bits >> 19 & 1, s, vertex[3], key);
+    return (uint16_t)bits;
 }
 
 /* Fetches what sides_of needs of the samples of a tetrahedron. */
 static inline void expect_samples(const brio_pole_vectors *v, size_t tet) {
-    for (int i = 0; i < 4 && tet < v->num_finite; i++) {
-        __builtin_prefetch(v->points + 3 * (size_t)v->t.tet[tet].vertex[i]);
-        __builtin_prefetch(v->vector + 3 * (size_t)v->t.tet[tet].vertex[i]);
-    }
+    for (int i = 0; i < 4 && tet < v->num_finite; i++)
+        __builtin_prefetch(v->plane + 4 * (size_t)v->t.tet[tet].vertex[i]);
 }
 
 /* The sides of the tetrahedra [from, to). */
 BRIO_INLINE void find_sides_of(const search *s, size_t from, size_t to, double sine) {
-    for (size_t tet = from; tet < to; tet++) {
+    size_t finite = s->v->num_finite;
+    for (size_t tet = from; tet < to && tet < finite; tet++) {
         expect_samples(s->v, tet + AHEAD);
-        s->v->sides[tet] = (uint16_t)sides_of(s, tet, sine);
+        s->v->sides[tet] = sides_of(s, tet, sine);
     }
+    for (size_t tet = from < finite ? finite : from; tet < to; tet++)
+        s->v->sides[tet] = (uint16_t)look_at_samples(s->v, tet, false, sine);
 }
 
 static void find_sides_plain(const search *s, size_t from, size_t to, double sine) {
@@ -243,19 +286,19 @@ static void find_sides(const brio_context *ctx, const search *s) {
 
 static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     brio_status status = BRIO_OK;
-    search s = {.v = v};
-    BRIO_TRY(BRIO_ALLOC(ctx, s.square, v->t.count));
-    BRIO_TRY(BRIO_ALLOC(ctx, s.farther, 2 * v->num_points));
-    for (size_t i = 0; i < 2 * v->num_points; i++) s.farther[i] = NO_KEY;
+    search s = {.v = v, .alone = brio_context_threads(ctx) == 1};
+    for (int side = 0; side < 2; side++) {
+        BRIO_TRY(BRIO_ALLOC(ctx, s.farther[side], v->num_points));
+        for (size_t p = 0; p < v->num_points; p++) s.farther[side][p] = NO_KEY;
+    }
     find_hull_vectors(&s);
     find_poles(ctx, &s);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
-    find_vectors(ctx, &s);
+    find_planes(ctx, &s);
     find_sides(ctx, &s);
-    for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = (uint32_t)s.farther[i];
+    for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = (uint32_t)s.farther[i % 2][i / 2];
 done:
-    brio_release(ctx, s.square);
-    brio_release(ctx, s.farther);
+    for (int side = 0; side < 2; side++) brio_release(ctx, s.farther[side]);
     return status;
 }
 
@@ -272,8 +315,8 @@ brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *
     out->t = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(t),
                                .count = s->tetrahedra + s->hull_facets,
                                .infinite = BRIO_INFINITE};
-    BRIO_TRY(BRIO_ALLOC(ctx, out->centre, 3 * out->t.count));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->vector, 3 * num_points));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->centre, 4 * out->t.count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->plane, 4 * num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, out->pole, 2 * num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, out->sides, out->t.count));
     BRIO_TRY(search_poles(ctx, out));
@@ -283,7 +326,7 @@ done:
 
 void brio_pole_vectors_free(brio_context *ctx, brio_pole_vectors *v) {
     brio_release(ctx, v->centre);
-    brio_release(ctx, v->vector);
+    brio_release(ctx, v->plane);
     brio_release(ctx, v->pole);
     brio_release(ctx, v->sides);
     *v = (brio_pole_vectors){0};

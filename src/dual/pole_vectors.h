@@ -15,14 +15,17 @@ typedef struct {
     brio_tetrahedra t; /* caller's indices; without records */
     size_t num_finite, num_points, num_vertices;
     const double *points;
-    double theta;    /* half the opening of the co-cones */
-    double *centre;  /* #T by 3; of an infinite tetrahedron the unit direction; NaN where doubles cannot hold it */
-    double *vector;  /* #P by 3, unit: from the sample to the farther pole or, on the hull, the sum of the unit outward
-                       normals of its hull facets; zero for points that are no vertices */
-    uint32_t *pole;  /* #P by 2: the farther pole (on the hull an infinite tetrahedron) and the farthest Voronoi vertex
+    double theta;   /* half the opening of the co-cones */
+    double *centre; /* #T by 4: the place and its squared distance from its samples, or the unit direction and 1; NaN
+                       where doubles cannot hold it */
+    double *plane;  /* #P by 4: the axis and minus its product with the sample. The axis is a unit vector from the
+                       sample to the farther pole or, on the hull, the sum of the unit outward normals of its hull
+                       facets; zero for points that are no vertices */
+    uint32_t *pole; /* #P by 2: the farther pole (on the hull an infinite tetrahedron) and the farthest Voronoi vertex
                        on its other side; BRIO_INFINITE where there is none */
-    uint16_t *sides; /* #T: two bits for each slot, the side of the Voronoi vertex as its sample sees it; in the upper
-                        half two more, how near to the axis */
+    uint16_t
+        *sides; /* #T: four times a bit for each slot: whether its sample sees the Voronoi vertex in the cone to its
+                        pole; in the other one; how near to the axis (the lower bits of that, the upper ones) */
 } brio_pole_vectors;
 
 /** Finds them.   theta  in (0, pi/2).   t and points must outlive the result; what it holds is to be freed on failure
@@ -35,13 +38,14 @@ void brio_pole_vectors_free(brio_context *ctx, brio_pole_vectors *v);
 
 /** What points from p to the Voronoi vertex of a tetrahedron: their difference, or the direction of a ray. */
 static inline void brio_towards_centre(const brio_pole_vectors *v, size_t tet, size_t p, double to[3]) {
-    const double *c = v->centre + 3 * tet, *from = v->points + 3 * p;
+    const double *c = v->centre + 4 * tet, *from = v->points + 3 * p;
     bool ray = tet >= v->num_finite;
     for (int k = 0; k < 3; k++) to[k] = ray ? c[k] : c[k] - from[k];
 }
 
 static inline int brio_side_of(const brio_pole_vectors *v, size_t tet, int slot) {
-    return v->sides[tet] >> 2 * slot & 3;
+    int bits = v->sides[tet] >> slot;
+    return (bits & 1) | (bits >> 3 & 2);
 }
 
 enum { BRIO_DEPTHS = 4 };
@@ -49,7 +53,8 @@ enum { BRIO_DEPTHS = 4 };
 /** Whether the sine of the angle between the direction to a Voronoi vertex and the axis of the sample in a slot is over
  *  1/16, 1/8, 1/4: how many of these. */
 static inline int brio_depth_class(const brio_pole_vectors *v, size_t tet, int slot) {
-    return v->sides[tet] >> (8 + 2 * slot) & 3;
+    int bits = v->sides[tet] >> (8 + slot);
+    return (bits & 1) | (bits >> 3 & 2);
 }
 
 #endif

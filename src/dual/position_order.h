@@ -16,16 +16,21 @@ static inline void brio_sorted_positions(const double *points, const brio_tetrah
         }
 }
 
+/** Compares tetrahedra s and t by their points. */
+static inline int brio_compare_corners(const double *points, const brio_tetrahedron *s, const brio_tetrahedron *t) {
+    const double *p[4], *q[4];
+    int sign = 0;
+    brio_sorted_positions(points, s, p);
+    brio_sorted_positions(points, t, q);
+    for (int i = 0; i < 4 && !sign; i++) sign = brio_lexicographic(p[i], q[i]);
+    return sign;
+}
+
 /** Compares tetrahedra s and t by their centres, then by their points.   centre  of each of `tet`. */
 static inline int brio_compare_by_position(const double *points, const brio_tetrahedron *tet, const double *centre,
                                            uint32_t s, uint32_t t) {
-    const double *p[4], *q[4];
     int sign = brio_lexicographic(centre + 3 * (size_t)s, centre + 3 * (size_t)t);
-    if (sign) return sign;
-    brio_sorted_positions(points, tet + s, p);
-    brio_sorted_positions(points, tet + t, q);
-    for (int i = 0; i < 4 && !sign; i++) sign = brio_lexicographic(p[i], q[i]);
-    return sign;
+    return sign ? sign : brio_compare_corners(points, tet + s, tet + t);
 }
 
 #endif

@@ -49,7 +49,7 @@ static double border_distance(const double *axis, double sine, const double *in,
  * first of them is finite. */
 static double reach(const brio_cocones *c, uint32_t p, const uint32_t tet[2]) {
     const brio_pole_vectors *v = c->dual;
-    const double *axis = v->vector + 3 * (size_t)p;
+    const double *axis = v->plane + 4 * (size_t)p;
     double end[2][3], way[3], back[3], middle[3], sine = sin(c->dual->theta);
     bool inside[2], ray = tet[1] >= v->num_finite;
     for (int i = 0; i < 2; i++) {
@@ -68,7 +68,7 @@ static double reach(const brio_cocones *c, uint32_t p, const uint32_t tet[2]) {
 /* --- neighbours --- */
 
 static double axis_cosine(const brio_cocones *c, uint32_t p, uint32_t q) {
-    const double *u = c->dual->vector + 3 * (size_t)p, *v = c->dual->vector + 3 * (size_t)q;
+    const double *u = c->dual->plane + 4 * (size_t)p, *v = c->dual->plane + 4 * (size_t)q;
     return fabs(brio_dot(u, v));
 }
 

@@ -1,7 +1,8 @@
 /* The co-cones: from points and options to a mesh.
  *
  * The samples are scaled by a power of two to coordinates of at most 1, so that nothing over- or underflows on the way;
- * their triangles are those of the whole set (cocone_surface.c) or matched together from pieces (super_cocone.c). */
+ * their triangles are those of the whole set (cocone_surface.c) or matched together from pieces, which are scaled one
+ * at a time (super_cocone.c). */
 #include "base/memory.h"
 #include "base/scale.h"
 #include "reconstruct/sampling_density.h"
@@ -14,16 +15,25 @@ brio_cocone_options brio_cocone_options_default(void) {
     return (brio_cocone_options){.seed = 1, .theta = 0.39269908169872414 /* pi / 8 */};
 }
 
-/* The points times 2^-exponent. */
-static brio_status scale_points(brio_context *ctx, const double *points, size_t num_points, double **scaled,
-                                int *exponent) {
-    brio_status status = BRIO_OK;
+/* The exponent of the least power of two above all coordinates. */
+static int exponent_of(const double *points, size_t num_points) {
     double most = 0;
-    BRIO_TRY(BRIO_ALLOC(ctx, *scaled, 3 * num_points));
+    int exponent = 0;
     for (size_t i = 0; i < 3 * num_points; i++) most = most < fabs(points[i]) ? fabs(points[i]) : most;
-    if (isfinite(most)) frexp(most, exponent);
-    brio_scale(ctx, points, 3 * num_points, -*exponent, *scaled);
+    if (isfinite(most)) frexp(most, &exponent);
+    return exponent;
+}
+
+/* The co-cone of the whole set, scaled by 2^-exponent. */
+static brio_status find_surface(brio_context *ctx, const double *points, size_t num_points, int exponent,
+                                const brio_cocone_options *options, brio_cocone_surface *surface) {
+    brio_status status = BRIO_OK;
+    double *scaled = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, scaled, 3 * num_points));
+    brio_scale(ctx, points, 3 * num_points, -exponent, scaled);
+    BRIO_TRY(brio_cocone_surface_find(ctx, scaled, num_points, options, surface));
 done:
+    brio_release(ctx, scaled);
     return status;
 }
 
@@ -86,15 +96,11 @@ brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_poin
     const brio_cocone_options *o = options ? options : &standard;
     brio_cocone_surface surface = {0};
     brio_mesh *mesh = NULL;
-    double *scaled = NULL;
-    int exponent = 0;
+    int exponent = exponent_of(points, num_points);
     *out = NULL;
     BRIO_TRY(check_options(ctx, o));
-    BRIO_TRY(scale_points(ctx, points, num_points, &scaled, &exponent));
-    BRIO_TRY(o->pieces > 1 ? brio_super_cocone(ctx, scaled, num_points, o, &surface)
-                           : brio_cocone_surface_find(ctx, scaled, num_points, o, &surface));
-    brio_release(ctx, scaled);
-    scaled = NULL;
+    BRIO_TRY(o->pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, o, &surface)
+                           : find_surface(ctx, points, num_points, exponent, o, &surface));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(fill_mesh(points, num_points, &surface, mesh));
     BRIO_TRY(count_unused(mesh, &surface.stats));
@@ -105,7 +111,6 @@ done:
     if (stats) *stats = surface.stats;
     ctx->progress_from = 0, ctx->progress_to = 1;
     brio_mesh_free(mesh);
-    brio_release(ctx, scaled);
     brio_cocone_surface_free(ctx, &surface);
     return status;
 }

@@ -36,18 +36,23 @@ static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_
     return true;
 }
 
-/* How many samples of a facet see the Voronoi vertex of its tetrahedron in the cone to their pole, and in the upper half
- * how many in the other one. */
-static inline uint32_t count_sides(const brio_pole_vectors *v, uint32_t facet) {
-    uint32_t sides = v->sides[brio_tet_of(facet)] & 0xff & ~(3u << 2 * brio_slot_of(facet));
-    uint32_t apart = (sides & 0x55) | (sides & 0xaa) << 15;
-    return apart * 0x55 >> 6 & 0x30003; /* the four bits of each half added up */
+/* For each pair of sides of a tetrahedron's samples, in byte i: how many samples of facet i see the Voronoi vertex in the
+ * cone to their pole and, in the upper half, how many in the other one. */
+typedef uint8_t side_counts[256][4];
+
+static void count_sides(side_counts counts) {
+    for (int sides = 0; sides < 256; sides++)
+        for (int i = 0; i < 4; i++) {
+            counts[sides][i] = 0;
+            for (int k = 0; k < 3; k++)
+                counts[sides][i] += (sides >> BRIO_FACET[i][k] & 1) + (sides >> BRIO_FACET[i][k] & 16);
+        }
 }
 
 /* Whether both ends of a facet's Voronoi edge lie in the same cone of one of its samples, whichever that is: four times
  * the same side for three samples. This tells of most facets far from the surface without a look at the mate. */
-static inline bool misses_surely(const brio_pole_vectors *v, uint32_t facet, uint32_t mate) {
-    return (count_sides(v, facet) + count_sides(v, mate)) & 0x40004;
+static inline bool misses_surely(uint8_t here, uint8_t there) {
+    return (here + there) & 0x44;
 }
 
 /* The same for all samples of a facet without infinite vertex. The mate has the same vertices the other way round, so
@@ -60,9 +65,8 @@ static inline bool meets_every(const brio_pole_vectors *v, uint32_t facet, uint3
     unsigned x = v->sides[brio_tet_of(facet)], y = v->sides[brio_tet_of(mate)];
     uint32_t first = here->vertex[a[0]];
     int k = (there->vertex[b[1]] == first) + 2 * (there->vertex[b[2]] == first);
-    unsigned common = (x >> 2 * a[0] & y >> 2 * b[k]) | (x >> 2 * a[1] & y >> 2 * b[ROUND[k + 2]]) |
-                      (x >> 2 * a[2] & y >> 2 * b[ROUND[k + 1]]);
-    return !(common & 3);
+    unsigned common = (x >> a[0] & y >> b[k]) | (x >> a[1] & y >> b[ROUND[k + 2]]) | (x >> a[2] & y >> b[ROUND[k + 1]]);
+    return !(common & 0x11);
 }
 
 static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
@@ -70,34 +74,50 @@ static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
     return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
 }
 
-/* Lists the facets of the tetrahedra [from, to) to look at closer: of a facet and its mate the lesser one, unless no
- * closer look is needed. Their mates are fetched meanwhile. */
-static size_t list_open_facets(const brio_cocones *c, size_t from, size_t to, uint32_t *open) {
-    const brio_pole_vectors *v = c->dual;
+/* Lists the facet in slot i of a tetrahedron, with its own counts, if it is to be looked at closer: of a facet and its mate
+ * the lesser one, unless no closer look is needed. */
+static inline size_t list_if_open(const brio_pole_vectors *v, const side_counts counts, uint8_t all, size_t tet, int i,
+                                  uint8_t here, uint32_t *open) {
+    uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = v->t.tet[tet].mate[i];
+    uint8_t there = counts[v->sides[brio_tet_of(mate)] & all][brio_slot_of(mate)];
+    *open = facet;
+    return (facet < mate) & !misses_surely(here, there);
+}
+
+/* Lists the facets of the tetrahedra [from, to) to look at closer. Their mates are fetched meanwhile. */
+static size_t list_open_facets(const brio_cocones *c, const side_counts counts, size_t from, size_t to,
+                               uint32_t *open) {
+    const brio_pole_vectors v = *c->dual;
+    uint8_t all = c->boundary ? 0 : 0xff; /* boundary samples do not count */
     size_t count = 0;
-    for (size_t tet = from; tet < to; tet++)
-        for (int i = tet < v->num_finite ? 0 : 3; i < 4; i++) { /* the others have the infinite vertex */
-            uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = *brio_mate(&v->t, facet);
-            open[count] = facet;
-            count += (facet < mate) & !(misses_surely(v, facet, mate) & !c->boundary);
-        }
-    for (size_t n = 0; n < count; n++) __builtin_prefetch(&v->t.tet[brio_tet_of(*brio_mate(&v->t, open[n]))]);
+    for (size_t tet = from; tet < to; tet++) {
+        const uint8_t *here = counts[v.sides[tet] & all];
+        for (int i = 0; i < 3 && tet < v.num_finite; i++) /* of the others these have the infinite vertex */
+            count += list_if_open(&v, counts, all, tet, i, here[i], open + count);
+        count += list_if_open(&v, counts, all, tet, 3, here[3], open + count);
+    }
+    for (size_t n = 0; n < count; n++) __builtin_prefetch(&v.t.tet[brio_tet_of(*brio_mate(&v.t, open[n]))]);
     return count;
 }
 
-static inline void mark(const brio_cocones *c, uint32_t facet) {
-    __atomic_fetch_or(&c->candidates[brio_tet_of(facet)], (uint8_t)(1 << brio_slot_of(facet)), __ATOMIC_RELAXED);
+/* Marks a facet; `alone`: no other thread does. */
+static inline void mark(const brio_cocones *c, uint32_t facet, bool alone) {
+    uint8_t *candidates = &c->candidates[brio_tet_of(facet)], bit = (uint8_t)(1 << brio_slot_of(facet));
+    if (alone)
+        *candidates |= bit;
+    else
+        __atomic_fetch_or(candidates, bit, __ATOMIC_RELAXED);
 }
 
 /* Returns the number of candidates among the facets of the tetrahedra [from, to) that are less than their mates. */
-static size_t select_from(const brio_cocones *c, size_t from, size_t to) {
+static size_t select_from(const brio_cocones *c, const side_counts counts, size_t from, size_t to, bool alone) {
     uint32_t open[4 * BLOCK];
-    size_t found = 0, count = list_open_facets(c, from, to, open);
+    size_t found = 0, count = list_open_facets(c, counts, from, to, open);
     for (size_t n = 0; n < count; n++) {
         uint32_t mate = *brio_mate(&c->dual->t, open[n]);
         if (!passes(c, open[n], mate)) continue;
-        mark(c, open[n]);
-        mark(c, mate);
+        mark(c, open[n], alone);
+        mark(c, mate, alone);
         found++;
     }
     return found;
@@ -105,9 +125,11 @@ static size_t select_from(const brio_cocones *c, size_t from, size_t to) {
 
 void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
     size_t found = 0, size = c->dual->t.count;
-    (void)ctx; /* without OpenMP */
+    side_counts counts;
+    bool alone = brio_context_threads(ctx) == 1;
+    count_sides(counts);
     BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
     for (size_t from = 0; from < size; from += BLOCK)
-        found += select_from(c, from, from + BLOCK < size ? from + BLOCK : size);
+        found += select_from(c, (const uint8_t(*)[4])counts, from, from + BLOCK < size ? from + BLOCK : size, alone);
     *count = found;
 }

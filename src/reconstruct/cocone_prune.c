@@ -127,10 +127,9 @@ static brio_status find_sharp(pruning *x) {
     brio_status status = BRIO_OK;
     BRIO_OMP(parallel for schedule(dynamic, 4096) num_threads(brio_context_threads(x->ctx)))
     for (size_t tet = 0; tet < x->t->count; tet++)
-        for (int i = 0; x->cocones->candidates[tet] && i < 4; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            if (!brio_is_candidate(x->cocones, facet) || *brio_mate(x->t, facet) < facet) continue;
-            if (is_surface(x, facet) || !has_sharp_edge(x, facet)) continue;
+        for (unsigned left = x->cocones->candidates[tet]; left; left &= left - 1) {
+            uint32_t facet = brio_facet_of((uint32_t)tet, __builtin_ctz(left));
+            if (*brio_mate(x->t, facet) < facet || is_surface(x, facet) || !has_sharp_edge(x, facet)) continue;
             BRIO_OMP(critical(brio_prune_stack)) {
                 brio_status own = push(x, facet);
                 if (own != BRIO_OK) status = own;

@@ -20,9 +20,10 @@ static const double SIGNIFICANT = 1e-9;
 typedef struct {
     const brio_tet_labels *labels;
     const brio_tetrahedra *t;
-    uint32_t *tet; /* the tetrahedra that may change */
+    uint32_t *tet; /* the tetrahedra that may change, ascending */
     size_t count;
-    double *gain; /* of each tetrahedron: the area that its change saves; 0 for those that may not change */
+    double *gain;   /* of each of these: the area that its change saves; 0 where it may not change */
+    size_t *change; /* those that change in this round */
 } flattening;
 
 static double area(const flattening *x, uint32_t facet) {
@@ -33,27 +34,48 @@ static double area(const flattening *x, uint32_t facet) {
     return brio_triangle_area(corner[0], corner[1], corner[2]);
 }
 
-/* The area that is saved when a tetrahedron changes sides; 0 unless one pair of candidates then gives way to another.
- */
-static double gain_of(const flattening *x, uint32_t tet) {
-    double saved = 0, all = 0;
+/* Whether one pair of candidates gives way to another when a tetrahedron changes sides. */
+static bool may_change(const flattening *x, uint32_t tet) {
     int leaving = 0;
     for (int i = 0; i < 4; i++) {
-        uint32_t facet = brio_facet_of(tet, i);
-        bool leaves = brio_is_boundary(x->labels, facet);
-        if (!leaves && !brio_is_candidate(x->labels->cocones, facet)) return 0;
-        double size = area(x, facet);
-        saved += leaves ? size : -size;
-        all += size;
+        bool leaves = brio_is_boundary(x->labels, brio_facet_of(tet, i));
+        if (!leaves && !brio_is_candidate(x->labels->cocones, brio_facet_of(tet, i))) return false;
         leaving += leaves;
     }
-    return leaving == 2 && saved > SIGNIFICANT * all ? saved : 0;
+    return leaving == 2;
 }
 
-static bool is_best(const flattening *x, uint32_t tet) {
-    bool best = x->gain[tet] > 0;
-    for (int i = 0; i < 4; i++)
-        best = best && x->gain[tet] > (1 + SIGNIFICANT) * x->gain[brio_tet_of(x->t->tet[tet].mate[i])];
+/* The area that is saved when a tetrahedron changes sides; 0 for one that may not. */
+static double gain_of(const flattening *x, uint32_t tet) {
+    double saved = 0, all = 0;
+    if (!may_change(x, tet)) return 0;
+    for (int i = 0; i < 4; i++) {
+        double size = area(x, brio_facet_of(tet, i));
+        saved += brio_is_boundary(x->labels, brio_facet_of(tet, i)) ? size : -size;
+        all += size;
+    }
+    return saved > SIGNIFICANT * all ? saved : 0;
+}
+
+/* The place of a tetrahedron among those that may change; x->count when it is none of them. */
+static size_t place_of(const flattening *x, uint32_t tet) {
+    size_t low = 0, high = x->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (x->tet[middle] < tet)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < x->count && x->tet[low] == tet ? low : x->count;
+}
+
+static bool is_best(const flattening *x, size_t n) {
+    bool best = x->gain[n] > 0;
+    for (int i = 0; i < 4 && best; i++) {
+        size_t other = place_of(x, brio_tet_of(x->t->tet[x->tet[n]].mate[i]));
+        best = other == x->count || x->gain[n] > (1 + SIGNIFICANT) * x->gain[other];
+    }
     return best;
 }
 
@@ -69,16 +91,26 @@ done:
     return status;
 }
 
+/* Finds the gains of a tetrahedron and its neighbours anew. */
+static void update_gains(const flattening *x, size_t n) {
+    x->gain[n] = gain_of(x, x->tet[n]);
+    for (int i = 0; i < 4; i++) {
+        uint32_t tet = brio_tet_of(x->t->tet[x->tet[n]].mate[i]);
+        size_t other = place_of(x, tet);
+        if (other < x->count) x->gain[other] = gain_of(x, tet);
+    }
+}
+
 /* One round; the number of changes. */
 static size_t change_best(flattening *x) {
     size_t changes = 0;
-    for (size_t n = 0; n < x->count; n++) x->gain[x->tet[n]] = gain_of(x, x->tet[n]);
-    for (size_t n = 0; n < x->count; n++) {
-        uint8_t *label = &x->labels->label[x->tet[n]];
-        if (!is_best(x, x->tet[n])) continue;
+    for (size_t n = 0; n < x->count; n++)
+        if (is_best(x, n)) x->change[changes++] = n;
+    for (size_t i = 0; i < changes; i++) {
+        uint8_t *label = &x->labels->label[x->tet[x->change[i]]];
         *label = *label == BRIO_LABEL_OUTER ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-        changes++;
     }
+    for (size_t i = 0; i < changes; i++) update_gains(x, x->change[i]);
     return changes;
 }
 
@@ -86,11 +118,14 @@ brio_status brio_flatten(brio_context *ctx, const brio_tet_labels *l) {
     brio_status status = BRIO_OK;
     flattening x = {.labels = l, .t = &l->cocones->dual->t};
     BRIO_TRY(collect(ctx, &x));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.gain, x.t->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, x.gain, x.count));
+    BRIO_TRY(BRIO_ALLOC(ctx, x.change, x.count));
+    for (size_t n = 0; n < x.count; n++) x.gain[n] = gain_of(&x, x.tet[n]);
     for (int round = 0; round < ROUNDS; round++)
         if (change_best(&x) == 0) break;
 done:
     brio_release(ctx, x.tet);
     brio_release(ctx, x.gain);
+    brio_release(ctx, x.change);
     return status;
 }

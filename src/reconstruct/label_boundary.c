@@ -15,13 +15,15 @@ typedef struct {
 /* Lists the boundary facets of the tetrahedra [from, to). */
 static brio_status list_part(brio_context *ctx, const brio_tet_labels *l, size_t from, size_t to, part *p) {
     brio_status status = BRIO_OK;
+    const brio_tetrahedron *t = l->cocones->dual->t.tet;
+    const uint8_t *label = l->label;
     for (size_t tet = from; tet < to; tet++) {
-        if (l->label[tet] != BRIO_LABEL_OUTER) continue;
+        if (label[tet] != BRIO_LABEL_OUTER) continue;
+        unsigned inner = 0; /* the slots with an inner neighbour */
+        for (int i = 0; i < 4; i++) inner |= (unsigned)(label[brio_tet_of(t[tet].mate[i])] != BRIO_LABEL_OUTER) << i;
+        if (inner == 0) continue;
         BRIO_TRY(BRIO_RESERVE(ctx, p->facets, p->capacity, p->count + 4));
-        for (int i = 0; i < 4; i++) {
-            p->facets[p->count] = brio_facet_of((uint32_t)tet, i);
-            p->count += brio_is_boundary(l, p->facets[p->count]);
-        }
+        for (; inner; inner &= inner - 1) p->facets[p->count++] = brio_facet_of((uint32_t)tet, __builtin_ctz(inner));
     }
 done:
     return status;

@@ -1,6 +1,7 @@
 /* A surface out of the boundary between outer and inner tetrahedra.
  *
- * The boundary is a closed manifold once brio_make_manifold has seen to it, and every part of a closed manifold is a
+ * The candidates in it, and what fills the gaps between them (surface_gaps.c), are the faces. The boundary is a closed
+ * manifold once brio_make_manifold has seen to it, and every part of a closed manifold is a
  * manifold with boundary but for the samples where it has several fans. There all fans but the largest are dropped;
  * dropping can only shorten the fans of other samples or cut them in two, so these are looked at again until nothing
  * changes.
@@ -11,210 +12,31 @@
  * turn the whole surface inside out. */
 #include "reconstruct/manifold_extraction.h"
 #include "base/memory.h"
-#include "reconstruct/label_boundary.h"
-#include "reconstruct/triangle.h"
-
-/* A facet of the boundary that is no candidate fills a small hole when its circle is at most this many times as large
- * as the largest one of a candidate at its corners. From 1.5 on the closed models of the tests come out closed. */
-static const double FILLING = 1.5;
-
-/* Among boundary samples, a triangle over SUSPECT times as long as the shortest ones around may span an opening of the
- * surface. Such triangles together are one when one of them is over OPENING times as long and there would be room for
- * MISSING samples; at sharp edges, where samples are too few as well, there is not (club: 16 samples at the opening, 4
- * at the largest sharp edge). */
-static const double SUSPECT = 1.5, OPENING = 4, MISSING = 8;
+#include "reconstruct/surface_gaps.h"
 
 typedef struct {
     brio_context *ctx;
-    const brio_tet_labels *labels;
-    const brio_tetrahedra *t;
-    uint32_t *boundary; /* the facets of the boundary, seen from outside */
-    size_t num_boundary;
-    uint8_t *face;   /* of each outer tetrahedron: bit i tells whether facet i is a face */
-    size_t num_gaps; /* facets of the boundary that are no candidates */
-    double
-        *size_at; /* of each sample at a gap: squared radius of the largest circle round a candidate there; else -1 */
-    double *shortest;   /* of each sample at a gap: squared length of the shortest candidate there */
-    uint32_t *facet_of; /* of each sample: a boundary facet seen from outside; BRIO_INFINITE for none */
-    uint32_t *gap;      /* facets of the gaps that stay open */
-    size_t gap_size;
-    uint32_t *queue; /* samples to look at */
+    brio_face_choice choice;
+    uint32_t *facet_of; /* of each sample in the queue: a boundary facet seen from outside */
+    uint32_t *queue;    /* samples to look at */
     size_t size, capacity;
 } extraction;
 
-/* --- which facets are faces --- */
-
-static bool is_face(const extraction *x, uint32_t facet) {
-    return x->face[brio_tet_of(facet)] >> brio_slot_of(facet) & 1;
+static void choose_candidates(const brio_face_choice *c) {
+    for (size_t n = 0; n < c->num_facets; n++)
+        if (brio_is_candidate(c->labels->cocones, c->facets[n])) brio_set_face(c, c->facets[n]);
 }
 
-static void set_face(extraction *x, uint32_t facet) {
-    x->face[brio_tet_of(facet)] |= (uint8_t)(1 << brio_slot_of(facet));
-}
-
-static void clear_face(extraction *x, uint32_t facet) {
-    x->face[brio_tet_of(facet)] &= (uint8_t) ~(1 << brio_slot_of(facet));
-}
-
-static uint32_t corner_of(const extraction *x, uint32_t facet, int k) {
-    return x->t->tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
-}
-
-static double circle_square(const extraction *x, uint32_t facet) {
-    const double *points = x->labels->cocones->dual->points;
-    return brio_circle_square(points + 3 * (size_t)corner_of(x, facet, 0), points + 3 * (size_t)corner_of(x, facet, 1),
-                              points + 3 * (size_t)corner_of(x, facet, 2));
-}
-
-/* Square of the longest edge. */
-static double length_square(const extraction *x, uint32_t facet) {
-    const double *points = x->labels->cocones->dual->points;
-    double most = 0;
+/* The samples of a facet of the boundary are to be looked at. */
+static brio_status push_corners(extraction *x, uint32_t facet) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(x->ctx, x->queue, x->capacity, x->size + 3));
     for (int k = 0; k < 3; k++) {
-        const double *p = points + 3 * (size_t)corner_of(x, facet, k);
-        const double *q = points + 3 * (size_t)corner_of(x, facet, (k + 1) % 3);
-        double d = (p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]);
-        most = d > most ? d : most;
+        uint32_t p = brio_corner_of(&x->choice, facet, k);
+        if (p == BRIO_INFINITE) continue;
+        x->facet_of[p] = facet;
+        x->queue[x->size++] = p;
     }
-    return most;
-}
-
-static bool is_finite(const extraction *x, uint32_t facet) {
-    return brio_slot_of(facet) == 3 || x->t->tet[brio_tet_of(facet)].vertex[3] != BRIO_INFINITE;
-}
-
-static void choose_candidates(extraction *x) {
-    for (size_t n = 0; n < x->num_boundary; n++) {
-        if (brio_is_candidate(x->labels->cocones, x->boundary[n]))
-            set_face(x, x->boundary[n]);
-        else
-            x->num_gaps++;
-    }
-}
-
-/* Finds how large the candidates at each sample of a gap are, and a boundary facet of each sample. */
-static brio_status measure_gaps(extraction *x) {
-    brio_status status = BRIO_OK;
-    const uint8_t *boundary = x->labels->cocones->boundary;
-    size_t num_points = x->labels->cocones->dual->num_points;
-    BRIO_TRY(BRIO_ALLOC(x->ctx, x->size_at, num_points));
-    BRIO_TRY(BRIO_ALLOC(x->ctx, x->shortest, num_points));
-    BRIO_TRY(BRIO_ALLOC(x->ctx, x->facet_of, num_points));
-    for (size_t p = 0; p < num_points; p++)
-        x->size_at[p] = -1, x->shortest[p] = INFINITY, x->facet_of[p] = BRIO_INFINITE;
-    for (size_t n = 0; n < x->num_boundary; n++)
-        for (int k = 0; k < 3; k++) {
-            uint32_t p = corner_of(x, x->boundary[n], k);
-            if (p == BRIO_INFINITE) continue;
-            x->facet_of[p] = x->boundary[n];
-            if (!is_face(x, x->boundary[n]) || (boundary && boundary[p])) x->size_at[p] = 0;
-        }
-    for (size_t n = 0; n < x->num_boundary; n++) {
-        uint32_t facet = x->boundary[n];
-        double size = -1, length = 0;
-        for (int k = 0; k < 3 && is_face(x, facet); k++) {
-            double *most = x->size_at + corner_of(x, facet, k), *least = x->shortest + corner_of(x, facet, k);
-            if (*most < 0) continue;
-            if (size < 0) size = circle_square(x, facet), length = length_square(x, facet);
-            *most = *most < size ? size : *most;
-            *least = *least > length ? length : *least;
-        }
-    }
-done:
-    return status;
-}
-
-/* Whether a facet of the boundary that is no candidate is as small as the candidates around it. */
-static bool is_small(const extraction *x, uint32_t facet) {
-    double size = 0;
-    for (int k = 0; k < 3; k++) size = fmax(size, x->size_at[corner_of(x, facet, k)]);
-    return circle_square(x, facet) <= FILLING * FILLING * size;
-}
-
-/* Squared length of the longest of the shortest candidates of a facet's samples: how far they are from each other. */
-static double spacing_square(const extraction *x, uint32_t facet) {
-    double most = 0;
-    for (int k = 0; k < 3; k++) {
-        uint32_t p = corner_of(x, facet, k);
-        if (p != BRIO_INFINITE && x->shortest[p] > most && x->shortest[p] < INFINITY) most = x->shortest[p];
-    }
-    return most;
-}
-
-/* Whether a facet of the boundary is over so many times as long as the spacing of its samples. */
-static bool is_longer(const extraction *x, uint32_t facet, double times) {
-    return length_square(x, facet) > times * times * spacing_square(x, facet);
-}
-
-static double area(const extraction *x, uint32_t facet) {
-    const double *points = x->labels->cocones->dual->points;
-    return brio_triangle_area(points + 3 * (size_t)corner_of(x, facet, 0), points + 3 * (size_t)corner_of(x, facet, 1),
-                              points + 3 * (size_t)corner_of(x, facet, 2));
-}
-
-/* Takes the candidates among boundary samples that are longer than those around them, and may span an opening, for gaps
- * until it is known how long the longest of them is. */
-static void suspect_long_candidates(extraction *x) {
-    for (size_t n = 0; n < x->num_boundary; n++) {
-        uint32_t facet = x->boundary[n];
-        if (is_face(x, facet) && brio_is_among_boundary(x->labels->cocones, facet) && is_longer(x, facet, SUSPECT)) {
-            clear_face(x, facet);
-            x->num_gaps++;
-        }
-    }
-}
-
-static brio_status push(extraction *x, uint32_t v) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(x->ctx, x->queue, x->capacity, x->size + 1));
-    x->queue[x->size++] = v;
-done:
-    return status;
-}
-
-/* Adds to x->gap all facets of the gap among boundary samples that a facet belongs to, across the edges of the boundary,
- * as faces for now. Whether it is too large for a place where samples are merely too few. */
-static bool collect_gap(extraction *x, uint32_t first) {
-    bool is_long = false;
-    double missing = 0; /* samples of this spacing that the gap has room for */
-    size_t next = x->gap_size;
-    x->gap[x->gap_size++] = first;
-    set_face(x, first);
-    for (; next < x->gap_size; next++) {
-        uint32_t facet = x->gap[next];
-        bool finite = is_finite(x, facet);
-        missing += finite ? area(x, facet) / spacing_square(x, facet) : INFINITY;
-        is_long = is_long || !finite || is_longer(x, facet, OPENING);
-        for (int k = 0; k < 3; k++) {
-            uint32_t a = corner_of(x, facet, k), b = corner_of(x, facet, (k + 1) % 3);
-            uint32_t other = brio_next_round_edge(x->labels, facet, a, b);
-            if (is_face(x, other) || !brio_is_among_boundary(x->labels->cocones, other)) continue;
-            set_face(x, other);
-            x->gap[x->gap_size++] = other;
-        }
-    }
-    return is_long && missing > MISSING;
-}
-
-/* Fills the gaps that are no openings, or all that are finite; the samples of the others are to be looked at. */
-static brio_status choose_fillings(extraction *x, bool all) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(x->ctx, x->gap, x->num_gaps));
-    for (size_t n = 0; n < x->num_boundary; n++) {
-        uint32_t facet = x->boundary[n];
-        size_t begin = x->gap_size;
-        if (is_face(x, facet)) continue;
-        if (is_finite(x, facet) && (all || (!brio_is_among_boundary(x->labels->cocones, facet) && is_small(x, facet))))
-            set_face(x, facet);
-        else if (!brio_is_among_boundary(x->labels->cocones, facet))
-            x->gap[x->gap_size++] = facet;
-        else if (!collect_gap(x, facet))
-            x->gap_size = begin;
-    }
-    for (size_t n = 0; n < x->gap_size; n++) clear_face(x, x->gap[n]);
-    for (size_t n = 0; n < x->gap_size; n++)
-        for (int k = 0; k < 3; k++)
-            if (corner_of(x, x->gap[n], k) != BRIO_INFINITE) BRIO_TRY(push(x, corner_of(x, x->gap[n], k)));
 done:
     return status;
 }
@@ -229,25 +51,26 @@ typedef struct {
 
 /* Whether a fan is to be kept rather than another: the longer one, ties by the position where it begins. */
 static bool is_better(const extraction *x, uint32_t v, fan a, fan b) {
-    const double *points = x->labels->cocones->dual->points;
+    const double *points = x->choice.labels->cocones->dual->points;
     if (a.length != b.length) return a.length > b.length;
-    return brio_lexicographic(points + 3 * (size_t)brio_corner_after(x->t, a.first, v),
-                              points + 3 * (size_t)brio_corner_after(x->t, b.first, v)) > 0;
+    return brio_lexicographic(points + 3 * (size_t)brio_corner_after(&x->choice.labels->cocones->dual->t, a.first, v),
+                              points + 3 * (size_t)brio_corner_after(&x->choice.labels->cocones->dual->t, b.first, v)) >
+           0;
 }
 
 /* Counts the fans of faces at v that end somewhere and finds the best of them. */
 static size_t count_fans(const extraction *x, uint32_t v, fan *best) {
     uint32_t start = x->facet_of[v];
     size_t fans = 0;
-    while (is_face(x, start)) { /* to a gap, so that no fan is met in two parts */
-        start = brio_next_round_vertex(x->labels, start, v);
+    while (brio_is_face(&x->choice, start)) { /* to a gap, so that no fan is met in two parts */
+        start = brio_next_round_vertex(x->choice.labels, start, v);
         if (start == x->facet_of[v]) return 0;
     }
     fan now = {0};
     uint32_t facet = start;
     do {
-        facet = brio_next_round_vertex(x->labels, facet, v);
-        if (is_face(x, facet)) {
+        facet = brio_next_round_vertex(x->choice.labels, facet, v);
+        if (brio_is_face(&x->choice, facet)) {
             if (now.length++ == 0) now.first = facet;
         } else if (now.length > 0) {
             if (fans++ == 0 || is_better(x, v, now, *best)) *best = now;
@@ -262,12 +85,11 @@ static brio_status keep_fan(extraction *x, uint32_t v, fan kept) {
     brio_status status = BRIO_OK;
     uint32_t facet = kept.first;
     for (size_t n = 0; n == 0 || facet != kept.first; n++) {
-        if (n >= kept.length && is_face(x, facet)) {
-            const uint32_t *corner = x->t->tet[brio_tet_of(facet)].vertex;
-            clear_face(x, facet);
-            for (int k = 0; k < 3; k++) BRIO_TRY(push(x, corner[BRIO_FACET[brio_slot_of(facet)][k]]));
+        if (n >= kept.length && brio_is_face(&x->choice, facet)) {
+            brio_clear_face(&x->choice, facet);
+            BRIO_TRY(push_corners(x, facet));
         }
-        facet = brio_next_round_vertex(x->labels, facet, v);
+        facet = brio_next_round_vertex(x->choice.labels, facet, v);
     }
 done:
     return status;
@@ -279,7 +101,7 @@ static brio_status drop_small_fans(extraction *x) {
     fan best = {0};
     for (size_t begin = 0, end; begin < x->size; begin = end) {
         end = x->size;
-        brio_sort_by_position(x->labels->cocones->dual->points, x->queue + begin, end - begin);
+        brio_sort_by_position(x->choice.labels->cocones->dual->points, x->queue + begin, end - begin);
         for (size_t n = begin; n < end; n++) {
             uint32_t v = x->queue[n];
             if (count_fans(x, v, &best) > 1) BRIO_TRY(keep_fan(x, v, best));
@@ -289,40 +111,38 @@ done:
     return status;
 }
 
-static brio_status write_faces(extraction *x, uint32_t **faces, size_t *num_faces) {
+static brio_status write_faces(const extraction *x, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
+    const brio_face_choice *c = &x->choice;
     size_t count = 0;
-    for (size_t n = 0; n < x->num_boundary; n++)
-        if (is_face(x, x->boundary[n])) x->boundary[count++] = x->boundary[n];
+    for (size_t n = 0; n < c->num_facets; n++) count += brio_is_face(c, c->facets[n]);
     BRIO_TRY(BRIO_ALLOC(x->ctx, *faces, 3 * count));
     *num_faces = count;
-    for (size_t n = 0; n < count; n++)
-        for (int k = 0; k < 3; k++) (*faces)[3 * n + (size_t)k] = corner_of(x, x->boundary[n], k);
+    count = 0;
+    for (size_t n = 0; n < c->num_facets; n++)
+        for (int k = 0; k < 3 && brio_is_face(c, c->facets[n]); k++)
+            (*faces)[count++] = brio_corner_of(c, c->facets[n], k);
 done:
     return status;
 }
 
-brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only, uint32_t **faces,
-                               size_t *num_faces) {
+brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only,
+                               const uint32_t *facets, size_t num_facets, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
-    extraction x = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
-    BRIO_TRY(brio_boundary_facets(ctx, l, &x.boundary, &x.num_boundary));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.face, x.t->count));
-    choose_candidates(&x);
-    if (x.num_gaps > 0 || l->cocones->boundary) {
-        BRIO_TRY(measure_gaps(&x));
-        suspect_long_candidates(&x);
-        BRIO_TRY(choose_fillings(&x, !candidates_only));
-        BRIO_TRY(drop_small_fans(&x));
-    }
+    extraction x = {.ctx = ctx, .choice = {.labels = l, .facets = facets, .num_facets = num_facets}};
+    uint32_t *open = NULL;
+    size_t num_open;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.choice.face, l->cocones->dual->t.count));
+    BRIO_TRY(BRIO_ALLOC(ctx, x.facet_of, l->cocones->dual->num_points));
+    choose_candidates(&x.choice);
+    BRIO_TRY(brio_fill_gaps(ctx, &x.choice, !candidates_only, &open, &num_open));
+    for (size_t n = 0; n < num_open; n++) BRIO_TRY(push_corners(&x, open[n]));
+    BRIO_TRY(drop_small_fans(&x));
     BRIO_TRY(write_faces(&x, faces, num_faces));
 done:
-    brio_release(ctx, x.boundary);
-    brio_release(ctx, x.face);
+    brio_release(ctx, x.choice.face);
     brio_release(ctx, x.facet_of);
-    brio_release(ctx, x.size_at);
-    brio_release(ctx, x.shortest);
-    brio_release(ctx, x.gap);
     brio_release(ctx, x.queue);
+    brio_release(ctx, open);
     return status;
 }

@@ -118,13 +118,12 @@ static void deal_corners(const repair *r, const uint32_t *facets, size_t count, 
 }
 
 /* Fills the queue with the samples where the boundary is not one fan. */
-static brio_status enqueue_singular(repair *r) {
+static brio_status enqueue_singular(repair *r, const uint32_t *facets, size_t count) {
     brio_status status = BRIO_OK;
-    size_t n = r->labels->cocones->dual->num_points, count;
-    uint32_t *facets = NULL, *end = NULL;
+    size_t n = r->labels->cocones->dual->num_points;
+    uint32_t *end = NULL;
     fan_corner *corner = NULL;
     uint8_t *singular = NULL;
-    BRIO_TRY(brio_boundary_facets(r->ctx, r->labels, &facets, &count));
     BRIO_REQUIRE(r->ctx, 3 * count < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu triangles, 2^32 / 3 is the limit", count);
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, end, n));
     BRIO_TRY(BRIO_ALLOC(r->ctx, corner, 3 * count));
@@ -138,7 +137,6 @@ static brio_status enqueue_singular(repair *r) {
     for (size_t v = 0; v < n; v++)
         if (singular[v]) BRIO_TRY(enqueue(r, (uint32_t)v));
 done:
-    brio_release(r->ctx, facets);
     brio_release(r->ctx, end);
     brio_release(r->ctx, corner);
     brio_release(r->ctx, singular);
@@ -159,7 +157,7 @@ static brio_status collect_piece(repair *r, uint32_t v, uint32_t first) {
     while (size > 0) {
         uint32_t tet = r->stack[--size];
         p.fixed |= r->fixed[tet];
-        const double *centre = r->labels->cocones->dual->centre + 3 * (size_t)tet;
+        const double *centre = r->labels->cocones->dual->centre + 4 * (size_t)tet;
         if (!p.mark || brio_lexicographic(centre, p.mark) > 0) p.mark = centre;
         p.weight += 1 + (uint64_t)abs(brio_tet_vote(r->labels, tet));
         for (int i = 0; i < 4; i++) {
@@ -267,15 +265,21 @@ done:
     return status;
 }
 
-brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, size_t *changed) {
+brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, uint32_t **facets, size_t *num_facets,
+                               size_t *changed) {
     brio_status status = BRIO_OK;
     repair r = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
+    BRIO_TRY(brio_boundary_facets(ctx, l, facets, num_facets));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, l->cocones->dual->num_points));
-    BRIO_TRY(enqueue_singular(&r));
+    BRIO_TRY(enqueue_singular(&r, *facets, *num_facets));
     BRIO_TRY(brio_progress(ctx, "manifold", 0.5));
     if (r.size > 0) BRIO_TRY(prepare(&r));
     BRIO_TRY(mend_stars(&r));
     *changed = r.changed;
+    if (r.changed > 0) {
+        brio_release(ctx, *facets);
+        BRIO_TRY(brio_boundary_facets(ctx, l, facets, num_facets));
+    }
 done:
     brio_release(ctx, r.tet_of_vertex);
     brio_release(ctx, r.visits);

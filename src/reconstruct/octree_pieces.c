@@ -80,8 +80,15 @@ done:
 
 /* --- boxes --- */
 
+/* Diagonal of a box; infinite where doubles overflow, and nowhere before. */
+static double diagonal_of(const double *low, const double *high) {
+    double half[3], most = 0, square = 0;
+    for (int k = 0; k < 3; k++) half[k] = 0.5 * high[k] - 0.5 * low[k], most = fmax(most, half[k]);
+    for (int k = 0; k < 3 && most > 0; k++) square += (half[k] / most) * (half[k] / most);
+    return 2 * (most * sqrt(square));
+}
+
 static void find_box(const brio_pieces *p, brio_piece *piece) {
-    double square = 0;
     for (int k = 0; k < 3; k++) piece->low[k] = INFINITY, piece->high[k] = -INFINITY;
     for (size_t n = piece->begin; n < piece->end; n++)
         for (int k = 0; k < 3; k++) {
@@ -89,8 +96,7 @@ static void find_box(const brio_pieces *p, brio_piece *piece) {
             piece->low[k] = x < piece->low[k] ? x : piece->low[k];
             piece->high[k] = x > piece->high[k] ? x : piece->high[k];
         }
-    for (int k = 0; k < 3; k++) square += (piece->high[k] - piece->low[k]) * (piece->high[k] - piece->low[k]);
-    piece->margin = MARGIN * sqrt(square / (double)(piece->end - piece->begin));
+    piece->margin = MARGIN / sqrt((double)(piece->end - piece->begin)) * diagonal_of(piece->low, piece->high);
 }
 
 /* Largest difference in a coordinate between two boxes, 0 when they overlap. */

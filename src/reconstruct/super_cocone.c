@@ -9,6 +9,7 @@
  * too. */
 #include "reconstruct/super_cocone.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "reconstruct/octree_pieces.h"
 #include "reconstruct/seams.h"
 #include <math.h>
@@ -18,6 +19,7 @@ typedef struct {
     brio_context *ctx;
     const double *points;
     size_t num_points;
+    int exponent; /* pieces are scaled by 2^-exponent */
     const brio_cocone_options *options;
     brio_pieces pieces;
     brio_triangles faces, seam;
@@ -77,6 +79,7 @@ static brio_status find_piece(assembly *a, uint32_t piece) {
     BRIO_TRY(brio_piece_samples(ctx, &a->pieces, piece, &samples, &count));
     BRIO_TRY(BRIO_ALLOC(ctx, points, 3 * count));
     for (size_t n = 0; n < count; n++) memcpy(points + 3 * n, a->points + 3 * (size_t)samples[n], 3 * sizeof *points);
+    brio_scale(ctx, points, 3 * count, -a->exponent, points);
     status = brio_cocone_surface_find(ctx, points, count, a->options, &s);
     if (status == BRIO_ERR_NO_ANSWER) status = BRIO_OK;
     if (status != BRIO_OK) goto done;
@@ -118,10 +121,11 @@ done:
     return status;
 }
 
-brio_status brio_super_cocone(brio_context *ctx, const double *points, size_t num_points,
+brio_status brio_super_cocone(brio_context *ctx, const double *points, size_t num_points, int exponent,
                               const brio_cocone_options *options, brio_cocone_surface *out) {
     brio_status status = BRIO_OK;
-    assembly a = {.ctx = ctx, .points = points, .num_points = num_points, .options = options, .out = out};
+    assembly a = {
+        .ctx = ctx, .points = points, .num_points = num_points, .exponent = exponent, .options = options, .out = out};
     *out = (brio_cocone_surface){0};
     for (size_t i = 0; i < 3 * num_points; i++)
         BRIO_REQUIRE(ctx, isfinite(points[i]), BRIO_ERR_NOT_FINITE, "point %zu: %c is %s", i / 3, "xyz"[i % 3],

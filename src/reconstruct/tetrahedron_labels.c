@@ -15,27 +15,57 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 
-int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
-    const brio_tetrahedron *t = l->cocones->dual->t.tet;
-    int vote = 0;
-    for (int i = 0; i < 4; i++) {
-        int side = brio_side_of(l->cocones->dual, tet, i); /* of the infinite vertex: BRIO_SIDE_COCONE */
-        if (side == BRIO_SIDE_COCONE) continue;
-        vote += (side == BRIO_SIDE_POLE) != l->turned[t[tet].vertex[i]] ? 1 : -1;
-    }
-    return vote;
+/* The number of bits of four. */
+static inline int count_bits(unsigned bits) {
+    return (int)(0x4332322132212110u >> 4 * bits & 7);
 }
 
-/* Returns the number of undecided tetrahedra. */
-static size_t label_by_votes(const brio_context *ctx, brio_tet_labels *l) {
-    size_t undecided = 0, num_finite = l->cocones->dual->num_finite;
-    (void)ctx; /* without OpenMP */
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : undecided))
-    for (size_t tet = 0; tet < l->cocones->dual->t.count; tet++) {
-        int vote = l->watertight && tet >= num_finite ? 1 : brio_tet_vote(l, tet);
-        l->label[tet] = vote > 0 ? BRIO_LABEL_OUTER : vote < 0 ? BRIO_LABEL_INNER : BRIO_LABEL_NONE;
+/* The votes of the first `count` slots: those in whose cone to the pole the centre lies are for outer, those that see it
+ * in the other one for inner; where the axis is turned, the other way round. */
+static inline int vote_of(const brio_pole_vectors *v, const uint8_t *turned, size_t tet, int count) {
+    const uint32_t *vertex = v->t.tet[tet].vertex;
+    unsigned sides = v->sides[tet], turn = 0;
+    for (int i = 0; i < count; i++) turn |= (unsigned)turned[vertex[i]] << i;
+    unsigned change = ((sides >> 4 ^ sides) & turn) * 0x11;
+    sides ^= change;
+    return count_bits(sides & 15) - count_bits(sides >> 4 & 15);
+}
+
+int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
+    const brio_pole_vectors *v = l->cocones->dual;
+    return vote_of(v, l->turned, tet, tet < v->num_finite ? 4 : 3);
+}
+
+static inline uint8_t label_of(int vote) {
+    return vote > 0 ? BRIO_LABEL_OUTER : vote < 0 ? BRIO_LABEL_INNER : BRIO_LABEL_NONE;
+}
+
+/* Labels the tetrahedra [from, to); returns the number of undecided ones. */
+static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
+    const brio_pole_vectors v = *l->cocones->dual;
+    uint8_t *label = l->label;
+    const uint8_t *turned = l->turned;
+    size_t undecided = 0;
+    for (size_t tet = from; tet < to && tet < v.num_finite; tet++) {
+        int vote = vote_of(&v, turned, tet, 4);
+        label[tet] = label_of(vote);
         undecided += vote == 0;
     }
+    for (size_t tet = from < v.num_finite ? v.num_finite : from; tet < to; tet++) {
+        int vote = l->watertight ? 1 : vote_of(&v, turned, tet, 3);
+        label[tet] = label_of(vote);
+        undecided += vote == 0;
+    }
+    return undecided;
+}
+
+/* The same for all. */
+static size_t label_all_by_votes(const brio_context *ctx, brio_tet_labels *l) {
+    size_t undecided = 0, size = l->cocones->dual->t.count;
+    (void)ctx; /* without OpenMP */
+    BRIO_OMP(parallel num_threads(brio_context_threads(ctx)) reduction(+ : undecided))
+    undecided += label_by_votes(l, brio_part(size, brio_thread(), brio_team_size()),
+                                brio_part(size, brio_thread() + 1, brio_team_size()));
     return undecided;
 }
 
@@ -43,7 +73,7 @@ brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *l) {
     brio_status status = BRIO_OK;
     size_t count = l->cocones->dual->t.count;
     BRIO_TRY(BRIO_ALLOC(ctx, l->label, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, l->undecided, label_by_votes(ctx, l)));
+    BRIO_TRY(BRIO_ALLOC(ctx, l->undecided, label_all_by_votes(ctx, l)));
     for (size_t tet = 0; tet < count; tet++)
         if (l->label[tet] == BRIO_LABEL_NONE) l->undecided[l->num_undecided++] = (uint32_t)tet;
 done:

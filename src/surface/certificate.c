@@ -25,7 +25,7 @@ typedef struct {
     int threads;
     size_t corners;
     uint32_t *ring;    /* #corners: edge rings */
-    uint32_t *face_of; /* #corners */
+    uint32_t *face_of; /* #corners; NULL where all faces are triangles, one after the other */
     uint32_t *fan;     /* #corners: union-find of the corners */
     uint32_t *patch;   /* #F: union-find of the faces */
     uint8_t *vertex;   /* #V: bits of vertex_state */
@@ -39,9 +39,13 @@ typedef struct {
 
 /* --- connectivity --- */
 
+static inline uint32_t face_at(const topology *t, uint32_t h) {
+    return t->face_of ? t->face_of[h] : h / 3;
+}
+
 static uint32_t next_corner(const topology *t, uint32_t h) {
     const uint64_t *offsets = t->mesh->face_offsets;
-    uint32_t f = t->face_of[h];
+    uint32_t f = face_at(t, h);
     return h + 1 < offsets[f + 1] ? h + 1 : (uint32_t)offsets[f];
 }
 
@@ -53,6 +57,12 @@ static void topology_free(brio_context *ctx, topology *t) {
     brio_release(ctx, t->vertex);
 }
 
+static bool is_of_triangles(const brio_mesh *mesh) {
+    bool all = true;
+    for (size_t f = 0; f < mesh->num_faces && all; f++) all = mesh->face_offsets[f + 1] == 3 * (f + 1);
+    return all;
+}
+
 /* On failure the caller frees what there is. */
 static brio_status topology_new(brio_context *ctx, const brio_mesh *mesh, topology *t) {
     brio_status status = BRIO_OK;
@@ -60,7 +70,7 @@ static brio_status topology_new(brio_context *ctx, const brio_mesh *mesh, topolo
                     .threads = brio_context_threads(ctx),
                     .corners = mesh->num_faces ? mesh->face_offsets[mesh->num_faces] : 0};
     BRIO_TRY(brio_edge_rings(ctx, mesh, &t->ring));
-    BRIO_TRY(BRIO_ALLOC(ctx, t->face_of, t->corners));
+    if (!is_of_triangles(mesh)) BRIO_TRY(BRIO_ALLOC(ctx, t->face_of, t->corners));
     BRIO_TRY(BRIO_ALLOC(ctx, t->fan, t->corners));
     BRIO_TRY(BRIO_ALLOC(ctx, t->patch, mesh->num_faces));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->vertex, mesh->num_vertices));
@@ -68,7 +78,7 @@ static brio_status topology_new(brio_context *ctx, const brio_mesh *mesh, topolo
     for (size_t f = 0; f < mesh->num_faces; f++) {
         t->patch[f] = (uint32_t)f;
         for (uint64_t h = mesh->face_offsets[f]; h < mesh->face_offsets[f + 1]; h++) {
-            t->face_of[h] = (uint32_t)f;
+            if (t->face_of) t->face_of[h] = (uint32_t)f;
             t->fan[h] = (uint32_t)h;
         }
     }
@@ -79,7 +89,7 @@ done:
 static void join_faces(topology *t) {
     BRIO_OMP(parallel for num_threads(t->threads))
     for (uint32_t h = 0; h < t->corners; h++)
-        if (t->ring[h] > h) brio_unite(t->patch, t->face_of[h], t->face_of[t->ring[h]], t->threads == 1);
+        if (t->ring[h] > h) brio_unite(t->patch, face_at(t, h), face_at(t, t->ring[h]), t->threads == 1);
 }
 
 /* Joins the corners at either end of each edge of two faces or, where `crowded`, of more. */
@@ -239,7 +249,7 @@ static bool count_fans(topology *t, const uint32_t *number, component *component
                 __atomic_fetch_or(state, VERTEX_TWO_FANS, __ATOMIC_RELAXED);
                 pinched = true;
             }
-            tally_of(&own, number[t->face_of[h]])->vertices++;
+            tally_of(&own, number[face_at(t, h)])->vertices++;
         }
         if (t->corners) tally_end(&own);
     }
@@ -256,7 +266,7 @@ static brio_status recount_pinched_vertices(brio_context *ctx, const topology *t
         uint32_t v = t->mesh->face_vertices[h];
         if (t->fan[h] != h || !(t->vertex[v] & VERTEX_TWO_FANS)) continue;
         BRIO_TRY(BRIO_RESERVE(ctx, fans, capacity, count + 1));
-        fans[count++] = (uint64_t)v << 32 | number[t->face_of[h]];
+        fans[count++] = (uint64_t)v << 32 | number[face_at(t, h)];
     }
     brio_sort_keys(fans, count);
     for (size_t i = 1; i < count; i++)
@@ -278,7 +288,7 @@ static brio_status count_loops(brio_context *ctx, topology *t, const uint32_t *n
     for (uint32_t h = 0; h < t->corners; h++) {
         if (t->ring[h] != h) continue;
         uint32_t root = brio_find(t->fan, h);
-        if (!counted[root]) components[number[t->face_of[h]]].loops++;
+        if (!counted[root]) components[number[face_at(t, h)]].loops++;
         counted[root] = 1;
     }
 done:

@@ -199,6 +199,45 @@ static void holes_cut_into_a_torus_are_loops_and_the_tight_cocone_closes_them(vo
     }
 }
 
+/* Samples of a wavy sheet on a jittered grid, but for those within `radius` of its middle, off it by up to `noise`. */
+static size_t pierced_sheet(double radius, double noise, double *p) {
+    size_t count = 0;
+    brio_rng rng = brio_rng_new(11);
+    for (size_t i = 0; i < 2500; i++) {
+        double x = (double)(i % 50) + 0.4 * brio_rng_double(&rng), y = (double)(i / 50) + 0.4 * brio_rng_double(&rng);
+        double off = noise * (2 * brio_rng_double(&rng) - 1);
+        if (hypot(x - 25, y - 25) < radius) continue;
+        p[3 * count] = x, p[3 * count + 1] = y, p[3 * count++ + 2] = 2 * sin(0.2 * x) * cos(0.15 * y) + off;
+    }
+    return count;
+}
+
+static size_t count_loops(const double *p, size_t n, const brio_cocone_options *o) {
+    brio_context *ctx = serial_context();
+    brio_mesh *mesh;
+    brio_certificate c = {0};
+    EXPECT(brio_cocone(ctx, p, n, o, &mesh, NULL) == BRIO_OK);
+    EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.manifold && c.oriented);
+    size_t loops = c.boundary_loops;
+    brio_certificate_free(&c);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+    return loops;
+}
+
+/* The hole of one missing sample is no wider than the gaps that noise leaves. */
+static void holes_without_room_for_a_sample_are_closed(void) {
+    static double p[3 * 2500];
+    brio_cocone_options o = brio_cocone_options_default();
+    for (int step = 0; step < 16; step++) {
+        double radius = 0.6 * (step % 2), noise = 0.1 * (step / 2);
+        EXPECT(count_loops(p, pierced_sheet(radius, noise, p), &o) == 1, "radius %g, noise %g", radius, noise);
+    }
+    o.boundaries = 1;
+    EXPECT(count_loops(p, pierced_sheet(0.6, 0, p), &o) == 1);
+    EXPECT(count_loops(p, pierced_sheet(18, 0, p), &o) == 2);
+}
+
 /* Jittered samples of the faces of a cube, none on its edges. */
 static void sharp_edges_are_no_openings(void) {
     static double p[3 * 6 * 900];
@@ -350,7 +389,7 @@ static void check_cells(const theory *x) {
     for (size_t p = 0; p < x->n; p++) {
         double normal[3];
         x->surface->normal(x->points + 3 * p, normal);
-        EXPECT(angle(x->dual.vector + 3 * p, normal) <= 2 * asin(r_over(r)) + 1e-9, "lemma 6 at sample %zu", p);
+        EXPECT(angle(x->dual.plane + 4 * p, normal) <= 2 * asin(r_over(r)) + 1e-9, "lemma 6 at sample %zu", p);
     }
 }
 
@@ -360,7 +399,7 @@ static bool is_restricted(const theory *x, uint32_t facet) {
     uint32_t here = brio_tet_of(facet), there = brio_tet_of(*brio_mate(&x->dual.t, facet));
     double a[3], b[3], reach = 4 * x->surface->feature_size;
     if (here >= x->dual.num_finite) here = there, there = brio_tet_of(facet);
-    const double *end[2] = {x->dual.centre + 3 * (size_t)here, x->dual.centre + 3 * (size_t)there};
+    const double *end[2] = {x->dual.centre + 4 * (size_t)here, x->dual.centre + 4 * (size_t)there};
     for (int k = 0; k < 3; k++) {
         a[k] = end[0][k], b[k] = end[1][k];
         if (there >= x->dual.num_finite) b[k] = a[k] + reach * end[1][k];
@@ -496,6 +535,7 @@ int main(void) {
     RUN(a_bowl_is_open_and_the_tight_cocone_closes_it);
     RUN(a_sheet_is_one_open_piece);
     RUN(holes_cut_into_a_torus_are_loops_and_the_tight_cocone_closes_them);
+    RUN(holes_without_room_for_a_sample_are_closed);
     RUN(sharp_edges_are_no_openings);
     RUN(a_vertex_of_high_degree_costs_no_more);
     RUN(shuffled_samples_give_the_same_faces);
