@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PASSES = 6, IDLE_PASSES = 2, FIRST_BITS = 10 };
+enum { PASSES = 5, FIRST_BITS = 9 /* of the size of blocks */ };
 
 typedef struct {
     const brio_pole_graph *g;
@@ -50,12 +50,11 @@ static void sum_up(problem *pr) {
     }
 }
 
-/* Settles every block with violated edges once. Blocks double their size every other pass. */
+/* Settles every block with violated edges once. Each pass doubles their size. */
 static brio_status settle_blocks(problem *pr, int pass) {
     brio_status status = BRIO_OK;
     brio_pole_blocks b;
-    BRIO_TRY(
-        brio_pole_blocks_find(pr->g, pr->label, pr->certain, FIRST_BITS + pass / 2, brio_hash(1, (uint64_t)pass), &b));
+    BRIO_TRY(brio_pole_blocks_find(pr->g, pr->label, pr->certain, FIRST_BITS + pass, brio_hash(1, (uint64_t)pass), &b));
     for (size_t round = 0; round < b.num_rounds; round++) {
         BRIO_TRY(
             brio_progress(pr->g->ctx, "label", 0.6 + 0.4 * (pass + (double)round / (double)b.num_rounds) / PASSES));
@@ -72,10 +71,8 @@ static brio_status lower_energy(problem *pr) {
     brio_context *ctx = pr->g->ctx;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, pr->roof, (size_t)pr->threads));
     for (int t = 0; t < pr->threads; t++) pr->roof[t].flow = brio_flow_new(ctx);
-    for (int pass = 0, idle = 0; pass < PASSES && idle < IDLE_PASSES; pass++) {
-        BRIO_TRY(settle_blocks(pr, pass));
-        idle = pr->toggled ? 0 : idle + 1;
-    }
+    pr->toggled = 1;
+    for (int pass = 0; pass < PASSES && pr->toggled; pass++) BRIO_TRY(settle_blocks(pr, pass));
 done:
     for (int t = 0; pr->roof && t < pr->threads; t++) brio_roof_free(&pr->roof[t]);
     brio_release(ctx, pr->roof);

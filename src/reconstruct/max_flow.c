@@ -101,22 +101,25 @@ static void hang(brio_flow *f, uint32_t v, uint32_t arc_to_parent, uint32_t pare
     f->node[v].checked = f->node[parent].checked;
 }
 
+/* Whether w, of the same tree, is known to be nearer to the terminal by way of v. */
+static bool is_nearer_by(const brio_flow *f, uint32_t v, uint32_t w) {
+    const brio_flow_node *here = &f->node[v], *there = &f->node[w];
+    return there->checked <= here->checked && there->distance > here->distance + 1 && there->parent < ORPHAN;
+}
+
 /* Grows the tree from an active node. Returns an arc from the tree of the source to that of the sink, or NO_ARC when
  * the node cannot grow any more. */
 static uint32_t grow(brio_flow *f, uint32_t v) {
     uint8_t side = f->side[v];
     for (uint32_t arc = f->node[v].first; arc < f->node[v + 1].first; arc++) {
-        if (!capacity_outwards(f, side, arc)) continue;
         uint32_t w = f->arc[arc].head;
-        if (f->side[w] == FREE) {
+        if (f->side[w] == side) {
+            if (is_nearer_by(f, v, w) && capacity_outwards(f, side, arc)) hang(f, w, f->arc[arc].mate, v);
+        } else if (capacity_outwards(f, side, arc)) {
+            if (f->side[w] != FREE) return side == SOURCE ? arc : f->arc[arc].mate;
             f->side[w] = side;
             hang(f, w, f->arc[arc].mate, v);
             activate(f, w);
-        } else if (f->side[w] != side) {
-            return side == SOURCE ? arc : f->arc[arc].mate;
-        } else if (f->node[w].checked <= f->node[v].checked && f->node[w].distance > f->node[v].distance + 1 &&
-                   f->node[w].parent < ORPHAN) {
-            hang(f, w, f->arc[arc].mate, v);
         }
     }
     return NO_ARC;
@@ -206,7 +209,7 @@ static void adopt(brio_flow *f, uint32_t v) {
     uint8_t side = f->side[v];
     uint32_t best = NO_ARC, least = UINT32_MAX;
     for (uint32_t arc = f->node[v].first; arc < f->node[v + 1].first; arc++) {
-        if (!capacity_inwards(f, side, arc) || f->side[f->arc[arc].head] != side) continue;
+        if (f->side[f->arc[arc].head] != side || !capacity_inwards(f, side, arc)) continue;
         uint32_t distance = distance_to_terminal(f, f->arc[arc].head);
         if (distance < least) least = distance, best = arc;
     }
