@@ -38,6 +38,8 @@ typedef struct {
     brio_pole_queue queue; /* of the poles that are not confused, then of those that are */
     bool all_confused;     /* the poles that are left */
     size_t labelled;
+    uint32_t ahead[BRIO_POLE_PEEK]; /* poles that come up soon, whose nodes were called for */
+    int num_ahead;
 } labeller;
 
 /* --- beliefs --- */
@@ -121,6 +123,17 @@ done:
     return status;
 }
 
+/* Calls for what the next poles need: first their nodes, the next time their edges. */
+static inline void look_ahead(labeller *l) {
+    for (int i = 0; i < l->num_ahead; i++) {
+        const brio_pole_edge *edge = l->g->edge + l->nodes[l->ahead[i]].first;
+        __builtin_prefetch(edge);
+        __builtin_prefetch(edge + 8);
+    }
+    l->num_ahead = brio_pole_queue_peek(&l->queue, l->ahead);
+    for (int i = 0; i < l->num_ahead; i++) __builtin_prefetch(&l->nodes[l->ahead[i]]);
+}
+
 /* Takes the pole of highest priority that is still what it was when it got it. */
 static brio_status next_pole(labeller *l, uint32_t *p, bool *found) {
     brio_status status = BRIO_OK;
@@ -128,8 +141,7 @@ static brio_status next_pole(labeller *l, uint32_t *p, bool *found) {
         uint32_t priority;
         BRIO_TRY(brio_pole_queue_pop(&l->queue, p, &priority, found));
         if (!*found) break;
-        uint32_t next = brio_pole_queue_next(&l->queue);
-        if (next != BRIO_NO_POLE) __builtin_prefetch(&l->nodes[next]);
+        look_ahead(l);
         const node *n = &l->nodes[*p];
         if (is_settled(n)) continue;
         if (l->all_confused ? clarity(n) == priority : !is_confused(n) && (n->belief[0] | n->belief[1]) == priority)

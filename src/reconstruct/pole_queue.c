@@ -93,8 +93,10 @@ done:
     return status;
 }
 
-uint32_t brio_pole_queue_next(const brio_pole_queue *q) {
-    if (!q->filled) return BRIO_NO_POLE;
-    int b = __builtin_ctzll(q->filled);
-    return pole_of(q->bucket[b][b ? q->size[b] - 1 : 0]);
+int brio_pole_queue_peek(const brio_pole_queue *q, uint32_t *poles) {
+    if (!q->filled) return 0;
+    int b = __builtin_ctzll(q->filled), count = q->size[b] < BRIO_POLE_PEEK ? (int)q->size[b] : BRIO_POLE_PEEK;
+    const uint64_t *first = q->bucket[b] + (b ? q->size[b] - (size_t)count : 0); /* a heap has its highest in front */
+    for (int i = 0; i < count; i++) poles[i] = pole_of(first[i]);
+    return count;
 }

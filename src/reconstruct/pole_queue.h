@@ -4,7 +4,7 @@
 
 #include "dual/poles.h"
 
-enum { BRIO_POLE_BUCKETS = 33 };
+enum { BRIO_POLE_BUCKETS = 33, BRIO_POLE_PEEK = 4 };
 
 typedef struct {
     brio_context *ctx;
@@ -26,7 +26,7 @@ brio_status brio_pole_queue_push(brio_pole_queue *queue, uint32_t pole, uint32_t
  *  O(1) amortised but for ties and for what was above the last one. */
 brio_status brio_pole_queue_pop(brio_pole_queue *queue, uint32_t *pole, uint32_t *priority, bool *found);
 
-/** One of the poles that come up next; BRIO_NO_POLE when there is none. */
-uint32_t brio_pole_queue_next(const brio_pole_queue *queue);
+/** Some poles that come up soon, at most BRIO_POLE_PEEK; their number. */
+int brio_pole_queue_peek(const brio_pole_queue *queue, uint32_t *poles);
 
 #endif
