@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PASSES = 5, FIRST_BITS = 9 /* of the size of blocks */ };
+enum { PASSES = 5, FIRST_BITS = 9, MOST_HOPS = 3, FEW = 100 };
 
 typedef struct {
     const brio_pole_graph *g;
@@ -50,11 +50,13 @@ static void sum_up(problem *pr) {
     }
 }
 
-/* Settles every block with violated edges once. Each pass doubles their size. */
+/* Settles every block with violated edges once. Each pass doubles their size, and the first ones keep close to the
+ * violated edges. */
 static brio_status settle_blocks(problem *pr, int pass) {
     brio_status status = BRIO_OK;
+    brio_pole_cut cut = {FIRST_BITS + pass, pass + 1 < MOST_HOPS ? pass + 1 : MOST_HOPS, brio_hash(1, (uint64_t)pass)};
     brio_pole_blocks b;
-    BRIO_TRY(brio_pole_blocks_find(pr->g, pr->label, pr->certain, FIRST_BITS + pass, brio_hash(1, (uint64_t)pass), &b));
+    BRIO_TRY(brio_pole_blocks_find(pr->g, pr->label, pr->certain, cut, &b));
     for (size_t round = 0; round < b.num_rounds; round++) {
         BRIO_TRY(
             brio_progress(pr->g->ctx, "label", 0.6 + 0.4 * (pass + (double)round / (double)b.num_rounds) / PASSES));
@@ -71,8 +73,12 @@ static brio_status lower_energy(problem *pr) {
     brio_context *ctx = pr->g->ctx;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, pr->roof, (size_t)pr->threads));
     for (int t = 0; t < pr->threads; t++) pr->roof[t].flow = brio_flow_new(ctx);
-    pr->toggled = 1;
-    for (int pass = 0; pass < PASSES && pr->toggled; pass++) BRIO_TRY(settle_blocks(pr, pass));
+    size_t toggled = 0; /* in all passes */
+    for (int pass = 0; pass < PASSES; pass++) {
+        BRIO_TRY(settle_blocks(pr, pass));
+        toggled += pr->toggled;
+        if (pr->toggled <= toggled / FEW) break;
+    }
 done:
     for (int t = 0; pr->roof && t < pr->threads; t++) brio_roof_free(&pr->roof[t]);
     brio_release(ctx, pr->roof);
