@@ -461,7 +461,7 @@ typedef struct brio_power_crust_stats {
     size_t inner, outer;        /* labels */
     size_t confused;            /* poles that had evidence for both labels when they were labelled */
     size_t unreached;           /* naive, theoretical: poles that were left to the greedy labelling */
-    size_t open, toggled;       /* global: poles that the last roof duality left open; that changed their greedy label */
+    size_t open, toggled;       /* global: poles that the last roof duality left open; that changed their label */
     double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
     double energy;              /* sum of the violated weights of the labels */
     size_t left_out;            /* faces that `open` left out */
