@@ -18,7 +18,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { PASSES = 5, FIRST_BITS = 9, MOST_HOPS = 3, FEW = 100 };
+enum { PASSES = 5, FIRST_BITS = 9, FEW = 100 };
 
 typedef struct {
     const brio_pole_graph *g;
@@ -50,13 +50,11 @@ static void sum_up(problem *pr) {
     }
 }
 
-/* Settles every block with violated edges once. Each pass doubles their size, and the first ones keep close to the
- * violated edges. */
+/* Settles every block with violated edges once. Each pass doubles their size. */
 static brio_status settle_blocks(problem *pr, int pass) {
     brio_status status = BRIO_OK;
-    brio_pole_cut cut = {FIRST_BITS + pass, pass + 1 < MOST_HOPS ? pass + 1 : MOST_HOPS, brio_hash(1, (uint64_t)pass)};
     brio_pole_blocks b;
-    BRIO_TRY(brio_pole_blocks_find(pr->g, pr->label, pr->certain, cut, &b));
+    BRIO_TRY(brio_pole_blocks_find(pr->g, pr->label, pr->certain, FIRST_BITS + pass, brio_hash(1, (uint64_t)pass), &b));
     for (size_t round = 0; round < b.num_rounds; round++) {
         BRIO_TRY(
             brio_progress(pr->g->ctx, "label", 0.6 + 0.4 * (pass + (double)round / (double)b.num_rounds) / PASSES));

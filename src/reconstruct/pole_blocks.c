@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { OUTSIDE = 255, CURVE_BITS = 11 };
+enum { HOPS = 3, OUTSIDE = 255, CURVE_BITS = 11 };
 
 /* A thread's list of pairs of blocks that an edge joins, the higher number first, and its marks. */
 typedef struct {
@@ -26,7 +26,6 @@ typedef struct {
 typedef struct {
     const brio_pole_graph *g;
     const uint8_t *label, *fixed;
-    brio_pole_cut cut;
     int threads;
     uint8_t *depth;   /* of each pole: how many edges from trouble, OUTSIDE beyond the region */
     uint8_t *trouble; /* of each block: it has violated edges */
@@ -59,7 +58,7 @@ static void mark_region(const finder *f) {
     BRIO_OMP(parallel num_threads(f->threads)) {
         BRIO_OMP(for schedule(dynamic, 4096))
         for (size_t p = 0; p < n; p++) f->depth[p] = !f->fixed[p] && is_troubled(f, (uint32_t)p) ? 0 : OUTSIDE;
-        for (uint8_t depth = 0; depth < f->cut.hops; depth++) {
+        for (uint8_t depth = 0; depth < HOPS; depth++) {
             BRIO_OMP(for schedule(dynamic, 4096))
             for (size_t p = 0; p < n; p++)
                 if (__atomic_load_n(&f->depth[p], __ATOMIC_RELAXED) == depth)
@@ -102,7 +101,7 @@ static void draw_cube(double *points, size_t n, uint64_t draw) {
     }
 }
 
-static brio_status sort_along_curve(const finder *f) {
+static brio_status sort_along_curve(const finder *f, uint64_t draw) {
     brio_status status = BRIO_OK;
     brio_pole_blocks *b = f->out;
     double *points = NULL;
@@ -113,7 +112,7 @@ static brio_status sort_along_curve(const finder *f) {
     BRIO_OMP(parallel for num_threads(f->threads))
     for (size_t i = 0; i < n; i++)
         memcpy(points + 3 * i, f->g->poles->centre + 3 * (size_t)b->pole[i], 3 * sizeof *points);
-    draw_cube(points, n, f->cut.draw);
+    draw_cube(points, n, draw);
     brio_hilbert_keys(points, n + 2, CURVE_BITS, f->threads, keys);
     BRIO_TRY(brio_radix_sort(b->ctx, keys, b->pole, n, 3 * CURVE_BITS));
 done:
@@ -241,14 +240,13 @@ done:
 
 /* --- the blocks --- */
 
-brio_status brio_pole_blocks_find(const brio_pole_graph *g, const uint8_t *label, const uint8_t *fixed,
-                                  brio_pole_cut cut, brio_pole_blocks *out) {
+brio_status brio_pole_blocks_find(const brio_pole_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
+                                  uint64_t draw, brio_pole_blocks *out) {
     brio_status status = BRIO_OK;
-    finder f = {.g = g, .label = label, .fixed = fixed, .cut = cut, .out = out};
-    f.threads = brio_context_threads(g->ctx);
-    *out = (brio_pole_blocks){.ctx = g->ctx, .bits = cut.bits};
+    finder f = {.g = g, .label = label, .fixed = fixed, .threads = brio_context_threads(g->ctx), .out = out};
+    *out = (brio_pole_blocks){.ctx = g->ctx, .bits = bits};
     BRIO_TRY(list_region(&f));
-    if (out->count > (size_t)1 << cut.bits) BRIO_TRY(sort_along_curve(&f));
+    if (out->count > (size_t)1 << bits) BRIO_TRY(sort_along_curve(&f, draw));
     BRIO_TRY(set_places(&f));
     BRIO_TRY(divide_into_rounds(&f));
 done:

@@ -20,17 +20,11 @@ typedef struct {
 
 enum { BRIO_NO_PLACE = UINT32_MAX };
 
-/** What to find: blocks of 2^bits poles, of those at most `hops` edges away from a violated one; the borders between
- *  blocks are drawn by `draw`. */
-typedef struct {
-    int bits, hops;
-    uint64_t draw;
-} brio_pole_cut;
-
-/** Finds blocks of poles that are not fixed. They are to be freed on failure too.
+/** Blocks of 2^bits poles: those at most some edges away from a violated one, and not fixed. What is found is to be freed
+ *  on failure too.   draw  the borders between blocks depend on it.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_pole_blocks_find(const brio_pole_graph *g, const uint8_t *label, const uint8_t *fixed,
-                                  brio_pole_cut cut, brio_pole_blocks *out);
+brio_status brio_pole_blocks_find(const brio_pole_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
+                                  uint64_t draw, brio_pole_blocks *out);
 void brio_pole_blocks_free(brio_pole_blocks *b);
 
 /** Where a block begins; it ends where the next one begins. */

@@ -184,13 +184,12 @@ static void blocks_of_a_round_are_apart(void) {
     size_t shared = 0;
     for (uint64_t trial = 0; trial < 300; trial++) {
         brio_pole_blocks b, again;
-        brio_pole_cut cut = {1 + (int)(trial % 4), (int)(trial % 3), trial};
         make_graph(&r, ctx, trial);
         brio_context_set_threads(ctx, 1);
-        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, cut, &b) == BRIO_OK);
+        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &b) == BRIO_OK);
         check_blocks(&r, &b);
         brio_context_set_threads(ctx, 3);
-        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, cut, &again) == BRIO_OK);
+        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &again) == BRIO_OK);
         EXPECT(again.num_rounds == b.num_rounds && !memcmp(again.place, b.place, sizeof *b.place * POLES) &&
                !memcmp(again.block, b.block, sizeof *b.block * b.first_round[b.num_rounds]));
         shared += b.first_round[b.num_rounds] > b.num_rounds;
@@ -226,7 +225,7 @@ static void settled_blocks_have_least_energy(void) {
     for (uint64_t trial = 0; trial < 60; trial++) {
         brio_pole_blocks b;
         make_graph(&r, ctx, trial);
-        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, (brio_pole_cut){BITS, 2, trial}, &b) == BRIO_OK);
+        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, BITS, trial, &b) == BRIO_OK);
         for (size_t block = 0; block < b.num_blocks; block++) {
             size_t begin = brio_pole_block_begin(&b, block), size = brio_pole_block_begin(&b, block + 1) - begin;
             double before = brio_label_energy(&r.g, r.label), least = least_energy(&r, b.pole + begin, size);
@@ -251,7 +250,7 @@ static brio_status settle_random_blocks(brio_context *ctx) {
     brio_roof roof = {.flow = brio_flow_new(ctx)};
     make_graph(&r, ctx, 5);
     brio_context_set_threads(ctx, 2);
-    brio_status status = brio_pole_blocks_find(&r.g, r.label, r.fixed, (brio_pole_cut){3, 2, 5}, &b);
+    brio_status status = brio_pole_blocks_find(&r.g, r.label, r.fixed, 3, 5, &b);
     for (size_t block = 0; status == BRIO_OK && block < b.num_blocks; block++)
         status = brio_roof_settle(&roof, &r.g, &b, block, r.label);
     brio_pole_blocks_free(&b);
