@@ -425,7 +425,7 @@ BRIO_API brio_status brio_mesh_subgraph(brio_context *ctx, const brio_mesh *mesh
 
 /** Ways to label the poles of a power crust as inner or outer. */
 typedef enum brio_labeling {
-    BRIO_LABELING_GLOBAL = 0,      /* least sum of violated weights, by roof duality [Boros Hammer 2002] */
+    BRIO_LABELING_GLOBAL = 0,      /* low sum of violated weights, by roof duality [Boros Hammer 2002] */
     BRIO_LABELING_GREEDY = 1,      /* the surest pole first [Choi 2003, figure 3.8] */
     BRIO_LABELING_NAIVE = 2,       /* breadth first from outside [Choi 2003, section 3.3.3] */
     BRIO_LABELING_THEORETICAL = 3, /* breadth first from one sample [Choi 2003, appendix B.3] */
@@ -461,7 +461,7 @@ typedef struct brio_power_crust_stats {
     size_t inner, outer;        /* labels */
     size_t confused;            /* poles that had evidence for both labels when they were labelled */
     size_t unreached;           /* naive, theoretical: poles that were left to the greedy labelling */
-    size_t open, toggled;       /* global: poles that roof duality left open; poles whose greedy label was changed */
+    size_t open, toggled;       /* global: poles that the last roof duality left open; that changed their label */
     double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
     double energy;              /* sum of the violated weights of the labels */
     size_t left_out;            /* faces that `open` left out */

@@ -6,8 +6,8 @@
  * "confused" and waits until the end of the queue. Equal priorities go by the poles' canonical numbers.
  *
  * Poles without evidence and confused ones come last, and beliefs are passed on weakened, so that until then no
- * priority rises above the last one taken, and the queue is a radix heap. A pole whose belief grows gets a new entry;
- * the old one is passed over when it comes up. The confused poles then go through a common heap in the same way.
+ * priority rises above the last one taken, and seldom after: the queue is a radix heap. A pole whose priority changes
+ * gets a new entry; the old one is passed over when it comes up.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.8.
  *           Amenta, Choi, Kolluri. The power crust. Solid Modeling 2001.
@@ -16,97 +16,75 @@
 #include "base/memory.h"
 #include "reconstruct/labelling.h"
 #include "reconstruct/pole_queue.h"
+#include <math.h>
+#include <string.h>
 
-/* Beliefs of a pole, out and in; both SETTLED once no evidence can change them. And where its edges begin: poles come up
- * all over the surface, and what is fetched for one of them should be in one place. */
+/* Beliefs of a pole, out and in; both SETTLED once no evidence can change them. A belief is the upper half of a double,
+ * which 20 binary digits are enough for, and the range of which strengths need far from the hull. And where the pole's
+ * edges begin: poles come up all over the surface, and what is fetched for one of them should be in one place. */
 typedef struct {
-    double belief[2];
-    size_t opposite, edge;
+    uint32_t belief[2];
+    size_t first;
 } node;
 
-#define SETTLED INFINITY
-
-typedef struct {
-    double priority;
-    uint32_t pole;
-} entry;
+enum { CERTAIN = 0x3ff00000 /* 1.0 */ };
+#define SETTLED UINT32_MAX
 
 typedef struct {
     brio_context *ctx;
     const brio_pole_graph *g;
     uint8_t *label;
     node *nodes;
-    brio_pole_queue sure;
-    bool all_confused; /* the poles that are left */
-    entry *heap;       /* of them */
-    size_t size, capacity;
+    brio_pole_queue queue; /* of the poles that are not confused, then of those that are */
+    bool all_confused;     /* the poles that are left */
     size_t labelled;
+    uint32_t ahead[BRIO_POLE_PEEK]; /* poles that come up soon, whose nodes were called for */
+    int num_ahead;
 } labeller;
 
-/* --- heap of confused poles --- */
-
-static inline bool before(const entry *a, const entry *b) {
-    return a->priority != b->priority ? a->priority > b->priority : a->pole < b->pole;
-}
-
-static brio_status heap_push(labeller *l, entry e) {
-    brio_status status = BRIO_RESERVE(l->ctx, l->heap, l->capacity, l->size + 1);
-    if (status != BRIO_OK) return status;
-    size_t i = l->size++;
-    for (; i > 0 && before(&e, &l->heap[(i - 1) / 2]); i = (i - 1) / 2) l->heap[i] = l->heap[(i - 1) / 2];
-    l->heap[i] = e;
-    return BRIO_OK;
-}
-
-static entry heap_pop(labeller *l) {
-    entry top = l->heap[0], last = l->heap[--l->size];
-    size_t i = 0;
-    for (size_t child; (child = 2 * i + 1) < l->size; i = child) {
-        if (child + 1 < l->size && before(&l->heap[child + 1], &l->heap[child])) child++;
-        if (!before(&l->heap[child], &last)) break;
-        l->heap[i] = l->heap[child];
-    }
-    if (l->size) l->heap[i] = last;
-    return top;
-}
-
 /* --- beliefs --- */
+
+static inline uint32_t belief_of(double strength) {
+    uint64_t bits;
+    memcpy(&bits, &strength, sizeof bits);
+    return (uint32_t)(bits >> 32);
+}
+
+static inline double strength_of(uint32_t belief) {
+    uint64_t bits = (uint64_t)belief << 32;
+    double strength;
+    memcpy(&strength, &bits, sizeof bits);
+    return strength;
+}
+
+static bool is_settled(const node *n) {
+    return n->belief[0] == SETTLED;
+}
 
 static bool is_confused(const node *n) {
     return n->belief[0] > 0 && n->belief[1] > 0;
 }
 
-static double confusion(const node *n) {
-    return fabs(n->belief[1] - n->belief[0]) - 1;
+static uint32_t clarity(const node *n) {
+    return belief_of(fabs(strength_of(n->belief[1]) - strength_of(n->belief[0])));
 }
 
-/* Evidence of strength `belief` for the side (0 out, 1 in) of a pole. */
-static inline brio_status offer(labeller *l, uint32_t p, int side, double belief) {
+/* Evidence of some strength for the side (0 out, 1 in) of a pole. */
+static inline brio_status offer(labeller *l, uint32_t p, int side, double strength) {
     node *n = &l->nodes[p];
-    if (!(belief > n->belief[side])) return BRIO_OK;
+    uint32_t belief = belief_of(strength);
+    if (belief <= n->belief[side]) return BRIO_OK;
     n->belief[side] = belief;
-    if (l->all_confused) return heap_push(l, (entry){confusion(n), p});
-    return is_confused(n) ? BRIO_OK : brio_pole_queue_push(&l->sure, p, belief);
-}
-
-/* Calls for everything at once that the pole's edges need. */
-static void fetch(const labeller *l, const node *n, const node *end) {
-    const brio_pole_graph *g = l->g;
-    __builtin_prefetch(&g->opposite_pole[n->opposite]);
-    __builtin_prefetch(&g->opposite_weight[n->opposite]);
-    __builtin_prefetch(&g->edge_weight[n->edge]);
-    for (size_t e = n->edge; e < end->edge; e++) __builtin_prefetch(&l->nodes[g->edge_pole[e]]);
+    if (l->all_confused) return brio_pole_queue_push(&l->queue, p, clarity(n));
+    return is_confused(n) ? BRIO_OK : brio_pole_queue_push(&l->queue, p, belief);
 }
 
 static brio_status pass_on(labeller *l, uint32_t p, int side, double strength) {
-    const brio_pole_graph *g = l->g;
+    const brio_pole_edge *edge = l->g->edge, *from = edge + l->nodes[p].first, *end = edge + l->nodes[p + 1].first;
     brio_status status = BRIO_OK;
-    const node *n = &l->nodes[p], *end = n + 1;
-    fetch(l, n, end);
-    for (size_t e = n->opposite; e < end->opposite; e++)
-        BRIO_TRY(offer(l, g->opposite_pole[e], !side, strength * g->opposite_weight[e]));
-    for (size_t e = n->edge; e < end->edge; e++)
-        BRIO_TRY(offer(l, g->edge_pole[e], side, strength * (double)g->edge_weight[e]));
+    for (const brio_pole_edge *e = from; e < end; e++) __builtin_prefetch(&l->nodes[e->pole]);
+    for (const brio_pole_edge *e = from; e < end; e++)
+        BRIO_TRY(offer(l, e->pole, e->weight < 0 ? !side : side, strength * fabs((double)e->weight)));
 done:
     return status;
 }
@@ -145,19 +123,44 @@ done:
     return status;
 }
 
-static brio_status settle_sure(labeller *l) {
+/* Calls for what the next poles need: first their nodes, the next time their edges. */
+static inline void look_ahead(labeller *l) {
+    for (int i = 0; i < l->num_ahead; i++) {
+        const brio_pole_edge *edge = l->g->edge + l->nodes[l->ahead[i]].first;
+        __builtin_prefetch(edge);
+        __builtin_prefetch(edge + 8);
+    }
+    l->num_ahead = brio_pole_queue_peek(&l->queue, l->ahead);
+    for (int i = 0; i < l->num_ahead; i++) __builtin_prefetch(&l->nodes[l->ahead[i]]);
+}
+
+/* Takes the pole of highest priority that is still what it was when it got it. */
+static brio_status next_pole(labeller *l, uint32_t *p, bool *found) {
+    brio_status status = BRIO_OK;
+    for (;;) {
+        uint32_t priority;
+        BRIO_TRY(brio_pole_queue_pop(&l->queue, p, &priority, found));
+        if (!*found) break;
+        look_ahead(l);
+        const node *n = &l->nodes[*p];
+        if (is_settled(n)) continue;
+        if (l->all_confused ? clarity(n) == priority : !is_confused(n) && (n->belief[0] | n->belief[1]) == priority)
+            break;
+    }
+done:
+    return status;
+}
+
+static brio_status settle_queued(labeller *l) {
     brio_status status = BRIO_OK;
     for (;;) {
         uint32_t p;
-        double priority;
         bool found;
-        BRIO_TRY(brio_pole_queue_pop(&l->sure, &p, &priority, &found));
+        BRIO_TRY(next_pole(l, &p, &found));
         if (!found) break;
-        uint32_t next = brio_pole_queue_next(&l->sure);
-        if (next != BRIO_NO_POLE) __builtin_prefetch(&l->nodes[next]);
         const node *n = &l->nodes[p];
-        if (is_confused(n) || fmax(n->belief[0], n->belief[1]) != priority) continue; /* SETTLED is confused too */
-        BRIO_TRY(settle(l, p, n->belief[1] > 0, priority));
+        int side = n->belief[1] > n->belief[0];
+        BRIO_TRY(settle(l, p, side, strength_of(n->belief[side])));
     }
 done:
     return status;
@@ -175,16 +178,14 @@ static void settle_without_evidence(labeller *l) {
 static brio_status settle_confused(labeller *l, brio_labelling_stats *stats) {
     brio_status status = BRIO_OK;
     l->all_confused = true;
-    for (uint32_t p = 0; p < l->g->poles->count; p++)
-        if (l->label[p] == BRIO_LABEL_NONE) BRIO_TRY(heap_push(l, (entry){confusion(&l->nodes[p]), p}));
-    while (l->size) {
-        entry e = heap_pop(l);
-        const node *n = &l->nodes[e.pole];
-        if (!(confusion(n) == e.priority)) continue; /* NaN once it is settled */
-        int side = n->belief[1] > n->belief[0];
+    brio_pole_queue_free(&l->queue);
+    l->queue = brio_pole_queue_new(l->ctx, CERTAIN);
+    for (uint32_t p = 0; p < l->g->poles->count; p++) {
+        if (l->label[p] != BRIO_LABEL_NONE) continue;
         stats->confused++;
-        BRIO_TRY(settle(l, e.pole, side, n->belief[side]));
+        BRIO_TRY(brio_pole_queue_push(&l->queue, p, clarity(&l->nodes[p])));
     }
+    BRIO_TRY(settle_queued(l));
 done:
     return status;
 }
@@ -193,22 +194,21 @@ static brio_status nodes_new(labeller *l) {
     size_t n = l->g->poles->count;
     brio_status status = BRIO_ALLOC(l->ctx, l->nodes, n + 1);
     if (status != BRIO_OK) return status;
-    for (size_t p = 0; p <= n; p++) l->nodes[p] = (node){{0, 0}, l->g->first_opposite[p], l->g->first_edge[p]};
+    for (size_t p = 0; p <= n; p++) l->nodes[p] = (node){{0, 0}, l->g->first[p]};
     return BRIO_OK;
 }
 
 brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
     brio_status status = BRIO_OK;
-    labeller l = {.ctx = g->ctx, .g = g, .label = label, .sure = brio_pole_queue_new(g->ctx, 1)};
+    labeller l = {.ctx = g->ctx, .g = g, .label = label, .queue = brio_pole_queue_new(g->ctx, CERTAIN)};
     BRIO_TRY(nodes_new(&l));
     BRIO_TRY(settle_certain(&l));
-    BRIO_TRY(settle_sure(&l));
+    BRIO_TRY(settle_queued(&l));
     settle_without_evidence(&l);
     BRIO_TRY(settle_confused(&l, stats));
 done:
-    brio_pole_queue_free(&l.sure);
+    brio_pole_queue_free(&l.queue);
     brio_release(g->ctx, l.nodes);
-    brio_release(g->ctx, l.heap);
     return status;
 }
 

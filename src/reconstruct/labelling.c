@@ -1,6 +1,7 @@
 /* What the labellings share: which poles are certain, the energy of labels, spreading breadth first. */
 #include "reconstruct/labelling.h"
 #include "base/parallel.h"
+#include <math.h>
 #include <string.h>
 
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain) {
@@ -14,11 +15,9 @@ void brio_label_certain(const brio_pole_graph *g, uint8_t *certain) {
 /* Both ends see an edge; it counts at the lower one. */
 static double violated_at(const brio_pole_graph *g, const uint8_t *label, size_t p) {
     double sum = 0;
-    for (size_t e = g->first_opposite[p]; e < g->first_opposite[p + 1]; e++)
-        if (g->opposite_pole[e] > p && label[g->opposite_pole[e]] == label[p]) sum += g->opposite_weight[e];
-    for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++)
-        if (g->edge_pole[e] > p && g->edge_weight[e] > 0 && label[g->edge_pole[e]] != label[p])
-            sum += (double)g->edge_weight[e];
+    for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
+        if (g->edge[e].pole > p && brio_label_violates(label, (uint32_t)p, g->edge[e]))
+            sum += fabs((double)g->edge[e].weight);
     return sum;
 }
 
@@ -37,28 +36,16 @@ double brio_label_energy(const brio_pole_graph *g, const uint8_t *label) {
 
 /* --- spreading --- */
 
-typedef struct {
-    const uint8_t *certain;
-    uint8_t *label, give;
-    uint32_t *queue;
-    size_t size;
-} spread;
-
-static void reach(uint32_t pole, double weight, void *user) {
-    spread *s = user;
-    (void)weight;
-    if (s->label[pole] != BRIO_LABEL_NONE) return;
-    s->label[pole] = s->certain[pole] ? BRIO_LABEL_OUTER : s->give;
-    s->queue[s->size++] = pole;
-}
-
 void brio_label_spread(const brio_pole_graph *g, const uint8_t *certain, uint8_t *label, uint32_t *queue, size_t size) {
-    spread s = {.certain = certain, .label = label, .queue = queue, .size = size};
-    for (size_t next = 0; next < s.size; next++) {
+    for (size_t next = 0; next < size; next++) {
         uint32_t p = queue[next];
-        s.give = label[p];
-        for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++) reach(g->edge_pole[e], 1, &s);
-        s.give = label[p] == BRIO_LABEL_INNER ? BRIO_LABEL_OUTER : BRIO_LABEL_INNER;
-        brio_pole_graph_opposite(g, p, reach, &s);
+        for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
+            brio_pole_edge to = g->edge[e];
+            if (label[to.pole] != BRIO_LABEL_NONE) continue;
+            label[to.pole] = certain[to.pole] ? BRIO_LABEL_OUTER
+                             : to.weight < 0  ? brio_other_label(label[p])
+                                              : label[p];
+            queue[size++] = to.pole;
+        }
     }
 }

@@ -6,11 +6,11 @@
 
 /** What a labelling counts; fields it does not know of stay as they were. */
 typedef struct {
-    size_t confused;              /* poles that had evidence for both labels when they were labelled */
-    size_t unreached;             /* left to the greedy labelling by another one */
-    size_t open;                  /* not settled by roof duality */
-    size_t toggled;               /* of these, the ones that differ from the greedy labelling in the end */
-    double energy_greedy, energy; /* sum of the violated weights, of the greedy labels to begin with and in the end */
+    size_t confused;      /* poles that had evidence for both labels when they were labelled */
+    size_t unreached;     /* left to the greedy labelling by another one */
+    size_t open;          /* not settled by the last roof duality of their blocks */
+    size_t toggled;       /* that differ from the greedy labelling in the end */
+    double energy_greedy; /* sum of the violated weights of the greedy labels to begin with */
 } brio_labelling_stats;
 
 /* Every labelling gives label[p] to every pole, hidden ones too; *label is BRIO_LABEL_NONE throughout to begin with.
@@ -26,8 +26,8 @@ brio_status brio_label_naive(const brio_pole_graph *g, uint8_t *label, brio_labe
 /** Breadth first from one sample of the hull; the graph has the edges of weight over BRIO_THEORETICAL_WEIGHT. */
 brio_status brio_label_theoretical(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
 
-/** Of least energy as far as roof duality tells, poles beyond the box of the samples being outer; of no more energy than
- *  the greedy labels with these poles outer. */
+/** The greedy labels, but for poles beyond the box of the samples being outer, toggled as long as roof duality finds sets
+ *  of poles in one of many blocks to lower the energy by. */
 brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
 
 /** -cos of pi / 4: the balls of the theoretical algorithm's neighbours intersect at a larger angle. */
@@ -36,7 +36,16 @@ brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_lab
 /** certain[p] = 1 for the poles that are outer for good, else 0; others are not written where they are 1. */
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain);
 
-/** The sum of the violated positive weights: neighbours of different labels, opposite poles of the same. */
+static inline uint8_t brio_other_label(uint8_t label) {
+    return label == BRIO_LABEL_INNER ? BRIO_LABEL_OUTER : BRIO_LABEL_INNER;
+}
+
+/** Whether the labels of pole p and of the other end of its edge are not as the edge wants them. */
+static inline bool brio_label_violates(const uint8_t *label, uint32_t p, brio_pole_edge edge) {
+    return (label[p] == label[edge.pole]) == (edge.weight < 0);
+}
+
+/** The sum of the violated weights: neighbours of different labels, opposite poles of the same. */
 double brio_label_energy(const brio_pole_graph *g, const uint8_t *label);
 
 /** Spreads labels breadth first from the poles of a queue, that are labelled: deeply intersecting neighbours get the

@@ -11,87 +11,68 @@
  * vision. IEEE PAMI 2004. */
 #include "reconstruct/max_flow.h"
 #include "base/memory.h"
+#include <string.h>
 
 enum { NO_ARC = UINT32_MAX, AT_TERMINAL = UINT32_MAX - 1, ORPHAN = UINT32_MAX - 2, NO_NODE = UINT32_MAX };
 enum { FREE = BRIO_FLOW_FREE, SOURCE = BRIO_FLOW_SOURCE, SINK = BRIO_FLOW_SINK };
 
-/* Arcs leave a node in the run first[node] .. first[node + 1); the mate of an arc runs the other way. */
-typedef struct {
-    brio_context *ctx;
-    size_t num_nodes;
-    uint32_t *first, *head, *mate;
-    int32_t *residual;
-    int64_t *terminal;
-    uint8_t *side;
-    uint32_t *parent;   /* the arc from the node to its parent, or one of the marks above */
-    uint32_t *distance; /* to the terminal, right at the time of `checked` */
-    uint32_t *checked;
-    uint32_t time;
-    uint32_t *next_active; /* queue of active nodes, linked; a node in it points to itself at the end */
-    uint32_t active_head, active_tail;
-    uint32_t *orphans; /* ring of nodes, each in it at most once */
-    size_t orphan_first, num_orphans;
-} flow;
-
 /* --- the graph --- */
 
-static brio_status make_arcs(flow *f, const brio_flow_edge *edges, size_t num_edges) {
+static brio_status make_arcs(brio_flow *f, const brio_flow_edge *edges, size_t num_edges) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = f->ctx;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f->first, f->num_nodes + 1));
-    BRIO_TRY(BRIO_ALLOC(ctx, f->head, 2 * num_edges));
-    BRIO_TRY(BRIO_ALLOC(ctx, f->mate, 2 * num_edges));
-    BRIO_TRY(BRIO_ALLOC(ctx, f->residual, 2 * num_edges));
-    for (size_t e = 0; e < num_edges; e++) f->first[edges[e].a]++, f->first[edges[e].b]++;
+    BRIO_TRY(BRIO_RESERVE(f->ctx, f->node, f->node_capacity, f->num_nodes + 1));
+    BRIO_TRY(BRIO_RESERVE(f->ctx, f->arc, f->arc_capacity, 2 * num_edges));
+    memset(f->node, 0, (f->num_nodes + 1) * sizeof *f->node);
+    for (size_t e = 0; e < num_edges; e++) f->node[edges[e].a].first++, f->node[edges[e].b].first++;
     for (size_t v = 0, start = 0; v <= f->num_nodes; v++) {
-        start += f->first[v];
-        f->first[v] = (uint32_t)start; /* the end of its run; filling goes down to the beginning */
+        start += f->node[v].first;
+        f->node[v].first = (uint32_t)start; /* the end of its run; filling goes down to the beginning */
     }
     for (size_t e = 0; e < num_edges; e++) {
-        uint32_t there = --f->first[edges[e].a], back = --f->first[edges[e].b];
-        f->head[there] = edges[e].b, f->mate[there] = back;
-        f->head[back] = edges[e].a, f->mate[back] = there;
-        f->residual[there] = f->residual[back] = edges[e].capacity;
+        brio_flow_edge x = edges[e];
+        uint32_t there = --f->node[x.a].first, back = --f->node[x.b].first;
+        f->arc[there] = (brio_flow_arc){x.b, back, x.capacity};
+        f->arc[back] = (brio_flow_arc){x.a, there, x.capacity};
     }
 done:
     return status;
 }
 
 /* What an arc of a node's run still carries away from the terminal of the node's tree. */
-static int32_t capacity_outwards(const flow *f, uint8_t side, uint32_t arc) {
-    return f->residual[side == SOURCE ? arc : f->mate[arc]];
+static int32_t capacity_outwards(const brio_flow *f, uint8_t side, uint32_t arc) {
+    return f->arc[side == SOURCE ? arc : f->arc[arc].mate].residual;
 }
 
-static int32_t capacity_inwards(const flow *f, uint8_t side, uint32_t arc) {
-    return f->residual[side == SOURCE ? f->mate[arc] : arc];
+static int32_t capacity_inwards(const brio_flow *f, uint8_t side, uint32_t arc) {
+    return f->arc[side == SOURCE ? f->arc[arc].mate : arc].residual;
 }
 
 /* --- queues --- */
 
-static void activate(flow *f, uint32_t v) {
-    if (f->next_active[v] != NO_NODE) return;
+static void activate(brio_flow *f, uint32_t v) {
+    if (f->node[v].next_active != NO_NODE) return;
     if (f->active_head == NO_NODE)
         f->active_head = v;
     else
-        f->next_active[f->active_tail] = v;
+        f->node[f->active_tail].next_active = v;
     f->active_tail = v;
-    f->next_active[v] = v;
+    f->node[v].next_active = v;
 }
 
-static void pop_active(flow *f) {
+static void pop_active(brio_flow *f) {
     uint32_t v = f->active_head;
-    f->active_head = f->next_active[v] == v ? NO_NODE : f->next_active[v];
-    f->next_active[v] = NO_NODE;
+    f->active_head = f->node[v].next_active == v ? NO_NODE : f->node[v].next_active;
+    f->node[v].next_active = NO_NODE;
 }
 
-static void make_orphan(flow *f, uint32_t v) {
+static void make_orphan(brio_flow *f, uint32_t v) {
     size_t at = f->orphan_first + f->num_orphans++;
-    f->parent[v] = ORPHAN;
-    f->orphans[at < f->num_nodes ? at : at - f->num_nodes] = v;
+    f->node[v].parent = ORPHAN;
+    f->node[at < f->num_nodes ? at : at - f->num_nodes].orphan = v;
 }
 
-static uint32_t pop_orphan(flow *f) {
-    uint32_t v = f->orphans[f->orphan_first];
+static uint32_t pop_orphan(brio_flow *f) {
+    uint32_t v = f->node[f->orphan_first].orphan;
     f->orphan_first = f->orphan_first + 1 < f->num_nodes ? f->orphan_first + 1 : 0;
     f->num_orphans--;
     return v;
@@ -99,42 +80,46 @@ static uint32_t pop_orphan(flow *f) {
 
 /* --- growing --- */
 
-static void plant(flow *f) {
+static void plant(brio_flow *f) {
     for (uint32_t v = 0; v < f->num_nodes; v++) {
-        f->next_active[v] = NO_NODE;
-        f->parent[v] = NO_ARC;
+        f->node[v].next_active = NO_NODE;
+        f->node[v].parent = NO_ARC;
         f->side[v] = f->terminal[v] > 0 ? SOURCE : f->terminal[v] < 0 ? SINK : FREE;
     }
     f->active_head = NO_NODE;
     for (uint32_t v = 0; v < f->num_nodes; v++)
         if (f->side[v] != FREE) {
-            f->parent[v] = AT_TERMINAL;
-            f->distance[v] = 1;
+            f->node[v].parent = AT_TERMINAL;
+            f->node[v].distance = 1;
             activate(f, v);
         }
 }
 
-static void hang(flow *f, uint32_t v, uint32_t arc_to_parent, uint32_t parent) {
-    f->parent[v] = arc_to_parent;
-    f->distance[v] = f->distance[parent] + 1;
-    f->checked[v] = f->checked[parent];
+static void hang(brio_flow *f, uint32_t v, uint32_t arc_to_parent, uint32_t parent) {
+    f->node[v].parent = arc_to_parent;
+    f->node[v].distance = f->node[parent].distance + 1;
+    f->node[v].checked = f->node[parent].checked;
+}
+
+/* Whether w, of the same tree, is known to be nearer to the terminal by way of v. */
+static bool is_nearer_by(const brio_flow *f, uint32_t v, uint32_t w) {
+    const brio_flow_node *here = &f->node[v], *there = &f->node[w];
+    return there->checked <= here->checked && there->distance > here->distance + 1 && there->parent < ORPHAN;
 }
 
 /* Grows the tree from an active node. Returns an arc from the tree of the source to that of the sink, or NO_ARC when
  * the node cannot grow any more. */
-static uint32_t grow(flow *f, uint32_t v) {
+static uint32_t grow(brio_flow *f, uint32_t v) {
     uint8_t side = f->side[v];
-    for (uint32_t arc = f->first[v]; arc < f->first[v + 1]; arc++) {
-        if (!capacity_outwards(f, side, arc)) continue;
-        uint32_t w = f->head[arc];
-        if (f->side[w] == FREE) {
+    for (uint32_t arc = f->node[v].first; arc < f->node[v + 1].first; arc++) {
+        uint32_t w = f->arc[arc].head;
+        if (f->side[w] == side) {
+            if (is_nearer_by(f, v, w) && capacity_outwards(f, side, arc)) hang(f, w, f->arc[arc].mate, v);
+        } else if (capacity_outwards(f, side, arc)) {
+            if (f->side[w] != FREE) return side == SOURCE ? arc : f->arc[arc].mate;
             f->side[w] = side;
-            hang(f, w, f->mate[arc], v);
+            hang(f, w, f->arc[arc].mate, v);
             activate(f, w);
-        } else if (f->side[w] != side) {
-            return side == SOURCE ? arc : f->mate[arc];
-        } else if (f->checked[w] <= f->checked[v] && f->distance[w] > f->distance[v] + 1 && f->parent[w] < ORPHAN) {
-            hang(f, w, f->mate[arc], v);
         }
     }
     return NO_ARC;
@@ -143,40 +128,40 @@ static uint32_t grow(flow *f, uint32_t v) {
 /* --- augmenting --- */
 
 /* The arc between v and its parent that flow takes. */
-static uint32_t flow_arc(const flow *f, uint32_t v) {
-    return f->side[v] == SOURCE ? f->mate[f->parent[v]] : f->parent[v];
+static uint32_t flow_arc(const brio_flow *f, uint32_t v) {
+    return f->side[v] == SOURCE ? f->arc[f->node[v].parent].mate : f->node[v].parent;
 }
 
 /* The least that the path between v and its terminal still carries. */
-static int64_t least_along(const flow *f, uint32_t v) {
+static int64_t least_along(const brio_flow *f, uint32_t v) {
     int64_t least = INT64_MAX;
-    for (; f->parent[v] != AT_TERMINAL; v = f->head[f->parent[v]]) {
-        int32_t residual = f->residual[flow_arc(f, v)];
+    for (; f->node[v].parent != AT_TERMINAL; v = f->arc[f->node[v].parent].head) {
+        int32_t residual = f->arc[flow_arc(f, v)].residual;
         if (residual < least) least = residual;
     }
     int64_t terminal = f->side[v] == SOURCE ? f->terminal[v] : -f->terminal[v];
     return terminal < least ? terminal : least;
 }
 
-static void send_along(flow *f, uint32_t v, int64_t amount) {
-    while (f->parent[v] != AT_TERMINAL) {
-        uint32_t arc = flow_arc(f, v), up = f->head[f->parent[v]];
-        f->residual[arc] -= (int32_t)amount;
-        f->residual[f->mate[arc]] += (int32_t)amount;
-        if (!f->residual[arc]) make_orphan(f, v);
+static void send_along(brio_flow *f, uint32_t v, int64_t amount) {
+    while (f->node[v].parent != AT_TERMINAL) {
+        uint32_t arc = flow_arc(f, v), up = f->arc[f->node[v].parent].head;
+        f->arc[arc].residual -= (int32_t)amount;
+        f->arc[f->arc[arc].mate].residual += (int32_t)amount;
+        if (!f->arc[arc].residual) make_orphan(f, v);
         v = up;
     }
     f->terminal[v] -= f->side[v] == SOURCE ? amount : -amount;
     if (!f->terminal[v]) make_orphan(f, v);
 }
 
-static void augment(flow *f, uint32_t arc) {
-    uint32_t from = f->head[f->mate[arc]], to = f->head[arc];
-    int64_t amount = f->residual[arc], before = least_along(f, from), after = least_along(f, to);
+static void augment(brio_flow *f, uint32_t arc) {
+    uint32_t from = f->arc[f->arc[arc].mate].head, to = f->arc[arc].head;
+    int64_t amount = f->arc[arc].residual, before = least_along(f, from), after = least_along(f, to);
     if (before < amount) amount = before;
     if (after < amount) amount = after;
-    f->residual[arc] -= (int32_t)amount;
-    f->residual[f->mate[arc]] += (int32_t)amount;
+    f->arc[arc].residual -= (int32_t)amount;
+    f->arc[f->arc[arc].mate].residual += (int32_t)amount;
     send_along(f, from, amount);
     send_along(f, to, amount);
 }
@@ -185,108 +170,88 @@ static void augment(flow *f, uint32_t arc) {
 
 /* Distance of v from its terminal along parents, or UINT32_MAX when the way up ends at an orphan; nodes on a good way
  * are marked as checked. */
-static uint32_t distance_to_terminal(flow *f, uint32_t v) {
+static uint32_t distance_to_terminal(brio_flow *f, uint32_t v) {
     uint32_t distance = 0, top = v;
-    for (;; top = f->head[f->parent[top]]) {
-        if (f->checked[top] == f->time) {
-            distance += f->distance[top];
+    for (;; top = f->arc[f->node[top].parent].head) {
+        if (f->node[top].checked == f->time) {
+            distance += f->node[top].distance;
             break;
         }
-        if (f->parent[top] == ORPHAN) return UINT32_MAX;
+        if (f->node[top].parent == ORPHAN) return UINT32_MAX;
         distance++;
-        if (f->parent[top] == AT_TERMINAL) {
-            f->checked[top] = f->time;
-            f->distance[top] = 1;
+        if (f->node[top].parent == AT_TERMINAL) {
+            f->node[top].checked = f->time;
+            f->node[top].distance = 1;
             break;
         }
     }
-    for (uint32_t d = distance; f->checked[v] != f->time; v = f->head[f->parent[v]]) {
-        f->checked[v] = f->time;
-        f->distance[v] = d--;
+    for (uint32_t d = distance; f->node[v].checked != f->time; v = f->arc[f->node[v].parent].head) {
+        f->node[v].checked = f->time;
+        f->node[v].distance = d--;
     }
     return distance;
 }
 
 /* Makes the children of v orphans and v free. */
-static void abandon(flow *f, uint32_t v) {
+static void abandon(brio_flow *f, uint32_t v) {
     uint8_t side = f->side[v];
-    for (uint32_t arc = f->first[v]; arc < f->first[v + 1]; arc++) {
-        uint32_t w = f->head[arc];
+    for (uint32_t arc = f->node[v].first; arc < f->node[v + 1].first; arc++) {
+        uint32_t w = f->arc[arc].head;
         if (f->side[w] != side) continue;
         if (capacity_inwards(f, side, arc)) activate(f, w);
-        if (f->parent[w] == f->mate[arc]) make_orphan(f, w);
+        if (f->node[w].parent == f->arc[arc].mate) make_orphan(f, w);
     }
     f->side[v] = FREE;
-    f->parent[v] = NO_ARC;
+    f->node[v].parent = NO_ARC;
 }
 
-static void adopt(flow *f, uint32_t v) {
+static void adopt(brio_flow *f, uint32_t v) {
     uint8_t side = f->side[v];
     uint32_t best = NO_ARC, least = UINT32_MAX;
-    for (uint32_t arc = f->first[v]; arc < f->first[v + 1]; arc++) {
-        if (!capacity_inwards(f, side, arc) || f->side[f->head[arc]] != side) continue;
-        uint32_t distance = distance_to_terminal(f, f->head[arc]);
+    for (uint32_t arc = f->node[v].first; arc < f->node[v + 1].first; arc++) {
+        if (f->side[f->arc[arc].head] != side || !capacity_inwards(f, side, arc)) continue;
+        uint32_t distance = distance_to_terminal(f, f->arc[arc].head);
         if (distance < least) least = distance, best = arc;
     }
     if (best == NO_ARC) {
         abandon(f, v);
         return;
     }
-    f->parent[v] = best;
-    f->distance[v] = least + 1;
-    f->checked[v] = f->time;
+    f->node[v].parent = best;
+    f->node[v].distance = least + 1;
+    f->node[v].checked = f->time;
 }
 
 /* --- the whole --- */
 
-/* Whether it ended within `work` looks at the arcs of orphans. */
-static brio_status run(flow *f, uint64_t work, bool *ended) {
+brio_flow brio_flow_new(brio_context *ctx) {
+    return (brio_flow){.ctx = ctx};
+}
+
+void brio_flow_free(brio_flow *f) {
+    brio_release(f->ctx, f->node);
+    brio_release(f->ctx, f->arc);
+}
+
+brio_status brio_flow_maximum(brio_flow *f, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
+                              int64_t *terminal, uint8_t *side) {
     brio_status status = BRIO_OK;
-    uint64_t done_work = 0;
-    *ended = false;
+    BRIO_REQUIRE(f->ctx, num_nodes < ORPHAN && num_edges < ORPHAN / 2, BRIO_ERR_TOO_LARGE,
+                 "%zu edges of a flow are more than 32-bit indices can name", num_edges);
+    f->num_nodes = num_nodes, f->terminal = terminal, f->side = side;
+    f->time = 0, f->orphan_first = f->num_orphans = 0;
+    BRIO_TRY(make_arcs(f, edges, num_edges));
+    plant(f);
     while (f->active_head != NO_NODE) {
         uint32_t v = f->active_head, arc = f->side[v] == FREE ? NO_ARC : grow(f, v);
         if (arc == NO_ARC) {
             pop_active(f);
             continue;
         }
-        if (f->time++ % 4096 == 0) BRIO_TRY(brio_progress(f->ctx, "label", 0.75));
+        f->time++;
         augment(f, arc);
-        while (f->num_orphans) {
-            uint32_t orphan = pop_orphan(f);
-            done_work += f->first[orphan + 1] - f->first[orphan];
-            adopt(f, orphan);
-        }
-        if (done_work > work) return BRIO_OK;
+        while (f->num_orphans) adopt(f, pop_orphan(f));
     }
-    *ended = true;
 done:
-    return status;
-}
-
-brio_status brio_max_flow(brio_context *ctx, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
-                          int64_t *terminal, uint8_t *side, uint64_t work, bool *ended) {
-    brio_status status = BRIO_OK;
-    flow f = {.ctx = ctx, .num_nodes = num_nodes, .terminal = terminal, .side = side};
-    BRIO_REQUIRE(ctx, num_nodes < ORPHAN && num_edges < ORPHAN / 2, BRIO_ERR_TOO_LARGE,
-                 "%zu edges of a flow are more than 32-bit indices can name", num_edges);
-    BRIO_TRY(make_arcs(&f, edges, num_edges));
-    BRIO_TRY(BRIO_ALLOC(ctx, f.parent, num_nodes));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f.distance, num_nodes));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f.checked, num_nodes));
-    BRIO_TRY(BRIO_ALLOC(ctx, f.next_active, num_nodes));
-    BRIO_TRY(BRIO_ALLOC(ctx, f.orphans, num_nodes));
-    plant(&f);
-    BRIO_TRY(run(&f, work, ended));
-done:
-    brio_release(ctx, f.first);
-    brio_release(ctx, f.head);
-    brio_release(ctx, f.mate);
-    brio_release(ctx, f.residual);
-    brio_release(ctx, f.parent);
-    brio_release(ctx, f.distance);
-    brio_release(ctx, f.checked);
-    brio_release(ctx, f.next_active);
-    brio_release(ctx, f.orphans);
     return status;
 }

@@ -14,17 +14,43 @@ typedef struct {
  *  sets on either side of a minimum cut. */
 typedef enum { BRIO_FLOW_FREE = 0, BRIO_FLOW_SOURCE = 1, BRIO_FLOW_SINK = 2 } brio_flow_side;
 
-/** More than all edges of a node can carry. */
-#define BRIO_FLOW_ENDLESS (INT64_C(1) << 62)
+/** Workspace for many flows, one after another. Arcs leave a node in the run node[v].first .. node[v + 1].first; the mate
+ *  of an arc runs the other way. */
+typedef struct {
+    uint32_t head, mate;
+    int32_t residual;
+} brio_flow_arc;
 
-/** Finds a maximum flow, unless that takes more than `work` looks at an arc in the repair of the search trees: then *ended
- *  is false, and the sides mean nothing.
+typedef struct {
+    uint32_t first;
+    uint32_t parent;   /* the arc from the node to its parent, or a mark */
+    uint32_t distance; /* to the terminal, right at the time of `checked` */
+    uint32_t checked;
+    uint32_t next_active; /* queue of active nodes, linked; a node in it points to itself at the end */
+    uint32_t orphan;      /* not of this node: a place in the ring of orphans, which has each node at most once */
+} brio_flow_node;
+
+typedef struct {
+    brio_context *ctx;
+    brio_flow_node *node;
+    brio_flow_arc *arc;
+    size_t num_nodes, node_capacity, arc_capacity;
+    int64_t *terminal;
+    uint8_t *side;
+    uint32_t time, active_head, active_tail;
+    size_t orphan_first, num_orphans;
+} brio_flow;
+
+brio_flow brio_flow_new(brio_context *ctx);
+void brio_flow_free(brio_flow *flow);
+
+/** Finds a maximum flow.
  *  terminal  #nodes: what comes from the source at a node, or, negative, goes to the sink; used as workspace.
  *  side      #nodes, written.   num_edges  less than 2^31.
- *  Cost: linear where the flow is short, as in graphs nearly all of whose edges are at peace; 28 bytes an edge.
- *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED.
+ *  Cost: linear where the flow is short, as in graphs nearly all of whose edges are at peace; 24 bytes an edge and as
+ *  many a node.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE.
  *  Based on: [Boykov Kolmogorov 2004]. */
-brio_status brio_max_flow(brio_context *ctx, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
-                          int64_t *terminal, uint8_t *side, uint64_t work, bool *ended);
+brio_status brio_flow_maximum(brio_flow *flow, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
+                              int64_t *terminal, uint8_t *side);
 
 #endif

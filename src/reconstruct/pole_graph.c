@@ -1,19 +1,17 @@
 /* The graph of poles.
  *
- * An edge of the regular triangulation is read off the first tetrahedron of its ring. Most of the others see from their
- * own facets that a neighbour in the ring comes before them; only the rest walk round. One pass over the tetrahedra
- * counts the edges of each pole and remembers which tetrahedron leads which, a second one deals the edges out, and the
- * short list of each pole is sorted, so that the threads leave no trace. */
+ * An edge of the regular triangulation is noted by the tetrahedra of its ring that come before both of their neighbours
+ * in the ring: its first one does, and seldom another. To walk round for the very first one would cost more than to
+ * drop the others from the pole's short list, which is sorted anyway, so that the threads leave no trace. Each edge is
+ * noted at its pole of higher number; with its weight it is then dealt out to both.  */
 #include "reconstruct/pole_graph.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/sort.h"
-#include "surface/edge_rings.h"
-#include "triangulation/ring.h"
 #include <math.h>
 #include <string.h>
 
-enum { STEP = 1 << 21, AHEAD = 8 }; /* tetrahedra between two looks at the caller's wish to stop, and to fetch ahead */
+enum { STEP = 1 << 21 }; /* tetrahedra between two looks at the caller's wish to stop */
 
 /* Workspace of the construction. */
 typedef struct {
@@ -21,94 +19,42 @@ typedef struct {
     int threads;
     const uint32_t *representative;
     double least_weight;
-    uint8_t *leads;  /* of each finite tetrahedron, a bit for each of its edges that it leads and that is deep */
-    size_t *place;   /* of each pole, where its next edge goes */
-    uint64_t *edges; /* (pole, bits of the weight) */
+    float *opposite;   /* of each sample: the weight between its poles, 0 for no edge */
+    size_t *first_low; /* #poles + 1: the neighbours of each pole that have lower numbers */
+    uint64_t *low;     /* such a neighbour, 32 bits of weight; NOTHING after the last one */
+    size_t *place;     /* of each pole, where its next edge goes */
+    uint64_t *edge;    /* the edges, (other end, bits of the weight) */
 } builder;
 
-static const uint8_t PAIR[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+static const uint64_t NOTHING = UINT64_MAX;
 
 static const double *centre_of(const brio_pole_graph *g, uint32_t p) {
     return g->poles->centre + 3 * (size_t)p;
 }
 
-static inline double weight_of(const brio_pole_graph *g, uint32_t p, uint32_t q) {
+double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
     const double *a = centre_of(g, p), *b = centre_of(g, q);
     double pp = g->poles->square[p], qq = g->poles->square[q], x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
     return (pp + qq - (x * x + y * y + z * z)) / (2 * sqrt(pp * qq));
 }
 
-double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
-    return weight_of(g, p, q);
-}
-
-/* --- neighbours --- */
-
-static void count_edge(const builder *b, uint32_t p, uint32_t q) {
-    __atomic_fetch_add(&b->place[p], 1, __ATOMIC_RELAXED);
-    __atomic_fetch_add(&b->place[q], 1, __ATOMIC_RELAXED);
-}
-
-static void put_edge(const builder *b, uint32_t p, uint32_t q, double weight) {
-    float w = (float)fmin(weight, 1);
+/* An edge as a key that sorts by the other end. */
+static uint64_t key_of(uint32_t pole, float weight) {
     uint32_t bits;
-    memcpy(&bits, &w, sizeof bits);
-    b->edges[__atomic_fetch_add(&b->place[p], 1, __ATOMIC_RELAXED)] = (uint64_t)q << 32 | bits;
-    b->edges[__atomic_fetch_add(&b->place[q], 1, __ATOMIC_RELAXED)] = (uint64_t)p << 32 | bits;
+    memcpy(&bits, &weight, sizeof bits);
+    return (uint64_t)pole << 32 | bits;
 }
 
-static void count_tetrahedron(const builder *b, uint32_t tet) {
-    const uint32_t *v = b->g->power.tet[tet].vertex;
-    b->leads[tet] = 0;
-    for (int e = 0; e < 6; e++) {
-        uint32_t p = v[PAIR[e][0]], q = v[PAIR[e][1]];
-        if (!brio_ring_may_lead(&b->g->power, tet, PAIR[e][0], PAIR[e][1])) continue;
-        if (!(weight_of(b->g, p, q) > b->least_weight)) continue;
-        if (!brio_ring_size(&b->g->power, tet, PAIR[e][0], PAIR[e][1])) continue;
-        b->leads[tet] |= (uint8_t)(1 << e);
-        count_edge(b, p, q);
-    }
+static brio_pole_edge edge_of(uint64_t key) {
+    brio_pole_edge e = {.pole = (uint32_t)(key >> 32)};
+    uint32_t bits = (uint32_t)key;
+    memcpy(&e.weight, &bits, sizeof bits);
+    return e;
 }
 
-static void put_tetrahedron(const builder *b, uint32_t tet) {
-    const uint32_t *v = b->g->power.tet[tet].vertex;
-    for (int e = 0; e < 6; e++) {
-        uint32_t p = v[PAIR[e][0]], q = v[PAIR[e][1]];
-        if (b->leads[tet] >> e & 1) put_edge(b, p, q, weight_of(b->g, p, q));
-    }
-}
-
-static void put_hidden(const builder *b, uint32_t p, bool count) {
-    uint32_t r = b->representative[p];
-    double weight;
-    if (r == p || !((weight = weight_of(b->g, p, r)) > b->least_weight)) return;
-    if (count)
-        count_edge(b, p, r);
-    else
-        put_edge(b, p, r, weight);
-}
-
-/* Counts all edges, or deals them out. */
-static brio_status pass(const builder *b, bool count, double from, double to) {
-    const brio_pole_graph *g = b->g;
-    brio_status status = BRIO_OK;
-    for (size_t begin = 0; begin < g->num_finite; begin += STEP) {
-        size_t end = g->num_finite - begin < STEP ? g->num_finite : begin + STEP;
-        BRIO_TRY(brio_progress(g->ctx, "label", from + (to - from) * (double)begin / (double)g->num_finite));
-        BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
-        for (size_t tet = begin; tet < end; tet++) {
-            if (count) {
-                if (tet + AHEAD < end) brio_ring_fetch(&g->power, tet + AHEAD);
-                count_tetrahedron(b, (uint32_t)tet);
-            } else if (b->leads[tet]) {
-                put_tetrahedron(b, (uint32_t)tet);
-            }
-        }
-    }
-    BRIO_OMP(parallel for num_threads(b->threads))
-    for (size_t p = 0; p < g->poles->count; p++) put_hidden(b, (uint32_t)p, count);
-done:
-    return status;
+/* Adds 1; what it was before. */
+static inline size_t count_up(const builder *b, size_t *count) {
+    return b->threads > 1 ? __atomic_fetch_add(count, 1, __ATOMIC_RELAXED) : (*count)++;
 }
 
 /* first[p] = sum of the counts before p; counts become places. */
@@ -120,39 +66,76 @@ static void first_places(size_t *first, size_t *count, size_t n) {
     }
 }
 
-static void sort_edges(const builder *b) {
-    const brio_pole_graph *g = b->g;
-    BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
-    for (size_t p = 0; p < g->poles->count; p++) {
-        brio_sort_keys(b->edges + g->first_edge[p], g->first_edge[p + 1] - g->first_edge[p]);
-        for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++) {
-            uint32_t bits = (uint32_t)b->edges[e];
-            g->edge_pole[e] = (uint32_t)(b->edges[e] >> 32);
-            memcpy(&g->edge_weight[e], &bits, sizeof bits);
-        }
+/* --- neighbours of lower number --- */
+
+/* Counts an edge, or notes it. */
+static inline void note(const builder *b, uint32_t p, uint32_t q) {
+    uint32_t lower = p < q ? p : q;
+    size_t at = count_up(b, &b->place[p < q ? q : p]);
+    if (b->low) b->low[at] = key_of(lower, 0);
+}
+
+/* EDGES[i]: the edges, by bits, each as two slots in PAIR, whose neighbours in the ring are behind facets in the set i. */
+static const uint8_t PAIR[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+static const uint8_t EDGES[16] = {0, 0, 0, 32, 0, 16, 4, 52, 0, 8, 2, 42, 1, 25, 7, 63};
+
+static inline void note_tetrahedron(const builder *b, uint32_t tet) {
+    const brio_tetrahedron *t = &b->g->power.tet[tet];
+    unsigned later = 0;
+    for (unsigned i = 0; i < 4; i++) later |= (unsigned)(brio_tet_of(t->mate[i]) > tet) << i;
+    for (unsigned edges = EDGES[later]; edges; edges &= edges - 1) {
+        const uint8_t *e = PAIR[__builtin_ctz(edges)];
+        note(b, t->vertex[e[0]], t->vertex[e[1]]);
     }
 }
 
-static brio_status list_neighbours(brio_pole_graph *g, const uint32_t *representative, double least_weight) {
+static brio_status note_all(const builder *b, double from, double to) {
+    const brio_pole_graph *g = b->g;
     brio_status status = BRIO_OK;
-    brio_context *ctx = g->ctx;
-    size_t n = g->poles->count;
-    builder b = {
-        .g = g, .threads = brio_context_threads(ctx), .representative = representative, .least_weight = least_weight};
-    BRIO_TRY(BRIO_ALLOC(ctx, b.leads, g->num_finite));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.place, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, g->first_edge, n + 1));
-    BRIO_TRY(pass(&b, true, 0, 0.3));
-    first_places(g->first_edge, b.place, n);
-    BRIO_TRY(BRIO_ALLOC(ctx, b.edges, g->first_edge[n]));
-    BRIO_TRY(pass(&b, false, 0.3, 0.4));
-    BRIO_TRY(BRIO_ALLOC(ctx, g->edge_pole, g->first_edge[n]));
-    BRIO_TRY(BRIO_ALLOC(ctx, g->edge_weight, g->first_edge[n]));
-    sort_edges(&b);
+    for (size_t begin = 0; begin < g->num_finite; begin += STEP) {
+        size_t end = g->num_finite - begin < STEP ? g->num_finite : begin + STEP;
+        BRIO_TRY(brio_progress(g->ctx, "label", from + (to - from) * (double)begin / (double)g->num_finite));
+        BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
+        for (size_t tet = begin; tet < end; tet++) note_tetrahedron(b, (uint32_t)tet);
+    }
+    BRIO_OMP(parallel for num_threads(b->threads))
+    for (size_t p = 0; p < g->poles->count; p++)
+        if (b->representative[p] != p) note(b, (uint32_t)p, b->representative[p]);
 done:
-    brio_release(ctx, b.leads);
-    brio_release(ctx, b.place);
-    brio_release(ctx, b.edges);
+    return status;
+}
+
+/* Keeps each of the pole's edges that are deep enough once, with its weight, and counts it at both ends. */
+static void weigh(const builder *b, uint32_t p) {
+    uint64_t *low = b->low + b->first_low[p], last = NOTHING;
+    size_t size = b->first_low[p + 1] - b->first_low[p], kept = 0;
+    brio_sort_keys(low, size);
+    for (size_t i = 0; i < size; i++) {
+        if (low[i] == last) continue;
+        last = low[i];
+        uint32_t q = (uint32_t)(last >> 32);
+        double weight = brio_pole_graph_weight(b->g, p, q);
+        if (!(weight > b->least_weight)) continue;
+        low[kept++] = key_of(q, (float)fmax(fmin(weight, 1), 0));
+        count_up(b, &b->place[p]);
+        count_up(b, &b->place[q]);
+    }
+    if (kept < size) low[kept] = NOTHING;
+}
+
+static brio_status list_neighbours(builder *b) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = b->g->ctx;
+    size_t n = b->g->poles->count;
+    BRIO_TRY(BRIO_ALLOC(ctx, b->first_low, n + 1));
+    BRIO_TRY(note_all(b, 0, 0.15));
+    first_places(b->first_low, b->place, n);
+    BRIO_TRY(BRIO_ALLOC(ctx, b->low, b->first_low[n]));
+    BRIO_TRY(note_all(b, 0.15, 0.3));
+    memset(b->place, 0, n * sizeof *b->place);
+    BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
+    for (size_t p = 0; p < n; p++) weigh(b, (uint32_t)p);
+done:
     return status;
 }
 
@@ -162,43 +145,85 @@ static double dot_from(const double *o, const double *p, const double *q) {
     return (p[0] - o[0]) * (q[0] - o[0]) + (p[1] - o[1]) * (q[1] - o[1]) + (p[2] - o[2]) * (q[2] - o[2]);
 }
 
-/* The other pole of sample i / 2 than the one on side i % 2, and the weight of the edge between them. */
-static void set_opposite(brio_pole_graph *g, size_t e, size_t i) {
-    uint32_t p = g->poles->of_sample[i], q = g->poles->of_sample[i ^ 1];
-    const double *s = g->samples + 3 * (i / 2), *a = centre_of(g, p), *b = centre_of(g, q);
-    double weight = -dot_from(s, a, b) / sqrt(dot_from(s, a, a) * dot_from(s, b, b));
-    g->opposite_pole[e] = q;
-    g->opposite_weight[e] = weight > 0 ? fmin(weight, 1) : 0;
+/* The weight between the poles of a sample, 0 where there is no edge. */
+static float opposite_weight(const brio_pole_graph *g, size_t sample) {
+    uint32_t p = g->poles->of_sample[2 * sample], q = g->poles->of_sample[2 * sample + 1];
+    if (p == BRIO_NO_POLE || q == BRIO_NO_POLE) return 0;
+    const double *s = g->samples + 3 * sample, *a = centre_of(g, p), *b = centre_of(g, q);
+    double cosine = dot_from(s, a, b) / sqrt(dot_from(s, a, a) * dot_from(s, b, b));
+    return cosine < 0 ? (float)fmax(cosine, -1) : 0;
 }
 
-static bool has_both(const brio_pole_graph *g, size_t i) {
-    return g->poles->of_sample[i] != BRIO_NO_POLE && g->poles->of_sample[i ^ 1] != BRIO_NO_POLE;
-}
-
-static brio_status list_opposite(brio_pole_graph *g) {
-    brio_status status = BRIO_OK;
-    brio_context *ctx = g->ctx;
-    size_t n = g->poles->count, *place = NULL, *pairs = NULL; /* 2 sample + side of each edge */
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, place, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, g->first_opposite, n + 1));
-    for (size_t i = 0; i < 2 * g->num_samples; i++)
-        if (has_both(g, i)) place[g->poles->of_sample[i]]++;
-    first_places(g->first_opposite, place, n);
-    size_t num_edges = g->first_opposite[n];
-    BRIO_TRY(BRIO_ALLOC(ctx, pairs, num_edges));
-    BRIO_TRY(BRIO_ALLOC(ctx, g->opposite_pole, num_edges));
-    BRIO_TRY(BRIO_ALLOC(ctx, g->opposite_weight, num_edges));
-    for (size_t i = 0; i < 2 * g->num_samples; i++)
-        if (has_both(g, i)) pairs[place[g->poles->of_sample[i]]++] = i;
-    BRIO_OMP(parallel for num_threads(brio_context_threads(ctx)))
-    for (size_t e = 0; e < num_edges; e++) set_opposite(g, e, pairs[e]);
-done:
-    brio_release(ctx, place);
-    brio_release(ctx, pairs);
-    return status;
+static brio_status list_opposite(builder *b) {
+    const brio_pole_graph *g = b->g;
+    brio_status status = BRIO_ALLOC(g->ctx, b->opposite, g->num_samples);
+    if (status != BRIO_OK) return status;
+    BRIO_OMP(parallel for num_threads(b->threads))
+    for (size_t s = 0; s < g->num_samples; s++) {
+        b->opposite[s] = opposite_weight(g, s);
+        if (!(b->opposite[s] < 0)) continue;
+        count_up(b, &b->place[g->poles->of_sample[2 * s]]);
+        count_up(b, &b->place[g->poles->of_sample[2 * s + 1]]);
+    }
+    return BRIO_OK;
 }
 
 /* --- the graph --- */
+
+static void deal(const builder *b, uint32_t p, uint32_t q, float weight) {
+    b->edge[count_up(b, &b->place[p])] = key_of(q, weight);
+    b->edge[count_up(b, &b->place[q])] = key_of(p, weight);
+}
+
+static void deal_out(const builder *b) {
+    const brio_pole_graph *g = b->g;
+    BRIO_OMP(parallel for num_threads(b->threads))
+    for (size_t p = 0; p < g->poles->count; p++)
+        for (size_t i = b->first_low[p]; i < b->first_low[p + 1] && b->low[i] != NOTHING; i++) {
+            brio_pole_edge e = edge_of(b->low[i]);
+            deal(b, (uint32_t)p, e.pole, e.weight);
+        }
+    BRIO_OMP(parallel for num_threads(b->threads))
+    for (size_t s = 0; s < g->num_samples; s++)
+        if (b->opposite[s] < 0) deal(b, g->poles->of_sample[2 * s], g->poles->of_sample[2 * s + 1], b->opposite[s]);
+}
+
+/* Sorts the edges of each pole, and turns keys into edges where they are. */
+static void sort_edges(const builder *b) {
+    const brio_pole_graph *g = b->g;
+    BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
+    for (size_t p = 0; p < g->poles->count; p++) {
+        brio_sort_keys(b->edge + g->first[p], g->first[p + 1] - g->first[p]);
+        for (size_t i = g->first[p]; i < g->first[p + 1]; i++) {
+            brio_pole_edge e = edge_of(b->edge[i]);
+            memcpy(&b->edge[i], &e, sizeof e);
+        }
+    }
+}
+
+static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative, double least_weight) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = g->ctx;
+    size_t n = g->poles->count;
+    builder b = {
+        .g = g, .threads = brio_context_threads(ctx), .representative = representative, .least_weight = least_weight};
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.place, n));
+    BRIO_TRY(list_neighbours(&b));
+    BRIO_TRY(list_opposite(&b));
+    BRIO_TRY(BRIO_ALLOC(ctx, g->first, n + 1));
+    first_places(g->first, b.place, n);
+    BRIO_TRY(BRIO_ALLOC(ctx, b.edge, g->first[n]));
+    deal_out(&b);
+    sort_edges(&b);
+    g->edge = (brio_pole_edge *)b.edge; /* of the same size, and written as edges */
+done:
+    if (status != BRIO_OK) brio_release(ctx, b.edge);
+    brio_release(ctx, b.opposite);
+    brio_release(ctx, b.first_low);
+    brio_release(ctx, b.low);
+    brio_release(ctx, b.place);
+    return status;
+}
 
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
                                 const brio_triangulation *power, double least_weight, brio_pole_graph *g) {
@@ -210,17 +235,12 @@ brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, cons
     g->power = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(power),
                                  .count = stats->tetrahedra + stats->hull_facets,
                                  .infinite = BRIO_INFINITE};
-    BRIO_TRY(list_opposite(g));
-    BRIO_TRY(list_neighbours(g, brio_triangulation_representatives(power), least_weight));
+    BRIO_TRY(list_edges(g, brio_triangulation_representatives(power), least_weight));
 done:
     return status;
 }
 
 void brio_pole_graph_free(brio_pole_graph *g) {
-    brio_release(g->ctx, g->first_opposite);
-    brio_release(g->ctx, g->opposite_pole);
-    brio_release(g->ctx, g->opposite_weight);
-    brio_release(g->ctx, g->first_edge);
-    brio_release(g->ctx, g->edge_pole);
-    brio_release(g->ctx, g->edge_weight);
+    brio_release(g->ctx, g->first);
+    brio_release(g->ctx, g->edge);
 }

@@ -7,6 +7,13 @@
 
 typedef enum { BRIO_LABEL_NONE = 0, BRIO_LABEL_OUTER = 1, BRIO_LABEL_INNER = 2 } brio_label;
 
+/** An edge as its one end sees it. */
+typedef struct {
+    uint32_t pole; /* the other end */
+    float weight;  /* at least 0: a neighbour, which wants the same label; negative: an opposite pole, which wants the
+                      other label; at most 1 in magnitude */
+} brio_pole_edge;
+
 /** Two poles are neighbours when their power cells share a face, that is an edge of the regular triangulation of the
  *  polar balls; a hidden pole has one neighbour, its representative. Two poles are opposite when they are the poles of
  *  one sample. */
@@ -17,33 +24,20 @@ typedef struct {
     size_t num_samples;
     brio_tetrahedra power; /* the regular triangulation of the polar balls, caller's indices */
     size_t num_finite;
-    size_t *first_opposite; /* #poles + 1: the opposite poles of each pole, by sample and side */
-    uint32_t *opposite_pole;
-    double *opposite_weight; /* 0: no edge */
-    size_t *first_edge; /* #poles + 1: the edges to deeply intersecting neighbours of each pole, by their numbers */
-    uint32_t *edge_pole;
-    float *edge_weight;
+    size_t *first;        /* #poles + 1: the edges of each pole, by the numbers of their other ends */
+    brio_pole_edge *edge; /* between two poles there may be several */
 } brio_pole_graph;
 
 /** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power. The
  *  weight of an edge between neighbours is -cos of the angle at which their balls intersect: -1 where they touch, 0 at
- *  a right angle, 1 for a ball inside the other; edges of weight `least_weight` and less are left out. */
+ *  a right angle, 1 for a ball inside the other; edges of weight `least_weight` and less are left out, and negative
+ *  weights are listed as 0. That of an edge between opposite poles is cos of the angle at the sample, and edges at less
+ *  than a right angle are left out. */
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
                                 const brio_triangulation *power, double least_weight, brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);
 
 /** The weight of an edge between two neighbours, deep or not; over 1 for a ball inside the other. */
 double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q);
-
-/** Called for an edge from a pole to `other` of the given weight, at most 1. */
-typedef void (*brio_pole_visit_fn)(uint32_t other, double weight, void *user);
-
-/** Visits the opposite poles of p; the weight is -cos of the angle at the sample, edges that are not positive are left
- *  out. */
-static inline void brio_pole_graph_opposite(const brio_pole_graph *g, uint32_t p, brio_pole_visit_fn visit,
-                                            void *user) {
-    for (size_t e = g->first_opposite[p]; e < g->first_opposite[p + 1]; e++)
-        if (g->opposite_weight[e] > 0) visit(g->opposite_pole[e], g->opposite_weight[e], user);
-}
 
 #endif

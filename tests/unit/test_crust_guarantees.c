@@ -67,8 +67,9 @@ static double angle_between(const brio_pole_graph *g, uint32_t p, uint32_t q) {
 static void check_intersections(const theory *x, const brio_pole_graph *g) {
     double limit = 2 * asin(3 * x->r), widest = 0;
     for (uint32_t p = 0; p < x->poles.count; p++)
-        for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++)
-            if (x->truth[p] != x->truth[g->edge_pole[e]]) widest = fmax(widest, angle_between(g, p, g->edge_pole[e]));
+        for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
+            if (g->edge[e].weight >= 0 && x->truth[p] != x->truth[g->edge[e].pole])
+                widest = fmax(widest, angle_between(g, p, g->edge[e].pole));
     for (size_t s = 0; s < x->n; s++) {
         uint32_t p = x->poles.of_sample[2 * s], q = x->poles.of_sample[2 * s + 1];
         EXPECT(p != BRIO_NO_POLE && q != BRIO_NO_POLE && x->truth[p] != x->truth[q], "the poles of sample %zu", s);

@@ -1,0 +1,272 @@
+/* The graph of poles against all pairs of vertices of the triangulation, the queue of poles against a search through all
+ * of its entries, and blocks of poles settled by roof duality against all labels of a block. */
+#include "base/memory.h"
+#include "failing_allocator.h"
+#include "harness.h"
+#include "points.h"
+#include "reconstruct/labelled_poles.h"
+#include "reconstruct/pole_queue.h"
+#include "reconstruct/roof_duality.h"
+
+/* --- graph --- */
+
+enum { SAMPLES = 300 };
+
+static bool has_edge(const brio_pole_graph *g, uint32_t p, uint32_t q, double weight) {
+    for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
+        if (g->edge[e].pole == q && g->edge[e].weight == (float)weight) return true;
+    return false;
+}
+
+static size_t count_edges(const brio_pole_graph *g, uint32_t p, uint32_t q, bool opposite) {
+    size_t count = 0;
+    for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
+        count += g->edge[e].pole == q && (g->edge[e].weight < 0) == opposite;
+    return count;
+}
+
+/* Each pair of vertices of a tetrahedron that intersects deeply is an edge, once, and no other pair is. */
+static void check_neighbours(const brio_pole_graph *g, double least) {
+    size_t n = g->poles->count, found = 0, listed = 0;
+    uint8_t *pair = calloc(n * n, 1);
+    for (size_t tet = 0; tet < g->num_finite; tet++)
+        for (int i = 0; i < 4; i++)
+            for (int j = 0; j < 4; j++) pair[n * g->power.tet[tet].vertex[i] + g->power.tet[tet].vertex[j]] = 1;
+    for (uint32_t p = 0; p < n; p++)
+        for (uint32_t q = 0; q < n; q++) {
+            if (p == q || !pair[n * p + q]) continue;
+            double weight = brio_pole_graph_weight(g, p, q);
+            size_t count = count_edges(g, p, q, false);
+            EXPECT(count == (weight > least), "poles %u, %u: %zu edges of weight %g", p, q, count, weight);
+            if (count) EXPECT(has_edge(g, p, q, fmax(0, fmin(1, weight))), "poles %u, %u: %g", p, q, weight);
+            found += count;
+        }
+    for (uint32_t p = 0; p < n; p++)
+        for (size_t e = g->first[p]; e < g->first[p + 1]; e++) listed += !(g->edge[e].weight < 0);
+    EXPECT(found > 0 && listed >= found, "%zu, %zu", listed, found);
+    free(pair);
+}
+
+static void check_opposite(const brio_pole_graph *g) {
+    for (size_t s = 0; s < g->num_samples; s++) {
+        uint32_t p = g->poles->of_sample[2 * s], q = g->poles->of_sample[2 * s + 1];
+        if (p == BRIO_NO_POLE || q == BRIO_NO_POLE || p == q) continue;
+        const double *x = g->samples + 3 * s, *a = g->poles->centre + 3 * (size_t)p,
+                     *b = g->poles->centre + 3 * (size_t)q;
+        double dot = 0;
+        for (int k = 0; k < 3; k++) dot += (a[k] - x[k]) * (b[k] - x[k]);
+        EXPECT((dot < 0) <= (count_edges(g, p, q, true) > 0) &&
+                   count_edges(g, p, q, true) == count_edges(g, q, p, true),
+               "sample %zu", s);
+    }
+}
+
+static void edges_are_those_of_the_triangulation_and_the_samples(void) {
+    static double p[3 * SAMPLES];
+    brio_surface_options o = brio_surface_options_default();
+    for (int shape = 0; shape < 4; shape++)
+        for (int labeling = 0; labeling < BRIO_LABELING_END; labeling++) {
+            brio_context *ctx = new_context();
+            brio_pole_request request;
+            brio_labelled_poles l;
+            o.labeling = (brio_labeling)labeling;
+            if (shape == 0) uniform_points(1, SAMPLES, p);
+            if (shape == 1) clustered_points(2, SAMPLES, p);
+            if (shape == 2) sphere_points(3, SAMPLES, p);
+            if (shape == 3) integer_points(4, SAMPLES, 5, p);
+            EXPECT(brio_pole_request_of(ctx, &o, &request) == BRIO_OK);
+            EXPECT(brio_labelled_poles_find(ctx, p, SAMPLES, &request, &l) == BRIO_OK, "%s", brio_message(ctx));
+            check_neighbours(&l.graph, labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0);
+            check_opposite(&l.graph);
+            brio_labelled_poles_free(&l);
+            EXPECT(brio_context_memory(ctx) == 0);
+            brio_context_free(ctx);
+        }
+}
+
+/* --- queue --- */
+
+/* Priorities fall most of the time, and rise now and then. */
+static void highest_priority_and_lowest_pole_come_first(void) {
+    enum { MOST = 400 };
+    brio_context *ctx = new_context();
+    for (uint64_t trial = 0; trial < 40; trial++) {
+        brio_rng rng = brio_rng_new(trial);
+        uint32_t highest = trial % 2 ? 50 : UINT32_C(1) << 30, priority[MOST], pole[MOST];
+        size_t n = 0;
+        brio_pole_queue q = brio_pole_queue_new(ctx, highest);
+        for (int step = 0; step < 3000; step++) {
+            if (n < MOST && brio_rng_below(&rng, 5) < 3) {
+                priority[n] = brio_rng_below(&rng, highest + 1), pole[n] = brio_rng_below(&rng, 100);
+                EXPECT(brio_pole_queue_push(&q, pole[n], priority[n]) == BRIO_OK);
+                n++;
+                continue;
+            }
+            uint32_t p = 0, key = 0;
+            bool found;
+            size_t best = 0;
+            EXPECT(brio_pole_queue_pop(&q, &p, &key, &found) == BRIO_OK && found == (n > 0));
+            for (size_t i = 1; i < n; i++)
+                if (priority[i] > priority[best] || (priority[i] == priority[best] && pole[i] < pole[best])) best = i;
+            if (n == 0) continue;
+            EXPECT(p == pole[best] && key == priority[best], "trial %d, step %d", (int)trial, step);
+            priority[best] = priority[--n], pole[best] = pole[n];
+        }
+        brio_pole_queue_free(&q);
+    }
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* --- blocks --- */
+
+enum { POLES = 60, EDGES = 150 };
+
+/* Poles at random places, and random edges between near numbers, so that there are rounds of several blocks. */
+typedef struct {
+    brio_poles poles;
+    brio_pole_graph g;
+    double centre[3 * POLES];
+    size_t first[POLES + 1];
+    brio_pole_edge edge[2 * EDGES];
+    uint8_t label[POLES], fixed[POLES];
+} random_graph;
+
+static void make_graph(random_graph *r, brio_context *ctx, uint64_t seed) {
+    brio_rng rng = brio_rng_new(seed);
+    uint32_t a[EDGES], b[EDGES];
+    float w[EDGES];
+    size_t count = 0;
+    for (int e = 0; e < EDGES; e++) {
+        a[e] = brio_rng_below(&rng, POLES), b[e] = (a[e] + 1 + brio_rng_below(&rng, 6)) % POLES;
+        w[e] = (float)brio_rng_below(&rng, 9) / 4 - 1; /* 0, too; sums are exact */
+    }
+    for (uint32_t p = 0; p < POLES; p++) {
+        r->first[p] = count;
+        for (int e = 0; e < EDGES; e++)
+            if (a[e] == p || b[e] == p) r->edge[count++] = (brio_pole_edge){a[e] == p ? b[e] : a[e], w[e]};
+        for (int k = 0; k < 3; k++) r->centre[3 * p + (uint32_t)k] = p + brio_rng_double(&rng);
+        r->label[p] = brio_rng_below(&rng, 2) ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+        r->fixed[p] = brio_rng_below(&rng, 5) == 0;
+    }
+    r->first[POLES] = count;
+    r->poles = (brio_poles){.count = POLES, .centre = r->centre};
+    r->g = (brio_pole_graph){.ctx = ctx, .poles = &r->poles, .first = r->first, .edge = r->edge};
+}
+
+static void check_blocks(const random_graph *r, const brio_pole_blocks *b) {
+    size_t round[POLES], places = 0;
+    for (size_t i = 0; i < b->num_blocks; i++) round[i] = SIZE_MAX;
+    for (size_t k = 0; k < b->num_rounds; k++) {
+        EXPECT(b->first_round[k] < b->first_round[k + 1]);
+        for (size_t i = b->first_round[k]; i < b->first_round[k + 1]; i++) round[b->block[i]] = k;
+    }
+    for (uint32_t p = 0; p < POLES; p++) {
+        if (b->place[p] == BRIO_NO_PLACE) continue;
+        EXPECT(b->pole[b->place[p]] == p && !r->fixed[p]);
+        places++;
+    }
+    EXPECT(places == b->count);
+    for (uint32_t p = 0; p < POLES; p++)
+        for (size_t e = r->first[p]; e < r->first[p + 1] && !r->fixed[p]; e++) {
+            uint32_t q = r->edge[e].pole, here = b->place[p], there = b->place[q];
+            if (r->edge[e].weight != 0 && brio_label_violates(r->label, p, r->edge[e]))
+                EXPECT(here != BRIO_NO_PLACE && round[here >> b->bits] != SIZE_MAX, "violated edge of pole %u", p);
+            if (here == BRIO_NO_PLACE || there == BRIO_NO_PLACE || here >> b->bits == there >> b->bits) continue;
+            size_t mine = round[here >> b->bits], other = round[there >> b->bits];
+            EXPECT(mine != other || mine == SIZE_MAX, "poles %u and %u change together", p, q);
+        }
+}
+
+static void blocks_of_a_round_are_apart(void) {
+    static random_graph r;
+    brio_context *ctx = new_context();
+    size_t shared = 0;
+    for (uint64_t trial = 0; trial < 300; trial++) {
+        brio_pole_blocks b, again;
+        make_graph(&r, ctx, trial);
+        brio_context_set_threads(ctx, 1);
+        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &b) == BRIO_OK);
+        check_blocks(&r, &b);
+        brio_context_set_threads(ctx, 3);
+        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &again) == BRIO_OK);
+        EXPECT(again.num_rounds == b.num_rounds && !memcmp(again.place, b.place, sizeof *b.place * POLES) &&
+               !memcmp(again.block, b.block, sizeof *b.block * b.first_round[b.num_rounds]));
+        shared += b.first_round[b.num_rounds] > b.num_rounds;
+        brio_pole_blocks_free(&b);
+        brio_pole_blocks_free(&again);
+    }
+    EXPECT(shared > 100, "rounds of several blocks: %zu", shared);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* The least energy over all labels of the poles of a block. */
+static double least_energy(random_graph *r, const uint32_t *pole, size_t size) {
+    uint8_t kept[POLES];
+    double least = INFINITY;
+    memcpy(kept, r->label, sizeof kept);
+    for (unsigned set = 0; set < 1u << size; set++) {
+        for (size_t i = 0; i < size; i++) r->label[pole[i]] = set >> i & 1 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+        least = fmin(least, brio_label_energy(&r->g, r->label));
+    }
+    memcpy(r->label, kept, sizeof kept);
+    return least;
+}
+
+/* All labels of a block: nothing gets worse, and a block without open poles has the best ones. */
+static void settled_blocks_have_least_energy(void) {
+    enum { BITS = 3 };
+    static random_graph r;
+    brio_context *ctx = new_context();
+    brio_context_set_threads(ctx, 1);
+    brio_roof roof = {.flow = brio_flow_new(ctx)};
+    size_t closed = 0, improved = 0;
+    for (uint64_t trial = 0; trial < 60; trial++) {
+        brio_pole_blocks b;
+        make_graph(&r, ctx, trial);
+        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, BITS, trial, &b) == BRIO_OK);
+        for (size_t block = 0; block < b.num_blocks; block++) {
+            size_t begin = brio_pole_block_begin(&b, block), size = brio_pole_block_begin(&b, block + 1) - begin;
+            double before = brio_label_energy(&r.g, r.label), least = least_energy(&r, b.pole + begin, size);
+            roof.open = 0;
+            EXPECT(brio_roof_settle(&roof, &r.g, &b, block, r.label) == BRIO_OK);
+            double after = brio_label_energy(&r.g, r.label);
+            EXPECT(after <= before && after >= least, "%g, %g, least %g", before, after, least);
+            if (roof.open == 0) EXPECT(after == least, "%g, least %g", after, least);
+            closed += roof.open == 0, improved += after < before;
+        }
+        brio_pole_blocks_free(&b);
+    }
+    EXPECT(closed > 60 && improved > 60, "%zu, %zu", closed, improved);
+    brio_roof_free(&roof);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static brio_status settle_random_blocks(brio_context *ctx) {
+    static random_graph r;
+    brio_pole_blocks b;
+    brio_roof roof = {.flow = brio_flow_new(ctx)};
+    make_graph(&r, ctx, 5);
+    brio_context_set_threads(ctx, 2);
+    brio_status status = brio_pole_blocks_find(&r.g, r.label, r.fixed, 3, 5, &b);
+    for (size_t block = 0; status == BRIO_OK && block < b.num_blocks; block++)
+        status = brio_roof_settle(&roof, &r.g, &b, block, r.label);
+    brio_pole_blocks_free(&b);
+    brio_roof_free(&roof);
+    return status;
+}
+
+static void every_failed_allocation_is_a_status(void) {
+    expect_clean_failures(settle_random_blocks);
+}
+
+int main(void) {
+    RUN(edges_are_those_of_the_triangulation_and_the_samples);
+    RUN(highest_priority_and_lowest_pole_come_first);
+    RUN(blocks_of_a_round_are_apart);
+    RUN(settled_blocks_have_least_energy);
+    RUN(every_failed_allocation_is_a_status);
+    return harness_end();
+}
