@@ -34,7 +34,7 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
     {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
      "power crust: how poles are labelled inner or outer", cli_labelings},                                             \
     {"noise", 0, OPTION_CHOICE, offsetof(type, field.noise), "NAME",                                                   \
-     "power crust: smooth noisy samples first", cli_noise},                                                            \
+     "power crust: what to do about noisy samples (auto)", cli_noise},                                                            \
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(type, field.sampling_density), "R",                              \
      "power crust: discard the nearer pole of cells too wide for an R-sample", 0},                                     \
     {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \

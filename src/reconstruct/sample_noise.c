@@ -20,7 +20,8 @@
 #include <string.h>
 
 enum { FEW = 24, MORE = 48, NEAREST = 6, LOOKS = 1000, LEAST_LOOKS = 100, PASSES = 2, BLOCK = 1 << 20 };
-static const double LEAST_LEVEL = 0.1; /* below that a crust through the samples is as good */
+/* Below the first a crust through the samples is as good; above the second there is no surface to be seen. */
+static const double LEAST_LEVEL = 0.1, MOST_LEVEL = 0.5;
 
 /* --- how much --- */
 
@@ -106,7 +107,7 @@ brio_status brio_noise_level(brio_context *ctx, const double *points, size_t cou
     BRIO_OMP(parallel for schedule(dynamic, 16) num_threads(brio_context_threads(ctx)))
     for (size_t i = 0; i < l.count; i++) look(&tree, points + 3 * (size_t)l.sample[i], l.few + i, l.more + i);
     double small = median(l.few, l.count), large = median(l.more, l.count);
-    if (large >= LEAST_LEVEL && large <= small && isfinite(large)) *level = large;
+    if (large >= LEAST_LEVEL && large <= MOST_LEVEL && large <= small) *level = large;
 done:
     brio_point_tree_free(ctx, &tree);
     brio_release(ctx, l.hash);
