@@ -478,9 +478,9 @@ typedef struct brio_power_crust_stats {
     double energy;              /* sum of the violated weights of the labels */
     size_t left_out;            /* faces that `open` left out */
     double noise;               /* auto: standard deviation of the noise that was found, in spacings; 0: none */
-    int smoothed;               /* 1: the samples were */
-    double noise_seconds;       /* to look for noise, and to smooth */
+    size_t smoothed;            /* 1: the samples were */
     double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds, simplify_seconds;
+    double noise_seconds; /* to look for noise, and to smooth */
 } brio_power_crust_stats;
 
 /** Reconstructs a closed surface from samples: the power crust. The faces of the power diagram of the polar balls that
@@ -538,10 +538,10 @@ typedef struct brio_medial_stats {
     size_t inner, outer, unlabelled; /* labels of all poles; with the labelings that there are, none is unlabelled */
     size_t left_out;                 /* by `scale` and `redundancy` */
     size_t edges, triangles;         /* of the shape */
-    double noise;                    /* as in brio_power_crust_stats, and so are the next two */
-    int smoothed;
-    double noise_seconds;
-    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, simplify_seconds, shape_seconds;
+    double noise;                    /* as in brio_power_crust_stats, and so is the next */
+    size_t smoothed;
+    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, simplify_seconds, shape_seconds,
+        noise_seconds;
 } brio_medial_stats;
 
 /** The power shape of samples of a surface, an approximation of its medial axis: the poles on the sides asked for that

@@ -275,7 +275,8 @@ static void medial_axis_of_noisy_samples_is_that_of_smoothed_ones(void) {
     disturb(17, N, 0.01, p);
     for (int i = 0; i < 2; i++) {
         o.noise = i ? BRIO_NOISE_AUTO : BRIO_NOISE_KEEP;
-        EXPECT(brio_power_shape(ctx, p, N, &o, &shape, NULL, &s) == BRIO_OK && s.smoothed == i && (s.noise > 0) == i);
+        EXPECT(brio_power_shape(ctx, p, N, &o, &shape, NULL, &s) == BRIO_OK && s.smoothed == (size_t)i &&
+               (s.noise > 0) == i);
         for (size_t v = 0; v < shape->num_vertices; v++)
             mean[i] += (1 + sphere_distance(shape->vertices + 3 * v)) / (double)shape->num_vertices;
         brio_mesh_free(shape);
