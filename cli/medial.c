@@ -6,7 +6,7 @@
 #include "power_crust.h"
 
 typedef struct arguments {
-    int labeling, sides;
+    int labeling, sides, noise;
     double sampling_density, scale, redundancy; /* the last two: 0 where they are not given */
     bool sharp, simplify;
     const char *crust; /* file, or NULL */
@@ -29,6 +29,7 @@ static const option options[] = {
      "leave out balls that lie in another enlarged by E of its radius", 0},
     {"crust", 0, OPTION_TEXT, offsetof(arguments, crust), "FILE",
      "also write the surface of the balls: their power crust", 0},
+    {"noise", 0, OPTION_CHOICE, offsetof(arguments, noise), "NAME", "smooth noisy samples first", cli_noise},
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, sampling_density), "R",
      "discard the nearer pole of cells too wide for an R-sample", 0},
     {"sharp", 'B', OPTION_FLAG, offsetof(arguments, sharp), NULL,
@@ -60,6 +61,7 @@ static brio_medial_options medial_options(const run *r, int labeling, const brio
     brio_medial_options o = brio_medial_options_default();
     o.seed = r->common.seed;
     o.labeling = (brio_labeling)labeling;
+    o.noise = (brio_noise)a->noise;
     o.solid = solid;
     o.sides = (brio_medial_sides)a->sides;
     o.sampling_density = a->sampling_density;
@@ -72,6 +74,7 @@ static brio_medial_options medial_options(const run *r, int labeling, const brio
 
 static void report(run *r, const brio_medial_options *o, const brio_medial_stats *s, const brio_mesh *shape) {
     facts *f = &r->facts;
+    cli_stage(r, "noise", s->noise_seconds);
     cli_stage(r, "delaunay", s->delaunay_seconds);
     cli_stage(r, "poles", s->poles_seconds);
     cli_stage(r, "power", s->power_seconds);
@@ -79,6 +82,7 @@ static void report(run *r, const brio_medial_options *o, const brio_medial_stats
     cli_stage(r, "shape", s->shape_seconds);
     r->lap = cli_clock();
     cli_fact_count(f, "samples", s->samples);
+    cli_report_noise(r, s->noise, s->smoothed);
     cli_fact_count(f, "poles", s->poles);
     cli_fact_count(f, "hidden_poles", s->hidden_poles);
     cli_fact_count(f, "inner", s->inner);

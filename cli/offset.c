@@ -20,6 +20,7 @@ static const option options[] = {
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, crust.labeling), "NAME",
      "what tells inner poles from outer ones: faces, where there are (mesh), or the points as for surface",
      cli_labelings_or_mesh},
+    {"noise", 0, OPTION_CHOICE, offsetof(arguments, crust.noise), "NAME", "smooth noisy samples first", cli_noise},
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, crust.sampling_density), "R",
      "discard the nearer pole of cells too wide for an R-sample", 0},
     {"sharp", 'B', OPTION_FLAG, offsetof(arguments, crust.sharp), NULL,
@@ -36,7 +37,9 @@ static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FOR
                                       BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
 /* What there is to count when the labels are known. */
-static void report_by_mesh(facts *f, const brio_power_crust_stats *s) {
+static void report_by_mesh(run *r, const brio_power_crust_stats *s) {
+    facts *f = &r->facts;
+    cli_report_noise(r, s->noise, s->smoothed);
     cli_fact_count(f, "poles", s->poles);
     cli_fact_count(f, "hidden_poles", s->hidden_poles);
     cli_fact_count(f, "inner", s->inner);
@@ -62,7 +65,7 @@ static brio_status offset_surface(run *r, const power_crust_options *crust, cons
     cli_fact_count(f, "vertices", (*surface)->num_vertices);
     cli_fact_count(f, "faces", (*surface)->num_faces);
     if (by_mesh)
-        report_by_mesh(f, &s);
+        report_by_mesh(r, &s);
     else
         cli_report_power_crust(r, crust, &s);
     return BRIO_OK;

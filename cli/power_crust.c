@@ -9,6 +9,9 @@ const option_choice cli_labelings[] = {{"global", BRIO_LABELING_GLOBAL},
                                        {"theoretical", BRIO_LABELING_THEORETICAL},
                                        {NULL, 0}};
 
+const option_choice cli_noise[] = {
+    {"auto", BRIO_NOISE_AUTO}, {"keep", BRIO_NOISE_KEEP}, {"smooth", BRIO_NOISE_SMOOTH}, {NULL, 0}};
+
 const option_choice cli_labelings_or_mesh[] = {
     {"mesh", LABELS_OF_MESH},       {"global", BRIO_LABELING_GLOBAL},           {"greedy", BRIO_LABELING_GREEDY},
     {"naive", BRIO_LABELING_NAIVE}, {"theoretical", BRIO_LABELING_THEORETICAL}, {NULL, 0}};
@@ -27,8 +30,8 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
 }
 
 bool cli_has_power_crust_options(const power_crust_options *a) {
-    return a->labeling || a->sampling_density != 0 || a->open != 0 || a->sharp || a->triangulate || a->simplify ||
-           a->normals;
+    return a->labeling || a->noise || a->sampling_density != 0 || a->open != 0 || a->sharp || a->triangulate ||
+           a->simplify || a->normals;
 }
 
 /* The points with their normals, to the file of --normals. */
@@ -50,6 +53,7 @@ done:
 }
 
 void cli_report_power_crust_stages(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
+    cli_stage(r, "noise", s->noise_seconds);
     cli_stage(r, "delaunay", s->delaunay_seconds);
     cli_stage(r, "poles", s->poles_seconds);
     cli_stage(r, "power", s->power_seconds);
@@ -64,6 +68,7 @@ brio_surface_options cli_surface_options(const run *r, const power_crust_options
     o.seed = r->common.seed;
     o.triangulate = a->triangulate;
     o.labeling = (brio_labeling)a->labeling;
+    o.noise = (brio_noise)a->noise;
     o.sampling_density = a->sampling_density;
     o.sharp = a->sharp;
     o.open = a->open;
@@ -90,8 +95,14 @@ done:
     return status;
 }
 
+void cli_report_noise(run *r, double noise, bool smoothed) {
+    cli_fact_real(&r->facts, "noise", noise);
+    cli_fact_bool(&r->facts, "smoothed", smoothed);
+}
+
 void cli_report_power_crust(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
     facts *f = &r->facts;
+    cli_report_noise(r, s->noise, s->smoothed);
     cli_fact_count(f, "poles", s->poles);
     cli_fact_count(f, "hidden_poles", s->hidden_poles);
     cli_fact_count(f, "inner", s->inner);

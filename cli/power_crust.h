@@ -5,13 +5,13 @@
 #include "run.h"
 
 typedef struct power_crust_options {
-    int labeling;
+    int labeling, noise;
     double sampling_density, open;
     bool sharp, triangulate, simplify;
     const char *normals; /* file, or NULL */
 } power_crust_options;
 
-extern const option_choice cli_labelings[];
+extern const option_choice cli_labelings[], cli_noise[];
 
 /** Of commands that take the faces of a closed mesh for labels where there are any, and the default of theirs. */
 enum { LABELS_OF_INPUT = -2, LABELS_OF_MESH = BRIO_LABELING_END };
@@ -33,6 +33,8 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
      "power crust: a quarter as many faces, triangles", 0},                                                            \
     {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
      "power crust: how poles are labelled inner or outer", cli_labelings},                                             \
+    {"noise", 0, OPTION_CHOICE, offsetof(type, field.noise), "NAME",                                                   \
+     "power crust: what to do about noisy samples (auto)", cli_noise},                                                            \
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(type, field.sampling_density), "R",                              \
      "power crust: discard the nearer pole of cells too wide for an R-sample", 0},                                     \
     {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \
@@ -55,6 +57,9 @@ brio_status cli_power_crust(run *r, const power_crust_options *options, const br
 
 /** Adds the stages of a power crust to the clock. */
 void cli_report_power_crust_stages(run *r, const power_crust_options *options, const brio_power_crust_stats *stats);
+
+/** Reports the noise that was found, and whether the samples were smoothed. */
+void cli_report_noise(run *r, double noise, bool smoothed);
 
 /** Reports the counts of a power crust. */
 void cli_report_power_crust(run *r, const power_crust_options *options, const brio_power_crust_stats *stats);

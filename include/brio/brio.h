@@ -432,6 +432,14 @@ typedef enum brio_labeling {
     BRIO_LABELING_END
 } brio_labeling;
 
+/** What to do about noise of the samples. */
+typedef enum brio_noise {
+    BRIO_NOISE_AUTO = 0,   /* samples are smoothed if noise is found in them; never with the option `solid` */
+    BRIO_NOISE_KEEP = 1,   /* the surface goes through the samples as they are */
+    BRIO_NOISE_SMOOTH = 2, /* samples are smoothed */
+    BRIO_NOISE_END
+} brio_noise;
+
 typedef struct brio_surface_options {
     uint64_t seed;          /* default 1 */
     int triangulate;        /* 1: cut the polygons into triangles; default 0 */
@@ -449,6 +457,10 @@ typedef struct brio_surface_options {
     int simplify; /* 1: triangles, about a quarter as many as the crust has polygons; edges far shorter than the local
                         spacing collapse, the surface stays the same as a manifold; default 0 */
     double *normals; /* #P by 3, the caller's: receives the oriented unit normal of each point; NULL: not wanted */
+    /* Smoothed samples lie on quadratic pieces of surface through the middle of their 48 nearest samples [Alexa et al.
+     * 2003]; the surface is then the power crust of these. Noise is found where such pieces are off the samples by a
+     * tenth of the spacing or more and by no more than pieces of half as many are; default auto. */
+    brio_noise noise;
 } brio_surface_options;
 
 BRIO_API brio_surface_options brio_surface_options_default(void);
@@ -465,7 +477,10 @@ typedef struct brio_power_crust_stats {
     double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
     double energy;              /* sum of the violated weights of the labels */
     size_t left_out;            /* faces that `open` left out */
+    double noise;               /* auto: standard deviation of the noise that was found, in spacings; 0: none */
+    size_t smoothed;            /* 1: the samples were */
     double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds, simplify_seconds;
+    double noise_seconds; /* to look for noise, and to smooth */
 } brio_power_crust_stats;
 
 /** Reconstructs a closed surface from samples: the power crust. The faces of the power diagram of the polar balls that
@@ -512,6 +527,7 @@ typedef struct brio_medial_options {
     /* Balls that one larger ball of the same side can stand for are left out: */
     double scale;      /* S > 1: it holds them when both are scaled by S, which is what noise comes to; default 1 */
     double redundancy; /* E > 0: it holds them when its radius grows by E of itself; default 0 */
+    brio_noise noise;  /* as in brio_surface_options */
 } brio_medial_options;
 
 BRIO_API brio_medial_options brio_medial_options_default(void);
@@ -522,7 +538,10 @@ typedef struct brio_medial_stats {
     size_t inner, outer, unlabelled; /* labels of all poles; with the labelings that there are, none is unlabelled */
     size_t left_out;                 /* by `scale` and `redundancy` */
     size_t edges, triangles;         /* of the shape */
-    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, simplify_seconds, shape_seconds;
+    double noise;                    /* as in brio_power_crust_stats, and so is the next */
+    size_t smoothed;
+    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, simplify_seconds, shape_seconds,
+        noise_seconds;
 } brio_medial_stats;
 
 /** The power shape of samples of a surface, an approximation of its medial axis: the poles on the sides asked for that

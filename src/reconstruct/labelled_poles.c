@@ -1,6 +1,6 @@
 /* From samples to labelled polar balls.
  *
- *   1. Delaunay triangulation of the samples and eight bounding points.
+ *   1. Delaunay triangulation of the samples, smoothed where they are noisy, and eight bounding points.
  *   2. The poles of each sample: the farthest vertices of its Voronoi cell on either side of the surface.
  *   3. The power diagram of the polar balls, as its dual, the regular triangulation of the poles.
  *   4. A label, inner or outer, for each pole.
@@ -13,6 +13,7 @@
 #include "base/scale.h"
 #include "dual/spacing.h"
 #include "reconstruct/label_solid.h"
+#include "reconstruct/sample_noise.h"
 #include <math.h>
 #include <string.h>
 
@@ -25,9 +26,12 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_surface_options *
                  (int)o->labeling);
     BRIO_REQUIRE(ctx, o->sampling_density >= 0 && o->sampling_density < 1, BRIO_ERR_ARGUMENT,
                  "sampling density %g, expected 0 or a number between 0 and 1", o->sampling_density);
+    BRIO_REQUIRE(ctx, (unsigned)o->noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
+                 (int)o->noise);
     *request = (brio_pole_request){.seed = o->seed,
                                    .filter = {o->sampling_density, o->sharp},
                                    .labeling = o->labeling,
+                                   .noise = o->noise == BRIO_NOISE_AUTO && o->solid ? BRIO_NOISE_KEEP : o->noise,
                                    .solid = o->solid,
                                    .spacing = o->open > 0 || o->simplify,
                                    .representative = o->normals != NULL,
@@ -35,6 +39,12 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_surface_options *
     if (o->sharp && o->sampling_density == 0) request->filter.sampling_density = SHARP_DENSITY;
 done:
     return status;
+}
+
+/* Each stage owns a part of the progress bar, in proportion to its usual time. */
+static void stage(brio_context *ctx, const brio_pole_request *request, double from, double to) {
+    ctx->progress_from = request->until * from;
+    ctx->progress_to = request->until * to;
 }
 
 /* --- 1: samples and bounding points --- */
@@ -73,25 +83,37 @@ static void bounding_corners(const double *points, size_t n, double margin, doub
         for (int k = 0; k < 3; k++) corner[3 * i + k] = centre[k] + (i >> k & 1 ? half[k] : -half[k]);
 }
 
-static brio_status prepare(brio_labelled_poles *l, const double *points, double margin) {
+/* Samples without their noise, where that is wanted. */
+static brio_status reduce_noise(brio_labelled_poles *l, const brio_pole_request *request) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    bool smooth = request->noise == BRIO_NOISE_SMOOTH;
+    stage(l->ctx, request, 0, 0.05);
+    if (request->noise == BRIO_NOISE_AUTO) {
+        BRIO_TRY(brio_noise_level(l->ctx, l->points, l->num_samples, &l->stats.noise));
+        smooth = l->stats.noise > 0;
+    }
+    if (smooth) BRIO_TRY(brio_smooth_samples(l->ctx, l->points, l->num_samples));
+    l->stats.smoothed = smooth;
+    l->stats.noise_seconds = brio_seconds() - start;
+done:
+    return status;
+}
+
+static brio_status prepare(brio_labelled_poles *l, const double *points, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     size_t n = l->num_samples;
-    double most = margin;
+    double most = request->margin;
     BRIO_REQUIRE(l->ctx, n > 0, BRIO_ERR_NO_ANSWER, "no points, no surface");
     BRIO_TRY(check_finite(l->ctx, points, n));
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
     for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
     frexp(most, &l->exponent);
     brio_scale(l->ctx, points, 3 * n, -l->exponent, l->points);
-    bounding_corners(l->points, n, ldexp(margin, -l->exponent), l->points + 3 * n);
+    BRIO_TRY(reduce_noise(l, request));
+    bounding_corners(l->points, n, ldexp(request->margin, -l->exponent), l->points + 3 * n);
 done:
     return status;
-}
-
-/* Each stage owns a part of the progress bar, in proportion to its usual time. */
-static void stage(brio_context *ctx, const brio_pole_request *request, double from, double to) {
-    ctx->progress_from = request->until * from;
-    ctx->progress_to = request->until * to;
 }
 
 /* --- 2: poles --- */
@@ -119,7 +141,7 @@ static brio_status find_poles(brio_labelled_poles *l, const brio_pole_request *r
     brio_status status = BRIO_OK;
     brio_triangulation *delaunay = NULL;
     double start = brio_seconds();
-    stage(l->ctx, request, 0, 0.39);
+    stage(l->ctx, request, 0.05, 0.39);
     BRIO_TRY(brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BOUNDING_POINTS, &l->triangulation, &delaunay));
     l->stats.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;
     BRIO_REQUIRE(l->ctx, l->stats.samples >= 4, BRIO_ERR_NO_ANSWER, "%zu distinct points span no solid",
@@ -214,7 +236,7 @@ brio_status brio_labelled_poles_find(brio_context *ctx, const double *points, si
     *l = (brio_labelled_poles){.ctx = ctx, .num_samples = num_points, .triangulation = brio_options_default()};
     l->triangulation.seed = request->seed;
     l->graph.ctx = ctx;
-    BRIO_TRY(prepare(l, points, request->margin));
+    BRIO_TRY(prepare(l, points, request));
     BRIO_TRY(find_poles(l, request));
     stage(ctx, request, 0.5, 0.89);
     BRIO_TRY(triangulate_poles(l));

@@ -9,6 +9,7 @@ typedef struct {
     uint64_t seed;
     brio_pole_filter filter;
     brio_labeling labeling;
+    brio_noise noise;
     const brio_mesh *solid; /* a closed mesh that gives the labels instead, or NULL */
     double margin;          /* by which the bounding points are moved out, in the unit of the points */
     bool spacing;           /* of the poles */
@@ -20,7 +21,8 @@ typedef struct {
 typedef struct {
     brio_context *ctx;
     size_t num_samples;
-    double *points; /* samples and bounding points; all lengths here are scaled by 2^-exponent, which makes the
+    double *
+        points; /* samples, smoothed or not, and bounding points; all lengths here are scaled by 2^-exponent, which makes the
                        samples and the margin at most 1 */
     int exponent;
     brio_options triangulation;

@@ -206,6 +206,7 @@ static brio_surface_options surface_options(const brio_medial_options *o) {
     s.solid = o->solid;
     s.sampling_density = o->sampling_density;
     s.sharp = o->sharp;
+    s.noise = o->noise;
     return s;
 }
 
@@ -223,6 +224,9 @@ static void copy_stats(const brio_labelled_poles *l, const brio_mesh *shape, bri
 static void count_poles(const brio_labelled_poles *l, brio_medial_stats *s) {
     s->hidden_poles = l->stats.hidden_poles;
     s->power_seconds = l->stats.power_seconds;
+    s->noise = l->stats.noise;
+    s->smoothed = l->stats.smoothed;
+    s->noise_seconds = l->stats.noise_seconds;
     for (size_t p = 0; p < l->poles.count; p++) {
         s->inner += l->label[p] == BRIO_LABEL_INNER;
         s->outer += l->label[p] == BRIO_LABEL_OUTER;

@@ -25,11 +25,11 @@ OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate",
                  "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
-                "--labeling",
-                "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals", "--self-intersections"],
-    "medial": ["--sides", "--labeling", "--simplify", "--scale", "--redundancy", "--crust", "--sampling-density",
+                "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals",
+                "--self-intersections"],
+    "medial": ["--sides", "--labeling", "--noise", "--simplify", "--scale", "--redundancy", "--crust", "--sampling-density",
                "--sharp"],
-    "offset": ["--distance", "--triangulate", "--simplify", "--labeling", "--sampling-density", "--sharp",
+    "offset": ["--distance", "--triangulate", "--simplify", "--labeling", "--noise", "--sampling-density", "--sharp",
                "--vertex-normals", "--self-intersections"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
     "compare": ["--samples"],
@@ -701,10 +701,10 @@ class Json(CliTest):
     def test_surface(self):
         points = self.cloud("a.ply", 2000, "sphere")
         facts = self.facts("surface", points, "-o", self.path("out.ply"))
-        seconds = {key: number for key in "read delaunay poles power label crust certify write total".split()}
+        seconds = {key: number for key in "read noise delaunay poles power label crust certify write total".split()}
         counts = "samples vertices faces poles hidden_poles inner outer confused".split()
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "labeling": str,
-                                   "energy": number, "certificate": CERTIFICATE, "seconds": seconds})
+                                   "noise": number, "smoothed": bool, "energy": number, "certificate": CERTIFICATE, "seconds": seconds})
         self.assertEqual((facts["method"], facts["samples"]), ("power-crust", 2000))
         c = facts["certificate"]
         self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
@@ -712,8 +712,9 @@ class Json(CliTest):
     def test_medial(self):
         points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
         counts = "samples poles hidden_poles inner outer unlabelled vertices edges triangles".split()
-        seconds = {key: number for key in "read delaunay poles power label shape write total".split()}
-        schema = {**COMMON_FACTS, **{key: count for key in counts}, "labeling": str, "seconds": seconds}
+        seconds = {key: number for key in "read noise delaunay poles power label shape write total".split()}
+        schema = {**COMMON_FACTS, **{key: count for key in counts}, "labeling": str, "noise": number,
+                  "smoothed": bool, "seconds": seconds}
         facts = self.facts("medial", points, "-o", out)
         self.assert_schema(facts, schema)
         self.assertEqual((facts["samples"], facts["unlabelled"]), (2000, 0))
@@ -795,7 +796,7 @@ class Json(CliTest):
 
     def test_offset(self):
         points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
-        seconds = {key: number for key in "read delaunay poles power label crust certify write total".split()}
+        seconds = {key: number for key in "read noise delaunay poles power label crust certify write total".split()}
         counts = "samples vertices faces poles hidden_poles inner outer".split()
         for distance, volume in [(0.5, 14.137), (-0.5, 0.5236)]:
             facts = self.facts("offset", points, "--distance", str(distance), "-o", out)
@@ -846,6 +847,21 @@ class Json(CliTest):
             self.assertTrue({"energy", *keys} <= set(facts))
         self.usage("unknown name", "surface", points, "-o", self.path("out.ply"), "--labeling", "best")
 
+    def test_noise(self):
+        scan, out = self.path("scan.ply"), self.path("out.ply")
+        self.expect(0, "generate", "scan", "-n", 20000, "--noise", 0.4, "-o", scan, "--quiet")
+        found = self.facts("surface", scan, "-o", out)
+        self.assertGreater(found["noise"], 0.1)
+        self.assertTrue(found["smoothed"] and found["certificate"]["closed"])
+        kept = self.facts("surface", scan, "-o", out, "--noise", "keep")
+        self.assertEqual((kept["noise"], kept["smoothed"]), (0, False))
+        clean = self.cloud("a.ply", 2000, "sphere")
+        self.assertFalse(self.facts("surface", clean, "-o", out)["smoothed"])
+        for command in ("surface", "medial", ("offset", "-D", "0.1")):
+            command = (command,) if isinstance(command, str) else command
+            self.assertTrue(self.facts(command[0], clean, *command[1:], "-o", out, "--noise", "smooth")["smoothed"])
+        self.usage("unknown name", "surface", clean, "-o", out, "--noise", "some")
+
     def test_surface_outputs(self):
         points, out, normals = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply"), self.path("n.csv")
         whole = self.facts("surface", points, "-o", out, "--self-intersections")
@@ -878,7 +894,8 @@ class Json(CliTest):
     def test_options_of_another_surface_method(self):
         for option in [("--theta", "0.3"), ("--boundaries",), ("--density",), ("--pieces", "3")]:
             self.usage("cocone", "surface", "a.xyz", "-o", "x.ply", *option)
-        for option in [("--triangulate",), ("--simplify",), ("--labeling", "greedy"), ("-R", "0.3"), ("--sharp",),
+        for option in [("--triangulate",), ("--simplify",), ("--labeling", "greedy"), ("--noise", "keep"),
+                       ("-R", "0.3"), ("--sharp",),
                        ("--open", "4"), ("--normals", "n.ply")]:
             self.usage("power-crust", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", *option)
         self.usage("pi/2", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", "--theta", "2")

@@ -19,7 +19,7 @@ typedef struct {
 
 static void forget_times(brio_power_crust_stats *s) {
     s->delaunay_seconds = s->poles_seconds = s->power_seconds = s->label_seconds = s->crust_seconds =
-        s->simplify_seconds = 0;
+        s->simplify_seconds = s->noise_seconds = 0;
 }
 
 static void read_back(const char *path, result *r) {
