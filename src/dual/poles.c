@@ -36,10 +36,11 @@ static const double *centre_of(const finder *f, uint32_t tet) {
 
 static void find_centres(finder *f) {
     BRIO_OMP(parallel for schedule(static) num_threads(f->threads))
-    for (size_t tet = 0; tet < f->num_tets; tet++) {
-        double r[4][4] = {{0}};
-        for (int i = 0; i < 4; i++) memcpy(r[i], f->points + 3 * (size_t)f->tet[tet].vertex[i], 3 * sizeof **r);
-        if (!brio_centre(r[0], r[1], r[2], r[3], false, f->centre + 3 * tet, NULL)) f->centre[3 * tet] = NAN;
+    for (size_t tet = 0; tet < f->num_tets; tet += BRIO_CENTRE_BATCH) {
+        uint32_t vertex[BRIO_CENTRE_BATCH][4];
+        size_t left = f->num_tets - tet, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
+        for (size_t n = 0; n < count; n++) memcpy(vertex[n], f->tet[tet + n].vertex, sizeof *vertex);
+        brio_centres(&(brio_centre_batch){f->points, NULL, (const uint32_t(*)[4])vertex, count, f->centre + 3 * tet});
     }
 }
 

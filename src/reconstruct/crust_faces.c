@@ -51,14 +51,17 @@ static bool inner(const builder *b, uint32_t pole) {
     return b->label[pole] == BRIO_LABEL_INNER;
 }
 
-static void vertex_position(const builder *b, const uint32_t *v, double *position) {
-    double r[4][4];
-    for (int i = 0; i < 4; i++) {
-        memcpy(r[i], b->g->poles->centre + 3 * (size_t)v[i], 3 * sizeof **r);
-        r[i][3] = b->g->poles->square[v[i]];
+/* The orthocentres of poles, four each; where there is none that doubles can hold, the middle of the poles. */
+static void find_positions(const builder *b, const uint32_t (*v)[4], size_t count, double *position) {
+    const brio_poles *poles = b->g->poles;
+    brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count, position});
+    for (size_t n = 0; n < count; n++, position += 3) {
+        if (!isnan(position[0])) continue;
+        for (int k = 0; k < 3; k++) {
+            position[k] = 0;
+            for (int i = 0; i < 4; i++) position[k] += 0.25 * poles->centre[3 * (size_t)v[n][i] + (size_t)k];
+        }
     }
-    if (brio_centre(r[0], r[1], r[2], r[3], true, position, NULL)) return;
-    for (int k = 0; k < 3; k++) position[k] = 0.25 * r[0][k] + 0.25 * r[1][k] + 0.25 * r[2][k] + 0.25 * r[3][k];
 }
 
 /* The least of its poles': a pole that reaches far may have a sample where samples are few. */
@@ -90,12 +93,17 @@ static void count_vertices(const builder *b, size_t block) {
 }
 
 static void fill_vertices(const builder *b, size_t block) {
-    size_t count = b->blocks[block].vertices;
-    for (size_t tet = block_begin(b, block); tet < block_begin(b, block + 1); tet++) {
+    size_t next = b->blocks[block].vertices, end = block_begin(b, block + 1), waiting = 0;
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    for (size_t tet = block_begin(b, block); tet < end; tet++) {
         if (b->number[tet] == NO_VERTEX) continue;
-        b->number[tet] = (uint32_t)count;
-        vertex_position(b, b->g->power.tet[tet].vertex, b->mesh->vertices + 3 * count++);
+        b->number[tet] = (uint32_t)next++;
+        memcpy(vertex[waiting++], b->g->power.tet[tet].vertex, sizeof *vertex);
+        if (waiting < BRIO_CENTRE_BATCH) continue;
+        find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
+        waiting = 0;
     }
+    find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
 }
 
 /* Turns the counts of the blocks into what is before each of them; the last entry is the total. */
