@@ -8,6 +8,7 @@
  * asked for where that is known (read_ahead.h). */
 #define _GNU_SOURCE
 #include "base/memory.h"
+#include "base/kept.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -27,14 +28,16 @@
 #define BRIO_COPIES_INSTEAD 0
 #endif
 
-enum { HEADER = 64, MAP_FROM = 1 << 20, PAGE = 1 << 14 };
+enum { HEADER = 64, MAP_FROM = 1 << 20 };
 
 typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
 typedef struct {
     size_t size; /* of the whole block, header included */
+    size_t used; /* of that, as was asked for last */
     int file;    /* descriptor of KIND_FILE */
     block_kind kind;
+    bool cleared; /* it is a new mapping, all zero where nothing was written */
 } block_header;
 
 static block_header *header_of(void *block) {
@@ -54,6 +57,7 @@ static bool account_add(brio_context *ctx, size_t bytes) {
     size_t peak = __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED);
     while (live > peak &&
            !__atomic_compare_exchange_n(&ctx->peak, &peak, live, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+    brio_kept_make_room(ctx);
     return true;
 }
 
@@ -120,7 +124,7 @@ static size_t round_up(size_t size, size_t unit) {
 }
 
 static size_t mapped_size(size_t size) {
-    return round_up(size, PAGE);
+    return round_up(size, BRIO_PAGE);
 }
 
 /* Pages of the usual size: clearing a huge page at its first touch drives everything else out of the caches, which cost
@@ -151,6 +155,22 @@ static void *map_file(brio_context *ctx, size_t size, int *file, brio_status *st
     return NULL;
 }
 
+/* A mapping of at least `size` bytes and, where it was kept, at most `most`; NULL when there is no memory. */
+static char *map_memory(brio_context *ctx, size_t size, size_t most, block_header *h) {
+    char *base = brio_kept_take(ctx, size, most, &h->size);
+    h->cleared = !base;
+    if (base) {
+        if (account_add(ctx, h->size)) return base;
+        brio_kept_give(ctx, base, h->size);
+        return NULL;
+    }
+    h->size = size;
+    if (!account_add(ctx, size)) return NULL;
+    base = map_anonymous(size);
+    if (!base) account_sub(ctx, size);
+    return base;
+}
+
 /* --- one block --- */
 
 static brio_status refuse(brio_context *ctx, size_t size) {
@@ -160,26 +180,23 @@ static brio_status refuse(brio_context *ctx, size_t size) {
                      brio_context_memory(ctx), limit);
 }
 
-static void *block_new(brio_context *ctx, size_t size, brio_status *status) {
-    block_header h = {size, -1, KIND_HEAP};
+/* A block of at least `size` bytes and, where there is a kept mapping for it, at most `most`. */
+static void *block_new(brio_context *ctx, size_t size, size_t most, brio_status *status) {
+    block_header h = {size, size, -1, KIND_HEAP, false};
     char *base = NULL;
-    bool mapped = !ctx->custom && size >= MAP_FROM;
-    if (mapped) {
-        h.kind = ctx->scratch ? KIND_FILE : KIND_MAPPED;
-        h.size = mapped_size(size);
-    }
-    if (h.kind == KIND_FILE) {
-        base = map_file(ctx, h.size, &h.file, status);
-        if (!base) return NULL;
+    if (ctx->custom || size < MAP_FROM) {
+        if (account_add(ctx, size)) {
+            base = ctx->allocator.alloc(size, ctx->allocator.user);
+            if (!base) account_sub(ctx, size);
+        }
     } else {
-        if (account_add(ctx, h.size)) {
-            base = mapped ? map_anonymous(h.size) : ctx->allocator.alloc(h.size, ctx->allocator.user);
-            if (!base) account_sub(ctx, h.size);
-        }
-        if (!base) {
-            *status = refuse(ctx, h.size);
-            return NULL;
-        }
+        h.kind = ctx->scratch ? KIND_FILE : KIND_MAPPED;
+        h.size = h.used = mapped_size(size);
+        base = ctx->scratch ? map_file(ctx, h.size, &h.file, status) : map_memory(ctx, h.size, mapped_size(most), &h);
+    }
+    if (!base) {
+        if (h.kind != KIND_FILE) *status = refuse(ctx, h.used);
+        return NULL;
     }
     memcpy(base, &h, sizeof h);
     return base + HEADER;
@@ -188,14 +205,14 @@ static void *block_new(brio_context *ctx, size_t size, brio_status *status) {
 void brio_release(brio_context *ctx, void *block) {
     if (!block) return;
     block_header h = *header_of(block);
+    if (h.kind != KIND_FILE) account_sub(ctx, h.size);
     if (h.kind == KIND_HEAP)
         ctx->allocator.free(header_of(block), ctx->allocator.user);
+    else if (h.kind == KIND_MAPPED)
+        brio_kept_give(ctx, header_of(block), h.size);
     else
         munmap(header_of(block), h.size);
-    if (h.kind == KIND_FILE)
-        close(h.file);
-    else
-        account_sub(ctx, h.size);
+    if (h.kind == KIND_FILE) close(h.file);
 }
 
 void brio_expect_random(const void *block) {
@@ -266,11 +283,9 @@ brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, cons
     return status;
 }
 
-/* Grows or shrinks a mapping in place of copying it. */
-static void *block_remap(brio_context *ctx, void *block, size_t size, brio_status *status) {
+/* Grows a mapping, or shrinks that of a file, in place of copying it. */
+static void *block_remap(brio_context *ctx, void *block, size_t target, brio_status *status) {
     block_header h = *header_of(block);
-    size_t target = mapped_size(size);
-    if (target == h.size) return block;
     bool grows = target > h.size, file = h.kind == KIND_FILE;
     int error = file && grows ? posix_fallocate(h.file, 0, (off_t)target) : 0;
     if (error) {
@@ -278,29 +293,64 @@ static void *block_remap(brio_context *ctx, void *block, size_t size, brio_statu
                             ctx->scratch ? ctx->scratch : "scratch", target, strerror(error));
         return NULL;
     }
-    if (!file && grows && !account_add(ctx, target - h.size)) {
+    if (!file && !account_add(ctx, target - h.size)) {
         *status = refuse(ctx, target - h.size);
         return NULL;
     }
     char *base = mremap(header_of(block), h.size, target, MREMAP_MAYMOVE);
     if (base == MAP_FAILED) {
-        if (!file && grows) account_sub(ctx, target - h.size);
+        if (!file) account_sub(ctx, target - h.size);
         *status = refuse(ctx, target);
         return NULL;
     }
-    if (!file && !grows) account_sub(ctx, h.size - target);
     if (file && !grows && ftruncate(h.file, (off_t)target) != 0) errno = 0;
     ((block_header *)base)->size = target;
     return base + HEADER;
 }
 
-static void *block_move(brio_context *ctx, void *block, size_t size, brio_status *status) {
-    size_t old = header_of(block)->size;
-    void *moved = block_new(ctx, size, status);
+static void *block_move(brio_context *ctx, void *block, size_t size, size_t most, brio_status *status) {
+    size_t old = header_of(block)->used;
+    void *moved = block_new(ctx, size, most, status);
     if (!moved) return NULL;
     memcpy(moved, block, (old < size ? old : size) - HEADER);
     brio_release(ctx, block);
     return moved;
+}
+
+enum { ROOM_AT_LEAST = 2, ROOM_AT_MOST = 4 }; /* for a block that grows, in its present size */
+
+/* What has grown will grow again: it moves to a kept mapping with room for that; NULL where there is none. */
+static void *block_grow_into_kept(brio_context *ctx, void *block, size_t target) {
+    block_header h = *header_of(block);
+    size_t size;
+    char *base = brio_kept_take(ctx, ROOM_AT_LEAST * target, ROOM_AT_MOST * target, &size);
+    if (!base) return NULL;
+    if (!account_add(ctx, size)) {
+        brio_kept_give(ctx, base, size);
+        return NULL;
+    }
+    memcpy(base, header_of(block), h.used);
+    ((block_header *)base)->size = size;
+    brio_release(ctx, block);
+    return base + HEADER;
+}
+
+static void *block_resize_mapped(brio_context *ctx, void *block, size_t size, brio_status *status) {
+    block_header *h = header_of(block);
+    size_t target = mapped_size(size);
+    void *resized = block;
+    if (h->kind == KIND_FILE) {
+        if (target != h->size) resized = block_remap(ctx, block, target, status);
+    } else if (target > h->size) {
+        resized = block_grow_into_kept(ctx, block, target);
+        if (!resized) resized = block_remap(ctx, block, target, status);
+    } else if (target < h->used) {
+        account_sub(ctx, h->size - target);
+        brio_kept_give(ctx, (char *)h + target, h->size - target);
+        h->size = target;
+    }
+    if (resized) header_of(resized)->used = target;
+    return resized;
 }
 
 static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_status *status) {
@@ -316,7 +366,7 @@ static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_sta
         return NULL;
     }
     if (size < old) account_sub(ctx, old - size);
-    ((block_header *)base)->size = size;
+    ((block_header *)base)->size = ((block_header *)base)->used = size;
     return base + HEADER;
 }
 
@@ -327,12 +377,12 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
         return NULL;
     }
     bytes += HEADER;
-    if (!block) return block_new(ctx, bytes, status);
+    if (!block) return block_new(ctx, bytes, bytes, status);
     block_kind kind = header_of(block)->kind;
     bool mapped = !ctx->custom && bytes >= MAP_FROM;
-    if (kind != KIND_HEAP && mapped && !BRIO_COPIES_INSTEAD) return block_remap(ctx, block, bytes, status);
+    if (kind != KIND_HEAP && mapped && !BRIO_COPIES_INSTEAD) return block_resize_mapped(ctx, block, bytes, status);
     if (kind == KIND_HEAP && !mapped) return block_realloc(ctx, block, bytes, status);
-    return block_move(ctx, block, bytes, status);
+    return block_move(ctx, block, bytes, ROOM_AT_MOST * bytes, status);
 }
 
 brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
@@ -340,7 +390,8 @@ brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count,
     if (status != BRIO_OK) return status;
     void *block;
     memcpy(&block, pointer_to_block, sizeof block);
-    if (header_of(block)->kind == KIND_HEAP) memset(block, 0, count * size); /* new mappings are zero */
+    block_header *h = header_of(block);
+    if (h->kind != KIND_FILE && !h->cleared) memset(block, 0, count * size);
     return BRIO_OK;
 }
 
