@@ -43,17 +43,16 @@ static int smallest(const brio_context *ctx, size_t least) {
     return best;
 }
 
-void *brio_kept_take(brio_context *ctx, size_t least, size_t most, size_t *size) {
+void *brio_kept_take(brio_context *ctx, size_t size) {
     void *base = NULL;
     BRIO_OMP(critical(brio_kept)) {
-        int i = smallest(ctx, least);
+        int i = smallest(ctx, size);
         if (i >= 0) {
             brio_mapping *m = &ctx->kept[i];
             base = m->base;
-            *size = m->size < most ? m->size : most;
-            m->base = (char *)m->base + *size;
-            m->size -= *size;
-            __atomic_sub_fetch(&ctx->kept_bytes, *size, __ATOMIC_RELAXED);
+            m->base = (char *)m->base + size;
+            m->size -= size;
+            __atomic_sub_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
             if (!m->size) *m = ctx->kept[--ctx->num_kept];
         }
     }

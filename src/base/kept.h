@@ -4,9 +4,9 @@
 
 #include "base/context.h"
 
-/** Takes a mapping of at least `least` bytes out of those that are kept, and cuts off what is over `most`: the smallest
- *  that will do; NULL when there is none. Its bytes are what they were. Both sizes are multiples of 16 KiB. */
-void *brio_kept_take(brio_context *ctx, size_t least, size_t most, size_t *size);
+/** Takes a mapping out of those that are kept, off the smallest that has so many bytes, a multiple of BRIO_PAGE; NULL when
+ *  there is none. Its bytes are what they were. */
+void *brio_kept_take(brio_context *ctx, size_t size);
 
 /** Keeps a mapping that is no longer counted as live, or gives it back to the system. */
 void brio_kept_give(brio_context *ctx, void *base, size_t size);

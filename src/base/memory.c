@@ -34,7 +34,6 @@ typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
 typedef struct {
     size_t size; /* of the whole block, header included */
-    size_t used; /* of that, as was asked for last */
     int file;    /* descriptor of KIND_FILE */
     block_kind kind;
     bool cleared; /* it is a new mapping, all zero where nothing was written */
@@ -155,20 +154,17 @@ static void *map_file(brio_context *ctx, size_t size, int *file, brio_status *st
     return NULL;
 }
 
-/* A mapping of at least `size` bytes and, where it was kept, at most `most`; NULL when there is no memory. */
-static char *map_memory(brio_context *ctx, size_t size, size_t most, block_header *h) {
-    char *base = brio_kept_take(ctx, size, most, &h->size);
-    h->cleared = !base;
-    if (base) {
-        if (account_add(ctx, h->size)) return base;
-        brio_kept_give(ctx, base, h->size);
-        return NULL;
+/* A mapping, one that was kept where there is one; *cleared: it is new and all zero. NULL when there is no memory. */
+static void *map_memory(brio_context *ctx, size_t size, bool *cleared) {
+    void *base = brio_kept_take(ctx, size);
+    *cleared = !base;
+    if (account_add(ctx, size)) {
+        if (!base) base = map_anonymous(size);
+        if (!base) account_sub(ctx, size);
+        return base;
     }
-    h->size = size;
-    if (!account_add(ctx, size)) return NULL;
-    base = map_anonymous(size);
-    if (!base) account_sub(ctx, size);
-    return base;
+    if (base) brio_kept_give(ctx, base, size);
+    return NULL;
 }
 
 /* --- one block --- */
@@ -180,9 +176,8 @@ static brio_status refuse(brio_context *ctx, size_t size) {
                      brio_context_memory(ctx), limit);
 }
 
-/* A block of at least `size` bytes and, where there is a kept mapping for it, at most `most`. */
-static void *block_new(brio_context *ctx, size_t size, size_t most, brio_status *status) {
-    block_header h = {size, size, -1, KIND_HEAP, false};
+static void *block_new(brio_context *ctx, size_t size, brio_status *status) {
+    block_header h = {size, -1, KIND_HEAP, false};
     char *base = NULL;
     if (ctx->custom || size < MAP_FROM) {
         if (account_add(ctx, size)) {
@@ -191,11 +186,11 @@ static void *block_new(brio_context *ctx, size_t size, size_t most, brio_status 
         }
     } else {
         h.kind = ctx->scratch ? KIND_FILE : KIND_MAPPED;
-        h.size = h.used = mapped_size(size);
-        base = ctx->scratch ? map_file(ctx, h.size, &h.file, status) : map_memory(ctx, h.size, mapped_size(most), &h);
+        h.size = mapped_size(size);
+        base = ctx->scratch ? map_file(ctx, h.size, &h.file, status) : map_memory(ctx, h.size, &h.cleared);
     }
     if (!base) {
-        if (h.kind != KIND_FILE) *status = refuse(ctx, h.used);
+        if (h.kind != KIND_FILE) *status = refuse(ctx, h.size);
         return NULL;
     }
     memcpy(base, &h, sizeof h);
@@ -308,49 +303,24 @@ static void *block_remap(brio_context *ctx, void *block, size_t target, brio_sta
     return base + HEADER;
 }
 
-static void *block_move(brio_context *ctx, void *block, size_t size, size_t most, brio_status *status) {
-    size_t old = header_of(block)->used;
-    void *moved = block_new(ctx, size, most, status);
+static void *block_move(brio_context *ctx, void *block, size_t size, brio_status *status) {
+    size_t old = header_of(block)->size;
+    void *moved = block_new(ctx, size, status);
     if (!moved) return NULL;
     memcpy(moved, block, (old < size ? old : size) - HEADER);
     brio_release(ctx, block);
     return moved;
 }
 
-enum { ROOM_AT_LEAST = 2, ROOM_AT_MOST = 4 }; /* for a block that grows, in its present size */
-
-/* What has grown will grow again: it moves to a kept mapping with room for that; NULL where there is none. */
-static void *block_grow_into_kept(brio_context *ctx, void *block, size_t target) {
-    block_header h = *header_of(block);
-    size_t size;
-    char *base = brio_kept_take(ctx, ROOM_AT_LEAST * target, ROOM_AT_MOST * target, &size);
-    if (!base) return NULL;
-    if (!account_add(ctx, size)) {
-        brio_kept_give(ctx, base, size);
-        return NULL;
-    }
-    memcpy(base, header_of(block), h.used);
-    ((block_header *)base)->size = size;
-    brio_release(ctx, block);
-    return base + HEADER;
-}
-
 static void *block_resize_mapped(brio_context *ctx, void *block, size_t size, brio_status *status) {
     block_header *h = header_of(block);
     size_t target = mapped_size(size);
-    void *resized = block;
-    if (h->kind == KIND_FILE) {
-        if (target != h->size) resized = block_remap(ctx, block, target, status);
-    } else if (target > h->size) {
-        resized = block_grow_into_kept(ctx, block, target);
-        if (!resized) resized = block_remap(ctx, block, target, status);
-    } else if (target < h->used) {
-        account_sub(ctx, h->size - target);
-        brio_kept_give(ctx, (char *)h + target, h->size - target);
-        h->size = target;
-    }
-    if (resized) header_of(resized)->used = target;
-    return resized;
+    if (target == h->size) return block;
+    if (target > h->size || h->kind == KIND_FILE) return block_remap(ctx, block, target, status);
+    account_sub(ctx, h->size - target);
+    brio_kept_give(ctx, (char *)h + target, h->size - target);
+    h->size = target;
+    return block;
 }
 
 static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_status *status) {
@@ -366,7 +336,7 @@ static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_sta
         return NULL;
     }
     if (size < old) account_sub(ctx, old - size);
-    ((block_header *)base)->size = ((block_header *)base)->used = size;
+    ((block_header *)base)->size = size;
     return base + HEADER;
 }
 
@@ -377,12 +347,12 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
         return NULL;
     }
     bytes += HEADER;
-    if (!block) return block_new(ctx, bytes, bytes, status);
+    if (!block) return block_new(ctx, bytes, status);
     block_kind kind = header_of(block)->kind;
     bool mapped = !ctx->custom && bytes >= MAP_FROM;
     if (kind != KIND_HEAP && mapped && !BRIO_COPIES_INSTEAD) return block_resize_mapped(ctx, block, bytes, status);
     if (kind == KIND_HEAP && !mapped) return block_realloc(ctx, block, bytes, status);
-    return block_move(ctx, block, bytes, ROOM_AT_MOST * bytes, status);
+    return block_move(ctx, block, bytes, status);
 }
 
 brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
