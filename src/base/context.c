@@ -1,5 +1,6 @@
 /* Context: settings, last message, progress. */
 #include "base/context.h"
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include <stdarg.h>
@@ -42,6 +43,7 @@ brio_status brio_context_new(const brio_allocator *allocator, brio_context **out
 void brio_context_free(brio_context *ctx) {
     if (!ctx) return;
     brio_release(ctx, ctx->scratch);
+    brio_kept_free(ctx);
     brio_allocator a = ctx->allocator;
     a.free(ctx, a.user);
 }

@@ -7,14 +7,24 @@
 #include "brio/brio.h"
 #include <stdbool.h>
 
+enum { BRIO_MOST_KEPT = 64, BRIO_PAGE = 1 << 14 };
+
+typedef struct {
+    void *base;
+    size_t size; /* a multiple of BRIO_PAGE */
+} brio_mapping;
+
 struct brio_context {
     brio_allocator allocator;
-    bool custom;          /* allocator is the caller's: no mappings */
-    int threads;          /* as set; 0 = all */
-    size_t caller_limit;  /* bytes, 0 = none */
-    size_t machine_limit; /* of the memory cgroup and the machine */
-    size_t live, peak;    /* bytes of anonymous memory; updated atomically */
-    char *scratch;        /* folder of mapped files, or NULL */
+    bool custom;                       /* allocator is the caller's: no mappings */
+    int threads;                       /* as set; 0 = all */
+    size_t caller_limit;               /* bytes, 0 = none */
+    size_t machine_limit;              /* of the memory cgroup and the machine */
+    size_t live, peak;                 /* bytes of anonymous memory; updated atomically */
+    brio_mapping kept[BRIO_MOST_KEPT]; /* given back by blocks, see kept.h */
+    int num_kept, keeping;
+    size_t kept_bytes;
+    char *scratch; /* folder of mapped files, or NULL */
     brio_progress_fn progress;
     void *progress_user;
     double progress_from, progress_to; /* the part of the bar that the running stage owns */

@@ -8,6 +8,7 @@
  * asked for where that is known (read_ahead.h). */
 #define _GNU_SOURCE
 #include "base/memory.h"
+#include "base/kept.h"
 #include "base/scratch_file.h"
 #include <errno.h>
 #include <stdio.h>
@@ -25,7 +26,7 @@
 #define BRIO_COPIES_INSTEAD 0
 #endif
 
-enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = 1 << 20, PAGE = 1 << 14 };
+enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = 1 << 20 };
 
 typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
@@ -33,6 +34,7 @@ typedef struct {
     size_t size;            /* of the whole block, with what is in front of it */
     brio_scratch_file file; /* of KIND_FILE */
     block_kind kind;
+    bool cleared; /* it is a new mapping, all zero where nothing was written */
 } block_header;
 
 static block_header *header_of(const void *block) {
@@ -63,6 +65,7 @@ static bool account_add(brio_context *ctx, size_t bytes) {
     size_t peak = __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED);
     while (live > peak &&
            !__atomic_compare_exchange_n(&ctx->peak, &peak, live, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+    brio_kept_make_room(ctx);
     return true;
 }
 
@@ -130,7 +133,7 @@ static size_t round_up(size_t size, size_t unit) {
 
 /* Of a mapping for so many bytes and a header. */
 static size_t mapped_size(size_t size) {
-    return round_up(size - HEADER + FRONT, PAGE);
+    return round_up(size - HEADER + FRONT, BRIO_PAGE);
 }
 
 /* Pages of the usual size: clearing a huge page at its first touch drives everything else out of the caches, which cost
@@ -154,6 +157,19 @@ static void *map_file(brio_context *ctx, size_t size, brio_scratch_file *file, b
     return NULL;
 }
 
+/* A mapping, one that was kept where there is one; *cleared: it is new and all zero. NULL when there is no memory. */
+static void *map_memory(brio_context *ctx, size_t size, bool *cleared) {
+    void *base = brio_kept_take(ctx, size);
+    *cleared = !base;
+    if (account_add(ctx, size)) {
+        if (!base) base = map_anonymous(size);
+        if (!base) account_sub(ctx, size);
+        return base;
+    }
+    if (base) brio_kept_give(ctx, base, size);
+    return NULL;
+}
+
 /* --- one block --- */
 
 static brio_status refuse(brio_context *ctx, size_t size) {
@@ -163,25 +179,22 @@ static brio_status refuse(brio_context *ctx, size_t size) {
 
 /* A new block of so many bytes with its header; in a scratch file where the context has these and it may be. */
 static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_status *status) {
-    block_header h = {size, {-1, -1}, KIND_HEAP};
+    block_header h = {size, {-1, -1}, KIND_HEAP, false};
     char *base = NULL;
-    bool mapped = !ctx->custom && (size >= MAP_FROM || in_memory);
-    if (mapped) {
-        h.kind = ctx->scratch && !in_memory ? KIND_FILE : KIND_MAPPED;
-        h.size = mapped_size(size);
-    }
-    if (h.kind == KIND_FILE) {
-        base = map_file(ctx, h.size, &h.file, status);
-        if (!base) return NULL;
+    if (ctx->custom || (size < MAP_FROM && !in_memory)) {
+        if (account_add(ctx, size)) {
+            base = ctx->allocator.alloc(size, ctx->allocator.user);
+            if (!base) account_sub(ctx, size);
+        }
     } else {
-        if (account_add(ctx, h.size)) {
-            base = mapped ? map_anonymous(h.size) : ctx->allocator.alloc(h.size, ctx->allocator.user);
-            if (!base) account_sub(ctx, h.size);
-        }
-        if (!base) {
-            *status = refuse(ctx, h.size);
-            return NULL;
-        }
+        bool file = ctx->scratch && !in_memory;
+        h.kind = file ? KIND_FILE : KIND_MAPPED;
+        h.size = mapped_size(size);
+        base = file ? map_file(ctx, h.size, &h.file, status) : map_memory(ctx, h.size, &h.cleared);
+    }
+    if (!base) {
+        if (h.kind != KIND_FILE) *status = refuse(ctx, h.size);
+        return NULL;
     }
     char *block = base + front_of(h.kind);
     memcpy(block - HEADER, &h, sizeof h);
@@ -191,14 +204,14 @@ static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_stat
 void brio_release(brio_context *ctx, void *block) {
     if (!block) return;
     block_header h = *header_of(block);
+    if (h.kind != KIND_FILE) account_sub(ctx, h.size);
     if (h.kind == KIND_HEAP)
         ctx->allocator.free(base_of(block), ctx->allocator.user);
+    else if (h.kind == KIND_MAPPED)
+        brio_kept_give(ctx, base_of(block), h.size);
     else
         munmap(base_of(block), h.size);
-    if (h.kind == KIND_FILE)
-        brio_scratch_close(&h.file);
-    else
-        account_sub(ctx, h.size);
+    if (h.kind == KIND_FILE) brio_scratch_close(&h.file);
 }
 
 /* --- blocks in scratch files --- */
@@ -239,27 +252,24 @@ brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, cons
 
 /* --- blocks that grow --- */
 
-/* Grows or shrinks a mapping in place of copying it. */
-static void *block_remap(brio_context *ctx, void *block, size_t size, brio_status *status) {
+/* Grows a mapping, or shrinks that of a file, in place of copying it. */
+static void *block_remap(brio_context *ctx, void *block, size_t target, brio_status *status) {
     block_header h = *header_of(block);
-    size_t target = mapped_size(size);
-    if (target == h.size) return block;
     bool grows = target > h.size, file = h.kind == KIND_FILE;
     if (file && grows) {
         *status = brio_scratch_grow(ctx, &h.file, target);
         if (*status != BRIO_OK) return NULL;
     }
-    if (!file && grows && !account_add(ctx, target - h.size)) {
+    if (!file && !account_add(ctx, target - h.size)) {
         *status = refuse(ctx, target - h.size);
         return NULL;
     }
     char *base = mremap(base_of(block), h.size, target, MREMAP_MAYMOVE);
     if (base == MAP_FAILED) {
-        if (!file && grows) account_sub(ctx, target - h.size);
+        if (!file) account_sub(ctx, target - h.size);
         *status = refuse(ctx, target);
         return NULL;
     }
-    if (!file && !grows) account_sub(ctx, h.size - target);
     if (file && !grows && ftruncate(h.file.cached, (off_t)target) != 0) errno = 0;
     header_of(base + FRONT)->size = target;
     return base + FRONT;
@@ -276,6 +286,17 @@ static void *block_move(brio_context *ctx, void *block, size_t size, brio_status
     memcpy(moved, block, old < size - HEADER ? old : size - HEADER);
     brio_release(ctx, block);
     return moved;
+}
+
+static void *block_resize_mapped(brio_context *ctx, void *block, size_t size, brio_status *status) {
+    block_header *h = header_of(block);
+    size_t target = mapped_size(size);
+    if (target == h->size) return block;
+    if (target > h->size || h->kind == KIND_FILE) return block_remap(ctx, block, target, status);
+    account_sub(ctx, h->size - target);
+    brio_kept_give(ctx, base_of(block) + target, h->size - target);
+    h->size = target;
+    return block;
 }
 
 static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_status *status) {
@@ -309,7 +330,7 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
     if (!block) return block_new(ctx, bytes, false, status);
     block_kind kind = header_of(block)->kind;
     bool mapped = !ctx->custom && bytes >= MAP_FROM;
-    if (kind != KIND_HEAP && mapped && !BRIO_COPIES_INSTEAD) return block_remap(ctx, block, bytes, status);
+    if (kind != KIND_HEAP && mapped && !BRIO_COPIES_INSTEAD) return block_resize_mapped(ctx, block, bytes, status);
     if (kind == KIND_HEAP && !mapped) return block_realloc(ctx, block, bytes, status);
     return block_move(ctx, block, bytes, status);
 }
@@ -327,7 +348,8 @@ brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count,
     if (status != BRIO_OK) return status;
     void *block;
     memcpy(&block, pointer_to_block, sizeof block);
-    if (header_of(block)->kind == KIND_HEAP) memset(block, 0, count * size); /* new mappings are zero */
+    block_header *h = header_of(block);
+    if (h->kind != KIND_FILE && !h->cleared) memset(block, 0, count * size);
     return BRIO_OK;
 }
 

@@ -2,8 +2,8 @@
  *
  * Small blocks come from the context's allocator. Large ones (from 1 MiB on, with the system's allocator) are mappings
  * of their own, or of an unlinked file in the scratch folder; they grow by mremap, which moves pages and copies
- * nothing. A header of 64 bytes before each block holds its size, so the block stays aligned to a cache line; large blocks
- * start a page. */
+ * nothing. Mappings that are given back are kept for later blocks (kept.h). A header of 64 bytes before each block holds its
+ * size, so the block stays aligned to a cache line; large blocks start a page. */
 #ifndef BRIO_BASE_MEMORY_H
 #define BRIO_BASE_MEMORY_H
 

@@ -19,15 +19,16 @@
 #include "predicates/predicates.h"
 #include <string.h>
 
-enum { NO_TET = UINT32_MAX };
+enum { NO_TET = UINT32_MAX, AHEAD = 12 };
 
 typedef struct {
     int threads;
     const brio_tetrahedron *tet;
     const double *points;
     size_t num_tets, num_samples;
-    double *centre; /* of each tetrahedron; NaN where there is none */
-    uint32_t *best; /* of each sample and side, a tetrahedron */
+    double *centre;   /* of each tetrahedron; NaN where there is none */
+    uint32_t *best;   /* of each sample and side, a tetrahedron */
+    double *farthest; /* of each sample and side: no more than the squared distance of the best tetrahedron's centre */
 } finder;
 
 static const double *centre_of(const finder *f, uint32_t tet) {
@@ -36,10 +37,11 @@ static const double *centre_of(const finder *f, uint32_t tet) {
 
 static void find_centres(finder *f) {
     BRIO_OMP(parallel for schedule(static) num_threads(f->threads))
-    for (size_t tet = 0; tet < f->num_tets; tet++) {
-        double r[4][4] = {{0}};
-        for (int i = 0; i < 4; i++) memcpy(r[i], f->points + 3 * (size_t)f->tet[tet].vertex[i], 3 * sizeof **r);
-        if (!brio_centre(r[0], r[1], r[2], r[3], false, f->centre + 3 * tet, NULL)) f->centre[3 * tet] = NAN;
+    for (size_t tet = 0; tet < f->num_tets; tet += BRIO_CENTRE_BATCH) {
+        uint32_t vertex[BRIO_CENTRE_BATCH][4];
+        size_t left = f->num_tets - tet, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
+        for (size_t n = 0; n < count; n++) memcpy(vertex[n], f->tet[tet + n].vertex, sizeof *vertex);
+        brio_centres(&(brio_centre_batch){f->points, NULL, (const uint32_t(*)[4])vertex, count, f->centre + 3 * tet});
     }
 }
 
@@ -52,12 +54,21 @@ static bool farther(const finder *f, uint32_t tet, double distance, uint32_t tha
     return distance > other || (distance == other && compare_tets(f, tet, than) > 0);
 }
 
-/* Keeps the farther of the best tetrahedron so far and this one. */
-static inline void offer(const finder *f, uint32_t *best, uint32_t tet, const double *sample) {
-    double distance = brio_square_distance(centre_of(f, tet), sample);
-    uint32_t now = __atomic_load_n(best, __ATOMIC_RELAXED);
+static inline double farthest_so_far(const finder *f, size_t place) {
+    double distance;
+    __atomic_load(&f->farthest[place], &distance, __ATOMIC_RELAXED);
+    return distance;
+}
+
+/* Keeps the farther of the best tetrahedron so far and this one. Threads may leave the distance of a nearer one behind;
+ * the best is only ever replaced by a farther one, so that is a bound still. */
+static inline void offer(const finder *f, size_t place, uint32_t tet, double distance, const double *sample) {
+    uint32_t *best = &f->best[place], now = __atomic_load_n(best, __ATOMIC_RELAXED);
     while (now == NO_TET || farther(f, tet, distance, now, sample))
-        if (__atomic_compare_exchange_n(best, &now, tet, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) break;
+        if (__atomic_compare_exchange_n(best, &now, tet, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+            __atomic_store(&f->farthest[place], &distance, __ATOMIC_RELAXED);
+            return;
+        }
 }
 
 static bool opposite(const finder *f, uint32_t first, uint32_t tet, const double *s) {
@@ -65,16 +76,29 @@ static bool opposite(const finder *f, uint32_t first, uint32_t tet, const double
     return (p[0] - s[0]) * (q[0] - s[0]) + (p[1] - s[1]) * (q[1] - s[1]) + (p[2] - s[2]) * (q[2] - s[2]) < 0;
 }
 
-static void offer_all(finder *f, int side) {
+/* Calls for what the offers of a tetrahedron will need: samples come in any order. */
+static inline void fetch_samples(const finder *f, size_t tet) {
+    for (int i = 0; i < 4; i++) {
+        size_t v = f->tet[tet].vertex[i];
+        if (v >= f->num_samples) continue;
+        __builtin_prefetch(f->points + 3 * v);
+        __builtin_prefetch(f->farthest + 2 * v, 1);
+    }
+}
+
+static void offer_all(finder *f, size_t side) {
     BRIO_OMP(parallel for schedule(static) num_threads(f->threads))
     for (size_t tet = 0; tet < f->num_tets; tet++) {
+        if (tet + AHEAD < f->num_tets) fetch_samples(f, tet + AHEAD);
         if (isnan(f->centre[3 * tet])) continue;
         for (int i = 0; i < 4; i++) {
             size_t v = f->tet[tet].vertex[i];
             if (v >= f->num_samples) continue;
             const double *s = f->points + 3 * v;
+            double distance = brio_square_distance(f->centre + 3 * tet, s);
+            if (distance < farthest_so_far(f, 2 * v + side)) continue;
             if (side == 1 && !opposite(f, f->best[2 * v], (uint32_t)tet, s)) continue;
-            offer(f, &f->best[2 * v + (size_t)side], (uint32_t)tet, s);
+            offer(f, 2 * v + side, (uint32_t)tet, distance, s);
         }
     }
 }
@@ -144,13 +168,20 @@ done:
 static void fill_poles(const finder *f, const uint32_t *list, brio_poles *poles) {
     BRIO_OMP(parallel for num_threads(f->threads))
     for (size_t p = 0; p < poles->count; p++) {
-        const double *position[4];
+        if (p + AHEAD < poles->count) {
+            __builtin_prefetch(&f->tet[list[p + AHEAD]]);
+            __builtin_prefetch(centre_of(f, list[p + AHEAD]));
+        }
+        const uint32_t *v = f->tet[list[p]].vertex;
+        const double *first = f->points + 3 * (size_t)v[0];
+        poles->bounding[p] = v[0] >= f->num_samples;
+        for (int i = 1; i < 4; i++) {
+            const double *x = f->points + 3 * (size_t)v[i];
+            if (brio_lexicographic(x, first) < 0) first = x;
+            poles->bounding[p] |= v[i] >= f->num_samples;
+        }
         memcpy(poles->centre + 3 * p, centre_of(f, list[p]), 3 * sizeof *poles->centre);
-        brio_sorted_positions(f->points, f->tet + list[p], position);
-        poles->square[p] = brio_square_distance(poles->centre + 3 * p, position[0]);
-        poles->bounding[p] = 0;
-        for (int i = 0; i < 4; i++)
-            if (f->tet[list[p]].vertex[i] >= f->num_samples) poles->bounding[p] = 1;
+        poles->square[p] = brio_square_distance(poles->centre + 3 * p, first);
     }
 }
 
@@ -186,11 +217,14 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
     *out = (brio_poles){0};
     BRIO_TRY(BRIO_ALLOC(ctx, f.centre, 3 * f.num_tets));
     BRIO_TRY(BRIO_ALLOC(ctx, f.best, 2 * num_samples));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f.farthest, 2 * num_samples));
     for (size_t i = 0; i < 2 * num_samples; i++) f.best[i] = NO_TET;
     find_centres(&f);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
     offer_all(&f, 0);
     offer_all(&f, 1);
+    brio_release(ctx, f.farthest);
+    f.farthest = NULL;
     if (filter->sampling_density > 0) BRIO_TRY(discard_bad(ctx, &f, filter, &out->bad_cells));
     BRIO_TRY(number_poles(ctx, &f, out));
     out->of_sample = f.best;
@@ -198,6 +232,7 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
 done:
     brio_release(ctx, f.centre);
     brio_release(ctx, f.best);
+    brio_release(ctx, f.farthest);
     if (status != BRIO_OK) brio_poles_free(ctx, out);
     return status;
 }

@@ -9,15 +9,14 @@
 #include "predicates/circumcentre.h"
 #include "base/scale.h"
 #include "brio/brio.h"
+#include "predicates/centre_bounds.h"
 #include "predicates/double_double.h"
 #include "predicates/dyadic.h"
 #include "predicates/predicates.h"
+#include <string.h>
 
-/* An error of 2^-44 of the centre's distance is what doubles reach for tetrahedra of ordinary shape; 2^-30 is enough for
- * angles, and doubles reach it for nearly flat ones too. */
-static const double FINE_GOAL = 0x1p-44, ROUGH_GOAL = 0x1p-30;
-/* First-order error of each expression below: at most 20 roundings along a path; double-doubles 80 u^2. */
-static const double DOUBLE_BOUND = 20 * 0x1p-53, DD_BOUND = 0x1p-99;
+/* 2^-30 is enough for angles, and doubles reach it for nearly flat tetrahedra too. */
+static const double ROUGH_GOAL = 0x1p-30;
 
 typedef struct {
     double offset[3]; /* centre - first point, scaled */
@@ -72,7 +71,7 @@ static bool solve_double(double r[3][3], const double weight[3], double goal, so
         numerator[0] += lift[i] * x, numerator[1] += lift[i] * y, numerator[2] += lift[i] * z;
         if (i == 0) determinant = r[0][0] * x + r[0][1] * y + r[0][2] * z;
     }
-    return divide(numerator, determinant, p, DOUBLE_BOUND, goal, s);
+    return divide(numerator, determinant, p, BRIO_DOUBLE_BOUND, goal, s);
 }
 
 BRIO_INLINE bool solve_dd(brio_dd r[3][3], const brio_dd weight[3], const permanents *p, double goal, solution *s,
@@ -90,7 +89,8 @@ BRIO_INLINE bool solve_dd(brio_dd r[3][3], const brio_dd weight[3], const perman
             if (i == 0) determinant = dd_add(determinant, dd_multiply(r[0][k], cross[k], fma));
         }
     }
-    return divide((double[]){numerator[0].hi, numerator[1].hi, numerator[2].hi}, determinant.hi, p, DD_BOUND, goal, s);
+    return divide((double[]){numerator[0].hi, numerator[1].hi, numerator[2].hi}, determinant.hi, p, BRIO_DD_BOUND, goal,
+                  s);
 }
 
 static bool solve_dd_plain(brio_dd r[3][3], const brio_dd w[3], const permanents *p, double goal, solution *s) {
@@ -218,10 +218,34 @@ bool brio_centre(const double *a, const double *b, const double *c, const double
                  double *error) {
     const double *p[4] = {a, b, c, d};
     double ignored;
-    return find_centre(p, weighted, FINE_GOAL, centre, error ? error : &ignored);
+    return find_centre(p, weighted, BRIO_FINE_GOAL, centre, error ? error : &ignored);
 }
 
 /* --- several at once --- */
+
+static uint64_t in_lanes(const brio_centre_batch *b) {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+        return brio_centres_avx512(b);
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return brio_centres_avx2(b);
+#endif
+    return b->count < 64 ? (UINT64_C(1) << b->count) - 1 : UINT64_MAX;
+}
+
+void brio_centres(const brio_centre_batch *b) {
+    for (uint64_t left = in_lanes(b); left; left &= left - 1) {
+        size_t n = (size_t)__builtin_ctzll(left);
+        double r[4][4] = {{0}};
+        for (int i = 0; i < 4; i++) {
+            size_t v = b->vertex[n][i];
+            memcpy(r[i], b->points + 3 * v, 3 * sizeof **r);
+            if (b->weights) r[i][3] = b->weights[v];
+        }
+        if (!brio_centre(r[0], r[1], r[2], r[3], b->weights != NULL, b->centre + 3 * n, NULL)) b->centre[3 * n] = NAN;
+    }
+}
+
+/* --- several at once, roughly --- */
 
 typedef double lanes __attribute__((vector_size(8 * BRIO_CENTRES)));
 typedef int64_t lane_mask __attribute__((vector_size(8 * BRIO_CENTRES)));
@@ -250,13 +274,13 @@ BRIO_INLINE void solve_lanes(const lanes r[3][3], lanes offset[3], lanes *error,
     }
     lanes permanent = 6 * size[0] * size[1] * size[2];
     take_larger(&slack, &determinant);
-    slack -= DOUBLE_BOUND * permanent + 0x1p-900;
-    lanes inverse = one / slack, share = DOUBLE_BOUND * permanent * inverse * (1 + 0x1p-50) + 0x1p-52;
+    slack -= BRIO_DOUBLE_BOUND * permanent + 0x1p-900;
+    lanes inverse = one / slack, share = BRIO_DOUBLE_BOUND * permanent * inverse * (1 + 0x1p-50) + 0x1p-52;
     *error = zero, *far = zero;
     for (int k = 0; k < 3; k++) {
         lanes most = 2 * lifts * size[(k + 1) % 3] * size[(k + 2) % 3];
         offset[k] = 0.5 * (numerator[k] / determinant);
-        lanes own = 0.5 * (DOUBLE_BOUND * most + 0x1p-900) * inverse * (1 + 0x1p-50), length = zero;
+        lanes own = 0.5 * (BRIO_DOUBLE_BOUND * most + 0x1p-900) * inverse * (1 + 0x1p-50), length = zero;
         take_larger(&length, &offset[k]);
         own += length * share;
         take_larger(error, &own);

@@ -6,8 +6,8 @@
  * one cycle round its vertex. Hull vertices are outer, so every ring closes: the crust is a closed oriented 2-manifold
  * whatever the coordinates are. It stays combinatorial: no vertices are merged, no faces dropped.
  *
- * Blocks of tetrahedra count what they will write, and then write it where the counts say, so that threads leave no
- * trace. A face belongs to the first tetrahedron of its ring.
+ * Blocks of tetrahedra list their faces, which are then copied to where the blocks before leave off, so that threads
+ * leave no trace. A face belongs to the first tetrahedron of its ring.
  *
  * Cutting a face into triangles by diagonals keeps all this, since two faces share at most one edge.
  *
@@ -29,15 +29,21 @@ typedef struct {
     size_t vertices, faces, corners, rings, left_out;
 } block_counts;
 
+/* The faces of a block: of each, how many corners it has, and these. */
+typedef struct {
+    uint32_t *entry;
+    size_t count, capacity;
+} face_list;
+
 typedef struct {
     const brio_pole_graph *g;
     int threads;
     const uint8_t *label;
     const brio_crust_options *options;
     uint32_t *number; /* of the crust vertex of each finite tetrahedron, or NO_VERTEX */
-    uint16_t *leads;  /* of each finite tetrahedron, bit 4 i + j for the edge from slot i to j whose face it makes */
     brio_mesh *mesh;
     block_counts *blocks; /* num_blocks + 1 */
+    face_list *lists;     /* of each block */
     size_t num_blocks;
 } builder;
 
@@ -51,14 +57,17 @@ static bool inner(const builder *b, uint32_t pole) {
     return b->label[pole] == BRIO_LABEL_INNER;
 }
 
-static void vertex_position(const builder *b, const uint32_t *v, double *position) {
-    double r[4][4];
-    for (int i = 0; i < 4; i++) {
-        memcpy(r[i], b->g->poles->centre + 3 * (size_t)v[i], 3 * sizeof **r);
-        r[i][3] = b->g->poles->square[v[i]];
+/* The orthocentres of poles, four each; where there is none that doubles can hold, the middle of the poles. */
+static void find_positions(const builder *b, const uint32_t (*v)[4], size_t count, double *position) {
+    const brio_poles *poles = b->g->poles;
+    brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count, position});
+    for (size_t n = 0; n < count; n++, position += 3) {
+        if (!isnan(position[0])) continue;
+        for (int k = 0; k < 3; k++) {
+            position[k] = 0;
+            for (int i = 0; i < 4; i++) position[k] += 0.25 * poles->centre[3 * (size_t)v[n][i] + (size_t)k];
+        }
     }
-    if (brio_centre(r[0], r[1], r[2], r[3], true, position, NULL)) return;
-    for (int k = 0; k < 3; k++) position[k] = 0.25 * r[0][k] + 0.25 * r[1][k] + 0.25 * r[2][k] + 0.25 * r[3][k];
 }
 
 /* The least of its poles': a pole that reaches far may have a sample where samples are few. */
@@ -90,12 +99,17 @@ static void count_vertices(const builder *b, size_t block) {
 }
 
 static void fill_vertices(const builder *b, size_t block) {
-    size_t count = b->blocks[block].vertices;
-    for (size_t tet = block_begin(b, block); tet < block_begin(b, block + 1); tet++) {
+    size_t next = b->blocks[block].vertices, end = block_begin(b, block + 1), waiting = 0;
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    for (size_t tet = block_begin(b, block); tet < end; tet++) {
         if (b->number[tet] == NO_VERTEX) continue;
-        b->number[tet] = (uint32_t)count;
-        vertex_position(b, b->g->power.tet[tet].vertex, b->mesh->vertices + 3 * count++);
+        b->number[tet] = (uint32_t)next++;
+        memcpy(vertex[waiting++], b->g->power.tet[tet].vertex, sizeof *vertex);
+        if (waiting < BRIO_CENTRE_BATCH) continue;
+        find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
+        waiting = 0;
     }
+    find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
 }
 
 /* Turns the counts of the blocks into what is before each of them; the last entry is the total. */
@@ -135,34 +149,73 @@ static bool spans_hole(const builder *b, uint32_t p, uint32_t q) {
     return fmin(b->g->poles->square[p], b->g->poles->square[q]) > limit * limit;
 }
 
-static void count_face(const builder *b, uint32_t tet, int i, int j, block_counts *counts) {
+static brio_status push_corner(const builder *b, face_list *list, size_t n, uint32_t tet) {
+    brio_status status = BRIO_RESERVE(b->g->ctx, list->entry, list->capacity, n + 1);
+    if (status == BRIO_OK) list->entry[n] = b->number[tet];
+    return status;
+}
+
+/* Puts the corners round the edge from slot i to j behind the list; *size is 0 when another tetrahedron comes first in
+ * the ring. */
+static brio_status find_corners(const builder *b, uint32_t tet, int i, int j, face_list *list, size_t *size) {
+    size_t n = list->count + 1;
+    brio_status status = BRIO_OK;
+    brio_ring r = brio_ring_second(&b->g->power, tet, i, j);
+    *size = 0;
+    BRIO_TRY(push_corner(b, list, n++, tet));
+    do {
+        if (r.tet < tet) return BRIO_OK;
+        BRIO_TRY(push_corner(b, list, n++, r.tet));
+    } while (brio_ring_next(&r));
+    *size = n - list->count - 1;
+done:
+    return status;
+}
+
+static brio_status list_face(const builder *b, uint32_t tet, int i, int j, face_list *list, block_counts *counts) {
     const uint32_t *v = b->g->power.tet[tet].vertex;
-    size_t size = brio_ring_size(&b->g->power, tet, i, j);
-    if (!size) return;
+    size_t size;
+    if (!brio_ring_may_lead(&b->g->power, tet, i, j)) return BRIO_OK;
+    brio_status status = find_corners(b, tet, i, j, list, &size);
+    if (status != BRIO_OK || !size) return status;
     if (spans_hole(b, v[i], v[j])) {
         counts->left_out++;
-        return;
+        return BRIO_OK;
     }
-    b->leads[tet] |= (uint16_t)(1 << (4 * i + j));
+    list->entry[list->count] = (uint32_t)size;
+    list->count += size + 1;
     counts->rings++;
     counts->faces += b->options->triangulate ? size - 2 : 1;
     counts->corners += b->options->triangulate ? 3 * (size - 2) : size;
+    return BRIO_OK;
 }
 
-static void count_faces(const builder *b, size_t block) {
+static brio_status list_faces(const builder *b, size_t block) {
+    brio_status status = BRIO_OK;
     block_counts counts = {0, 0, 0, 0, 0};
     size_t end = block_begin(b, block + 1);
     for (size_t tet = block_begin(b, block); tet < end; tet++) {
         bool inside[4];
         if (tet + AHEAD < end && b->number[tet + AHEAD] != NO_VERTEX) brio_ring_fetch(&b->g->power, tet + AHEAD);
-        b->leads[tet] = 0;
         if (b->number[tet] == NO_VERTEX) continue;
         for (int i = 0; i < 4; i++) inside[i] = inner(b, b->g->power.tet[tet].vertex[i]);
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++)
-                if (inside[i] && !inside[j]) count_face(b, (uint32_t)tet, i, j, &counts);
+                if (inside[i] && !inside[j]) BRIO_TRY(list_face(b, (uint32_t)tet, i, j, &b->lists[block], &counts));
     }
     b->blocks[block] = counts;
+done:
+    return status;
+}
+
+static brio_status list_all_faces(const builder *b) {
+    brio_status status = BRIO_OK;
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) {
+        brio_status own = list_faces(b, block);
+        if (own != BRIO_OK) BRIO_OMP(critical(brio_crust_status)) status = own;
+    }
+    return status;
 }
 
 /* Where the next face of a block goes. */
@@ -173,44 +226,30 @@ typedef struct {
 } cursor;
 
 static void end_face(cursor *c, size_t size) {
+    c->corner += size;
     c->corners += size;
     *c->end++ = c->corners;
 }
 
-static void fill_polygon(const builder *b, uint32_t tet, int i, int j, cursor *c) {
-    size_t size = 1;
-    brio_ring r = brio_ring_second(&b->g->power, tet, i, j);
-    *c->corner++ = b->number[tet];
-    do {
-        *c->corner++ = b->number[r.tet];
-        size++;
-    } while (brio_ring_next(&r));
-    end_face(c, size);
-}
-
-static void fill_triangles(const builder *b, uint32_t tet, int i, int j, cursor *c) {
-    brio_ring r = brio_ring_second(&b->g->power, tet, i, j);
-    uint32_t before = b->number[r.tet];
-    while (brio_ring_next(&r)) {
-        c->corner[0] = b->number[tet], c->corner[1] = before, c->corner[2] = b->number[r.tet];
-        before = b->number[r.tet];
-        c->corner += 3;
+static void copy_triangles(const uint32_t *corner, size_t size, cursor *c) {
+    for (size_t i = 2; i < size; i++) {
+        c->corner[0] = corner[0], c->corner[1] = corner[i - 1], c->corner[2] = corner[i];
         end_face(c, 3);
     }
 }
 
-static void fill_faces(const builder *b, size_t block) {
+static void copy_faces(const builder *b, size_t block) {
     const block_counts *at = &b->blocks[block];
+    const face_list *list = &b->lists[block];
     cursor c = {b->mesh->face_vertices + at->corners, b->mesh->face_offsets + at->faces + 1, at->corners};
-    size_t end = block_begin(b, block + 1);
-    for (size_t tet = block_begin(b, block); tet < end; tet++) {
-        if (tet + AHEAD < end && b->leads[tet + AHEAD]) brio_ring_fetch(&b->g->power, tet + AHEAD);
-        for (unsigned left = b->leads[tet]; left; left &= left - 1) {
-            int bit = __builtin_ctz(left);
-            if (b->options->triangulate)
-                fill_triangles(b, (uint32_t)tet, bit / 4, bit % 4, &c);
-            else
-                fill_polygon(b, (uint32_t)tet, bit / 4, bit % 4, &c);
+    for (size_t n = 0, size; n < list->count; n += size + 1) {
+        const uint32_t *corner = list->entry + n + 1;
+        size = list->entry[n];
+        if (b->options->triangulate) {
+            copy_triangles(corner, size, &c);
+        } else {
+            memcpy(c.corner, corner, size * sizeof *corner);
+            end_face(&c, size);
         }
     }
 }
@@ -220,8 +259,7 @@ static brio_status make_faces(builder *b) {
     brio_context *ctx = b->g->ctx;
     brio_mesh *m = b->mesh;
     BRIO_TRY(brio_progress(ctx, "crust", 0.4));
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
-    for (size_t block = 0; block < b->num_blocks; block++) count_faces(b, block);
+    BRIO_TRY(list_all_faces(b));
     sum_blocks(b);
     const block_counts *total = &b->blocks[b->num_blocks];
     BRIO_REQUIRE(ctx, total->faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all faces span holes");
@@ -231,7 +269,7 @@ static brio_status make_faces(builder *b) {
     m->face_offsets[0] = 0;
     m->num_faces = total->faces;
     BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
-    for (size_t block = 0; block < b->num_blocks; block++) fill_faces(b, block);
+    for (size_t block = 0; block < b->num_blocks; block++) copy_faces(b, block);
 done:
     return status;
 }
@@ -243,8 +281,8 @@ brio_status brio_crust_faces(const brio_pole_graph *g, const uint8_t *label, con
     builder b = {.g = g, .threads = brio_context_threads(ctx), .label = label, .options = options, .mesh = mesh};
     b.num_blocks = (g->num_finite + BLOCK - 1) / BLOCK;
     BRIO_TRY(BRIO_ALLOC(ctx, b.number, g->num_finite));
-    BRIO_TRY(BRIO_ALLOC(ctx, b.leads, g->num_finite));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.blocks, b.num_blocks + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.lists, b.num_blocks));
     BRIO_TRY(make_vertices(&b));
     BRIO_REQUIRE(ctx, mesh->num_vertices > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole with a cell is inner");
     if (options->spacing) BRIO_TRY(add_spacing(&b));
@@ -253,7 +291,8 @@ brio_status brio_crust_faces(const brio_pole_graph *g, const uint8_t *label, con
     if (counts->left_out) BRIO_TRY(brio_mesh_split_vertices(ctx, mesh));
 done:
     brio_release(ctx, b.number);
-    brio_release(ctx, b.leads);
+    for (size_t i = 0; b.lists && i < b.num_blocks; i++) brio_release(ctx, b.lists[i].entry);
+    brio_release(ctx, b.lists);
     brio_release(ctx, b.blocks);
     return status;
 }

@@ -4,6 +4,7 @@
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7. */
 #include "reconstruct/power_crust.h"
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/scale.h"
 #include "reconstruct/crust_faces.h"
@@ -64,6 +65,7 @@ brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num
     brio_pole_request request;
     brio_mesh *mesh = NULL;
     *out = NULL;
+    brio_keep_begin(ctx);
     if (!options) options = &standard;
     BRIO_TRY(brio_pole_request_of(ctx, options, &request));
     BRIO_REQUIRE(ctx, options->open >= 0, BRIO_ERR_ARGUMENT, "open: %g spacings, expected 0 or a positive number",
@@ -81,5 +83,6 @@ done:
     ctx->progress_to = 1;
     brio_mesh_free(mesh);
     brio_labelled_poles_free(&l);
+    brio_keep_end(ctx);
     return status;
 }

@@ -86,25 +86,35 @@ done:
     return status;
 }
 
-static void join_faces(topology *t) {
-    BRIO_OMP(parallel for num_threads(t->threads))
-    for (uint32_t h = 0; h < t->corners; h++)
-        if (t->ring[h] > h) brio_unite(t->patch, face_at(t, h), face_at(t, t->ring[h]), t->threads == 1);
+/* Joins the corners at either end of the edge of the half-edges h and g. */
+static void join_corners(topology *t, uint32_t h, uint32_t g, bool alone) {
+    const uint32_t *v = t->mesh->face_vertices;
+    uint32_t h_end = next_corner(t, h), g_end = next_corner(t, g);
+    bool same_way = v[h] == v[g];
+    brio_unite(t->fan, h, same_way ? g : g_end, alone);
+    brio_unite(t->fan, h_end, same_way ? g_end : g, alone);
 }
 
-/* Joins the corners at either end of each edge of two faces or, where `crowded`, of more. */
-static void join_corners(topology *t, bool crowded) {
+/* Joins the faces across every edge, and the corners at either end of the edges of two faces; counts the edges that a
+ * closed oriented manifold does not have. Of each edge's half-edges the last one speaks for it. */
+static void join_across_edges(topology *t, brio_certificate *out) {
     const uint32_t *v = t->mesh->face_vertices;
     bool alone = t->threads == 1;
-    BRIO_OMP(parallel for num_threads(t->threads))
+    size_t boundary = 0, nonmanifold = 0, flipped = 0;
+    BRIO_OMP(parallel for num_threads(t->threads) reduction(+ : boundary, nonmanifold, flipped))
     for (uint32_t h = 0; h < t->corners; h++) {
         uint32_t g = t->ring[h];
-        if (g <= h || crowded != (t->ring[g] != h)) continue;
-        uint32_t h_end = next_corner(t, h), g_end = next_corner(t, g);
-        bool same_way = v[h] == v[g];
-        brio_unite(t->fan, h, same_way ? g : g_end, alone);
-        brio_unite(t->fan, h_end, same_way ? g_end : g, alone);
+        bool last = g <= h, two = g != h && t->ring[g] == h;
+        if (g != h && !(two && last)) brio_unite(t->patch, face_at(t, h), face_at(t, g), alone);
+        if (!last) continue;
+        boundary += g == h;
+        nonmanifold += g != h && !two;
+        flipped += two && v[g] == v[h];
+        if (two) join_corners(t, g, h, alone);
     }
+    out->boundary_edges = boundary;
+    out->nonmanifold_edges = nonmanifold;
+    out->flipped_edges = flipped;
 }
 
 /* --- degenerate faces --- */
@@ -163,24 +173,6 @@ static brio_status mark_degenerate_faces(brio_context *ctx, topology *t, size_t 
 done:
     brio_release(ctx, last_face);
     return status;
-}
-
-/* --- edges --- */
-
-static void count_edges(const topology *t, brio_certificate *out) {
-    const uint32_t *v = t->mesh->face_vertices;
-    size_t boundary = 0, nonmanifold = 0, flipped = 0;
-    BRIO_OMP(parallel for num_threads(t->threads) reduction(+ : boundary, nonmanifold, flipped))
-    for (uint32_t h = 0; h < t->corners; h++) {
-        uint32_t g = t->ring[h];
-        if (g > h) continue; /* only the last half-edge of a ring speaks for its edge */
-        boundary += g == h;
-        nonmanifold += g != h && t->ring[g] != h;
-        flipped += g != h && t->ring[g] == h && v[g] == v[h];
-    }
-    out->boundary_edges = boundary;
-    out->nonmanifold_edges = nonmanifold;
-    out->flipped_edges = flipped;
 }
 
 /* --- components --- */
@@ -282,9 +274,11 @@ static brio_status count_loops(brio_context *ctx, topology *t, const uint32_t *n
     brio_status status = BRIO_OK;
     uint8_t *counted = NULL; /* of each root of a set */
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, counted, t->corners));
-    join_corners(t, true);
-    for (uint32_t h = 0; h < t->corners; h++)
-        if (t->ring[h] == h) brio_unite(t->fan, h, next_corner(t, h), true);
+    for (uint32_t h = 0; h < t->corners; h++) {
+        uint32_t g = t->ring[h];
+        if (g == h) brio_unite(t->fan, h, next_corner(t, h), true);
+        if (g > h && t->ring[g] != h) join_corners(t, h, g, true);
+    }
     for (uint32_t h = 0; h < t->corners; h++) {
         if (t->ring[h] != h) continue;
         uint32_t root = brio_find(t->fan, h);
@@ -330,7 +324,6 @@ static brio_status certify_components(brio_context *ctx, topology *t, brio_certi
     count = number_components(t, number);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, components, count));
     count_in_components(t, number, components);
-    join_corners(t, false);
     if (count_fans(t, number, components)) BRIO_TRY(recount_pinched_vertices(ctx, t, number, components));
     if (out->boundary_edges) BRIO_TRY(count_loops(ctx, t, number, components));
     BRIO_TRY(list_genera(ctx, components, count, out));
@@ -354,8 +347,7 @@ static brio_status certify_topology(brio_context *ctx, const brio_mesh *mesh, br
     size_t degenerate_faces;
     BRIO_TRY(topology_new(ctx, mesh, &t));
     BRIO_TRY(mark_degenerate_faces(ctx, &t, &degenerate_faces));
-    join_faces(&t);
-    count_edges(&t, out);
+    join_across_edges(&t, out);
     BRIO_TRY(certify_components(ctx, &t, out));
     out->nonmanifold_vertices = count_nonmanifold_vertices(&t);
     out->closed = t.corners > 0 && !out->boundary_edges && !out->nonmanifold_edges;

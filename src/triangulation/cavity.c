@@ -178,9 +178,20 @@ static brio_status list_vertices(brio_kernel *k) {
     return BRIO_OK;
 }
 
+/* Whether some vertex of the cavity is not on its border: a sphere of b triangles has b / 2 + 2 vertices, and so many
+ * numbers are still their vertices' own where the cavity has no more. */
+static bool has_interior(brio_kernel *k) {
+    brio_cavity *c = &k->cavity;
+    size_t vertices = 0;
+    if (c->num_tets > BYTES_MOST) return true; /* perhaps: there are no numbers */
+    for (size_t i = 0; i < c->num_tets + 3; i++) vertices += *number_of(k, c->cavity_vertex[i]) == i;
+    return vertices != c->num_border / 2 + 2;
+}
+
 /* Vertices of the cavity that are not on its border are hidden by p. */
 static void hide_interior(brio_kernel *k, uint32_t p) {
     brio_cavity *c = &k->cavity;
+    if (!has_interior(k)) return;
     for (size_t i = 0; i < c->num_tets + 3; i++) *number_of(k, c->cavity_vertex[i]) = 0;
     for (size_t b = 0; b < c->num_border; b++)
         for (int i = 1; i < 4; i++) *number_of(k, k->t.tet[c->created[b]].vertex[i]) = 1;

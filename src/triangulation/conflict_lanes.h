@@ -27,7 +27,11 @@ typedef struct {
 } corners;
 
 static inline void load_corners(const brio_tetrahedra *t, const uint32_t facets[LANES], const double *p, corners *c) {
-    for (int s = 0; s < 4; s++) load_slot(t, facets, s, c->v[s]);
+    for (int s = 0; s < 4; s++) {
+        const double *row[LANES];
+        for (int i = 0; i < LANES; i++) row[i] = t->record[t->tet[brio_tet_of(facets[i])].vertex[s]];
+        load_rows(row, true, c->v[s]);
+    }
     for (int k = 0; k < 4; k++) c->e[k] = all(p[k]);
 }
 
@@ -205,8 +209,16 @@ static inline unsigned decide_by_lifts(const brio_filter *f, const rows *r, lane
     return fresh;
 }
 
-/* Stages beyond the static bound, for the lanes not yet known. Loads everything again: keeping it at hand would cost
- * the calls that do not come here, nearly all of them, more. */
+/* The second stage. With weights nearly every call needs it: the balls of neighbouring poles all but touch the same
+ * points. */
+static inline unsigned decide_by_permanent(const brio_filter *f, const corners *c, const rows *r, lanes det,
+                                           unsigned *known, const bool weighted) {
+    lanes floor = choose(r->infinite, all(f->orient_floor), all(f->insphere_floor));
+    return decide(det, all(DOUBLE_UNIT) * permanent(c, r, weighted) + floor, known);
+}
+
+/* What is left of the stages, for the lanes not yet known. Loads everything again: keeping it at hand would cost the
+ * calls that do not come here as much. */
 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
                                                  const double *p, unsigned known, const bool weighted) {
     corners c;
@@ -214,13 +226,14 @@ static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_
     load_corners(t, facets, p, &c);
     rows_set(&c, &r, weighted);
     if (f->lattice) return settle_lattice(t, f, facets, p, &c, &r, known);
-    lanes floor = choose(r.infinite, all(f->orient_floor), all(f->insphere_floor));
-    lanes most = permanent(&c, &r, weighted);
-    unsigned mask = decide(determinant(&r), all(DOUBLE_UNIT) * most + floor, &known);
+    unsigned mask = weighted ? 0 : decide_by_permanent(f, &c, &r, determinant(&r), &known, false);
     if (known == ALL_LANES) return mask;
     f->unsettled += (uint64_t)__builtin_popcount(~known & ALL_LANES);
-    if (!f->coarse)
-        mask |= decide(determinant_of_pairs(&c, r.infinite, weighted), all(PAIR_UNIT) * most + floor, &known);
+    if (!f->coarse) {
+        lanes floor = choose(r.infinite, all(f->orient_floor), all(f->insphere_floor));
+        lanes bound = all(PAIR_UNIT) * permanent(&c, &r, weighted) + floor;
+        mask |= decide(determinant_of_pairs(&c, r.infinite, weighted), bound, &known);
+    }
     for (int i = 0; i < LANES; i++)
         if (!(known >> i & 1)) mask |= (unsigned)brio_in_conflict_exact(t, f, brio_tet_of(facets[i]), p, weighted) << i;
     return mask;
@@ -239,6 +252,7 @@ static inline __attribute__((always_inline)) unsigned lanes_in_conflict(const br
     unsigned mask = decide(det, bound, &known);
     if (__builtin_expect(known == ALL_LANES, 1)) return mask;
     if (!weighted && !f->lattice) mask |= decide_by_lifts(f, &r, det, &known);
+    if (weighted && !f->lattice) mask |= decide_by_permanent(f, &c, &r, det, &known, true);
     if (known == ALL_LANES) return mask;
     return mask | settle(t, f, facets, p, known, weighted);
 }

@@ -2,6 +2,7 @@
  *
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Devillers, Teillaud. Perturbations for Delaunay and weighted Delaunay 3D triangulations. CGTA 2011. */
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "order/order.h"
@@ -216,6 +217,7 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     brio_recorder recorder = {0};
     brio_status status = BRIO_OK;
     *out = NULL;
+    brio_keep_begin(ctx);
     if (!options) options = &standard;
     BRIO_TRY(check_options(ctx, num_points, options));
     recorder.every = options->record_every;
@@ -232,6 +234,7 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     brio_kernel_free(&kernel);
     brio_release(ctx, recorder.list);
 done:
+    brio_keep_end(ctx);
     return status;
 }
 

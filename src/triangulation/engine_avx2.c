@@ -1,6 +1,6 @@
 /* The inner loops in AVX2: four doubles a register. */
 #if defined(__x86_64__)
-#include "triangulation/lanes_avx2.h"
+#include "predicates/lanes_avx2.h"
 
 #include "triangulation/conflict_lanes.h"
 #include "triangulation/walk_lanes.h"

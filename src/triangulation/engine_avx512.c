@@ -1,6 +1,6 @@
 /* The inner loops in AVX-512: eight doubles a register. */
 #if defined(__x86_64__)
-#include "triangulation/lanes_avx512.h"
+#include "predicates/lanes_avx512.h"
 
 #include "triangulation/conflict_lanes.h"
 #include "triangulation/walk_lanes.h"

@@ -2,6 +2,7 @@
  * */
 #include "harness.h"
 #include "points.h"
+#include "predicates/circumcentre.h"
 #include <math.h>
 
 static void known_centres(void) {
@@ -61,7 +62,67 @@ static void extreme_scales_are_answered(void) {
     EXPECT(status == BRIO_ERR_ARGUMENT || (isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2])));
 }
 
+/* --- in batches --- */
+
+enum { ROWS = 4 * BRIO_CENTRE_BATCH };
+
+/* Four points each: spread evenly, nearly flat, flat, on a small lattice (so that coordinates are equal), tiny, huge. */
+static void mixed_points(uint64_t trial, double *p, double *w) {
+    uniform_points(trial, ROWS, p);
+    for (size_t i = 0; i < ROWS; i++) {
+        w[i] = p[3 * i] * p[3 * i + 1] * (trial % 3 ? 1e-3 : 1);
+        size_t kind = i / 4 % 6;
+        if (kind == 1) p[3 * i + 2] *= ldexp(1, -(int)(trial % 60));
+        if (kind == 2) p[3 * i + 2] = 0.25;
+        for (size_t k = 0; kind == 3 && k < 3; k++) p[3 * i + k] = floor(4 * p[3 * i + k]) / 4;
+        for (size_t k = 0; kind == 4 && k < 3; k++) p[3 * i + k] = ldexp(p[3 * i + k], trial % 2 ? -1060 : -500);
+        for (size_t k = 0; kind == 5 && k < 3; k++) p[3 * i + k] = ldexp(p[3 * i + k], trial % 2 ? 1020 : 300);
+    }
+}
+
+static bool same_centre(const double *x, const double *y) {
+    return (isnan(x[0]) && isnan(y[0])) || !memcmp(x, y, 3 * sizeof *x);
+}
+
+/* What a batch says of its first `count` tetrahedra, but for those in `left`. */
+static void check_batch(const brio_centre_batch *b, uint64_t left, const char *name) {
+    for (size_t n = 0; n < b->count; n++) {
+        double r[4][4] = {{0}}, x[3] = {0, 0, 0};
+        for (int i = 0; i < 4; i++) {
+            size_t v = b->vertex[n][i];
+            memcpy(r[i], b->points + 3 * v, 3 * sizeof **r);
+            r[i][3] = b->weights ? b->weights[v] : 0;
+        }
+        if (!brio_centre(r[0], r[1], r[2], r[3], b->weights != NULL, x, NULL)) x[0] = NAN;
+        EXPECT(left >> n & 1 || same_centre(x, b->centre + 3 * n), "%s: tetrahedron %zu: %g %g %g", name, n, x[0], x[1],
+               x[2]);
+    }
+}
+
+static void batches_have_the_bits_of_single_centres(void) {
+    static double p[3 * ROWS], w[ROWS], centre[3 * BRIO_CENTRE_BATCH];
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    for (uint32_t i = 0; i < ROWS; i++) vertex[i / 4][i % 4] = i;
+    size_t left_over = 0, in_all = 0;
+    for (uint64_t trial = 0; trial < 1000; trial++) {
+        brio_centre_batch b = {p, trial / 2 % 2 ? w : NULL, (const uint32_t(*)[4])vertex, BRIO_CENTRE_BATCH, centre};
+        mixed_points(trial, p, w);
+        if (trial % 5 == 0) b.count = trial / 5 % BRIO_CENTRE_BATCH;
+        brio_centres(&b);
+        check_batch(&b, 0, "as chosen");
+#if defined(__x86_64__)
+        if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) continue;
+        uint64_t left = brio_centres_avx2(&b);
+        check_batch(&b, left, "AVX2");
+        EXPECT(b.count == BRIO_CENTRE_BATCH || !(left >> b.count));
+        left_over += (size_t)__builtin_popcountll(left), in_all += b.count;
+#endif
+    }
+    EXPECT(2 * left_over <= in_all, "%zu of %zu left over", left_over, in_all); /* flat ones, tiny ones, huge ones */
+}
+
 int main(void) {
+    RUN(batches_have_the_bits_of_single_centres);
     RUN(known_centres);
     RUN(order_of_the_points_does_not_matter);
     RUN(error_bound_holds_for_flat_and_far_tetrahedra);

@@ -1,5 +1,7 @@
 /* Memory account, growth, limits. */
+#include "base/kept.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "harness.h"
 #include <string.h>
 
@@ -91,7 +93,96 @@ static void scratch_block_is_one_whatever_way_it_is_reached(void) {
     brio_context_free(ctx);
 }
 
+static void released_mapping_serves_the_next_block_cleared_where_asked(void) {
+    brio_context *ctx;
+    brio_context_new(NULL, &ctx);
+    char *a = NULL, *b = NULL, *c = NULL;
+    bool zero = true;
+    EXPECT(BRIO_ALLOC(ctx, a, 8 << 20) == BRIO_OK);
+    memset(a, 'x', 8 << 20);
+    brio_release(ctx, a);
+    EXPECT(brio_context_memory(ctx) == 0 && ctx->kept_bytes >= 8 << 20);
+    EXPECT(BRIO_ALLOC(ctx, b, 2 << 20) == BRIO_OK && b == a);
+    EXPECT(BRIO_ALLOC_ZERO(ctx, c, 4 << 20) == BRIO_OK && c > a && c < a + (8 << 20));
+    for (size_t i = 0; i < 4 << 20; i++) zero &= c[i] == 0;
+    EXPECT(zero);
+    brio_release(ctx, b);
+    brio_release(ctx, c);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void what_is_kept_gives_way_to_the_limit(void) {
+    brio_context *ctx;
+    brio_context_new(NULL, &ctx);
+    brio_context_set_memory_limit(ctx, 8 << 20);
+    for (size_t size = 2 << 20; size < 8 << 20; size += 1 << 20) {
+        char *a = NULL;
+        EXPECT(BRIO_ALLOC(ctx, a, size) == BRIO_OK, "%zu bytes", size);
+        brio_release(ctx, a);
+    }
+    brio_context_free(ctx);
+}
+
+static void only_so_much_is_kept_between_calls(void) {
+    brio_context *ctx;
+    brio_context_new(NULL, &ctx);
+    char *a = NULL;
+    brio_keep_begin(ctx);
+    EXPECT(BRIO_ALLOC(ctx, a, 200 << 20) == BRIO_OK);
+    brio_release(ctx, a);
+    EXPECT(ctx->kept_bytes >= 200 << 20);
+    brio_keep_end(ctx);
+    EXPECT(ctx->kept_bytes > 0 && ctx->kept_bytes <= 64 << 20);
+    brio_context_free(ctx);
+}
+
+enum { BLOCKS = 24 };
+
+static bool holds(const uint32_t *block, size_t n, uint32_t value) {
+    for (size_t i = 0; i < n; i += 1024)
+        if (block[i] != value) return false;
+    return !n || block[n - 1] == value;
+}
+
+/* Blocks of many sizes come, grow, shrink and go; each keeps what it holds, and live and kept memory together stay at or
+ * below the peak. */
+static void keeping_never_makes_the_peak_higher(void) {
+    brio_context *ctx;
+    brio_context_new(NULL, &ctx);
+    brio_rng rng = brio_rng_new(7);
+    uint32_t *block[BLOCKS] = {NULL};
+    size_t n[BLOCKS] = {0};
+    brio_keep_begin(ctx);
+    for (uint32_t step = 0; step < 3000; step++) {
+        uint32_t i = brio_rng_below(&rng, BLOCKS);
+        size_t size = (size_t)brio_rng_below(&rng, 1 << 10) << brio_rng_below(&rng, 11),
+               same = n[i] < size ? n[i] : size;
+        if (step % 3 == 0) {
+            brio_release(ctx, block[i]);
+            block[i] = NULL, n[i] = 0;
+        } else {
+            EXPECT(BRIO_RESIZE(ctx, block[i], size) == BRIO_OK);
+            EXPECT(holds(block[i], same, i), "step %u: block %u", step, i);
+            for (size_t j = same; j < size; j++) block[i][j] = i;
+            n[i] = size;
+        }
+        EXPECT(brio_context_memory(ctx) + ctx->kept_bytes <= brio_context_memory_peak(ctx), "step %u", step);
+    }
+    for (uint32_t i = 0; i < BLOCKS; i++) {
+        EXPECT(holds(block[i], n[i], i));
+        brio_release(ctx, block[i]);
+    }
+    brio_keep_end(ctx);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
 int main(void) {
+    RUN(released_mapping_serves_the_next_block_cleared_where_asked);
+    RUN(what_is_kept_gives_way_to_the_limit);
+    RUN(only_so_much_is_kept_between_calls);
+    RUN(keeping_never_makes_the_peak_higher);
     RUN(grown_block_keeps_what_it_held);
     RUN(limit_is_a_status_and_keeps_the_block);
     RUN(size_overflow_is_a_status);

@@ -1,9 +1,9 @@
-/* Eight doubles side by side: the vector operations of conflict_lanes.h in AVX-512. */
-#ifndef BRIO_TRIANGULATION_LANES_AVX512_H
-#define BRIO_TRIANGULATION_LANES_AVX512_H
+/* Eight doubles side by side: the vector operations of conflict_lanes.h and centre_lanes.h in AVX-512. */
+#ifndef BRIO_PREDICATES_LANES_AVX512_H
+#define BRIO_PREDICATES_LANES_AVX512_H
 
-#include "triangulation/tetrahedra.h"
 #include <immintrin.h>
+#include <stdbool.h>
 
 enum { LANES = 8 };
 
@@ -49,13 +49,18 @@ static inline unsigned bits_of(lane_mask m) {
     return m;
 }
 
-/* x y z w of the vertex in slot s of each tetrahedron. */
-static inline void load_slot(const brio_tetrahedra *t, const uint32_t facets[LANES], int s, lanes out[4]) {
-    lanes r[4]; /* two records each, so paired that the lanes come out in order */
+/* The bits of the exponent alone: the largest power of two that is no larger than x, x positive and normal. */
+static inline lanes leading_power(lanes x) {
+    return _mm512_and_pd(x, all(__builtin_inf()));
+}
+
+/* out = the columns of a row of four doubles a lane, or of three and zeros. */
+static inline void load_rows(const double *const row[LANES], const bool four, lanes out[4]) {
+    lanes r[4]; /* two rows each, so paired that the lanes come out in order */
     for (int i = 0; i < 4; i++) {
         int low = i < 2 ? i : i + 2;
-        __m256d a = _mm256_loadu_pd(t->record[t->tet[brio_tet_of(facets[low])].vertex[s]]);
-        __m256d b = _mm256_loadu_pd(t->record[t->tet[brio_tet_of(facets[low + 2])].vertex[s]]);
+        __m256d a = four ? _mm256_loadu_pd(row[low]) : _mm256_maskz_loadu_pd(7, row[low]);
+        __m256d b = four ? _mm256_loadu_pd(row[low + 2]) : _mm256_maskz_loadu_pd(7, row[low + 2]);
         r[i] = _mm512_insertf64x4(_mm512_castpd256_pd512(a), b, 1);
     }
     lanes ab0 = _mm512_unpacklo_pd(r[0], r[1]), ab1 = _mm512_unpackhi_pd(r[0], r[1]);
@@ -64,6 +69,13 @@ static inline void load_slot(const brio_tetrahedra *t, const uint32_t facets[LAN
     out[1] = _mm512_shuffle_f64x2(ab1, cd1, 0x88);
     out[2] = _mm512_shuffle_f64x2(ab0, cd0, 0xdd);
     out[3] = _mm512_shuffle_f64x2(ab1, cd1, 0xdd);
+}
+
+static inline lanes load_lanes(const double x[LANES]) {
+    return _mm512_loadu_pd(x);
+}
+static inline void store_lanes(double out[LANES], lanes x) {
+    _mm512_storeu_pd(out, x);
 }
 
 #endif

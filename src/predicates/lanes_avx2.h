@@ -1,9 +1,9 @@
-/* Four doubles side by side: the vector operations of conflict_lanes.h in AVX2. */
-#ifndef BRIO_TRIANGULATION_LANES_AVX2_H
-#define BRIO_TRIANGULATION_LANES_AVX2_H
+/* Four doubles side by side: the vector operations of conflict_lanes.h and centre_lanes.h in AVX2. */
+#ifndef BRIO_PREDICATES_LANES_AVX2_H
+#define BRIO_PREDICATES_LANES_AVX2_H
 
-#include "triangulation/tetrahedra.h"
 #include <immintrin.h>
+#include <stdbool.h>
 
 enum { LANES = 4 };
 
@@ -49,16 +49,29 @@ static inline unsigned bits_of(lane_mask m) {
     return (unsigned)_mm256_movemask_pd(m);
 }
 
-/* x y z w of the vertex in slot s of each tetrahedron. */
-static inline void load_slot(const brio_tetrahedra *t, const uint32_t facets[LANES], int s, lanes out[4]) {
+/* The bits of the exponent alone: the largest power of two that is no larger than x, x positive and normal. */
+static inline lanes leading_power(lanes x) {
+    return _mm256_and_pd(x, all(__builtin_inf()));
+}
+
+/* out = the columns of a row of four doubles a lane, or of three and zeros. */
+static inline void load_rows(const double *const row[LANES], const bool four, lanes out[4]) {
+    const __m256i three = _mm256_setr_epi64x(-1, -1, -1, 0);
     lanes r[4];
-    for (int i = 0; i < LANES; i++) r[i] = _mm256_loadu_pd(t->record[t->tet[brio_tet_of(facets[i])].vertex[s]]);
+    for (int i = 0; i < LANES; i++) r[i] = four ? _mm256_loadu_pd(row[i]) : _mm256_maskload_pd(row[i], three);
     lanes ab0 = _mm256_unpacklo_pd(r[0], r[1]), ab1 = _mm256_unpackhi_pd(r[0], r[1]);
     lanes cd0 = _mm256_unpacklo_pd(r[2], r[3]), cd1 = _mm256_unpackhi_pd(r[2], r[3]);
     out[0] = _mm256_permute2f128_pd(ab0, cd0, 0x20);
     out[1] = _mm256_permute2f128_pd(ab1, cd1, 0x20);
     out[2] = _mm256_permute2f128_pd(ab0, cd0, 0x31);
     out[3] = _mm256_permute2f128_pd(ab1, cd1, 0x31);
+}
+
+static inline lanes load_lanes(const double x[LANES]) {
+    return _mm256_loadu_pd(x);
+}
+static inline void store_lanes(double out[LANES], lanes x) {
+    _mm256_storeu_pd(out, x);
 }
 
 #endif

@@ -1,0 +1,92 @@
+/* Mappings that blocks have given back, kept for the next blocks.
+ *
+ * What is kept and what is live are never more together than what was live at the peak, so that keeping takes no more
+ * memory than the work did without it. */
+#include "base/kept.h"
+#include "base/parallel.h"
+#include <sys/mman.h>
+
+static const size_t BETWEEN_CALLS = (size_t)64 << 20;
+
+/* Gives back the last bytes of the mapping in a place. */
+static void cut(brio_context *ctx, int i, size_t size) {
+    brio_mapping *m = &ctx->kept[i];
+    m->size -= size;
+    munmap((char *)m->base + m->size, size);
+    __atomic_sub_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
+    if (!m->size) *m = ctx->kept[--ctx->num_kept];
+}
+
+/* Leaves at most so many bytes, those of the largest mappings. */
+static void trim(brio_context *ctx, size_t most) {
+    while (ctx->kept_bytes > most) {
+        int least = 0;
+        for (int i = 1; i < ctx->num_kept; i++)
+            if (ctx->kept[i].size < ctx->kept[least].size) least = i;
+        size_t over = (ctx->kept_bytes - most + BRIO_PAGE - 1) / BRIO_PAGE * BRIO_PAGE, size = ctx->kept[least].size;
+        cut(ctx, least, size < over ? size : over);
+    }
+}
+
+/* How much may be kept now. */
+static size_t most_kept(const brio_context *ctx) {
+    size_t live = __atomic_load_n(&ctx->live, __ATOMIC_RELAXED), peak = __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED);
+    size_t most = peak > live ? peak - live : 0;
+    return ctx->keeping || most < BETWEEN_CALLS ? most : BETWEEN_CALLS;
+}
+
+/* The smallest mapping of at least so many bytes, or -1. */
+static int smallest(const brio_context *ctx, size_t least) {
+    int best = -1;
+    for (int i = 0; i < ctx->num_kept; i++)
+        if (ctx->kept[i].size >= least && (best < 0 || ctx->kept[i].size < ctx->kept[best].size)) best = i;
+    return best;
+}
+
+void *brio_kept_take(brio_context *ctx, size_t size) {
+    void *base = NULL;
+    BRIO_OMP(critical(brio_kept)) {
+        int i = smallest(ctx, size);
+        if (i >= 0) {
+            brio_mapping *m = &ctx->kept[i];
+            base = m->base;
+            m->base = (char *)m->base + size;
+            m->size -= size;
+            __atomic_sub_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
+            if (!m->size) *m = ctx->kept[--ctx->num_kept];
+        }
+    }
+    return base;
+}
+
+void brio_kept_give(brio_context *ctx, void *base, size_t size) {
+    bool full;
+    BRIO_OMP(critical(brio_kept)) {
+        full = ctx->num_kept == BRIO_MOST_KEPT;
+        if (!full) {
+            ctx->kept[ctx->num_kept++] = (brio_mapping){base, size};
+            __atomic_add_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
+            trim(ctx, most_kept(ctx));
+        }
+    }
+    if (full) munmap(base, size);
+}
+
+void brio_kept_make_room(brio_context *ctx) {
+    if (__atomic_load_n(&ctx->kept_bytes, __ATOMIC_RELAXED) <= most_kept(ctx)) return;
+    BRIO_OMP(critical(brio_kept))
+    trim(ctx, most_kept(ctx));
+}
+
+void brio_kept_free(brio_context *ctx) {
+    trim(ctx, 0);
+}
+
+void brio_keep_begin(brio_context *ctx) {
+    ctx->keeping++;
+}
+
+void brio_keep_end(brio_context *ctx) {
+    ctx->keeping--;
+    brio_kept_make_room(ctx);
+}
