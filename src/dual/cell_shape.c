@@ -47,21 +47,28 @@ static void offer_edge(const brio_cells *c, uint32_t s, const double *from, cons
     square[s] = fmax(square[s], reach_in_cocone(a, b, n));
 }
 
-void brio_cocone_radii(const brio_cells *c, double *radius) {
-    for (size_t s = 0; s < c->num_samples; s++) radius[s] = 0;
+/* square[s] = that of the largest distance from sample s to a point of its cell in the co-cone. */
+static void cocone_radii(const brio_cells *c, double *square) {
+    for (size_t s = 0; s < c->num_samples; s++) square[s] = 0;
     for (size_t t = 0; t < c->num_finite; t++)
         for (int i = 0; i < 4; i++) {
             size_t u = c->tet[t].mate[i] / 4;
             if (u < t || u >= c->num_finite || isnan(c->centre[3 * t]) || isnan(c->centre[3 * u])) continue;
             for (int k = 1; k < 4; k++)
-                offer_edge(c, c->tet[t].vertex[(i + k) % 4], c->centre + 3 * t, c->centre + 3 * u, radius);
+                offer_edge(c, c->tet[t].vertex[(i + k) % 4], c->centre + 3 * t, c->centre + 3 * u, square);
         }
-    for (size_t s = 0; s < c->num_samples; s++) radius[s] = sqrt(radius[s]);
 }
 
-bool brio_cell_is_bad(const brio_cells *c, size_t s, double radius, double density) {
-    double pole[3];
-    if (c->pole_of[2 * s + 1] == UINT32_MAX) return false;
-    subtract(c->centre + 3 * (size_t)c->pole_of[2 * s + 1], c->points + 3 * s, pole);
-    return radius > 1.3 * density / (1 - density) * sqrt(brio_dot(pole, pole));
+void brio_cell_shapes(const brio_cells *c, double *shape) {
+    cocone_radii(c, shape);
+    for (size_t s = 0; s < c->num_samples; s++) {
+        uint32_t nearer = c->pole_of[2 * s + 1];
+        double square =
+            nearer == UINT32_MAX ? INFINITY : brio_square_distance(c->centre + 3 * (size_t)nearer, c->points + 3 * s);
+        shape[s] = square < INFINITY && shape[s] > 0 ? sqrt(square / shape[s]) : INFINITY;
+    }
+}
+
+bool brio_cell_is_bad(double shape, double density) {
+    return shape < (1 - density) / (1.3 * density);
 }

@@ -79,20 +79,23 @@ static void offer_all(finder *f, int side) {
     }
 }
 
-static brio_status discard_bad(brio_context *ctx, finder *f, const brio_pole_filter *filter, size_t *bad_cells) {
-    brio_status status = BRIO_OK;
-    double *radius = NULL;
-    brio_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
-    BRIO_TRY(BRIO_ALLOC(ctx, radius, f->num_samples));
-    brio_cocone_radii(&cells, radius);
+static void discard_bad(finder *f, const brio_pole_filter *filter, const double *shape, size_t *bad_cells) {
     for (size_t s = 0; s < f->num_samples; s++) {
-        if (!brio_cell_is_bad(&cells, s, radius[s], filter->sampling_density)) continue;
+        if (!brio_cell_is_bad(shape[s], filter->sampling_density)) continue;
         f->best[2 * s + 1] = NO_TET;
         if (filter->both) f->best[2 * s] = NO_TET;
         ++*bad_cells;
     }
+}
+
+static brio_status look_at_shapes(brio_context *ctx, finder *f, const brio_pole_filter *filter, brio_poles *out) {
+    brio_status status = BRIO_OK;
+    brio_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
+    if (!filter->shapes && !(filter->sampling_density > 0)) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, out->shape, f->num_samples));
+    brio_cell_shapes(&cells, out->shape);
+    if (filter->sampling_density > 0) discard_bad(f, filter, out->shape, &out->bad_cells);
 done:
-    brio_release(ctx, radius);
     return status;
 }
 
@@ -191,7 +194,7 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
     offer_all(&f, 0);
     offer_all(&f, 1);
-    if (filter->sampling_density > 0) BRIO_TRY(discard_bad(ctx, &f, filter, &out->bad_cells));
+    BRIO_TRY(look_at_shapes(ctx, &f, filter, out));
     BRIO_TRY(number_poles(ctx, &f, out));
     out->of_sample = f.best;
     f.best = NULL;
@@ -206,6 +209,7 @@ void brio_poles_free(brio_context *ctx, brio_poles *poles) {
     brio_release(ctx, poles->centre);
     brio_release(ctx, poles->square);
     brio_release(ctx, poles->bounding);
+    brio_release(ctx, poles->shape);
     brio_release(ctx, poles->of_sample);
     *poles = (brio_poles){0};
 }

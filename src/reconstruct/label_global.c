@@ -7,10 +7,11 @@
  * cut between the certain poles and their complements, a pole on the side of the source is outer and one whose
  * complement is there is inner, in a labelling of least energy; the others stay open.
  *
- * Certain here are also the poles beyond the box of the samples. Only the region about the violated edges of the greedy
- * labels takes part, since nearly all edges of a good sample are at peace; a region is enlarged as long as labels change
- * near its border. Where trouble is all over a large sample the flow may have long ways: it is given up after some
- * looks an edge, and all poles of the region are open. Open poles begin with their greedy labels, and sets of them are toggled while that lowers the energy. Around the
+ * The weights are the balanced ones of the graph of poles. Certain here are also the poles beyond the box of the
+ * samples. Only the region about the violated edges of the greedy labels takes part, since nearly all edges of a good
+ * sample are at peace; a region is enlarged as long as labels change near its border. Where trouble is all over a large
+ * sample the flow may have long ways: it is given up after some looks an edge, and all poles of the region are open.
+ * Open poles begin with their greedy labels, and sets of them are toggled while that lowers the energy. Around the
  * present labels the energy of a set is that of a cut but for the violated edges, which want exactly one end toggled;
  * counted as a gain at one end and a loss at the other they bound the energy from above, equal when nothing is toggled.
  * So the set of least bound is no loss. The ends are drawn anew for each move.
@@ -62,7 +63,7 @@ static bool is_troubled(const problem *pr, uint32_t p) {
     for (size_t e = g->first_opposite[p]; e < g->first_opposite[p + 1]; e++)
         if (g->opposite_weight[e] > 0 && disagree(pr, p, g->opposite_pole[e], false)) return true;
     for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++)
-        if (g->edge_weight[e] > 0 && disagree(pr, p, g->edge_pole[e], true)) return true;
+        if (g->edge_weight[e] != 0 && disagree(pr, p, g->edge_pole[e], g->edge_weight[e] > 0)) return true;
     return false;
 }
 
@@ -120,7 +121,7 @@ static brio_status collect_edges(problem *pr) {
             if (is_first_end(pr, p, g->opposite_pole[e]) && g->opposite_weight[e] > 0)
                 BRIO_TRY(add_edge(pr, p, g->opposite_pole[e], -whole_weight(g->opposite_weight[e])));
         for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++)
-            if (is_first_end(pr, p, g->edge_pole[e]) && g->edge_weight[e] > 0)
+            if (is_first_end(pr, p, g->edge_pole[e]))
                 BRIO_TRY(add_edge(pr, p, g->edge_pole[e], whole_weight((double)g->edge_weight[e])));
     }
 done:

@@ -106,7 +106,8 @@ static brio_status pass_on(labeller *l, uint32_t p, int side, double strength) {
     for (size_t e = n->opposite; e < end->opposite; e++)
         BRIO_TRY(offer(l, g->opposite_pole[e], !side, strength * g->opposite_weight[e]));
     for (size_t e = n->edge; e < end->edge; e++)
-        BRIO_TRY(offer(l, g->edge_pole[e], side, strength * (double)g->edge_weight[e]));
+        BRIO_TRY(offer(l, g->edge_pole[e], g->edge_weight[e] < 0 ? !side : side,
+                       strength * fabs((double)g->edge_weight[e])));
 done:
     return status;
 }

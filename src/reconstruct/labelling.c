@@ -1,6 +1,7 @@
 /* What the labellings share: which poles are certain, the energy of labels, spreading breadth first. */
 #include "reconstruct/labelling.h"
 #include "base/parallel.h"
+#include <math.h>
 #include <string.h>
 
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain) {
@@ -17,8 +18,8 @@ static double violated_at(const brio_pole_graph *g, const uint8_t *label, size_t
     for (size_t e = g->first_opposite[p]; e < g->first_opposite[p + 1]; e++)
         if (g->opposite_pole[e] > p && label[g->opposite_pole[e]] == label[p]) sum += g->opposite_weight[e];
     for (size_t e = g->first_edge[p]; e < g->first_edge[p + 1]; e++)
-        if (g->edge_pole[e] > p && g->edge_weight[e] > 0 && label[g->edge_pole[e]] != label[p])
-            sum += (double)g->edge_weight[e];
+        if (g->edge_pole[e] > p && (label[g->edge_pole[e]] == label[p]) == (g->edge_weight[e] < 0))
+            sum += fabs((double)g->edge_weight[e]);
     return sum;
 }
 

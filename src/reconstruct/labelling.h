@@ -36,7 +36,8 @@ brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_lab
 /** certain[p] = 1 for the poles that are outer for good, else 0; others are not written where they are 1. */
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain);
 
-/** The sum of the violated positive weights: neighbours of different labels, opposite poles of the same. */
+/** The sum of the violated weights: neighbours of different labels, or of one where different ones are wanted, opposite
+ *  poles of the same. */
 double brio_label_energy(const brio_pole_graph *g, const uint8_t *label);
 
 /** Spreads labels breadth first from the poles of a queue, that are labelled: deeply intersecting neighbours get the

@@ -20,19 +20,27 @@ typedef struct {
     size_t *first_opposite; /* #poles + 1: the opposite poles of each pole, by sample and side */
     uint32_t *opposite_pole;
     double *opposite_weight; /* 0: no edge */
-    size_t *first_edge; /* #poles + 1: the edges to deeply intersecting neighbours of each pole, by their numbers */
+    size_t *first_edge;      /* #poles + 1: the edges to neighbours of each pole, by their numbers */
     uint32_t *edge_pole;
-    float *edge_weight;
+    float *edge_weight; /* > 0: the same label is wanted, < 0: different ones */
 } brio_pole_graph;
 
+/** What edges say of labels. */
+typedef struct {
+    double least;  /* neighbours have an edge when the weight of their balls is over this ... */
+    bool balanced; /* ... or as the surest evidence has it on samples of any density; needs the shapes of cells */
+} brio_pole_evidence;
+
 /** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power. The
- *  weight of an edge between neighbours is -cos of the angle at which their balls intersect: -1 where they touch, 0 at
- *  a right angle, 1 for a ball inside the other; edges of weight `least_weight` and less are left out. */
+ *  weight of two balls is -cos of the angle at which they intersect: -1 where they touch, 0 at a right angle, 1 for a
+ *  ball inside the other. An edge has this weight, or 0 where it is negative; in the balanced graph
+ *  deep edges have its square, shallow ones that want different labels a small weight, and opposite poles are the less
+ *  sure of each other the worse the cell of their sample is shaped. */
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
-                                const brio_triangulation *power, double least_weight, brio_pole_graph *out);
+                                const brio_triangulation *power, brio_pole_evidence evidence, brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);
 
-/** The weight of an edge between two neighbours, deep or not; over 1 for a ball inside the other. */
+/** The weight of the balls of two neighbours, deep or not; over 1 for a ball inside the other. */
 double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q);
 
 /** Called for an edge from a pole to `other` of the given weight, at most 1. */
