@@ -463,7 +463,7 @@ typedef struct brio_power_crust_stats {
     size_t unreached;           /* naive, theoretical: poles that were left to the greedy labelling */
     size_t open, toggled;       /* global: poles that roof duality left open; poles whose greedy label was changed */
     double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
-    double energy;              /* sum of the violated weights of the labels */
+    double energy;              /* sum of the violated weights of the labels; global: of weights of its own */
     size_t left_out;            /* faces that `open` left out */
     double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds, simplify_seconds;
 } brio_power_crust_stats;
