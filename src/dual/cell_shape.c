@@ -47,9 +47,8 @@ static void offer_edge(const brio_cells *c, uint32_t s, const double *from, cons
     square[s] = fmax(square[s], reach_in_cocone(a, b, n));
 }
 
-/* square[s] = that of the largest distance from sample s to a point of its cell in the co-cone. */
-static void cocone_radii(const brio_cells *c, double *square) {
-    for (size_t s = 0; s < c->num_samples; s++) square[s] = 0;
+/* Raises square[s] to that of the largest distance from sample s to a point of its cell in the co-cone. */
+static void raise_to_cocone_radii(const brio_cells *c, double *square) {
     for (size_t t = 0; t < c->num_finite; t++)
         for (int i = 0; i < 4; i++) {
             size_t u = c->tet[t].mate[i] / 4;
@@ -59,14 +58,18 @@ static void cocone_radii(const brio_cells *c, double *square) {
         }
 }
 
-void brio_cell_shapes(const brio_cells *c, double *shape) {
-    cocone_radii(c, shape);
-    for (size_t s = 0; s < c->num_samples; s++) {
-        uint32_t nearer = c->pole_of[2 * s + 1];
-        double square =
-            nearer == UINT32_MAX ? INFINITY : brio_square_distance(c->centre + 3 * (size_t)nearer, c->points + 3 * s);
-        shape[s] = square < INFINITY && shape[s] > 0 ? sqrt(square / shape[s]) : INFINITY;
-    }
+static double nearer_pole_square(const brio_cells *c, size_t s) {
+    uint32_t nearer = c->pole_of[2 * s + 1];
+    if (nearer == UINT32_MAX) return INFINITY;
+    return brio_square_distance(c->centre + 3 * (size_t)nearer, c->points + 3 * s);
+}
+
+/* Edges that stay where even the widest shape would have them are passed over, which is most of them. */
+void brio_cell_shapes(const brio_cells *c, double most, double *shape) {
+    for (size_t s = 0; s < c->num_samples; s++) shape[s] = nearer_pole_square(c, s) / (most * most);
+    raise_to_cocone_radii(c, shape);
+    for (size_t s = 0; s < c->num_samples; s++)
+        shape[s] = shape[s] > 0 && shape[s] < INFINITY ? sqrt(nearer_pole_square(c, s) / shape[s]) : most;
 }
 
 bool brio_cell_is_bad(double shape, double density) {

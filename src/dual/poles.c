@@ -91,10 +91,12 @@ static void discard_bad(finder *f, const brio_pole_filter *filter, const double 
 static brio_status look_at_shapes(brio_context *ctx, finder *f, const brio_pole_filter *filter, brio_poles *out) {
     brio_status status = BRIO_OK;
     brio_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
-    if (!filter->shapes && !(filter->sampling_density > 0)) return BRIO_OK;
+    double r = filter->sampling_density, most = filter->shapes;
+    if (r > 0) most = fmax(most, (1 - r) / (1.3 * r));
+    if (!(most > 0)) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, out->shape, f->num_samples));
-    brio_cell_shapes(&cells, out->shape);
-    if (filter->sampling_density > 0) discard_bad(f, filter, out->shape, &out->bad_cells);
+    brio_cell_shapes(&cells, 1.01 * most, out->shape); /* more than what is asked for, rounded or not */
+    if (r > 0) discard_bad(f, filter, out->shape, &out->bad_cells);
 done:
     return status;
 }

@@ -23,7 +23,7 @@ typedef struct {
 typedef struct {
     double sampling_density; /* r of brio_cell_is_bad, in (0, 1); 0: no cell is bad */
     bool both;               /* both poles, not the nearer one only */
-    bool shapes;             /* the shapes of cells are wanted */
+    double shapes;           /* > 0: the shapes of cells are wanted, up to this */
 } brio_pole_filter;
 
 /** Finds the poles of the first num_samples of the points that t triangulates; the points after them only bound the

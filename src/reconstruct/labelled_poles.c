@@ -120,7 +120,7 @@ static brio_status find_poles(brio_labelled_poles *l, const brio_pole_request *r
     brio_triangulation *delaunay = NULL;
     brio_pole_filter filter = request->filter;
     double start = brio_seconds();
-    filter.shapes = !request->solid && request->labeling == BRIO_LABELING_GLOBAL;
+    if (!request->solid && request->labeling == BRIO_LABELING_GLOBAL) filter.shapes = BRIO_TRUSTED_SHAPE;
     stage(l->ctx, request, 0, 0.39);
     BRIO_TRY(brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BOUNDING_POINTS, &l->triangulation, &delaunay));
     l->stats.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;

@@ -22,7 +22,7 @@ enum { STEP = 1 << 21, AHEAD = 8 }; /* tetrahedra between two looks at the calle
 
 /* Of balanced evidence. Chosen on cheese (genus 133, 68 found with plain weights, 123 with these, 113 to 126 nearby) and
  * held against random samples of smooth models, too few for them. */
-static const double TOUCHING = -0.95, SHALLOW = -0.5, SHALLOW_WEIGHT = 0.1, TRUSTED_SHAPE = 1.3;
+static const double TOUCHING = -0.95, SHALLOW = -0.5, SHALLOW_WEIGHT = 0.1;
 
 /* Workspace of the construction. */
 typedef struct {
@@ -58,7 +58,7 @@ static double balanced_weight(double weight) {
 /* A badly shaped cell does not tell where the surface is: at an edge with too few samples both poles may well be on one
  * side. */
 static double trust_in(double shape) {
-    double share = shape / TRUSTED_SHAPE;
+    double share = shape / BRIO_TRUSTED_SHAPE;
     return share < 1 ? share * share * share * share * share * share : 1;
 }
 

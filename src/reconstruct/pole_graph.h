@@ -25,6 +25,9 @@ typedef struct {
     float *edge_weight; /* > 0: the same label is wanted, < 0: different ones */
 } brio_pole_graph;
 
+/** Cells of this shape and better are trusted in the balanced graph. */
+#define BRIO_TRUSTED_SHAPE 1.3
+
 /** What edges say of labels. */
 typedef struct {
     double least;  /* neighbours have an edge when the weight of their balls is over this ... */

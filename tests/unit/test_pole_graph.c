@@ -13,7 +13,7 @@ typedef struct {
 } graphs;
 
 static void graphs_new(brio_context *ctx, uint64_t seed, graphs *x) {
-    brio_pole_filter filter = {.shapes = true};
+    brio_pole_filter filter = {.shapes = BRIO_TRUSTED_SHAPE};
     brio_pole_evidence plain = {-2, false}, balanced = {0, true};
     brio_triangulation *t;
     torus_points(seed, N, x->points);
