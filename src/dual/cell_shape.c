@@ -26,6 +26,7 @@ static double reach_in_cocone(const double *a, const double *b, const double *n)
     /* in the co-cone: (x.n)^2 - limit x.x <= 0, for x = a + t d the polynomial (q2 t + 2 q1) t + q0 */
     double an = brio_dot(a, n), dn = brio_dot(d, n), aa = brio_dot(a, a), ad = brio_dot(a, d), dd = brio_dot(d, d);
     double q2 = dn * dn - limit * dd, q1 = an * dn - limit * ad, q0 = an * an - limit * aa;
+    if (q0 > 0 && q2 + 2 * q1 + q0 > 0 && an * (an + dn) > 0) return 0; /* both ends in one cone, which is convex */
     if (q0 <= 0) most = aa;
     if (q2 + 2 * q1 + q0 <= 0) most = fmax(most, brio_dot(b, b));
     double discriminant = q1 * q1 - q2 * q0;
