@@ -187,6 +187,17 @@ those of the README beside the shared data: the same samples, the same judge.
 
 ''' + '\n'.join(models_table(with_truth)) + '''
 
+## Sharp edges
+
+![An edge of fandisk: the triangles of the model, the power crust without and with --sharp -R 0.4](images/sharp.png)
+
+No sample of fandisk is on its edges, and the triangles of the model, the truth of the table, cut them off (left). So does
+the power crust (middle), and the figures of the table are the better for it. With `--sharp -R 0.4` (right) the faces
+beside an edge meet in it. Within 1.5 sample spacings of the edges, 9.0 % of the crust without it, 4.0 % with `--sharp`
+and 2.9 % with `--sharp -R 0.4` have a normal more than 20 degrees off those of all faces beside the edge. On a cube with
+3,000 random samples, none on the edges, the crust is 0.22, 0.11 and 0.03 spacings off the edges, on a hexagonal prism
+0.18, 0.09 and 0.02. The samples of mechpart are on its edges: to discard more of them costs distance.
+
 ## Models without a truth, scans, lidar
 
 Scans of open surfaces: the power crust and the tight co-cone close them, the co-cone leaves them open; what matters here

@@ -475,7 +475,7 @@ typedef struct brio_power_crust_stats {
     size_t unreached;           /* naive, theoretical: poles that were left to the greedy labelling */
     size_t open, toggled;       /* global: poles that the last roof duality left open; that changed their label */
     double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
-    double energy;              /* sum of the violated weights of the labels */
+    double energy;              /* sum of the violated weights of the labels; global: of weights of its own */
     size_t left_out;            /* faces that `open` left out */
     double noise;               /* auto: standard deviation of the noise that was found, in spacings; 0: none */
     size_t smoothed;            /* 1: the samples were */

@@ -26,6 +26,7 @@ static double reach_in_cocone(const double *a, const double *b, const double *n)
     /* in the co-cone: (x.n)^2 - limit x.x <= 0, for x = a + t d the polynomial (q2 t + 2 q1) t + q0 */
     double an = brio_dot(a, n), dn = brio_dot(d, n), aa = brio_dot(a, a), ad = brio_dot(a, d), dd = brio_dot(d, d);
     double q2 = dn * dn - limit * dd, q1 = an * dn - limit * ad, q0 = an * an - limit * aa;
+    if (q0 > 0 && q2 + 2 * q1 + q0 > 0 && an * (an + dn) > 0) return 0; /* both ends in one cone, which is convex */
     if (q0 <= 0) most = aa;
     if (q2 + 2 * q1 + q0 <= 0) most = fmax(most, brio_dot(b, b));
     double discriminant = q1 * q1 - q2 * q0;
@@ -47,21 +48,31 @@ static void offer_edge(const brio_cells *c, uint32_t s, const double *from, cons
     square[s] = fmax(square[s], reach_in_cocone(a, b, n));
 }
 
-void brio_cocone_radii(const brio_cells *c, double *radius) {
-    for (size_t s = 0; s < c->num_samples; s++) radius[s] = 0;
+/* Raises square[s] to that of the largest distance from sample s to a point of its cell in the co-cone. */
+static void raise_to_cocone_radii(const brio_cells *c, double *square) {
     for (size_t t = 0; t < c->num_finite; t++)
         for (int i = 0; i < 4; i++) {
             size_t u = c->tet[t].mate[i] / 4;
             if (u < t || u >= c->num_finite || isnan(c->centre[3 * t]) || isnan(c->centre[3 * u])) continue;
             for (int k = 1; k < 4; k++)
-                offer_edge(c, c->tet[t].vertex[(i + k) % 4], c->centre + 3 * t, c->centre + 3 * u, radius);
+                offer_edge(c, c->tet[t].vertex[(i + k) % 4], c->centre + 3 * t, c->centre + 3 * u, square);
         }
-    for (size_t s = 0; s < c->num_samples; s++) radius[s] = sqrt(radius[s]);
 }
 
-bool brio_cell_is_bad(const brio_cells *c, size_t s, double radius, double density) {
-    double pole[3];
-    if (c->pole_of[2 * s + 1] == UINT32_MAX) return false;
-    subtract(c->centre + 3 * (size_t)c->pole_of[2 * s + 1], c->points + 3 * s, pole);
-    return radius > 1.3 * density / (1 - density) * sqrt(brio_dot(pole, pole));
+static double nearer_pole_square(const brio_cells *c, size_t s) {
+    uint32_t nearer = c->pole_of[2 * s + 1];
+    if (nearer == UINT32_MAX) return INFINITY;
+    return brio_square_distance(c->centre + 3 * (size_t)nearer, c->points + 3 * s);
+}
+
+/* Edges that stay where even the widest shape would have them are passed over, which is most of them. */
+void brio_cell_shapes(const brio_cells *c, double most, double *shape) {
+    for (size_t s = 0; s < c->num_samples; s++) shape[s] = nearer_pole_square(c, s) / (most * most);
+    raise_to_cocone_radii(c, shape);
+    for (size_t s = 0; s < c->num_samples; s++)
+        shape[s] = shape[s] > 0 && shape[s] < INFINITY ? sqrt(nearer_pole_square(c, s) / shape[s]) : most;
+}
+
+bool brio_cell_is_bad(double shape, double density) {
+    return shape < (1 - density) / (1.3 * density);
 }

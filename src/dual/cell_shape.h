@@ -14,12 +14,13 @@ typedef struct {
     const uint32_t *pole_of; /* of each sample by 2: the tetrahedra of the farther and the nearer pole, or UINT32_MAX */
 } brio_cells;
 
-/** radius[s], #samples: the largest distance from sample s to a point of an edge of its cell in the co-cone, which is
- *  what lies within pi / 8 of the plane through s across the direction to the farther pole. 0 without a pole. */
-void brio_cocone_radii(const brio_cells *cells, double *radius);
+/** shape[s], #samples: the distance from sample s to its nearer pole over the radius of its cell in the co-cone, the
+ *  largest distance to a point of an edge of the cell within pi / 8 of the plane through s across the direction to the
+ *  farther pole. Large for long, thin cells; about `most` where it is more, and without a nearer pole. */
+void brio_cell_shapes(const brio_cells *cells, double most, double *shape);
 
-/** Whether the cell of sample s is badly shaped for a surface sampled with density r: its radius in the co-cone is over
+/** Whether a cell is badly shaped for a surface sampled with density r: its radius in the co-cone is over
  *  1.3 r / (1 - r) times the distance to the nearer pole. */
-bool brio_cell_is_bad(const brio_cells *cells, size_t s, double radius, double density);
+bool brio_cell_is_bad(double shape, double density);
 
 #endif

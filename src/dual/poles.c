@@ -103,20 +103,25 @@ static void offer_all(finder *f, size_t side) {
     }
 }
 
-static brio_status discard_bad(brio_context *ctx, finder *f, const brio_pole_filter *filter, size_t *bad_cells) {
-    brio_status status = BRIO_OK;
-    double *radius = NULL;
-    brio_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
-    BRIO_TRY(BRIO_ALLOC(ctx, radius, f->num_samples));
-    brio_cocone_radii(&cells, radius);
+static void discard_bad(finder *f, const brio_pole_filter *filter, const double *shape, size_t *bad_cells) {
     for (size_t s = 0; s < f->num_samples; s++) {
-        if (!brio_cell_is_bad(&cells, s, radius[s], filter->sampling_density)) continue;
+        if (!brio_cell_is_bad(shape[s], filter->sampling_density)) continue;
         f->best[2 * s + 1] = NO_TET;
         if (filter->both) f->best[2 * s] = NO_TET;
         ++*bad_cells;
     }
+}
+
+static brio_status look_at_shapes(brio_context *ctx, finder *f, const brio_pole_filter *filter, brio_poles *out) {
+    brio_status status = BRIO_OK;
+    brio_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
+    double r = filter->sampling_density, most = filter->shapes;
+    if (r > 0) most = fmax(most, (1 - r) / (1.3 * r));
+    if (!(most > 0)) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, out->shape, f->num_samples));
+    brio_cell_shapes(&cells, 1.01 * most, out->shape); /* more than what is asked for, rounded or not */
+    if (r > 0) discard_bad(f, filter, out->shape, &out->bad_cells);
 done:
-    brio_release(ctx, radius);
     return status;
 }
 
@@ -225,7 +230,7 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
     offer_all(&f, 1);
     brio_release(ctx, f.farthest);
     f.farthest = NULL;
-    if (filter->sampling_density > 0) BRIO_TRY(discard_bad(ctx, &f, filter, &out->bad_cells));
+    BRIO_TRY(look_at_shapes(ctx, &f, filter, out));
     BRIO_TRY(number_poles(ctx, &f, out));
     out->of_sample = f.best;
     f.best = NULL;
@@ -241,6 +246,7 @@ void brio_poles_free(brio_context *ctx, brio_poles *poles) {
     brio_release(ctx, poles->centre);
     brio_release(ctx, poles->square);
     brio_release(ctx, poles->bounding);
+    brio_release(ctx, poles->shape);
     brio_release(ctx, poles->of_sample);
     *poles = (brio_poles){0};
 }

@@ -15,13 +15,15 @@ typedef struct {
     double *square;      /* squared radii */
     uint8_t *bounding;   /* 1: the tetrahedron has a bounding point */
     size_t bad_cells;    /* samples that had poles discarded */
+    double *shape;       /* of the samples' cells, as brio_cell_shapes; NULL when not asked for */
     uint32_t *of_sample; /* #samples by 2: the farther pole and the one on its other side, or BRIO_NO_POLE */
 } brio_poles;
 
-/** Which poles of badly shaped cells are discarded. */
+/** Which poles of badly shaped cells are discarded, and whether shapes are wanted all the same. */
 typedef struct {
     double sampling_density; /* r of brio_cell_is_bad, in (0, 1); 0: no cell is bad */
     bool both;               /* both poles, not the nearer one only */
+    double shapes;           /* > 0: the shapes of cells are wanted, up to this */
 } brio_pole_filter;
 
 /** Finds the poles of the first num_samples of the points that t triangulates; the points after them only bound the

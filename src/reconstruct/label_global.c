@@ -1,5 +1,5 @@
 /* Labelling of poles that lowers one energy: the sum of the weights that are violated, neighbours that intersect deeply
- * wanting the same label and opposite poles different ones.
+ * wanting the same label and opposite poles different ones. The weights are the balanced ones of the graph of poles.
  *
  * Least energy is as hard as a maximum cut, since edges of the second kind make it not submodular. Roof duality tells
  * part of an optimum by one flow, but on a large sample with trouble all over the flow is slow and leaves nearly all

@@ -140,7 +140,9 @@ static brio_status keep_representatives(brio_labelled_poles *l, const brio_trian
 static brio_status find_poles(brio_labelled_poles *l, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     brio_triangulation *delaunay = NULL;
+    brio_pole_filter filter = request->filter;
     double start = brio_seconds();
+    if (!request->solid && request->labeling == BRIO_LABELING_GLOBAL) filter.shapes = BRIO_TRUSTED_SHAPE;
     stage(l->ctx, request, 0.05, 0.39);
     BRIO_TRY(brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BOUNDING_POINTS, &l->triangulation, &delaunay));
     l->stats.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;
@@ -149,7 +151,7 @@ static brio_status find_poles(brio_labelled_poles *l, const brio_pole_request *r
     l->stats.delaunay_seconds = brio_seconds() - start;
     start = brio_seconds();
     stage(l->ctx, request, 0.39, 0.5);
-    BRIO_TRY(brio_poles_find(l->ctx, delaunay, l->points, l->num_samples, &request->filter, &l->poles));
+    BRIO_TRY(brio_poles_find(l->ctx, delaunay, l->points, l->num_samples, &filter, &l->poles));
     if (request->spacing) BRIO_TRY(measure_spacing(l, delaunay));
     if (request->representative) BRIO_TRY(keep_representatives(l, delaunay));
     l->stats.poles = l->poles.count;
@@ -189,8 +191,9 @@ static const label_fn labellings[BRIO_LABELING_END] = {brio_label_global, brio_l
 static brio_status label_along_graph(brio_labelled_poles *l, brio_labeling labeling) {
     brio_status status = BRIO_OK;
     brio_labelling_stats s = {0};
-    double least = labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0;
-    BRIO_TRY(brio_pole_graph_new(l->ctx, &l->poles, l->points, l->num_samples, l->power, least, &l->graph));
+    brio_pole_evidence evidence = {labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0,
+                                   labeling == BRIO_LABELING_GLOBAL};
+    BRIO_TRY(brio_pole_graph_new(l->ctx, &l->poles, l->points, l->num_samples, l->power, evidence, &l->graph));
     BRIO_TRY(labellings[labeling](&l->graph, l->label, &s));
     l->stats.confused = s.confused;
     l->stats.unreached = s.unreached;

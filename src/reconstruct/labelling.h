@@ -45,7 +45,8 @@ static inline bool brio_label_violates(const uint8_t *label, uint32_t p, brio_po
     return (label[p] == label[edge.pole]) == (edge.weight < 0);
 }
 
-/** The sum of the violated weights: neighbours of different labels, opposite poles of the same. */
+/** The sum of the violated weights: neighbours of different labels, or of one where different ones are wanted, opposite
+ *  poles of the same. */
 double brio_label_energy(const brio_pole_graph *g, const uint8_t *label);
 
 /** Spreads labels breadth first from the poles of a queue, that are labelled: deeply intersecting neighbours get the

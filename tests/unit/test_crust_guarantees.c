@@ -91,7 +91,8 @@ static void check_labels(const theory *x, const brio_pole_graph *g, label_fn fin
 
 static brio_pole_graph graph_of(const theory *x, double least_weight) {
     brio_pole_graph g;
-    EXPECT(brio_pole_graph_new(x->ctx, &x->poles, x->points, x->n, x->power, least_weight, &g) == BRIO_OK);
+    brio_pole_evidence evidence = {least_weight, false};
+    EXPECT(brio_pole_graph_new(x->ctx, &x->poles, x->points, x->n, x->power, evidence, &g) == BRIO_OK);
     return g;
 }
 

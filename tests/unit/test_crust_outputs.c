@@ -2,6 +2,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "surface/closest_point.h"
 
 /* Small inputs: one thread is faster. */
 static brio_context *new_small_context(void) {
@@ -182,6 +183,54 @@ static void cube_comes_out_with_its_edges(void) {
     brio_context_free(ctx);
 }
 
+/* The largest and the mean distance from the edges of the cube [0, 1]^3, short of its corners, to the mesh. */
+static double off_the_edges(brio_context *ctx, const brio_mesh *mesh, double *mean) {
+    enum { STEPS = 100 };
+    brio_triangle_tree tree = {0};
+    double most = 0, sum = 0;
+    EXPECT(brio_triangle_tree_new(ctx, mesh, &tree) == BRIO_OK);
+    for (int edge = 0; edge < 12; edge++)
+        for (int i = 0; i < STEPS; i++) {
+            int axis = edge / 4;
+            double p[3], nearest[3];
+            size_t triangle;
+            p[axis] = 0.03 + 0.94 * i / (STEPS - 1);
+            p[(axis + 1) % 3] = edge & 1;
+            p[(axis + 2) % 3] = edge >> 1 & 1;
+            double distance = sqrt(brio_closest_point(&tree, p, nearest, &triangle));
+            most = fmax(most, distance);
+            sum += distance;
+        }
+    brio_triangle_tree_free(ctx, &tree);
+    *mean = sum / (12 * STEPS);
+    return most;
+}
+
+/* Means in spacings of the samples. */
+static void edges_without_samples_come_out_sharp(void) {
+    enum { N = 1500, TRIALS = 4 };
+    static double p[3 * N];
+    const double spacing = sqrt(6.0 / N);
+    brio_context *ctx = new_small_context();
+    double sum[3] = {0}; /* without --sharp, with it, with R = 0.4 */
+    for (uint64_t trial = 1; trial <= TRIALS; trial++) {
+        cube_points(trial, N, p);
+        for (int i = 0; i < 3; i++) {
+            brio_surface_options o = brio_surface_options_default();
+            double mean;
+            o.sharp = i > 0;
+            o.sampling_density = i == 2 ? 0.4 : 0;
+            brio_mesh *mesh = crust(ctx, p, N, &o, NULL);
+            double most = off_the_edges(ctx, mesh, &mean);
+            EXPECT(i == 0 || most < 1.5 * spacing, "trial %llu: %g", (unsigned long long)trial, most / spacing);
+            sum[i] += mean / spacing / TRIALS;
+            brio_mesh_free(mesh);
+        }
+    }
+    EXPECT(sum[0] > 0.1 && sum[1] < sum[0] / 3 && sum[2] < 0.03, "%g, %g, %g", sum[0], sum[1], sum[2]);
+    brio_context_free(ctx);
+}
+
 static void sampling_density_out_of_range_is_refused(void) {
     double p[3 * 20];
     uniform_points(1, 20, p);
@@ -269,6 +318,7 @@ int main(void) {
     RUN(hole_of_the_samples_stays_open_on_request);
     RUN(open_anything_is_manifold);
     RUN(cube_comes_out_with_its_edges);
+    RUN(edges_without_samples_come_out_sharp);
     RUN(sampling_density_out_of_range_is_refused);
     RUN(normals_of_samples_are_those_of_the_sphere);
     RUN(normals_of_vertices_point_outwards);
