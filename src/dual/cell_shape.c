@@ -10,6 +10,7 @@
  *           most 1.3 r / (1 - r) times the local feature size, for which the distance to the nearer pole stands here.
  */
 #include "dual/cell_shape.h"
+#include "base/parallel.h"
 #include "base/vector.h"
 #include <math.h>
 
@@ -19,14 +20,26 @@ static void subtract(const double *a, const double *b, double *difference) {
     for (int k = 0; k < 3; k++) difference[k] = a[k] - b[k];
 }
 
-/* Largest squared length of a point of the segment from a to b that is in the co-cone across n; 0 when none is. */
-static double reach_in_cocone(const double *a, const double *b, const double *n) {
+/* A Voronoi edge as its sample sees it: its ends, and the direction to the sample's farther pole. */
+typedef struct {
+    double a[3], b[3], n[3];
+} seen_edge;
+
+/* Whether both ends are in one of the two cones beyond the co-cone, and so, since it is convex, is all of the edge: most
+ * are. */
+static inline bool is_in_one_cone(const seen_edge *e) {
+    double an = brio_dot(e->a, e->n), bn = brio_dot(e->b, e->n), limit = SQUARED_SINE * brio_dot(e->n, e->n);
+    return an * bn > 0 && an * an > limit * brio_dot(e->a, e->a) && bn * bn > limit * brio_dot(e->b, e->b);
+}
+
+/* Largest squared length of a point of the edge in the co-cone; 0 when none is. */
+static double reach_in_cocone(const seen_edge *e) {
+    const double *a = e->a, *b = e->b, *n = e->n;
     double d[3], limit = SQUARED_SINE * brio_dot(n, n), most = 0;
     subtract(b, a, d);
     /* in the co-cone: (x.n)^2 - limit x.x <= 0, for x = a + t d the polynomial (q2 t + 2 q1) t + q0 */
     double an = brio_dot(a, n), dn = brio_dot(d, n), aa = brio_dot(a, a), ad = brio_dot(a, d), dd = brio_dot(d, d);
     double q2 = dn * dn - limit * dd, q1 = an * dn - limit * ad, q0 = an * an - limit * aa;
-    if (q0 > 0 && q2 + 2 * q1 + q0 > 0 && an * (an + dn) > 0) return 0; /* both ends in one cone, which is convex */
     if (q0 <= 0) most = aa;
     if (q2 + 2 * q1 + q0 <= 0) most = fmax(most, brio_dot(b, b));
     double discriminant = q1 * q1 - q2 * q0;
@@ -37,26 +50,42 @@ static double reach_in_cocone(const double *a, const double *b, const double *n)
     return most;
 }
 
-static void offer_edge(const brio_cells *c, uint32_t s, const double *from, const double *to, double *square) {
-    const double *sample = c->points + 3 * (size_t)s;
-    double a[3], b[3], n[3];
-    if (s >= c->num_samples || c->pole_of[2 * (size_t)s] == UINT32_MAX) return;
-    subtract(from, sample, a);
-    subtract(to, sample, b);
-    if (brio_dot(a, a) <= square[s] && brio_dot(b, b) <= square[s]) return;
-    subtract(c->centre + 3 * (size_t)c->pole_of[2 * (size_t)s], sample, n);
-    square[s] = fmax(square[s], reach_in_cocone(a, b, n));
+/* Raises a number that other threads may raise, too. */
+static void raise_to(double *most, double value) {
+    double now;
+    __atomic_load(most, &now, __ATOMIC_RELAXED);
+    while (now < value && !__atomic_compare_exchange(most, &now, &value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
 }
 
-/* Raises square[s] to that of the largest distance from sample s to a point of its cell in the co-cone. */
-static void raise_to_cocone_radii(const brio_cells *c, double *square) {
-    for (size_t t = 0; t < c->num_finite; t++)
-        for (int i = 0; i < 4; i++) {
-            size_t u = c->tet[t].mate[i] / 4;
-            if (u < t || u >= c->num_finite || isnan(c->centre[3 * t]) || isnan(c->centre[3 * u])) continue;
-            for (int k = 1; k < 4; k++)
-                offer_edge(c, c->tet[t].vertex[(i + k) % 4], c->centre + 3 * t, c->centre + 3 * u, square);
-        }
+/* reach: squared distance of the farther end, or little more. */
+static inline void offer_edge(const brio_cells *c, uint32_t s, const double *from, const double *to, double reach,
+                              double *square) {
+    double so_far;
+    if (s >= c->num_samples || c->pole_of[2 * (size_t)s] == UINT32_MAX) return;
+    __atomic_load(&square[s], &so_far, __ATOMIC_RELAXED);
+    if (reach <= so_far) return;
+    const double *sample = c->points + 3 * (size_t)s;
+    seen_edge e;
+    subtract(from, sample, e.a);
+    subtract(to, sample, e.b);
+    subtract(c->centre + 3 * (size_t)c->pole_of[2 * (size_t)s], sample, e.n);
+    if (!is_in_one_cone(&e)) raise_to(&square[s], reach_in_cocone(&e));
+}
+
+/* Offers the Voronoi edges of a tetrahedron to the samples of its facets. A Voronoi vertex is as far from all of them. */
+static void offer_edges(const brio_cells *c, size_t t, double *square) {
+    static const double MORE = 1 + 1e-9; /* than rounding takes away */
+    const double *from = c->centre + 3 * t;
+    if (isnan(from[0])) return;
+    double own = brio_square_distance(from, c->points + 3 * (size_t)c->tet[t].vertex[0]);
+    for (int i = 0; i < 4; i++) {
+        size_t u = c->tet[t].mate[i] / 4;
+        const double *to = c->centre + 3 * u;
+        if (u < t || u >= c->num_finite || isnan(to[0])) continue;
+        double other = brio_square_distance(to, c->points + 3 * (size_t)c->tet[t].vertex[(i + 1) % 4]);
+        double reach = MORE * fmax(own, other);
+        for (int k = 1; k < 4; k++) offer_edge(c, c->tet[t].vertex[(i + k) % 4], from, to, reach, square);
+    }
 }
 
 static double nearer_pole_square(const brio_cells *c, size_t s) {
@@ -65,10 +94,14 @@ static double nearer_pole_square(const brio_cells *c, size_t s) {
     return brio_square_distance(c->centre + 3 * (size_t)nearer, c->points + 3 * s);
 }
 
-/* Edges that stay where even the widest shape would have them are passed over, which is most of them. */
-void brio_cell_shapes(const brio_cells *c, double most, double *shape) {
+/* Edges that stay where even the widest shape would have them are passed over. */
+void brio_cell_shapes(const brio_context *ctx, const brio_cells *c, double most, double *shape) {
+    int threads = brio_context_threads(ctx);
+    BRIO_OMP(parallel for num_threads(threads))
     for (size_t s = 0; s < c->num_samples; s++) shape[s] = nearer_pole_square(c, s) / (most * most);
-    raise_to_cocone_radii(c, shape);
+    BRIO_OMP(parallel for schedule(static) num_threads(threads))
+    for (size_t t = 0; t < c->num_finite; t++) offer_edges(c, t, shape);
+    BRIO_OMP(parallel for num_threads(threads))
     for (size_t s = 0; s < c->num_samples; s++)
         shape[s] = shape[s] > 0 && shape[s] < INFINITY ? sqrt(nearer_pole_square(c, s) / shape[s]) : most;
 }

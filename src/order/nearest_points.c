@@ -1,8 +1,11 @@
 /* The nearest points of a point, by a k-d tree in place.
  *
  * Of every range the middle point, across the longest side of the range's box, stands in the middle, smaller ones before
- * it, larger ones behind: the tree is the order of the points. A query keeps the nearest points so far in a heap with
- * the farthest on top, and goes into the far half only when the cut is nearer than that.
+ * it, larger ones behind: the tree is the order of the points. Ties are broken by the other coordinates, and short ranges
+ * are sorted, so that the tree does not depend on the order in which the points came.
+ *
+ * A query lists what is nearer than the last of the nearest so far, and whenever the list is full, selects from it. It goes
+ * into the far half of a range only when the cut is nearer than that last one.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  *           1977. */
@@ -10,29 +13,42 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/vector.h"
+#include <math.h>
 #include <string.h>
 
-enum { LEAF = 8, LARGE = 4096 };
+enum { LEAF = 12, LARGE = 4096 };
 
 /* --- building --- */
 
-static void swap(double (*point)[3], ptrdiff_t i, ptrdiff_t j) {
+/* Whether a comes before b across an axis, and among equals there by the other two. */
+static inline bool is_before(const double *a, const double *b, int axis) {
+    static const int next[5] = {0, 1, 2, 0, 1};
+    for (int k = axis; k < axis + 3; k++)
+        if (a[next[k]] != b[next[k]]) return a[next[k]] < b[next[k]];
+    return false;
+}
+
+static inline void swap(const brio_point_tree *t, ptrdiff_t i, ptrdiff_t j) {
     double spare[3];
-    memcpy(spare, point[i], sizeof spare);
-    memcpy(point[i], point[j], sizeof spare);
-    memcpy(point[j], spare, sizeof spare);
+    uint32_t index = t->index[i];
+    memcpy(spare, t->point[i], sizeof spare);
+    memcpy(t->point[i], t->point[j], sizeof spare);
+    memcpy(t->point[j], spare, sizeof spare);
+    t->index[i] = t->index[j];
+    t->index[j] = index;
 }
 
 /* Hoare's selection: nothing before the middle is greater, nothing behind it smaller. */
-static void select_middle(double (*point)[3], ptrdiff_t first, ptrdiff_t last, int axis) {
+static void select_middle(const brio_point_tree *t, ptrdiff_t first, ptrdiff_t last, int axis) {
     ptrdiff_t middle = first + (last - first + 1) / 2;
     while (first < last) {
-        double pivot = point[first + (last - first) / 2][axis];
+        double pivot[3];
+        memcpy(pivot, t->point[first + (last - first) / 2], sizeof pivot);
         ptrdiff_t i = first, j = last;
         while (i <= j) {
-            while (point[i][axis] < pivot) i++;
-            while (point[j][axis] > pivot) j--;
-            if (i <= j) swap(point, i++, j--);
+            while (is_before(t->point[i], pivot, axis)) i++;
+            while (is_before(pivot, t->point[j], axis)) j--;
+            if (i <= j) swap(t, i++, j--);
         }
         if (middle <= j)
             last = j;
@@ -41,6 +57,12 @@ static void select_middle(double (*point)[3], ptrdiff_t first, ptrdiff_t last, i
         else
             return;
     }
+}
+
+static void sort_leaf(const brio_point_tree *t, size_t begin, size_t end) {
+    for (size_t i = begin + 1; i < end; i++)
+        for (size_t j = i; j > begin && is_before(t->point[j], t->point[j - 1], 0); j--)
+            swap(t, (ptrdiff_t)j, (ptrdiff_t)j - 1);
 }
 
 static int longest_axis(const brio_point_tree *t, size_t begin, size_t end) {
@@ -60,10 +82,13 @@ static int longest_axis(const brio_point_tree *t, size_t begin, size_t end) {
 
 /* Recursion as deep as the logarithm of the number of points; large halves are left to other threads. */
 static void build(const brio_point_tree *t, size_t begin, size_t end) {
-    if (end - begin <= LEAF) return;
+    if (end - begin <= LEAF) {
+        sort_leaf(t, begin, end);
+        return;
+    }
     size_t middle = begin + (end - begin) / 2;
     t->axis[middle] = (uint8_t)longest_axis(t, begin, end);
-    select_middle(t->point, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
+    select_middle(t, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
     BRIO_OMP(task if (end - begin > LARGE))
     build(t, begin, middle);
     build(t, middle + 1, end);
@@ -72,9 +97,12 @@ static void build(const brio_point_tree *t, size_t begin, size_t end) {
 brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t count, brio_point_tree *out) {
     brio_status status = BRIO_OK;
     *out = (brio_point_tree){.count = count};
+    BRIO_REQUIRE(ctx, count < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu points, the limit is 2^32 - 2", count);
     BRIO_TRY(BRIO_ALLOC(ctx, out->point, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->index, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->axis, count));
     memcpy(out->point, points, count * sizeof *out->point);
+    for (size_t i = 0; i < count; i++) out->index[i] = (uint32_t)i;
     BRIO_OMP(parallel num_threads(brio_context_threads(ctx)))
     BRIO_OMP(single)
     build(out, 0, count);
@@ -84,6 +112,7 @@ done:
 
 void brio_point_tree_free(brio_context *ctx, brio_point_tree *tree) {
     brio_release(ctx, tree->point);
+    brio_release(ctx, tree->index);
     brio_release(ctx, tree->axis);
     *tree = (brio_point_tree){0};
 }
@@ -92,62 +121,88 @@ void brio_point_tree_free(brio_context *ctx, brio_point_tree *tree) {
 
 typedef struct {
     const brio_point_tree *tree;
-    const double *p;
-    brio_near_point *heap; /* the farthest first */
+    double p[3];
+    brio_near_point *near;
     size_t size, wanted;
+    double bound; /* nothing farther is among the nearest; infinite before so many were met */
 } query;
 
-static bool is_after(const brio_near_point *a, const brio_near_point *b) {
-    if (a->square != b->square) return a->square > b->square;
-    for (int k = 0; k < 3; k++)
-        if (a->point[k] != b->point[k]) return a->point[k] > b->point[k];
-    return false;
+/* Whether a is nearer than b, ties lexicographic. */
+static inline bool is_nearer(const brio_point_tree *t, const brio_near_point *a, const brio_near_point *b) {
+    if (a->square != b->square) return a->square < b->square;
+    return is_before(t->point[a->place], t->point[b->place], 0);
 }
 
-/* Puts x into the heap of the given size whose top is free. */
-static void sift_down(brio_near_point *heap, size_t size, brio_near_point x) {
-    size_t i = 0;
-    for (size_t child; (child = 2 * i + 1) < size; i = child) {
-        if (child + 1 < size && is_after(&heap[child + 1], &heap[child])) child++;
-        if (!is_after(&heap[child], &x)) break;
-        heap[i] = heap[child];
+/* Keeps the nearest of the list [Hoare 1961], and the distance of the last of them. */
+static void keep_nearest(query *q) {
+    ptrdiff_t first = 0, last = (ptrdiff_t)q->size - 1, wanted = (ptrdiff_t)q->wanted - 1;
+    brio_near_point *near = q->near;
+    while (first < last) {
+        brio_near_point pivot = near[first + (last - first) / 2];
+        ptrdiff_t i = first, j = last;
+        while (i <= j) {
+            while (is_nearer(q->tree, &near[i], &pivot)) i++;
+            while (is_nearer(q->tree, &pivot, &near[j])) j--;
+            if (i > j) break;
+            brio_near_point spare = near[i];
+            near[i++] = near[j];
+            near[j--] = spare;
+        }
+        if (wanted <= j)
+            last = j;
+        else if (wanted >= i)
+            first = i;
+        else
+            break;
     }
-    heap[i] = x;
+    q->size = q->wanted;
+    q->bound = 0;
+    for (size_t i = 0; i < q->size; i++) q->bound = near[i].square > q->bound ? near[i].square : q->bound;
 }
 
-static void offer(query *q, const double *point) {
-    brio_near_point x = {brio_square_distance(q->p, point), point};
-    if (q->size == q->wanted) {
-        if (is_after(&q->heap[0], &x)) sift_down(q->heap, q->size, x);
-        return;
+/* Lists the points of a range that are near enough; what is listed for nothing is written over. */
+static inline void offer(query *q, size_t begin, size_t end) {
+    if (q->size >= 2 * q->wanted) keep_nearest(q);
+    for (size_t i = begin; i < end; i++) {
+        double square = brio_square_distance(q->p, q->tree->point[i]);
+        q->near[q->size] = (brio_near_point){square, (uint32_t)i};
+        q->size += square <= q->bound;
     }
-    size_t i = q->size++;
-    for (; i > 0 && is_after(&x, &q->heap[(i - 1) / 2]); i = (i - 1) / 2) q->heap[i] = q->heap[(i - 1) / 2];
-    q->heap[i] = x;
 }
 
 static void look(query *q, size_t begin, size_t end) {
-    const brio_point_tree *t = q->tree;
     if (end - begin <= LEAF) {
-        for (size_t i = begin; i < end; i++) offer(q, t->point[i]);
+        offer(q, begin, end);
         return;
     }
+    const brio_point_tree *t = q->tree;
     size_t middle = begin + (end - begin) / 2;
     double across = q->p[t->axis[middle]] - t->point[middle][t->axis[middle]];
-    offer(q, t->point[middle]);
-    across < 0 ? look(q, begin, middle) : look(q, middle + 1, end);
-    if (q->size == q->wanted && across * across >= q->heap[0].square) return;
-    across < 0 ? look(q, middle + 1, end) : look(q, begin, middle);
+    if (across < 0)
+        look(q, begin, middle);
+    else
+        look(q, middle + 1, end);
+    if (isinf(q->bound) && q->size >= q->wanted) keep_nearest(q); /* what is left is farther, as a rule */
+    if (across * across > q->bound) return;
+    offer(q, middle, middle + 1);
+    if (across < 0)
+        look(q, middle + 1, end);
+    else
+        look(q, begin, middle);
 }
 
 size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, brio_near_point *near) {
-    query q = {.tree = tree, .p = p, .heap = near, .wanted = wanted};
+    query q = {.tree = tree, .p = {p[0], p[1], p[2]}, .near = near, .wanted = wanted, .bound = INFINITY};
     look(&q, 0, tree->count);
-    for (size_t size = q.size; size > 1;) { /* sorted from the end */
-        brio_near_point farthest = near[0];
-        size--;
-        sift_down(near, size, near[size]);
-        near[size] = farthest;
-    }
+    if (q.size > wanted) keep_nearest(&q);
     return q.size;
+}
+
+void brio_sort_near_points(const brio_point_tree *tree, brio_near_point *near, size_t count) {
+    for (size_t i = 1; i < count; i++) {
+        brio_near_point x = near[i];
+        size_t j = i;
+        for (; j > 0 && is_nearer(tree, &x, &near[j - 1]); j--) near[j] = near[j - 1];
+        near[j] = x;
+    }
 }

@@ -3,7 +3,7 @@
  * The plane goes across the direction in which the weighted points spread least, an eigenvector of their covariance. Over
  * it a quadratic polynomial takes their heights, by the normal equations, in coordinates in units of the neighbourhood;
  * where the points do not determine all six coefficients the polynomial is a constant. A weight (1 - (d/h)^2)^2, h the
- * distance of the last point, is 0 where it stops: which of several points at that distance came last does not matter.
+ * distance of the farthest point, is 0 where it stops: which of several points at that distance count does not matter.
  *
  * Based on: Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva. Computing and rendering point set surfaces. TVCG 2003.
  * Differs from the paper: one plane and one polynomial for a point, without a search for the plane's best place, and the
@@ -12,7 +12,7 @@
 #include "base/vector.h"
 #include <math.h>
 
-enum { COEFFICIENTS = 6, SWEEPS = 12 };
+enum { COEFFICIENTS = BRIO_SURFACE_COEFFICIENTS, SWEEPS = 12 };
 
 /* --- the plane --- */
 
@@ -35,10 +35,14 @@ static void rotate(double m[3][3], double v[3][3], int i, int j) {
     }
 }
 
+static bool is_diagonal(double m[3][3]) {
+    return fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]) <= 1e-16 * (m[0][0] + m[1][1] + m[2][2]);
+}
+
 /* frame[0] and [1] span the plane, frame[2] is its normal; false where the points are on a line. */
 static bool find_frame(double m[3][3], double frame[3][3]) {
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+    for (int sweep = 0; sweep < SWEEPS && !is_diagonal(m); sweep++) {
         rotate(m, v, 0, 1);
         rotate(m, v, 0, 2);
         rotate(m, v, 1, 2);
@@ -55,24 +59,28 @@ static bool find_frame(double m[3][3], double frame[3][3]) {
     return fmin(m[a][a], m[b][b]) > 1e-10 * fmax(m[a][a], m[b][b]);
 }
 
-static bool fit_plane(const brio_near_point *near, const double *weight, size_t count, double frame[3][3]) {
+static bool fit_plane(const brio_neighbourhood *n, double frame[3][3]) {
     double mean[3] = {0, 0, 0}, sum = 0, m[3][3] = {{0}};
-    for (size_t i = 0; i < count; i++) {
-        sum += weight[i];
-        for (int k = 0; k < 3; k++) mean[k] += weight[i] * (near[i].point[k] - near[0].point[k]);
+    for (size_t i = 0; i < n->count; i++) {
+        sum += n->weight[i];
+        for (int k = 0; k < 3; k++) mean[k] += n->weight[i] * n->offset[i][k];
     }
-    for (size_t i = 0; i < count; i++) {
+    for (int k = 0; k < 3; k++) mean[k] /= sum;
+    for (size_t i = 0; i < n->count; i++) {
         double d[3];
-        for (int k = 0; k < 3; k++) d[k] = near[i].point[k] - near[0].point[k] - mean[k] / sum;
+        for (int k = 0; k < 3; k++) d[k] = n->offset[i][k] - mean[k];
         for (int k = 0; k < 3; k++)
-            for (int l = 0; l < 3; l++) m[k][l] += weight[i] * d[k] * d[l];
+            for (int l = 0; l <= k; l++) m[k][l] += n->weight[i] * d[k] * d[l];
     }
+    for (int k = 0; k < 3; k++)
+        for (int l = k + 1; l < 3; l++) m[k][l] = m[l][k];
     return find_frame(m, frame);
 }
 
 /* --- the polynomial --- */
 
-/* Solves a x = b in place, a symmetric and positive; false where it is not clearly so [Cholesky]. */
+/* Solves a x = b in place, a symmetric and positive, given below its diagonal; false where it is not clearly so
+ * [Cholesky]. */
 static bool solve(double a[COEFFICIENTS][COEFFICIENTS], double *b) {
     for (int i = 0; i < COEFFICIENTS; i++) {
         double diagonal = a[i][i];
@@ -94,57 +102,52 @@ static bool solve(double a[COEFFICIENTS][COEFFICIENTS], double *b) {
 }
 
 /* The monomials and the height of a point, in units of the neighbourhood. */
-static double place(const brio_near_point *near, size_t i, double unit, double frame[3][3], double *monomial) {
-    double d[3];
-    for (int k = 0; k < 3; k++) d[k] = (near[i].point[k] - near[0].point[k]) / unit;
-    double u = brio_dot(d, frame[0]), v = brio_dot(d, frame[1]);
+static inline double place(const double *offset, const brio_local_surface *s, double *monomial) {
+    double u = brio_dot(offset, s->frame[0]) / s->unit, v = brio_dot(offset, s->frame[1]) / s->unit;
     double all[COEFFICIENTS] = {1, u, v, u * u, u * v, v * v};
     for (int c = 0; c < COEFFICIENTS; c++) monomial[c] = all[c];
-    return brio_dot(d, frame[2]);
+    return brio_dot(offset, s->frame[2]) / s->unit;
 }
 
-static void fit_polynomial(const brio_near_point *near, const double *weight, size_t count, double unit,
-                           double frame[3][3], double *coefficient) {
+static void fit_polynomial(const brio_neighbourhood *n, brio_local_surface *s) {
     double a[COEFFICIENTS][COEFFICIENTS] = {{0}}, b[COEFFICIENTS] = {0};
-    for (size_t i = 0; i < count; i++) {
-        double monomial[COEFFICIENTS], height = place(near, i, unit, frame, monomial);
+    for (size_t i = 0; i < n->count; i++) {
+        double monomial[COEFFICIENTS], height = place(n->offset[i], s, monomial);
         for (int c = 0; c < COEFFICIENTS; c++) {
-            for (int d = 0; d < COEFFICIENTS; d++) a[c][d] += weight[i] * monomial[c] * monomial[d];
-            b[c] += weight[i] * height * monomial[c];
+            double weighted = n->weight[i] * monomial[c];
+            for (int d = 0; d <= c; d++) a[c][d] += weighted * monomial[d];
+            b[c] += weighted * height;
         }
     }
     double mean = b[0] / a[0][0];
     bool solved = solve(a, b);
-    for (int c = 0; c < COEFFICIENTS; c++) coefficient[c] = solved ? b[c] : 0;
-    if (!solved) coefficient[0] = mean;
+    for (int c = 0; c < COEFFICIENTS; c++) s->coefficient[c] = solved ? b[c] : 0;
+    if (!solved) s->coefficient[0] = mean;
 }
 
-static double spread_about(const brio_near_point *near, const double *weight, size_t count, double unit,
-                           double frame[3][3], const double *coefficient) {
-    double squares = 0, sum = 0, sum_squares = 0;
-    for (size_t i = 0; i < count; i++) {
-        double monomial[COEFFICIENTS], height = place(near, i, unit, frame, monomial);
-        for (int c = 0; c < COEFFICIENTS; c++) height -= coefficient[c] * monomial[c];
-        squares += weight[i] * height * height;
-        sum += weight[i];
-        sum_squares += weight[i] * weight[i];
+bool brio_fit_local_surface(brio_neighbourhood *n, brio_local_surface *s) {
+    double square = 0;
+    for (size_t i = 0; i < n->count; i++) square = n->square[i] > square ? n->square[i] : square;
+    s->unit = sqrt(square);
+    if (n->count <= COEFFICIENTS || !(s->unit > 0) || isinf(s->unit)) return false;
+    for (size_t i = 0; i < n->count; i++) {
+        double rest = 1 - n->square[i] / square;
+        n->weight[i] = rest * rest;
     }
-    return unit * sqrt(squares / fmax(sum - COEFFICIENTS * sum_squares / sum, 0.1 * sum));
-}
-
-bool brio_fit_local_surface(const brio_near_point *near, size_t count, brio_local_surface *out) {
-    double weight[BRIO_MOST_NEAR], frame[3][3], coefficient[COEFFICIENTS];
-    if (count > BRIO_MOST_NEAR) count = BRIO_MOST_NEAR;
-    double square = near[count - 1].square, unit = sqrt(square);
-    if (count <= COEFFICIENTS || !(unit > 0) || isinf(unit)) return false;
-    for (size_t i = 0; i < count; i++) {
-        double rest = 1 - near[i].square / square;
-        weight[i] = rest * rest;
-    }
-    if (!fit_plane(near, weight, count, frame)) return false;
-    fit_polynomial(near, weight, count, unit, frame, coefficient);
-    for (int k = 0; k < 3; k++) out->normal[k] = frame[2][k];
-    out->height = unit * coefficient[0];
-    out->spread = spread_about(near, weight, count, unit, frame, coefficient);
+    if (!fit_plane(n, s->frame)) return false;
+    fit_polynomial(n, s);
+    s->height = s->unit * s->coefficient[0];
     return true;
+}
+
+double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *s) {
+    double squares = 0, sum = 0, sum_squares = 0;
+    for (size_t i = 0; i < n->count; i++) {
+        double monomial[COEFFICIENTS], height = place(n->offset[i], s, monomial);
+        for (int c = 0; c < COEFFICIENTS; c++) height -= s->coefficient[c] * monomial[c];
+        squares += n->weight[i] * height * height;
+        sum += n->weight[i];
+        sum_squares += n->weight[i] * n->weight[i];
+    }
+    return s->unit * sqrt(squares / fmax(sum - COEFFICIENTS * sum_squares / sum, 0.1 * sum));
 }

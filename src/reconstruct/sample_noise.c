@@ -4,7 +4,8 @@
  * a smooth or an edged surface the pieces fit the worse the larger they are, since the surface bends; where the points
  * scatter about it, they scatter as much about large pieces as about small ones. So noise is what does not grow.
  *
- * Then every sample moves along the normal of its piece onto the piece, some times over. Noise shrinks with the root of
+ * Then every sample moves along the normal of its piece onto the piece, some times over, with the neighbours that it had at
+ * first. Noise shrinks with the root of
  * the number of neighbours; shape is kept up to the second order, and edges come out as round as a piece is wide.
  *
  * Based on: Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva. Computing and rendering point set surfaces. TVCG 2003.
@@ -15,6 +16,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "base/vector.h"
 #include "reconstruct/local_surface.h"
 #include <math.h>
 #include <string.h>
@@ -74,17 +76,38 @@ static uint64_t bits_of(double x) {
     return bits;
 }
 
+/* The first points of a list, as seen from p. */
+static void see_from(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
+                     brio_neighbourhood *n) {
+    n->count = count;
+    for (size_t i = 0; i < count; i++) {
+        n->square[i] = near[i].square;
+        for (int k = 0; k < 3; k++) n->offset[i][k] = tree->point[near[i].place][k] - p[k];
+    }
+}
+
+static bool spread_about(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
+                         double *spread) {
+    brio_neighbourhood n;
+    brio_local_surface surface;
+    see_from(p, tree, near, count, &n);
+    if (!brio_fit_local_surface(&n, &surface)) return false;
+    *spread = brio_local_spread(&n, &surface);
+    return true;
+}
+
 /* The spreads about a piece of few points and about one of more; infinite where there is none. */
 static void look(const brio_point_tree *tree, const double *p, uint64_t *few, uint64_t *more) {
-    brio_near_point near[MORE];
-    brio_local_surface small, large;
+    brio_near_point near[BRIO_NEAR_ROOM];
+    double small, large;
     size_t count = brio_nearest_points(tree, p, MORE, near);
+    brio_sort_near_points(tree, near, count);
     double spacing = mean_spacing(near, count);
     *few = *more = bits_of(INFINITY);
     if (count < MORE || !(spacing > 0)) return;
-    if (!brio_fit_local_surface(near, FEW, &small) || !brio_fit_local_surface(near, MORE, &large)) return;
-    *few = bits_of(small.spread / spacing);
-    *more = bits_of(large.spread / spacing);
+    if (!spread_about(p, tree, near, FEW, &small) || !spread_about(p, tree, near, MORE, &large)) return;
+    *few = bits_of(small / spacing);
+    *more = bits_of(large / spacing);
 }
 
 static double median(uint64_t *bits, size_t count) {
@@ -119,29 +142,69 @@ done:
 
 /* --- less --- */
 
-static void smooth_sample(const brio_point_tree *tree, double *p) {
-    brio_near_point near[MORE];
+/* The samples in the order of their tree, before and after a pass. */
+typedef struct {
+    const brio_point_tree *tree;
+    uint32_t (*near)[MORE]; /* each sample's nearest, of the first pass */
+    double (*from)[3], (*to)[3];
+} smoothing;
+
+static void find_near(const smoothing *s, size_t i) {
+    brio_near_point near[BRIO_NEAR_ROOM];
+    brio_nearest_points(s->tree, s->from[i], MORE, near);
+    for (int n = 0; n < MORE; n++) s->near[i][n] = near[n].place;
+}
+
+static void smooth_sample(const smoothing *s, size_t i) {
+    brio_neighbourhood n = {.count = MORE};
     brio_local_surface surface;
-    size_t count = brio_nearest_points(tree, p, MORE, near);
-    if (count < MORE || !brio_fit_local_surface(near, count, &surface)) return;
-    if (surface.height * surface.height > near[count - 1].square) return; /* a fit that left its points */
-    for (int k = 0; k < 3; k++) p[k] += surface.height * surface.normal[k];
+    double *to = s->to[i];
+    for (int j = 0; j < MORE; j++) {
+        for (int k = 0; k < 3; k++) n.offset[j][k] = s->from[s->near[i][j]][k] - s->from[i][k];
+        n.square[j] = brio_dot(n.offset[j], n.offset[j]);
+    }
+    memcpy(to, s->from[i], sizeof s->to[i]);
+    if (!brio_fit_local_surface(&n, &surface)) return;
+    if (fabs(surface.height) > surface.unit) return; /* a fit that left its points */
+    for (int k = 0; k < 3; k++) to[k] += surface.height * surface.frame[2][k];
+}
+
+/* One pass over all samples; the first one also finds who is near. */
+static brio_status smooth_all(brio_context *ctx, const smoothing *s, int pass) {
+    brio_status status = BRIO_OK;
+    size_t count = s->tree->count;
+    for (size_t begin = 0; begin < count; begin += BLOCK) {
+        size_t end = count - begin < BLOCK ? count : begin + BLOCK;
+        BRIO_TRY(brio_progress(ctx, "noise", (pass + (double)begin / (double)count) / PASSES));
+        BRIO_OMP(parallel for schedule(dynamic, 256) num_threads(brio_context_threads(ctx)))
+        for (size_t i = begin; i < end; i++) {
+            if (pass == 0) find_near(s, i);
+            smooth_sample(s, i);
+        }
+    }
+done:
+    return status;
 }
 
 brio_status brio_smooth_samples(brio_context *ctx, double *points, size_t count) {
     brio_status status = BRIO_OK;
     brio_point_tree tree = {0};
+    smoothing s = {.tree = &tree};
+    double(*spare)[3] = NULL;
+    if (count < MORE) goto done;
+    BRIO_TRY(brio_point_tree_new(ctx, points, count, &tree));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.near, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, spare, count));
+    s.from = tree.point, s.to = spare;
     for (int pass = 0; pass < PASSES; pass++) {
-        BRIO_TRY(brio_point_tree_new(ctx, points, count, &tree));
-        for (size_t begin = 0; begin < count; begin += BLOCK) {
-            size_t end = count - begin < BLOCK ? count : begin + BLOCK;
-            BRIO_TRY(brio_progress(ctx, "noise", (pass + (double)begin / (double)count) / PASSES));
-            BRIO_OMP(parallel for schedule(dynamic, 256) num_threads(brio_context_threads(ctx)))
-            for (size_t i = begin; i < end; i++) smooth_sample(&tree, points + 3 * i);
-        }
-        brio_point_tree_free(ctx, &tree);
+        BRIO_TRY(smooth_all(ctx, &s, pass));
+        double(*moved)[3] = s.to;
+        s.to = s.from, s.from = moved;
     }
+    for (size_t i = 0; i < count; i++) memcpy(points + 3 * (size_t)tree.index[i], s.from[i], sizeof s.from[i]);
 done:
     brio_point_tree_free(ctx, &tree);
+    brio_release(ctx, s.near);
+    brio_release(ctx, spare);
     return status;
 }

@@ -49,7 +49,7 @@ static int compare_doubles(const void *a, const void *b) {
 }
 
 static void expect_nearest(const brio_point_tree *tree, const double *points, size_t n, const double *p, size_t k) {
-    brio_near_point near[64];
+    brio_near_point near[BRIO_NEAR_ROOM];
     double *square = malloc(n * sizeof *square);
     for (size_t i = 0; i < n; i++) {
         double d[3] = {points[3 * i] - p[0], points[3 * i + 1] - p[1], points[3 * i + 2] - p[2]};
@@ -58,6 +58,7 @@ static void expect_nearest(const brio_point_tree *tree, const double *points, si
     qsort(square, n, sizeof *square, compare_doubles);
     size_t found = brio_nearest_points(tree, p, k, near);
     EXPECT(found == (k < n ? k : n), "%zu of %zu, %zu wanted", found, n, k);
+    brio_sort_near_points(tree, near, found);
     for (size_t i = 0; i < found; i++) EXPECT(near[i].square == square[i], "neighbour %zu", i);
     free(square);
 }
