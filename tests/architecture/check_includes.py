@@ -7,6 +7,9 @@ import sys
 
 LAYERS = ["base", "predicates", "order", "triangulation", "dual", "surface", "reconstruct"]
 MAY_SEE = {layer: set(LAYERS[:i + 1]) for i, layer in enumerate(LAYERS)} | {"io": {"base", "surface", "io"}}
+# the rooms of src/reconstruct
+MAY_SEE_ROOM = {"labels": {"labels"}, "power_crust": {"labels", "power_crust"}, "cocone": {"cocone"}}
+LABEL = ("src", "reconstruct", "labels", "label.h")
 PROGRAMS = ["cli", "examples", "bench"]
 SYSTEM_FILES = {"src/base/memory.c", "src/base/context.c"}
 FORBIDDEN = re.compile(r"(?<![\w.>])(malloc|calloc|realloc|reallocarray|aligned_alloc|posix_memalign|strn?dup|free"
@@ -28,6 +31,8 @@ def may_include(path_parts, included_parts):
     if not included_parts or included_parts == ("include", "brio", "brio.h"):
         return True
     if path_parts[0] == "src":
+        if path_parts[1] == included_parts[1] == "reconstruct":
+            return included_parts == LABEL or included_parts[2] in MAY_SEE_ROOM.get(path_parts[2], ())
         return included_parts[0] == "src" and included_parts[1] in MAY_SEE.get(path_parts[1], ())
     return included_parts[0] == path_parts[0]
 

@@ -6,7 +6,7 @@
 #include "known_surfaces.h"
 #include "points.h"
 #include "same_faces.h"
-#include "reconstruct/cocone_candidates.h"
+#include "reconstruct/cocone/cocone_candidates.h"
 #include <time.h>
 
 static const double PI = 3.141592653589793, THETA = 0.39269908169872414;

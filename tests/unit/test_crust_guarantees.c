@@ -3,7 +3,7 @@
 #include "harness.h"
 #include "known_surfaces.h"
 #include "points.h"
-#include "reconstruct/labelling.h"
+#include "reconstruct/labels/labelling.h"
 #include "surface/closest_point.h"
 
 enum { BOUNDING_POINTS = 8 };

@@ -3,7 +3,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
-#include "reconstruct/max_flow.h"
+#include "reconstruct/labels/max_flow.h"
 
 static const brio_labeling ALL[] = {BRIO_LABELING_GREEDY, BRIO_LABELING_NAIVE, BRIO_LABELING_THEORETICAL,
                                     BRIO_LABELING_GLOBAL};

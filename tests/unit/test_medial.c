@@ -4,8 +4,8 @@
 #include "harness.h"
 #include "medial_shapes.h"
 #include "points.h"
-#include "reconstruct/ball_cover.h"
-#include "reconstruct/labelled_poles.h"
+#include "reconstruct/power_crust/ball_cover.h"
+#include "reconstruct/power_crust/labelled_poles.h"
 #include "surface/solid.h"
 
 static brio_mesh *shape_of(brio_context *ctx, const double *p, size_t n, const brio_medial_options *o) {

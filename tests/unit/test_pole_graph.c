@@ -4,9 +4,9 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
-#include "reconstruct/labelled_poles.h"
-#include "reconstruct/pole_queue.h"
-#include "reconstruct/roof_duality.h"
+#include "reconstruct/power_crust/labelled_poles.h"
+#include "reconstruct/labels/pole_queue.h"
+#include "reconstruct/labels/roof_duality.h"
 
 /* --- graph --- */
 

@@ -3,8 +3,8 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
-#include "reconstruct/octree_pieces.h"
-#include "reconstruct/seams.h"
+#include "reconstruct/cocone/octree_pieces.h"
+#include "reconstruct/cocone/seams.h"
 #include "same_faces.h"
 
 /* What threads do is for test_parallel_cocone; here they would only wait for each other. */

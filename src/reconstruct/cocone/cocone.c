@@ -1,0 +1,116 @@
+/* The co-cones: from points and options to a mesh.
+ *
+ * The samples are scaled by a power of two to coordinates of at most 1, so that nothing over- or underflows on the way;
+ * their triangles are those of the whole set (cocone_surface.c) or matched together from pieces, which are scaled one
+ * at a time (super_cocone.c). */
+#include "base/memory.h"
+#include "base/scale.h"
+#include "reconstruct/cocone/sampling_density.h"
+#include "reconstruct/cocone/super_cocone.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+brio_cocone_options brio_cocone_options_default(void) {
+    return (brio_cocone_options){.seed = 1, .theta = 0.39269908169872414 /* pi / 8 */};
+}
+
+/* The exponent of the least power of two above all coordinates. */
+static int exponent_of(const double *points, size_t num_points) {
+    double most = 0;
+    int exponent = 0;
+    for (size_t i = 0; i < 3 * num_points; i++) most = most < fabs(points[i]) ? fabs(points[i]) : most;
+    if (isfinite(most)) frexp(most, &exponent);
+    return exponent;
+}
+
+/* The co-cone of the whole set, scaled by 2^-exponent. */
+static brio_status find_surface(brio_context *ctx, const double *points, size_t num_points, int exponent,
+                                const brio_cocone_options *options, brio_cocone_surface *surface) {
+    brio_status status = BRIO_OK;
+    double *scaled = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, scaled, 3 * num_points));
+    brio_scale(ctx, points, 3 * num_points, -exponent, scaled);
+    BRIO_TRY(brio_cocone_surface_find(ctx, scaled, num_points, options, surface));
+done:
+    brio_release(ctx, scaled);
+    return status;
+}
+
+/* Moves the triangles into a mesh of the points. */
+static brio_status fill_mesh(const double *points, size_t num_points, brio_cocone_surface *s, brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_mesh_set_vertices(mesh, points, num_points));
+    BRIO_TRY(BRIO_ALLOC(mesh->context, mesh->face_offsets, s->num_faces + 1));
+    for (size_t f = 0; f <= s->num_faces; f++) mesh->face_offsets[f] = 3 * f;
+    mesh->face_vertices = s->faces;
+    mesh->num_faces = s->num_faces;
+    s->faces = NULL;
+done:
+    return status;
+}
+
+static brio_status count_unused(const brio_mesh *mesh, brio_cocone_stats *stats) {
+    brio_status status = BRIO_OK;
+    uint8_t *used = NULL;
+    size_t count = 0;
+    BRIO_TRY(BRIO_ALLOC_ZERO(mesh->context, used, mesh->num_vertices));
+    for (size_t c = 0; c < 3 * mesh->num_faces; c++)
+        count += !used[mesh->face_vertices[c]], used[mesh->face_vertices[c]] = 1;
+    stats->unused = stats->samples - count;
+done:
+    brio_release(mesh->context, used);
+    return status;
+}
+
+/* What --density asks for, as properties of the mesh. */
+static brio_status add_properties(const brio_cocone_surface *s, int exponent, brio_mesh *mesh,
+                                  brio_cocone_stats *stats) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    BRIO_TRY(brio_sampling_density(s->size, exponent, mesh, stats));
+    if (s->boundary) {
+        uint8_t *property = NULL;
+        BRIO_TRY(brio_mesh_add_property(mesh, "boundary", BRIO_UINT8, (void **)&property));
+        memcpy(property, s->boundary, mesh->num_vertices);
+    }
+    stats->density_seconds += brio_seconds() - start;
+done:
+    return status;
+}
+
+static brio_status check_options(brio_context *ctx, const brio_cocone_options *o) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, o->theta > 0 && o->theta < 1.57, BRIO_ERR_ARGUMENT, "theta is %g, expected a number in (0, pi/2)",
+                 o->theta);
+    BRIO_REQUIRE(ctx, !o->tight || o->pieces <= 1, BRIO_ERR_ARGUMENT,
+                 "the tight co-cone cannot be found in pieces: what is outside only the whole tells");
+done:
+    return status;
+}
+
+brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points, const brio_cocone_options *options,
+                        brio_mesh **out, brio_cocone_stats *stats) {
+    brio_status status = BRIO_OK;
+    brio_cocone_options standard = brio_cocone_options_default();
+    const brio_cocone_options *o = options ? options : &standard;
+    brio_cocone_surface surface = {0};
+    brio_mesh *mesh = NULL;
+    int exponent = exponent_of(points, num_points);
+    *out = NULL;
+    BRIO_TRY(check_options(ctx, o));
+    BRIO_TRY(o->pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, o, &surface)
+                           : find_surface(ctx, points, num_points, exponent, o, &surface));
+    BRIO_TRY(brio_mesh_new(ctx, &mesh));
+    BRIO_TRY(fill_mesh(points, num_points, &surface, mesh));
+    BRIO_TRY(count_unused(mesh, &surface.stats));
+    if (o->density) BRIO_TRY(add_properties(&surface, exponent, mesh, &surface.stats));
+    *out = mesh;
+    mesh = NULL;
+done:
+    if (stats) *stats = surface.stats;
+    ctx->progress_from = 0, ctx->progress_to = 1;
+    brio_mesh_free(mesh);
+    brio_cocone_surface_free(ctx, &surface);
+    return status;
+}

@@ -1,0 +1,135 @@
+/* The co-cone test.
+ *
+ * The co-cone of a sample p is the complement of the double cone about the direction v to its pole: the points x with
+ * the angle between x - p and v in [pi/2 - theta, pi/2 + theta]. The Voronoi edge dual to a triangle is the segment
+ * between the centres of the tetrahedra on its two sides, or a ray for a triangle on the hull. Each half of the double
+ * cone is convex, so the edge misses the co-cone exactly when both its ends lie in the same half; the end of a ray is
+ * its direction. So the test needs two bits for each tetrahedron and each of its vertices.
+ *
+ * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000.
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.2. */
+#include "reconstruct/cocone/cocone_candidates.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+
+/* Tetrahedra that are looked at together. */
+enum { BLOCK = 64 };
+
+brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, brio_cocones *out) {
+    *out = (brio_cocones){.dual = dual};
+    return BRIO_ALLOC_ZERO(ctx, out->candidates, dual->t.count);
+}
+
+void brio_cocones_free(brio_context *ctx, brio_cocones *c) {
+    brio_release(ctx, c->candidates);
+    *c = (brio_cocones){0};
+}
+
+/* Whether the Voronoi edge of a facet meets the co-cones of its samples, or of those that are no boundary samples. */
+static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_t *boundary) {
+    const uint32_t *v = c->dual->t.tet[brio_tet_of(facet)].vertex;
+    for (int k = 0; k < 3; k++) {
+        uint32_t p = v[BRIO_FACET[brio_slot_of(facet)][k]];
+        if (p == BRIO_INFINITE) return false;
+        if (!(boundary && boundary[p]) && !brio_meets_cocone(c, facet, p)) return false;
+    }
+    return true;
+}
+
+/* For each pair of sides of a tetrahedron's samples, in byte i: how many samples of facet i see the Voronoi vertex in the
+ * cone to their pole and, in the upper half, how many in the other one. */
+typedef uint8_t side_counts[256][4];
+
+static void count_sides(side_counts counts) {
+    for (int sides = 0; sides < 256; sides++)
+        for (int i = 0; i < 4; i++) {
+            counts[sides][i] = 0;
+            for (int k = 0; k < 3; k++)
+                counts[sides][i] += (sides >> BRIO_FACET[i][k] & 1) + (sides >> BRIO_FACET[i][k] & 16);
+        }
+}
+
+/* Whether both ends of a facet's Voronoi edge lie in the same cone of one of its samples, whichever that is: four times
+ * the same side for three samples. This tells of most facets far from the surface without a look at the mate. */
+static inline bool misses_surely(uint8_t here, uint8_t there) {
+    return (here + there) & 0x44;
+}
+
+/* The same for all samples of a facet without infinite vertex. The mate has the same vertices the other way round, so
+ * that one of them tells where the others are; and of the two bits of a side one is set at most, so that a side in
+ * common leaves a bit. */
+static inline bool meets_every(const brio_pole_vectors *v, uint32_t facet, uint32_t mate) {
+    static const uint8_t ROUND[5] = {0, 1, 2, 0, 1};
+    const brio_tetrahedron *here = &v->t.tet[brio_tet_of(facet)], *there = &v->t.tet[brio_tet_of(mate)];
+    const uint8_t *a = BRIO_FACET[brio_slot_of(facet)], *b = BRIO_FACET[brio_slot_of(mate)];
+    unsigned x = v->sides[brio_tet_of(facet)], y = v->sides[brio_tet_of(mate)];
+    uint32_t first = here->vertex[a[0]];
+    int k = (there->vertex[b[1]] == first) + 2 * (there->vertex[b[2]] == first);
+    unsigned common = (x >> a[0] & y >> b[k]) | (x >> a[1] & y >> b[ROUND[k + 2]]) | (x >> a[2] & y >> b[ROUND[k + 1]]);
+    return !(common & 0x11);
+}
+
+static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
+    if (!c->boundary) return meets_every(c->dual, facet, mate);
+    return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
+}
+
+/* Lists the facet in slot i of a tetrahedron, with its own counts, if it is to be looked at closer: of a facet and its mate
+ * the lesser one, unless no closer look is needed. */
+static inline size_t list_if_open(const brio_pole_vectors *v, const side_counts counts, uint8_t all, size_t tet, int i,
+                                  uint8_t here, uint32_t *open) {
+    uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = v->t.tet[tet].mate[i];
+    uint8_t there = counts[v->sides[brio_tet_of(mate)] & all][brio_slot_of(mate)];
+    *open = facet;
+    return (facet < mate) & !misses_surely(here, there);
+}
+
+/* Lists the facets of the tetrahedra [from, to) to look at closer. Their mates are fetched meanwhile. */
+static size_t list_open_facets(const brio_cocones *c, const side_counts counts, size_t from, size_t to,
+                               uint32_t *open) {
+    const brio_pole_vectors v = *c->dual;
+    uint8_t all = c->boundary ? 0 : 0xff; /* boundary samples do not count */
+    size_t count = 0;
+    for (size_t tet = from; tet < to; tet++) {
+        const uint8_t *here = counts[v.sides[tet] & all];
+        for (int i = 0; i < 3 && tet < v.num_finite; i++) /* of the others these have the infinite vertex */
+            count += list_if_open(&v, counts, all, tet, i, here[i], open + count);
+        count += list_if_open(&v, counts, all, tet, 3, here[3], open + count);
+    }
+    for (size_t n = 0; n < count; n++) __builtin_prefetch(&v.t.tet[brio_tet_of(*brio_mate(&v.t, open[n]))]);
+    return count;
+}
+
+/* Marks a facet; `alone`: no other thread does. */
+static inline void mark(const brio_cocones *c, uint32_t facet, bool alone) {
+    uint8_t *candidates = &c->candidates[brio_tet_of(facet)], bit = (uint8_t)(1 << brio_slot_of(facet));
+    if (alone)
+        *candidates |= bit;
+    else
+        __atomic_fetch_or(candidates, bit, __ATOMIC_RELAXED);
+}
+
+/* Returns the number of candidates among the facets of the tetrahedra [from, to) that are less than their mates. */
+static size_t select_from(const brio_cocones *c, const side_counts counts, size_t from, size_t to, bool alone) {
+    uint32_t open[4 * BLOCK];
+    size_t found = 0, count = list_open_facets(c, counts, from, to, open);
+    for (size_t n = 0; n < count; n++) {
+        uint32_t mate = *brio_mate(&c->dual->t, open[n]);
+        if (!passes(c, open[n], mate)) continue;
+        mark(c, open[n], alone);
+        mark(c, mate, alone);
+        found++;
+    }
+    return found;
+}
+
+void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
+    size_t found = 0, size = c->dual->t.count;
+    side_counts counts;
+    bool alone = brio_context_threads(ctx) == 1;
+    count_sides(counts);
+    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
+    for (size_t from = 0; from < size; from += BLOCK)
+        found += select_from(c, (const uint8_t(*)[4])counts, from, from + BLOCK < size ? from + BLOCK : size, alone);
+    *count = found;
+}

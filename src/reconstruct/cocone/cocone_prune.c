@@ -1,0 +1,155 @@
+/* Candidates at sharp edges.
+ *
+ * Triangles of the restricted Delaunay triangulation never meet at a sharp edge, so what does is a fin, or the border
+ * of one. On real data an edge with a single candidate can also be the rim of a hole, from which literal pruning would
+ * unravel the whole surface. A fin has the same side of the surface on both its sides; so candidates with an outer
+ * tetrahedron on one side and an inner one on the other, by the votes of their samples, are kept.
+ *
+ * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999, for the pruning.
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, appendix A, for the angle.
+ * Differs from the paper: what the votes of the samples hold to be surface is kept. */
+#include "reconstruct/cocone/cocone_prune.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "reconstruct/cocone/label_boundary.h"
+
+typedef struct {
+    brio_context *ctx;
+    const brio_tet_labels *labels;
+    const brio_cocones *cocones;
+    const brio_tetrahedra *t;
+    uint32_t *stack; /* facets to look at */
+    size_t size, capacity;
+} pruning;
+
+/* A directed edge of a facet: from corner k to the next, counterclockwise as seen from the facet's tetrahedron. */
+typedef struct {
+    uint32_t facet, from, to, apex;
+} facet_edge;
+
+static facet_edge edge_of(const pruning *x, uint32_t facet, int k) {
+    const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
+    const uint8_t *corner = BRIO_FACET[brio_slot_of(facet)];
+    return (facet_edge){facet, v[corner[k]], v[corner[(k + 1) % 3]], v[corner[(k + 2) % 3]]};
+}
+
+/* The next candidate round the edge, on the facet's own side, seen from its far side: going on from it goes on round
+ * the edge. */
+static facet_edge next_candidate(const pruning *x, facet_edge e) {
+    uint32_t facet = e.facet;
+    do {
+        const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
+        int last = brio_last_slot(v, e.from, e.to, brio_slot_of(facet));
+        e.apex = v[brio_slot_of(facet)];
+        facet = *brio_mate(x->t, brio_facet_of(brio_tet_of(facet), last));
+    } while (!brio_is_candidate(x->cocones, facet));
+    e.facet = facet;
+    return e;
+}
+
+/* The part of the apexes' dot product across the edge, times its squared length: negative when the two triangles make
+ * more than a right angle. */
+static double across(const pruning *x, facet_edge e, facet_edge f) {
+    const double *points = x->cocones->dual->points;
+    const double *a = points + 3 * (size_t)e.from, *b = points + 3 * (size_t)e.to;
+    const double *p = points + 3 * (size_t)e.apex, *q = points + 3 * (size_t)f.apex;
+    double pq = 0, pe = 0, qe = 0, ee = 0;
+    for (int k = 0; k < 3; k++) {
+        pq += (p[k] - a[k]) * (q[k] - a[k]);
+        pe += (p[k] - a[k]) * (b[k] - a[k]);
+        qe += (q[k] - a[k]) * (b[k] - a[k]);
+        ee += (b[k] - a[k]) * (b[k] - a[k]);
+    }
+    return pq * ee - pe * qe;
+}
+
+/* Whether the angle from one candidate to the next round their edge is more than 3 pi / 2. */
+static bool is_wide(const pruning *x, facet_edge from, facet_edge to) {
+    const double *points = x->cocones->dual->points;
+    if (from.facet == to.facet) return true; /* a single one */
+    return across(x, from, to) > 0 && brio_orient3d(points + 3 * (size_t)from.from, points + 3 * (size_t)from.to,
+                                                    points + 3 * (size_t)from.apex, points + 3 * (size_t)to.apex) < 0;
+}
+
+/* Two candidates at more than a right angle leave no room for a wide gap, so that most walks end early. */
+static bool is_sharp(const pruning *x, facet_edge first) {
+    const uint8_t *boundary = x->cocones->boundary;
+    facet_edge e = first;
+    if (boundary && boundary[e.from] && boundary[e.to]) return false;
+    do {
+        facet_edge next = next_candidate(x, e);
+        if (next.facet != first.facet && across(x, first, next) < 0) return false;
+        e = next;
+    } while (e.facet != first.facet);
+    do {
+        facet_edge next = next_candidate(x, e);
+        if (is_wide(x, e, next)) return true;
+        e = next;
+    } while (e.facet != first.facet);
+    return false;
+}
+
+static bool has_sharp_edge(const pruning *x, uint32_t facet) {
+    return is_sharp(x, edge_of(x, facet, 0)) || is_sharp(x, edge_of(x, facet, 1)) || is_sharp(x, edge_of(x, facet, 2));
+}
+
+/* Whether the samples of a candidate see the outside on one of its sides and the inside on the other. */
+static inline bool is_surface(const pruning *x, uint32_t facet) {
+    uint8_t here = x->labels->label[brio_tet_of(facet)], there = x->labels->label[brio_tet_of(*brio_mate(x->t, facet))];
+    return here != there && here != BRIO_LABEL_NONE && there != BRIO_LABEL_NONE;
+}
+
+static brio_status push(pruning *x, uint32_t facet) {
+    brio_status status = BRIO_OK;
+    if (is_surface(x, facet)) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(x->ctx, x->stack, x->capacity, x->size + 1));
+    x->stack[x->size++] = facet;
+done:
+    return status;
+}
+
+/* Drops a facet; the others at its edges are to be looked at again. */
+static brio_status drop(pruning *x, uint32_t facet) {
+    brio_status status = BRIO_OK;
+    for (int k = 0; k < 3; k++) {
+        facet_edge first = edge_of(x, facet, k);
+        for (facet_edge e = next_candidate(x, first); e.facet != facet; e = next_candidate(x, e))
+            BRIO_TRY(push(x, e.facet));
+    }
+    brio_drop_candidate(x->cocones, facet);
+done:
+    return status;
+}
+
+/* Finds the candidates that have a sharp edge to begin with. What is dropped does not depend on the order, since edges
+ * only get sharper. */
+static brio_status find_sharp(pruning *x) {
+    brio_status status = BRIO_OK;
+    BRIO_OMP(parallel for schedule(dynamic, 4096) num_threads(brio_context_threads(x->ctx)))
+    for (size_t tet = 0; tet < x->t->count; tet++)
+        for (unsigned left = x->cocones->candidates[tet]; left; left &= left - 1) {
+            uint32_t facet = brio_facet_of((uint32_t)tet, __builtin_ctz(left));
+            if (*brio_mate(x->t, facet) < facet || is_surface(x, facet) || !has_sharp_edge(x, facet)) continue;
+            BRIO_OMP(critical(brio_prune_stack)) {
+                brio_status own = push(x, facet);
+                if (own != BRIO_OK) status = own;
+            }
+        }
+    return status;
+}
+
+brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *l, size_t *dropped) {
+    brio_status status = BRIO_OK;
+    pruning x = {.ctx = ctx, .labels = l, .cocones = l->cocones, .t = &l->cocones->dual->t};
+    *dropped = 0;
+    BRIO_TRY(find_sharp(&x));
+    while (x.size > 0) {
+        uint32_t facet = x.stack[--x.size];
+        if (!brio_is_candidate(x.cocones, facet) || !has_sharp_edge(&x, facet)) continue;
+        BRIO_TRY(drop(&x, facet));
+        ++*dropped;
+    }
+done:
+    brio_release(ctx, x.stack);
+    return status;
+}

@@ -1,0 +1,140 @@
+/* The co-cone and the tight co-cone of one set of samples.
+ *
+ *   1. Delaunay triangulation of the samples.
+ *   2. The direction of each sample's pole.
+ *   3. Candidates: the triangles whose dual Voronoi edges meet the co-cones of their samples, less those at sharp
+ *      edges.
+ *   4. Outer or inner, for each sample's pole and then for each tetrahedron.
+ *   5. A manifold: the boundary between the labels; of that, the candidates (co-cone) or all of it (tight co-cone).
+ *
+ * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000.
+ *           Dey, Goswami. Tight cocone: a water-tight surface reconstructor. JCISE 2003.
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.2 and appendix A. */
+#include "reconstruct/cocone/cocone_surface.h"
+#include "base/memory.h"
+#include "dual/feature_size.h"
+#include "reconstruct/cocone/boundary_samples.h"
+#include "reconstruct/cocone/cocone_prune.h"
+#include "reconstruct/cocone/flat_tetrahedra.h"
+#include "reconstruct/cocone/manifold_extraction.h"
+#include "reconstruct/cocone/sample_orientation.h"
+
+typedef struct {
+    brio_context *ctx;
+    const brio_cocone_options *options;
+    const double *points;
+    size_t num_points;
+    brio_cocone_surface *out;
+    brio_triangulation *delaunay;
+    brio_pole_vectors dual;
+    brio_cocones cocones;
+    uint8_t *turned;
+    brio_tet_labels labels;
+    double lap;
+} reconstruction;
+
+/* Adds the seconds since the last call. */
+static void lap(reconstruction *r, double *seconds) {
+    double now = brio_seconds();
+    *seconds += now - r->lap;
+    r->lap = now;
+}
+
+static brio_status triangulate(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_options o = brio_options_default();
+    o.seed = r->options->seed;
+    BRIO_TRY(brio_delaunay(r->ctx, r->points, NULL, r->num_points, &o, &r->delaunay));
+    const brio_stats *s = brio_triangulation_stats(r->delaunay);
+    const uint32_t *representative = brio_triangulation_representatives(r->delaunay);
+    r->out->stats.samples = s->vertices;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, r->out->distinct, r->num_points));
+    for (size_t p = 0; p < r->num_points; p++) r->out->distinct[p] = representative[p] == p;
+    BRIO_REQUIRE(r->ctx, s->dimension == 3, BRIO_ERR_NO_ANSWER, "%zu distinct points of dimension %d bound no solid",
+                 s->vertices, s->dimension);
+    lap(r, &r->out->stats.delaunay_seconds);
+done:
+    return status;
+}
+
+static brio_status find_candidates(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_cocone_stats *s = &r->out->stats;
+    BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, r->options->theta, &r->dual));
+    lap(r, &s->poles_seconds);
+    BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &r->cocones));
+    if (r->options->boundaries) {
+        BRIO_TRY(brio_boundary_samples(r->ctx, &r->cocones, &r->out->boundary, &s->boundary_samples));
+        r->cocones.boundary = r->out->boundary;
+    }
+    brio_cocones_select(r->ctx, &r->cocones, &s->candidates);
+    BRIO_REQUIRE(r->ctx, s->candidates > 0, BRIO_ERR_NO_ANSWER, "no triangle passes the co-cone test");
+    lap(r, &s->candidates_seconds);
+done:
+    return status;
+}
+
+static brio_status label(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_orient_samples(r->ctx, &r->cocones, &r->turned));
+    r->labels = (brio_tet_labels){.cocones = &r->cocones, .turned = r->turned, .watertight = r->options->tight};
+    BRIO_TRY(brio_tet_labels_vote(r->ctx, &r->labels));
+    BRIO_TRY(brio_cocone_prune(r->ctx, &r->labels, &r->out->stats.pruned));
+    BRIO_TRY(brio_tet_labels_spread(r->ctx, &r->labels));
+    BRIO_TRY(brio_flatten(r->ctx, &r->labels));
+    lap(r, &r->out->stats.labels_seconds);
+done:
+    return status;
+}
+
+static brio_status extract(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_cocone_surface *out = r->out;
+    uint32_t *facets = NULL;
+    size_t num_facets;
+    BRIO_TRY(brio_make_manifold(r->ctx, &r->labels, &facets, &num_facets, &out->stats.relabelled));
+    BRIO_TRY(
+        brio_extract_faces(r->ctx, &r->labels, !r->options->tight, facets, num_facets, &out->faces, &out->num_faces));
+    BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_ERR_NO_ANSWER, "no inside found");
+    lap(r, &out->stats.manifold_seconds);
+    if (r->options->density) BRIO_TRY(brio_feature_sizes(r->ctx, &r->dual, &out->size));
+    lap(r, &out->stats.density_seconds);
+done:
+    brio_release(r->ctx, facets);
+    return status;
+}
+
+static void release(reconstruction *r) {
+    brio_tet_labels_free(r->ctx, &r->labels);
+    brio_release(r->ctx, r->turned);
+    brio_cocones_free(r->ctx, &r->cocones);
+    brio_pole_vectors_free(r->ctx, &r->dual);
+    brio_triangulation_free(r->delaunay);
+}
+
+brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, size_t num_points,
+                                     const brio_cocone_options *options, brio_cocone_surface *out) {
+    brio_status status = BRIO_OK;
+    reconstruction r = {
+        .ctx = ctx, .options = options, .points = points, .num_points = num_points, .out = out, .lap = brio_seconds()};
+    double from = ctx->progress_from, length = ctx->progress_to - from;
+    *out = (brio_cocone_surface){0};
+    ctx->progress_to = from + 0.5 * length;
+    BRIO_TRY(triangulate(&r));
+    ctx->progress_from = from + 0.5 * length, ctx->progress_to = from + 0.65 * length;
+    BRIO_TRY(find_candidates(&r));
+    ctx->progress_from = from + 0.65 * length, ctx->progress_to = from + 0.8 * length;
+    BRIO_TRY(label(&r));
+    ctx->progress_from = from + 0.8 * length, ctx->progress_to = from + length;
+    BRIO_TRY(extract(&r));
+done:
+    release(&r);
+    return status;
+}
+
+void brio_cocone_surface_free(brio_context *ctx, brio_cocone_surface *surface) {
+    brio_release(ctx, surface->faces);
+    brio_release(ctx, surface->boundary);
+    brio_release(ctx, surface->size);
+    brio_release(ctx, surface->distinct);
+}

@@ -1,0 +1,51 @@
+/* The boundary between two labels of tetrahedra, as a list of facets: each thread lists some parts of the tetrahedra,
+ * and the parts are joined in order. */
+#include "reconstruct/cocone/label_boundary.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include <string.h>
+
+enum { PARTS = 64 };
+
+typedef struct {
+    uint32_t *facets;
+    size_t count, capacity;
+} part;
+
+/* Lists the boundary facets of the tetrahedra [from, to). */
+static brio_status list_part(brio_context *ctx, const brio_tet_labels *l, size_t from, size_t to, part *p) {
+    brio_status status = BRIO_OK;
+    const brio_tetrahedron *t = l->cocones->dual->t.tet;
+    const uint8_t *label = l->label;
+    for (size_t tet = from; tet < to; tet++) {
+        if (label[tet] != BRIO_LABEL_OUTER) continue;
+        unsigned inner = 0; /* the slots with an inner neighbour */
+        for (int i = 0; i < 4; i++) inner |= (unsigned)(label[brio_tet_of(t[tet].mate[i])] != BRIO_LABEL_OUTER) << i;
+        if (inner == 0) continue;
+        BRIO_TRY(BRIO_RESERVE(ctx, p->facets, p->capacity, p->count + 4));
+        for (; inner; inner &= inner - 1) p->facets[p->count++] = brio_facet_of((uint32_t)tet, __builtin_ctz(inner));
+    }
+done:
+    return status;
+}
+
+brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, uint32_t **facets, size_t *count) {
+    brio_status status = BRIO_OK;
+    part parts[PARTS] = {{0}};
+    size_t size = l->cocones->dual->t.count;
+    *facets = NULL;
+    *count = 0;
+    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
+    for (int i = 0; i < PARTS; i++) {
+        brio_status own = list_part(ctx, l, brio_part(size, i, PARTS), brio_part(size, i + 1, PARTS), &parts[i]);
+        if (own != BRIO_OK) BRIO_OMP(critical(brio_boundary_status)) status = own;
+    }
+    if (status != BRIO_OK) goto done;
+    for (int i = 0; i < PARTS; i++) *count += parts[i].count;
+    BRIO_TRY(BRIO_ALLOC(ctx, *facets, *count));
+    for (size_t i = 0, at = 0; i < PARTS; at += parts[i++].count)
+        if (parts[i].count > 0) memcpy(*facets + at, parts[i].facets, parts[i].count * sizeof **facets);
+done:
+    for (int i = 0; i < PARTS; i++) brio_release(ctx, parts[i].facets);
+    return status;
+}

@@ -1,0 +1,61 @@
+/* Walking on the boundary between two labels of tetrahedra. */
+#ifndef BRIO_RECONSTRUCT_LABEL_BOUNDARY_H
+#define BRIO_RECONSTRUCT_LABEL_BOUNDARY_H
+
+#include "base/sort.h"
+#include "reconstruct/cocone/tetrahedron_labels.h"
+
+/** The facets between outer and inner tetrahedra, each as seen from the outer one, ascending.
+ *  facets  *count of them, owned by the caller (brio_release).   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, uint32_t **facets, size_t *count);
+
+/** Whether a facet separates two labels. */
+static inline bool brio_is_boundary(const brio_tet_labels *l, uint32_t facet) {
+    uint32_t mate = *brio_mate(&l->cocones->dual->t, facet);
+    return l->label[brio_tet_of(facet)] != l->label[brio_tet_of(mate)];
+}
+
+/** The slots other than those of vertices a and b, less the slot `but`. */
+static inline int brio_last_slot(const uint32_t v[4], uint32_t a, uint32_t b, int but) {
+    int others = 0; /* without branches, which no processor could foresee */
+    for (int k = 1; k < 4; k++) others += k * ((v[k] == a) | (v[k] == b));
+    return 6 - others - but;
+}
+
+/** The next boundary facet round edge ab from a boundary facet, both seen from tetrahedra of the same label, which fill
+ *  the wedge between them. */
+static inline uint32_t brio_next_round_edge(const brio_tet_labels *l, uint32_t facet, uint32_t a, uint32_t b) {
+    const brio_tetrahedra *t = &l->cocones->dual->t;
+    for (;;) {
+        uint32_t tet = brio_tet_of(facet);
+        facet = brio_facet_of(tet, brio_last_slot(t->tet[tet].vertex, a, b, brio_slot_of(facet)));
+        if (brio_is_boundary(l, facet)) return facet;
+        facet = *brio_mate(t, facet);
+    }
+}
+
+/** The corner after v of a facet, counterclockwise as seen from the facet's own tetrahedron. */
+static inline uint32_t brio_corner_after(const brio_tetrahedra *t, uint32_t facet, uint32_t v) {
+    const uint32_t *vertex = t->tet[brio_tet_of(facet)].vertex;
+    const uint8_t *corner = BRIO_FACET[brio_slot_of(facet)];
+    int k = vertex[corner[0]] == v ? 1 : vertex[corner[1]] == v ? 2 : 0;
+    return vertex[corner[k]];
+}
+
+/** The next boundary facet round vertex v, counterclockwise as seen from the side of the facet's tetrahedron. */
+static inline uint32_t brio_next_round_vertex(const brio_tet_labels *l, uint32_t facet, uint32_t v) {
+    const brio_tetrahedra *t = &l->cocones->dual->t;
+    uint32_t after = brio_corner_after(t, facet, v);
+    return brio_next_round_edge(l, facet, v, brio_corner_after(t, facet, after));
+}
+
+static inline int brio_compare_positions(uint32_t a, uint32_t b, const void *points) {
+    return brio_lexicographic((const double *)points + 3 * (size_t)a, (const double *)points + 3 * (size_t)b);
+}
+
+/** Sorts samples by their positions, so that work on them goes by nothing else. */
+static inline void brio_sort_by_position(const double *points, uint32_t *samples, size_t n) {
+    brio_sort_indices(samples, n, brio_compare_positions, points);
+}
+
+#endif

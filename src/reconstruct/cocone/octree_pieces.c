@@ -1,0 +1,190 @@
+/* Samples divided into pieces by an octree.
+ *
+ * The samples are sorted along a Hilbert curve, so that every cell of the octree is a range of them. A cell with too
+ * many samples is divided into its eight parts; parts that follow each other along the curve, and so lie side by side,
+ * stay together while they have few enough.
+ *
+ * A piece sees its own samples, those within a margin of many spacings, and a thin selection of all others, every so
+ * many along the curve: so its Voronoi cells end where they end in the whole, its poles lie near theirs, and what is
+ * outside and inside can be told as from the whole.
+ *
+ * Based on: Dey, Giesen, Hudson. Delaunay based shape reconstruction from large data. PVG 2001.
+ * Differs from the paper: the selection from everywhere. */
+#include "reconstruct/cocone/octree_pieces.h"
+#include "base/memory.h"
+#include "base/sort.h"
+#include "order/hilbert.h"
+#include <math.h>
+#include <string.h>
+
+enum { BITS = BRIO_HILBERT_MAX_BITS, THIN = 4 };
+
+/* Width of the margin over the side of a square with one sample, if the samples of the piece lay on a square as wide as
+ * their box. */
+static const double MARGIN = 12;
+
+/* --- the cells --- */
+
+typedef struct {
+    brio_context *ctx;
+    const uint64_t *keys; /* of each place in the order */
+    brio_pieces *out;
+    size_t most; /* samples in a piece */
+} divider;
+
+static brio_status add_piece(divider *d, size_t begin, size_t end) {
+    brio_status status = BRIO_OK;
+    brio_pieces *out = d->out;
+    if (begin == end) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(d->ctx, out->pieces, out->capacity, out->num_pieces + 1));
+    out->pieces[out->num_pieces++] = (brio_piece){.begin = begin, .end = end};
+done:
+    return status;
+}
+
+/* The first place of [begin, end) whose key is at least `key`. */
+static size_t find_key(const divider *d, size_t begin, size_t end, uint64_t key) {
+    while (begin < end) {
+        size_t middle = begin + (end - begin) / 2;
+        if (d->keys[middle] < key)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return begin;
+}
+
+/* Divides the cell of 2^levels smallest cells a side that begins at `key`; its samples are [begin, end). Recursion at
+ * most BITS deep. */
+static brio_status divide(divider *d, size_t begin, size_t end, uint64_t key, int levels) {
+    brio_status status = BRIO_OK;
+    size_t first = begin; /* of the parts that are put together */
+    if (end - begin <= d->most || levels == 0) return add_piece(d, begin, end);
+    for (uint64_t part = 0, at = begin; part < 8; part++) {
+        uint64_t next_key = key + ((part + 1) << 3 * (levels - 1));
+        size_t next = find_key(d, at, end, next_key);
+        if (next - first > d->most) {
+            BRIO_TRY(add_piece(d, first, at));
+            first = at;
+        }
+        if (next - at > d->most) {
+            BRIO_TRY(divide(d, at, next, key + (part << 3 * (levels - 1)), levels - 1));
+            first = next;
+        }
+        at = next;
+    }
+    BRIO_TRY(add_piece(d, first, end));
+done:
+    return status;
+}
+
+/* --- boxes --- */
+
+/* Diagonal of a box; infinite where doubles overflow, and nowhere before. */
+static double diagonal_of(const double *low, const double *high) {
+    double half[3], most = 0, square = 0;
+    for (int k = 0; k < 3; k++) half[k] = 0.5 * high[k] - 0.5 * low[k], most = fmax(most, half[k]);
+    for (int k = 0; k < 3 && most > 0; k++) square += (half[k] / most) * (half[k] / most);
+    return 2 * (most * sqrt(square));
+}
+
+static void find_box(const brio_pieces *p, brio_piece *piece) {
+    for (int k = 0; k < 3; k++) piece->low[k] = INFINITY, piece->high[k] = -INFINITY;
+    for (size_t n = piece->begin; n < piece->end; n++)
+        for (int k = 0; k < 3; k++) {
+            double x = p->points[3 * (size_t)p->order[n] + (size_t)k];
+            piece->low[k] = x < piece->low[k] ? x : piece->low[k];
+            piece->high[k] = x > piece->high[k] ? x : piece->high[k];
+        }
+    piece->margin = MARGIN / sqrt((double)(piece->end - piece->begin)) * diagonal_of(piece->low, piece->high);
+}
+
+/* Largest difference in a coordinate between two boxes, 0 when they overlap. */
+static double gap(const double *low, const double *high, const double *other_low, const double *other_high) {
+    double most = 0;
+    for (int k = 0; k < 3; k++) most = fmax(most, fmax(other_low[k] - high[k], low[k] - other_high[k]));
+    return most;
+}
+
+brio_status brio_pieces_new(brio_context *ctx, const double *points, size_t num_points, size_t wanted,
+                            brio_pieces *out) {
+    brio_status status = BRIO_OK;
+    uint64_t *keys = NULL;
+    divider d = {.ctx = ctx, .out = out};
+    *out = (brio_pieces){.points = points, .num_points = num_points};
+    if (wanted > num_points) wanted = num_points;
+    d.most = wanted ? (num_points + wanted - 1) / wanted : 0;
+    out->stride = THIN * (wanted ? wanted : 1);
+    BRIO_TRY(BRIO_ALLOC(ctx, out->order, num_points));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->piece_of, num_points));
+    BRIO_TRY(BRIO_ALLOC(ctx, keys, num_points));
+    for (size_t n = 0; n < num_points; n++) out->order[n] = (uint32_t)n;
+    brio_hilbert_keys(points, num_points, BITS, brio_context_threads(ctx), keys);
+    BRIO_TRY(brio_radix_sort(ctx, keys, out->order, num_points, 3 * BITS));
+    d.keys = keys;
+    BRIO_TRY(divide(&d, 0, num_points, 0, BITS));
+    for (size_t i = 0; i < out->num_pieces; i++) {
+        brio_piece *piece = &out->pieces[i];
+        find_box(out, piece);
+        for (size_t n = piece->begin; n < piece->end; n++) out->piece_of[out->order[n]] = (uint32_t)i;
+    }
+done:
+    brio_release(ctx, keys);
+    return status;
+}
+
+void brio_pieces_free(brio_context *ctx, brio_pieces *pieces) {
+    brio_release(ctx, pieces->order);
+    brio_release(ctx, pieces->piece_of);
+    brio_release(ctx, pieces->pieces);
+    *pieces = (brio_pieces){0};
+}
+
+/* --- the samples of a piece --- */
+
+typedef struct {
+    brio_context *ctx;
+    uint64_t *sample;
+    size_t count, capacity;
+} selection;
+
+static brio_status add_sample(selection *s, uint32_t sample) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(s->ctx, s->sample, s->capacity, s->count + 1));
+    s->sample[s->count++] = (uint64_t)sample << 32;
+done:
+    return status;
+}
+
+/* Adds the samples of another piece within the margin of either. */
+static brio_status add_margin(selection *s, const brio_pieces *p, const brio_piece *piece, const brio_piece *other) {
+    brio_status status = BRIO_OK;
+    double margin = fmax(piece->margin, other->margin);
+    if (gap(piece->low, piece->high, other->low, other->high) > margin) return BRIO_OK;
+    for (size_t n = other->begin; n < other->end; n++) {
+        const double *x = p->points + 3 * (size_t)p->order[n];
+        if (gap(piece->low, piece->high, x, x) <= margin) BRIO_TRY(add_sample(s, p->order[n]));
+    }
+done:
+    return status;
+}
+
+brio_status brio_piece_samples(brio_context *ctx, const brio_pieces *p, size_t piece, uint32_t **samples,
+                               size_t *count) {
+    brio_status status = BRIO_OK;
+    selection s = {.ctx = ctx};
+    uint64_t *spare = NULL;
+    *samples = NULL;
+    *count = 0;
+    for (size_t i = 0; i < p->num_pieces; i++) BRIO_TRY(add_margin(&s, p, &p->pieces[piece], &p->pieces[i]));
+    for (size_t n = 0; n < p->num_points; n += p->stride) BRIO_TRY(add_sample(&s, p->order[n]));
+    BRIO_TRY(BRIO_ALLOC(ctx, spare, s.count));
+    BRIO_TRY(brio_sort_items(ctx, s.sample, spare, s.count, 32, 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, *samples, s.count));
+    for (size_t n = 0; n < s.count; n++)
+        if (n == 0 || s.sample[n] != s.sample[n - 1]) (*samples)[(*count)++] = (uint32_t)(s.sample[n] >> 32);
+done:
+    brio_release(ctx, s.sample);
+    brio_release(ctx, spare);
+    return status;
+}

@@ -1,0 +1,68 @@
+/* How dense a sample is, held against the guarantee.
+ *
+ * A sample is an r-sample when every point x of the surface has a sample within r times its local feature size. The
+ * points that are farthest from their samples are close to the circumcentres of the triangles of the surface; so the
+ * circumradius of a triangle over the local feature size at its corners estimates r there.
+ *
+ * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.6 and theorem 19. */
+#include "reconstruct/cocone/sampling_density.h"
+#include "base/memory.h"
+#include "base/sort.h"
+#include "reconstruct/cocone/triangle.h"
+
+/* The guarantee of theorem 19 holds up to this r. */
+static const double GUARANTEED_R = 0.08;
+
+/* r[p] = the largest circumradius of the faces of each sample. */
+static void largest_circles(const brio_mesh *mesh, int exponent, double *r) {
+    double factor = ldexp(1, -exponent);
+    bool ordinary = isnormal(factor) && factor < INFINITY;
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        const uint32_t *corner = mesh->face_vertices + 3 * f;
+        double p[3][3];
+        for (int k = 0; k < 9; k++) {
+            double x = mesh->vertices[3 * (size_t)corner[k / 3] + (size_t)(k % 3)];
+            p[k / 3][k % 3] = ordinary ? x * factor : ldexp(x, -exponent);
+        }
+        double radius = sqrt(brio_circle_square(p[0], p[1], p[2]));
+        for (int k = 0; k < 3; k++) r[corner[k]] = r[corner[k]] < radius ? radius : r[corner[k]];
+    }
+}
+
+static brio_status summarize(brio_context *ctx, const double *r, size_t n, brio_cocone_stats *stats) {
+    brio_status status = BRIO_OK;
+    uint64_t *keys = NULL;
+    uint32_t *order = NULL;
+    size_t count = 0;
+    BRIO_TRY(BRIO_ALLOC(ctx, keys, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, order, n));
+    for (size_t p = 0; p < n; p++) {
+        if (!(r[p] > 0)) continue;
+        keys[count] = brio_double_key(r[p]) >> 32; /* enough for a median */
+        order[count++] = (uint32_t)p;
+        stats->outside_guarantee += r[p] > GUARANTEED_R;
+    }
+    if (count == 0) goto done;
+    BRIO_TRY(brio_radix_sort(ctx, keys, order, count, 32));
+    stats->r_median = r[order[count / 2]];
+    stats->r_p95 = r[order[count - 1 - count / 20]];
+done:
+    brio_release(ctx, keys);
+    brio_release(ctx, order);
+    return status;
+}
+
+brio_status brio_sampling_density(const double *size, int exponent, brio_mesh *mesh, brio_cocone_stats *stats) {
+    brio_status status = BRIO_OK;
+    double *size_property, *r;
+    BRIO_TRY(brio_mesh_add_property(mesh, "feature_size", BRIO_FLOAT64, (void **)&size_property));
+    BRIO_TRY(brio_mesh_add_property(mesh, "r", BRIO_FLOAT64, (void **)&r));
+    largest_circles(mesh, exponent, r);
+    for (size_t p = 0; p < mesh->num_vertices; p++) {
+        size_property[p] = ldexp(size[p], exponent);
+        r[p] = r[p] > 0 ? r[p] / size[p] : 0;
+    }
+    BRIO_TRY(summarize(mesh->context, r, mesh->num_vertices, stats));
+done:
+    return status;
+}

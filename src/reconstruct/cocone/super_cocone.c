@@ -1,0 +1,145 @@
+/* The co-cone of a large set of samples, in pieces: the super co-cone.
+ *
+ * An octree divides the samples into pieces (octree_pieces.c). The surface of each is found from its samples and their
+ * surroundings, one piece after the other, so that only one is ever triangulated at a time; of what comes out, the
+ * triangles of the piece's own samples count. Those at the seams are matched (seams.c).
+ *
+ * Based on: Dey, Giesen, Hudson. Delaunay based shape reconstruction from large data. PVG 2001.
+ * Differs from the paper: pieces are matched after each has become a manifold, by agreement, so that the result is one,
+ * too. */
+#include "reconstruct/cocone/super_cocone.h"
+#include "base/memory.h"
+#include "base/scale.h"
+#include "reconstruct/cocone/octree_pieces.h"
+#include "reconstruct/cocone/seams.h"
+#include <math.h>
+#include <string.h>
+
+typedef struct {
+    brio_context *ctx;
+    const double *points;
+    size_t num_points;
+    int exponent; /* pieces are scaled by 2^-exponent */
+    const brio_cocone_options *options;
+    brio_pieces pieces;
+    brio_triangles faces, seam;
+    uint8_t *frayed; /* of each sample: pieces disagree there */
+    brio_cocone_surface *out;
+} assembly;
+
+/* Sorts the faces of a piece that have samples of its own into finished ones and those at the seams. */
+static brio_status take_faces(assembly *a, uint32_t piece, const uint32_t *samples, const brio_cocone_surface *s) {
+    brio_status status = BRIO_OK;
+    for (size_t f = 0; f < s->num_faces; f++) {
+        uint32_t corner[3];
+        int own = 0;
+        for (int k = 0; k < 3; k++) {
+            corner[k] = samples[s->faces[3 * f + (size_t)k]];
+            own += a->pieces.piece_of[corner[k]] == piece;
+        }
+        if (own > 0) BRIO_TRY(brio_triangles_add(a->ctx, own == 3 ? &a->faces : &a->seam, corner));
+    }
+done:
+    return status;
+}
+
+/* Takes what was learnt of the piece's own samples. */
+static void take_samples(assembly *a, uint32_t piece, const uint32_t *samples, size_t count,
+                         const brio_cocone_surface *s) {
+    for (size_t n = 0; n < count; n++) {
+        uint32_t p = samples[n];
+        if (a->pieces.piece_of[p] != piece) continue;
+        a->out->distinct[p] = s->distinct[n];
+        a->out->stats.samples += s->distinct[n];
+        if (s->size) a->out->size[p] = s->size[n];
+        if (s->boundary) a->out->boundary[p] = s->boundary[n], a->out->stats.boundary_samples += s->boundary[n];
+    }
+}
+
+static void add_stats(brio_cocone_stats *sum, const brio_cocone_stats *s) {
+    sum->candidates += s->candidates;
+    sum->pruned += s->pruned;
+    sum->relabelled += s->relabelled;
+    sum->delaunay_seconds += s->delaunay_seconds;
+    sum->poles_seconds += s->poles_seconds;
+    sum->candidates_seconds += s->candidates_seconds;
+    sum->labels_seconds += s->labels_seconds;
+    sum->manifold_seconds += s->manifold_seconds;
+    sum->density_seconds += s->density_seconds;
+}
+
+/* A piece may have no surface. */
+static brio_status find_piece(assembly *a, uint32_t piece) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = a->ctx;
+    brio_cocone_surface s = {0};
+    uint32_t *samples = NULL;
+    double *points = NULL;
+    size_t count;
+    BRIO_TRY(brio_piece_samples(ctx, &a->pieces, piece, &samples, &count));
+    BRIO_TRY(BRIO_ALLOC(ctx, points, 3 * count));
+    for (size_t n = 0; n < count; n++) memcpy(points + 3 * n, a->points + 3 * (size_t)samples[n], 3 * sizeof *points);
+    brio_scale(ctx, points, 3 * count, -a->exponent, points);
+    status = brio_cocone_surface_find(ctx, points, count, a->options, &s);
+    if (status == BRIO_ERR_NO_ANSWER) status = BRIO_OK;
+    if (status != BRIO_OK) goto done;
+    BRIO_TRY(take_faces(a, piece, samples, &s));
+    take_samples(a, piece, samples, count, &s);
+    add_stats(&a->out->stats, &s.stats);
+done:
+    brio_cocone_surface_free(ctx, &s);
+    brio_release(ctx, points);
+    brio_release(ctx, samples);
+    return status;
+}
+
+static brio_status find_pieces(assembly *a) {
+    brio_status status = BRIO_OK;
+    size_t count = a->pieces.num_pieces;
+    for (size_t i = 0; i < count; i++) {
+        a->ctx->progress_from = (double)i / (double)count;
+        a->ctx->progress_to = (double)(i + 1) / (double)count;
+        BRIO_TRY(find_piece(a, (uint32_t)i));
+    }
+    a->out->stats.pieces = count;
+done:
+    return status;
+}
+
+static brio_status match(assembly *a) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    BRIO_TRY(BRIO_ALLOC_ZERO(a->ctx, a->frayed, a->num_points));
+    BRIO_TRY(brio_match_seams(a->ctx, a->pieces.piece_of, &a->seam, &a->faces, a->frayed, &a->out->stats.unmatched));
+    if (a->out->stats.unmatched > 0) BRIO_TRY(brio_trim_fans(a->ctx, a->points, a->num_points, a->frayed, &a->faces));
+    BRIO_REQUIRE(a->ctx, a->faces.count > 0, BRIO_ERR_NO_ANSWER, "no triangle passes the co-cone test in any piece");
+    a->out->faces = (uint32_t *)a->faces.corner;
+    a->out->num_faces = a->faces.count;
+    a->faces.corner = NULL;
+    a->out->stats.manifold_seconds += brio_seconds() - start;
+done:
+    return status;
+}
+
+brio_status brio_super_cocone(brio_context *ctx, const double *points, size_t num_points, int exponent,
+                              const brio_cocone_options *options, brio_cocone_surface *out) {
+    brio_status status = BRIO_OK;
+    assembly a = {
+        .ctx = ctx, .points = points, .num_points = num_points, .exponent = exponent, .options = options, .out = out};
+    *out = (brio_cocone_surface){0};
+    for (size_t i = 0; i < 3 * num_points; i++)
+        BRIO_REQUIRE(ctx, isfinite(points[i]), BRIO_ERR_NOT_FINITE, "point %zu: %c is %s", i / 3, "xyz"[i % 3],
+                     isnan(points[i]) ? "NaN" : "infinite");
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->distinct, num_points));
+    if (options->density) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->size, num_points));
+    if (options->boundaries) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->boundary, num_points));
+    BRIO_TRY(brio_pieces_new(ctx, points, num_points, options->pieces, &a.pieces));
+    BRIO_TRY(find_pieces(&a));
+    BRIO_TRY(match(&a));
+done:
+    brio_pieces_free(ctx, &a.pieces);
+    brio_release(ctx, a.faces.corner);
+    brio_release(ctx, a.seam.corner);
+    brio_release(ctx, a.frayed);
+    return status;
+}

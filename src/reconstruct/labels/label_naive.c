@@ -1,0 +1,26 @@
+/* Naive labelling of poles: breadth first from the poles that are certainly outer. A wrong label spreads as far as a
+ * right one, so this is for comparison, and for samples that are known to be dense.
+ *
+ * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.3.
+ * Differs from the paper: poles on the hull of the regular triangulation are certain too; what is not reached is left
+ * to the greedy labelling. */
+#include "base/memory.h"
+#include "reconstruct/labels/labelling.h"
+
+brio_status brio_label_naive(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
+    brio_status status = BRIO_OK;
+    uint8_t *certain = NULL;
+    uint32_t *queue = NULL;
+    size_t n = g->poles->count, size = 0;
+    BRIO_TRY(BRIO_ALLOC(g->ctx, certain, n));
+    BRIO_TRY(BRIO_ALLOC(g->ctx, queue, n));
+    brio_label_certain(g, certain);
+    for (size_t p = 0; p < n; p++)
+        if (certain[p]) label[p] = BRIO_LABEL_OUTER, queue[size++] = (uint32_t)p;
+    brio_label_spread(g, certain, label, queue, size);
+    BRIO_TRY(brio_label_finish(g, label, stats));
+done:
+    brio_release(g->ctx, certain);
+    brio_release(g->ctx, queue);
+    return status;
+}

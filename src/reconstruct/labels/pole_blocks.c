@@ -1,0 +1,264 @@
+/* Blocks of poles for the improvement of labels.
+ *
+ * A set of poles whose toggling lowers the energy has a violated edge on its border, so only poles near violated edges
+ * take part. They are sorted along a Hilbert curve through a cube that is drawn anew each time, and cut into runs: what
+ * one drawing separates another one keeps together. Two blocks that an edge joins must not change at the same time; the
+ * blocks are coloured, and a colour is a round. */
+#include "reconstruct/labels/pole_blocks.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "base/sort.h"
+#include "order/hilbert.h"
+#include "reconstruct/labels/labelling.h"
+#include <math.h>
+#include <string.h>
+
+enum { HOPS = 3, OUTSIDE = 255, CURVE_BITS = 11 };
+
+/* A thread's list of pairs of blocks that an edge joins, the higher number first, and its marks. */
+typedef struct {
+    uint64_t *pair;
+    size_t count, capacity;
+    uint32_t *seen; /* of each block: 1 + the last block that was found to be joined with it */
+} joiner;
+
+typedef struct {
+    const brio_pole_graph *g;
+    const uint8_t *label, *fixed;
+    int threads;
+    uint8_t *depth;   /* of each pole: how many edges from trouble, OUTSIDE beyond the region */
+    uint8_t *trouble; /* of each block: it has violated edges */
+    uint64_t *pair;   /* of blocks, sorted */
+    size_t num_pairs;
+    brio_pole_blocks *out;
+} finder;
+
+/* --- the region --- */
+
+static bool is_troubled(const finder *f, uint32_t p) {
+    const brio_pole_graph *g = f->g;
+    for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
+        if (g->edge[e].weight != 0 && brio_label_violates(f->label, p, g->edge[e])) return true;
+    return false;
+}
+
+/* Threads that reach a pole together write the same. */
+static void reach_neighbours(const finder *f, uint32_t p, uint8_t depth) {
+    const brio_pole_graph *g = f->g;
+    for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
+        uint8_t *there = &f->depth[g->edge[e].pole];
+        if (__atomic_load_n(there, __ATOMIC_RELAXED) == OUTSIDE && !f->fixed[g->edge[e].pole])
+            __atomic_store_n(there, depth, __ATOMIC_RELAXED);
+    }
+}
+
+static void mark_region(const finder *f) {
+    size_t n = f->g->poles->count;
+    BRIO_OMP(parallel num_threads(f->threads)) {
+        BRIO_OMP(for schedule(dynamic, 4096))
+        for (size_t p = 0; p < n; p++) f->depth[p] = !f->fixed[p] && is_troubled(f, (uint32_t)p) ? 0 : OUTSIDE;
+        for (uint8_t depth = 0; depth < HOPS; depth++) {
+            BRIO_OMP(for schedule(dynamic, 4096))
+            for (size_t p = 0; p < n; p++)
+                if (__atomic_load_n(&f->depth[p], __ATOMIC_RELAXED) == depth)
+                    reach_neighbours(f, (uint32_t)p, depth + 1);
+        }
+    }
+}
+
+static brio_status list_region(finder *f) {
+    brio_status status = BRIO_OK;
+    brio_pole_blocks *b = f->out;
+    size_t n = f->g->poles->count, count = 0;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, f->depth, n));
+    mark_region(f);
+    for (size_t p = 0; p < n; p++) b->count += f->depth[p] != OUTSIDE;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, b->pole, b->count));
+    for (size_t p = 0; p < n; p++)
+        if (f->depth[p] != OUTSIDE) b->pole[count++] = (uint32_t)p;
+done:
+    return status;
+}
+
+/* --- along a curve --- */
+
+/* Adds two corners of a cube of twice the size at a drawn place round the points. */
+static void draw_cube(double *points, size_t n, uint64_t draw) {
+    double low[3], high[3], side = 0;
+    for (size_t k = 0; k < 3; k++) {
+        low[k] = high[k] = points[k];
+        for (size_t i = 1; i < n; i++) {
+            low[k] = points[3 * i + k] < low[k] ? points[3 * i + k] : low[k];
+            high[k] = points[3 * i + k] > high[k] ? points[3 * i + k] : high[k];
+        }
+        side = fmax(side, high[k] - low[k]);
+    }
+    brio_rng rng = brio_rng_new(draw);
+    for (size_t k = 0; k < 3; k++) {
+        points[3 * n + k] = low[k] - side * brio_rng_double(&rng);
+        points[3 * n + 3 + k] = points[3 * n + k] + 2 * side;
+    }
+}
+
+static brio_status sort_along_curve(const finder *f, uint64_t draw) {
+    brio_status status = BRIO_OK;
+    brio_pole_blocks *b = f->out;
+    double *points = NULL;
+    uint64_t *keys = NULL;
+    size_t n = b->count;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, points, 3 * (n + 2)));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, keys, n + 2));
+    BRIO_OMP(parallel for num_threads(f->threads))
+    for (size_t i = 0; i < n; i++)
+        memcpy(points + 3 * i, f->g->poles->centre + 3 * (size_t)b->pole[i], 3 * sizeof *points);
+    draw_cube(points, n, draw);
+    brio_hilbert_keys(points, n + 2, CURVE_BITS, f->threads, keys);
+    BRIO_TRY(brio_radix_sort(b->ctx, keys, b->pole, n, 3 * CURVE_BITS));
+done:
+    brio_release(b->ctx, points);
+    brio_release(b->ctx, keys);
+    return status;
+}
+
+static brio_status set_places(const finder *f) {
+    brio_pole_blocks *b = f->out;
+    brio_status status = BRIO_ALLOC(b->ctx, b->place, f->g->poles->count);
+    if (status != BRIO_OK) return status;
+    memset(b->place, 255, f->g->poles->count * sizeof *b->place);
+    for (size_t i = 0; i < b->count; i++) b->place[b->pole[i]] = (uint32_t)i;
+    return BRIO_OK;
+}
+
+/* --- rounds --- */
+
+static brio_status find_trouble(finder *f) {
+    brio_pole_blocks *b = f->out;
+    b->num_blocks = (b->count + ((size_t)1 << b->bits) - 1) >> b->bits;
+    brio_status status = BRIO_ALLOC_ZERO(b->ctx, f->trouble, b->num_blocks);
+    if (status != BRIO_OK) return status;
+    for (size_t i = 0; i < b->count; i++) f->trouble[i >> b->bits] |= f->depth[b->pole[i]] == 0;
+    return BRIO_OK;
+}
+
+/* Notes the troubled blocks of lower number that edges join with a block. */
+static brio_status join(const finder *f, joiner *j, uint32_t block) {
+    const brio_pole_graph *g = f->g;
+    const brio_pole_blocks *b = f->out;
+    brio_status status = BRIO_OK;
+    for (size_t i = brio_pole_block_begin(b, block); i < brio_pole_block_begin(b, block + 1); i++)
+        for (size_t e = g->first[b->pole[i]]; e < g->first[b->pole[i] + 1]; e++) {
+            uint32_t place = b->place[g->edge[e].pole], other = place >> b->bits;
+            if (place == BRIO_NO_PLACE || other >= block || j->seen[other] == block + 1 || !f->trouble[other]) continue;
+            j->seen[other] = block + 1;
+            BRIO_TRY(BRIO_RESERVE(b->ctx, j->pair, j->capacity, j->count + 1));
+            j->pair[j->count++] = (uint64_t)block << 32 | other;
+        }
+done:
+    return status;
+}
+
+static brio_status join_all(const finder *f, joiner *joiners) {
+    brio_status status = BRIO_OK;
+    size_t n = f->out->num_blocks;
+    for (int t = 0; t < f->threads; t++) BRIO_TRY(BRIO_ALLOC_ZERO(f->out->ctx, joiners[t].seen, n));
+    BRIO_OMP(parallel for schedule(dynamic, 4) num_threads(f->threads))
+    for (size_t block = 0; block < n; block++) {
+        brio_status mine = f->trouble[block] ? join(f, &joiners[brio_thread()], (uint32_t)block) : BRIO_OK;
+        if (mine == BRIO_OK) continue;
+        BRIO_OMP(atomic write)
+        status = mine;
+    }
+done:
+    return status;
+}
+
+static brio_status list_pairs(finder *f) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = f->out->ctx;
+    joiner *joiners = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, joiners, (size_t)f->threads));
+    BRIO_TRY(join_all(f, joiners));
+    for (int t = 0; t < f->threads; t++) f->num_pairs += joiners[t].count;
+    BRIO_TRY(BRIO_ALLOC(ctx, f->pair, f->num_pairs));
+    for (size_t t = 0, count = 0; t < (size_t)f->threads; count += joiners[t++].count)
+        if (joiners[t].count) memcpy(f->pair + count, joiners[t].pair, joiners[t].count * sizeof *f->pair);
+    brio_sort_keys(f->pair, f->num_pairs);
+done:
+    for (int t = 0; joiners && t < f->threads; t++) {
+        brio_release(ctx, joiners[t].pair);
+        brio_release(ctx, joiners[t].seen);
+    }
+    brio_release(ctx, joiners);
+    return status;
+}
+
+/* Each block in order gets the first round that none of those before it, that edges join it with, has.
+ *  taken  #blocks + 1, all 0: of each round, 1 + the last block that cannot have it. */
+static void colour_blocks(const finder *f, uint32_t *round, uint32_t *taken) {
+    brio_pole_blocks *b = f->out;
+    for (size_t block = 0, i = 0; block < b->num_blocks; block++) {
+        if (!f->trouble[block]) continue;
+        for (; i < f->num_pairs && f->pair[i] >> 32 == block; i++)
+            taken[round[(uint32_t)f->pair[i]]] = (uint32_t)block + 1;
+        uint32_t r = 0;
+        while (taken[r] == block + 1) r++;
+        round[block] = r;
+        if (r >= b->num_rounds) b->num_rounds = r + 1;
+    }
+}
+
+static brio_status list_rounds(const finder *f, const uint32_t *round) {
+    brio_status status = BRIO_OK;
+    brio_pole_blocks *b = f->out;
+    BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, b->first_round, b->num_rounds + 1));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, b->block, b->num_blocks));
+    for (size_t i = 0; i < b->num_blocks; i++)
+        if (f->trouble[i]) b->first_round[round[i]]++;
+    for (size_t r = 0, end = 0; r <= b->num_rounds; r++) end += b->first_round[r], b->first_round[r] = end;
+    for (size_t i = b->num_blocks; i-- > 0;)
+        if (f->trouble[i]) b->block[--b->first_round[round[i]]] = (uint32_t)i;
+done:
+    return status;
+}
+
+static brio_status divide_into_rounds(finder *f) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = f->out->ctx;
+    uint32_t *round = NULL, *taken = NULL;
+    BRIO_TRY(find_trouble(f));
+    BRIO_TRY(list_pairs(f));
+    BRIO_TRY(BRIO_ALLOC(ctx, round, f->out->num_blocks));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, taken, f->out->num_blocks + 1));
+    colour_blocks(f, round, taken);
+    BRIO_TRY(list_rounds(f, round));
+done:
+    brio_release(ctx, round);
+    brio_release(ctx, taken);
+    return status;
+}
+
+/* --- the blocks --- */
+
+brio_status brio_pole_blocks_find(const brio_pole_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
+                                  uint64_t draw, brio_pole_blocks *out) {
+    brio_status status = BRIO_OK;
+    finder f = {.g = g, .label = label, .fixed = fixed, .threads = brio_context_threads(g->ctx), .out = out};
+    *out = (brio_pole_blocks){.ctx = g->ctx, .bits = bits};
+    BRIO_TRY(list_region(&f));
+    if (out->count > (size_t)1 << bits) BRIO_TRY(sort_along_curve(&f, draw));
+    BRIO_TRY(set_places(&f));
+    BRIO_TRY(divide_into_rounds(&f));
+done:
+    brio_release(g->ctx, f.depth);
+    brio_release(g->ctx, f.trouble);
+    brio_release(g->ctx, f.pair);
+    return status;
+}
+
+void brio_pole_blocks_free(brio_pole_blocks *b) {
+    brio_release(b->ctx, b->pole);
+    brio_release(b->ctx, b->place);
+    brio_release(b->ctx, b->first_round);
+    brio_release(b->ctx, b->block);
+}

@@ -1,0 +1,102 @@
+/* A radix heap: bucket b > 0 holds the entries whose priorities differ from the last one in bit b - 1 and in no higher
+ * one.
+ *
+ * Bucket 0 has the last priority's equals, as a common heap. When it is empty, the first bucket that is not is dealt out
+ * anew around its highest priority, each entry to a bucket before it: an entry moves a few times, each time to the end of
+ * an array, where a common heap would go down a tree in memory.
+ *
+ * Based on: Ahuja, Mehlhorn, Orlin, Tarjan. Faster algorithms for the shortest path problem. JACM 1990.
+ * Differs from the paper: priorities may rise; those above the last one wait in bucket 0, too, and are taken first. */
+#include "reconstruct/labels/pole_queue.h"
+#include "base/memory.h"
+
+brio_pole_queue brio_pole_queue_new(brio_context *ctx, uint32_t most) {
+    return (brio_pole_queue){.ctx = ctx, .last = most};
+}
+
+void brio_pole_queue_free(brio_pole_queue *q) {
+    for (int b = 0; b < BRIO_POLE_BUCKETS; b++) brio_release(q->ctx, q->bucket[b]);
+}
+
+static uint32_t priority_of(uint64_t entry) {
+    return (uint32_t)(entry >> 32);
+}
+
+static uint32_t pole_of(uint64_t entry) {
+    return ~(uint32_t)entry;
+}
+
+static int bucket_of(const brio_pole_queue *q, uint32_t priority) {
+    return priority >= q->last ? 0 : 32 - __builtin_clz(priority ^ q->last);
+}
+
+/* --- the heap in bucket 0 --- */
+
+static void lift_last(uint64_t *heap, size_t size) {
+    uint64_t entry = heap[size - 1];
+    size_t i = size - 1;
+    for (; i > 0 && entry > heap[(i - 1) / 2]; i = (i - 1) / 2) heap[i] = heap[(i - 1) / 2];
+    heap[i] = entry;
+}
+
+static void drop_first(uint64_t *heap, size_t size) {
+    uint64_t last = heap[size - 1];
+    size_t i = 0;
+    for (size_t child; (child = 2 * i + 1) < size - 1; i = child) {
+        if (child + 1 < size - 1 && heap[child + 1] > heap[child]) child++;
+        if (last >= heap[child]) break;
+        heap[i] = heap[child];
+    }
+    heap[i] = last;
+}
+
+/* --- queue --- */
+
+static inline brio_status add(brio_pole_queue *q, uint64_t entry) {
+    int b = bucket_of(q, priority_of(entry));
+    brio_status status = BRIO_RESERVE(q->ctx, q->bucket[b], q->capacity[b], q->size[b] + 1);
+    if (status != BRIO_OK) return status;
+    q->bucket[b][q->size[b]++] = entry;
+    q->filled |= UINT64_C(1) << b;
+    if (b == 0) lift_last(q->bucket[0], q->size[0]);
+    return BRIO_OK;
+}
+
+brio_status brio_pole_queue_push(brio_pole_queue *q, uint32_t pole, uint32_t priority) {
+    return add(q, (uint64_t)priority << 32 | (uint32_t)~pole);
+}
+
+static brio_status deal_out(brio_pole_queue *q, int b) {
+    brio_status status = BRIO_OK;
+    uint64_t highest = 0;
+    for (size_t i = 0; i < q->size[b]; i++)
+        if (q->bucket[b][i] > highest) highest = q->bucket[b][i];
+    q->last = priority_of(highest);
+    for (size_t i = 0; i < q->size[b]; i++) BRIO_TRY(add(q, q->bucket[b][i]));
+    q->size[b] = 0;
+    q->filled &= ~(UINT64_C(1) << b);
+done:
+    return status;
+}
+
+brio_status brio_pole_queue_pop(brio_pole_queue *q, uint32_t *pole, uint32_t *priority, bool *found) {
+    brio_status status = BRIO_OK;
+    *found = q->filled != 0;
+    if (!*found) goto done;
+    int b = __builtin_ctzll(q->filled);
+    if (b > 0) BRIO_TRY(deal_out(q, b));
+    *pole = pole_of(q->bucket[0][0]);
+    *priority = priority_of(q->bucket[0][0]);
+    drop_first(q->bucket[0], q->size[0]--);
+    if (!q->size[0]) q->filled &= ~UINT64_C(1);
+done:
+    return status;
+}
+
+int brio_pole_queue_peek(const brio_pole_queue *q, uint32_t *poles) {
+    if (!q->filled) return 0;
+    int b = __builtin_ctzll(q->filled), count = q->size[b] < BRIO_POLE_PEEK ? (int)q->size[b] : BRIO_POLE_PEEK;
+    const uint64_t *first = q->bucket[b] + (b ? q->size[b] - (size_t)count : 0); /* a heap has its highest in front */
+    for (int i = 0; i < count; i++) poles[i] = pole_of(first[i]);
+    return count;
+}

@@ -1,0 +1,80 @@
+/* Roof duality for a block of poles.
+ *
+ * Edges that want different labels make the energy not submodular, so no single cut minimises it. Roof duality does what
+ * a cut can: every pole has two nodes, itself and its complement; an edge for equal labels joins pole with pole and
+ * complement with complement, an edge for different labels joins either pole with the other's complement. Here the label
+ * of a pole is whether it is to be toggled: edges at peace want both ends toggled or none, violated ones want one. In a
+ * minimum cut a pole on the side of the source stays and one whose complement is there is toggled, in a labelling of
+ * least energy; to do that and to leave the others, the open ones, as they are does not raise the energy either
+ * (autarky).
+ *
+ * Based on: Hammer, Hansen, Simeone. Roof duality, complementation and persistency in quadratic 0-1 optimization.
+ *           Mathematical Programming 1984.
+ *           Boros, Hammer. Pseudo-Boolean optimization. Discrete Applied Mathematics 2002 (the doubled graph). */
+#include "reconstruct/labels/roof_duality.h"
+#include "base/memory.h"
+#include "reconstruct/labels/labelling.h"
+#include <math.h>
+#include <string.h>
+
+enum { WEIGHT_SCALE = 1 << 20 };
+
+void brio_roof_free(brio_roof *r) {
+    brio_context *ctx = r->flow.ctx;
+    brio_release(ctx, r->edge);
+    brio_release(ctx, r->terminal);
+    brio_release(ctx, r->side);
+    brio_flow_free(&r->flow);
+}
+
+static int32_t whole_weight(brio_pole_edge e) {
+    return (int32_t)(fabsf(e.weight) * WEIGHT_SCALE + 0.5f);
+}
+
+/* Node i is the i-th pole of the block, node size + i its complement; what labels beyond the block want is a terminal.
+ * An edge within the block is taken from the end that comes first. */
+static brio_status double_edges(brio_roof *r, const brio_pole_graph *g, const brio_pole_blocks *b, size_t begin,
+                                uint32_t size, const uint8_t *label) {
+    brio_status status = BRIO_OK;
+    r->num_edges = 0;
+    for (uint32_t i = 0; i < size; i++) {
+        uint32_t p = b->pole[begin + i];
+        BRIO_TRY(BRIO_RESERVE(g->ctx, r->edge, r->edge_capacity, r->num_edges + 2 * (g->first[p + 1] - g->first[p])));
+        for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
+            int32_t weight = whole_weight(g->edge[e]);
+            bool same = !brio_label_violates(label, p, g->edge[e]);
+            uint32_t j = b->place[g->edge[e].pole] - (uint32_t)begin, shift = same ? 0 : size;
+            if (!weight) continue;
+            if (j >= size) {
+                r->terminal[i] += same ? weight : -weight;
+                r->terminal[size + i] -= same ? weight : -weight;
+            } else if (j > i) {
+                r->edge[r->num_edges++] = (brio_flow_edge){i, j + shift, weight};
+                r->edge[r->num_edges++] = (brio_flow_edge){size + i, size + j - shift, weight};
+            }
+        }
+    }
+done:
+    return status;
+}
+
+brio_status brio_roof_settle(brio_roof *r, const brio_pole_graph *g, const brio_pole_blocks *b, size_t block,
+                             uint8_t *label) {
+    brio_status status = BRIO_OK;
+    size_t begin = brio_pole_block_begin(b, block);
+    uint32_t size = (uint32_t)(brio_pole_block_begin(b, block + 1) - begin);
+    BRIO_TRY(BRIO_RESERVE(g->ctx, r->terminal, r->terminal_capacity, 2 * size));
+    BRIO_TRY(BRIO_RESERVE(g->ctx, r->side, r->side_capacity, 2 * size));
+    memset(r->terminal, 0, 2 * size * sizeof *r->terminal);
+    BRIO_TRY(double_edges(r, g, b, begin, size, label));
+    BRIO_TRY(brio_flow_maximum(&r->flow, 2 * size, r->edge, r->num_edges, r->terminal, r->side));
+    for (uint32_t i = 0; i < size; i++) {
+        bool stays = r->side[i] == BRIO_FLOW_SOURCE, toggles = r->side[size + i] == BRIO_FLOW_SOURCE;
+        uint32_t p = b->pole[begin + i];
+        r->open += !stays && !toggles;
+        r->toggled += toggles;
+        if (toggles) label[p] = brio_other_label(label[p]);
+    }
+done:
+    return status;
+}

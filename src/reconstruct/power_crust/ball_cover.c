@@ -1,0 +1,158 @@
+/* Fewer balls for nearly the same union, larger ones standing for smaller ones.
+ *
+ * A ball that vanishes in a larger one when all are scaled about their centres is what noise makes: a bump as high as
+ * (s - 1) times the difference of the radii. Along a sheet of balls of about equal radius nothing vanishes that way; there
+ * a ball stands for all that it holds once it is enlarged a little.
+ *
+ * Balls are taken by descending radius and held against those kept so far. These are in a tree of boxes over all
+ * centres, each node with the largest radius kept in it: no ball of a node can hold what the largest one, placed in the
+ * box at its nearest to the ball asked for, does not hold.
+ *
+ * Based on: Miklos, Giesen, Pauly. Discrete scale axis representations for 3D geometry. SIGGRAPH 2010 (scaling).
+ *           Amenta, Choi, Kolluri. The power crust. Solid Modeling 2001 (redundancy: larger balls first).
+ * Differs from the papers: one ball has to hold the other, where the scale axis asks for the union of all. */
+#include "reconstruct/power_crust/ball_cover.h"
+#include "base/memory.h"
+#include "base/sort.h"
+#include <math.h>
+
+enum { LEAF_BALLS = 8, MOST_LEVELS = 64 };
+static const double SAME = 1e-9; /* balls that differ by less, in radii, are one and the same but for rounding */
+
+/* A node is a range of `balls`; the root is 0, the children of i are 2i + 1 and 2i + 2, the halves of its range. */
+typedef struct {
+    double low[3], high[3];
+    double largest; /* radius kept in it; -1: none */
+} node;
+
+typedef struct {
+    const double *centre, *square;
+    const uint32_t *balls;
+    size_t count;
+    const brio_cover_rule *rule;
+    node *nodes;
+    uint8_t *kept; /* of each of `balls` */
+} cover;
+
+typedef struct {
+    size_t node, low, high;
+} range;
+
+static size_t count_nodes(size_t balls) {
+    size_t nodes = 1;
+    for (size_t most = balls; most > LEAF_BALLS; most -= most / 2) nodes = 2 * nodes + 1;
+    return nodes;
+}
+
+static void build_node(const cover *c, range r) {
+    node *n = &c->nodes[r.node];
+    n->largest = -1;
+    for (int k = 0; k < 3; k++) n->low[k] = INFINITY, n->high[k] = -INFINITY;
+    for (size_t i = r.low; i < r.high; i++)
+        for (size_t k = 0; k < 3; k++) {
+            double x = c->centre[3 * (size_t)c->balls[i] + k];
+            n->low[k] = fmin(n->low[k], x);
+            n->high[k] = fmax(n->high[k], x);
+        }
+    if (r.high - r.low <= LEAF_BALLS) return;
+    size_t middle = r.low + (r.high - r.low) / 2;
+    build_node(c, (range){2 * r.node + 1, r.low, middle});
+    build_node(c, (range){2 * r.node + 2, middle, r.high});
+}
+
+/* How far apart the centres may be for a ball of radius `large` to stand for one of radius `small`. */
+static double reach(const cover *c, double large, double small) {
+    return fmax(c->rule->scale * (large - small), (1 + c->rule->redundancy) * large - small) + SAME * large;
+}
+
+static double distance_from_box(const node *n, const double *p) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double d = fmax(fmax(n->low[k] - p[k], p[k] - n->high[k]), 0);
+        square += d * d;
+    }
+    return sqrt(square);
+}
+
+static bool covered_in_leaf(const cover *c, range r, const double *p, double radius) {
+    for (size_t i = r.low; i < r.high; i++) {
+        if (!c->kept[i]) continue;
+        const double *q = c->centre + 3 * (size_t)c->balls[i];
+        double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+        if (sqrt(x * x + y * y + z * z) <= reach(c, sqrt(c->square[c->balls[i]]), radius)) return true;
+    }
+    return false;
+}
+
+static bool covered(const cover *c, uint32_t ball) {
+    const double *p = c->centre + 3 * (size_t)ball;
+    double radius = sqrt(c->square[ball]);
+    range stack[MOST_LEVELS], r;
+    int depth = 0;
+    stack[depth++] = (range){0, 0, c->count};
+    while (depth > 0) {
+        r = stack[--depth];
+        const node *n = &c->nodes[r.node];
+        if (n->largest < 0 || distance_from_box(n, p) > reach(c, n->largest, radius)) continue;
+        if (r.high - r.low <= LEAF_BALLS) {
+            if (covered_in_leaf(c, r, p, radius)) return true;
+            continue;
+        }
+        size_t middle = r.low + (r.high - r.low) / 2;
+        stack[depth++] = (range){2 * r.node + 1, r.low, middle};
+        stack[depth++] = (range){2 * r.node + 2, middle, r.high};
+    }
+    return false;
+}
+
+/* Radii come in descending order: the first that a node gets is its largest. */
+static void keep_ball(cover *c, size_t at) {
+    double radius = sqrt(c->square[c->balls[at]]);
+    range r = {0, 0, c->count};
+    c->kept[at] = 1;
+    for (;;) {
+        if (c->nodes[r.node].largest < 0) c->nodes[r.node].largest = radius;
+        if (r.high - r.low <= LEAF_BALLS) return;
+        size_t middle = r.low + (r.high - r.low) / 2;
+        r = at < middle ? (range){2 * r.node + 1, r.low, middle} : (range){2 * r.node + 2, middle, r.high};
+    }
+}
+
+/* Places in `balls` by descending radius, equal ones as they stand there. */
+static brio_status sort_by_radius(brio_context *ctx, const cover *c, uint32_t *order) {
+    uint64_t *keys = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, keys, c->count));
+    for (size_t i = 0; i < c->count; i++) {
+        keys[i] = ~brio_double_key(c->square[c->balls[i]]);
+        order[i] = (uint32_t)i;
+    }
+    BRIO_TRY(brio_radix_sort(ctx, keys, order, c->count, 64));
+done:
+    brio_release(ctx, keys);
+    return status;
+}
+
+brio_status brio_cover_balls(brio_context *ctx, const double *centre, const double *square, const uint32_t *balls,
+                             size_t count, const brio_cover_rule *rule, uint8_t *keep) {
+    brio_status status = BRIO_OK;
+    cover c = {.centre = centre, .square = square, .balls = balls, .count = count, .rule = rule};
+    uint32_t *order = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, order, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, c.nodes, count_nodes(count)));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, c.kept, count));
+    BRIO_TRY(sort_by_radius(ctx, &c, order));
+    build_node(&c, (range){0, 0, count});
+    for (size_t i = 0; i < count; i++) {
+        if (i % 65536 == 0) BRIO_TRY(brio_progress(ctx, "simplify", (double)i / (double)count));
+        if (covered(&c, balls[order[i]]))
+            keep[balls[order[i]]] = 0;
+        else
+            keep_ball(&c, order[i]);
+    }
+done:
+    brio_release(ctx, order);
+    brio_release(ctx, c.nodes);
+    brio_release(ctx, c.kept);
+    return status;
+}

@@ -1,0 +1,298 @@
+/* The crust, read off the dual.
+ *
+ * A tetrahedron of the regular triangulation of the polar balls with both labels is a vertex of the crust (its
+ * orthocentre); an edge with both labels is a face, the ring of tetrahedra round it. A triangle with both labels has
+ * exactly two such edges, so each edge of the crust has two faces; a tetrahedron split one to three or two to two gives
+ * one cycle round its vertex. Hull vertices are outer, so every ring closes: the crust is a closed oriented 2-manifold
+ * whatever the coordinates are. It stays combinatorial: no vertices are merged, no faces dropped.
+ *
+ * Blocks of tetrahedra list their faces, which are then copied to where the blocks before leave off, so that threads
+ * leave no trace. A face belongs to the first tetrahedron of its ring.
+ *
+ * Cutting a face into triangles by diagonals keeps all this, since two faces share at most one edge.
+ *
+ * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3. */
+#include "reconstruct/power_crust/crust_faces.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "predicates/circumcentre.h"
+#include "reconstruct/labels/labelling.h"
+#include "surface/split_vertices.h"
+#include "triangulation/ring.h"
+#include <math.h>
+#include <string.h>
+
+enum { NO_VERTEX = UINT32_MAX, BLOCK = 1 << 13, AHEAD = 8 };
+
+/* What a block of tetrahedra makes, and then what the blocks before it make. */
+typedef struct {
+    size_t vertices, faces, corners, rings, left_out;
+} block_counts;
+
+/* The faces of a block: of each, how many corners it has, and these. */
+typedef struct {
+    uint32_t *entry;
+    size_t count, capacity;
+} face_list;
+
+typedef struct {
+    const brio_pole_graph *g;
+    int threads;
+    const uint8_t *label;
+    const brio_crust_options *options;
+    uint32_t *number; /* of the crust vertex of each finite tetrahedron, or NO_VERTEX */
+    brio_mesh *mesh;
+    block_counts *blocks; /* num_blocks + 1 */
+    face_list *lists;     /* of each block */
+    size_t num_blocks;
+} builder;
+
+static size_t block_begin(const builder *b, size_t block) {
+    return block < b->num_blocks ? block * BLOCK : b->g->num_finite;
+}
+
+/* --- vertices --- */
+
+static bool inner(const builder *b, uint32_t pole) {
+    return b->label[pole] == BRIO_LABEL_INNER;
+}
+
+/* The orthocentres of poles, four each; where there is none that doubles can hold, the middle of the poles. */
+static void find_positions(const builder *b, const uint32_t (*v)[4], size_t count, double *position) {
+    const brio_poles *poles = b->g->poles;
+    brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count, position});
+    for (size_t n = 0; n < count; n++, position += 3) {
+        if (!isnan(position[0])) continue;
+        for (int k = 0; k < 3; k++) {
+            position[k] = 0;
+            for (int i = 0; i < 4; i++) position[k] += 0.25 * poles->centre[3 * (size_t)v[n][i] + (size_t)k];
+        }
+    }
+}
+
+/* The least of its poles': a pole that reaches far may have a sample where samples are few. */
+static double vertex_spacing(const builder *b, const uint32_t *v) {
+    double least = INFINITY;
+    for (int i = 0; i < 4; i++) least = fmin(least, b->options->spacing[v[i]]);
+    return least;
+}
+
+static brio_status add_spacing(builder *b) {
+    brio_status status = BRIO_OK;
+    void *data;
+    BRIO_TRY(brio_mesh_add_property(b->mesh, "spacing", BRIO_FLOAT64, &data));
+    double *spacing = data;
+    BRIO_OMP(parallel for num_threads(b->threads))
+    for (size_t tet = 0; tet < b->g->num_finite; tet++)
+        if (b->number[tet] != NO_VERTEX) spacing[b->number[tet]] = vertex_spacing(b, b->g->power.tet[tet].vertex);
+done:
+    return status;
+}
+
+static void count_vertices(const builder *b, size_t block) {
+    for (size_t tet = block_begin(b, block); tet < block_begin(b, block + 1); tet++) {
+        int inside = 0;
+        for (int i = 0; i < 4; i++) inside += inner(b, b->g->power.tet[tet].vertex[i]);
+        b->number[tet] = inside % 4 ? 0 : NO_VERTEX;
+        b->blocks[block].vertices += inside % 4 != 0;
+    }
+}
+
+static void fill_vertices(const builder *b, size_t block) {
+    size_t next = b->blocks[block].vertices, end = block_begin(b, block + 1), waiting = 0;
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    for (size_t tet = block_begin(b, block); tet < end; tet++) {
+        if (b->number[tet] == NO_VERTEX) continue;
+        b->number[tet] = (uint32_t)next++;
+        memcpy(vertex[waiting++], b->g->power.tet[tet].vertex, sizeof *vertex);
+        if (waiting < BRIO_CENTRE_BATCH) continue;
+        find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
+        waiting = 0;
+    }
+    find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
+}
+
+/* Turns the counts of the blocks into what is before each of them; the last entry is the total. */
+static void sum_blocks(builder *b) {
+    block_counts sum = {0, 0, 0, 0, 0};
+    for (size_t i = 0; i <= b->num_blocks; i++) {
+        block_counts own = b->blocks[i];
+        b->blocks[i] = sum;
+        sum.vertices += own.vertices;
+        sum.faces += own.faces;
+        sum.corners += own.corners;
+        sum.rings += own.rings;
+        sum.left_out += own.left_out;
+    }
+}
+
+static brio_status make_vertices(builder *b) {
+    brio_status status = BRIO_OK;
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) count_vertices(b, block);
+    sum_blocks(b);
+    BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, b->blocks[b->num_blocks].vertices));
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) fill_vertices(b, block);
+    memset(b->blocks, 0, (b->num_blocks + 1) * sizeof *b->blocks);
+done:
+    return status;
+}
+
+/* --- faces --- */
+
+/* A pair of large balls that intersect deeply: no sample is where they meet. Deep is what well sampled surfaces do not
+ * have, an angle over pi / 4 [Choi 2003, lemma 38]. */
+static bool spans_hole(const builder *b, uint32_t p, uint32_t q) {
+    if (!(b->options->open > 0) || !(brio_pole_graph_weight(b->g, p, q) > BRIO_THEORETICAL_WEIGHT)) return false;
+    double limit = b->options->open * fmax(b->options->spacing[p], b->options->spacing[q]);
+    return fmin(b->g->poles->square[p], b->g->poles->square[q]) > limit * limit;
+}
+
+static brio_status push_corner(const builder *b, face_list *list, size_t n, uint32_t tet) {
+    brio_status status = BRIO_RESERVE(b->g->ctx, list->entry, list->capacity, n + 1);
+    if (status == BRIO_OK) list->entry[n] = b->number[tet];
+    return status;
+}
+
+/* Puts the corners round the edge from slot i to j behind the list; *size is 0 when another tetrahedron comes first in
+ * the ring. */
+static brio_status find_corners(const builder *b, uint32_t tet, int i, int j, face_list *list, size_t *size) {
+    size_t n = list->count + 1;
+    brio_status status = BRIO_OK;
+    brio_ring r = brio_ring_second(&b->g->power, tet, i, j);
+    *size = 0;
+    BRIO_TRY(push_corner(b, list, n++, tet));
+    do {
+        if (r.tet < tet) return BRIO_OK;
+        BRIO_TRY(push_corner(b, list, n++, r.tet));
+    } while (brio_ring_next(&r));
+    *size = n - list->count - 1;
+done:
+    return status;
+}
+
+static brio_status list_face(const builder *b, uint32_t tet, int i, int j, face_list *list, block_counts *counts) {
+    const uint32_t *v = b->g->power.tet[tet].vertex;
+    size_t size;
+    if (!brio_ring_may_lead(&b->g->power, tet, i, j)) return BRIO_OK;
+    brio_status status = find_corners(b, tet, i, j, list, &size);
+    if (status != BRIO_OK || !size) return status;
+    if (spans_hole(b, v[i], v[j])) {
+        counts->left_out++;
+        return BRIO_OK;
+    }
+    list->entry[list->count] = (uint32_t)size;
+    list->count += size + 1;
+    counts->rings++;
+    counts->faces += b->options->triangulate ? size - 2 : 1;
+    counts->corners += b->options->triangulate ? 3 * (size - 2) : size;
+    return BRIO_OK;
+}
+
+static brio_status list_faces(const builder *b, size_t block) {
+    brio_status status = BRIO_OK;
+    block_counts counts = {0, 0, 0, 0, 0};
+    size_t end = block_begin(b, block + 1);
+    for (size_t tet = block_begin(b, block); tet < end; tet++) {
+        bool inside[4];
+        if (tet + AHEAD < end && b->number[tet + AHEAD] != NO_VERTEX) brio_ring_fetch(&b->g->power, tet + AHEAD);
+        if (b->number[tet] == NO_VERTEX) continue;
+        for (int i = 0; i < 4; i++) inside[i] = inner(b, b->g->power.tet[tet].vertex[i]);
+        for (int i = 0; i < 4; i++)
+            for (int j = 0; j < 4; j++)
+                if (inside[i] && !inside[j]) BRIO_TRY(list_face(b, (uint32_t)tet, i, j, &b->lists[block], &counts));
+    }
+    b->blocks[block] = counts;
+done:
+    return status;
+}
+
+static brio_status list_all_faces(const builder *b) {
+    brio_status status = BRIO_OK;
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) {
+        brio_status own = list_faces(b, block);
+        if (own != BRIO_OK) BRIO_OMP(critical(brio_crust_status)) status = own;
+    }
+    return status;
+}
+
+/* Where the next face of a block goes. */
+typedef struct {
+    uint32_t *corner;
+    uint64_t *end; /* of its corners, in the mesh's offsets */
+    uint64_t corners;
+} cursor;
+
+static void end_face(cursor *c, size_t size) {
+    c->corner += size;
+    c->corners += size;
+    *c->end++ = c->corners;
+}
+
+static void copy_triangles(const uint32_t *corner, size_t size, cursor *c) {
+    for (size_t i = 2; i < size; i++) {
+        c->corner[0] = corner[0], c->corner[1] = corner[i - 1], c->corner[2] = corner[i];
+        end_face(c, 3);
+    }
+}
+
+static void copy_faces(const builder *b, size_t block) {
+    const block_counts *at = &b->blocks[block];
+    const face_list *list = &b->lists[block];
+    cursor c = {b->mesh->face_vertices + at->corners, b->mesh->face_offsets + at->faces + 1, at->corners};
+    for (size_t n = 0, size; n < list->count; n += size + 1) {
+        const uint32_t *corner = list->entry + n + 1;
+        size = list->entry[n];
+        if (b->options->triangulate) {
+            copy_triangles(corner, size, &c);
+        } else {
+            memcpy(c.corner, corner, size * sizeof *corner);
+            end_face(&c, size);
+        }
+    }
+}
+
+static brio_status make_faces(builder *b) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = b->g->ctx;
+    brio_mesh *m = b->mesh;
+    BRIO_TRY(brio_progress(ctx, "crust", 0.4));
+    BRIO_TRY(list_all_faces(b));
+    sum_blocks(b);
+    const block_counts *total = &b->blocks[b->num_blocks];
+    BRIO_REQUIRE(ctx, total->faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all faces span holes");
+    BRIO_TRY(brio_progress(ctx, "crust", 0.8));
+    BRIO_TRY(BRIO_ALLOC(ctx, m->face_offsets, total->faces + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, m->face_vertices, total->corners));
+    m->face_offsets[0] = 0;
+    m->num_faces = total->faces;
+    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
+    for (size_t block = 0; block < b->num_blocks; block++) copy_faces(b, block);
+done:
+    return status;
+}
+
+brio_status brio_crust_faces(const brio_pole_graph *g, const uint8_t *label, const brio_crust_options *options,
+                             brio_mesh *mesh, brio_crust_counts *counts) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = g->ctx;
+    builder b = {.g = g, .threads = brio_context_threads(ctx), .label = label, .options = options, .mesh = mesh};
+    b.num_blocks = (g->num_finite + BLOCK - 1) / BLOCK;
+    BRIO_TRY(BRIO_ALLOC(ctx, b.number, g->num_finite));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.blocks, b.num_blocks + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.lists, b.num_blocks));
+    BRIO_TRY(make_vertices(&b));
+    BRIO_REQUIRE(ctx, mesh->num_vertices > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole with a cell is inner");
+    if (options->spacing) BRIO_TRY(add_spacing(&b));
+    BRIO_TRY(make_faces(&b));
+    *counts = (brio_crust_counts){b.blocks[b.num_blocks].rings, b.blocks[b.num_blocks].left_out};
+    if (counts->left_out) BRIO_TRY(brio_mesh_split_vertices(ctx, mesh));
+done:
+    brio_release(ctx, b.number);
+    for (size_t i = 0; b.lists && i < b.num_blocks; i++) brio_release(ctx, b.lists[i].entry);
+    brio_release(ctx, b.lists);
+    brio_release(ctx, b.blocks);
+    return status;
+}

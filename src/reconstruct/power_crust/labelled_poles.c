@@ -1,0 +1,299 @@
+/* From samples to labelled polar balls.
+ *
+ *   1. Delaunay triangulation of the samples, smoothed where they are noisy, and eight bounding points.
+ *   2. The poles of each sample: the farthest vertices of its Voronoi cell on either side of the surface.
+ *   3. The power diagram of the polar balls, as its dual, the regular triangulation of the poles.
+ *   4. A label, inner or outer, for each pole.
+ *
+ * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7, steps 1 to 4.
+ * Differs from the paper: the bounding points are no poles and take no part in the power diagram; poles on the hull of
+ * the power diagram's dual are outer, without which the crust of small or clustered inputs would not close. */
+#include "reconstruct/power_crust/labelled_poles.h"
+#include "base/memory.h"
+#include "base/scale.h"
+#include "dual/spacing.h"
+#include "reconstruct/labels/label_solid.h"
+#include "reconstruct/power_crust/sample_noise.h"
+#include <math.h>
+#include <string.h>
+
+enum { BOUNDING_POINTS = 8 };
+static const double SHARP_DENSITY = 0.5;
+
+brio_status brio_pole_request_of(brio_context *ctx, const brio_surface_options *o, brio_pole_request *request) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, (unsigned)o->labeling < BRIO_LABELING_END, BRIO_ERR_ARGUMENT, "no such labeling: %d",
+                 (int)o->labeling);
+    BRIO_REQUIRE(ctx, o->sampling_density >= 0 && o->sampling_density < 1, BRIO_ERR_ARGUMENT,
+                 "sampling density %g, expected 0 or a number between 0 and 1", o->sampling_density);
+    BRIO_REQUIRE(ctx, (unsigned)o->noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
+                 (int)o->noise);
+    *request = (brio_pole_request){.seed = o->seed,
+                                   .filter = {o->sampling_density, o->sharp},
+                                   .labeling = o->labeling,
+                                   .noise = o->noise == BRIO_NOISE_AUTO && o->solid ? BRIO_NOISE_KEEP : o->noise,
+                                   .solid = o->solid,
+                                   .spacing = o->open > 0 || o->simplify,
+                                   .representative = o->normals != NULL,
+                                   .until = 1};
+    if (o->sharp && o->sampling_density == 0) request->filter.sampling_density = SHARP_DENSITY;
+done:
+    return status;
+}
+
+/* Each stage owns a part of the progress bar, in proportion to its usual time. */
+static void stage(brio_context *ctx, const brio_pole_request *request, double from, double to) {
+    ctx->progress_from = request->until * from;
+    ctx->progress_to = request->until * to;
+}
+
+/* --- 1: samples and bounding points --- */
+
+static brio_status check_finite(brio_context *ctx, const double *points, size_t n) {
+    size_t first = n, bad = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (isfinite(points[3 * i]) && isfinite(points[3 * i + 1]) && isfinite(points[3 * i + 2])) continue;
+        if (bad++ == 0) first = i;
+    }
+    if (bad == 0) return BRIO_OK;
+    size_t k = 0;
+    while (isfinite(points[3 * first + k])) k++;
+    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %c is %s (%zu such points in all)", first, "xyz"[k],
+                     isnan(points[3 * first + k]) ? "NaN" : "infinite", bad);
+}
+
+/* Eight corners of the box scaled five times about its centre; a side shorter than a fifth of the longest is taken as
+ * that, so that flat inputs are bounded on both sides. `margin` comes on top. */
+static void bounding_corners(const double *points, size_t n, double margin, double *corner) {
+    double low[3], high[3], centre[3], half[3], longest = 0;
+    for (int k = 0; k < 3; k++) {
+        low[k] = high[k] = points[k];
+        for (size_t i = 1; i < n; i++) {
+            low[k] = fmin(low[k], points[3 * i + (size_t)k]);
+            high[k] = fmax(high[k], points[3 * i + (size_t)k]);
+        }
+        longest = fmax(longest, high[k] - low[k]);
+    }
+    if (longest == 0) longest = 1; /* one position */
+    for (int k = 0; k < 3; k++) {
+        centre[k] = 0.5 * (low[k] + high[k]);
+        half[k] = 2.5 * fmax(high[k] - low[k], longest / 5) + margin;
+    }
+    for (int i = 0; i < BOUNDING_POINTS; i++)
+        for (int k = 0; k < 3; k++) corner[3 * i + k] = centre[k] + (i >> k & 1 ? half[k] : -half[k]);
+}
+
+/* Samples without their noise, where that is wanted. */
+static brio_status reduce_noise(brio_labelled_poles *l, const brio_pole_request *request) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    bool smooth = request->noise == BRIO_NOISE_SMOOTH;
+    stage(l->ctx, request, 0, 0.05);
+    if (request->noise == BRIO_NOISE_AUTO) {
+        BRIO_TRY(brio_noise_level(l->ctx, l->points, l->num_samples, &l->stats.noise));
+        smooth = l->stats.noise > 0;
+    }
+    if (smooth) BRIO_TRY(brio_smooth_samples(l->ctx, l->points, l->num_samples));
+    l->stats.smoothed = smooth;
+    l->stats.noise_seconds = brio_seconds() - start;
+done:
+    return status;
+}
+
+static brio_status prepare(brio_labelled_poles *l, const double *points, const brio_pole_request *request) {
+    brio_status status = BRIO_OK;
+    size_t n = l->num_samples;
+    double most = request->margin;
+    BRIO_REQUIRE(l->ctx, n > 0, BRIO_ERR_NO_ANSWER, "no points, no surface");
+    BRIO_TRY(check_finite(l->ctx, points, n));
+    BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
+    for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
+    frexp(most, &l->exponent);
+    brio_scale(l->ctx, points, 3 * n, -l->exponent, l->points);
+    BRIO_TRY(reduce_noise(l, request));
+    bounding_corners(l->points, n, ldexp(request->margin, -l->exponent), l->points + 3 * n);
+done:
+    return status;
+}
+
+/* --- 2: poles --- */
+
+static brio_status measure_spacing(brio_labelled_poles *l, const brio_triangulation *delaunay) {
+    brio_status status = BRIO_OK;
+    double *of_sample = NULL;
+    BRIO_TRY(BRIO_ALLOC(l->ctx, of_sample, l->num_samples));
+    BRIO_TRY(BRIO_ALLOC(l->ctx, l->spacing, l->poles.count));
+    BRIO_TRY(brio_sample_spacing(l->ctx, delaunay, l->points, l->num_samples, of_sample));
+    brio_pole_spacing(&l->poles, l->num_samples, of_sample, l->spacing);
+done:
+    brio_release(l->ctx, of_sample);
+    return status;
+}
+
+static brio_status keep_representatives(brio_labelled_poles *l, const brio_triangulation *delaunay) {
+    brio_status status = BRIO_ALLOC(l->ctx, l->representative, l->num_samples);
+    if (status != BRIO_OK) return status;
+    memcpy(l->representative, brio_triangulation_representatives(delaunay), l->num_samples * sizeof *l->representative);
+    return BRIO_OK;
+}
+
+static brio_status find_poles(brio_labelled_poles *l, const brio_pole_request *request) {
+    brio_status status = BRIO_OK;
+    brio_triangulation *delaunay = NULL;
+    brio_pole_filter filter = request->filter;
+    double start = brio_seconds();
+    if (!request->solid && request->labeling == BRIO_LABELING_GLOBAL) filter.shapes = BRIO_TRUSTED_SHAPE;
+    stage(l->ctx, request, 0.05, 0.39);
+    BRIO_TRY(brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BOUNDING_POINTS, &l->triangulation, &delaunay));
+    l->stats.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;
+    BRIO_REQUIRE(l->ctx, l->stats.samples >= 4, BRIO_ERR_NO_ANSWER, "%zu distinct points span no solid",
+                 l->stats.samples);
+    l->stats.delaunay_seconds = brio_seconds() - start;
+    start = brio_seconds();
+    stage(l->ctx, request, 0.39, 0.5);
+    BRIO_TRY(brio_poles_find(l->ctx, delaunay, l->points, l->num_samples, &filter, &l->poles));
+    if (request->spacing) BRIO_TRY(measure_spacing(l, delaunay));
+    if (request->representative) BRIO_TRY(keep_representatives(l, delaunay));
+    l->stats.poles = l->poles.count;
+    l->stats.bad_cells = l->poles.bad_cells;
+    l->stats.poles_seconds = brio_seconds() - start;
+done:
+    brio_triangulation_free(delaunay);
+    return status;
+}
+
+/* --- 3 and 4: power diagram and labels --- */
+
+static brio_status triangulate_poles(brio_labelled_poles *l) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    BRIO_TRY(brio_delaunay(l->ctx, l->poles.centre, l->poles.square, l->poles.count, &l->triangulation, &l->power));
+    l->stats.power_seconds += brio_seconds() - start;
+    BRIO_REQUIRE(l->ctx, brio_triangulation_stats(l->power)->dimension == 3, BRIO_ERR_NO_ANSWER,
+                 "no inside found: the poles span no solid");
+done:
+    return status;
+}
+
+static void count_labels(brio_labelled_poles *l) {
+    const brio_stats *s = brio_triangulation_stats(l->power);
+    l->stats.hidden_poles = s->hidden + s->duplicates;
+    l->stats.inner = 0;
+    for (size_t p = 0; p < l->poles.count; p++) l->stats.inner += l->label[p] == BRIO_LABEL_INNER;
+    l->stats.outer = l->poles.count - l->stats.inner;
+}
+
+typedef brio_status (*label_fn)(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
+
+static const label_fn labellings[BRIO_LABELING_END] = {brio_label_global, brio_label_greedy, brio_label_naive,
+                                                       brio_label_theoretical};
+
+static brio_status label_along_graph(brio_labelled_poles *l, brio_labeling labeling) {
+    brio_status status = BRIO_OK;
+    brio_labelling_stats s = {0};
+    brio_pole_evidence evidence = {labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0,
+                                   labeling == BRIO_LABELING_GLOBAL};
+    BRIO_TRY(brio_pole_graph_new(l->ctx, &l->poles, l->points, l->num_samples, l->power, evidence, &l->graph));
+    BRIO_TRY(labellings[labeling](&l->graph, l->label, &s));
+    l->stats.confused = s.confused;
+    l->stats.unreached = s.unreached;
+    l->stats.open = s.open;
+    l->stats.toggled = s.toggled;
+    l->stats.energy_greedy = s.energy_greedy;
+    l->stats.energy = brio_label_energy(&l->graph, l->label);
+done:
+    return status;
+}
+
+/* The graph with nothing but the triangulation. */
+static void make_bare_graph(brio_labelled_poles *l) {
+    const brio_stats *s = brio_triangulation_stats(l->power);
+    brio_pole_graph_free(&l->graph);
+    l->graph =
+        (brio_pole_graph){.ctx = l->ctx, .poles = &l->poles, .samples = l->points, .num_samples = l->num_samples};
+    l->graph.num_finite = s->tetrahedra;
+    l->graph.power = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(l->power),
+                                       .count = s->tetrahedra + s->hull_facets,
+                                       .infinite = BRIO_INFINITE};
+}
+
+static brio_status label_poles(brio_labelled_poles *l, const brio_pole_request *request) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    BRIO_TRY(BRIO_ALLOC_ZERO(l->ctx, l->label, l->poles.count));
+    if (request->solid) {
+        make_bare_graph(l);
+        BRIO_TRY(brio_label_by_solid(l->ctx, &l->poles, l->exponent, request->solid, l->label));
+    } else {
+        BRIO_TRY(label_along_graph(l, request->labeling));
+    }
+    count_labels(l);
+    l->stats.label_seconds = brio_seconds() - start;
+done:
+    return status;
+}
+
+brio_status brio_labelled_poles_find(brio_context *ctx, const double *points, size_t num_points,
+                                     const brio_pole_request *request, brio_labelled_poles *l) {
+    brio_status status = BRIO_OK;
+    *l = (brio_labelled_poles){.ctx = ctx, .num_samples = num_points, .triangulation = brio_options_default()};
+    l->triangulation.seed = request->seed;
+    l->graph.ctx = ctx;
+    BRIO_TRY(prepare(l, points, request));
+    BRIO_TRY(find_poles(l, request));
+    stage(ctx, request, 0.5, 0.89);
+    BRIO_TRY(triangulate_poles(l));
+    stage(ctx, request, 0.89, 1);
+    BRIO_TRY(label_poles(l, request));
+done:
+    return status;
+}
+
+/* --- fewer poles --- */
+
+static void close_up(brio_labelled_poles *l, const uint8_t *keep) {
+    brio_poles *poles = &l->poles;
+    size_t n = 0;
+    for (size_t p = 0; p < poles->count; p++) {
+        if (!keep[p]) continue;
+        for (size_t k = 0; k < 3; k++) poles->centre[3 * n + k] = poles->centre[3 * p + k];
+        poles->square[n] = poles->square[p];
+        poles->bounding[n] = poles->bounding[p];
+        l->label[n] = l->label[p];
+        if (l->spacing) l->spacing[n] = l->spacing[p];
+        n++;
+    }
+    poles->count = n;
+}
+
+brio_status brio_labelled_poles_keep(brio_labelled_poles *l, const uint8_t *keep) {
+    brio_status status = BRIO_OK;
+    close_up(l, keep);
+    for (size_t i = 0; i < 2 * l->num_samples; i++) l->poles.of_sample[i] = BRIO_NO_POLE;
+    brio_pole_graph_free(&l->graph);
+    l->graph = (brio_pole_graph){.ctx = l->ctx};
+    brio_triangulation_free(l->power);
+    l->power = NULL;
+    BRIO_TRY(triangulate_poles(l));
+    make_bare_graph(l);
+    count_labels(l);
+done:
+    return status;
+}
+
+void brio_labelled_poles_close_hull(brio_labelled_poles *l) {
+    const brio_tetrahedra *power = &l->graph.power;
+    for (size_t tet = l->graph.num_finite; tet < power->count; tet++)
+        for (int i = 0; i < 3; i++) l->label[power->tet[tet].vertex[i]] = BRIO_LABEL_OUTER;
+    count_labels(l);
+}
+
+void brio_labelled_poles_free(brio_labelled_poles *l) {
+    brio_pole_graph_free(&l->graph);
+    brio_triangulation_free(l->power);
+    brio_release(l->ctx, l->points);
+    brio_release(l->ctx, l->spacing);
+    brio_release(l->ctx, l->representative);
+    brio_release(l->ctx, l->label);
+    brio_poles_free(l->ctx, &l->poles);
+}

@@ -1,0 +1,88 @@
+/* The power crust: the faces of the power diagram of the polar balls between inner and outer cells, where the balls are
+ * labelled; then, on request, fewer triangles in their place.
+ *
+ * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7. */
+#include "reconstruct/power_crust/power_crust.h"
+#include "base/kept.h"
+#include "base/memory.h"
+#include "base/scale.h"
+#include "reconstruct/power_crust/crust_faces.h"
+#include "reconstruct/power_crust/sample_normals.h"
+#include "surface/simplify.h"
+#include <math.h>
+
+static const double POLES_SHARE = 0.9;                                /* of the progress bar */
+static const double LONGEST_COLLAPSE = 1.5, COLLAPSE_TOLERANCE = 0.1; /* in spacings */
+
+brio_surface_options brio_surface_options_default(void) {
+    return (brio_surface_options){.seed = 1};
+}
+
+/* A quarter of the faces, where that can be had. */
+static brio_status simplify(brio_labelled_poles *l, size_t polygons, brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    brio_simplify_options o = {.target_faces = polygons / 4,
+                               .spacing = brio_mesh_property(mesh, "spacing")->data,
+                               .longest = LONGEST_COLLAPSE,
+                               .tolerance = COLLAPSE_TOLERANCE};
+    BRIO_TRY(brio_mesh_simplify(l->ctx, mesh, &o));
+    l->stats.simplify_seconds = brio_seconds() - start;
+done:
+    return status;
+}
+
+static void drop_properties(brio_mesh *mesh) {
+    while (mesh->num_properties) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
+}
+
+brio_status brio_make_crust(brio_labelled_poles *l, const brio_surface_options *o, double from, brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    double start = brio_seconds();
+    brio_crust_options options = {o->triangulate || o->simplify, o->open, l->spacing};
+    brio_crust_counts counts;
+    l->ctx->progress_from = from;
+    l->ctx->progress_to = o->simplify ? from + 0.3 * (1 - from) : 1;
+    BRIO_TRY(brio_crust_faces(&l->graph, l->label, &options, mesh, &counts));
+    l->stats.left_out = counts.left_out;
+    l->stats.crust_seconds = brio_seconds() - start;
+    if (o->normals) BRIO_TRY(brio_sample_normals(&l->graph, l->label, l->representative, mesh, o->normals));
+    l->ctx->progress_from = l->ctx->progress_to;
+    l->ctx->progress_to = 1;
+    if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh));
+    drop_properties(mesh);
+    brio_scale(l->ctx, mesh->vertices, 3 * mesh->num_vertices, l->exponent, mesh->vertices);
+done:
+    return status;
+}
+
+brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
+                             const brio_surface_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
+    brio_status status = BRIO_OK;
+    brio_surface_options standard = brio_surface_options_default();
+    brio_labelled_poles l = {.ctx = ctx};
+    brio_pole_request request;
+    brio_mesh *mesh = NULL;
+    *out = NULL;
+    brio_keep_begin(ctx);
+    if (!options) options = &standard;
+    BRIO_TRY(brio_pole_request_of(ctx, options, &request));
+    BRIO_REQUIRE(ctx, options->open >= 0, BRIO_ERR_ARGUMENT, "open: %g spacings, expected 0 or a positive number",
+                 options->open);
+    request.until = POLES_SHARE;
+    BRIO_TRY(brio_mesh_new(ctx, &mesh));
+    BRIO_TRY(brio_labelled_poles_find(ctx, points, num_points, &request, &l));
+    if (options->solid) brio_labelled_poles_close_hull(&l);
+    BRIO_TRY(brio_make_crust(&l, options, POLES_SHARE, mesh));
+    *out = mesh;
+    mesh = NULL;
+done:
+    if (stats) *stats = l.stats;
+    ctx->progress_from = 0;
+    ctx->progress_to = 1;
+    brio_mesh_free(mesh);
+    brio_labelled_poles_free(&l);
+    brio_keep_end(ctx);
+    return status;
+}

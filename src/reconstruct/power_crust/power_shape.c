@@ -1,0 +1,289 @@
+/* The power shape: the poles on one side of the surface, connected as their cells touch in the power diagram. It
+ * approximates the medial axis of that side; with the radii, its medial axis transform.
+ *
+ * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7, step 6.
+ * Differs from the paper: outer poles that only the bounding points hold back are no part of the outer shape. */
+#include "base/memory.h"
+#include "reconstruct/power_crust/ball_cover.h"
+#include "reconstruct/power_crust/power_crust.h"
+#include <math.h>
+#include <string.h>
+
+enum { NO_VERTEX = UINT32_MAX };
+static const double POLES_SHARE = 0.8, SHAPE_SHARE = 0.9; /* of the progress bar */
+
+brio_medial_options brio_medial_options_default(void) {
+    return (brio_medial_options){.seed = 1, .sides = BRIO_MEDIAL_INNER, .scale = 1};
+}
+
+typedef struct {
+    brio_labelled_poles *poles;
+    const brio_medial_options *options;
+    uint32_t *number; /* of the vertex of each pole, or NO_VERTEX */
+    brio_mesh *mesh;
+    uint32_t *edges, *corners;
+    size_t num_edges, edge_capacity; /* numbers, not pairs */
+    size_t num_corners, corner_capacity;
+} builder;
+
+/* --- simplification --- */
+
+/* The side of the surface on which poles of a label are asked for. */
+static bool wants(const brio_medial_options *o, uint8_t label) {
+    return label == BRIO_LABEL_INNER ? o->sides != BRIO_MEDIAL_OUTER : o->sides != BRIO_MEDIAL_INNER;
+}
+
+static bool has_cell(const brio_labelled_poles *l, size_t p) {
+    return brio_triangulation_representatives(l->power)[p] == p;
+}
+
+/* Poles of one label; those without a cell add nothing to the union of the others, and go. */
+static brio_status simplify_side(brio_labelled_poles *l, const brio_cover_rule *rule, uint8_t label, uint8_t *keep) {
+    brio_status status = BRIO_OK;
+    uint32_t *balls = NULL;
+    size_t count = 0;
+    BRIO_TRY(BRIO_ALLOC(l->ctx, balls, l->poles.count));
+    for (size_t p = 0; p < l->poles.count; p++) {
+        if (l->label[p] != label || l->poles.bounding[p]) continue;
+        if (has_cell(l, p))
+            balls[count++] = (uint32_t)p;
+        else
+            keep[p] = 0;
+    }
+    BRIO_TRY(brio_cover_balls(l->ctx, l->poles.centre, l->poles.square, balls, count, rule, keep));
+done:
+    brio_release(l->ctx, balls);
+    return status;
+}
+
+static brio_status simplify(brio_labelled_poles *l, const brio_medial_options *o, brio_medial_stats *stats) {
+    static const uint8_t labels[2] = {BRIO_LABEL_INNER, BRIO_LABEL_OUTER};
+    brio_status status = BRIO_OK;
+    const brio_cover_rule rule = {o->scale, o->redundancy};
+    uint8_t *keep = NULL;
+    double start = brio_seconds();
+    if (!(o->scale > 1) && !(o->redundancy > 0)) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(l->ctx, keep, l->poles.count));
+    memset(keep, 1, l->poles.count);
+    for (int i = 0; i < 2; i++)
+        if (wants(o, labels[i])) BRIO_TRY(simplify_side(l, &rule, labels[i], keep));
+    for (size_t p = 0; p < l->poles.count; p++) stats->left_out += !keep[p];
+    BRIO_TRY(brio_labelled_poles_keep(l, keep));
+    stats->simplify_seconds = brio_seconds() - start;
+done:
+    brio_release(l->ctx, keep);
+    return status;
+}
+
+/* --- the shape --- */
+
+static brio_status make_vertices(builder *b) {
+    brio_status status = BRIO_OK;
+    const brio_labelled_poles *l = b->poles;
+    size_t count = 0;
+    void *radii, *sides;
+    BRIO_TRY(BRIO_ALLOC(l->ctx, b->number, l->poles.count));
+    for (size_t p = 0; p < l->poles.count; p++) {
+        bool artificial = l->label[p] == BRIO_LABEL_OUTER && l->poles.bounding[p];
+        b->number[p] = wants(b->options, l->label[p]) && has_cell(l, p) && !artificial ? (uint32_t)count++ : NO_VERTEX;
+    }
+    BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, count));
+    BRIO_TRY(brio_mesh_add_property(b->mesh, "radius", BRIO_FLOAT64, &radii));
+    BRIO_TRY(brio_mesh_add_property(b->mesh, "side", BRIO_INT8, &sides));
+    for (size_t p = 0; p < l->poles.count; p++) {
+        size_t v = b->number[p];
+        if (v == NO_VERTEX) continue;
+        for (size_t k = 0; k < 3; k++) b->mesh->vertices[3 * v + k] = ldexp(l->poles.centre[3 * p + k], l->exponent);
+        ((double *)radii)[v] = ldexp(sqrt(l->poles.square[p]), l->exponent);
+        ((int8_t *)sides)[v] = l->label[p] == BRIO_LABEL_INNER ? -1 : 1;
+    }
+done:
+    return status;
+}
+
+/* Whether two poles are in the shape and on the same side. */
+static bool joined(const builder *b, uint32_t p, uint32_t q) {
+    return p != BRIO_INFINITE && q != BRIO_INFINITE && b->number[p] != NO_VERTEX && b->number[q] != NO_VERTEX &&
+           b->poles->label[p] == b->poles->label[q];
+}
+
+/* Whether `tet` is the first in memory of the tetrahedra round its edge from slot i to slot j. */
+static bool leads_edge(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
+    uint32_t from = tet, leave = t->tet[tet].vertex[BRIO_EDGE[i][j][0]], pivot = t->tet[tet].vertex[BRIO_EDGE[i][j][1]];
+    do {
+        uint32_t mate = t->tet[from].mate[brio_slot_of_vertex(t->tet[from].vertex, leave)];
+        from = brio_tet_of(mate);
+        if (from < tet) return false;
+        leave = pivot;
+        pivot = brio_apex(t, mate);
+    } while (from != tet);
+    return true;
+}
+
+static brio_status add_edges(builder *b, uint32_t tet) {
+    brio_status status = BRIO_OK;
+    const brio_tetrahedra *power = &b->poles->graph.power;
+    const uint32_t *v = power->tet[tet].vertex;
+    for (int i = 0; i < 4; i++)
+        for (int j = i + 1; j < 4; j++) {
+            if (!joined(b, v[i], v[j]) || !leads_edge(power, tet, i, j)) continue;
+            BRIO_TRY(BRIO_RESERVE(b->poles->ctx, b->edges, b->edge_capacity, b->num_edges + 2));
+            uint32_t p = b->number[v[i]], q = b->number[v[j]];
+            b->edges[b->num_edges++] = p < q ? p : q;
+            b->edges[b->num_edges++] = p < q ? q : p;
+        }
+done:
+    return status;
+}
+
+/* Each triangle once, from the tetrahedron that comes first; the infinite ones come last. */
+static brio_status add_triangles(builder *b, uint32_t tet) {
+    brio_status status = BRIO_OK;
+    const brio_tetrahedron *t = &b->poles->graph.power.tet[tet];
+    for (int i = 0; i < 4; i++) {
+        const uint8_t *slot = BRIO_FACET[i];
+        uint32_t p = t->vertex[slot[0]], q = t->vertex[slot[1]], r = t->vertex[slot[2]];
+        if (brio_tet_of(t->mate[i]) < tet || !joined(b, p, q) || !joined(b, q, r)) continue;
+        BRIO_TRY(BRIO_RESERVE(b->poles->ctx, b->corners, b->corner_capacity, b->num_corners + 3));
+        b->corners[b->num_corners++] = b->number[p];
+        b->corners[b->num_corners++] = b->number[q];
+        b->corners[b->num_corners++] = b->number[r];
+    }
+done:
+    return status;
+}
+
+static brio_status set_triangles(builder *b) {
+    brio_status status = BRIO_OK;
+    uint64_t *offsets = NULL;
+    size_t n = b->num_corners / 3;
+    if (n == 0) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(b->poles->ctx, offsets, n + 1));
+    for (size_t f = 0; f <= n; f++) offsets[f] = 3 * f;
+    BRIO_TRY(brio_mesh_set_faces(b->mesh, offsets, b->corners, n));
+done:
+    brio_release(b->poles->ctx, offsets);
+    return status;
+}
+
+static brio_status make_shape(brio_labelled_poles *l, const brio_medial_options *o, brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    builder b = {.poles = l, .options = o, .mesh = mesh};
+    BRIO_TRY(make_vertices(&b));
+    BRIO_REQUIRE(l->ctx, mesh->num_vertices > 0, BRIO_ERR_NO_ANSWER,
+                 "no pole with a cell is on the side that was asked for");
+    for (size_t tet = 0; tet < l->graph.num_finite; tet++) {
+        if (tet % 65536 == 0) BRIO_TRY(brio_progress(l->ctx, "shape", (double)tet / (double)l->graph.num_finite));
+        BRIO_TRY(add_edges(&b, (uint32_t)tet));
+        BRIO_TRY(add_triangles(&b, (uint32_t)tet));
+    }
+    if (b.num_edges) BRIO_TRY(brio_mesh_set_edges(mesh, b.edges, b.num_edges / 2));
+    BRIO_TRY(set_triangles(&b));
+done:
+    brio_release(l->ctx, b.number);
+    brio_release(l->ctx, b.edges);
+    brio_release(l->ctx, b.corners);
+    return status;
+}
+
+/* --- the whole --- */
+
+static brio_status check_options(brio_context *ctx, const brio_medial_options *o) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, (unsigned)o->sides < BRIO_MEDIAL_END, BRIO_ERR_ARGUMENT, "no such side: %d", (int)o->sides);
+    BRIO_REQUIRE(ctx, o->scale >= 1 && isfinite(o->scale), BRIO_ERR_ARGUMENT, "scale %g, expected 1 or more", o->scale);
+    BRIO_REQUIRE(ctx, o->redundancy >= 0 && isfinite(o->redundancy), BRIO_ERR_ARGUMENT,
+                 "redundancy %g, expected 0 or more", o->redundancy);
+done:
+    return status;
+}
+
+static brio_surface_options surface_options(const brio_medial_options *o) {
+    brio_surface_options s = brio_surface_options_default();
+    s.seed = o->seed;
+    s.labeling = o->labeling;
+    s.solid = o->solid;
+    s.sampling_density = o->sampling_density;
+    s.sharp = o->sharp;
+    s.noise = o->noise;
+    return s;
+}
+
+static void copy_stats(const brio_labelled_poles *l, const brio_mesh *shape, brio_medial_stats *s) {
+    s->samples = l->stats.samples;
+    s->poles = l->stats.poles;
+    s->delaunay_seconds = l->stats.delaunay_seconds;
+    s->poles_seconds = l->stats.poles_seconds;
+    s->label_seconds = l->stats.label_seconds;
+    s->edges = shape ? shape->num_edges : 0;
+    s->triangles = shape ? shape->num_faces : 0;
+}
+
+/* Before any pole is left out. */
+static void count_poles(const brio_labelled_poles *l, brio_medial_stats *s) {
+    s->hidden_poles = l->stats.hidden_poles;
+    s->power_seconds = l->stats.power_seconds;
+    s->noise = l->stats.noise;
+    s->smoothed = l->stats.smoothed;
+    s->noise_seconds = l->stats.noise_seconds;
+    for (size_t p = 0; p < l->poles.count; p++) {
+        s->inner += l->label[p] == BRIO_LABEL_INNER;
+        s->outer += l->label[p] == BRIO_LABEL_OUTER;
+        s->unlabelled += l->label[p] == BRIO_LABEL_NONE;
+    }
+}
+
+static void progress_part(brio_context *ctx, double from, double to) {
+    ctx->progress_from = from;
+    ctx->progress_to = to;
+}
+
+static brio_status make_both(brio_labelled_poles *l, const double *points, size_t num_points,
+                             const brio_medial_options *o, brio_mesh *shape, brio_mesh *crust, brio_medial_stats *s) {
+    brio_status status = BRIO_OK;
+    brio_surface_options surface = surface_options(o);
+    brio_pole_request request;
+    BRIO_TRY(check_options(l->ctx, o));
+    BRIO_TRY(brio_pole_request_of(l->ctx, &surface, &request));
+    request.until = POLES_SHARE;
+    BRIO_TRY(brio_labelled_poles_find(l->ctx, points, num_points, &request, l));
+    count_poles(l, s);
+    progress_part(l->ctx, POLES_SHARE, SHAPE_SHARE);
+    BRIO_TRY(simplify(l, o, s));
+    progress_part(l->ctx, SHAPE_SHARE, crust ? 0.5 * (SHAPE_SHARE + 1) : 1);
+    double start = brio_seconds();
+    BRIO_TRY(make_shape(l, o, shape));
+    s->shape_seconds = brio_seconds() - start;
+    if (!crust) goto done;
+    brio_labelled_poles_close_hull(l);
+    BRIO_TRY(brio_make_crust(l, &surface, l->ctx->progress_to, crust));
+done:
+    return status;
+}
+
+brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num_points,
+                             const brio_medial_options *options, brio_mesh **shape, brio_mesh **crust,
+                             brio_medial_stats *stats) {
+    brio_status status = BRIO_OK;
+    brio_medial_options standard = brio_medial_options_default();
+    brio_medial_stats s = {0};
+    brio_labelled_poles l = {.ctx = ctx};
+    brio_mesh *shape_mesh = NULL, *crust_mesh = NULL;
+    *shape = NULL;
+    if (crust) *crust = NULL;
+    BRIO_TRY(brio_mesh_new(ctx, &shape_mesh));
+    if (crust) BRIO_TRY(brio_mesh_new(ctx, &crust_mesh));
+    BRIO_TRY(make_both(&l, points, num_points, options ? options : &standard, shape_mesh, crust_mesh, &s));
+    copy_stats(&l, shape_mesh, &s);
+    *shape = shape_mesh;
+    if (crust) *crust = crust_mesh;
+    shape_mesh = crust_mesh = NULL;
+done:
+    if (stats) *stats = s;
+    progress_part(ctx, 0, 1);
+    brio_mesh_free(shape_mesh);
+    brio_mesh_free(crust_mesh);
+    brio_labelled_poles_free(&l);
+    return status;
+}

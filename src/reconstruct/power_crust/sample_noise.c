@@ -1,0 +1,210 @@
+/* Noise of samples: how much there is, and samples with less.
+ *
+ * Pieces of surface are fitted to the nearest points of some samples, of few points and of more. Where the points are on
+ * a smooth or an edged surface the pieces fit the worse the larger they are, since the surface bends; where the points
+ * scatter about it, they scatter as much about large pieces as about small ones. So noise is what does not grow.
+ *
+ * Then every sample moves along the normal of its piece onto the piece, some times over, with the neighbours that it had at
+ * first. Noise shrinks with the root of
+ * the number of neighbours; shape is kept up to the second order, and edges come out as round as a piece is wide.
+ *
+ * Based on: Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva. Computing and rendering point set surfaces. TVCG 2003.
+ *           Mederos, Velho, de Figueiredo. Smooth surface reconstruction from noisy clouds. JBCS 2004 (samples are moved
+ *           onto local polynomials before the surface is made). */
+#include "reconstruct/power_crust/sample_noise.h"
+#include "base/memory.h"
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "base/sort.h"
+#include "base/vector.h"
+#include "reconstruct/power_crust/local_surface.h"
+#include <math.h>
+#include <string.h>
+
+enum { FEW = 24, MORE = 48, NEAREST = 6, LOOKS = 1000, LEAST_LOOKS = 100, PASSES = 2, BLOCK = 1 << 20 };
+/* Below the first a crust through the samples is as good; above the second there is no surface to be seen. */
+static const double LEAST_LEVEL = 0.1, MOST_LEVEL = 0.5;
+
+/* --- how much --- */
+
+/* What was looked at, and what was seen, as the bits of numbers that are not negative, which sort as these do. */
+typedef struct {
+    uint64_t *hash; /* of a position */
+    uint32_t *sample;
+    size_t count, hash_capacity, capacity;
+    uint64_t *few, *more; /* spreads in spacings */
+} looks;
+
+static uint64_t hash_of(const double *p) {
+    uint64_t hash = 0;
+    for (int k = 0; k < 3; k++) hash = brio_hash(hash, brio_double_key(p[k]));
+    return hash;
+}
+
+/* About one sample in n / LOOKS, whatever their order; every position once. */
+static brio_status choose_samples(brio_context *ctx, const double *points, size_t n, looks *l) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < n; i++) {
+        uint64_t hash = hash_of(points + 3 * i);
+        if (hash % n >= LOOKS) continue;
+        BRIO_TRY(BRIO_RESERVE(ctx, l->hash, l->hash_capacity, l->count + 1));
+        BRIO_TRY(BRIO_RESERVE(ctx, l->sample, l->capacity, l->count + 1));
+        l->hash[l->count] = hash;
+        l->sample[l->count++] = (uint32_t)i;
+    }
+    if (l->count == 0) goto done;
+    BRIO_TRY(brio_radix_sort(ctx, l->hash, l->sample, l->count, 64));
+    size_t kept = 1;
+    for (size_t i = 1; i < l->count; i++)
+        if (l->hash[i] != l->hash[i - 1]) l->sample[kept++] = l->sample[i];
+    l->count = kept;
+done:
+    return status;
+}
+
+static double mean_spacing(const brio_near_point *near, size_t count) {
+    double sum = 0;
+    int apart = 0;
+    for (size_t i = 0; i < count && apart < NEAREST; i++)
+        if (near[i].square > 0) sum += sqrt(near[i].square), apart++;
+    return apart ? sum / apart : 0;
+}
+
+static uint64_t bits_of(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* The first points of a list, as seen from p. */
+static void see_from(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
+                     brio_neighbourhood *n) {
+    n->count = count;
+    for (size_t i = 0; i < count; i++) {
+        n->square[i] = near[i].square;
+        for (int k = 0; k < 3; k++) n->offset[i][k] = tree->point[near[i].place][k] - p[k];
+    }
+}
+
+static bool spread_about(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
+                         double *spread) {
+    brio_neighbourhood n;
+    brio_local_surface surface;
+    see_from(p, tree, near, count, &n);
+    if (!brio_fit_local_surface(&n, &surface)) return false;
+    *spread = brio_local_spread(&n, &surface);
+    return true;
+}
+
+/* The spreads about a piece of few points and about one of more; infinite where there is none. */
+static void look(const brio_point_tree *tree, const double *p, uint64_t *few, uint64_t *more) {
+    brio_near_point near[BRIO_NEAR_ROOM];
+    double small, large;
+    size_t count = brio_nearest_points(tree, p, MORE, near);
+    brio_sort_near_points(tree, near, count);
+    double spacing = mean_spacing(near, count);
+    *few = *more = bits_of(INFINITY);
+    if (count < MORE || !(spacing > 0)) return;
+    if (!spread_about(p, tree, near, FEW, &small) || !spread_about(p, tree, near, MORE, &large)) return;
+    *few = bits_of(small / spacing);
+    *more = bits_of(large / spacing);
+}
+
+static double median(uint64_t *bits, size_t count) {
+    double x;
+    brio_sort_keys(bits, count);
+    memcpy(&x, bits + count / 2, sizeof x);
+    return x;
+}
+
+brio_status brio_noise_level(brio_context *ctx, const double *points, size_t count, double *level) {
+    brio_status status = BRIO_OK;
+    brio_point_tree tree = {0};
+    looks l = {0};
+    *level = 0;
+    BRIO_TRY(choose_samples(ctx, points, count, &l));
+    if (l.count < LEAST_LOOKS) goto done;
+    BRIO_TRY(BRIO_ALLOC(ctx, l.few, l.count));
+    BRIO_TRY(BRIO_ALLOC(ctx, l.more, l.count));
+    BRIO_TRY(brio_point_tree_new(ctx, points, count, &tree));
+    BRIO_OMP(parallel for schedule(dynamic, 16) num_threads(brio_context_threads(ctx)))
+    for (size_t i = 0; i < l.count; i++) look(&tree, points + 3 * (size_t)l.sample[i], l.few + i, l.more + i);
+    double small = median(l.few, l.count), large = median(l.more, l.count);
+    if (large >= LEAST_LEVEL && large <= MOST_LEVEL && large <= small) *level = large;
+done:
+    brio_point_tree_free(ctx, &tree);
+    brio_release(ctx, l.hash);
+    brio_release(ctx, l.sample);
+    brio_release(ctx, l.few);
+    brio_release(ctx, l.more);
+    return status;
+}
+
+/* --- less --- */
+
+/* The samples in the order of their tree, before and after a pass. */
+typedef struct {
+    const brio_point_tree *tree;
+    uint32_t (*near)[MORE]; /* each sample's nearest, of the first pass */
+    double (*from)[3], (*to)[3];
+} smoothing;
+
+static void find_near(const smoothing *s, size_t i) {
+    brio_near_point near[BRIO_NEAR_ROOM];
+    brio_nearest_points(s->tree, s->from[i], MORE, near);
+    for (int n = 0; n < MORE; n++) s->near[i][n] = near[n].place;
+}
+
+static void smooth_sample(const smoothing *s, size_t i) {
+    brio_neighbourhood n = {.count = MORE};
+    brio_local_surface surface;
+    double *to = s->to[i];
+    for (int j = 0; j < MORE; j++) {
+        for (int k = 0; k < 3; k++) n.offset[j][k] = s->from[s->near[i][j]][k] - s->from[i][k];
+        n.square[j] = brio_dot(n.offset[j], n.offset[j]);
+    }
+    memcpy(to, s->from[i], sizeof s->to[i]);
+    if (!brio_fit_local_surface(&n, &surface)) return;
+    if (fabs(surface.height) > surface.unit) return; /* a fit that left its points */
+    for (int k = 0; k < 3; k++) to[k] += surface.height * surface.frame[2][k];
+}
+
+/* One pass over all samples; the first one also finds who is near. */
+static brio_status smooth_all(brio_context *ctx, const smoothing *s, int pass) {
+    brio_status status = BRIO_OK;
+    size_t count = s->tree->count;
+    for (size_t begin = 0; begin < count; begin += BLOCK) {
+        size_t end = count - begin < BLOCK ? count : begin + BLOCK;
+        BRIO_TRY(brio_progress(ctx, "noise", (pass + (double)begin / (double)count) / PASSES));
+        BRIO_OMP(parallel for schedule(dynamic, 256) num_threads(brio_context_threads(ctx)))
+        for (size_t i = begin; i < end; i++) {
+            if (pass == 0) find_near(s, i);
+            smooth_sample(s, i);
+        }
+    }
+done:
+    return status;
+}
+
+brio_status brio_smooth_samples(brio_context *ctx, double *points, size_t count) {
+    brio_status status = BRIO_OK;
+    brio_point_tree tree = {0};
+    smoothing s = {.tree = &tree};
+    double(*spare)[3] = NULL;
+    if (count < MORE) goto done;
+    BRIO_TRY(brio_point_tree_new(ctx, points, count, &tree));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.near, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, spare, count));
+    s.from = tree.point, s.to = spare;
+    for (int pass = 0; pass < PASSES; pass++) {
+        BRIO_TRY(smooth_all(ctx, &s, pass));
+        double(*moved)[3] = s.to;
+        s.to = s.from, s.from = moved;
+    }
+    for (size_t i = 0; i < count; i++) memcpy(points + 3 * (size_t)tree.index[i], s.from[i], sizeof s.from[i]);
+done:
+    brio_point_tree_free(ctx, &tree);
+    brio_release(ctx, s.near);
+    brio_release(ctx, spare);
+    return status;
+}

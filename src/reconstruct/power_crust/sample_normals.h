@@ -1,0 +1,14 @@
+/* Oriented normals of samples. */
+#ifndef BRIO_RECONSTRUCT_SAMPLE_NORMALS_H
+#define BRIO_RECONSTRUCT_SAMPLE_NORMALS_H
+
+#include "reconstruct/labels/pole_graph.h"
+
+/** normals[3 s ..], #samples by 3, of length 1 and pointing outwards. Samples without poles get the normal of the crust
+ *  where it is nearest; rows at equal positions the same one.
+ *  representative  #samples: for each the sample at its position that has the poles.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+brio_status brio_sample_normals(const brio_pole_graph *g, const uint8_t *label, const uint32_t *representative,
+                                const brio_mesh *crust, double *normals);
+
+#endif
