@@ -26,12 +26,11 @@
 /* More: 300,000 points of a scan peak at 892 bytes a point resident, 322 by the walk. */
 #define HISTORY_BYTES_A_POINT 570.0
 
-/* Measured: raw scans take 1,250 to 1,290 bytes a sample, models 1,430 to 1,590; the co-cone 800, and 650 to 760. */
-#define CRUST_BYTES_A_POINT    1400.0
-#define COCONE_BYTES_A_POINT   730.0
-#define GLOBAL_BYTES_A_POINT   600.0  /* more: the flow of anchor_scan takes 570, of the bunny 300 */
-#define TRIANGLE_BYTES_A_POINT 600.0  /* more, with --triangulate: a scan of 20,000 points 580 */
-#define SIMPLIFY_BYTES_A_POINT 1700.0 /* more: bunny 1,570, fandisk 1,700 */
+/* Measured: models take 1,480 to 1,590 bytes a sample, a raw scan 1,610, offsets 1,260, the co-cone 560 to 660. */
+#define CRUST_BYTES_A_POINT    1450.0
+#define COCONE_BYTES_A_POINT   640.0
+#define TRIANGLE_BYTES_A_POINT 300.0  /* more, with --triangulate: a scan of 20,000 points 210, bunny 350 */
+#define SIMPLIFY_BYTES_A_POINT 2300.0 /* more: knot2 2,070, bunny 2,400, fandisk 2,510 */
 #define SUBDIVIDE_BYTES_A_FACE 76.0   /* of the result, the certificate included */
 #define ISO_BYTES_A_VERTEX     71.0
 #define LOCATION_BYTES_A_POINT 8.0 /* of the others, and of what goes along edges, beside the next */
@@ -78,9 +77,8 @@ double cli_cocone_bytes(const brio_mesh *mesh) {
     return PROGRAM + (double)mesh->num_vertices * COCONE_BYTES_A_POINT;
 }
 
-double cli_crust_extra_bytes(size_t points, bool global, bool simplify, bool triangulate) {
-    return (double)points * ((global ? GLOBAL_BYTES_A_POINT : 0) + (simplify ? SIMPLIFY_BYTES_A_POINT : 0) +
-                             (triangulate ? TRIANGLE_BYTES_A_POINT : 0));
+double cli_crust_extra_bytes(size_t points, bool simplify, bool triangulate) {
+    return (double)points * ((simplify ? SIMPLIFY_BYTES_A_POINT : 0) + (triangulate ? TRIANGLE_BYTES_A_POINT : 0));
 }
 
 double cli_info_bytes(const brio_mesh *mesh) {

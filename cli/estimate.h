@@ -15,12 +15,12 @@ double cli_delaunay_bytes(const brio_mesh *mesh, bool weighted, int threads, con
 /** Bytes that a location takes besides; of one that goes along edges, those of the mesh. */
 double cli_location_bytes(brio_location location, const brio_mesh *mesh);
 
-/** Of `brio surface`: a power crust, or a co-cone. */
+/** Of `brio surface`: a power crust, and of what begins as one does (medial, offset); or a co-cone. */
 double cli_crust_bytes(const brio_mesh *mesh);
 double cli_cocone_bytes(const brio_mesh *mesh);
 
-/** Bytes that a power crust takes besides with global labels, with simplification, and with triangulated faces. */
-double cli_crust_extra_bytes(size_t points, bool global, bool simplify, bool triangulate);
+/** Bytes that a power crust takes besides with simplification, and with triangulated faces. */
+double cli_crust_extra_bytes(size_t points, bool simplify, bool triangulate);
 
 /** Of `brio info`. */
 double cli_info_bytes(const brio_mesh *mesh);

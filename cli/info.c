@@ -35,11 +35,6 @@ static void report_properties(facts *f, const brio_mesh *mesh) {
     cli_fact_close(f);
 }
 
-/* Of what begins with the labelled poles: `global` where the faces of the input do not label them. */
-static uint64_t crust_bytes(const brio_mesh *mesh, bool global) {
-    return (uint64_t)(cli_crust_bytes(mesh) + cli_crust_extra_bytes(mesh->num_vertices, global, false, false));
-}
-
 static brio_status report_estimates(run *r, const brio_mesh *mesh) {
     static const weights_options standard = {.exponent = NO_EXPONENT};
     facts *f = &r->facts;
@@ -51,9 +46,8 @@ static brio_status report_estimates(run *r, const brio_mesh *mesh) {
     cli_fact_open(f, "estimate_bytes", FACT_OBJECT);
     cli_fact_bytes(f, "delaunay",
                    (uint64_t)cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size));
-    cli_fact_bytes(f, "surface", crust_bytes(mesh, true));
-    cli_fact_bytes(f, "medial", crust_bytes(mesh, !mesh->num_faces));
-    cli_fact_bytes(f, "offset", crust_bytes(mesh, !mesh->num_faces));
+    static const char *const of_poles[] = {"surface", "medial", "offset"};
+    for (int i = 0; i < 3; i++) cli_fact_bytes(f, of_poles[i], (uint64_t)cli_crust_bytes(mesh));
     if (mesh->num_faces) cli_fact_bytes(f, "subdivide", (uint64_t)cli_subdivide_bytes(mesh, 1));
     cli_fact_close(f);
 done:

@@ -119,8 +119,7 @@ static brio_status medial(run *r) {
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read(r, r->operands[0], &input));
     TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
-    double extra = cli_crust_extra_bytes(input->num_vertices, labeling == BRIO_LABELING_GLOBAL, false, false);
-    TRY(cli_require_memory(r, cli_crust_bytes(input) + extra));
+    TRY(cli_require_memory(r, cli_crust_bytes(input)));
     brio_medial_options o = medial_options(r, labeling, by_mesh ? input : NULL);
     status = brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
     cli_suggest_labeling(r, status, a->labeling, by_mesh);

@@ -81,8 +81,7 @@ static brio_status offset(run *r) {
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read(r, r->operands[0], &points));
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));
-    double extra = cli_crust_extra_bytes(points->num_vertices, crust.labeling == BRIO_LABELING_GLOBAL, crust.simplify,
-                                         crust.triangulate);
+    double extra = cli_crust_extra_bytes(points->num_vertices, crust.simplify, crust.triangulate);
     TRY(cli_require_memory(r, cli_crust_bytes(points) + extra));
     TRY(offset_surface(r, &crust, points, by_mesh, &surface));
     TRY(cli_check_interrupt(r));

@@ -155,8 +155,7 @@ static brio_status surface(run *r) {
     TRY(check_arguments(r));
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read_points(r, r->operands[0], &points));
-    double extra = cli_crust_extra_bytes(points->num_vertices, a->crust.labeling == BRIO_LABELING_GLOBAL,
-                                         a->crust.simplify, a->crust.triangulate);
+    double extra = cli_crust_extra_bytes(points->num_vertices, a->crust.simplify, a->crust.triangulate);
     TRY(cli_require_memory(r, (a->method == POWER_CRUST ? cli_crust_bytes(points) : cli_cocone_bytes(points)) + extra));
     TRY(a->method == POWER_CRUST ? power_crust(r, points, &result) : cocone(r, points, &result));
     r->lap = cli_clock();
