@@ -4,8 +4,8 @@
  * it, larger ones behind: the tree is the order of the points. Ties are broken by the other coordinates, and short ranges
  * are sorted, so that the tree does not depend on the order in which the points came.
  *
- * A query lists what is nearer than the last of the nearest so far, and whenever the list is full, selects from it. It goes
- * into the far half of a range only when the cut is nearer than that last one.
+ * A query lists what is nearer than the last of the nearest so far, as it is met, and whenever the list is full, strikes out
+ * what is farther. It goes into the far half of a range only when the cut is nearer than that last one.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  *           1977. */
@@ -122,42 +122,64 @@ void brio_point_tree_free(brio_context *ctx, brio_point_tree *tree) {
 typedef struct {
     const brio_point_tree *tree;
     double p[3];
-    brio_near_point *near;
+    brio_near_point *near; /* as they were met */
     size_t size, wanted;
-    double bound; /* nothing farther is among the nearest; infinite before so many were met */
+    double bound; /* nothing farther is among the nearest */
 } query;
 
-/* Whether a is nearer than b, ties lexicographic. */
-static inline bool is_nearer(const brio_point_tree *t, const brio_near_point *a, const brio_near_point *b) {
-    if (a->square != b->square) return a->square < b->square;
-    return is_before(t->point[a->place], t->point[b->place], 0);
+/* The k-th least of so many numbers, k from 0 on; writes over them. Without branches on what they are. */
+static double select_least(double *x, size_t count, size_t k) {
+    double more[BRIO_NEAR_ROOM];
+    for (;;) {
+        double pivot = x[count / 2];
+        size_t less = 0, greater = 0;
+        for (size_t i = 0; i < count; i++) {
+            double now = x[i];
+            x[less] = now;
+            less += now < pivot;
+            more[greater] = now;
+            greater += now > pivot;
+        }
+        if (k < less) {
+            count = less;
+        } else if (k >= count - greater) {
+            k -= count - greater;
+            count = greater;
+            memcpy(x, more, count * sizeof *x);
+        } else {
+            return pivot;
+        }
+    }
 }
 
-/* Keeps the nearest of the list [Hoare 1961], and the distance of the last of them. */
-static void keep_nearest(query *q) {
-    ptrdiff_t first = 0, last = (ptrdiff_t)q->size - 1, wanted = (ptrdiff_t)q->wanted - 1;
-    brio_near_point *near = q->near;
-    while (first < last) {
-        brio_near_point pivot = near[first + (last - first) / 2];
-        ptrdiff_t i = first, j = last;
-        while (i <= j) {
-            while (is_nearer(q->tree, &near[i], &pivot)) i++;
-            while (is_nearer(q->tree, &pivot, &near[j])) j--;
-            if (i > j) break;
-            brio_near_point spare = near[i];
-            near[i++] = near[j];
-            near[j--] = spare;
-        }
-        if (wanted <= j)
-            last = j;
-        else if (wanted >= i)
-            first = i;
-        else
-            break;
+/* Whether fewer than `room` of the points at the bound come before one of them; duplicates go by their places. */
+static bool has_place(const query *q, uint32_t place, size_t room) {
+    const double *point = q->tree->point[place];
+    size_t before = 0;
+    for (size_t i = 0; i < q->size; i++) {
+        if (q->near[i].square != q->bound) continue;
+        const double *other = q->tree->point[q->near[i].place];
+        before += is_before(other, point, 0) || (!is_before(point, other, 0) && q->near[i].place < place);
     }
-    q->size = q->wanted;
-    q->bound = 0;
-    for (size_t i = 0; i < q->size; i++) q->bound = near[i].square > q->bound ? near[i].square : q->bound;
+    return before < room;
+}
+
+/* Keeps the nearest of the list, in its order; the bound is the distance of the last of them. */
+static void keep_nearest(query *q) {
+    double square[BRIO_NEAR_ROOM];
+    size_t kept = 0, less = 0, equal = 0;
+    for (size_t i = 0; i < q->size; i++) square[i] = q->near[i].square;
+    q->bound = select_least(square, q->size, q->wanted - 1);
+    for (size_t i = 0; i < q->size; i++) less += q->near[i].square < q->bound, equal += q->near[i].square == q->bound;
+    uint64_t out[(BRIO_NEAR_ROOM + 63) / 64] = {0}; /* of the list */
+    for (size_t i = 0; i < q->size && less + equal > q->wanted; i++)
+        if (q->near[i].square == q->bound && !has_place(q, q->near[i].place, q->wanted - less))
+            out[i / 64] |= UINT64_C(1) << i % 64;
+    for (size_t i = 0; i < q->size; i++) {
+        q->near[kept] = q->near[i];
+        kept += q->near[i].square <= q->bound && !(out[i / 64] >> i % 64 & 1);
+    }
+    q->size = kept;
 }
 
 /* Lists the points of a range that are near enough; what is listed for nothing is written over. */
@@ -191,11 +213,18 @@ static void look(query *q, size_t begin, size_t end) {
         look(q, begin, middle);
 }
 
-size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, brio_near_point *near) {
-    query q = {.tree = tree, .p = {p[0], p[1], p[2]}, .near = near, .wanted = wanted, .bound = INFINITY};
+size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, double bound,
+                           brio_near_point *near) {
+    query q = {.tree = tree, .p = {p[0], p[1], p[2]}, .near = near, .wanted = wanted, .bound = bound};
     look(&q, 0, tree->count);
     if (q.size > wanted) keep_nearest(&q);
     return q.size;
+}
+
+/* Whether a is nearer than b, ties lexicographic. */
+static inline bool is_nearer(const brio_point_tree *t, const brio_near_point *a, const brio_near_point *b) {
+    if (a->square != b->square) return a->square < b->square;
+    return is_before(t->point[a->place], t->point[b->place], 0);
 }
 
 void brio_sort_near_points(const brio_point_tree *tree, brio_near_point *near, size_t count) {

@@ -28,8 +28,11 @@ enum { BRIO_MOST_NEAR = 64, BRIO_NEAR_ROOM = 2 * BRIO_MOST_NEAR + 16 };
 
 /** near[0 .. result) = the `wanted` points nearest to p, fewer where there are fewer, in an order that depends on p and
  *  the set of points alone; p itself and its duplicates are among them. Of points at the distance of the last one those
- *  count that come first lexicographically.   wanted  1 to BRIO_MOST_NEAR.   near  BRIO_NEAR_ROOM. */
-size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, brio_near_point *near);
+ *  count that come first lexicographically.
+ *  wanted  1 to BRIO_MOST_NEAR.   bound  none of them is farther than that, squared, or INFINITY; the less the sooner.
+ *  near  BRIO_NEAR_ROOM. */
+size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, double bound,
+                           brio_near_point *near);
 
 /** Puts points in order: by distance, then lexicographic. */
 void brio_sort_near_points(const brio_point_tree *tree, brio_near_point *near, size_t count);

@@ -56,7 +56,8 @@ static void expect_nearest(const brio_point_tree *tree, const double *points, si
         square[i] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     }
     qsort(square, n, sizeof *square, compare_doubles);
-    size_t found = brio_nearest_points(tree, p, k, near);
+    double bound = k % 2 && k <= n ? square[k - 1] : INFINITY;
+    size_t found = brio_nearest_points(tree, p, k, bound, near);
     EXPECT(found == (k < n ? k : n), "%zu of %zu, %zu wanted", found, n, k);
     brio_sort_near_points(tree, near, found);
     for (size_t i = 0; i < found; i++) EXPECT(near[i].square == square[i], "neighbour %zu", i);

@@ -101,23 +101,48 @@ static bool solve(double a[COEFFICIENTS][COEFFICIENTS], double *b) {
     return true;
 }
 
-/* The monomials and the height of a point, in units of the neighbourhood. */
-static inline double place(const double *offset, const brio_local_surface *s, double *monomial) {
-    double u = brio_dot(offset, s->frame[0]) / s->unit, v = brio_dot(offset, s->frame[1]) / s->unit;
-    double all[COEFFICIENTS] = {1, u, v, u * u, u * v, v * v};
-    for (int c = 0; c < COEFFICIENTS; c++) monomial[c] = all[c];
-    return brio_dot(offset, s->frame[2]) / s->unit;
+/* Some points side by side: their monomials, heights and weights, in units of the neighbourhood. */
+enum { WIDE = 4 };
+typedef double lanes __attribute__((vector_size(8 * WIDE)));
+typedef struct {
+    lanes monomial[COEFFICIENTS], height, weight;
+} some_points;
+
+/* Those from `first` on; past the last one the weight is 0. */
+static inline void place(const brio_neighbourhood *n, size_t first, const brio_local_surface *s, some_points *out) {
+    lanes d[3] = {{0}, {0}, {0}}, zero = {0}, weight = {0};
+    for (size_t i = 0; i < WIDE && first + i < n->count; i++) {
+        for (int k = 0; k < 3; k++) d[k][i] = n->offset[first + i][k];
+        weight[i] = n->weight[first + i];
+    }
+    lanes along[3];
+    for (int k = 0; k < 3; k++)
+        along[k] = (d[0] * s->frame[k][0] + d[1] * s->frame[k][1] + d[2] * s->frame[k][2]) * (1 / s->unit);
+    lanes u = along[0], v = along[1], all[COEFFICIENTS] = {zero + 1, u, v, u * u, u * v, v * v};
+    for (int c = 0; c < COEFFICIENTS; c++) out->monomial[c] = all[c];
+    out->height = along[2];
+    out->weight = weight;
+}
+
+static inline double sum_of(const lanes *x) {
+    return ((*x)[0] + (*x)[1]) + ((*x)[2] + (*x)[3]);
 }
 
 static void fit_polynomial(const brio_neighbourhood *n, brio_local_surface *s) {
-    double a[COEFFICIENTS][COEFFICIENTS] = {{0}}, b[COEFFICIENTS] = {0};
-    for (size_t i = 0; i < n->count; i++) {
-        double monomial[COEFFICIENTS], height = place(n->offset[i], s, monomial);
+    lanes sums[COEFFICIENTS][COEFFICIENTS + 1] = {{{0}}};
+    double a[COEFFICIENTS][COEFFICIENTS] = {{0}}, b[COEFFICIENTS];
+    for (size_t i = 0; i < n->count; i += WIDE) {
+        some_points p;
+        place(n, i, s, &p);
         for (int c = 0; c < COEFFICIENTS; c++) {
-            double weighted = n->weight[i] * monomial[c];
-            for (int d = 0; d <= c; d++) a[c][d] += weighted * monomial[d];
-            b[c] += weighted * height;
+            lanes weighted = p.weight * p.monomial[c];
+            for (int d = 0; d <= c; d++) sums[c][d] += weighted * p.monomial[d];
+            sums[c][COEFFICIENTS] += weighted * p.height;
         }
+    }
+    for (int c = 0; c < COEFFICIENTS; c++) {
+        for (int d = 0; d <= c; d++) a[c][d] = sum_of(&sums[c][d]);
+        b[c] = sum_of(&sums[c][COEFFICIENTS]);
     }
     double mean = b[0] / a[0][0];
     bool solved = solve(a, b);
@@ -141,13 +166,15 @@ bool brio_fit_local_surface(brio_neighbourhood *n, brio_local_surface *s) {
 }
 
 double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *s) {
-    double squares = 0, sum = 0, sum_squares = 0;
-    for (size_t i = 0; i < n->count; i++) {
-        double monomial[COEFFICIENTS], height = place(n->offset[i], s, monomial);
-        for (int c = 0; c < COEFFICIENTS; c++) height -= s->coefficient[c] * monomial[c];
-        squares += n->weight[i] * height * height;
-        sum += n->weight[i];
-        sum_squares += n->weight[i] * n->weight[i];
+    lanes squares = {0}, sum = {0}, sum_squares = {0};
+    for (size_t i = 0; i < n->count; i += WIDE) {
+        some_points p;
+        place(n, i, s, &p);
+        for (int c = 0; c < COEFFICIENTS; c++) p.height -= s->coefficient[c] * p.monomial[c];
+        squares += p.weight * p.height * p.height;
+        sum += p.weight;
+        sum_squares += p.weight * p.weight;
     }
-    return s->unit * sqrt(squares / fmax(sum - COEFFICIENTS * sum_squares / sum, 0.1 * sum));
+    double all = sum_of(&sum), freedom = all - COEFFICIENTS * sum_of(&sum_squares) / all;
+    return s->unit * sqrt(sum_of(&squares) / fmax(freedom, 0.1 * all));
 }

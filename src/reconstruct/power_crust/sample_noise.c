@@ -21,7 +21,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { FEW = 24, MORE = 48, NEAREST = 6, LOOKS = 1000, LEAST_LOOKS = 100, PASSES = 2, BLOCK = 1 << 20 };
+enum { FEW = 24, MORE = 48, NEAREST = 6, LOOKS = 1000, LEAST_LOOKS = 100, PASSES = 2, BLOCK = 1 << 20, RUN = 256 };
 /* Below the first a crust through the samples is as good; above the second there is no surface to be seen. */
 static const double LEAST_LEVEL = 0.1, MOST_LEVEL = 0.5;
 
@@ -100,7 +100,7 @@ static bool spread_about(const double *p, const brio_point_tree *tree, const bri
 static void look(const brio_point_tree *tree, const double *p, uint64_t *few, uint64_t *more) {
     brio_near_point near[BRIO_NEAR_ROOM];
     double small, large;
-    size_t count = brio_nearest_points(tree, p, MORE, near);
+    size_t count = brio_nearest_points(tree, p, MORE, INFINITY, near);
     brio_sort_near_points(tree, near, count);
     double spacing = mean_spacing(near, count);
     *few = *more = bits_of(INFINITY);
@@ -149,10 +149,20 @@ typedef struct {
     double (*from)[3], (*to)[3];
 } smoothing;
 
-static void find_near(const smoothing *s, size_t i) {
+/* What is asked for around the last sample bounds what is around the next one, which is near it as a rule. */
+static void find_near(const smoothing *s, size_t begin, size_t end) {
+    static const double ROUNDING = 1 + 1e-9;
     brio_near_point near[BRIO_NEAR_ROOM];
-    brio_nearest_points(s->tree, s->from[i], MORE, near);
-    for (int n = 0; n < MORE; n++) s->near[i][n] = near[n].place;
+    double radius = INFINITY; /* of the ball around the last sample that holds so many */
+    for (size_t i = begin; i < end; i++) {
+        double most = 0, reach = i > begin ? radius + sqrt(brio_square_distance(s->from[i], s->from[i - 1])) : INFINITY;
+        brio_nearest_points(s->tree, s->from[i], MORE, ROUNDING * reach * reach, near);
+        for (int n = 0; n < MORE; n++) {
+            s->near[i][n] = near[n].place;
+            most = near[n].square > most ? near[n].square : most;
+        }
+        radius = sqrt(most);
+    }
 }
 
 static void smooth_sample(const smoothing *s, size_t i) {
@@ -176,10 +186,11 @@ static brio_status smooth_all(brio_context *ctx, const smoothing *s, int pass) {
     for (size_t begin = 0; begin < count; begin += BLOCK) {
         size_t end = count - begin < BLOCK ? count : begin + BLOCK;
         BRIO_TRY(brio_progress(ctx, "noise", (pass + (double)begin / (double)count) / PASSES));
-        BRIO_OMP(parallel for schedule(dynamic, 256) num_threads(brio_context_threads(ctx)))
-        for (size_t i = begin; i < end; i++) {
-            if (pass == 0) find_near(s, i);
-            smooth_sample(s, i);
+        BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(brio_context_threads(ctx)))
+        for (size_t i = begin; i < end; i += RUN) {
+            size_t run_end = end - i < RUN ? end : i + RUN;
+            if (pass == 0) find_near(s, i, run_end);
+            for (size_t n = i; n < run_end; n++) smooth_sample(s, n);
         }
     }
 done:
