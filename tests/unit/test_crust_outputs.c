@@ -231,6 +231,26 @@ static void edges_without_samples_come_out_sharp(void) {
     brio_context_free(ctx);
 }
 
+/* Samples of a sphere down to 70 degrees from its pole: the inner poles are at the centre, below all samples. */
+static void dome_whose_inner_poles_are_beyond_its_box_has_an_inside(void) {
+    enum { N = 1500 };
+    static double p[3 * N];
+    brio_rng rng = brio_rng_new(11);
+    double low = cos(70 * 3.14159265358979 / 180);
+    for (size_t i = 0; i < N; i++) {
+        double z = low + (1 - low) * brio_rng_double(&rng), turn = 6.283185307179586 * brio_rng_double(&rng);
+        p[3 * i] = sqrt(1 - z * z) * cos(turn), p[3 * i + 1] = sqrt(1 - z * z) * sin(turn), p[3 * i + 2] = z;
+    }
+    brio_context *ctx = new_context();
+    brio_mesh *mesh = NULL;
+    brio_certificate c;
+    EXPECT(brio_power_crust(ctx, p, N, NULL, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.closed && c.genus == 0 && c.components == 1);
+    EXPECT(fabs(c.volume - 1.0621) < 0.03, "%g", c.volume);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
 static void sampling_density_out_of_range_is_refused(void) {
     double p[3 * 20];
     uniform_points(1, 20, p);
@@ -319,6 +339,7 @@ int main(void) {
     RUN(open_anything_is_manifold);
     RUN(cube_comes_out_with_its_edges);
     RUN(edges_without_samples_come_out_sharp);
+    RUN(dome_whose_inner_poles_are_beyond_its_box_has_an_inside);
     RUN(sampling_density_out_of_range_is_refused);
     RUN(normals_of_samples_are_those_of_the_sphere);
     RUN(normals_of_vertices_point_outwards);

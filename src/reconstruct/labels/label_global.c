@@ -85,8 +85,10 @@ done:
 
 /* --- the whole --- */
 
-/* A solid is inside the convex hull of its surface, so a pole beyond the box of the samples is outer. Only now: given to
- * the greedy labelling, whose mistakes spread, more certain poles were seen to mislead it on sparse samples. */
+/* A solid is inside the convex hull of its surface, so a ball that is for the most part beyond the box of the samples is
+ * outer: one whose centre is beyond it by half its radius, and with it five sixths of the ball. Others may be inner ones
+ * that reach through an opening. Only now: given to the greedy labelling, whose mistakes spread, more certain poles were
+ * seen to mislead it on sparse samples. */
 static void settle_beyond_box(const brio_pole_graph *g, uint8_t *certain, uint8_t *label) {
     for (size_t k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;
@@ -95,8 +97,8 @@ static void settle_beyond_box(const brio_pole_graph *g, uint8_t *certain, uint8_
             high = fmax(high, g->samples[3 * s + k]);
         }
         for (size_t p = 0; p < g->poles->count; p++) {
-            double x = g->poles->centre[3 * p + k];
-            if (x < low || x > high) certain[p] = 1, label[p] = BRIO_LABEL_OUTER;
+            double x = g->poles->centre[3 * p + k], half = 0.5 * sqrt(g->poles->square[p]);
+            if (x < low - half || x > high + half) certain[p] = 1, label[p] = BRIO_LABEL_OUTER;
         }
     }
 }
