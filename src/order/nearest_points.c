@@ -16,16 +16,19 @@
 #include <math.h>
 #include <string.h>
 
-enum { LEAF = 12, LARGE = 4096 };
+enum { LEAF = 24, LARGE = 4096 };
+_Static_assert(BRIO_NEAR_ROOM >= 2 * BRIO_MOST_NEAR + LEAF, "a full list has room for one range more");
 
 /* --- building --- */
 
+static bool is_before_in_others(const double *a, const double *b, int axis) {
+    int k = (axis + 1) % 3, l = (axis + 2) % 3;
+    return a[k] != b[k] ? a[k] < b[k] : a[l] < b[l];
+}
+
 /* Whether a comes before b across an axis, and among equals there by the other two. */
 static inline bool is_before(const double *a, const double *b, int axis) {
-    static const int next[5] = {0, 1, 2, 0, 1};
-    for (int k = axis; k < axis + 3; k++)
-        if (a[next[k]] != b[next[k]]) return a[next[k]] < b[next[k]];
-    return false;
+    return a[axis] != b[axis] ? a[axis] < b[axis] : is_before_in_others(a, b, axis);
 }
 
 static inline void swap(const brio_point_tree *t, ptrdiff_t i, ptrdiff_t j) {
@@ -219,6 +222,28 @@ size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t 
     look(&q, 0, tree->count);
     if (q.size > wanted) keep_nearest(&q);
     return q.size;
+}
+
+static double nearest_in(const brio_point_tree *t, const double *p, size_t begin, size_t end, double best) {
+    if (end - begin <= LEAF) {
+        for (size_t i = begin; i < end; i++) {
+            double square = brio_square_distance(p, t->point[i]);
+            best = square < best ? square : best;
+        }
+        return best;
+    }
+    size_t middle = begin + (end - begin) / 2;
+    double across = p[t->axis[middle]] - t->point[middle][t->axis[middle]];
+    bool below = across < 0;
+    double square = brio_square_distance(p, t->point[middle]);
+    best = square < best ? square : best;
+    best = below ? nearest_in(t, p, begin, middle, best) : nearest_in(t, p, middle + 1, end, best);
+    if (across * across >= best) return best;
+    return below ? nearest_in(t, p, middle + 1, end, best) : nearest_in(t, p, begin, middle, best);
+}
+
+double brio_nearest_square(const brio_point_tree *tree, const double *p, double best) {
+    return nearest_in(tree, p, 0, tree->count, best);
 }
 
 /* Whether a is nearer than b, ties lexicographic. */

@@ -24,7 +24,7 @@ typedef struct {
 } brio_near_point;
 
 /** What is asked for at most, and the room that it takes. */
-enum { BRIO_MOST_NEAR = 64, BRIO_NEAR_ROOM = 2 * BRIO_MOST_NEAR + 16 };
+enum { BRIO_MOST_NEAR = 64, BRIO_NEAR_ROOM = 2 * BRIO_MOST_NEAR + 32 };
 
 /** near[0 .. result) = the `wanted` points nearest to p, fewer where there are fewer, in an order that depends on p and
  *  the set of points alone; p itself and its duplicates are among them. Of points at the distance of the last one those
@@ -33,6 +33,9 @@ enum { BRIO_MOST_NEAR = 64, BRIO_NEAR_ROOM = 2 * BRIO_MOST_NEAR + 16 };
  *  near  BRIO_NEAR_ROOM. */
 size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, double bound,
                            brio_near_point *near);
+
+/** The least of `best` and the squared distances from p to the points. */
+double brio_nearest_square(const brio_point_tree *tree, const double *p, double best);
 
 /** Puts points in order: by distance, then lexicographic. */
 void brio_sort_near_points(const brio_point_tree *tree, brio_near_point *near, size_t count);

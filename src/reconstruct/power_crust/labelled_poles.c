@@ -29,7 +29,7 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_surface_options *
     BRIO_REQUIRE(ctx, (unsigned)o->noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
                  (int)o->noise);
     *request = (brio_pole_request){.seed = o->seed,
-                                   .filter = {o->sampling_density, o->sharp},
+                                   .filter = {.sampling_density = o->sampling_density, .both = o->sharp},
                                    .labeling = o->labeling,
                                    .noise = o->noise == BRIO_NOISE_AUTO && o->solid ? BRIO_NOISE_KEEP : o->noise,
                                    .solid = o->solid,
