@@ -129,7 +129,7 @@ done:
 }
 
 void brio_kernel_free(brio_kernel *k) {
-    if (k->locator->free) k->locator->free(k);
+    if (k->locator->release) k->locator->release(k);
     brio_cavity_free(k->ctx, &k->cavity);
     brio_release(k->ctx, k->t.tet);
     brio_release(k->ctx, k->state);
@@ -177,7 +177,7 @@ static brio_status insert_all(brio_kernel *k, const brio_options *options, brio_
         }
         BRIO_TRY(brio_recorder_note(recorder, k, end));
     }
-    if (k->locator->free) k->locator->free(k); /* the sort needs the room */
+    if (k->locator->release) k->locator->release(k); /* the sort needs the room */
     status = brio_progress(k->ctx, "insert", 1);
 done:
     return status;

@@ -6,7 +6,7 @@
 
 /** What a strategy does; what it keeps is k->location. All but `locate` may be NULL. */
 typedef struct {
-    /** Once the first tetrahedron stands. After a failure `free` is called, too. */
+    /** Once the first tetrahedron stands. After a failure `release` is called, too. */
     brio_status (*start)(brio_kernel *k, const brio_options *options);
     /** A tetrahedron whose closure holds record p, or that conflicts with it; at the position of a vertex that is not
      *  lighter, one of that vertex. Records come in their order. */
@@ -14,7 +14,7 @@ typedef struct {
     /** Record p has become a vertex: k->cavity has the slots of what was destroyed, and of what was created. */
     brio_status (*filled)(brio_kernel *k, uint32_t p);
     /** Frees k->location and makes it NULL; accepts NULL. */
-    void (*free)(brio_kernel *k);
+    void (*release)(brio_kernel *k);
 } brio_locator;
 
 extern const brio_locator brio_locator_walk, brio_locator_jump, brio_locator_hierarchy, brio_locator_history,
