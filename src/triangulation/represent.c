@@ -114,8 +114,10 @@ static brio_status restore_first(brio_kernel *k) {
     for (uint32_t p = (uint32_t)k->num_points; p-- > 0;)
         if (is_earlier_twin(k, p)) first[k->representative[p]] = p;
     BRIO_OMP(parallel for num_threads(brio_context_threads(k->ctx)))
-    for (size_t t = 0; t < k->t.count; t++)
+    for (size_t t = 0; t < k->t.count; t++) {
+        if (k->state[t] != TET_PLAIN) continue; /* nobody need have written an unused slot */
         for (int i = 0; i < 4; i++) k->t.tet[t].vertex[i] = first[k->t.tet[t].vertex[i]];
+    }
     for (uint32_t p = 0; p < k->num_points; p++) {
         uint32_t v = k->representative[p];
         k->representative[p] = first[v];
