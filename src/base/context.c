@@ -2,16 +2,13 @@
 #include "base/context.h"
 #include "base/kept.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 static void *system_alloc(size_t size, void *user) {
     (void)user;
@@ -26,6 +23,12 @@ static void system_free(void *block, void *user) {
     free(block);
 }
 
+/* More threads than this for each processor only wait for each other; tests on few processors may want some. */
+static int most_threads(void) {
+    int most = 4 * brio_processors();
+    return most > 64 ? most : 64;
+}
+
 brio_status brio_context_new(const brio_allocator *allocator, brio_context **out) {
     const brio_allocator system = {system_alloc, system_realloc, system_free, NULL};
     const brio_allocator *a = allocator ? allocator : &system;
@@ -37,13 +40,20 @@ brio_status brio_context_new(const brio_allocator *allocator, brio_context **out
     ctx->custom = allocator != NULL;
     ctx->machine_limit = brio_machine_memory();
     ctx->progress_to = 1;
-    return BRIO_OK;
+    pthread_mutex_init(&ctx->lock, NULL);
+    ctx->team = brio_team_new(a, most_threads());
+    if (ctx->team) return BRIO_OK;
+    brio_context_free(ctx);
+    *out = NULL;
+    return BRIO_ERR_NO_MEMORY;
 }
 
 void brio_context_free(brio_context *ctx) {
     if (!ctx) return;
     brio_release(ctx, ctx->scratch);
     brio_kept_free(ctx);
+    brio_team_free(&ctx->allocator, ctx->team);
+    pthread_mutex_destroy(&ctx->lock);
     brio_allocator a = ctx->allocator;
     a.free(ctx, a.user);
 }
@@ -53,16 +63,12 @@ const char *brio_message(const brio_context *ctx) {
 }
 
 void brio_context_set_threads(brio_context *ctx, int threads) {
-    ctx->threads = threads > 0 ? threads : 0;
+    int most = most_threads();
+    ctx->threads = threads < 0 ? 0 : threads < most ? threads : most;
 }
 
 int brio_context_threads(const brio_context *ctx) {
-    if (ctx->threads > 0) return ctx->threads;
-#ifdef _OPENMP
-    return omp_get_max_threads();
-#else
-    return 1;
-#endif
+    return ctx->threads > 0 ? ctx->threads : brio_processors();
 }
 
 void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user) {
@@ -92,8 +98,9 @@ done:
 brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    BRIO_OMP(critical(brio_message)) /* threads may fail together */
+    pthread_mutex_lock(&ctx->lock); /* threads may fail together */
     vsnprintf(ctx->message, sizeof ctx->message, format, arguments);
+    pthread_mutex_unlock(&ctx->lock);
     va_end(arguments);
     return status;
 }

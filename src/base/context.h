@@ -5,6 +5,7 @@
 #define BRIO_BASE_CONTEXT_H
 
 #include "brio/brio.h"
+#include <pthread.h>
 #include <stdbool.h>
 
 enum { BRIO_MOST_KEPT = 64, BRIO_PAGE = 1 << 14 };
@@ -18,6 +19,8 @@ struct brio_context {
     brio_allocator allocator;
     bool custom;                       /* allocator is the caller's: no mappings */
     int threads;                       /* as set; 0 = all */
+    struct brio_team *team;            /* the threads, see team.h */
+    pthread_mutex_t lock;              /* of the kept mappings and the message */
     size_t caller_limit;               /* bytes, 0 = none */
     size_t machine_limit;              /* of the memory cgroup and the machine */
     size_t live, peak;                 /* bytes of anonymous memory; updated atomically */

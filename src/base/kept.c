@@ -3,7 +3,7 @@
  * What is kept and what is live are never more together than what was live at the peak, so that keeping takes no more
  * memory than the work did without it. */
 #include "base/kept.h"
-#include "base/parallel.h"
+#include "base/poison.h"
 #include <sys/mman.h>
 
 static const size_t BETWEEN_CALLS = (size_t)64 << 20;
@@ -12,7 +12,7 @@ static const size_t BETWEEN_CALLS = (size_t)64 << 20;
 static void cut(brio_context *ctx, int i, size_t size) {
     brio_mapping *m = &ctx->kept[i];
     m->size -= size;
-    munmap((char *)m->base + m->size, size);
+    brio_unmap((char *)m->base + m->size, size);
     __atomic_sub_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
     if (!m->size) *m = ctx->kept[--ctx->num_kept];
 }
@@ -45,37 +45,39 @@ static int smallest(const brio_context *ctx, size_t least) {
 
 void *brio_kept_take(brio_context *ctx, size_t size) {
     void *base = NULL;
-    BRIO_OMP(critical(brio_kept)) {
-        int i = smallest(ctx, size);
-        if (i >= 0) {
-            brio_mapping *m = &ctx->kept[i];
-            base = m->base;
-            m->base = (char *)m->base + size;
-            m->size -= size;
-            __atomic_sub_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
-            if (!m->size) *m = ctx->kept[--ctx->num_kept];
-        }
+    pthread_mutex_lock(&ctx->lock);
+    int i = smallest(ctx, size);
+    if (i >= 0) {
+        brio_mapping *m = &ctx->kept[i];
+        base = m->base;
+        m->base = (char *)m->base + size;
+        m->size -= size;
+        __atomic_sub_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
+        if (!m->size) *m = ctx->kept[--ctx->num_kept];
     }
+    pthread_mutex_unlock(&ctx->lock);
+    if (base) brio_poison_fill(base, size);
     return base;
 }
 
 void brio_kept_give(brio_context *ctx, void *base, size_t size) {
-    bool full;
-    BRIO_OMP(critical(brio_kept)) {
-        full = ctx->num_kept == BRIO_MOST_KEPT;
-        if (!full) {
-            ctx->kept[ctx->num_kept++] = (brio_mapping){base, size};
-            __atomic_add_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
-            trim(ctx, most_kept(ctx));
-        }
+    brio_poison_hide(base, size);
+    pthread_mutex_lock(&ctx->lock);
+    bool full = ctx->num_kept == BRIO_MOST_KEPT;
+    if (!full) {
+        ctx->kept[ctx->num_kept++] = (brio_mapping){base, size};
+        __atomic_add_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
+        trim(ctx, most_kept(ctx));
     }
-    if (full) munmap(base, size);
+    pthread_mutex_unlock(&ctx->lock);
+    if (full) brio_unmap(base, size);
 }
 
 void brio_kept_make_room(brio_context *ctx) {
     if (__atomic_load_n(&ctx->kept_bytes, __ATOMIC_RELAXED) <= most_kept(ctx)) return;
-    BRIO_OMP(critical(brio_kept))
+    pthread_mutex_lock(&ctx->lock);
     trim(ctx, most_kept(ctx));
+    pthread_mutex_unlock(&ctx->lock);
 }
 
 void brio_kept_free(brio_context *ctx) {

@@ -9,6 +9,7 @@
 #define _GNU_SOURCE
 #include "base/memory.h"
 #include "base/kept.h"
+#include "base/poison.h"
 #include "base/scratch_file.h"
 #include <errno.h>
 #include <stdio.h>
@@ -16,25 +17,16 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* The thread sanitizer does not see mremap: pages that moved away would still count as the old block's. */
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define BRIO_COPIES_INSTEAD 1
-#endif
-#endif
-#ifndef BRIO_COPIES_INSTEAD
-#define BRIO_COPIES_INSTEAD 0
-#endif
-
 enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = 1 << 20 };
 
 typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
 typedef struct {
     size_t size;            /* of the whole block, with what is in front of it */
+    size_t used;            /* bytes that were asked for; kept where BRIO_POISON */
     brio_scratch_file file; /* of KIND_FILE */
     block_kind kind;
-    bool cleared; /* it is a new mapping, all zero where nothing was written */
+    bool cleared; /* it is a new mapping, all zero where nothing was written; never where BRIO_POISON */
 } block_header;
 
 static block_header *header_of(const void *block) {
@@ -160,7 +152,7 @@ static void *map_file(brio_context *ctx, size_t size, brio_scratch_file *file, b
 /* A mapping, one that was kept where there is one; *cleared: it is new and all zero. NULL when there is no memory. */
 static void *map_memory(brio_context *ctx, size_t size, bool *cleared) {
     void *base = brio_kept_take(ctx, size);
-    *cleared = !base;
+    *cleared = !base && !BRIO_POISON;
     if (account_add(ctx, size)) {
         if (!base) base = map_anonymous(size);
         if (!base) account_sub(ctx, size);
@@ -172,6 +164,20 @@ static void *map_memory(brio_context *ctx, size_t size, bool *cleared) {
 
 /* --- one block --- */
 
+static size_t bytes_in(const void *block) {
+    return header_of(block)->size - front_of(header_of(block)->kind);
+}
+
+/* Makes the first `used` bytes usable, the new ones filled with the pattern of poison.h, and hides the rest of a
+ * mapping. */
+static void settle(void *block, size_t used) {
+    if (!BRIO_POISON) return;
+    block_header *h = header_of(block);
+    if (used > h->used) brio_poison_fill((char *)block + h->used, used - h->used);
+    if (h->kind != KIND_HEAP) brio_poison_hide((char *)block + used, bytes_in(block) - used);
+    h->used = used;
+}
+
 static brio_status refuse(brio_context *ctx, size_t size) {
     return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "out of memory: %zu bytes more, %zu in use, limit %zu", size,
                      brio_context_memory(ctx), brio_memory_limit(ctx));
@@ -179,7 +185,7 @@ static brio_status refuse(brio_context *ctx, size_t size) {
 
 /* A new block of so many bytes with its header; in a scratch file where the context has these and it may be. */
 static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_status *status) {
-    block_header h = {size, {-1, -1}, KIND_HEAP, false};
+    block_header h = {.size = size, .file = {-1, -1}, .kind = KIND_HEAP};
     char *base = NULL;
     if (ctx->custom || (size < MAP_FROM && !in_memory)) {
         if (account_add(ctx, size)) {
@@ -198,6 +204,7 @@ static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_stat
     }
     char *block = base + front_of(h.kind);
     memcpy(block - HEADER, &h, sizeof h);
+    settle(block, size - HEADER);
     return block;
 }
 
@@ -210,7 +217,7 @@ void brio_release(brio_context *ctx, void *block) {
     else if (h.kind == KIND_MAPPED)
         brio_kept_give(ctx, base_of(block), h.size);
     else
-        munmap(base_of(block), h.size);
+        brio_unmap(base_of(block), h.size);
     if (h.kind == KIND_FILE) brio_scratch_close(&h.file);
 }
 
@@ -264,6 +271,7 @@ static void *block_remap(brio_context *ctx, void *block, size_t target, brio_sta
         *status = refuse(ctx, target - h.size);
         return NULL;
     }
+    brio_poison_show(base_of(block), h.size); /* the pages may move away from these addresses */
     char *base = mremap(base_of(block), h.size, target, MREMAP_MAYMOVE);
     if (base == MAP_FAILED) {
         if (!file) account_sub(ctx, target - h.size);
@@ -275,12 +283,8 @@ static void *block_remap(brio_context *ctx, void *block, size_t target, brio_sta
     return base + FRONT;
 }
 
-static size_t bytes_in(const void *block) {
-    return header_of(block)->size - front_of(header_of(block)->kind);
-}
-
 static void *block_move(brio_context *ctx, void *block, size_t size, brio_status *status) {
-    size_t old = bytes_in(block);
+    size_t old = BRIO_POISON ? header_of(block)->used : bytes_in(block);
     void *moved = block_new(ctx, size, false, status);
     if (!moved) return NULL;
     memcpy(moved, block, old < size - HEADER ? old : size - HEADER);
@@ -330,9 +334,15 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
     if (!block) return block_new(ctx, bytes, false, status);
     block_kind kind = header_of(block)->kind;
     bool mapped = !ctx->custom && bytes >= MAP_FROM;
-    if (kind != KIND_HEAP && mapped && !BRIO_COPIES_INSTEAD) return block_resize_mapped(ctx, block, bytes, status);
-    if (kind == KIND_HEAP && !mapped) return block_realloc(ctx, block, bytes, status);
-    return block_move(ctx, block, bytes, status);
+    /* the thread sanitizer does not see mremap: pages that moved away would still count as the old block's */
+    if (kind != KIND_HEAP && mapped && !BRIO_TSAN)
+        block = block_resize_mapped(ctx, block, bytes, status);
+    else if (kind == KIND_HEAP && !mapped)
+        block = block_realloc(ctx, block, bytes, status);
+    else
+        return block_move(ctx, block, bytes, status);
+    if (block) settle(block, bytes - HEADER);
+    return block;
 }
 
 brio_status brio_in_memory(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
@@ -349,7 +359,7 @@ brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count,
     void *block;
     memcpy(&block, pointer_to_block, sizeof block);
     block_header *h = header_of(block);
-    if (h->kind != KIND_FILE && !h->cleared) memset(block, 0, count * size);
+    if (BRIO_POISON || (h->kind != KIND_FILE && !h->cleared)) memset(block, 0, count * size);
     return BRIO_OK;
 }
 

@@ -1,0 +1,265 @@
+/* A team of threads: created when they are first needed, asleep between two runs.
+ *
+ * Everything that a thread waits for is a gate, a number that another thread changes: the start of a run (one gate for
+ * each thread), the barrier, which also ends a run. A thread that waits looks at the number for a few microseconds and
+ * then sleeps on a condition variable, so that a waiting team costs nothing on a busy machine.
+ *
+ * The job's fields are written by member 0 before it changes the start gates, and read by members after; the barrier
+ * at the end of a run orders those reads before the next run's writes.
+ *
+ * After a fork the child has a copy of the team without its threads. The child forgets them, and creates its own. */
+#define _GNU_SOURCE
+#include "base/team.h"
+#include "base/float_state.h"
+#include "base/sanitizers.h"
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+/* LOOKS: about 5 us, less than it takes to wake a thread. */
+enum { LOOKS = 256, LINE = 64 };
+/* Frames are several times larger in builds for the sanitizers and in those without optimization. */
+#if BRIO_ASAN || BRIO_TSAN || BRIO_MSAN || !defined(__OPTIMIZE__)
+static const size_t STACK = (size_t)4 << 20;
+#else
+static const size_t STACK = (size_t)512 << 10;
+#endif
+
+typedef struct {
+    unsigned value;
+    int sleepers;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    char apart[LINE]; /* from what other threads write */
+} gate;
+
+typedef struct {
+    brio_team *team;
+    pthread_t handle;
+    brio_member member;
+    gate start;
+} thread;
+
+struct brio_team {
+    int most, size; /* threads there may be and there are, the caller's included */
+    pid_t process;  /* that the threads belong to */
+    bool busy;      /* a run is going on */
+    int processors; /* a member that waits looks first where each member of its run has a processor */
+    brio_work_fn work;
+    void *user;
+    gate barrier;
+    int arrived; /* members at the barrier */
+    thread thread[];
+};
+
+/* --- gates --- */
+
+static void gate_new(gate *g) {
+    g->value = 0;
+    g->sleepers = 0;
+    pthread_mutex_init(&g->lock, NULL);
+    pthread_cond_init(&g->changed, NULL);
+}
+
+static void gate_free(gate *g) {
+    pthread_cond_destroy(&g->changed);
+    pthread_mutex_destroy(&g->lock);
+}
+
+/* The order of the two stores and two loads in gate_change and gate_sleep is sequential: either the sleeper sees the new
+ * value, or the changer sees the sleeper. */
+static void gate_change(gate *g) {
+    __atomic_add_fetch(&g->value, 1, __ATOMIC_SEQ_CST);
+    if (!__atomic_load_n(&g->sleepers, __ATOMIC_SEQ_CST)) return;
+    pthread_mutex_lock(&g->lock);
+    pthread_cond_broadcast(&g->changed);
+    pthread_mutex_unlock(&g->lock);
+}
+
+static void gate_sleep(gate *g, unsigned old) {
+    pthread_mutex_lock(&g->lock);
+    __atomic_add_fetch(&g->sleepers, 1, __ATOMIC_SEQ_CST);
+    while (__atomic_load_n(&g->value, __ATOMIC_SEQ_CST) == old) pthread_cond_wait(&g->changed, &g->lock);
+    __atomic_sub_fetch(&g->sleepers, 1, __ATOMIC_SEQ_CST);
+    pthread_mutex_unlock(&g->lock);
+}
+
+static inline void pause_briefly(void) {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
+}
+
+static void gate_wait(gate *g, unsigned old, bool looks) {
+    for (int i = 0; looks && i < LOOKS; i++) {
+        if (__atomic_load_n(&g->value, __ATOMIC_ACQUIRE) != old) return;
+        pause_briefly();
+    }
+    gate_sleep(g, old);
+}
+
+/* --- the threads --- */
+
+void brio_barrier(const brio_member *member) {
+    brio_team *team = member->team;
+    if (!team) return;
+    bool looks = member->threads <= team->processors;
+    unsigned old = __atomic_load_n(&team->barrier.value, __ATOMIC_ACQUIRE);
+    if (__atomic_add_fetch(&team->arrived, 1, __ATOMIC_ACQ_REL) == member->threads) {
+        __atomic_store_n(&team->arrived, 0, __ATOMIC_RELAXED);
+        gate_change(&team->barrier);
+    } else {
+        gate_wait(&team->barrier, old, looks);
+    }
+}
+
+/* A thread's life: runs what it is given until it is given nothing. */
+static void *live(void *argument) {
+    thread *self = argument;
+    brio_team *team = self->team;
+    brio_float_state state = brio_float_enter();
+    bool looks = false;
+    for (unsigned seen = 0;; seen++) {
+        gate_wait(&self->start, seen, looks);
+        if (!team->work) break;
+        looks = self->member.threads <= team->processors;
+        team->work(team->user, &self->member);
+        brio_barrier(&self->member);
+    }
+    brio_float_leave(&state);
+    return NULL;
+}
+
+/* Creates one more thread, which takes no signals: the host's handlers run in the host's threads. */
+static bool grow(brio_team *team) {
+    thread *t = &team->thread[team->size];
+    pthread_attr_t attributes;
+    sigset_t all, old;
+    if (pthread_attr_init(&attributes)) return false;
+    t->team = team;
+    gate_new(&t->start);
+    sigfillset(&all);
+    pthread_attr_setstacksize(&attributes, STACK);
+    pthread_sigmask(SIG_SETMASK, &all, &old);
+    bool created = pthread_create(&t->handle, &attributes, live, t) == 0;
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
+    pthread_attr_destroy(&attributes);
+    if (created)
+        team->size++;
+    else
+        gate_free(&t->start);
+    return created;
+}
+
+/* A child process has none of its parent's threads. */
+static void forget_other_process(brio_team *team) {
+    pid_t process = getpid();
+    if (process == team->process) return;
+    team->process = process;
+    team->size = 1;
+    team->arrived = 0;
+    team->busy = false;
+    gate_new(&team->barrier);
+}
+
+brio_team *brio_team_new(const brio_allocator *allocator, int most) {
+    size_t bytes = sizeof(brio_team) + (size_t)most * sizeof(thread);
+    brio_team *team = allocator->alloc(bytes, allocator->user);
+    if (!team) return NULL;
+    memset(team, 0, bytes);
+    team->most = most;
+    team->size = 1;
+    team->process = getpid();
+    team->processors = brio_processors();
+    gate_new(&team->barrier);
+    return team;
+}
+
+void brio_team_free(const brio_allocator *allocator, brio_team *team) {
+    if (!team) return;
+    forget_other_process(team);
+    team->work = NULL;
+    for (int i = 1; i < team->size; i++) gate_change(&team->thread[i].start);
+    for (int i = 1; i < team->size; i++) {
+        pthread_join(team->thread[i].handle, NULL);
+        gate_free(&team->thread[i].start);
+    }
+    gate_free(&team->barrier);
+    allocator->free(team, allocator->user);
+}
+
+int brio_processors(void) {
+    cpu_set_t set;
+    long online = sysconf(_SC_NPROCESSORS_ONLN);
+    if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+    return online > 0 && online < 1 << 16 ? (int)online : 1;
+}
+
+/* --- runs --- */
+
+int brio_threads(brio_context *ctx, size_t n, size_t least) {
+    brio_team *team = ctx->team;
+    int most = brio_context_threads(ctx);
+    size_t useful = least ? n / least : n;
+    int wanted = useful < (size_t)most ? (int)useful : most;
+    if (wanted < 2 || team->busy) return 1;
+    forget_other_process(team);
+    while (team->size < wanted && grow(team)) {}
+    return wanted < team->size ? wanted : team->size;
+}
+
+void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user) {
+    brio_team *team = ctx->team;
+    if (threads < 2) {
+        work(user, &(brio_member){NULL, 0, 1});
+        return;
+    }
+    team->busy = true;
+    team->work = work;
+    team->user = user;
+    for (int i = 1; i < threads; i++) {
+        team->thread[i].member = (brio_member){team, i, threads};
+        gate_change(&team->thread[i].start);
+    }
+    brio_member caller = {team, 0, threads};
+    work(user, &caller);
+    brio_barrier(&caller);
+    team->busy = false;
+}
+
+/* --- loops --- */
+
+typedef struct {
+    brio_part_fn body;
+    void *user;
+    size_t n, chunk, next;
+} loop;
+
+static void do_part(void *user, const brio_member *m) {
+    const loop *l = user;
+    size_t begin = brio_part(l->n, m->thread, m->threads), end = brio_part(l->n, m->thread + 1, m->threads);
+    if (begin < end) l->body(l->user, begin, end, m->thread);
+}
+
+void brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user) {
+    loop l = {.body = body, .user = user, .n = n};
+    brio_run(ctx, threads, do_part, &l);
+}
+
+static void do_chunks(void *user, const brio_member *m) {
+    loop *l = user;
+    for (;;) {
+        size_t begin = __atomic_fetch_add(&l->next, l->chunk, __ATOMIC_RELAXED);
+        if (begin >= l->n) return;
+        l->body(l->user, begin, l->n - begin < l->chunk ? l->n : begin + l->chunk, m->thread);
+    }
+}
+
+void brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user) {
+    loop l = {.body = body, .user = user, .n = n, .chunk = chunk};
+    brio_run(ctx, threads, do_chunks, &l);
+}
