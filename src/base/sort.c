@@ -1,7 +1,7 @@
 /* Least-significant-digit radix sorts: of pairs, of items, of rows by their first number. */
 #include "base/sort.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include <string.h>
 
 enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PAIRS_A_THREAD = 1 << 12 };
@@ -27,57 +27,61 @@ static bool first_positions(size_t (*count)[BUCKETS], int threads, size_t n) {
     return true;
 }
 
-/* One digit; every thread of the team calls this. *moved, which they share, tells whether the pairs are in `to`. */
-static void sort_pairs_digit(pairs from, pairs to, size_t n, int shift, size_t (*count)[BUCKETS], bool *moved) {
-    int thread = brio_thread(), threads = brio_team_size();
-    size_t begin = brio_part(n, thread, threads), end = brio_part(n, thread + 1, threads), *mine = count[thread];
-    memset(mine, 0, sizeof *count);
+/* What the members of a sort of pairs share. */
+typedef struct {
+    pairs given, spare;
+    size_t n;
+    int bits;
+    size_t (*count)[BUCKETS]; /* of each thread */
+    bool moved;               /* the last digit moved the pairs */
+    bool in_spare;            /* where the pairs are in the end */
+} pair_sort;
+
+/* One digit, from one room to the other; every member calls this. Leaves s->moved. */
+static void sort_pairs_digit(pair_sort *s, pairs from, pairs to, int shift, const brio_member *m) {
+    size_t begin = brio_part(s->n, m->thread, m->threads), end = brio_part(s->n, m->thread + 1, m->threads);
+    size_t *mine = s->count[m->thread];
+    memset(mine, 0, sizeof *s->count);
     for (size_t i = begin; i < end; i++) mine[from.key[i] >> shift & (BUCKETS - 1)]++;
-    BRIO_OMP(barrier)
-    BRIO_OMP(single)
-    *moved = first_positions(count, threads, n);
-    for (size_t i = *moved ? begin : end; i < end; i++) {
+    brio_barrier(m);
+    if (m->thread == 0) s->moved = first_positions(s->count, m->threads, s->n);
+    brio_barrier(m);
+    for (size_t i = s->moved ? begin : end; i < end; i++) {
         size_t place = mine[from.key[i] >> shift & (BUCKETS - 1)]++;
         to.key[place] = from.key[i];
         to.value[place] = from.value[i];
     }
-    BRIO_OMP(barrier)
+    brio_barrier(m);
 }
 
-/* Sorts a, with b as spare room; whether the pairs are in b in the end. Every thread of the team calls this. */
-static bool sort_pairs(pairs a, pairs b, size_t n, int bits, size_t (*count)[BUCKETS], bool *moved) {
-    bool in_b = false;
-    for (int shift = 0; shift < bits; shift += DIGIT) {
-        sort_pairs_digit(in_b ? b : a, in_b ? a : b, n, shift, count, moved);
-        in_b ^= *moved;
-        BRIO_OMP(barrier)
+static void sort_pairs(void *user, const brio_member *m) {
+    pair_sort *s = user;
+    bool in_spare = false;
+    for (int shift = 0; shift < s->bits; shift += DIGIT) {
+        sort_pairs_digit(s, in_spare ? s->spare : s->given, in_spare ? s->given : s->spare, shift, m);
+        in_spare ^= s->moved;
+        brio_barrier(m); /* s->moved has been read */
     }
-    return in_b;
+    if (m->thread == 0) s->in_spare = in_spare;
 }
 
 brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits) {
     brio_status status = BRIO_OK;
-    int threads = brio_context_threads(ctx), most = (int)(n / PAIRS_A_THREAD) + 1;
-    pairs spare = {NULL, NULL};
-    size_t(*count)[BUCKETS] = NULL;
-    bool moved = false, in_spare = false;
-    if (n < 2) goto done;
-    if (threads > most) threads = most;
-    BRIO_TRY(BRIO_ALLOC(ctx, count, (size_t)threads));
-    BRIO_TRY(BRIO_ALLOC(ctx, spare.key, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, spare.value, n));
-    BRIO_OMP(parallel num_threads(threads)) {
-        bool last = sort_pairs((pairs){keys, values}, spare, n, bits, count, &moved);
-        if (brio_thread() == 0) in_spare = last;
-    }
-    if (in_spare) {
-        memcpy(keys, spare.key, n * sizeof *keys);
-        memcpy(values, spare.value, n * sizeof *values);
+    pair_sort s = {.given = {keys, values}, .n = n, .bits = bits};
+    if (n < 2) return BRIO_OK;
+    int threads = brio_threads(ctx, n, PAIRS_A_THREAD);
+    BRIO_TRY(BRIO_ALLOC(ctx, s.count, (size_t)threads));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.spare.key, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.spare.value, n));
+    brio_run(ctx, threads, sort_pairs, &s);
+    if (s.in_spare) {
+        memcpy(keys, s.spare.key, n * sizeof *keys);
+        memcpy(values, s.spare.value, n * sizeof *values);
     }
 done:
-    brio_release(ctx, count);
-    brio_release(ctx, spare.key);
-    brio_release(ctx, spare.value);
+    brio_release(ctx, s.count);
+    brio_release(ctx, s.spare.key);
+    brio_release(ctx, s.spare.value);
     return status;
 }
 
@@ -105,34 +109,48 @@ static void first_places(size_t (*count)[ITEM_BUCKETS], int threads) {
         }
 }
 
-/* One digit; every thread of the team calls this. */
-static void sort_digit(const uint64_t *from, uint64_t *to, size_t n, int shift, size_t (*count)[ITEM_BUCKETS]) {
-    int thread = brio_thread(), threads = brio_team_size();
-    size_t begin = brio_part(n, thread, threads), end = brio_part(n, thread + 1, threads), *mine = count[thread];
-    memset(mine, 0, sizeof *count);
+/* What the members of a sort of items share. */
+typedef struct {
+    uint64_t *items, *spare;
+    size_t n;
+    int passes;
+    size_t (*count)[ITEM_BUCKETS]; /* of each thread */
+} item_sort;
+
+/* One digit; every member calls this. */
+static void sort_digit(const item_sort *s, int pass, const brio_member *m) {
+    const uint64_t *from = pass % 2 ? s->spare : s->items;
+    uint64_t *to = pass % 2 ? s->items : s->spare;
+    size_t begin = brio_part(s->n, m->thread, m->threads), end = brio_part(s->n, m->thread + 1, m->threads);
+    size_t *mine = s->count[m->thread];
+    int shift = 32 + pass * ITEM_DIGIT;
+    memset(mine, 0, sizeof *s->count);
     for (size_t i = begin; i < end; i++) mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++;
-    BRIO_OMP(barrier)
-    BRIO_OMP(single)
-    first_places(count, threads);
+    brio_barrier(m);
+    if (m->thread == 0) first_places(s->count, m->threads);
+    brio_barrier(m);
     for (size_t i = begin; i < end; i++) to[mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++] = from[i];
-    BRIO_OMP(barrier)
+    brio_barrier(m);
+}
+
+static void sort_items(void *user, const brio_member *m) {
+    const item_sort *s = user;
+    for (int pass = 0; pass < s->passes; pass++) sort_digit(s, pass, m);
 }
 
 brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare, size_t n, int bits, int threads) {
-    size_t(*count)[ITEM_BUCKETS] = NULL;
-    int passes = (bits + ITEM_DIGIT - 1) / ITEM_DIGIT, most = (int)(n / ITEMS_A_THREAD) + 1;
+    item_sort s = {.items = items, .spare = spare, .n = n, .passes = (bits + ITEM_DIGIT - 1) / ITEM_DIGIT};
     if (n <= FEW_ITEMS) {
         insert_items(items, n);
         return BRIO_OK;
     }
+    int most = (int)(n / ITEMS_A_THREAD) + 1;
     if (threads > most) threads = most;
-    brio_status status = BRIO_ALLOC(ctx, count, (size_t)threads);
+    brio_status status = BRIO_ALLOC(ctx, s.count, (size_t)threads);
     if (status != BRIO_OK) return status;
-    BRIO_OMP(parallel num_threads(threads))
-    for (int p = 0; p < passes; p++)
-        sort_digit(p % 2 ? spare : items, p % 2 ? items : spare, n, 32 + p * ITEM_DIGIT, count);
-    if (passes % 2) memcpy(items, spare, n * sizeof *items);
-    brio_release(ctx, count);
+    brio_run(ctx, threads, sort_items, &s);
+    if (s.passes % 2) memcpy(items, spare, n * sizeof *items);
+    brio_release(ctx, s.count);
     return BRIO_OK;
 }
 

@@ -7,8 +7,8 @@
 /** Sorts n pairs by key, keys below 2^bits, stable. Needs 12 n bytes of workspace. */
 brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits);
 
-/** Sorts n items by the `bits` bits from bit 32 on, stable; spare holds n items, too. Each thread takes at least some
- *  thousands. */
+/** Sorts n items by the `bits` bits from bit 32 on, stable; spare holds n items, too. `threads` is what brio_threads gave;
+ *  the sort uses fewer where n is small. */
 brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare, size_t n, int bits, int threads);
 
 /** Sorts 64-bit keys in place, in O(n log n) for every input. */

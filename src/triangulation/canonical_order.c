@@ -13,7 +13,7 @@
  *
  * In scratch files it is done by partitions instead (canonical_files.c). */
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "triangulation/canonical_turn.h"
 #include "triangulation/kernel.h"
 #include <string.h>
@@ -34,6 +34,7 @@ typedef struct {
     uint32_t *end;
     size_t buckets, live;
     int threads;
+    brio_status status;
 } sorter;
 
 /* The tetrahedra of one bucket, in a thread's hands. */
@@ -67,7 +68,9 @@ static inline void find_bucket(sorter *s, size_t slot) {
 
 /* Counts the tetrahedra of each bucket, those in the slots from `from` to `to`; the counters are fetched ahead, since an
  * atomic addition waits for its own. */
-static void count_buckets(sorter *s, size_t from, size_t to) {
+static void count_buckets(void *user, size_t from, size_t to, int thread) {
+    sorter *s = user;
+    (void)thread;
     for (size_t t = from; t < to + AHEAD; t++) {
         if (t < to) find_bucket(s, t);
         if (t >= from + AHEAD && s->place[t - AHEAD] != NOWHERE) count_one(s, s->place[t - AHEAD]);
@@ -75,7 +78,9 @@ static void count_buckets(sorter *s, size_t from, size_t to) {
 }
 
 /* Lists the tetrahedra of each bucket, those in the slots from `from` to `to`. */
-static void list_buckets(sorter *s, size_t from, size_t to) {
+static void list_buckets(void *user, size_t from, size_t to, int thread) {
+    const sorter *s = user;
+    (void)thread;
     for (size_t t = from; t < to; t++) {
         size_t soon = t + AHEAD / 2, later = t + AHEAD;
         if (later < to && s->place[later] != NOWHERE) __builtin_prefetch(&s->end[s->place[later]], 1);
@@ -90,17 +95,13 @@ static void list_buckets(sorter *s, size_t from, size_t to) {
 static void fill_buckets(sorter *s) {
     size_t count = s->k->t.count;
     uint32_t sum = 0;
-    BRIO_OMP(parallel for schedule(static, 1) num_threads(s->threads))
-    for (int i = 0; i < s->threads; i++)
-        count_buckets(s, brio_part(count, i, s->threads), brio_part(count, i + 1, s->threads));
+    brio_for(s->k->ctx, s->threads, count, count_buckets, s);
     for (size_t b = 0; b < s->buckets; b++) {
         uint32_t c = s->end[b];
         s->end[b] = sum;
         sum += c;
     }
-    BRIO_OMP(parallel for schedule(static, 1) num_threads(s->threads))
-    for (int i = 0; i < s->threads; i++)
-        list_buckets(s, brio_part(count, i, s->threads), brio_part(count, i + 1, s->threads));
+    brio_for(s->k->ctx, s->threads, count, list_buckets, s);
 }
 
 /* Sorts the tetrahedra of the places [begin, end) and tells each its place and turn. */
@@ -135,16 +136,17 @@ static brio_status sort_some(sorter *s, size_t from, size_t to) {
     return status;
 }
 
+static void sort_chunk(void *user, size_t from, size_t to, int thread) {
+    sorter *s = user;
+    (void)thread;
+    brio_report(&s->status, sort_some(s, from, to));
+}
+
 static brio_status sort_buckets(sorter *s) {
     enum { PARTS = 16 }; /* a thread, since buckets are not alike */
-    brio_status status = BRIO_OK;
-    int parts = s->threads > 1 ? PARTS * s->threads : 1;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(s->threads))
-    for (int p = 0; p < parts; p++) {
-        brio_status own = sort_some(s, brio_part(s->buckets, p, parts), brio_part(s->buckets, p + 1, parts));
-        if (own != BRIO_OK) BRIO_OMP(critical(brio_sort_status)) status = own;
-    }
-    return status;
+    size_t chunk = s->threads > 1 ? s->buckets / (size_t)(PARTS * s->threads) + 1 : s->buckets;
+    brio_for_chunks(s->k->ctx, s->threads, s->buckets, chunk, sort_chunk, s);
+    return s->status;
 }
 
 /* --- moving --- */
@@ -199,6 +201,8 @@ static inline void move_one(sorter *s, uint32_t slot, uint32_t to) {
 /* What the threads share that fill a block: the tetrahedra aside, those that have to leave and the slots for them, and
  * how many of each the threads before one have found. */
 typedef struct {
+    sorter *sorter;
+    size_t block; /* places in one */
     brio_tetrahedron *aside;
     uint32_t *leaving, *vacant;
     size_t *num_leaving, *num_vacant;
@@ -272,40 +276,42 @@ static void write_block(sorter *s, const mover *m, size_t begin, size_t from, si
     }
 }
 
-static void move_blocks(sorter *s, const mover *m, size_t block) {
-    BRIO_OMP(parallel num_threads(s->threads))
-    for (size_t begin = 0; begin < s->live; begin += block) {
-        int thread = brio_thread(), threads = brio_team_size();
-        size_t end = begin + block < s->live ? begin + block : s->live;
+/* Fills all blocks one after the other; every member does its part of each. */
+static void move_blocks(void *user, const brio_member *member) {
+    const mover *m = user;
+    sorter *s = m->sorter;
+    int thread = member->thread, threads = member->threads;
+    for (size_t begin = 0; begin < s->live; begin += m->block) {
+        size_t end = begin + m->block < s->live ? begin + m->block : s->live;
         size_t from = brio_part(end - begin, thread, threads), to = brio_part(end - begin, thread + 1, threads);
         gather(s, m, begin, from, to);
-        BRIO_OMP(barrier)
+        brio_barrier(member);
         list_moves(s, m, begin, end, from, to, thread, true);
-        BRIO_OMP(barrier)
-        BRIO_OMP(single)
-        add_up(m, threads);
+        brio_barrier(member);
+        if (thread == 0) add_up(m, threads);
+        brio_barrier(member);
         list_moves(s, m, begin, end, from, to, thread, false);
-        BRIO_OMP(barrier)
+        brio_barrier(member);
         size_t moves = m->num_leaving[threads];
         leave_block(s, m, brio_part(moves, thread, threads), brio_part(moves, thread + 1, threads));
-        BRIO_OMP(barrier)
+        brio_barrier(member);
         write_block(s, m, begin, from, to);
-        BRIO_OMP(barrier)
+        brio_barrier(member);
     }
 }
 
 static brio_status move_all(sorter *s) {
     brio_context *ctx = s->k->ctx;
-    mover m = {0};
     brio_status status = BRIO_OK;
     size_t block = (size_t)BLOCK * (size_t)s->threads;
     if (s->threads > 1 && block < s->live / STEPS) block = s->live / STEPS; /* threads wait for each other each time */
+    mover m = {.sorter = s, .block = block};
     BRIO_TRY(BRIO_ALLOC(ctx, m.aside, block));
     BRIO_TRY(BRIO_ALLOC(ctx, m.leaving, block));
     BRIO_TRY(BRIO_ALLOC(ctx, m.vacant, block));
     BRIO_TRY(BRIO_ALLOC(ctx, m.num_leaving, (size_t)s->threads + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, m.num_vacant, (size_t)s->threads + 1));
-    move_blocks(s, &m, block);
+    brio_run(ctx, s->threads, move_blocks, &m);
 done:
     brio_release(ctx, m.aside);
     brio_release(ctx, m.leaving);
@@ -318,8 +324,7 @@ done:
 brio_status brio_kernel_sort(brio_kernel *k) {
     if (k->read_ahead.active) return brio_kernel_sort_files(k);
     sorter s = {.k = k, .buckets = 2 * (k->num_points + 2), .live = k->t.count - k->num_unused};
-    int threads = brio_context_threads(k->ctx), most = (int)(s.live / BLOCK) + 1;
-    s.threads = threads < most ? threads : most;
+    s.threads = brio_threads(k->ctx, s.live, BLOCK);
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.order, s.live + AHEAD));
     BRIO_TRY(BRIO_ALLOC(k->ctx, s.place, k->t.count));

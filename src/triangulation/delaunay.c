@@ -4,14 +4,15 @@
  *           Devillers, Teillaud. Perturbations for Delaunay and weighted Delaunay 3D triangulations. CGTA 2011. */
 #include "base/kept.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "order/order.h"
 #include "triangulation/kernel.h"
 #include "triangulation/recorder.h"
 #include "triangulation/triangulation.h"
+#include <math.h>
 #include <string.h>
 
-enum { PROGRESS_EVERY = 8192, PARALLEL_FROM = 1 << 15 };
+enum { PROGRESS_EVERY = 8192, RECORDS_A_THREAD = 1 << 14, POINTS_A_THREAD = 512 };
 
 brio_options brio_options_default(void) {
     return (brio_options){.order = BRIO_ORDER_BRIO, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
@@ -62,21 +63,36 @@ static inline bool write_record(const double *points, const double *weights, siz
     return finite == 0; /* else NaN */
 }
 
+typedef struct {
+    const double *points, *weights;
+    const uint32_t *order; /* NULL: as they are */
+    brio_record *record;
+    size_t bad; /* the least index of a point that is not finite */
+} record_job;
+
+static void write_records(void *user, size_t begin, size_t end, int thread) {
+    record_job *job = user;
+    size_t bad = SIZE_MAX, least = __atomic_load_n(&job->bad, __ATOMIC_RELAXED);
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        size_t from = job->order ? job->order[i] : i;
+        if (!write_record(job->points, job->weights, from, job->record[i]) && from < bad) bad = from;
+    }
+    while (bad < least &&
+           !__atomic_compare_exchange_n(&job->bad, &least, bad, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+}
+
 brio_status brio_records_new(brio_context *ctx, const double *points, const double *weights, size_t n,
                              const uint32_t *order, size_t room, brio_record **out) {
     brio_record *record = NULL;
     brio_status status = BRIO_ALLOC(ctx, record, n + room);
     if (status != BRIO_OK) return status;
     brio_expect_sequence(record);
-    size_t bad = n;
-    BRIO_OMP(parallel for num_threads(brio_context_threads(ctx)) reduction(min : bad) if (n > PARALLEL_FROM))
-    for (size_t i = 0; i < n; i++) {
-        size_t from = order ? order[i] : i;
-        if (!write_record(points, weights, from, record[i]) && from < bad) bad = from;
-    }
-    if (bad < n) {
+    record_job job = {points, weights, order, record, n};
+    brio_for(ctx, brio_threads(ctx, n, RECORDS_A_THREAD), n, write_records, &job);
+    if (job.bad < n) {
         brio_release(ctx, record);
-        return refuse_not_finite(ctx, points, weights, n, bad);
+        return refuse_not_finite(ctx, points, weights, n, job.bad);
     }
     memset(record + n, 0, room * sizeof *record);
     *out = record;
@@ -102,7 +118,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     double start = brio_seconds();
     BRIO_TRY(BRIO_ALLOC(ctx, k->caller, n + 3));
     BRIO_TRY(brio_progress(ctx, "order", 0));
-    bool parallel = brio_context_threads(ctx) > 1 && options->locate == BRIO_LOCATE_WALK;
+    bool parallel = brio_threads(ctx, n, POINTS_A_THREAD) > 1 && options->locate == BRIO_LOCATE_WALK;
     if (parallel && brio_order_has_ranks(options->order)) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, k->rank, n + 3));
     BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller, k->rank, rounds));
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));

@@ -6,7 +6,7 @@ brio_status brio_kernel_reserve(brio_kernel *k, size_t more) {
     brio_status status = BRIO_OK;
     size_t need = k->t.count + more;
     if (need <= k->capacity) return BRIO_OK;
-    if (k->team) return brio_team_reserve(k, more);
+    if (k->pass) return brio_pass_reserve(k, more);
     size_t capacity = need + need / 8 + 1024;
     BRIO_REQUIRE(k->ctx, need <= k->max_tetrahedra, BRIO_ERR_TOO_LARGE, "more than %zu tetrahedra", k->max_tetrahedra);
     if (capacity > k->max_tetrahedra) capacity = k->max_tetrahedra;

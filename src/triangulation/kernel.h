@@ -35,7 +35,7 @@ struct brio_kernel {
     brio_context *ctx;
     brio_tetrahedra t;
     size_t capacity, max_tetrahedra; /* slots from t.count to capacity are fresh */
-    struct brio_team *team;          /* of the parallel pass, or NULL */
+    struct brio_pass *pass;          /* the parallel pass, or NULL */
     uint8_t *state;                  /* of each tetrahedron: brio_tet_state */
     uint32_t *unused;                /* slots of destroyed tetrahedra */
     size_t num_unused, unused_capacity;
@@ -79,7 +79,7 @@ brio_status brio_kernel_start(brio_kernel *k);
 brio_status brio_kernel_reserve(brio_kernel *k, size_t more);
 
 /** The same in a parallel pass: a new stretch of fresh slots; BRIO_DEFERRED when there are no more. */
-brio_status brio_team_reserve(brio_kernel *k, size_t more);
+brio_status brio_pass_reserve(brio_kernel *k, size_t more);
 
 /** Inserts the records [begin, end), which follow the curve, by all threads of the context. */
 brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end);

@@ -19,7 +19,7 @@
  * tetrahedra nor of vertices but of segments, kept from one insertion to the next.
  */
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "triangulation/kernel.h"
 #include <string.h>
 
@@ -36,7 +36,7 @@ enum {
 };
 
 /* What the threads of a pass share. */
-typedef struct brio_team {
+typedef struct brio_pass {
     brio_kernel *main;
     uint32_t first; /* the records to insert, along the curve: from `first` on, or those listed */
     uint32_t *list;
@@ -45,8 +45,8 @@ typedef struct brio_team {
     size_t segments;
     uint8_t *taken; /* of each segment */
     size_t next_slot, last_slot;
-    int stop; /* some thread failed */
-} brio_team;
+    int stop; /* some thread failed; only hastens the others' end */
+} brio_pass;
 
 /* One thread's work in a pass. */
 typedef struct {
@@ -59,8 +59,8 @@ typedef struct {
     brio_status status;
 } worker;
 
-static inline uint32_t record_of(const brio_team *team, size_t i) {
-    return team->list ? team->list[i] : team->first + (uint32_t)i;
+static inline uint32_t record_of(const brio_pass *pass, size_t i) {
+    return pass->list ? pass->list[i] : pass->first + (uint32_t)i;
 }
 
 /* --- slots --- */
@@ -77,16 +77,16 @@ static brio_status give_back_stretch(brio_kernel *k) {
     return BRIO_OK;
 }
 
-brio_status brio_team_reserve(brio_kernel *k, size_t more) {
-    brio_team *team = k->team;
+brio_status brio_pass_reserve(brio_kernel *k, size_t more) {
+    brio_pass *pass = k->pass;
     size_t size = more > STRETCH ? more : STRETCH, begin;
     brio_status status = give_back_stretch(k);
     if (status != BRIO_OK) return status;
-    begin = __atomic_load_n(&team->next_slot, __ATOMIC_RELAXED);
+    begin = __atomic_load_n(&pass->next_slot, __ATOMIC_RELAXED);
     do { /* taken only when it fits: giving back what did not could give away another thread's slots */
-        if (begin + size > team->last_slot) return BRIO_DEFERRED;
+        if (begin + size > pass->last_slot) return BRIO_DEFERRED;
     } while (
-        !__atomic_compare_exchange_n(&team->next_slot, &begin, begin + size, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED));
+        !__atomic_compare_exchange_n(&pass->next_slot, &begin, begin + size, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED));
     k->t.count = begin;
     k->capacity = begin + size;
     return BRIO_OK;
@@ -123,7 +123,7 @@ static brio_status try_again(worker *w) {
     size_t count = w->num_deferred;
     w->num_deferred = 0;
     for (size_t i = 0; i < count; i++) {
-        if (__atomic_load_n(&w->kernel.team->stop, __ATOMIC_RELAXED)) break;
+        if (__atomic_load_n(&w->kernel.pass->stop, __ATOMIC_RELAXED)) break;
         BRIO_TRY(try_point(w, w->deferred[i]));
     }
 done:
@@ -132,33 +132,33 @@ done:
 
 /* Progress of a thread stands for that of all. */
 static brio_status report(const worker *w, size_t i) {
-    const brio_team *team = w->kernel.team;
-    double done = (double)team->first + (double)(i - w->begin) / (double)(w->end - w->begin) * (double)team->count;
+    const brio_pass *pass = w->kernel.pass;
+    double done = (double)pass->first + (double)(i - w->begin) / (double)(w->end - w->begin) * (double)pass->count;
     return brio_progress(w->kernel.ctx, "insert", done / (double)w->kernel.num_points);
 }
 
 static brio_status work(worker *w, bool reports) {
-    brio_team *team = w->kernel.team;
+    brio_pass *pass = w->kernel.pass;
     brio_status status = BRIO_OK;
-    for (size_t i = w->begin; i < w->end && !__atomic_load_n(&team->stop, __ATOMIC_RELAXED); i++) {
-        BRIO_TRY(try_point(w, record_of(team, i)));
+    for (size_t i = w->begin; i < w->end && !__atomic_load_n(&pass->stop, __ATOMIC_RELAXED); i++) {
+        BRIO_TRY(try_point(w, record_of(pass, i)));
         if (reports && (i - w->begin) % PROGRESS_EVERY == 0) BRIO_TRY(report(w, i));
     }
     w->kernel.stats.deferred = w->num_deferred;
     for (int i = 0; i < RETRIES && w->num_deferred && w->placed; i++) BRIO_TRY(try_again(w));
 done:
-    if (status != BRIO_OK) __atomic_store_n(&team->stop, 1, __ATOMIC_RELAXED);
+    if (status != BRIO_OK) __atomic_store_n(&pass->stop, 1, __ATOMIC_RELAXED);
     brio_zone_leave(&w->zone);
     return status;
 }
 
-/* --- teams --- */
+/* --- workers --- */
 
 /* A kernel with the main one's arrays and its own workspace. */
-static brio_status join_team(worker *w, brio_team *team) {
-    brio_kernel *k = &w->kernel, own = *k, *main = team->main;
+static brio_status join_pass(worker *w, brio_pass *pass) {
+    brio_kernel *k = &w->kernel, own = *k, *main = pass->main;
     *k = *main;
-    k->team = team;
+    k->pass = pass;
     k->t.count = k->capacity = 0;
     k->unused = own.unused, k->unused_capacity = own.unused_capacity, k->num_unused = 0;
     k->star = own.star;
@@ -173,8 +173,8 @@ static brio_status join_team(worker *w, brio_team *team) {
 }
 
 /* Gives the main kernel what the thread has left and counted. */
-static brio_status leave_team(worker *w, brio_team *team) {
-    brio_kernel *k = &w->kernel, *main = team->main;
+static brio_status leave_pass(worker *w, brio_pass *pass) {
+    brio_kernel *k = &w->kernel, *main = pass->main;
     brio_status status = BRIO_OK;
     BRIO_TRY(give_back_stretch(k));
     BRIO_TRY(BRIO_RESERVE(k->ctx, main->unused, main->unused_capacity, main->num_unused + k->num_unused));
@@ -204,11 +204,11 @@ static void worker_free(worker *w) {
 /* --- passes --- */
 
 /* Finds a tetrahedron along the worker's part that it can hold; whether there is one. */
-static bool place_worker(worker *w, brio_team *team) {
-    brio_kernel *k = &w->kernel, *main = team->main;
+static bool place_worker(worker *w, brio_pass *pass) {
+    brio_kernel *k = &w->kernel, *main = pass->main;
     size_t n = w->end - w->begin;
     for (size_t i = 0; i < STARTS && n; i++) {
-        const double *p = main->record[record_of(team, w->begin + i * n / STARTS)];
+        const double *p = main->record[record_of(pass, w->begin + i * n / STARTS)];
         k->walk.start = main->walk.start = main->engine->walk(&main->t, &main->filter, &main->walk, p, UINT64_MAX);
         if (brio_owns(&k->t, k->walk.start)) return true;
         brio_zone_leave(&w->zone);
@@ -217,59 +217,63 @@ static bool place_worker(worker *w, brio_team *team) {
 }
 
 /* Segments of the curve so that each has some vertices already. */
-static brio_status divide_curve(brio_team *team, size_t inserted) {
-    size_t points = team->main->num_points,
+static brio_status divide_curve(brio_pass *pass, size_t inserted) {
+    size_t points = pass->main->num_points,
            most = inserted / SEGMENT < MOST_SEGMENTS ? inserted / SEGMENT : MOST_SEGMENTS;
-    team->shift = 0;
-    while (points >> team->shift > most) team->shift++;
-    team->segments = (points >> team->shift) + 1;
-    brio_release(team->main->ctx, team->taken);
-    return BRIO_ALLOC_ZERO(team->main->ctx, team->taken, team->segments);
+    pass->shift = 0;
+    while (points >> pass->shift > most) pass->shift++;
+    pass->segments = (points >> pass->shift) + 1;
+    brio_release(pass->main->ctx, pass->taken);
+    return BRIO_ALLOC_ZERO(pass->main->ctx, pass->taken, pass->segments);
 }
 
-static brio_status start_pass(brio_team *team, worker *workers, int threads) {
+static brio_status start_pass(brio_pass *pass, worker *workers, int threads) {
     brio_status status = BRIO_OK;
     for (int i = 0; i < threads; i++) {
         worker *w = &workers[i];
-        w->begin = brio_part(team->count, i, threads);
-        w->end = brio_part(team->count, i + 1, threads);
+        w->begin = brio_part(pass->count, i, threads);
+        w->end = brio_part(pass->count, i + 1, threads);
         w->num_deferred = 0;
-        BRIO_TRY(join_team(w, team));
-        brio_zone_free(team->main->ctx, &w->zone);
-        BRIO_TRY(brio_zone_new(team->main->ctx, team->main->rank, team->shift, team->segments, team->taken, &w->zone));
+        BRIO_TRY(join_pass(w, pass));
+        brio_zone_free(pass->main->ctx, &w->zone);
+        BRIO_TRY(brio_zone_new(pass->main->ctx, pass->main->rank, pass->shift, pass->segments, pass->taken, &w->zone));
         w->kernel.t.zone = &w->zone;
-        w->placed = place_worker(w, team);
+        w->placed = place_worker(w, pass);
     }
 done:
     return status;
 }
 
 /* Slots for a pass: as many a point as up to now, and some more. */
-static brio_status reserve_slots(brio_team *team, size_t inserted, int threads) {
-    brio_kernel *main = team->main;
+static brio_status reserve_slots(brio_pass *pass, size_t inserted, int threads) {
+    brio_kernel *main = pass->main;
     double each = (double)(main->t.count - main->num_unused) / (double)inserted;
-    size_t more = (size_t)(1.04 * each * (double)team->count) + (size_t)threads * 2 * STRETCH, room;
+    size_t more = (size_t)(1.04 * each * (double)pass->count) + (size_t)threads * 2 * STRETCH, room;
     room = main->max_tetrahedra - main->t.count;
     brio_status status = brio_kernel_reserve(main, more < room ? more : room);
-    team->next_slot = main->t.count;
-    team->last_slot = main->capacity;
+    pass->next_slot = main->t.count;
+    pass->last_slot = main->capacity;
     return status;
 }
 
-/* One pass over the team's records; afterwards the deferred ones are in *left. */
-static brio_status run_pass(brio_team *team, worker *workers, int threads, uint32_t **left, size_t *num_left) {
+static void work_as_member(void *user, const brio_member *m) {
+    worker *w = (worker *)user + m->thread;
+    w->status = work(w, m->thread == 0);
+}
+
+/* One pass over the records; afterwards the deferred ones are in *left. */
+static brio_status run_pass(brio_pass *pass, worker *workers, int threads, uint32_t **left, size_t *num_left) {
     brio_status status = BRIO_OK;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(threads))
-    for (int w = 0; w < threads; w++) workers[w].status = work(&workers[w], brio_thread() == 0);
+    brio_run(pass->main->ctx, threads, work_as_member, workers);
     size_t total = 0;
     for (int w = 0; w < threads; w++) {
         BRIO_TRY(workers[w].status);
-        BRIO_TRY(leave_team(&workers[w], team));
+        BRIO_TRY(leave_pass(&workers[w], pass));
         total += workers[w].num_deferred;
     }
-    team->main->t.count = team->next_slot;
-    team->main->cavity.num_created = 0; /* its last star may be gone */
-    BRIO_TRY(BRIO_ALLOC(team->main->ctx, *left, total));
+    pass->main->t.count = pass->next_slot;
+    pass->main->cavity.num_created = 0; /* its last star may be gone */
+    BRIO_TRY(BRIO_ALLOC(pass->main->ctx, *left, total));
     *num_left = 0;
     for (int w = 0; w < threads; w++) {
         if (!workers[w].num_deferred) continue;
@@ -287,32 +291,32 @@ static int useful_threads(size_t count, size_t inserted, int most) {
 
 brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end) {
     brio_status status = BRIO_OK;
-    brio_team team = {.main = k, .first = (uint32_t)begin, .count = end - begin};
-    int most = brio_context_threads(k->ctx);
+    brio_pass pass = {.main = k, .first = (uint32_t)begin, .count = end - begin};
+    int most = brio_threads(k->ctx, pass.count, LEAST);
     worker *workers = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, workers, (size_t)most));
     for (int w = 0; w < most; w++) workers[w].kernel.ctx = k->ctx;
-    for (int pass = 0; pass < PASSES; pass++) {
-        size_t inserted = end - team.count, num_left = 0;
-        int threads = useful_threads(team.count, inserted, most);
+    for (int n = 0; n < PASSES; n++) {
+        size_t inserted = end - pass.count, num_left = 0;
+        int threads = useful_threads(pass.count, inserted, most);
         uint32_t *left = NULL;
         if (threads < 2) break;
-        BRIO_TRY(reserve_slots(&team, inserted, threads));
-        BRIO_TRY(divide_curve(&team, inserted));
-        BRIO_TRY(start_pass(&team, workers, threads));
-        BRIO_TRY(run_pass(&team, workers, threads, &left, &num_left));
-        bool stuck = num_left > team.count / 2;
-        brio_release(k->ctx, team.list);
-        team.list = left;
-        team.count = num_left;
+        BRIO_TRY(reserve_slots(&pass, inserted, threads));
+        BRIO_TRY(divide_curve(&pass, inserted));
+        BRIO_TRY(start_pass(&pass, workers, threads));
+        BRIO_TRY(run_pass(&pass, workers, threads, &left, &num_left));
+        bool stuck = num_left > pass.count / 2;
+        brio_release(k->ctx, pass.list);
+        pass.list = left;
+        pass.count = num_left;
         if (stuck) break;
     }
-    for (size_t i = 0; i < team.count; i++) BRIO_TRY(brio_kernel_insert(k, record_of(&team, i)));
-    k->stats.serial += team.count;
+    for (size_t i = 0; i < pass.count; i++) BRIO_TRY(brio_kernel_insert(k, record_of(&pass, i)));
+    k->stats.serial += pass.count;
 done:
     for (int w = 0; workers && w < most; w++) worker_free(&workers[w]);
     brio_release(k->ctx, workers);
-    brio_release(k->ctx, team.list);
-    brio_release(k->ctx, team.taken);
+    brio_release(k->ctx, pass.list);
+    brio_release(k->ctx, pass.taken);
     return status;
 }

@@ -7,11 +7,13 @@
  * nearer neighbour is the nearest of all. Apexes of flat inputs are passed over: the edges of the flat triangulation
  * suffice. */
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "triangulation/kernel.h"
 #include "triangulation/nearest_vertex.h"
 #include "triangulation/vertex_tets.h"
+
+enum { SLOTS_A_THREAD = 1 << 13 };
 
 typedef struct {
     brio_kernel *k;
@@ -104,6 +106,21 @@ static bool has_earlier_twin(const brio_kernel *k) {
     return false;
 }
 
+typedef struct {
+    brio_kernel *k;
+    const uint32_t *first; /* of each vertex: the record that takes its place */
+} renaming;
+
+static void rename_vertices(void *user, size_t begin, size_t end, int thread) {
+    const renaming *r = user;
+    (void)thread;
+    for (size_t t = begin; t < end; t++) {
+        if (r->k->state[t] != TET_PLAIN) continue; /* nobody need have written an unused slot */
+        uint32_t *v = r->k->t.tet[t].vertex;
+        for (int i = 0; i < 4; i++) v[i] = r->first[v[i]];
+    }
+}
+
 /* In a parallel pass a later one of coincident points may come first and become the vertex. The first in the order
  * takes its place back, so that the order of the tetrahedra does not tell. */
 static brio_status restore_first(brio_kernel *k) {
@@ -113,11 +130,8 @@ static brio_status restore_first(brio_kernel *k) {
     for (uint32_t v = 0; v < k->num_points + 3; v++) first[v] = v;
     for (uint32_t p = (uint32_t)k->num_points; p-- > 0;)
         if (is_earlier_twin(k, p)) first[k->representative[p]] = p;
-    BRIO_OMP(parallel for num_threads(brio_context_threads(k->ctx)))
-    for (size_t t = 0; t < k->t.count; t++) {
-        if (k->state[t] != TET_PLAIN) continue; /* nobody need have written an unused slot */
-        for (int i = 0; i < 4; i++) k->t.tet[t].vertex[i] = first[k->t.tet[t].vertex[i]];
-    }
+    renaming r = {k, first};
+    brio_for(k->ctx, brio_threads(k->ctx, k->t.count, SLOTS_A_THREAD), k->t.count, rename_vertices, &r);
     for (uint32_t p = 0; p < k->num_points; p++) {
         uint32_t v = k->representative[p];
         k->representative[p] = first[v];
