@@ -14,7 +14,7 @@
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3. */
 #include "reconstruct/power_crust/crust_faces.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "predicates/circumcentre.h"
 #include "reconstruct/labels/labelling.h"
 #include "surface/split_vertices.h"
@@ -45,8 +45,10 @@ typedef struct {
     block_counts *blocks; /* num_blocks + 1 */
     face_list *lists;     /* of each block */
     size_t num_blocks;
+    brio_status status; /* the first failure of a thread */
 } builder;
 
+/* Blocks are handed to threads one by one: the functions that a loop over blocks calls do one block each. */
 static size_t block_begin(const builder *b, size_t block) {
     return block < b->num_blocks ? block * BLOCK : b->g->num_finite;
 }
@@ -82,14 +84,15 @@ static brio_status add_spacing(builder *b) {
     void *data;
     BRIO_TRY(brio_mesh_add_property(b->mesh, "spacing", BRIO_FLOAT64, &data));
     double *spacing = data;
-    BRIO_OMP(parallel for num_threads(b->threads))
     for (size_t tet = 0; tet < b->g->num_finite; tet++)
         if (b->number[tet] != NO_VERTEX) spacing[b->number[tet]] = vertex_spacing(b, b->g->power.tet[tet].vertex);
 done:
     return status;
 }
 
-static void count_vertices(const builder *b, size_t block) {
+static void count_vertices(void *user, size_t block, size_t end_block, int thread) {
+    const builder *b = user;
+    (void)end_block, (void)thread;
     for (size_t tet = block_begin(b, block); tet < block_begin(b, block + 1); tet++) {
         int inside = 0;
         for (int i = 0; i < 4; i++) inside += inner(b, b->g->power.tet[tet].vertex[i]);
@@ -98,7 +101,9 @@ static void count_vertices(const builder *b, size_t block) {
     }
 }
 
-static void fill_vertices(const builder *b, size_t block) {
+static void fill_vertices(void *user, size_t block, size_t end_block, int thread) {
+    const builder *b = user;
+    (void)end_block, (void)thread;
     size_t next = b->blocks[block].vertices, end = block_begin(b, block + 1), waiting = 0;
     uint32_t vertex[BRIO_CENTRE_BATCH][4];
     for (size_t tet = block_begin(b, block); tet < end; tet++) {
@@ -128,12 +133,10 @@ static void sum_blocks(builder *b) {
 
 static brio_status make_vertices(builder *b) {
     brio_status status = BRIO_OK;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
-    for (size_t block = 0; block < b->num_blocks; block++) count_vertices(b, block);
+    brio_for_chunks(b->g->ctx, b->threads, b->num_blocks, 1, count_vertices, b);
     sum_blocks(b);
     BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, b->blocks[b->num_blocks].vertices));
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
-    for (size_t block = 0; block < b->num_blocks; block++) fill_vertices(b, block);
+    brio_for_chunks(b->g->ctx, b->threads, b->num_blocks, 1, fill_vertices, b);
     memset(b->blocks, 0, (b->num_blocks + 1) * sizeof *b->blocks);
 done:
     return status;
@@ -208,14 +211,10 @@ done:
     return status;
 }
 
-static brio_status list_all_faces(const builder *b) {
-    brio_status status = BRIO_OK;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
-    for (size_t block = 0; block < b->num_blocks; block++) {
-        brio_status own = list_faces(b, block);
-        if (own != BRIO_OK) BRIO_OMP(critical(brio_crust_status)) status = own;
-    }
-    return status;
+static void list_block(void *user, size_t block, size_t end_block, int thread) {
+    builder *b = user;
+    (void)end_block, (void)thread;
+    brio_report(&b->status, list_faces(b, block));
 }
 
 /* Where the next face of a block goes. */
@@ -238,7 +237,9 @@ static void copy_triangles(const uint32_t *corner, size_t size, cursor *c) {
     }
 }
 
-static void copy_faces(const builder *b, size_t block) {
+static void copy_faces(void *user, size_t block, size_t end_block, int thread) {
+    const builder *b = user;
+    (void)end_block, (void)thread;
     const block_counts *at = &b->blocks[block];
     const face_list *list = &b->lists[block];
     cursor c = {b->mesh->face_vertices + at->corners, b->mesh->face_offsets + at->faces + 1, at->corners};
@@ -259,7 +260,8 @@ static brio_status make_faces(builder *b) {
     brio_context *ctx = b->g->ctx;
     brio_mesh *m = b->mesh;
     BRIO_TRY(brio_progress(ctx, "crust", 0.4));
-    BRIO_TRY(list_all_faces(b));
+    brio_for_chunks(ctx, b->threads, b->num_blocks, 1, list_block, b);
+    BRIO_TRY(b->status);
     sum_blocks(b);
     const block_counts *total = &b->blocks[b->num_blocks];
     BRIO_REQUIRE(ctx, total->faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all faces span holes");
@@ -268,8 +270,7 @@ static brio_status make_faces(builder *b) {
     BRIO_TRY(BRIO_ALLOC(ctx, m->face_vertices, total->corners));
     m->face_offsets[0] = 0;
     m->num_faces = total->faces;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(b->threads))
-    for (size_t block = 0; block < b->num_blocks; block++) copy_faces(b, block);
+    brio_for_chunks(b->g->ctx, b->threads, b->num_blocks, 1, copy_faces, b);
 done:
     return status;
 }
@@ -278,8 +279,9 @@ brio_status brio_crust_faces(const brio_pole_graph *g, const uint8_t *label, con
                              brio_mesh *mesh, brio_crust_counts *counts) {
     brio_status status = BRIO_OK;
     brio_context *ctx = g->ctx;
-    builder b = {.g = g, .threads = brio_context_threads(ctx), .label = label, .options = options, .mesh = mesh};
+    builder b = {.g = g, .label = label, .options = options, .mesh = mesh};
     b.num_blocks = (g->num_finite + BLOCK - 1) / BLOCK;
+    b.threads = brio_threads(ctx, b.num_blocks, 1);
     BRIO_TRY(BRIO_ALLOC(ctx, b.number, g->num_finite));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.blocks, b.num_blocks + 1));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.lists, b.num_blocks));
