@@ -23,7 +23,8 @@ static void system_free(void *block, void *user) {
     free(block);
 }
 
-/* More threads than this for each processor only wait for each other; tests on few processors may want some. */
+/* The most threads that a context takes: more than four for a processor only wait for each other; on few processors a
+ * test may want some. */
 static int most_threads(void) {
     int most = 4 * brio_processors();
     return most > 64 ? most : 64;
@@ -32,7 +33,8 @@ static int most_threads(void) {
 brio_status brio_context_new(const brio_allocator *allocator, brio_context **out) {
     const brio_allocator system = {system_alloc, system_realloc, system_free, NULL};
     const brio_allocator *a = allocator ? allocator : &system;
-    brio_context *ctx = a->alloc(sizeof *ctx, a->user);
+    int most = most_threads();
+    brio_context *ctx = a->alloc(sizeof *ctx + brio_team_bytes(most), a->user);
     *out = ctx;
     if (!ctx) return BRIO_ERR_NO_MEMORY;
     memset(ctx, 0, sizeof *ctx);
@@ -40,19 +42,17 @@ brio_status brio_context_new(const brio_allocator *allocator, brio_context **out
     ctx->custom = allocator != NULL;
     ctx->machine_limit = brio_machine_memory();
     ctx->progress_to = 1;
+    ctx->most_threads = most;
+    ctx->team = brio_team_begin(ctx + 1, most);
     pthread_mutex_init(&ctx->lock, NULL);
-    ctx->team = brio_team_new(a, most_threads());
-    if (ctx->team) return BRIO_OK;
-    brio_context_free(ctx);
-    *out = NULL;
-    return BRIO_ERR_NO_MEMORY;
+    return BRIO_OK;
 }
 
 void brio_context_free(brio_context *ctx) {
     if (!ctx) return;
     brio_release(ctx, ctx->scratch);
     brio_kept_free(ctx);
-    brio_team_free(&ctx->allocator, ctx->team);
+    brio_team_end(ctx->team);
     pthread_mutex_destroy(&ctx->lock);
     brio_allocator a = ctx->allocator;
     a.free(ctx, a.user);
@@ -63,8 +63,7 @@ const char *brio_message(const brio_context *ctx) {
 }
 
 void brio_context_set_threads(brio_context *ctx, int threads) {
-    int most = most_threads();
-    ctx->threads = threads < 0 ? 0 : threads < most ? threads : most;
+    ctx->threads = threads < 0 ? 0 : threads < ctx->most_threads ? threads : ctx->most_threads;
 }
 
 int brio_context_threads(const brio_context *ctx) {

@@ -18,8 +18,8 @@ typedef struct {
 struct brio_context {
     brio_allocator allocator;
     bool custom;                       /* allocator is the caller's: no mappings */
-    int threads;                       /* as set; 0 = all */
-    struct brio_team *team;            /* the threads, see team.h */
+    int threads, most_threads;         /* as set; 0 = all; and the most that can be set */
+    struct brio_team *team;            /* the threads, see team.h; behind the context in its block */
     pthread_mutex_t lock;              /* of the kept mappings and the message */
     size_t caller_limit;               /* bytes, 0 = none */
     size_t machine_limit;              /* of the memory cgroup and the machine */

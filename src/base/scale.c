@@ -13,7 +13,8 @@ typedef struct {
 
 static void scale_part(void *user, size_t begin, size_t end, int thread) {
     const scaling *s = user;
-    bool by_product = s->exponent > -1000 && s->exponent < 1000; /* the factor is a normal number, the result the same */
+    bool by_product =
+        s->exponent > -1000 && s->exponent < 1000; /* the factor is a normal number, the result the same */
     double factor = by_product ? brio_power_of_two(s->exponent) : 0;
     (void)thread;
     for (size_t i = begin; i < end; i++)

@@ -43,7 +43,7 @@ typedef struct {
 } thread;
 
 struct brio_team {
-    int most, size; /* threads there may be and there are, the caller's included */
+    int size;       /* threads there are, the caller's included */
     pid_t process;  /* that the threads belong to */
     bool busy;      /* a run is going on */
     int processors; /* a member that waits looks first where each member of its run has a processor */
@@ -166,12 +166,13 @@ static void forget_other_process(brio_team *team) {
     gate_new(&team->barrier);
 }
 
-brio_team *brio_team_new(const brio_allocator *allocator, int most) {
-    size_t bytes = sizeof(brio_team) + (size_t)most * sizeof(thread);
-    brio_team *team = allocator->alloc(bytes, allocator->user);
-    if (!team) return NULL;
-    memset(team, 0, bytes);
-    team->most = most;
+size_t brio_team_bytes(int most) {
+    return sizeof(brio_team) + (size_t)most * sizeof(thread);
+}
+
+brio_team *brio_team_begin(void *memory, int most) {
+    brio_team *team = memory;
+    memset(team, 0, brio_team_bytes(most));
     team->size = 1;
     team->process = getpid();
     team->processors = brio_processors();
@@ -179,8 +180,7 @@ brio_team *brio_team_new(const brio_allocator *allocator, int most) {
     return team;
 }
 
-void brio_team_free(const brio_allocator *allocator, brio_team *team) {
-    if (!team) return;
+void brio_team_end(brio_team *team) {
     forget_other_process(team);
     team->work = NULL;
     for (int i = 1; i < team->size; i++) gate_change(&team->thread[i].start);
@@ -189,7 +189,6 @@ void brio_team_free(const brio_allocator *allocator, brio_team *team) {
         gate_free(&team->thread[i].start);
     }
     gate_free(&team->barrier);
-    allocator->free(team, allocator->user);
 }
 
 int brio_processors(void) {

@@ -22,11 +22,14 @@ typedef void (*brio_work_fn)(void *user, const brio_member *member);
 /** The body of a loop over indices: does [begin, end). `thread` is the member's number. */
 typedef void (*brio_part_fn)(void *user, size_t begin, size_t end, int thread);
 
-/** Makes the team of a context, with no thread but the caller's.   Returns NULL when there is no memory. */
-brio_team *brio_team_new(const brio_allocator *allocator, int most);
+/** Bytes of a team of at most so many threads. */
+size_t brio_team_bytes(int most);
 
-/** Ends the threads of a team and frees it. */
-void brio_team_free(const brio_allocator *allocator, brio_team *team);
+/** Makes a team with no thread but the caller's, in memory of that many bytes. */
+brio_team *brio_team_begin(void *memory, int most);
+
+/** Ends the threads of a team. Its memory is the caller's. */
+void brio_team_end(brio_team *team);
 
 /** Processors that this process may run on, at least 1. */
 int brio_processors(void);

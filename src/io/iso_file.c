@@ -3,6 +3,7 @@
  * For a wanted number of vertices the resolution is found by trial: the number grows with its square but for what finer
  * cells bring to light, so that a few rounds do. */
 #include "io/ccp4.h"
+#include "base/float_state.h"
 #include "io/pdb.h"
 #include <math.h>
 #include <string.h>
@@ -135,6 +136,7 @@ done:
 }
 
 brio_status brio_generate_iso(brio_context *ctx, const char *path, const brio_iso_options *options, brio_mesh **out) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_iso_options o = options ? *options : brio_iso_options_default();
     source from = {0};

@@ -1,4 +1,5 @@
 /* Reads a file: finds out its format, and hands it to the format's reader. */
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "io/formats.h"
 #include <string.h>
@@ -104,6 +105,7 @@ done:
 }
 
 brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_stream s = {.ctx = ctx, .file = -1};
     brio_builder b = {.ctx = ctx};

@@ -1,4 +1,5 @@
 /* Writes a mesh: refuses what the format cannot hold, and hands the rest to the format's writer. */
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "io/formats.h"
 #include "io/textrow.h"
@@ -154,6 +155,7 @@ done:
 }
 
 brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh, const brio_write_options *options) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     const brio_write_options defaults = brio_write_options_default();
     brio_write_job job = {.mesh = mesh, .options = options ? options : &defaults};

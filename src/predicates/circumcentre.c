@@ -7,6 +7,7 @@
  * the quotient less certain than the goal, the same formula is evaluated in double-doubles, and at last in exact
  * dyadic numbers. Differences are first scaled by a power of two to at most 1, so that nothing overflows on the way. */
 #include "predicates/circumcentre.h"
+#include "base/float_state.h"
 #include "base/scale.h"
 #include "brio/brio.h"
 #include "predicates/centre_bounds.h"
@@ -347,6 +348,7 @@ void brio_rough_centres(const double *const p[BRIO_CENTRES][4], brio_rough_centr
 
 brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d, const double *weights,
                               double *centre, double *error) {
+    BRIO_DOOR;
     const double *p[4] = {a, b, c, d};
     double r[4][4];
     for (int i = 0; i < 4; i++) {

@@ -1,5 +1,6 @@
 /* The predicates of the public header: on rows of three doubles, with bounds made for the points of one call. */
 #include "brio/brio.h"
+#include "base/float_state.h"
 #include "predicates/predicates.h"
 
 typedef struct {
@@ -22,6 +23,7 @@ static void records_set(records *r, const double *const points[5], int count, co
 }
 
 int brio_orient3d(const double *a, const double *b, const double *c, const double *d) {
+    BRIO_DOOR;
     records r;
     records_set(&r, (const double *const[5]){a, b, c, d}, 4, NULL);
     return brio_orient3d_sign(&r.filter, r.p[0], r.p[1], r.p[2], r.p[3]);
@@ -29,6 +31,7 @@ int brio_orient3d(const double *a, const double *b, const double *c, const doubl
 
 int brio_insphere(const double *a, const double *b, const double *c, const double *d, const double *e,
                   const double *weights) {
+    BRIO_DOOR;
     records r;
     records_set(&r, (const double *const[5]){a, b, c, d, e}, 5, weights);
     return brio_insphere_sign(&r.filter, r.p[0], r.p[1], r.p[2], r.p[3], r.p[4], r.filter.weighted);
@@ -36,6 +39,7 @@ int brio_insphere(const double *a, const double *b, const double *c, const doubl
 
 int brio_insphere_perturbed(const double *a, const double *b, const double *c, const double *d, const double *e,
                             const double *weights) {
+    BRIO_DOOR;
     records r;
     records_set(&r, (const double *const[5]){a, b, c, d, e}, 5, weights);
     return brio_conflict(&r.filter, r.p[0], r.p[1], r.p[2], r.p[3], r.p[4], r.filter.weighted) ? 1 : -1;

@@ -14,6 +14,7 @@
  *
  * Threads share the work. Nothing depends on its order: a root is the first element of its set, counts are whole
  * numbers, and areas and volumes are summed in parts of their own. */
+#include "base/float_state.h"
 #include "base/parallel.h"
 #include "base/sort.h"
 #include "surface/edge_rings.h"
@@ -414,6 +415,7 @@ static void measure_faces(const brio_mesh *mesh, int threads, brio_certificate *
 }
 
 brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     *out = (brio_certificate){.self_intersections = -1, .context = ctx};
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));

@@ -6,6 +6,7 @@
  * means, and root mean square and 95th percentile (nearest rank) over both, are over all of them alike.
  *
  * Based on: Cignoni, Rocchini, Scopigno. Metro: measuring error on simplified surfaces. Comput. Graph. Forum 1998. */
+#include "base/float_state.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "surface/closest_point.h"
@@ -166,6 +167,7 @@ static void summarise(measurement *m, brio_distance *out) {
 
 brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples, uint64_t seed,
                                brio_distance *out) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     surface surfaces[2] = {0};
     measurement m = {.samples = samples ? samples : DEFAULT_SAMPLES};

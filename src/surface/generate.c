@@ -5,6 +5,7 @@
  * on every machine.
  *
  * Based on: Marsaglia. Choosing a point from the surface of a sphere. Annals of Mathematical Statistics 1972. */
+#include "base/float_state.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "surface/iso_surface.h"
@@ -192,6 +193,7 @@ done:
 
 brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,
                           brio_mesh **out) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_generate_options o = options ? *options : brio_generate_options_default();
     brio_mesh *mesh = NULL;
@@ -211,6 +213,7 @@ done:
 }
 
 brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_implicit_grid grid = {.value = brio_sculpture};
     double low[3], high[3], side = 0;

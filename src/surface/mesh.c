@@ -1,4 +1,5 @@
 /* The mesh handle: points, polygons or tetrahedra over them, properties of the points. */
+#include "base/float_state.h"
 #include "base/memory.h"
 #include <string.h>
 
@@ -116,6 +117,7 @@ const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name)
 }
 
 double brio_property_value(const brio_property *property, size_t i) {
+    BRIO_DOOR;
     switch (property->type) {
     case BRIO_INT8:
         return ((const int8_t *)property->data)[i];

@@ -2,6 +2,7 @@
  *
  * The trees are made from all edges; the subgraph of bounded degree goes by the triangles. */
 #include "surface/spanning_subgraph.h"
+#include "base/float_state.h"
 
 static brio_status spanning_tree(brio_context *ctx, const brio_mesh *mesh, brio_subgraph kind, brio_edges *out) {
     brio_status status = BRIO_OK;
@@ -18,6 +19,7 @@ done:
 }
 
 brio_status brio_mesh_subgraph(brio_context *ctx, const brio_mesh *mesh, brio_subgraph kind, brio_edges *out) {
+    BRIO_DOOR;
     *out = (brio_edges){0};
     switch (kind) {
     case BRIO_SUBGRAPH_BOUNDED:

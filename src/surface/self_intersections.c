@@ -8,6 +8,7 @@
  * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980 (boxes).
  *           Morton. A computer oriented geodetic data base. IBM 1966 (the curve). */
 #include "surface/triangles_cross.h"
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/sort.h"
@@ -196,6 +197,7 @@ static int64_t count_crossing(const tree *t, size_t at) {
 }
 
 brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     tree t = {0};
     int64_t count = 0;

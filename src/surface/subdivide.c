@@ -15,6 +15,7 @@
  * arbitrary topology. SIGGRAPH 1996.
  * Differs from the paper: of 1996, next to the boundary, where a wing made up takes the place of special cases; a
  * vertex of two neighbours, which the papers exclude, has midpoints. */
+#include "base/float_state.h"
 #include "base/parallel.h"
 #include "surface/twins.h"
 #include <math.h>
@@ -289,6 +290,7 @@ done:
 /* --- all levels --- */
 
 brio_status brio_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_mesh *coarse = NULL, *fine = NULL;
     *out = NULL;

@@ -8,6 +8,7 @@
  * holds it.
  *
  * Inputs of fewer dimensions have no tetrahedra to look at; their check is in check_flat.c. */
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "triangulation/adjacency.h"
 #include "triangulation/check.h"
@@ -263,6 +264,7 @@ done:
 
 brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                   const uint32_t *tetrahedra, size_t stride, size_t num_tetrahedra, int *canonical) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_record *record = NULL;
     brio_tetrahedra t = {0};
@@ -317,6 +319,7 @@ done:
 
 brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation *t, const double *points,
                                      const double *weights, size_t num_points) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_record *record = NULL;
     bool canonical = true;

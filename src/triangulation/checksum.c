@@ -3,6 +3,7 @@
  * Each vertex is known by its rank among the vertices in lexicographic order of positions; each tetrahedron by the
  * ascending ranks of its vertices, mixed to 64 bits; the hash is the sum of these, so that no order of anything
  * matters. */
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
@@ -39,6 +40,7 @@ static uint64_t hash_of(uint32_t r[4]) {
 
 brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulation *t, const double *points,
                                         uint64_t *checksum) {
+    BRIO_DOOR;
     enum { EXPECTED = 1 << 14 }; /* so many tetrahedra are read ahead */
     brio_status status = BRIO_OK;
     uint32_t *rank = NULL;

@@ -2,6 +2,7 @@
  *
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Devillers, Teillaud. Perturbations for Delaunay and weighted Delaunay 3D triangulations. CGTA 2011. */
+#include "base/float_state.h"
 #include "base/kept.h"
 #include "base/memory.h"
 #include "base/team.h"
@@ -228,6 +229,7 @@ done:
 
 brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                           const brio_options *options, brio_triangulation **out) {
+    BRIO_DOOR;
     brio_options standard = brio_options_default();
     brio_kernel kernel;
     brio_recorder recorder = {0};

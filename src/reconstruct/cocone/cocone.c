@@ -3,6 +3,7 @@
  * The samples are scaled by a power of two to coordinates of at most 1, so that nothing over- or underflows on the way;
  * their triangles are those of the whole set (cocone_surface.c) or matched together from pieces, which are scaled one
  * at a time (super_cocone.c). */
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "base/scale.h"
 #include "reconstruct/cocone/sampling_density.h"
@@ -91,6 +92,7 @@ done:
 
 brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points, const brio_cocone_options *options,
                         brio_mesh **out, brio_cocone_stats *stats) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_cocone_options standard = brio_cocone_options_default();
     const brio_cocone_options *o = options ? options : &standard;

@@ -5,6 +5,7 @@
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.4.
  * Differs from the paper: the bounding points are moved out by 4 |D|, so that no outer ball they hold back vanishes. */
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "reconstruct/power_crust/power_crust.h"
 #include <math.h>
@@ -65,6 +66,7 @@ done:
 
 brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
                                 const brio_surface_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_surface_options standard = brio_surface_options_default();
     brio_labelled_poles l = {.ctx = ctx};

@@ -4,6 +4,7 @@
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7. */
 #include "reconstruct/power_crust/power_crust.h"
+#include "base/float_state.h"
 #include "base/kept.h"
 #include "base/memory.h"
 #include "base/scale.h"
@@ -59,6 +60,7 @@ done:
 
 brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
                              const brio_surface_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_surface_options standard = brio_surface_options_default();
     brio_labelled_poles l = {.ctx = ctx};

@@ -4,6 +4,7 @@
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7, step 6.
  * Differs from the paper: outer poles that only the bounding points hold back are no part of the outer shape. */
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "reconstruct/power_crust/ball_cover.h"
 #include "reconstruct/power_crust/power_crust.h"
@@ -265,6 +266,7 @@ done:
 brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num_points,
                              const brio_medial_options *options, brio_mesh **shape, brio_mesh **crust,
                              brio_medial_stats *stats) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_medial_options standard = brio_medial_options_default();
     brio_medial_stats s = {0};
