@@ -142,7 +142,7 @@ static brio_status sort_poles(brio_context *ctx, const finder *f, uint32_t *list
     BRIO_TRY(BRIO_ALLOC(ctx, centres, 3 * count));
     BRIO_OMP(parallel for num_threads(f->threads))
     for (size_t p = 0; p < count; p++) memcpy(centres + 3 * p, centre_of(f, list[p]), 3 * sizeof *centres);
-    brio_hilbert_keys(centres, count, BITS, f->threads, keys);
+    brio_hilbert_keys(ctx, centres, count, BITS, keys);
     BRIO_TRY(brio_radix_sort(ctx, keys, list, count, 3 * BITS));
     for (size_t begin = 0, end; begin < count; begin = end) {
         for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;

@@ -3,6 +3,7 @@
 #ifndef BRIO_ORDER_CUBE_H
 #define BRIO_ORDER_CUBE_H
 
+#include "base/context.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -29,6 +30,10 @@ static inline void brio_cube_join(brio_cube *c, const brio_cube *other) {
         c->high[k] = fmax(c->high[k], other->high[k]);
     }
 }
+
+/** The cube of n > 0 points: of the first n, or with `items` of the points that the low halves of items[0 .. n) name.
+ *  threads  what brio_threads gave. */
+brio_cube brio_cube_of(brio_context *ctx, const double *points, const uint64_t *items, size_t n, int threads);
 
 /** Divides the cube into 2^bits cells a side; false when it is a point. */
 static inline bool brio_cube_divide(brio_cube *c, int bits) {

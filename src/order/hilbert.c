@@ -4,8 +4,10 @@
  * Based on: Hamilton. Compact Hilbert indices. Technical report CS-2006-07, Dalhousie University 2006 (the table is his
  * construction from Gray codes, written out for three dimensions; twelve of the 24 orientations occur). */
 #include "order/hilbert.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "order/cube.h"
+
+enum { POINTS_A_THREAD = 1 << 12 };
 
 /* STATE[s][octant] = 8 * next state + rank; octant = 4 x + 2 y + z of the next bits. */
 static const uint8_t STATE[12][8] = {
@@ -60,41 +62,46 @@ static inline uint64_t cube_key(const brio_cube *c, const two_levels *two, const
     return key_of(two, brio_cube_cell(c, p, 0), brio_cube_cell(c, p, 1), brio_cube_cell(c, p, 2), bits);
 }
 
-/* The cube of all points, or of those that the low halves of the items name. */
-static brio_cube cube_of(const double *points, const uint64_t *items, size_t n, int threads) {
-    brio_cube first, all;
-    brio_cube_new(&first, points + 3 * (items ? (size_t)(uint32_t)items[0] : 0));
-    all = first;
-    BRIO_OMP(parallel num_threads(threads)) {
-        brio_cube own = first;
-        BRIO_OMP(for nowait)
-        for (size_t i = 0; i < n; i++) brio_cube_add(&own, points + 3 * (items ? (size_t)(uint32_t)items[i] : i));
-        BRIO_OMP(critical(brio_cube))
-        brio_cube_join(&all, &own);
-    }
-    return all;
+/* Keys in the making. */
+typedef struct {
+    const double *points;
+    uint64_t *keys; /* of each point, or the items */
+    int bits;
+    brio_cube cube;
+    two_levels two;
+} numbering;
+
+static void number_points(void *user, size_t begin, size_t end, int thread) {
+    const numbering *n = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) n->keys[i] = cube_key(&n->cube, &n->two, n->points + 3 * i, n->bits);
 }
 
-void brio_hilbert_keys(const double *points, size_t n, int bits, int threads, uint64_t *keys) {
+static void number_items(void *user, size_t begin, size_t end, int thread) {
+    const numbering *n = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        uint64_t index = (uint32_t)n->keys[i];
+        n->keys[i] = cube_key(&n->cube, &n->two, n->points + 3 * index, n->bits) << 32 | index;
+    }
+}
+
+void brio_hilbert_keys(brio_context *ctx, const double *points, size_t n, int bits, uint64_t *keys) {
+    numbering all = {.points = points, .keys = keys, .bits = bits};
+    int threads = brio_threads(ctx, n, POINTS_A_THREAD);
     if (!n) return;
-    two_levels two;
-    compose(&two);
-    brio_cube c = cube_of(points, NULL, n, threads);
-    brio_cube_divide(&c, bits);
-    BRIO_OMP(parallel for num_threads(threads))
-    for (size_t i = 0; i < n; i++) keys[i] = cube_key(&c, &two, points + 3 * i, bits);
+    compose(&all.two);
+    all.cube = brio_cube_of(ctx, points, NULL, n, threads);
+    brio_cube_divide(&all.cube, bits);
+    brio_for(ctx, threads, n, number_points, &all);
 }
 
-bool brio_hilbert_items(const double *points, uint64_t *items, size_t n, int bits, int threads) {
+bool brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int bits, int threads) {
+    numbering all = {.points = points, .keys = items, .bits = bits};
     if (!n) return false;
-    two_levels two;
-    compose(&two);
-    brio_cube c = cube_of(points, items, n, threads);
-    if (!brio_cube_divide(&c, bits)) return false;
-    BRIO_OMP(parallel for num_threads(threads))
-    for (size_t i = 0; i < n; i++) {
-        uint64_t index = (uint32_t)items[i];
-        items[i] = cube_key(&c, &two, points + 3 * index, bits) << 32 | index;
-    }
+    compose(&all.two);
+    all.cube = brio_cube_of(ctx, points, items, n, threads);
+    if (!brio_cube_divide(&all.cube, bits)) return false;
+    brio_for(ctx, threads, n, number_items, &all);
     return true;
 }

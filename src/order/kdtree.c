@@ -10,12 +10,12 @@
  *           Hoare. Algorithm 65: find. CACM 1961.
  * Differs from the paper: selection in place of sorting. */
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/rng.h"
 #include "order/blocks.h"
 #include "order/cube.h"
+#include "order/halving.h"
 
-enum { STEP_BITS = 32, FEW_STEPS = 1 << 10, POINTS_A_TASK = 1 << 13, SAMPLE = 31 };
+enum { STEP_BITS = 32, FEW_STEPS = 1 << 10, POINTS_A_PIECE = 1 << 13, SAMPLE = 31 };
 
 typedef struct {
     uint32_t step[3], index;
@@ -112,34 +112,40 @@ static void visit_block(const kdtree *k, size_t begin, size_t end, int passes) {
     k->visit(k->index, &block, k->user);
 }
 
-static void divide(const kdtree *k, size_t begin, size_t end, int passes) {
+/* Halves a cell: the nodes [begin, middle) are before the others across the longest side. */
+static void cut(const void *user, size_t begin, size_t middle, size_t end) {
+    const kdtree *k = user;
     node *nodes = k->nodes + begin;
-    size_t n = end - begin, middle = begin + n / 2;
+    size_t n = end - begin;
     int axis;
-    if (n <= k->block_size) {
-        visit_block(k, begin, end, passes);
-        return;
-    }
     if (longest_side(nodes, n, &axis) < FEW_STEPS) {
         take_steps(k, nodes, n);
         longest_side(nodes, n, &axis);
     }
-    select_least(nodes, n, n / 2, axis);
-    BRIO_OMP(task if (n > POINTS_A_TASK))
+    select_least(nodes, n, middle - begin, axis);
+}
+
+static void divide(const void *user, size_t begin, size_t end, int passes) {
+    const kdtree *k = user;
+    size_t middle = begin + (end - begin) / 2;
+    if (end - begin <= k->block_size) {
+        visit_block(k, begin, end, passes);
+        return;
+    }
+    cut(k, begin, middle, end);
     divide(k, begin, middle, passes + 1);
     divide(k, middle, end, passes + 1);
 }
 
-brio_status brio_kdtree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, int threads,
-                               uint32_t *index, brio_block_fn visit, const void *user) {
+brio_status brio_kdtree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, uint32_t *index,
+                               brio_block_fn visit, const void *user) {
     kdtree k = {points, NULL, index, block_size, visit, user};
     if (n == 0) return BRIO_OK;
     brio_status status = BRIO_ALLOC(ctx, k.nodes, n);
     if (status != BRIO_OK) return status;
     for (size_t i = 0; i < n; i++) k.nodes[i] = (node){{0, 0, 0}, (uint32_t)i};
-    BRIO_OMP(parallel num_threads(threads))
-    BRIO_OMP(single)
-    divide(&k, 0, n, 0);
+    size_t least = block_size > POINTS_A_PIECE ? block_size : POINTS_A_PIECE;
+    brio_halve(ctx, &(brio_halving){.count = n, .least = least, .cut = cut, .finish = divide, .user = &k});
     brio_release(ctx, k.nodes);
     return BRIO_OK;
 }

@@ -11,12 +11,12 @@
  *           1977. */
 #include "order/nearest_points.h"
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/vector.h"
+#include "order/halving.h"
 #include <math.h>
 #include <string.h>
 
-enum { LEAF = 24, LARGE = 4096 };
+enum { LEAF = 24, POINTS_A_PIECE = 4096 };
 _Static_assert(BRIO_NEAR_ROOM >= 2 * BRIO_MOST_NEAR + LEAF, "a full list has room for one range more");
 
 /* --- building --- */
@@ -83,18 +83,24 @@ static int longest_axis(const brio_point_tree *t, size_t begin, size_t end) {
     return axis;
 }
 
-/* Recursion as deep as the logarithm of the number of points; large halves are left to other threads. */
-static void build(const brio_point_tree *t, size_t begin, size_t end) {
+/* Brings the middle point of a range to the middle. */
+static void cut(const void *user, size_t begin, size_t middle, size_t end) {
+    const brio_point_tree *t = user;
+    t->axis[middle] = (uint8_t)longest_axis(t, begin, end);
+    select_middle(t, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
+}
+
+/* The recursion is as deep as the logarithm of the number of points. */
+static void build(const void *user, size_t begin, size_t end, int depth) {
+    const brio_point_tree *t = user;
     if (end - begin <= LEAF) {
         sort_leaf(t, begin, end);
         return;
     }
     size_t middle = begin + (end - begin) / 2;
-    t->axis[middle] = (uint8_t)longest_axis(t, begin, end);
-    select_middle(t, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
-    BRIO_OMP(task if (end - begin > LARGE))
-    build(t, begin, middle);
-    build(t, middle + 1, end);
+    cut(t, begin, middle, end);
+    build(t, begin, middle, depth + 1);
+    build(t, middle + 1, end, depth + 1);
 }
 
 brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t count, brio_point_tree *out) {
@@ -106,9 +112,8 @@ brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t 
     BRIO_TRY(BRIO_ALLOC(ctx, out->axis, count));
     memcpy(out->point, points, count * sizeof *out->point);
     for (size_t i = 0; i < count; i++) out->index[i] = (uint32_t)i;
-    BRIO_OMP(parallel num_threads(brio_context_threads(ctx)))
-    BRIO_OMP(single)
-    build(out, 0, count);
+    brio_halve(ctx, &(brio_halving){
+                        .count = count, .gap = 1, .least = POINTS_A_PIECE, .cut = cut, .finish = build, .user = out});
 done:
     return status;
 }

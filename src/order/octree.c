@@ -6,14 +6,23 @@
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, sections 5.3 and 5.8.
  * Differs from the paper: a cell that is still crowded after a pass starts again from the cube of its own points, so that
- * clusters of any size take few passes. */
+ * clusters of any size take few passes.
+ *
+ * A cell with many points is work for all threads in turns: in one turn the threads take a large cell each, pass over its
+ * points once and finish its small cells; the large ones among its cells wait for the next turn. */
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "order/blocks.h"
 #include "order/cube.h"
 #include <string.h>
 
-enum { ROOT_LEVELS = 5, LEVELS = 3, POINTS_A_TASK = 1 << 13, NO_CELL = UINT32_MAX };
+enum { ROOT_LEVELS = 5, LEVELS = 3, LARGE = 1 << 13, POINTS_A_THREAD = 1 << 13, NO_CELL = UINT32_MAX };
+
+/* A cell with more than LARGE points, which are in no other one; yet to be divided. */
+typedef struct {
+    size_t begin, end;
+    int passes;
+} large_cell;
 
 typedef struct {
     const double *points;
@@ -21,6 +30,8 @@ typedef struct {
     size_t block_size;
     brio_block_fn visit;
     const void *user;
+    large_cell *now, *next; /* of this turn and of the next one; room for n / LARGE cells */
+    size_t num_next;        /* raised by all threads of a turn */
 } octree;
 
 /* The points of a pass and their cube, divided into 8^levels cells. */
@@ -81,17 +92,23 @@ static void place_in_cells(const grid *g, size_t from, size_t to, size_t *place,
 
 /* --- blocks --- */
 
-static void divide(const octree *o, size_t begin, size_t end, int passes);
+static void divide(octree *o, size_t begin, size_t end, int passes);
 
 static void visit_block(const octree *o, size_t begin, size_t end, int passes) {
     brio_block block = {begin, end, passes};
     o->visit(o->index, &block, o->user);
 }
 
+/* The place is this thread's alone; what is written there is read after the turn, which orders it. */
+static void leave_for_next_turn(octree *o, size_t begin, size_t end, int passes) {
+    size_t place = __atomic_fetch_add(&o->num_next, 1, __ATOMIC_RELAXED);
+    o->next[place] = (large_cell){begin, end, passes};
+}
+
 /* Visits the blocks of the cell that the finest cells [first, first + size) make; the points of finest cell c end at
- * stop[c]. Of the finest cells that are crowded, all but one are divided further. */
-static void visit_cell(const octree *o, const grid *g, const size_t *stop, uint32_t first, uint32_t size,
-                       uint32_t all_but) {
+ * stop[c]. Of the finest cells that are crowded, large ones are left for the next turn, and the others but for all_but are
+ * divided. */
+static void visit_cell(octree *o, const grid *g, const size_t *stop, uint32_t first, uint32_t size, uint32_t all_but) {
     size_t begin = first ? stop[first - 1] : g->begin, end = stop[first + size - 1];
     int passes = g->passes;
     if (begin == end) return;
@@ -99,8 +116,9 @@ static void visit_cell(const octree *o, const grid *g, const size_t *stop, uint3
         visit_block(o, begin, end, passes);
     } else if (size > 1) {
         for (uint32_t i = 0; i < 8; i++) visit_cell(o, g, stop, first + size / 8 * i, size / 8, all_but);
+    } else if (end - begin > LARGE) {
+        leave_for_next_turn(o, begin, end, passes);
     } else if (first != all_but) {
-        BRIO_OMP(task if (end - begin > POINTS_A_TASK))
         divide(o, begin, end, passes);
     }
 }
@@ -141,13 +159,18 @@ static bool bring_cells_together(const octree *o, grid *g, size_t *stop) {
     return true;
 }
 
-/* Divides [begin, end) into blocks. The most crowded cell is left for the next turn, so that the recursion is no deeper
- * than log2 n. */
-static void divide(const octree *o, size_t begin, size_t end, int passes) {
+static grid grid_of(const octree *o, size_t begin, size_t end, int passes) {
+    int levels = levels_for(end - begin, o->block_size, LEVELS);
+    return (grid){
+        .points = o->points, .from = o->spare, .begin = begin, .end = end, .levels = levels, .passes = passes};
+}
+
+/* Divides [begin, end), which is not large, into blocks. The loop goes on with the most crowded cell, so that the
+ * recursion, into the others, is no deeper than log2 LARGE. */
+static void divide(octree *o, size_t begin, size_t end, int passes) {
     size_t stop[1 << 3 * LEVELS];
     while (end - begin > o->block_size) {
-        grid g = {.points = o->points, .from = o->spare, .begin = begin, .end = end, .passes = ++passes};
-        g.levels = levels_for(end - begin, o->block_size, LEVELS);
+        grid g = grid_of(o, begin, end, ++passes);
         if (!bring_cells_together(o, &g, stop)) {
             visit_crowd(o, begin, end, passes);
             return;
@@ -159,58 +182,99 @@ static void divide(const octree *o, size_t begin, size_t end, int passes) {
     }
 }
 
+/* --- turns --- */
+
+/* Passes once over the points of large cells, and finishes what is not large in them. */
+static void divide_large(void *user, size_t from, size_t to, int thread) {
+    octree *o = user;
+    size_t stop[1 << 3 * LEVELS];
+    (void)thread;
+    for (size_t i = from; i < to; i++) {
+        const large_cell *c = &o->now[i];
+        grid g = grid_of(o, c->begin, c->end, c->passes + 1);
+        if (bring_cells_together(o, &g, stop))
+            visit_cell(o, &g, stop, 0, cells_of(&g), NO_CELL);
+        else
+            visit_crowd(o, c->begin, c->end, g.passes);
+    }
+}
+
+static void take_turns(brio_context *ctx, octree *o, int threads) {
+    while (o->num_next) {
+        large_cell *swap = o->now;
+        size_t count = o->num_next;
+        o->now = o->next, o->next = swap;
+        o->num_next = 0;
+        brio_for_chunks(ctx, count < (size_t)threads ? (int)count : threads, count, 1, divide_large, o);
+    }
+}
+
 /* --- the root --- */
 
-static brio_cube cube_of(const grid *g, int threads) {
-    brio_cube first, all;
-    brio_cube_new(&first, g->points);
-    all = first;
-    BRIO_OMP(parallel for schedule(static, 1) num_threads(threads))
-    for (int t = 0; t < threads; t++) {
-        brio_cube own = first;
-        add_to_cube(g, brio_part(g->end, t, threads), brio_part(g->end, t + 1, threads), &own);
-        BRIO_OMP(critical(brio_octree_cube))
-        brio_cube_join(&all, &own);
-    }
-    return all;
+typedef struct {
+    octree *o;
+    const grid *g;
+    size_t *place; /* #threads by #cells: counts of the thread's part, then places; the last thread's become the ends */
+    const size_t *stop;
+} root;
+
+static void count_part(void *user, size_t begin, size_t end, int thread) {
+    const root *r = user;
+    count_cells(r->g, begin, end, r->place + cells_of(r->g) * (size_t)thread);
 }
 
-/* The same as bring_cells_together for all points, by all threads; place holds the counts of each thread's part, and the
- * last of them the ends. */
-static void bring_all_together(const octree *o, const grid *g, int threads, size_t *place) {
-    size_t cells = cells_of(g), n = g->end, sum = 0;
-    BRIO_OMP(parallel for schedule(static, 1) num_threads(threads))
-    for (int t = 0; t < threads; t++)
-        count_cells(g, brio_part(n, t, threads), brio_part(n, t + 1, threads), place + cells * (size_t)t);
+static void place_part(void *user, size_t begin, size_t end, int thread) {
+    const root *r = user;
+    place_in_cells(r->g, begin, end, r->place + cells_of(r->g) * (size_t)thread, r->o->index);
+}
+
+static void visit_octants(void *user, size_t begin, size_t end, int thread) {
+    const root *r = user;
+    uint32_t size = cells_of(r->g) / 8;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) visit_cell(r->o, r->g, r->stop, size * (uint32_t)i, size, NO_CELL);
+}
+
+/* The same as bring_cells_together for all points, by all threads. */
+static void bring_all_together(brio_context *ctx, root *r, int threads) {
+    size_t cells = cells_of(r->g), n = r->g->end, sum = 0;
+    brio_for(ctx, threads, n, count_part, r);
     for (size_t c = 0; c < cells; c++)
         for (int t = 0; t < threads; t++) {
-            size_t points = place[cells * (size_t)t + c];
-            place[cells * (size_t)t + c] = sum;
+            size_t points = r->place[cells * (size_t)t + c];
+            r->place[cells * (size_t)t + c] = sum;
             sum += points;
         }
-    BRIO_OMP(parallel for schedule(static, 1) num_threads(threads))
-    for (int t = 0; t < threads; t++)
-        place_in_cells(g, brio_part(n, t, threads), brio_part(n, t + 1, threads), place + cells * (size_t)t, o->index);
+    brio_for(ctx, threads, n, place_part, r);
+    r->stop = r->place + cells * (size_t)(threads - 1);
 }
 
-brio_status brio_octree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, int threads,
-                               uint32_t *index, uint32_t *spare, brio_block_fn visit, const void *user) {
-    octree o = {points, index, spare, block_size, visit, user};
-    grid root = {.points = points, .end = n, .levels = levels_for(n, block_size, ROOT_LEVELS), .passes = 1};
-    size_t *place = NULL;
+static brio_status divide_root(brio_context *ctx, octree *o, const grid *g, int threads) {
+    brio_status status = BRIO_OK;
+    root r = {.o = o, .g = g};
+    BRIO_TRY(BRIO_ALLOC(ctx, o->now, g->end / LARGE + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, o->next, g->end / LARGE + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.place, cells_of(g) * (size_t)threads));
+    bring_all_together(ctx, &r, threads);
+    brio_for_chunks(ctx, threads, 8, 1, visit_octants, &r);
+    take_turns(ctx, o, threads);
+done:
+    brio_release(ctx, o->now);
+    brio_release(ctx, o->next);
+    brio_release(ctx, r.place);
+    return status;
+}
+
+brio_status brio_octree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, uint32_t *index,
+                               uint32_t *spare, brio_block_fn visit, const void *user) {
+    octree o = {
+        .points = points, .index = index, .spare = spare, .block_size = block_size, .visit = visit, .user = user};
+    grid g = {.points = points, .end = n, .levels = levels_for(n, block_size, ROOT_LEVELS), .passes = 1};
+    int threads = brio_threads(ctx, n, POINTS_A_THREAD);
     if (n == 0) return BRIO_OK;
-    root.cube = cube_of(&root, threads);
-    if (n <= block_size || !brio_cube_divide(&root.cube, root.levels)) {
-        for (size_t i = 0; i < n; i++) index[i] = (uint32_t)i;
-        visit_crowd(&o, 0, n, 1);
-        return BRIO_OK;
-    }
-    brio_status status = BRIO_ALLOC_ZERO(ctx, place, cells_of(&root) * (size_t)threads);
-    if (status != BRIO_OK) return status;
-    bring_all_together(&o, &root, threads, place);
-    const size_t *stop = place + cells_of(&root) * (size_t)(threads - 1);
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(threads))
-    for (uint32_t i = 0; i < 8; i++) visit_cell(&o, &root, stop, cells_of(&root) / 8 * i, cells_of(&root) / 8, NO_CELL);
-    brio_release(ctx, place);
+    g.cube = brio_cube_of(ctx, points, NULL, n, threads);
+    if (n > block_size && brio_cube_divide(&g.cube, g.levels)) return divide_root(ctx, &o, &g, threads);
+    for (size_t i = 0; i < n; i++) index[i] = (uint32_t)i;
+    visit_crowd(&o, 0, n, 1);
     return BRIO_OK;
 }

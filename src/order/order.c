@@ -10,13 +10,13 @@
  * 1/2, which inserts fewer points into a coarse triangulation. */
 #include "order/order.h"
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "order/blocks.h"
 #include "order/curve.h"
 
-enum { POINTS_A_THREAD = 1 << 14, BLOCK_SIZE = 2000 };
+enum { POINTS_A_THREAD = 1 << 13, BLOCK_SIZE = 2000 };
 
 /* An order in the making. */
 typedef struct {
@@ -24,7 +24,6 @@ typedef struct {
     const double *points;
     size_t n;
     const brio_options *options;
-    int threads;
     uint32_t *index; /* receives the points in the order of the curve or of the blocks; NULL until room is needed */
     uint32_t *spare; /* room for n indices, or NULL */
 } maker;
@@ -52,15 +51,16 @@ static brio_status order_items(maker *m) {
     brio_status status = BRIO_OK;
     uint64_t *items = NULL, *spare = NULL, seed = m->options->seed;
     bool random = m->options->order == BRIO_ORDER_RANDOM;
+    int threads = brio_threads(m->ctx, m->n, POINTS_A_THREAD);
     BRIO_TRY(BRIO_ALLOC(m->ctx, items, m->n));
     BRIO_TRY(BRIO_ALLOC(m->ctx, spare, m->n));
     brio_expect_sequence(items);
     brio_expect_sequence(spare);
     for (size_t i = 0; i < m->n; i++) items[i] = random ? brio_hash(seed, i) >> 32 << 32 | i : i;
     if (random)
-        BRIO_TRY(brio_sort_items(m->ctx, items, spare, m->n, 32, m->threads));
+        BRIO_TRY(brio_sort_items(m->ctx, items, spare, m->n, 32, threads));
     else
-        BRIO_TRY(brio_sort_along_curve(m->ctx, m->points, items, spare, m->n, m->threads));
+        BRIO_TRY(brio_sort_along_curve(m->ctx, m->points, items, spare, m->n, threads));
     brio_release(m->ctx, spare);
     spare = NULL;
     BRIO_TRY(need_room(m, &m->index));
@@ -88,11 +88,10 @@ static brio_status order_blocks(maker *m) {
     brio_status status = need_room(m, &m->index);
     if (status != BRIO_OK) return status;
     if (m->options->order == BRIO_ORDER_BRIO_KDTREE)
-        return brio_kdtree_blocks(m->ctx, m->points, m->n, block_size, m->threads, m->index, shuffle_block, m->options);
+        return brio_kdtree_blocks(m->ctx, m->points, m->n, block_size, m->index, shuffle_block, m->options);
     status = need_room(m, &m->spare);
     if (status != BRIO_OK) return status;
-    return brio_octree_blocks(m->ctx, m->points, m->n, block_size, m->threads, m->index, m->spare, shuffle_block,
-                              m->options);
+    return brio_octree_blocks(m->ctx, m->points, m->n, block_size, m->index, m->spare, shuffle_block, m->options);
 }
 
 /* --- all of them --- */
@@ -115,14 +114,11 @@ brio_status brio_order_points(brio_context *ctx, const double *points, size_t n,
                               uint32_t *order, uint32_t *rank, brio_round_ends *rounds) {
     brio_status status = BRIO_OK;
     brio_round_ends ends = {1, {n}};
-    int most = brio_context_threads(ctx);
-    int threads = n / POINTS_A_THREAD < (size_t)most ? (int)(n / POINTS_A_THREAD) + 1 : most;
     bool in_rounds = has_rounds(options->order);
-    maker m = {ctx, points, n, options, threads, in_rounds ? NULL : order, in_rounds ? order : NULL};
+    maker m = {ctx, points, n, options, in_rounds ? NULL : order, in_rounds ? order : NULL};
     BRIO_TRY(order_index(&m));
     if (in_rounds)
-        BRIO_TRY(
-            brio_divide_into_rounds(ctx, m.index, n, ratio_of(options), options->seed, threads, order, rank, &ends));
+        BRIO_TRY(brio_divide_into_rounds(ctx, m.index, n, ratio_of(options), options->seed, order, rank, &ends));
     else
         for (size_t i = 0; rank && i < n; i++) rank[i] = (uint32_t)i;
     if (rounds) *rounds = ends;

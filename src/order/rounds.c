@@ -8,8 +8,10 @@
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 5.3. */
 #include "order/rounds.h"
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/rng.h"
+#include "base/team.h"
+
+enum { INDICES_A_THREAD = 1 << 13 };
 
 /* least[r]: a point whose hash is below least[r] is at least r rounds before the last. The number of rounds: until one
  * point is left. */
@@ -42,32 +44,46 @@ static void first_places(size_t (*place)[BRIO_MOST_ROUNDS], int threads, brio_ro
     }
 }
 
+/* A division in the making. */
+typedef struct {
+    const uint32_t *index;
+    uint64_t seed, least[BRIO_MOST_ROUNDS + 1];
+    uint8_t *back;                     /* of each index: how many rounds before the last */
+    size_t (*place)[BRIO_MOST_ROUNDS]; /* of each thread and round, by rounds before the last: a count, then a place */
+    uint32_t *order, *rank;
+} division;
+
+static void count_part(void *user, size_t begin, size_t end, int thread) {
+    const division *d = user;
+    for (size_t i = begin; i < end; i++) {
+        d->back[i] = (uint8_t)rounds_before_last(brio_hash(d->seed, d->index[i]), d->least);
+        d->place[thread][d->back[i]]++;
+    }
+}
+
+static void place_part(void *user, size_t begin, size_t end, int thread) {
+    const division *d = user;
+    for (size_t i = begin; i < end; i++) {
+        size_t to = d->place[thread][d->back[i]]++;
+        d->order[to] = d->index[i];
+        if (d->rank) d->rank[to] = (uint32_t)i;
+    }
+}
+
 brio_status brio_divide_into_rounds(brio_context *ctx, const uint32_t *index, size_t n, double ratio, uint64_t seed,
-                                    int threads, uint32_t *order, uint32_t *rank, brio_round_ends *rounds) {
-    uint64_t least[BRIO_MOST_ROUNDS + 1];
-    size_t(*place)[BRIO_MOST_ROUNDS] = NULL;
-    uint8_t *back = NULL;
+                                    uint32_t *order, uint32_t *rank, brio_round_ends *rounds) {
     brio_status status = BRIO_OK;
-    rounds->count = set_rounds(n, ratio, least);
-    BRIO_TRY(BRIO_ALLOC(ctx, back, n));
-    brio_expect_sequence(back);
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, place, (size_t)threads));
-    BRIO_OMP(parallel for schedule(static, 1) num_threads(threads))
-    for (int t = 0; t < threads; t++)
-        for (size_t i = brio_part(n, t, threads); i < brio_part(n, t + 1, threads); i++) {
-            back[i] = (uint8_t)rounds_before_last(brio_hash(seed, index[i]), least);
-            place[t][back[i]]++;
-        }
-    first_places(place, threads, rounds);
-    BRIO_OMP(parallel for schedule(static, 1) num_threads(threads))
-    for (int t = 0; t < threads; t++)
-        for (size_t i = brio_part(n, t, threads); i < brio_part(n, t + 1, threads); i++) {
-            size_t to = place[t][back[i]]++;
-            order[to] = index[i];
-            if (rank) rank[to] = (uint32_t)i;
-        }
+    division d = {.index = index, .seed = seed, .order = order, .rank = rank};
+    int threads = brio_threads(ctx, n, INDICES_A_THREAD);
+    rounds->count = set_rounds(n, ratio, d.least);
+    BRIO_TRY(BRIO_ALLOC(ctx, d.back, n));
+    brio_expect_sequence(d.back);
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, d.place, (size_t)threads));
+    brio_for(ctx, threads, n, count_part, &d);
+    first_places(d.place, threads, rounds);
+    brio_for(ctx, threads, n, place_part, &d);
 done:
-    brio_release(ctx, back);
-    brio_release(ctx, place);
+    brio_release(ctx, d.back);
+    brio_release(ctx, d.place);
     return status;
 }

@@ -18,6 +18,6 @@ typedef struct {
  *  rank   NULL, or receives for each place in the order the index's place in `index`.
  *  Needs n bytes of workspace. */
 brio_status brio_divide_into_rounds(brio_context *ctx, const uint32_t *index, size_t n, double ratio, uint64_t seed,
-                                    int threads, uint32_t *order, uint32_t *rank, brio_round_ends *rounds);
+                                    uint32_t *order, uint32_t *rank, brio_round_ends *rounds);
 
 #endif

@@ -208,11 +208,11 @@ static void ranks_rise_inside_rounds(void) {
  * rounds. */
 static void rounds_follow_the_curve(void) {
     static uint64_t key[MOST];
+    brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
-    brio_hilbert_keys(points, MOST, 7, 2, key); /* coarser than the order's own curve */
+    brio_hilbert_keys(ctx, points, MOST, 7, key); /* coarser than the order's own curve */
     brio_options o = options_of(BRIO_ORDER_BRIO, 0);
     o.round_ratio = 0.5;
-    brio_context *ctx = new_context();
     brio_round_ends rounds;
     EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
     for (int r = 1; r < rounds.count; r++)
@@ -235,8 +235,8 @@ static double make_blocks(bool octree, size_t n, size_t block_size) {
     brio_context *ctx = new_context();
     double work = 0;
     memset(blocks, 0, sizeof blocks);
-    brio_status status = octree ? brio_octree_blocks(ctx, points, n, block_size, 2, index_of, spare, keep_block, NULL)
-                                : brio_kdtree_blocks(ctx, points, n, block_size, 2, index_of, keep_block, NULL);
+    brio_status status = octree ? brio_octree_blocks(ctx, points, n, block_size, index_of, spare, keep_block, NULL)
+                                : brio_kdtree_blocks(ctx, points, n, block_size, index_of, keep_block, NULL);
     EXPECT(status == BRIO_OK && is_permutation(index_of, n));
     for (size_t begin = 0; begin < n;) {
         const brio_block *b = &blocks[begin];

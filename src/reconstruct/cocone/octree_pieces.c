@@ -119,7 +119,7 @@ brio_status brio_pieces_new(brio_context *ctx, const double *points, size_t num_
     BRIO_TRY(BRIO_ALLOC(ctx, out->piece_of, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, keys, num_points));
     for (size_t n = 0; n < num_points; n++) out->order[n] = (uint32_t)n;
-    brio_hilbert_keys(points, num_points, BITS, brio_context_threads(ctx), keys);
+    brio_hilbert_keys(ctx, points, num_points, BITS, keys);
     BRIO_TRY(brio_radix_sort(ctx, keys, out->order, num_points, 3 * BITS));
     d.keys = keys;
     BRIO_TRY(divide(&d, 0, num_points, 0, BITS));

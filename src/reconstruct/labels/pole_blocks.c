@@ -113,7 +113,7 @@ static brio_status sort_along_curve(const finder *f, uint64_t draw) {
     for (size_t i = 0; i < n; i++)
         memcpy(points + 3 * i, f->g->poles->centre + 3 * (size_t)b->pole[i], 3 * sizeof *points);
     draw_cube(points, n, draw);
-    brio_hilbert_keys(points, n + 2, CURVE_BITS, f->threads, keys);
+    brio_hilbert_keys(b->ctx, points, n + 2, CURVE_BITS, keys);
     BRIO_TRY(brio_radix_sort(b->ctx, keys, b->pole, n, 3 * CURVE_BITS));
 done:
     brio_release(b->ctx, points);
