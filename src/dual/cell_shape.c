@@ -10,9 +10,11 @@
  *           most 1.3 r / (1 - r) times the local feature size, for which the distance to the nearer pole stands here.
  */
 #include "dual/cell_shape.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include <math.h>
+
+enum { SAMPLES_A_THREAD = 1 << 13, TETRAHEDRA_A_THREAD = 1 << 10 };
 
 static const double SQUARED_SINE = 0.14644660940672624; /* of pi / 8 */
 
@@ -50,7 +52,8 @@ static double reach_in_cocone(const seen_edge *e) {
     return most;
 }
 
-/* Raises a number that other threads may raise, too. */
+/* Raises a number that other threads may raise, too. Relaxed: the number stands for itself, no other data goes with it,
+ * and its last value is read after the run. */
 static void raise_to(double *most, double value) {
     double now;
     __atomic_load(most, &now, __ATOMIC_RELAXED);
@@ -94,16 +97,42 @@ static double nearer_pole_square(const brio_cells *c, size_t s) {
     return brio_square_distance(c->centre + 3 * (size_t)nearer, c->points + 3 * s);
 }
 
+/* --- the loops --- */
+
+typedef struct {
+    const brio_cells *c;
+    double most, *shape;
+} measurement;
+
+/* A shape is a squared radius at first: the one that the widest shape would have. */
+static void set_least_radii(void *user, size_t begin, size_t end, int thread) {
+    const measurement *m = user;
+    (void)thread;
+    for (size_t s = begin; s < end; s++) m->shape[s] = nearer_pole_square(m->c, s) / (m->most * m->most);
+}
+
+static void raise_radii(void *user, size_t begin, size_t end, int thread) {
+    const measurement *m = user;
+    (void)thread;
+    for (size_t t = begin; t < end; t++) offer_edges(m->c, t, m->shape);
+}
+
+static void divide_by_radii(void *user, size_t begin, size_t end, int thread) {
+    const measurement *m = user;
+    (void)thread;
+    for (size_t s = begin; s < end; s++) {
+        double square = m->shape[s];
+        m->shape[s] = square > 0 && square < INFINITY ? sqrt(nearer_pole_square(m->c, s) / square) : m->most;
+    }
+}
+
 /* Edges that stay where even the widest shape would have them are passed over. */
-void brio_cell_shapes(const brio_context *ctx, const brio_cells *c, double most, double *shape) {
-    int threads = brio_context_threads(ctx);
-    BRIO_OMP(parallel for num_threads(threads))
-    for (size_t s = 0; s < c->num_samples; s++) shape[s] = nearer_pole_square(c, s) / (most * most);
-    BRIO_OMP(parallel for schedule(static) num_threads(threads))
-    for (size_t t = 0; t < c->num_finite; t++) offer_edges(c, t, shape);
-    BRIO_OMP(parallel for num_threads(threads))
-    for (size_t s = 0; s < c->num_samples; s++)
-        shape[s] = shape[s] > 0 && shape[s] < INFINITY ? sqrt(nearer_pole_square(c, s) / shape[s]) : most;
+void brio_cell_shapes(brio_context *ctx, const brio_cells *c, double most, double *shape) {
+    measurement m = {c, most, shape};
+    int threads = brio_threads(ctx, c->num_samples, SAMPLES_A_THREAD);
+    brio_for(ctx, threads, c->num_samples, set_least_radii, &m);
+    brio_for(ctx, brio_threads(ctx, c->num_finite, TETRAHEDRA_A_THREAD), c->num_finite, raise_radii, &m);
+    brio_for(ctx, threads, c->num_samples, divide_by_radii, &m);
 }
 
 bool brio_cell_is_bad(double shape, double density) {

@@ -17,7 +17,7 @@ typedef struct {
 /** shape[s], #samples: the distance from sample s to its nearer pole over the radius of its cell in the co-cone, the
  *  largest distance to a point of an edge of the cell within pi / 8 of the plane through s across the direction to the
  *  farther pole. Large for long, thin cells; about `most` where it is more, and without a nearer pole. */
-void brio_cell_shapes(const brio_context *ctx, const brio_cells *cells, double most, double *shape);
+void brio_cell_shapes(brio_context *ctx, const brio_cells *cells, double most, double *shape);
 
 /** Whether a cell is badly shaped for a surface sampled with density r: its radius in the co-cone is over
  *  1.3 r / (1 - r) times the distance to the nearer pole. */

@@ -6,10 +6,12 @@
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999. */
 #include "dual/feature_size.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include "order/nearest_points.h"
 #include <string.h>
+
+enum { SAMPLES_A_THREAD = 512, CHUNK = 256 };
 
 static inline double least(double a, double b) {
     return b < a ? b : a;
@@ -40,23 +42,35 @@ done:
     return status;
 }
 
+typedef struct {
+    const brio_pole_vectors *v;
+    brio_point_tree tree; /* of the poles */
+    double *size;
+} sizes;
+
+static void find_part(void *user, size_t begin, size_t end, int thread) {
+    const sizes *s = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
+        bool vertex = s->v->pole[2 * p] != BRIO_INFINITE;
+        s->size[p] = vertex ? sqrt(nearest_of(&s->tree, s->v, p)) : 0;
+    }
+}
+
 brio_status brio_feature_sizes(brio_context *ctx, const brio_pole_vectors *v, double **size) {
     brio_status status = BRIO_OK;
-    brio_point_tree tree = {0};
-    double *poles = NULL, *result = NULL;
+    sizes s = {.v = v};
+    double *poles = NULL;
     size_t count = 0;
     *size = NULL;
     BRIO_TRY(collect_poles(ctx, v, &poles, &count));
-    BRIO_TRY(brio_point_tree_new(ctx, poles, count, &tree));
-    BRIO_TRY(BRIO_ALLOC(ctx, result, v->num_points));
-    BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(brio_context_threads(ctx)))
-    for (size_t p = 0; p < v->num_points; p++) {
-        bool vertex = v->pole[2 * p] != BRIO_INFINITE;
-        result[p] = vertex ? sqrt(nearest_of(&tree, v, p)) : 0;
-    }
-    *size = result;
+    BRIO_TRY(brio_point_tree_new(ctx, poles, count, &s.tree));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.size, v->num_points));
+    int threads = brio_threads(ctx, v->num_points, SAMPLES_A_THREAD);
+    brio_for_chunks(ctx, threads, v->num_points, CHUNK, find_part, &s);
+    *size = s.size;
 done:
-    brio_point_tree_free(ctx, &tree);
+    brio_point_tree_free(ctx, &s.tree);
     brio_release(ctx, poles);
     return status;
 }

@@ -12,7 +12,7 @@
  *           Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000. */
 #include "dual/pole_vectors.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "dual/position_order.h"
 #include "predicates/circumcentre.h"
 #include "predicates/double_double.h"
@@ -57,10 +57,13 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
 typedef struct {
     brio_pole_vectors *v;
     uint64_t *farther[2]; /* of each sample: the keys of the farther pole, and of that on its other side */
-    bool alone;           /* one thread: nobody else offers */
+    int threads;          /* of the passes over the tetrahedra */
+    double sine;          /* of theta */
 } search;
 
-enum { AHEAD = 8 }; /* tetrahedra between fetching and using */
+/* AHEAD: tetrahedra between fetching and using. */
+enum { AHEAD = 8, TETRAHEDRA_A_THREAD = 1 << 11, BATCHES_A_THREAD = TETRAHEDRA_A_THREAD / BRIO_CENTRES };
+enum { SAMPLES_A_THREAD = 1 << 12 };
 
 static const double ROUGH = 0x1p-30 + 0x1p-50;
 static const uint64_t NO_KEY = BRIO_INFINITE, HULL_KEY = (uint64_t)UINT32_MAX << 32;
@@ -71,7 +74,8 @@ static inline uint64_t key_of(double square, uint32_t tet) {
     return (bits & HULL_KEY) | tet;
 }
 
-/* A quick look, which most keys do not pass. */
+/* A quick look, which most keys do not pass. Relaxed: the look reads nothing but the key, and a pole is only ever
+ * replaced by a farther one, so what is nearer than an old key is nearer than the present one. */
 static inline bool may_be_farther(uint64_t key, const uint64_t *pole) {
     return key >> 32 >= __atomic_load_n(pole, __ATOMIC_RELAXED) >> 32;
 }
@@ -89,15 +93,19 @@ static inline bool is_farther(const search *s, uint64_t key, uint64_t than) {
 }
 
 /* Makes a tetrahedron a pole unless there is a farther one. Threads may offer at once: the farthest one wins, whoever
- * comes first. */
+ * comes first.
+ *
+ * is_farther reads the centre of the present pole, which another thread may have written in the same run: find_poles
+ * writes a centre and then offers its key. The release of the exchange that puts a key there pairs with the acquire of
+ * the load, and with that of an exchange that fails, here: whoever reads a key sees the centre. */
 static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uint64_t key) {
-    uint64_t now = __atomic_load_n(pole, __ATOMIC_RELAXED);
+    uint64_t now = __atomic_load_n(pole, __ATOMIC_ACQUIRE);
     while (is_farther(s, key, now)) {
-        if (s->alone) {
+        if (s->threads == 1) {
             *pole = key;
             return;
         }
-        if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) return;
+        if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELEASE, __ATOMIC_ACQUIRE)) return;
     }
 }
 
@@ -135,12 +143,14 @@ static size_t find_centres(const brio_pole_vectors *v, size_t first) {
     return count;
 }
 
-static void find_poles(const brio_context *ctx, const search *s) {
+/* Computes the centres of the batches [from, to) of BRIO_CENTRES tetrahedra and offers them. */
+static void find_poles(void *user, size_t from, size_t to, int thread) {
+    const search *s = user;
     const brio_pole_vectors *v = s->v;
     uint64_t *farther = s->farther[0];
-    (void)ctx; /* without OpenMP */
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
-    for (size_t first = 0; first < v->num_finite; first += BRIO_CENTRES) {
+    (void)thread;
+    for (size_t first = from * BRIO_CENTRES; first < to * BRIO_CENTRES && first < v->num_finite;
+         first += BRIO_CENTRES) {
         size_t end = first + find_centres(v, first);
         for (size_t tet = first; tet < end; tet++) {
             uint32_t vertex[4];
@@ -153,11 +163,11 @@ static void find_poles(const brio_context *ctx, const search *s) {
     }
 }
 
-static void find_planes(const brio_context *ctx, const search *s) {
+static void find_planes(void *user, size_t begin, size_t end, int thread) {
+    const search *s = user;
     const brio_pole_vectors *v = s->v;
-    (void)ctx; /* without OpenMP */
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
-    for (size_t p = 0; p < v->num_points; p++) {
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
         uint32_t pole = (uint32_t)s->farther[0][p];
         double *plane = v->plane + 4 * p;
         const double *x = v->points + 3 * p;
@@ -271,31 +281,28 @@ BRIO_TARGET_FMA static void find_sides_wide(const search *s, size_t from, size_t
 }
 
 /* The sides, and the poles on the other side. */
-static void find_sides(const brio_context *ctx, const search *s) {
-    double sine = sin(s->v->theta);
-    (void)ctx; /* without OpenMP */
-    BRIO_OMP(parallel num_threads(brio_context_threads(ctx))) {
-        size_t from = brio_part(s->v->t.count, brio_thread(), brio_team_size());
-        size_t to = brio_part(s->v->t.count, brio_thread() + 1, brio_team_size());
-        if (dd_have_fma())
-            find_sides_wide(s, from, to, sine);
-        else
-            find_sides_plain(s, from, to, sine);
-    }
+static void find_sides(void *user, size_t from, size_t to, int thread) {
+    const search *s = user;
+    (void)thread;
+    if (dd_have_fma())
+        find_sides_wide(s, from, to, s->sine);
+    else
+        find_sides_plain(s, from, to, s->sine);
 }
 
 static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     brio_status status = BRIO_OK;
-    search s = {.v = v, .alone = brio_context_threads(ctx) == 1};
+    size_t batches = (v->num_finite + BRIO_CENTRES - 1) / BRIO_CENTRES;
+    search s = {.v = v, .threads = brio_threads(ctx, batches, BATCHES_A_THREAD), .sine = sin(v->theta)};
     for (int side = 0; side < 2; side++) {
         BRIO_TRY(BRIO_ALLOC(ctx, s.farther[side], v->num_points));
         for (size_t p = 0; p < v->num_points; p++) s.farther[side][p] = NO_KEY;
     }
     find_hull_vectors(&s);
-    find_poles(ctx, &s);
+    brio_for(ctx, s.threads, batches, find_poles, &s);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
-    find_planes(ctx, &s);
-    find_sides(ctx, &s);
+    brio_for(ctx, brio_threads(ctx, v->num_points, SAMPLES_A_THREAD), v->num_points, find_planes, &s);
+    brio_for(ctx, s.threads, v->t.count, find_sides, &s);
     for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = (uint32_t)s.farther[i % 2][i / 2];
 done:
     for (int side = 0; side < 2; side++) brio_release(ctx, s.farther[side]);

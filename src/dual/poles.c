@@ -9,8 +9,8 @@
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.8. */
 #include "dual/poles.h"
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include "dual/cell_shape.h"
 #include "dual/position_order.h"
@@ -19,10 +19,9 @@
 #include "predicates/predicates.h"
 #include <string.h>
 
-enum { NO_TET = UINT32_MAX, AHEAD = 12 };
+enum { NO_TET = UINT32_MAX, AHEAD = 12, TETRAHEDRA_A_THREAD = 1 << 11, POLES_A_THREAD = 1 << 12 };
 
 typedef struct {
-    int threads;
     const brio_tetrahedron *tet;
     const double *points;
     size_t num_tets, num_samples;
@@ -35,14 +34,22 @@ static const double *centre_of(const finder *f, uint32_t tet) {
     return f->centre + 3 * (size_t)tet;
 }
 
-static void find_centres(finder *f) {
-    BRIO_OMP(parallel for schedule(static) num_threads(f->threads))
-    for (size_t tet = 0; tet < f->num_tets; tet += BRIO_CENTRE_BATCH) {
+/* Finds the centres of the batches [begin, end) of BRIO_CENTRE_BATCH tetrahedra. */
+static void find_centres(void *user, size_t begin, size_t end, int thread) {
+    const finder *f = user;
+    (void)thread;
+    for (size_t tet = begin * BRIO_CENTRE_BATCH; tet < end * BRIO_CENTRE_BATCH && tet < f->num_tets;
+         tet += BRIO_CENTRE_BATCH) {
         uint32_t vertex[BRIO_CENTRE_BATCH][4];
         size_t left = f->num_tets - tet, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
         for (size_t n = 0; n < count; n++) memcpy(vertex[n], f->tet[tet + n].vertex, sizeof *vertex);
         brio_centres(&(brio_centre_batch){f->points, NULL, (const uint32_t(*)[4])vertex, count, f->centre + 3 * tet});
     }
+}
+
+static void find_all_centres(brio_context *ctx, finder *f) {
+    size_t batches = (f->num_tets + BRIO_CENTRE_BATCH - 1) / BRIO_CENTRE_BATCH;
+    brio_for(ctx, brio_threads(ctx, f->num_tets, TETRAHEDRA_A_THREAD), batches, find_centres, f);
 }
 
 static int compare_tets(const finder *f, uint32_t s, uint32_t t) {
@@ -61,7 +68,10 @@ static inline double farthest_so_far(const finder *f, size_t place) {
 }
 
 /* Keeps the farther of the best tetrahedron so far and this one. Threads may leave the distance of a nearer one behind;
- * the best is only ever replaced by a farther one, so that is a bound still. */
+ * the best is only ever replaced by a farther one, so that is a bound still.
+ *
+ * Relaxed: the number of a tetrahedron leads to its centre, which was written in an earlier run. The distance stands for
+ * itself: with an older best tetrahedron it is a bound as well. */
 static inline void offer(const finder *f, size_t place, uint32_t tet, double distance, const double *sample) {
     uint32_t *best = &f->best[place], now = __atomic_load_n(best, __ATOMIC_RELAXED);
     while (now == NO_TET || farther(f, tet, distance, now, sample))
@@ -86,21 +96,28 @@ static inline void fetch_samples(const finder *f, size_t tet) {
     }
 }
 
-static void offer_all(finder *f, size_t side) {
-    BRIO_OMP(parallel for schedule(static) num_threads(f->threads))
-    for (size_t tet = 0; tet < f->num_tets; tet++) {
-        if (tet + AHEAD < f->num_tets) fetch_samples(f, tet + AHEAD);
-        if (isnan(f->centre[3 * tet])) continue;
-        for (int i = 0; i < 4; i++) {
-            size_t v = f->tet[tet].vertex[i];
-            if (v >= f->num_samples) continue;
-            const double *s = f->points + 3 * v;
-            double distance = brio_square_distance(f->centre + 3 * tet, s);
-            if (distance < farthest_so_far(f, 2 * v + side)) continue;
-            if (side == 1 && !opposite(f, f->best[2 * v], (uint32_t)tet, s)) continue;
-            offer(f, 2 * v + side, (uint32_t)tet, distance, s);
-        }
+static inline void offer_to_samples(const finder *f, size_t tet, size_t side) {
+    if (tet + AHEAD < f->num_tets) fetch_samples(f, tet + AHEAD);
+    if (isnan(f->centre[3 * tet])) return;
+    for (int i = 0; i < 4; i++) {
+        size_t v = f->tet[tet].vertex[i];
+        if (v >= f->num_samples) continue;
+        const double *s = f->points + 3 * v;
+        double distance = brio_square_distance(f->centre + 3 * tet, s);
+        if (distance < farthest_so_far(f, 2 * v + side)) continue;
+        if (side == 1 && !opposite(f, f->best[2 * v], (uint32_t)tet, s)) continue;
+        offer(f, 2 * v + side, (uint32_t)tet, distance, s);
     }
+}
+
+static void offer_as_farther(void *user, size_t begin, size_t end, int thread) {
+    (void)thread;
+    for (size_t tet = begin; tet < end; tet++) offer_to_samples(user, tet, 0);
+}
+
+static void offer_on_other_side(void *user, size_t begin, size_t end, int thread) {
+    (void)thread;
+    for (size_t tet = begin; tet < end; tet++) offer_to_samples(user, tet, 1);
 }
 
 static void discard_bad(finder *f, const brio_pole_filter *filter, const double *shape, size_t *bad_cells) {
@@ -131,18 +148,32 @@ static int compare_for_sort(uint32_t s, uint32_t t, const void *user) {
     return compare_tets(user, s, t);
 }
 
+/* Poles as tetrahedra, and what is found for each. */
+typedef struct {
+    const finder *f;
+    const uint32_t *list; /* the tetrahedron of each pole */
+    double *centre;       /* of each pole */
+    brio_poles *poles;
+    uint32_t *number; /* of each tetrahedron that is a pole */
+} list_of_poles;
+
+static void copy_centres(void *user, size_t begin, size_t end, int thread) {
+    const list_of_poles *l = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) memcpy(l->centre + 3 * p, centre_of(l->f, l->list[p]), 3 * sizeof *l->centre);
+}
+
 /* Sorts poles along a Hilbert curve, so that neighbours in space are neighbours in memory; equal keys
  * lexicographically. */
 static brio_status sort_poles(brio_context *ctx, const finder *f, uint32_t *list, size_t count) {
     enum { BITS = 16 };
     brio_status status = BRIO_OK;
     uint64_t *keys = NULL;
-    double *centres = NULL;
+    list_of_poles l = {.f = f, .list = list};
     BRIO_TRY(BRIO_ALLOC(ctx, keys, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, centres, 3 * count));
-    BRIO_OMP(parallel for num_threads(f->threads))
-    for (size_t p = 0; p < count; p++) memcpy(centres + 3 * p, centre_of(f, list[p]), 3 * sizeof *centres);
-    brio_hilbert_keys(ctx, centres, count, BITS, keys);
+    BRIO_TRY(BRIO_ALLOC(ctx, l.centre, 3 * count));
+    brio_for(ctx, brio_threads(ctx, count, POLES_A_THREAD), count, copy_centres, &l);
+    brio_hilbert_keys(ctx, l.centre, count, BITS, keys);
     BRIO_TRY(brio_radix_sort(ctx, keys, list, count, 3 * BITS));
     for (size_t begin = 0, end; begin < count; begin = end) {
         for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;
@@ -150,7 +181,7 @@ static brio_status sort_poles(brio_context *ctx, const finder *f, uint32_t *list
     }
 done:
     brio_release(ctx, keys);
-    brio_release(ctx, centres);
+    brio_release(ctx, l.centre);
     return status;
 }
 
@@ -170,9 +201,13 @@ done:
     return status;
 }
 
-static void fill_poles(const finder *f, const uint32_t *list, brio_poles *poles) {
-    BRIO_OMP(parallel for num_threads(f->threads))
-    for (size_t p = 0; p < poles->count; p++) {
+static void fill_poles(void *user, size_t begin, size_t end, int thread) {
+    const list_of_poles *l = user;
+    const finder *f = l->f;
+    const uint32_t *list = l->list;
+    brio_poles *poles = l->poles;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
         if (p + AHEAD < poles->count) {
             __builtin_prefetch(&f->tet[list[p + AHEAD]]);
             __builtin_prefetch(centre_of(f, list[p + AHEAD]));
@@ -190,32 +225,45 @@ static void fill_poles(const finder *f, const uint32_t *list, brio_poles *poles)
     }
 }
 
+static void number_part(void *user, size_t begin, size_t end, int thread) {
+    const list_of_poles *l = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) l->number[l->list[p]] = (uint32_t)p;
+}
+
+/* Replaces tetrahedra by numbers of poles. */
+static void rename_part(void *user, size_t begin, size_t end, int thread) {
+    const list_of_poles *l = user;
+    uint32_t *best = l->f->best;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) best[i] = best[i] == NO_TET ? BRIO_NO_POLE : l->number[best[i]];
+}
+
 /* Numbers the poles and replaces the tetrahedra in f->best by these numbers. */
 static brio_status number_poles(brio_context *ctx, finder *f, brio_poles *poles) {
     brio_status status = BRIO_OK;
-    uint32_t *list = NULL, *number = NULL;
+    uint32_t *list = NULL;
+    list_of_poles l = {.f = f, .poles = poles};
     BRIO_TRY(list_poles(ctx, f, &list, &poles->count));
     BRIO_TRY(BRIO_ALLOC(ctx, poles->centre, 3 * poles->count));
     BRIO_TRY(BRIO_ALLOC(ctx, poles->square, poles->count));
     BRIO_TRY(BRIO_ALLOC(ctx, poles->bounding, poles->count));
-    fill_poles(f, list, poles);
-    BRIO_TRY(BRIO_ALLOC(ctx, number, f->num_tets));
-    BRIO_OMP(parallel for num_threads(f->threads))
-    for (size_t p = 0; p < poles->count; p++) number[list[p]] = (uint32_t)p;
-    BRIO_OMP(parallel for num_threads(f->threads))
-    for (size_t i = 0; i < 2 * f->num_samples; i++)
-        f->best[i] = f->best[i] == NO_TET ? BRIO_NO_POLE : number[f->best[i]];
+    l.list = list;
+    int threads = brio_threads(ctx, poles->count, POLES_A_THREAD);
+    brio_for(ctx, threads, poles->count, fill_poles, &l);
+    BRIO_TRY(BRIO_ALLOC(ctx, l.number, f->num_tets));
+    brio_for(ctx, threads, poles->count, number_part, &l);
+    brio_for(ctx, threads, 2 * f->num_samples, rename_part, &l);
 done:
     brio_release(ctx, list);
-    brio_release(ctx, number);
+    brio_release(ctx, l.number);
     return status;
 }
 
 brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
                             const brio_pole_filter *filter, brio_poles *out) {
     brio_status status = BRIO_OK;
-    finder f = {.threads = brio_context_threads(ctx),
-                .tet = brio_triangulation_tetrahedra(t),
+    finder f = {.tet = brio_triangulation_tetrahedra(t),
                 .points = points,
                 .num_tets = brio_triangulation_stats(t)->tetrahedra,
                 .num_samples = num_samples};
@@ -224,10 +272,11 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
     BRIO_TRY(BRIO_ALLOC(ctx, f.best, 2 * num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f.farthest, 2 * num_samples));
     for (size_t i = 0; i < 2 * num_samples; i++) f.best[i] = NO_TET;
-    find_centres(&f);
+    find_all_centres(ctx, &f);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
-    offer_all(&f, 0);
-    offer_all(&f, 1);
+    int threads = brio_threads(ctx, f.num_tets, TETRAHEDRA_A_THREAD);
+    brio_for(ctx, threads, f.num_tets, offer_as_farther, &f);
+    brio_for(ctx, threads, f.num_tets, offer_on_other_side, &f);
     brio_release(ctx, f.farthest);
     f.farthest = NULL;
     BRIO_TRY(look_at_shapes(ctx, &f, filter, out));
