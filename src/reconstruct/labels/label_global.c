@@ -11,14 +11,14 @@
  *           improve labels by roof duality with the labels of some nodes kept).
  * Differs from the paper: the nodes that are not kept are blocks near each other in space, many of them side by side. */
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "reconstruct/labels/labelling.h"
 #include "reconstruct/labels/roof_duality.h"
 #include <math.h>
 #include <string.h>
 
-enum { PASSES = 5, FIRST_BITS = 9, FEW = 100 };
+enum { PASSES = 5, FIRST_BITS = 9, FEW = 100, POLES_A_THREAD = 1 << FIRST_BITS };
 
 typedef struct {
     const brio_pole_graph *g;
@@ -30,16 +30,27 @@ typedef struct {
 
 /* --- passes --- */
 
+typedef struct {
+    const problem *pr;
+    const brio_pole_blocks *b;
+    const uint32_t *block; /* of the round */
+    brio_status status;
+} round_of_blocks;
+
+/* Two blocks of a round have no edge in common: what one thread writes no other one reads. */
+static void settle_part(void *user, size_t begin, size_t end, int thread) {
+    round_of_blocks *r = user;
+    const problem *pr = r->pr;
+    for (size_t i = begin; i < end; i++)
+        brio_report(&r->status, brio_roof_settle(&pr->roof[thread], pr->g, r->b, r->block[i], pr->label));
+}
+
 static brio_status settle_round(const problem *pr, const brio_pole_blocks *b, size_t round) {
-    brio_status status = BRIO_OK;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(pr->threads))
-    for (size_t i = b->first_round[round]; i < b->first_round[round + 1]; i++) {
-        brio_status mine = brio_roof_settle(&pr->roof[brio_thread()], pr->g, b, b->block[i], pr->label);
-        if (mine == BRIO_OK) continue;
-        BRIO_OMP(atomic write)
-        status = mine;
-    }
-    return status;
+    round_of_blocks r = {pr, b, b->block + b->first_round[round], BRIO_OK};
+    size_t blocks = b->first_round[round + 1] - b->first_round[round];
+    int threads = blocks < (size_t)pr->threads ? (int)blocks : pr->threads;
+    brio_for_chunks(pr->g->ctx, threads, blocks, 1, settle_part, &r);
+    return r.status;
 }
 
 static void sum_up(problem *pr) {
@@ -106,7 +117,7 @@ static void settle_beyond_box(const brio_pole_graph *g, uint8_t *certain, uint8_
 brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
     brio_status status = BRIO_OK;
     size_t n = g->poles->count;
-    problem pr = {.g = g, .label = label, .threads = brio_context_threads(g->ctx)};
+    problem pr = {.g = g, .label = label, .threads = brio_threads(g->ctx, n, POLES_A_THREAD)};
     uint8_t *before = NULL;
     BRIO_TRY(brio_label_greedy(g, label, stats));
     BRIO_TRY(BRIO_ALLOC(g->ctx, pr.certain, n));

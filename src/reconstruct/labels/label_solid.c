@@ -3,11 +3,12 @@
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, chapter 4 (the medial axis of a known surface).
  */
 #include "reconstruct/labels/label_solid.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "surface/solid.h"
 #include <math.h>
 
-enum { CHUNK = 1 << 16 };
+/* STEP: poles between two looks at the caller's wish to stop. */
+enum { STEP = 1 << 16, POLES_A_THREAD = 32, CHUNK = 64 };
 
 /* A pole that doubles cannot hold in the unit of the mesh is farther away than the mesh reaches. */
 static uint8_t label_of(const brio_solid *solid, const double *centre, int exponent) {
@@ -17,16 +18,29 @@ static uint8_t label_of(const brio_solid *solid, const double *centre, int expon
     return brio_winding_number(solid, q) != 0 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
 }
 
+typedef struct {
+    const brio_solid *solid;
+    const double *centre; /* of the first pole of the step */
+    int exponent;
+    uint8_t *label; /* of the same */
+} labeller;
+
+static void label_part(void *user, size_t begin, size_t end, int thread) {
+    const labeller *l = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) l->label[p] = label_of(l->solid, l->centre + 3 * p, l->exponent);
+}
+
 brio_status brio_label_by_solid(brio_context *ctx, const brio_poles *poles, int exponent, const brio_mesh *mesh,
                                 uint8_t *label) {
     brio_status status = BRIO_OK;
     brio_solid solid;
     BRIO_TRY(brio_solid_new(ctx, mesh, &solid));
-    for (size_t begin = 0; begin < poles->count; begin += CHUNK) {
-        size_t end = begin + CHUNK < poles->count ? begin + CHUNK : poles->count;
+    for (size_t begin = 0; begin < poles->count; begin += STEP) {
+        size_t count = poles->count - begin < STEP ? poles->count - begin : STEP;
+        labeller l = {&solid, poles->centre + 3 * begin, exponent, label + begin};
         BRIO_TRY(brio_progress(ctx, "label", (double)begin / (double)poles->count));
-        BRIO_OMP(parallel for schedule(dynamic, 256) num_threads(brio_context_threads(ctx)))
-        for (size_t p = begin; p < end; p++) label[p] = label_of(&solid, poles->centre + 3 * p, exponent);
+        brio_for_chunks(ctx, brio_threads(ctx, count, POLES_A_THREAD), count, CHUNK, label_part, &l);
     }
 done:
     brio_solid_free(ctx, &solid);

@@ -1,8 +1,10 @@
 /* What the labellings share: which poles are certain, the energy of labels, spreading breadth first. */
 #include "reconstruct/labels/labelling.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include <math.h>
 #include <string.h>
+
+enum { PARTS = 256, POLES_A_THREAD = 2048 };
 
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain) {
     memcpy(certain, g->poles->bounding, g->poles->count);
@@ -21,16 +23,30 @@ static double violated_at(const brio_pole_graph *g, const uint8_t *label, size_t
     return sum;
 }
 
-/* Summed in parts that do not depend on the number of threads, nor then does the rounding. */
-double brio_label_energy(const brio_pole_graph *g, const uint8_t *label) {
-    enum { PARTS = 256 };
-    double part[PARTS] = {0}, sum = 0;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(brio_context_threads(g->ctx)))
-    for (int i = 0; i < PARTS; i++) {
-        size_t end = brio_part(g->poles->count, i + 1, PARTS);
-        for (size_t p = brio_part(g->poles->count, i, PARTS); p < end; p++) part[i] += violated_at(g, label, p);
+typedef struct {
+    const brio_pole_graph *g;
+    const uint8_t *label;
+    double part[PARTS];
+} energy;
+
+static void sum_parts(void *user, size_t begin, size_t end, int thread) {
+    energy *e = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        size_t to = brio_part(e->g->poles->count, (int)i + 1, PARTS);
+        double sum = 0;
+        for (size_t p = brio_part(e->g->poles->count, (int)i, PARTS); p < to; p++)
+            sum += violated_at(e->g, e->label, p);
+        e->part[i] = sum;
     }
-    for (int i = 0; i < PARTS; i++) sum += part[i];
+}
+
+/* Sums in PARTS parts for every number of threads, so that the rounding is the same. */
+double brio_label_energy(const brio_pole_graph *g, const uint8_t *label) {
+    energy e = {.g = g, .label = label};
+    double sum = 0;
+    brio_for_chunks(g->ctx, brio_threads(g->ctx, g->poles->count, POLES_A_THREAD), PARTS, 1, sum_parts, &e);
+    for (int i = 0; i < PARTS; i++) sum += e.part[i];
     return sum;
 }
 

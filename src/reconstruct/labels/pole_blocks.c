@@ -6,15 +6,15 @@
  * blocks are coloured, and a colour is a round. */
 #include "reconstruct/labels/pole_blocks.h"
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "order/hilbert.h"
 #include "reconstruct/labels/labelling.h"
 #include <math.h>
 #include <string.h>
 
-enum { HOPS = 3, OUTSIDE = 255, CURVE_BITS = 11 };
+enum { HOPS = 3, OUTSIDE = 255, CURVE_BITS = 11, POLES_A_THREAD = 1024, POLES_A_CHUNK = 1024 };
 
 /* A thread's list of pairs of blocks that an edge joins, the higher number first, and its marks. */
 typedef struct {
@@ -26,7 +26,11 @@ typedef struct {
 typedef struct {
     const brio_pole_graph *g;
     const uint8_t *label, *fixed;
-    int threads;
+    int threads;     /* of the loops over poles and blocks */
+    uint8_t hop;     /* of the poles whose neighbours are reached now */
+    joiner *joiners; /* of each thread */
+    brio_status joined;
+    double *points;   /* positions of the poles of the region */
     uint8_t *depth;   /* of each pole: how many edges from trouble, OUTSIDE beyond the region */
     uint8_t *trouble; /* of each block: it has violated edges */
     uint64_t *pair;   /* of blocks, sorted */
@@ -43,7 +47,8 @@ static bool is_troubled(const finder *f, uint32_t p) {
     return false;
 }
 
-/* Threads that reach a pole together write the same. */
+/* Threads that reach a pole together write the same depth, which no thread looks for in this hop: relaxed will do. The
+ * next hop is another run. */
 static void reach_neighbours(const finder *f, uint32_t p, uint8_t depth) {
     const brio_pole_graph *g = f->g;
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
@@ -53,18 +58,24 @@ static void reach_neighbours(const finder *f, uint32_t p, uint8_t depth) {
     }
 }
 
-static void mark_region(const finder *f) {
+static void mark_troubled(void *user, size_t begin, size_t end, int thread) {
+    const finder *f = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) f->depth[p] = !f->fixed[p] && is_troubled(f, (uint32_t)p) ? 0 : OUTSIDE;
+}
+
+static void hop_from(void *user, size_t begin, size_t end, int thread) {
+    const finder *f = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++)
+        if (__atomic_load_n(&f->depth[p], __ATOMIC_RELAXED) == f->hop) reach_neighbours(f, (uint32_t)p, f->hop + 1);
+}
+
+static void mark_region(finder *f) {
+    brio_context *ctx = f->g->ctx;
     size_t n = f->g->poles->count;
-    BRIO_OMP(parallel num_threads(f->threads)) {
-        BRIO_OMP(for schedule(dynamic, 4096))
-        for (size_t p = 0; p < n; p++) f->depth[p] = !f->fixed[p] && is_troubled(f, (uint32_t)p) ? 0 : OUTSIDE;
-        for (uint8_t depth = 0; depth < HOPS; depth++) {
-            BRIO_OMP(for schedule(dynamic, 4096))
-            for (size_t p = 0; p < n; p++)
-                if (__atomic_load_n(&f->depth[p], __ATOMIC_RELAXED) == depth)
-                    reach_neighbours(f, (uint32_t)p, depth + 1);
-        }
-    }
+    brio_for_chunks(ctx, f->threads, n, POLES_A_CHUNK, mark_troubled, f);
+    for (f->hop = 0; f->hop < HOPS; f->hop++) brio_for_chunks(ctx, f->threads, n, POLES_A_CHUNK, hop_from, f);
 }
 
 static brio_status list_region(finder *f) {
@@ -101,22 +112,27 @@ static void draw_cube(double *points, size_t n, uint64_t draw) {
     }
 }
 
-static brio_status sort_along_curve(const finder *f, uint64_t draw) {
+static void copy_positions(void *user, size_t begin, size_t end, int thread) {
+    const finder *f = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        memcpy(f->points + 3 * i, f->g->poles->centre + 3 * (size_t)f->out->pole[i], 3 * sizeof *f->points);
+}
+
+static brio_status sort_along_curve(finder *f, uint64_t draw) {
     brio_status status = BRIO_OK;
     brio_pole_blocks *b = f->out;
-    double *points = NULL;
     uint64_t *keys = NULL;
     size_t n = b->count;
-    BRIO_TRY(BRIO_ALLOC(b->ctx, points, 3 * (n + 2)));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, f->points, 3 * (n + 2)));
     BRIO_TRY(BRIO_ALLOC(b->ctx, keys, n + 2));
-    BRIO_OMP(parallel for num_threads(f->threads))
-    for (size_t i = 0; i < n; i++)
-        memcpy(points + 3 * i, f->g->poles->centre + 3 * (size_t)b->pole[i], 3 * sizeof *points);
-    draw_cube(points, n, draw);
-    brio_hilbert_keys(b->ctx, points, n + 2, CURVE_BITS, keys);
+    brio_for(b->ctx, f->threads, n, copy_positions, f);
+    draw_cube(f->points, n, draw);
+    brio_hilbert_keys(b->ctx, f->points, n + 2, CURVE_BITS, keys);
     BRIO_TRY(brio_radix_sort(b->ctx, keys, b->pole, n, 3 * CURVE_BITS));
 done:
-    brio_release(b->ctx, points);
+    brio_release(b->ctx, f->points);
+    f->points = NULL;
     brio_release(b->ctx, keys);
     return status;
 }
@@ -158,17 +174,19 @@ done:
     return status;
 }
 
-static brio_status join_all(const finder *f, joiner *joiners) {
+static void join_part(void *user, size_t begin, size_t end, int thread) {
+    finder *f = user;
+    for (size_t block = begin; block < end; block++)
+        if (f->trouble[block]) brio_report(&f->joined, join(f, &f->joiners[thread], (uint32_t)block));
+}
+
+static brio_status join_all(finder *f) {
     brio_status status = BRIO_OK;
+    brio_context *ctx = f->out->ctx;
     size_t n = f->out->num_blocks;
-    for (int t = 0; t < f->threads; t++) BRIO_TRY(BRIO_ALLOC_ZERO(f->out->ctx, joiners[t].seen, n));
-    BRIO_OMP(parallel for schedule(dynamic, 4) num_threads(f->threads))
-    for (size_t block = 0; block < n; block++) {
-        brio_status mine = f->trouble[block] ? join(f, &joiners[brio_thread()], (uint32_t)block) : BRIO_OK;
-        if (mine == BRIO_OK) continue;
-        BRIO_OMP(atomic write)
-        status = mine;
-    }
+    for (int t = 0; t < f->threads; t++) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f->joiners[t].seen, n));
+    brio_for_chunks(ctx, n < (size_t)f->threads ? (int)n : f->threads, n, 1, join_part, f);
+    status = f->joined;
 done:
     return status;
 }
@@ -176,20 +194,19 @@ done:
 static brio_status list_pairs(finder *f) {
     brio_status status = BRIO_OK;
     brio_context *ctx = f->out->ctx;
-    joiner *joiners = NULL;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, joiners, (size_t)f->threads));
-    BRIO_TRY(join_all(f, joiners));
-    for (int t = 0; t < f->threads; t++) f->num_pairs += joiners[t].count;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f->joiners, (size_t)f->threads));
+    BRIO_TRY(join_all(f));
+    for (int t = 0; t < f->threads; t++) f->num_pairs += f->joiners[t].count;
     BRIO_TRY(BRIO_ALLOC(ctx, f->pair, f->num_pairs));
-    for (size_t t = 0, count = 0; t < (size_t)f->threads; count += joiners[t++].count)
-        if (joiners[t].count) memcpy(f->pair + count, joiners[t].pair, joiners[t].count * sizeof *f->pair);
+    for (size_t t = 0, count = 0; t < (size_t)f->threads; count += f->joiners[t++].count)
+        if (f->joiners[t].count) memcpy(f->pair + count, f->joiners[t].pair, f->joiners[t].count * sizeof *f->pair);
     brio_sort_keys(f->pair, f->num_pairs);
 done:
-    for (int t = 0; joiners && t < f->threads; t++) {
-        brio_release(ctx, joiners[t].pair);
-        brio_release(ctx, joiners[t].seen);
+    for (int t = 0; f->joiners && t < f->threads; t++) {
+        brio_release(ctx, f->joiners[t].pair);
+        brio_release(ctx, f->joiners[t].seen);
     }
-    brio_release(ctx, joiners);
+    brio_release(ctx, f->joiners);
     return status;
 }
 
@@ -243,7 +260,8 @@ done:
 brio_status brio_pole_blocks_find(const brio_pole_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
                                   uint64_t draw, brio_pole_blocks *out) {
     brio_status status = BRIO_OK;
-    finder f = {.g = g, .label = label, .fixed = fixed, .threads = brio_context_threads(g->ctx), .out = out};
+    int threads = brio_threads(g->ctx, g->poles->count, POLES_A_THREAD);
+    finder f = {.g = g, .label = label, .fixed = fixed, .threads = threads, .out = out};
     *out = (brio_pole_blocks){.ctx = g->ctx, .bits = bits};
     BRIO_TRY(list_region(&f));
     if (out->count > (size_t)1 << bits) BRIO_TRY(sort_along_curve(&f, draw));

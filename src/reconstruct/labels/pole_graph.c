@@ -11,17 +11,19 @@
  * poles of a badly shaped cell may have the same. */
 #include "reconstruct/labels/pole_graph.h"
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include <math.h>
 #include <string.h>
 
-enum { STEP = 1 << 21 }; /* tetrahedra between two looks at the caller's wish to stop */
+/* STEP: tetrahedra between two looks at the caller's wish to stop. */
+enum { STEP = 1 << 21, TETRAHEDRA_A_THREAD = 1 << 12, CHUNK = 1 << 10 };
 
 /* Workspace of the construction. */
 typedef struct {
     brio_pole_graph *g;
-    int threads;
+    int threads;  /* of all loops: poles and samples are fewer than tetrahedra, and take longer each */
+    size_t start; /* the first tetrahedron of the step */
     const uint32_t *representative;
     brio_pole_evidence evidence;
     float *opposite;   /* of each sample: the weight between its poles, 0 for no edge */
@@ -87,7 +89,8 @@ static brio_pole_edge edge_of(uint64_t key) {
     return e;
 }
 
-/* Adds 1; what it was before. */
+/* Adds 1; what it was before. Relaxed: the counts are read after the run, and what is put at a place that a count tells
+ * is the thread's alone until then. */
 static inline size_t count_up(const builder *b, size_t *count) {
     return b->threads > 1 ? __atomic_fetch_add(count, 1, __ATOMIC_RELAXED) : (*count)++;
 }
@@ -124,18 +127,28 @@ static inline void note_tetrahedron(const builder *b, uint32_t tet) {
     }
 }
 
-static brio_status note_all(const builder *b, double from, double to) {
+static void note_tetrahedra(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    (void)thread;
+    for (size_t tet = begin; tet < end; tet++) note_tetrahedron(b, (uint32_t)(b->start + tet));
+}
+
+static void note_hidden(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++)
+        if (b->representative[p] != p) note(b, (uint32_t)p, b->representative[p]);
+}
+
+static brio_status note_all(builder *b, double from, double to) {
     const brio_pole_graph *g = b->g;
     brio_status status = BRIO_OK;
-    for (size_t begin = 0; begin < g->num_finite; begin += STEP) {
-        size_t end = g->num_finite - begin < STEP ? g->num_finite : begin + STEP;
-        BRIO_TRY(brio_progress(g->ctx, "label", from + (to - from) * (double)begin / (double)g->num_finite));
-        BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
-        for (size_t tet = begin; tet < end; tet++) note_tetrahedron(b, (uint32_t)tet);
+    for (b->start = 0; b->start < g->num_finite; b->start += STEP) {
+        size_t count = g->num_finite - b->start < STEP ? g->num_finite - b->start : STEP;
+        BRIO_TRY(brio_progress(g->ctx, "label", from + (to - from) * (double)b->start / (double)g->num_finite));
+        brio_for_chunks(g->ctx, b->threads, count, CHUNK, note_tetrahedra, b);
     }
-    BRIO_OMP(parallel for num_threads(b->threads))
-    for (size_t p = 0; p < g->poles->count; p++)
-        if (b->representative[p] != p) note(b, (uint32_t)p, b->representative[p]);
+    brio_for(g->ctx, b->threads, g->poles->count, note_hidden, b);
 done:
     return status;
 }
@@ -158,6 +171,11 @@ static void weigh(const builder *b, uint32_t p) {
     if (kept < size) low[kept] = NOTHING;
 }
 
+static void weigh_part(void *user, size_t begin, size_t end, int thread) {
+    (void)thread;
+    for (size_t p = begin; p < end; p++) weigh(user, (uint32_t)p);
+}
+
 static brio_status list_neighbours(builder *b) {
     brio_status status = BRIO_OK;
     brio_context *ctx = b->g->ctx;
@@ -168,8 +186,7 @@ static brio_status list_neighbours(builder *b) {
     BRIO_TRY(BRIO_ALLOC(ctx, b->low, b->first_low[n]));
     BRIO_TRY(note_all(b, 0.15, 0.3));
     memset(b->place, 0, n * sizeof *b->place);
-    BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
-    for (size_t p = 0; p < n; p++) weigh(b, (uint32_t)p);
+    brio_for_chunks(ctx, b->threads, n, CHUNK, weigh_part, b);
 done:
     return status;
 }
@@ -191,18 +208,23 @@ static float opposite_weight(const builder *b, size_t sample) {
     return cosine < 0 ? (float)(trust * fmax(cosine, -1)) : 0;
 }
 
-static brio_status list_opposite(builder *b) {
+static void weigh_opposite(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
     const brio_pole_graph *g = b->g;
-    brio_status status = BRIO_ALLOC(g->ctx, b->opposite, g->num_samples);
-    if (status != BRIO_OK) return status;
-    BRIO_OMP(parallel for num_threads(b->threads))
-    for (size_t s = 0; s < g->num_samples; s++) {
+    (void)thread;
+    for (size_t s = begin; s < end; s++) {
         b->opposite[s] = opposite_weight(b, s);
         if (!(b->opposite[s] < 0)) continue;
         count_up(b, &b->place[g->poles->of_sample[2 * s]]);
         count_up(b, &b->place[g->poles->of_sample[2 * s + 1]]);
     }
-    return BRIO_OK;
+}
+
+static brio_status list_opposite(builder *b) {
+    brio_context *ctx = b->g->ctx;
+    brio_status status = BRIO_ALLOC(ctx, b->opposite, b->g->num_samples);
+    if (status == BRIO_OK) brio_for(ctx, b->threads, b->g->num_samples, weigh_opposite, b);
+    return status;
 }
 
 /* --- the graph --- */
@@ -212,24 +234,30 @@ static void deal(const builder *b, uint32_t p, uint32_t q, float weight) {
     b->edge[count_up(b, &b->place[q])] = key_of(p, weight);
 }
 
-static void deal_out(const builder *b) {
-    const brio_pole_graph *g = b->g;
-    BRIO_OMP(parallel for num_threads(b->threads))
-    for (size_t p = 0; p < g->poles->count; p++)
+static void deal_out_neighbours(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++)
         for (size_t i = b->first_low[p]; i < b->first_low[p + 1] && b->low[i] != NOTHING; i++) {
             brio_pole_edge e = edge_of(b->low[i]);
             deal(b, (uint32_t)p, e.pole, e.weight);
         }
-    BRIO_OMP(parallel for num_threads(b->threads))
-    for (size_t s = 0; s < g->num_samples; s++)
-        if (b->opposite[s] < 0) deal(b, g->poles->of_sample[2 * s], g->poles->of_sample[2 * s + 1], b->opposite[s]);
+}
+
+static void deal_out_opposite(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    const uint32_t *of_sample = b->g->poles->of_sample;
+    (void)thread;
+    for (size_t s = begin; s < end; s++)
+        if (b->opposite[s] < 0) deal(b, of_sample[2 * s], of_sample[2 * s + 1], b->opposite[s]);
 }
 
 /* Sorts the edges of each pole, and turns keys into edges where they are. */
-static void sort_edges(const builder *b) {
+static void sort_edges(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
     const brio_pole_graph *g = b->g;
-    BRIO_OMP(parallel for schedule(dynamic, 1024) num_threads(b->threads))
-    for (size_t p = 0; p < g->poles->count; p++) {
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
         brio_sort_keys(b->edge + g->first[p], g->first[p + 1] - g->first[p]);
         for (size_t i = g->first[p]; i < g->first[p + 1]; i++) {
             brio_pole_edge e = edge_of(b->edge[i]);
@@ -242,15 +270,17 @@ static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative
     brio_status status = BRIO_OK;
     brio_context *ctx = g->ctx;
     size_t n = g->poles->count;
-    builder b = {.g = g, .threads = brio_context_threads(ctx), .representative = representative, .evidence = evidence};
+    int threads = brio_threads(ctx, g->num_finite, TETRAHEDRA_A_THREAD);
+    builder b = {.g = g, .threads = threads, .representative = representative, .evidence = evidence};
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.place, n));
     BRIO_TRY(list_neighbours(&b));
     BRIO_TRY(list_opposite(&b));
     BRIO_TRY(BRIO_ALLOC(ctx, g->first, n + 1));
     first_places(g->first, b.place, n);
     BRIO_TRY(BRIO_ALLOC(ctx, b.edge, g->first[n]));
-    deal_out(&b);
-    sort_edges(&b);
+    brio_for(ctx, threads, n, deal_out_neighbours, &b);
+    brio_for(ctx, threads, g->num_samples, deal_out_opposite, &b);
+    brio_for_chunks(ctx, threads, n, CHUNK, sort_edges, &b);
     g->edge = (brio_pole_edge *)b.edge; /* of the same size, and written as edges */
 done:
     if (status != BRIO_OK) brio_release(ctx, b.edge);
