@@ -2,7 +2,7 @@
  *
  * The place of every binary row is known beforehand: threads encode chunks of them, which are written as a whole. */
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "io/formats.h"
 #include "io/ply_header.h"
 #include "io/scalar.h"
@@ -45,7 +45,7 @@ done:
 
 /* --- binary rows --- */
 
-enum { CHUNK = 1 << 16 }; /* rows */
+enum { CHUNK = 1 << 16, ROWS_A_THREAD = 1 << 12 };
 
 static size_t vertex_size(const brio_write_job *job) {
     size_t size = 3 * (job->options->float32 ? sizeof(float) : sizeof(double));
@@ -66,6 +66,20 @@ static void encode_vertex(const brio_write_job *job, size_t v, char *bytes) {
     }
 }
 
+/* A chunk of rows: vertices or faces from `first` on, encoded into bytes. */
+typedef struct {
+    const brio_write_job *job;
+    size_t first;
+    char *bytes;
+    size_t size; /* of a vertex; of the number before the corners of a face */
+} rows;
+
+static void encode_vertices(void *user, size_t begin, size_t end, int thread) {
+    const rows *r = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) encode_vertex(r->job, r->first + i, r->bytes + i * r->size);
+}
+
 static brio_status write_binary_vertices(brio_output *out, const brio_write_job *job) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
@@ -76,8 +90,8 @@ static brio_status write_binary_vertices(brio_output *out, const brio_write_job 
     BRIO_TRY(BRIO_ALLOC(out->ctx, bytes, CHUNK * size));
     for (size_t begin = 0; begin < m->num_vertices; begin += CHUNK) {
         size_t count = m->num_vertices - begin < CHUNK ? m->num_vertices - begin : CHUNK;
-        BRIO_OMP(parallel for num_threads(brio_context_threads(out->ctx)))
-        for (size_t i = 0; i < count; i++) encode_vertex(job, begin + i, bytes + i * size);
+        brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode_vertices,
+                 &(rows){job, begin, bytes, size});
         BRIO_TRY(brio_output_bytes(out, bytes, count * size));
     }
 done:
@@ -93,19 +107,28 @@ static void encode_list(const uint32_t *items, size_t count, bool long_list, cha
     memcpy(bytes + size, items, count * sizeof *items);
 }
 
-static brio_status write_binary_faces(brio_output *out, const brio_mesh *m, bool long_lists) {
+static void encode_faces(void *user, size_t begin, size_t end, int thread) {
+    const rows *r = user;
+    const brio_mesh *m = r->job->mesh;
+    const uint64_t *offsets = m->face_offsets + r->first;
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        encode_list(m->face_vertices + offsets[i], (size_t)(offsets[i + 1] - offsets[i]), r->size == sizeof(uint32_t),
+                    r->bytes + i * r->size + (size_t)(offsets[i] - offsets[0]) * sizeof(uint32_t));
+}
+
+static brio_status write_binary_faces(brio_output *out, const brio_write_job *job, bool long_lists) {
     brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
     size_t head = long_lists ? sizeof(uint32_t) : sizeof(uint8_t), capacity = 0;
     char *bytes = NULL;
     for (size_t begin = 0; begin < m->num_faces; begin += CHUNK) {
-        size_t end = m->num_faces - begin < CHUNK ? m->num_faces : begin + CHUNK;
-        const uint64_t *offsets = m->face_offsets, first = offsets[begin];
-        size_t size = (end - begin) * head + (size_t)(offsets[end] - first) * sizeof(uint32_t);
+        size_t count = m->num_faces - begin < CHUNK ? m->num_faces - begin : CHUNK;
+        const uint64_t *offsets = m->face_offsets + begin;
+        size_t size = count * head + (size_t)(offsets[count] - offsets[0]) * sizeof(uint32_t);
         BRIO_TRY(BRIO_RESERVE(out->ctx, bytes, capacity, size));
-        BRIO_OMP(parallel for num_threads(brio_context_threads(out->ctx)))
-        for (size_t f = begin; f < end; f++)
-            encode_list(m->face_vertices + offsets[f], (size_t)(offsets[f + 1] - offsets[f]), long_lists,
-                        bytes + (f - begin) * head + (size_t)(offsets[f] - first) * sizeof(uint32_t));
+        brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode_faces,
+                 &(rows){job, begin, bytes, head});
         BRIO_TRY(brio_output_bytes(out, bytes, size));
     }
 done:
@@ -117,7 +140,7 @@ static brio_status write_binary(brio_output *out, const brio_write_job *job, boo
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     BRIO_TRY(write_binary_vertices(out, job));
-    BRIO_TRY(write_binary_faces(out, m, long_lists));
+    BRIO_TRY(write_binary_faces(out, job, long_lists));
     for (size_t t = 0; t < m->num_tetrahedra; t++) {
         char bytes[1 + 4 * sizeof(uint32_t)];
         encode_list(m->tetrahedra + 4 * t, 4, false, bytes);
