@@ -7,15 +7,16 @@
  * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980 (boxes).
  * Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). */
 #include "surface/closest_point.h"
-#include "base/parallel.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include <math.h>
 #include <string.h>
 
 enum {
     MOST_LEVELS = 64,
-    TASK_FROM = 1 << 15 /* triangles of a node that is worth a task of its own */
+    TRIANGLES_A_THREAD = 1 << 12,
+    SUBTREES_A_THREAD = 8 /* so that no thread waits long for the last subtree */
 };
 
 /* A triangle while the tree is built: its centroid, in units of the mesh's box, and its index. */
@@ -28,8 +29,15 @@ typedef struct {
     const double *vertices;
     uint32_t (*triangles)[3]; /* in the order of the faces */
     item *items;
+    size_t count; /* of triangles */
     brio_box *boxes;
+    size_t first; /* node of the level in work */
 } builder;
+
+/* A node: items low to high - 1. */
+typedef struct {
+    size_t low, high;
+} range;
 
 /* --- boxes --- */
 
@@ -94,24 +102,85 @@ static int longest_axis(const item *items, size_t count) {
     return axis;
 }
 
-static void build_node(const builder *b, size_t node, size_t low, size_t high) {
-    brio_box box = empty_box();
-    if (high - low <= BRIO_LEAF_TRIANGLES) {
-        for (size_t i = low; i < high; i++)
-            for (int k = 0; k < 3; k++)
-                box_add_point(&box, b->vertices + 3 * (size_t)b->triangles[b->items[i].triangle][k]);
-    } else {
-        size_t middle = low + (high - low) / 2;
-        split_at(b->items + low, (ptrdiff_t)(high - low), (ptrdiff_t)(middle - low),
-                 longest_axis(b->items + low, high - low));
-        BRIO_OMP(task if (high - low >= TASK_FROM))
-        build_node(b, 2 * node + 1, low, middle);
-        build_node(b, 2 * node + 2, middle, high);
-        BRIO_OMP(taskwait)
-        box_add_box(&box, &b->boxes[2 * node + 1]);
-        box_add_box(&box, &b->boxes[2 * node + 2]);
-    }
+static size_t middle_of(range r) {
+    return r.low + (r.high - r.low) / 2;
+}
+
+/* Deals the items of a node to its children. */
+static void split_node(const builder *b, range r) {
+    item *items = b->items + r.low;
+    size_t count = r.high - r.low;
+    split_at(items, (ptrdiff_t)count, (ptrdiff_t)(middle_of(r) - r.low), longest_axis(items, count));
+}
+
+/* The box of a node from those of its children. */
+static void join_children(const builder *b, size_t node) {
+    brio_box box = b->boxes[2 * node + 1];
+    box_add_box(&box, &b->boxes[2 * node + 2]);
     b->boxes[node] = box;
+}
+
+static void build_leaf(const builder *b, size_t node, range r) {
+    brio_box box = empty_box();
+    for (size_t i = r.low; i < r.high; i++)
+        for (int k = 0; k < 3; k++)
+            box_add_point(&box, b->vertices + 3 * (size_t)b->triangles[b->items[i].triangle][k]);
+    b->boxes[node] = box;
+}
+
+static void build_node(const builder *b, size_t node, range r) {
+    if (r.high - r.low <= BRIO_LEAF_TRIANGLES) {
+        build_leaf(b, node, r);
+        return;
+    }
+    split_node(b, r);
+    build_node(b, 2 * node + 1, (range){r.low, middle_of(r)});
+    build_node(b, 2 * node + 2, (range){middle_of(r), r.high});
+    join_children(b, node);
+}
+
+/* The range of a node. The bits of node + 1 after the highest are the way down from the root: 0 for a lower child. */
+static range range_of(const builder *b, size_t node) {
+    range r = {0, b->count};
+    int bit = 0;
+    while ((node + 1) >> bit > 1) bit++;
+    while (bit-- > 0) {
+        if ((node + 1) >> bit & 1)
+            r.low = middle_of(r);
+        else
+            r.high = middle_of(r);
+    }
+    return r;
+}
+
+/* Splits nodes of the level in work. */
+static void split_nodes(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) split_node(b, range_of(b, b->first + i));
+}
+
+/* Builds what hangs on nodes of the level in work. */
+static void build_subtrees(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) build_node(b, b->first + i, range_of(b, b->first + i));
+}
+
+/* Calls body for each node of a level; a node is a job. */
+static void for_level(brio_context *ctx, builder *b, size_t nodes, brio_part_fn body) {
+    b->first = nodes - 1;
+    brio_for_chunks(ctx, brio_threads(ctx, nodes, 1), nodes, 1, body, b);
+}
+
+/* Splits level after level until there are SUBTREES_A_THREAD nodes for each thread, then builds the subtrees. A node
+ * that is split here has at least TRIANGLES_A_THREAD / SUBTREES_A_THREAD triangles: no leaf is split. What a split does
+ * depends on the items of the node alone, so the tree is the same for every number of threads. */
+static void build_tree(brio_context *ctx, builder *b) {
+    size_t threads = (size_t)brio_threads(ctx, b->count, TRIANGLES_A_THREAD), nodes = 1;
+    for (; threads > 1 && nodes < SUBTREES_A_THREAD * threads; nodes *= 2) for_level(ctx, b, nodes, split_nodes);
+    for_level(ctx, b, nodes, build_subtrees);
+    for (size_t node = nodes - 1; node-- > 0;) join_children(b, node);
 }
 
 /* Cuts the faces into triangles. */
@@ -171,12 +240,10 @@ brio_status brio_triangle_tree_new(brio_context *ctx, const brio_mesh *mesh, bri
     BRIO_TRY(BRIO_ALLOC(ctx, b.items, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->triangles, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->boxes, count_nodes(count)));
-    out->num_triangles = count;
+    out->num_triangles = b.count = count;
     b.boxes = out->boxes;
     fill_items(&b, count);
-    BRIO_OMP(parallel num_threads(brio_context_threads(ctx)))
-    BRIO_OMP(single)
-    build_node(&b, 0, 0, count);
+    build_tree(ctx, &b);
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) out->triangles[i][k] = b.triangles[b.items[i].triangle][k];
 done:
