@@ -15,15 +15,17 @@
  * Threads share the work. Nothing depends on its order: a root is the first element of its set, counts are whole
  * numbers, and areas and volumes are summed in parts of their own. */
 #include "base/float_state.h"
-#include "base/parallel.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "surface/edge_rings.h"
 #include "surface/union_find.h"
 #include <math.h>
 
+enum { ITEMS_A_THREAD = 1 << 13 }; /* faces, corners or vertices */
+
 typedef struct {
+    brio_context *ctx;
     const brio_mesh *mesh;
-    int threads;
     size_t corners;
     uint32_t *ring;    /* #corners: edge rings */
     uint32_t *face_of; /* #corners; NULL where all faces are triangles, one after the other */
@@ -50,6 +52,11 @@ static uint32_t next_corner(const topology *t, uint32_t h) {
     return h + 1 < offsets[f + 1] ? h + 1 : (uint32_t)offsets[f];
 }
 
+/* Calls body for parts of n items. */
+static void for_each(const topology *t, size_t n, brio_part_fn body, void *user) {
+    brio_for(t->ctx, brio_threads(t->ctx, n, ITEMS_A_THREAD), n, body, user);
+}
+
 static void topology_free(brio_context *ctx, topology *t) {
     brio_release(ctx, t->ring);
     brio_release(ctx, t->face_of);
@@ -64,31 +71,41 @@ static bool is_of_triangles(const brio_mesh *mesh) {
     return all;
 }
 
+/* Makes a set of each of some faces and of each of their corners. */
+static void make_sets(void *user, size_t begin, size_t end, int thread) {
+    const topology *t = user;
+    const uint64_t *offsets = t->mesh->face_offsets;
+    (void)thread;
+    for (size_t f = begin; f < end; f++) {
+        t->patch[f] = (uint32_t)f;
+        for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++) {
+            if (t->face_of) t->face_of[h] = (uint32_t)f;
+            t->fan[h] = (uint32_t)h;
+        }
+    }
+}
+
 /* On failure the caller frees what there is. */
 static brio_status topology_new(brio_context *ctx, const brio_mesh *mesh, topology *t) {
     brio_status status = BRIO_OK;
-    *t = (topology){.mesh = mesh,
-                    .threads = brio_context_threads(ctx),
-                    .corners = mesh->num_faces ? mesh->face_offsets[mesh->num_faces] : 0};
+    *t = (topology){.ctx = ctx, .mesh = mesh, .corners = mesh->num_faces ? mesh->face_offsets[mesh->num_faces] : 0};
     BRIO_TRY(brio_edge_rings(ctx, mesh, &t->ring));
     if (!is_of_triangles(mesh)) BRIO_TRY(BRIO_ALLOC(ctx, t->face_of, t->corners));
     BRIO_TRY(BRIO_ALLOC(ctx, t->fan, t->corners));
     BRIO_TRY(BRIO_ALLOC(ctx, t->patch, mesh->num_faces));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->vertex, mesh->num_vertices));
-    BRIO_OMP(parallel for num_threads(t->threads))
-    for (size_t f = 0; f < mesh->num_faces; f++) {
-        t->patch[f] = (uint32_t)f;
-        for (uint64_t h = mesh->face_offsets[f]; h < mesh->face_offsets[f + 1]; h++) {
-            if (t->face_of) t->face_of[h] = (uint32_t)f;
-            t->fan[h] = (uint32_t)h;
-        }
-    }
+    for_each(t, mesh->num_faces, make_sets, t);
 done:
     return status;
 }
 
+/* Adds to a count that is read after the run. */
+static void add_relaxed(size_t *count, size_t amount) {
+    __atomic_fetch_add(count, amount, __ATOMIC_RELAXED);
+}
+
 /* Joins the corners at either end of the edge of the half-edges h and g. */
-static void join_corners(topology *t, uint32_t h, uint32_t g, bool alone) {
+static void join_corners(const topology *t, uint32_t h, uint32_t g, bool alone) {
     const uint32_t *v = t->mesh->face_vertices;
     uint32_t h_end = next_corner(t, h), g_end = next_corner(t, g);
     bool same_way = v[h] == v[g];
@@ -96,37 +113,55 @@ static void join_corners(topology *t, uint32_t h, uint32_t g, bool alone) {
     brio_unite(t->fan, h_end, same_way ? g_end : g, alone);
 }
 
-/* Joins the faces across every edge, and the corners at either end of the edges of two faces; counts the edges that a
- * closed oriented manifold does not have. Of each edge's half-edges the last one speaks for it. */
-static void join_across_edges(topology *t, brio_certificate *out) {
+/* The edges that a closed oriented manifold does not have. */
+typedef struct {
+    const topology *t;
+    bool alone; /* one thread joins */
+    size_t boundary, nonmanifold, flipped;
+} edge_count;
+
+/* Joins and counts at half-edges. Of each edge's half-edges the last one speaks for it. */
+static void join_at_half_edges(void *user, size_t begin, size_t end, int thread) {
+    edge_count *c = user;
+    const topology *t = c->t;
     const uint32_t *v = t->mesh->face_vertices;
-    bool alone = t->threads == 1;
     size_t boundary = 0, nonmanifold = 0, flipped = 0;
-    BRIO_OMP(parallel for num_threads(t->threads) reduction(+ : boundary, nonmanifold, flipped))
-    for (uint32_t h = 0; h < t->corners; h++) {
+    (void)thread;
+    for (uint32_t h = (uint32_t)begin; h < end; h++) {
         uint32_t g = t->ring[h];
         bool last = g <= h, two = g != h && t->ring[g] == h;
-        if (g != h && !(two && last)) brio_unite(t->patch, face_at(t, h), face_at(t, g), alone);
+        if (g != h && !(two && last)) brio_unite(t->patch, face_at(t, h), face_at(t, g), c->alone);
         if (!last) continue;
         boundary += g == h;
         nonmanifold += g != h && !two;
         flipped += two && v[g] == v[h];
-        if (two) join_corners(t, g, h, alone);
+        if (two) join_corners(t, g, h, c->alone);
     }
-    out->boundary_edges = boundary;
-    out->nonmanifold_edges = nonmanifold;
-    out->flipped_edges = flipped;
+    add_relaxed(&c->boundary, boundary);
+    add_relaxed(&c->nonmanifold, nonmanifold);
+    add_relaxed(&c->flipped, flipped);
+}
+
+/* Joins the faces across every edge, and the corners at either end of the edges of two faces. */
+static void join_across_edges(const topology *t, brio_certificate *out) {
+    int threads = brio_threads(t->ctx, t->corners, ITEMS_A_THREAD);
+    edge_count c = {.t = t, .alone = threads == 1};
+    brio_for(t->ctx, threads, t->corners, join_at_half_edges, &c);
+    out->boundary_edges = c.boundary;
+    out->nonmanifold_edges = c.nonmanifold;
+    out->flipped_edges = c.flipped;
 }
 
 /* --- degenerate faces --- */
 
-static void mark(topology *t, uint32_t v, uint8_t state) {
+/* Threads set the states of vertices; the states are read after the run. */
+static void mark(const topology *t, uint32_t v, uint8_t state) {
     __atomic_fetch_or(&t->vertex[v], state, __ATOMIC_RELAXED);
 }
 
 /* Whether a face has fewer than three corners, or a vertex twice; marks such vertices. Each corner is held against all
  * before it. */
-static bool mark_small_face(topology *t, size_t f) {
+static bool mark_small_face(const topology *t, size_t f) {
     const uint32_t *v = t->mesh->face_vertices + t->mesh->face_offsets[f];
     size_t count = (size_t)(t->mesh->face_offsets[f + 1] - t->mesh->face_offsets[f]);
     bool bad = count < 3;
@@ -140,7 +175,7 @@ static bool mark_small_face(topology *t, size_t f) {
 }
 
 /* The same with the last face of each vertex, plus 1. */
-static bool mark_large_face(topology *t, size_t f, uint32_t *last_face) {
+static bool mark_large_face(const topology *t, size_t f, uint32_t *last_face) {
     const uint64_t *offsets = t->mesh->face_offsets;
     bool bad = false;
     for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++) {
@@ -153,32 +188,49 @@ static bool mark_large_face(topology *t, size_t f, uint32_t *last_face) {
     return bad;
 }
 
-/* Marks the vertices of degenerate faces; counts these faces, those without any corner included. */
-static brio_status mark_degenerate_faces(brio_context *ctx, topology *t, size_t *degenerate) {
-    enum { SMALL = 32 };
-    brio_status status = BRIO_OK;
-    const uint64_t *offsets = t->mesh->face_offsets;
-    uint32_t *last_face = NULL;
-    size_t small = 0, large = 0, bad = 0;
-    BRIO_OMP(parallel for num_threads(t->threads) reduction(+ : small, bad))
-    for (size_t f = 0; f < t->mesh->num_faces; f++) {
+enum { SMALL = 32 }; /* corners of a face */
+
+typedef struct {
+    const topology *t;
+    size_t small, bad;
+} face_count;
+
+static void mark_small_faces(void *user, size_t begin, size_t end, int thread) {
+    face_count *c = user;
+    const uint64_t *offsets = c->t->mesh->face_offsets;
+    size_t small = 0, bad = 0;
+    (void)thread;
+    for (size_t f = begin; f < end; f++) {
         if (offsets[f + 1] - offsets[f] > SMALL) continue;
         small++;
-        bad += mark_small_face(t, f);
+        bad += mark_small_face(c->t, f);
     }
-    large = t->mesh->num_faces - small;
-    if (large) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, last_face, t->mesh->num_vertices));
-    for (size_t f = 0; large && f < t->mesh->num_faces; f++)
-        if (offsets[f + 1] - offsets[f] > SMALL) bad += mark_large_face(t, f, last_face);
-    *degenerate = bad;
+    add_relaxed(&c->small, small);
+    add_relaxed(&c->bad, bad);
+}
+
+/* Marks the vertices of degenerate faces; counts these faces, those without any corner included. */
+static brio_status mark_degenerate_faces(const topology *t, size_t *degenerate) {
+    brio_status status = BRIO_OK;
+    const uint64_t *offsets = t->mesh->face_offsets;
+    size_t num_faces = t->mesh->num_faces;
+    uint32_t *last_face = NULL;
+    face_count c = {t, 0, 0};
+    for_each(t, num_faces, mark_small_faces, &c);
+    bool large = c.small < num_faces;
+    if (large) BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, last_face, t->mesh->num_vertices));
+    for (size_t f = 0; large && f < num_faces; f++)
+        if (offsets[f + 1] - offsets[f] > SMALL) c.bad += mark_large_face(t, f, last_face);
+    *degenerate = c.bad;
 done:
-    brio_release(ctx, last_face);
+    brio_release(t->ctx, last_face);
     return status;
 }
 
 /* --- components --- */
 
-/* Adds to the counts of components: one run of equals at a time, so that threads seldom meet. */
+/* Adds to the counts of components: one run of equals at a time, so that threads seldom meet. The counts are read when
+ * all threads are done. */
 typedef struct {
     component *components, run;
     uint32_t number;
@@ -198,83 +250,101 @@ static component *tally_of(tally *t, uint32_t number) {
     return &t->run;
 }
 
-/* Numbers the components in the order of their first faces: number[f] becomes that of face f. */
-static size_t number_components(topology *t, uint32_t *number) {
-    size_t num_faces = t->mesh->num_faces, count = 0;
-    BRIO_OMP(parallel for num_threads(t->threads))
-    for (uint32_t f = 0; f < num_faces; f++) {
-        uint32_t root = brio_find(t->patch, f);
-        __atomic_store_n(&t->patch[f], root, __ATOMIC_RELAXED);
-    }
-    for (uint32_t f = 0; f < num_faces; f++)
-        if (t->patch[f] == f) number[f] = (uint32_t)count++;
-    BRIO_OMP(parallel for num_threads(t->threads))
-    for (uint32_t f = 0; f < num_faces; f++)
-        if (t->patch[f] != f) number[f] = number[t->patch[f]];
-    return count;
+typedef struct {
+    const topology *t;
+    uint32_t *number;      /* of each face its component, in the order of the components' first faces */
+    component *components; /* each with its number of faces, edges, vertices and loops */
+    size_t count;          /* of components */
+    bool pinched;          /* some vertex has two fans */
+} component_count;
+
+/* Lets faces point to the roots of their sets. Other threads may follow the pointers at once, see union_find.h. */
+static void point_to_roots(void *user, size_t begin, size_t end, int thread) {
+    const topology *t = ((const component_count *)user)->t;
+    (void)thread;
+    for (uint32_t f = (uint32_t)begin; f < end; f++)
+        __atomic_store_n(&t->patch[f], brio_find(t->patch, f), __ATOMIC_RELAXED);
 }
 
-/* Counts the faces and the edges of each component. */
-static void count_in_components(const topology *t, const uint32_t *number, component *components) {
-    BRIO_OMP(parallel num_threads(t->threads)) {
-        tally own = {components, {0, 0, 0, 0}, 0};
-        BRIO_OMP(for schedule(static))
-        for (uint32_t f = 0; f < t->mesh->num_faces; f++) {
-            component *c = tally_of(&own, number[f]);
-            c->faces++;
-            for (uint64_t h = t->mesh->face_offsets[f]; h < t->mesh->face_offsets[f + 1]; h++)
-                c->edges += t->ring[h] <= h;
-        }
-        if (t->mesh->num_faces) tally_end(&own);
-    }
+/* Gives faces the numbers of their roots. Roots keep theirs, so that no thread reads what another one writes. */
+static void copy_root_numbers(void *user, size_t begin, size_t end, int thread) {
+    const component_count *c = user;
+    const uint32_t *root = c->t->patch;
+    (void)thread;
+    for (size_t f = begin; f < end; f++)
+        if (root[f] != f) c->number[f] = c->number[root[f]];
 }
 
-/* Counts one vertex for each fan in the component of the fan; whether some vertex has two. */
-static bool count_fans(topology *t, const uint32_t *number, component *components) {
+static void number_components(component_count *c) {
+    size_t num_faces = c->t->mesh->num_faces;
+    for_each(c->t, num_faces, point_to_roots, c);
+    for (size_t f = 0; f < num_faces; f++)
+        if (c->t->patch[f] == f) c->number[f] = (uint32_t)c->count++;
+    for_each(c->t, num_faces, copy_root_numbers, c);
+}
+
+/* Counts faces and their edges, each in its component. */
+static void count_faces(void *user, size_t begin, size_t end, int thread) {
+    const component_count *c = user;
+    const topology *t = c->t;
+    tally own = {c->components, {0, 0, 0, 0}, 0};
+    (void)thread;
+    for (size_t f = begin; f < end; f++) {
+        component *run = tally_of(&own, c->number[f]);
+        run->faces++;
+        for (uint64_t h = t->mesh->face_offsets[f]; h < t->mesh->face_offsets[f + 1]; h++)
+            run->edges += t->ring[h] <= h;
+    }
+    tally_end(&own);
+}
+
+/* Counts one vertex for each fan in the component of the fan, and sees whether some vertex has two. */
+static void count_fans(void *user, size_t begin, size_t end, int thread) {
+    component_count *c = user;
+    const topology *t = c->t;
+    tally own = {c->components, {0, 0, 0, 0}, 0};
     bool pinched = false;
-    BRIO_OMP(parallel num_threads(t->threads) reduction(|| : pinched)) {
-        tally own = {components, {0, 0, 0, 0}, 0};
-        BRIO_OMP(for schedule(static))
-        for (uint32_t h = 0; h < t->corners; h++) {
-            if (t->fan[h] != h) continue;
-            uint8_t *state = &t->vertex[t->mesh->face_vertices[h]];
-            if (__atomic_fetch_or(state, VERTEX_SEEN, __ATOMIC_RELAXED) & VERTEX_SEEN) {
-                __atomic_fetch_or(state, VERTEX_TWO_FANS, __ATOMIC_RELAXED);
-                pinched = true;
-            }
-            tally_of(&own, number[face_at(t, h)])->vertices++;
+    (void)thread;
+    for (uint32_t h = (uint32_t)begin; h < end; h++) {
+        if (t->fan[h] != h) continue;
+        uint8_t *state = &t->vertex[t->mesh->face_vertices[h]];
+        if (__atomic_fetch_or(state, VERTEX_SEEN, __ATOMIC_RELAXED) & VERTEX_SEEN) {
+            __atomic_fetch_or(state, VERTEX_TWO_FANS, __ATOMIC_RELAXED);
+            pinched = true;
         }
-        if (t->corners) tally_end(&own);
+        tally_of(&own, c->number[face_at(t, h)])->vertices++;
     }
-    return pinched;
+    tally_end(&own);
+    if (pinched) __atomic_store_n(&c->pinched, true, __ATOMIC_RELAXED);
 }
 
 /* Takes back what count_fans counted too much: several fans of one vertex in the same component. */
-static brio_status recount_pinched_vertices(brio_context *ctx, const topology *t, const uint32_t *number,
-                                            component *components) {
+static brio_status recount_pinched_vertices(const component_count *c) {
     brio_status status = BRIO_OK;
+    const topology *t = c->t;
     uint64_t *fans = NULL; /* (vertex, component) */
     size_t count = 0, capacity = 0;
     for (uint32_t h = 0; h < t->corners; h++) {
         uint32_t v = t->mesh->face_vertices[h];
         if (t->fan[h] != h || !(t->vertex[v] & VERTEX_TWO_FANS)) continue;
-        BRIO_TRY(BRIO_RESERVE(ctx, fans, capacity, count + 1));
-        fans[count++] = (uint64_t)v << 32 | number[face_at(t, h)];
+        BRIO_TRY(BRIO_RESERVE(t->ctx, fans, capacity, count + 1));
+        fans[count++] = (uint64_t)v << 32 | c->number[face_at(t, h)];
     }
     brio_sort_keys(fans, count);
     for (size_t i = 1; i < count; i++)
-        if (fans[i] == fans[i - 1]) components[(uint32_t)fans[i]].vertices--;
+        if (fans[i] == fans[i - 1]) c->components[(uint32_t)fans[i]].vertices--;
 done:
-    brio_release(ctx, fans);
+    brio_release(t->ctx, fans);
     return status;
 }
 
 /* Joins fans across edges of more than two faces, and at the two ends of each boundary edge: every set with such an
  * edge is a boundary loop. This is the end of t->fan as the partition into fans. */
-static brio_status count_loops(brio_context *ctx, topology *t, const uint32_t *number, component *components) {
+static brio_status count_loops(const component_count *c) {
     brio_status status = BRIO_OK;
+    const topology *t = c->t;
     uint8_t *counted = NULL; /* of each root of a set */
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, counted, t->corners));
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, counted, t->corners));
     for (uint32_t h = 0; h < t->corners; h++) {
         uint32_t g = t->ring[h];
         if (g == h) brio_unite(t->fan, h, next_corner(t, h), true);
@@ -283,11 +353,11 @@ static brio_status count_loops(brio_context *ctx, topology *t, const uint32_t *n
     for (uint32_t h = 0; h < t->corners; h++) {
         if (t->ring[h] != h) continue;
         uint32_t root = brio_find(t->fan, h);
-        if (!counted[root]) components[number[face_at(t, h)]].loops++;
+        if (!counted[root]) c->components[c->number[face_at(t, h)]].loops++;
         counted[root] = 1;
     }
 done:
-    brio_release(ctx, counted);
+    brio_release(t->ctx, counted);
     return status;
 }
 
@@ -316,41 +386,48 @@ done:
     return status;
 }
 
-static brio_status certify_components(brio_context *ctx, topology *t, brio_certificate *out) {
+static brio_status certify_components(const topology *t, brio_certificate *out) {
     brio_status status = BRIO_OK;
-    component *components = NULL;
-    uint32_t *number = NULL;
-    size_t count = 0;
-    BRIO_TRY(BRIO_ALLOC(ctx, number, t->mesh->num_faces));
-    count = number_components(t, number);
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, components, count));
-    count_in_components(t, number, components);
-    if (count_fans(t, number, components)) BRIO_TRY(recount_pinched_vertices(ctx, t, number, components));
-    if (out->boundary_edges) BRIO_TRY(count_loops(ctx, t, number, components));
-    BRIO_TRY(list_genera(ctx, components, count, out));
+    component_count c = {.t = t};
+    BRIO_TRY(BRIO_ALLOC(t->ctx, c.number, t->mesh->num_faces));
+    number_components(&c);
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, c.components, c.count));
+    for_each(t, t->mesh->num_faces, count_faces, &c);
+    for_each(t, t->corners, count_fans, &c);
+    if (c.pinched) BRIO_TRY(recount_pinched_vertices(&c));
+    if (out->boundary_edges) BRIO_TRY(count_loops(&c));
+    BRIO_TRY(list_genera(t->ctx, c.components, c.count, out));
 done:
-    brio_release(ctx, components);
-    brio_release(ctx, number);
+    brio_release(t->ctx, c.components);
+    brio_release(t->ctx, c.number);
     return status;
 }
 
-static size_t count_nonmanifold_vertices(const topology *t) {
+typedef struct {
+    const topology *t;
+    size_t count;
+} vertex_count;
+
+static void count_nonmanifold_vertices(void *user, size_t begin, size_t end, int thread) {
+    vertex_count *c = user;
     size_t count = 0;
-    BRIO_OMP(parallel for num_threads(t->threads) reduction(+ : count))
-    for (size_t v = 0; v < t->mesh->num_vertices; v++)
-        count += (t->vertex[v] & (VERTEX_TWO_FANS | VERTEX_IN_DEGENERATE_FACE)) != 0;
-    return count;
+    (void)thread;
+    for (size_t v = begin; v < end; v++)
+        count += (c->t->vertex[v] & (VERTEX_TWO_FANS | VERTEX_IN_DEGENERATE_FACE)) != 0;
+    add_relaxed(&c->count, count);
 }
 
 static brio_status certify_topology(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
     brio_status status = BRIO_OK;
     topology t = {0};
+    vertex_count nonmanifold = {&t, 0};
     size_t degenerate_faces;
     BRIO_TRY(topology_new(ctx, mesh, &t));
-    BRIO_TRY(mark_degenerate_faces(ctx, &t, &degenerate_faces));
+    BRIO_TRY(mark_degenerate_faces(&t, &degenerate_faces));
     join_across_edges(&t, out);
-    BRIO_TRY(certify_components(ctx, &t, out));
-    out->nonmanifold_vertices = count_nonmanifold_vertices(&t);
+    BRIO_TRY(certify_components(&t, out));
+    for_each(&t, mesh->num_vertices, count_nonmanifold_vertices, &nonmanifold);
+    out->nonmanifold_vertices = nonmanifold.count;
     out->closed = t.corners > 0 && !out->boundary_edges && !out->nonmanifold_edges;
     out->manifold = !out->nonmanifold_edges && !out->nonmanifold_vertices && !degenerate_faces;
     out->oriented = !out->flipped_edges;
@@ -366,6 +443,12 @@ enum { PARTS = 256 }; /* of the faces, so that rounding does not depend on the n
 typedef struct {
     double low[3], high[3], area, volume;
 } measure;
+
+typedef struct {
+    const brio_mesh *mesh;
+    double centre[3];
+    measure part[PARTS];
+} measures;
 
 static void box_of_part(const brio_mesh *mesh, int part, measure *m) {
     uint64_t corners = mesh->face_offsets[mesh->num_faces], end = brio_part(corners, part + 1, PARTS);
@@ -393,25 +476,35 @@ static void measure_face(const brio_mesh *mesh, size_t f, const double *centre, 
     }
 }
 
+static void find_boxes(void *user, size_t begin, size_t end, int thread) {
+    measures *m = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) box_of_part(m->mesh, (int)i, &m->part[i]);
+}
+
+static void measure_parts(void *user, size_t begin, size_t end, int thread) {
+    measures *m = user;
+    size_t num_faces = m->mesh->num_faces;
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        for (size_t f = brio_part(num_faces, (int)i, PARTS); f < brio_part(num_faces, (int)i + 1, PARTS); f++)
+            measure_face(m->mesh, f, m->centre, &m->part[i]);
+}
+
 /* Area and volume. Volumes are summed about the centre of the box of the vertices that faces use, so that a surface far
  * from the origin loses no digits. */
-static void measure_faces(const brio_mesh *mesh, int threads, brio_certificate *out) {
-    measure part[PARTS] = {0};
-    double centre[3];
-    (void)threads; /* without OpenMP */
+static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
+    measures m = {.mesh = mesh};
     if (!mesh->num_faces || !mesh->face_offsets[mesh->num_faces]) return;
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(threads))
-    for (int i = 0; i < PARTS; i++) box_of_part(mesh, i, &part[i]);
+    int threads = brio_threads(ctx, (size_t)mesh->face_offsets[mesh->num_faces], ITEMS_A_THREAD);
+    brio_for_chunks(ctx, threads, PARTS, 1, find_boxes, &m);
     for (int k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;
-        for (int i = 0; i < PARTS; i++) low = fmin(low, part[i].low[k]), high = fmax(high, part[i].high[k]);
-        centre[k] = 0.5 * low + 0.5 * high;
+        for (int i = 0; i < PARTS; i++) low = fmin(low, m.part[i].low[k]), high = fmax(high, m.part[i].high[k]);
+        m.centre[k] = 0.5 * low + 0.5 * high;
     }
-    BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(threads))
-    for (int i = 0; i < PARTS; i++)
-        for (size_t f = brio_part(mesh->num_faces, i, PARTS); f < brio_part(mesh->num_faces, i + 1, PARTS); f++)
-            measure_face(mesh, f, centre, &part[i]);
-    for (int i = 0; i < PARTS; i++) out->area += part[i].area, out->volume += part[i].volume;
+    brio_for_chunks(ctx, threads, PARTS, 1, measure_parts, &m);
+    for (int i = 0; i < PARTS; i++) out->area += m.part[i].area, out->volume += m.part[i].volume;
 }
 
 brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
@@ -420,7 +513,7 @@ brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio
     *out = (brio_certificate){.self_intersections = -1, .context = ctx};
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     BRIO_TRY(certify_topology(ctx, mesh, out));
-    measure_faces(mesh, brio_context_threads(ctx), out);
+    measure_faces(ctx, mesh, out);
 done:
     if (status != BRIO_OK) brio_certificate_free(out);
     return status;

@@ -7,13 +7,17 @@
  *
  * Based on: Cignoni, Rocchini, Scopigno. Metro: measuring error on simplified surfaces. Comput. Graph. Forum 1998. */
 #include "base/float_state.h"
-#include "base/parallel.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "surface/closest_point.h"
 #include "surface/edge_rings.h"
 #include <math.h>
 
-enum { DEFAULT_SAMPLES = 100000, BATCH = 1 << 15 };
+enum {
+    DEFAULT_SAMPLES = 100000,
+    BATCH = 1 << 15,     /* samples between two reports of progress */
+    SAMPLES_A_CHUNK = 64 /* that a thread takes at once */
+};
 
 /* One of the two surfaces. */
 typedef struct {
@@ -109,16 +113,30 @@ static void measure_sample(const surface *from, const surface *to, brio_rng rng,
     *cosine = normal_cosine(m, n);
 }
 
-/* Samples `from`; the results go to m from entry `start` on. */
-static brio_status measure(brio_context *ctx, const surface *from, const surface *to, uint64_t seed, size_t start,
-                           measurement *m) {
+/* The samples of one surface; their results go to m from entry `start` on. */
+typedef struct {
+    const surface *from, *to;
+    uint64_t seed;
+    size_t start, first; /* sample of the batch in work */
+    measurement *m;
+} sampler;
+
+/* Measures samples first + begin to first + end - 1. */
+static void measure_part(void *user, size_t begin, size_t end, int thread) {
+    const sampler *s = user;
+    (void)thread;
+    for (size_t i = s->first + begin; i < s->first + end; i++)
+        measure_sample(s->from, s->to, brio_rng_new(s->seed + i), &s->m->distance[s->start + i],
+                       &s->m->cosine[s->start + i]);
+}
+
+static brio_status measure(brio_context *ctx, sampler s) {
     brio_status status = BRIO_OK;
-    for (size_t first = 0; first < m->samples; first += BATCH) {
-        size_t end = m->samples - first < BATCH ? m->samples : first + BATCH;
-        BRIO_TRY(brio_progress(ctx, "distance", 0.5 * (double)(start + first) / (double)m->samples));
-    BRIO_OMP(parallel for num_threads(brio_context_threads(ctx)) schedule(dynamic, 256))
-    for (size_t i = first; i < end; i++)
-        measure_sample(from, to, brio_rng_new(seed + i), &m->distance[start + i], &m->cosine[start + i]);
+    size_t samples = s.m->samples;
+    for (; s.first < samples; s.first += BATCH) {
+        size_t count = samples - s.first < BATCH ? samples - s.first : BATCH;
+        BRIO_TRY(brio_progress(ctx, "distance", 0.5 * (double)(s.start + s.first) / (double)samples));
+        brio_for_chunks(ctx, brio_threads(ctx, count, SAMPLES_A_CHUNK), count, SAMPLES_A_CHUNK, measure_part, &s);
     }
 done:
     return status;
@@ -177,8 +195,8 @@ brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio
     BRIO_TRY(surface_new(ctx, b, "the second mesh", &surfaces[1]));
     BRIO_TRY(BRIO_ALLOC(ctx, m.distance, 2 * m.samples));
     BRIO_TRY(BRIO_ALLOC(ctx, m.cosine, 2 * m.samples));
-    BRIO_TRY(measure(ctx, &surfaces[0], &surfaces[1], brio_mix(seed), 0, &m));
-    BRIO_TRY(measure(ctx, &surfaces[1], &surfaces[0], brio_mix(brio_mix(seed)), m.samples, &m));
+    BRIO_TRY(measure(ctx, (sampler){&surfaces[0], &surfaces[1], brio_mix(seed), 0, 0, &m}));
+    BRIO_TRY(measure(ctx, (sampler){&surfaces[1], &surfaces[0], brio_mix(brio_mix(seed)), m.samples, 0, &m}));
     BRIO_TRY(brio_progress(ctx, "distance", 1));
     summarise(&m, out);
     const brio_box *box = &surfaces[1].tree.boxes[0];

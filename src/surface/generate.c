@@ -6,8 +6,8 @@
  *
  * Based on: Marsaglia. Choosing a point from the surface of a sphere. Annals of Mathematical Statistics 1972. */
 #include "base/float_state.h"
-#include "base/parallel.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "surface/iso_surface.h"
 #include "surface/scan.h"
 #include "surface/sculpture.h"
@@ -19,7 +19,7 @@ static const size_t BATCH = (size_t)1 << 18; /* points between two reports of pr
 enum {
     DEFAULT_RESOLUTION = 160,
     MOST_RESOLUTION = 1 << 15,
-    PARALLEL_FROM = 1 << 12, /* points that are worth several threads */
+    POINTS_A_THREAD = 1 << 10,
     CLUSTERS = 256,
     EXPONENT_DIGITS = 20 /* binary ones, of the radius of a cluster */
 };
@@ -162,19 +162,34 @@ static void grid_point(size_t side, size_t i, double *p) {
     p[2] = (double)(i % side);
 }
 
+typedef struct {
+    brio_kind kind;
+    uint64_t seed;
+    size_t side;  /* of the grid */
+    size_t start; /* of the batch */
+    double *points;
+} generator;
+
+/* Makes points start + begin to start + end - 1. */
+static void make_points(void *user, size_t begin, size_t end, int thread) {
+    const generator *g = user;
+    (void)thread;
+    for (size_t i = g->start + begin; i < g->start + end; i++) {
+        if (g->kind == BRIO_KIND_GRID)
+            grid_point(g->side, i, g->points + 3 * i);
+        else
+            random_point(g->kind, g->seed, i, g->points + 3 * i);
+    }
+}
+
 static brio_status fill(brio_context *ctx, brio_kind kind, uint64_t seed, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
-    size_t n = mesh->num_vertices, side = kind == BRIO_KIND_GRID ? grid_side(n) : 0;
-    for (size_t start = 0; start < n; start += BATCH) {
-        size_t end = n - start < BATCH ? n : start + BATCH;
-        BRIO_TRY(brio_progress(ctx, "generate", (double)start / (double)n));
-    BRIO_OMP(parallel for if (n >= PARALLEL_FROM) num_threads(brio_context_threads(ctx)))
-    for (size_t i = start; i < end; i++) {
-        if (kind == BRIO_KIND_GRID)
-            grid_point(side, i, mesh->vertices + 3 * i);
-        else
-            random_point(kind, seed, i, mesh->vertices + 3 * i);
-    }
+    size_t n = mesh->num_vertices;
+    generator g = {kind, seed, kind == BRIO_KIND_GRID ? grid_side(n) : 0, 0, mesh->vertices};
+    for (; g.start < n; g.start += BATCH) {
+        size_t count = n - g.start < BATCH ? n - g.start : BATCH;
+        BRIO_TRY(brio_progress(ctx, "generate", (double)g.start / (double)n));
+        brio_for(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, make_points, &g);
     }
     BRIO_TRY(brio_progress(ctx, "generate", 1));
 done:

@@ -13,12 +13,13 @@
  * Based on: Doi, Koide. An efficient method of triangulating equi-valued surfaces by using tetrahedral cells. IEICE
  * Transactions 1991. */
 #include "surface/iso_surface.h"
-#include "base/parallel.h"
+#include "base/team.h"
 
 enum {
     DIRECTIONS = 7,
     ROOT_STEPS = 12,
-    PARALLEL_FROM = 1 << 12 /* nodes of a layer that are worth several threads */
+    NODES_A_THREAD = 1 << 9,
+    ROWS_A_CHUNK = 8 /* that a thread takes at once */
 };
 
 static const uint32_t NO_VERTEX = UINT32_MAX;
@@ -51,24 +52,41 @@ void brio_implicit_node(const brio_implicit_grid *grid, const uint32_t node[3], 
     for (int k = 0; k < 3; k++) p[k] = grid->low[k] + node[k] * grid->cell;
 }
 
+typedef struct {
+    const brio_implicit_grid *grid;
+    uint32_t z;
+    double *values;
+    bool closed; /* no value on the border of the grid is negative */
+} layer_job;
+
+/* Evaluates a row of nodes. Returns whether no value on the border of the grid is negative. */
+static bool fill_row(const layer_job *job, uint32_t y) {
+    const uint32_t *cells = job->grid->cells;
+    double *values = job->values + y * ((size_t)cells[0] + 1);
+    bool closed = true, border_row = job->z == 0 || job->z == cells[2] || y == 0 || y == cells[1];
+    for (uint32_t x = 0; x <= cells[0]; x++) {
+        double p[3];
+        brio_implicit_node(job->grid, (const uint32_t[3]){x, y, job->z}, p);
+        values[x] = job->grid->value(p, job->grid->user);
+        if (values[x] < 0 && (border_row || x == 0 || x == cells[0])) closed = false;
+    }
+    return closed;
+}
+
+static void fill_rows(void *user, size_t begin, size_t end, int thread) {
+    layer_job *job = user;
+    bool closed = true;
+    (void)thread;
+    for (size_t y = begin; y < end; y++) closed &= fill_row(job, (uint32_t)y);
+    if (!closed) __atomic_store_n(&job->closed, false, __ATOMIC_RELAXED); /* read after the run */
+}
+
 brio_status brio_implicit_layer(brio_context *ctx, const brio_implicit_grid *grid, uint32_t z, double *values) {
     brio_status status = BRIO_OK;
-    const uint32_t *cells = grid->cells;
-    size_t row = (size_t)cells[0] + 1;
-    bool closed = true, is_large = row * cells[1] >= PARALLEL_FROM;
-    BRIO_OMP(parallel for if (is_large) num_threads(brio_context_threads(ctx)) schedule(dynamic, 8)
-                 reduction(&& : closed))
-    for (uint32_t y = 0; y <= cells[1]; y++) {
-        bool border_row = z == 0 || z == cells[2] || y == 0 || y == cells[1];
-        for (uint32_t x = 0; x <= cells[0]; x++) {
-            double p[3];
-            brio_implicit_node(grid, (const uint32_t[3]){x, y, z}, p);
-            double value = grid->value(p, grid->user);
-            values[y * row + x] = value;
-            if (value < 0 && (border_row || x == 0 || x == cells[0])) closed = false;
-        }
-    }
-    BRIO_REQUIRE(ctx, closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
+    size_t rows = (size_t)grid->cells[1] + 1, nodes = rows * ((size_t)grid->cells[0] + 1);
+    layer_job job = {grid, z, values, true};
+    brio_for_chunks(ctx, brio_threads(ctx, nodes, NODES_A_THREAD), rows, ROWS_A_CHUNK, fill_rows, &job);
+    BRIO_REQUIRE(ctx, job.closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
 done:
     return status;
 }

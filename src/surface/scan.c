@@ -12,8 +12,8 @@
  * Based on: Hart. Sphere tracing: a geometric method for the antialiased ray tracing of implicit surfaces. The Visual
  * Computer 1996. Marsaglia, Bray. A convenient method for generating normal variables. SIAM Review 1964. */
 #include "surface/scan.h"
-#include "base/parallel.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include "surface/sculpture.h"
 #include <math.h>
@@ -22,8 +22,8 @@
 enum {
     LEAST_COARSE_RAYS = 1 << 13,
     MOST_COARSE_RAYS = 1 << 17,
-    BLOCK = 1 << 14,         /* pixels between two reports of progress */
-    PARALLEL_FROM = 1 << 10, /* pixels that are worth several threads */
+    BLOCK = 1 << 14,   /* pixels between two reports of progress */
+    RAYS_A_CHUNK = 64, /* that a thread takes at once */
     MOST_STEPS = 1000
 };
 
@@ -154,22 +154,38 @@ static double gaussian(brio_rng *rng) {
 
 /* --- rasters --- */
 
+/* Coarse rasters of all views. */
+typedef struct {
+    const scanner *scanner;
+    uint64_t side;
+    int64_t hits;
+} coarse_scan;
+
+/* Counts the rays of views that hit. */
+static void count_hits(void *user, size_t begin, size_t end, int thread) {
+    coarse_scan *c = user;
+    int64_t hits = 0;
+    (void)thread;
+    for (size_t view = begin; view < end; view++) {
+        sensor e = sensor_of_view(c->scanner, (int)view);
+        for (uint64_t pixel = 0; pixel < c->side * c->side; pixel++) {
+            double ray[3];
+            ray_of_pixel(c->scanner, &e, (double)c->side, pixel, ray);
+            hits += trace(c->scanner, &e, ray) > 0;
+        }
+    }
+    __atomic_fetch_add(&c->hits, hits, __ATOMIC_RELAXED); /* read after the run */
+}
+
 /* The size of a raster, in pixels a side, with which all views together hit about n times. */
 static double choose_raster(const scan *c, size_t n) {
     const scanner *s = c->scanner;
     double rays = fmin(fmax(4 * (double)n, LEAST_COARSE_RAYS), MOST_COARSE_RAYS);
     uint64_t side = (uint64_t)ceil(sqrt(rays / s->views)), pixels = side * side;
-    int64_t hits = 0;
-    BRIO_OMP(parallel for num_threads(brio_context_threads(c->ctx)) reduction(+ : hits) schedule(dynamic, 1))
-    for (int view = 0; view < s->views; view++) {
-        sensor e = sensor_of_view(s, view);
-        for (uint64_t pixel = 0; pixel < pixels; pixel++) {
-            double ray[3];
-            ray_of_pixel(s, &e, (double)side, pixel, ray);
-            hits += trace(s, &e, ray) > 0;
-        }
-    }
-    return sqrt((double)n / fmax((double)hits, 1) * (double)pixels);
+    size_t views = (size_t)s->views;
+    coarse_scan coarse = {s, side, 0};
+    brio_for_chunks(c->ctx, brio_threads(c->ctx, views * pixels, RAYS_A_CHUNK), views, 1, count_hits, &coarse);
+    return sqrt((double)n / fmax((double)coarse.hits, 1) * (double)pixels);
 }
 
 /* Measures one pixel; false when the scanner sees nothing there. */
@@ -184,12 +200,27 @@ static bool measure(const scanner *s, const sensor *e, double raster, int view, 
     return true;
 }
 
+/* Pixels of one view, from pixel `first` on. */
+typedef struct {
+    const scan *scan;
+    const sensor *sensor;
+    int view;
+    uint64_t first;
+} block;
+
+static void measure_pixels(void *user, size_t begin, size_t end, int thread) {
+    const block *b = user;
+    const scan *c = b->scan;
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        c->seen[i] = measure(c->scanner, b->sensor, c->raster, b->view, b->first + i, c->measured + 3 * i);
+}
+
 static brio_status scan_block(scan *c, const sensor *e, int view, uint64_t first, uint64_t end) {
     brio_status status = BRIO_OK;
-    BRIO_OMP(parallel for if (end - first >= PARALLEL_FROM) num_threads(brio_context_threads(c->ctx))
-                 schedule(dynamic, 64))
-    for (uint64_t pixel = first; pixel < end; pixel++)
-        c->seen[pixel - first] = measure(c->scanner, e, c->raster, view, pixel, c->measured + 3 * (pixel - first));
+    size_t pixels = (size_t)(end - first);
+    brio_for_chunks(c->ctx, brio_threads(c->ctx, pixels, RAYS_A_CHUNK), pixels, RAYS_A_CHUNK, measure_pixels,
+                    &(block){c, e, view, first});
     for (uint64_t i = 0; i < end - first; i++) {
         if (!c->seen[i]) continue;
         BRIO_TRY(BRIO_RESERVE(c->ctx, c->points, c->point_capacity, 3 * c->count + 3));

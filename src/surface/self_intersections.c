@@ -10,13 +10,19 @@
 #include "surface/triangles_cross.h"
 #include "base/float_state.h"
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "surface/edge_rings.h"
 #include <math.h>
 #include <string.h>
 
-enum { LEAF_FACES = 4, MOST_LEVELS = 64, CURVE_BITS = 16, CHUNK = 1 << 16 };
+enum {
+    LEAF_FACES = 4,
+    MOST_LEVELS = 64,
+    CURVE_BITS = 16,
+    BATCH = 1 << 16,   /* faces between two reports of progress */
+    FACES_A_CHUNK = 64 /* that a thread takes at once */
+};
 
 typedef struct {
     double low[3], high[3];
@@ -196,21 +202,35 @@ static int64_t count_crossing(const tree *t, size_t at) {
     return count;
 }
 
+/* The pairs of a batch of faces. */
+typedef struct {
+    const tree *tree;
+    size_t first; /* place in the order */
+    int64_t count;
+} batch;
+
+static void count_pairs(void *user, size_t begin, size_t end, int thread) {
+    batch *b = user;
+    int64_t count = 0;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) count += count_crossing(b->tree, b->first + i);
+    if (count) __atomic_fetch_add(&b->count, count, __ATOMIC_RELAXED); /* read after the run */
+}
+
 brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     tree t = {0};
-    int64_t count = 0;
+    batch b = {.tree = &t};
     *pairs = 0;
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     BRIO_TRY(tree_new(ctx, mesh, &t));
-    for (size_t begin = 0; begin < t.count; begin += CHUNK) {
-        size_t end = begin + CHUNK < t.count ? begin + CHUNK : t.count;
-        BRIO_TRY(brio_progress(ctx, "self-intersections", (double)begin / (double)t.count));
-        BRIO_OMP(parallel for schedule(dynamic, 256) reduction(+ : count) num_threads(brio_context_threads(ctx)))
-        for (size_t i = begin; i < end; i++) count += count_crossing(&t, i);
+    for (; b.first < t.count; b.first += BATCH) {
+        size_t faces = t.count - b.first < BATCH ? t.count - b.first : BATCH;
+        BRIO_TRY(brio_progress(ctx, "self-intersections", (double)b.first / (double)t.count));
+        brio_for_chunks(ctx, brio_threads(ctx, faces, FACES_A_CHUNK), faces, FACES_A_CHUNK, count_pairs, &b);
     }
-    *pairs = count;
+    *pairs = b.count;
 done:
     tree_free(ctx, &t);
     return status;

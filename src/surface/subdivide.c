@@ -16,12 +16,12 @@
  * Differs from the paper: of 1996, next to the boundary, where a wing made up takes the place of special cases; a
  * vertex of two neighbours, which the papers exclude, has midpoints. */
 #include "base/float_state.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "surface/twins.h"
 #include <math.h>
 #include <string.h>
 
-enum { MOST_LEVELS = 15, PARALLEL_FROM = 1 << 12 };
+enum { MOST_LEVELS = 15, HALF_EDGES_A_THREAD = 1 << 10 };
 
 static const size_t MOST_VERTICES = UINT32_MAX - 16;
 static const size_t BATCH = (size_t)1 << 20; /* half-edges between two reports of progress */
@@ -37,6 +37,7 @@ typedef struct {
     uint32_t *twin;
     uint32_t *edge_vertex; /* of each half-edge the new vertex */
     uint8_t *kind;         /* of each corner's vertex */
+    size_t from;           /* half-edge at which the batch in work starts */
 } subdivider;
 
 /* --- neighbourhoods --- */
@@ -201,16 +202,22 @@ static void place_by_own_rule(const subdivider *s, uint32_t h) {
         butterfly(s, h, target);
 }
 
+/* Places the new vertices of half-edges from + begin to from + end - 1. */
+static void place_part(void *user, size_t begin, size_t end, int thread) {
+    const subdivider *s = user;
+    (void)thread;
+    for (size_t h = s->from + begin; h < s->from + end; h++)
+        if (h < s->twin[h]) place_by_own_rule(s, (uint32_t)h);
+}
+
 static brio_status place_vertices(brio_context *ctx, subdivider *s) {
     brio_status status = BRIO_OK;
     size_t corners = 3 * s->mesh->num_faces, old = 3 * s->mesh->num_vertices;
     if (old) memcpy(s->fine->vertices, s->mesh->vertices, old * sizeof(double));
-    for (size_t from = 0; from < corners; from += BATCH) {
-        size_t to = corners - from < BATCH ? corners : from + BATCH;
-        BRIO_OMP(parallel for if (corners >= PARALLEL_FROM) num_threads(brio_context_threads(ctx)))
-        for (size_t h = from; h < to; h++)
-            if (h < s->twin[h]) place_by_own_rule(s, (uint32_t)h);
-        BRIO_TRY(brio_progress(ctx, "subdivide", (double)to / (double)corners));
+    for (s->from = 0; s->from < corners; s->from += BATCH) {
+        size_t count = corners - s->from < BATCH ? corners - s->from : BATCH;
+        brio_for(ctx, brio_threads(ctx, count, HALF_EDGES_A_THREAD), count, place_part, s);
+        BRIO_TRY(brio_progress(ctx, "subdivide", (double)(s->from + count) / (double)corners));
     }
     for (uint32_t c = 0; c < corners; c++) {
         if (s->kind[c] != EXTRAORDINARY) continue;

@@ -3,6 +3,11 @@
  * A set is a tree whose root is its least element, and a link only ever goes to a lower one. So the sets and their
  * roots depend on what was united and not on the order; O(log n) amortised for a find.
  *
+ * Loads and stores are relaxed, as a link stands for nothing but itself. An element whose link once went to a lower one
+ * is never a root again, so an old link also leads to an element of the same set, and halving a path by old links keeps
+ * the sets. An element that an old load takes for a root is not linked: the exchange compares it with its present link.
+ * Other data of the sets is read after the run.
+ *
  * Based on: Anderson, Woll. Wait-free parallel algorithms for the union-find problem. STOC 1991. */
 #ifndef BRIO_SURFACE_UNION_FIND_H
 #define BRIO_SURFACE_UNION_FIND_H
