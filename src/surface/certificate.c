@@ -258,29 +258,20 @@ typedef struct {
     bool pinched;          /* some vertex has two fans */
 } component_count;
 
-/* Lets faces point to the roots of their sets. Other threads may follow the pointers at once, see union_find.h. */
-static void point_to_roots(void *user, size_t begin, size_t end, int thread) {
-    const topology *t = ((const component_count *)user)->t;
-    (void)thread;
-    for (uint32_t f = (uint32_t)begin; f < end; f++)
-        __atomic_store_n(&t->patch[f], brio_find(t->patch, f), __ATOMIC_RELAXED);
-}
-
-/* Gives faces the numbers of their roots. Roots keep theirs, so that no thread reads what another one writes. */
-static void copy_root_numbers(void *user, size_t begin, size_t end, int thread) {
+/* Finds the roots of faces: number[f] becomes the root of face f. The links of the sets do not serve for that: a thread
+ * that halves a path may put an older link in the place of a link to a root. */
+static void find_roots(void *user, size_t begin, size_t end, int thread) {
     const component_count *c = user;
-    const uint32_t *root = c->t->patch;
     (void)thread;
-    for (size_t f = begin; f < end; f++)
-        if (root[f] != f) c->number[f] = c->number[root[f]];
+    for (size_t f = begin; f < end; f++) c->number[f] = brio_find(c->t->patch, (uint32_t)f);
 }
 
+/* A root is the first face of its component, so that its number is there when another face asks for it. */
 static void number_components(component_count *c) {
     size_t num_faces = c->t->mesh->num_faces;
-    for_each(c->t, num_faces, point_to_roots, c);
+    for_each(c->t, num_faces, find_roots, c);
     for (size_t f = 0; f < num_faces; f++)
-        if (c->t->patch[f] == f) c->number[f] = (uint32_t)c->count++;
-    for_each(c->t, num_faces, copy_root_numbers, c);
+        c->number[f] = c->number[f] == f ? (uint32_t)c->count++ : c->number[c->number[f]];
 }
 
 /* Counts faces and their edges, each in its component. */
