@@ -141,6 +141,34 @@ static brio_distance distance(brio_mesh *a, brio_mesh *b, size_t samples) {
     return d;
 }
 
+/* The boxes of a node and of all below it. */
+static bool boxes_are_same(const brio_triangle_tree *a, const brio_triangle_tree *b, size_t node, size_t count) {
+    if (memcmp(&a->boxes[node], &b->boxes[node], sizeof *a->boxes)) return false;
+    if (count <= BRIO_LEAF_TRIANGLES) return true;
+    return boxes_are_same(a, b, 2 * node + 1, count / 2) && boxes_are_same(a, b, 2 * node + 2, count - count / 2);
+}
+
+/* With five threads, the mesh has enough triangles that threads share the levels below the root. */
+static void tree_does_not_depend_on_threads(void) {
+    static const int threads[] = {2, 3, 5};
+    brio_triangle_tree one;
+    brio_mesh *mesh;
+    EXPECT(brio_generate_truth(ctx, 80, &mesh) == BRIO_OK && mesh->num_faces > 5 << 12, "%zu", mesh->num_faces);
+    brio_context_set_threads(ctx, 1);
+    EXPECT(brio_triangle_tree_new(ctx, mesh, &one) == BRIO_OK);
+    for (size_t i = 0; i < sizeof threads / sizeof *threads; i++) {
+        brio_triangle_tree tree;
+        brio_context_set_threads(ctx, threads[i]);
+        EXPECT(brio_triangle_tree_new(ctx, mesh, &tree) == BRIO_OK && tree.num_triangles == one.num_triangles);
+        EXPECT(!memcmp(tree.triangles, one.triangles, one.num_triangles * sizeof *one.triangles), "%d", threads[i]);
+        EXPECT(boxes_are_same(&tree, &one, 0, one.num_triangles), "%d", threads[i]);
+        brio_triangle_tree_free(ctx, &tree);
+    }
+    brio_context_set_threads(ctx, 0);
+    brio_triangle_tree_free(ctx, &one);
+    brio_mesh_free(mesh);
+}
+
 static void surface_has_no_distance_to_itself(void) {
     brio_distance d = distance(square(ctx, 1, 0), square(ctx, 1, 0), 1000);
     EXPECT(d.mean < 1e-15 && d.rms < 1e-15 && d.p95 < 1e-15 && d.hausdorff < 1e-14, "%g", d.hausdorff);
@@ -243,6 +271,7 @@ int main(void) {
     RUN(nearest_point_of_a_triangle_is_right);
     RUN(tree_finds_what_trying_all_finds);
     RUN(equal_centroids_make_a_tree);
+    RUN(tree_does_not_depend_on_threads);
     RUN(surface_has_no_distance_to_itself);
     RUN(parallel_squares_have_one_distance);
     RUN(larger_square_counts_both_ways);
