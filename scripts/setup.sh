@@ -26,9 +26,6 @@ has_compiler() {
     return $works
 }
 
-# OpenMP for the thread sanitizer, with the tool library that tells it what a barrier is.
-has_archer() { ls /usr/lib/llvm-*/lib/libarcher.so /usr/lib/llvm-*/lib/clang/*/lib/linux/libclang_rt.tsan-*.a >/dev/null 2>&1; }
-
 has_python_with() { [ -x $python ] && $python -c "import $1" >/dev/null 2>&1; }
 
 # The Debian packages that are missing for a purpose.
@@ -50,8 +47,6 @@ missing() {
     has_python_with scipy || echo python3-scipy
     has clang-format || echo clang-format
     has pkg-config || echo pkg-config
-    has clang || echo clang
-    has_archer || echo libomp-dev libclang-rt-14-dev
 }
 
 # The Debian packages of other libraries, and of the plots, that are missing: the bench does without them.

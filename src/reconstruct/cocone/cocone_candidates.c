@@ -10,10 +10,10 @@
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.2. */
 #include "reconstruct/cocone/cocone_candidates.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 
 /* Tetrahedra that are looked at together. */
-enum { BLOCK = 64 };
+enum { BLOCK = 64, TETS_A_THREAD = 1 << 12 };
 
 brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, brio_cocones *out) {
     *out = (brio_cocones){.dual = dual};
@@ -123,13 +123,28 @@ static size_t select_from(const brio_cocones *c, const side_counts counts, size_
     return found;
 }
 
-void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count) {
-    size_t found = 0, size = c->dual->t.count;
+typedef struct {
+    const brio_cocones *cocones;
     side_counts counts;
-    bool alone = brio_context_threads(ctx) == 1;
-    count_sides(counts);
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)) reduction(+ : found))
-    for (size_t from = 0; from < size; from += BLOCK)
-        found += select_from(c, (const uint8_t(*)[4])counts, from, from + BLOCK < size ? from + BLOCK : size, alone);
-    *count = found;
+    size_t found;
+    bool alone;
+} selection;
+
+static void select_part(void *user, size_t begin, size_t end, int thread) {
+    selection *s = user;
+    size_t found = 0;
+    (void)thread;
+    for (size_t from = begin; from < end; from += BLOCK)
+        found += select_from(s->cocones, (const uint8_t(*)[4])s->counts, from, from + BLOCK < end ? from + BLOCK : end,
+                             s->alone);
+    __atomic_fetch_add(&s->found, found, __ATOMIC_RELAXED);
+}
+
+void brio_cocones_select(brio_context *ctx, brio_cocones *c, size_t *count) {
+    size_t size = c->dual->t.count;
+    int threads = brio_threads(ctx, size, TETS_A_THREAD);
+    selection s = {.cocones = c, .alone = threads == 1};
+    count_sides(s.counts);
+    brio_for(ctx, threads, size, select_part, &s);
+    *count = s.found;
 }

@@ -17,7 +17,7 @@ void brio_cocones_free(brio_context *ctx, brio_cocones *c);
 
 /** Finds the candidates, once: the facets whose dual Voronoi edge meets the co-cone of each of their samples that take
  *  part or, where none does, of each of their samples.   count  receives the number of candidates. */
-void brio_cocones_select(const brio_context *ctx, brio_cocones *c, size_t *count);
+void brio_cocones_select(brio_context *ctx, brio_cocones *c, size_t *count);
 
 /** Whether the Voronoi edge of facet `slot` of a tetrahedron meets the co-cone of its sample v: unless both ends lie in
  *  one cone. (A cone is convex, so the edge then stays in it; between the two cones it crosses the co-cone.) */

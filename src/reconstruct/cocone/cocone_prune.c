@@ -10,11 +10,15 @@
  * Differs from the paper: what the votes of the samples hold to be surface is kept. */
 #include "reconstruct/cocone/cocone_prune.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include "reconstruct/cocone/label_boundary.h"
+
+enum { CHUNK = 4096 };
 
 typedef struct {
     brio_context *ctx;
+    pthread_mutex_t stack_lock; /* while threads fill the stack */
+    brio_status status;         /* the first failure of theirs */
     const brio_tet_labels *labels;
     const brio_cocones *cocones;
     const brio_tetrahedra *t;
@@ -123,26 +127,30 @@ done:
 
 /* Finds the candidates that have a sharp edge to begin with. What is dropped does not depend on the order, since edges
  * only get sharper. */
-static brio_status find_sharp(pruning *x) {
-    brio_status status = BRIO_OK;
-    BRIO_OMP(parallel for schedule(dynamic, 4096) num_threads(brio_context_threads(x->ctx)))
-    for (size_t tet = 0; tet < x->t->count; tet++)
+static void find_sharp(void *user, size_t begin, size_t end, int thread) {
+    pruning *x = user;
+    (void)thread;
+    for (size_t tet = begin; tet < end; tet++)
         for (unsigned left = x->cocones->candidates[tet]; left; left &= left - 1) {
             uint32_t facet = brio_facet_of((uint32_t)tet, __builtin_ctz(left));
             if (*brio_mate(x->t, facet) < facet || is_surface(x, facet) || !has_sharp_edge(x, facet)) continue;
-            BRIO_OMP(critical(brio_prune_stack)) {
-                brio_status own = push(x, facet);
-                if (own != BRIO_OK) status = own;
-            }
+            pthread_mutex_lock(&x->stack_lock);
+            brio_status own = push(x, facet);
+            pthread_mutex_unlock(&x->stack_lock);
+            brio_report(&x->status, own);
         }
-    return status;
 }
 
 brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *l, size_t *dropped) {
     brio_status status = BRIO_OK;
-    pruning x = {.ctx = ctx, .labels = l, .cocones = l->cocones, .t = &l->cocones->dual->t};
+    pruning x = {.stack_lock = PTHREAD_MUTEX_INITIALIZER,
+                 .ctx = ctx,
+                 .labels = l,
+                 .cocones = l->cocones,
+                 .t = &l->cocones->dual->t};
     *dropped = 0;
-    BRIO_TRY(find_sharp(&x));
+    brio_for_chunks(ctx, brio_threads(ctx, x.t->count, CHUNK), x.t->count, CHUNK, find_sharp, &x);
+    BRIO_TRY(x.status);
     while (x.size > 0) {
         uint32_t facet = x.stack[--x.size];
         if (!brio_is_candidate(x.cocones, facet) || !has_sharp_edge(&x, facet)) continue;

@@ -2,10 +2,10 @@
  * and the parts are joined in order. */
 #include "reconstruct/cocone/label_boundary.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 #include <string.h>
 
-enum { PARTS = 64 };
+enum { PARTS = 64, TETS_A_THREAD = 1 << 13 };
 
 typedef struct {
     uint32_t *facets;
@@ -29,18 +29,31 @@ done:
     return status;
 }
 
+typedef struct {
+    brio_context *ctx;
+    const brio_tet_labels *labels;
+    part *parts;
+    size_t size;
+    brio_status status;
+} listing;
+
+static void list_parts(void *user, size_t begin, size_t end, int thread) {
+    listing *a = user;
+    (void)thread;
+    for (int i = (int)begin; i < (int)end; i++)
+        brio_report(&a->status, list_part(a->ctx, a->labels, brio_part(a->size, i, PARTS),
+                                          brio_part(a->size, i + 1, PARTS), &a->parts[i]));
+}
+
 brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, uint32_t **facets, size_t *count) {
     brio_status status = BRIO_OK;
     part parts[PARTS] = {{0}};
     size_t size = l->cocones->dual->t.count;
     *facets = NULL;
     *count = 0;
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(ctx)))
-    for (int i = 0; i < PARTS; i++) {
-        brio_status own = list_part(ctx, l, brio_part(size, i, PARTS), brio_part(size, i + 1, PARTS), &parts[i]);
-        if (own != BRIO_OK) BRIO_OMP(critical(brio_boundary_status)) status = own;
-    }
-    if (status != BRIO_OK) goto done;
+    listing all = {ctx, l, parts, size, BRIO_OK};
+    brio_for_chunks(ctx, brio_threads(ctx, size, TETS_A_THREAD), PARTS, 1, list_parts, &all);
+    BRIO_TRY(all.status);
     for (int i = 0; i < PARTS; i++) *count += parts[i].count;
     BRIO_TRY(BRIO_ALLOC(ctx, *facets, *count));
     for (size_t i = 0, at = 0; i < PARTS; at += parts[i++].count)

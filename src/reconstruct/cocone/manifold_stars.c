@@ -10,15 +10,15 @@
  *
  * Invariant: a fixed tetrahedron is outer. */
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "surface/edge_rings.h"
 #include "triangulation/star.h"
 #include <stdlib.h>
 
-enum { AHEAD = 16, PATIENCE = 8, NO_PIECE = UINT32_MAX };
+enum { AHEAD = 16, PATIENCE = 8, SAMPLES_A_THREAD = 1 << 10, NO_PIECE = UINT32_MAX };
 
 /* A part of a star that hangs together. */
 typedef struct {
@@ -117,6 +117,21 @@ static void deal_corners(const repair *r, const uint32_t *facets, size_t count, 
     }
 }
 
+typedef struct {
+    const uint32_t *end; /* of each sample's corners */
+    fan_corner *corner;
+    uint8_t *singular;
+} fan_marks;
+
+static void mark_singular(void *user, size_t first, size_t last, int thread) {
+    const fan_marks *m = user;
+    (void)thread;
+    for (size_t v = first; v < last; v++) {
+        size_t begin = v ? m->end[v - 1] : 0;
+        m->singular[v] = m->end[v] > begin && !is_one_fan(m->corner + begin, m->end[v] - begin);
+    }
+}
+
 /* Fills the queue with the samples where the boundary is not one fan. */
 static brio_status enqueue_singular(repair *r, const uint32_t *facets, size_t count) {
     brio_status status = BRIO_OK;
@@ -129,11 +144,8 @@ static brio_status enqueue_singular(repair *r, const uint32_t *facets, size_t co
     BRIO_TRY(BRIO_ALLOC(r->ctx, corner, 3 * count));
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, singular, n));
     deal_corners(r, facets, count, end, corner);
-    BRIO_OMP(parallel for schedule(static) num_threads(brio_context_threads(r->ctx)))
-    for (size_t v = 0; v < n; v++) {
-        size_t begin = v ? end[v - 1] : 0;
-        singular[v] = end[v] > begin && !is_one_fan(corner + begin, end[v] - begin);
-    }
+    fan_marks marks = {end, corner, singular};
+    brio_for(r->ctx, brio_threads(r->ctx, n, SAMPLES_A_THREAD), n, mark_singular, &marks);
     for (size_t v = 0; v < n; v++)
         if (singular[v]) BRIO_TRY(enqueue(r, (uint32_t)v));
 done:

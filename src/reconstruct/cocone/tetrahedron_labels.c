@@ -13,7 +13,7 @@
  * samples do not have. */
 #include "reconstruct/cocone/tetrahedron_labels.h"
 #include "base/memory.h"
-#include "base/parallel.h"
+#include "base/team.h"
 
 /* The number of bits of four. */
 static inline int count_bits(unsigned bits) {
@@ -59,14 +59,25 @@ static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
     return undecided;
 }
 
+enum { TETS_A_THREAD = 1 << 12 };
+
+typedef struct {
+    brio_tet_labels *labels;
+    size_t undecided;
+} voting;
+
+static void vote_in_part(void *user, size_t begin, size_t end, int thread) {
+    voting *v = user;
+    (void)thread;
+    __atomic_fetch_add(&v->undecided, label_by_votes(v->labels, begin, end), __ATOMIC_RELAXED);
+}
+
 /* The same for all. */
-static size_t label_all_by_votes(const brio_context *ctx, brio_tet_labels *l) {
-    size_t undecided = 0, size = l->cocones->dual->t.count;
-    (void)ctx; /* without OpenMP */
-    BRIO_OMP(parallel num_threads(brio_context_threads(ctx)) reduction(+ : undecided))
-    undecided += label_by_votes(l, brio_part(size, brio_thread(), brio_team_size()),
-                                brio_part(size, brio_thread() + 1, brio_team_size()));
-    return undecided;
+static size_t label_all_by_votes(brio_context *ctx, brio_tet_labels *l) {
+    voting v = {l, 0};
+    size_t size = l->cocones->dual->t.count;
+    brio_for(ctx, brio_threads(ctx, size, TETS_A_THREAD), size, vote_in_part, &v);
+    return v.undecided;
 }
 
 brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *l) {

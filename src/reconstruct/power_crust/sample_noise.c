@@ -13,15 +13,25 @@
  *           onto local polynomials before the surface is made). */
 #include "reconstruct/power_crust/sample_noise.h"
 #include "base/memory.h"
-#include "base/parallel.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include "reconstruct/power_crust/local_surface.h"
 #include <math.h>
 #include <string.h>
 
-enum { FEW = 24, MORE = 48, NEAREST = 6, LOOKS = 1000, LEAST_LOOKS = 100, PASSES = 2, BLOCK = 1 << 20, RUN = 256 };
+enum {
+    FEW = 24,
+    MORE = 48,
+    NEAREST = 6,
+    LOOKS = 1000,
+    LEAST_LOOKS = 100,
+    PASSES = 2,
+    BLOCK = 1 << 20,
+    RUN = 256,
+    LOOKS_A_THREAD = 16
+};
 /* Below the first a crust through the samples is as good; above the second there is no surface to be seen. */
 static const double LEAST_LEVEL = 0.1, MOST_LEVEL = 0.5;
 
@@ -117,6 +127,19 @@ static double median(uint64_t *bits, size_t count) {
     return x;
 }
 
+typedef struct {
+    const brio_point_tree *tree;
+    const double *points;
+    const looks *looks;
+} looking;
+
+static void look_at_some(void *user, size_t begin, size_t end, int thread) {
+    const looking *a = user;
+    const looks *l = a->looks;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) look(a->tree, a->points + 3 * (size_t)l->sample[i], l->few + i, l->more + i);
+}
+
 brio_status brio_noise_level(brio_context *ctx, const double *points, size_t count, double *level) {
     brio_status status = BRIO_OK;
     brio_point_tree tree = {0};
@@ -127,8 +150,8 @@ brio_status brio_noise_level(brio_context *ctx, const double *points, size_t cou
     BRIO_TRY(BRIO_ALLOC(ctx, l.few, l.count));
     BRIO_TRY(BRIO_ALLOC(ctx, l.more, l.count));
     BRIO_TRY(brio_point_tree_new(ctx, points, count, &tree));
-    BRIO_OMP(parallel for schedule(dynamic, 16) num_threads(brio_context_threads(ctx)))
-    for (size_t i = 0; i < l.count; i++) look(&tree, points + 3 * (size_t)l.sample[i], l.few + i, l.more + i);
+    looking all = {&tree, points, &l};
+    brio_for_chunks(ctx, brio_threads(ctx, l.count, LOOKS_A_THREAD), l.count, LOOKS_A_THREAD, look_at_some, &all);
     double small = median(l.few, l.count), large = median(l.more, l.count);
     if (large >= LEAST_LEVEL && large <= MOST_LEVEL && large <= small) *level = large;
 done:
@@ -179,6 +202,19 @@ static void smooth_sample(const smoothing *s, size_t i) {
     for (int k = 0; k < 3; k++) to[k] += surface.height * surface.frame[2][k];
 }
 
+typedef struct {
+    const smoothing *smoothing;
+    size_t first; /* sample of the block */
+    bool finds;   /* who is near is still to be found */
+} smoothing_run;
+
+static void smooth_run(void *user, size_t begin, size_t end, int thread) {
+    const smoothing_run *r = user;
+    (void)thread;
+    if (r->finds) find_near(r->smoothing, r->first + begin, r->first + end);
+    for (size_t n = begin; n < end; n++) smooth_sample(r->smoothing, r->first + n);
+}
+
 /* One pass over all samples; the first one also finds who is near. */
 static brio_status smooth_all(brio_context *ctx, const smoothing *s, int pass) {
     brio_status status = BRIO_OK;
@@ -186,12 +222,8 @@ static brio_status smooth_all(brio_context *ctx, const smoothing *s, int pass) {
     for (size_t begin = 0; begin < count; begin += BLOCK) {
         size_t end = count - begin < BLOCK ? count : begin + BLOCK;
         BRIO_TRY(brio_progress(ctx, "noise", (pass + (double)begin / (double)count) / PASSES));
-        BRIO_OMP(parallel for schedule(dynamic, 1) num_threads(brio_context_threads(ctx)))
-        for (size_t i = begin; i < end; i += RUN) {
-            size_t run_end = end - i < RUN ? end : i + RUN;
-            if (pass == 0) find_near(s, i, run_end);
-            for (size_t n = i; n < run_end; n++) smooth_sample(s, n);
-        }
+        smoothing_run run = {s, begin, pass == 0};
+        brio_for_chunks(ctx, brio_threads(ctx, end - begin, RUN), end - begin, RUN, smooth_run, &run);
     }
 done:
     return status;
