@@ -231,7 +231,7 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
                           const brio_options *options, brio_triangulation **out) {
     BRIO_DOOR;
     brio_options standard = brio_options_default();
-    brio_kernel kernel;
+    brio_kernel *k = NULL; /* on no stack: it takes 25 KiB */
     brio_recorder recorder = {0};
     brio_status status = BRIO_OK;
     *out = NULL;
@@ -239,19 +239,21 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     if (!options) options = &standard;
     BRIO_TRY(check_options(ctx, num_points, options));
     recorder.every = options->record_every;
-    status = kernel_new(&kernel, ctx, points, weights, num_points, options, &recorder.rounds);
+    BRIO_TRY(BRIO_ALLOC(ctx, k, 1));
+    status = kernel_new(k, ctx, points, weights, num_points, options, &recorder.rounds);
     double start = brio_seconds();
-    if (status == BRIO_OK) status = insert_all(&kernel, options, &recorder);
-    if (status == BRIO_OK) status = brio_kernel_represent(&kernel);
-    brio_release(ctx, kernel.record); /* only names matter from here on */
-    kernel.record = NULL;
-    if (kernel.dimension < 3) kernel.t.count = 0;
-    if (status == BRIO_OK && kernel.t.count > 0) status = brio_kernel_sort(&kernel);
-    kernel.stats.insert_seconds = brio_seconds() - start;
-    if (status == BRIO_OK) status = triangulation_new(&kernel, &recorder, out);
-    brio_kernel_free(&kernel);
-    brio_release(ctx, recorder.list);
+    if (status == BRIO_OK) status = insert_all(k, options, &recorder);
+    if (status == BRIO_OK) status = brio_kernel_represent(k);
+    brio_release(ctx, k->record); /* only names matter from here on */
+    k->record = NULL;
+    if (k->dimension < 3) k->t.count = 0;
+    if (status == BRIO_OK && k->t.count > 0) status = brio_kernel_sort(k);
+    k->stats.insert_seconds = brio_seconds() - start;
+    if (status == BRIO_OK) status = triangulation_new(k, &recorder, out);
+    brio_kernel_free(k);
 done:
+    brio_release(ctx, k);
+    brio_release(ctx, recorder.list);
     brio_keep_end(ctx);
     return status;
 }

@@ -156,13 +156,17 @@ done:
 
 /* A kernel with the main one's arrays and its own workspace. */
 static brio_status join_pass(worker *w, brio_pass *pass) {
-    brio_kernel *k = &w->kernel, own = *k, *main = pass->main;
+    brio_kernel *k = &w->kernel, *main = pass->main;
+    brio_cavity cavity = k->cavity;
+    brio_star star = k->star;
+    uint32_t *unused = k->unused;
+    size_t unused_capacity = k->unused_capacity;
     *k = *main;
     k->pass = pass;
     k->t.count = k->capacity = 0;
-    k->unused = own.unused, k->unused_capacity = own.unused_capacity, k->num_unused = 0;
-    k->star = own.star;
-    k->cavity = own.cavity;
+    k->unused = unused, k->unused_capacity = unused_capacity, k->num_unused = 0;
+    k->star = star;
+    k->cavity = cavity;
     k->cavity.local = main->cavity.local;
     k->cavity.num_created = 0;
     k->stats = (brio_stats){0};

@@ -273,13 +273,13 @@ static void stack_of_64_kibibytes_is_enough(void) {
 
 int main(void) {
     uniform_points(1, N, set);
+    RUN(refused_address_space_is_fewer_threads_or_a_status); /* first: stacks of threads that ended are kept */
     RUN(loops_do_every_index_once);
     RUN(small_work_starts_no_thread);
     RUN(impossible_numbers_of_threads_are_bounded);
     RUN(barriers_order_what_members_write);
     RUN(work_within_work_runs_alone);
     RUN(child_after_fork_works);
-    RUN(refused_address_space_is_fewer_threads_or_a_status);
     RUN(refused_threads_are_fewer_threads);
     RUN(stack_of_64_kibibytes_is_enough);
     return harness_end();
