@@ -107,9 +107,10 @@ static void gate_wait(gate *g, unsigned old, bool looks) {
 void brio_barrier(const brio_member *member) {
     brio_team *team = member->team;
     if (!team) return;
-    bool looks = member->threads <= team->processors;
+    int threads = member->threads; /* read before arriving: then the next run may begin, and write another number */
+    bool looks = threads <= team->processors;
     unsigned old = __atomic_load_n(&team->barrier.value, __ATOMIC_ACQUIRE);
-    if (__atomic_add_fetch(&team->arrived, 1, __ATOMIC_ACQ_REL) == member->threads) {
+    if (__atomic_add_fetch(&team->arrived, 1, __ATOMIC_ACQ_REL) == threads) {
         __atomic_store_n(&team->arrived, 0, __ATOMIC_RELAXED);
         gate_change(&team->barrier);
     } else {
