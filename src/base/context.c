@@ -25,15 +25,15 @@ static void system_free(void *block, void *user) {
 
 /* The most threads that a context takes: more than four for a processor only wait for each other; on few processors a
  * test may want some. */
-static int most_threads(void) {
-    int most = 4 * brio_processors();
+static int most_threads(int processors) {
+    int most = 4 * processors;
     return most > 64 ? most : 64;
 }
 
 brio_status brio_context_new(const brio_allocator *allocator, brio_context **out) {
     const brio_allocator system = {system_alloc, system_realloc, system_free, NULL};
     const brio_allocator *a = allocator ? allocator : &system;
-    int most = most_threads();
+    int processors = brio_processors(), most = most_threads(processors);
     brio_context *ctx = a->alloc(sizeof *ctx + brio_team_bytes(most), a->user);
     *out = ctx;
     if (!ctx) return BRIO_ERR_NO_MEMORY;
@@ -42,8 +42,9 @@ brio_status brio_context_new(const brio_allocator *allocator, brio_context **out
     ctx->custom = allocator != NULL;
     ctx->machine_limit = brio_machine_memory();
     ctx->progress_to = 1;
+    ctx->processors = processors;
     ctx->most_threads = most;
-    ctx->team = brio_team_begin(ctx + 1, most);
+    ctx->team = brio_team_begin(ctx + 1, most, processors);
     pthread_mutex_init(&ctx->lock, NULL);
     return BRIO_OK;
 }
@@ -67,7 +68,7 @@ void brio_context_set_threads(brio_context *ctx, int threads) {
 }
 
 int brio_context_threads(const brio_context *ctx) {
-    return ctx->threads > 0 ? ctx->threads : brio_processors();
+    return ctx->threads > 0 ? ctx->threads : ctx->processors;
 }
 
 void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user) {

@@ -19,6 +19,7 @@ struct brio_context {
     brio_allocator allocator;
     bool custom;                       /* allocator is the caller's: no mappings */
     int threads, most_threads;         /* as set; 0 = all; and the most that can be set */
+    int processors;                    /* that the process might run on when the context was made */
     struct brio_team *team;            /* the threads, see team.h; behind the context in its block */
     pthread_mutex_t lock;              /* of the kept mappings and the message */
     size_t caller_limit;               /* bytes, 0 = none */

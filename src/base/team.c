@@ -171,12 +171,12 @@ size_t brio_team_bytes(int most) {
     return sizeof(brio_team) + (size_t)most * sizeof(thread);
 }
 
-brio_team *brio_team_begin(void *memory, int most) {
+brio_team *brio_team_begin(void *memory, int most, int processors) {
     brio_team *team = memory;
     memset(team, 0, brio_team_bytes(most));
     team->size = 1;
     team->process = getpid();
-    team->processors = brio_processors();
+    team->processors = processors;
     gate_new(&team->barrier);
     return team;
 }

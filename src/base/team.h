@@ -26,7 +26,7 @@ typedef void (*brio_part_fn)(void *user, size_t begin, size_t end, int thread);
 size_t brio_team_bytes(int most);
 
 /** Makes a team with no thread but the caller's, in memory of that many bytes. */
-brio_team *brio_team_begin(void *memory, int most);
+brio_team *brio_team_begin(void *memory, int most, int processors);
 
 /** Ends the threads of a team. Its memory is the caller's. */
 void brio_team_end(brio_team *team);
