@@ -241,18 +241,28 @@ BRIO_API const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triang
 /** #P: for each point the vertex that represents it: itself for a vertex. View. */
 BRIO_API const uint32_t *brio_triangulation_representatives(const brio_triangulation *t);
 
-/** Checks a triangulation exactly and completely against its points: adjacency, orientation, the empty (ortho)sphere
- *  across every facet including the symbolic perturbation, convexity of the hull, Euler's relation, and that every
- *  point is a vertex, a duplicate of one, or hidden under the tetrahedron that holds it.
+/** Checks a triangulation exactly and completely against its points. What passes is the result of brio_delaunay, except
+ *  that tetrahedra may come in another order (finite ones first) and with their vertices turned evenly: the tetrahedra
+ *  cover the convex hull once and meet in common faces, the (ortho)sphere of each is empty of points, ties are broken by
+ *  the symbolic perturbation, mates and infinite tetrahedra are right, and so are the representative of every point and
+ *  the dimension and the numbers of vertices, duplicates, hidden points, tetrahedra and hull facets in the statistics.
  *  points, weights, num_points  as they were given to brio_delaunay.
- *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_NO_MEMORY. */
+ *  Cost: O(n) for n tetrahedra, and a walk for each point that is no vertex; inputs of dimension 1 and 2 are
+ *  triangulated once more.
+ *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_ARGUMENT (another num_points than
+ *  the triangulation has), BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation *t, const double *points,
                                               const double *weights, size_t num_points);
 
 /** The same check for tetrahedra from anywhere, finite ones only, in any order and either orientation: the four indices
- *  of points of each are at tetrahedra + stride * i (4 where they are packed, 8 for a view of a triangulation). Any
- *  Delaunay (regular) triangulation of the points passes, however its ties are broken. canonical  receives 1 when it is
- *  the one that brio_delaunay computes, else 0; may be NULL. */
+ *  of points of each are at tetrahedra + stride * i (stride 4 where they are packed, 8 for a view of a triangulation).
+ *  Every Delaunay (regular) triangulation of the points passes, however its ties are broken, and nothing else: each
+ *  position under one index, that of a heaviest of its points. No tetrahedra pass for points of dimension 2 or less.
+ *  canonical  receives 1 when the ties are broken as brio_delaunay breaks them, so that the tetrahedra are the same up to
+ *             coincident points of equal weight, else 0; unchanged on failure; may be NULL.
+ *  Cost: O(n log n) for n tetrahedra, and a walk for each point that is no vertex.
+ *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_ARGUMENT (stride below 4),
+ *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE (from 2^29 tetrahedra on), BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const double *weights,
                                            size_t num_points, const uint32_t *tetrahedra, size_t stride,
                                            size_t num_tetrahedra, int *canonical);

@@ -2,7 +2,7 @@
 #ifndef BRIO_TRIANGULATION_NEAREST_VERTEX_H
 #define BRIO_TRIANGULATION_NEAREST_VERTEX_H
 
-#include "triangulation/kernel.h"
+#include "triangulation/star.h"
 
 /** What has been learnt of one vertex with a large star: near `centre` only the rivals can be nearer than the vertex
  *  itself. */
@@ -16,7 +16,9 @@ typedef struct {
 enum { BRIO_NEAREST_MEMORIES = 64 };
 
 typedef struct {
-    brio_kernel *k;
+    brio_context *ctx;
+    const brio_tetrahedra *t;
+    size_t num_points;          /* vertices from here on are apexes of flat inputs, or the infinite vertex */
     const uint32_t *vertex_tet; /* a tetrahedron of each vertex */
     brio_star star;
     uint32_t *seen; /* of each vertex, the last look that it was compared in */
@@ -24,7 +26,9 @@ typedef struct {
     brio_nearest_memory memory[BRIO_NEAREST_MEMORIES];
 } brio_nearest;
 
-brio_status brio_nearest_new(brio_kernel *k, const uint32_t *vertex_tet, brio_nearest *out);
+/** Makes the workspace of searches among the vertices of t; keeps the pointers that it is given. */
+brio_status brio_nearest_new(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, const uint32_t *vertex_tet,
+                             brio_nearest *out);
 void brio_nearest_free(brio_nearest *n);
 
 /** *best = the vertex of least power distance from x, ties lexicographic, starting from the vertices of a tetrahedron

@@ -71,7 +71,7 @@ static brio_status represent_weighted(brio_kernel *k) {
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.hidden, not_vertices));
     BRIO_TRY(BRIO_ALLOC(k->ctx, w.vertex_tet, k->num_points + 3));
     brio_vertex_tets_fill(k, w.vertex_tet);
-    BRIO_TRY(brio_nearest_new(k, w.vertex_tet, &w.nearest));
+    BRIO_TRY(brio_nearest_new(k->ctx, &k->t, k->num_points, w.vertex_tet, &w.nearest));
     for (uint32_t p = 0; p < k->num_points; p++)
         if (k->representative[p] != p) BRIO_TRY(represent_one(&w, p));
     BRIO_TRY(count_hidden(&w));

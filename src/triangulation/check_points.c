@@ -1,0 +1,148 @@
+/* The check of the points that are no vertex: test 7 of check.c, and for a result of brio_delaunay also which vertex
+ * stands for each point, and how many points there are of each kind.
+ *
+ * Each point is located exactly. A walk that draws its next facet at random ends with probability one in every
+ * triangulation [Devillers Pion Teillaud 2002], also where ties are broken otherwise than by the perturbation.
+ * Coincident points that are equally heavy may stand for each other in tetrahedra from anywhere; in a result the one
+ * with the lowest index must be the vertex. */
+#include "base/memory.h"
+#include "base/sort.h"
+#include "triangulation/check.h"
+#include "triangulation/locate.h"
+#include "triangulation/nearest_vertex.h"
+#include "triangulation/triangulation.h"
+
+typedef struct {
+    brio_judge *j;
+    const brio_triangulation *result; /* or NULL */
+    uint32_t *vertex_tet;             /* a tetrahedron of each vertex, BRIO_NO_TET of other points */
+    brio_walk walk;
+    brio_nearest nearest; /* for the representatives of hidden points */
+    uint32_t *hidden;
+    size_t num_hidden; /* points, coincident ones counted each */
+    size_t num_vertices;
+} workspace;
+
+static brio_status find_vertices(workspace *w) {
+    const brio_judge *j = w->j;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(j->ctx, w->vertex_tet, j->num_points));
+    for (size_t p = 0; p < j->num_points; p++) w->vertex_tet[p] = BRIO_NO_TET;
+    for (size_t tet = 0; tet < j->t.count; tet++)
+        for (int i = 0; i < 4; i++) {
+            uint32_t v = j->t.tet[tet].vertex[i];
+            if (v != BRIO_INFINITE) w->vertex_tet[v] = (uint32_t)tet;
+        }
+    for (size_t p = 0; p < j->num_points; p++) w->num_vertices += w->vertex_tet[p] != BRIO_NO_TET;
+done:
+    return status;
+}
+
+/* The points that a result names as vertices are the vertices. */
+static brio_status check_vertices(workspace *w) {
+    brio_status status = BRIO_OK;
+    const brio_judge *j = w->j;
+    for (size_t p = 0; p < j->num_points; p++) {
+        uint32_t v = w->result->representative[p];
+        bool vertex = w->vertex_tet[p] != BRIO_NO_TET;
+        BRIO_REQUIRE(j->ctx, v < j->num_points && w->vertex_tet[v] != BRIO_NO_TET, BRIO_ERR_CHECK,
+                     "point %zu is represented by %u, which is no vertex", p, v);
+        BRIO_REQUIRE(j->ctx, !vertex || v == p, BRIO_ERR_CHECK, "vertex %zu is represented by %u", p, v);
+    }
+done:
+    return status;
+}
+
+/* The vertex of a tetrahedron at the position x, or BRIO_INFINITE. */
+static uint32_t vertex_at(const brio_judge *j, uint32_t tet, const double *x) {
+    const uint32_t *v = j->t.tet[tet].vertex;
+    for (int i = 0; i < 4; i++)
+        if (brio_same_position(j->t.record[v[i]], x)) return v[i];
+    return BRIO_INFINITE;
+}
+
+/* Point p is at the position of vertex v. */
+static brio_status check_duplicate(workspace *w, uint32_t p, uint32_t v) {
+    brio_status status = BRIO_OK;
+    const brio_judge *j = w->j;
+    double more = j->weighted ? j->t.record[p][3] - j->t.record[v][3] : 0;
+    BRIO_REQUIRE(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position", p, v);
+    if (!w->result) goto done;
+    BRIO_REQUIRE(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u", p, v);
+    BRIO_REQUIRE(j->ctx, w->result->representative[p] == v, BRIO_ERR_CHECK,
+                 "point %u is a duplicate of vertex %u, but vertex %u represents it", p, v,
+                 w->result->representative[p]);
+done:
+    return status;
+}
+
+/* Point p is in tetrahedron tet, and at the position of no vertex. */
+static brio_status check_hidden(workspace *w, uint32_t p, uint32_t tet) {
+    brio_status status = BRIO_OK;
+    brio_judge *j = w->j;
+    uint32_t best = 0;
+    BRIO_REQUIRE(j->ctx, j->weighted, BRIO_ERR_CHECK, "point %u is no vertex", p);
+    BRIO_TRY(brio_check_sphere(j, tet, p));
+    if (!w->result) goto done;
+    w->hidden[w->num_hidden++] = p;
+    BRIO_TRY(brio_nearest_vertex(&w->nearest, tet, j->t.record[p], &best));
+    BRIO_REQUIRE(j->ctx, w->result->representative[p] == best, BRIO_ERR_CHECK,
+                 "hidden point %u is represented by %u instead of %u", p, w->result->representative[p], best);
+done:
+    return status;
+}
+
+static brio_status check_point(workspace *w, uint32_t p) {
+    brio_status status = BRIO_OK;
+    brio_judge *j = w->j;
+    const double *x = j->t.record[p];
+    if (w->result) w->walk.start = w->vertex_tet[w->result->representative[p]];
+    uint32_t tet = brio_locate_walk(&j->t, &j->filter, &w->walk, x, UINT64_MAX);
+    w->walk.start = tet;
+    BRIO_REQUIRE(j->ctx, !brio_is_infinite(&j->t, tet), BRIO_ERR_CHECK, "point %u is outside the hull", p);
+    uint32_t v = vertex_at(j, tet, x);
+    status = v != BRIO_INFINITE ? check_duplicate(w, p, v) : check_hidden(w, p, tet);
+done:
+    return status;
+}
+
+static int compare_positions(uint32_t p, uint32_t q, const void *record) {
+    return brio_lexicographic(((const brio_record *)record)[p], ((const brio_record *)record)[q]);
+}
+
+/* Coincident hidden points count once. */
+static brio_status check_counts(workspace *w) {
+    brio_status status = BRIO_OK;
+    const brio_record *r = w->j->t.record;
+    const brio_stats *s = &w->result->stats;
+    size_t hidden = 0;
+    BRIO_TRY(brio_sort_rows(w->j->ctx, *r, 4, w->hidden, w->num_hidden, compare_positions, r));
+    for (size_t i = 0; i < w->num_hidden; i++)
+        hidden += i == 0 || !brio_same_position(r[w->hidden[i - 1]], r[w->hidden[i]]);
+    size_t duplicates = w->j->num_points - w->num_vertices - hidden;
+    BRIO_REQUIRE(w->j->ctx, s->vertices == w->num_vertices && s->duplicates == duplicates && s->hidden == hidden,
+                 BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
+                 w->num_vertices, duplicates, hidden, s->vertices, s->duplicates, s->hidden);
+done:
+    return status;
+}
+
+brio_status brio_check_points(brio_judge *j, const brio_triangulation *result) {
+    brio_status status = BRIO_OK;
+    workspace w = {.j = j, .result = result};
+    BRIO_TRY(find_vertices(&w));
+    if (result) {
+        BRIO_TRY(check_vertices(&w));
+        BRIO_TRY(BRIO_ALLOC(j->ctx, w.hidden, j->num_points - w.num_vertices));
+    }
+    if (result && j->weighted && w.num_vertices < j->num_points)
+        BRIO_TRY(brio_nearest_new(j->ctx, &j->t, j->num_points, w.vertex_tet, &w.nearest));
+    for (size_t p = 0; p < j->num_points; p++)
+        if (w.vertex_tet[p] == BRIO_NO_TET) BRIO_TRY(check_point(&w, (uint32_t)p));
+    if (result) BRIO_TRY(check_counts(&w));
+done:
+    brio_nearest_free(&w.nearest);
+    brio_release(j->ctx, w.vertex_tet);
+    brio_release(j->ctx, w.hidden);
+    return status;
+}
