@@ -1,19 +1,19 @@
 /* The exact check of a Delaunay or regular triangulation.
  *
- * Positive tetrahedra (a, b, c, d) have det [b-a, c-a, d-a] > 0. "Facet" is a facet of a finite tetrahedron, "hull
- * facet" one whose mate belongs to an infinite tetrahedron. The seed o is a point of the first finite tetrahedron,
+ * Positive tetrahedra (a, b, c, d) have det [b-a, c-a, d-a] > 0. A hull facet is facet 3 of an infinite tetrahedron,
+ * oriented so that (hull facet, x) is positive for x outside. The seed o is a point of the first finite tetrahedron,
  * infinitesimally close to its first vertex, on no plane of a facet.
  *
  * The tests:
  *   1  Every finite tetrahedron is positive, and the infinite vertex is only ever in slot 3.
- *   2  Mates are mutual and have the same three vertices; the mate of facet 3 of an infinite tetrahedron is finite.
+ *   2  Mates are mutual and have the same three vertices.
  *   3  Mates see their vertices in opposite cyclic orders. For two positive tetrahedra that says: their apexes are
  *      strictly on opposite sides of the facet.
  *   4  o is strictly on the inner side of every hull facet, and in no finite tetrahedron except the first.
  *   5  At every hull edge, the apex of one hull facet is not strictly outside of the other hull facet.
  *   6  Across every facet, the apex of one tetrahedron is not inside the (ortho)sphere of the other tetrahedron.
- *   7  Every input point that is no vertex lies in a tetrahedron (closed). It is at a vertex that is not lighter, or
- *      (weighted only) it is not inside the orthosphere of that tetrahedron.
+ *   7  Every input point that is no vertex lies in a tetrahedron (closed). It is at a vertex that is not lighter, or it
+ *      is not inside the (ortho)sphere of that tetrahedron.
  *
  * Theorem. Sets that pass are exactly the Delaunay (regular) triangulations of the points: simplicial complexes that
  * cover the convex hull, with no point inside the sphere of any tetrahedron.
@@ -21,9 +21,9 @@
  * Proof. That triangulations pass is plain. Let a set pass.
  *   A. The cover. Let c(x) count the tetrahedra that hold x, for x on no facet. Follow a ray from o that meets no edge.
  *      At a facet that is no hull facet the ray leaves a tetrahedron and enters its mate (3): c stays. At a hull facet
- *      the ray leaves (4): c drops by 1. Far away c = 0, and c(o) = 1 (4), so the ray meets exactly one hull facet;
- *      c is 1 before it and 0 behind it. So no two tetrahedra overlap, and the union P of all of them is star-shaped
- *      about o.
+ *      the ray leaves a finite tetrahedron: c drops by 1. (Two infinite tetrahedra cannot be mates there, or o would be
+ *      on both inner sides, against 4.) Far away c = 0, and c(o) = 1 (4), so the ray meets exactly one hull facet; c is
+ *      1 before it and 0 behind it. So no two tetrahedra overlap, and the union P of all of them is star-shaped about o.
  *   B. Convexity. Cut with a plane E through o that meets no vertex. Every hull facet that E meets gives a segment, with
  *      o strictly on its inner side. Mates join segments at hull edges, and the angle about o keeps growing from each
  *      segment to the next (3). So the segments form cycles round o; by A every direction is met once, so there is one
@@ -103,8 +103,6 @@ static brio_status check_mate(brio_judge *j, uint32_t f, uint32_t g) {
                  "facet %d of tetrahedron %zu and its mate do not match", brio_slot_of(f), tet);
     BRIO_REQUIRE(j->ctx, at[1] == (at[0] + 2) % 3 && at[2] == (at[0] + 1) % 3, BRIO_ERR_CHECK,
                  "tetrahedra %zu and %zu overlap: they lie on one side of the facet that they share", tet, other);
-    BRIO_REQUIRE(j->ctx, v[3] != BRIO_INFINITE || brio_slot_of(f) != 3 || w[3] != BRIO_INFINITE, BRIO_ERR_CHECK,
-                 "no finite tetrahedron is on the inner side of infinite tetrahedron %zu", tet);
 done:
     return status;
 }

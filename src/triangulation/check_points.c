@@ -76,12 +76,12 @@ done:
     return status;
 }
 
-/* Point p is in tetrahedron tet, and at the position of no vertex. */
+/* Point p is in tetrahedron tet, and at the position of no vertex. Without weights it is inside the sphere, and refused.
+ */
 static brio_status check_hidden(workspace *w, uint32_t p, uint32_t tet) {
     brio_status status = BRIO_OK;
     brio_judge *j = w->j;
     uint32_t best = 0;
-    BRIO_REQUIRE(j->ctx, j->weighted, BRIO_ERR_CHECK, "point %u is no vertex", p);
     BRIO_TRY(brio_check_sphere(j, tet, p));
     if (!w->result) goto done;
     w->hidden[w->num_hidden++] = p;
