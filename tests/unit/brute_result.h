@@ -196,30 +196,40 @@ static inline void swap_vertices(uint32_t *v, int i, int j) {
     v[i] = v[j], v[j] = swap;
 }
 
-/* Fills the arrays of t as brio_delaunay would if `finite` were its tetrahedra. False, and t as it was, when an index is
- * out of range or there are too many hull facets. */
+/* How many of the tetrahedra have the facet of v opposite to slot k. */
+static inline size_t facet_uses(const tet_set *t, const uint32_t *v, int k) {
+    triangle f = facet_at(v, k);
+    size_t uses = 0;
+    for (size_t i = 0; i < 4 * t->count; i++) {
+        triangle g = facet_at(t->v[i / 4], (int)(i % 4));
+        uses += !compare_triangles(&f, &g);
+    }
+    return uses;
+}
+
+/* The infinite tetrahedron behind facet k of v: its first three vertices run round the other way. */
+static inline void infinite_behind(const uint32_t *v, int k, uint32_t *w) {
+    static const int order[4][3] = {{3, 1, 2}, {2, 0, 3}, {3, 0, 1}, {1, 0, 2}};
+    for (int i = 0; i < 3; i++) w[i] = v[order[k][i]];
+    w[3] = BRIO_INFINITE;
+}
+
+/* Fills the arrays of t as brio_delaunay would if `finite` were its tetrahedra; facets of one tetrahedron are the hull's.
+ * False, and t as it was, when an index is out of range or there are too many of those facets. */
 static inline bool brute_result(const site_set *s, const tet_set *finite, brio_triangulation *t) {
     bool vertex[BRUTE_POINTS];
     size_t count = finite->count, hull = 0;
     for (size_t f = 0; f < 4 * finite->count; f++) {
-        triangle a = facet_at(finite->v[f / 4], (int)(f % 4));
-        if (a.v[2] >= s->n) return false;
-        hull += supporting_side(s, a.v[0], a.v[1], a.v[2]) != 0;
+        if (finite->v[f / 4][f % 4] >= s->n) return false;
+        hull += facet_uses(finite, finite->v[f / 4], (int)(f % 4)) == 1;
     }
     if (count == 0 || count + hull > 2 * BRUTE_TETS) return false;
     for (size_t i = 0; i < finite->count; i++) {
         uint32_t *v = t->tet[i].vertex;
         memcpy(v, finite->v[i], sizeof *finite->v);
         if (volume_at(s, v) < 0) swap_vertices(v, 0, 1);
-        for (int k = 0; k < 4; k++) {
-            triangle f = facet_at(v, k);
-            int side = supporting_side(s, f.v[0], f.v[1], f.v[2]);
-            if (!side) continue;
-            uint32_t *w = t->tet[count++].vertex;
-            memcpy(w, f.v, sizeof f.v);
-            w[3] = BRIO_INFINITE;
-            if (side > 0) swap_vertices(w, 0, 1);
-        }
+        for (int k = 0; k < 4; k++)
+            if (facet_uses(finite, v, k) == 1) infinite_behind(v, k, t->tet[count++].vertex);
     }
     t->stats.tetrahedra = finite->count, t->stats.hull_facets = count - finite->count;
     brute_mates(t);

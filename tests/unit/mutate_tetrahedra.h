@@ -359,13 +359,14 @@ static inline void regrow(scene *e, tet_set *t) {
     }
 }
 
-/* Tetrahedra round an axis in steps of some neighbours, which wind round it several times. */
+/* Tetrahedra round an axis in steps that meet every point of the ring, and wind round the axis once or five times. */
 static inline void wind(scene *e, tet_set *t) {
-    uint32_t step = 1 + (uint32_t)draw(e, e->ring), from = 0;
+    static const uint32_t step[4] = {1, 5, 7, 11};
+    uint32_t by = step[draw(e, 4)], from = 0;
     if (!e->ring) return;
     t->count = 0;
     do {
-        uint32_t to = (from + step) % e->ring;
+        uint32_t to = (from + by) % e->ring;
         add_tet(t, 0, 1, 2 + from, 2 + to);
         from = to;
     } while (from != 0);
@@ -399,6 +400,24 @@ static inline void replace_cell_and_add_flat(scene *e, tet_set *t) {
     add_flat(e, t);
 }
 
+/* A flat tetrahedron on the hull, on one facet at least. */
+static inline void add_flat_on_hull(scene *e, tet_set *t) {
+    size_t from = draw(e, 4 * t->count);
+    for (size_t i = 0; i < 4 * t->count; i++) {
+        size_t h = (from + i) % (4 * t->count);
+        triangle f = facet_at(t->v[h / 4], (int)(h % 4));
+        if (f.v[2] >= e->s.n || times_used(t, &f) != 1) continue;
+        for (uint32_t d = 0; d < e->s.n; d++) {
+            uint32_t v[4] = {f.v[0], f.v[1], f.v[2], d};
+            triangle g = facet_at(v, (int)draw(e, 3));
+            if (tet_has(t->v[h / 4], d) || volume_at(&e->s, v) || times_used(t, &g) != 1) continue;
+            size_t odd = draw(e, 2);
+            add_tet(t, v[odd], v[1 - odd], v[2], v[3]);
+            return;
+        }
+    }
+}
+
 typedef void (*mutation)(scene *, tet_set *);
 
 static const mutation MUTATIONS[] = {swap_in_tet,
@@ -427,7 +446,8 @@ static const mutation MUTATIONS[] = {swap_in_tet,
                                      take_near_miss,
                                      wind,
                                      add_flat,
-                                     replace_cell_and_add_flat};
+                                     replace_cell_and_add_flat,
+                                     add_flat_on_hull};
 
 static inline void mutate(scene *e, tet_set *t) {
     MUTATIONS[draw(e, sizeof MUTATIONS / sizeof *MUTATIONS)](e, t);

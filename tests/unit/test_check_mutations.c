@@ -239,6 +239,7 @@ static void the_check_accepts_what_brute_force_accepts(void) {
         make_scene(ctx, &e, seed, 3);
         for (size_t i = 0; i < SETS_A_SCENE && sum.made < num_sets; i++) {
             t = e.right[draw(&e, ALTERNATIVES)];
+            if (draw(&e, 4) == 0) wind(&e, &t);
             for (size_t m = draw(&e, 5); m > 0 && t.count; m--) mutate(&e, &t);
             judge_set(ctx, &e, &t, seed, &sum);
         }
@@ -316,6 +317,13 @@ static void other_tets(scene *e, brio_triangulation *t) {
     brute_result(&e->s, &other, t);
 }
 
+/* A flat tetrahedron on the hull, with everything else as it should be. */
+static void flat_tet(scene *e, brio_triangulation *t) {
+    tet_set other = e->right[0];
+    add_flat_on_hull(e, &other);
+    brute_result(&e->s, &other, t);
+}
+
 /* One tetrahedron more, a copy whose mates do not know it: the first infinite one goes to the end for a finite one. */
 static void unknown_copy(scene *e, brio_triangulation *t) {
     size_t first = t->stats.tetrahedra, tets = first + t->stats.hull_facets, from = draw(e, tets);
@@ -369,9 +377,9 @@ static void solid_counts(scene *e, brio_triangulation *t) {
 
 typedef void (*spoiling)(scene *, brio_triangulation *);
 
-static const spoiling SPOILINGS[] = {wrong_mate,    exchange_mates, wrong_vertex,    turn_tet,
-                                     exchange_tets, other_tets,     unknown_copy,    wrong_representative,
-                                     other_twin,    wrong_count,    wrong_dimension, wrong_kinds};
+static const spoiling SPOILINGS[] = {
+    wrong_mate,   exchange_mates,       wrong_vertex, turn_tet,    exchange_tets,   other_tets, flat_tet,
+    unknown_copy, wrong_representative, other_twin,   wrong_count, wrong_dimension, wrong_kinds};
 /* Those that need no tetrahedra. */
 static const spoiling FLAT_SPOILINGS[] = {wrong_representative, other_twin, wrong_count, wrong_dimension, solid_counts};
 
