@@ -444,6 +444,14 @@ class Check(CliTest):
     def test_tetrahedra_that_overlap(self):
         self.expect(5, "check", self.tetrahedra("t", FLAT, FLAT_RIGHT + FLAT_RIGHT[:1]))
 
+    def test_neighbours_on_one_side_of_their_facet(self):
+        points = [(1, 2, 0), (0, 2, 1), (2, 0, 1), (0, 1, 2), (0, 0, 0), (0, 1, 1), (0, 2, 2), (0, 1, 0)]
+        right = [(5, 4, 7, 2), (5, 4, 2, 3), (0, 4, 2, 7), (0, 5, 7, 2), (0, 5, 2, 3), (0, 1, 7, 5), (0, 1, 5, 3),
+                 (0, 6, 3, 2), (0, 6, 1, 3)]
+        self.assertTrue(self.facts("check", self.tetrahedra("t", points, right))["verified"])
+        wrong = right[:5] + [(0, 1, 6, 5)] + right[6:]
+        self.assertFalse(self.facts("check", self.tetrahedra("t", points, wrong), code=5)["verified"])
+
     def test_other_triangulation_of_a_cube_is_verified_but_not_canonical(self):
         fives = [[(0, 1, 2, 4), (3, 2, 1, 7), (5, 1, 4, 7), (6, 4, 2, 7), (1, 2, 4, 7)],
                  [(1, 3, 0, 5), (2, 0, 3, 6), (4, 0, 5, 6), (7, 3, 6, 5), (0, 3, 5, 6)]]

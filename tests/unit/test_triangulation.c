@@ -482,6 +482,50 @@ static void check_refuses_space_covered_twice(void) {
     brio_context_free(ctx);
 }
 
+static brio_status checked(const double *p, size_t n, const uint32_t *v, size_t tets) {
+    brio_context *ctx = new_context();
+    brio_status status = brio_tetrahedra_check(ctx, p, NULL, n, v, 4, tets, NULL);
+    brio_context_free(ctx);
+    return status;
+}
+
+/* Sets that passed once: two tetrahedra on one side of the facet that they share, a dent beside them, and every sphere
+ * empty. One vertex differs from a right set. */
+static void check_refuses_two_tetrahedra_on_one_side_of_their_facet(void) {
+    const double p[] = {1, 2, 0, 0, 2, 1, 2, 0, 1, 2, 0, 1, 0, 1, 2, 0, 0, 0, 0, 1, 1, 0, 2, 2, 0, 1, 0};
+    const double q[] = {1, 1, 1, 1, 0, 1, 0, 1, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1, 1, 1, 0, 1, 0, 0, 0, 1, 1};
+    uint32_t v[] = {6, 5, 8, 2, 6, 5, 2, 4, 0, 5, 2, 8, 0, 6, 8, 2, 0, 6,
+                    2, 4, 0, 1, 8, 6, 0, 1, 6, 4, 0, 7, 4, 2, 0, 7, 1, 4};
+    uint32_t w[] = {4, 2, 3, 5, 4, 2, 6, 3, 4, 1, 6, 2, 4, 1, 2, 5, 0, 1, 2, 6};
+    EXPECT(checked(p, 9, v, 9) == BRIO_OK && checked(q, 9, w, 5) == BRIO_OK);
+    v[22] = 7;
+    w[7] = 0;
+    EXPECT(checked(p, 9, v, 9) == BRIO_ERR_CHECK);
+    EXPECT(checked(q, 9, w, 5) == BRIO_ERR_CHECK);
+}
+
+static void check_takes_each_position_under_one_index(void) {
+    const double p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 1, 0, 0};
+    uint32_t v[] = {0, 1, 2, 3, 0, 1, 2, 4}; /* points 1 and 5 coincide */
+    EXPECT(checked(p, 6, v, 2) == BRIO_OK);
+    v[5] = 5;
+    EXPECT(checked(p, 6, v, 2) == BRIO_ERR_CHECK);
+    v[1] = 5;
+    EXPECT(checked(p, 6, v, 2) == BRIO_OK);
+}
+
+static void check_of_no_tetrahedra_and_of_a_short_stride(void) {
+    const double p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const uint32_t v[] = {0, 1, 2, 3};
+    brio_context *ctx = new_context();
+    EXPECT(checked(p, 4, v, 1) == BRIO_OK);
+    EXPECT(checked(p, 4, v, 0) == BRIO_ERR_CHECK); /* the points are not in a plane */
+    EXPECT(checked(p, 3, v, 0) == BRIO_OK);
+    EXPECT(checked(p, 3, v, 1) == BRIO_ERR_CHECK);
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 4, v, 3, 1, NULL) == BRIO_ERR_ARGUMENT);
+    brio_context_free(ctx);
+}
+
 /* Thousands of hidden points behind few vertices, scaled until squared distances are subnormal: the same
  * representatives. */
 static void representatives_survive_subnormal_distances(void) {
@@ -532,6 +576,9 @@ int main(void) {
     RUN(check_refuses_what_is_wrong);
     RUN(other_tie_breaks_pass_but_are_not_canonical);
     RUN(check_refuses_space_covered_twice);
+    RUN(check_refuses_two_tetrahedra_on_one_side_of_their_facet);
+    RUN(check_takes_each_position_under_one_index);
+    RUN(check_of_no_tetrahedra_and_of_a_short_stride);
     RUN(representatives_survive_subnormal_distances);
     return harness_end();
 }
