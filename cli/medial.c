@@ -96,6 +96,18 @@ static void report(run *r, const brio_medial_options *o, const brio_medial_stats
     cli_fact_count(f, "vertices", shape->num_vertices);
     cli_fact_count(f, "edges", s->edges);
     cli_fact_count(f, "triangles", s->triangles);
+    cli_fact_count(f, "tetrahedra", s->tetrahedra);
+}
+
+/* A VTP file and a text of points cannot hold tetrahedra: they are left out there. */
+static brio_status write_shape(run *r, brio_mesh *shape) {
+    brio_format format;
+    brio_status status = BRIO_OK;
+    TRY(cli_output_format(r, r->common.output, r->common.format, &format));
+    if (format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) shape->num_tetrahedra = 0;
+    TRY(cli_write(r, shape));
+done:
+    return status;
 }
 
 static brio_status write_crust(run *r, const brio_mesh *crust) {
@@ -129,7 +141,7 @@ static brio_status medial(run *r) {
     input = NULL;
     TRY(cli_check_interrupt(r));
     TRY(write_crust(r, crust));
-    TRY(cli_write(r, shape));
+    TRY(write_shape(r, shape));
 done:
     brio_mesh_free(input);
     brio_mesh_free(shape);
@@ -140,7 +152,8 @@ done:
 const command cli_medial = {
     .name = "medial",
     .operands = "IN",
-    .summary = "medial axis of the points, or the closed mesh, of a file: balls, edges, triangles (.ply .vtp .vtu)",
+    .summary =
+        "medial axis of the points, or the closed mesh, of a file: balls and how they are joined (.ply .vtu .vtp)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -547,20 +547,22 @@ typedef struct brio_medial_stats {
     size_t poles, hidden_poles;      /* polar balls; of these without a power cell */
     size_t inner, outer, unlabelled; /* labels of all poles; with the labelings that there are, none is unlabelled */
     size_t left_out;                 /* by `scale` and `redundancy` */
-    size_t edges, triangles;         /* of the shape */
-    double noise;                    /* as in brio_power_crust_stats, and so is the next */
+    size_t edges, triangles, tetrahedra; /* of the shape */
+    double noise;                        /* as in brio_power_crust_stats, and so is the next */
     size_t smoothed;
     double delaunay_seconds, poles_seconds, power_seconds, label_seconds, simplify_seconds, shape_seconds,
         noise_seconds;
 } brio_medial_stats;
 
 /** The power shape of samples of a surface, an approximation of its medial axis: the poles on the sides asked for that
- *  have a cell in the power diagram of all polar balls, and the edges and triangles of its dual between those of one
- *  side. Poles of a dense sample of a smooth surface converge to the medial axis as the sampling gets denser; those of
- *  bounding points beyond the hull are left out.
+ *  have a cell in the power diagram of all polar balls, and the edges, triangles and tetrahedra of its dual between
+ *  those of one side. The inner shape is homotopy equivalent to the union of the inner cells: its Euler characteristic,
+ *  vertices - edges + triangles - tetrahedra, is that of the solid which the power crust bounds, unless an inner pole is
+ *  on the hull of the poles. Poles of a dense sample of a smooth surface converge to the medial axis as the sampling
+ *  gets denser; those of bounding points beyond the hull are left out.
  *  points   #P by 3.   options  NULL for the defaults.   stats  may be NULL.
  *  shape    owned by the caller: vertices with the properties "radius" (float64) and "side" (int8; -1 inner, 1 outer),
- *           edges, triangles as faces.
+ *           edges, triangles as faces, positive tetrahedra.
  *  crust    NULL, or receives the power crust of the balls, after simplification: closed, manifold, oriented; owned by
  *           the caller.
  *  Every ball left out by simplification is within max ((S - 1) (R - r), E R) of a larger one that stays, r and R being

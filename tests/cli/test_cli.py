@@ -719,7 +719,7 @@ class Json(CliTest):
 
     def test_medial(self):
         points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
-        counts = "samples poles hidden_poles inner outer unlabelled vertices edges triangles".split()
+        counts = "samples poles hidden_poles inner outer unlabelled vertices edges triangles tetrahedra".split()
         seconds = {key: number for key in "read noise delaunay poles power label shape write total".split()}
         schema = {**COMMON_FACTS, **{key: count for key in counts}, "labeling": str, "noise": number,
                   "smoothed": bool, "seconds": seconds}
@@ -766,16 +766,21 @@ class Json(CliTest):
     def test_power_shape_in_files(self):
         points = self.cloud("a.ply", 300, "torus")
         facts = self.facts("medial", points, "-o", self.path("out.ply"), "--ascii")
-        n, e, t = facts["vertices"], facts["edges"], facts["triangles"]
+        n, e, t, k = (facts[key] for key in "vertices edges triangles tetrahedra".split())
+        self.assertEqual(n - e + t - k, 0)  # a solid torus
+        self.assertGreater(k, 0)
         with open(self.path("out.ply")) as f:
             lines = f.read().split("end_header\n")[1].splitlines()
         rows = [tuple(map(float, line.split())) for line in lines[:n]]
         faces = [tuple(map(int, line.split()))[1:] for line in lines[n:n + t]]
-        edges = [tuple(map(int, line.split())) for line in lines[n + t:]]
-        self.assertEqual((len(rows), len(faces), len(edges)), (n, t, e))
+        solids = [tuple(map(int, line.split()))[1:] for line in lines[n + t:n + t + k]]
+        edges = [tuple(map(int, line.split())) for line in lines[n + t + k:]]
+        self.assertEqual((len(rows), len(faces), len(solids), len(edges)), (n, t, k, e))
         self.assertTrue(all(0 <= a < b < n for a, b in edges))
         sides = {tuple(sorted((f[i], f[i - 1]))) for f in faces for i in range(3)}
         self.assertTrue(sides <= set(edges))
+        facets = {tuple(sorted(q[:i] + q[i + 1:])) for q in solids for i in range(4)}
+        self.assertTrue(facets <= {tuple(sorted(f)) for f in faces})
         self.expect(0, "medial", points, "-o", self.path("out.vtp"))
         arrays, piece = self.appended_arrays("out.vtp")
         self.assertEqual(piece, {"NumberOfPoints": str(n), "NumberOfVerts": "0", "NumberOfLines": str(e),
@@ -790,9 +795,15 @@ class Json(CliTest):
         self.assertEqual(arrays["Verts", "connectivity"], ())
         self.expect(0, "medial", points, "-o", self.path("out.vtu"))
         arrays, _ = self.appended_arrays("out.vtu")
-        self.assertEqual(arrays["Cells", "types"], (7,) * t + (3,) * e)
-        self.assertEqual(arrays["Cells", "connectivity"][3 * t:], tuple(v for edge in edges for v in edge))
-        self.assertEqual(arrays["Cells", "offsets"][-1], 3 * t + 2 * e)
+        self.assertEqual(arrays["Cells", "types"], (10,) * k + (7,) * t + (3,) * e)
+        self.assertEqual(arrays["Cells", "connectivity"][:4 * k], tuple(v for q in solids for v in q))
+        self.assertEqual(arrays["Cells", "connectivity"][4 * k + 3 * t:], tuple(v for edge in edges for v in edge))
+        self.assertEqual(arrays["Cells", "offsets"][-1], 4 * k + 3 * t + 2 * e)
+        for extension in ("ply", "vtu"):  # tetrahedra survive writing and reading
+            self.expect(0, "medial", points, "-o", self.path("out." + extension))
+            info = self.facts("info", self.path("out." + extension))
+            self.assertEqual((info["points"], info["faces"], info["tetrahedra"]), (n, t, k))
+        self.expect(0, "medial", points, "-o", self.path("out.xyz"))
         self.expect(2, "info", self.path("out.vtp"))
 
     def test_points_in_a_vtp_file_are_cells(self):

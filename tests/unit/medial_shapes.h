@@ -55,6 +55,8 @@ typedef struct {
     void (*sample)(cloud *c, double h);         /* no point of the surface is farther than h from a sample */
     double (*off_axis)(const double *p);        /* no less than the distance of p from the inner medial axis */
     double (*signed_distance)(const double *p); /* from the surface, negative inside */
+    void (*on_axis)(brio_rng *rng, double *p);  /* a random point of the inner medial axis; each part of it is met */
+    int euler;                                  /* the Euler characteristic of the solid */
 } medial_shape;
 
 /* --- the unit sphere --- */
@@ -72,6 +74,11 @@ static inline double sphere_off_axis(const double *p) {
     return sphere_distance(p) + 1;
 }
 
+static inline void sphere_on_axis(brio_rng *rng, double *p) {
+    (void)rng;
+    p[0] = p[1] = p[2] = 0;
+}
+
 /* --- the torus of radii 1 and 0.4 --- */
 
 static inline void torus_profile(double t, double *r, double *z) {
@@ -87,6 +94,11 @@ static inline double torus_distance(const double *p) {
     return torus_off_axis(p) - 0.4;
 }
 
+static inline void torus_on_axis(brio_rng *rng, double *p) {
+    double a = 2 * MEDIAL_PI * brio_rng_double(rng);
+    p[0] = cos(a), p[1] = sin(a), p[2] = 0;
+}
+
 /* --- the ellipsoid of semi-axes 1.5, 1, 0.6: its axis is an elliptic disk [x / a, y / b], a = (1.5^2 - 0.6^2) / 1.5 --- */
 
 static inline void ellipsoid_cloud(cloud *c, double h) {
@@ -97,6 +109,11 @@ static inline void ellipsoid_cloud(cloud *c, double h) {
 static inline double ellipsoid_off_axis(const double *p) {
     double a = (2.25 - 0.36) / 1.5, b = 1 - 0.36, k = fmax(hypot(p[0] / a, p[1] / b), 1);
     return hypot(hypot(p[0], p[1]) * (1 - 1 / k), p[2]);
+}
+
+static inline void ellipsoid_on_axis(brio_rng *rng, double *p) {
+    double a = 2 * MEDIAL_PI * brio_rng_double(rng), r = sqrt(brio_rng_double(rng));
+    p[0] = r * cos(a) * (2.25 - 0.36) / 1.5, p[1] = r * sin(a) * (1 - 0.36), p[2] = 0;
 }
 
 /* --- the box of half sides 1, 0.7, 0.5 --- */
@@ -127,6 +144,20 @@ static inline double box_off_axis(const double *p) {
     return sqrt(outside) + fmin(next - least, across);
 }
 
+/* A random point of the box, moved away from the nearest side as box_off_axis has it. */
+static inline void box_on_axis(brio_rng *rng, double *p) {
+    static const double half[3] = {1, 0.7, 0.5};
+    double least = INFINITY, next = INFINITY;
+    int nearest = 0;
+    for (int k = 0; k < 3; k++) {
+        p[k] = half[k] * (2 * brio_rng_double(rng) - 1);
+        double depth = half[k] - fabs(p[k]);
+        next = fmin(next, fmax(least, depth));
+        if (depth < least) least = depth, nearest = k;
+    }
+    p[nearest] = copysign(half[nearest] - fmin(next, half[nearest]), p[nearest]);
+}
+
 /* --- the cylinder of radius 1 and half height 1.5, with its caps --- */
 
 static inline void side_profile(double t, double *r, double *z) {
@@ -150,11 +181,18 @@ static inline double cylinder_off_axis(const double *p) {
     return outside + (side < cap ? fmin(r, cap - side) : side - cap);
 }
 
-static const medial_shape medial_sphere = {"sphere", sphere_cloud, sphere_off_axis, sphere_distance};
-static const medial_shape medial_torus = {"torus", torus_cloud, torus_off_axis, torus_distance};
-static const medial_shape medial_ellipsoid = {"ellipsoid", ellipsoid_cloud, ellipsoid_off_axis, NULL};
-static const medial_shape medial_box = {"box", box_cloud, box_off_axis, NULL};
-static const medial_shape medial_cylinder = {"cylinder", cylinder_cloud, cylinder_off_axis, NULL};
+/* The axis of revolution between the cones, and the cones, which end where the caps do. */
+static inline void cylinder_on_axis(brio_rng *rng, double *p) {
+    double a = 2 * MEDIAL_PI * brio_rng_double(rng), z = 3 * brio_rng_double(rng) - 1.5, r = fmax(fabs(z) - 0.5, 0);
+    p[0] = r * cos(a), p[1] = r * sin(a), p[2] = z;
+}
+
+static const medial_shape medial_sphere = {"sphere", sphere_cloud, sphere_off_axis, sphere_distance, sphere_on_axis, 1};
+static const medial_shape medial_torus = {"torus", torus_cloud, torus_off_axis, torus_distance, torus_on_axis, 0};
+static const medial_shape medial_ellipsoid = {"ellipsoid", ellipsoid_cloud,   ellipsoid_off_axis,
+                                              NULL,        ellipsoid_on_axis, 1};
+static const medial_shape medial_box = {"box", box_cloud, box_off_axis, NULL, box_on_axis, 1};
+static const medial_shape medial_cylinder = {"cylinder", cylinder_cloud, cylinder_off_axis, NULL, cylinder_on_axis, 1};
 
 static inline cloud medial_sample(const medial_shape *shape, double h, uint64_t seed) {
     cloud c = {.rng = brio_rng_new(seed)};

@@ -20,6 +20,9 @@ static void expect_same(const brio_mesh *a, const brio_mesh *b) {
     EXPECT(!memcmp(a->vertices, b->vertices, 24 * a->num_vertices));
     EXPECT(!a->num_edges || !memcmp(a->edges, b->edges, 8 * a->num_edges));
     EXPECT(!memcmp(a->face_vertices, b->face_vertices, 12 * a->num_faces));
+    EXPECT(a->num_tetrahedra == b->num_tetrahedra);
+    if (a->num_tetrahedra == b->num_tetrahedra && a->num_tetrahedra)
+        EXPECT(!memcmp(a->tetrahedra, b->tetrahedra, 16 * a->num_tetrahedra));
 }
 
 /* --- the shape --- */
@@ -34,7 +37,22 @@ static size_t number_inner(const brio_labelled_poles *l, uint32_t *number) {
     return count;
 }
 
-/* Every pair and triple of inner vertices of a tetrahedron of the dual is in the shape, and nothing else. */
+/* The shape has the tetrahedra of the dual between inner poles, in their order and as they are turned. */
+static void expect_tetrahedra_of_dual(const brio_labelled_poles *l, const uint32_t *number, const brio_mesh *shape) {
+    size_t count = 0;
+    for (size_t tet = 0; tet < l->graph.num_finite; tet++) {
+        const uint32_t *v = l->graph.power.tet[tet].vertex;
+        uint32_t w[4];
+        int inner = 0;
+        for (int i = 0; i < 4; i++) w[i] = number[v[i]], inner += w[i] != UINT32_MAX;
+        if (inner < 4) continue;
+        EXPECT(count < shape->num_tetrahedra && !memcmp(shape->tetrahedra + 4 * count, w, sizeof w));
+        count++;
+    }
+    EXPECT(count == shape->num_tetrahedra && count > 0, "%zu, %zu", count, shape->num_tetrahedra);
+}
+
+/* Every pair, triple and quadruple of inner vertices of a tetrahedron of the dual is in the shape, and nothing else. */
 static void shape_is_the_dual_between_inner_poles(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_ellipsoid, 0.35, 1);
@@ -72,6 +90,7 @@ static void shape_is_the_dual_between_inner_poles(void) {
         EXPECT(triangle[at] == 1);
         triangle[at] = 0;
     }
+    expect_tetrahedra_of_dual(&l, number, shape);
     free(number);
     free(edge);
     free(triangle);

@@ -1,6 +1,10 @@
 /* The power shape: the poles on one side of the surface, connected as their cells touch in the power diagram. It
  * approximates the medial axis of that side; with the radii, its medial axis transform.
  *
+ * The shape is the part of the regular triangulation all of whose vertices are on that side, tetrahedra included. So
+ * the shape is the nerve of the cells on that side. These cells are convex: the shape is homotopy equivalent to their
+ * union, the solid that the power crust bounds. A hidden pole has no cell and is no vertex.
+ *
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7, step 6.
  * Differs from the paper: outer poles that only the bounding points hold back are no part of the outer shape. */
@@ -23,9 +27,10 @@ typedef struct {
     const brio_medial_options *options;
     uint32_t *number; /* of the vertex of each pole, or NO_VERTEX */
     brio_mesh *mesh;
-    uint32_t *edges, *corners;
+    uint32_t *edges, *corners, *tetrahedra;
     size_t num_edges, edge_capacity; /* numbers, not pairs */
     size_t num_corners, corner_capacity;
+    size_t num_tetrahedra, tetrahedron_capacity; /* numbers, not quadruples */
 } builder;
 
 /* --- simplification --- */
@@ -155,6 +160,18 @@ done:
     return status;
 }
 
+/* A tetrahedron of the regular triangulation is positive, and so is the shape's. */
+static brio_status add_tetrahedron(builder *b, uint32_t tet) {
+    brio_status status = BRIO_OK;
+    const uint32_t *v = b->poles->graph.power.tet[tet].vertex;
+    for (int i = 1; i < 4; i++)
+        if (!joined(b, v[0], v[i])) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(b->poles->ctx, b->tetrahedra, b->tetrahedron_capacity, b->num_tetrahedra + 4));
+    for (int i = 0; i < 4; i++) b->tetrahedra[b->num_tetrahedra++] = b->number[v[i]];
+done:
+    return status;
+}
+
 static brio_status set_triangles(builder *b) {
     brio_status status = BRIO_OK;
     uint64_t *offsets = NULL;
@@ -178,13 +195,16 @@ static brio_status make_shape(brio_labelled_poles *l, const brio_medial_options 
         if (tet % 65536 == 0) BRIO_TRY(brio_progress(l->ctx, "shape", (double)tet / (double)l->graph.num_finite));
         BRIO_TRY(add_edges(&b, (uint32_t)tet));
         BRIO_TRY(add_triangles(&b, (uint32_t)tet));
+        BRIO_TRY(add_tetrahedron(&b, (uint32_t)tet));
     }
     if (b.num_edges) BRIO_TRY(brio_mesh_set_edges(mesh, b.edges, b.num_edges / 2));
     BRIO_TRY(set_triangles(&b));
+    if (b.num_tetrahedra) BRIO_TRY(brio_mesh_set_tetrahedra(mesh, b.tetrahedra, 4, b.num_tetrahedra / 4));
 done:
     brio_release(l->ctx, b.number);
     brio_release(l->ctx, b.edges);
     brio_release(l->ctx, b.corners);
+    brio_release(l->ctx, b.tetrahedra);
     return status;
 }
 
@@ -219,6 +239,7 @@ static void copy_stats(const brio_labelled_poles *l, const brio_mesh *shape, bri
     s->label_seconds = l->stats.label_seconds;
     s->edges = shape ? shape->num_edges : 0;
     s->triangles = shape ? shape->num_faces : 0;
+    s->tetrahedra = shape ? shape->num_tetrahedra : 0;
 }
 
 /* Before any pole is left out. */
