@@ -131,27 +131,98 @@ static void strategies_count_what_they_do(void) {
     }
 }
 
+/* Pairs of points close together, and the edges of these pairs; to be freed. */
+static double *paired_points(size_t n, uint32_t **pairs) {
+    double *p = malloc(3 * n * sizeof *p);
+    *pairs = malloc(n * sizeof **pairs);
+    uniform_points(1, n, p);
+    for (size_t i = 1; i < n; i += 2)
+        for (size_t c = 0; c < 3; c++) p[3 * i + c] = p[3 * i - 3 + c] + 1e-5 * p[3 * i + c];
+    for (uint32_t i = 0; i < n; i++) (*pairs)[i] = i;
+    return p;
+}
+
 /* In random order the point inserted last is anywhere: what a strategy starts from decides. */
 static void walks_are_short(void) {
+    static const brio_location walks[] = {BRIO_LOCATE_JUMP, BRIO_LOCATE_HIERARCHY, BRIO_LOCATE_NEIGHBOUR};
     enum { MANY = 8000 };
-    double *many = malloc(3 * MANY * sizeof *many);
-    uint32_t *chain = malloc(2 * MANY * sizeof *chain);
-    uniform_points(1, MANY, many);
-    for (size_t i = 1; i < MANY; i += 2) /* pairs of points close together */
-        for (size_t c = 0; c < 3; c++) many[3 * i + c] = many[3 * i - 3 + c] + 1e-5 * many[3 * i + c];
-    for (uint32_t i = 0; i + 1 < MANY; i += 2) chain[i] = i, chain[i + 1] = i + 1;
-    for (int s = BRIO_LOCATE_JUMP; s <= BRIO_LOCATE_NEIGHBOUR; s++) {
+    uint32_t *pairs;
+    double *many = paired_points(MANY, &pairs);
+    for (int i = 0; i < 3; i++) {
         brio_options o = brio_options_default();
-        o.order = BRIO_ORDER_RANDOM, o.locate = (brio_location)s, o.edges = chain, o.num_edges = MANY / 2;
+        o.order = BRIO_ORDER_RANDOM, o.locate = walks[i], o.edges = pairs, o.num_edges = MANY / 2;
         result r = run(many, NULL, MANY, &o);
         double steps = (double)r.stats.walk_steps / MANY;
-        EXPECT(steps < 30, "%s: %g steps a point", names[s], steps);
+        EXPECT(steps > 0 && steps < 30, "%s: %g steps a point", names[walks[i]], steps);
         o.num_edges = 0;
         r = run(many, NULL, MANY, &o);
-        EXPECT(s != BRIO_LOCATE_NEIGHBOUR || (double)r.stats.walk_steps / MANY > 35, "without edges");
+        EXPECT(walks[i] != BRIO_LOCATE_NEIGHBOUR || (double)r.stats.walk_steps / MANY > 35, "without edges");
     }
     free(many);
-    free(chain);
+    free(pairs);
+}
+
+/* History tests a point that a random order comes to at most. By backwards analysis insertion j made the tetrahedron that
+ * holds a point with probability 4 / j, and a neighbour of the point among those inserted so far with probability
+ * degree / j. A search comes to the insertions of the first kind, or of the second when it follows all conflicts, and
+ * tests at most what each created. */
+static double most_history_tests(const brio_stats *s, bool all_conflicts) {
+    double n = (double)s->vertices, joined = n + (double)s->tetrahedra + 0.5 * (double)s->hull_facets - 1;
+    return (all_conflicts ? 2 * joined / n : 4) * log(n) * (double)s->created / n;
+}
+
+static void history_tests_grow_as_the_logarithm(void) {
+    for (size_t n = 1000; n <= 16000; n *= 4) {
+        double *p = malloc(3 * n * sizeof *p);
+        uniform_points(1, n, p);
+        for (int all = 0; all < 2; all++) {
+            brio_options o = brio_options_default();
+            o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATE_HISTORY, o.all_conflicts = all;
+            brio_stats s = run(p, NULL, n, &o).stats;
+            double tests = (double)s.history_tests / (double)n, most = most_history_tests(&s, all);
+            EXPECT(tests < most, "%zu points, all conflicts %d: %g tests a point, at most %g", n, all, tests, most);
+        }
+        free(p);
+    }
+}
+
+/* The bound can be broken, without the random order: each point is beyond all those before it, and the searches for it come
+ * to an insertion for most of these. */
+static void history_tests_of_sorted_points_are_many(void) {
+    enum { MANY = 4000 };
+    double *p = malloc(3 * MANY * sizeof *p);
+    uniform_points(1, MANY, p);
+    for (size_t i = 0; i < MANY; i++) p[3 * i] = (double)i;
+    brio_options o = brio_options_default();
+    o.order = BRIO_ORDER_INPUT, o.locate = BRIO_LOCATE_HISTORY;
+    brio_stats s = run(p, NULL, MANY, &o).stats;
+    double tests = (double)s.history_tests / MANY, most = most_history_tests(&s, false);
+    EXPECT(tests > most, "%g tests a point, at most %g", tests, most);
+    free(p);
+}
+
+/* The second point of a pair is found from the first by tracing, through one tetrahedron or two, in each of the two
+ * tracings; the first is found from the root. So half of the tests are left. Without edges nothing is traced. */
+static void traced_pairs_save_their_history_tests(void) {
+    enum { MANY = 8000, TRACINGS = 2 };
+    uint32_t *pairs;
+    double *many = paired_points(MANY, &pairs);
+    for (int all = 0; all < 2; all++) {
+        brio_options o = brio_options_default();
+        o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATE_HISTORY, o.all_conflicts = all;
+        brio_stats plain = run(many, NULL, MANY, &o).stats;
+        o.locate = BRIO_LOCATE_TRACE;
+        brio_stats without = run(many, NULL, MANY, &o).stats;
+        EXPECT(without.history_tests == plain.history_tests && without.trace_intersections == 0);
+        o.edges = pairs, o.num_edges = MANY / 2;
+        brio_stats traced = run(many, NULL, MANY, &o).stats;
+        EXPECT((double)traced.history_tests < 0.6 * (double)plain.history_tests, "%g of %g tests a point",
+               (double)traced.history_tests / MANY, (double)plain.history_tests / MANY);
+        EXPECT(traced.trace_intersections > 0 && traced.trace_intersections < TRACINGS * MANY, "%g entered a point",
+               (double)traced.trace_intersections / MANY);
+    }
+    free(many);
+    free(pairs);
 }
 
 /* --- searches --- */
@@ -465,6 +536,9 @@ int main(void) {
     RUN(every_strategy_in_every_order_gives_one_triangulation);
     RUN(strategies_count_what_they_do);
     RUN(walks_are_short);
+    RUN(history_tests_grow_as_the_logarithm);
+    RUN(history_tests_of_sorted_points_are_many);
+    RUN(traced_pairs_save_their_history_tests);
     RUN(history_searches_find_what_brute_force_finds);
     RUN(segments_lead_to_their_ends);
     RUN(segments_enter_what_they_cross);
