@@ -464,9 +464,49 @@ static double edge_distance(const theory *x, uint32_t p, uint32_t facet) {
     return sqrt(square);
 }
 
+/* An edge of a restricted triangle, and the corner across. */
+typedef struct {
+    uint32_t low, high, across;
+} spoke;
+
+static int compare_spokes(const void *a, const void *b) {
+    const spoke *x = a, *y = b;
+    return x->low != y->low ? (x->low < y->low ? -1 : 1) : x->high < y->high ? -1 : x->high > y->high;
+}
+
+static void add_spokes(spoke *list, const uint32_t corner[3]) {
+    for (int k = 0; k < 3; k++) {
+        uint32_t a = corner[(k + 1) % 3], b = corner[(k + 2) % 3];
+        list[k] = (spoke){a < b ? a : b, a < b ? b : a, corner[k]};
+    }
+}
+
+/* The angle between two triangles at their common edge. */
+static double dihedral(const double *a, const double *b, const double *p, const double *q) {
+    double d[3], u[3], v[3], dd = 0, du = 0, dv = 0, uv = 0, uu = 0, vv = 0;
+    for (int k = 0; k < 3; k++) d[k] = b[k] - a[k], u[k] = p[k] - a[k], v[k] = q[k] - a[k];
+    for (int k = 0; k < 3; k++) dd += d[k] * d[k], du += d[k] * u[k], dv += d[k] * v[k];
+    for (int k = 0; k < 3; k++) u[k] -= du / dd * d[k], v[k] -= dv / dd * d[k];
+    for (int k = 0; k < 3; k++) uv += u[k] * v[k], uu += u[k] * u[k], vv += v[k] * v[k];
+    return acos(fmax(-1, fmin(1, uv / sqrt(uu * vv))));
+}
+
+/* Lemma 29: no restricted triangle has a sharp edge. The proof has it that adjacent ones meet at 120 degrees or more. */
+static void check_no_sharp_edges(const theory *x, spoke *list, size_t count) {
+    qsort(list, count, sizeof *list, compare_spokes);
+    for (size_t i = 0; i + 1 < count; i += 2) {
+        const spoke *s = list + i;
+        EXPECT(compare_spokes(s, s + 1) == 0 && (i + 2 == count || compare_spokes(s, s + 2) != 0), "two at an edge");
+        double angle = dihedral(x->points + 3 * (size_t)s->low, x->points + 3 * (size_t)s->high,
+                                x->points + 3 * (size_t)s->across, x->points + 3 * (size_t)s[1].across);
+        EXPECT(angle >= 2 * PI / 3, "lemma 29 at edge %u %u: %g", s->low, s->high, angle);
+    }
+}
+
 /* Restricted Delaunay triangles are candidates (theorem 22); candidates are small (lemma 24) and flat (theorem 26). */
 static void check_candidates(const theory *x) {
-    size_t restricted = 0;
+    size_t restricted = 0, expected = 2 * x->n - 4 + 4 * (size_t)x->surface->genus;
+    spoke *spokes = malloc(3 * expected * sizeof *spokes);
     for (uint32_t facet = 0; facet < 4 * x->dual.t.count; facet++) {
         const uint32_t *v = x->dual.t.tet[brio_tet_of(facet)].vertex;
         uint32_t corner[3];
@@ -475,6 +515,7 @@ static void check_candidates(const theory *x) {
             corner[2] == BRIO_INFINITE)
             continue;
         bool is_one = is_restricted(x, facet);
+        if (is_one && restricted < expected) add_spokes(spokes + 3 * restricted, corner);
         restricted += is_one;
         EXPECT(!is_one || brio_is_candidate(&x->cocones, facet), "theorem 22 at facet %u", facet);
         if (!brio_is_candidate(&x->cocones, facet)) continue;
@@ -483,8 +524,10 @@ static void check_candidates(const theory *x) {
             EXPECT(edge_distance(x, corner[k], facet) <= 1.3 * r_over(x->surface->r) * x->surface->feature_size + 1e-12,
                    "lemma 24 at facet %u", facet);
     }
-    EXPECT(restricted == 2 * x->n - 4 + 4 * (size_t)x->surface->genus && x->candidates >= restricted,
-           "%zu restricted triangles of %zu samples", restricted, x->n);
+    EXPECT(restricted == expected && x->candidates >= restricted, "%zu restricted triangles of %zu samples", restricted,
+           x->n);
+    if (restricted == expected) check_no_sharp_edges(x, spokes, 3 * expected);
+    free(spokes);
 }
 
 /* Theorem 19: the right topology, near the surface everywhere (looked at on a grid in each triangle). */

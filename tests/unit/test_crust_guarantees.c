@@ -2,6 +2,7 @@
  * sphere, torus, and a plate of genus 3. */
 #include "harness.h"
 #include "known_surfaces.h"
+#include "order/nearest_points.h"
 #include "points.h"
 #include "reconstruct/labels/labelling.h"
 #include "surface/closest_point.h"
@@ -78,6 +79,127 @@ static void check_intersections(const theory *x, const brio_pole_graph *g) {
     EXPECT(widest > 0 && widest <= limit, "angle %g, at most %g", widest, limit);
 }
 
+static double square_between(const double *a, const double *b) {
+    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
+/* Lemma 36: the balls of a sample intersect at O(r) LFS / rho. With the proof's steps: their circle has radius at most
+ * r LFS(x) <= r / (1 - r) LFS(s) for the point x of the surface between their centres, and either ball makes an angle of
+ * at most asin (radius / rho) with the circle's plane, rho being the radius of the smaller one. */
+static void check_balls_of_samples(const theory *x, const brio_pole_graph *g) {
+    double widest = 0;
+    for (size_t s = 0; s < x->n; s++) {
+        uint32_t p = x->poles.of_sample[2 * s], q = x->poles.of_sample[2 * s + 1];
+        double rho = sqrt(fmin(x->poles.square[p], x->poles.square[q])), angle = angle_between(g, p, q);
+        double limit = 2 * asin(x->r / (1 - x->r) * x->surface->feature_size / rho);
+        EXPECT(angle <= limit, "lemma 36 at sample %zu: %g, at most %g", s, angle, limit);
+        widest = fmax(widest, angle / limit);
+    }
+    EXPECT(widest > 0.1, "the limit is %g times too wide to tell anything", 1 / widest);
+}
+
+static size_t nearest_sample(const brio_point_tree *tree, const double *u) {
+    brio_near_point near[BRIO_NEAR_ROOM];
+    return brio_nearest_points(tree, u, 1, INFINITY, near) ? tree->index[near[0].place] : SIZE_MAX;
+}
+
+/* Lemma 40: a point of the cell of a sample that is in neither polar ball is within 2 r' LFS of the sample,
+ * r' = r / (1 - r); the proof needs 3 asin r' < pi / 6, r < 0.147. Points are tried on 64 rays from each sample, at and
+ * beyond that distance. */
+static void check_points_outside_balls(const theory *x) {
+    double limit = 2 * x->r / (1 - x->r) * x->surface->feature_size;
+    size_t tried = 0, bare = 0;
+    brio_point_tree tree;
+    brio_rng rng = brio_rng_new(3);
+    EXPECT(brio_point_tree_new(x->ctx, x->points, x->n, &tree) == BRIO_OK);
+    for (size_t i = 0; i < 64 * x->n; i++) {
+        const double *s = x->points + 3 * (i / 64);
+        double z = 2 * brio_rng_double(&rng) - 1, a = 6.283185307179586 * brio_rng_double(&rng);
+        double d = limit * (i % 2 ? 0.5 * brio_rng_double(&rng) : 1.0001 + 3 * brio_rng_double(&rng));
+        double way[3] = {sqrt(1 - z * z) * cos(a), sqrt(1 - z * z) * sin(a), z}, u[3];
+        for (int k = 0; k < 3; k++) u[k] = s[k] + d * way[k];
+        if (nearest_sample(&tree, u) != i / 64) continue;
+        bool covered = false;
+        for (int k = 0; k < 2; k++) {
+            uint32_t p = x->poles.of_sample[2 * (i / 64) + (size_t)k];
+            covered |= square_between(u, x->poles.centre + 3 * (size_t)p) < x->poles.square[p];
+        }
+        tried += d > limit;
+        bare += d <= limit && !covered;
+        EXPECT(covered || d <= limit, "lemma 40 at sample %zu: %g, at most %g", i / 64, d, limit);
+    }
+    EXPECT(tried > 200 && bare > 200, "%zu points beyond the distance, %zu bare ones within", tried, bare);
+    brio_point_tree_free(x->ctx, &tree);
+}
+
+typedef struct {
+    double from, to;
+} interval;
+
+static int compare_intervals(const void *a, const void *b) {
+    const interval *x = a, *y = b;
+    return x->from < y->from ? -1 : x->from > y->from;
+}
+
+/* The balls of a label along the line from s with the given direction: *count intervals, by where they begin. */
+static interval *cut_line(const theory *x, uint8_t label, const double *s, const double *way, size_t *count) {
+    interval *cut = malloc((x->poles.count + 1) * sizeof *cut);
+    *count = 0;
+    for (size_t p = 0; p < x->poles.count; p++) {
+        const double *c = x->poles.centre + 3 * p;
+        double along = 0, far = square_between(c, s);
+        for (int k = 0; k < 3; k++) along += (c[k] - s[k]) * way[k];
+        double half = x->poles.square[p] - (far - along * along);
+        if (x->truth[p] != label || half < 0) continue;
+        cut[(*count)++] = (interval){along - sqrt(half), along + sqrt(half)};
+    }
+    qsort(cut, *count, sizeof *cut, compare_intervals);
+    return cut;
+}
+
+/* Lemma 47: the boundary of the union of the balls of one side is taken to the surface, point for point, by the nearest
+ * point. So the normal at a point of the surface, half the local feature size long on either side, leaves the union once
+ * and does not come back. (That each point of the boundary is within reach is theorem 43.) */
+static void check_unions(const theory *x) {
+    double reach = 0.5 * x->surface->feature_size;
+    size_t n;
+    double *points = x->surface->sample(1, 5, &n);
+    for (size_t i = 0; i < n; i++)
+        for (int side = 0; side < 2; side++) {
+            double way[3], end = -reach;
+            size_t count;
+            x->surface->normal(points + 3 * i, way);
+            for (int k = 0; k < 3 && side; k++) way[k] = -way[k];
+            interval *cut = cut_line(x, side ? BRIO_LABEL_OUTER : BRIO_LABEL_INNER, points + 3 * i, way, &count);
+            size_t c = 0;
+            for (; c < count && cut[c].from <= end; c++) end = fmax(end, cut[c].to);
+            EXPECT(end > -reach && end < reach, "lemma 47: the union ends at %g", end);
+            EXPECT(c == count || cut[c].from >= reach, "lemma 47: left at %g, entered again at %g", end, cut[c].from);
+            free(cut);
+        }
+    free(points);
+}
+
+/* Lemma 55: two balls of one side that share a face of the power diagram within the tubular neighbourhood meet at a right
+ * angle at least. The edges of the crust are in that neighbourhood (corollary 48): an edge has the cells of two balls of
+ * one side around it, and of one of the other side. */
+static void check_crust_edges(const theory *x, const brio_pole_graph *g) {
+    double narrowest = INFINITY;
+    size_t edges = 0;
+    for (size_t facet = 0; facet < 4 * g->num_finite; facet++) {
+        const uint32_t *v = g->power.tet[facet / 4].vertex;
+        uint32_t p[3];
+        int inner = 0;
+        for (int k = 0; k < 3; k++) p[k] = v[BRIO_FACET[facet % 4][k]], inner += x->truth[p[k]] == BRIO_LABEL_INNER;
+        if (inner == 0 || inner == 3 || *brio_mate(&g->power, (uint32_t)facet) < facet) continue;
+        uint8_t twice = inner == 2 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+        int odd = x->truth[p[0]] != twice ? 0 : x->truth[p[1]] != twice ? 1 : 2;
+        narrowest = fmin(narrowest, angle_between(g, p[(odd + 1) % 3], p[(odd + 2) % 3]));
+        edges++;
+    }
+    EXPECT(edges > x->n && narrowest >= 0.5 * 3.141592653589793, "lemma 55: %zu edges, angle %g", edges, narrowest);
+}
+
 /* Lemmata 56 and 57: every pole is reached, every label is right. */
 static void check_labels(const theory *x, const brio_pole_graph *g, label_fn find) {
     brio_labelling_stats s = {0};
@@ -99,6 +221,10 @@ static brio_pole_graph graph_of(const theory *x, double least_weight) {
 static void check_poles(const theory *x) {
     brio_pole_graph all = graph_of(x, -1), deep = graph_of(x, BRIO_THEORETICAL_WEIGHT);
     check_intersections(x, &all);
+    check_balls_of_samples(x, &all);
+    check_crust_edges(x, &all);
+    check_unions(x);
+    if (x->r < 0.147) check_points_outside_balls(x);
     check_labels(x, &deep, brio_label_theoretical);
     check_labels(x, &all, brio_label_greedy);
     check_labels(x, &all, brio_label_global);

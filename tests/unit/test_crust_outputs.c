@@ -113,6 +113,68 @@ static void hole_of_the_samples_stays_open_on_request(void) {
     }
 }
 
+/* A ball with a hollow of radius 0.6, and no samples of the hollow's cap z > 0.3. */
+static size_t hollow_ball(double *p) {
+    size_t n = 4000;
+    sphere_points(6, 4000, p);
+    sphere_points(7, 4000, p + 3 * 4000);
+    for (size_t i = 4000; i < 8000; i++) {
+        double q[3] = {0.6 * p[3 * i], 0.6 * p[3 * i + 1], 0.6 * p[3 * i + 2]};
+        if (q[2] < 0.3) memmove(p + 3 * n++, q, sizeof q);
+    }
+    return n;
+}
+
+/* Vertices on edges that no other face runs back along: how many, and how far they are from the rim of the cap. */
+static size_t far_from_rim(const brio_mesh *m, double *farthest) {
+    size_t count = 0;
+    *farthest = 0;
+    for (size_t f = 0; f < m->num_faces; f++)
+        for (uint64_t i = m->face_offsets[f]; i < m->face_offsets[f + 1]; i++) {
+            uint64_t next = i + 1 < m->face_offsets[f + 1] ? i + 1 : m->face_offsets[f];
+            uint32_t a = m->face_vertices[i], b = m->face_vertices[next];
+            bool twin = false;
+            for (size_t g = 0; g < m->num_faces && !twin; g++)
+                for (uint64_t j = m->face_offsets[g]; j < m->face_offsets[g + 1] && !twin; j++) {
+                    uint64_t after = j + 1 < m->face_offsets[g + 1] ? j + 1 : m->face_offsets[g];
+                    twin = m->face_vertices[j] == b && m->face_vertices[after] == a;
+                }
+            if (twin) continue;
+            const double *q = m->vertices + 3 * (size_t)a;
+            *farthest = fmax(*farthest, hypot(hypot(q[0], q[1]) - 0.6 * sqrt(0.75), q[2] - 0.3));
+            count++;
+        }
+    return count;
+}
+
+/* Figure 3.9 of [Choi 2003]: the hole touches neither the hull nor a silhouette. The outer sphere stays closed, and the
+ * hollow has one loop, along the rim of what was sampled. (Within the shell, balls are only a few spacings large; larger K
+ * leave islands of small faces in the hole.) */
+static void hole_inside_the_hull_stays_open_on_request(void) {
+    static double p[3 * 8000];
+    brio_context *ctx = new_small_context();
+    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_stats s;
+    double farthest;
+    size_t n = hollow_ball(p);
+    o.triangulate = 1;
+    brio_mesh *mesh = crust(ctx, p, n, &o, &s);
+    brio_certificate c = certify(ctx, mesh);
+    EXPECT(c.closed && c.components == 2 && c.genus == 0 && s.left_out == 0, "%zu components", c.components);
+    brio_certificate_free(&c);
+    brio_mesh_free(mesh);
+    o.open = 1;
+    mesh = crust(ctx, p, n, &o, &s);
+    c = certify(ctx, mesh);
+    EXPECT(!c.closed && c.manifold && c.oriented && s.left_out > 0);
+    EXPECT(c.components == 2 && c.genus == 0 && c.boundary_loops == 1, "%zu components, %zu loops", c.components,
+           c.boundary_loops);
+    EXPECT(far_from_rim(mesh, &farthest) == c.boundary_edges && farthest < 0.15, "%g from the rim", farthest);
+    brio_certificate_free(&c);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
 static void open_anything_is_manifold(void) {
     double p[3 * 60];
     size_t left_out = 0;
@@ -336,6 +398,7 @@ int main(void) {
     RUN(simplified_torus_is_a_quarter_and_the_same);
     RUN(simplified_anything_stays_the_same_manifold);
     RUN(hole_of_the_samples_stays_open_on_request);
+    RUN(hole_inside_the_hull_stays_open_on_request);
     RUN(open_anything_is_manifold);
     RUN(cube_comes_out_with_its_edges);
     RUN(edges_without_samples_come_out_sharp);
