@@ -278,7 +278,7 @@ static void *block_remap(brio_context *ctx, void *block, size_t target, brio_sta
         *status = refuse(ctx, target);
         return NULL;
     }
-    if (file && !grows && ftruncate(h.file.cached, (off_t)target) != 0) errno = 0;
+    if (file && !grows) brio_scratch_shrink(&h.file, target);
     header_of(base + FRONT)->size = target;
     return base + FRONT;
 }

@@ -5,12 +5,14 @@
  * cache, and what has been transferred is let go at once. */
 #define _GNU_SOURCE
 #include "base/scratch_file.h"
+#include "base/quiet_signals.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -36,9 +38,45 @@ brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file 
     return status;
 }
 
+/* Where the file system cannot allocate, the C library writes a byte to each block, and a limit on the size of files
+ * raises a signal in either case. */
+static int allocate(int file, size_t offset, size_t size) {
+    brio_quiet_signals quiet;
+    brio_signals_block(&quiet);
+    int error = posix_fallocate(file, (off_t)offset, (off_t)size);
+    brio_signals_restore(&quiet);
+    return error;
+}
+
+/* Changes the size of a file that shrinks. Room that is not given back is lost only until the file is closed. */
+static void cut(int file, size_t size) {
+    brio_quiet_signals quiet;
+    brio_signals_block(&quiet);
+    while (ftruncate(file, (off_t)size) != 0 && errno == EINTR) {}
+    brio_signals_restore(&quiet);
+}
+
+/* Allocates in pieces of PIECE bytes. A signal that the process handles ends a call early, and some file systems then
+ * give back all that the call had allocated: a timer's signals could keep one call for all bytes from ever ending. */
 brio_status brio_scratch_grow(brio_context *ctx, const brio_scratch_file *f, size_t size) {
-    int error = posix_fallocate(f->cached, 0, (off_t)size);
-    return error ? no_room(ctx, size, error) : BRIO_OK;
+    enum { PIECE = 1 << 24 };
+    struct stat facts;
+    size_t old = fstat(f->cached, &facts) == 0 ? (size_t)facts.st_size : 0;
+    for (size_t at = old; at < size;) {
+        size_t piece = size - at < PIECE ? size - at : PIECE;
+        int error = allocate(f->cached, at, piece);
+        if (error == EINTR) continue;
+        if (error) {
+            cut(f->cached, old);
+            return no_room(ctx, size, error);
+        }
+        at += piece;
+    }
+    return BRIO_OK;
+}
+
+void brio_scratch_shrink(const brio_scratch_file *f, size_t size) {
+    cut(f->cached, size);
 }
 
 void brio_scratch_close(brio_scratch_file *f) {
@@ -62,7 +100,12 @@ static bool whole_pages(size_t offset, const void *memory, size_t size) {
 
 /* One call, which may move less than it was asked to. */
 static ssize_t transfer(int file, size_t offset, char *in, const char *out, size_t size) {
-    return in ? pread(file, in, size, (off_t)offset) : pwrite(file, out, size, (off_t)offset);
+    if (in) return pread(file, in, size, (off_t)offset);
+    brio_quiet_signals quiet;
+    brio_signals_block(&quiet);
+    ssize_t n = pwrite(file, out, size, (off_t)offset);
+    brio_signals_restore(&quiet);
+    return n;
 }
 
 /* Moves all bytes, and tells whether they went past the cache. */

@@ -16,8 +16,12 @@ typedef struct {
 /** A file of so many bytes in the context's scratch folder, allocated on disk, so that a full disk is a status. */
 brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out);
 
-/** Allocates it up to so many bytes. */
+/** Allocates a file up to `size` bytes; on failure the file keeps its size. A limit on the size of files (RLIMIT_FSIZE)
+ *  is BRIO_ERR_NO_MEMORY like a full disk, and raises no signal. */
 brio_status brio_scratch_grow(brio_context *ctx, const brio_scratch_file *f, size_t size);
+
+/** Gives back what is behind `size` bytes, which nothing may have mapped. */
+void brio_scratch_shrink(const brio_scratch_file *f, size_t size);
 
 void brio_scratch_close(brio_scratch_file *f);
 

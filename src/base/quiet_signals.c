@@ -1,0 +1,37 @@
+/* Writes that cannot end the process: SIGPIPE and SIGXFSZ are blocked round a call and taken back after it. */
+#define _GNU_SOURCE
+#include "base/quiet_signals.h"
+#include <errno.h>
+#include <stddef.h>
+#include <time.h>
+
+static const int QUIET[] = {SIGPIPE, SIGXFSZ};
+
+enum { NUM_QUIET = sizeof QUIET / sizeof *QUIET };
+
+void brio_signals_block(brio_quiet_signals *quiet) {
+    sigset_t both;
+    sigemptyset(&both);
+    for (int i = 0; i < NUM_QUIET; i++) sigaddset(&both, QUIET[i]);
+    sigpending(&quiet->pending);
+    pthread_sigmask(SIG_BLOCK, &both, &quiet->mask);
+}
+
+/* Takes one pending signal back. It does not wait: another thread may have taken a signal sent to the process. */
+static void take_back(int signal) {
+    const struct timespec no_time = {0, 0};
+    sigset_t one;
+    sigemptyset(&one);
+    sigaddset(&one, signal);
+    while (sigtimedwait(&one, NULL, &no_time) < 0 && errno == EINTR) {}
+}
+
+void brio_signals_restore(const brio_quiet_signals *quiet) {
+    int error = errno;
+    sigset_t now;
+    sigpending(&now);
+    for (int i = 0; i < NUM_QUIET; i++)
+        if (sigismember(&now, QUIET[i]) == 1 && sigismember(&quiet->pending, QUIET[i]) != 1) take_back(QUIET[i]);
+    pthread_sigmask(SIG_SETMASK, &quiet->mask, NULL);
+    errno = error;
+}
