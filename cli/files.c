@@ -2,10 +2,13 @@
  * writer checks again, since the file system may change meanwhile. */
 #include "files.h"
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+enum { MOST_LINKS = 40 };
 
 static brio_status check_folder(run *r, const char *path) {
     char *folder = strdup(path);
@@ -20,14 +23,41 @@ static brio_status check_folder(run *r, const char *path) {
     return status;
 }
 
-/* A new file is written beside an old one and renamed over it: that takes a writable folder. Pipes and devices are
- * written directly. */
+/* The path that a chain of symbolic links leads to, to be freed; a file need not be there. NULL without memory, and of
+ * more links than the system follows. */
+static char *follow_links(const char *path) {
+    char link[PATH_MAX], *at = strdup(path);
+    for (int links = 0; at && links <= MOST_LINKS; links++) {
+        ssize_t length = readlink(at, link, sizeof link - 1);
+        if (length < 0) return at;
+        link[length] = 0;
+        char *slash = link[0] == '/' ? NULL : strrchr(at, '/'), *next = NULL;
+        size_t folder = slash ? (size_t)(slash - at) + 1 : 0;
+        next = malloc(folder + (size_t)length + 1);
+        if (next) {
+            memcpy(next, at, folder);
+            memcpy(next + folder, link, (size_t)length + 1);
+        }
+        free(at);
+        at = next;
+    }
+    free(at);
+    return NULL;
+}
+
+/* A new file is written beside an old one and renamed over it: that takes a writable folder, the one that symbolic links lead
+ * to. Pipes and devices are written directly. */
 brio_status cli_check_target(run *r, const char *path) {
     struct stat info;
     bool exists = stat(path, &info) == 0;
+    if (!exists && errno == ELOOP) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
     if (exists && S_ISDIR(info.st_mode)) return cli_fail(r, BRIO_ERR_WRITE, "%s: is a folder", path);
     if (exists && access(path, W_OK) != 0) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
-    return exists && !S_ISREG(info.st_mode) ? BRIO_OK : check_folder(r, path);
+    if (exists && !S_ISREG(info.st_mode)) return BRIO_OK;
+    char *end = follow_links(path);
+    brio_status status = end ? check_folder(r, end) : BRIO_OK; /* the writer finds out */
+    free(end);
+    return status;
 }
 
 brio_status cli_output_format(run *r, const char *path, const char *extension, brio_format *format) {

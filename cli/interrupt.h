@@ -3,6 +3,9 @@
  * temporary file beside the target, so its writer is left the moment it needs to remove it. Nothing else of a run lies
  * on disk under a name.
  *
+ * A signal ends a call of the system that waits, of a pipe for example. One that comes just before such a call would be
+ * missed by the call: after the first signal an alarm each second ends what waits.
+ *
  * SIGINT and SIGTERM are caught always, SIGHUP unless it is ignored (nohup). SIGPIPE and SIGXFSZ are ignored, so that a
  * reader that went away and a limit on the file size are errors of writing. */
 #ifndef BRIO_CLI_INTERRUPT_H

@@ -92,7 +92,7 @@ static int finish(run *r, brio_status status) {
         fprintf(stderr, "brio: see 'brio %s%s--help'\n", name, *name ? " " : "");
     }
     if (code == 70) fputs("brio: this is a fault of brio; please report it with the input\n", stderr);
-    if (!reported && status == BRIO_OK) code = r->facts.failed ? 4 : 6;
+    if (!reported && status == BRIO_OK) code = r->facts.failed ? 4 : cli_exit_code(interruption(r, BRIO_ERR_WRITE));
     cli_end(r);
     return code;
 }

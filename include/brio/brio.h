@@ -110,7 +110,8 @@ BRIO_API void brio_context_set_progress(brio_context *ctx, brio_progress_fn prog
 BRIO_API void brio_context_set_memory_limit(brio_context *ctx, size_t bytes);
 
 /** Large arrays made from now on live in unlinked mapped files in this folder instead of anonymous memory; each growth
- *  is allocated on disk before it is touched. NULL goes back to memory. Not with a caller's allocator.
+ *  is allocated on disk before it is touched. A full disk or a limit on the size of files is BRIO_ERR_NO_MEMORY.
+ *  NULL goes back to memory. Not with a caller's allocator.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_context_set_scratch(brio_context *ctx, const char *folder);
 
@@ -658,7 +659,10 @@ typedef struct brio_write_options {
 BRIO_API brio_write_options brio_write_options_default(void);
 
 /** Writes a mesh: to a temporary name beside the target, flushed, then renamed, so that nothing half-written is ever
- *  left. "-" writes to standard output (the format must then be given). Edges go into PLY, VTU and VTP alone.
+ *  left. Symbolic links stay: the file that they lead to is made or replaced. An old file's permissions are kept.
+ *  "-" writes to standard output (the format must then be given); it, pipes and devices are written in place, and a wait
+ *  for their readers can be cancelled. Neither SIGPIPE nor SIGXFSZ reaches the process.
+ *  Edges go into PLY, VTU and VTP alone.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a format that cannot hold the mesh), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,

@@ -1,98 +1,148 @@
-/* Buffered output to a file that appears only when it is complete. */
+/* Buffered output to a file that appears only when it is complete.
+ *
+ * Which file that is, target.h says. What is no regular file is written in place. A reader may keep a pipe waiting for
+ * ever: such an output waits where the caller can cancel (wait.h). */
 #define _GNU_SOURCE
 #include "io/output.h"
 #include "base/memory.h"
-#include "base/rng.h"
+#include "base/quiet_signals.h"
 #include "io/number.h"
+#include "io/wait.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
-enum { BLOCK = 1 << 20, NAME_TRIES = 100 };
+enum { BLOCK = 1 << 20 };
 
 static brio_status fail(brio_output *out) {
     return brio_fail(out->ctx, BRIO_ERR_WRITE, "%s: %s", out->name, strerror(errno));
 }
 
-/* Makes the temporary file. It has the permissions of the file that it replaces. */
-static brio_status open_temporary(brio_output *out, const struct stat *old) {
+/* Opens a FIFO, which waits for its reader here and not in the system, where only a signal could end the wait. */
+static brio_status open_fifo(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
-    size_t size = strlen(out->target) + 32;
-    BRIO_TRY(BRIO_ALLOC(out->ctx, out->temporary, size));
-    uint64_t seed = (uint64_t)getpid() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
-    for (int i = 0; i < NAME_TRIES && out->file < 0; i++) {
-        snprintf(out->temporary, size, "%s.part-%08x", out->target, (unsigned)brio_mix(seed + (unsigned)i));
-        out->file = open(out->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (out->file < 0 && errno != EEXIST) break;
+    for (;;) {
+        out->file = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+        if (out->file >= 0) break;
+        if (errno != ENXIO && errno != EINTR) return fail(out);
+        BRIO_TRY(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, 0));
     }
-    out->owned = out->file >= 0;
-    if (out->file < 0) {
-        status = fail(out);
-        brio_release(out->ctx, out->temporary);
-        out->temporary = NULL;
-    } else if (old && fchmod(out->file, old->st_mode & 07777) != 0) {
-        status = fail(out);
-    }
+    out->owned = true;
 done:
     return status;
 }
 
-/* The target is what a symbolic link leads to, so that the link stays one. */
+/* What is no regular file is written in place: a pipe, a terminal, a device. */
+static brio_status open_special(brio_output *out, const char *path, const struct stat *facts) {
+    out->waits = true;
+    if (S_ISFIFO(facts->st_mode)) return open_fifo(out, path);
+    out->file = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+    out->owned = out->file >= 0;
+    return out->owned ? BRIO_OK : fail(out);
+}
+
+/* Whether the target has the name of the file that the path opens. It has not when the file's name is gone, as that of
+ * /dev/stdout can be. */
+static bool is_named(const brio_target *target, const struct stat *facts) {
+    struct stat found;
+    return fstatat(target->folder, target->name, &found, 0) == 0 && found.st_ino == facts->st_ino &&
+           found.st_dev == facts->st_dev;
+}
+
+/* Symbolic links stay, and the file that they lead to is replaced. */
 static brio_status open_file(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
     struct stat old;
-    char real[PATH_MAX];
     bool exists = stat(path, &old) == 0;
-    if (exists && !S_ISREG(old.st_mode)) {
-        out->file = open(path, O_WRONLY | O_CLOEXEC);
-        out->owned = out->file >= 0;
-        return out->owned ? BRIO_OK : fail(out);
-    }
+    if (exists && !S_ISREG(old.st_mode)) return open_special(out, path, &old);
     /* a rename does not ask whether the old file may be written */
     if (exists && access(path, W_OK) != 0) return fail(out);
-    const char *target = exists && realpath(path, real) ? real : path;
-    BRIO_TRY(BRIO_ALLOC(out->ctx, out->target, strlen(target) + 1));
-    strcpy(out->target, target);
-    BRIO_TRY(open_temporary(out, exists ? &old : NULL));
+    BRIO_TRY(brio_target_find(&out->target, out->ctx, path, out->name));
+    if (exists && !is_named(&out->target, &old)) {
+        out->file = open(path, O_WRONLY | O_CLOEXEC | O_TRUNC);
+        if (out->file < 0) return fail(out);
+    } else {
+        BRIO_TRY(brio_target_create(&out->target, out->ctx, out->name, &out->file));
+    }
 done:
+    out->owned = out->file >= 0;
     return status;
+}
+
+/* Standard output belongs to other processes too, so its flags stay as they are. */
+static void open_standard(brio_output *out) {
+    struct stat facts;
+    out->file = STDOUT_FILENO;
+    out->waits = fstat(out->file, &facts) == 0 && !S_ISREG(facts.st_mode);
 }
 
 brio_status brio_output_open(brio_output *out, brio_context *ctx, const char *path, uint64_t expected) {
     brio_status status = BRIO_OK;
     bool standard = !strcmp(path, "-");
-    *out = (brio_output){.ctx = ctx, .name = standard ? "standard output" : path, .file = -1, .expected = expected};
+    *out = (brio_output){
+        .ctx = ctx, .name = standard ? "standard output" : path, .target.folder = -1, .file = -1, .expected = expected};
     BRIO_TRY(BRIO_ALLOC(ctx, out->buffer, BLOCK));
     if (standard)
-        out->file = STDOUT_FILENO;
+        open_standard(out);
     else
         BRIO_TRY(open_file(out, path));
 done:
     return status;
 }
 
+static double share_written(const brio_output *out) {
+    double share = out->expected ? (double)out->written / (double)out->expected : 0;
+    return share < 1 ? share : 1;
+}
+
+/* One call. To what may block goes no more at a time than fits whenever there is room: PIPE_BUF bytes. */
+static ssize_t write_some(const brio_output *out, const char *bytes, size_t size) {
+    brio_quiet_signals quiet;
+    brio_signals_block(&quiet);
+    ssize_t done = write(out->file, bytes, out->waits && size > PIPE_BUF ? PIPE_BUF : size);
+    brio_signals_restore(&quiet);
+    return done;
+}
+
 static brio_status write_all(brio_output *out, const char *bytes, size_t size) {
+    brio_status status = BRIO_OK;
     while (size) {
-        ssize_t done = write(out->file, bytes, size);
-        if (done < 0 && errno == EINTR) continue;
+        if (out->waits) BRIO_TRY(brio_wait_for(out->ctx, out->file, BRIO_WAIT_WRITE, share_written(out)));
+        ssize_t done = write_some(out, bytes, size);
+        if (done < 0 && (errno == EINTR || errno == EAGAIN)) {
+            BRIO_TRY(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, share_written(out)));
+            continue;
+        }
         if (done < 0) return fail(out);
         bytes += done;
         size -= (size_t)done;
         out->written += (uint64_t)done;
     }
-    return BRIO_OK;
+done:
+    return status;
+}
+
+/* Has the disk take what is written, a stretch at a time: flushing a big file at its end could not be cancelled. */
+static void write_back(brio_output *out) {
+    enum { STRETCH = 1 << 25 };
+    uint64_t size = out->written - out->given;
+    if (!out->target.temporary || size < STRETCH) return;
+    if (out->given > out->taken)
+        sync_file_range(out->file, (off_t)out->taken, (off_t)(out->given - out->taken),
+                        SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
+    sync_file_range(out->file, (off_t)out->given, (off_t)size, SYNC_FILE_RANGE_WRITE);
+    out->taken = out->given;
+    out->given = out->written;
 }
 
 static brio_status report(brio_output *out) {
-    double share = out->expected ? (double)out->written / (double)out->expected : 0;
-    return brio_progress(out->ctx, "write", share < 1 ? share : 1);
+    write_back(out);
+    return brio_progress(out->ctx, "write", share_written(out));
 }
 
 static brio_status flush(brio_output *out) {
@@ -105,34 +155,40 @@ done:
     return status;
 }
 
+/* A signal may end fsync early; after close the descriptor is gone whatever close returns. */
+static bool is_on_disk(int file) {
+    while (fsync(file) != 0)
+        if (errno != EINTR) return false;
+    return true;
+}
+
 brio_status brio_output_finish(brio_output *out) {
     brio_status status = BRIO_OK;
+    brio_quiet_signals quiet;
     BRIO_TRY(flush(out));
-    if (out->temporary && fsync(out->file) != 0) return fail(out);
-    if (out->owned) {
-        int closed = close(out->file);
-        out->owned = false;
-        if (closed != 0) return fail(out);
-    }
+    if (!out->owned) return BRIO_OK;
+    if (out->target.temporary && !is_on_disk(out->file)) return fail(out);
+    brio_signals_block(&quiet);
+    int closed = close(out->file);
+    brio_signals_restore(&quiet);
+    out->owned = false;
+    if (closed != 0 && errno != EINTR) return fail(out);
 done:
     return status;
 }
 
 brio_status brio_output_publish(brio_output *out) {
-    if (!out->temporary) return BRIO_OK;
-    if (rename(out->temporary, out->target) != 0) return fail(out);
-    brio_release(out->ctx, out->temporary);
-    out->temporary = NULL;
-    return BRIO_OK;
+    return brio_target_publish(&out->target, out->ctx, out->name);
 }
 
 void brio_output_close(brio_output *out) {
+    brio_quiet_signals quiet;
+    brio_signals_block(&quiet);
     if (out->owned) close(out->file);
-    if (out->temporary) unlink(out->temporary);
-    brio_release(out->ctx, out->temporary);
-    brio_release(out->ctx, out->target);
+    brio_signals_restore(&quiet);
+    brio_target_close(&out->target, out->ctx);
     brio_release(out->ctx, out->buffer);
-    *out = (brio_output){.ctx = out->ctx, .file = -1};
+    *out = (brio_output){.ctx = out->ctx, .target.folder = -1, .file = -1};
 }
 
 /* --- what goes into the buffer --- */

@@ -1,20 +1,23 @@
 /* Buffered output to a file that appears only when it is complete: written under a temporary name beside the target,
- * flushed to the disk, renamed. What is not a regular file (standard output, a device, a pipe) is written directly. */
+ * flushed to the disk, renamed (target.h). What is not a regular file (standard output, a device, a pipe) is written
+ * directly. */
 #ifndef BRIO_IO_OUTPUT_H
 #define BRIO_IO_OUTPUT_H
 
-#include "base/context.h"
+#include "io/target.h"
 
 typedef struct brio_output {
     brio_context *ctx;
-    const char *name; /* for messages */
-    char *target;     /* where the temporary goes; NULL for what is written directly */
-    char *temporary;
+    const char *name;   /* for messages */
+    brio_target target; /* its temporary is NULL for what is written directly */
     int file;
     bool owned; /* the file is to be closed */
+    bool waits; /* a write may block: no regular file */
     char *buffer;
     size_t used;
     uint64_t written;  /* bytes that left the buffer */
+    uint64_t given;    /* of these the disk was told to take, see output.c */
+    uint64_t taken;    /* of these the disk has taken */
     uint64_t expected; /* bytes in all, about; for progress */
 } brio_output;
 

@@ -5,6 +5,7 @@
  * MAX_LINE. */
 #include "io/stream.h"
 #include "base/memory.h"
+#include "io/wait.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
@@ -16,15 +17,24 @@
 
 enum { BLOCK = 1 << 20, MAX_LINE = 1 << 28 };
 
+/* A FIFO is opened at once, with no writer yet: the wait for the first bytes is one that can be cancelled. */
+static int open_input(const char *path) {
+    struct stat facts;
+    bool special = stat(path, &facts) == 0 && !S_ISREG(facts.st_mode);
+    return open(path, O_RDONLY | O_CLOEXEC | (special ? O_NONBLOCK : 0));
+}
+
 brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path) {
     brio_status status = BRIO_OK;
     bool standard = !strcmp(path, "-");
     *s = (brio_stream){.ctx = ctx, .name = standard ? "standard input" : path, .file = -1, .size = BRIO_SIZE_UNKNOWN};
-    s->file = standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+    s->file = standard ? STDIN_FILENO : open_input(path);
     s->owned = !standard && s->file >= 0;
     BRIO_REQUIRE(ctx, s->file >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
     struct stat facts;
-    off_t at = fstat(s->file, &facts) == 0 && S_ISREG(facts.st_mode) ? lseek(s->file, 0, SEEK_CUR) : -1;
+    bool regular = fstat(s->file, &facts) == 0 && S_ISREG(facts.st_mode);
+    off_t at = regular ? lseek(s->file, 0, SEEK_CUR) : -1;
+    s->waits = !regular;
     /* a size of 0 is also what special file systems say of files that have content */
     if (at >= 0 && facts.st_size > at) s->size = (uint64_t)(facts.st_size - at);
     size_t capacity = s->size < BLOCK ? (size_t)s->size + 1 : BLOCK;
@@ -68,9 +78,10 @@ brio_status brio_stream_fill(brio_stream *s, size_t need) {
     if (brio_stream_left(s) >= need || s->ended) return BRIO_OK;
     BRIO_TRY(make_room(s, need));
     while (brio_stream_left(s) < need && !s->ended) {
+        if (s->waits) BRIO_TRY(brio_wait_for(s->ctx, s->file, BRIO_WAIT_READ, 0));
         ssize_t got = read(s->file, s->buffer + s->end, s->capacity - s->end);
-        if (got < 0 && errno == EINTR) { /* a signal: the caller may want to stop */
-            BRIO_TRY(brio_progress(s->ctx, "read", 0));
+        if (got < 0 && (errno == EINTR || errno == EAGAIN)) { /* a signal: the caller may want to stop */
+            BRIO_TRY(brio_wait_a_moment(s->ctx, BRIO_WAIT_READ, 0));
             continue;
         }
         BRIO_REQUIRE(s->ctx, got >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));

@@ -21,6 +21,7 @@ typedef struct brio_stream {
     uint64_t reported;   /* bytes read at the last report of progress */
     size_t line;         /* number of the line read last, from 1 */
     bool owned;          /* the file is to be closed */
+    bool waits;          /* a read may block: no regular file */
     bool ended;          /* the file holds nothing behind the buffer */
     const char *element; /* what is being read, e.g. "vertex", and which of how many; for messages */
     uint64_t row, rows;

@@ -121,7 +121,7 @@ done:
 static brio_status write_pair(brio_context *ctx, const char *node_path, const char *ele_path,
                               const brio_write_job *job) {
     brio_status status = BRIO_OK;
-    brio_output node = {.ctx = ctx, .file = -1}, ele = {.ctx = ctx, .file = -1};
+    brio_output node = {.ctx = ctx, .target.folder = -1, .file = -1}, ele = node;
     uint64_t expected = expected_bytes(job->mesh, true);
     BRIO_TRY(brio_output_open(&node, ctx, node_path, expected));
     BRIO_TRY(brio_node_write(&node, job));

@@ -571,6 +571,41 @@ class Writing(CliTest):
         self.assertTrue(self.facts("check", points)["verified"])
         self.assert_only(self.folder, "a.ply")
 
+    def test_name_of_the_greatest_length(self):
+        points = self.xyz("a.xyz", CUBE)
+        name = "n" * 251 + ".ply"
+        self.expect(0, "delaunay", points, "-o", self.path(name))
+        self.assert_only(self.folder, "a.xyz", name)
+        self.expect(6, "delaunay", points, "-o", self.path("n" + name))
+        self.assert_only(self.folder, "a.xyz", name)
+
+    def test_link_to_no_file_makes_the_file_that_it_names(self):
+        os.mkdir(self.path("sub"))
+        os.symlink("sub/file.ply", self.path("link.ply"))
+        self.expect(0, "delaunay", self.xyz("a.xyz", CUBE), "-o", self.path("link.ply"))
+        self.assertTrue(os.path.islink(self.path("link.ply")))
+        self.assert_only(self.path("sub"), "file.ply")
+
+    def test_link_into_a_missing_folder_is_told_before_the_work(self):
+        os.symlink("missing/file.ply", self.path("link.ply"))
+        run = self.expect(6, "delaunay", "also-missing.ply", "-o", self.path("link.ply"))
+        self.assertIn("missing", run.err)
+        self.assert_only(self.folder, "link.ply")
+
+    def test_loop_of_links(self):
+        for a, b in ["ab", "ba"]:
+            os.symlink(b + ".ply", self.path(a + ".ply"))
+        self.expect(6, "delaunay", "also-missing.ply", "-o", self.path("a.ply"))
+        self.assert_only(self.folder, "a.ply", "b.ply")
+
+    def test_old_file_keeps_its_permissions(self):
+        points = self.xyz("a.xyz", CUBE)
+        for mode in [0o600, 0o640, 0o755]:
+            old = self.file("out.ply", "old")
+            os.chmod(old, mode)
+            self.expect(0, "delaunay", points, "-o", old)
+            self.assertEqual(os.stat(old).st_mode & 0o7777, mode)
+
     def test_failed_verification_would_write_nothing_new(self):
         facts = self.facts("delaunay", self.cloud("a.ply", 300), "--verify", "-o", self.path("out.ply"))
         self.assertIs(facts["verified"], True)
@@ -627,6 +662,59 @@ class Interrupt(CliTest):
         finally:
             process.stdin.close()
         self.assert_only(self.folder)
+
+    def expect_interruption(self, process):
+        """One signal must end a run that waits."""
+        time.sleep(0.5)
+        self.assertIsNone(process.poll(), "the run did not wait")
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=10), 130)
+
+    def fifo(self, name, other_side):
+        """A FIFO whose other side is not there, or is there and stalls."""
+        os.mkfifo(self.path(name))
+        if other_side:
+            file = os.open(self.path(name), os.O_RDWR | os.O_NONBLOCK)
+            self.addCleanup(os.close, file)
+        return self.path(name)
+
+    def test_output_fifo_that_nobody_reads_ignored_signals(self):
+        points = self.cloud("a.ply", 20000)
+        for name in ["alone.ply", "stalled.ply"]:
+            fifo = self.fifo(name, other_side=name == "stalled.ply")
+            self.expect_interruption(self.start("delaunay", points, "-o", fifo, "--quiet"))
+        self.assert_only(self.folder, "a.ply", "alone.ply", "stalled.ply")
+
+    def test_standard_output_that_nobody_reads(self):
+        points = self.cloud("a.ply", 20000)
+        self.expect_interruption(self.start("delaunay", points, "-o", "-", "--format", "ply"))
+
+    def test_report_that_nobody_reads(self):
+        fifo = os.open(self.fifo("out", other_side=True), os.O_WRONLY)
+        self.addCleanup(os.close, fifo)
+        with contextlib.suppress(BlockingIOError):
+            os.set_blocking(fifo, False)
+            while True:
+                os.write(fifo, b"full" * 1024)
+        os.set_blocking(fifo, True)
+        process = subprocess.Popen([BRIO, "info", self.xyz("a.xyz", CUBE), "--json"], stdout=fifo)
+        self.addCleanup(process.kill)
+        self.expect_interruption(process)
+
+    def test_input_fifo_that_nobody_writes(self):
+        for name in ["alone.ply", "stalled.ply"]:
+            fifo = self.fifo(name, other_side=name == "stalled.ply")
+            self.expect_interruption(self.start("delaunay", fifo, "-o", self.path("out.vtu")))
+            self.expect_interruption(self.start("delaunay", self.xyz("a.xyz", CUBE), "--weights", fifo))
+        self.assert_only(self.folder, "a.xyz", "alone.ply", "stalled.ply")
+
+    def test_fifos_carry_points(self):
+        points, a, b = self.cloud("a.ply", 20000), self.fifo("a.fifo", False), self.fifo("b.fifo", False)
+        first = self.start("delaunay", a, "--input-format", "ply", "-o", b, "--format", "ply")
+        last = self.start("check", b, "--input-format", "ply")
+        with open(points, "rb") as source, open(a, "wb") as sink:
+            shutil.copyfileobj(source, sink)
+        self.assertEqual((first.wait(timeout=60), last.wait(timeout=60)), (0, 0))
 
     def test_json_of_an_interrupted_run(self):
         process = self.start("delaunay", self.cloud("a.ply", 400000), "--json", "--progress")

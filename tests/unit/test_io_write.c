@@ -213,6 +213,134 @@ static void permissions_and_links_stay(void) {
     brio_mesh_free(mesh);
 }
 
+/* --- names --- */
+
+/* The temporary name was longer than the name, and so than a file system allows. */
+static void longest_names_can_be_written(void) {
+    brio_mesh *mesh = io_make(10, 0);
+    for (int kind = 0; kind < 2; kind++) { /* bytes, and characters of two bytes */
+        char name[256] = "";
+        while (strlen(name) < 249) strcat(name, kind ? "\u00e9" : "n");
+        while (strlen(name) < 251) strcat(name, "-");
+        strcat(name, ".ply");
+        EXPECT(strlen(name) == 255);
+        EXPECT(brio_write(io_ctx, io_path(name), mesh, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(io_count_files("") == 1 && io_count_files(name) == 1);
+        unlink(io_path(name));
+    }
+    brio_mesh_free(mesh);
+}
+
+static bool is_link(const char *name) {
+    struct stat facts;
+    return lstat(io_path(name), &facts) == 0 && S_ISLNK(facts.st_mode);
+}
+
+static void link_to_no_file_makes_the_file(void) {
+    brio_mesh *mesh = io_make(10, 0);
+    EXPECT(mkdir(io_path("sub"), 0700) == 0);
+    EXPECT(symlink("second.ply", io_path("first.ply")) == 0 && symlink("sub/file.ply", io_path("second.ply")) == 0);
+    EXPECT(symlink("../back.ply", io_path("sub/up.ply")) == 0 && symlink("missing/x.ply", io_path("bad.ply")) == 0);
+    EXPECT(brio_write(io_ctx, io_path("first.ply"), mesh, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(is_link("first.ply") && is_link("second.ply") && access(io_path("sub/file.ply"), R_OK) == 0);
+    EXPECT(brio_write(io_ctx, io_path("sub/up.ply"), mesh, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(is_link("sub/up.ply") && access(io_path("back.ply"), R_OK) == 0);
+    EXPECT(brio_write(io_ctx, io_path("bad.ply"), mesh, NULL) == BRIO_ERR_WRITE && is_link("bad.ply"));
+    EXPECT(strstr(brio_message(io_ctx), "bad.ply: No such file"), "%s", brio_message(io_ctx));
+    EXPECT(io_count_files(".part-") == 0);
+    unlink(io_path("sub/file.ply"));
+    unlink(io_path("sub/up.ply"));
+    rmdir(io_path("sub"));
+    io_empty_folder();
+    brio_mesh_free(mesh);
+}
+
+static void names_that_cannot_be_written_are_a_status(void) {
+    brio_mesh *mesh = io_make(10, 0);
+    brio_write_options ply = {.format = BRIO_FORMAT_PLY};
+    EXPECT(symlink("b.ply", io_path("a.ply")) == 0 && symlink("a.ply", io_path("b.ply")) == 0);
+    EXPECT(symlink(".", io_path("folder.ply")) == 0);
+    const char *const wrong[] = {"a.ply", "folder.ply", "new/", ".", "a.ply/x.ply"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        EXPECT(brio_write(io_ctx, io_path(wrong[i]), mesh, &ply) == BRIO_ERR_WRITE, "%s", wrong[i]);
+        EXPECT(io_count_files("") == 3, "%s", wrong[i]);
+    }
+    EXPECT(brio_write(io_ctx, "", mesh, &ply) == BRIO_ERR_WRITE, "the empty name");
+    io_empty_folder();
+    brio_mesh_free(mesh);
+}
+
+static int change_folder(const char *stage, double fraction, void *user) {
+    (void)stage;
+    (void)fraction;
+    return chdir(user) != 0;
+}
+
+/* A relative path means the folder that the process was in when the writing began. */
+static void change_of_the_working_folder_does_not_move_the_output(void) {
+    brio_mesh *mesh = io_make(100000, 0);
+    char old[4096];
+    EXPECT(getcwd(old, sizeof old) && chdir(io_folder) == 0);
+    brio_context_set_progress(io_ctx, change_folder, old);
+    EXPECT(brio_write(io_ctx, "here.ply", mesh, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+    brio_context_set_progress(io_ctx, NULL, NULL);
+    EXPECT(chdir(old) == 0 && access(io_path("here.ply"), R_OK) == 0 && io_count_files(".part-") == 0);
+    unlink(io_path("here.ply"));
+    brio_mesh_free(mesh);
+}
+
+/* Standard output may be a file without a name. */
+static void file_without_a_name_is_written_in_place(void) {
+    brio_mesh *mesh = io_make(300, 0), *back = NULL;
+    int out = dup(1), file = open(io_path("gone.ply"), O_RDWR | O_CREAT, 0600);
+    unlink(io_path("gone.ply"));
+    dup2(file, 1);
+    brio_status status = brio_write(io_ctx, "/dev/stdout", mesh, &(brio_write_options){.format = BRIO_FORMAT_PLY});
+    dup2(out, 1);
+    EXPECT(status == BRIO_OK && io_count_files("") == 0, "%s", brio_message(io_ctx));
+    int in = dup(0);
+    EXPECT(lseek(file, 0, SEEK_SET) == 0 && dup2(file, 0) == 0);
+    EXPECT(brio_read(io_ctx, "-", BRIO_FORMAT_AUTO, &back) == BRIO_OK && io_same_points(mesh, back));
+    dup2(in, 0);
+    close(in);
+    close(out);
+    close(file);
+    brio_mesh_free(mesh);
+    brio_mesh_free(back);
+}
+
+/* --- pipes that wait for ever --- */
+
+/* The other side opens the FIFO, and then neither reads nor writes. */
+static void expect_cancelled_wait(int other_side) {
+    brio_mesh *mesh = io_make(100000, 0), *back = NULL;
+    EXPECT(mkfifo(io_path("fifo"), 0600) == 0);
+    int other = other_side ? open(io_path("fifo"), O_RDWR | O_NONBLOCK) : -1;
+    for (int allowed = 0; allowed < 3; allowed++) {
+        int left = allowed;
+        brio_context_set_progress(io_ctx, cancel, &left);
+        brio_write_options ply = {.format = BRIO_FORMAT_PLY};
+        EXPECT(brio_write(io_ctx, io_path("fifo"), mesh, &ply) == BRIO_ERR_CANCELLED, "%s", brio_message(io_ctx));
+        char taken[4096]; /* what was written must not be there to be read */
+        while (other >= 0 && read(other, taken, sizeof taken) > 0) {}
+        left = allowed;
+        EXPECT(brio_read(io_ctx, io_path("fifo"), BRIO_FORMAT_PLY, &back) == BRIO_ERR_CANCELLED && !back, "%s",
+               brio_message(io_ctx));
+    }
+    brio_context_set_progress(io_ctx, NULL, NULL);
+    if (other >= 0) close(other);
+    unlink(io_path("fifo"));
+    brio_mesh_free(mesh);
+}
+
+static void fifo_without_another_side_can_be_cancelled(void) {
+    expect_cancelled_wait(0);
+}
+
+static void fifo_with_a_stalled_side_can_be_cancelled(void) {
+    expect_cancelled_wait(1);
+}
+
 /* Writes to standard output and reads from standard input, both a file in place of the terminal. */
 static void standard_streams(void) {
     brio_mesh *mesh = io_make(300, IO_FACES | IO_PROPERTIES), *back = NULL;
@@ -262,6 +390,14 @@ int main(void) {
     RUN(unwritable_folder_is_a_status);
     RUN(cancelled_write_leaves_the_old_file);
     RUN(permissions_and_links_stay);
+    io_empty_folder();
+    RUN(longest_names_can_be_written);
+    RUN(link_to_no_file_makes_the_file);
+    RUN(names_that_cannot_be_written_are_a_status);
+    RUN(change_of_the_working_folder_does_not_move_the_output);
+    RUN(file_without_a_name_is_written_in_place);
+    RUN(fifo_without_another_side_can_be_cancelled);
+    RUN(fifo_with_a_stalled_side_can_be_cancelled);
     RUN(standard_streams);
     RUN(numbers_from_a_pipe);
     return io_end();

@@ -1,0 +1,132 @@
+/* Output files under a temporary name, renamed when complete.
+ *
+ * Symbolic links are followed by hand, one at a time, from folder to folder: realpath refuses a link that leads to no
+ * file. A shell's redirection and other programs write through such a link and create the file that it names; so does
+ * this, and the link stays a link.
+ *
+ * The temporary name begins with at most BRIO_NAME_IN_TEMPORARY bytes of the name, so that it is not longer than file
+ * systems allow where the name itself has the greatest length. */
+#define _GNU_SOURCE
+#include "io/target.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { NAME_TRIES = 100, MOST_LINKS = 40 /* as many as Linux follows */ };
+
+static brio_status fail(brio_context *ctx, const char *shown, int error) {
+    return brio_fail(ctx, BRIO_ERR_WRITE, "%s: %s", shown, strerror(error));
+}
+
+/* --- links --- */
+
+/* Bytes of a path's folder, with the slash at its end; 0 for a path that is a name only. */
+static size_t folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Opens the folder of a path, which is relative to the target's present folder, and takes its name. */
+static brio_status step_to(brio_target *target, brio_context *ctx, const char *path, const char *shown) {
+    brio_status status = BRIO_OK;
+    size_t length = folder_length(path);
+    char *folder = NULL, *name = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, folder, length + 2));
+    BRIO_TRY(BRIO_ALLOC(ctx, name, strlen(path + length) + 1));
+    strcpy(name, path + length);
+    memcpy(folder, path, length);
+    strcpy(folder + length, length ? "" : ".");
+    int from = target->folder >= 0 ? target->folder : AT_FDCWD;
+    int opened = openat(from, folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    BRIO_REQUIRE(ctx, opened >= 0, BRIO_ERR_WRITE, "%s: %s", shown, strerror(errno));
+    if (target->folder >= 0) close(target->folder);
+    target->folder = opened;
+    brio_release(ctx, target->name);
+    target->name = name;
+    name = NULL;
+    BRIO_REQUIRE(ctx, target->name[0], BRIO_ERR_WRITE, "%s: %s", shown, strerror(length ? EISDIR : ENOENT));
+done:
+    brio_release(ctx, folder);
+    brio_release(ctx, name);
+    return status;
+}
+
+brio_status brio_target_find(brio_target *target, brio_context *ctx, const char *path, const char *shown) {
+    brio_status status = BRIO_OK;
+    char link[PATH_MAX];
+    *target = (brio_target){.folder = -1};
+    BRIO_TRY(step_to(target, ctx, path, shown));
+    for (int links = 0;; links++) {
+        ssize_t length = readlinkat(target->folder, target->name, link, sizeof link - 1);
+        if (length < 0) return errno == EINVAL || errno == ENOENT ? BRIO_OK : fail(ctx, shown, errno);
+        if (links == MOST_LINKS) return fail(ctx, shown, ELOOP);
+        link[length] = 0;
+        BRIO_TRY(step_to(target, ctx, link, shown));
+    }
+done:
+    return status;
+}
+
+/* --- the temporary file --- */
+
+/* How many bytes of a name the temporary name begins with: whole characters of UTF-8, as some file systems insist. */
+static int kept_bytes(const char *name) {
+    size_t length = strlen(name);
+    if (length <= BRIO_NAME_IN_TEMPORARY) return (int)length;
+    length = BRIO_NAME_IN_TEMPORARY;
+    while (length > 0 && ((unsigned char)name[length] & 0xc0) == 0x80) length--;
+    return (int)length;
+}
+
+/* Permissions beyond reading, writing and running are kept only together with the owner they speak of. */
+static bool take_permissions(int file, const struct stat *old) {
+    mode_t kept = fchown(file, old->st_uid, old->st_gid) == 0 ? 07777 : 0777;
+    return fchmod(file, old->st_mode & kept) == 0;
+}
+
+brio_status brio_target_create(brio_target *target, brio_context *ctx, const char *shown, int *file) {
+    brio_status status = BRIO_OK;
+    size_t size = BRIO_NAME_IN_TEMPORARY + 32;
+    struct stat old;
+    bool exists = fstatat(target->folder, target->name, &old, 0) == 0;
+    BRIO_TRY(BRIO_ALLOC(ctx, target->temporary, size));
+    uint64_t seed = (uint64_t)getpid() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
+    *file = -1;
+    for (int i = 0; i < NAME_TRIES && *file < 0; i++) {
+        snprintf(target->temporary, size, "%.*s.part-%08x", kept_bytes(target->name), target->name,
+                 (unsigned)brio_mix(seed + (unsigned)i));
+        *file = openat(target->folder, target->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (*file < 0 && errno != EEXIST && errno != EINTR) break;
+    }
+    if (*file < 0) {
+        status = fail(ctx, shown, errno);
+        brio_release(ctx, target->temporary);
+        target->temporary = NULL;
+    } else if (exists && !take_permissions(*file, &old)) {
+        status = fail(ctx, shown, errno);
+    }
+done:
+    return status;
+}
+
+brio_status brio_target_publish(brio_target *target, brio_context *ctx, const char *shown) {
+    if (!target->temporary) return BRIO_OK;
+    if (renameat(target->folder, target->temporary, target->folder, target->name) != 0) return fail(ctx, shown, errno);
+    brio_release(ctx, target->temporary);
+    target->temporary = NULL;
+    return BRIO_OK;
+}
+
+void brio_target_close(brio_target *target, brio_context *ctx) {
+    if (target->temporary) unlinkat(target->folder, target->temporary, 0);
+    if (target->folder >= 0) close(target->folder);
+    brio_release(ctx, target->temporary);
+    brio_release(ctx, target->name);
+    *target = (brio_target){.folder = -1};
+}
