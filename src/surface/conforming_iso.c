@@ -25,12 +25,16 @@
 #include "base/sort.h"
 #include "surface/iso_surface.h"
 #include "surface/split_vertices.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
 
-enum { AXES = 3 };
+enum { AXES = 3, ROOT_WORK = 12 /* evaluations that a root takes, at most */, CELLS_AN_EVALUATION = 16 };
 
 static const uint32_t NONE = UINT32_MAX;
 
-/* Smallest distance of a vertex from the ends of its edge, in edges: it must not be a corner. */
+/* Smallest distance of a vertex from the ends of its edge, in edges: it must not be a corner. Where doubles are too
+ * coarse for that, it is the distance of two doubles. */
 static const double LEAST_SHARE = 1.0 / 1024;
 
 /* The facets of a positive tetrahedron, seen counterclockwise from outside it; facet i is opposite to vertex i. */
@@ -44,10 +48,18 @@ typedef struct {
     bool inside;     /* of a corner */
 } site;
 
+typedef struct {
+    uint32_t *corners; /* three vertices for each triangle */
+    size_t count, capacity;
+} triangle_list;
+
 /* Nodes of two layers, the lower and the upper side of the slab in work. */
 typedef struct {
     brio_context *ctx;
     const brio_implicit_grid *grid;
+    double least;      /* distance of a vertex from the ends of its edge */
+    uint32_t z;        /* number of the slab */
+    size_t work;       /* evaluations since the last report of progress */
     size_t row, layer; /* nodes of a row, of a layer */
     struct {
         double *value;         /* of each node */
@@ -60,11 +72,22 @@ typedef struct {
     uint8_t *label; /* of the slab's tetrahedra: tet_side */
     size_t num_sites, site_capacity, point_capacity, label_capacity;
     double *vertices;
-    uint32_t *triangles, *shared; /* shared: in planes between slabs */
-    size_t num_vertices, vertex_capacity, num_triangles, triangle_capacity, num_shared, shared_capacity;
+    size_t num_vertices, vertex_capacity;
+    triangle_list surface;
+    triangle_list below, above; /* in the plane under the slab, from both its sides; in the plane over the slab */
+    brio_progress_fn progress;  /* the caller's */
+    void *progress_user;
 } slab;
 
 /* --- layers --- */
+
+/* Counts evaluations, and reports progress when there were enough of them.   share  of the slab's work that is done. */
+static brio_status count_work(slab *s, size_t evaluations, double share) {
+    s->work += evaluations;
+    if (s->work < BRIO_IMPLICIT_WORK) return BRIO_OK;
+    s->work = 0;
+    return brio_implicit_progress(s->ctx, s->grid, s->z, share);
+}
 
 static void forget_sites(slab *s) {
     s->num_sites = 0;
@@ -116,9 +139,9 @@ static brio_status add_vertex(slab *s, const uint32_t node[3], uint32_t axis, do
     brio_implicit_node(s->grid, node, a);
     brio_implicit_node(s->grid, next, b);
     brio_implicit_root(s->grid, a, b, value, next_value, p);
-    double least = a[axis] + LEAST_SHARE * (b[axis] - a[axis]), most = b[axis] - LEAST_SHARE * (b[axis] - a[axis]);
-    p[axis] = p[axis] < least ? least : p[axis] > most ? most : p[axis];
+    p[axis] = fmin(fmax(p[axis], a[axis] + s->least), b[axis] - s->least);
     *out = (uint32_t)s->num_vertices++;
+    BRIO_TRY(count_work(s, ROOT_WORK, 0.5));
 done:
     return status;
 }
@@ -158,6 +181,7 @@ static brio_status add_cells(slab *s, uint32_t z) {
     for (uint32_t y = 0; y < s->grid->cells[1]; y++)
         for (uint32_t x = 0; x < s->grid->cells[0]; x++) {
             unsigned inside = 0;
+            if (x % CELLS_AN_EVALUATION == 0) BRIO_TRY(count_work(s, 1, 0.5));
             for (unsigned c = 0; c < 8; c++)
                 inside += s->side[c >> 2].value[(y + (c >> 1 & 1)) * s->row + x + (c & 1)] < 0;
             if (inside == 0 || inside == 8) continue;
@@ -183,19 +207,28 @@ static tet_side side_of(const slab *s, const uint32_t *v) {
 
 /* --- triangles --- */
 
-static brio_status add_facet(slab *s, const uint32_t *v, int facet, bool is_shared) {
+static brio_status add_triangle(slab *s, triangle_list *list, const uint32_t corners[3]) {
     brio_status status = BRIO_OK;
-    uint32_t *t;
-    if (is_shared) {
-        BRIO_TRY(BRIO_RESERVE(s->ctx, s->shared, s->shared_capacity, 3 * s->num_shared + 3));
-        t = s->shared + 3 * s->num_shared++;
-    } else {
-        BRIO_TRY(BRIO_RESERVE(s->ctx, s->triangles, s->triangle_capacity, 3 * s->num_triangles + 3));
-        t = s->triangles + 3 * s->num_triangles++;
-    }
-    for (int i = 0; i < 3; i++) t[i] = s->sites[v[FACET[facet][i]]].vertex;
+    BRIO_TRY(BRIO_RESERVE(s->ctx, list->corners, list->capacity, 3 * list->count + 3));
+    memcpy(list->corners + 3 * list->count++, corners, 3 * sizeof *corners);
 done:
     return status;
+}
+
+/* A facet at the border of the slab is in the plane over it or under it. */
+static bool is_above(const slab *s, const uint32_t *v, int facet) {
+    double node[3];
+    brio_implicit_node(s->grid, (const uint32_t[3]){0, 0, s->z}, node);
+    for (int i = 0; i < 3; i++)
+        if (s->points[3 * (size_t)v[FACET[facet][i]] + 2] == node[2]) return false;
+    return true;
+}
+
+static brio_status add_facet(slab *s, const uint32_t *v, int facet, bool is_shared) {
+    uint32_t corners[3];
+    for (int i = 0; i < 3; i++) corners[i] = s->sites[v[FACET[facet][i]]].vertex;
+    triangle_list *list = !is_shared ? &s->surface : is_above(s, v, facet) ? &s->above : &s->below;
+    return add_triangle(s, list, corners);
 }
 
 static bool is_of_vertices(const slab *s, const uint32_t *v, int facet) {
@@ -210,7 +243,10 @@ static brio_status take_boundary(slab *s, const brio_triangulation *t) {
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
     size_t count = stats->tetrahedra + stats->hull_facets;
     BRIO_TRY(BRIO_RESERVE(s->ctx, s->label, s->label_capacity, count));
-    for (size_t i = 0; i < count; i++) s->label[i] = (uint8_t)side_of(s, tet[i].vertex);
+    for (size_t i = 0; i < count; i++) {
+        s->label[i] = (uint8_t)side_of(s, tet[i].vertex);
+        BRIO_TRY(count_work(s, 1, 0.9));
+    }
     for (size_t i = 0; i < count; i++)
         for (int f = 0; s->label[i] == INSIDE && f < 4; f++) {
             tet_side beyond = (tet_side)s->label[tet[i].mate[f] / 4];
@@ -223,20 +259,27 @@ done:
 
 /* --- slabs --- */
 
-/* The triangulation's own progress is not told. */
+/* The triangulation's progress as that of the slab: its stages are not the caller's. */
+static int pass_progress_on(const char *stage, double fraction, void *user) {
+    const slab *s = user;
+    (void)stage;
+    return s->progress("surface", (s->z + 0.6 + 0.3 * fraction) / s->grid->cells[2], s->progress_user);
+}
+
 static brio_status triangulate(slab *s, brio_triangulation **out) {
-    brio_progress_fn progress = s->ctx->progress;
-    s->ctx->progress = NULL;
+    s->progress = s->ctx->progress;
+    s->progress_user = s->ctx->progress_user;
+    if (s->progress) brio_context_set_progress(s->ctx, pass_progress_on, s);
     brio_status status = brio_delaunay(s->ctx, s->points, NULL, s->num_sites, NULL, out);
-    s->ctx->progress = progress;
+    brio_context_set_progress(s->ctx, s->progress, s->progress_user);
     return status;
 }
 
-static brio_status march_slab(slab *s, uint32_t z) {
+static brio_status march_slab(slab *s) {
     brio_status status = BRIO_OK;
     brio_triangulation *t = NULL;
     forget_sites(s);
-    BRIO_TRY(add_cells(s, z));
+    BRIO_TRY(add_cells(s, s->z));
     if (s->num_sites) {
         BRIO_TRY(triangulate(s, &t));
         BRIO_TRY(take_boundary(s, t));
@@ -272,24 +315,54 @@ static int compare_triangles(uint32_t a, uint32_t b, const void *user) {
     return 0;
 }
 
-/* Adds the triangles that are seen from one side only. */
-static brio_status add_shared(slab *s) {
+/* Adds the triangles of a plane that are seen from one side only, and empties the list. */
+static brio_status settle_plane(slab *s, triangle_list *plane) {
     brio_status status = BRIO_OK;
     uint32_t *order = NULL;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, order, s->num_shared));
-    BRIO_TRY(BRIO_RESERVE(s->ctx, s->triangles, s->triangle_capacity, 3 * (s->num_triangles + s->num_shared)));
-    for (size_t i = 0; i < s->num_shared; i++) order[i] = (uint32_t)i;
-    brio_sort_indices(order, s->num_shared, compare_triangles, s->shared);
-    for (size_t i = 0; i < s->num_shared; i++) {
-        if (i + 1 < s->num_shared && compare_triangles(order[i], order[i + 1], s->shared) == 0) {
+    const uint32_t *corners = plane->corners;
+    size_t count = plane->count;
+    BRIO_REQUIRE(s->ctx, count < NONE, BRIO_ERR_TOO_LARGE, "%zu triangles in a plane of the grid", count);
+    BRIO_TRY(BRIO_ALLOC(s->ctx, order, count));
+    for (size_t i = 0; i < count; i++) order[i] = (uint32_t)i;
+    brio_sort_indices(order, count, compare_triangles, corners);
+    for (size_t i = 0; i < count; i++) {
+        if (i + 1 < count && compare_triangles(order[i], order[i + 1], corners) == 0)
             i++;
-            continue;
-        }
-        for (size_t k = 0; k < 3; k++) s->triangles[3 * s->num_triangles + k] = s->shared[3 * (size_t)order[i] + k];
-        s->num_triangles++;
+        else
+            BRIO_TRY(add_triangle(s, &s->surface, corners + 3 * (size_t)order[i]));
     }
+    plane->count = 0;
 done:
     brio_release(s->ctx, order);
+    return status;
+}
+
+/* The plane under the slab is complete; the plane over it is the one under the next slab. */
+static brio_status settle_lower_plane(slab *s) {
+    brio_status status = settle_plane(s, &s->below);
+    triangle_list empty = s->below;
+    s->below = s->above;
+    s->above = empty;
+    return status;
+}
+
+/* --- the grid --- */
+
+/* Makes all nodes of a grid doubles: multiples of the unit, the distance of neighbouring doubles at the largest
+ * coordinate. Rounded nodes could meet, and edges whose ends are close would have no place for a vertex between.
+ *  *least  distance of a vertex from the ends of its edge. */
+static brio_status settle_grid(brio_context *ctx, brio_implicit_grid *grid, double *least) {
+    brio_status status = BRIO_OK;
+    double most = 0;
+    for (int k = 0; k < 3; k++)
+        most = fmax(most, fmax(fabs(grid->low[k]), fabs(grid->low[k] + (grid->cells[k] + 1.0) * grid->cell)));
+    double unit = fmax(ldexp(1, ilogb(most) + 1 - (DBL_MANT_DIG - 1)), DBL_TRUE_MIN);
+    grid->cell = ceil(grid->cell / unit) * unit;
+    for (int k = 0; k < 3; k++) grid->low[k] = floor(grid->low[k] / unit) * unit;
+    *least = fmax(LEAST_SHARE * grid->cell, unit);
+    BRIO_REQUIRE(ctx, 2 * unit <= grid->cell, BRIO_ERR_NO_ANSWER,
+                 "cells of %g are too small at coordinates of %g: doubles are %g apart there", grid->cell, most, unit);
+done:
     return status;
 }
 
@@ -318,25 +391,30 @@ static void slab_free(slab *s) {
     brio_release(s->ctx, s->points);
     brio_release(s->ctx, s->label);
     brio_release(s->ctx, s->vertices);
-    brio_release(s->ctx, s->triangles);
-    brio_release(s->ctx, s->shared);
+    brio_release(s->ctx, s->surface.corners);
+    brio_release(s->ctx, s->below.corners);
+    brio_release(s->ctx, s->above.corners);
 }
 
 brio_status brio_conforming_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out) {
     brio_status status = BRIO_OK;
-    slab s = {.ctx = ctx, .grid = grid, .row = (size_t)grid->cells[0] + 1};
+    brio_implicit_grid settled = *grid;
+    slab s = {.ctx = ctx, .grid = &settled, .row = (size_t)grid->cells[0] + 1};
     s.layer = s.row * ((size_t)grid->cells[1] + 1);
     *out = NULL;
+    BRIO_TRY(brio_implicit_check(ctx, grid));
+    BRIO_TRY(settle_grid(ctx, &settled, &s.least));
     BRIO_TRY(slab_start(&s));
     BRIO_TRY(fill_upper_layer(&s, 0));
-    for (uint32_t z = 0; z < grid->cells[2]; z++) {
+    for (s.z = 0; s.z < grid->cells[2]; s.z++) {
         upper_layer_becomes_lower(&s);
-        BRIO_TRY(fill_upper_layer(&s, z + 1));
-        BRIO_TRY(march_slab(&s, z));
-        BRIO_TRY(brio_progress(ctx, "surface", (z + 1.0) / grid->cells[2]));
+        BRIO_TRY(fill_upper_layer(&s, s.z + 1));
+        BRIO_TRY(march_slab(&s));
+        BRIO_TRY(settle_lower_plane(&s));
+        BRIO_TRY(brio_implicit_progress(ctx, grid, s.z, 1));
     }
-    BRIO_TRY(add_shared(&s));
-    BRIO_TRY(brio_mesh_of_triangles(ctx, &s.vertices, s.num_vertices, &s.triangles, s.num_triangles, out));
+    BRIO_TRY(settle_plane(&s, &s.below));
+    BRIO_TRY(brio_mesh_of_triangles(ctx, &s.vertices, s.num_vertices, &s.surface.corners, s.surface.count, out));
     BRIO_TRY(brio_mesh_split_sheets(ctx, *out));
 done:
     slab_free(&s);

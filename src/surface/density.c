@@ -94,16 +94,19 @@ done:
 /* --- all of it --- */
 
 /* A grid round the box of the centres with room for the reach of the largest atom. */
-static void choose_grid(const density *d, const double *extent, double reach, size_t resolution,
-                        brio_implicit_grid *grid) {
+static brio_status choose_grid(brio_context *ctx, const density *d, const double *extent, double reach,
+                               size_t resolution, brio_implicit_grid *grid) {
+    brio_status status = BRIO_OK;
     double room = reach * 1.01 + 1e-9, longest = 0;
     for (int k = 0; k < 3; k++) longest = fmax(longest, extent[k] + 2 * room);
     double cells = resolution ? (double)resolution : fmin(ceil(longest / DEFAULT_CELL), MOST_DEFAULT_RESOLUTION);
     grid->cell = longest / cells;
     for (int k = 0; k < 3; k++) { /* whole cells, and the same excess on both sides */
-        grid->cells[k] = (uint32_t)ceil((extent[k] + 2 * room) / grid->cell);
+        BRIO_TRY(brio_implicit_cells(ctx, ceil((extent[k] + 2 * room) / grid->cell), &grid->cells[k]));
         grid->low[k] = d->low[k] + 0.5 * (extent[k] - grid->cells[k] * grid->cell);
     }
+done:
+    return status;
 }
 
 static brio_status check_arguments(brio_context *ctx, const density *d, size_t num_atoms, size_t resolution) {
@@ -138,9 +141,11 @@ brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size
     for (int k = 0; k < 3; k++) extent[k] = high[k] - d.low[k];
     d.reach = 1 - log(NEGLIGIBLE * level) / blobbiness; /* not positive for a level above all densities */
     double reach = sqrt(fmax(d.reach, 0.01)) * largest;
+    BRIO_REQUIRE(ctx, isfinite(reach) && isfinite(extent[0] + extent[1] + extent[2]), BRIO_ERR_ARGUMENT,
+                 "level %g with blobbiness %g: the atoms reach too far for a grid", level, blobbiness);
     choose_buckets(&d, extent, reach, num_atoms);
     BRIO_TRY(fill_buckets(ctx, &d, atoms, num_atoms));
-    choose_grid(&d, extent, reach, resolution, &grid);
+    BRIO_TRY(choose_grid(ctx, &d, extent, reach, resolution, &grid));
     BRIO_TRY(conforming ? brio_conforming_iso_surface(ctx, &grid, out) : brio_iso_surface(ctx, &grid, out));
 done:
     brio_release(ctx, d.atoms);

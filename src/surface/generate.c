@@ -239,7 +239,7 @@ brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh 
     for (int k = 0; k < 3; k++) side = fmax(side, high[k] - low[k]);
     grid.cell = side / (double)(resolution ? resolution : DEFAULT_RESOLUTION);
     for (int k = 0; k < 3; k++) { /* whole cells, and the same excess on both sides */
-        grid.cells[k] = (uint32_t)ceil((high[k] - low[k]) / grid.cell);
+        BRIO_TRY(brio_implicit_cells(ctx, ceil((high[k] - low[k]) / grid.cell), &grid.cells[k]));
         grid.low[k] = 0.5 * (low[k] + high[k] - grid.cells[k] * grid.cell);
     }
     BRIO_TRY(brio_iso_surface(ctx, &grid, out));

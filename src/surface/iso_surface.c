@@ -14,6 +14,7 @@
  * Transactions 1991. */
 #include "surface/iso_surface.h"
 #include "base/team.h"
+#include <math.h>
 
 enum {
     DIRECTIONS = 7,
@@ -52,9 +53,39 @@ void brio_implicit_node(const brio_implicit_grid *grid, const uint32_t node[3], 
     for (int k = 0; k < 3; k++) p[k] = grid->low[k] + node[k] * grid->cell;
 }
 
+brio_status brio_implicit_cells(brio_context *ctx, double cells, uint32_t *out) {
+    brio_status status = BRIO_OK;
+    *out = 0;
+    BRIO_REQUIRE(ctx, cells >= 0 && cells <= BRIO_MOST_CELLS, BRIO_ERR_TOO_LARGE,
+                 "a grid of %g cells along an axis: expected at most %d", cells, BRIO_MOST_CELLS);
+    *out = (uint32_t)cells;
+done:
+    return status;
+}
+
+brio_status brio_implicit_check(brio_context *ctx, const brio_implicit_grid *grid) {
+    brio_status status = BRIO_OK;
+    const uint32_t *cells = grid->cells;
+    bool finite = isfinite(grid->cell) && grid->cell > 0, large = false;
+    for (int k = 0; k < 3; k++) {
+        finite = finite && isfinite(grid->low[k]) && isfinite(grid->low[k] + cells[k] * grid->cell) && cells[k] > 0;
+        large = large || cells[k] > BRIO_MOST_CELLS;
+    }
+    BRIO_REQUIRE(ctx, finite, BRIO_ERR_ARGUMENT, "a grid of %u x %u x %u cells with the side %g is no grid", cells[0],
+                 cells[1], cells[2], grid->cell);
+    BRIO_REQUIRE(ctx, !large && (cells[0] + 1.0) * (cells[1] + 1.0) < UINT32_MAX, BRIO_ERR_TOO_LARGE,
+                 "a grid of %u x %u x %u cells: expected at most 2^32 nodes in a layer", cells[0], cells[1], cells[2]);
+done:
+    return status;
+}
+
+brio_status brio_implicit_progress(brio_context *ctx, const brio_implicit_grid *grid, uint32_t z, double share) {
+    return brio_progress(ctx, "surface", (z + share) / grid->cells[2]);
+}
+
 typedef struct {
     const brio_implicit_grid *grid;
-    uint32_t z;
+    uint32_t z, from; /* the layer, and the first row of this part */
     double *values;
     bool closed; /* no value on the border of the grid is negative */
 } layer_job;
@@ -77,16 +108,26 @@ static void fill_rows(void *user, size_t begin, size_t end, int thread) {
     layer_job *job = user;
     bool closed = true;
     (void)thread;
-    for (size_t y = begin; y < end; y++) closed &= fill_row(job, (uint32_t)y);
+    for (size_t y = begin; y < end; y++) closed &= fill_row(job, job->from + (uint32_t)y);
     if (!closed) __atomic_store_n(&job->closed, false, __ATOMIC_RELAXED); /* read after the run */
 }
 
+/* The layer's evaluation is the first half of the work on the cells below it. */
 brio_status brio_implicit_layer(brio_context *ctx, const brio_implicit_grid *grid, uint32_t z, double *values) {
     brio_status status = BRIO_OK;
-    size_t rows = (size_t)grid->cells[1] + 1, nodes = rows * ((size_t)grid->cells[0] + 1);
-    layer_job job = {grid, z, values, true};
-    brio_for_chunks(ctx, brio_threads(ctx, nodes, NODES_A_THREAD), rows, ROWS_A_CHUNK, fill_rows, &job);
-    BRIO_REQUIRE(ctx, job.closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
+    uint32_t rows = grid->cells[1] + 1;
+    size_t step = (size_t)BRIO_IMPLICIT_WORK * (size_t)brio_context_threads(ctx) / ((size_t)grid->cells[0] + 1) + 1;
+    bool closed = true;
+    for (uint32_t y = 0; y < rows;) {
+        uint32_t end = rows - y < step ? rows : y + (uint32_t)step;
+        size_t nodes = ((size_t)grid->cells[0] + 1) * (end - y);
+        layer_job job = {grid, z, y, values, true};
+        brio_for_chunks(ctx, brio_threads(ctx, nodes, NODES_A_THREAD), end - y, ROWS_A_CHUNK, fill_rows, &job);
+        closed = job.closed && closed;
+        y = end;
+        BRIO_TRY(brio_implicit_progress(ctx, grid, z ? z - 1 : 0, z ? 0.5 * y / rows : 0));
+    }
+    BRIO_REQUIRE(ctx, closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
 done:
     return status;
 }
@@ -200,6 +241,8 @@ done:
 
 static brio_status march_layer(marcher *m, uint32_t z) {
     brio_status status = BRIO_OK;
+    const size_t most = BRIO_IMPLICIT_WORK / (ROOT_STEPS * DIRECTIONS); /* cubes */
+    size_t work = 0;
     for (uint32_t y = 0; y < m->grid->cells[1]; y++)
         for (uint32_t x = 0; x < m->grid->cells[0]; x++) {
             const uint32_t cube[3] = {x, y, z};
@@ -210,6 +253,8 @@ static brio_status march_layer(marcher *m, uint32_t z) {
             }
             if (inside == 0 || inside == 255) continue;
             for (int t = 0; t < 6; t++) BRIO_TRY(march_tetrahedron(m, cube, TETRAHEDRA[t], inside));
+            if (++work % most == 0)
+                BRIO_TRY(brio_implicit_progress(m->ctx, m->grid, z, 0.5 + 0.5 * y / m->grid->cells[1]));
         }
 done:
     return status;
@@ -245,6 +290,7 @@ brio_status brio_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, 
     marcher m = {.ctx = ctx, .grid = grid, .row = (size_t)grid->cells[0] + 1};
     m.layer = m.row * ((size_t)grid->cells[1] + 1);
     *out = NULL;
+    BRIO_TRY(brio_implicit_check(ctx, grid));
     for (int i = 0; i < 2; i++) {
         BRIO_TRY(BRIO_ALLOC(ctx, m.value[i], m.layer));
         BRIO_TRY(BRIO_ALLOC(ctx, m.edge_vertex[i], m.layer * DIRECTIONS));
@@ -254,7 +300,7 @@ brio_status brio_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, 
         upper_layer_becomes_lower(&m);
         BRIO_TRY(fill_upper_layer(&m, z + 1));
         BRIO_TRY(march_layer(&m, z));
-        BRIO_TRY(brio_progress(ctx, "surface", (z + 1.0) / grid->cells[2]));
+        BRIO_TRY(brio_implicit_progress(ctx, grid, z, 1));
     }
     BRIO_TRY(brio_mesh_of_triangles(ctx, &m.vertices, m.num_vertices, &m.triangles, m.num_triangles, out));
 done:

@@ -14,6 +14,10 @@
 
 enum { MOST_RESOLUTION = 1 << 15 };
 
+/* Most cubes for each value of the volume where the steps choose their size: as many as cubes of a quarter of a step
+ * have. Chosen; volumes whose steps are about as long along all axes stay below 8. */
+static const double MOST_CUBES_A_VALUE = 64;
+
 void brio_volume_free(brio_context *ctx, brio_volume *volume) {
     brio_release(ctx, volume->values);
     *volume = (brio_volume){0};
@@ -95,14 +99,19 @@ static double step_length(const brio_volume *volume, int axis) {
 }
 
 /* Cells of about the same length along all axes, `resolution` of them along the longest. */
-static void choose_cells(const brio_volume *volume, size_t resolution, uint32_t cells[3]) {
+static brio_status choose_cells(brio_context *ctx, const brio_volume *volume, size_t resolution, uint32_t cells[3]) {
+    brio_status status = BRIO_OK;
     double length[3], longest = 0;
     for (int k = 0; k < 3; k++) {
-        length[k] = step_length(volume, k) * (volume->size[k] - 1);
+        length[k] = step_length(volume, k) * (volume->size[k] - 1.0);
         longest = fmax(longest, length[k]);
     }
-    for (int k = 0; k < 3; k++)
-        cells[k] = resolution ? (uint32_t)fmax(1, rint(length[k] / longest * (double)resolution)) : volume->size[k] - 1;
+    for (int k = 0; k < 3; k++) {
+        double wanted = fmax(1, rint(length[k] / longest * (double)resolution));
+        BRIO_TRY(brio_implicit_cells(ctx, resolution ? wanted : volume->size[k] - 1.0, &cells[k]));
+    }
+done:
+    return status;
 }
 
 static void carry_to_space(const level_set *s, brio_mesh *mesh) {
@@ -128,42 +137,61 @@ static void invert_steps(const brio_volume *volume, double inverse[3][3]) {
     }
 }
 
-/* A grid of cubes in space round the volume, with a cell to spare. */
-static void choose_cubes(level_set *s, size_t resolution, brio_implicit_grid *grid) {
+/* The box round the volume, and the side of its cubes. */
+static void choose_cube(const level_set *s, size_t resolution, double low[3], double high[3], double *cube) {
     const brio_volume *volume = s->volume;
-    double length[3], longest = 0, shortest_step = INFINITY, high[3];
+    double longest = 0, shortest_step = INFINITY;
+    for (int i = 0; i < 3; i++) low[i] = high[i] = volume->origin[i];
     for (int k = 0; k < 3; k++) {
-        length[k] = step_length(volume, k) * (volume->size[k] - 1);
-        longest = fmax(longest, length[k]);
+        longest = fmax(longest, step_length(volume, k) * (volume->size[k] - 1.0));
         shortest_step = fmin(shortest_step, step_length(volume, k));
-    }
-    grid->cell = resolution ? longest / (double)resolution : shortest_step;
-    for (int i = 0; i < 3; i++) {
-        grid->low[i] = high[i] = volume->origin[i];
-        for (int k = 0; k < 3; k++) {
-            double reach = volume->step[k][i] * (volume->size[k] - 1);
-            grid->low[i] += fmin(reach, 0);
+        for (int i = 0; i < 3; i++) {
+            double reach = volume->step[k][i] * (volume->size[k] - 1.0);
+            low[i] += fmin(reach, 0);
             high[i] += fmax(reach, 0);
         }
-        grid->low[i] -= grid->cell;
-        grid->cells[i] = (uint32_t)ceil((high[i] - grid->low[i]) / grid->cell) + 1;
     }
+    *cube = resolution ? longest / (double)resolution : shortest_step;
+}
+
+/* A grid of cubes in space round the volume, with a cell to spare. Steps of very different lengths would make a grid
+ * that nobody waits for: then the caller has to choose. */
+static brio_status choose_cubes(brio_context *ctx, level_set *s, size_t resolution, brio_implicit_grid *grid) {
+    brio_status status = BRIO_OK;
+    const brio_volume *volume = s->volume;
+    double high[3], count[3], product = 1;
+    choose_cube(s, resolution, grid->low, high, &grid->cell);
+    for (int i = 0; i < 3; i++) {
+        grid->low[i] -= grid->cell;
+        count[i] = ceil((high[i] - grid->low[i]) / grid->cell) + 1;
+        product *= count[i];
+    }
+    BRIO_REQUIRE(ctx, resolution || product <= MOST_CUBES_A_VALUE * (double)count_values(volume), BRIO_ERR_TOO_LARGE,
+                 "cubes as wide as the shortest step of the volume make a grid of %.0f x %.0f x %.0f: choose their "
+                 "number with a resolution",
+                 count[0], count[1], count[2]);
     for (int k = 0; k < 3; k++) {
-        s->cells[k] = length[k] / grid->cell;
-        s->stretch[k] = (volume->size[k] - 1) / s->cells[k];
+        BRIO_TRY(brio_implicit_cells(ctx, count[k], &grid->cells[k]));
+        s->cells[k] = step_length(volume, k) * (volume->size[k] - 1.0) / grid->cell;
+        s->stretch[k] = (volume->size[k] - 1.0) / s->cells[k];
     }
     invert_steps(volume, s->inverse);
     grid->value = below_level_in_space;
+done:
+    return status;
 }
 
-static void choose_grid(level_set *s, size_t resolution, brio_implicit_grid *grid) {
-    choose_cells(s->volume, resolution, grid->cells);
+static brio_status choose_grid(brio_context *ctx, level_set *s, size_t resolution, brio_implicit_grid *grid) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(choose_cells(ctx, s->volume, resolution, grid->cells));
     for (int k = 0; k < 3; k++) {
         s->cells[k] = grid->cells[k];
-        s->stretch[k] = (s->volume->size[k] - 1) / s->cells[k];
+        s->stretch[k] = (s->volume->size[k] - 1.0) / s->cells[k];
     }
     grid->cell = 1;
     grid->value = below_level;
+done:
+    return status;
 }
 
 brio_status brio_volume_surface(brio_context *ctx, const brio_volume *volume, double level, size_t resolution,
@@ -181,10 +209,10 @@ brio_status brio_volume_surface(brio_context *ctx, const brio_volume *volume, do
     brio_volume_statistics(volume, &mean, &s.scale);
     if (!(s.scale > 0)) s.scale = 1;
     if (conforming) {
-        choose_cubes(&s, resolution, &grid);
+        BRIO_TRY(choose_cubes(ctx, &s, resolution, &grid));
         return brio_conforming_iso_surface(ctx, &grid, out);
     }
-    choose_grid(&s, resolution, &grid);
+    BRIO_TRY(choose_grid(ctx, &s, resolution, &grid));
     BRIO_TRY(brio_iso_surface(ctx, &grid, out));
     carry_to_space(&s, *out);
 done:

@@ -54,12 +54,15 @@ static brio_mesh *expect_conforming(const brio_implicit_grid *grid, brio_certifi
     brio_mesh *mesh = NULL;
     int64_t crossings = -1;
     brio_certificate c;
-    EXPECT(brio_conforming_iso_surface(ctx, grid, &mesh) == BRIO_OK, "%s", brio_message(ctx));
+    brio_status status = brio_conforming_iso_surface(ctx, grid, &mesh);
+    EXPECT(status == BRIO_OK, "%s", brio_message(ctx));
+    if (status != BRIO_OK) exit(harness_end());
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.volume > 0);
     size_t wrong = faces_not_delaunay(mesh);
     EXPECT(wrong == 0, "%zu of %zu faces", wrong, mesh->num_faces);
     EXPECT(brio_mesh_self_intersections(ctx, mesh, &crossings) == BRIO_OK);
+    EXPECT(crossings == 0, "%lld crossings", (long long)crossings);
     if (out) *out = c;
     brio_certificate_free(&c);
     return mesh;
@@ -171,7 +174,120 @@ static void nodes_on_the_surface(void) {
     free(n.node);
 }
 
+/* --- far from zero --- */
+
+typedef struct {
+    noise n;
+    double low[3], cell;
+} placed_noise;
+
+static double placed_value(const double *p, const void *user) {
+    const placed_noise *n = user;
+    double q[3];
+    for (int k = 0; k < 3; k++) q[k] = (p[k] - n->low[k]) / n->cell;
+    return noise_value(q, &n->n);
+}
+
+/* Rounded, vertices met the corners at the ends of their edges, and the surface had a boundary. The last cells are four
+ * doubles wide. */
+static void grids_far_from_zero_close(void) {
+    const double far[] = {0.1, 1e3, 1e9, 8933530927104.0, 0x1.8p52};
+    for (size_t i = 0; i < sizeof far / sizeof *far; i++)
+        for (uint64_t seed = 0; seed < 6; seed++) {
+            double cell = i == 4 ? 4 : 5.0 / 7;
+            placed_noise place = {noise_new(7, 0, seed), {0, far[i], -far[i]}, cell};
+            brio_implicit_grid grid = {placed_value, &place, {0, far[i], -far[i]}, cell, {6, 6, 6}};
+            brio_mesh_free(expect_conforming(&grid, NULL));
+            free(place.n.node);
+        }
+}
+
+static void cells_too_small_for_doubles_are_refused(void) {
+    placed_noise place = {noise_new(7, 0, 1), {0, 0x1p53, 0}, 1};
+    brio_implicit_grid grid = {placed_value, &place, {0, 0x1p53, 0}, 1, {6, 6, 6}};
+    brio_mesh *mesh = NULL;
+    EXPECT(brio_conforming_iso_surface(ctx, &grid, &mesh) == BRIO_ERR_NO_ANSWER && !mesh, "%s", brio_message(ctx));
+    free(place.n.node);
+}
+
 /* --- refusals, and memory --- */
+
+static void grids_too_large_and_no_grids_are_refused(void) {
+    const struct {
+        uint32_t cells[3];
+        double cell;
+        brio_status status;
+    } cases[] = {{{UINT32_MAX, 4, 4}, 0.1, BRIO_ERR_TOO_LARGE}, {{1 << 20, 1 << 20, 4}, 0.1, BRIO_ERR_TOO_LARGE},
+                 {{4, 4, UINT32_MAX}, 0.1, BRIO_ERR_TOO_LARGE}, {{4, 0, 4}, 0.1, BRIO_ERR_ARGUMENT},
+                 {{4, 4, 4}, NAN, BRIO_ERR_ARGUMENT},           {{4, 4, 4}, 1e308, BRIO_ERR_ARGUMENT}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        brio_implicit_grid grid = {.value = ball, .cell = cases[i].cell};
+        brio_mesh *mesh = NULL;
+        memcpy(grid.cells, cases[i].cells, sizeof grid.cells);
+        EXPECT(brio_conforming_iso_surface(ctx, &grid, &mesh) == cases[i].status && !mesh, "%zu", i);
+        EXPECT(brio_iso_surface(ctx, &grid, &mesh) == cases[i].status && !mesh, "%zu", i);
+    }
+}
+
+/* --- progress --- */
+
+/* What happens between two reports: evaluations of the function; how many reports there may be. */
+typedef struct {
+    size_t evaluations, most, reports, allowed;
+    double fraction;
+} watch;
+
+static double watched_ball(const double *p, const void *user) {
+    watch *w;
+    memcpy(&w, user, sizeof(watch *));
+    w->evaluations++;
+    return ball((const double[3]){p[0], p[1], 100 * p[2]}, NULL);
+}
+
+static int look(const char *stage, double fraction, void *user) {
+    watch *w = user;
+    EXPECT(!strcmp(stage, "surface") && fraction >= 0 && fraction <= 1, "%s %g", stage, fraction);
+    EXPECT(fraction >= w->fraction - 1e-9, "%g after %g", fraction, w->fraction);
+    w->fraction = fraction;
+    if (w->evaluations > w->most) w->most = w->evaluations;
+    w->evaluations = 0;
+    return w->reports++ >= w->allowed;
+}
+
+/* A flat ellipsoid, in layers of n by n cells. */
+static brio_status make_watched(watch *w, uint32_t n, bool conforming) {
+    brio_mesh *mesh = NULL;
+    uint32_t layers = (uint32_t)(0.03 * n / 2.5) + 1;
+    brio_implicit_grid grid = {watched_ball, &w, {-1.21, -1.22, -0.0123}, 2.5 / n, {n, n, layers}};
+    brio_context_set_progress(ctx, look, w);
+    brio_status status =
+        conforming ? brio_conforming_iso_surface(ctx, &grid, &mesh) : brio_iso_surface(ctx, &grid, &mesh);
+    brio_context_set_progress(ctx, NULL, NULL);
+    EXPECT((status == BRIO_OK) == (mesh != NULL));
+    brio_mesh_free(mesh);
+    return status;
+}
+
+/* A layer of a grid is not bounded, so that a report for each layer could not be waited for. */
+static void work_between_reports_is_bounded(void) {
+    for (int conforming = 0; conforming < 2; conforming++) {
+        watch w = {.allowed = SIZE_MAX};
+        EXPECT(make_watched(&w, 400, conforming) == BRIO_OK);
+        EXPECT(w.most <= 2 * BRIO_IMPLICIT_WORK && w.reports > 50, "%zu evaluations, %zu reports", w.most, w.reports);
+    }
+}
+
+static void cancelled_at_each_report(void) {
+    for (int conforming = 0; conforming < 2; conforming++) {
+        brio_status status = BRIO_ERR_CANCELLED;
+        for (size_t allowed = 0; status != BRIO_OK; allowed++) {
+            watch w = {.allowed = allowed};
+            status = make_watched(&w, 40, conforming);
+            EXPECT(status == BRIO_OK || (status == BRIO_ERR_CANCELLED && w.reports == allowed + 1));
+            EXPECT(brio_context_memory(ctx) == 0, "%zu reports", allowed);
+        }
+    }
+}
 
 static void nothing_inside_and_inside_on_the_border(void) {
     brio_implicit_grid empty = {ball, NULL, {2, 2, 2}, 0.1, {4, 4, 4}}, open = {ball, NULL, {0, 0, 0}, 0.1, {4, 4, 4}};
@@ -200,6 +316,11 @@ int main(void) {
     RUN(vertices_are_on_the_surface);
     RUN(noise_of_every_roughness);
     RUN(nodes_on_the_surface);
+    RUN(grids_far_from_zero_close);
+    RUN(cells_too_small_for_doubles_are_refused);
+    RUN(grids_too_large_and_no_grids_are_refused);
+    RUN(work_between_reports_is_bounded);
+    RUN(cancelled_at_each_report);
     RUN(nothing_inside_and_inside_on_the_border);
     RUN(memory_fails_cleanly);
     EXPECT(brio_context_memory(ctx) == 0);

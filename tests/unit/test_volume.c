@@ -367,6 +367,24 @@ static void volumes_without_surface(void) {
     brio_volume_free(io_ctx, &v);
 }
 
+/* A step of 2^32 times the others: the number of cubes along the first axis did not fit its integer. */
+static void steps_too_different_for_cubes_are_refused(void) {
+    float values[27] = {0};
+    values[13] = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        brio_mesh *mesh = NULL;
+        brio_volume v = {{3, 3, 3}, values, {0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+        v.step[axis][axis] = 0x1p32;
+        EXPECT(brio_volume_surface(io_ctx, &v, 0.5, 0, true, &mesh) == BRIO_ERR_TOO_LARGE && !mesh, "axis %d", axis);
+        EXPECT(strstr(brio_message(io_ctx), "choose their number with a resolution"), "%s", brio_message(io_ctx));
+        v.step[axis][axis] = 0x1p-14; /* and as many cubes along the other two */
+        EXPECT(brio_volume_surface(io_ctx, &v, 0.5, 0, true, &mesh) == BRIO_ERR_TOO_LARGE && !mesh, "axis %d", axis);
+        v.step[axis][axis] = 2;
+        EXPECT(brio_volume_surface(io_ctx, &v, 0.5, 0, true, &mesh) == BRIO_OK && mesh, "%s", brio_message(io_ctx));
+        brio_mesh_free(mesh);
+    }
+}
+
 static void statistics_of_a_volume(void) {
     float values[8] = {1, 1, 1, 1, 5, 5, 5, 5};
     const brio_volume v = {.size = {2, 2, 2}, .values = values};
@@ -513,6 +531,15 @@ static void density_arguments(void) {
 
 /* --- files to surfaces --- */
 
+/* Gaussians without an end have no grid; their number of cells was not a number. */
+static void density_that_reaches_everywhere_is_refused(void) {
+    const brio_atom atom = {{1, 2, 3}, 1.5};
+    brio_mesh *mesh = NULL;
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, 5e-324, 2, 0, false, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 5e-324, 0, false, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(io_ctx), "reach too far"), "%s", brio_message(io_ctx));
+}
+
 static void write_ball_map(void) {
     static char bytes[MOST_BYTES];
     map_plan plan = ball_plan();
@@ -644,6 +671,7 @@ int main(void) {
     RUN(skewed_ball_has_the_volume_of_its_cell);
     RUN(what_leaves_the_map_is_closed_flat);
     RUN(volumes_without_surface);
+    RUN(steps_too_different_for_cubes_are_refused);
     RUN(statistics_of_a_volume);
     RUN(atoms_of_a_file);
     RUN(atoms_that_are_refused);
@@ -652,6 +680,7 @@ int main(void) {
     RUN(atoms_far_apart);
     RUN(level_above_all_densities);
     RUN(density_arguments);
+    RUN(density_that_reaches_everywhere_is_refused);
     RUN(file_with_a_wanted_number_of_vertices);
     RUN(level_in_deviations);
     RUN(files_that_are_refused);
