@@ -20,7 +20,7 @@ enum {
     LEAF_FACES = 4,
     MOST_LEVELS = 64,
     CURVE_BITS = 16,
-    BATCH = 1 << 16,   /* faces between two reports of progress */
+    BATCH = 1 << 12,   /* faces between two reports of progress */
     FACES_A_CHUNK = 64 /* that a thread takes at once */
 };
 

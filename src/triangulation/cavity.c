@@ -16,7 +16,8 @@
 #include "triangulation/kernel.h"
 #include <string.h>
 
-enum { SMALL_MOST = 60, BYTES_MOST = 252 }; /* tetrahedra of a cavity whose vertices are numbered in 6 bits, in 8 */
+enum { HASHED_BETWEEN = BRIO_INSERT_WORK / 4 }; /* border facets between two reports of progress */
+enum { SMALL_MOST = 60, BYTES_MOST = 252 };     /* tetrahedra of a cavity whose vertices are numbered in 6 bits, in 8 */
 
 void brio_cavity_free(brio_context *ctx, brio_cavity *c) {
     brio_release(ctx, c->entry);
@@ -37,6 +38,16 @@ brio_status brio_cavity_reserve(brio_context *ctx, brio_cavity *c, size_t tets) 
     if (status == BRIO_OK) status = BRIO_RESIZE(ctx, c->border, 4 * tets);
     if (status == BRIO_OK) status = BRIO_RESIZE(ctx, c->created, 4 * tets);
     if (status == BRIO_OK) c->capacity = tets;
+    return status;
+}
+
+brio_status brio_cavity_pause(brio_kernel *k) {
+    brio_cavity *c = &k->cavity;
+    brio_status status = BRIO_OK;
+    if (c->pause == c->capacity) BRIO_TRY(brio_cavity_reserve(k->ctx, c, 2 * c->capacity));
+    if (c->num_tets >= BRIO_INSERT_WORK / 2) BRIO_TRY(brio_kernel_report(k, k->done));
+    c->pause = c->capacity - c->num_tets < BRIO_INSERT_WORK ? c->capacity : c->num_tets + BRIO_INSERT_WORK;
+done:
     return status;
 }
 
@@ -150,6 +161,8 @@ static brio_status join_by_hash(brio_kernel *k, uint32_t p) {
     memset(c->edge_key, 0xff, size * sizeof *c->edge_key);
     for (size_t b = 0; b < c->num_border; b++) {
         uint32_t v[3];
+        if ((b + 1) % HASHED_BETWEEN == 0) status = brio_kernel_report(k, k->done);
+        if (status != BRIO_OK) return status;
         create(k->t.tet, c->created[b], c->border[b], p, v);
         for (int i = 0; i < 3; i++) {
             uint64_t key = (uint64_t)v[(i + 1) % 3] << 32 | v[(i + 2) % 3];
@@ -159,6 +172,8 @@ static brio_status join_by_hash(brio_kernel *k, uint32_t p) {
     }
     for (size_t b = 0; b < c->num_border; b++) {
         brio_tetrahedron *tet = &k->t.tet[c->created[b]];
+        if ((b + 1) % HASHED_BETWEEN == 0) status = brio_kernel_report(k, k->done);
+        if (status != BRIO_OK) return status;
         tet->mate[0] = c->border[b];
         for (int i = 0; i < 3; i++) {
             uint64_t key = (uint64_t)tet->vertex[(i + 2) % 3 + 1] << 32 | tet->vertex[(i + 1) % 3 + 1];

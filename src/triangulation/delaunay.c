@@ -108,6 +108,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     memset(k, 0, sizeof *k);
     k->ctx = ctx;
     k->num_points = n;
+    k->reports = true;
     k->weighted = weights != NULL;
     k->engine = brio_engine_choose(k->weighted);
     brio_read_ahead_start(&k->read_ahead, ctx);
@@ -169,6 +170,16 @@ static size_t end_of_run(const brio_kernel *k, size_t begin, size_t end) {
     return i;
 }
 
+static brio_status insert_some(brio_kernel *k, size_t begin, size_t end) {
+    brio_status status = BRIO_OK;
+    for (size_t p = begin; p < end; p++) {
+        BRIO_TRY(brio_kernel_insert(k, (uint32_t)p));
+        if (brio_kernel_work(k) >= k->report_at) BRIO_TRY(brio_kernel_report(k, (double)p / (double)k->num_points));
+    }
+done:
+    return status;
+}
+
 static brio_status insert_all(brio_kernel *k, const brio_options *options, brio_recorder *recorder) {
     brio_status status = BRIO_OK;
     size_t n = k->num_points, p, end;
@@ -183,14 +194,14 @@ static brio_status insert_all(brio_kernel *k, const brio_options *options, brio_
     p = (size_t)k->dimension + 1;
     BRIO_TRY(brio_recorder_note(recorder, k, p));
     for (; p < n; p = end) {
-        BRIO_TRY(brio_progress(k->ctx, "insert", (double)p / (double)n));
+        BRIO_TRY(brio_kernel_report(k, (double)p / (double)n));
         end = least(brio_recorder_next(recorder, p), n);
         if (parallel) {
             end = end_of_run(k, p, end);
             BRIO_TRY(brio_kernel_insert_parallel(k, p, end));
         } else {
             end = least(end, p + PROGRESS_EVERY - p % PROGRESS_EVERY);
-            for (size_t q = p; q < end; q++) BRIO_TRY(brio_kernel_insert(k, (uint32_t)q));
+            BRIO_TRY(insert_some(k, p, end));
         }
         BRIO_TRY(brio_recorder_note(recorder, k, end));
     }

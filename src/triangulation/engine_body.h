@@ -53,6 +53,7 @@ static inline __attribute__((always_inline)) brio_status dig_cavity(brio_kernel 
     c->entry[0] = brio_facet_of(first, 0);
     c->num_tets = 1;
     c->num_border = 0;
+    c->pause = c->capacity < BRIO_INSERT_WORK ? c->capacity : BRIO_INSERT_WORK;
     k->state[first] = TET_CAVITY;
     for (;;) {
         while (expanded < c->num_tets && listed - tested < BRIO_BATCH)
@@ -64,8 +65,8 @@ static inline __attribute__((always_inline)) brio_status dig_cavity(brio_kernel 
         unsigned conflicts = batch_in_conflict(&k->t, &k->filter, facet, count, point, weighted);
         if (!divide(k, facet, count, conflicts)) return brio_cavity_defer(k);
         tested += count;
-        if (c->num_tets + 2 * BRIO_BATCH <= c->capacity) continue;
-        brio_status status = brio_cavity_reserve(k->ctx, c, 2 * c->capacity);
+        if (c->num_tets + 2 * BRIO_BATCH <= c->pause) continue;
+        brio_status status = brio_cavity_pause(k);
         if (status != BRIO_OK) return status;
     }
     k->stats.insphere_calls += tested;

@@ -61,6 +61,12 @@ static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
     return status;
 }
 
+brio_status brio_kernel_report(brio_kernel *k, double done) {
+    k->done = done;
+    k->report_at = brio_kernel_work(k) + BRIO_INSERT_WORK;
+    return k->reports ? brio_progress(k->ctx, "insert", done) : BRIO_OK;
+}
+
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
     const double *point = k->record[p];
     uint32_t tet;

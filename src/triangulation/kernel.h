@@ -19,6 +19,7 @@ typedef struct {
     uint32_t *border;  /* those of them that lead to no conflict */
     size_t num_tets, num_border, num_created;
     size_t capacity;         /* of entry, a quarter of that of the other lists */
+    size_t pause;            /* number of tets, at most the capacity, at which the dig looks up: brio_cavity_pause */
     uint32_t *cavity_vertex; /* the vertices of all tets, with repetitions; weighted only */
     size_t cavity_vertex_capacity;
     uint8_t *local;         /* of each vertex: its number in the cavity it was last in */
@@ -57,7 +58,25 @@ struct brio_kernel {
     brio_read_ahead read_ahead;
     bool goes_on; /* in scratch files: the next point is often close to the last one */
     brio_stats stats;
+    bool reports;       /* progress is told from this thread, the caller's */
+    double done;        /* share of the points that were in at the last report */
+    uint64_t report_at; /* work at which the next report is due */
 };
+
+/** Work between two reports of progress: milliseconds. Points are no measure of time, since one insertion can destroy
+ *  millions of tetrahedra. */
+enum { BRIO_INSERT_WORK = 1 << 18 };
+
+/** The work of a kernel so far: conflict tests, tetrahedra created, steps of walks, nodes of the history; a predicate that
+ *  the floating-point filter leaves open counts as 64 of these. */
+static inline uint64_t brio_kernel_work(const brio_kernel *k) {
+    const brio_stats *s = &k->stats;
+    return s->insphere_calls + s->created + k->walk.steps + s->history_tests + s->trace_intersections +
+           64 * k->filter.unsettled;
+}
+
+/** Reports the share of the points that are in, where this kernel reports. */
+brio_status brio_kernel_report(brio_kernel *k, double done);
 
 /** Not an error: the point touches what may be another thread's, and waits for a later pass. */
 #define BRIO_DEFERRED ((brio_status)-1)
@@ -99,6 +118,9 @@ brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet);
 
 /** Room for the lists of a cavity of at most `tets` tetrahedra. */
 brio_status brio_cavity_reserve(brio_context *ctx, brio_cavity *c, size_t tets);
+
+/** Makes room for a cavity that grows, and reports progress from a large one. */
+brio_status brio_cavity_pause(brio_kernel *k);
 
 /** Leaves everything as it was before the dig; BRIO_DEFERRED. */
 brio_status brio_cavity_defer(brio_kernel *k);

@@ -21,7 +21,9 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "triangulation/kernel.h"
+#include <math.h>
 #include <string.h>
+#include <time.h>
 
 enum {
     STRETCH = 4096, /* slots taken at once */
@@ -31,8 +33,7 @@ enum {
     RETRIES = 4,    /* of a thread's deferred points in a pass */
     STARTS = 32,    /* places along a thread's part where it may begin */
     SEGMENT = 4,    /* vertices in a segment when a pass begins */
-    MOST_SEGMENTS = 1 << 16,
-    PROGRESS_EVERY = 4096
+    MOST_SEGMENTS = 1 << 16
 };
 
 /* What the threads of a pass share. */
@@ -45,7 +46,8 @@ typedef struct brio_pass {
     size_t segments;
     uint8_t *taken; /* of each segment */
     size_t next_slot, last_slot;
-    int stop; /* some thread failed; only hastens the others' end */
+    int stop;    /* some thread failed; only hastens the others' end */
+    int running; /* threads at work */
 } brio_pass;
 
 /* One thread's work in a pass. */
@@ -117,6 +119,13 @@ static brio_status try_point(worker *w, uint32_t p) {
     return status == BRIO_DEFERRED ? defer(w, p) : status;
 }
 
+/* Progress of a thread stands for that of all. */
+static brio_status report(worker *w, size_t i) {
+    const brio_pass *pass = w->kernel.pass;
+    double done = (double)pass->first + (double)(i - w->begin) / (double)(w->end - w->begin) * (double)pass->count;
+    return brio_kernel_report(&w->kernel, done / (double)w->kernel.num_points);
+}
+
 /* Once more what was deferred. */
 static brio_status try_again(worker *w) {
     brio_status status = BRIO_OK;
@@ -125,30 +134,48 @@ static brio_status try_again(worker *w) {
     for (size_t i = 0; i < count; i++) {
         if (__atomic_load_n(&w->kernel.pass->stop, __ATOMIC_RELAXED)) break;
         BRIO_TRY(try_point(w, w->deferred[i]));
+        if (brio_kernel_work(&w->kernel) >= w->kernel.report_at) BRIO_TRY(report(w, w->end));
     }
 done:
     return status;
 }
 
-/* Progress of a thread stands for that of all. */
-static brio_status report(const worker *w, size_t i) {
-    const brio_pass *pass = w->kernel.pass;
-    double done = (double)pass->first + (double)(i - w->begin) / (double)(w->end - w->begin) * (double)pass->count;
-    return brio_progress(w->kernel.ctx, "insert", done / (double)w->kernel.num_points);
+/* The calling thread, done with its part, reports progress until the others are done with theirs. It sleeps for a share
+ * of the time that it has waited, so that it is late by no more than that share. */
+static brio_status wait_for_others(worker *w) {
+    const double SHARE = 1.0 / 16, LEAST_SLEEP = 2e-5, MOST_SLEEP = 1e-2, BETWEEN = 0.05;
+    brio_pass *pass = w->kernel.pass;
+    brio_status status = BRIO_OK;
+    double start = brio_seconds(), told = start, now = start;
+    while (__atomic_load_n(&pass->running, __ATOMIC_ACQUIRE) > 0) {
+        double sleep = fmin(fmax(SHARE * (now - start), LEAST_SLEEP), MOST_SLEEP);
+        nanosleep(&(struct timespec){0, (long)(1e9 * sleep)}, NULL);
+        now = brio_seconds();
+        if (now - told < BETWEEN) continue;
+        told = now;
+        BRIO_TRY(report(w, w->end));
+    }
+done:
+    return status;
 }
 
+/* A failed insertion may have left its cavity half filled: then the thread's segments stay taken. */
 static brio_status work(worker *w, bool reports) {
     brio_pass *pass = w->kernel.pass;
     brio_status status = BRIO_OK;
+    w->kernel.reports = reports;
+    __atomic_add_fetch(&pass->running, 1, __ATOMIC_RELAXED);
     for (size_t i = w->begin; i < w->end && !__atomic_load_n(&pass->stop, __ATOMIC_RELAXED); i++) {
         BRIO_TRY(try_point(w, record_of(pass, i)));
-        if (reports && (i - w->begin) % PROGRESS_EVERY == 0) BRIO_TRY(report(w, i));
+        if (brio_kernel_work(&w->kernel) >= w->kernel.report_at) BRIO_TRY(report(w, i));
     }
     w->kernel.stats.deferred = w->num_deferred;
     for (int i = 0; i < RETRIES && w->num_deferred && w->placed; i++) BRIO_TRY(try_again(w));
 done:
+    if (status == BRIO_OK) brio_zone_leave(&w->zone);
+    __atomic_sub_fetch(&pass->running, 1, __ATOMIC_RELEASE);
+    if (status == BRIO_OK && reports && w->kernel.ctx->progress) status = wait_for_others(w);
     if (status != BRIO_OK) __atomic_store_n(&pass->stop, 1, __ATOMIC_RELAXED);
-    brio_zone_leave(&w->zone);
     return status;
 }
 
@@ -171,6 +198,7 @@ static brio_status join_pass(worker *w, brio_pass *pass) {
     k->cavity.num_created = 0;
     k->stats = (brio_stats){0};
     k->filter.unsettled = k->walk.steps = 0;
+    k->report_at = 0;
     if (k->cavity.table) return BRIO_OK;
     brio_status status = BRIO_ALLOC(k->ctx, k->cavity.table, BRIO_TABLE);
     return status == BRIO_OK ? brio_cavity_reserve(k->ctx, &k->cavity, 64) : status;
@@ -315,7 +343,10 @@ brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end
         pass.count = num_left;
         if (stuck) break;
     }
-    for (size_t i = 0; i < pass.count; i++) BRIO_TRY(brio_kernel_insert(k, record_of(&pass, i)));
+    for (size_t i = 0; i < pass.count; i++) {
+        BRIO_TRY(brio_kernel_insert(k, record_of(&pass, i)));
+        if (brio_kernel_work(k) >= k->report_at) BRIO_TRY(brio_kernel_report(k, (double)end / (double)k->num_points));
+    }
     k->stats.serial += pass.count;
 done:
     for (int w = 0; workers && w < most; w++) worker_free(&workers[w]);

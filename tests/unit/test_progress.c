@@ -1,0 +1,142 @@
+/* Progress is told by work, not by points: between two reports the library does a bounded amount of it, so that a caller
+ * who wants to stop is heard. Where the callback stops the work, everything is given back. */
+#include "points.h"
+#include "triangulation/kernel.h"
+#include "harness.h"
+
+static brio_context *ctx;
+
+typedef struct {
+    size_t reports, late; /* late: with at least the fraction `from` */
+    size_t allowed;       /* before the work is stopped */
+    double from;
+} watch;
+
+static int look(const char *stage, double fraction, void *user) {
+    watch *w = user;
+    EXPECT(fraction >= 0 && fraction <= 1, "%s %g", stage, fraction);
+    w->late += fraction >= w->from && !strcmp(stage, "insert");
+    return w->reports++ >= w->allowed;
+}
+
+static uint64_t work_of(const brio_stats *s) {
+    return s->created + s->insphere_calls + s->walk_steps + s->history_tests + s->trace_intersections +
+           64 * s->exact_calls;
+}
+
+static brio_stats triangulate(const double *p, size_t n, brio_location locate, watch *w) {
+    brio_options options = brio_options_default();
+    brio_triangulation *t = NULL;
+    brio_stats stats = {0};
+    options.locate = locate;
+    options.order = BRIO_ORDER_INPUT;
+    brio_context_set_progress(ctx, look, w);
+    EXPECT(brio_delaunay(ctx, p, NULL, n, &options, &t) == BRIO_OK, "%s", brio_message(ctx));
+    brio_context_set_progress(ctx, NULL, NULL);
+    if (t) stats = *brio_triangulation_stats(t);
+    brio_triangulation_free(t);
+    return stats;
+}
+
+/* Points on two lines, of which each pair makes a tetrahedron: few points, much work. */
+static void few_points_of_much_work_are_reported(void) {
+    enum { N = 1200 };
+    double *p = malloc(3 * N * sizeof *p);
+    for (size_t i = 0; i < N; i++)
+        for (size_t k = 0; k < 3; k++) p[3 * i + k] = k == i % 2 ? (double)(i / 2) + 0.37 : k == 2 && i % 2 ? 500 : 0;
+    const brio_location ways[] = {BRIO_LOCATE_WALK, BRIO_LOCATE_JUMP, BRIO_LOCATE_HIERARCHY, BRIO_LOCATE_HISTORY};
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        watch w = {.allowed = SIZE_MAX, .from = 0};
+        brio_stats stats = triangulate(p, N, ways[i], &w);
+        uint64_t due = work_of(&stats) / (2 * BRIO_INSERT_WORK);
+        EXPECT(due > 3 && w.late >= due, "%zu reports of %llu", w.late, (unsigned long long)due);
+    }
+    free(p);
+}
+
+/* The centre of a sphere comes last, and destroys all that is there. It begins a run of 8,192 points, so that one report
+ * comes before it and all others of its fraction come from inside its insertion. */
+static void one_insertion_of_a_huge_star_is_reported(void) {
+    enum { N = 12 * 8192 + 1 };
+    double *p = malloc(3 * N * sizeof *p);
+    uniform_points(6, N, p);
+    for (size_t i = 0; i < N; i++) {
+        double *q = p + 3 * i, length = 0;
+        for (int c = 0; c < 3; c++) length += (q[c] - 0.5) * (q[c] - 0.5);
+        for (int c = 0; c < 3; c++) q[c] = i + 1 < N ? 0.5 + (q[c] - 0.5) / sqrt(length) : 0.5;
+    }
+    watch w = {.allowed = SIZE_MAX, .from = (N - 1.0) / N};
+    triangulate(p, N, BRIO_LOCATE_JUMP, &w);
+    size_t inside = w.late - 2; /* without the one before, and that of the end */
+    EXPECT(inside >= 2 && inside < N, "%zu reports", inside);
+    free(p);
+}
+
+/* --- cancelled --- */
+
+typedef brio_status (*work_fn)(const double *p, size_t n);
+
+static brio_status triangulate_and_check(const double *p, size_t n) {
+    brio_triangulation *t = NULL;
+    brio_status status = brio_delaunay(ctx, p, NULL, n, NULL, &t);
+    if (status == BRIO_OK) status = brio_triangulation_check(ctx, t, p, NULL, n);
+    brio_triangulation_free(t);
+    return status;
+}
+
+static brio_status make_power_crust(const double *p, size_t n) {
+    brio_mesh *mesh = NULL;
+    int64_t crossings;
+    brio_status status = brio_power_crust(ctx, p, n, NULL, &mesh, NULL);
+    if (status == BRIO_OK) status = brio_mesh_self_intersections(ctx, mesh, &crossings);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static brio_status make_cocone(const double *p, size_t n) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_cocone(ctx, p, n, NULL, &mesh, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void expect_cancelled_at_each_report(work_fn work, const double *p, size_t n, int threads) {
+    brio_context_set_threads(ctx, threads);
+    for (size_t allowed = 0;; allowed++) {
+        watch w = {.allowed = allowed, .from = 2};
+        brio_context_set_progress(ctx, look, &w);
+        brio_status status = work(p, n);
+        brio_context_set_progress(ctx, NULL, NULL);
+        EXPECT(brio_context_memory(ctx) == 0, "%zu bytes after %zu reports", brio_context_memory(ctx), allowed);
+        if (status == BRIO_OK) break;
+        EXPECT(status == BRIO_ERR_CANCELLED && w.reports == allowed + 1, "%d after %zu reports", (int)status, allowed);
+    }
+    brio_context_set_threads(ctx, 1);
+}
+
+static void cancelled_at_each_report_everything_is_given_back(void) {
+    enum { N = 1200 };
+    double *p = malloc(3 * N * sizeof *p);
+    uniform_points(6, N, p);
+    for (size_t i = 0; i < N; i++) {
+        double *q = p + 3 * i, length = 0;
+        for (int c = 0; c < 3; c++) length += (q[c] - 0.5) * (q[c] - 0.5);
+        for (int c = 0; c < 3; c++) q[c] = 0.5 + (q[c] - 0.5) / sqrt(length);
+    }
+    for (int threads = 1; threads <= 2; threads++) {
+        expect_cancelled_at_each_report(triangulate_and_check, p, N, threads);
+        expect_cancelled_at_each_report(make_power_crust, p, N, threads);
+        expect_cancelled_at_each_report(make_cocone, p, N, threads);
+    }
+    free(p);
+}
+
+int main(void) {
+    if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
+    brio_context_set_threads(ctx, 1);
+    RUN(few_points_of_much_work_are_reported);
+    RUN(one_insertion_of_a_huge_star_is_reported);
+    RUN(cancelled_at_each_report_everything_is_given_back);
+    brio_context_free(ctx);
+    return harness_end();
+}
