@@ -329,8 +329,11 @@ brio_status brio_kernel_sort(brio_kernel *k) {
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.order, s.live + AHEAD));
     BRIO_TRY(BRIO_ALLOC(k->ctx, s.place, k->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.end, s.buckets));
+    BRIO_TRY(brio_progress(k->ctx, "sort", 1)); /* the insertion owns the bar */
     fill_buckets(&s);
+    BRIO_TRY(brio_progress(k->ctx, "sort", 1));
     BRIO_TRY(sort_buckets(&s));
+    BRIO_TRY(brio_progress(k->ctx, "sort", 1));
     BRIO_TRY(move_all(&s));
     k->t.count = k->capacity = s.live;
     k->num_unused = 0;

@@ -69,10 +69,19 @@ static const uint32_t *vertices_of(const brio_judge *j, size_t tet) {
 
 /* --- structure --- */
 
+/* Reports progress of a pass over all tetrahedra, every BETWEEN of them. The pass begins at the fraction `from` of the
+ * check and takes the fraction `share`. */
+static brio_status report(const brio_judge *j, size_t tet, double from, double share) {
+    enum { BETWEEN = 1 << 16 };
+    if (tet % BETWEEN) return BRIO_OK;
+    return brio_progress(j->ctx, "check", from + share * (double)tet / (double)j->t.count);
+}
+
 static brio_status check_orientation(brio_judge *j) {
     brio_status status = BRIO_OK;
     const brio_record *r = j->t.record;
     for (size_t tet = 0; tet < j->t.count; tet++) {
+        BRIO_TRY(report(j, tet, 0, 0.2));
         const uint32_t *v = vertices_of(j, tet);
         bool infinite = v[3] == BRIO_INFINITE;
         for (int i = 0; i < 4 - infinite; i++)
@@ -110,6 +119,7 @@ done:
 static brio_status check_mates(brio_judge *j) {
     brio_status status = BRIO_OK;
     for (size_t f = 0; f < 4 * j->t.count; f++) {
+        if (f % 4 == 0) BRIO_TRY(report(j, f / 4, 0.2, 0.1));
         uint32_t g = *brio_mate(&j->t, (uint32_t)f);
         BRIO_REQUIRE(j->ctx, g < 4 * j->t.count, BRIO_ERR_CHECK, "facet %zu of tetrahedron %zu has no mate", f % 4,
                      f / 4);
@@ -148,9 +158,9 @@ done:
 static brio_status check_facets(brio_judge *j) {
     brio_status status = BRIO_OK;
     for (size_t f = 0; f < 4 * j->t.count; f++) {
+        if (f % 4 == 0) BRIO_TRY(report(j, f / 4, 0.3, 0.5));
         uint32_t g = *brio_mate(&j->t, (uint32_t)f);
         if (g < f) continue;
-        if ((f & 0xffffc) == 0) BRIO_TRY(brio_progress(j->ctx, "check", (double)f / (double)(4 * j->t.count)));
         bool infinite = brio_is_infinite(&j->t, (uint32_t)(f / 4)), other = brio_is_infinite(&j->t, brio_tet_of(g));
         uint32_t far = vertices_of(j, brio_tet_of(g))[brio_slot_of(g)];
         if (infinite && other)
@@ -187,6 +197,7 @@ static brio_status check_cover(brio_judge *j) {
     BRIO_REQUIRE(j->ctx, first < j->t.count, BRIO_ERR_CHECK, "no finite tetrahedron");
     const uint32_t *seed = vertices_of(j, first);
     for (size_t tet = 0; tet < j->t.count; tet++) {
+        BRIO_TRY(report(j, tet, 0.8, 0.2));
         const uint32_t *v = vertices_of(j, tet);
         if (v[3] == BRIO_INFINITE)
             BRIO_REQUIRE(j->ctx, side_of_seed(j, seed, v[0], v[1], v[2]) < 0, BRIO_ERR_CHECK,

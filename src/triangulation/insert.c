@@ -1,6 +1,7 @@
 /* Incremental insertion: locate, dig the cavity, fill the cavity. */
 #include "base/memory.h"
 #include "triangulation/kernel.h"
+#include <math.h>
 
 brio_status brio_kernel_reserve(brio_kernel *k, size_t more) {
     brio_status status = BRIO_OK;
@@ -62,9 +63,9 @@ static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
 }
 
 brio_status brio_kernel_report(brio_kernel *k, double done) {
-    k->done = done;
+    k->done = fmax(k->done, done); /* a second try of deferred points does not step back */
     k->report_at = brio_kernel_work(k) + BRIO_INSERT_WORK;
-    return k->reports ? brio_progress(k->ctx, "insert", done) : BRIO_OK;
+    return k->reports ? brio_progress(k->ctx, "insert", k->done) : BRIO_OK;
 }
 
 brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {

@@ -220,6 +220,7 @@ static brio_status leave_pass(worker *w, brio_pass *pass) {
     main->walk.steps += k->walk.steps;
     main->filter.unsettled += k->filter.unsettled;
     if (k->stats.created) main->walk.start = k->walk.start;
+    main->done = fmax(main->done, k->done);
 done:
     return status;
 }
