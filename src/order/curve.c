@@ -1,6 +1,7 @@
 /* Sorting of points along a Hilbert curve: a radix sort of the keys of ten levels; cells with many points are sorted
  * again, along the curve through their own cube, so that clusters of any size are resolved. */
 #include "order/curve.h"
+#include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "order/hilbert.h"
@@ -20,46 +21,56 @@ typedef struct {
     uint64_t *items, *spare;
 } curve;
 
-/* The refinement of the cells of [begin, end). */
+/* The refinement of the cells of n items: part i of them starts at start[i]. */
 typedef struct {
     const curve *c;
-    size_t begin, end;
+    const size_t *start;
+    size_t n;
     brio_status status;
 } refinement;
 
 static brio_status sort_along_curve(const curve *c, size_t begin, size_t end, int threads);
 
-/* Sorts the cells of [begin, end) that start in [from, to) and have many points. */
-static brio_status refine_cells(const curve *c, size_t begin, size_t end, size_t from, size_t to) {
+/* The first place of [from, end) where a cell of [begin, end) starts; `end` for none. */
+static size_t start_of_cell(const curve *c, size_t begin, size_t end, size_t from) {
+    while (from > begin && from < end && c->items[from] >> 32 == c->items[from - 1] >> 32) from++;
+    return from;
+}
+
+/* Sorts the cells of [from, to), where cells start, that have many points, but fewer than `all`: else the cube is too
+ * small to be divided. */
+static brio_status refine_cells(const curve *c, size_t from, size_t to, size_t all) {
     const uint64_t *items = c->items;
     brio_status status = BRIO_OK;
-    while (from > begin && from < end && items[from] >> 32 == items[from - 1] >> 32) from++;
     for (size_t next; from < to && status == BRIO_OK; from = next) {
-        for (next = from + 1; next < end && items[next] >> 32 == items[from] >> 32;) next++;
-        bool crowded =
-            next - from > CELL_MOST && next - from < end - begin; /* else the cube is too small to be divided */
-        if (crowded) status = sort_along_curve(c, from, next, 1);
+        for (next = from + 1; next < to && items[next] >> 32 == items[from] >> 32;) next++;
+        if (next - from > CELL_MOST && next - from < all) status = sort_along_curve(c, from, next, 1);
     }
     return status;
 }
 
-/* Refines the cells that start in a part of the items, from the first one of the refinement on. */
-static void refine_part(void *user, size_t from, size_t to, int thread) {
+static void refine_part(void *user, size_t part, size_t end, int thread) {
     refinement *r = user;
-    (void)thread;
-    brio_report(&r->status, refine_cells(r->c, r->begin, r->end, r->begin + from, r->begin + to));
+    (void)end, (void)thread;
+    brio_report(&r->status, refine_cells(r->c, r->start[part], r->start[part + 1], r->n));
 }
 
 /* Sorts the items [begin, end) along the curve through their points' cube. */
 static brio_status sort_along_curve(const curve *c, size_t begin, size_t end, int threads) {
-    size_t n = end - begin;
+    brio_status status = BRIO_OK;
+    size_t n = end - begin, *start = NULL; /* of each thread's cells: found before any thread changes a key */
     int bits = curve_bits(n);
     if (!brio_hilbert_items(c->ctx, c->points, c->items + begin, n, bits, threads)) return BRIO_OK;
-    brio_status status = brio_sort_items(c->ctx, c->items + begin, c->spare + begin, n, 3 * bits, threads);
-    if (status != BRIO_OK) return status;
-    refinement r = {c, begin, end, BRIO_OK};
-    brio_for(c->ctx, threads, n, refine_part, &r);
-    return r.status;
+    BRIO_TRY(brio_sort_items(c->ctx, c->items + begin, c->spare + begin, n, 3 * bits, threads));
+    if (threads == 1) return refine_cells(c, begin, end, n);
+    BRIO_TRY(BRIO_ALLOC(c->ctx, start, (size_t)threads + 1));
+    for (int t = 0; t <= threads; t++) start[t] = start_of_cell(c, begin, end, begin + brio_part(n, t, threads));
+    refinement r = {c, start, n, BRIO_OK};
+    brio_for_chunks(c->ctx, threads, (size_t)threads, 1, refine_part, &r);
+    status = r.status;
+done:
+    brio_release(c->ctx, start);
+    return status;
 }
 
 brio_status brio_sort_along_curve(brio_context *ctx, const double *points, uint64_t *items, uint64_t *spare, size_t n,
