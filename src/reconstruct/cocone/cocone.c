@@ -1,11 +1,12 @@
 /* The co-cones: from points and options to a mesh.
  *
- * The samples are scaled by a power of two to coordinates of at most 1, so that nothing over- or underflows on the way;
- * their triangles are those of the whole set (cocone_surface.c) or matched together from pieces, which are scaled one
- * at a time (super_cocone.c). */
+ * The samples are taken in their canonical order and scaled by a power of two to coordinates of at most 1, so that nothing
+ * over- or underflows on the way; their triangles are those of the whole set (cocone_surface.c) or matched together from
+ * pieces, which are scaled one at a time (super_cocone.c). */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/scale.h"
+#include "order/canonical_points.h"
 #include "reconstruct/cocone/sampling_density.h"
 #include "reconstruct/cocone/super_cocone.h"
 #include <math.h>
@@ -25,16 +26,45 @@ static int exponent_of(const double *points, size_t num_points) {
     return exponent;
 }
 
+/* Gives samples the caller's indices in place of their ranks; what is known of a sample goes to the index that names its
+ * position. */
+static brio_status name_samples(brio_context *ctx, const uint32_t *order, size_t n, brio_cocone_surface *s) {
+    brio_status status = BRIO_OK;
+    uint8_t *boundary = NULL;
+    double *size = NULL;
+    for (size_t c = 0; c < 3 * s->num_faces; c++) s->faces[c] = order[s->faces[c]];
+    if (s->boundary) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, boundary, n));
+    if (s->size) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, size, n));
+    for (size_t r = 0; r < n; r++) {
+        if (boundary && s->distinct[r]) boundary[order[r]] = s->boundary[r];
+        if (size && s->distinct[r]) size[order[r]] = s->size[r];
+    }
+    brio_release(ctx, s->boundary);
+    brio_release(ctx, s->size);
+    s->boundary = boundary, s->size = size;
+    boundary = NULL, size = NULL;
+done:
+    brio_release(ctx, boundary);
+    brio_release(ctx, size);
+    return status;
+}
+
 /* The co-cone of the whole set, scaled by 2^-exponent. */
 static brio_status find_surface(brio_context *ctx, const double *points, size_t num_points, int exponent,
                                 const brio_cocone_options *options, brio_cocone_surface *surface) {
     brio_status status = BRIO_OK;
     double *scaled = NULL;
+    uint32_t *order = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, scaled, 3 * num_points));
-    brio_scale(ctx, points, 3 * num_points, -exponent, scaled);
+    BRIO_TRY(brio_canonical_points(ctx, points, num_points, &order));
+    brio_name_coincident(points, num_points, order);
+    brio_copy_points(points, order, num_points, scaled);
+    brio_scale(ctx, scaled, 3 * num_points, -exponent, scaled);
     BRIO_TRY(brio_cocone_surface_find(ctx, scaled, num_points, options, surface));
+    BRIO_TRY(name_samples(ctx, order, num_points, surface));
 done:
     brio_release(ctx, scaled);
+    brio_release(ctx, order);
     return status;
 }
 
@@ -101,6 +131,7 @@ brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_poin
     int exponent = exponent_of(points, num_points);
     *out = NULL;
     BRIO_TRY(check_options(ctx, o));
+    BRIO_TRY(brio_check_points(ctx, points, num_points));
     BRIO_TRY(o->pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, o, &surface)
                            : find_surface(ctx, points, num_points, exponent, o, &surface));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));

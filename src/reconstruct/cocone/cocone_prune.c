@@ -10,6 +10,7 @@
  * Differs from the paper: what the votes of the samples hold to be surface is kept. */
 #include "reconstruct/cocone/cocone_prune.h"
 #include "base/memory.h"
+#include "base/sort.h"
 #include "base/team.h"
 #include "reconstruct/cocone/label_boundary.h"
 
@@ -125,8 +126,14 @@ done:
     return status;
 }
 
-/* Finds the candidates that have a sharp edge to begin with. What is dropped does not depend on the order, since edges
- * only get sharper. */
+/* By number. */
+static int compare_facets(uint32_t f, uint32_t g, const void *user) {
+    (void)user;
+    return (f > g) - (f < g);
+}
+
+/* Finds the candidates that have a sharp edge to begin with. What is dropped does not depend on the order but for rounding,
+ * since edges only get sharper; the stack is sorted, so that the threads leave no trace of that either. */
 static void find_sharp(void *user, size_t begin, size_t end, int thread) {
     pruning *x = user;
     (void)thread;
@@ -151,6 +158,7 @@ brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *l, size_
     *dropped = 0;
     brio_for_chunks(ctx, brio_threads(ctx, x.t->count, CHUNK), x.t->count, CHUNK, find_sharp, &x);
     BRIO_TRY(x.status);
+    if (x.size > 0) brio_sort_indices(x.stack, x.size, compare_facets, NULL);
     while (x.size > 0) {
         uint32_t facet = x.stack[--x.size];
         if (!brio_is_candidate(x.cocones, facet) || !has_sharp_edge(&x, facet)) continue;

@@ -13,6 +13,7 @@
 #include "reconstruct/cocone/octree_pieces.h"
 #include "base/memory.h"
 #include "base/sort.h"
+#include "order/canonical_points.h"
 #include "order/hilbert.h"
 #include <math.h>
 #include <string.h>
@@ -106,6 +107,14 @@ static double gap(const double *low, const double *high, const double *other_low
     return most;
 }
 
+/* Sorts the samples of each smallest cell by position, so that the places do not depend on the caller's order. */
+static void sort_ties(const double *points, size_t n, const uint64_t *keys, uint32_t *order) {
+    for (size_t begin = 0, end; begin < n; begin = end) {
+        for (end = begin + 1; end < n && keys[end] == keys[begin];) end++;
+        brio_sort_indices(order + begin, end - begin, brio_compare_points, points);
+    }
+}
+
 brio_status brio_pieces_new(brio_context *ctx, const double *points, size_t num_points, size_t wanted,
                             brio_pieces *out) {
     brio_status status = BRIO_OK;
@@ -121,6 +130,8 @@ brio_status brio_pieces_new(brio_context *ctx, const double *points, size_t num_
     for (size_t n = 0; n < num_points; n++) out->order[n] = (uint32_t)n;
     brio_hilbert_keys(ctx, points, num_points, BITS, keys);
     BRIO_TRY(brio_radix_sort(ctx, keys, out->order, num_points, 3 * BITS));
+    sort_ties(points, num_points, keys, out->order);
+    brio_name_coincident(points, num_points, out->order);
     d.keys = keys;
     BRIO_TRY(divide(&d, 0, num_points, 0, BITS));
     for (size_t i = 0; i < out->num_pieces; i++) {
@@ -144,14 +155,14 @@ void brio_pieces_free(brio_context *ctx, brio_pieces *pieces) {
 
 typedef struct {
     brio_context *ctx;
-    uint64_t *sample;
+    uint64_t *place; /* in the order of the samples, in the upper half */
     size_t count, capacity;
 } selection;
 
-static brio_status add_sample(selection *s, uint32_t sample) {
+static brio_status add_sample(selection *s, size_t place) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(s->ctx, s->sample, s->capacity, s->count + 1));
-    s->sample[s->count++] = (uint64_t)sample << 32;
+    BRIO_TRY(BRIO_RESERVE(s->ctx, s->place, s->capacity, s->count + 1));
+    s->place[s->count++] = (uint64_t)place << 32;
 done:
     return status;
 }
@@ -163,7 +174,7 @@ static brio_status add_margin(selection *s, const brio_pieces *p, const brio_pie
     if (gap(piece->low, piece->high, other->low, other->high) > margin) return BRIO_OK;
     for (size_t n = other->begin; n < other->end; n++) {
         const double *x = p->points + 3 * (size_t)p->order[n];
-        if (gap(piece->low, piece->high, x, x) <= margin) BRIO_TRY(add_sample(s, p->order[n]));
+        if (gap(piece->low, piece->high, x, x) <= margin) BRIO_TRY(add_sample(s, n));
     }
 done:
     return status;
@@ -177,14 +188,14 @@ brio_status brio_piece_samples(brio_context *ctx, const brio_pieces *p, size_t p
     *samples = NULL;
     *count = 0;
     for (size_t i = 0; i < p->num_pieces; i++) BRIO_TRY(add_margin(&s, p, &p->pieces[piece], &p->pieces[i]));
-    for (size_t n = 0; n < p->num_points; n += p->stride) BRIO_TRY(add_sample(&s, p->order[n]));
+    for (size_t n = 0; n < p->num_points; n += p->stride) BRIO_TRY(add_sample(&s, n));
     BRIO_TRY(BRIO_ALLOC(ctx, spare, s.count));
-    BRIO_TRY(brio_sort_items(ctx, s.sample, spare, s.count, 32, 1));
+    BRIO_TRY(brio_sort_items(ctx, s.place, spare, s.count, 32, 1));
     BRIO_TRY(BRIO_ALLOC(ctx, *samples, s.count));
     for (size_t n = 0; n < s.count; n++)
-        if (n == 0 || s.sample[n] != s.sample[n - 1]) (*samples)[(*count)++] = (uint32_t)(s.sample[n] >> 32);
+        if (n == 0 || s.place[n] != s.place[n - 1]) (*samples)[(*count)++] = p->order[s.place[n] >> 32];
 done:
-    brio_release(ctx, s.sample);
+    brio_release(ctx, s.place);
     brio_release(ctx, spare);
     return status;
 }

@@ -14,8 +14,8 @@ typedef struct {
 typedef struct {
     const double *points;
     size_t num_points;
-    uint32_t *order;    /* #P, along a Hilbert curve */
-    uint32_t *piece_of; /* #P */
+    uint32_t *order;    /* #P, along a Hilbert curve, then by position: of coincident samples all are the lowest index */
+    uint32_t *piece_of; /* #P, of the indices in the order */
     brio_piece *pieces;
     size_t num_pieces, capacity;
     size_t stride; /* every stride-th sample of the order stands for those far away */
@@ -27,7 +27,7 @@ brio_status brio_pieces_new(brio_context *ctx, const double *points, size_t num_
                             brio_pieces *out);
 void brio_pieces_free(brio_context *ctx, brio_pieces *pieces);
 
-/** The samples that the surface in a piece is found from, ascending: its own, those in its margin, and some from
+/** The samples that the surface in a piece is found from, by their places in the order: its own, those in its margin, and some from
  *  everywhere.   samples  *count of them, owned by the caller (brio_release).   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_piece_samples(brio_context *ctx, const brio_pieces *pieces, size_t piece, uint32_t **samples,
                                size_t *count);

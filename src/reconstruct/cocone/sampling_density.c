@@ -8,10 +8,19 @@
 #include "reconstruct/cocone/sampling_density.h"
 #include "base/memory.h"
 #include "base/sort.h"
+#include "predicates/predicates.h"
 #include "reconstruct/cocone/triangle.h"
 
 /* The guarantee of theorem 19 holds up to this r. */
 static const double GUARANTEED_R = 0.08;
+
+/* The corner of a face from which its circle is computed, so that rounding does not depend on where the face starts. */
+static size_t least_corner(const double (*p)[3]) {
+    size_t least = 0;
+    for (size_t k = 1; k < 3; k++)
+        if (brio_lexicographic(p[k], p[least]) < 0) least = k;
+    return least;
+}
 
 /* r[p] = the largest circumradius of the faces of each sample. */
 static void largest_circles(const brio_mesh *mesh, int exponent, double *r) {
@@ -24,7 +33,8 @@ static void largest_circles(const brio_mesh *mesh, int exponent, double *r) {
             double x = mesh->vertices[3 * (size_t)corner[k / 3] + (size_t)(k % 3)];
             p[k / 3][k % 3] = ordinary ? x * factor : ldexp(x, -exponent);
         }
-        double radius = sqrt(brio_circle_square(p[0], p[1], p[2]));
+        size_t first = least_corner((const double(*)[3])p);
+        double radius = sqrt(brio_circle_square(p[first], p[(first + 1) % 3], p[(first + 2) % 3]));
         for (int k = 0; k < 3; k++) r[corner[k]] = r[corner[k]] < radius ? radius : r[corner[k]];
     }
 }
@@ -38,12 +48,12 @@ static brio_status summarize(brio_context *ctx, const double *r, size_t n, brio_
     BRIO_TRY(BRIO_ALLOC(ctx, order, n));
     for (size_t p = 0; p < n; p++) {
         if (!(r[p] > 0)) continue;
-        keys[count] = brio_double_key(r[p]) >> 32; /* enough for a median */
+        keys[count] = brio_double_key(r[p]);
         order[count++] = (uint32_t)p;
         stats->outside_guarantee += r[p] > GUARANTEED_R;
     }
     if (count == 0) goto done;
-    BRIO_TRY(brio_radix_sort(ctx, keys, order, count, 32));
+    BRIO_TRY(brio_radix_sort(ctx, keys, order, count, 64));
     stats->r_median = r[order[count / 2]];
     stats->r_p95 = r[order[count - 1 - count / 20]];
 done:

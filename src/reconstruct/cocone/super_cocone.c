@@ -10,10 +10,9 @@
 #include "reconstruct/cocone/super_cocone.h"
 #include "base/memory.h"
 #include "base/scale.h"
+#include "order/canonical_points.h"
 #include "reconstruct/cocone/octree_pieces.h"
 #include "reconstruct/cocone/seams.h"
-#include <math.h>
-#include <string.h>
 
 typedef struct {
     brio_context *ctx;
@@ -48,9 +47,9 @@ static void take_samples(assembly *a, uint32_t piece, const uint32_t *samples, s
                          const brio_cocone_surface *s) {
     for (size_t n = 0; n < count; n++) {
         uint32_t p = samples[n];
-        if (a->pieces.piece_of[p] != piece) continue;
-        a->out->distinct[p] = s->distinct[n];
-        a->out->stats.samples += s->distinct[n];
+        if (a->pieces.piece_of[p] != piece || !s->distinct[n]) continue;
+        a->out->distinct[p] = 1;
+        a->out->stats.samples++;
         if (s->size) a->out->size[p] = s->size[n];
         if (s->boundary) a->out->boundary[p] = s->boundary[n], a->out->stats.boundary_samples += s->boundary[n];
     }
@@ -78,7 +77,7 @@ static brio_status find_piece(assembly *a, uint32_t piece) {
     size_t count;
     BRIO_TRY(brio_piece_samples(ctx, &a->pieces, piece, &samples, &count));
     BRIO_TRY(BRIO_ALLOC(ctx, points, 3 * count));
-    for (size_t n = 0; n < count; n++) memcpy(points + 3 * n, a->points + 3 * (size_t)samples[n], 3 * sizeof *points);
+    brio_copy_points(a->points, samples, count, points);
     brio_scale(ctx, points, 3 * count, -a->exponent, points);
     status = brio_cocone_surface_find(ctx, points, count, a->options, &s);
     if (status == BRIO_ERR_NO_ANSWER) status = BRIO_OK;
@@ -127,9 +126,6 @@ brio_status brio_super_cocone(brio_context *ctx, const double *points, size_t nu
     assembly a = {
         .ctx = ctx, .points = points, .num_points = num_points, .exponent = exponent, .options = options, .out = out};
     *out = (brio_cocone_surface){0};
-    for (size_t i = 0; i < 3 * num_points; i++)
-        BRIO_REQUIRE(ctx, isfinite(points[i]), BRIO_ERR_NOT_FINITE, "point %zu: %c is %s", i / 3, "xyz"[i % 3],
-                     isnan(points[i]) ? "NaN" : "infinite");
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->distinct, num_points));
     if (options->density) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->size, num_points));
     if (options->boundaries) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->boundary, num_points));

@@ -1,6 +1,7 @@
 /* From samples to labelled polar balls.
  *
- *   1. Delaunay triangulation of the samples, smoothed where they are noisy, and eight bounding points.
+ *   1. Delaunay triangulation of the samples in their canonical order, smoothed where they are noisy, and eight bounding
+ *      points.
  *   2. The poles of each sample: the farthest vertices of its Voronoi cell on either side of the surface.
  *   3. The power diagram of the polar balls, as its dual, the regular triangulation of the poles.
  *   4. A label, inner or outer, for each pole.
@@ -12,6 +13,7 @@
 #include "base/memory.h"
 #include "base/scale.h"
 #include "dual/spacing.h"
+#include "order/canonical_points.h"
 #include "reconstruct/labels/label_solid.h"
 #include "reconstruct/power_crust/sample_noise.h"
 #include <math.h>
@@ -49,17 +51,17 @@ static void stage(brio_context *ctx, const brio_pole_request *request, double fr
 
 /* --- 1: samples and bounding points --- */
 
-static brio_status check_finite(brio_context *ctx, const double *points, size_t n) {
-    size_t first = n, bad = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (isfinite(points[3 * i]) && isfinite(points[3 * i + 1]) && isfinite(points[3 * i + 2])) continue;
-        if (bad++ == 0) first = i;
-    }
-    if (bad == 0) return BRIO_OK;
-    size_t k = 0;
-    while (isfinite(points[3 * first + k])) k++;
-    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %c is %s (%zu such points in all)", first, "xyz"[k],
-                     isnan(points[3 * first + k]) ? "NaN" : "infinite", bad);
+/* Takes over the samples in their canonical order, scaled: from here on nothing depends on the caller's order. */
+static brio_status take_samples(brio_labelled_poles *l, const double *points) {
+    brio_status status = BRIO_OK;
+    size_t n = l->num_samples;
+    BRIO_TRY(brio_check_points(l->ctx, points, n));
+    BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
+    BRIO_TRY(brio_canonical_points(l->ctx, points, n, &l->order));
+    brio_copy_points(points, l->order, n, l->points);
+    brio_scale(l->ctx, l->points, 3 * n, -l->exponent, l->points);
+done:
+    return status;
 }
 
 /* Eight corners of the box scaled five times about its centre; a side shorter than a fifth of the longest is taken as
@@ -105,11 +107,13 @@ static brio_status prepare(brio_labelled_poles *l, const double *points, const b
     size_t n = l->num_samples;
     double most = request->margin;
     BRIO_REQUIRE(l->ctx, n > 0, BRIO_ERR_NO_ANSWER, "no points, no surface");
-    BRIO_TRY(check_finite(l->ctx, points, n));
-    BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
     for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
-    frexp(most, &l->exponent);
-    brio_scale(l->ctx, points, 3 * n, -l->exponent, l->points);
+    if (isfinite(most)) frexp(most, &l->exponent);
+    BRIO_TRY(take_samples(l, points));
+    if (!request->representative) { /* the caller's order is of no more use */
+        brio_release(l->ctx, l->order);
+        l->order = NULL;
+    }
     BRIO_TRY(reduce_noise(l, request));
     bounding_corners(l->points, n, ldexp(request->margin, -l->exponent), l->points + 3 * n);
 done:
@@ -292,6 +296,7 @@ void brio_labelled_poles_free(brio_labelled_poles *l) {
     brio_pole_graph_free(&l->graph);
     brio_triangulation_free(l->power);
     brio_release(l->ctx, l->points);
+    brio_release(l->ctx, l->order);
     brio_release(l->ctx, l->spacing);
     brio_release(l->ctx, l->representative);
     brio_release(l->ctx, l->label);

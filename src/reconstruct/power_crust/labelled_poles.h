@@ -22,9 +22,10 @@ typedef struct {
     brio_context *ctx;
     size_t num_samples;
     double *
-        points; /* samples, smoothed or not, and bounding points; all lengths here are scaled by 2^-exponent, which makes the
+        points; /* samples in their canonical order, smoothed or not, and bounding points; all lengths here are scaled by 2^-exponent, which makes the
                        samples and the margin at most 1 */
     int exponent;
+    uint32_t *order; /* #samples: the caller's index of each, where representatives are wanted; else NULL */
     brio_options triangulation;
     brio_poles poles;
     double *spacing;          /* of the poles, or NULL */

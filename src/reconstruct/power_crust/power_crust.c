@@ -48,7 +48,7 @@ brio_status brio_make_crust(brio_labelled_poles *l, const brio_surface_options *
     BRIO_TRY(brio_crust_faces(&l->graph, l->label, &options, mesh, &counts));
     l->stats.left_out = counts.left_out;
     l->stats.crust_seconds = brio_seconds() - start;
-    if (o->normals) BRIO_TRY(brio_sample_normals(&l->graph, l->label, l->representative, mesh, o->normals));
+    if (o->normals) BRIO_TRY(brio_sample_normals(&l->graph, l->label, l->representative, l->order, mesh, o->normals));
     l->ctx->progress_from = l->ctx->progress_to;
     l->ctx->progress_to = 1;
     if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh));

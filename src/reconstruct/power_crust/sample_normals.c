@@ -44,14 +44,14 @@ static void normal_from_crust(const brio_triangle_tree *tree, const double *p, d
 }
 
 brio_status brio_sample_normals(const brio_pole_graph *g, const uint8_t *label, const uint32_t *representative,
-                                const brio_mesh *crust, double *normals) {
+                                const uint32_t *order, const brio_mesh *crust, double *normals) {
     brio_status status = BRIO_OK;
     brio_triangle_tree tree = {0};
     for (size_t s = 0; s < g->num_samples; s++) {
-        double *n = normals + 3 * s;
+        double *n = normals + 3 * (size_t)order[s];
         size_t r = representative[s];
         if (r < s) {
-            memcpy(n, normals + 3 * r, 3 * sizeof *n);
+            memcpy(n, normals + 3 * (size_t)order[r], 3 * sizeof *n);
         } else if (!normal_from_poles(g, label, r, n)) {
             if (!tree.boxes) BRIO_TRY(brio_triangle_tree_new(g->ctx, crust, &tree));
             normal_from_crust(&tree, g->samples + 3 * r, n);

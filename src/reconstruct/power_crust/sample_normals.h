@@ -4,11 +4,12 @@
 
 #include "reconstruct/labels/pole_graph.h"
 
-/** normals[3 s ..], #samples by 3, of length 1 and pointing outwards. Samples without poles get the normal of the crust
- *  where it is nearest; rows at equal positions the same one.
+/** normals[3 order[s] ..], #samples by 3, of length 1 and pointing outwards. Samples without poles get the normal of the
+ *  crust where it is nearest; rows at equal positions the same one.
  *  representative  #samples: for each the sample at its position that has the poles.
+ *  order           #samples: the row of each.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_sample_normals(const brio_pole_graph *g, const uint8_t *label, const uint32_t *representative,
-                                const brio_mesh *crust, double *normals);
+                                const uint32_t *order, const brio_mesh *crust, double *normals);
 
 #endif
