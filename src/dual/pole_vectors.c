@@ -111,6 +111,15 @@ static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uin
 
 /* --- the passes --- */
 
+/* Makes an infinite tetrahedron the pole of a sample unless that has one whose hull facet is greater by position: all are
+ * infinitely far, and the last one in memory would depend on the order of the points. */
+static void offer_hull_facet(search *s, size_t p, size_t tet) {
+    const brio_tetrahedron *t = s->v->t.tet;
+    uint64_t now = s->farther[0][p];
+    if (now == NO_KEY || brio_compare_hull_facets(s->v->points, t + tet, t + (uint32_t)now) > 0)
+        s->farther[0][p] = HULL_KEY | tet;
+}
+
 /* Normals are added as multiples of 2^-36, which is exact for up to 2^17 of them, so that the order is of no
  * importance. Samples on the hull take no other pole. */
 static void find_hull_vectors(search *s) {
@@ -123,7 +132,7 @@ static void find_hull_vectors(search *s) {
         for (int i = 0; i < 3; i++) {
             size_t p = v->t.tet[tet].vertex[i];
             for (size_t k = 0; k < 3; k++) v->plane[4 * p + k] += (normal[k] + ROUND) - ROUND;
-            s->farther[0][p] = HULL_KEY | tet;
+            offer_hull_facet(s, p, tet);
         }
     }
 }

@@ -6,24 +6,36 @@
 #include "brio/brio.h"
 #include "predicates/predicates.h"
 
-/** Positions of the vertices of a finite tetrahedron, ascending. */
-static inline void brio_sorted_positions(const double *points, const brio_tetrahedron *tet, const double *p[4]) {
-    for (int i = 0; i < 4; i++) p[i] = points + 3 * (size_t)tet->vertex[i];
-    for (int i = 1; i < 4; i++)
+/** Positions of the first `count` vertices of a tetrahedron, ascending. */
+static inline void brio_sorted_positions(const double *points, const brio_tetrahedron *tet, int count,
+                                         const double *p[4]) {
+    for (int i = 0; i < count; i++) p[i] = points + 3 * (size_t)tet->vertex[i];
+    for (int i = 1; i < count; i++)
         for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {
             const double *swap = p[j];
             p[j] = p[j - 1], p[j - 1] = swap;
         }
 }
 
-/** Compares tetrahedra s and t by their points. */
-static inline int brio_compare_corners(const double *points, const brio_tetrahedron *s, const brio_tetrahedron *t) {
+/** Compares tetrahedra s and t by the positions of their first `count` vertices. */
+static inline int brio_compare_vertices(const double *points, const brio_tetrahedron *s, const brio_tetrahedron *t,
+                                        int count) {
     const double *p[4], *q[4];
     int sign = 0;
-    brio_sorted_positions(points, s, p);
-    brio_sorted_positions(points, t, q);
-    for (int i = 0; i < 4 && !sign; i++) sign = brio_lexicographic(p[i], q[i]);
+    brio_sorted_positions(points, s, count, p);
+    brio_sorted_positions(points, t, count, q);
+    for (int i = 0; i < count && !sign; i++) sign = brio_lexicographic(p[i], q[i]);
     return sign;
+}
+
+/** Compares finite tetrahedra by their points. */
+static inline int brio_compare_corners(const double *points, const brio_tetrahedron *s, const brio_tetrahedron *t) {
+    return brio_compare_vertices(points, s, t, 4);
+}
+
+/** Compares infinite tetrahedra by the points of their hull facets. */
+static inline int brio_compare_hull_facets(const double *points, const brio_tetrahedron *s, const brio_tetrahedron *t) {
+    return brio_compare_vertices(points, s, t, 3);
 }
 
 /** Compares tetrahedra s and t by their centres, then by their points.   centre  of each of `tet`. */

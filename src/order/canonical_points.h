@@ -19,8 +19,7 @@ brio_status brio_canonical_points(brio_context *ctx, const double *points, size_
 /** Copies the points in an order to rows one after the other. */
 void brio_copy_points(const double *points, const uint32_t *order, size_t num_points, double *rows);
 
-/** Replaces each index in a canonical order by the lowest index at its position: whichever of coincident points a
- *  triangulation takes for its vertex, one index names them all. */
+/** Replaces each index in a canonical order by the lowest index at its position, so that coincident points have one name. */
 void brio_name_coincident(const double *points, size_t num_points, uint32_t *order);
 
 /** Compares points by position, then by index; `points` is the array. */

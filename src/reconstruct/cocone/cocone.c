@@ -26,18 +26,17 @@ static int exponent_of(const double *points, size_t num_points) {
     return exponent;
 }
 
-/* Gives samples the caller's indices in place of their ranks; what is known of a sample goes to the index that names its
- * position. */
+/* Gives samples the caller's indices in place of their ranks. */
 static brio_status name_samples(brio_context *ctx, const uint32_t *order, size_t n, brio_cocone_surface *s) {
     brio_status status = BRIO_OK;
     uint8_t *boundary = NULL;
     double *size = NULL;
     for (size_t c = 0; c < 3 * s->num_faces; c++) s->faces[c] = order[s->faces[c]];
-    if (s->boundary) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, boundary, n));
-    if (s->size) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, size, n));
+    if (s->boundary) BRIO_TRY(BRIO_ALLOC(ctx, boundary, n));
+    if (s->size) BRIO_TRY(BRIO_ALLOC(ctx, size, n));
     for (size_t r = 0; r < n; r++) {
-        if (boundary && s->distinct[r]) boundary[order[r]] = s->boundary[r];
-        if (size && s->distinct[r]) size[order[r]] = s->size[r];
+        if (boundary) boundary[order[r]] = s->boundary[r];
+        if (size) size[order[r]] = s->size[r];
     }
     brio_release(ctx, s->boundary);
     brio_release(ctx, s->size);
@@ -57,7 +56,6 @@ static brio_status find_surface(brio_context *ctx, const double *points, size_t 
     uint32_t *order = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, scaled, 3 * num_points));
     BRIO_TRY(brio_canonical_points(ctx, points, num_points, &order));
-    brio_name_coincident(points, num_points, order);
     brio_copy_points(points, order, num_points, scaled);
     brio_scale(ctx, scaled, 3 * num_points, -exponent, scaled);
     BRIO_TRY(brio_cocone_surface_find(ctx, scaled, num_points, options, surface));

@@ -14,7 +14,7 @@ typedef struct {
 typedef struct {
     const double *points;
     size_t num_points;
-    uint32_t *order;    /* #P, along a Hilbert curve, then by position: of coincident samples all are the lowest index */
+    uint32_t *order;    /* #P, along a Hilbert curve, then by position; for coincident samples their lowest index */
     uint32_t *piece_of; /* #P, of the indices in the order */
     brio_piece *pieces;
     size_t num_pieces, capacity;
