@@ -1,7 +1,10 @@
 /* Insertion orders: permutations, the curve's continuity, the share of each round, what the blocks are. */
 #include "failing_allocator.h"
 #include "harness.h"
+#include "base/memory.h"
 #include "order/blocks.h"
+#include "order/canonical_points.h"
+#include "order/curve.h"
 #include "order/hilbert.h"
 #include "order/order.h"
 #include "points.h"
@@ -403,6 +406,58 @@ static void octree_work_is_linear(void) {
     }
 }
 
+/* Cells that reach over the parts of several threads, in which they are sorted again by other keys: a thread once took
+ * the middle of such a cell for its start. */
+static void cells_over_several_parts_are_sorted_by_one_thread(void) {
+    enum { N = 30000, CLUSTERS = 5, TIMES = 40 };
+    static uint64_t one[N], many[N], room[N];
+    brio_context *ctx = new_context();
+    uniform_points(3, N, points);
+    for (size_t i = 0; i < N; i++)
+        for (size_t k = 0; k < 3; k++)
+            points[3 * i + k] = (double)((i % CLUSTERS) >> k & 1) + points[3 * i + k] * 0x1p-30;
+    for (size_t i = 0; i < N; i++) one[i] = i;
+    EXPECT(brio_sort_along_curve(ctx, points, one, room, N, 1) == BRIO_OK);
+    for (int time = 0; time < TIMES; time++) {
+        size_t differ = 0;
+        for (size_t i = 0; i < N; i++) many[i] = i;
+        EXPECT(brio_sort_along_curve(ctx, points, many, room, N, 2 + time % 7) == BRIO_OK);
+        for (size_t i = 0; i < N; i++) differ += (uint32_t)many[i] != (uint32_t)one[i];
+        EXPECT(differ == 0, "%zu places differ with %d threads", differ, 2 + time % 7);
+    }
+    brio_context_free(ctx);
+}
+
+/* The positions in the canonical order of shuffled points: those of the points as they were. */
+static void canonical_order_goes_by_position_alone(void) {
+    enum { N = 3000 };
+    static double shuffled[3 * N];
+    static size_t place[N];
+    brio_context *ctx = new_context();
+    for (int set = 0; set < 3; set++) {
+        uint32_t *first = NULL, *second = NULL;
+        size_t differ = 0, falling = 0;
+        if (set == 0) integer_points(7, N, 9, points); /* four at each position */
+        if (set == 1) clustered_points(7, N, points);
+        if (set == 2) memset(points, 0, sizeof points);
+        shuffle_points(8, N, points, shuffled, place);
+        for (size_t i = 0; i < 3 * N; i++) shuffled[i] = shuffled[i] == 0 ? -0.0 : shuffled[i];
+        EXPECT(brio_canonical_points(ctx, points, N, &first) == BRIO_OK);
+        brio_context_set_threads(ctx, 3);
+        EXPECT(brio_canonical_points(ctx, shuffled, N, &second) == BRIO_OK);
+        for (size_t r = 0; r < N; r++) {
+            const double *p = points + 3 * (size_t)first[r], *q = shuffled + 3 * (size_t)second[r];
+            differ += !brio_same_position(p, q);
+            falling += r > 0 && brio_same_position(p, p - 3 * (ptrdiff_t)first[r] + 3 * (ptrdiff_t)first[r - 1]) &&
+                       first[r] < first[r - 1];
+        }
+        EXPECT(differ == 0 && falling == 0, "set %d: %zu positions differ, %zu indices fall", set, differ, falling);
+        brio_release(ctx, first);
+        brio_release(ctx, second);
+    }
+    brio_context_free(ctx);
+}
+
 int main(void) {
     RUN(curve_visits_each_cell_once_in_unit_steps);
     RUN(every_order_is_a_permutation);
@@ -419,5 +474,7 @@ int main(void) {
     RUN(kdtree_cells_are_halved_by_planes);
     RUN(rounds_visit_blocks_in_turn);
     RUN(octree_work_is_linear);
+    RUN(cells_over_several_parts_are_sorted_by_one_thread);
+    RUN(canonical_order_goes_by_position_alone);
     return harness_end();
 }
