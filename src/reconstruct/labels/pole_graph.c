@@ -35,8 +35,8 @@ typedef struct {
 
 static const uint64_t NOTHING = UINT64_MAX;
 
-/* Of balanced evidence. Chosen on cheese (genus 133, 68 found with plain weights, 123 with these, 113 to 126 nearby) and
- * held against random samples of smooth models, too few for them. */
+/* The weights of balanced evidence. They were chosen on one model, cheese; docs/decisions/008-balanced-weights.md has what
+ * they give there and how they were held against sparse random samples of smooth models. */
 static const double TOUCHING = -0.95, SHALLOW = -0.5, SHALLOW_WEIGHT = 0.1;
 
 static const double *centre_of(const brio_pole_graph *g, uint32_t p) {
