@@ -12,6 +12,7 @@
 #include "base/team.h"
 #include "base/float_state.h"
 #include "base/sanitizers.h"
+#include <assert.h>
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -214,6 +215,7 @@ int brio_threads(brio_context *ctx, size_t n, size_t least) {
 
 void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user) {
     brio_team *team = ctx->team;
+    assert(threads == 1 || (threads <= team->size && !team->busy)); /* threads is what brio_threads gave */
     if (threads < 2) {
         work(user, &(brio_member){NULL, 0, 1});
         return;

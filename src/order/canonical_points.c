@@ -10,15 +10,18 @@
 #include "order/canonical_points.h"
 #include "base/memory.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "order/curve.h"
 #include <math.h>
 #include <string.h>
+
+enum { POINTS_A_THREAD = 1 << 12 };
 
 static bool is_finite(const double *p) {
     return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
 }
 
-brio_status brio_check_points(brio_context *ctx, const double *points, size_t n) {
+brio_status brio_refuse_points(brio_context *ctx, const double *points, size_t n) {
     size_t first = n, bad = 0, k = 0;
     if (n >= UINT32_MAX - 16) return brio_fail(ctx, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
     for (size_t i = 0; i < n; i++)
@@ -45,7 +48,7 @@ brio_status brio_canonical_points(brio_context *ctx, const double *points, size_
     BRIO_TRY(BRIO_ALLOC(ctx, items, n));
     BRIO_TRY(BRIO_ALLOC(ctx, spare, n));
     for (size_t i = 0; i < n; i++) items[i] = i;
-    BRIO_TRY(brio_sort_along_curve(ctx, points, items, spare, n, brio_context_threads(ctx)));
+    BRIO_TRY(brio_sort_along_curve(ctx, points, items, spare, n, brio_threads(ctx, n, POINTS_A_THREAD)));
     brio_release(ctx, spare);
     spare = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, *order, n));

@@ -7,7 +7,7 @@
 
 /** Refuses coordinates that are not finite, and more points than indices can name.
  *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE. */
-brio_status brio_check_points(brio_context *ctx, const double *points, size_t num_points);
+brio_status brio_refuse_points(brio_context *ctx, const double *points, size_t num_points);
 
 /** Allocates *order and fills it: order[r] = the index of the point of rank r. Ranks go along a Hilbert curve, then
  *  lexicographically, then, for coincident points, by index. So the position of rank r depends on the set of positions

@@ -129,7 +129,7 @@ brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_poin
     int exponent = exponent_of(points, num_points);
     *out = NULL;
     BRIO_TRY(check_options(ctx, o));
-    BRIO_TRY(brio_check_points(ctx, points, num_points));
+    BRIO_TRY(brio_refuse_points(ctx, points, num_points));
     BRIO_TRY(o->pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, o, &surface)
                            : find_surface(ctx, points, num_points, exponent, o, &surface));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));

@@ -55,7 +55,7 @@ static void stage(brio_context *ctx, const brio_pole_request *request, double fr
 static brio_status take_samples(brio_labelled_poles *l, const double *points) {
     brio_status status = BRIO_OK;
     size_t n = l->num_samples;
-    BRIO_TRY(brio_check_points(l->ctx, points, n));
+    BRIO_TRY(brio_refuse_points(l->ctx, points, n));
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
     BRIO_TRY(brio_canonical_points(l->ctx, points, n, &l->order));
     brio_copy_points(points, l->order, n, l->points);
