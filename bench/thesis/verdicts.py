@@ -7,6 +7,9 @@ import statistics
 SLOWER = 5     # times its early time a point: a run thrashes
 FINISHES = 5   # times the time without a limit: a run that takes longer does not count as finished
 NOISE = 1.05   # ratios nearer to 1 say nothing
+LINEAR = 1.25  # times a point that differ by no more are the same: growth is linear
+NEARLY = 2     # and near-linear up to here
+FEW_THOUSAND = (2000, 6000)  # points of a block, as the thesis recommends
 
 
 def is_done(results, *labels): return all(label in results and results[label]['status'] == 'done' for label in labels)
@@ -71,8 +74,8 @@ def location_share(results):
         'it was; a search through nodes that are in no cache has nothing of that'
 
 
-def near_linear(results, label, first=0.25):
-    """Whether the last part of the insertion goes on as fast as the part before it, within a factor of 2."""
+def near_linear(results, label, most=NEARLY, first=0.25):
+    """Whether the last part of the insertion goes on as fast as the part before it, within the factor `most`."""
     r = results.get(label)
     if not r or r['status'] != 'done' or len(r['curve']) < 8: return None, f'{label}: too short to tell'
     begin, end = r['curve'][0], r['curve'][-1]
@@ -80,7 +83,8 @@ def near_linear(results, label, first=0.25):
     early, late = (cut[1] - begin[1]) / max(1, cut[0] - begin[0]), (end[1] - cut[1]) / max(1, end[0] - cut[0])
     if early <= 0: return None, f'{label}: too short to tell'
     words = f'{label} takes {1e6 * early:.1f} s a million points up to a quarter of them and {1e6 * late:.1f} s after'
-    if late < 2 * early: return True, words
+    words += f', {late / early:.2f} times'
+    if late < most * early: return True, words
     if not r['memory'] or not r['needed']: return False, words
     return False, words + f'. The memory holds {r["memory"] / r["needed"]:.0%} of what is needed in the end: the early rounds fit'
 
@@ -97,10 +101,12 @@ def copies_scale(results):
     rates = {k: r['wall'] / r['points'] * 1e6 for k, r in done.items()}
     words = '; '.join(f'{million(r)} in {r["wall"]:.1f} s ({rates[k]:.1f} s a million)' for k, r in done.items())
     words += ''.join('; ' + outcome(k, r) for k, r in results.items() if k not in done)
-    linear = max(rates.values()) < 3 * min(rates.values())
+    ratio = max(rates.values()) / min(rates.values())
+    words += f': a point takes up to {ratio:.2f} times the least'
     if len(done) < len(results): return False, words
-    if linear: return True, words
-    return False, words + '. They all finish; the more points there are, the smaller is the part of them that the memory holds'
+    if ratio <= LINEAR: return True, words
+    return False, words + f'. All finish, but the time is not linear: {LINEAR} times is the most that counts as that. The more ' \
+        'points there are, the smaller is the part of them that the memory holds'
 
 
 def onset(r):
@@ -119,7 +125,8 @@ def thrash_in_turn(results):
     for label, r in results.items():
         starts.append(onset(r))
         begins = 'no thrashing' if starts[-1] is None else f'thrashing from {starts[-1]:,.0f} points on'
-        words.append(f'{outcome(label, r)}, {begins}; without a limit it takes {mib(r["needed"])}')
+        needs = f'; without a limit it takes {mib(r["needed"])}' if r['needed'] else ''
+        words.append(f'{outcome(label, r)}, {begins}{needs}')
     words = '. '.join(words)
     late = [math.inf if s is None else s for s in starts]
     if late == sorted(late) and None not in starts: return True, words
@@ -152,28 +159,44 @@ def block_sizes(results):
     times = {k: r['order'] + r['insert'] for k, r in results.items() if r['status'] == 'done'}
     if not times: return missing(results, *results)
     words = '; '.join(f'{k}: {v:.2f} s' for k, v in times.items())
-    if max(times.values()) < 1.25 * min(times.values()): return True, words
+    low, high = FEW_THOUSAND
+    few = [v for k, v in times.items() if low <= int(k.split()[0]) <= high]
+    if len(few) < 2: return None, words
+    words += f'. From {low} to {high} points the times differ by {max(few) / min(few):.2f} times, over all sizes by ' \
+        f'{max(times.values()) / min(times.values()):.2f}'
+    if max(few) <= LINEAR * min(few): return True, words
     return False, words + alike_in_counts(results)
+
+
+def without_a_limit(results, fast, slow):
+    """The words for the same two orders without a limit, where these were run, and how they compare there."""
+    free = [results.get(f'{k}, free') for k in (fast, slow)]
+    if not all(r and r['status'] == 'done' for r in free): return '', None
+    ratio = free[1]['wall'] / free[0]['wall']
+    return f'. Without a limit: {fast} {free[0]["wall"]:.1f} s, {slow} {free[1]["wall"]:.1f} s, {ratio:.2f} times', ratio
 
 
 def faster(results, fast, slow):
     """Whether one order is the faster one; where it is not, what else was measured of both."""
+    if is_done(results, slow) and fast in results and results[fast]['status'] == 'stopped':
+        holds, words = slower(results, fast, slow, 1)
+        return False if holds else None, words
     if not is_done(results, fast, slow): return missing(results, fast, slow)
     a, b = results[fast], results[slow]
     ratio = b['wall'] / a['wall']
-    words = f'{outcome(fast, a)}, {outcome(slow, b)}: {ratio:.2f} times'
+    more, free = without_a_limit(results, fast, slow)
+    words = f'{outcome(fast, a)}, {outcome(slow, b)}: {ratio:.2f} times' + more
     if ratio >= NOISE: return True, words
     words += f'. {fast}: {an_insertion(a)}; {slow}: {an_insertion(b)}'
     if ratio > 1 / NOISE: return None, words + '. The times differ by less than two runs of one of them do'
-    if b['created'] < a['created']:
-        return False, words + f'. The fewer tetrahedra of {slow} mean fewer pages to read and write; that weighs more ' \
-            f'than the rounds, each of which goes through the whole once'
-    return False, words + f'. The fewer tetrahedra of {fast} weigh less than its rounds, each of which goes through the ' \
-        f'whole once, while {slow} goes through it once'
+    if not free or free > NOISE: return False, words
+    if ratio > NOISE * free:
+        return False, words + f'. {fast} is slower whatever the memory; too little of it brings the two nearer to each other'
+    return False, words + f'. {fast} is slower whatever the memory'
 
 
 def wasted_search(results):
-    if not is_done(results, 'walk', 'jump'): return missing(results, 'walk', 'jump')
+    if not is_done(results, 'walk', 'jump'): return slower(results, 'jump', 'walk', NOISE)
     a, b = results['walk'], results['jump']
     samples = round(a['points'] ** 0.25)
     words = (f'{outcome("walk", a)}, {outcome("jump", b)}: {b["wall"] / a["wall"]:.2f} times; {a["walk_steps"] / a["points"]:.1f} '
