@@ -103,6 +103,7 @@ static void report(run *r, const brio_medial_options *o, const brio_medial_stats
 static brio_status write_shape(run *r, brio_mesh *shape) {
     brio_format format;
     brio_status status = BRIO_OK;
+    if (!r->common.output) return BRIO_OK; /* --json alone asks for the facts */
     TRY(cli_output_format(r, r->common.output, r->common.format, &format));
     if (format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) shape->num_tetrahedra = 0;
     TRY(cli_write(r, shape));

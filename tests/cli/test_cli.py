@@ -823,6 +823,10 @@ class Json(CliTest):
         self.assertEqual(facts["labeling"], "mesh")
         self.assertEqual(self.facts("medial", mesh, "-o", out, "--labeling", "global")["labeling"], "global")
 
+    def test_medial_facts_without_an_output(self):
+        facts = self.facts("medial", self.cloud("torus.ply", 500, "torus"))
+        self.assertEqual(facts["vertices"] - facts["edges"] + facts["triangles"] - facts["tetrahedra"], 0)
+
     def test_medial_simplified_with_its_crust(self):
         points, crust = self.cloud("a.ply", 2000, "torus"), self.path("crust.ply")
         whole = self.facts("medial", points, "-o", self.path("out.vtp"))
