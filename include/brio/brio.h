@@ -23,6 +23,8 @@
  * by a symbolic perturbation of the lifted coordinate, keyed by lexicographic position [Devillers Teillaud 2011].
  * -0.0 equals 0.0. Arrays of the caller are read only, never kept, never reordered. The library never prints, exits
  * or aborts; every function that can fail returns a status, and the context keeps the sentence that explains it.
+ * The caller's floating-point state (rounding, subnormal numbers, traps) does not matter: each function sets the state
+ * that it needs, callbacks included, and gives the caller's back. A caller's stack needs 64 KiB.
  */
 #ifndef BRIO_H
 #define BRIO_H
@@ -94,9 +96,13 @@ BRIO_API void brio_context_free(brio_context *ctx);
  *  Valid until the next call with the context. */
 BRIO_API const char *brio_message(const brio_context *ctx);
 
-/** Number of threads to use; 0 (default) means all cores. */
+/** Sets the most threads that work uses, the caller's included; 0 (default) means all processors that the process may run
+ *  on. A number above four for each processor (and above 64) is taken for that. Work creates a thread when it is first
+ *  worth one; the context keeps the threads, asleep, until it is freed. Where the system refuses a thread, work goes on
+ *  with fewer. A child process after fork may go on using its copy of a context that was not in use, and creates threads
+ *  of its own. */
 BRIO_API void brio_context_set_threads(brio_context *ctx, int threads);
-/** Number of threads that will be used, at least 1. */
+/** Returns the number that was set, or the number of processors: at least 1. */
 BRIO_API int brio_context_threads(const brio_context *ctx);
 
 /** Called now and then from long work, in the calling thread, with the stage's name and its finished fraction in
