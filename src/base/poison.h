@@ -12,6 +12,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <wchar.h>
 #if BRIO_ASAN
 #include <sanitizer/asan_interface.h>
 #endif
@@ -31,8 +32,11 @@ static inline void brio_poison_fill(void *bytes, size_t size) {
 #if BRIO_ASAN
     ASAN_UNPOISON_MEMORY_REGION(bytes, size);
 #endif
-    static const uint8_t PATTERN[4] = {0xa5, 0xa5, 0xfd, 0x7f}; /* as two floats, or a double: not a number */
-    for (size_t i = 0; i < size; i++) ((uint8_t *)bytes)[i] = PATTERN[i % 4];
+    const wchar_t pattern = 0x7ffda5a5; /* as two floats, or a double: not a number */
+    uint8_t *at = bytes, *end = at + size;
+    for (; at < end && (uintptr_t)at % sizeof pattern; at++) *at = 0xa5;
+    wmemset((wchar_t *)(void *)at, pattern, (size_t)(end - at) / sizeof pattern);
+    for (at += (size_t)(end - at) / sizeof pattern * sizeof pattern; at < end; at++) *at = 0xa5;
 #if BRIO_MSAN
     __msan_allocated_memory(bytes, size);
 #endif
