@@ -125,25 +125,37 @@ static size_t hollow_ball(double *p) {
     return n;
 }
 
-/* Vertices on edges that no other face runs back along: how many, and how far they are from the rim of the cap. */
-static size_t far_from_rim(const brio_mesh *m, double *farthest) {
-    size_t count = 0;
-    *farthest = 0;
+static int compare_keys(const void *a, const void *b) {
+    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The directed edges of the faces, sorted: tail in the upper 32 bits, head in the lower. */
+static uint64_t *directed_edges(const brio_mesh *m, size_t *count) {
+    *count = (size_t)m->face_offsets[m->num_faces];
+    uint64_t *edge = malloc(*count * sizeof *edge);
     for (size_t f = 0; f < m->num_faces; f++)
         for (uint64_t i = m->face_offsets[f]; i < m->face_offsets[f + 1]; i++) {
             uint64_t next = i + 1 < m->face_offsets[f + 1] ? i + 1 : m->face_offsets[f];
-            uint32_t a = m->face_vertices[i], b = m->face_vertices[next];
-            bool twin = false;
-            for (size_t g = 0; g < m->num_faces && !twin; g++)
-                for (uint64_t j = m->face_offsets[g]; j < m->face_offsets[g + 1] && !twin; j++) {
-                    uint64_t after = j + 1 < m->face_offsets[g + 1] ? j + 1 : m->face_offsets[g];
-                    twin = m->face_vertices[j] == b && m->face_vertices[after] == a;
-                }
-            if (twin) continue;
-            const double *q = m->vertices + 3 * (size_t)a;
-            *farthest = fmax(*farthest, hypot(hypot(q[0], q[1]) - 0.6 * sqrt(0.75), q[2] - 0.3));
-            count++;
+            edge[i] = (uint64_t)m->face_vertices[i] << 32 | m->face_vertices[next];
         }
+    qsort(edge, *count, sizeof *edge, compare_keys);
+    return edge;
+}
+
+/* Vertices on edges that no other face runs back along: how many, and how far they are from the rim of the cap. */
+static size_t far_from_rim(const brio_mesh *m, double *farthest) {
+    size_t num_edges, count = 0;
+    uint64_t *edge = directed_edges(m, &num_edges);
+    *farthest = 0;
+    for (size_t i = 0; i < num_edges; i++) {
+        uint64_t back = edge[i] << 32 | edge[i] >> 32;
+        if (bsearch(&back, edge, num_edges, sizeof *edge, compare_keys)) continue;
+        const double *q = m->vertices + 3 * (edge[i] >> 32);
+        *farthest = fmax(*farthest, hypot(hypot(q[0], q[1]) - 0.6 * sqrt(0.75), q[2] - 0.3));
+        count++;
+    }
+    free(edge);
     return count;
 }
 

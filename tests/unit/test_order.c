@@ -1,4 +1,5 @@
 /* Insertion orders: permutations, the curve's continuity, the share of each round, what the blocks are. */
+#include "base/team.h"
 #include "failing_allocator.h"
 #include "harness.h"
 #include "base/memory.h"
@@ -421,7 +422,8 @@ static void cells_over_several_parts_are_sorted_by_one_thread(void) {
     for (int time = 0; time < TIMES; time++) {
         size_t differ = 0;
         for (size_t i = 0; i < N; i++) many[i] = i;
-        EXPECT(brio_sort_along_curve(ctx, points, many, room, N, 2 + time % 7) == BRIO_OK);
+        brio_context_set_threads(ctx, 2 + time % 7);
+        EXPECT(brio_sort_along_curve(ctx, points, many, room, N, brio_threads(ctx, N, 1)) == BRIO_OK);
         for (size_t i = 0; i < N; i++) differ += (uint32_t)many[i] != (uint32_t)one[i];
         EXPECT(differ == 0, "%zu places differ with %d threads", differ, 2 + time % 7);
     }
