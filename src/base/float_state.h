@@ -68,6 +68,6 @@ static inline void brio_float_leave(const brio_float_state *host) {
 }
 
 /** Stands first in every public function that computes. */
-#define BRIO_DOOR brio_float_state brio_door __attribute__((cleanup(brio_float_leave))) = brio_float_enter()
+#define BRIO_DOOR brio_float_state brio_door __attribute__((unused, cleanup(brio_float_leave))) = brio_float_enter()
 
 #endif
