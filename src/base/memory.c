@@ -334,8 +334,8 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
     if (!block) return block_new(ctx, bytes, false, status);
     block_kind kind = header_of(block)->kind;
     bool mapped = !ctx->custom && bytes >= MAP_FROM;
-    /* the thread sanitizer does not see mremap: pages that moved away would still count as the old block's */
-    if (kind != KIND_HEAP && mapped && !BRIO_TSAN)
+    /* these sanitizers do not see mremap: what they know of the old addresses would not move along */
+    if (kind != KIND_HEAP && mapped && !BRIO_TSAN && !BRIO_MSAN)
         block = block_resize_mapped(ctx, block, bytes, status);
     else if (kind == KIND_HEAP && !mapped)
         block = block_realloc(ctx, block, bytes, status);
