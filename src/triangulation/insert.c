@@ -75,6 +75,8 @@ brio_status brio_kernel_insert(brio_kernel *k, uint32_t p) {
     if (located != BRIO_OK) return located;
     if (!brio_is_infinite(&k->t, tet)) {
         uint32_t v = vertex_at(k, tet, point);
+        /* v's name may change: no other thread may absorb a point into v meanwhile */
+        if (v != k->t.infinite && k->t.zone && !brio_zone_has(k->t.zone, v)) return BRIO_DEFERRED;
         if (v != k->t.infinite && absorbed(k, p, v)) return BRIO_OK;
         if (k->weighted && !brio_in_conflict(&k->t, &k->filter, tet, point, true)) {
             k->representative[p] = k->t.tet[tet].vertex[0];

@@ -101,9 +101,9 @@ static void expect_one_surface(const char *name) {
 }
 
 static void grids_give_one_surface_for_every_number_of_threads(void) {
-    make_cylinder(96, 20);
+    make_cylinder(60, 12);
     expect_one_surface("cylinder");
-    make_torus(48, 1);
+    make_torus(36, 1);
     expect_one_surface("torus");
 }
 
