@@ -99,8 +99,8 @@ BRIO_API const char *brio_message(const brio_context *ctx);
 /** Sets the most threads that work uses, the caller's included; 0 (default) means all processors that the process may run
  *  on. A number above four for each processor (and above 64) is taken for that. Work creates a thread when it is first
  *  worth one; the context keeps the threads, asleep, until it is freed. Where the system refuses a thread, work goes on
- *  with fewer. A child process after fork may go on using its copy of a context that was not in use, and creates threads
- *  of its own. */
+ *  with fewer. A child process after fork may go on using its copy of a context that was not in use; its
+ *  threads are created anew. */
 BRIO_API void brio_context_set_threads(brio_context *ctx, int threads);
 /** Returns the number that was set, or the number of processors: at least 1. */
 BRIO_API int brio_context_threads(const brio_context *ctx);

@@ -22,7 +22,7 @@ typedef void (*brio_work_fn)(void *user, const brio_member *member);
 /** The body of a loop over indices: does [begin, end). `thread` is the member's number. */
 typedef void (*brio_part_fn)(void *user, size_t begin, size_t end, int thread);
 
-/** Bytes of a team of at most so many threads. */
+/** The size in bytes of the memory for a team of at most `most` threads. */
 size_t brio_team_bytes(int most);
 
 /** Makes a team with no thread but the caller's, in memory of that many bytes. */

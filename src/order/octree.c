@@ -106,7 +106,7 @@ static void leave_for_next_turn(octree *o, size_t begin, size_t end, int passes)
 }
 
 /* Visits the blocks of the cell that the finest cells [first, first + size) make; the points of finest cell c end at
- * stop[c]. Of the finest cells that are crowded, large ones are left for the next turn, and the others but for all_but are
+ * stop[c]. Of the crowded finest cells, large ones are left for the next turn; the others, except for all_but, are
  * divided. */
 static void visit_cell(octree *o, const grid *g, const size_t *stop, uint32_t first, uint32_t size, uint32_t all_but) {
     size_t begin = first ? stop[first - 1] : g->begin, end = stop[first + size - 1];

@@ -128,6 +128,7 @@ static brio_status distribute(distribution *d) {
     enum { AT_ONCE = 1 << 15 };
     brio_tetrahedron *some = NULL;
     brio_status status = BRIO_OK;
+    size_t in_use = 0;
     BRIO_TRY(BRIO_ALLOC_IN_MEMORY(k->ctx, some, AT_ONCE));
     BRIO_TRY(BRIO_ALLOC_IN_MEMORY(k->ctx, d->last, 2 * d->ranges * d->chunk));
     for (size_t p = 0; p < 2 * d->ranges; p++) d->part[p].last = d->last + p * d->chunk;
@@ -137,9 +138,13 @@ static brio_status distribute(distribution *d) {
         size_t n = k->t.count - begin < AT_ONCE ? k->t.count - begin : AT_ONCE;
         BRIO_TRY(tell_progress(d, 0, begin, k->t.count));
         BRIO_TRY(brio_block_read(k->ctx, k->t.tet, begin * sizeof *some, some, n * sizeof *some));
-        for (size_t i = 0; i < n; i++)
-            if (k->state[begin + i] != TET_UNUSED) BRIO_TRY(append(d, &some[i], (uint32_t)(begin + i)));
+        for (size_t i = 0; i < n; i++) {
+            if (k->state[begin + i] == TET_UNUSED) continue;
+            BRIO_TRY(append(d, &some[i], (uint32_t)(begin + i)));
+            in_use++;
+        }
     }
+    BRIO_REQUIRE(k->ctx, in_use == d->live, BRIO_ERR_INTERNAL, "%zu slots are in use instead of %zu", in_use, d->live);
     brio_expect_random(k->state);
     status = flush_all(d);
 done:

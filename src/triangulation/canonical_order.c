@@ -92,7 +92,8 @@ static void list_buckets(void *user, size_t from, size_t to, int thread) {
     }
 }
 
-static void fill_buckets(sorter *s) {
+static brio_status fill_buckets(sorter *s) {
+    brio_status status = BRIO_OK;
     size_t count = s->k->t.count;
     uint32_t sum = 0;
     brio_for(s->k->ctx, s->threads, count, count_buckets, s);
@@ -101,7 +102,11 @@ static void fill_buckets(sorter *s) {
         s->end[b] = sum;
         sum += c;
     }
+    BRIO_REQUIRE(s->k->ctx, sum == s->live, BRIO_ERR_INTERNAL, "%u slots are in use instead of %zu", (unsigned)sum,
+                 s->live);
     brio_for(s->k->ctx, s->threads, count, list_buckets, s);
+done:
+    return status;
 }
 
 /* Sorts the tetrahedra of the places [begin, end) and tells each its place and turn. */
@@ -330,7 +335,7 @@ brio_status brio_kernel_sort(brio_kernel *k) {
     BRIO_TRY(BRIO_ALLOC(k->ctx, s.place, k->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.end, s.buckets));
     BRIO_TRY(brio_progress(k->ctx, "sort", 1)); /* the insertion owns the bar */
-    fill_buckets(&s);
+    BRIO_TRY(fill_buckets(&s));
     BRIO_TRY(brio_progress(k->ctx, "sort", 1));
     BRIO_TRY(sort_buckets(&s));
     BRIO_TRY(brio_progress(k->ctx, "sort", 1));

@@ -12,6 +12,7 @@
  * Based on: Bowyer. Computing Dirichlet tessellations. Comput. J. 1981.
  *           Watson. Computing the n-dimensional Delaunay tessellation ... Comput. J. 1981. */
 #include "base/memory.h"
+#include "base/poison.h"
 #include "base/rng.h"
 #include "triangulation/kernel.h"
 #include <string.h>
@@ -79,8 +80,10 @@ static brio_status take_slots(brio_kernel *k) {
     brio_status status = BRIO_RESERVE(k->ctx, k->unused, k->unused_capacity, k->num_unused + c->num_tets - n);
     if (status != BRIO_OK) return status;
     for (; n < c->num_tets; n++) {
-        k->unused[k->num_unused++] = brio_tet_of(c->entry[n]);
-        state[brio_tet_of(c->entry[n])] = TET_UNUSED;
+        uint32_t slot = brio_tet_of(c->entry[n]);
+        k->unused[k->num_unused++] = slot;
+        state[slot] = TET_UNUSED;
+        brio_poison_fill(&k->t.tet[slot], sizeof *k->t.tet);
     }
     return BRIO_OK;
 }

@@ -219,7 +219,8 @@ static brio_status leave_pass(worker *w, brio_pass *pass) {
     main->stats.locate_seconds += k->stats.locate_seconds;
     main->walk.steps += k->walk.steps;
     main->filter.unsettled += k->filter.unsettled;
-    if (k->stats.created) main->walk.start = k->walk.start;
+    /* once a thread has left its zone, others may destroy the tetrahedron where it stopped; that of the last is left */
+    if (k->stats.created && main->state[k->walk.start] == TET_PLAIN) main->walk.start = k->walk.start;
     main->done = fmax(main->done, k->done);
 done:
     return status;

@@ -19,7 +19,7 @@ enum { CHUNK = 4096 };
 typedef struct {
     brio_context *ctx;
     pthread_mutex_t stack_lock; /* while threads fill the stack */
-    brio_status status;         /* the first failure of theirs */
+    brio_status status;         /* the first failure of a thread */
     const brio_tet_labels *labels;
     const brio_cocones *cocones;
     const brio_tetrahedra *t;
@@ -132,8 +132,8 @@ static int compare_facets(uint32_t f, uint32_t g, const void *user) {
     return (f > g) - (f < g);
 }
 
-/* Finds the candidates that have a sharp edge to begin with. What is dropped does not depend on the order but for rounding,
- * since edges only get sharper; the stack is sorted, so that the threads leave no trace of that either. */
+/* Finds the candidates that have a sharp edge to begin with. Apart from rounding, what is dropped does not depend on the
+ * order, since edges only get sharper; the stack is sorted, so that the threads leave no trace of that either. */
 static void find_sharp(void *user, size_t begin, size_t end, int thread) {
     pruning *x = user;
     (void)thread;
