@@ -27,12 +27,12 @@ static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},
                                        {"input", BRIO_ORDER_INPUT},
                                        {NULL, 0}};
 
-static const option_choice locations[] = {{"walk", BRIO_LOCATE_WALK},
-                                          {"jump", BRIO_LOCATE_JUMP},
-                                          {"hierarchy", BRIO_LOCATE_HIERARCHY},
-                                          {"history", BRIO_LOCATE_HISTORY},
-                                          {"trace", BRIO_LOCATE_TRACE},
-                                          {"neighbour", BRIO_LOCATE_NEIGHBOUR},
+static const option_choice locations[] = {{"walk", BRIO_LOCATION_WALK},
+                                          {"jump", BRIO_LOCATION_JUMP},
+                                          {"hierarchy", BRIO_LOCATION_HIERARCHY},
+                                          {"history", BRIO_LOCATION_HISTORY},
+                                          {"trace", BRIO_LOCATION_TRACE},
+                                          {"neighbour", BRIO_LOCATION_NEIGHBOUR},
                                           {NULL, 0}};
 
 #define FIELD(name) offsetof(arguments, name)
@@ -65,7 +65,7 @@ static bool is_standard_output(const run *r) {
 
 static brio_order insertion_order(const arguments *a) {
     if (a->order != FITTING_ORDER) return (brio_order)a->order;
-    return a->locate == (int)BRIO_LOCATE_TRACE ? BRIO_ORDER_RANDOM : BRIO_ORDER_BRIO;
+    return a->locate == (int)BRIO_LOCATION_TRACE ? BRIO_ORDER_RANDOM : BRIO_ORDER_BRIO;
 }
 
 static brio_status check_order(run *r, const arguments *a) {
@@ -103,8 +103,8 @@ static brio_status require_memory(run *r, const arguments *a, const brio_mesh *m
                                      cli_location_bytes((brio_location)a->locate, mesh));
 }
 
-static brio_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
-    brio_options o = brio_options_default();
+static brio_delaunay_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.order = insertion_order(a);
     o.locate = (brio_location)a->locate;
     o.all_conflicts = a->all_conflicts;
@@ -125,9 +125,9 @@ static brio_status triangulate(run *r, const arguments *a, brio_mesh *mesh, cons
     if (cli_needs_edges((brio_location)a->locate))
         TRY(cli_mesh_edges(r, mesh, (brio_location)a->locate, a->subgraph, &edges));
     TRY(cli_drop_connectivity(r, mesh));
-    brio_options o = library_options(r, a, &edges);
+    brio_delaunay_options o = library_options(r, a, &edges);
     TRY(brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out));
-    const brio_stats *s = brio_triangulation_stats(*out);
+    const brio_delaunay_stats *s = brio_triangulation_stats(*out);
     cli_stage(r, "order", s->order_seconds);
     cli_stage(r, "insert", s->insert_seconds);
     r->lap = cli_clock();
@@ -138,7 +138,7 @@ done:
 }
 
 static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triangulation *t, bool weighted) {
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     facts *f = &r->facts;
     uint64_t checksum;
     char text[20];

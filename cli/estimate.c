@@ -63,8 +63,8 @@ double cli_delaunay_bytes(const brio_mesh *mesh, bool weighted, int threads, con
 double cli_location_bytes(brio_location location, const brio_mesh *mesh) {
     double points = (double)mesh->num_vertices, corners = 0;
     if (mesh->num_faces) corners = (double)mesh->face_offsets[mesh->num_faces];
-    bool keeps_history = location == BRIO_LOCATE_HISTORY || location == BRIO_LOCATE_TRACE;
-    bool has_edges = location == BRIO_LOCATE_NEIGHBOUR || location == BRIO_LOCATE_TRACE;
+    bool keeps_history = location == BRIO_LOCATION_HISTORY || location == BRIO_LOCATION_TRACE;
+    bool has_edges = location == BRIO_LOCATION_NEIGHBOUR || location == BRIO_LOCATION_TRACE;
     return points * (keeps_history ? HISTORY_BYTES_A_POINT : LOCATION_BYTES_A_POINT) +
            (has_edges ? corners * EDGE_BYTES_A_CORNER : 0);
 }

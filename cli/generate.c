@@ -168,7 +168,7 @@ static brio_status generate_iso(run *r, const arguments *a) {
     if (!isnan(a->blobbiness)) o.blobbiness = a->blobbiness;
     if (a->points != NO_COUNT) o.vertices = (size_t)a->points;
     if (o.vertices) TRY(cli_require_memory(r, cli_iso_bytes(o.vertices)));
-    TRY(brio_generate_iso(r->ctx, r->operands[1], &o, &mesh));
+    TRY(brio_iso_surface(r->ctx, r->operands[1], &o, &mesh));
     cli_lap(r, "generate");
     cli_fact_count(&r->facts, "points", mesh->num_vertices);
     cli_fact_count(&r->facts, "faces", mesh->num_faces);

@@ -13,7 +13,7 @@ typedef struct arguments {
 } arguments;
 
 static const option_choice sides[] = {
-    {"inner", BRIO_MEDIAL_INNER}, {"outer", BRIO_MEDIAL_OUTER}, {"both", BRIO_MEDIAL_BOTH}, {NULL, 0}};
+    {"inner", BRIO_SIDES_INNER}, {"outer", BRIO_SIDES_OUTER}, {"both", BRIO_SIDES_BOTH}, {NULL, 0}};
 
 static const option options[] = {
     {"sides", 0, OPTION_CHOICE, offsetof(arguments, sides), "NAME", "of the surface whose axis is wanted (inner)",
@@ -56,14 +56,14 @@ done:
     return status;
 }
 
-static brio_medial_options medial_options(const run *r, int labeling, const brio_mesh *solid) {
+static brio_power_shape_options medial_options(const run *r, int labeling, const brio_mesh *solid) {
     const arguments *a = r->arguments;
-    brio_medial_options o = brio_medial_options_default();
+    brio_power_shape_options o = brio_power_shape_options_default();
     o.seed = r->common.seed;
     o.labeling = (brio_labeling)labeling;
     o.noise = (brio_noise)a->noise;
     o.solid = solid;
-    o.sides = (brio_medial_sides)a->sides;
+    o.sides = (brio_sides)a->sides;
     o.sampling_density = a->sampling_density;
     o.sharp = a->sharp;
     if (a->simplify) o.scale = SCALE, o.redundancy = REDUNDANCY;
@@ -72,7 +72,7 @@ static brio_medial_options medial_options(const run *r, int labeling, const brio
     return o;
 }
 
-static void report(run *r, const brio_medial_options *o, const brio_medial_stats *s, const brio_mesh *shape) {
+static void report(run *r, const brio_power_shape_options *o, const brio_power_shape_stats *s, const brio_mesh *shape) {
     facts *f = &r->facts;
     cli_stage(r, "noise", s->noise_seconds);
     cli_stage(r, "delaunay", s->delaunay_seconds);
@@ -87,7 +87,7 @@ static void report(run *r, const brio_medial_options *o, const brio_medial_stats
     cli_fact_count(f, "hidden_poles", s->hidden_poles);
     cli_fact_count(f, "inner", s->inner);
     cli_fact_count(f, "outer", s->outer);
-    cli_fact_count(f, "unlabelled", s->unlabelled);
+    cli_fact_count(f, "unlabelled", s->unlabeled);
     cli_fact_text(f, "labeling", o->solid ? "mesh" : cli_labelings[o->labeling].name);
     if (o->scale > 1 || o->redundancy > 0) {
         cli_stage(r, "simplify", s->simplify_seconds);
@@ -124,7 +124,7 @@ done:
 static brio_status medial(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *input = NULL, *shape = NULL, *crust = NULL;
-    brio_medial_stats s = {0};
+    brio_power_shape_stats s = {0};
     brio_status status = BRIO_OK;
     int labeling = a->labeling;
     bool by_mesh;
@@ -133,7 +133,7 @@ static brio_status medial(run *r) {
     TRY(cli_read(r, r->operands[0], &input));
     TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
     TRY(cli_require_memory(r, cli_crust_bytes(input)));
-    brio_medial_options o = medial_options(r, labeling, by_mesh ? input : NULL);
+    brio_power_shape_options o = medial_options(r, labeling, by_mesh ? input : NULL);
     status = brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
     cli_suggest_labeling(r, status, a->labeling, by_mesh);
     if (status != BRIO_OK) goto done;

@@ -9,7 +9,7 @@ const option_choice cli_subgraphs[] = {{"bounded", BRIO_SUBGRAPH_BOUNDED},
                                        {NULL, 0}};
 
 bool cli_needs_edges(brio_location location) {
-    return location == BRIO_LOCATE_TRACE || location == BRIO_LOCATE_NEIGHBOUR;
+    return location == BRIO_LOCATION_TRACE || location == BRIO_LOCATION_NEIGHBOUR;
 }
 
 static brio_status report(run *r, const brio_mesh *mesh, brio_subgraph kind, const brio_edges *edges) {
@@ -37,7 +37,7 @@ brio_status cli_mesh_edges(run *r, const brio_mesh *mesh, brio_location location
     brio_subgraph kind = (brio_subgraph)subgraph;
     if (!mesh->num_faces)
         return cli_fail(r, BRIO_ERR_FORMAT, "%s: expected a surface mesh to go along, found no faces", r->operands[0]);
-    if (fitting) kind = location == BRIO_LOCATE_TRACE ? BRIO_SUBGRAPH_BOUNDED : BRIO_SUBGRAPH_ALL;
+    if (fitting) kind = location == BRIO_LOCATION_TRACE ? BRIO_SUBGRAPH_BOUNDED : BRIO_SUBGRAPH_ALL;
     status = brio_mesh_subgraph(r->ctx, mesh, kind, out);
     if (status == BRIO_ERR_NO_ANSWER && fitting) {
         kind = BRIO_SUBGRAPH_MINIMUM;

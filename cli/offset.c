@@ -50,7 +50,7 @@ static void report_by_mesh(run *r, const brio_power_crust_stats *s) {
 static brio_status offset_surface(run *r, const power_crust_options *crust, const brio_mesh *points, bool by_mesh,
                                   brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_surface_options o = cli_surface_options(r, crust);
+    brio_power_crust_options o = cli_surface_options(r, crust);
     brio_power_crust_stats s = {0};
     facts *f = &r->facts;
     if (by_mesh) o.solid = points;

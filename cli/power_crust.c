@@ -20,7 +20,7 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
     if (*labeling == LABELS_OF_MESH && !input->num_faces)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--labeling mesh: %s has no faces", r->operands[0]);
     *by_mesh = *labeling == LABELS_OF_MESH || (*labeling == LABELS_OF_INPUT && input->num_faces > 0);
-    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = (int)brio_surface_options_default().labeling;
+    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = (int)brio_power_crust_options_default().labeling;
     return BRIO_OK;
 }
 
@@ -43,7 +43,7 @@ static brio_status write_normals(run *r, const char *path, const brio_mesh *poin
     TRY(brio_mesh_set_vertices(out, points->vertices, points->num_vertices));
     for (size_t k = 0; k < 3; k++) {
         void *data;
-        TRY(brio_mesh_add_property(out, names[k], BRIO_FLOAT64, &data));
+        TRY(brio_mesh_add_property(out, names[k], BRIO_SCALAR_FLOAT64, &data));
         for (size_t i = 0; i < points->num_vertices; i++) ((double *)data)[i] = normals[3 * i + k];
     }
     TRY(cli_write_to(r, path, out));
@@ -63,8 +63,8 @@ void cli_report_power_crust_stages(run *r, const power_crust_options *a, const b
     r->lap = cli_clock();
 }
 
-brio_surface_options cli_surface_options(const run *r, const power_crust_options *a) {
-    brio_surface_options o = brio_surface_options_default();
+brio_power_crust_options cli_surface_options(const run *r, const power_crust_options *a) {
+    brio_power_crust_options o = brio_power_crust_options_default();
     o.seed = r->common.seed;
     o.triangulate = a->triangulate;
     o.labeling = (brio_labeling)a->labeling;
@@ -78,7 +78,7 @@ brio_surface_options cli_surface_options(const run *r, const power_crust_options
 
 brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mesh *points, brio_mesh **surface,
                             brio_power_crust_stats *stats) {
-    brio_surface_options o = cli_surface_options(r, a);
+    brio_power_crust_options o = cli_surface_options(r, a);
     brio_format format;
     brio_status status = BRIO_OK;
     if (a->normals) {

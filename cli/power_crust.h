@@ -32,7 +32,7 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
     {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
      "power crust: a quarter as many faces, triangles", 0},                                                            \
     {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
-     "power crust: how poles are labelled inner or outer", cli_labelings},                                             \
+     "power crust: how poles are labeled inner or outer", cli_labelings},                                             \
     {"noise", 0, OPTION_CHOICE, offsetof(type, field.noise), "NAME",                                                   \
      "power crust: what to do about noisy samples (auto)", cli_noise},                                                            \
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(type, field.sampling_density), "R",                              \
@@ -49,7 +49,7 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
 bool cli_has_power_crust_options(const power_crust_options *options);
 
 /** The options as the library has them, but for the normals. */
-brio_surface_options cli_surface_options(const run *r, const power_crust_options *options);
+brio_power_crust_options cli_surface_options(const run *r, const power_crust_options *options);
 
 /** Reconstructs the surface of the points; writes the normals where they are asked for. */
 brio_status cli_power_crust(run *r, const power_crust_options *options, const brio_mesh *points, brio_mesh **surface,

@@ -80,7 +80,7 @@ typedef struct {
 /* Each tetrahedron counts for its finite vertices alike. */
 static void count_inner(const brio_triangulation *t, const char *inner, tally *sum) {
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     for (size_t i = 0; i < s->tetrahedra + s->hull_facets; i++) {
         int finite = tet[i].vertex[3] == BRIO_INFINITE ? 3 : 4;
         for (int v = 0; v < finite; v++)
@@ -140,7 +140,7 @@ static brio_status size_of_all(run *r, const brio_mesh *mesh, const double *weig
     brio_triangulation *t = NULL;
     brio_status status = brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, NULL, &t);
     if (status != BRIO_OK) return status;
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     *size = (triangulation_size){(double)(s->tetrahedra + s->hull_facets), (double)s->hidden};
     brio_triangulation_free(t);
     return BRIO_OK;

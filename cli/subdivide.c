@@ -33,7 +33,7 @@ static brio_status subdivide(run *r) {
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read(r, r->operands[0], &mesh));
     TRY(check_mesh(r, a, mesh));
-    TRY(brio_subdivide(r->ctx, mesh, a->levels, &fine));
+    TRY(brio_mesh_subdivide(r->ctx, mesh, a->levels, &fine));
     cli_lap(r, "subdivide");
     brio_mesh_free(mesh);
     mesh = NULL;

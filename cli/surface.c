@@ -71,7 +71,7 @@ static void report_cocone(run *r, const brio_cocone_stats *s) {
     cli_fact_count(f, "candidates", s->candidates);
     cli_fact_count(f, "pruned", s->pruned);
     if (a->boundaries) cli_fact_count(f, "boundary_samples", s->boundary_samples);
-    cli_fact_count(f, "relabelled", s->relabelled);
+    cli_fact_count(f, "relabeled", s->relabeled);
     if (a->pieces > 1) {
         cli_fact_count(f, "pieces", s->pieces);
         cli_fact_count(f, "unmatched", s->unmatched);

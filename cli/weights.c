@@ -103,7 +103,7 @@ done:
 brio_status cli_keep_weights(brio_mesh *mesh, const double *weights) {
     void *data;
     if (!weights || brio_mesh_property(mesh, "weight")) return BRIO_OK;
-    brio_status status = brio_mesh_add_property(mesh, "weight", BRIO_FLOAT64, &data);
+    brio_status status = brio_mesh_add_property(mesh, "weight", BRIO_SCALAR_FLOAT64, &data);
     if (status == BRIO_OK) memcpy(data, weights, mesh->num_vertices * sizeof *weights);
     return status;
 }

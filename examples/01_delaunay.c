@@ -44,7 +44,7 @@ int main(void) {
     CHECK(ctx, brio_generate(ctx, BRIO_KIND_CUBE, NUM_POINTS, NULL, &cloud));
     CHECK(ctx, brio_delaunay(ctx, cloud->vertices, NULL, cloud->num_vertices, NULL, &t));
 
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     printf("points      %zu\n", s->points);
     printf("dimension   %d\n", s->dimension);
     printf("tetrahedra  %zu\n", s->tetrahedra);

@@ -22,7 +22,7 @@ int main(void) {
     for (size_t i = 0; i < NUM_POINTS; i += 50) weights[i] = 0.1 * 0.1;
 
     CHECK(ctx, brio_delaunay(ctx, cloud->vertices, weights, NUM_POINTS, NULL, &t));
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     printf("points %zu = vertices %zu + duplicates %zu + hidden %zu\n", s->points, s->vertices, s->duplicates,
            s->hidden);
 

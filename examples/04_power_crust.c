@@ -13,7 +13,7 @@ int main(int argc, char **argv) {
     CHECK(ctx, brio_context_new(NULL, &ctx));
     CHECK(ctx, brio_generate(ctx, BRIO_KIND_TORUS, NUM_POINTS, NULL, &cloud)); /* radii 1 and 0.4 */
 
-    brio_surface_options options = brio_surface_options_default();
+    brio_power_crust_options options = brio_power_crust_options_default();
     options.triangulate = 1;
     CHECK(ctx, brio_power_crust(ctx, cloud->vertices, cloud->num_vertices, &options, &surface, &stats));
     printf("samples %zu, confused poles %zu\n", stats.samples, stats.confused);

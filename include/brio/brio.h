@@ -152,21 +152,21 @@ typedef enum brio_order {
 } brio_order;
 
 /** How a point finds its tetrahedron. All give the same tetrahedra; those other than the walk work on one thread.
- *  Points that edges do not reach are located as by BRIO_LOCATE_HISTORY (trace) or BRIO_LOCATE_WALK (neighbour).
+ *  Points that edges do not reach are located as by BRIO_LOCATION_HISTORY (trace) or BRIO_LOCATION_WALK (neighbour).
  *  Memory beyond the walk's, in bytes a point: jump 4, hierarchy about 17, neighbour 8, trace 16, the last two 8 an
  *  edge besides; history and trace also 20 for every tetrahedron that is ever created and 4 for every one there is. */
 typedef enum brio_location {
-    BRIO_LOCATE_WALK = 0,  /* from the point inserted last [Devillers Pion Teillaud 2002] */
-    BRIO_LOCATE_JUMP,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
-    BRIO_LOCATE_HIERARCHY, /* through triangulations of ever larger samples [Devillers 2002] */
-    BRIO_LOCATE_HISTORY,   /* in the history DAG [Guibas Knuth Sharir 1992, Clarkson Mehlhorn Seidel 1993] */
-    BRIO_LOCATE_TRACE,     /* edges are traced now and then, the history DAG does the rest; in BRIO_ORDER_RANDOM
+    BRIO_LOCATION_WALK = 0,  /* from the point inserted last [Devillers Pion Teillaud 2002] */
+    BRIO_LOCATION_JUMP,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
+    BRIO_LOCATION_HIERARCHY, /* through triangulations of ever larger samples [Devillers 2002] */
+    BRIO_LOCATION_HISTORY,   /* in the history DAG [Guibas Knuth Sharir 1992, Clarkson Mehlhorn Seidel 1993] */
+    BRIO_LOCATION_TRACE,     /* edges are traced now and then, the history DAG does the rest; in BRIO_ORDER_RANDOM
                               O(n log* n) for Delaunay edges that span the points [Choi 2003, chapter 4] */
-    BRIO_LOCATE_NEIGHBOUR, /* from the nearest of the point's neighbours along edges and the last point */
-    BRIO_LOCATE_END
+    BRIO_LOCATION_NEIGHBOUR, /* from the nearest of the point's neighbours along edges and the last point */
+    BRIO_LOCATION_END
 } brio_location;
 
-typedef struct brio_options {
+typedef struct brio_delaunay_options {
     brio_order order;
     double round_ratio;      /* share of the points left for the rounds before the last, below 1; default 0: the
                                 order's own, 1/8 for BRIO and 1/2 for BRIO_OCTREE and BRIO_KDTREE */
@@ -175,39 +175,39 @@ typedef struct brio_options {
     size_t block_size;       /* most points of an octree or k-d tree block; default 0: 2,000 */
     uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;
                                 default 0: none are kept */
-    brio_location locate;    /* default BRIO_LOCATE_WALK */
+    brio_location locate;    /* default BRIO_LOCATION_WALK */
     int all_conflicts;       /* history and trace: follow all conflicts, not one path; default 0 */
     const uint32_t *edges;   /* trace and neighbour: num_edges pairs of indices of points; default NULL */
     size_t num_edges;
-} brio_options;
+} brio_delaunay_options;
 
 /** One entry at the end of each round; of orders without rounds, after 4,096 points, twice as many, and so on. */
 #define BRIO_RECORD_ROUNDS UINT64_MAX
 
-BRIO_API brio_options brio_options_default(void);
+BRIO_API brio_delaunay_options brio_delaunay_options_default(void);
 
 /** Facts of a triangulation. Counters are totals and include infinite tetrahedra. */
-typedef struct brio_stats {
+typedef struct brio_delaunay_stats {
     size_t points, vertices, duplicates, hidden;
     int dimension;      /* of the affine hull: -1 (no points) to 3 */
     size_t tetrahedra;  /* finite ones */
     size_t hull_facets; /* = infinite tetrahedra */
     uint64_t created, destroyed, walk_steps, insphere_calls;
-    uint64_t exact_calls;                 /* predicate calls that the floating-point filter did not settle */
-    uint64_t deferred, serial;            /* with threads: insertions put off to a later pass; left to one thread */
-    uint64_t history;                     /* nodes of the history DAG, with BRIO_LOCATE_HISTORY or BRIO_LOCATE_TRACE */
-    uint64_t history_tests;               /* nodes that searches held against a point */
-    uint64_t trace_intersections;         /* tetrahedra entered while edges were traced */
-    double locate_seconds;                /* of the insertion: point location, from every 64th one; with one thread */
+    uint64_t exact_calls;         /* predicate calls that the floating-point filter did not settle */
+    uint64_t deferred, serial;    /* with threads: insertions put off to a later pass; left to one thread */
+    uint64_t history;             /* nodes of the history DAG, with BRIO_LOCATION_HISTORY or BRIO_LOCATION_TRACE */
+    uint64_t history_tests;       /* nodes that searches held against a point */
+    uint64_t trace_intersections; /* tetrahedra entered while edges were traced */
+    double locate_seconds;        /* of the insertion: point location, from every 64th one; with one thread */
     double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
-} brio_stats;
+} brio_delaunay_stats;
 
-/** Counters when so many points were in; those of brio_stats, up to then. */
+/** Counters when so many points were in; those of brio_delaunay_stats, up to then. */
 typedef struct brio_round {
     size_t points;     /* inserted so far */
     size_t tetrahedra; /* at that time, infinite ones included */
     uint64_t created, destroyed, walk_steps, insphere_calls, history;
-    double locate_seconds; /* as in brio_stats */
+    double locate_seconds; /* as in brio_delaunay_stats */
     double seconds;        /* since the insertion began */
 } brio_round;
 
@@ -226,12 +226,12 @@ typedef struct brio_triangulation brio_triangulation;
  *  Based on: [Bowyer 1981], [Watson 1981], [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties.
  *  */
 BRIO_API brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
-                                   const brio_options *options, brio_triangulation **out);
+                                   const brio_delaunay_options *options, brio_triangulation **out);
 
 /** Frees a triangulation; NULL is accepted. */
 BRIO_API void brio_triangulation_free(brio_triangulation *t);
 
-BRIO_API const brio_stats *brio_triangulation_stats(const brio_triangulation *t);
+BRIO_API const brio_delaunay_stats *brio_triangulation_stats(const brio_triangulation *t);
 
 /** The counters in the course of the insertion: *count entries of rising `points`, the last one at the end of the
  *  insertion; NULL and 0 unless options.record_every was set. The same numbers of points for every number of threads,
@@ -286,14 +286,14 @@ BRIO_API brio_status brio_triangulation_checksum(brio_context *ctx, const brio_t
 
 /** Scalar types of properties, as PLY has them. */
 typedef enum brio_scalar {
-    BRIO_INT8,
-    BRIO_UINT8,
-    BRIO_INT16,
-    BRIO_UINT16,
-    BRIO_INT32,
-    BRIO_UINT32,
-    BRIO_FLOAT32,
-    BRIO_FLOAT64,
+    BRIO_SCALAR_INT8,
+    BRIO_SCALAR_UINT8,
+    BRIO_SCALAR_INT16,
+    BRIO_SCALAR_UINT16,
+    BRIO_SCALAR_INT32,
+    BRIO_SCALAR_UINT32,
+    BRIO_SCALAR_FLOAT32,
+    BRIO_SCALAR_FLOAT64,
     BRIO_SCALAR_END
 } brio_scalar;
 
@@ -403,7 +403,7 @@ BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, c
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (faces that are no triangles, edges of more than two faces or
  *  of faces that disagree), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Dyn Levin Gregory 1990], [Zorin Schroeder Sweldens 1996]. */
-BRIO_API brio_status brio_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out);
+BRIO_API brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out);
 
 /** Edges between vertices. Zeroed to begin with. */
 typedef struct brio_edges {
@@ -425,7 +425,7 @@ typedef enum brio_subgraph {
 } brio_subgraph;
 
 /** A subgraph of the edges of a mesh that reaches all vertices on faces and joins what the mesh joins: the way along a
- *  known surface, for brio_options.edges. The bounded one has degree at most 3 on closed surfaces of genus 0 and 12 g
+ *  known surface, for brio_delaunay_options.edges. The bounded one has degree at most 3 on closed surfaces of genus 0 and 12 g
  *  on those of genus g, each component for itself, at most 3 on disks; where a surface has several boundary loops, or
  *  components that share a vertex, no bound is promised.
  *  Cost: linear for the bounded one and the breadth-first tree; about 20 bytes a corner of the mesh.
@@ -457,7 +457,7 @@ typedef enum brio_noise {
     BRIO_NOISE_END
 } brio_noise;
 
-typedef struct brio_surface_options {
+typedef struct brio_power_crust_options {
     uint64_t seed;          /* default 1 */
     int triangulate;        /* 1: cut the polygons into triangles; default 0 */
     brio_labeling labeling; /* default global */
@@ -478,9 +478,9 @@ typedef struct brio_surface_options {
      * 2003]; the surface is then the power crust of these. Noise is found where such pieces are off the samples by a
      * tenth of the spacing or more and by no more than pieces of half as many are; default auto. */
     brio_noise noise;
-} brio_surface_options;
+} brio_power_crust_options;
 
-BRIO_API brio_surface_options brio_surface_options_default(void);
+BRIO_API brio_power_crust_options brio_power_crust_options_default(void);
 
 /** What the power crust counts. */
 typedef struct brio_power_crust_stats {
@@ -488,8 +488,8 @@ typedef struct brio_power_crust_stats {
     size_t poles, hidden_poles; /* polar balls; of these without a power cell */
     size_t bad_cells;           /* samples with badly shaped cells, whose poles were discarded */
     size_t inner, outer;        /* labels */
-    size_t confused;            /* poles that had evidence for both labels when they were labelled */
-    size_t unreached;           /* naive, theoretical: poles that were left to the greedy labelling */
+    size_t confused;            /* poles that had evidence for both labels when they were labeled */
+    size_t unreached;           /* naive, theoretical: poles that were left to the greedy labeling */
     size_t open, toggled;       /* global: poles that the last roof duality left open; that changed their label */
     double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
     double energy;              /* sum of the violated weights of the labels; global: of weights of its own */
@@ -513,7 +513,7 @@ typedef struct brio_power_crust_stats {
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found), and as brio_delaunay.
  *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] sections 3.3 and 5. */
 BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
-                                      const brio_surface_options *options, brio_mesh **out,
+                                      const brio_power_crust_options *options, brio_mesh **out,
                                       brio_power_crust_stats *stats);
 
 /** The surface at a distance from the one that the power crust of the samples is: outwards for distance > 0, inwards
@@ -526,43 +526,38 @@ BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, s
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or the offset swallows the object), and as brio_delaunay.
  *  Based on: [Choi 2003] section 3.3.4. */
 BRIO_API brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
-                                         const brio_surface_options *options, brio_mesh **out,
+                                         const brio_power_crust_options *options, brio_mesh **out,
                                          brio_power_crust_stats *stats);
 
 /** The sides of the surface that a power shape is made of. */
-typedef enum brio_medial_sides {
-    BRIO_MEDIAL_INNER = 0,
-    BRIO_MEDIAL_OUTER = 1,
-    BRIO_MEDIAL_BOTH = 2,
-    BRIO_MEDIAL_END
-} brio_medial_sides;
+typedef enum brio_sides { BRIO_SIDES_INNER = 0, BRIO_SIDES_OUTER = 1, BRIO_SIDES_BOTH = 2, BRIO_SIDES_END } brio_sides;
 
-typedef struct brio_medial_options {
+typedef struct brio_power_shape_options {
     uint64_t seed;          /* default 1 */
-    brio_labeling labeling; /* as in brio_surface_options, and so are the next three */
+    brio_labeling labeling; /* as in brio_power_crust_options, and so are the next three */
     const brio_mesh *solid;
     double sampling_density;
     int sharp;
-    brio_medial_sides sides; /* default inner */
+    brio_sides sides; /* default inner */
     /* Balls that one larger ball of the same side can stand for are left out: */
     double scale;      /* S > 1: it holds them when both are scaled by S, which is what noise comes to; default 1 */
     double redundancy; /* E > 0: it holds them when its radius grows by E of itself; default 0 */
-    brio_noise noise;  /* as in brio_surface_options */
-} brio_medial_options;
+    brio_noise noise;  /* as in brio_power_crust_options */
+} brio_power_shape_options;
 
-BRIO_API brio_medial_options brio_medial_options_default(void);
+BRIO_API brio_power_shape_options brio_power_shape_options_default(void);
 
-typedef struct brio_medial_stats {
-    size_t samples;                  /* distinct positions */
-    size_t poles, hidden_poles;      /* polar balls; of these without a power cell */
-    size_t inner, outer, unlabelled; /* labels of all poles; with the labelings that there are, none is unlabelled */
-    size_t left_out;                 /* by `scale` and `redundancy` */
+typedef struct brio_power_shape_stats {
+    size_t samples;                      /* distinct positions */
+    size_t poles, hidden_poles;          /* polar balls; of these without a power cell */
+    size_t inner, outer, unlabeled;      /* labels of all poles; with the labelings that there are, none is unlabeled */
+    size_t left_out;                     /* by `scale` and `redundancy` */
     size_t edges, triangles, tetrahedra; /* of the shape */
     double noise;                        /* as in brio_power_crust_stats, and so is the next */
     size_t smoothed;
     double delaunay_seconds, poles_seconds, power_seconds, label_seconds, simplify_seconds, shape_seconds,
         noise_seconds;
-} brio_medial_stats;
+} brio_power_shape_stats;
 
 /** The power shape of samples of a surface, an approximation of its medial axis: the poles on the sides asked for that
  *  have a cell in the power diagram of all polar balls, and the edges, triangles and tetrahedra of its dual between
@@ -582,8 +577,8 @@ typedef struct brio_medial_stats {
  *  not closed), and as brio_delaunay.
  *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] section 3.3.2, [Miklos Giesen Pauly 2010]. */
 BRIO_API brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num_points,
-                                      const brio_medial_options *options, brio_mesh **shape, brio_mesh **crust,
-                                      brio_medial_stats *stats);
+                                      const brio_power_shape_options *options, brio_mesh **shape, brio_mesh **crust,
+                                      brio_power_shape_stats *stats);
 
 typedef struct brio_cocone_options {
     uint64_t seed;  /* default 1 */
@@ -605,7 +600,7 @@ typedef struct brio_cocone_stats {
     size_t candidates;        /* triangles that pass the test */
     size_t pruned;            /* of these, dropped at sharp edges */
     size_t boundary_samples;  /* found with options.boundaries */
-    size_t relabelled;        /* tetrahedra whose side was changed to keep the surface a manifold */
+    size_t relabeled;         /* tetrahedra whose side was changed to keep the surface a manifold */
     size_t pieces, unmatched; /* with options.pieces: cells of the octree; triangles at their seams left out because
                                  the pieces disagree on them */
     size_t outside_guarantee; /* with options.density: samples on the surface where the estimate of r is over 0.08 */
@@ -729,8 +724,8 @@ BRIO_API brio_iso_options brio_iso_options_default(void);
  *  Memory: the map with 4 bytes a value, or 40 bytes an atom; the mesh; two layers of cells with 36 bytes each.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (nothing is above the level, or the map is one value thin),
  *  and as brio_read. */
-BRIO_API brio_status brio_generate_iso(brio_context *ctx, const char *path, const brio_iso_options *options,
-                                       brio_mesh **out);
+BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_options *options,
+                                      brio_mesh **out);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Predicates, exact for every finite double

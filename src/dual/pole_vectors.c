@@ -321,7 +321,7 @@ done:
 brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *t, const double *points,
                                    size_t num_points, double theta, brio_pole_vectors *out) {
     brio_status status = BRIO_OK;
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     *out = (brio_pole_vectors){.num_finite = s->tetrahedra,
                                .num_points = num_points,
                                .num_vertices = s->vertices,

@@ -44,11 +44,11 @@ typedef struct {
 /* --- header --- */
 
 static int64_t whole(const ccp4_header *h, int offset) {
-    return (int64_t)brio_scalar_load(h->bytes + offset, BRIO_INT32, h->swap);
+    return (int64_t)brio_scalar_load(h->bytes + offset, BRIO_SCALAR_INT32, h->swap);
 }
 
 static double real(const ccp4_header *h, int offset) {
-    return brio_scalar_load(h->bytes + offset, BRIO_FLOAT32, h->swap);
+    return brio_scalar_load(h->bytes + offset, BRIO_SCALAR_FLOAT32, h->swap);
 }
 
 /* Whether mode and axes make sense in a byte order. Some programs leave the axes 0, which stands for 1, 2, 3; then the
@@ -71,7 +71,7 @@ static brio_status find_type(const brio_stream *s, ccp4_header *h) {
     static const struct {
         int64_t mode;
         brio_scalar type;
-    } types[] = {{0, BRIO_INT8}, {1, BRIO_INT16}, {2, BRIO_FLOAT32}, {6, BRIO_UINT16}};
+    } types[] = {{0, BRIO_SCALAR_INT8}, {1, BRIO_SCALAR_INT16}, {2, BRIO_SCALAR_FLOAT32}, {6, BRIO_SCALAR_UINT16}};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (h->mode == types[i].mode) {
             h->type = types[i].type;

@@ -135,7 +135,7 @@ done:
     return status;
 }
 
-brio_status brio_generate_iso(brio_context *ctx, const char *path, const brio_iso_options *options, brio_mesh **out) {
+brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_options *options, brio_mesh **out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_iso_options o = options ? *options : brio_iso_options_default();

@@ -61,9 +61,9 @@ static brio_status plan_node(brio_builder *b, const uint64_t *counts) {
     for (uint64_t i = 0; i < counts[2]; i++) {
         char name[64];
         snprintf(name, sizeof name, "attribute%" PRIu64, i + 1);
-        BRIO_TRY(brio_builder_property(b, name, BRIO_FLOAT64));
+        BRIO_TRY(brio_builder_property(b, name, BRIO_SCALAR_FLOAT64));
     }
-    if (counts[3]) BRIO_TRY(brio_builder_property(b, marker_name, BRIO_INT32));
+    if (counts[3]) BRIO_TRY(brio_builder_property(b, marker_name, BRIO_SCALAR_INT32));
 done:
     return status;
 }
@@ -139,7 +139,7 @@ done:
 /* --- writing --- */
 
 static bool is_marker(const brio_property *p) {
-    return p->type == BRIO_INT32 && !strcmp(p->name, marker_name);
+    return p->type == BRIO_SCALAR_INT32 && !strcmp(p->name, marker_name);
 }
 
 brio_status brio_node_write(brio_output *out, const brio_write_job *job) {

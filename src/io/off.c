@@ -83,9 +83,9 @@ static brio_status plan_extra(brio_text *t, brio_builder *b, off_kind *kind, siz
     BRIO_REQUIRE(b->ctx, found == others + colours && (!kind->colour || colours == 3 || colours == 4), BRIO_ERR_FORMAT,
                  "%s: line %zu: %zu numbers behind the coordinates, expected those of normal, colour, texture", b->name,
                  t->stream->line, found);
-    for (size_t i = 0; kind->normal && i < 3; i++) BRIO_TRY(brio_builder_property(b, normal[i], BRIO_FLOAT64));
-    for (size_t i = 0; i < colours; i++) BRIO_TRY(brio_builder_property(b, colour[i], BRIO_FLOAT64));
-    for (size_t i = 0; kind->texture && i < 2; i++) BRIO_TRY(brio_builder_property(b, texture[i], BRIO_FLOAT64));
+    for (size_t i = 0; kind->normal && i < 3; i++) BRIO_TRY(brio_builder_property(b, normal[i], BRIO_SCALAR_FLOAT64));
+    for (size_t i = 0; i < colours; i++) BRIO_TRY(brio_builder_property(b, colour[i], BRIO_SCALAR_FLOAT64));
+    for (size_t i = 0; kind->texture && i < 2; i++) BRIO_TRY(brio_builder_property(b, texture[i], BRIO_SCALAR_FLOAT64));
     kind->num_extra = found;
 done:
     return status;

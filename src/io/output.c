@@ -252,8 +252,8 @@ brio_status brio_output_integer(brio_output *out, char before, int64_t x) {
 
 brio_status brio_output_scalar(brio_output *out, char before, const brio_property *property, size_t i) {
     double x = brio_property_value(property, i);
-    if (property->type == BRIO_FLOAT64) return brio_output_double(out, before, x);
-    if (property->type != BRIO_FLOAT32) return brio_output_integer(out, before, (int64_t)x);
+    if (property->type == BRIO_SCALAR_FLOAT64) return brio_output_double(out, before, x);
+    if (property->type != BRIO_SCALAR_FLOAT32) return brio_output_integer(out, before, (int64_t)x);
     brio_status status = room(out, before);
     if (status == BRIO_OK) out->used += brio_print_float(out->buffer + out->used, (float)x);
     return status;

@@ -23,7 +23,7 @@ const char *brio_ply_type_name(brio_scalar type) {
 }
 
 static brio_scalar type_of(const char *word) {
-    for (brio_scalar type = BRIO_INT8; type < BRIO_SCALAR_END; type++)
+    for (brio_scalar type = BRIO_SCALAR_INT8; type < BRIO_SCALAR_END; type++)
         if (!strcmp(word, type_names[type][0]) || !strcmp(word, type_names[type][1])) return type;
     return BRIO_SCALAR_END;
 }

@@ -49,21 +49,21 @@ DEFINE_LOAD(double, 64)
 
 double brio_scalar_load(const void *bytes, brio_scalar type, bool swap) {
     switch (type) {
-    case BRIO_INT8:
+    case BRIO_SCALAR_INT8:
         return load_int8_t(bytes, swap);
-    case BRIO_UINT8:
+    case BRIO_SCALAR_UINT8:
         return load_uint8_t(bytes, swap);
-    case BRIO_INT16:
+    case BRIO_SCALAR_INT16:
         return load_int16_t(bytes, swap);
-    case BRIO_UINT16:
+    case BRIO_SCALAR_UINT16:
         return load_uint16_t(bytes, swap);
-    case BRIO_INT32:
+    case BRIO_SCALAR_INT32:
         return load_int32_t(bytes, swap);
-    case BRIO_UINT32:
+    case BRIO_SCALAR_UINT32:
         return load_uint32_t(bytes, swap);
-    case BRIO_FLOAT32:
+    case BRIO_SCALAR_FLOAT32:
         return load_float(bytes, swap);
-    case BRIO_FLOAT64:
+    case BRIO_SCALAR_FLOAT64:
         return load_double(bytes, swap);
     case BRIO_SCALAR_END:
         break;
@@ -74,28 +74,28 @@ double brio_scalar_load(const void *bytes, brio_scalar type, bool swap) {
 void brio_scalar_convert(double *target, const char *source, size_t rows, size_t stride, size_t lanes, brio_scalar type,
                          bool swap) {
     switch (type) {
-    case BRIO_INT8:
+    case BRIO_SCALAR_INT8:
         convert_int8_t(target, source, rows, stride, lanes, swap);
         break;
-    case BRIO_UINT8:
+    case BRIO_SCALAR_UINT8:
         convert_uint8_t(target, source, rows, stride, lanes, swap);
         break;
-    case BRIO_INT16:
+    case BRIO_SCALAR_INT16:
         convert_int16_t(target, source, rows, stride, lanes, swap);
         break;
-    case BRIO_UINT16:
+    case BRIO_SCALAR_UINT16:
         convert_uint16_t(target, source, rows, stride, lanes, swap);
         break;
-    case BRIO_INT32:
+    case BRIO_SCALAR_INT32:
         convert_int32_t(target, source, rows, stride, lanes, swap);
         break;
-    case BRIO_UINT32:
+    case BRIO_SCALAR_UINT32:
         convert_uint32_t(target, source, rows, stride, lanes, swap);
         break;
-    case BRIO_FLOAT32:
+    case BRIO_SCALAR_FLOAT32:
         convert_float(target, source, rows, stride, lanes, swap);
         break;
-    case BRIO_FLOAT64:
+    case BRIO_SCALAR_FLOAT64:
         convert_double(target, source, rows, stride, lanes, swap);
         break;
     case BRIO_SCALAR_END:
@@ -113,26 +113,26 @@ void brio_scalar_convert(double *target, const char *source, size_t rows, size_t
 
 bool brio_scalar_store(void *target, brio_scalar type, double value) {
     switch (type) {
-    case BRIO_INT8:
+    case BRIO_SCALAR_INT8:
         STORE(int8_t, INT8_MIN, INT8_MAX);
-    case BRIO_UINT8:
+    case BRIO_SCALAR_UINT8:
         STORE(uint8_t, 0, UINT8_MAX);
-    case BRIO_INT16:
+    case BRIO_SCALAR_INT16:
         STORE(int16_t, INT16_MIN, INT16_MAX);
-    case BRIO_UINT16:
+    case BRIO_SCALAR_UINT16:
         STORE(uint16_t, 0, UINT16_MAX);
-    case BRIO_INT32:
+    case BRIO_SCALAR_INT32:
         STORE(int32_t, INT32_MIN, INT32_MAX);
-    case BRIO_UINT32:
+    case BRIO_SCALAR_UINT32:
         STORE(uint32_t, 0, UINT32_MAX);
-    case BRIO_FLOAT32: {
+    case BRIO_SCALAR_FLOAT32: {
         /* beyond the largest float the conversion of C is undefined, that of the format an infinity */
         bool beyond = fabs(value) > 0x1.ffffffp127;
         float stored = beyond ? (float)copysign((double)INFINITY, value) : (float)value;
         memcpy(target, &stored, sizeof stored);
         return true;
     }
-    case BRIO_FLOAT64:
+    case BRIO_SCALAR_FLOAT64:
         memcpy(target, &value, sizeof value);
         return true;
     case BRIO_SCALAR_END:

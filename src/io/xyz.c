@@ -185,7 +185,7 @@ static brio_status add_property(xyz_reader *r, size_t i) {
     if (!name[0] || axis || brio_mesh_property(r->builder->mesh, name)) snprintf(name, sizeof name, "column%zu", i + 1);
     r->columns[i].role = COLUMN_PROPERTY;
     r->columns[i].target = r->builder->mesh->num_properties;
-    return brio_builder_property(r->builder, name, BRIO_FLOAT64);
+    return brio_builder_property(r->builder, name, BRIO_SCALAR_FLOAT64);
 }
 
 static brio_status plan_columns(xyz_reader *r) {

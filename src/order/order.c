@@ -23,7 +23,7 @@ typedef struct {
     brio_context *ctx;
     const double *points;
     size_t n;
-    const brio_options *options;
+    const brio_delaunay_options *options;
     uint32_t *index; /* receives the points in the order of the curve or of the blocks; NULL until room is needed */
     uint32_t *spare; /* room for n indices, or NULL */
 } maker;
@@ -40,7 +40,7 @@ bool brio_order_has_ranks(brio_order order) {
     return order != BRIO_ORDER_RANDOM && order != BRIO_ORDER_INPUT;
 }
 
-static double ratio_of(const brio_options *options) {
+static double ratio_of(const brio_delaunay_options *options) {
     if (options->round_ratio > 0) return options->round_ratio;
     return options->order == BRIO_ORDER_BRIO ? 0.125 : 0.5;
 }
@@ -74,7 +74,7 @@ done:
 /* --- blocks --- */
 
 static void shuffle_block(uint32_t *index, const brio_block *block, const void *user) {
-    const brio_options *options = user;
+    const brio_delaunay_options *options = user;
     brio_rng rng = brio_rng_new(brio_hash(options->seed, block->begin));
     uint32_t *a = index + block->begin;
     for (uint32_t i = (uint32_t)(block->end - block->begin); i > 1; i--) {
@@ -110,7 +110,7 @@ static brio_status order_index(maker *m) {
     }
 }
 
-brio_status brio_order_points(brio_context *ctx, const double *points, size_t n, const brio_options *options,
+brio_status brio_order_points(brio_context *ctx, const double *points, size_t n, const brio_delaunay_options *options,
                               uint32_t *order, uint32_t *rank, brio_round_ends *rounds) {
     brio_status status = BRIO_OK;
     brio_round_ends ends = {1, {n}};

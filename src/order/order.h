@@ -10,8 +10,9 @@
  *          through all points; it rises inside a round. Only where brio_order_has_ranks.
  *  rounds  NULL, or receives where the rounds end.
  *  Workspace, bytes a point: brio, hilbert and random 16, brio-octree 5, octree 4, brio-kdtree 20, input none. */
-brio_status brio_order_points(brio_context *ctx, const double *points, size_t num_points, const brio_options *options,
-                              uint32_t *order, uint32_t *rank, brio_round_ends *rounds);
+brio_status brio_order_points(brio_context *ctx, const double *points, size_t num_points,
+                              const brio_delaunay_options *options, uint32_t *order, uint32_t *rank,
+                              brio_round_ends *rounds);
 
 /** Whether the order follows a path through space. */
 bool brio_order_has_ranks(brio_order order);

@@ -21,7 +21,7 @@
  *
  * Based on: Attali, Lachaud. Delaunay conforming iso-surface, skeleton extraction and noise removal. Computational
  * Geometry 2001.
- * Differs from the paper: the corners of the grid take part, which makes the construction one of labelling. */
+ * Differs from the paper: the corners of the grid take part, which makes the construction one of labeling. */
 #include "base/sort.h"
 #include "surface/iso_surface.h"
 #include "surface/split_vertices.h"
@@ -239,7 +239,7 @@ static bool is_of_vertices(const slab *s, const uint32_t *v, int facet) {
 
 static brio_status take_boundary(slab *s, const brio_triangulation *t) {
     brio_status status = BRIO_OK;
-    const brio_stats *stats = brio_triangulation_stats(t);
+    const brio_delaunay_stats *stats = brio_triangulation_stats(t);
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
     size_t count = stats->tetrahedra + stats->hull_facets;
     BRIO_TRY(BRIO_RESERVE(s->ctx, s->label, s->label_capacity, count));
@@ -396,7 +396,7 @@ static void slab_free(slab *s) {
     brio_release(s->ctx, s->above.corners);
 }
 
-brio_status brio_conforming_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out) {
+brio_status brio_conforming_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out) {
     brio_status status = BRIO_OK;
     brio_implicit_grid settled = *grid;
     slab s = {.ctx = ctx, .grid = &settled, .row = (size_t)grid->cells[0] + 1};

@@ -146,7 +146,7 @@ brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size
     choose_buckets(&d, extent, reach, num_atoms);
     BRIO_TRY(fill_buckets(ctx, &d, atoms, num_atoms));
     BRIO_TRY(choose_grid(ctx, &d, extent, reach, resolution, &grid));
-    BRIO_TRY(conforming ? brio_conforming_iso_surface(ctx, &grid, out) : brio_iso_surface(ctx, &grid, out));
+    BRIO_TRY(conforming ? brio_conforming_surface(ctx, &grid, out) : brio_marched_surface(ctx, &grid, out));
 done:
     brio_release(ctx, d.atoms);
     brio_release(ctx, d.start);

@@ -242,7 +242,7 @@ brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh 
         BRIO_TRY(brio_implicit_cells(ctx, ceil((high[k] - low[k]) / grid.cell), &grid.cells[k]));
         grid.low[k] = 0.5 * (low[k] + high[k] - grid.cells[k] * grid.cell);
     }
-    BRIO_TRY(brio_iso_surface(ctx, &grid, out));
+    BRIO_TRY(brio_marched_surface(ctx, &grid, out));
 done:
     return status;
 }

@@ -285,7 +285,7 @@ done:
     return status;
 }
 
-brio_status brio_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out) {
+brio_status brio_marched_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out) {
     brio_status status = BRIO_OK;
     marcher m = {.ctx = ctx, .grid = grid, .row = (size_t)grid->cells[0] + 1};
     m.layer = m.row * ((size_t)grid->cells[1] + 1);

@@ -26,14 +26,14 @@ brio_status brio_implicit_cells(brio_context *ctx, double cells, uint32_t *out);
  *  faces when no node of the grid is inside. Memory: the mesh and two layers of nodes.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (negative on the border), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
-brio_status brio_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out);
+brio_status brio_marched_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out);
 
 /** The same with Delaunay triangles: each is a facet of the Delaunay triangulation of the mesh's vertices. These are on
  *  the edges of the grid, so that there are about a third as many; at least a thousandth of an edge from its ends, where
  *  doubles can tell such places apart. The grid's corner and side are rounded so that all nodes are doubles.
  *  Memory: the mesh, two layers of nodes, and the triangulation of the cells between them.
- *  Returns as brio_iso_surface, and BRIO_ERR_NO_ANSWER where the cells are too small for doubles so far from 0. */
-brio_status brio_conforming_iso_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out);
+ *  Returns as brio_marched_surface, and BRIO_ERR_NO_ANSWER where the cells are too small for doubles so far from 0. */
+brio_status brio_conforming_surface(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh **out);
 
 /* What the two have in common. */
 

@@ -119,21 +119,21 @@ const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name)
 double brio_property_value(const brio_property *property, size_t i) {
     BRIO_DOOR;
     switch (property->type) {
-    case BRIO_INT8:
+    case BRIO_SCALAR_INT8:
         return ((const int8_t *)property->data)[i];
-    case BRIO_UINT8:
+    case BRIO_SCALAR_UINT8:
         return ((const uint8_t *)property->data)[i];
-    case BRIO_INT16:
+    case BRIO_SCALAR_INT16:
         return ((const int16_t *)property->data)[i];
-    case BRIO_UINT16:
+    case BRIO_SCALAR_UINT16:
         return ((const uint16_t *)property->data)[i];
-    case BRIO_INT32:
+    case BRIO_SCALAR_INT32:
         return ((const int32_t *)property->data)[i];
-    case BRIO_UINT32:
+    case BRIO_SCALAR_UINT32:
         return ((const uint32_t *)property->data)[i];
-    case BRIO_FLOAT32:
+    case BRIO_SCALAR_FLOAT32:
         return (double)((const float *)property->data)[i];
-    case BRIO_FLOAT64:
+    case BRIO_SCALAR_FLOAT64:
         return ((const double *)property->data)[i];
     case BRIO_SCALAR_END:
         break;

@@ -254,7 +254,7 @@ static brio_status make_mesh(scan *c, brio_mesh **out) {
     mesh->vertices = c->points;
     mesh->num_vertices = c->count;
     c->points = NULL;
-    BRIO_TRY(brio_mesh_add_property(mesh, "view", BRIO_UINT16, &views));
+    BRIO_TRY(brio_mesh_add_property(mesh, "view", BRIO_SCALAR_UINT16, &views));
     if (c->count) memcpy(views, c->views, c->count * sizeof *c->views);
     *out = mesh;
     mesh = NULL;

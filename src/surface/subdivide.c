@@ -258,9 +258,9 @@ static brio_status make_property(subdivider *s, const brio_property *property) {
         uint32_t a = v[h], b = v[brio_next_corner(h)];
         char *target = data + s->edge_vertex[h] * size;
         double mean = brio_property_value(property, a) / 2 + brio_property_value(property, b) / 2;
-        if (property->type == BRIO_FLOAT64)
+        if (property->type == BRIO_SCALAR_FLOAT64)
             memcpy(target, &mean, size);
-        else if (property->type == BRIO_FLOAT32)
+        else if (property->type == BRIO_SCALAR_FLOAT32)
             memcpy(target, &(float){(float)mean}, size);
         else
             memcpy(target, (const char *)property->data + a * size, size);
@@ -296,7 +296,7 @@ done:
 
 /* --- all levels --- */
 
-brio_status brio_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
+brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_mesh *coarse = NULL, *fine = NULL;

@@ -49,7 +49,7 @@ brio_status brio_mesh_add_normals(brio_mesh *mesh) {
     }
     for (int k = 0; k < 3; k++) {
         void *data;
-        BRIO_TRY(brio_mesh_add_property(mesh, NAMES[k], BRIO_FLOAT32, &data));
+        BRIO_TRY(brio_mesh_add_property(mesh, NAMES[k], BRIO_SCALAR_FLOAT32, &data));
         column[k] = data;
     }
     for (size_t v = 0; v < mesh->num_vertices; v++) {

@@ -210,10 +210,10 @@ brio_status brio_volume_surface(brio_context *ctx, const brio_volume *volume, do
     if (!(s.scale > 0)) s.scale = 1;
     if (conforming) {
         BRIO_TRY(choose_cubes(ctx, &s, resolution, &grid));
-        return brio_conforming_iso_surface(ctx, &grid, out);
+        return brio_conforming_surface(ctx, &grid, out);
     }
     BRIO_TRY(choose_grid(ctx, &s, resolution, &grid));
-    BRIO_TRY(brio_iso_surface(ctx, &grid, out));
+    BRIO_TRY(brio_marched_surface(ctx, &grid, out));
     carry_to_space(&s, *out);
 done:
     return status;

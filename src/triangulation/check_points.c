@@ -114,7 +114,7 @@ static int compare_positions(uint32_t p, uint32_t q, const void *record) {
 static brio_status check_counts(workspace *w) {
     brio_status status = BRIO_OK;
     const brio_record *r = w->j->t.record;
-    const brio_stats *s = &w->result->stats;
+    const brio_delaunay_stats *s = &w->result->stats;
     size_t hidden = 0;
     BRIO_TRY(brio_sort_rows(w->j->ctx, *r, 4, w->hidden, w->num_hidden, compare_positions, r));
     for (size_t i = 0; i < w->num_hidden; i++)

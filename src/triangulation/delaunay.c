@@ -15,17 +15,17 @@
 
 enum { PROGRESS_EVERY = 8192, RECORDS_A_THREAD = 1 << 14, POINTS_A_THREAD = 512 };
 
-brio_options brio_options_default(void) {
-    return (brio_options){.order = BRIO_ORDER_BRIO, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
+brio_delaunay_options brio_delaunay_options_default(void) {
+    return (brio_delaunay_options){.order = BRIO_ORDER_BRIO, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
 }
 
-static brio_status check_options(brio_context *ctx, size_t n, const brio_options *o) {
+static brio_status check_options(brio_context *ctx, size_t n, const brio_delaunay_options *o) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
     BRIO_REQUIRE(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
     BRIO_REQUIRE(ctx, o->round_ratio >= 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
                  "round ratio %g is not between 0 and 1", o->round_ratio);
-    BRIO_REQUIRE(ctx, (unsigned)o->locate < BRIO_LOCATE_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
+    BRIO_REQUIRE(ctx, (unsigned)o->locate < BRIO_LOCATION_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
                  (int)o->locate);
     BRIO_REQUIRE(ctx, o->edges || !o->num_edges, BRIO_ERR_ARGUMENT, "%zu edges, but no array of them", o->num_edges);
     for (size_t i = 0; i < 2 * o->num_edges; i++)
@@ -103,7 +103,7 @@ brio_status brio_records_new(brio_context *ctx, const double *points, const doub
 /* --- construction --- */
 
 static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *points, const double *weights, size_t n,
-                              const brio_options *options, brio_round_ends *rounds) {
+                              const brio_delaunay_options *options, brio_round_ends *rounds) {
     brio_status status = BRIO_OK;
     memset(k, 0, sizeof *k);
     k->ctx = ctx;
@@ -120,7 +120,7 @@ static brio_status kernel_new(brio_kernel *k, brio_context *ctx, const double *p
     double start = brio_seconds();
     BRIO_TRY(BRIO_ALLOC(ctx, k->caller, n + 3));
     BRIO_TRY(brio_progress(ctx, "order", 0));
-    bool parallel = brio_threads(ctx, n, POINTS_A_THREAD) > 1 && options->locate == BRIO_LOCATE_WALK;
+    bool parallel = brio_threads(ctx, n, POINTS_A_THREAD) > 1 && options->locate == BRIO_LOCATION_WALK;
     if (parallel && brio_order_has_ranks(options->order)) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, k->rank, n + 3));
     BRIO_TRY(brio_order_points(ctx, points, n, options, k->caller, k->rank, rounds));
     BRIO_TRY(brio_records_new(ctx, points, weights, n, k->caller, 3, &k->record));
@@ -180,7 +180,7 @@ done:
     return status;
 }
 
-static brio_status insert_all(brio_kernel *k, const brio_options *options, brio_recorder *recorder) {
+static brio_status insert_all(brio_kernel *k, const brio_delaunay_options *options, brio_recorder *recorder) {
     brio_status status = BRIO_OK;
     size_t n = k->num_points, p, end;
     recorder->start = brio_seconds();
@@ -239,9 +239,9 @@ done:
 }
 
 brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
-                          const brio_options *options, brio_triangulation **out) {
+                          const brio_delaunay_options *options, brio_triangulation **out) {
     BRIO_DOOR;
-    brio_options standard = brio_options_default();
+    brio_delaunay_options standard = brio_delaunay_options_default();
     brio_kernel *k = NULL; /* on no stack: it takes 25 KiB */
     brio_recorder recorder = {0};
     brio_status status = BRIO_OK;
@@ -277,7 +277,7 @@ void brio_triangulation_free(brio_triangulation *t) {
     brio_release(t->ctx, t);
 }
 
-const brio_stats *brio_triangulation_stats(const brio_triangulation *t) {
+const brio_delaunay_stats *brio_triangulation_stats(const brio_triangulation *t) {
     return &t->stats;
 }
 const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triangulation *t) {

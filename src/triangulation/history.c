@@ -65,7 +65,7 @@ static brio_status add_nodes(brio_kernel *k, brio_history *h, const uint32_t *sl
     return BRIO_OK;
 }
 
-brio_status brio_history_new(brio_kernel *k, const brio_options *options, brio_history *out) {
+brio_status brio_history_new(brio_kernel *k, const brio_delaunay_options *options, brio_history *out) {
     *out = (brio_history){.all_conflicts = options->all_conflicts != 0};
     brio_status status = add_nodes(k, out, NULL, k->t.count);
     if (status == BRIO_OK) out->first[0] = 0;

@@ -33,7 +33,7 @@ typedef struct {
 } brio_history;
 
 /** A history of the first tetrahedra. After a failure the history is to be freed, too. */
-brio_status brio_history_new(brio_kernel *k, const brio_options *options, brio_history *out);
+brio_status brio_history_new(brio_kernel *k, const brio_delaunay_options *options, brio_history *out);
 void brio_history_free(brio_context *ctx, brio_history *h);
 
 /** Adds the insertion whose cavity was filled last. BRIO_ERR_TOO_LARGE beyond 2^32 - 2 nodes. */

@@ -57,7 +57,7 @@ struct brio_kernel {
     brio_cavity cavity;
     brio_read_ahead read_ahead;
     bool goes_on; /* in scratch files: the next point is often close to the last one */
-    brio_stats stats;
+    brio_delaunay_stats stats;
     bool reports;       /* progress is told from this thread, the caller's */
     double done;        /* share of the points that were in at the last report */
     uint64_t report_at; /* work at which the next report is due */
@@ -70,7 +70,7 @@ enum { BRIO_INSERT_WORK = 1 << 18 };
 /** The work of a kernel so far: conflict tests, tetrahedra created, steps of walks, nodes of the history; a predicate that
  *  the floating-point filter leaves open counts as 64 of these. */
 static inline uint64_t brio_kernel_work(const brio_kernel *k) {
-    const brio_stats *s = &k->stats;
+    const brio_delaunay_stats *s = &k->stats;
     return s->insphere_calls + s->created + k->walk.steps + s->history_tests + s->trace_intersections +
            64 * k->filter.unsettled;
 }

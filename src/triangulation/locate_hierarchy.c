@@ -112,7 +112,7 @@ static brio_status start_level(const brio_kernel *main, level *own, const brio_k
     return BRIO_OK;
 }
 
-static brio_status start_hierarchy(brio_kernel *k, const brio_options *options) {
+static brio_status start_hierarchy(brio_kernel *k, const brio_delaunay_options *options) {
     hierarchy *own = NULL;
     size_t size[MOST_LEVELS] = {0};
     brio_status status = BRIO_OK;

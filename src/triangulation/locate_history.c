@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include "triangulation/history.h"
 
-static brio_status start_history(brio_kernel *k, const brio_options *options) {
+static brio_status start_history(brio_kernel *k, const brio_delaunay_options *options) {
     brio_history *h = NULL;
     brio_status status = BRIO_ALLOC_ZERO(k->ctx, h, 1);
     if (status != BRIO_OK) return status;

@@ -15,7 +15,7 @@ typedef struct {
     brio_rng rng;
 } jump;
 
-static brio_status start_jump(brio_kernel *k, const brio_options *options) {
+static brio_status start_jump(brio_kernel *k, const brio_delaunay_options *options) {
     jump *own = NULL;
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, own, 1));

@@ -14,7 +14,7 @@ typedef struct {
     uint32_t *vertex_tet, last;
 } neighbours;
 
-static brio_status start_neighbours(brio_kernel *k, const brio_options *options) {
+static brio_status start_neighbours(brio_kernel *k, const brio_delaunay_options *options) {
     neighbours *own = NULL;
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, own, 1));

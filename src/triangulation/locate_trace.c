@@ -33,7 +33,7 @@ typedef struct {
     size_t head, tail;
 } tracing;
 
-static brio_status start_trace(brio_kernel *k, const brio_options *options) {
+static brio_status start_trace(brio_kernel *k, const brio_delaunay_options *options) {
     trace *own = NULL;
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, own, 1));

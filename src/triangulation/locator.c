@@ -26,10 +26,10 @@ static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
 const brio_locator brio_locator_walk = {.locate = locate};
 
 const brio_locator *brio_locator_choose(brio_location location) {
-    static const brio_locator *const locators[BRIO_LOCATE_END] = {
-        [BRIO_LOCATE_WALK] = &brio_locator_walk,           [BRIO_LOCATE_JUMP] = &brio_locator_jump,
-        [BRIO_LOCATE_HIERARCHY] = &brio_locator_hierarchy, [BRIO_LOCATE_HISTORY] = &brio_locator_history,
-        [BRIO_LOCATE_TRACE] = &brio_locator_trace,         [BRIO_LOCATE_NEIGHBOUR] = &brio_locator_neighbour,
+    static const brio_locator *const locators[BRIO_LOCATION_END] = {
+        [BRIO_LOCATION_WALK] = &brio_locator_walk,           [BRIO_LOCATION_JUMP] = &brio_locator_jump,
+        [BRIO_LOCATION_HIERARCHY] = &brio_locator_hierarchy, [BRIO_LOCATION_HISTORY] = &brio_locator_history,
+        [BRIO_LOCATION_TRACE] = &brio_locator_trace,         [BRIO_LOCATION_NEIGHBOUR] = &brio_locator_neighbour,
     };
     return locators[location];
 }

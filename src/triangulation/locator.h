@@ -7,7 +7,7 @@
 /** What a strategy does; what it keeps is k->location. All but `locate` may be NULL. */
 typedef struct {
     /** Once the first tetrahedron stands. After a failure `release` is called, too. */
-    brio_status (*start)(brio_kernel *k, const brio_options *options);
+    brio_status (*start)(brio_kernel *k, const brio_delaunay_options *options);
     /** A tetrahedron whose closure holds record p, or that conflicts with it; at the position of a vertex that is not
      *  lighter, one of that vertex. Records come in their order. */
     brio_status (*locate)(brio_kernel *k, uint32_t p, uint32_t *tet);

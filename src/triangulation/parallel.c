@@ -196,7 +196,7 @@ static brio_status join_pass(worker *w, brio_pass *pass) {
     k->cavity = cavity;
     k->cavity.local = main->cavity.local;
     k->cavity.num_created = 0;
-    k->stats = (brio_stats){0};
+    k->stats = (brio_delaunay_stats){0};
     k->filter.unsettled = k->walk.steps = 0;
     k->report_at = 0;
     if (k->cavity.table) return BRIO_OK;

@@ -8,7 +8,7 @@ void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph) {
     brio_release(ctx, graph->neighbour);
 }
 
-brio_status brio_point_graph_new(const brio_kernel *k, const brio_options *options, brio_point_graph *out) {
+brio_status brio_point_graph_new(const brio_kernel *k, const brio_delaunay_options *options, brio_point_graph *out) {
     brio_status status = BRIO_OK;
     size_t n = k->num_points, ends = 2 * options->num_edges;
     uint32_t *record = NULL, *first, sum = 0;

@@ -10,7 +10,7 @@ typedef struct {
 } brio_point_graph;
 
 /** The graph of the options' edges; BRIO_ERR_TOO_LARGE beyond 2^31 - 1 edges. After a failure it is to be freed, too. */
-brio_status brio_point_graph_new(const brio_kernel *k, const brio_options *options, brio_point_graph *out);
+brio_status brio_point_graph_new(const brio_kernel *k, const brio_delaunay_options *options, brio_point_graph *out);
 void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph);
 
 #endif

@@ -6,7 +6,7 @@
 #include "triangulation/kernel.h"
 
 typedef struct {
-    uint64_t every; /* as brio_options.record_every */
+    uint64_t every; /* as brio_delaunay_options.record_every */
     brio_round_ends rounds;
     double start; /* of the insertion */
     brio_round *list;

@@ -8,7 +8,7 @@ struct brio_triangulation {
     brio_context *ctx;
     brio_tetrahedron *tet;    /* finite ones first; vertices are the caller's indices or BRIO_INFINITE */
     uint32_t *representative; /* of each point of the caller */
-    brio_stats stats;
+    brio_delaunay_stats stats;
     brio_round *round; /* NULL when nothing was recorded */
     size_t num_rounds;
 };

@@ -926,7 +926,7 @@ class Json(CliTest):
         points = self.cloud("a.ply", 2000, "sphere")
         seconds = {key: number for key in
                    "read delaunay poles candidates label manifold density certify write total".split()}
-        counts = "samples vertices faces unused candidates pruned relabelled".split()
+        counts = "samples vertices faces unused candidates pruned relabeled".split()
         sampling = {"r_median": number, "r_p95": number, "outside_guarantee": count, "outside_share": number}
         for method in ("cocone", "tight-cocone"):
             facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", method)

@@ -106,7 +106,7 @@ static inline uint32_t brute_representative(const site_set *s, const bool vertex
     return best;
 }
 
-static inline void brute_counts(const site_set *s, const bool vertex[BRUTE_POINTS], brio_stats *stats) {
+static inline void brute_counts(const site_set *s, const bool vertex[BRUTE_POINTS], brio_delaunay_stats *stats) {
     size_t positions = 0;
     stats->points = s->n, stats->vertices = 0;
     for (size_t p = 0; p < s->n; p++) positions += stands_for_position(s, p), stats->vertices += vertex[p];
@@ -165,7 +165,7 @@ static inline bool finite_are_right(const site_set *s, const brio_triangulation 
 static inline bool brute_accepts_result(const site_set *s, const brio_triangulation *t) {
     bool vertex[BRUTE_POINTS];
     tet_set finite;
-    brio_stats right;
+    brio_delaunay_stats right;
     if (t->stats.dimension != brute_dimension(s)) return false;
     if (t->stats.dimension < 3) {
         if (t->stats.tetrahedra || t->stats.hull_facets) return false;

@@ -8,7 +8,7 @@
 
 /* Records in the caller's order, with the first tetrahedron, located by the options' strategy; nothing inserted. */
 static inline void kernel_begin(brio_kernel *k, brio_context *ctx, const double *points, const double *weights,
-                                size_t n, const brio_options *options) {
+                                size_t n, const brio_delaunay_options *options) {
     *k = (brio_kernel){.ctx = ctx, .num_points = n, .weighted = weights != NULL};
     k->engine = brio_engine_choose(k->weighted);
     k->locator = brio_locator_choose(options->locate);

@@ -36,7 +36,7 @@ static inline brio_mesh *random_surface(brio_context *ctx, int genus, double cel
         grid.low[k] = -2 - cell * brio_rng_double(&rng);
         grid.cells[k] = (uint32_t)((4 + (k == 0 && genus > 1 ? 2 * (genus - 1) : 0)) / cell) + 2;
     }
-    EXPECT(brio_iso_surface(ctx, &grid, &mesh) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_marched_surface(ctx, &grid, &mesh) == BRIO_OK, "%s", brio_message(ctx));
     return mesh;
 }
 

@@ -539,7 +539,7 @@ static void check_result(const theory *x) {
     EXPECT(brio_cocone(x->ctx, x->points, x->n, NULL, &mesh, &s) == BRIO_OK);
     EXPECT(brio_mesh_certificate(x->ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == x->surface->genus && s.unused == 0);
-    EXPECT(s.relabelled == 0, "%zu", s.relabelled);
+    EXPECT(s.relabeled == 0, "%zu", s.relabeled);
     for (size_t f = 0; f < mesh->num_faces; f++)
         for (int i = 0; i < 16; i++) {
             double a = (i & 3) / 3.0, b = (i >> 2) / 3.0, y[3] = {0, 0, 0};

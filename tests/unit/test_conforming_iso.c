@@ -54,7 +54,7 @@ static brio_mesh *expect_conforming(const brio_implicit_grid *grid, brio_certifi
     brio_mesh *mesh = NULL;
     int64_t crossings = -1;
     brio_certificate c;
-    brio_status status = brio_conforming_iso_surface(ctx, grid, &mesh);
+    brio_status status = brio_conforming_surface(ctx, grid, &mesh);
     EXPECT(status == BRIO_OK, "%s", brio_message(ctx));
     if (status != BRIO_OK) exit(harness_end());
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
@@ -206,7 +206,7 @@ static void cells_too_small_for_doubles_are_refused(void) {
     placed_noise place = {noise_new(7, 0, 1), {0, 0x1p53, 0}, 1};
     brio_implicit_grid grid = {placed_value, &place, {0, 0x1p53, 0}, 1, {6, 6, 6}};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_conforming_iso_surface(ctx, &grid, &mesh) == BRIO_ERR_NO_ANSWER && !mesh, "%s", brio_message(ctx));
+    EXPECT(brio_conforming_surface(ctx, &grid, &mesh) == BRIO_ERR_NO_ANSWER && !mesh, "%s", brio_message(ctx));
     free(place.n.node);
 }
 
@@ -224,8 +224,8 @@ static void grids_too_large_and_no_grids_are_refused(void) {
         brio_implicit_grid grid = {.value = ball, .cell = cases[i].cell};
         brio_mesh *mesh = NULL;
         memcpy(grid.cells, cases[i].cells, sizeof grid.cells);
-        EXPECT(brio_conforming_iso_surface(ctx, &grid, &mesh) == cases[i].status && !mesh, "%zu", i);
-        EXPECT(brio_iso_surface(ctx, &grid, &mesh) == cases[i].status && !mesh, "%zu", i);
+        EXPECT(brio_conforming_surface(ctx, &grid, &mesh) == cases[i].status && !mesh, "%zu", i);
+        EXPECT(brio_marched_surface(ctx, &grid, &mesh) == cases[i].status && !mesh, "%zu", i);
     }
 }
 
@@ -261,7 +261,7 @@ static brio_status make_watched(watch *w, uint32_t n, bool conforming) {
     brio_implicit_grid grid = {watched_ball, &w, {-1.21, -1.22, -0.0123}, 2.5 / n, {n, n, layers}};
     brio_context_set_progress(ctx, look, w);
     brio_status status =
-        conforming ? brio_conforming_iso_surface(ctx, &grid, &mesh) : brio_iso_surface(ctx, &grid, &mesh);
+        conforming ? brio_conforming_surface(ctx, &grid, &mesh) : brio_marched_surface(ctx, &grid, &mesh);
     brio_context_set_progress(ctx, NULL, NULL);
     EXPECT((status == BRIO_OK) == (mesh != NULL));
     brio_mesh_free(mesh);
@@ -292,15 +292,15 @@ static void cancelled_at_each_report(void) {
 static void nothing_inside_and_inside_on_the_border(void) {
     brio_implicit_grid empty = {ball, NULL, {2, 2, 2}, 0.1, {4, 4, 4}}, open = {ball, NULL, {0, 0, 0}, 0.1, {4, 4, 4}};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_conforming_iso_surface(ctx, &empty, &mesh) == BRIO_OK && mesh->num_faces == 0);
+    EXPECT(brio_conforming_surface(ctx, &empty, &mesh) == BRIO_OK && mesh->num_faces == 0);
     brio_mesh_free(mesh);
-    EXPECT(brio_conforming_iso_surface(ctx, &open, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_conforming_surface(ctx, &open, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
 }
 
 static brio_status work(brio_context *failing) {
     brio_mesh *mesh = NULL;
     brio_implicit_grid grid = {ball, NULL, {-1.21, -1.22, -1.23}, 0.5, {5, 5, 5}};
-    brio_status status = brio_conforming_iso_surface(failing, &grid, &mesh);
+    brio_status status = brio_conforming_surface(failing, &grid, &mesh);
     brio_mesh_free(mesh);
     return status;
 }

@@ -4,7 +4,7 @@
 #include "known_surfaces.h"
 #include "order/nearest_points.h"
 #include "points.h"
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 #include "surface/closest_point.h"
 
 enum { BOUNDING_POINTS = 8 };
@@ -13,7 +13,7 @@ static const double SPARSE = 0.22;
 /* A crust vertex between nearly flat cells loses digits: half of them may go. */
 static const double ROUNDING = 1e-8, BOUND = 15;
 
-typedef brio_status (*label_fn)(const brio_pole_graph *, uint8_t *, brio_labelling_stats *);
+typedef brio_status (*label_fn)(const brio_pole_graph *, uint8_t *, brio_labeling_stats *);
 
 /* The polar balls of one r-sample, with their true labels. */
 typedef struct {
@@ -202,7 +202,7 @@ static void check_crust_edges(const theory *x, const brio_pole_graph *g) {
 
 /* Lemmata 56 and 57: every pole is reached, every label is right. */
 static void check_labels(const theory *x, const brio_pole_graph *g, label_fn find) {
-    brio_labelling_stats s = {0};
+    brio_labeling_stats s = {0};
     size_t wrong = 0;
     uint8_t *label = calloc(x->poles.count, 1);
     EXPECT(find(g, label, &s) == BRIO_OK && s.unreached == 0 && s.open == 0 && s.toggled == 0);

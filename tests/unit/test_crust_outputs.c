@@ -11,7 +11,7 @@ static brio_context *new_small_context(void) {
     return ctx;
 }
 
-static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, const brio_surface_options *o,
+static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, const brio_power_crust_options *o,
                         brio_power_crust_stats *s) {
     brio_mesh *mesh = NULL;
     brio_status status = brio_power_crust(ctx, p, n, o, &mesh, s);
@@ -31,7 +31,7 @@ static void simplified_torus_is_a_quarter_and_the_same(void) {
     static double p[3 * 6000];
     torus_points(1, 6000, p);
     brio_context *ctx = new_small_context();
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *whole = crust(ctx, p, 6000, &o, NULL), *simple;
     brio_distance d;
     o.simplify = 1;
@@ -58,7 +58,7 @@ static void simplified_anything_stays_the_same_manifold(void) {
     brio_context *ctx = new_small_context();
     for (uint64_t trial = 0; trial < 120; trial++) {
         size_t n = 4 + trial % 37;
-        brio_surface_options o = brio_surface_options_default();
+        brio_power_crust_options o = brio_power_crust_options_default();
         if (trial % 2)
             clustered_points(trial, n, p);
         else
@@ -93,7 +93,7 @@ static void hole_of_the_samples_stays_open_on_request(void) {
         if (p[3 * i + 2] < 0.5) memmove(p + 3 * n++, p + 3 * i, 3 * sizeof *p);
     for (int simplify = 0; simplify < 2; simplify++) {
         brio_context *ctx = new_small_context();
-        brio_surface_options o = brio_surface_options_default();
+        brio_power_crust_options o = brio_power_crust_options_default();
         brio_power_crust_stats s;
         o.simplify = simplify;
         brio_mesh *mesh = crust(ctx, p, n, &o, &s);
@@ -165,7 +165,7 @@ static size_t far_from_rim(const brio_mesh *m, double *farthest) {
 static void hole_inside_the_hull_stays_open_on_request(void) {
     static double p[3 * 8000];
     brio_context *ctx = new_small_context();
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_power_crust_stats s;
     double farthest;
     size_t n = hollow_ball(p);
@@ -193,7 +193,7 @@ static void open_anything_is_manifold(void) {
     brio_context *ctx = new_small_context();
     for (uint64_t trial = 0; trial < 120; trial++) {
         size_t n = 20 + trial % 40;
-        brio_surface_options o = brio_surface_options_default();
+        brio_power_crust_options o = brio_power_crust_options_default();
         brio_power_crust_stats s;
         o.open = 0.5 + (double)(trial % 4);
         o.simplify = trial % 3 == 0;
@@ -239,7 +239,7 @@ static void cube_comes_out_with_its_edges(void) {
     static double p[3 * 6000];
     cube_points(2, 6000, p);
     brio_context *ctx = new_small_context();
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_power_crust_stats s;
     brio_mesh *plain = crust(ctx, p, 6000, &o, &s);
     EXPECT(s.bad_cells == 0);
@@ -290,7 +290,7 @@ static void edges_without_samples_come_out_sharp(void) {
     for (uint64_t trial = 1; trial <= TRIALS; trial++) {
         cube_points(trial, N, p);
         for (int i = 0; i < 3; i++) {
-            brio_surface_options o = brio_surface_options_default();
+            brio_power_crust_options o = brio_power_crust_options_default();
             double mean;
             o.sharp = i > 0;
             o.sampling_density = i == 2 ? 0.4 : 0;
@@ -331,7 +331,7 @@ static void sampling_density_out_of_range_is_refused(void) {
     brio_context *ctx = new_small_context();
     const double bad[] = {-0.1, 1, 2, NAN};
     for (int i = 0; i < 4; i++) {
-        brio_surface_options o = brio_surface_options_default();
+        brio_power_crust_options o = brio_power_crust_options_default();
         brio_mesh *mesh;
         o.sampling_density = bad[i];
         EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
@@ -350,7 +350,7 @@ static void normals_of_samples_are_those_of_the_sphere(void) {
     memcpy(p + 6000, p, 600 * sizeof *p); /* 200 duplicates */
     for (int sharp = 0; sharp < 2; sharp++) {
         brio_context *ctx = new_small_context();
-        brio_surface_options o = brio_surface_options_default();
+        brio_power_crust_options o = brio_power_crust_options_default();
         double worst = 1;
         o.normals = normals;
         o.sampling_density = sharp ? 0.05 : 0; /* many samples then have no poles */
@@ -389,7 +389,7 @@ static void normals_of_vertices_point_outwards(void) {
 
 static brio_status everything_small(brio_context *ctx) {
     double p[3 * 40], normals[3 * 40];
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh;
     sphere_points(3, 40, p);
     o.simplify = o.sharp = 1;

@@ -228,7 +228,7 @@ static void scan_has_about_n_points_in_scan_order(void) {
         const brio_property *view = brio_mesh_property(mesh, "view");
         double ratio = (double)mesh->num_vertices / (double)sizes[s];
         EXPECT(fabs(ratio - 1) < 0.2 / sqrt((double)sizes[s] / 300), "%zu of %zu", mesh->num_vertices, sizes[s]);
-        EXPECT(view && view->type == BRIO_UINT16);
+        EXPECT(view && view->type == BRIO_SCALAR_UINT16);
         bool ascends = brio_property_value(view, 0) == 0;
         for (size_t i = 1; i < mesh->num_vertices; i++)
             ascends &= brio_property_value(view, i) >= brio_property_value(view, i - 1);
@@ -315,7 +315,7 @@ static brio_certificate certificate_of_iso_surface(brio_implicit_fn value, const
     brio_implicit_grid grid = {value, user, {-8, -8, -8}, 16.0 / cells, {cells, cells, cells}};
     brio_mesh *mesh;
     brio_certificate c;
-    EXPECT(brio_iso_surface(ctx, &grid, &mesh) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_marched_surface(ctx, &grid, &mesh) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     brio_mesh_free(mesh);
     return c;
@@ -343,13 +343,13 @@ static void zero_at_nodes_and_random_signs_still_close(void) {
 static void function_negative_on_the_border_is_refused(void) {
     brio_implicit_grid grid = {ball, NULL, {-1, -1, -0.5}, 0.1, {20, 20, 20}};
     brio_mesh *mesh;
-    EXPECT(brio_iso_surface(ctx, &grid, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_marched_surface(ctx, &grid, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
 }
 
 static void empty_iso_surface_has_no_faces(void) {
     brio_implicit_grid grid = {ball, NULL, {3, 3, 3}, 0.1, {5, 4, 3}};
     brio_mesh *mesh;
-    EXPECT(brio_iso_surface(ctx, &grid, &mesh) == BRIO_OK && mesh->num_faces == 0 && mesh->num_vertices == 0);
+    EXPECT(brio_marched_surface(ctx, &grid, &mesh) == BRIO_OK && mesh->num_faces == 0 && mesh->num_vertices == 0);
     brio_mesh_free(mesh);
 }
 

@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "harness.h"
 #include "points.h"
-#include "reconstruct/power_crust/labelled_poles.h"
+#include "reconstruct/power_crust/labeled_poles.h"
 
 enum { OUT = 0, IN = 1 };
 
@@ -18,7 +18,7 @@ enum { OUT = 0, IN = 1 };
 typedef enum { CONFUSED, NOTHING, EVIDENCE, CERTAIN } priority_class;
 
 typedef struct {
-    const brio_labelled_poles *l;
+    const brio_labeled_poles *l;
     uint8_t *neighbours; /* #poles by #poles */
     uint8_t *certain, *label;
     double (*belief)[2]; /* out and in of each pole */
@@ -52,9 +52,9 @@ static double weight_of_poles(const figure *f, size_t sample, size_t p, size_t q
 }
 
 static void find_neighbours(figure *f) {
-    const brio_labelled_poles *l = f->l;
+    const brio_labeled_poles *l = f->l;
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(l->power);
-    const brio_stats *s = brio_triangulation_stats(l->power);
+    const brio_delaunay_stats *s = brio_triangulation_stats(l->power);
     size_t n = l->poles.count;
     for (size_t t = 0; t < s->tetrahedra; t++)
         for (int i = 0; i < 16; i++)
@@ -97,7 +97,7 @@ static void offer(figure *f, size_t q, int side, double strength) {
 }
 
 static void pass_on(figure *f, size_t p, int side, double tmp) {
-    const brio_labelled_poles *l = f->l;
+    const brio_labeled_poles *l = f->l;
     size_t n = l->poles.count;
     for (size_t s = 0; s < l->num_samples; s++) {
         const uint32_t *of = l->poles.of_sample + 2 * s;
@@ -130,14 +130,14 @@ typedef struct {
 
 static void compare_labels(const double *points, size_t n, const char *name, totals *sum) {
     brio_context *ctx = new_context();
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_pole_request request;
-    brio_labelled_poles l;
+    brio_labeled_poles l;
     o.labeling = BRIO_LABELING_GREEDY;
     o.noise = BRIO_NOISE_KEEP;
     brio_context_set_threads(ctx, 1);
     EXPECT(brio_pole_request_of(ctx, &o, &request) == BRIO_OK);
-    brio_status status = brio_labelled_poles_find(ctx, points, n, &request, &l);
+    brio_status status = brio_labeled_poles_find(ctx, points, n, &request, &l);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     if (status == BRIO_OK) {
         size_t count = l.poles.count, wrong = 0;
@@ -154,7 +154,7 @@ static void compare_labels(const double *points, size_t n, const char *name, tot
         free(f.label);
         free(f.belief);
     }
-    brio_labelled_poles_free(&l);
+    brio_labeled_poles_free(&l);
     brio_context_free(ctx);
 }
 

@@ -1,4 +1,4 @@
-/* The power crust of random, clustered, concentric and lattice inputs, with every labelling and option that leaves
+/* The power crust of random, clustered, concentric and lattice inputs, with every labeling and option that leaves
  * nothing open on purpose: closed, manifold and oriented, or no inside, and nothing else.
  *
  * test_hostile_inputs [COUNT] sweeps COUNT inputs of up to 300 points; without it, a few. */
@@ -53,8 +53,8 @@ static size_t hostile_points(uint64_t trial, double *p) {
     }
 }
 
-static brio_surface_options options_of(uint64_t trial) {
-    brio_surface_options o = brio_surface_options_default();
+static brio_power_crust_options options_of(uint64_t trial) {
+    brio_power_crust_options o = brio_power_crust_options_default();
     uint64_t choice = trial / KINDS;
     o.labeling = (brio_labeling)(choice % BRIO_LABELING_END);
     o.triangulate = choice / 4 % 3 == 1;
@@ -68,7 +68,7 @@ static brio_surface_options options_of(uint64_t trial) {
 static int sweep_one(brio_context *ctx, uint64_t trial) {
     static double p[3 * MOST];
     size_t n = hostile_points(trial, p);
-    brio_surface_options o = options_of(trial);
+    brio_power_crust_options o = options_of(trial);
     brio_power_crust_stats s;
     brio_mesh *mesh;
     brio_certificate c = {0};

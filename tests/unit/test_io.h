@@ -126,8 +126,8 @@ static inline void io_fill_property(brio_mesh *m, const char *name, brio_scalar 
         ((uint8_t *)data)[i] = (uint8_t)(io_random(state) >> 7);
     for (size_t i = 0; data && i < m->num_vertices; i++) {
         /* signalling NaNs are the one thing that a conversion may change */
-        if (type == BRIO_FLOAT32 && !isfinite(((float *)data)[i])) ((float *)data)[i] = -0.1f;
-        if (type == BRIO_FLOAT64 && !isfinite(((double *)data)[i])) ((double *)data)[i] = -0.0;
+        if (type == BRIO_SCALAR_FLOAT32 && !isfinite(((float *)data)[i])) ((float *)data)[i] = -0.1f;
+        if (type == BRIO_SCALAR_FLOAT64 && !isfinite(((double *)data)[i])) ((double *)data)[i] = -0.0;
     }
 }
 
@@ -153,7 +153,7 @@ static inline brio_mesh *io_make(size_t n, int parts) {
         m->vertices[i] = parts & IO_SINGLE ? (double)(float)fmod(x, 1e30) : x;
     }
     if (parts & IO_PROPERTIES)
-        for (brio_scalar type = BRIO_INT8; type < BRIO_SCALAR_END; type++) {
+        for (brio_scalar type = BRIO_SCALAR_INT8; type < BRIO_SCALAR_END; type++) {
             char name[16];
             snprintf(name, sizeof name, "p%d", (int)type);
             io_fill_property(m, name, type, &state);

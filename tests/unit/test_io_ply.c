@@ -22,28 +22,28 @@ static void scalar(const void *value, size_t size, bool big) {
 
 static void number(brio_scalar type, double x, bool big) {
     switch (type) {
-    case BRIO_INT8:
+    case BRIO_SCALAR_INT8:
         scalar(&(int8_t){(int8_t)x}, 1, big);
         break;
-    case BRIO_UINT8:
+    case BRIO_SCALAR_UINT8:
         scalar(&(uint8_t){(uint8_t)x}, 1, big);
         break;
-    case BRIO_INT16:
+    case BRIO_SCALAR_INT16:
         scalar(&(int16_t){(int16_t)x}, 2, big);
         break;
-    case BRIO_UINT16:
+    case BRIO_SCALAR_UINT16:
         scalar(&(uint16_t){(uint16_t)x}, 2, big);
         break;
-    case BRIO_INT32:
+    case BRIO_SCALAR_INT32:
         scalar(&(int32_t){(int32_t)x}, 4, big);
         break;
-    case BRIO_UINT32:
+    case BRIO_SCALAR_UINT32:
         scalar(&(uint32_t){(uint32_t)x}, 4, big);
         break;
-    case BRIO_FLOAT32:
+    case BRIO_SCALAR_FLOAT32:
         scalar(&(float){(float)x}, 4, big);
         break;
-    case BRIO_FLOAT64:
+    case BRIO_SCALAR_FLOAT64:
         scalar(&x, 8, big);
         break;
     case BRIO_SCALAR_END:
@@ -120,15 +120,15 @@ static void binary_lists_and_other_elements_are_passed_over(void) {
                                         "property list uchar ushort n\nproperty short s\nelement empty "
                                         "4000000000000000\nelement tetrahedron 1\n"
                                         "property list uchar int vertex_indices\nend_header\r\n");
-    for (int i = 0; i < 15; i++) number(BRIO_UINT8, i, false);
+    for (int i = 0; i < 15; i++) number(BRIO_SCALAR_UINT8, i, false);
     for (int v = 0; v < 2; v++) {
-        for (int k = 0; k < 3; k++) number(BRIO_FLOAT32, v + k, false);
-        number(BRIO_UINT8, 3 * v, false);
-        for (int k = 0; k < 3 * v; k++) number(BRIO_UINT16, k, false);
-        number(BRIO_INT16, -7 - v, false);
+        for (int k = 0; k < 3; k++) number(BRIO_SCALAR_FLOAT32, v + k, false);
+        number(BRIO_SCALAR_UINT8, 3 * v, false);
+        for (int k = 0; k < 3 * v; k++) number(BRIO_SCALAR_UINT16, k, false);
+        number(BRIO_SCALAR_INT16, -7 - v, false);
     }
-    number(BRIO_UINT8, 4, false);
-    for (int i = 0; i < 4; i++) number(BRIO_INT32, i % 2, false);
+    number(BRIO_SCALAR_UINT8, 4, false);
+    for (int i = 0; i < 4; i++) number(BRIO_SCALAR_INT32, i % 2, false);
     brio_mesh *m = read_bytes();
     if (!m) return;
     EXPECT(m->num_vertices == 2 && m->vertices[5] == 3 && brio_property_value(m->properties, 1) == -8);
@@ -208,9 +208,9 @@ static void truncation_names_place_and_row(void) {
     used = 0;
     text(HEADER("binary_little_endian") "element vertex 1\n" XYZ
                                         "element face 2\nproperty list uchar int vertex_indices\nend_header\n");
-    for (int i = 0; i < 3; i++) number(BRIO_FLOAT32, 1, false);
-    number(BRIO_UINT8, 5, false);
-    for (int i = 0; i < 4; i++) number(BRIO_INT32, 0, false);
+    for (int i = 0; i < 3; i++) number(BRIO_SCALAR_FLOAT32, 1, false);
+    number(BRIO_SCALAR_UINT8, 5, false);
+    for (int i = 0; i < 4; i++) number(BRIO_SCALAR_INT32, 0, false);
     brio_status status;
     brio_mesh *m = io_read_bytes("t.ply", bytes, used, &status);
     EXPECT(status == BRIO_ERR_FORMAT && !m && strstr(brio_message(io_ctx), "in face 0 (counted from 0) of 2"), "%s",

@@ -44,7 +44,7 @@ static void xyz_separators_and_comments(void) {
 
 static double value(const brio_mesh *m, const char *name, size_t i) {
     const brio_property *p = m ? brio_mesh_property(m, name) : NULL;
-    EXPECT(p && p->type == BRIO_FLOAT64, "no %s", name);
+    EXPECT(p && p->type == BRIO_SCALAR_FLOAT64, "no %s", name);
     return p ? brio_property_value(p, i) : 0;
 }
 
@@ -187,7 +187,7 @@ static void node_with_attributes_and_tetrahedra(void) {
     EXPECT(m && m->num_tetrahedra == 1 && m->tetrahedra[3] == 3, "the .ele beside");
     EXPECT(value(m, "attribute1", 2) == 2.5);
     const brio_property *marker = m ? brio_mesh_property(m, "boundary_marker") : NULL;
-    EXPECT(marker && marker->type == BRIO_INT32 && brio_property_value(marker, 3) == -1);
+    EXPECT(marker && marker->type == BRIO_SCALAR_INT32 && brio_property_value(marker, 3) == -1);
     brio_mesh_free(m);
     EXPECT(brio_read(io_ctx, io_path("n.ele"), BRIO_FORMAT_AUTO, &m) == BRIO_OK && m->num_vertices == 4, "%s",
            brio_message(io_ctx));

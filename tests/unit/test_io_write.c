@@ -23,8 +23,8 @@ static void expect_properties(const brio_mesh *a, const brio_mesh *b, bool types
             continue;
         }
         for (size_t v = 0; v < a->num_vertices; v++)
-            EXPECT(p->type == BRIO_FLOAT32 ? (float)brio_property_value(q, v) == (float)brio_property_value(p, v)
-                                           : brio_property_value(q, v) == brio_property_value(p, v),
+            EXPECT(p->type == BRIO_SCALAR_FLOAT32 ? (float)brio_property_value(q, v) == (float)brio_property_value(p, v)
+                                                  : brio_property_value(q, v) == brio_property_value(p, v),
                    "%s of point %zu", p->name, v);
     }
 }
@@ -125,12 +125,12 @@ static void node_replaces_old_tetrahedra(void) {
 static void property_names_become_words(void) {
     brio_mesh *mesh = io_make(5, 0);
     void *data;
-    EXPECT(brio_mesh_add_property(mesh, "two words,\n", BRIO_INT32, &data) == BRIO_OK);
+    EXPECT(brio_mesh_add_property(mesh, "two words,\n", BRIO_SCALAR_INT32, &data) == BRIO_OK);
     brio_mesh *ply = write_and_read(mesh, "n.ply", brio_write_options_default());
     brio_mesh *vtu = write_and_read(mesh, "n.vtu", brio_write_options_default());
     EXPECT(ply && brio_mesh_property(ply, "two_words__"));
     EXPECT(vtu && vtu->num_properties == 1);
-    EXPECT(brio_mesh_add_property(mesh, "two words;;", BRIO_INT32, &data) == BRIO_OK);
+    EXPECT(brio_mesh_add_property(mesh, "two words;;", BRIO_SCALAR_INT32, &data) == BRIO_OK);
     EXPECT(brio_write(io_ctx, io_path("n.ply"), mesh, NULL) == BRIO_ERR_ARGUMENT, "two equal names");
     brio_mesh_free(mesh);
     brio_mesh_free(ply);

@@ -4,9 +4,9 @@
 
 static brio_context *ctx;
 
-static const brio_location ALONG[] = {BRIO_LOCATE_TRACE, BRIO_LOCATE_NEIGHBOUR};
+static const brio_location ALONG[] = {BRIO_LOCATION_TRACE, BRIO_LOCATION_NEIGHBOUR};
 
-static uint64_t checksum(const brio_mesh *mesh, const brio_options *options, brio_stats *stats) {
+static uint64_t checksum(const brio_mesh *mesh, const brio_delaunay_options *options, brio_delaunay_stats *stats) {
     brio_triangulation *t = NULL;
     uint64_t sum = 0;
     EXPECT(brio_delaunay(ctx, mesh->vertices, NULL, mesh->num_vertices, options, &t) == BRIO_OK, "%s",
@@ -19,8 +19,8 @@ static uint64_t checksum(const brio_mesh *mesh, const brio_options *options, bri
 }
 
 static uint64_t checksum_along(const brio_mesh *mesh, brio_location location, brio_order order, brio_subgraph kind,
-                               brio_stats *stats) {
-    brio_options o = brio_options_default();
+                               brio_delaunay_stats *stats) {
+    brio_delaunay_options o = brio_delaunay_options_default();
     brio_edges edges;
     EXPECT(brio_mesh_subgraph(ctx, mesh, kind, &edges) == BRIO_OK, "%s", brio_message(ctx));
     o.locate = location;
@@ -35,8 +35,8 @@ static uint64_t checksum_along(const brio_mesh *mesh, brio_location location, br
 /* A trace in the order of its analysis, a neighbour in the order of its practice. */
 static void expect_same_triangulation(const brio_mesh *mesh, brio_subgraph kind, const char *name) {
     uint64_t plain = checksum(mesh, NULL, NULL);
-    EXPECT(checksum_along(mesh, BRIO_LOCATE_TRACE, BRIO_ORDER_RANDOM, kind, NULL) == plain, "%s, trace", name);
-    EXPECT(checksum_along(mesh, BRIO_LOCATE_NEIGHBOUR, BRIO_ORDER_BRIO, kind, NULL) == plain, "%s, neighbour", name);
+    EXPECT(checksum_along(mesh, BRIO_LOCATION_TRACE, BRIO_ORDER_RANDOM, kind, NULL) == plain, "%s, trace", name);
+    EXPECT(checksum_along(mesh, BRIO_LOCATION_NEIGHBOUR, BRIO_ORDER_BRIO, kind, NULL) == plain, "%s, neighbour", name);
 }
 
 static void expect_same_in_every_order(const brio_mesh *mesh, const char *name) {
@@ -145,7 +145,7 @@ typedef struct {
 } work;
 
 static work work_of(const brio_mesh *mesh, brio_location location) {
-    brio_stats s = {0};
+    brio_delaunay_stats s = {0};
     double n = (double)mesh->num_vertices;
     checksum_along(mesh, location, BRIO_ORDER_RANDOM, BRIO_SUBGRAPH_BOUNDED, &s);
     return (work){(double)s.tetrahedra / n, (double)s.trace_intersections / n, (double)s.history_tests / n};
@@ -157,8 +157,8 @@ static void searches_stay_short_when_traced(void) {
     work traced[3], searched[3];
     for (int i = 0; i < 3; i++) {
         brio_mesh *mesh = random_surface(ctx, 1, cells[i], 11);
-        traced[i] = work_of(mesh, BRIO_LOCATE_TRACE);
-        searched[i] = work_of(mesh, BRIO_LOCATE_HISTORY);
+        traced[i] = work_of(mesh, BRIO_LOCATION_TRACE);
+        searched[i] = work_of(mesh, BRIO_LOCATION_HISTORY);
         fprintf(stderr, "       %zu vertices: %.2f intersections and %.1f nodes a point, history alone %.1f nodes\n",
                 mesh->num_vertices, traced[i].traced, traced[i].searched, searched[i].searched);
         brio_mesh_free(mesh);
@@ -177,9 +177,9 @@ static brio_status everything(brio_context *failing) {
     brio_triangulation *t = NULL;
     chain c = {.genus = 1, .radius = 0.4};
     brio_implicit_grid grid = {chain_value, &c, {-2.1, -2.1, -1}, 0.3, {14, 14, 8}};
-    BRIO_TRY(brio_iso_surface(failing, &grid, &mesh));
+    BRIO_TRY(brio_marched_surface(failing, &grid, &mesh));
     for (int kind = 0; kind < BRIO_SUBGRAPH_END; kind++) {
-        brio_options o = brio_options_default();
+        brio_delaunay_options o = brio_delaunay_options_default();
         BRIO_TRY(brio_mesh_subgraph(failing, mesh, (brio_subgraph)kind, &edges));
         o.locate = ALONG[kind % 2];
         o.edges = edges.ends;

@@ -15,12 +15,14 @@ static uint32_t edges[2 * EDGES];
 static const char *const names[] = {"walk", "jump", "hierarchy", "history", "trace", "neighbour"};
 
 /* The strategies, and those of the history DAG once more with its other search. */
-enum { STRATEGIES = BRIO_LOCATE_END + 2 };
+enum { STRATEGIES = BRIO_LOCATION_END + 2 };
 
-static brio_options strategy(int s) {
-    brio_options o = brio_options_default();
-    o.all_conflicts = s >= BRIO_LOCATE_END;
-    o.locate = !o.all_conflicts ? (brio_location)s : s == BRIO_LOCATE_END ? BRIO_LOCATE_HISTORY : BRIO_LOCATE_TRACE;
+static brio_delaunay_options strategy(int s) {
+    brio_delaunay_options o = brio_delaunay_options_default();
+    o.all_conflicts = s >= BRIO_LOCATION_END;
+    o.locate = !o.all_conflicts         ? (brio_location)s
+               : s == BRIO_LOCATION_END ? BRIO_LOCATION_HISTORY
+                                        : BRIO_LOCATION_TRACE;
     o.edges = edges;
     o.num_edges = EDGES;
     return o;
@@ -63,10 +65,10 @@ static void make_set(int set) {
 
 typedef struct {
     uint64_t arrays, checksum; /* of all that is returned; of the set of tetrahedra */
-    brio_stats stats;
+    brio_delaunay_stats stats;
 } result;
 
-static result run(const double *p, const double *w, size_t n, const brio_options *o) {
+static result run(const double *p, const double *w, size_t n, const brio_delaunay_options *o) {
     brio_context *ctx = new_context();
     brio_triangulation *t = NULL;
     result r = {0};
@@ -88,7 +90,7 @@ static result run(const double *p, const double *w, size_t n, const brio_options
 }
 
 static void expect_same(const result *found, const result *expected, int set, int s, int order) {
-    const char *name = names[s < BRIO_LOCATE_END ? s : s - BRIO_LOCATE_END + BRIO_LOCATE_HISTORY];
+    const char *name = names[s < BRIO_LOCATION_END ? s : s - BRIO_LOCATION_END + BRIO_LOCATION_HISTORY];
     EXPECT(found->checksum == expected->checksum, "set %d, %s, order %d", set, name, order);
     EXPECT(found->stats.vertices == expected->stats.vertices && found->stats.hidden == expected->stats.hidden &&
                found->stats.duplicates == expected->stats.duplicates,
@@ -104,7 +106,7 @@ static void every_strategy_in_every_order_gives_one_triangulation(void) {
             for (int order = 0; order < BRIO_ORDER_END; order++) {
                 result walk = {0};
                 for (int s = 0; s < STRATEGIES; s++) {
-                    brio_options o = strategy(s);
+                    brio_delaunay_options o = strategy(s);
                     o.order = (brio_order)order;
                     result r = run(points, w, N, &o);
                     if (s == 0) walk = r;
@@ -121,12 +123,12 @@ static void every_strategy_in_every_order_gives_one_triangulation(void) {
 static void strategies_count_what_they_do(void) {
     make_set(1);
     for (int s = 0; s < STRATEGIES; s++) {
-        brio_options o = strategy(s);
-        brio_stats stats = run(points, NULL, N, &o).stats;
-        bool history = o.locate == BRIO_LOCATE_HISTORY || o.locate == BRIO_LOCATE_TRACE;
+        brio_delaunay_options o = strategy(s);
+        brio_delaunay_stats stats = run(points, NULL, N, &o).stats;
+        bool history = o.locate == BRIO_LOCATION_HISTORY || o.locate == BRIO_LOCATION_TRACE;
         EXPECT(stats.history == (history ? stats.created : 0), "strategy %d", s);
         EXPECT((stats.history_tests > 0) == history, "strategy %d", s);
-        EXPECT((stats.trace_intersections > 0) == (o.locate == BRIO_LOCATE_TRACE), "strategy %d", s);
+        EXPECT((stats.trace_intersections > 0) == (o.locate == BRIO_LOCATION_TRACE), "strategy %d", s);
         EXPECT((stats.walk_steps > 0) == !history, "strategy %d", s);
     }
 }
@@ -144,19 +146,19 @@ static double *paired_points(size_t n, uint32_t **pairs) {
 
 /* In random order the point inserted last is anywhere: what a strategy starts from decides. */
 static void walks_are_short(void) {
-    static const brio_location walks[] = {BRIO_LOCATE_JUMP, BRIO_LOCATE_HIERARCHY, BRIO_LOCATE_NEIGHBOUR};
+    static const brio_location walks[] = {BRIO_LOCATION_JUMP, BRIO_LOCATION_HIERARCHY, BRIO_LOCATION_NEIGHBOUR};
     enum { MANY = 8000 };
     uint32_t *pairs;
     double *many = paired_points(MANY, &pairs);
     for (int i = 0; i < 3; i++) {
-        brio_options o = brio_options_default();
+        brio_delaunay_options o = brio_delaunay_options_default();
         o.order = BRIO_ORDER_RANDOM, o.locate = walks[i], o.edges = pairs, o.num_edges = MANY / 2;
         result r = run(many, NULL, MANY, &o);
         double steps = (double)r.stats.walk_steps / MANY;
         EXPECT(steps > 0 && steps < 30, "%s: %g steps a point", names[walks[i]], steps);
         o.num_edges = 0;
         r = run(many, NULL, MANY, &o);
-        EXPECT(walks[i] != BRIO_LOCATE_NEIGHBOUR || (double)r.stats.walk_steps / MANY > 35, "without edges");
+        EXPECT(walks[i] != BRIO_LOCATION_NEIGHBOUR || (double)r.stats.walk_steps / MANY > 35, "without edges");
     }
     free(many);
     free(pairs);
@@ -166,7 +168,7 @@ static void walks_are_short(void) {
  * holds a point with probability 4 / j, and a neighbour of the point among those inserted so far with probability
  * degree / j. A search comes to the insertions of the first kind, or of the second when it follows all conflicts, and
  * tests at most what each created. */
-static double most_history_tests(const brio_stats *s, bool all_conflicts) {
+static double most_history_tests(const brio_delaunay_stats *s, bool all_conflicts) {
     double n = (double)s->vertices, joined = n + (double)s->tetrahedra + 0.5 * (double)s->hull_facets - 1;
     return (all_conflicts ? 2 * joined / n : 4) * log(n) * (double)s->created / n;
 }
@@ -176,9 +178,9 @@ static void history_tests_grow_as_the_logarithm(void) {
         double *p = malloc(3 * n * sizeof *p);
         uniform_points(1, n, p);
         for (int all = 0; all < 2; all++) {
-            brio_options o = brio_options_default();
-            o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATE_HISTORY, o.all_conflicts = all;
-            brio_stats s = run(p, NULL, n, &o).stats;
+            brio_delaunay_options o = brio_delaunay_options_default();
+            o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_HISTORY, o.all_conflicts = all;
+            brio_delaunay_stats s = run(p, NULL, n, &o).stats;
             double tests = (double)s.history_tests / (double)n, most = most_history_tests(&s, all);
             EXPECT(tests < most, "%zu points, all conflicts %d: %g tests a point, at most %g", n, all, tests, most);
         }
@@ -193,9 +195,9 @@ static void history_tests_of_sorted_points_are_many(void) {
     double *p = malloc(3 * MANY * sizeof *p);
     uniform_points(1, MANY, p);
     for (size_t i = 0; i < MANY; i++) p[3 * i] = (double)i;
-    brio_options o = brio_options_default();
-    o.order = BRIO_ORDER_INPUT, o.locate = BRIO_LOCATE_HISTORY;
-    brio_stats s = run(p, NULL, MANY, &o).stats;
+    brio_delaunay_options o = brio_delaunay_options_default();
+    o.order = BRIO_ORDER_INPUT, o.locate = BRIO_LOCATION_HISTORY;
+    brio_delaunay_stats s = run(p, NULL, MANY, &o).stats;
     double tests = (double)s.history_tests / MANY, most = most_history_tests(&s, false);
     EXPECT(tests > most, "%g tests a point, at most %g", tests, most);
     free(p);
@@ -208,14 +210,14 @@ static void traced_pairs_save_their_history_tests(void) {
     uint32_t *pairs;
     double *many = paired_points(MANY, &pairs);
     for (int all = 0; all < 2; all++) {
-        brio_options o = brio_options_default();
-        o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATE_HISTORY, o.all_conflicts = all;
-        brio_stats plain = run(many, NULL, MANY, &o).stats;
-        o.locate = BRIO_LOCATE_TRACE;
-        brio_stats without = run(many, NULL, MANY, &o).stats;
+        brio_delaunay_options o = brio_delaunay_options_default();
+        o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_HISTORY, o.all_conflicts = all;
+        brio_delaunay_stats plain = run(many, NULL, MANY, &o).stats;
+        o.locate = BRIO_LOCATION_TRACE;
+        brio_delaunay_stats without = run(many, NULL, MANY, &o).stats;
         EXPECT(without.history_tests == plain.history_tests && without.trace_intersections == 0);
         o.edges = pairs, o.num_edges = MANY / 2;
-        brio_stats traced = run(many, NULL, MANY, &o).stats;
+        brio_delaunay_stats traced = run(many, NULL, MANY, &o).stats;
         EXPECT((double)traced.history_tests < 0.6 * (double)plain.history_tests, "%g of %g tests a point",
                (double)traced.history_tests / MANY, (double)plain.history_tests / MANY);
         EXPECT(traced.trace_intersections > 0 && traced.trace_intersections < TRACINGS * MANY, "%g entered a point",
@@ -252,7 +254,7 @@ static void history_searches_find_what_brute_force_finds(void) {
             make_set(set);
             brio_context *ctx = new_context();
             brio_kernel k;
-            brio_options o = strategy(BRIO_LOCATE_HISTORY);
+            brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
             kernel_begin(&k, ctx, points, weighted ? weights : NULL, N, &o);
             for (uint32_t end = 4, begin = 0; end < N; begin = end, end += 120) {
                 kernel_insert(&k, begin, end);
@@ -283,7 +285,7 @@ static void segments_lead_to_their_ends(void) {
         make_set(set);
         brio_context *ctx = new_context();
         brio_kernel k;
-        brio_options o = strategy(BRIO_LOCATE_HISTORY);
+        brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
         uint64_t entered = 0;
         kernel_begin(&k, ctx, points, NULL, N, &o);
         kernel_insert(&k, 0, 80);
@@ -304,7 +306,7 @@ static void segments_enter_what_they_cross(void) {
     static double ends[6 * 100];
     brio_context *ctx = new_context();
     brio_kernel k;
-    brio_options o = strategy(BRIO_LOCATE_HISTORY);
+    brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
     uniform_points(1, N, points);
     uniform_points(2, 200, ends);
     kernel_begin(&k, ctx, points, NULL, N, &o);
@@ -335,7 +337,7 @@ static void segments_enter_what_they_cross(void) {
 static size_t list_tracings(uint32_t first, uint32_t tracings[8]) {
     brio_context *ctx = new_context();
     brio_kernel k;
-    brio_options o = strategy(BRIO_LOCATE_TRACE);
+    brio_delaunay_options o = strategy(BRIO_LOCATION_TRACE);
     size_t count = 0;
     for (uint32_t i = first; i + 1 < N; i++) edges[2 * (i - first)] = i, edges[2 * (i - first) + 1] = i + 1;
     o.num_edges = N - 1 - first;
@@ -362,7 +364,7 @@ static uint32_t *hull_edges(const double *p, size_t n, size_t *num_edges) {
     brio_context *ctx = new_context();
     brio_triangulation *t = NULL;
     EXPECT(brio_delaunay(ctx, p, NULL, n, NULL, &t) == BRIO_OK);
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t) + s->tetrahedra;
     uint32_t *edge = malloc(6 * s->hull_facets * sizeof *edge);
     *num_edges = 0;
@@ -388,10 +390,10 @@ static void tracing_is_linear_on_a_sphere(void) {
         double *p = malloc(3 * n * sizeof *p);
         sphere_points(9, n, p);
         uint32_t *edge = hull_edges(p, n, &num_edges);
-        brio_options o = brio_options_default();
-        o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATE_TRACE, o.edges = edge, o.num_edges = num_edges;
+        brio_delaunay_options o = brio_delaunay_options_default();
+        o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_TRACE, o.edges = edge, o.num_edges = num_edges;
         result traced = run(p, NULL, n, &o);
-        o.locate = BRIO_LOCATE_HISTORY;
+        o.locate = BRIO_LOCATION_HISTORY;
         result plain = run(p, NULL, n, &o);
         EXPECT(traced.arrays == plain.arrays);
         crossed[i] = (double)traced.stats.trace_intersections / (double)n;
@@ -417,7 +419,7 @@ static void few_points_are_answered(void) {
             uint32_t edge[4] = {0, (uint32_t)n / 2, 0, (uint32_t)n / 3};
             result expected = run(points, NULL, n, NULL);
             for (int s = 0; s < STRATEGIES; s++) {
-                brio_options o = strategy(s);
+                brio_delaunay_options o = strategy(s);
                 o.edges = edge, o.num_edges = n ? 2 : 0;
                 EXPECT(run(points, NULL, n, &o).arrays == expected.arrays, "%zu points, strategy %d", n, s);
             }
@@ -432,7 +434,7 @@ static void coincident_points_are_answered(void) {
         result expected = run(points, weighted ? weights : NULL, N, NULL);
         EXPECT(expected.stats.duplicates >= N - 8);
         for (int s = 0; s < STRATEGIES; s++) {
-            brio_options o = strategy(s);
+            brio_delaunay_options o = strategy(s);
             o.order = BRIO_ORDER_INPUT;
             result r = run(points, weighted ? weights : NULL, N, &o);
             expect_same(&r, &expected, 0, s, BRIO_ORDER_INPUT);
@@ -449,14 +451,14 @@ static void chains_of_hidden_points_are_answered(void) {
     result expected = run(points, weights, N, NULL);
     EXPECT(expected.stats.hidden > N / 2, "%zu hidden", expected.stats.hidden);
     for (int s = 0; s < STRATEGIES; s++) {
-        brio_options o = strategy(s);
+        brio_delaunay_options o = strategy(s);
         o.order = BRIO_ORDER_INPUT;
         result r = run(points, weights, N, &o);
         expect_same(&r, &expected, 0, s, BRIO_ORDER_INPUT);
     }
 }
 
-static brio_status status_of(brio_context *ctx, const brio_options *o) {
+static brio_status status_of(brio_context *ctx, const brio_delaunay_options *o) {
     brio_triangulation *t = NULL;
     brio_status status = brio_delaunay(ctx, points, NULL, N, o, &t);
     EXPECT((status == BRIO_OK) == (t != NULL));
@@ -468,7 +470,7 @@ static brio_status status_of(brio_context *ctx, const brio_options *o) {
 static void wrong_options_are_refused(void) {
     brio_context *ctx = new_context();
     make_set(0);
-    brio_options o = strategy(BRIO_LOCATE_TRACE);
+    brio_delaunay_options o = strategy(BRIO_LOCATION_TRACE);
     edges[2 * EDGES - 1] = N;
     EXPECT(status_of(ctx, &o) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "edge 799 ends at point 400 of 400"),
            "%s", brio_message(ctx));
@@ -478,7 +480,7 @@ static void wrong_options_are_refused(void) {
     EXPECT(status_of(ctx, &o) == BRIO_ERR_ARGUMENT);
     o.num_edges = 0;
     EXPECT(status_of(ctx, &o) == BRIO_OK);
-    o.locate = BRIO_LOCATE_END;
+    o.locate = BRIO_LOCATION_END;
     EXPECT(status_of(ctx, &o) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "location strategy 6"), "%s",
            brio_message(ctx));
     brio_context_free(ctx);
@@ -497,7 +499,7 @@ static void cancelled_strategies_free_everything(void) {
         for (double fraction = 0; fraction < 0.5; fraction += 0.4) {
             brio_context *ctx = new_context();
             brio_triangulation *t;
-            brio_options o = strategy(s);
+            brio_delaunay_options o = strategy(s);
             brio_context_set_progress(ctx, cancel_at, &fraction);
             EXPECT(brio_delaunay(ctx, many, NULL, MANY, &o, &t) == BRIO_ERR_CANCELLED && !t, "strategy %d", s);
             EXPECT(brio_context_memory(ctx) == 0);
@@ -510,7 +512,7 @@ static void few_tetrahedra_allowed_is_a_status(void) {
     make_set(0);
     for (int s = 0; s < STRATEGIES; s++) {
         brio_context *ctx = new_context();
-        brio_options o = strategy(s);
+        brio_delaunay_options o = strategy(s);
         o.max_tetrahedra = 1000;
         EXPECT(status_of(ctx, &o) == BRIO_ERR_TOO_LARGE);
         brio_context_free(ctx);
@@ -520,7 +522,7 @@ static void few_tetrahedra_allowed_is_a_status(void) {
 static int failing_strategy;
 
 static brio_status triangulate(brio_context *ctx) {
-    brio_options o = strategy(failing_strategy);
+    brio_delaunay_options o = strategy(failing_strategy);
     brio_triangulation *t;
     brio_status status = brio_delaunay(ctx, points, weights, N, &o, &t);
     brio_triangulation_free(t);

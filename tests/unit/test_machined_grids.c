@@ -67,7 +67,7 @@ static uint64_t fingerprint(const brio_mesh *m) {
 }
 
 static brio_status surface_with(brio_context *ctx, int option, brio_mesh **out) {
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_cocone_options c = brio_cocone_options_default();
     if (option == 1) o.noise = BRIO_NOISE_KEEP;
     if (option == 2) o.triangulate = 1;

@@ -5,10 +5,10 @@
 #include "medial_shapes.h"
 #include "points.h"
 #include "reconstruct/power_crust/ball_cover.h"
-#include "reconstruct/power_crust/labelled_poles.h"
+#include "reconstruct/power_crust/labeled_poles.h"
 #include "surface/solid.h"
 
-static brio_mesh *shape_of(brio_context *ctx, const double *p, size_t n, const brio_medial_options *o) {
+static brio_mesh *shape_of(brio_context *ctx, const double *p, size_t n, const brio_power_shape_options *o) {
     brio_mesh *shape = NULL;
     EXPECT(brio_power_shape(ctx, p, n, o, &shape, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
     return shape;
@@ -28,7 +28,7 @@ static void expect_same(const brio_mesh *a, const brio_mesh *b) {
 /* --- the shape --- */
 
 /* The inner poles with a cell, numbered as the shape does it. */
-static size_t number_inner(const brio_labelled_poles *l, uint32_t *number) {
+static size_t number_inner(const brio_labeled_poles *l, uint32_t *number) {
     size_t count = 0;
     for (size_t p = 0; p < l->poles.count; p++) {
         bool cell = brio_triangulation_representatives(l->power)[p] == p;
@@ -38,7 +38,7 @@ static size_t number_inner(const brio_labelled_poles *l, uint32_t *number) {
 }
 
 /* The shape has the tetrahedra of the dual between inner poles, in their order and as they are turned. */
-static void expect_tetrahedra_of_dual(const brio_labelled_poles *l, const uint32_t *number, const brio_mesh *shape) {
+static void expect_tetrahedra_of_dual(const brio_labeled_poles *l, const uint32_t *number, const brio_mesh *shape) {
     size_t count = 0;
     for (size_t tet = 0; tet < l->graph.num_finite; tet++) {
         const uint32_t *v = l->graph.power.tet[tet].vertex;
@@ -56,12 +56,12 @@ static void expect_tetrahedra_of_dual(const brio_labelled_poles *l, const uint32
 static void shape_is_the_dual_between_inner_poles(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_ellipsoid, 0.35, 1);
-    brio_labelled_poles l;
+    brio_labeled_poles l;
     brio_pole_request request;
-    brio_surface_options surface = brio_surface_options_default();
+    brio_power_crust_options surface = brio_power_crust_options_default();
     brio_mesh *shape = shape_of(ctx, c.points, c.count, NULL);
     EXPECT(brio_pole_request_of(ctx, &surface, &request) == BRIO_OK);
-    EXPECT(brio_labelled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
+    EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
     uint32_t *number = malloc(l.poles.count * sizeof *number);
     size_t n = number_inner(&l, number), edges = 0, triangles = 0;
     uint8_t *edge = calloc(n * n, 1), *triangle = calloc(n * n * n, 1);
@@ -94,7 +94,7 @@ static void shape_is_the_dual_between_inner_poles(void) {
     free(number);
     free(edge);
     free(triangle);
-    brio_labelled_poles_free(&l);
+    brio_labeled_poles_free(&l);
     brio_mesh_free(shape);
     brio_context_free(ctx);
     free(c.points);
@@ -104,9 +104,9 @@ static void shape_is_the_dual_between_inner_poles(void) {
 static void radii_are_distances_to_samples_and_sides_are_told(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_torus, 0.3, 1);
-    brio_medial_options o = brio_medial_options_default();
+    brio_power_shape_options o = brio_power_shape_options_default();
     size_t inner = 0, outer = 0;
-    o.sides = BRIO_MEDIAL_BOTH;
+    o.sides = BRIO_SIDES_BOTH;
     brio_mesh *shape = shape_of(ctx, c.points, c.count, &o);
     const brio_property *radius = brio_mesh_property(shape, "radius"), *side = brio_mesh_property(shape, "side");
     for (size_t v = 0; v < shape->num_vertices; v++) {
@@ -139,7 +139,7 @@ static void shuffled_samples_give_the_same_shape(void) {
     static double p[3 * 1000], q[3 * 1000];
     static size_t to[1000];
     brio_context *ctx = new_context();
-    brio_medial_options o = brio_medial_options_default();
+    brio_power_shape_options o = brio_power_shape_options_default();
     torus_points(2, 1000, p);
     shuffle_points(5, 1000, p, q, to);
     for (int simplified = 0; simplified < 2; simplified++) {
@@ -230,9 +230,9 @@ static double largest_norm(const brio_mesh *mesh) {
 static void simplification_takes_the_noise_of_a_sphere_away(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_sphere, 0.15, 1);
-    brio_medial_options o = brio_medial_options_default();
+    brio_power_shape_options o = brio_power_shape_options_default();
     brio_mesh *all, *few, *crust;
-    brio_medial_stats s;
+    brio_power_shape_stats s;
     brio_certificate certificate = {0};
     for (size_t i = 0; i < c.count; i++) {
         double r = 1 + 0.02 * (brio_rng_double(&c.rng) - 0.5);
@@ -244,7 +244,7 @@ static void simplification_takes_the_noise_of_a_sphere_away(void) {
     EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &few, &crust, &s) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(largest_norm(all) > 0.3 && largest_norm(few) < 0.1, "%g %g", largest_norm(all), largest_norm(few));
     EXPECT(10 * few->num_vertices < all->num_vertices, "%zu of %zu", few->num_vertices, all->num_vertices);
-    EXPECT(s.left_out > 0 && s.inner + s.outer == s.poles && s.unlabelled == 0);
+    EXPECT(s.left_out > 0 && s.inner + s.outer == s.poles && s.unlabeled == 0);
     EXPECT(brio_mesh_certificate(ctx, crust, &certificate) == BRIO_OK);
     EXPECT(certificate.closed && certificate.manifold && certificate.genus == 0 && certificate.components == 1);
     EXPECT(fabs(certificate.volume - 4.18879) < 0.15, "%g", certificate.volume);
@@ -279,11 +279,11 @@ static brio_mesh *box_mesh(brio_context *ctx, bool split, bool turn, size_t face
     return mesh;
 }
 
-static void poles_of_a_known_box_are_labelled_by_where_they_are(void) {
+static void poles_of_a_known_box_are_labeled_by_where_they_are(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_box, 0.2, 1);
-    brio_medial_options o = brio_medial_options_default();
-    o.sides = BRIO_MEDIAL_BOTH;
+    brio_power_shape_options o = brio_power_shape_options_default();
+    o.sides = BRIO_SIDES_BOTH;
     for (int kind = 0; kind < 4; kind++) {
         brio_mesh *box = box_mesh(ctx, kind & 1, kind & 2, 6);
         o.solid = box;
@@ -306,8 +306,8 @@ static void poles_of_a_known_box_are_labelled_by_where_they_are(void) {
 static void points_within_a_larger_solid_have_closed_crusts(void) {
     brio_context *ctx = new_context();
     brio_mesh *box = box_mesh(ctx, false, false, 6), *mesh, *shape;
-    brio_medial_options medial = brio_medial_options_default();
-    brio_surface_options surface = brio_surface_options_default();
+    brio_power_shape_options medial = brio_power_shape_options_default();
+    brio_power_crust_options surface = brio_power_crust_options_default();
     double p[3 * 50];
     uniform_points(1, 50, p);
     for (size_t i = 0; i < 3 * box->num_vertices; i++) box->vertices[i] *= 1e4;
@@ -329,16 +329,16 @@ static void points_within_a_larger_solid_have_closed_crusts(void) {
 static void poles_that_are_kept_keep_what_is_theirs(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_torus, 0.3, 1);
-    brio_labelled_poles l, all;
-    brio_surface_options o = brio_surface_options_default();
+    brio_labeled_poles l, all;
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_pole_request request;
     o.simplify = 1;
     EXPECT(brio_pole_request_of(ctx, &o, &request) == BRIO_OK);
-    EXPECT(brio_labelled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
-    EXPECT(brio_labelled_poles_find(ctx, c.points, c.count, &request, &all) == BRIO_OK);
+    EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
+    EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &all) == BRIO_OK);
     uint8_t *keep = calloc(all.poles.count, 1);
     for (size_t p = 0; p < all.poles.count; p += 3) keep[p] = 1;
-    EXPECT(brio_labelled_poles_keep(&l, keep) == BRIO_OK && l.poles.count == (all.poles.count + 2) / 3);
+    EXPECT(brio_labeled_poles_keep(&l, keep) == BRIO_OK && l.poles.count == (all.poles.count + 2) / 3);
     for (size_t n = 0, p = 0; n < l.poles.count; n++, p += 3) {
         EXPECT(!memcmp(l.poles.centre + 3 * n, all.poles.centre + 3 * p, 24) &&
                l.poles.square[n] == all.poles.square[p]);
@@ -346,8 +346,8 @@ static void poles_that_are_kept_keep_what_is_theirs(void) {
         EXPECT(l.poles.bounding[n] == all.poles.bounding[p]);
     }
     free(keep);
-    brio_labelled_poles_free(&l);
-    brio_labelled_poles_free(&all);
+    brio_labeled_poles_free(&l);
+    brio_labeled_poles_free(&all);
     brio_context_free(ctx);
     free(c.points);
 }
@@ -355,7 +355,7 @@ static void poles_that_are_kept_keep_what_is_theirs(void) {
 static void open_mesh_is_no_solid(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_box, 0.5, 1);
-    brio_medial_options o = brio_medial_options_default();
+    brio_power_shape_options o = brio_power_shape_options_default();
     brio_mesh *shape, *crust, *box = box_mesh(ctx, true, false, 5);
     o.solid = box;
     EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &shape, &crust, NULL) == BRIO_ERR_NO_ANSWER && !shape &&
@@ -416,10 +416,10 @@ static void small_inputs_have_shapes_and_closed_crusts_or_say_so(void) {
     brio_context_set_threads(ctx, 1);
     for (uint64_t trial = 0; trial < 2000; trial++) {
         size_t n = 1 + trial % 40;
-        brio_medial_options o = brio_medial_options_default();
+        brio_power_shape_options o = brio_power_shape_options_default();
         brio_mesh *shape, *crust;
         brio_certificate certificate = {0};
-        o.sides = (brio_medial_sides)(trial / 40 % 3);
+        o.sides = (brio_sides)(trial / 40 % 3);
         o.scale = trial % 2 ? 1.1 : 1;
         o.redundancy = trial % 5 ? 0.05 : 0;
         if (trial % 3 == 0)
@@ -448,12 +448,12 @@ static void wrong_options_are_refused(void) {
     double p[3 * 60];
     sphere_points(3, 60, p);
     for (int kind = 0; kind < 5; kind++) {
-        brio_medial_options o = brio_medial_options_default();
+        brio_power_shape_options o = brio_power_shape_options_default();
         brio_mesh *shape;
         if (kind == 0) o.scale = 0.5;
         if (kind == 1) o.redundancy = -1;
         if (kind == 2) o.scale = NAN;
-        if (kind == 3) o.sides = BRIO_MEDIAL_END;
+        if (kind == 3) o.sides = BRIO_SIDES_END;
         if (kind == 4) o.labeling = BRIO_LABELING_END;
         EXPECT(brio_power_shape(ctx, p, 60, &o, &shape, NULL, NULL) == BRIO_ERR_ARGUMENT && !shape, "%d", kind);
     }
@@ -477,8 +477,8 @@ static void work_can_be_cancelled_at_any_time(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_box, 0.2, 1);
     brio_mesh *box = box_mesh(ctx, false, false, 6), *shape, *crust, *offset;
-    brio_medial_options medial = brio_medial_options_default();
-    brio_surface_options surface = brio_surface_options_default();
+    brio_power_shape_options medial = brio_power_shape_options_default();
+    brio_power_crust_options surface = brio_power_crust_options_default();
     size_t held = brio_context_memory(ctx);
     medial.solid = surface.solid = box;
     medial.redundancy = 0.01;
@@ -507,7 +507,7 @@ static void work_can_be_cancelled_at_any_time(void) {
 static brio_status small_shape(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *shape, *crust;
-    brio_medial_options o = brio_medial_options_default();
+    brio_power_shape_options o = brio_power_shape_options_default();
     sphere_points(3, 60, p);
     o.redundancy = 0.01;
     brio_status status = brio_power_shape(ctx, p, 60, &o, &shape, &crust, NULL);
@@ -527,7 +527,7 @@ int main(void) {
     RUN(crust_of_all_balls_is_the_power_crust);
     RUN(cover_is_what_brute_force_finds);
     RUN(simplification_takes_the_noise_of_a_sphere_away);
-    RUN(poles_of_a_known_box_are_labelled_by_where_they_are);
+    RUN(poles_of_a_known_box_are_labeled_by_where_they_are);
     RUN(points_within_a_larger_solid_have_closed_crusts);
     RUN(poles_that_are_kept_keep_what_is_theirs);
     RUN(open_mesh_is_no_solid);

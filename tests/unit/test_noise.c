@@ -180,7 +180,7 @@ static void smoothing_keeps_quadratic_shapes(void) {
 /* --- the crust --- */
 
 static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_noise noise, brio_power_crust_stats *s) {
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh = NULL;
     o.noise = noise;
     EXPECT(brio_power_crust(ctx, p, n, &o, &mesh, s) == BRIO_OK, "%s", brio_message(ctx));
@@ -250,7 +250,7 @@ static void crust_of_clean_samples_is_the_exact_one(void) {
 static void solids_keep_the_samples(void) {
     static double p[3 * N];
     brio_context *ctx = new_context();
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_power_crust_stats s;
     brio_mesh *mesh;
     sphere_points(14, N, p);
@@ -269,8 +269,8 @@ static void solids_keep_the_samples(void) {
 static void medial_axis_of_noisy_samples_is_that_of_smoothed_ones(void) {
     static double p[3 * N];
     brio_context *ctx = new_context();
-    brio_medial_options o = brio_medial_options_default();
-    brio_medial_stats s;
+    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_stats s;
     brio_mesh *shape;
     double mean[2] = {0, 0};
     sphere_points(16, N, p);

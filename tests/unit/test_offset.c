@@ -123,7 +123,7 @@ static void expect_components(brio_context *ctx, const brio_mesh *mesh, size_t c
 static void known_solid_decides_the_labels(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_sphere, 0.15, 7);
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *solid, *mesh;
     size_t n = c.count;
     EXPECT(brio_power_crust(ctx, c.points, n, NULL, &solid, NULL) == BRIO_OK);
@@ -241,7 +241,7 @@ static void wrong_options_are_refused(void) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
     double p[3 * 60], normals[3 * 60];
-    brio_surface_options open = brio_surface_options_default(), normal = open, dense = open;
+    brio_power_crust_options open = brio_power_crust_options_default(), normal = open, dense = open;
     sphere_points(3, 60, p);
     open.open = 2;
     normal.normals = normals;
@@ -258,7 +258,7 @@ static void wrong_options_are_refused(void) {
 static brio_status small_offset(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *mesh;
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     o.simplify = 1;
     sphere_points(3, 60, p);
     brio_status status = brio_offset_surface(ctx, p, 60, 0.2, &o, &mesh, NULL);

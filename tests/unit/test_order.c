@@ -35,8 +35,8 @@ enum { MOST = 40000 };
 static double points[3 * MOST];
 static uint32_t order[MOST], other[MOST], rank[MOST], index_of[MOST], spare[MOST];
 
-static brio_options options_of(int kind, size_t block_size) {
-    brio_options o = brio_options_default();
+static brio_delaunay_options options_of(int kind, size_t block_size) {
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.order = (brio_order)kind;
     o.block_size = block_size;
     return o;
@@ -92,7 +92,7 @@ static void every_order_is_a_permutation(void) {
             for (int kind = 0; kind < BRIO_ORDER_END; kind++)
                 for (size_t block_size = 0; block_size < 100; block_size = block_size * 10 + 1) {
                     const char *name = hard_points(set, n);
-                    brio_options o = options_of(kind, block_size);
+                    brio_delaunay_options o = options_of(kind, block_size);
                     EXPECT(brio_order_points(ctx, points, n, &o, order, NULL, NULL) == BRIO_OK);
                     EXPECT(is_permutation(order, n), "order %d of %zu points %s", kind, n, name);
                 }
@@ -105,7 +105,7 @@ static void number_of_threads_does_not_matter(void) {
     for (int set = 0; set < 4; set++)
         for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
             hard_points(set, MOST);
-            brio_options o = options_of(kind, 0);
+            brio_delaunay_options o = options_of(kind, 0);
             brio_context_set_threads(ctx, 1);
             EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, NULL) == BRIO_OK);
             brio_context_set_threads(ctx, 3);
@@ -119,7 +119,7 @@ static void seed_decides_every_random_choice(void) {
     brio_context *ctx = new_context();
     uniform_points(1, MOST, points);
     for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
-        brio_options o = options_of(kind, 0);
+        brio_delaunay_options o = options_of(kind, 0);
         bool random = kind != BRIO_ORDER_HILBERT && kind != BRIO_ORDER_INPUT;
         EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, NULL) == BRIO_OK);
         EXPECT(brio_order_points(ctx, points, MOST, &o, other, NULL, NULL) == BRIO_OK);
@@ -134,7 +134,7 @@ static void seed_decides_every_random_choice(void) {
 static brio_status order_everything(brio_context *ctx) {
     brio_status status = BRIO_OK;
     for (int kind = 0; kind < BRIO_ORDER_END && status == BRIO_OK; kind++) {
-        brio_options o = options_of(kind, 10);
+        brio_delaunay_options o = options_of(kind, 10);
         status = brio_order_points(ctx, points, 1000, &o, order, rank, NULL);
     }
     return status;
@@ -161,7 +161,7 @@ static void rounds_shrink_by_the_ratio(void) {
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
     for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
-        brio_options o = options_of(rows[row].kind, 0);
+        brio_delaunay_options o = options_of(rows[row].kind, 0);
         brio_round_ends rounds;
         o.round_ratio = rows[row].given;
         EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
@@ -182,7 +182,7 @@ static void round_follows_from_the_index(void) {
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
     for (int kind = BRIO_ORDER_BRIO_OCTREE; kind <= BRIO_ORDER_BRIO_KDTREE; kind++) {
-        brio_options o = options_of(kind, 0);
+        brio_delaunay_options o = options_of(kind, 0);
         EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
         for (size_t i = 0, r = 0; i < MOST; i++) {
             while (i >= rounds.end[r]) r++;
@@ -197,7 +197,7 @@ static void ranks_rise_inside_rounds(void) {
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
     for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
-        brio_options o = options_of(kind, 500);
+        brio_delaunay_options o = options_of(kind, 500);
         brio_round_ends rounds;
         if (!brio_order_has_ranks(o.order)) continue;
         EXPECT(brio_order_points(ctx, points, MOST, &o, order, rank, &rounds) == BRIO_OK);
@@ -215,7 +215,7 @@ static void rounds_follow_the_curve(void) {
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
     brio_hilbert_keys(ctx, points, MOST, 7, key); /* coarser than the order's own curve */
-    brio_options o = options_of(BRIO_ORDER_BRIO, 0);
+    brio_delaunay_options o = options_of(BRIO_ORDER_BRIO, 0);
     o.round_ratio = 0.5;
     brio_round_ends rounds;
     EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
@@ -374,7 +374,7 @@ static void rounds_visit_blocks_in_turn(void) {
     for (int set = 0; set < 4; set += 3)
         for (int i = 0; i < 3; i++) {
             brio_round_ends rounds;
-            brio_options o = options_of(kinds[i], BLOCK);
+            brio_delaunay_options o = options_of(kinds[i], BLOCK);
             size_t rises = 0, pairs = 0;
             hard_points(set, N);
             make_blocks(kinds[i] != BRIO_ORDER_BRIO_KDTREE, N, BLOCK);

@@ -97,8 +97,8 @@ enum {
     LABELING = 256 /* times the labeling */
 };
 
-static brio_surface_options surface_options(int bits) {
-    brio_surface_options o = brio_surface_options_default();
+static brio_power_crust_options surface_options(int bits) {
+    brio_power_crust_options o = brio_power_crust_options_default();
     o.triangulate = (bits & TRIANGLES) != 0;
     o.simplify = (bits & SIMPLER) != 0;
     o.sharp = (bits & SHARP) != 0;
@@ -135,7 +135,7 @@ static void add_normals(const input *in, const double *normals, outcome *out) {
 }
 
 static void run_crust(brio_context *ctx, const input *in, int bits, outcome *out) {
-    brio_surface_options o = surface_options(bits);
+    brio_power_crust_options o = surface_options(bits);
     brio_power_crust_stats stats;
     brio_mesh *mesh = NULL, *box = bits & SOLID ? box_mesh(ctx, in) : NULL;
     double *normals = bits & NORMALS ? calloc(3 * in->n, sizeof *normals) : NULL;
@@ -151,7 +151,7 @@ static void run_crust(brio_context *ctx, const input *in, int bits, outcome *out
 }
 
 static void run_offset(brio_context *ctx, const input *in, int bits, outcome *out) {
-    brio_surface_options o = surface_options(bits & ~OPEN);
+    brio_power_crust_options o = surface_options(bits & ~OPEN);
     brio_power_crust_stats stats;
     brio_mesh *mesh = NULL;
     double distance = bits & OPEN ? -0.01 * in->size : 0.03 * in->size; /* there is no other use for the bit here */
@@ -162,10 +162,10 @@ static void run_offset(brio_context *ctx, const input *in, int bits, outcome *ou
 }
 
 static void run_medial(brio_context *ctx, const input *in, int way, outcome *out) {
-    brio_medial_options o = brio_medial_options_default();
-    brio_medial_stats s = {0};
+    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_stats s = {0};
     brio_mesh *shape = NULL, *crust = NULL;
-    o.sides = way & 1 ? BRIO_MEDIAL_BOTH : BRIO_MEDIAL_INNER;
+    o.sides = way & 1 ? BRIO_SIDES_BOTH : BRIO_SIDES_INNER;
     o.scale = way & 2 ? 1.1 : 1;
     o.redundancy = way & 4 ? 0.1 : 0;
     out->status = brio_power_shape(ctx, in->points, in->n, &o, &shape, way & 1 ? &crust : NULL, &s);

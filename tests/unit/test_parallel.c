@@ -10,7 +10,8 @@ enum { N = 40000 };
 static double points[3 * N], weights[N];
 
 /* The whole result of a run as one number: tetrahedra in their order, mates, representatives, counts. */
-static brio_status run(const double *p, const double *w, size_t n, int threads, brio_stats *stats, uint64_t *sum) {
+static brio_status run(const double *p, const double *w, size_t n, int threads, brio_delaunay_stats *stats,
+                       uint64_t *sum) {
     brio_context *ctx = new_context();
     brio_triangulation *t = NULL;
     brio_context_set_threads(ctx, threads);
@@ -27,7 +28,7 @@ static brio_status run(const double *p, const double *w, size_t n, int threads, 
     return status;
 }
 
-static uint64_t fingerprint(const double *p, const double *w, size_t n, int threads, brio_stats *stats) {
+static uint64_t fingerprint(const double *p, const double *w, size_t n, int threads, brio_delaunay_stats *stats) {
     uint64_t sum = 0;
     EXPECT(run(p, w, n, threads, stats, &sum) == BRIO_OK, "%zu points, %d threads", n, threads);
     return sum;
@@ -57,7 +58,7 @@ static void every_number_of_threads_gives_the_same_arrays(void) {
         make_set(set);
         size_t n = set == 4 ? 20000 : N;
         for (int weighted = 0; weighted < 2; weighted++) {
-            brio_stats one, many;
+            brio_delaunay_stats one, many;
             uint64_t expected = fingerprint(points, weighted ? weights : NULL, n, 1, &one), deferred = 0;
             for (int threads = 2; threads <= 8; threads += threads < 3 ? 1 : 5) {
                 uint64_t found = fingerprint(points, weighted ? weights : NULL, n, threads, &many);
@@ -71,7 +72,7 @@ static void every_number_of_threads_gives_the_same_arrays(void) {
 }
 
 static void repeated_runs_give_the_same_arrays(void) {
-    brio_stats stats;
+    brio_delaunay_stats stats;
     make_set(5);
     uint64_t expected = fingerprint(points, NULL, N, 1, &stats);
     for (int run = 0; run < 20; run++)
@@ -99,7 +100,7 @@ static void shuffled_points_give_the_same_checksum(void) {
 }
 
 static void more_threads_than_work(void) {
-    brio_stats stats;
+    brio_delaunay_stats stats;
     for (size_t n = 0; n < 12; n++) {
         uniform_points(n, n, points);
         EXPECT(fingerprint(points, NULL, n, 64, &stats) == fingerprint(points, NULL, n, 1, &stats), "%zu points", n);
@@ -165,7 +166,7 @@ static void few_tetrahedra_allowed_is_a_status(void) {
     make_set(0);
     brio_context *ctx = new_context();
     brio_triangulation *t;
-    brio_options o = brio_options_default();
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.max_tetrahedra = 200000;
     brio_context_set_threads(ctx, 4);
     EXPECT(brio_delaunay(ctx, points, NULL, N, &o, &t) == BRIO_ERR_TOO_LARGE && !t);
@@ -195,7 +196,7 @@ static void failed_allocations_in_threads_are_statuses(void) {
 typedef struct {
     int threads;
     uint64_t found;
-    brio_stats stats;
+    brio_delaunay_stats stats;
     brio_status status;
 } caller;
 
@@ -207,7 +208,7 @@ static void *call(void *user) {
 
 static void two_callers_with_a_context_each(void) {
     make_set(1);
-    brio_stats stats;
+    brio_delaunay_stats stats;
     uint64_t expected = fingerprint(points, NULL, N, 1, &stats);
     caller callers[3] = {{.threads = 2}, {.threads = 3}, {.threads = 1}};
     pthread_t thread[3];

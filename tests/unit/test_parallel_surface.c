@@ -33,7 +33,7 @@ static void read_back(const char *path, result *r) {
     fclose(f);
 }
 
-static void run(brio_context *ctx, size_t n, const brio_surface_options *o, int threads, result *r) {
+static void run(brio_context *ctx, size_t n, const brio_power_crust_options *o, int threads, result *r) {
     char path[] = "/tmp/brio-test-XXXXXX.ply";
     int file = mkstemps(path, 4);
     EXPECT(file >= 0);
@@ -68,7 +68,7 @@ static void expect_same(const result *a, const result *b, int threads) {
     EXPECT(a->file_size == b->file_size && !memcmp(a->file, b->file, (size_t)a->file_size), "%d threads", threads);
 }
 
-static void expect_one_answer(size_t n, const brio_surface_options *o) {
+static void expect_one_answer(size_t n, const brio_power_crust_options *o) {
     brio_context *ctx = new_context();
     result one, many;
     run(ctx, n, o, 1, &one);
@@ -88,7 +88,7 @@ static void every_number_of_threads_gives_the_same_surface(void) {
 }
 
 static void anything_is_the_same_by_threads(void) {
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     clustered_points(2, 1000, points);
     o.triangulate = 1;
     expect_one_answer(1000, &o);
@@ -103,10 +103,10 @@ static void sphere_is_the_same_by_threads(void) {
     expect_one_answer(1500, NULL);
 }
 
-static void every_labelling_is_the_same_by_threads(void) {
+static void every_labeling_is_the_same_by_threads(void) {
     clustered_points(5, 700, points);
     for (int labeling = 0; labeling < BRIO_LABELING_END; labeling++) {
-        brio_surface_options o = brio_surface_options_default();
+        brio_power_crust_options o = brio_power_crust_options_default();
         o.labeling = (brio_labeling)labeling;
         expect_one_answer(700, &o);
     }
@@ -116,6 +116,6 @@ int main(void) {
     RUN(every_number_of_threads_gives_the_same_surface);
     RUN(anything_is_the_same_by_threads);
     RUN(sphere_is_the_same_by_threads);
-    RUN(every_labelling_is_the_same_by_threads);
+    RUN(every_labeling_is_the_same_by_threads);
     return harness_end();
 }

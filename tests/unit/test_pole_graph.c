@@ -4,7 +4,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
-#include "reconstruct/power_crust/labelled_poles.h"
+#include "reconstruct/power_crust/labeled_poles.h"
 #include "reconstruct/labels/pole_queue.h"
 #include "reconstruct/labels/roof_duality.h"
 
@@ -72,24 +72,24 @@ static void check_opposite(const brio_pole_graph *g, bool balanced, size_t *doub
 
 static void edges_are_those_of_the_triangulation_and_the_samples(void) {
     static double p[3 * SAMPLES];
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     size_t doubted = 0;
     for (int shape = 0; shape < 4; shape++)
         for (int labeling = 0; labeling < BRIO_LABELING_END; labeling++) {
             brio_context *ctx = new_context();
             brio_pole_request request;
-            brio_labelled_poles l;
+            brio_labeled_poles l;
             o.labeling = (brio_labeling)labeling;
             if (shape == 0) uniform_points(1, SAMPLES, p);
             if (shape == 1) clustered_points(2, SAMPLES, p);
             if (shape == 2) sphere_points(3, SAMPLES, p);
             if (shape == 3) integer_points(4, SAMPLES, 5, p);
             EXPECT(brio_pole_request_of(ctx, &o, &request) == BRIO_OK);
-            EXPECT(brio_labelled_poles_find(ctx, p, SAMPLES, &request, &l) == BRIO_OK, "%s", brio_message(ctx));
+            EXPECT(brio_labeled_poles_find(ctx, p, SAMPLES, &request, &l) == BRIO_OK, "%s", brio_message(ctx));
             bool balanced = labeling == BRIO_LABELING_GLOBAL;
             check_neighbours(&l.graph, labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0, balanced);
             check_opposite(&l.graph, balanced, &doubted);
-            brio_labelled_poles_free(&l);
+            brio_labeled_poles_free(&l);
             EXPECT(brio_context_memory(ctx) == 0);
             brio_context_free(ctx);
         }

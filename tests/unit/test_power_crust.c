@@ -7,7 +7,7 @@
 
 /* Runs the crust and its certificate; 1 when a surface came out, 0 when there is no inside. */
 static int crust_is_certified(brio_context *ctx, const double *p, size_t n, bool triangulate, uint64_t trial) {
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh;
     brio_certificate c = {0};
     o.triangulate = triangulate;

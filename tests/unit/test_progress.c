@@ -19,15 +19,15 @@ static int look(const char *stage, double fraction, void *user) {
     return w->reports++ >= w->allowed;
 }
 
-static uint64_t work_of(const brio_stats *s) {
+static uint64_t work_of(const brio_delaunay_stats *s) {
     return s->created + s->insphere_calls + s->walk_steps + s->history_tests + s->trace_intersections +
            64 * s->exact_calls;
 }
 
-static brio_stats triangulate(const double *p, size_t n, brio_location locate, watch *w) {
-    brio_options options = brio_options_default();
+static brio_delaunay_stats triangulate(const double *p, size_t n, brio_location locate, watch *w) {
+    brio_delaunay_options options = brio_delaunay_options_default();
     brio_triangulation *t = NULL;
-    brio_stats stats = {0};
+    brio_delaunay_stats stats = {0};
     options.locate = locate;
     options.order = BRIO_ORDER_INPUT;
     brio_context_set_progress(ctx, look, w);
@@ -44,10 +44,11 @@ static void few_points_of_much_work_are_reported(void) {
     double *p = malloc(3 * N * sizeof *p);
     for (size_t i = 0; i < N; i++)
         for (size_t k = 0; k < 3; k++) p[3 * i + k] = k == i % 2 ? (double)(i / 2) + 0.37 : k == 2 && i % 2 ? 500 : 0;
-    const brio_location ways[] = {BRIO_LOCATE_WALK, BRIO_LOCATE_JUMP, BRIO_LOCATE_HIERARCHY, BRIO_LOCATE_HISTORY};
+    const brio_location ways[] = {BRIO_LOCATION_WALK, BRIO_LOCATION_JUMP, BRIO_LOCATION_HIERARCHY,
+                                  BRIO_LOCATION_HISTORY};
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         watch w = {.allowed = SIZE_MAX, .from = 0};
-        brio_stats stats = triangulate(p, N, ways[i], &w);
+        brio_delaunay_stats stats = triangulate(p, N, ways[i], &w);
         uint64_t due = work_of(&stats) / (2 * BRIO_INSERT_WORK);
         EXPECT(due > 3 && w.late >= due, "%zu reports of %llu", w.late, (unsigned long long)due);
     }
@@ -66,7 +67,7 @@ static void one_insertion_of_a_huge_star_is_reported(void) {
         for (int c = 0; c < 3; c++) q[c] = i + 1 < N ? 0.5 + (q[c] - 0.5) / sqrt(length) : 0.5;
     }
     watch w = {.allowed = SIZE_MAX, .from = (N - 1.0) / N};
-    triangulate(p, N, BRIO_LOCATE_JUMP, &w);
+    triangulate(p, N, BRIO_LOCATION_JUMP, &w);
     size_t inside = w.late - 2; /* without the one before, and that of the end */
     EXPECT(inside >= 2 && inside < N, "%zu reports", inside);
     free(p);

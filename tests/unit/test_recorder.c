@@ -6,14 +6,14 @@
 enum { N = 10000 };
 static double points[3 * N], weights[N];
 
-static brio_options options_of(int order, uint64_t record_every) {
-    brio_options o = brio_options_default();
+static brio_delaunay_options options_of(int order, uint64_t record_every) {
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.order = (brio_order)order;
     o.record_every = record_every;
     return o;
 }
 
-static brio_triangulation *triangulate(brio_context *ctx, const double *w, size_t n, const brio_options *o) {
+static brio_triangulation *triangulate(brio_context *ctx, const double *w, size_t n, const brio_delaunay_options *o) {
     brio_triangulation *t;
     EXPECT(brio_delaunay(ctx, points, w, n, o, &t) == BRIO_OK, "%s", brio_message(ctx));
     return t;
@@ -22,7 +22,7 @@ static brio_triangulation *triangulate(brio_context *ctx, const double *w, size_
 /* What holds for every list: it rises, tells what there is at the time, and ends with the totals. */
 static const brio_round *expect_rounds(const brio_triangulation *t, size_t n, size_t *count) {
     const brio_round *round = brio_triangulation_rounds(t, count);
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     EXPECT(round && *count > 0);
     for (size_t i = 0; i < *count; i++) {
         EXPECT(round[i].tetrahedra == round[i].created - round[i].destroyed);
@@ -53,7 +53,7 @@ static void orders_with_rounds_have_an_entry_each(void) {
     brio_context *ctx = new_context();
     for (int threads = 1; threads <= 2; threads++) {
         size_t count;
-        brio_options o = options_of(BRIO_ORDER_BRIO_OCTREE, BRIO_RECORD_ROUNDS);
+        brio_delaunay_options o = options_of(BRIO_ORDER_BRIO_OCTREE, BRIO_RECORD_ROUNDS);
         brio_context_set_threads(ctx, threads);
         brio_triangulation *t = triangulate(ctx, NULL, N, &o);
         const brio_round *round = expect_rounds(t, N, &count);
@@ -71,7 +71,7 @@ static void orders_without_rounds_have_one_at_each_doubling(void) {
     brio_context *ctx = new_context();
     for (size_t k = 0; k < sizeof orders / sizeof *orders; k++) {
         size_t count;
-        brio_options o = options_of(orders[k], BRIO_RECORD_ROUNDS);
+        brio_delaunay_options o = options_of(orders[k], BRIO_RECORD_ROUNDS);
         brio_triangulation *t = triangulate(ctx, NULL, N, &o);
         const brio_round *round = expect_rounds(t, N, &count);
         EXPECT(count == 3);
@@ -91,7 +91,7 @@ static void every_so_many_points(void) {
     for (int threads = 1; threads <= 3; threads += 2)
         for (int order = 0; order < BRIO_ORDER_END; order += 4) {
             size_t count;
-            brio_options o = options_of(order, 3000);
+            brio_delaunay_options o = options_of(order, 3000);
             brio_context_set_threads(ctx, threads);
             t = triangulate(ctx, weights, N, &o);
             const brio_round *round = expect_rounds(t, N, &count);
@@ -110,7 +110,7 @@ static void few_points_have_an_entry_at_the_end(void) {
     for (size_t k = 0; k < sizeof everies / sizeof *everies; k++)
         for (size_t n = 0; n <= 6; n++) {
             size_t count;
-            brio_options o = options_of(BRIO_ORDER_INPUT, everies[k]);
+            brio_delaunay_options o = options_of(BRIO_ORDER_INPUT, everies[k]);
             brio_triangulation *t = triangulate(ctx, NULL, n, &o);
             const brio_round *round = brio_triangulation_rounds(t, &count);
             EXPECT(count > 0 && round[count - 1].points == n, "%zu points", n);
@@ -122,7 +122,7 @@ static void few_points_have_an_entry_at_the_end(void) {
 }
 
 static brio_status record_everything(brio_context *ctx) {
-    brio_options o = options_of(BRIO_ORDER_BRIO_KDTREE, 1);
+    brio_delaunay_options o = options_of(BRIO_ORDER_BRIO_KDTREE, 1);
     brio_triangulation *t;
     brio_status status = brio_delaunay(ctx, points, NULL, 100, &o, &t);
     brio_triangulation_free(t);

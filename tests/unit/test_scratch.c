@@ -10,7 +10,7 @@ typedef struct {
 
 static brio_triangulation *triangulate(brio_context *ctx, const input *in) {
     brio_triangulation *t = NULL;
-    brio_options options = brio_options_default();
+    brio_delaunay_options options = brio_delaunay_options_default();
     options.order = in->order;
     EXPECT(brio_delaunay(ctx, in->points, in->weights, in->n, &options, &t) == BRIO_OK);
     return t;
@@ -27,7 +27,7 @@ static void expect_same(const input *in, int threads, size_t limit) {
     EXPECT(brio_context_set_scratch(scratch, ".") == BRIO_OK);
     brio_context_set_memory_limit(scratch, limit);
     brio_triangulation *a = triangulate(memory, in), *b = triangulate(scratch, in);
-    const brio_stats *sa = brio_triangulation_stats(a), *sb = brio_triangulation_stats(b);
+    const brio_delaunay_stats *sa = brio_triangulation_stats(a), *sb = brio_triangulation_stats(b);
     size_t count = sa->tetrahedra + sa->hull_facets;
     EXPECT(sa->tetrahedra == sb->tetrahedra && sa->hull_facets == sb->hull_facets && sa->hidden == sb->hidden);
     EXPECT(

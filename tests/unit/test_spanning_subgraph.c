@@ -414,7 +414,7 @@ static brio_status everything(brio_context *failing) {
     brio_subgraph_stats stats;
     chain c = {.genus = 1, .radius = 0.4};
     brio_implicit_grid grid = {chain_value, &c, {-2.1, -2.1, -1}, 0.3, {14, 14, 8}};
-    BRIO_TRY(brio_iso_surface(failing, &grid, &mesh));
+    BRIO_TRY(brio_marched_surface(failing, &grid, &mesh));
     BRIO_TRY(brio_mesh_edges(failing, mesh, &all));
     BRIO_TRY(brio_spanning_subgraph(failing, mesh, &sub, &stats));
     BRIO_TRY(brio_breadth_first_tree(failing, &all, mesh->num_vertices, &tree));

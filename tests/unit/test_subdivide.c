@@ -7,7 +7,7 @@ static brio_context *ctx;
 
 static brio_mesh *subdivide(const brio_mesh *mesh, int levels) {
     brio_mesh *fine = NULL;
-    EXPECT(brio_subdivide(ctx, mesh, levels, &fine) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_mesh_subdivide(ctx, mesh, levels, &fine) == BRIO_OK, "%s", brio_message(ctx));
     return fine;
 }
 
@@ -230,9 +230,9 @@ static void properties_go_along(void) {
     double *height;
     float *half;
     uint16_t *label;
-    EXPECT(brio_mesh_add_property(mesh, "height", BRIO_FLOAT64, (void **)&height) == BRIO_OK);
-    EXPECT(brio_mesh_add_property(mesh, "half", BRIO_FLOAT32, (void **)&half) == BRIO_OK);
-    EXPECT(brio_mesh_add_property(mesh, "label", BRIO_UINT16, (void **)&label) == BRIO_OK);
+    EXPECT(brio_mesh_add_property(mesh, "height", BRIO_SCALAR_FLOAT64, (void **)&height) == BRIO_OK);
+    EXPECT(brio_mesh_add_property(mesh, "half", BRIO_SCALAR_FLOAT32, (void **)&half) == BRIO_OK);
+    EXPECT(brio_mesh_add_property(mesh, "label", BRIO_SCALAR_UINT16, (void **)&label) == BRIO_OK);
     for (size_t i = 0; i < mesh->num_vertices; i++) {
         height[i] = (double)i;
         half[i] = (float)i / 2;
@@ -258,7 +258,7 @@ static void properties_go_along(void) {
 
 static void expect_refusal(const brio_mesh *mesh, int levels, brio_status expected, const char *part) {
     brio_mesh *fine = NULL;
-    brio_status status = brio_subdivide(ctx, mesh, levels, &fine);
+    brio_status status = brio_mesh_subdivide(ctx, mesh, levels, &fine);
     EXPECT(status == expected && !fine, "status %d", (int)status);
     EXPECT(strstr(brio_message(ctx), part), "%s", brio_message(ctx));
 }
@@ -291,7 +291,7 @@ static int cancel_from_half(const char *stage, double fraction, void *user) {
 static void cancelled(void) {
     brio_mesh *mesh = random_surface(ctx, 0, 0.3, 2), *fine = NULL;
     brio_context_set_progress(ctx, cancel_from_half, NULL);
-    EXPECT(brio_subdivide(ctx, mesh, 2, &fine) == BRIO_ERR_CANCELLED && !fine);
+    EXPECT(brio_mesh_subdivide(ctx, mesh, 2, &fine) == BRIO_ERR_CANCELLED && !fine);
     brio_context_set_progress(ctx, NULL, NULL);
     brio_mesh_free(mesh);
 }
@@ -301,9 +301,9 @@ static brio_status two_levels(brio_context *failing) {
     brio_mesh *mesh = NULL, *fine = NULL;
     chain c = {.genus = 0, .radius = 0.4};
     brio_implicit_grid grid = {chain_value, &c, {-1.5, -1.5, -1.5}, 0.75, {4, 4, 4}};
-    BRIO_TRY(brio_iso_surface(failing, &grid, &mesh));
-    BRIO_TRY(brio_mesh_add_property(mesh, "p", BRIO_FLOAT32, NULL));
-    BRIO_TRY(brio_subdivide(failing, mesh, 2, &fine));
+    BRIO_TRY(brio_marched_surface(failing, &grid, &mesh));
+    BRIO_TRY(brio_mesh_add_property(mesh, "p", BRIO_SCALAR_FLOAT32, NULL));
+    BRIO_TRY(brio_mesh_subdivide(failing, mesh, 2, &fine));
 done:
     brio_mesh_free(mesh);
     brio_mesh_free(fine);

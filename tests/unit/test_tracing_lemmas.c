@@ -21,7 +21,7 @@ static brio_triangulation *delaunay(const double *points, size_t n) {
 }
 
 static size_t num_facets(const brio_triangulation *t) {
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     return 4 * (s->tetrahedra + s->hull_facets);
 }
 

@@ -91,7 +91,7 @@ static void compare_with_brute_force(const double *p, const double *w, size_t n,
     brio_triangulation *t;
     brute b;
     EXPECT(brio_delaunay(ctx, p, w, n, NULL, &t) == BRIO_OK);
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     EXPECT(brio_triangulation_check(ctx, t, p, w, n) == BRIO_OK, "trial %llu: %s", (unsigned long long)trial,
            brio_message(ctx));
     if (s->dimension == 3) {
@@ -118,7 +118,8 @@ static void small_grids_match_brute_force(void) {
 
 /* --- what must not matter --- */
 
-static uint64_t checksum_of(brio_context *ctx, const double *p, const double *w, size_t n, const brio_options *o) {
+static uint64_t checksum_of(brio_context *ctx, const double *p, const double *w, size_t n,
+                            const brio_delaunay_options *o) {
     brio_triangulation *t;
     uint64_t sum = 0;
     EXPECT(brio_delaunay(ctx, p, w, n, o, &t) == BRIO_OK, "%s", brio_message(ctx));
@@ -133,7 +134,7 @@ static void expect_one_answer(const double *p, const double *w, size_t n) {
     brio_context *ctx = new_context();
     uint64_t sum = checksum_of(ctx, p, w, n, NULL);
     for (int order = 0; order < BRIO_ORDER_END; order++) {
-        brio_options o = brio_options_default();
+        brio_delaunay_options o = brio_delaunay_options_default();
         o.order = (brio_order)order;
         o.block_size = 64; /* many blocks, also of few points */
         o.seed = 5;
@@ -215,12 +216,12 @@ static void many_points_hidden_at_once(void) {
     }
     p[3000] = p[3001] = p[3002] = 4.5;
     w[1000] = 1000;
-    brio_options o = brio_options_default();
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.order = BRIO_ORDER_INPUT;
     brio_context *ctx = new_context();
     brio_triangulation *t;
     EXPECT(brio_delaunay(ctx, p, w, 1001, &o, &t) == BRIO_OK);
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     EXPECT(s->vertices == 489 && s->hidden == 512 && s->tetrahedra == 972, "%zu %zu %zu", s->vertices, s->hidden,
            s->tetrahedra);
     EXPECT(brio_triangulation_check(ctx, t, p, w, 1001) == BRIO_OK, "%s", brio_message(ctx));
@@ -233,7 +234,7 @@ static void star_of_a_sphere_uses_the_hash_table(void) {
     static double p[3 * 1501];
     sphere_points(11, 1500, p);
     p[4500] = p[4501] = p[4502] = 0.001;
-    brio_options o = brio_options_default();
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.order = BRIO_ORDER_INPUT;
     brio_context *ctx = new_context();
     brio_triangulation *t;
@@ -265,7 +266,7 @@ static void expect_flat(const double *p, const double *w, size_t n, int dimensio
     brio_context *ctx = new_context();
     brio_triangulation *t;
     EXPECT(brio_delaunay(ctx, p, w, n, NULL, &t) == BRIO_OK);
-    const brio_stats *s = brio_triangulation_stats(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
     EXPECT(s->dimension == dimension && s->vertices == vertices && s->duplicates == duplicates && s->hidden == hidden &&
                s->tetrahedra == 0 && s->hull_facets == 0,
            "dimension %d: %zu vertices, %zu duplicates, %zu hidden", s->dimension, s->vertices, s->duplicates,
@@ -329,7 +330,7 @@ static void bad_input_names_the_point(void) {
     p[7] = 0, p[11] = 1;
     EXPECT(brio_delaunay(ctx, p, w, 4, NULL, &t) == BRIO_ERR_NOT_FINITE);
     EXPECT(!strcmp(brio_message(ctx), "point 1: weight is infinite (1 such points in all)"), "%s", brio_message(ctx));
-    brio_options o = brio_options_default();
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.round_ratio = 1;
     EXPECT(brio_delaunay(ctx, p, NULL, 4, &o, &t) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_context_memory(ctx) == 0);
@@ -339,7 +340,7 @@ static void bad_input_names_the_point(void) {
 static void too_many_tetrahedra_is_a_status(void) {
     static double p[3 * 500];
     uniform_points(6, 500, p);
-    brio_options o = brio_options_default();
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.max_tetrahedra = 1000;
     brio_context *ctx = new_context();
     brio_triangulation *t;

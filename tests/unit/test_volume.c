@@ -548,7 +548,7 @@ static void write_ball_map(void) {
 }
 
 static brio_status generate(const char *name, const brio_iso_options *options, brio_mesh **mesh) {
-    return brio_generate_iso(io_ctx, io_path(name), options, mesh);
+    return brio_iso_surface(io_ctx, io_path(name), options, mesh);
 }
 
 static void file_with_a_wanted_number_of_vertices(void) {
@@ -630,10 +630,10 @@ static brio_status both_kinds(brio_context *failing) {
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     o.resolution = 10;
-    BRIO_TRY(brio_generate_iso(failing, io_path("ball.map"), &o, &mesh));
+    BRIO_TRY(brio_iso_surface(failing, io_path("ball.map"), &o, &mesh));
     brio_mesh_free(mesh);
     mesh = NULL;
-    BRIO_TRY(brio_generate_iso(failing, io_path("a.pdb"), &o, &mesh));
+    BRIO_TRY(brio_iso_surface(failing, io_path("a.pdb"), &o, &mesh));
 done:
     brio_mesh_free(mesh);
     return status;

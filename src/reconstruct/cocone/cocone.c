@@ -100,7 +100,7 @@ static brio_status add_properties(const brio_cocone_surface *s, int exponent, br
     BRIO_TRY(brio_sampling_density(s->size, exponent, mesh, stats));
     if (s->boundary) {
         uint8_t *property = NULL;
-        BRIO_TRY(brio_mesh_add_property(mesh, "boundary", BRIO_UINT8, (void **)&property));
+        BRIO_TRY(brio_mesh_add_property(mesh, "boundary", BRIO_SCALAR_UINT8, (void **)&property));
         memcpy(property, s->boundary, mesh->num_vertices);
     }
     stats->density_seconds += brio_seconds() - start;

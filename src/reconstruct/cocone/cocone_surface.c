@@ -42,10 +42,10 @@ static void lap(reconstruction *r, double *seconds) {
 
 static brio_status triangulate(reconstruction *r) {
     brio_status status = BRIO_OK;
-    brio_options o = brio_options_default();
+    brio_delaunay_options o = brio_delaunay_options_default();
     o.seed = r->options->seed;
     BRIO_TRY(brio_delaunay(r->ctx, r->points, NULL, r->num_points, &o, &r->delaunay));
-    const brio_stats *s = brio_triangulation_stats(r->delaunay);
+    const brio_delaunay_stats *s = brio_triangulation_stats(r->delaunay);
     const uint32_t *representative = brio_triangulation_representatives(r->delaunay);
     r->out->stats.samples = s->vertices;
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->out->distinct, r->num_points));
@@ -92,7 +92,7 @@ static brio_status extract(reconstruction *r) {
     brio_cocone_surface *out = r->out;
     uint32_t *facets = NULL;
     size_t num_facets;
-    BRIO_TRY(brio_make_manifold(r->ctx, &r->labels, &facets, &num_facets, &out->stats.relabelled));
+    BRIO_TRY(brio_make_manifold(r->ctx, &r->labels, &facets, &num_facets, &out->stats.relabeled));
     BRIO_TRY(
         brio_extract_faces(r->ctx, &r->labels, !r->options->tight, facets, num_facets, &out->faces, &out->num_faces));
     BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_ERR_NO_ANSWER, "no inside found");

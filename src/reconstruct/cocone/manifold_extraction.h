@@ -1,4 +1,4 @@
-/* Manifold surfaces as boundaries between labelled tetrahedra. */
+/* Manifold surfaces as boundaries between labeled tetrahedra. */
 #ifndef BRIO_RECONSTRUCT_MANIFOLD_EXTRACTION_H
 #define BRIO_RECONSTRUCT_MANIFOLD_EXTRACTION_H
 

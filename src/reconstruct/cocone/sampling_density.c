@@ -65,8 +65,8 @@ done:
 brio_status brio_sampling_density(const double *size, int exponent, brio_mesh *mesh, brio_cocone_stats *stats) {
     brio_status status = BRIO_OK;
     double *size_property, *r;
-    BRIO_TRY(brio_mesh_add_property(mesh, "feature_size", BRIO_FLOAT64, (void **)&size_property));
-    BRIO_TRY(brio_mesh_add_property(mesh, "r", BRIO_FLOAT64, (void **)&r));
+    BRIO_TRY(brio_mesh_add_property(mesh, "feature_size", BRIO_SCALAR_FLOAT64, (void **)&size_property));
+    BRIO_TRY(brio_mesh_add_property(mesh, "r", BRIO_SCALAR_FLOAT64, (void **)&r));
     largest_circles(mesh, exponent, r);
     for (size_t p = 0; p < mesh->num_vertices; p++) {
         size_property[p] = ldexp(size[p], exponent);

@@ -58,7 +58,7 @@ static void take_samples(assembly *a, uint32_t piece, const uint32_t *samples, s
 static void add_stats(brio_cocone_stats *sum, const brio_cocone_stats *s) {
     sum->candidates += s->candidates;
     sum->pruned += s->pruned;
-    sum->relabelled += s->relabelled;
+    sum->relabeled += s->relabeled;
     sum->delaunay_seconds += s->delaunay_seconds;
     sum->poles_seconds += s->poles_seconds;
     sum->candidates_seconds += s->candidates_seconds;

@@ -1,4 +1,4 @@
-/* Gaps between the faces chosen from the boundary of labelled tetrahedra. */
+/* Gaps between the faces chosen from the boundary of labeled tetrahedra. */
 #ifndef BRIO_RECONSTRUCT_SURFACE_GAPS_H
 #define BRIO_RECONSTRUCT_SURFACE_GAPS_H
 

@@ -1,4 +1,4 @@
-/* Labelling of poles that lowers one energy: the sum of the weights that are violated, neighbours that intersect deeply
+/* Labeling of poles that lowers one energy: the sum of the weights that are violated, neighbours that intersect deeply
  * wanting the same label and opposite poles different ones. The weights are the balanced ones of the graph of poles.
  *
  * Least energy is as hard as a maximum cut, since edges of the second kind make it not submodular. Roof duality tells
@@ -13,7 +13,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/team.h"
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 #include "reconstruct/labels/roof_duality.h"
 #include <math.h>
 #include <string.h>
@@ -98,7 +98,7 @@ done:
 
 /* A solid is inside the convex hull of its surface, so a ball that is for the most part beyond the box of the samples is
  * outer: one whose centre is beyond it by half its radius, and with it five sixths of the ball. Others may be inner ones
- * that reach through an opening. Only now: given to the greedy labelling, whose mistakes spread, more certain poles were
+ * that reach through an opening. Only now: given to the greedy labeling, whose mistakes spread, more certain poles were
  * seen to mislead it on sparse samples. */
 static void settle_beyond_box(const brio_pole_graph *g, uint8_t *certain, uint8_t *label) {
     for (size_t k = 0; k < 3; k++) {
@@ -114,7 +114,7 @@ static void settle_beyond_box(const brio_pole_graph *g, uint8_t *certain, uint8_
     }
 }
 
-brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
+brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
     brio_status status = BRIO_OK;
     size_t n = g->poles->count;
     problem pr = {.g = g, .label = label, .threads = brio_threads(g->ctx, n, POLES_A_THREAD)};

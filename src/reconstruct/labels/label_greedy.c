@@ -1,7 +1,7 @@
-/* Greedy labelling of poles: the surest first.
+/* Greedy labeling of poles: the surest first.
  *
- * Each unlabelled pole holds two beliefs, in and out, between 0 (unknown) and 1 (certain). The pole of highest priority
- * is labelled by the larger belief and passes its strength on, weakened by the weight of the edge: opposite poles are
+ * Each unlabeled pole holds two beliefs, in and out, between 0 (unknown) and 1 (certain). The pole of highest priority
+ * is labeled by the larger belief and passes its strength on, weakened by the weight of the edge: opposite poles are
  * pushed to the opposite label, deeply intersecting neighbours to the same. A pole with evidence for both labels is
  * "confused" and waits until the end of the queue. Equal priorities go by the poles' canonical numbers.
  *
@@ -14,7 +14,7 @@
  * Differs from the paper: poles on the hull of the regular triangulation are certainly outer too, and what is certain
  * is never pushed. */
 #include "base/memory.h"
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 #include "reconstruct/labels/pole_queue.h"
 #include <math.h>
 #include <string.h>
@@ -37,7 +37,7 @@ typedef struct {
     node *nodes;
     brio_pole_queue queue; /* of the poles that are not confused, then of those that are */
     bool all_confused;     /* the poles that are left */
-    size_t labelled;
+    size_t labeled;
     uint32_t ahead[BRIO_POLE_PEEK]; /* poles that come up soon, whose nodes were called for */
     int num_ahead;
 } labeller;
@@ -94,8 +94,8 @@ static void mark_settled(labeller *l, size_t p) {
 }
 
 static brio_status settle(labeller *l, uint32_t p, int side, double strength) {
-    if (l->labelled++ % 65536 == 0) {
-        double share = (double)l->labelled / (double)l->g->poles->count;
+    if (l->labeled++ % 65536 == 0) {
+        double share = (double)l->labeled / (double)l->g->poles->count;
         brio_status status = brio_progress(l->ctx, "label", 0.5 + 0.5 * (share < 1 ? share : 1));
         if (status != BRIO_OK) return status;
     }
@@ -106,7 +106,7 @@ static brio_status settle(labeller *l, uint32_t p, int side, double strength) {
 
 /* --- in order of priority --- */
 
-/* Certain poles are outer; labelled ones are as certain of their labels. */
+/* Certain poles are outer; labeled ones are as certain of their labels. */
 static brio_status settle_certain(labeller *l) {
     brio_status status = BRIO_OK;
     size_t n = l->g->poles->count;
@@ -175,7 +175,7 @@ static void settle_without_evidence(labeller *l) {
     }
 }
 
-static brio_status settle_confused(labeller *l, brio_labelling_stats *stats) {
+static brio_status settle_confused(labeller *l, brio_labeling_stats *stats) {
     brio_status status = BRIO_OK;
     l->all_confused = true;
     brio_pole_queue_free(&l->queue);
@@ -198,7 +198,7 @@ static brio_status nodes_new(labeller *l) {
     return BRIO_OK;
 }
 
-brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
+brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
     brio_status status = BRIO_OK;
     labeller l = {.ctx = g->ctx, .g = g, .label = label, .queue = brio_pole_queue_new(g->ctx, CERTAIN)};
     BRIO_TRY(nodes_new(&l));
@@ -212,7 +212,7 @@ done:
     return status;
 }
 
-brio_status brio_label_finish(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
+brio_status brio_label_finish(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
     for (size_t p = 0; p < g->poles->count; p++) stats->unreached += label[p] == BRIO_LABEL_NONE;
     return stats->unreached ? brio_label_greedy(g, label, stats) : BRIO_OK;
 }

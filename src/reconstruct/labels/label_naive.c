@@ -1,13 +1,13 @@
-/* Naive labelling of poles: breadth first from the poles that are certainly outer. A wrong label spreads as far as a
+/* Naive labeling of poles: breadth first from the poles that are certainly outer. A wrong label spreads as far as a
  * right one, so this is for comparison, and for samples that are known to be dense.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.3.
  * Differs from the paper: poles on the hull of the regular triangulation are certain too; what is not reached is left
- * to the greedy labelling. */
+ * to the greedy labeling. */
 #include "base/memory.h"
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 
-brio_status brio_label_naive(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
+brio_status brio_label_naive(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
     brio_status status = BRIO_OK;
     uint8_t *certain = NULL;
     uint32_t *queue = NULL;

@@ -2,7 +2,7 @@
 #ifndef BRIO_RECONSTRUCT_LABEL_SOLID_H
 #define BRIO_RECONSTRUCT_LABEL_SOLID_H
 
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 
 /** label[p]: inner for the poles whose centres a closed mesh winds round, outer for the others.
  *  exponent  the poles are in the unit of the mesh times 2^-exponent.

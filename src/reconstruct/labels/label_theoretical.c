@@ -1,11 +1,11 @@
-/* Theoretical labelling of poles: breadth first from one sample of the hull, whose far pole is outer and whose other
+/* Theoretical labeling of poles: breadth first from one sample of the hull, whose far pole is outer and whose other
  * pole is inner. On a dense sample of a smooth closed surface every pole is reached and every label is right.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, appendix B.3 (lemmata 56 and 57).
  * Differs from the paper: the poles that are outer for good get no other label, whatever reaches them; what is not
- * reached is left to the greedy labelling. */
+ * reached is left to the greedy labeling. */
 #include "base/memory.h"
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 
 /* The first pole whose tetrahedron has a bounding point: that pole's samples are on the hull or see out of it. */
 static size_t seed_pole(const brio_pole_graph *g) {
@@ -14,7 +14,7 @@ static size_t seed_pole(const brio_pole_graph *g) {
     return p;
 }
 
-brio_status brio_label_theoretical(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats) {
+brio_status brio_label_theoretical(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
     brio_status status = BRIO_OK;
     uint8_t *certain = NULL;
     uint32_t *queue = NULL;

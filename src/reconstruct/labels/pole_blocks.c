@@ -10,7 +10,7 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "order/hilbert.h"
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 #include <math.h>
 #include <string.h>
 

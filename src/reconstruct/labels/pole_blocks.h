@@ -1,4 +1,4 @@
-/* Poles about the violated edges of a labelling, in blocks of poles that are near each other, and the blocks in rounds. */
+/* Poles about the violated edges of a labeling, in blocks of poles that are near each other, and the blocks in rounds. */
 #ifndef BRIO_RECONSTRUCT_POLE_BLOCKS_H
 #define BRIO_RECONSTRUCT_POLE_BLOCKS_H
 

@@ -294,7 +294,7 @@ done:
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
                                 const brio_triangulation *power, brio_pole_evidence evidence, brio_pole_graph *g) {
     brio_status status = BRIO_OK;
-    const brio_stats *stats = brio_triangulation_stats(power);
+    const brio_delaunay_stats *stats = brio_triangulation_stats(power);
     *g = (brio_pole_graph){.ctx = ctx, .poles = poles, .samples = samples, .num_samples = num_samples};
     g->num_finite = stats->tetrahedra;
     /* the view is read only: the structure is shared with code that builds triangulations */

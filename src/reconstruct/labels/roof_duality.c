@@ -4,7 +4,7 @@
  * a cut can: every pole has two nodes, itself and its complement; an edge for equal labels joins pole with pole and
  * complement with complement, an edge for different labels joins either pole with the other's complement. Here the label
  * of a pole is whether it is to be toggled: edges at peace want both ends toggled or none, violated ones want one. In a
- * minimum cut a pole on the side of the source stays and one whose complement is there is toggled, in a labelling of
+ * minimum cut a pole on the side of the source stays and one whose complement is there is toggled, in a labeling of
  * least energy; to do that and to leave the others, the open ones, as they are does not raise the energy either
  * (autarky).
  *
@@ -13,7 +13,7 @@
  *           Boros, Hammer. Pseudo-Boolean optimization. Discrete Applied Mathematics 2002 (the doubled graph). */
 #include "reconstruct/labels/roof_duality.h"
 #include "base/memory.h"
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 #include <math.h>
 #include <string.h>
 

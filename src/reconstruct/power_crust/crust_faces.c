@@ -16,7 +16,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "predicates/circumcentre.h"
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 #include "surface/split_vertices.h"
 #include "triangulation/ring.h"
 #include <math.h>
@@ -82,7 +82,7 @@ static double vertex_spacing(const builder *b, const uint32_t *v) {
 static brio_status add_spacing(builder *b) {
     brio_status status = BRIO_OK;
     void *data;
-    BRIO_TRY(brio_mesh_add_property(b->mesh, "spacing", BRIO_FLOAT64, &data));
+    BRIO_TRY(brio_mesh_add_property(b->mesh, "spacing", BRIO_SCALAR_FLOAT64, &data));
     double *spacing = data;
     for (size_t tet = 0; tet < b->g->num_finite; tet++)
         if (b->number[tet] != NO_VERTEX) spacing[b->number[tet]] = vertex_spacing(b, b->g->power.tet[tet].vertex);

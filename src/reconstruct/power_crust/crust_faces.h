@@ -17,7 +17,7 @@ typedef struct {
 } brio_crust_counts;
 
 /** Writes the crust into an empty mesh, as polygons seen counterclockwise from the outer side, or as triangles. Every
- *  pole must be labelled and every hull vertex of the power triangulation be outer.
+ *  pole must be labeled and every hull vertex of the power triangulation be outer.
  *  BRIO_ERR_NO_ANSWER when no pole with a cell is inner, or nothing is left. */
 brio_status brio_crust_faces(const brio_pole_graph *g, const uint8_t *label, const brio_crust_options *options,
                              brio_mesh *mesh, brio_crust_counts *counts);

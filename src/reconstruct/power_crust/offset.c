@@ -14,7 +14,7 @@ static const double POLES_SHARE = 0.6, POWER_SHARE = 0.9; /* of the progress bar
 static const double MARGIN = 4;                           /* of the bounding points, in distances */
 
 /* Changes the radii; keep[p] = 0 for the balls that vanish. */
-static void change_radii(brio_labelled_poles *l, double distance, uint8_t *keep) {
+static void change_radii(brio_labeled_poles *l, double distance, uint8_t *keep) {
     double scaled = ldexp(distance, -l->exponent);
     for (size_t p = 0; p < l->poles.count; p++) {
         double radius = sqrt(l->poles.square[p]) + (l->label[p] == BRIO_LABEL_INNER ? scaled : -scaled);
@@ -23,19 +23,19 @@ static void change_radii(brio_labelled_poles *l, double distance, uint8_t *keep)
     }
 }
 
-static brio_status move_surface(brio_labelled_poles *l, double distance) {
+static brio_status move_surface(brio_labeled_poles *l, double distance) {
     brio_status status = BRIO_OK;
     uint8_t *keep = NULL;
     BRIO_TRY(BRIO_ALLOC(l->ctx, keep, l->poles.count));
     change_radii(l, distance, keep);
-    BRIO_TRY(brio_labelled_poles_keep(l, keep));
-    brio_labelled_poles_close_hull(l);
+    BRIO_TRY(brio_labeled_poles_keep(l, keep));
+    brio_labeled_poles_close_hull(l);
 done:
     brio_release(l->ctx, keep);
     return status;
 }
 
-static brio_status check_options(brio_context *ctx, double distance, const brio_surface_options *o) {
+static brio_status check_options(brio_context *ctx, double distance, const brio_power_crust_options *o) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
     BRIO_REQUIRE(ctx, o->open == 0, BRIO_ERR_ARGUMENT, "an offset surface has no holes: open is not for it");
@@ -44,15 +44,15 @@ done:
     return status;
 }
 
-static brio_status make_offset(brio_labelled_poles *l, const double *points, size_t num_points, double distance,
-                               const brio_surface_options *o, brio_mesh *mesh) {
+static brio_status make_offset(brio_labeled_poles *l, const double *points, size_t num_points, double distance,
+                               const brio_power_crust_options *o, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     brio_pole_request request;
     BRIO_TRY(check_options(l->ctx, distance, o));
     BRIO_TRY(brio_pole_request_of(l->ctx, o, &request));
     request.margin = MARGIN * fabs(distance);
     request.until = POLES_SHARE;
-    BRIO_TRY(brio_labelled_poles_find(l->ctx, points, num_points, &request, l));
+    BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
     l->ctx->progress_from = POLES_SHARE;
     l->ctx->progress_to = POWER_SHARE;
     BRIO_REQUIRE(l->ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
@@ -65,11 +65,12 @@ done:
 }
 
 brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
-                                const brio_surface_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
+                                const brio_power_crust_options *options, brio_mesh **out,
+                                brio_power_crust_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_surface_options standard = brio_surface_options_default();
-    brio_labelled_poles l = {.ctx = ctx};
+    brio_power_crust_options standard = brio_power_crust_options_default();
+    brio_labeled_poles l = {.ctx = ctx};
     brio_mesh *mesh = NULL;
     *out = NULL;
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
@@ -81,6 +82,6 @@ done:
     ctx->progress_from = 0;
     ctx->progress_to = 1;
     brio_mesh_free(mesh);
-    brio_labelled_poles_free(&l);
+    brio_labeled_poles_free(&l);
     return status;
 }

@@ -1,5 +1,5 @@
 /* The power crust: the faces of the power diagram of the polar balls between inner and outer cells, where the balls are
- * labelled; then, on request, fewer triangles in their place.
+ * labeled; then, on request, fewer triangles in their place.
  *
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7. */
@@ -16,12 +16,12 @@
 static const double POLES_SHARE = 0.9;                                /* of the progress bar */
 static const double LONGEST_COLLAPSE = 1.5, COLLAPSE_TOLERANCE = 0.1; /* in spacings */
 
-brio_surface_options brio_surface_options_default(void) {
-    return (brio_surface_options){.seed = 1};
+brio_power_crust_options brio_power_crust_options_default(void) {
+    return (brio_power_crust_options){.seed = 1};
 }
 
 /* A quarter of the faces, where that can be had. */
-static brio_status simplify(brio_labelled_poles *l, size_t polygons, brio_mesh *mesh) {
+static brio_status simplify(brio_labeled_poles *l, size_t polygons, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     brio_simplify_options o = {.target_faces = polygons / 4,
@@ -38,7 +38,7 @@ static void drop_properties(brio_mesh *mesh) {
     while (mesh->num_properties) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
 }
 
-brio_status brio_make_crust(brio_labelled_poles *l, const brio_surface_options *o, double from, brio_mesh *mesh) {
+brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, double from, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     brio_crust_options options = {o->triangulate || o->simplify, o->open, l->spacing};
@@ -59,11 +59,11 @@ done:
 }
 
 brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
-                             const brio_surface_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
+                             const brio_power_crust_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_surface_options standard = brio_surface_options_default();
-    brio_labelled_poles l = {.ctx = ctx};
+    brio_power_crust_options standard = brio_power_crust_options_default();
+    brio_labeled_poles l = {.ctx = ctx};
     brio_pole_request request;
     brio_mesh *mesh = NULL;
     *out = NULL;
@@ -74,8 +74,8 @@ brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num
                  options->open);
     request.until = POLES_SHARE;
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
-    BRIO_TRY(brio_labelled_poles_find(ctx, points, num_points, &request, &l));
-    if (options->solid) brio_labelled_poles_close_hull(&l);
+    BRIO_TRY(brio_labeled_poles_find(ctx, points, num_points, &request, &l));
+    if (options->solid) brio_labeled_poles_close_hull(&l);
     BRIO_TRY(brio_make_crust(&l, options, POLES_SHARE, mesh));
     *out = mesh;
     mesh = NULL;
@@ -84,7 +84,7 @@ done:
     ctx->progress_from = 0;
     ctx->progress_to = 1;
     brio_mesh_free(mesh);
-    brio_labelled_poles_free(&l);
+    brio_labeled_poles_free(&l);
     brio_keep_end(ctx);
     return status;
 }

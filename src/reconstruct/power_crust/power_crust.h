@@ -1,13 +1,13 @@
-/* The power crust of labelled poles. */
+/* The power crust of labeled poles. */
 #ifndef BRIO_RECONSTRUCT_POWER_CRUST_H
 #define BRIO_RECONSTRUCT_POWER_CRUST_H
 
-#include "reconstruct/power_crust/labelled_poles.h"
+#include "reconstruct/power_crust/labeled_poles.h"
 
 /** Writes the power crust of the poles into an empty mesh, in the unit of the points, as the options want it; counts in
  *  l->stats. Every hull vertex of l->power must be outer; l->spacing is there for `open` and `simplify`, the graph's
  *  opposite poles for `normals`.   from  where on the progress bar it begins.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no pole with a cell is inner), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
-brio_status brio_make_crust(brio_labelled_poles *l, const brio_surface_options *o, double from, brio_mesh *mesh);
+brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, double from, brio_mesh *mesh);
 
 #endif

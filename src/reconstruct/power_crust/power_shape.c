@@ -18,13 +18,13 @@
 enum { NO_VERTEX = UINT32_MAX };
 static const double POLES_SHARE = 0.8, SHAPE_SHARE = 0.9; /* of the progress bar */
 
-brio_medial_options brio_medial_options_default(void) {
-    return (brio_medial_options){.seed = 1, .sides = BRIO_MEDIAL_INNER, .scale = 1};
+brio_power_shape_options brio_power_shape_options_default(void) {
+    return (brio_power_shape_options){.seed = 1, .sides = BRIO_SIDES_INNER, .scale = 1};
 }
 
 typedef struct {
-    brio_labelled_poles *poles;
-    const brio_medial_options *options;
+    brio_labeled_poles *poles;
+    const brio_power_shape_options *options;
     uint32_t *number; /* of the vertex of each pole, or NO_VERTEX */
     brio_mesh *mesh;
     uint32_t *edges, *corners, *tetrahedra;
@@ -36,16 +36,16 @@ typedef struct {
 /* --- simplification --- */
 
 /* The side of the surface on which poles of a label are asked for. */
-static bool wants(const brio_medial_options *o, uint8_t label) {
-    return label == BRIO_LABEL_INNER ? o->sides != BRIO_MEDIAL_OUTER : o->sides != BRIO_MEDIAL_INNER;
+static bool wants(const brio_power_shape_options *o, uint8_t label) {
+    return label == BRIO_LABEL_INNER ? o->sides != BRIO_SIDES_OUTER : o->sides != BRIO_SIDES_INNER;
 }
 
-static bool has_cell(const brio_labelled_poles *l, size_t p) {
+static bool has_cell(const brio_labeled_poles *l, size_t p) {
     return brio_triangulation_representatives(l->power)[p] == p;
 }
 
 /* Poles of one label; those without a cell add nothing to the union of the others, and go. */
-static brio_status simplify_side(brio_labelled_poles *l, const brio_cover_rule *rule, uint8_t label, uint8_t *keep) {
+static brio_status simplify_side(brio_labeled_poles *l, const brio_cover_rule *rule, uint8_t label, uint8_t *keep) {
     brio_status status = BRIO_OK;
     uint32_t *balls = NULL;
     size_t count = 0;
@@ -63,7 +63,7 @@ done:
     return status;
 }
 
-static brio_status simplify(brio_labelled_poles *l, const brio_medial_options *o, brio_medial_stats *stats) {
+static brio_status simplify(brio_labeled_poles *l, const brio_power_shape_options *o, brio_power_shape_stats *stats) {
     static const uint8_t labels[2] = {BRIO_LABEL_INNER, BRIO_LABEL_OUTER};
     brio_status status = BRIO_OK;
     const brio_cover_rule rule = {o->scale, o->redundancy};
@@ -75,7 +75,7 @@ static brio_status simplify(brio_labelled_poles *l, const brio_medial_options *o
     for (int i = 0; i < 2; i++)
         if (wants(o, labels[i])) BRIO_TRY(simplify_side(l, &rule, labels[i], keep));
     for (size_t p = 0; p < l->poles.count; p++) stats->left_out += !keep[p];
-    BRIO_TRY(brio_labelled_poles_keep(l, keep));
+    BRIO_TRY(brio_labeled_poles_keep(l, keep));
     stats->simplify_seconds = brio_seconds() - start;
 done:
     brio_release(l->ctx, keep);
@@ -86,7 +86,7 @@ done:
 
 static brio_status make_vertices(builder *b) {
     brio_status status = BRIO_OK;
-    const brio_labelled_poles *l = b->poles;
+    const brio_labeled_poles *l = b->poles;
     size_t count = 0;
     void *radii, *sides;
     BRIO_TRY(BRIO_ALLOC(l->ctx, b->number, l->poles.count));
@@ -95,8 +95,8 @@ static brio_status make_vertices(builder *b) {
         b->number[p] = wants(b->options, l->label[p]) && has_cell(l, p) && !artificial ? (uint32_t)count++ : NO_VERTEX;
     }
     BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, count));
-    BRIO_TRY(brio_mesh_add_property(b->mesh, "radius", BRIO_FLOAT64, &radii));
-    BRIO_TRY(brio_mesh_add_property(b->mesh, "side", BRIO_INT8, &sides));
+    BRIO_TRY(brio_mesh_add_property(b->mesh, "radius", BRIO_SCALAR_FLOAT64, &radii));
+    BRIO_TRY(brio_mesh_add_property(b->mesh, "side", BRIO_SCALAR_INT8, &sides));
     for (size_t p = 0; p < l->poles.count; p++) {
         size_t v = b->number[p];
         if (v == NO_VERTEX) continue;
@@ -185,7 +185,7 @@ done:
     return status;
 }
 
-static brio_status make_shape(brio_labelled_poles *l, const brio_medial_options *o, brio_mesh *mesh) {
+static brio_status make_shape(brio_labeled_poles *l, const brio_power_shape_options *o, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     builder b = {.poles = l, .options = o, .mesh = mesh};
     BRIO_TRY(make_vertices(&b));
@@ -210,9 +210,9 @@ done:
 
 /* --- the whole --- */
 
-static brio_status check_options(brio_context *ctx, const brio_medial_options *o) {
+static brio_status check_options(brio_context *ctx, const brio_power_shape_options *o) {
     brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, (unsigned)o->sides < BRIO_MEDIAL_END, BRIO_ERR_ARGUMENT, "no such side: %d", (int)o->sides);
+    BRIO_REQUIRE(ctx, (unsigned)o->sides < BRIO_SIDES_END, BRIO_ERR_ARGUMENT, "no such side: %d", (int)o->sides);
     BRIO_REQUIRE(ctx, o->scale >= 1 && isfinite(o->scale), BRIO_ERR_ARGUMENT, "scale %g, expected 1 or more", o->scale);
     BRIO_REQUIRE(ctx, o->redundancy >= 0 && isfinite(o->redundancy), BRIO_ERR_ARGUMENT,
                  "redundancy %g, expected 0 or more", o->redundancy);
@@ -220,8 +220,8 @@ done:
     return status;
 }
 
-static brio_surface_options surface_options(const brio_medial_options *o) {
-    brio_surface_options s = brio_surface_options_default();
+static brio_power_crust_options surface_options(const brio_power_shape_options *o) {
+    brio_power_crust_options s = brio_power_crust_options_default();
     s.seed = o->seed;
     s.labeling = o->labeling;
     s.solid = o->solid;
@@ -231,7 +231,7 @@ static brio_surface_options surface_options(const brio_medial_options *o) {
     return s;
 }
 
-static void copy_stats(const brio_labelled_poles *l, const brio_mesh *shape, brio_medial_stats *s) {
+static void copy_stats(const brio_labeled_poles *l, const brio_mesh *shape, brio_power_shape_stats *s) {
     s->samples = l->stats.samples;
     s->poles = l->stats.poles;
     s->delaunay_seconds = l->stats.delaunay_seconds;
@@ -243,7 +243,7 @@ static void copy_stats(const brio_labelled_poles *l, const brio_mesh *shape, bri
 }
 
 /* Before any pole is left out. */
-static void count_poles(const brio_labelled_poles *l, brio_medial_stats *s) {
+static void count_poles(const brio_labeled_poles *l, brio_power_shape_stats *s) {
     s->hidden_poles = l->stats.hidden_poles;
     s->power_seconds = l->stats.power_seconds;
     s->noise = l->stats.noise;
@@ -252,7 +252,7 @@ static void count_poles(const brio_labelled_poles *l, brio_medial_stats *s) {
     for (size_t p = 0; p < l->poles.count; p++) {
         s->inner += l->label[p] == BRIO_LABEL_INNER;
         s->outer += l->label[p] == BRIO_LABEL_OUTER;
-        s->unlabelled += l->label[p] == BRIO_LABEL_NONE;
+        s->unlabeled += l->label[p] == BRIO_LABEL_NONE;
     }
 }
 
@@ -261,15 +261,16 @@ static void progress_part(brio_context *ctx, double from, double to) {
     ctx->progress_to = to;
 }
 
-static brio_status make_both(brio_labelled_poles *l, const double *points, size_t num_points,
-                             const brio_medial_options *o, brio_mesh *shape, brio_mesh *crust, brio_medial_stats *s) {
+static brio_status make_both(brio_labeled_poles *l, const double *points, size_t num_points,
+                             const brio_power_shape_options *o, brio_mesh *shape, brio_mesh *crust,
+                             brio_power_shape_stats *s) {
     brio_status status = BRIO_OK;
-    brio_surface_options surface = surface_options(o);
+    brio_power_crust_options surface = surface_options(o);
     brio_pole_request request;
     BRIO_TRY(check_options(l->ctx, o));
     BRIO_TRY(brio_pole_request_of(l->ctx, &surface, &request));
     request.until = POLES_SHARE;
-    BRIO_TRY(brio_labelled_poles_find(l->ctx, points, num_points, &request, l));
+    BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
     count_poles(l, s);
     progress_part(l->ctx, POLES_SHARE, SHAPE_SHARE);
     BRIO_TRY(simplify(l, o, s));
@@ -278,20 +279,20 @@ static brio_status make_both(brio_labelled_poles *l, const double *points, size_
     BRIO_TRY(make_shape(l, o, shape));
     s->shape_seconds = brio_seconds() - start;
     if (!crust) goto done;
-    brio_labelled_poles_close_hull(l);
+    brio_labeled_poles_close_hull(l);
     BRIO_TRY(brio_make_crust(l, &surface, l->ctx->progress_to, crust));
 done:
     return status;
 }
 
 brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num_points,
-                             const brio_medial_options *options, brio_mesh **shape, brio_mesh **crust,
-                             brio_medial_stats *stats) {
+                             const brio_power_shape_options *options, brio_mesh **shape, brio_mesh **crust,
+                             brio_power_shape_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_medial_options standard = brio_medial_options_default();
-    brio_medial_stats s = {0};
-    brio_labelled_poles l = {.ctx = ctx};
+    brio_power_shape_options standard = brio_power_shape_options_default();
+    brio_power_shape_stats s = {0};
+    brio_labeled_poles l = {.ctx = ctx};
     brio_mesh *shape_mesh = NULL, *crust_mesh = NULL;
     *shape = NULL;
     if (crust) *crust = NULL;
@@ -307,6 +308,6 @@ done:
     progress_part(ctx, 0, 1);
     brio_mesh_free(shape_mesh);
     brio_mesh_free(crust_mesh);
-    brio_labelled_poles_free(&l);
+    brio_labeled_poles_free(&l);
     return status;
 }

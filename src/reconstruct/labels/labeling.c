@@ -1,5 +1,5 @@
-/* What the labellings share: which poles are certain, the energy of labels, spreading breadth first. */
-#include "reconstruct/labels/labelling.h"
+/* What the labelings share: which poles are certain, the energy of labels, spreading breadth first. */
+#include "reconstruct/labels/labeling.h"
 #include "base/team.h"
 #include <math.h>
 #include <string.h>

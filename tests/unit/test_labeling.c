@@ -1,4 +1,4 @@
-/* Labellings: right on dense samples, ordered by energy, and the same for every order of the samples; the maximum flow
+/* Labelings: right on dense samples, ordered by energy, and the same for every order of the samples; the maximum flow
  * under the global one. */
 #include "failing_allocator.h"
 #include "harness.h"
@@ -10,7 +10,7 @@ static const brio_labeling ALL[] = {BRIO_LABELING_GREEDY, BRIO_LABELING_NAIVE, B
 
 static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_labeling labeling,
                         brio_power_crust_stats *s) {
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh = NULL;
     o.labeling = labeling;
     brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, s);
@@ -53,7 +53,7 @@ static void all_agree_on_dense_samples(void) {
 }
 
 /* Inputs with no right answer: all are closed, and the global labels violate no more than the greedy ones. */
-static void anything_is_labelled_and_global_is_no_worse(void) {
+static void anything_is_labeled_and_global_is_no_worse(void) {
     double p[3 * 60];
     int lower = 0;
     brio_context *ctx = new_context();
@@ -103,7 +103,7 @@ static void unknown_labeling_is_refused(void) {
     double p[3 * 20];
     uniform_points(1, 20, p);
     brio_context *ctx = new_context();
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh;
     o.labeling = BRIO_LABELING_END;
     EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
@@ -160,7 +160,7 @@ static void cuts_are_minimal_and_least(void) {
 
 static brio_status small_global_crust(brio_context *ctx) {
     double p[3 * 40];
-    brio_surface_options o = brio_surface_options_default();
+    brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh;
     o.labeling = BRIO_LABELING_GLOBAL;
     clustered_points(3, 40, p);
@@ -175,7 +175,7 @@ static void every_failed_allocation_is_a_status(void) {
 
 int main(void) {
     RUN(all_agree_on_dense_samples);
-    RUN(anything_is_labelled_and_global_is_no_worse);
+    RUN(anything_is_labeled_and_global_is_no_worse);
     RUN(shuffled_samples_give_the_same_global_labels);
     RUN(unknown_labeling_is_refused);
     RUN(cuts_are_minimal_and_least);

@@ -1,8 +1,8 @@
-/* From samples to labelled polar balls: what the power crust, the power shape and offset surfaces have in common. */
-#ifndef BRIO_RECONSTRUCT_LABELLED_POLES_H
-#define BRIO_RECONSTRUCT_LABELLED_POLES_H
+/* From samples to labeled polar balls: what the power crust, the power shape and offset surfaces have in common. */
+#ifndef BRIO_RECONSTRUCT_LABELED_POLES_H
+#define BRIO_RECONSTRUCT_LABELED_POLES_H
 
-#include "reconstruct/labels/labelling.h"
+#include "reconstruct/labels/labeling.h"
 
 /** What is to be found. */
 typedef struct {
@@ -26,7 +26,7 @@ typedef struct {
                        samples and the margin at most 1 */
     int exponent;
     uint32_t *order; /* #samples: the caller's index of each, where representatives are wanted; else NULL */
-    brio_options triangulation;
+    brio_delaunay_options triangulation;
     brio_poles poles;
     double *spacing;          /* of the poles, or NULL */
     uint32_t *representative; /* of the samples, or NULL */
@@ -34,24 +34,25 @@ typedef struct {
     brio_pole_graph graph; /* of these poles; without edges where the labels came from elsewhere */
     uint8_t *label;
     brio_power_crust_stats stats; /* its first part, up to the labels */
-} brio_labelled_poles;
+} brio_labeled_poles;
 
 /** What the options of a surface ask of the poles; BRIO_ERR_ARGUMENT for numbers out of range. */
-brio_status brio_pole_request_of(brio_context *ctx, const brio_surface_options *options, brio_pole_request *request);
+brio_status brio_pole_request_of(brio_context *ctx, const brio_power_crust_options *options,
+                                 brio_pole_request *request);
 
 /** Finds the poles of points and labels them.   l  to be freed on failure too; it does not move meanwhile.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid), and as brio_delaunay. */
-brio_status brio_labelled_poles_find(brio_context *ctx, const double *points, size_t num_points,
-                                     const brio_pole_request *request, brio_labelled_poles *l);
+brio_status brio_labeled_poles_find(brio_context *ctx, const double *points, size_t num_points,
+                                    const brio_pole_request *request, brio_labeled_poles *l);
 
 /** Takes away the poles for which keep is 0, and triangulates those that are left with their present radii; the
  *  others' numbers, labels and spacings close up in order. Samples forget their poles, and the graph has no edges.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid), and as brio_delaunay. */
-brio_status brio_labelled_poles_keep(brio_labelled_poles *l, const uint8_t *keep);
+brio_status brio_labeled_poles_keep(brio_labeled_poles *l, const uint8_t *keep);
 
 /** Makes the poles on the hull of the triangulation outer, as a crust needs it. */
-void brio_labelled_poles_close_hull(brio_labelled_poles *l);
+void brio_labeled_poles_close_hull(brio_labeled_poles *l);
 
-void brio_labelled_poles_free(brio_labelled_poles *l);
+void brio_labeled_poles_free(brio_labeled_poles *l);
 
 #endif

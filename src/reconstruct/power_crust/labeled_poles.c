@@ -1,4 +1,4 @@
-/* From samples to labelled polar balls.
+/* From samples to labeled polar balls.
  *
  *   1. Delaunay triangulation of the samples in their canonical order, smoothed where they are noisy, and eight bounding
  *      points.
@@ -9,7 +9,7 @@
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7, steps 1 to 4.
  * Differs from the paper: the bounding points are no poles and take no part in the power diagram; poles on the hull of
  * the power diagram's dual are outer, without which the crust of small or clustered inputs would not close. */
-#include "reconstruct/power_crust/labelled_poles.h"
+#include "reconstruct/power_crust/labeled_poles.h"
 #include "base/memory.h"
 #include "base/scale.h"
 #include "dual/spacing.h"
@@ -22,7 +22,7 @@
 enum { BOUNDING_POINTS = 8 };
 static const double SHARP_DENSITY = 0.5;
 
-brio_status brio_pole_request_of(brio_context *ctx, const brio_surface_options *o, brio_pole_request *request) {
+brio_status brio_pole_request_of(brio_context *ctx, const brio_power_crust_options *o, brio_pole_request *request) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, (unsigned)o->labeling < BRIO_LABELING_END, BRIO_ERR_ARGUMENT, "no such labeling: %d",
                  (int)o->labeling);
@@ -52,7 +52,7 @@ static void stage(brio_context *ctx, const brio_pole_request *request, double fr
 /* --- 1: samples and bounding points --- */
 
 /* Takes over the samples in their canonical order, scaled: from here on nothing depends on the caller's order. */
-static brio_status take_samples(brio_labelled_poles *l, const double *points) {
+static brio_status take_samples(brio_labeled_poles *l, const double *points) {
     brio_status status = BRIO_OK;
     size_t n = l->num_samples;
     BRIO_TRY(brio_refuse_points(l->ctx, points, n));
@@ -86,7 +86,7 @@ static void bounding_corners(const double *points, size_t n, double margin, doub
 }
 
 /* Samples without their noise, where that is wanted. */
-static brio_status reduce_noise(brio_labelled_poles *l, const brio_pole_request *request) {
+static brio_status reduce_noise(brio_labeled_poles *l, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     bool smooth = request->noise == BRIO_NOISE_SMOOTH;
@@ -102,7 +102,7 @@ done:
     return status;
 }
 
-static brio_status prepare(brio_labelled_poles *l, const double *points, const brio_pole_request *request) {
+static brio_status prepare(brio_labeled_poles *l, const double *points, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     size_t n = l->num_samples;
     double most = request->margin;
@@ -122,7 +122,7 @@ done:
 
 /* --- 2: poles --- */
 
-static brio_status measure_spacing(brio_labelled_poles *l, const brio_triangulation *delaunay) {
+static brio_status measure_spacing(brio_labeled_poles *l, const brio_triangulation *delaunay) {
     brio_status status = BRIO_OK;
     double *of_sample = NULL;
     BRIO_TRY(BRIO_ALLOC(l->ctx, of_sample, l->num_samples));
@@ -134,14 +134,14 @@ done:
     return status;
 }
 
-static brio_status keep_representatives(brio_labelled_poles *l, const brio_triangulation *delaunay) {
+static brio_status keep_representatives(brio_labeled_poles *l, const brio_triangulation *delaunay) {
     brio_status status = BRIO_ALLOC(l->ctx, l->representative, l->num_samples);
     if (status != BRIO_OK) return status;
     memcpy(l->representative, brio_triangulation_representatives(delaunay), l->num_samples * sizeof *l->representative);
     return BRIO_OK;
 }
 
-static brio_status find_poles(brio_labelled_poles *l, const brio_pole_request *request) {
+static brio_status find_poles(brio_labeled_poles *l, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     brio_triangulation *delaunay = NULL;
     brio_pole_filter filter = request->filter;
@@ -168,7 +168,7 @@ done:
 
 /* --- 3 and 4: power diagram and labels --- */
 
-static brio_status triangulate_poles(brio_labelled_poles *l) {
+static brio_status triangulate_poles(brio_labeled_poles *l) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     BRIO_TRY(brio_delaunay(l->ctx, l->poles.centre, l->poles.square, l->poles.count, &l->triangulation, &l->power));
@@ -179,26 +179,26 @@ done:
     return status;
 }
 
-static void count_labels(brio_labelled_poles *l) {
-    const brio_stats *s = brio_triangulation_stats(l->power);
+static void count_labels(brio_labeled_poles *l) {
+    const brio_delaunay_stats *s = brio_triangulation_stats(l->power);
     l->stats.hidden_poles = s->hidden + s->duplicates;
     l->stats.inner = 0;
     for (size_t p = 0; p < l->poles.count; p++) l->stats.inner += l->label[p] == BRIO_LABEL_INNER;
     l->stats.outer = l->poles.count - l->stats.inner;
 }
 
-typedef brio_status (*label_fn)(const brio_pole_graph *g, uint8_t *label, brio_labelling_stats *stats);
+typedef brio_status (*label_fn)(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats);
 
-static const label_fn labellings[BRIO_LABELING_END] = {brio_label_global, brio_label_greedy, brio_label_naive,
-                                                       brio_label_theoretical};
+static const label_fn labelings[BRIO_LABELING_END] = {brio_label_global, brio_label_greedy, brio_label_naive,
+                                                      brio_label_theoretical};
 
-static brio_status label_along_graph(brio_labelled_poles *l, brio_labeling labeling) {
+static brio_status label_along_graph(brio_labeled_poles *l, brio_labeling labeling) {
     brio_status status = BRIO_OK;
-    brio_labelling_stats s = {0};
+    brio_labeling_stats s = {0};
     brio_pole_evidence evidence = {labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0,
                                    labeling == BRIO_LABELING_GLOBAL};
     BRIO_TRY(brio_pole_graph_new(l->ctx, &l->poles, l->points, l->num_samples, l->power, evidence, &l->graph));
-    BRIO_TRY(labellings[labeling](&l->graph, l->label, &s));
+    BRIO_TRY(labelings[labeling](&l->graph, l->label, &s));
     l->stats.confused = s.confused;
     l->stats.unreached = s.unreached;
     l->stats.open = s.open;
@@ -210,8 +210,8 @@ done:
 }
 
 /* The graph with nothing but the triangulation. */
-static void make_bare_graph(brio_labelled_poles *l) {
-    const brio_stats *s = brio_triangulation_stats(l->power);
+static void make_bare_graph(brio_labeled_poles *l) {
+    const brio_delaunay_stats *s = brio_triangulation_stats(l->power);
     brio_pole_graph_free(&l->graph);
     l->graph =
         (brio_pole_graph){.ctx = l->ctx, .poles = &l->poles, .samples = l->points, .num_samples = l->num_samples};
@@ -221,7 +221,7 @@ static void make_bare_graph(brio_labelled_poles *l) {
                                        .infinite = BRIO_INFINITE};
 }
 
-static brio_status label_poles(brio_labelled_poles *l, const brio_pole_request *request) {
+static brio_status label_poles(brio_labeled_poles *l, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     BRIO_TRY(BRIO_ALLOC_ZERO(l->ctx, l->label, l->poles.count));
@@ -237,10 +237,10 @@ done:
     return status;
 }
 
-brio_status brio_labelled_poles_find(brio_context *ctx, const double *points, size_t num_points,
-                                     const brio_pole_request *request, brio_labelled_poles *l) {
+brio_status brio_labeled_poles_find(brio_context *ctx, const double *points, size_t num_points,
+                                    const brio_pole_request *request, brio_labeled_poles *l) {
     brio_status status = BRIO_OK;
-    *l = (brio_labelled_poles){.ctx = ctx, .num_samples = num_points, .triangulation = brio_options_default()};
+    *l = (brio_labeled_poles){.ctx = ctx, .num_samples = num_points, .triangulation = brio_delaunay_options_default()};
     l->triangulation.seed = request->seed;
     l->graph.ctx = ctx;
     BRIO_TRY(prepare(l, points, request));
@@ -255,7 +255,7 @@ done:
 
 /* --- fewer poles --- */
 
-static void close_up(brio_labelled_poles *l, const uint8_t *keep) {
+static void close_up(brio_labeled_poles *l, const uint8_t *keep) {
     brio_poles *poles = &l->poles;
     size_t n = 0;
     for (size_t p = 0; p < poles->count; p++) {
@@ -270,7 +270,7 @@ static void close_up(brio_labelled_poles *l, const uint8_t *keep) {
     poles->count = n;
 }
 
-brio_status brio_labelled_poles_keep(brio_labelled_poles *l, const uint8_t *keep) {
+brio_status brio_labeled_poles_keep(brio_labeled_poles *l, const uint8_t *keep) {
     brio_status status = BRIO_OK;
     close_up(l, keep);
     for (size_t i = 0; i < 2 * l->num_samples; i++) l->poles.of_sample[i] = BRIO_NO_POLE;
@@ -285,14 +285,14 @@ done:
     return status;
 }
 
-void brio_labelled_poles_close_hull(brio_labelled_poles *l) {
+void brio_labeled_poles_close_hull(brio_labeled_poles *l) {
     const brio_tetrahedra *power = &l->graph.power;
     for (size_t tet = l->graph.num_finite; tet < power->count; tet++)
         for (int i = 0; i < 3; i++) l->label[power->tet[tet].vertex[i]] = BRIO_LABEL_OUTER;
     count_labels(l);
 }
 
-void brio_labelled_poles_free(brio_labelled_poles *l) {
+void brio_labeled_poles_free(brio_labeled_poles *l) {
     brio_pole_graph_free(&l->graph);
     brio_triangulation_free(l->power);
     brio_release(l->ctx, l->points);
