@@ -11,6 +11,7 @@
     X(offset)                                                                                                          \
     X(check)                                                                                                           \
     X(compare)                                                                                                         \
+    X(iso)                                                                                                             \
     X(info)                                                                                                            \
     X(generate)                                                                                                        \
     X(subdivide)

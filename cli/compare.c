@@ -37,7 +37,7 @@ static brio_status read_surface(run *r, const char *path, brio_mesh **mesh) {
 static brio_status compare(run *r) {
     const arguments *chosen = r->arguments;
     brio_mesh *a = NULL, *b = NULL;
-    brio_distance distance;
+    brio_distance distance = {.size = sizeof distance};
     brio_status status = BRIO_OK;
     if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "compare writes no file; -o has no meaning here"));
     if (!strcmp(r->operands[0], "-") && !strcmp(r->operands[1], "-"))

@@ -133,7 +133,7 @@ static brio_status triangulate(run *r, const arguments *a, brio_mesh *mesh, cons
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
 done:
-    brio_edges_free(r->ctx, &edges);
+    brio_edges_free(&edges);
     return status;
 }
 

@@ -13,9 +13,6 @@ typedef struct arguments {
     int views;       /* NO_VIEWS: not given */
     const char *truth;
     uint64_t truth_resolution;
-    double level, blobbiness; /* NaN: not given */
-    uint64_t resolution;
-    bool sigma, conforming;
 } arguments;
 
 #define NO_COUNT UINT64_MAX
@@ -29,23 +26,13 @@ static const option options[] = {
     {"truth", 0, OPTION_TEXT, FIELD(truth), "FILE", "scan: also write the surface that is scanned", 0},
     {"truth-resolution", 0, OPTION_NATURAL, FIELD(truth_resolution), "R", "cells along its longest side (default 160)",
      0},
-    {"level", 0, OPTION_NUMBER, FIELD(level), "L", "iso: of the surface; 1 is an atom's own radius", 0},
-    {"sigma", 0, OPTION_FLAG, FIELD(sigma), NULL, "iso: the level is in standard deviations above the map's mean", 0},
-    {"resolution", 0, OPTION_NATURAL, FIELD(resolution), "R",
-     "iso: cells along the longest side (default the map's own, or 0.5 A for atoms)", 0},
-    {"blobbiness", 0, OPTION_NUMBER, FIELD(blobbiness), "B", "iso: the larger, the more atoms are balls (default 2)",
-     0},
-    {"delaunay-conforming", 0, OPTION_FLAG, FIELD(conforming), NULL, "iso: all triangles are Delaunay", 0},
     {0},
 };
 #undef FIELD
 
-static const arguments defaults = {
-    .points = NO_COUNT, .noise = NAN, .views = NO_VIEWS, .level = NAN, .blobbiness = NAN};
+static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .views = NO_VIEWS};
 
 #define KINDS "cube ball sphere torus cylinder grid scan clusters moment"
-
-enum { KIND_ISO = BRIO_KIND_END }; /* made from a file, and by a function of its own */
 
 static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"ball", BRIO_KIND_BALL},
@@ -57,11 +44,7 @@ static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"clusters", BRIO_KIND_CLUSTERS},
                                       {"moment", BRIO_KIND_MOMENT},
                                       {"moment-curve", BRIO_KIND_MOMENT},
-                                      {"iso", KIND_ISO},
                                       {NULL, 0}};
-
-static const brio_format surface_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_VTU,
-                                              BRIO_FORMAT_AUTO};
 
 static const char *kind_name(const void *list, size_t i) {
     return ((const option_choice *)list)[i].name;
@@ -75,28 +58,19 @@ static brio_status find_kind(run *r, int *kind) {
     }
     const char *near = cli_nearest(name, kind_name, kinds);
     if (near) return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; did you mean '%s'?", name, near);
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; there are " KINDS " iso", name);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "unknown kind '%s'; there are " KINDS, name);
 }
 
 static bool has_scan_options(const arguments *a) {
     return !isnan(a->noise) || a->views != NO_VIEWS || a->truth || a->truth_resolution;
 }
 
-static bool has_iso_options(const arguments *a) {
-    return !isnan(a->level) || !isnan(a->blobbiness) || a->resolution || a->sigma || a->conforming;
-}
-
 static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
     brio_format format;
     brio_status status = BRIO_OK;
-    if (r->num_operands > 1)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "generate: one argument too many: '%s'", r->operands[1]);
     if (a->points == NO_COUNT) return cli_fail(r, BRIO_ERR_ARGUMENT, "the number of points is missing: -n N");
     if (kind != BRIO_KIND_SCAN && has_scan_options(a))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
-    if (has_iso_options(a))
-        return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--level, --sigma, --resolution, --blobbiness and --delaunay-conforming go with iso only");
     if (a->views != NO_VIEWS && a->views < 1)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--views: %d is not positive", a->views);
     if (a->noise < 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise: %g is negative", a->noise);
@@ -144,56 +118,22 @@ done:
     return status;
 }
 
-static brio_status check_iso_arguments(run *r, const arguments *a) {
-    if (r->num_operands < 2)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "generate iso: the file is missing: a map or a PDB file");
-    if (has_scan_options(a))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
-    if (isnan(a->level)) return cli_fail(r, BRIO_ERR_ARGUMENT, "the level of the surface is missing: --level L");
-    if (a->points == 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "-n: a surface of no points");
-    if (a->points != NO_COUNT && a->resolution)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "-n chooses the resolution: give one of -n and --resolution");
-    return cli_require_output(r, surface_formats, false);
-}
-
-static brio_status generate_iso(run *r, const arguments *a) {
-    brio_iso_options o = brio_iso_options_default();
-    brio_mesh *mesh = NULL;
-    brio_status status = BRIO_OK;
-    TRY(check_iso_arguments(r, a));
-    o.level = a->level;
-    o.deviations = a->sigma;
-    o.conforming = a->conforming;
-    o.resolution = (size_t)a->resolution;
-    if (!isnan(a->blobbiness)) o.blobbiness = a->blobbiness;
-    if (a->points != NO_COUNT) o.vertices = (size_t)a->points;
-    if (o.vertices) TRY(cli_require_memory(r, cli_iso_bytes(o.vertices)));
-    TRY(brio_iso_surface(r->ctx, r->operands[1], &o, &mesh));
-    cli_lap(r, "generate");
-    cli_fact_count(&r->facts, "points", mesh->num_vertices);
-    cli_fact_count(&r->facts, "faces", mesh->num_faces);
-    TRY(cli_write(r, mesh));
-done:
-    brio_mesh_free(mesh);
-    return status;
-}
-
 static brio_status generate(run *r) {
     const arguments *a = r->arguments;
     int kind;
     brio_status status = BRIO_OK;
     TRY(find_kind(r, &kind));
-    TRY(kind == KIND_ISO ? generate_iso(r, a) : generate_points(r, a, (brio_kind)kind));
+    TRY(generate_points(r, a, (brio_kind)kind));
 done:
     return status;
 }
 
 const command cli_generate = {
     .name = "generate",
-    .operands = "KIND [IN]",
-    .summary = "test data: " KINDS "; -n N points to -o FILE; or iso, the surface of a map or PDB file",
+    .operands = "KIND",
+    .summary = "test data: " KINDS "; -n N points to -o FILE",
     .min_operands = 1,
-    .max_operands = 2,
+    .max_operands = 1,
     .first_input = 1,
     .options = options,
     .defaults = &defaults,

@@ -160,12 +160,16 @@ int main(int argc, char **argv) {
         return 1;
     }
     const char *first = argv[1];
+    if (argc > 2 && !strcmp(first, "generate") && !strcmp(argv[2], "iso")) { /* as it was called in version 0.1 */
+        first = "iso";
+        argc--, argv++;
+    }
     const command *c = find_command(first);
     if (c) return run_command(c, argc - 2, argv + 2);
     if (!strcmp(first, "--help") || !strcmp(first, "-h"))
         print_help(stdout);
     else if (!strcmp(first, "--version"))
-        puts("brio " BRIO_VERSION);
+        printf("brio %s\n", brio_version());
     else
         return unknown_command(first, asks_for_json(argc - 2, argv + 2));
     return fflush(stdout) == 0 ? 0 : 6;

@@ -60,12 +60,12 @@ static brio_power_shape_options medial_options(const run *r, int labeling, const
     const arguments *a = r->arguments;
     brio_power_shape_options o = brio_power_shape_options_default();
     o.seed = r->common.seed;
-    o.labeling = (brio_labeling)labeling;
-    o.noise = (brio_noise)a->noise;
-    o.solid = solid;
+    o.poles.labeling = (brio_labeling)labeling;
+    o.poles.noise = (brio_noise)a->noise;
+    o.poles.solid = solid;
     o.sides = (brio_sides)a->sides;
-    o.sampling_density = a->sampling_density;
-    o.sharp = a->sharp;
+    o.poles.sampling_density = a->sampling_density;
+    o.poles.sharp = a->sharp;
     if (a->simplify) o.scale = SCALE, o.redundancy = REDUNDANCY;
     if (a->scale != 0) o.scale = a->scale;
     if (a->redundancy > 0) o.redundancy = a->redundancy;
@@ -74,21 +74,21 @@ static brio_power_shape_options medial_options(const run *r, int labeling, const
 
 static void report(run *r, const brio_power_shape_options *o, const brio_power_shape_stats *s, const brio_mesh *shape) {
     facts *f = &r->facts;
-    cli_stage(r, "noise", s->noise_seconds);
-    cli_stage(r, "delaunay", s->delaunay_seconds);
-    cli_stage(r, "poles", s->poles_seconds);
-    cli_stage(r, "power", s->power_seconds);
-    cli_stage(r, "label", s->label_seconds);
+    cli_stage(r, "noise", s->poles.noise_seconds);
+    cli_stage(r, "delaunay", s->poles.delaunay_seconds);
+    cli_stage(r, "poles", s->poles.poles_seconds);
+    cli_stage(r, "power", s->poles.power_seconds);
+    cli_stage(r, "label", s->poles.label_seconds);
     cli_stage(r, "shape", s->shape_seconds);
     r->lap = cli_clock();
-    cli_fact_count(f, "samples", s->samples);
-    cli_report_noise(r, s->noise, s->smoothed);
-    cli_fact_count(f, "poles", s->poles);
-    cli_fact_count(f, "hidden_poles", s->hidden_poles);
-    cli_fact_count(f, "inner", s->inner);
-    cli_fact_count(f, "outer", s->outer);
+    cli_fact_count(f, "samples", s->poles.samples);
+    cli_report_noise(r, s->poles.noise, s->poles.smoothed);
+    cli_fact_count(f, "poles", s->poles.poles);
+    cli_fact_count(f, "hidden_poles", s->poles.hidden_poles);
+    cli_fact_count(f, "inner", s->poles.inner);
+    cli_fact_count(f, "outer", s->poles.outer);
     cli_fact_count(f, "unlabelled", s->unlabeled);
-    cli_fact_text(f, "labeling", o->solid ? "mesh" : cli_labelings[o->labeling].name);
+    cli_fact_text(f, "labeling", o->poles.solid ? "mesh" : cli_labelings[o->poles.labeling].name);
     if (o->scale > 1 || o->redundancy > 0) {
         cli_stage(r, "simplify", s->simplify_seconds);
         cli_fact_count(f, "left_out", s->left_out);
@@ -124,7 +124,7 @@ done:
 static brio_status medial(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *input = NULL, *shape = NULL, *crust = NULL;
-    brio_power_shape_stats s = {0};
+    brio_power_shape_stats s = {.size = sizeof s};
     brio_status status = BRIO_OK;
     int labeling = a->labeling;
     bool by_mesh;

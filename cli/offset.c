@@ -39,21 +39,25 @@ static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FOR
 /* What there is to count when the labels are known. */
 static void report_by_mesh(run *r, const brio_power_crust_stats *s) {
     facts *f = &r->facts;
-    cli_report_noise(r, s->noise, s->smoothed);
-    cli_fact_count(f, "poles", s->poles);
-    cli_fact_count(f, "hidden_poles", s->hidden_poles);
-    cli_fact_count(f, "inner", s->inner);
-    cli_fact_count(f, "outer", s->outer);
+    cli_report_noise(r, s->poles.noise, s->poles.smoothed);
+    cli_fact_count(f, "poles", s->poles.poles);
+    cli_fact_count(f, "hidden_poles", s->poles.hidden_poles);
+    cli_fact_count(f, "inner", s->poles.inner);
+    cli_fact_count(f, "outer", s->poles.outer);
     cli_fact_text(f, "labeling", "mesh");
 }
 
 static brio_status offset_surface(run *r, const power_crust_options *crust, const brio_mesh *points, bool by_mesh,
                                   brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_power_crust_options o = cli_surface_options(r, crust);
-    brio_power_crust_stats s = {0};
+    brio_offset_options o = brio_offset_options_default();
+    brio_power_crust_stats s = {.size = sizeof s};
     facts *f = &r->facts;
-    if (by_mesh) o.solid = points;
+    o.seed = r->common.seed;
+    o.poles = cli_pole_options(crust);
+    o.triangulate = crust->triangulate;
+    o.simplify = crust->simplify;
+    if (by_mesh) o.poles.solid = points;
     brio_status status =
         brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &s);
     cli_suggest_labeling(r, status, a->crust.labeling, by_mesh);
@@ -61,7 +65,7 @@ static brio_status offset_surface(run *r, const power_crust_options *crust, cons
     cli_report_power_crust_stages(r, crust, &s);
     cli_fact_text(f, "method", "power-crust");
     cli_fact_real(f, "distance", a->distance);
-    cli_fact_count(f, "samples", s.samples);
+    cli_fact_count(f, "samples", s.poles.samples);
     cli_fact_count(f, "vertices", (*surface)->num_vertices);
     cli_fact_count(f, "faces", (*surface)->num_faces);
     if (by_mesh)

@@ -20,7 +20,7 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
     if (*labeling == LABELS_OF_MESH && !input->num_faces)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--labeling mesh: %s has no faces", r->operands[0]);
     *by_mesh = *labeling == LABELS_OF_MESH || (*labeling == LABELS_OF_INPUT && input->num_faces > 0);
-    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = (int)brio_power_crust_options_default().labeling;
+    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = (int)brio_power_crust_options_default().poles.labeling;
     return BRIO_OK;
 }
 
@@ -53,45 +53,52 @@ done:
 }
 
 void cli_report_power_crust_stages(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
-    cli_stage(r, "noise", s->noise_seconds);
-    cli_stage(r, "delaunay", s->delaunay_seconds);
-    cli_stage(r, "poles", s->poles_seconds);
-    cli_stage(r, "power", s->power_seconds);
-    cli_stage(r, "label", s->label_seconds);
+    cli_stage(r, "noise", s->poles.noise_seconds);
+    cli_stage(r, "delaunay", s->poles.delaunay_seconds);
+    cli_stage(r, "poles", s->poles.poles_seconds);
+    cli_stage(r, "power", s->poles.power_seconds);
+    cli_stage(r, "label", s->poles.label_seconds);
     cli_stage(r, "crust", s->crust_seconds);
     if (a->simplify) cli_stage(r, "simplify", s->simplify_seconds);
     r->lap = cli_clock();
 }
 
-brio_power_crust_options cli_surface_options(const run *r, const power_crust_options *a) {
-    brio_power_crust_options o = brio_power_crust_options_default();
-    o.seed = r->common.seed;
-    o.triangulate = a->triangulate;
+brio_pole_options cli_pole_options(const power_crust_options *a) {
+    brio_pole_options o = brio_power_crust_options_default().poles;
     o.labeling = (brio_labeling)a->labeling;
     o.noise = (brio_noise)a->noise;
     o.sampling_density = a->sampling_density;
     o.sharp = a->sharp;
-    o.open = a->open;
+    return o;
+}
+
+static brio_power_crust_options library_options(const run *r, const power_crust_options *a) {
+    brio_power_crust_options o = brio_power_crust_options_default();
+    o.seed = r->common.seed;
+    o.poles = cli_pole_options(a);
+    o.triangulate = a->triangulate;
     o.simplify = a->simplify;
+    o.open = a->open;
     return o;
 }
 
 brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mesh *points, brio_mesh **surface,
                             brio_power_crust_stats *stats) {
-    brio_power_crust_options o = cli_surface_options(r, a);
+    brio_power_crust_options o = library_options(r, a);
     brio_format format;
     brio_status status = BRIO_OK;
+    double *normals = NULL;
     if (a->normals) {
         TRY(cli_output_format(r, a->normals, NULL, &format));
         TRY(cli_check_target(r, a->normals));
-        o.normals = malloc((3 * points->num_vertices + 1) * sizeof *o.normals);
-        if (!o.normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
+        normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
+        if (!normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
     }
-    TRY(brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, stats));
+    TRY(brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, normals, stats));
     cli_report_power_crust_stages(r, a, stats);
-    if (a->normals) TRY(write_normals(r, a->normals, points, o.normals));
+    if (a->normals) TRY(write_normals(r, a->normals, points, normals));
 done:
-    free(o.normals);
+    free(normals);
     return status;
 }
 
@@ -102,21 +109,21 @@ void cli_report_noise(run *r, double noise, bool smoothed) {
 
 void cli_report_power_crust(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
     facts *f = &r->facts;
-    cli_report_noise(r, s->noise, s->smoothed);
-    cli_fact_count(f, "poles", s->poles);
-    cli_fact_count(f, "hidden_poles", s->hidden_poles);
-    cli_fact_count(f, "inner", s->inner);
-    cli_fact_count(f, "outer", s->outer);
+    cli_report_noise(r, s->poles.noise, s->poles.smoothed);
+    cli_fact_count(f, "poles", s->poles.poles);
+    cli_fact_count(f, "hidden_poles", s->poles.hidden_poles);
+    cli_fact_count(f, "inner", s->poles.inner);
+    cli_fact_count(f, "outer", s->poles.outer);
     cli_fact_text(f, "labeling", cli_labelings[a->labeling].name);
-    cli_fact_count(f, "confused", s->confused);
-    cli_fact_real(f, "energy", s->energy);
+    cli_fact_count(f, "confused", s->poles.confused);
+    cli_fact_real(f, "energy", s->poles.energy);
     if (a->labeling == BRIO_LABELING_NAIVE || a->labeling == BRIO_LABELING_THEORETICAL)
-        cli_fact_count(f, "unreached", s->unreached);
+        cli_fact_count(f, "unreached", s->poles.unreached);
     if (a->labeling == BRIO_LABELING_GLOBAL) {
-        cli_fact_real(f, "energy_greedy", s->energy_greedy);
-        cli_fact_count(f, "open", s->open);
-        cli_fact_count(f, "toggled", s->toggled);
+        cli_fact_real(f, "energy_greedy", s->poles.energy_greedy);
+        cli_fact_count(f, "undecided", s->poles.undecided);
+        cli_fact_count(f, "toggled", s->poles.toggled);
     }
-    if (a->sharp || a->sampling_density > 0) cli_fact_count(f, "bad_cells", s->bad_cells);
+    if (a->sharp || a->sampling_density > 0) cli_fact_count(f, "bad_cells", s->poles.bad_cells);
     if (a->open > 0) cli_fact_count(f, "left_out", s->left_out);
 }

@@ -48,8 +48,8 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
 /** Whether any of them was given. */
 bool cli_has_power_crust_options(const power_crust_options *options);
 
-/** The options as the library has them, but for the normals. */
-brio_power_crust_options cli_surface_options(const run *r, const power_crust_options *options);
+/** The options of the poles as the library has them, without a solid. */
+brio_pole_options cli_pole_options(const power_crust_options *options);
 
 /** Reconstructs the surface of the points; writes the normals where they are asked for. */
 brio_status cli_power_crust(run *r, const power_crust_options *options, const brio_mesh *points, brio_mesh **surface,

@@ -54,10 +54,10 @@ static void report_mesh(run *r, size_t samples, const brio_mesh *surface) {
 
 static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_power_crust_stats s = {0};
+    brio_power_crust_stats s = {.size = sizeof s};
     brio_status status = cli_power_crust(r, &a->crust, points, surface, &s);
     if (status != BRIO_OK) return status;
-    report_mesh(r, s.samples, *surface);
+    report_mesh(r, s.poles.samples, *surface);
     cli_report_power_crust(r, &a->crust, &s);
     return BRIO_OK;
 }
@@ -96,7 +96,7 @@ static void report_density(run *r, const brio_cocone_stats *s) {
 static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) {
     const arguments *a = r->arguments;
     brio_cocone_options o = brio_cocone_options_default();
-    brio_cocone_stats s = {0};
+    brio_cocone_stats s = {.size = sizeof s};
     o.seed = r->common.seed;
     if (a->theta != 0) o.theta = a->theta;
     o.tight = a->method == TIGHT_COCONE;

@@ -18,7 +18,7 @@ static void print_contents(const brio_mesh *mesh) {
 }
 
 static void print_certificate(brio_context *ctx, const brio_mesh *mesh) {
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     CHECK(ctx, brio_mesh_certificate(ctx, mesh, &c));
     printf("closed %s, manifold %s, oriented %s\n", yes(c.closed), yes(c.manifold), yes(c.oriented));
     printf("components %zu, genus %lld, boundary loops %zu\n", c.components, (long long)c.genus, c.boundary_loops);

@@ -48,7 +48,7 @@ class Data:
         """An iso-surface of about an eighth of MTD's density, so that one level of subdivision gives B-1's size."""
         level0, volume = os.path.join(self.folder, 'iso.ply'), os.path.join(SHARED, 'volume', '3ek3-2fofc.map')
         if not os.path.exists(level0):
-            self._call('generate', 'iso', volume, '--sigma', '--level', '1', '-n', str(131000 // self.shrink), '-o', level0)
+            self._call('iso', volume, '--sigma', '--level', '1', '-n', str(131000 // self.shrink), '-o', level0)
         if levels == 0:
             write_copies(read_points(level0), 1, path)
             return

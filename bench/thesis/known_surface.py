@@ -81,7 +81,7 @@ class Bench:
     def chain_surface(self, resolution, *arguments):
         name = 'chain_%d%s.ply' % (resolution, ''.join(arguments))
         if not os.path.exists(self.path(name)):
-            self.run('generate', 'iso', self.chain(), '--level', '1', '--resolution', str(resolution), *arguments,
+            self.run('iso', self.chain(), '--level', '1', '--resolution', str(resolution), *arguments,
                      '-o', self.path(name))
         return name
 
@@ -90,7 +90,7 @@ class Bench:
         if not self.map:
             return self.chain_surface(200)
         if not os.path.exists(self.path('base.ply')):
-            self.run('generate', 'iso', self.map, '--level', str(LEVEL), '--sigma', '-n', str(BASE), '-o',
+            self.run('iso', self.map, '--level', str(LEVEL), '--sigma', '-n', str(BASE), '-o',
                      self.path('base.ply'))
         return 'base.ply'
 
@@ -220,7 +220,7 @@ def shares(bench, report):
     bench.run('surface', bench.path(base), '--method', 'cocone', '-o', bench.path('cocone.ply'))
     makers.append(('co-cone of the same vertices', 'cocone.ply'))
     if bench.map:
-        bench.run('generate', 'iso', bench.map, '--level', str(LEVEL), '--sigma', '--delaunay-conforming', '-n',
+        bench.run('iso', bench.map, '--level', str(LEVEL), '--sigma', '--delaunay-conforming', '-n',
                   str(BASE), '-o', bench.path('conforming.ply'))
         makers.append(('conforming iso-surface', 'conforming.ply'))
     else:

@@ -1,38 +1,41 @@
 /* brio: exact three-dimensional Delaunay and regular triangulations of very large point sets, and surface
  * reconstruction with guarantees on top of them.   MIT licence.
  *
- * This header is the manual. It goes in the order of a user's work: status and context, triangulation, meshes and
- * their certificates, reconstruction, files, test data, predicates.
+ * This header is the manual. Its sections follow a user's work: versions, status and context, triangulation, meshes and
+ * their certificates, surface reconstruction, iso-surfaces, files, test data, predicates.
  *
  * Words, used in one meaning throughout:
  *   points      the rows of the input
- *   duplicates  points minus distinct positions; of coincident points the heaviest represents the others, then the
- *               one with the lowest index
- *   vertices    distinct positions that own a (Voronoi or power) cell
- *   hidden      distinct positions without a cell (never without weights), each represented by the vertex of least
- *               power distance, ties by lexicographic position
+ *   duplicates  points minus distinct positions. Among coincident points the one with the greatest weight represents
+ *               the others; among equal weights, the one with the lowest index.
+ *   vertices    distinct positions that own a Voronoi cell or, with weights, a power cell
+ *   hidden      distinct positions that own no cell. There are none without weights. Each hidden point is represented
+ *               by the vertex of least power distance; among equal distances, by the lexicographically first one.
  *               points = vertices + duplicates + hidden
- *   infinite    the infinite vertex BRIO_INFINITE closes the convex hull: every hull facet belongs to one infinite
- *               tetrahedron
- *   facet       handle 4*t + i names the facet of tetrahedron t opposite to its vertex i; two facet handles that name
- *               the same triangle from its two sides are mates
- *   oriented    a tetrahedron (a, b, c, d) is positive when det [b-a, c-a, d-a] > 0
+ *   infinite    The infinite vertex BRIO_INFINITE closes the convex hull: every hull facet belongs to one infinite
+ *               tetrahedron, whose fourth vertex is BRIO_INFINITE.
+ *   facet       The handle 4*t + i names the facet of tetrahedron t opposite to its vertex i. Two handles that name the
+ *               same triangle from its two sides are mates.
+ *   positive    A tetrahedron (a, b, c, d) is positive when det [b-a, c-a, d-a] > 0.
  *
- * Promises. Every sign of every predicate is right for every finite double. The same point set gives the same set of
- * tetrahedra for every order of the points, insertion order, location strategy and number of threads: ties are broken
- * by a symbolic perturbation of the lifted coordinate, keyed by lexicographic position [Devillers Teillaud 2011].
- * -0.0 equals 0.0. Arrays of the caller are read only, never kept, never reordered. The library never prints, exits
- * or aborts; every function that can fail returns a status, and the context keeps the sentence that explains it.
- * The caller's floating-point state (rounding, subnormal numbers, traps) does not matter: each function sets the state
- * that it needs, callbacks included, and gives the caller's back. A caller's stack needs 64 KiB.
+ * Promises.
+ *   - The sign of every predicate is right for all finite doubles.
+ *   - A point set has one set of tetrahedra: it does not depend on the order of the points, the insertion order, the
+ *     location strategy or the number of threads. Ties are broken by a symbolic perturbation of the lifted coordinate
+ *     whose key is the lexicographic position of the point [Devillers Teillaud 2011]. -0.0 equals 0.0.
+ *   - The library reads the caller's arrays during a call. It does not keep, reorder or change them.
+ *   - The library never prints, exits or aborts. Every function that can fail returns a status, and the context keeps
+ *     a sentence that explains the failure.
+ *   - The caller's floating-point state (rounding mode, subnormal numbers, traps) does not change a result: each
+ *     function sets the state that it needs and restores the caller's state before it returns. Callbacks run in the
+ *     library's state.
+ *   - A stack of 64 KiB suffices in the calling thread.
  */
 #ifndef BRIO_H
 #define BRIO_H
 
 #include <stddef.h>
 #include <stdint.h>
-
-#define BRIO_VERSION "0.1.0"
 
 #if defined(_WIN32)
 #define BRIO_API __declspec(dllexport)
@@ -43,6 +46,30 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Versions. docs/versions.md says what stays the same from one version to the next.
+ */
+
+#define BRIO_VERSION_MAJOR 0
+#define BRIO_VERSION_MINOR 2
+#define BRIO_VERSION_PATCH 0
+#define BRIO_VERSION       "0.2.0"
+/** The version of this header as one number that grows: 10000 MAJOR + 100 MINOR + PATCH. */
+#define BRIO_VERSION_NUMBER (10000 * BRIO_VERSION_MAJOR + 100 * BRIO_VERSION_MINOR + BRIO_VERSION_PATCH)
+
+/** Returns the version of the library that runs, as BRIO_VERSION; it may be newer than this header. */
+BRIO_API const char *brio_version(void);
+/** Returns the version of the library that runs, as BRIO_VERSION_NUMBER. */
+BRIO_API int brio_version_number(void);
+
+/* Structs that grow. Structs of options, statistics and results begin with `size`, the bytes that the caller was
+ * compiled with, so that later versions can append fields: the library touches no byte beyond `size`.
+ *   - Options:  brio_cocone_options o = brio_cocone_options_default(); then set fields. A pointer to options may be
+ *     NULL, which stands for the defaults. Other languages call brio_cocone_options_init(&o, sizeof o).
+ *   - Statistics and results:  brio_cocone_stats stats = {.size = sizeof stats};
+ * A `size` that was not set is BRIO_ERR_ARGUMENT. Arrays named `reserved` stay 0. Elements of arrays
+ * (brio_tetrahedron, brio_round, brio_property) and brio_allocator, brio_edges never change. */
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Status and context
@@ -70,7 +97,7 @@ typedef enum brio_status {
     BRIO_STATUS_END
 } brio_status;
 
-/** A static sentence for a status; never NULL. */
+/** Returns a static sentence for a status; never NULL. */
 BRIO_API const char *brio_status_string(brio_status status);
 
 /** Memory functions of the caller's choice. alloc and realloc return NULL on failure; sizes are in bytes. */
@@ -81,48 +108,50 @@ typedef struct brio_allocator {
     void *user;
 } brio_allocator;
 
-/** Settings, the last error message and the memory account of one line of work. A context serves one call at a time;
- *  different contexts are independent. Everything made with a context must be freed before it. */
+/** A context holds settings, the last error message, the account of memory, and threads. A context serves one call at
+ *  a time; different contexts are independent. Everything made with a context must be freed before the context. */
 typedef struct brio_context brio_context;
 
-/** Makes a context.   allocator  NULL for the system's memory (large arrays then live in mappings of their own, that
- *  grow without copying).   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+/** Makes a context.   allocator  NULL for the system's memory: large arrays then live in mappings of their own and grow
+ *  without being copied.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_context_new(const brio_allocator *allocator, brio_context **out);
 
 /** Frees a context; NULL is accepted. */
 BRIO_API void brio_context_free(brio_context *ctx);
 
-/** The sentence that explains the last failure in this context ("point 1842: y is NaN"); "" when there was none.
- *  Valid until the next call with the context. */
+/** Returns the sentence that explains the last failure in this context, such as "point 1842: y is NaN"; "" when there
+ *  was none. Valid until the next call with the context. */
 BRIO_API const char *brio_message(const brio_context *ctx);
 
-/** Sets the most threads that work uses, the caller's included; 0 (default) means all processors that the process may run
- *  on. A number above four for each processor (and above 64) is taken for that. Work creates a thread when it is first
- *  worth one; the context keeps the threads, asleep, until it is freed. Where the system refuses a thread, work goes on
- *  with fewer. A child process after fork may go on using its copy of a context that was not in use; its
- *  threads are created anew. */
+/** Sets the greatest number of threads that a call uses, the calling thread included. 0 (default) means every processor
+ *  that the process may run on. The greatest number that counts is four for each processor, or 64 if that is more. A call
+ *  creates threads when its work is large enough for them. The context keeps them, asleep, until it is freed. If the
+ *  system refuses a thread, the call goes on with fewer. A child process after fork may use its copy of a context if no
+ *  call was running in the parent; the child creates new threads. */
 BRIO_API void brio_context_set_threads(brio_context *ctx, int threads);
 /** Returns the number that was set, or the number of processors: at least 1. */
 BRIO_API int brio_context_threads(const brio_context *ctx);
 
-/** Called now and then from long work, in the calling thread, with the stage's name and its finished fraction in
- *  [0, 1]. A result other than 0 cancels the work: the function that runs frees everything and returns
- *  BRIO_ERR_CANCELLED. */
+/** A progress callback. Long calls call it from the calling thread, a few times a second or more often, with the name
+ *  of the stage and the share of the whole call that is done, in [0, 1]. A result other than 0 cancels the call, which
+ *  then frees everything and returns BRIO_ERR_CANCELLED. */
 typedef int (*brio_progress_fn)(const char *stage, double fraction, void *user);
+/** Sets the progress callback; NULL removes it. */
 BRIO_API void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user);
 
-/** The context's account may not exceed `bytes`; a request beyond it fails with BRIO_ERR_NO_MEMORY. 0 removes the
- *  limit of the caller. The limits of the process' memory cgroup and of the machine hold always. */
+/** Limits the memory that the context holds, in bytes. A request beyond the limit fails with BRIO_ERR_NO_MEMORY. 0
+ *  removes the limit. Memory that the process' memory cgroup or the machine cannot give is refused in any case. */
 BRIO_API void brio_context_set_memory_limit(brio_context *ctx, size_t bytes);
 
-/** Large arrays made from now on live in unlinked mapped files in this folder instead of anonymous memory; each growth
- *  is allocated on disk before it is touched. A full disk or a limit on the size of files is BRIO_ERR_NO_MEMORY.
- *  NULL goes back to memory. Not with a caller's allocator.
+/** From now on, places large arrays in unlinked, mapped files in `folder` instead of anonymous memory. Disk space is
+ *  allocated before it is touched: a full disk or a limit on the size of files is BRIO_ERR_NO_MEMORY. NULL returns to
+ *  anonymous memory. A context with a caller's allocator has no scratch folder.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_context_set_scratch(brio_context *ctx, const char *folder);
 
-/** Bytes now held by objects and work of this context, and the most there ever were. */
+/** Returns the bytes that objects and running calls of this context hold now. */
 BRIO_API size_t brio_context_memory(const brio_context *ctx);
+/** Returns the most bytes that the context ever held. */
 BRIO_API size_t brio_context_memory_peak(const brio_context *ctx);
 
 /* ------------------------------------------------------------------------------------------------------------------
@@ -131,81 +160,89 @@ BRIO_API size_t brio_context_memory_peak(const brio_context *ctx);
 
 #define BRIO_INFINITE UINT32_MAX
 
-/** A tetrahedron: its vertices, as indices of points, and for the facet opposite to each of them its mate, the handle
- *  of the same facet seen from the tetrahedron on the other side. As an array of numbers: eight to a tetrahedron. */
+/** A tetrahedron: its four vertices as indices of points, and four mates. mate[i] is the handle of the facet opposite to
+ *  vertex[i], seen from the tetrahedron on its other side. As an array of numbers: eight to a tetrahedron. */
 typedef struct {
     uint32_t vertex[4], mate[4];
 } brio_tetrahedron;
 
-/** Insertion orders. All give the same tetrahedra. Several threads insert together except with RANDOM and INPUT, which
- *  follow no path through space. Workspace, bytes a point, given back before the insertion: BRIO, HILBERT and
- *  RANDOM 16, BRIO_OCTREE 5, BRIO_KDTREE 20, OCTREE 4, INPUT none. */
+/** Insertion orders. All give the same tetrahedra. BRIO_ORDER_RANDOM and BRIO_ORDER_INPUT follow no path through space
+ *  and insert with one thread; the others insert with several. Workspace in bytes a point, freed before the insertion
+ *  begins: BRIO, HILBERT and RANDOM 16, BRIO_OCTREE 5, BRIO_KDTREE 20, OCTREE 4, INPUT 0. */
 typedef enum brio_order {
-    BRIO_ORDER_BRIO = 0,    /* random rounds, Hilbert curve inside a round: the tuned one [Amenta Choi Rote 2003] */
-    BRIO_ORDER_HILBERT = 1, /* one round */
+    BRIO_ORDER_BRIO = 0, /* random rounds, a Hilbert curve inside each round: the tuned one [Amenta Choi Rote 2003] */
+    BRIO_ORDER_HILBERT = 1, /* one round along a Hilbert curve */
     BRIO_ORDER_RANDOM = 2,
     BRIO_ORDER_INPUT = 3,
     BRIO_ORDER_BRIO_OCTREE = 4, /* random rounds, octree blocks inside a round, shuffled inside a block [Choi 2003] */
     BRIO_ORDER_BRIO_KDTREE = 5, /* the same with the blocks of a k-d tree */
-    BRIO_ORDER_OCTREE = 6,      /* octree blocks, shuffled inside a block; one round */
+    BRIO_ORDER_OCTREE = 6,      /* one round of octree blocks, shuffled inside a block */
     BRIO_ORDER_END
 } brio_order;
 
-/** How a point finds its tetrahedron. All give the same tetrahedra; those other than the walk work on one thread.
- *  Points that edges do not reach are located as by BRIO_LOCATION_HISTORY (trace) or BRIO_LOCATION_WALK (neighbour).
- *  Memory beyond the walk's, in bytes a point: jump 4, hierarchy about 17, neighbour 8, trace 16, the last two 8 an
- *  edge besides; history and trace also 20 for every tetrahedron that is ever created and 4 for every one there is. */
+/** Strategies of point location: how the insertion finds the tetrahedron that holds a point. All give the same
+ *  tetrahedra. Only the walk works with several threads. TRACE locates a point that no edge reaches as HISTORY does, and
+ *  NEIGHBOUR as WALK does. Memory in bytes beyond the walk's: JUMP 4 a point; HIERARCHY about 17 a point; NEIGHBOUR 8 a
+ *  point and 8 an edge; TRACE 16 a point and 8 an edge; HISTORY and TRACE also 20 for each tetrahedron ever created and 4
+ *  for each tetrahedron of the result. */
 typedef enum brio_location {
     BRIO_LOCATION_WALK = 0,  /* from the point inserted last [Devillers Pion Teillaud 2002] */
     BRIO_LOCATION_JUMP,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
     BRIO_LOCATION_HIERARCHY, /* through triangulations of ever larger samples [Devillers 2002] */
     BRIO_LOCATION_HISTORY,   /* in the history DAG [Guibas Knuth Sharir 1992, Clarkson Mehlhorn Seidel 1993] */
-    BRIO_LOCATION_TRACE,     /* edges are traced now and then, the history DAG does the rest; in BRIO_ORDER_RANDOM
-                              O(n log* n) for Delaunay edges that span the points [Choi 2003, chapter 4] */
-    BRIO_LOCATION_NEIGHBOUR, /* from the nearest of the point's neighbours along edges and the last point */
+    BRIO_LOCATION_TRACE, /* traces the given edges now and then and uses the history DAG between; in BRIO_ORDER_RANDOM
+                                O(n log* n) when the edges are Delaunay edges that span the points [Choi 2003, ch. 4] */
+    BRIO_LOCATION_NEIGHBOUR, /* from the nearest of the point's neighbours along the given edges and the last point */
     BRIO_LOCATION_END
 } brio_location;
 
 typedef struct brio_delaunay_options {
-    brio_order order;
-    double round_ratio;      /* share of the points left for the rounds before the last, below 1; default 0: the
-                                order's own, 1/8 for BRIO and 1/2 for BRIO_OCTREE and BRIO_KDTREE */
-    uint64_t seed;           /* every random choice follows from it; default 1 */
-    uint32_t max_tetrahedra; /* finite and infinite ones at any time; default (and most) 2^30 */
-    size_t block_size;       /* most points of an octree or k-d tree block; default 0: 2,000 */
-    uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;
-                                default 0: none are kept */
+    size_t size;
+    brio_order order;        /* default BRIO_ORDER_BRIO */
     brio_location locate;    /* default BRIO_LOCATION_WALK */
-    int all_conflicts;       /* history and trace: follow all conflicts, not one path; default 0 */
-    const uint32_t *edges;   /* trace and neighbour: num_edges pairs of indices of points; default NULL */
+    double round_ratio;      /* share of the points that is left for the rounds before the last one, below 1; default 0:
+                                the order's own ratio, 1/8 for BRIO and 1/2 for BRIO_OCTREE and BRIO_KDTREE */
+    uint64_t seed;           /* every random choice follows from it; default 1 */
+    uint32_t max_tetrahedra; /* most tetrahedra at any time, infinite ones included; default (and most) 2^30 */
+    int all_conflicts;       /* HISTORY and TRACE: 1 follows all conflicts, 0 (default) one search path */
+    size_t block_size;       /* most points in a block of an octree or a k-d tree; default 0: 2,000 */
+    uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;
+                                default 0: no entries */
+    const uint32_t *edges;   /* TRACE and NEIGHBOUR: num_edges pairs of indices of points; default NULL */
     size_t num_edges;
 } brio_delaunay_options;
 
-/** One entry at the end of each round; of orders without rounds, after 4,096 points, twice as many, and so on. */
+/** record_every: one entry at the end of each round; in orders without rounds after 4,096 points, 8,192, and so on. */
 #define BRIO_RECORD_ROUNDS UINT64_MAX
 
-BRIO_API brio_delaunay_options brio_delaunay_options_default(void);
+BRIO_API void brio_delaunay_options_init(brio_delaunay_options *options, size_t size);
+static inline brio_delaunay_options brio_delaunay_options_default(void) {
+    brio_delaunay_options options;
+    brio_delaunay_options_init(&options, sizeof options);
+    return options;
+}
 
-/** Facts of a triangulation. Counters are totals and include infinite tetrahedra. */
+/** Facts of a triangulation. Counters are totals over the construction and include infinite tetrahedra. */
 typedef struct brio_delaunay_stats {
+    size_t size;
     size_t points, vertices, duplicates, hidden;
-    int dimension;      /* of the affine hull: -1 (no points) to 3 */
-    size_t tetrahedra;  /* finite ones */
-    size_t hull_facets; /* = infinite tetrahedra */
+    int dimension;      /* of the affine hull of the points: -1 (no points) to 3 */
+    size_t tetrahedra;  /* finite ones of the result */
+    size_t hull_facets; /* = infinite tetrahedra of the result */
     uint64_t created, destroyed, walk_steps, insphere_calls;
-    uint64_t exact_calls;         /* predicate calls that the floating-point filter did not settle */
-    uint64_t deferred, serial;    /* with threads: insertions put off to a later pass; left to one thread */
-    uint64_t history;             /* nodes of the history DAG, with BRIO_LOCATION_HISTORY or BRIO_LOCATION_TRACE */
-    uint64_t history_tests;       /* nodes that searches held against a point */
+    uint64_t exact_calls;         /* calls of predicates that the floating-point filter did not settle */
+    uint64_t deferred, serial;    /* several threads: insertions put off to a later pass; done by one thread */
+    uint64_t history;             /* nodes of the history DAG, with HISTORY or TRACE */
+    uint64_t history_tests;       /* nodes that searches compared with a point */
     uint64_t trace_intersections; /* tetrahedra entered while edges were traced */
-    double locate_seconds;        /* of the insertion: point location, from every 64th one; with one thread */
-    double order_seconds, insert_seconds; /* the canonical sort of the output is part of the second */
+    double locate_seconds;        /* of the insertion: point location, extrapolated from every 64th one; 1 thread */
+    double order_seconds, insert_seconds; /* insert_seconds includes the canonical sort of the result */
 } brio_delaunay_stats;
 
-/** Counters when so many points were in; those of brio_delaunay_stats, up to then. */
+/** Counters at a moment of the insertion. They count from the start, as those of brio_delaunay_stats. */
 typedef struct brio_round {
     size_t points;     /* inserted so far */
-    size_t tetrahedra; /* at that time, infinite ones included */
+    size_t tetrahedra; /* at that moment, infinite ones included */
     uint64_t created, destroyed, walk_steps, insphere_calls, history;
     double locate_seconds; /* as in brio_delaunay_stats */
     double seconds;        /* since the insertion began */
@@ -213,69 +250,72 @@ typedef struct brio_round {
 
 typedef struct brio_triangulation brio_triangulation;
 
-/** Builds the Delaunay triangulation of a point set; with weights, the regular triangulation (power distance
- *  |x - p|^2 - w).
- *  Any finite input is answered: points of dimension 2 or less have vertices, duplicates and hidden points but no
- *  tetrahedra.
+/** Builds the Delaunay triangulation of a point set or, with weights, the regular triangulation: its power distance is
+ *  |x - p|^2 - w. Every finite input has a result; points of dimension 2 or less have vertices, duplicates and hidden
+ *  points but no tetrahedra.
  *  points   #P by 3, row after row.   weights  #P, or NULL.   num_points  less than 2^32 - 16.
  *  options  NULL for the defaults.    out      owned by the caller, freed with brio_triangulation_free; NULL on error.
- *  Cost: O(n log n) expected for points of realistic inputs; 33 bytes a tetrahedron and 41 a point, then, when the result
- *  is sorted, 41 and 16, with up to an eighth more set aside for growth; 4 bytes a point more with several threads.
+ *  Cost: expected O(n log n) time for points of realistic inputs. Memory while points are inserted: 33 bytes a
+ *  tetrahedron and 41 a point (45 with several threads); while the result is sorted: 41 a tetrahedron and 16 a point. Up
+ *  to an eighth is reserved for growth.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_CANCELLED.
- *  Based on: [Bowyer 1981], [Watson 1981], [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties.
- *  */
+ *  Based on: [Bowyer 1981], [Watson 1981]; [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties. */
 BRIO_API brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                    const brio_delaunay_options *options, brio_triangulation **out);
 
 /** Frees a triangulation; NULL is accepted. */
 BRIO_API void brio_triangulation_free(brio_triangulation *t);
 
+/** Returns the facts of a triangulation. The view is valid until the triangulation is freed. */
 BRIO_API const brio_delaunay_stats *brio_triangulation_stats(const brio_triangulation *t);
 
-/** The counters in the course of the insertion: *count entries of rising `points`, the last one at the end of the
- *  insertion; NULL and 0 unless options.record_every was set. The same numbers of points for every number of threads,
- *  which insert what lies between two entries together: small steps leave little to share, and the counters of a step
- *  depend on who came first. View. */
+/** Returns the counters recorded during the insertion: *count entries of rising `points`, the last one at the end of the
+ *  insertion; NULL and 0 unless options.record_every was set. Every number of threads records at the same numbers of
+ *  points, but the counters between two records depend on how the threads met. Records at small intervals slow several
+ *  threads down, because these insert together only what lies between two records. The view is valid until the
+ *  triangulation is freed. */
 BRIO_API const brio_round *brio_triangulation_rounds(const brio_triangulation *t, size_t *count);
 
-/** The #T = tetrahedra + hull_facets tetrahedra. The finite tetrahedra come first and are positive; an
- *  infinite tetrahedron has BRIO_INFINITE as its last vertex and the other three see the outside on their negative
- *  side ((a, b, c, x) is positive for x outside). The order is the same for every number of threads. View, valid until
- *  the triangulation is freed. */
+/** Returns the tetrahedra + hull_facets tetrahedra, finite ones first. A finite tetrahedron is positive. An infinite
+ *  tetrahedron (a, b, c, BRIO_INFINITE) has the hull facet abc, and (a, b, c, x) is positive for x outside the hull. The
+ *  array is the same for every number of threads. The view is valid until the triangulation is freed. */
 BRIO_API const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triangulation *t);
 
-/** #P: for each point the vertex that represents it: itself for a vertex. View. */
+/** Returns #P indices: for each point the vertex that represents it, which is the point itself if it is a vertex. The
+ *  view is valid until the triangulation is freed. */
 BRIO_API const uint32_t *brio_triangulation_representatives(const brio_triangulation *t);
 
-/** Checks a triangulation exactly and completely against its points. What passes is the result of brio_delaunay, except
- *  that tetrahedra may come in another order (finite ones first) and with their vertices turned evenly: the tetrahedra
- *  cover the convex hull once and meet in common faces, the (ortho)sphere of each is empty of points, ties are broken by
- *  the symbolic perturbation, mates and infinite tetrahedra are right, and so are the representative of every point and
- *  the dimension and the numbers of vertices, duplicates, hidden points, tetrahedra and hull facets in the statistics.
+/** Checks a triangulation exactly and completely against its points. It passes if and only if it is the result of
+ *  brio_delaunay, up to the order of the finite tetrahedra, the order of the infinite ones, and even permutations of the
+ *  vertices of a tetrahedron. Checked are: the tetrahedra cover the convex hull once and meet in common faces; no point is
+ *  inside the sphere (orthosphere) of a tetrahedron; ties are broken by the symbolic perturbation; mates, infinite
+ *  tetrahedra and every representative are right; the statistics' dimension and numbers of vertices, duplicates, hidden
+ *  points, tetrahedra and hull facets are right.
  *  points, weights, num_points  as they were given to brio_delaunay.
- *  Cost: O(n) for n tetrahedra, and a walk for each point that is no vertex; inputs of dimension 1 and 2 are
- *  triangulated once more.
- *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_ARGUMENT (another num_points than
- *  the triangulation has), BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. */
+ *  Cost: O(t) for t tetrahedra, and one walk for each point that is no vertex; inputs of dimension 1 and 2 are
+ *  triangulated again.
+ *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_ARGUMENT (the triangulation has
+ *  another number of points), BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation *t, const double *points,
                                               const double *weights, size_t num_points);
 
-/** The same check for tetrahedra from anywhere, finite ones only, in any order and either orientation: the four indices
- *  of points of each are at tetrahedra + stride * i (stride 4 where they are packed, 8 for a view of a triangulation).
- *  Every Delaunay (regular) triangulation of the points passes, however its ties are broken, and nothing else: each
- *  position under one index, that of a heaviest of its points. No tetrahedra pass for points of dimension 2 or less.
- *  canonical  receives 1 when the ties are broken as brio_delaunay breaks them, so that the tetrahedra are the same up to
- *             coincident points of equal weight, else 0; unchanged on failure; may be NULL.
- *  Cost: O(n log n) for n tetrahedra, and a walk for each point that is no vertex.
+/** Checks finite tetrahedra from any source, in any order and either orientation. They pass if and only if they are a
+ *  Delaunay (regular) triangulation of the points, however its ties are broken, in which every position has one index,
+ *  that of a point with the greatest weight there. No tetrahedra pass for points of dimension 2 or less.
+ *  tetrahedra  Tetrahedron i has four indices of points at tetrahedra + stride * i: stride 4 for a packed array, 8 for
+ *              the array of a brio_triangulation.
+ *  canonical   receives 1 if ties are broken as brio_delaunay breaks them, so that the tetrahedra are the same up to
+ *              coincident points of equal weight, else 0. It is unchanged on failure and may be NULL.
+ *  Cost: O(t log t) for t tetrahedra, and one walk for each point that is no vertex.
  *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_ARGUMENT (stride below 4),
- *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE (from 2^29 tetrahedra on), BRIO_ERR_CANCELLED. */
+ *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE (2^29 tetrahedra or more), BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const double *weights,
                                            size_t num_points, const uint32_t *tetrahedra, size_t stride,
                                            size_t num_tetrahedra, int *canonical);
 
-/** A hash of the set of tetrahedra over the lexicographic ranks of their vertices: independent of the order of the
- *  points and of the tetrahedra, and unchanged by scaling all points with a power of two.
+/** Computes a hash of the set of tetrahedra in terms of the lexicographic ranks of their vertices. It does not depend on
+ *  the order of points or tetrahedra, and stays the same when all points are scaled by a power of two.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulation *t, const double *points,
                                                  uint64_t *checksum);
@@ -284,7 +324,7 @@ BRIO_API brio_status brio_triangulation_checksum(brio_context *ctx, const brio_t
  * Meshes and their certificates
  */
 
-/** Scalar types of properties, as PLY has them. */
+/** Scalar types of properties, as in PLY. */
 typedef enum brio_scalar {
     BRIO_SCALAR_INT8,
     BRIO_SCALAR_UINT8,
@@ -297,7 +337,7 @@ typedef enum brio_scalar {
     BRIO_SCALAR_END
 } brio_scalar;
 
-/** Bytes of a scalar type. */
+/** Returns the bytes of a scalar type. */
 BRIO_API size_t brio_scalar_size(brio_scalar type);
 
 /** One named number for each vertex. */
@@ -307,9 +347,10 @@ typedef struct brio_property {
     void *data; /* #V scalars of `type` */
 } brio_property;
 
-/** Points, with polygons, tetrahedra or edges over them, and properties of the points: what a file holds. Polygons are
- *  stored one after the other: face f has the vertices face_vertices[face_offsets[f] .. face_offsets[f+1]). Vertices are
- *  never merged by position. All arrays are owned by the mesh; arrays of absent parts are NULL. */
+/** What a file holds: points, polygons, tetrahedra or edges over them, and properties of the points. Polygons are stored
+ *  one after the other: face f has the vertices face_vertices[face_offsets[f]] to face_vertices[face_offsets[f+1] - 1].
+ *  Vertices at the same position stay distinct. The mesh owns all arrays; the array of an absent part is NULL. Meshes are
+ *  made by the library, and later versions may append fields. */
 typedef struct brio_mesh {
     brio_context *context;
     size_t num_vertices;
@@ -321,305 +362,374 @@ typedef struct brio_mesh {
     uint32_t *tetrahedra; /* #T by 4 */
     size_t num_properties;
     brio_property *properties;
-    size_t num_edges; /* that are drawn by themselves; those of polygons are not listed */
+    size_t num_edges; /* edges of their own, such as those of a medial axis; edges of polygons are not listed */
     uint32_t *edges;  /* #E by 2 */
 } brio_mesh;
 
-/** An empty mesh. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+/** Makes an empty mesh. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_new(brio_context *ctx, brio_mesh **out);
 /** Frees a mesh with all its arrays; NULL is accepted. */
 BRIO_API void brio_mesh_free(brio_mesh *mesh);
 
-/** Gives an empty mesh its vertices (copied; vertices may be NULL: zeros). */
+/** Copies vertices into an empty mesh; vertices NULL sets them to 0. */
 BRIO_API brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size_t num_vertices);
-/** Gives a mesh polygons (copied): offsets #F + 1, indices offsets[#F]. */
+/** Copies polygons into a mesh.   offsets  #F + 1.   indices  offsets[#F]. */
 BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices,
                                          size_t num_faces);
-/** Gives a mesh tetrahedra (copied): the four vertices of each are at tetrahedra + stride * i (4 where they are packed, 8
- *  for a view of a triangulation). */
+/** Copies tetrahedra into a mesh. Tetrahedron i has four vertices at tetrahedra + stride * i: stride 4 for a packed
+ *  array, 8 for the array of a brio_triangulation. */
 BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra, size_t stride,
                                               size_t num_tetrahedra);
-/** Gives a mesh edges (copied): #E by 2. */
+/** Copies edges into a mesh.   edges  #E by 2. */
 BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges, size_t num_edges);
-/** Adds a property of the vertices, zeroed, and returns where its numbers go in *data; a name that is there already is
- *  BRIO_ERR_ARGUMENT. */
+/** Adds a property of the vertices, filled with 0.   data  receives the array, #V scalars, owned by the mesh.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has a property of that name), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
-/** The property of that name, or NULL. */
+/** Returns the property of that name, or NULL. */
 BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);
-/** Scalar i of a property as a double. */
+/** Returns scalar i of a property as a double. */
 BRIO_API double brio_property_value(const brio_property *property, size_t i);
 
-/** Adds the properties nx, ny, nz (float32) of the vertices: unit normals, the mean of the faces round a vertex by
- *  area, to the side from which faces are seen counterclockwise; 0 where there is none. Returns BRIO_OK,
- *  BRIO_ERR_ARGUMENT (an index out of range, normals that are there already), BRIO_ERR_NO_MEMORY. */
+/** Adds the properties nx, ny, nz (float32) to the vertices: the unit mean of the normals of the faces at a vertex,
+ *  weighted by area. A normal points to the side from which the faces are seen counterclockwise. A vertex without faces
+ *  has the normal 0.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or the mesh has such properties), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_add_normals(brio_mesh *mesh);
 
-/** What can be said of a surface by connectivity alone, vertices never being merged by position.
- *  genus = sum over components (faces joined across edges) of (2 - chi - boundary loops) / 2. */
+/** What the connectivity of a mesh's polygons says about the surface. Vertices at the same position count as distinct.
+ *  Components are sets of faces joined across edges. The genus is the sum over the components of
+ *  (2 - chi - boundary loops) / 2. */
 typedef struct brio_certificate {
-    int closed;   /* there are faces, and every edge has two */
-    int manifold; /* no edge has more than two faces; the faces round each vertex form one fan */
-    int oriented; /* the two faces of an edge run along it in opposite directions */
+    size_t size;
+    brio_context *context; /* that `genera` belongs to */
+    int closed;            /* there are faces, and every edge has two of them */
+    int manifold;          /* no edge has more than two faces; the faces at each vertex form one fan */
+    int oriented;          /* the two faces of an edge run along it in opposite directions */
     size_t components;
     int64_t genus;
-    int64_t *genera; /* of each component, largest component (by faces) first; owned by the certificate */
+    int64_t *genera; /* of each component, the component with the most faces first; owned by the certificate */
     size_t boundary_edges, boundary_loops;
     size_t nonmanifold_edges, nonmanifold_vertices, flipped_edges;
     int64_t self_intersections; /* -1: not counted; see brio_mesh_self_intersections */
-    double area, volume;        /* volume is signed: positive when the faces are seen counterclockwise from outside */
-    brio_context *context;
+    double area, volume;        /* volume is positive when the faces are seen counterclockwise from outside */
 } brio_certificate;
 
-/** Certifies the polygons of a mesh. Cost O(F log F).
+/** Certifies the polygons of a mesh.   out  its `size` set; freed with brio_certificate_free. Cost O(F log F).
  *  Returns BRIO_OK (whatever the certificate says), BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out);
-/** Counts the pairs of faces that meet in more than common corners and edges, exactly: faces that run through each
- *  other, touch, or overlap in one plane. Corners are common when their positions are equal. Polygons count as fans of
- *  triangles from their first corners; triangles without area meet nothing. Cost: near-linear in faces of about equal
- *  size; 100 bytes a face.   Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY,
- *  BRIO_ERR_CANCELLED. */
+
+/** Counts, exactly, the pairs of faces that meet in more than common corners and edges: faces that cross each other,
+ *  touch, or overlap in one plane. Corners at equal positions are common corners. A polygon counts as the fan of triangles
+ *  from its first corner; triangles of area 0 meet nothing.
+ *  Cost: near-linear for faces of about equal size; 100 bytes a face.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs);
 
-/** Frees what a certificate owns; a zeroed certificate is accepted. */
+/** Frees what a certificate owns and sets its fields to 0; NULL is accepted. */
 BRIO_API void brio_certificate_free(brio_certificate *certificate);
 
-/** Distances between two surfaces, both ways, in the unit of the coordinates. */
+/** Distances between two surfaces, in the unit of the coordinates. */
 typedef struct brio_distance {
-    double mean, rms, p95, hausdorff; /* of the samples of either from the triangles of the other, exactly */
-    double normal_consistency;        /* mean |cos| between the normals at a sample and at its nearest point */
-    double diagonal;                  /* of the bounding box of b */
+    size_t size;
+    double mean, rms, p95, hausdorff; /* from random points of each surface to the nearest point of the other one */
+    double normal_consistency;        /* mean |cos| of the angle between the normals at a point and its nearest point */
+    double diagonal;                  /* of the bounding box of mesh b */
 } brio_distance;
 
-/** Compares two surfaces by `samples` random points on each (0: 100,000), uniform by area, and their nearest points on
- *  the other. Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without faces), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+/** Compares two surfaces. Takes `samples` random points of each (0: 100,000), uniform by area, and computes their exact
+ *  distances from the triangles of the other surface.   out  its `size` set.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without faces), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
                                         uint64_t seed, brio_distance *out);
 
-/** Subdivides a mesh of triangles by the butterfly scheme: each level gives every edge a vertex and makes four
- *  triangles of one. The surface goes through the old vertices, which stay where they are, with the same indices; its
- *  limit is smooth, also at vertices that have not six neighbours. Boundaries are curves of their own. Properties go
- *  along: new vertices have the mean of their edge's ends, or for whole numbers that of one end. levels  1 to 15.   out
- *  owned by the caller. Cost: linear in the result; 64 bytes a vertex of it and 118 a vertex of the level before.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (faces that are no triangles, edges of more than two faces or
- *  of faces that disagree), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+/** Subdivides a mesh of triangles by the butterfly scheme. Each level adds one vertex on every edge and divides every
+ *  triangle into four. Old vertices keep their indices and positions; the limit surface is smooth, also at vertices
+ *  without six neighbours. Boundaries are subdivided as curves. A new vertex receives the mean of the properties of its
+ *  edge's ends or, for integer properties, those of one end.
+ *  levels  1 to 15.   out  owned by the caller.
+ *  Cost: linear in the result; 64 bytes a vertex of the result and 118 a vertex of the level before.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (a face is no triangle, an edge has more than two faces or two
+ *  faces that run along it in the same direction), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Dyn Levin Gregory 1990], [Zorin Schroeder Sweldens 1996]. */
 BRIO_API brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out);
 
-/** Edges between vertices. Zeroed to begin with. */
+/** Edges between vertices. */
 typedef struct brio_edges {
     size_t count;
     uint32_t *ends; /* count by 2 */
+    brio_context *context;
 } brio_edges;
 
-/** Frees edges and zeroes the struct; zeroed ones are accepted. */
-BRIO_API void brio_edges_free(brio_context *ctx, brio_edges *edges);
+/** Frees what edges own and sets their fields to 0; NULL is accepted. */
+BRIO_API void brio_edges_free(brio_edges *edges);
 
 /** Sparse subgraphs of the edges of a mesh. */
 typedef enum brio_subgraph {
     BRIO_SUBGRAPH_BOUNDED = 0, /* of bounded degree, for oriented surfaces of triangles */
-    BRIO_SUBGRAPH_MINIMUM = 1, /* a minimum spanning tree by length, of any mesh; its degree is at most 12 where the
-                                  mesh holds the Euclidean minimum spanning tree of its vertices */
-    BRIO_SUBGRAPH_TREE = 2,    /* a breadth-first tree, of any mesh: of bounded degree where the mesh is */
-    BRIO_SUBGRAPH_ALL = 3,     /* every edge, once */
+    BRIO_SUBGRAPH_MINIMUM =
+        1,                  /* a minimum spanning tree by length, of any mesh; its degree is at most 12 where the mesh
+                                  contains the Euclidean minimum spanning tree of its vertices */
+    BRIO_SUBGRAPH_TREE = 2, /* a breadth-first tree, of any mesh; its degree is at most the mesh's */
+    BRIO_SUBGRAPH_ALL = 3,  /* every edge, once */
     BRIO_SUBGRAPH_END
 } brio_subgraph;
 
-/** A subgraph of the edges of a mesh that reaches all vertices on faces and joins what the mesh joins: the way along a
- *  known surface, for brio_delaunay_options.edges. The bounded one has degree at most 3 on closed surfaces of genus 0 and 12 g
- *  on those of genus g, each component for itself, at most 3 on disks; where a surface has several boundary loops, or
- *  components that share a vertex, no bound is promised.
- *  Cost: linear for the bounded one and the breadth-first tree; about 20 bytes a corner of the mesh.
+/** Finds a subgraph of the edges of a mesh that contains all vertices of faces and connects what the mesh connects. It is
+ *  meant for brio_delaunay_options.edges, when the surface of the points is known. BRIO_SUBGRAPH_BOUNDED has degree at
+ *  most 3 on disks and on closed components of genus 0, and at most 12 g on closed components of genus g; no bound is
+ *  promised where a component has several boundary loops or shares a vertex with another one.
+ *  Cost: linear for BOUNDED and TREE; about 20 bytes a corner of the mesh.
  *  out  freed with brio_edges_free.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_ANSWER (bounded: faces that are no
- *  triangles, edges of more than two faces or of faces that disagree), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_ANSWER (BOUNDED: a face is no triangle, an edge
+ *  has more than two faces or two faces that run along it in the same direction), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED.
  *  Based on: [Choi 2003] section 4.3, [Lazarus Pocchiola Vegter Verroust 2001], [Kruskal 1956]. */
 BRIO_API brio_status brio_mesh_subgraph(brio_context *ctx, const brio_mesh *mesh, brio_subgraph kind, brio_edges *out);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Surface reconstruction
+ *
+ * The power crust, offset surfaces and the power shape begin alike: with the Delaunay triangulation of the samples, the
+ * poles of the samples (the vertices of a sample's Voronoi cell that are farthest from it on either side of the surface),
+ * the power diagram of the polar balls, and a label, inner or outer, for each pole. What they share is in
+ * brio_pole_options and brio_pole_stats.
+ *
+ * The result of every method is the same for every order of the points and every number of threads.
  */
 
-/** Ways to label the poles of a power crust as inner or outer. */
+/** Ways to label poles as inner or outer. */
 typedef enum brio_labeling {
-    BRIO_LABELING_GLOBAL = 0,      /* low sum of violated weights, by roof duality [Boros Hammer 2002] */
-    BRIO_LABELING_GREEDY = 1,      /* the surest pole first [Choi 2003, figure 3.8] */
+    BRIO_LABELING_GLOBAL = 0,      /* seeks labels of least energy by roof duality [Boros Hammer 2002] */
+    BRIO_LABELING_GREEDY = 1,      /* labels the most certain pole first [Choi 2003, figure 3.8] */
     BRIO_LABELING_NAIVE = 2,       /* breadth first from outside [Choi 2003, section 3.3.3] */
     BRIO_LABELING_THEORETICAL = 3, /* breadth first from one sample [Choi 2003, appendix B.3] */
     BRIO_LABELING_END
 } brio_labeling;
 
-/** What to do about noise of the samples. */
+/** What to do about noise in the samples. Smoothing moves each sample onto a quadratic surface through the middle of its
+ *  48 nearest samples [Alexa et al. 2003]. */
 typedef enum brio_noise {
-    BRIO_NOISE_AUTO = 0,   /* samples are smoothed if noise is found in them; never with the option `solid` */
-    BRIO_NOISE_KEEP = 1,   /* the surface goes through the samples as they are */
-    BRIO_NOISE_SMOOTH = 2, /* samples are smoothed */
+    BRIO_NOISE_AUTO = 0,   /* smooths if it finds noise: if the quadratic surfaces are off the samples by a tenth of the
+                              spacing or more, and by no more than quadratic surfaces of half as many samples are. Keeps
+                              the samples when the option `solid` is set. */
+    BRIO_NOISE_KEEP = 1,   /* the surface follows the samples as they are */
+    BRIO_NOISE_SMOOTH = 2, /* smooths */
     BRIO_NOISE_END
 } brio_noise;
 
+/** How poles are found and labeled. Part of other options. */
+typedef struct brio_pole_options {
+    brio_labeling labeling; /* default BRIO_LABELING_GLOBAL */
+    brio_noise noise;       /* default BRIO_NOISE_AUTO */
+    const brio_mesh *solid; /* a closed mesh in the unit of the points: poles inside it are inner, and `labeling` is not
+                                used; BRIO_ERR_NO_ANSWER if it is not closed; default NULL */
+    double
+        sampling_density; /* R in (0, 1): the Voronoi cell of a sample is badly shaped if its radius within the co-cone
+                                is more than 1.3 R / (1 - R) times the distance to the nearer pole, which no cell of an
+                                R-sample is; the nearer pole of such a sample is discarded. Smaller R find more such
+                                cells; default 0: none */
+    int sharp;            /* 1: discards both poles of a badly shaped cell, so that the faces on either side of a sharp
+                                edge without samples are extended until they meet; sampling_density 0 then stands for 0.5.
+                                default 0 */
+    int reserved_int;
+    uint64_t reserved[4];
+} brio_pole_options;
+
+/** What was counted while poles were found and labeled. Part of other statistics. */
+typedef struct brio_pole_stats {
+    size_t samples;      /* distinct positions */
+    size_t poles;        /* polar balls */
+    size_t hidden_poles; /* polar balls without a power cell */
+    size_t bad_cells;    /* samples with badly shaped cells, whose poles were discarded */
+    size_t inner, outer; /* poles by label */
+    size_t confused;     /* poles that had evidence for both labels when they were labeled */
+    size_t unreached;    /* NAIVE, THEORETICAL: poles that were left to the greedy labeling */
+    size_t undecided;    /* GLOBAL: poles that the last roof duality did not decide */
+    size_t toggled;      /* GLOBAL: poles whose label differs from the greedy one */
+    double energy; /* sum of the weights of the pairs of poles whose labels contradict the evidence. GLOBAL uses edge
+                             weights of its own: compare its energies with each other only (docs/algorithms.md). */
+    double energy_greedy; /* GLOBAL: the energy of the greedy labels that it started from */
+    double noise;         /* AUTO: the standard deviation of the noise found, in spacings of the samples; 0: none */
+    size_t smoothed;      /* 1: the samples were smoothed */
+    double noise_seconds; /* for the search for noise, and for smoothing */
+    double delaunay_seconds, poles_seconds, power_seconds, label_seconds;
+    uint64_t reserved[4];
+} brio_pole_stats;
+
 typedef struct brio_power_crust_options {
-    uint64_t seed;          /* default 1 */
-    int triangulate;        /* 1: cut the polygons into triangles; default 0 */
-    brio_labeling labeling; /* default global */
-    /* A closed mesh in the unit of the points, its vertices being the points or not: poles within it are inner, whatever
-     * the labeling; default NULL. BRIO_ERR_NO_ANSWER when it is not closed. */
-    const brio_mesh *solid;
-    /* Cells of samples whose radius in the co-cone is over 1.3 R / (1 - R) times the distance to the nearer pole are
-     * badly shaped, for a surface that is an R-sample; R in (0, 1), smaller for more of them; default 0: none is. */
-    double sampling_density;
-    int sharp;   /* 1: both poles of badly shaped cells are discarded, not the nearer one only, so that the faces beside
-                  an edge without samples meet in it; sampling_density 0 then stands for 0.5 */
-    double open; /* K > 0: faces are left out whose two balls intersect at more than pi / 4, the smaller one's radius
-                        being over K local spacings: large holes of the samples stay open; default 0: closed */
-    int simplify; /* 1: triangles, about a quarter as many as the crust has polygons; edges far shorter than the local
-                        spacing collapse, the surface stays the same as a manifold; default 0 */
-    double *normals; /* #P by 3, the caller's: receives the oriented unit normal of each point; NULL: not wanted */
-    /* Smoothed samples lie on quadratic pieces of surface through the middle of their 48 nearest samples [Alexa et al.
-     * 2003]; the surface is then the power crust of these. Noise is found where such pieces are off the samples by a
-     * tenth of the spacing or more and by no more than pieces of half as many are; default auto. */
-    brio_noise noise;
+    size_t size;
+    uint64_t seed;           /* default 1 */
+    brio_pole_options poles; /* how the poles are found and labeled */
+    int triangulate;         /* 1: cuts the polygons into triangles; default 0 */
+    int simplify; /* 1: triangles, about a quarter as many as the crust has polygons: collapses edges that are
+                                much shorter than the local spacing of the samples; the surface stays the same as a
+                                manifold; default 0 */
+    double open;  /* K > 0: leaves out the faces whose two balls intersect at an angle over pi / 4 while the
+                                smaller ball's radius is over K local spacings, so that large holes of the samples stay
+                                open; default 0: the surface is closed */
 } brio_power_crust_options;
 
-BRIO_API brio_power_crust_options brio_power_crust_options_default(void);
+BRIO_API void brio_power_crust_options_init(brio_power_crust_options *options, size_t size);
+static inline brio_power_crust_options brio_power_crust_options_default(void) {
+    brio_power_crust_options options;
+    brio_power_crust_options_init(&options, sizeof options);
+    return options;
+}
 
-/** What the power crust counts. */
+/** What the power crust and offset surfaces count. */
 typedef struct brio_power_crust_stats {
-    size_t samples;             /* distinct positions */
-    size_t poles, hidden_poles; /* polar balls; of these without a power cell */
-    size_t bad_cells;           /* samples with badly shaped cells, whose poles were discarded */
-    size_t inner, outer;        /* labels */
-    size_t confused;            /* poles that had evidence for both labels when they were labeled */
-    size_t unreached;           /* naive, theoretical: poles that were left to the greedy labeling */
-    size_t open, toggled;       /* global: poles that the last roof duality left open; that changed their label */
-    double energy_greedy;       /* global: sum of the violated weights of the greedy labels that it began with */
-    double energy;              /* sum of the violated weights of the labels; global: of weights of its own */
-    size_t left_out;            /* faces that `open` left out */
-    double noise;               /* auto: standard deviation of the noise that was found, in spacings; 0: none */
-    size_t smoothed;            /* 1: the samples were */
-    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, crust_seconds, simplify_seconds;
-    double noise_seconds; /* to look for noise, and to smooth */
+    size_t size;
+    brio_pole_stats poles;
+    size_t left_out; /* faces that the option `open` left out */
+    double crust_seconds, simplify_seconds;
 } brio_power_crust_stats;
 
-/** Reconstructs a closed surface from samples: the power crust. The faces of the power diagram of the polar balls that
- *  separate cells of inner poles from cells of outer poles, as polygons seen counterclockwise from outside.
- *  Guarantees: the mesh is closed, manifold and oriented as a combinatorial object, for every input that has an inside;
- *  on a dense sample of a smooth closed surface it is homeomorphic and close to it (appendix B of [Choi 2003]).
- *  Does not guarantee: triangular faces, absence of tiny faces, absence of self-intersections. Faces run through each
- *  other where samples are too few, and on dense samples where vertices lie so close together that rounding their
- *  coordinates turns tiny faces over: an r-sample of a torus, r = 0.08, has 13 such pairs of 1.4 million faces.
+/** Reconstructs a closed surface from samples: the power crust. Its faces are the faces of the power diagram of the polar
+ *  balls between a cell of an inner pole and a cell of an outer pole, as polygons seen counterclockwise from outside.
+ *  Guarantees: for every input that has an inside, the mesh is closed, manifold and oriented as a combinatorial object
+ *  (with the option `open`: manifold and oriented). On a dense sample of a smooth closed surface the power crust is
+ *  homeomorphic and close to the surface (appendix B of [Choi 2003]).
+ *  Does not guarantee: triangular faces, faces above a least size, freedom from self-intersections. Faces cross each other
+ *  where samples are too few; on dense samples, where the vertices of tiny faces are so close together that rounding
+ *  their coordinates turns the faces over: an r-sample of a torus, r = 0.08, has 13 such pairs of 1.4 million faces.
  *  brio_mesh_self_intersections counts the pairs.
- *  points  #P by 3.   options  NULL for the defaults.   stats  may be NULL.   out  owned by the caller.
+ *  points   #P by 3.   options  NULL for the defaults.   out  owned by the caller.
+ *  normals  NULL, or receives #P by 3: the oriented unit normal of the surface at each point.
+ *  stats    NULL, or its `size` set.
  *  Cost: two triangulations, of the samples and of their about 2 n poles; 1,300 to 1,700 bytes a sample at the peak.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found), and as brio_delaunay.
  *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] sections 3.3 and 5. */
 BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
-                                      const brio_power_crust_options *options, brio_mesh **out,
+                                      const brio_power_crust_options *options, brio_mesh **out, double *normals,
                                       brio_power_crust_stats *stats);
 
-/** The surface at a distance from the one that the power crust of the samples is: outwards for distance > 0, inwards
- *  for distance < 0. Its parts merge where they meet, and it vanishes where the object is too thin. Guarantees: as the
- *  power crust, closed, manifold and oriented whatever the distance. It is as far off the exact offset as the
- *  polar balls are off the maximal ones.
- *  distance  in the unit of the points.   options  NULL for the defaults; not `open`, not `normals`.   stats  may be
- *  NULL: of the balls that are left.   out  owned by the caller.
- *  Cost: as brio_power_crust and one more triangulation of the poles.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or the offset swallows the object), and as brio_delaunay.
+typedef struct brio_offset_options {
+    size_t size;
+    uint64_t seed;           /* default 1 */
+    brio_pole_options poles; /* how the poles are found and labeled */
+    int triangulate;         /* as in brio_power_crust_options */
+    int simplify;            /* as in brio_power_crust_options */
+} brio_offset_options;
+
+BRIO_API void brio_offset_options_init(brio_offset_options *options, size_t size);
+static inline brio_offset_options brio_offset_options_default(void) {
+    brio_offset_options options;
+    brio_offset_options_init(&options, sizeof options);
+    return options;
+}
+
+/** Computes the offset of the power crust of the samples: the surface at `distance` outside it or, for a negative
+ *  distance, inside it. Parts of an offset that meet are merged, and parts of the object that are too thin vanish.
+ *  Guarantees: as the power crust, closed, manifold and oriented for every distance. The error of the offset is that of the
+ *  polar balls as an approximation of the maximal balls.
+ *  distance  in the unit of the points.   options  NULL for the defaults.   out  owned by the caller.
+ *  stats     NULL, or its `size` set. It counts the balls that are left after the offset.
+ *  Cost: as brio_power_crust, and one more triangulation of the poles.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or an inward offset leaves nothing), and as brio_delaunay.
  *  Based on: [Choi 2003] section 3.3.4. */
 BRIO_API brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
-                                         const brio_power_crust_options *options, brio_mesh **out,
+                                         const brio_offset_options *options, brio_mesh **out,
                                          brio_power_crust_stats *stats);
 
-/** The sides of the surface that a power shape is made of. */
+/** Sides of a surface. */
 typedef enum brio_sides { BRIO_SIDES_INNER = 0, BRIO_SIDES_OUTER = 1, BRIO_SIDES_BOTH = 2, BRIO_SIDES_END } brio_sides;
 
 typedef struct brio_power_shape_options {
-    uint64_t seed;          /* default 1 */
-    brio_labeling labeling; /* as in brio_power_crust_options, and so are the next three */
-    const brio_mesh *solid;
-    double sampling_density;
-    int sharp;
-    brio_sides sides; /* default inner */
-    /* Balls that one larger ball of the same side can stand for are left out: */
-    double scale;      /* S > 1: it holds them when both are scaled by S, which is what noise comes to; default 1 */
-    double redundancy; /* E > 0: it holds them when its radius grows by E of itself; default 0 */
-    brio_noise noise;  /* as in brio_power_crust_options */
+    size_t size;
+    uint64_t seed;           /* default 1 */
+    brio_pole_options poles; /* how the poles are found and labeled */
+    brio_sides sides;        /* whose poles make the shape; default BRIO_SIDES_INNER */
+    /* Simplification leaves out a ball if a larger ball of the same side */
+    double scale;      /* S > 1: contains it after the radii of both are multiplied by S, for noise; default 1: none */
+    double redundancy; /* E > 0: contains it after the larger radius grows by E times itself; default 0: none */
 } brio_power_shape_options;
 
-BRIO_API brio_power_shape_options brio_power_shape_options_default(void);
+BRIO_API void brio_power_shape_options_init(brio_power_shape_options *options, size_t size);
+static inline brio_power_shape_options brio_power_shape_options_default(void) {
+    brio_power_shape_options options;
+    brio_power_shape_options_init(&options, sizeof options);
+    return options;
+}
 
 typedef struct brio_power_shape_stats {
-    size_t samples;                      /* distinct positions */
-    size_t poles, hidden_poles;          /* polar balls; of these without a power cell */
-    size_t inner, outer, unlabeled;      /* labels of all poles; with the labelings that there are, none is unlabeled */
-    size_t left_out;                     /* by `scale` and `redundancy` */
+    size_t size;
+    brio_pole_stats poles;               /* before simplification */
+    size_t unlabeled;                    /* poles without a label; 0 with every labeling there is */
+    size_t left_out;                     /* poles that simplification left out */
     size_t edges, triangles, tetrahedra; /* of the shape */
-    double noise;                        /* as in brio_power_crust_stats, and so is the next */
-    size_t smoothed;
-    double delaunay_seconds, poles_seconds, power_seconds, label_seconds, simplify_seconds, shape_seconds,
-        noise_seconds;
+    double simplify_seconds, shape_seconds;
 } brio_power_shape_stats;
 
-/** The power shape of samples of a surface, an approximation of its medial axis: the poles on the sides asked for that
- *  have a cell in the power diagram of all polar balls, and the edges, triangles and tetrahedra of its dual between
- *  those of one side. The inner shape is homotopy equivalent to the union of the inner cells: its Euler characteristic,
- *  vertices - edges + triangles - tetrahedra, is that of the solid which the power crust bounds, unless an inner pole is
- *  on the hull of the poles. Poles of a dense sample of a smooth surface converge to the medial axis as the sampling
- *  gets denser; those of bounding points beyond the hull are left out.
- *  points   #P by 3.   options  NULL for the defaults.   stats  may be NULL.
- *  shape    owned by the caller: vertices with the properties "radius" (float64) and "side" (int8; -1 inner, 1 outer),
+/** Computes the power shape of samples of a surface, an approximation of its medial axis. Its vertices are the poles on
+ *  the chosen sides that have a power cell; its edges, triangles and tetrahedra are those of the regular triangulation of
+ *  the poles whose vertices are all on one side. The inner shape is homotopy equivalent to the union of the inner cells:
+ *  unless an inner pole is on the hull of the poles, its Euler characteristic (vertices - edges + triangles - tetrahedra)
+ *  is that of the solid inside the power crust. As samples of a smooth surface get denser, their poles converge to the
+ *  medial axis. Poles of the bounding points around the samples are not part of the shape.
+ *  points   #P by 3.   options  NULL for the defaults.   stats  NULL, or its `size` set.
+ *  shape    owned by the caller: vertices with the properties "radius" (float64) and "side" (int8: -1 inner, 1 outer),
  *           edges, triangles as faces, positive tetrahedra.
- *  crust    NULL, or receives the power crust of the balls, after simplification: closed, manifold, oriented; owned by
+ *  crust    NULL, or receives the power crust of the balls that simplification left: closed, manifold, oriented; owned by
  *           the caller.
- *  Every ball left out by simplification is within max ((S - 1) (R - r), E R) of a larger one that stays, r and R being
- *  their radii; those without a cell, which lie within the union of the others, go first.
- *  Cost: as brio_power_crust; one more triangulation of the poles with simplification.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid, none is on the side asked for, or the mesh `solid` is
- *  not closed), and as brio_delaunay.
+ *  Simplification leaves a larger ball within max((S - 1) (R - r), E R) of every ball that it leaves out, r being the
+ *  radius of the smaller and R of the larger ball. It leaves out balls without a power cell first; these lie within the
+ *  union of the others.
+ *  Cost: as brio_power_crust; with simplification, one more triangulation of the poles.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid, no pole is on a chosen side, or the mesh `solid` is not
+ *  closed), and as brio_delaunay.
  *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] section 3.3.2, [Miklos Giesen Pauly 2010]. */
 BRIO_API brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num_points,
                                       const brio_power_shape_options *options, brio_mesh **shape, brio_mesh **crust,
                                       brio_power_shape_stats *stats);
 
 typedef struct brio_cocone_options {
+    size_t size;
     uint64_t seed;  /* default 1 */
-    double theta;   /* half the opening of the co-cone, radians, in (0, pi/2); default pi/8 */
-    int tight;      /* 1: the tight co-cone, a watertight surface; default 0: surfaces may come out open */
-    int boundaries; /* 1: samples at boundaries and where the sampling is too sparse are found by the shape of their
-                       Voronoi cells, and triangles among them alone are no candidates; default 0 */
-    int density;    /* 1: the sampling condition is estimated: the mesh gets vertex properties; default 0 */
-    size_t pieces;  /* over 1: in about so many pieces that are triangulated one after the other and matched at their
-                       seams (super co-cone); not with tight; default 0: the whole at once */
+    double theta;   /* half the opening angle of the co-cone in radians, in (0, pi/2); default pi/8 */
+    int tight;      /* 1: the tight co-cone, a closed surface; default 0: the co-cone, which may come out open */
+    int boundaries; /* 1: finds samples at boundaries and where the sampling is too sparse by the shape of their Voronoi
+                       cells, and rejects triangles all of whose vertices are such samples; default 0 */
+    int density;    /* 1: estimates the sampling density and adds it as vertex properties; default 0 */
+    size_t
+        pieces; /* 2 or more: the super co-cone, which triangulates the samples in about so many pieces, one after the
+                       other, and matches the surfaces at the seams; not with `tight`; default 0: one piece */
 } brio_cocone_options;
 
-BRIO_API brio_cocone_options brio_cocone_options_default(void);
+BRIO_API void brio_cocone_options_init(brio_cocone_options *options, size_t size);
+static inline brio_cocone_options brio_cocone_options_default(void) {
+    brio_cocone_options options;
+    brio_cocone_options_init(&options, sizeof options);
+    return options;
+}
 
-/** What the co-cone counts. Shares are of the samples. */
+/** What the co-cone counts. */
 typedef struct brio_cocone_stats {
+    size_t size;
     size_t samples;           /* distinct positions */
-    size_t unused;            /* of these, on no triangle of the surface */
-    size_t candidates;        /* triangles that pass the test */
-    size_t pruned;            /* of these, dropped at sharp edges */
+    size_t unused;            /* samples on no triangle of the surface */
+    size_t candidates;        /* triangles that pass the co-cone test */
+    size_t pruned;            /* candidates rejected at sharp edges */
     size_t boundary_samples;  /* found with options.boundaries */
     size_t relabeled;         /* tetrahedra whose side was changed to keep the surface a manifold */
-    size_t pieces, unmatched; /* with options.pieces: cells of the octree; triangles at their seams left out because
-                                 the pieces disagree on them */
+    size_t pieces;            /* with options.pieces: cells of the octree */
+    size_t unmatched;         /* with options.pieces: triangles at seams left out because the pieces disagree on them */
     size_t outside_guarantee; /* with options.density: samples on the surface where the estimate of r is over 0.08 */
-    double r_median, r_p95;   /* with options.density: of the estimates of r over the samples on the surface */
+    double r_median, r_p95;   /* with options.density: of the estimates of r at the samples on the surface */
     double delaunay_seconds, poles_seconds, candidates_seconds, labels_seconds, manifold_seconds, density_seconds;
 } brio_cocone_stats;
 
-/** Reconstructs a surface out of Delaunay triangles of the samples: the co-cone, or the tight co-cone. Guarantees: the
- *  mesh is manifold and oriented as a combinatorial object, for every input; the tight co-cone is closed besides. On an
- *  r-sample of a smooth closed surface, r <= 0.08, the co-cone is homeomorphic to it and within 1.3 r / (1 - r) of the
- *  local feature size (theorem 19 of [Choi 2003]). Does not guarantee: a closed mesh on sparser samples, absence of
- *  self-intersections, that every sample is used.
- *  points  #P by 3.   options  NULL for the defaults.   stats  may be NULL.
- *  out     owned by the caller. Its vertices are the points, with the same indices; those that no face has are left
- *          where they are. With options.density: "feature_size", the distance to the nearest pole; "r", an estimate
- *          of the sampling density there (0 where the sample is on no face); "boundary", 1 for a boundary sample (with
- *          options.boundaries too).
- *  Cost: one triangulation; about 50 bytes a tetrahedron more. In N pieces the memory is that of 1/N of the samples and
- *  their surroundings, and 60 bytes a point; on a dense sample the triangles are the same.
+/** Reconstructs a surface from Delaunay triangles of the samples: the co-cone or the tight co-cone.
+ *  Guarantees: for every input, the mesh is manifold and oriented as a combinatorial object, and the tight co-cone is
+ *  closed. On an r-sample of a smooth closed surface with r <= 0.08, the co-cone is homeomorphic to the surface and within
+ *  1.3 r / (1 - r) times the local feature size of it (theorem 19 of [Choi 2003]).
+ *  Does not guarantee: a closed mesh on sparser samples, freedom from self-intersections, that every sample is used.
+ *  points  #P by 3.   options  NULL for the defaults.   stats  NULL, or its `size` set.
+ *  out     owned by the caller. Its vertices are the points, with the same indices, also those that no face uses.
+ *          options.density adds three properties: "feature_size", the distance to the nearest pole; "r", an estimate of
+ *          the sampling density, 0 at a sample on no face; "boundary", 1 at a boundary sample. options.boundaries adds
+ *          "boundary" alone.
+ *  Cost: one triangulation, and about 50 bytes a tetrahedron. In N pieces the memory is that of 1/N of the samples and
+ *  their surroundings, and 60 bytes a point; on a dense sample the triangles are the same as in one piece.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no triangle found, or no inside), and as brio_delaunay.
  *  Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
  *            [Dey Giesen Hudson 2001], [Dey Goswami 2003]. */
@@ -627,47 +737,84 @@ BRIO_API brio_status brio_cocone(brio_context *ctx, const double *points, size_t
                                  const brio_cocone_options *options, brio_mesh **out, brio_cocone_stats *stats);
 
 /* ------------------------------------------------------------------------------------------------------------------
+ * Iso-surfaces
+ */
+
+typedef struct brio_iso_options {
+    size_t size;
+    double level;   /* of the surface, in the unit of the map or of the density of atoms; default 1 */
+    int deviations; /* 1: `level` counts standard deviations above the mean of the map; default 0 */
+    int conforming; /* 1: every triangle is a facet of the Delaunay triangulation of the mesh's vertices, vertices at one
+                          position taken as one [Attali Lachaud 2001]; default 0 */
+    double blobbiness; /* atoms: above 0 and at most 100; the larger, the closer the surface is to spheres; default 2 */
+    size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
+    size_t vertices;   /* not 0: chooses the resolution so that the mesh has about this many vertices; default 0 */
+} brio_iso_options;
+
+BRIO_API void brio_iso_options_init(brio_iso_options *options, size_t size);
+static inline brio_iso_options brio_iso_options_default(void) {
+    brio_iso_options options;
+    brio_iso_options_init(&options, sizeof options);
+    return options;
+}
+
+/** Computes the iso-surface of a density in a file, as a closed triangle mesh. The file is a CCP4 or MRC map (.map .mrc
+ *  .ccp4), whose surface is cut off flat where it leaves the map, or atoms in a PDB file (.pdb .ent), each a Gaussian that
+ *  alone has level 1 at the atom's van der Waals radius. "-" reads standard input.   options  NULL for the defaults.
+ *  Memory: 4 bytes a value of the map or 40 bytes an atom; the mesh; two layers of cells with 36 bytes a cell.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (nothing is above the level, or the map is one value thin),
+ *  and as brio_read. */
+BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_options *options,
+                                      brio_mesh **out);
+
+/* ------------------------------------------------------------------------------------------------------------------
  * Files
  */
 
-/** File formats. BRIO_FORMAT_AUTO goes by the extension, and by the content where that tells. */
+/** File formats. BRIO_FORMAT_AUTO decides by the extension, and by the content of the file where it tells the format. */
 typedef enum brio_format {
     BRIO_FORMAT_AUTO = 0,
     BRIO_FORMAT_PLY,
     BRIO_FORMAT_XYZ, /* .xyz .pts .txt .csv */
     BRIO_FORMAT_OBJ,
     BRIO_FORMAT_OFF,
-    BRIO_FORMAT_VTU,  /* read back when its arrays are appended raw, as they are written */
+    BRIO_FORMAT_VTU,  /* read if its arrays are appended raw, as brio_write writes them */
     BRIO_FORMAT_NODE, /* TetGen's .node, with .ele beside it */
     BRIO_FORMAT_VTP,  /* written, not read */
     BRIO_FORMAT_END
 } brio_format;
 
-/** The format of a file's name, BRIO_FORMAT_AUTO when the extension is unknown. A leading dot or path is optional. */
+/** Returns the format of a file name or of an extension with or without its dot; BRIO_FORMAT_AUTO if it is unknown. */
 BRIO_API brio_format brio_format_of(const char *path);
 
-/** Reads a file. Vertices, polygons, tetrahedra, and every other scalar property of the vertices are kept; other
- *  elements are skipped. "-" reads standard input.
- *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (the message names file, line or byte offset, and what was
- *  expected), BRIO_ERR_NOT_FINITE (the first such point and how many there are), BRIO_ERR_TOO_LARGE,
+/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of the vertices; skips other elements.
+ *  "-" reads standard input.
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was
+ *  expected), BRIO_ERR_NOT_FINITE (the message names the first such point and their number), BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
 
 typedef struct brio_write_options {
-    brio_format format;  /* AUTO: by the extension */
-    int ascii;           /* 1: text where the format has both; default 0 */
-    int float32;         /* 1: coordinates in single precision where the format has both; default 0 */
-    const char *comment; /* a line for the header, or NULL */
+    size_t size;
+    brio_format format;  /* default BRIO_FORMAT_AUTO: by the extension */
+    int ascii;           /* 1: text, in formats with a text and a binary form; default 0 */
+    int float32;         /* 1: coordinates in single precision, in formats with both; default 0 */
+    const char *comment; /* a line for the header; default NULL: none */
 } brio_write_options;
 
-BRIO_API brio_write_options brio_write_options_default(void);
+BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);
+static inline brio_write_options brio_write_options_default(void) {
+    brio_write_options options;
+    brio_write_options_init(&options, sizeof options);
+    return options;
+}
 
-/** Writes a mesh: to a temporary name beside the target, flushed, then renamed, so that nothing half-written is ever
- *  left. Symbolic links stay: the file that they lead to is made or replaced. An old file's permissions are kept.
- *  "-" writes to standard output (the format must then be given); it, pipes and devices are written in place, and a wait
- *  for their readers can be cancelled. Neither SIGPIPE nor SIGXFSZ reaches the process.
- *  Edges go into PLY, VTU and VTP alone.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a format that cannot hold the mesh), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
+/** Writes a mesh. Writes a temporary file beside the target, flushes it, and renames it to the target, so that no
+ *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
+ *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
+ *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
+ *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU and VTP only.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);
@@ -682,73 +829,60 @@ typedef enum brio_kind {
     BRIO_KIND_SPHERE,   /* uniform on the unit sphere */
     BRIO_KIND_TORUS,    /* uniform by area on the torus of radii 1 and 0.4 */
     BRIO_KIND_CYLINDER, /* uniform on the side of the cylinder of radius 1 and height 4 */
-    BRIO_KIND_GRID,     /* the first n points of the smallest cubic integer grid that has them */
+    BRIO_KIND_GRID,     /* the first n points of the smallest cubic integer grid that has n */
     BRIO_KIND_SCAN,     /* a simulated laser scan of a sculpture of genus 3 */
-    BRIO_KIND_CLUSTERS, /* uniform in 256 balls in the unit cube, their radii log-uniform from 1e-7 to 0.1 */
+    BRIO_KIND_CLUSTERS, /* uniform in 256 balls in the unit cube, whose radii are log-uniform from 1e-7 to 0.1 */
     BRIO_KIND_MOMENT,   /* (t, t^2, t^3), t uniform in [0, 1): about n^2 / 2 tetrahedra */
     BRIO_KIND_END
 } brio_kind;
 
 typedef struct brio_generate_options {
+    size_t size;
     uint64_t seed; /* default 1 */
-    double noise;  /* scan: standard deviation along the ray, in units of the sample spacing; default 0.05 */
+    double noise;  /* scan: standard deviation along the ray, in spacings of the samples; default 0.05 */
     int views;     /* scan: number of sensor positions; default 12 */
 } brio_generate_options;
 
-BRIO_API brio_generate_options brio_generate_options_default(void);
+BRIO_API void brio_generate_options_init(brio_generate_options *options, size_t size);
+static inline brio_generate_options brio_generate_options_default(void) {
+    brio_generate_options options;
+    brio_generate_options_init(&options, sizeof options);
+    return options;
+}
 
-/** Makes n points of a kind; the same seed gives the same points. A scan has about n points (as many as its rays hit)
- *  and the property "view".   Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+/** Makes n points of a kind; the same seed gives the same points. A scan has about n points, as many as its rays hit, and
+ *  the property "view".   options  NULL for the defaults.   out  owned by the caller.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,
                                    brio_mesh **out);
 
-/** The surface that BRIO_KIND_SCAN scans, as a closed triangle mesh on a grid of `resolution` cells along the longest
+/** Makes the surface that BRIO_KIND_SCAN scans: a closed triangle mesh from a grid of `resolution` cells along the longest
  *  side of its box (0: 160).   Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out);
 
-typedef struct brio_iso_options {
-    double level;      /* of the surface, in the unit of the map or the density of atoms; default 1 */
-    int deviations;    /* 1: the level counts standard deviations above the mean of the map; default 0 */
-    double blobbiness; /* atoms: above 0 and at most 100, the larger the more the surface is that of balls; default 2 */
-    size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
-    size_t vertices;   /* not 0: the resolution is chosen so that there are about so many vertices; default 0 */
-    int conforming;    /* 1: all triangles are Delaunay, for vertices at the same place taken as one: facets of the
-                          Delaunay triangulation of the mesh's vertices [Attali Lachaud 2001]; default 0 */
-} brio_iso_options;
-
-BRIO_API brio_iso_options brio_iso_options_default(void);
-
-/** The iso-surface of a file's density, as a closed triangle mesh: of a CCP4 or MRC map (.map .mrc .ccp4), cut off flat
- *  where it leaves the map, or of the atoms in a PDB file (.pdb .ent), each a Gaussian that alone has level 1 at its
- *  van der Waals radius. "-" reads standard input.   options  NULL for the defaults.
- *  Memory: the map with 4 bytes a value, or 40 bytes an atom; the mesh; two layers of cells with 36 bytes each.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (nothing is above the level, or the map is one value thin),
- *  and as brio_read. */
-BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_options *options,
-                                      brio_mesh **out);
-
 /* ------------------------------------------------------------------------------------------------------------------
- * Predicates, exact for every finite double
+ * Predicates, exact for all finite doubles. Points are 3 doubles each.
  */
 
-/** Sign (-1, 0, 1) of det [b-a, c-a, d-a]; a, b, c, d are 3 doubles each. */
+/** Returns the sign (-1, 0, 1) of det [b-a, c-a, d-a]. */
 BRIO_API int brio_orient3d(const double *a, const double *b, const double *c, const double *d);
 
-/** Sign of the in-sphere determinant: 1 when e is inside the sphere through the positive tetrahedron (a, b, c, d), -1
- *  outside, 0 on it; the opposite for a negative one.   weights  NULL, or the five weights in the order a to e: then e
- *  is held against the orthosphere (power test). */
+/** Returns the sign of the in-sphere determinant: for a positive tetrahedron (a, b, c, d) it is 1 if e is inside the
+ *  sphere through a, b, c, d, -1 if e is outside, 0 if e is on it; for a negative tetrahedron the opposite.
+ *  weights  NULL, or the weights of a, b, c, d, e: then the orthosphere takes the sphere's place (power test). */
 BRIO_API int brio_insphere(const double *a, const double *b, const double *c, const double *d, const double *e,
                            const double *weights);
 
-/** As brio_insphere for a positive tetrahedron and a point that is none of its vertices, with ties broken by the
- *  symbolic perturbation: never 0. */
+/** Returns what brio_insphere returns, with ties broken by the symbolic perturbation: never 0. The tetrahedron must be
+ *  positive and e must be none of its vertices. */
 BRIO_API int brio_insphere_perturbed(const double *a, const double *b, const double *c, const double *d,
                                      const double *e, const double *weights);
 
-/** Circumcentre of a tetrahedron that is not flat or, with 4 weights, its orthocentre. A function of the set of points:
- *  the same bits for every order of them. Each coordinate is off by at most `*error` (may be NULL): at most 2^-44 of
- *  the centre's distance to the lexicographically first point, plus one rounding; higher precision is used where
- *  doubles do not reach it.
+/** Computes the circumcentre of a tetrahedron that is not flat or, with 4 weights, its orthocentre. The result has the
+ *  same bits for every order of the four points.   weights  4, or NULL.
+ *  error  NULL, or receives a bound on the error of each coordinate: at most 2^-44 times the distance from the centre to
+ *         the lexicographically first of the points, plus one rounding. Where doubles do not reach that bound, the
+ *         computation uses higher precision.
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT for a flat tetrahedron or a centre that doubles cannot hold. */
 BRIO_API brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d,
                                        const double *weights, double *centre, double *error);

@@ -4,6 +4,7 @@
  * cells bring to light, so that a few rounds do. */
 #include "io/ccp4.h"
 #include "base/float_state.h"
+#include "base/versioned.h"
 #include "io/pdb.h"
 #include <math.h>
 #include <string.h>
@@ -23,9 +24,9 @@ typedef struct {
     size_t num_atoms;
 } source;
 
-brio_iso_options brio_iso_options_default(void) {
-    return (brio_iso_options){.level = 1, .blobbiness = 2};
-}
+static const brio_iso_options STANDARD = {.size = sizeof STANDARD, .level = 1, .blobbiness = 2};
+
+BRIO_OPTIONS_INIT(brio_iso_options)
 
 /* --- reading --- */
 
@@ -138,9 +139,10 @@ done:
 brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_options *options, brio_mesh **out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_iso_options o = options ? *options : brio_iso_options_default();
+    brio_iso_options o = STANDARD;
     source from = {0};
     *out = NULL;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_iso_options, options, &o));
     BRIO_TRY(check_options(ctx, &o));
     BRIO_TRY(read_source(ctx, path, &from));
     BRIO_TRY(settle_level(ctx, &from, &o));

@@ -1,15 +1,16 @@
 /* Writes a mesh: refuses what the format cannot hold, and hands the rest to the format's writer. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/versioned.h"
 #include "io/formats.h"
 #include "io/textrow.h"
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
 
-brio_write_options brio_write_options_default(void) {
-    return (brio_write_options){.format = BRIO_FORMAT_AUTO};
-}
+static const brio_write_options STANDARD = {.size = sizeof STANDARD, .format = BRIO_FORMAT_AUTO};
+
+BRIO_OPTIONS_INIT(brio_write_options)
 
 /* --- what a format can hold --- */
 
@@ -157,9 +158,10 @@ done:
 brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh, const brio_write_options *options) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    const brio_write_options defaults = brio_write_options_default();
-    brio_write_job job = {.mesh = mesh, .options = options ? options : &defaults};
-    brio_format format = job.options->format;
+    brio_write_options o = STANDARD;
+    brio_write_job job = {.mesh = mesh, .options = &o};
+    BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, options, &o));
+    brio_format format = o.format;
     if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
     if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ) BRIO_TRY(make_names(ctx, path, &job));

@@ -15,6 +15,7 @@
  * Threads share the work. Nothing depends on its order: a root is the first element of its set, counts are whole
  * numbers, and areas and volumes are summed in parts of their own. */
 #include "base/float_state.h"
+#include "base/versioned.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "surface/edge_rings.h"
@@ -501,17 +502,20 @@ static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certifi
 brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    *out = (brio_certificate){.self_intersections = -1, .context = ctx};
+    brio_certificate c = {.size = sizeof c, .self_intersections = -1, .context = ctx};
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_certificate, out));
+    BRIO_GIVE(brio_certificate, out, &(brio_certificate){0});
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_TRY(certify_topology(ctx, mesh, out));
-    measure_faces(ctx, mesh, out);
+    BRIO_TRY(certify_topology(ctx, mesh, &c));
+    measure_faces(ctx, mesh, &c);
+    BRIO_GIVE(brio_certificate, out, &c);
 done:
-    if (status != BRIO_OK) brio_certificate_free(out);
+    if (status != BRIO_OK) brio_certificate_free(&c);
     return status;
 }
 
 void brio_certificate_free(brio_certificate *certificate) {
     if (!certificate || !certificate->context) return;
     brio_release(certificate->context, certificate->genera);
-    *certificate = (brio_certificate){0};
+    BRIO_GIVE(brio_certificate, certificate, &(brio_certificate){0});
 }

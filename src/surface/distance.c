@@ -7,6 +7,7 @@
  *
  * Based on: Cignoni, Rocchini, Scopigno. Metro: measuring error on simplified surfaces. Comput. Graph. Forum 1998. */
 #include "base/float_state.h"
+#include "base/versioned.h"
 #include "base/rng.h"
 #include "base/team.h"
 #include "surface/closest_point.h"
@@ -189,7 +190,9 @@ brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio
     brio_status status = BRIO_OK;
     surface surfaces[2] = {0};
     measurement m = {.samples = samples ? samples : DEFAULT_SAMPLES};
-    *out = (brio_distance){0};
+    brio_distance found = {0};
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_distance, out));
+    BRIO_GIVE(brio_distance, out, &found);
     BRIO_REQUIRE(ctx, m.samples <= SIZE_MAX / 4, BRIO_ERR_NO_MEMORY, "out of memory: %zu samples", m.samples);
     BRIO_TRY(surface_new(ctx, a, "the first mesh", &surfaces[0]));
     BRIO_TRY(surface_new(ctx, b, "the second mesh", &surfaces[1]));
@@ -198,10 +201,11 @@ brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio
     BRIO_TRY(measure(ctx, (sampler){&surfaces[0], &surfaces[1], brio_mix(seed), 0, 0, &m}));
     BRIO_TRY(measure(ctx, (sampler){&surfaces[1], &surfaces[0], brio_mix(brio_mix(seed)), m.samples, 0, &m}));
     BRIO_TRY(brio_progress(ctx, "distance", 1));
-    summarise(&m, out);
+    summarise(&m, &found);
     const brio_box *box = &surfaces[1].tree.boxes[0];
     double diagonal[3] = {box->high[0] - box->low[0], box->high[1] - box->low[1], box->high[2] - box->low[2]};
-    out->diagonal = length(diagonal);
+    found.diagonal = length(diagonal);
+    BRIO_GIVE(brio_distance, out, &found);
 done:
     surface_free(ctx, &surfaces[0]);
     surface_free(ctx, &surfaces[1]);

@@ -6,6 +6,7 @@
  *
  * Based on: Marsaglia. Choosing a point from the surface of a sphere. Annals of Mathematical Statistics 1972. */
 #include "base/float_state.h"
+#include "base/versioned.h"
 #include "base/rng.h"
 #include "base/team.h"
 #include "surface/iso_surface.h"
@@ -27,9 +28,9 @@ enum {
 static const double TORUS_MAJOR = 1, TORUS_MINOR = 0.4, CYLINDER_HEIGHT = 4;
 static const double LARGEST_CLUSTER = 0.1, CLUSTER_RANGE = 1e-6; /* radii, and the least as a share of it */
 
-brio_generate_options brio_generate_options_default(void) {
-    return (brio_generate_options){.seed = 1, .noise = 0.05, .views = 12};
-}
+static const brio_generate_options STANDARD = {.size = sizeof STANDARD, .seed = 1, .noise = 0.05, .views = 12};
+
+BRIO_OPTIONS_INIT(brio_generate_options)
 
 /* --- one point of a kind --- */
 
@@ -210,11 +211,12 @@ brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const bri
                           brio_mesh **out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_generate_options o = options ? *options : brio_generate_options_default();
+    brio_generate_options o = STANDARD;
     brio_mesh *mesh = NULL;
     *out = NULL;
     BRIO_REQUIRE(ctx, (unsigned)kind < BRIO_KIND_END, BRIO_ERR_ARGUMENT, "there is no kind %d of points", (int)kind);
     BRIO_REQUIRE(ctx, n <= MOST_POINTS, BRIO_ERR_NO_MEMORY, "out of memory: %zu points", n);
+    BRIO_TRY(BRIO_TAKE(ctx, brio_generate_options, options, &o));
     BRIO_TRY(check_options(ctx, &o));
     if (kind == BRIO_KIND_SCAN) return brio_scan(ctx, n, &o, out);
     BRIO_TRY(brio_mesh_new(ctx, &mesh));

@@ -14,13 +14,13 @@ static brio_status spanning_tree(brio_context *ctx, const brio_mesh *mesh, brio_
     else
         BRIO_TRY(brio_breadth_first_tree(ctx, &all, mesh->num_vertices, out));
 done:
-    brio_edges_free(ctx, &all);
+    brio_edges_free(&all);
     return status;
 }
 
 brio_status brio_mesh_subgraph(brio_context *ctx, const brio_mesh *mesh, brio_subgraph kind, brio_edges *out) {
     BRIO_DOOR;
-    *out = (brio_edges){0};
+    *out = (brio_edges){.context = ctx};
     switch (kind) {
     case BRIO_SUBGRAPH_BOUNDED:
         return brio_spanning_subgraph(ctx, mesh, out, NULL);

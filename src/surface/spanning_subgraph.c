@@ -239,7 +239,7 @@ brio_status brio_spanning_subgraph(brio_context *ctx, const brio_mesh *mesh, bri
                                    brio_subgraph_stats *stats) {
     brio_status status = BRIO_OK;
     peeler p = {0};
-    *out = (brio_edges){0};
+    *out = (brio_edges){.context = ctx};
     BRIO_TRY(start_peeler(ctx, mesh, &p));
     BRIO_TRY(peel(ctx, &p));
     restore_vertices(&p);
@@ -253,6 +253,6 @@ done:
     brio_release(ctx, p.state);
     brio_release(ctx, p.free);
     brio_release(ctx, p.removals);
-    if (status != BRIO_OK) brio_edges_free(ctx, out);
+    if (status != BRIO_OK) brio_edges_free(out);
     return status;
 }

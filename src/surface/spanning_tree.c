@@ -12,8 +12,9 @@
 #include "surface/union_find.h"
 #include <math.h>
 
-void brio_edges_free(brio_context *ctx, brio_edges *edges) {
-    brio_release(ctx, edges->ends);
+void brio_edges_free(brio_edges *edges) {
+    if (!edges || !edges->context) return;
+    brio_release(edges->context, edges->ends);
     *edges = (brio_edges){0};
 }
 
@@ -23,7 +24,7 @@ brio_status brio_mesh_edges(brio_context *ctx, const brio_mesh *mesh, brio_edges
     const uint32_t *v = mesh->face_vertices;
     uint32_t *ring = NULL;
     size_t count = 0;
-    *out = (brio_edges){0};
+    *out = (brio_edges){.context = ctx};
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     BRIO_TRY(brio_edge_rings(ctx, mesh, &ring));
     /* one half-edge of each edge leads back in its ring; it stands for the edge */
@@ -55,7 +56,7 @@ done:
 /* Room for a forest: fewer edges than vertices, and no more than the graph has. */
 static brio_status start_forest(brio_context *ctx, const brio_edges *edges, size_t num_vertices, brio_edges *out) {
     size_t most = edges->count < num_vertices ? edges->count : num_vertices;
-    *out = (brio_edges){0};
+    *out = (brio_edges){.context = ctx};
     return BRIO_ALLOC(ctx, out->ends, 2 * most);
 }
 
@@ -95,7 +96,7 @@ brio_status brio_breadth_first_tree(brio_context *ctx, const brio_edges *edges, 
     brio_status status = BRIO_OK;
     uint32_t *start = NULL, *neighbours = NULL;
     uint8_t *seen = NULL;
-    *out = (brio_edges){0};
+    *out = (brio_edges){.context = ctx};
     BRIO_TRY(check_edges(ctx, edges, num_vertices));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, start, num_vertices + 2));
     BRIO_TRY(BRIO_ALLOC(ctx, neighbours, 2 * edges->count));
@@ -109,7 +110,7 @@ done:
     brio_release(ctx, start);
     brio_release(ctx, neighbours);
     brio_release(ctx, seen);
-    if (status != BRIO_OK) brio_edges_free(ctx, out);
+    if (status != BRIO_OK) brio_edges_free(out);
     return status;
 }
 
@@ -150,7 +151,7 @@ brio_status brio_minimum_spanning_tree(brio_context *ctx, const brio_edges *edge
     brio_status status = BRIO_OK;
     uint64_t *keys = NULL;
     uint32_t *order = NULL, *parent = NULL;
-    *out = (brio_edges){0};
+    *out = (brio_edges){.context = ctx};
     BRIO_TRY(check_edges(ctx, edges, num_vertices));
     BRIO_TRY(BRIO_ALLOC(ctx, keys, edges->count));
     BRIO_TRY(BRIO_ALLOC(ctx, order, edges->count));
@@ -170,6 +171,6 @@ done:
     brio_release(ctx, keys);
     brio_release(ctx, order);
     brio_release(ctx, parent);
-    if (status != BRIO_OK) brio_edges_free(ctx, out);
+    if (status != BRIO_OK) brio_edges_free(out);
     return status;
 }

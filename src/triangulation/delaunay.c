@@ -5,6 +5,7 @@
 #include "base/float_state.h"
 #include "base/kept.h"
 #include "base/memory.h"
+#include "base/versioned.h"
 #include "base/team.h"
 #include "order/order.h"
 #include "triangulation/kernel.h"
@@ -15,9 +16,10 @@
 
 enum { PROGRESS_EVERY = 8192, RECORDS_A_THREAD = 1 << 14, POINTS_A_THREAD = 512 };
 
-brio_delaunay_options brio_delaunay_options_default(void) {
-    return (brio_delaunay_options){.order = BRIO_ORDER_BRIO, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
-}
+static const brio_delaunay_options STANDARD = {
+    .size = sizeof STANDARD, .order = BRIO_ORDER_BRIO, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
+
+BRIO_OPTIONS_INIT(brio_delaunay_options)
 
 static brio_status check_options(brio_context *ctx, size_t n, const brio_delaunay_options *o) {
     brio_status status = BRIO_OK;
@@ -227,6 +229,7 @@ static brio_status triangulation_new(brio_kernel *k, brio_recorder *recorder, br
     for (size_t p = 0; p < k->num_points; p++) t->representative[k->caller[p]] = k->caller[k->representative[p]];
     t->tet = k->t.tet;
     t->stats = k->stats;
+    t->stats.size = sizeof t->stats;
     k->t.tet = NULL;
     t->round = recorder->list;
     t->num_rounds = recorder->count;
@@ -241,19 +244,19 @@ done:
 brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                           const brio_delaunay_options *options, brio_triangulation **out) {
     BRIO_DOOR;
-    brio_delaunay_options standard = brio_delaunay_options_default();
+    brio_delaunay_options o = STANDARD;
     brio_kernel *k = NULL; /* on no stack: it takes 25 KiB */
     brio_recorder recorder = {0};
     brio_status status = BRIO_OK;
     *out = NULL;
     brio_keep_begin(ctx);
-    if (!options) options = &standard;
-    BRIO_TRY(check_options(ctx, num_points, options));
-    recorder.every = options->record_every;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
+    BRIO_TRY(check_options(ctx, num_points, &o));
+    recorder.every = o.record_every;
     BRIO_TRY(BRIO_ALLOC(ctx, k, 1));
-    status = kernel_new(k, ctx, points, weights, num_points, options, &recorder.rounds);
+    status = kernel_new(k, ctx, points, weights, num_points, &o, &recorder.rounds);
     double start = brio_seconds();
-    if (status == BRIO_OK) status = insert_all(k, options, &recorder);
+    if (status == BRIO_OK) status = insert_all(k, &o, &recorder);
     if (status == BRIO_OK) status = brio_kernel_represent(k);
     brio_release(ctx, k->record); /* only names matter from here on */
     k->record = NULL;

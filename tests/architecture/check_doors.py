@@ -6,7 +6,7 @@ import re
 import sys
 
 # Handles, settings and views: no arithmetic on doubles in them, nor in what they call.
-NO_ARITHMETIC = re.compile(r"brio_(\w+_)?(free|default|string|message|size|format_of)$|brio_context_|brio_triangulation_"
+NO_ARITHMETIC = re.compile(r"brio_(\w+_)?(free|init|string|message|size|format_of|version|version_number)$|brio_context_|brio_triangulation_"
                            r"(stats|tetrahedra|representatives|rounds)$|brio_mesh_(new|set_\w+|add_\w+|property\w*)$")
 DECLARED = re.compile(r"BRIO_API\s+[\w\s*]*?\b(brio_\w+)\s*\(")
 
@@ -15,6 +15,8 @@ def body_of(name, sources):
     """Where a function is defined, and the text after its opening brace."""
     defined = re.compile(r"^(?:[\w*]+[\s*]+)+%s\([^;{}]*\)\s*\{\n" % name, re.M)
     for path, text in sources.items():
+        if name.endswith("_init") and "\nBRIO_OPTIONS_INIT(%s)" % name[:-len("_init")] in text:
+            return path, ""
         match = defined.search(text)
         if match:
             return path, text[match.end():match.end() + 200]

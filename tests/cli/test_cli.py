@@ -18,7 +18,7 @@ import time
 import unittest
 
 BRIO = os.environ.get("BRIO", "brio")
-COMMANDS = ["delaunay", "surface", "medial", "offset", "check", "compare", "info", "generate", "subdivide"]
+COMMANDS = ["delaunay", "surface", "medial", "offset", "check", "compare", "iso", "info", "generate", "subdivide"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
@@ -34,8 +34,9 @@ OWN_OPTIONS = {
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
     "compare": ["--samples"],
     "info": [],
-    "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--level", "--sigma",
-                 "--resolution", "--blobbiness", "--delaunay-conforming"],
+    "iso": ["--level", "--sigma", "--resolution", "--points", "--blobbiness", "--delaunay-conforming",
+            "--vertex-normals", "--self-intersections"],
+    "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution"],
     "subdivide": ["--levels"],
 }
 
@@ -950,7 +951,7 @@ class Json(CliTest):
     def test_labelings(self):
         points = self.cloud("a.ply", 2000, "sphere")
         more = {"greedy": [], "naive": ["unreached"], "theoretical": ["unreached"],
-                "global": ["energy_greedy", "open", "toggled"]}
+                "global": ["energy_greedy", "undecided", "toggled"]}
         for labeling, keys in more.items():
             facts = self.facts("surface", points, "-o", self.path("out.ply"), "--labeling", labeling)
             self.assertEqual(facts["labeling"], labeling)
@@ -1244,7 +1245,7 @@ class Answers(CliTest):
 
     def test_every_location_gives_the_same(self):
         mesh = self.path("torus.ply")
-        self.expect(0, "generate", "iso", self.ball_map("a.map"), "--level", "-6", "-o", mesh)
+        self.expect(0, "iso", self.ball_map("a.map"), "--level", "-6", "-o", mesh)
         plain = self.facts("delaunay", mesh)["checksum"]
         for location in ["walk", "jump", "hierarchy", "history", "trace", "neighbour"]:
             facts = self.facts("delaunay", mesh, "--locate", location, "--verify")
@@ -1352,51 +1353,60 @@ class Answers(CliTest):
         values = [distance(x, y, z) for z in range(size) for y in range(size) for x in range(size)]
         return self.file(name, header.ljust(1024, b"\0") + struct.pack("<%df" % len(values), *[-v for v in values]))
 
-    def test_generate_iso_from_a_map(self):
+    def test_iso_from_a_map(self):
         ball = self.ball_map("a.map")
-        facts = self.facts("generate", "iso", ball, "--level", "-6", "-o", self.path("s.ply"))
+        facts = self.facts("iso", ball, "--level", "-6", "-o", self.path("s.ply"))
         self.assertEqual(facts["input"], ball)
         certificate = self.facts("check", self.path("s.ply"))["certificate"]
         self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
         self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
         self.assertEqual(facts["points"], self.facts("info", self.path("s.ply"))["points"])
-        wanted = self.facts("generate", "iso", ball, "--level", "-6", "-n", "20000", "-o", self.path("s.ply"))
+        wanted = self.facts("iso", ball, "--level", "-6", "-n", "20000", "-o", self.path("s.ply"))
         self.assertAlmostEqual(wanted["points"] / 20000, 1, delta=0.1)
         with open(ball, "rb") as f:
-            piped = self.expect(0, "generate", "iso", "-", "--level", "-6", "-o", "-", "--format", "off", "--quiet",
+            piped = self.expect(0, "iso", "-", "--level", "-6", "-o", "-", "--format", "off", "--quiet",
                                 stdin=f.read())
         self.assertTrue(piped.out.startswith(b"OFF"))
 
-    def test_generate_iso_of_delaunay_triangles(self):
+    def test_iso_by_its_name_of_version_0_1(self):
+        ball, old, new = self.ball_map("a.map"), self.path("old.ply"), self.path("new.ply")
+        facts = self.facts("generate", "iso", ball, "--level", "-6", "-o", old)
+        self.assertEqual(facts["command"], "iso")
+        self.assertTrue(facts["certificate"]["closed"])
+        self.facts("iso", ball, "--level", "-6", "-o", new)
+        with open(old, "rb") as a, open(new, "rb") as b:
+            self.assertEqual(a.read(), b.read())
+
+    def test_iso_of_delaunay_triangles(self):
         ball, mesh = self.ball_map("a.map"), self.path("s.ply")
-        self.facts("generate", "iso", ball, "--level", "-6", "--delaunay-conforming", "-o", mesh)
+        self.facts("iso", ball, "--level", "-6", "--delaunay-conforming", "-o", mesh)
         certificate = self.facts("check", mesh, "--self-intersections")["certificate"]
         self.assertTrue(certificate["closed"] and certificate["manifold"] and certificate["genus"] == 0)
         self.assertEqual(certificate["self_intersections"], 0)
         self.assertAlmostEqual(certificate["volume"] / (4 / 3 * 3.14159265 * 6 ** 3), 1, delta=0.05)
 
-    def test_generate_iso_from_atoms(self):
+    def test_iso_from_atoms(self):
         atom = "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
-        self.facts("generate", "iso", self.file("a.pdb", atom), "--level", "1", "--resolution", "60",
+        self.facts("iso", self.file("a.pdb", atom), "--level", "1", "--resolution", "60",
                    "-o", self.path("s.ply"))
         self.assertAlmostEqual(self.facts("check", self.path("s.ply"))["certificate"]["volume"], 20.58, delta=0.4)
-        self.usage("standard deviations", "generate", "iso", self.path("a.pdb"), "--level", "1", "--sigma",
+        self.usage("standard deviations", "iso", self.path("a.pdb"), "--level", "1", "--sigma",
                    "-o", self.path("s.ply"))
 
-    def test_generate_iso_refusals(self):
+    def test_iso_refusals(self):
         ball, out = self.ball_map("a.map", 8), self.path("s.ply")
-        self.usage("the file is missing", "generate", "iso", "-o", out)
-        self.usage("--level L", "generate", "iso", ball, "-o", out)
-        self.usage("one of -n and --resolution", "generate", "iso", ball, "--level", "1", "-n", "5", "--resolution",
+        self.usage("expected IN, got 0 arguments", "iso", "-o", out)
+        self.usage("--level L", "iso", ball, "-o", out)
+        self.usage("one of -n and --resolution", "iso", ball, "--level", "1", "-n", "5", "--resolution",
                    "5", "-o", out)
-        self.usage("go with scan only", "generate", "iso", ball, "--level", "1", "--noise", "0", "-o", out)
-        self.usage("go with iso only", "generate", "cube", "-n", "5", "--level", "1", "-o", out)
+        self.usage("noise", "iso", ball, "--level", "1", "--noise", "0", "-o", out)
+        self.usage("level", "generate", "cube", "-n", "5", "--level", "1", "-o", out)
         self.usage("one argument too many", "generate", "cube", "x", "-n", "5", "-o", out)
-        self.usage("cannot hold", "generate", "iso", ball, "--level", "1", "-o", self.path("s.xyz"))
-        self.expect(3, "generate", "iso", ball, "--level", "9", "-o", out)
-        self.expect(2, "generate", "iso", self.path("missing.map"), "--level", "1", "-o", out)
-        self.expect(2, "generate", "iso", self.file("b.map", "MAP"), "--level", "1", "-o", out)
-        self.expect(4, "generate", "iso", self.ball_map("c.map", 60), "--level", "-6", "-o", out, "--max-memory", "1M")
+        self.usage("cannot hold", "iso", ball, "--level", "1", "-o", self.path("s.xyz"))
+        self.expect(3, "iso", ball, "--level", "9", "-o", out)
+        self.expect(2, "iso", self.path("missing.map"), "--level", "1", "-o", out)
+        self.expect(2, "iso", self.file("b.map", "MAP"), "--level", "1", "-o", out)
+        self.expect(4, "iso", self.ball_map("c.map", 60), "--level", "-6", "-o", out, "--max-memory", "1M")
         self.assert_only(self.folder, "a.map", "b.map", "c.map")
 
     def test_subdivide(self):

@@ -21,8 +21,8 @@ static brio_context *serial_context(void) {
 
 static int is_certified(brio_context *ctx, const double *p, size_t n, const brio_cocone_options *o, uint64_t trial) {
     brio_mesh *mesh;
-    brio_certificate c = {0};
-    brio_cocone_stats s;
+    brio_certificate c = {.size = sizeof c};
+    brio_cocone_stats s = {.size = sizeof s};
     brio_status status = brio_cocone(ctx, p, n, o, &mesh, &s);
     EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "trial %llu: %s", (unsigned long long)trial,
            brio_message(ctx));
@@ -101,8 +101,8 @@ typedef struct {
 static void expect_surface(const double *p, size_t n, const brio_cocone_options *o, expectation e) {
     brio_context *ctx = serial_context();
     brio_mesh *mesh;
-    brio_certificate c = {0};
-    brio_cocone_stats s;
+    brio_certificate c = {.size = sizeof c};
+    brio_cocone_stats s = {.size = sizeof s};
     EXPECT(brio_cocone(ctx, p, n, o, &mesh, &s) == BRIO_OK, "%s", brio_message(ctx));
     if (mesh) {
         EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
@@ -214,7 +214,7 @@ static size_t pierced_sheet(double radius, double noise, double *p) {
 static size_t count_loops(const double *p, size_t n, const brio_cocone_options *o) {
     brio_context *ctx = serial_context();
     brio_mesh *mesh;
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_cocone(ctx, p, n, o, &mesh, NULL) == BRIO_OK);
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.manifold && c.oriented);
     size_t loops = c.boundary_loops;
@@ -316,7 +316,7 @@ static void duplicates_and_scale_change_nothing(void) {
     for (int i = 0; i < 12000; i++) q[i] = p[i % 6000] * 0x1p-400;
     brio_context *ctx = serial_context();
     brio_mesh *a, *b;
-    brio_cocone_stats s;
+    brio_cocone_stats s = {.size = sizeof s};
     EXPECT(brio_cocone(ctx, p, 2000, NULL, &a, NULL) == BRIO_OK);
     EXPECT(brio_cocone(ctx, q, 4000, NULL, &b, &s) == BRIO_OK && s.samples == 2000);
     expect_same_faces(a, NULL, b);
@@ -333,7 +333,7 @@ static void density_of_a_sphere_is_measured(void) {
     brio_context *ctx = serial_context();
     brio_cocone_options o = brio_cocone_options_default();
     brio_mesh *mesh;
-    brio_cocone_stats s;
+    brio_cocone_stats s = {.size = sizeof s};
     o.density = 1;
     EXPECT(brio_cocone(ctx, p, 3000, &o, &mesh, &s) == BRIO_OK);
     const brio_property *size = brio_mesh_property(mesh, "feature_size"), *r = brio_mesh_property(mesh, "r");
@@ -533,8 +533,8 @@ static void check_candidates(const theory *x) {
 /* Theorem 19: the right topology, near the surface everywhere (looked at on a grid in each triangle). */
 static void check_result(const theory *x) {
     brio_mesh *mesh;
-    brio_certificate c = {0};
-    brio_cocone_stats s;
+    brio_certificate c = {.size = sizeof c};
+    brio_cocone_stats s = {.size = sizeof s};
     double limit = 1.3 * r_over(x->surface->r) * x->surface->feature_size;
     EXPECT(brio_cocone(x->ctx, x->points, x->n, NULL, &mesh, &s) == BRIO_OK);
     EXPECT(brio_mesh_certificate(x->ctx, mesh, &c) == BRIO_OK);

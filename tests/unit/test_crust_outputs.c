@@ -14,13 +14,13 @@ static brio_context *new_small_context(void) {
 static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, const brio_power_crust_options *o,
                         brio_power_crust_stats *s) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_power_crust(ctx, p, n, o, &mesh, s);
+    brio_status status = brio_power_crust(ctx, p, n, o, &mesh, NULL, s);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     return mesh;
 }
 
 static brio_certificate certify(brio_context *ctx, const brio_mesh *mesh) {
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     return c;
 }
@@ -33,7 +33,7 @@ static void simplified_torus_is_a_quarter_and_the_same(void) {
     brio_context *ctx = new_small_context();
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *whole = crust(ctx, p, 6000, &o, NULL), *simple;
-    brio_distance d;
+    brio_distance d = {.size = sizeof d};
     o.simplify = 1;
     simple = crust(ctx, p, 6000, &o, NULL);
     brio_certificate c = certify(ctx, simple);
@@ -94,7 +94,7 @@ static void hole_of_the_samples_stays_open_on_request(void) {
     for (int simplify = 0; simplify < 2; simplify++) {
         brio_context *ctx = new_small_context();
         brio_power_crust_options o = brio_power_crust_options_default();
-        brio_power_crust_stats s;
+        brio_power_crust_stats s = {.size = sizeof s};
         o.simplify = simplify;
         brio_mesh *mesh = crust(ctx, p, n, &o, &s);
         brio_certificate c = certify(ctx, mesh);
@@ -166,7 +166,7 @@ static void hole_inside_the_hull_stays_open_on_request(void) {
     static double p[3 * 8000];
     brio_context *ctx = new_small_context();
     brio_power_crust_options o = brio_power_crust_options_default();
-    brio_power_crust_stats s;
+    brio_power_crust_stats s = {.size = sizeof s};
     double farthest;
     size_t n = hollow_ball(p);
     o.triangulate = 1;
@@ -194,7 +194,7 @@ static void open_anything_is_manifold(void) {
     for (uint64_t trial = 0; trial < 120; trial++) {
         size_t n = 20 + trial % 40;
         brio_power_crust_options o = brio_power_crust_options_default();
-        brio_power_crust_stats s;
+        brio_power_crust_stats s = {.size = sizeof s};
         o.open = 0.5 + (double)(trial % 4);
         o.simplify = trial % 3 == 0;
         if (trial % 2)
@@ -240,12 +240,12 @@ static void cube_comes_out_with_its_edges(void) {
     cube_points(2, 6000, p);
     brio_context *ctx = new_small_context();
     brio_power_crust_options o = brio_power_crust_options_default();
-    brio_power_crust_stats s;
+    brio_power_crust_stats s = {.size = sizeof s};
     brio_mesh *plain = crust(ctx, p, 6000, &o, &s);
-    EXPECT(s.bad_cells == 0);
-    o.sharp = 1;
+    EXPECT(s.poles.bad_cells == 0);
+    o.poles.sharp = 1;
     brio_mesh *sharp = crust(ctx, p, 6000, &o, &s);
-    EXPECT(s.bad_cells > 0);
+    EXPECT(s.poles.bad_cells > 0);
     brio_certificate a = certify(ctx, plain), b = certify(ctx, sharp);
     EXPECT(b.closed && b.manifold && b.oriented && b.components == 1 && b.genus == 0);
     EXPECT(fabs(b.volume - 1) < fabs(a.volume - 1), "%g, %g", b.volume - 1, a.volume - 1);
@@ -292,8 +292,8 @@ static void edges_without_samples_come_out_sharp(void) {
         for (int i = 0; i < 3; i++) {
             brio_power_crust_options o = brio_power_crust_options_default();
             double mean;
-            o.sharp = i > 0;
-            o.sampling_density = i == 2 ? 0.4 : 0;
+            o.poles.sharp = i > 0;
+            o.poles.sampling_density = i == 2 ? 0.4 : 0;
             brio_mesh *mesh = crust(ctx, p, N, &o, NULL);
             double most = off_the_edges(ctx, mesh, &mean);
             EXPECT(i == 0 || most < 1.5 * spacing, "trial %llu: %g", (unsigned long long)trial, most / spacing);
@@ -317,8 +317,8 @@ static void dome_whose_inner_poles_are_beyond_its_box_has_an_inside(void) {
     }
     brio_context *ctx = new_context();
     brio_mesh *mesh = NULL;
-    brio_certificate c;
-    EXPECT(brio_power_crust(ctx, p, N, NULL, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    brio_certificate c = {.size = sizeof c};
+    EXPECT(brio_power_crust(ctx, p, N, NULL, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.closed && c.genus == 0 && c.components == 1);
     EXPECT(fabs(c.volume - 1.0621) < 0.03, "%g", c.volume);
     brio_mesh_free(mesh);
@@ -333,11 +333,11 @@ static void sampling_density_out_of_range_is_refused(void) {
     for (int i = 0; i < 4; i++) {
         brio_power_crust_options o = brio_power_crust_options_default();
         brio_mesh *mesh;
-        o.sampling_density = bad[i];
-        EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-        o.sampling_density = 0;
+        o.poles.sampling_density = bad[i];
+        EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+        o.poles.sampling_density = 0;
         o.open = bad[i] == 1 || bad[i] == 2 ? -1 : bad[i];
-        EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+        EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     }
     brio_context_free(ctx);
 }
@@ -352,10 +352,10 @@ static void normals_of_samples_are_those_of_the_sphere(void) {
         brio_context *ctx = new_small_context();
         brio_power_crust_options o = brio_power_crust_options_default();
         double worst = 1;
-        o.normals = normals;
-        o.sampling_density = sharp ? 0.05 : 0; /* many samples then have no poles */
-        o.sharp = sharp;
-        brio_mesh *mesh = crust(ctx, p, 2200, &o, NULL);
+        o.poles.sampling_density = sharp ? 0.05 : 0; /* many samples then have no poles */
+        o.poles.sharp = sharp;
+        brio_mesh *mesh;
+        EXPECT(brio_power_crust(ctx, p, 2200, &o, &mesh, normals, NULL) == BRIO_OK, "%s", brio_message(ctx));
         for (size_t i = 0; i < 2200; i++) {
             const double *n = normals + 3 * i, *x = p + 3 * i;
             worst = fmin(worst, n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
@@ -392,11 +392,10 @@ static brio_status everything_small(brio_context *ctx) {
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh;
     sphere_points(3, 40, p);
-    o.simplify = o.sharp = 1;
+    o.simplify = o.poles.sharp = 1;
     o.open = 1;
-    o.normals = normals;
-    o.sampling_density = 0.5;
-    brio_status status = brio_power_crust(ctx, p, 40, &o, &mesh, NULL);
+    o.poles.sampling_density = 0.5;
+    brio_status status = brio_power_crust(ctx, p, 40, &o, &mesh, normals, NULL);
     if (status == BRIO_OK) status = brio_mesh_add_normals(mesh);
     brio_mesh_free(mesh);
     return status;

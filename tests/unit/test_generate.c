@@ -204,7 +204,7 @@ static void sculpture_function_never_exceeds_the_distance(void) {
 
 static void truth_is_a_certified_surface_of_genus_3(void) {
     brio_mesh *mesh;
-    brio_certificate c;
+    brio_certificate c = {.size = sizeof c};
     for (size_t resolution = 40; resolution <= 160; resolution *= 2) {
         EXPECT(brio_generate_truth(ctx, resolution == 160 ? 0 : resolution, &mesh) == BRIO_OK);
         EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
@@ -314,7 +314,7 @@ static double noise_of_nodes(const double *p, const void *user) {
 static brio_certificate certificate_of_iso_surface(brio_implicit_fn value, const void *user, uint32_t cells) {
     brio_implicit_grid grid = {value, user, {-8, -8, -8}, 16.0 / cells, {cells, cells, cells}};
     brio_mesh *mesh;
-    brio_certificate c;
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_marched_surface(ctx, &grid, &mesh) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     brio_mesh_free(mesh);

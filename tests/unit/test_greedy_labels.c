@@ -133,10 +133,10 @@ static void compare_labels(const double *points, size_t n, const char *name, tot
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_pole_request request;
     brio_labeled_poles l;
-    o.labeling = BRIO_LABELING_GREEDY;
-    o.noise = BRIO_NOISE_KEEP;
+    o.poles.labeling = BRIO_LABELING_GREEDY;
+    o.poles.noise = BRIO_NOISE_KEEP;
     brio_context_set_threads(ctx, 1);
-    EXPECT(brio_pole_request_of(ctx, &o, &request) == BRIO_OK);
+    EXPECT(brio_pole_request_of(ctx, &o.poles, o.seed, &request) == BRIO_OK);
     brio_status status = brio_labeled_poles_find(ctx, points, n, &request, &l);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     if (status == BRIO_OK) {

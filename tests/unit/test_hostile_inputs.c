@@ -56,11 +56,11 @@ static size_t hostile_points(uint64_t trial, double *p) {
 static brio_power_crust_options options_of(uint64_t trial) {
     brio_power_crust_options o = brio_power_crust_options_default();
     uint64_t choice = trial / KINDS;
-    o.labeling = (brio_labeling)(choice % BRIO_LABELING_END);
+    o.poles.labeling = (brio_labeling)(choice % BRIO_LABELING_END);
     o.triangulate = choice / 4 % 3 == 1;
     o.simplify = choice / 4 % 3 == 2;
-    o.sharp = choice / 12 % 3 == 1;
-    o.sampling_density = choice / 12 % 3 == 2 ? 0.6 : 0;
+    o.poles.sharp = choice / 12 % 3 == 1;
+    o.poles.sampling_density = choice / 12 % 3 == 2 ? 0.6 : 0;
     return o;
 }
 
@@ -69,17 +69,18 @@ static int sweep_one(brio_context *ctx, uint64_t trial) {
     static double p[3 * MOST];
     size_t n = hostile_points(trial, p);
     brio_power_crust_options o = options_of(trial);
-    brio_power_crust_stats s;
+    brio_power_crust_stats s = {.size = sizeof s};
     brio_mesh *mesh;
-    brio_certificate c = {0};
-    brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, &s);
+    brio_certificate c = {.size = sizeof c};
+    brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, NULL, &s);
     EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "input %llu: %s", (unsigned long long)trial,
            brio_message(ctx));
     if (status != BRIO_OK) return 0;
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.boundary_edges == 0 && c.flipped_edges == 0, "input %llu",
            (unsigned long long)trial);
-    EXPECT(s.inner > 0 && s.inner + s.outer == s.poles, "input %llu", (unsigned long long)trial);
+    EXPECT(s.poles.inner > 0 && s.poles.inner + s.poles.outer == s.poles.poles, "input %llu",
+           (unsigned long long)trial);
     brio_certificate_free(&c);
     brio_mesh_free(mesh);
     return 1;

@@ -28,7 +28,7 @@ static uint64_t checksum_along(const brio_mesh *mesh, brio_location location, br
     o.edges = edges.ends;
     o.num_edges = edges.count;
     uint64_t sum = checksum(mesh, &o, stats);
-    brio_edges_free(ctx, &edges);
+    brio_edges_free(&edges);
     return sum;
 }
 
@@ -185,12 +185,12 @@ static brio_status everything(brio_context *failing) {
         o.edges = edges.ends;
         o.num_edges = edges.count;
         BRIO_TRY(brio_delaunay(failing, mesh->vertices, NULL, mesh->num_vertices, &o, &t));
-        brio_edges_free(failing, &edges);
+        brio_edges_free(&edges);
         brio_triangulation_free(t);
         t = NULL;
     }
 done:
-    brio_edges_free(failing, &edges);
+    brio_edges_free(&edges);
     brio_triangulation_free(t);
     brio_mesh_free(mesh);
     return status;

@@ -12,8 +12,8 @@ static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_label
                         brio_power_crust_stats *s) {
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh = NULL;
-    o.labeling = labeling;
-    brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, s);
+    o.poles.labeling = labeling;
+    brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, NULL, s);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "labeling %d: %s", (int)labeling, brio_message(ctx));
     return mesh;
 }
@@ -36,10 +36,10 @@ static void all_agree_on_dense_samples(void) {
         else
             sphere_points(4, 3000, p);
         for (int l = 0; l < BRIO_LABELING_END; l++) {
-            brio_power_crust_stats s;
+            brio_power_crust_stats s = {.size = sizeof s};
             brio_mesh *mesh = crust(ctx, p, 3000, ALL[l], &s);
-            EXPECT(s.unreached == 0 && s.open == 0 && s.toggled == 0, "labeling %d", l);
-            EXPECT(s.energy < 1e-6 * (double)s.poles, "labeling %d: %g", l, s.energy);
+            EXPECT(s.poles.unreached == 0 && s.poles.undecided == 0 && s.poles.toggled == 0, "labeling %d", l);
+            EXPECT(s.poles.energy < 1e-6 * (double)s.poles.poles, "labeling %d: %g", l, s.poles.energy);
             if (!first)
                 first = mesh;
             else {
@@ -65,15 +65,15 @@ static void anything_is_labeled_and_global_is_no_worse(void) {
         else
             integer_points(trial, n, 4, p);
         for (int l = 0; l < BRIO_LABELING_END; l++) {
-            brio_power_crust_stats s;
-            brio_certificate c = {0};
+            brio_power_crust_stats s = {.size = sizeof s};
+            brio_certificate c = {.size = sizeof c};
             brio_mesh *mesh = crust(ctx, p, n, ALL[l], &s);
             if (!mesh) continue;
             EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
             EXPECT(c.closed && c.manifold && c.oriented, "trial %llu, labeling %d", (unsigned long long)trial, l);
             if (ALL[l] == BRIO_LABELING_GLOBAL) {
-                EXPECT(s.energy <= s.energy_greedy + 1e-9, "trial %llu", (unsigned long long)trial);
-                lower += s.energy < s.energy_greedy - 1e-4;
+                EXPECT(s.poles.energy <= s.poles.energy_greedy + 1e-9, "trial %llu", (unsigned long long)trial);
+                lower += s.poles.energy < s.poles.energy_greedy - 1e-4;
             }
             brio_certificate_free(&c);
             brio_mesh_free(mesh);
@@ -90,10 +90,10 @@ static void shuffled_samples_give_the_same_global_labels(void) {
     clustered_points(8, 400, p);
     shuffle_points(3, 400, p, q, to);
     brio_context *ctx = new_context();
-    brio_power_crust_stats s, t;
+    brio_power_crust_stats s = {.size = sizeof s}, t = {.size = sizeof t};
     brio_mesh *a = crust(ctx, p, 400, BRIO_LABELING_GLOBAL, &s), *b = crust(ctx, q, 400, BRIO_LABELING_GLOBAL, &t);
     EXPECT(a && b && same_mesh(a, b));
-    EXPECT(s.energy == t.energy && s.toggled == t.toggled);
+    EXPECT(s.poles.energy == t.poles.energy && s.poles.toggled == t.poles.toggled);
     brio_mesh_free(a);
     brio_mesh_free(b);
     brio_context_free(ctx);
@@ -105,8 +105,8 @@ static void unknown_labeling_is_refused(void) {
     brio_context *ctx = new_context();
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh;
-    o.labeling = BRIO_LABELING_END;
-    EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    o.poles.labeling = BRIO_LABELING_END;
+    EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     brio_context_free(ctx);
 }
 
@@ -162,9 +162,9 @@ static brio_status small_global_crust(brio_context *ctx) {
     double p[3 * 40];
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh;
-    o.labeling = BRIO_LABELING_GLOBAL;
+    o.poles.labeling = BRIO_LABELING_GLOBAL;
     clustered_points(3, 40, p);
-    brio_status status = brio_power_crust(ctx, p, 40, &o, &mesh, NULL);
+    brio_status status = brio_power_crust(ctx, p, 40, &o, &mesh, NULL, NULL);
     brio_mesh_free(mesh);
     return status;
 }

@@ -69,12 +69,12 @@ static uint64_t fingerprint(const brio_mesh *m) {
 static brio_status surface_with(brio_context *ctx, int option, brio_mesh **out) {
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_cocone_options c = brio_cocone_options_default();
-    if (option == 1) o.noise = BRIO_NOISE_KEEP;
+    if (option == 1) o.poles.noise = BRIO_NOISE_KEEP;
     if (option == 2) o.triangulate = 1;
-    if (option == 3) o.labeling = BRIO_LABELING_GREEDY;
-    if (option == 4) o.noise = BRIO_NOISE_SMOOTH;
+    if (option == 3) o.poles.labeling = BRIO_LABELING_GREEDY;
+    if (option == 4) o.poles.noise = BRIO_NOISE_SMOOTH;
     c.tight = option == 6;
-    return option < 5 ? brio_power_crust(ctx, samples, num_samples, &o, out, NULL)
+    return option < 5 ? brio_power_crust(ctx, samples, num_samples, &o, out, NULL, NULL)
                       : brio_cocone(ctx, samples, num_samples, &c, out, NULL);
 }
 

@@ -60,7 +60,7 @@ static void shape_is_the_dual_between_inner_poles(void) {
     brio_pole_request request;
     brio_power_crust_options surface = brio_power_crust_options_default();
     brio_mesh *shape = shape_of(ctx, c.points, c.count, NULL);
-    EXPECT(brio_pole_request_of(ctx, &surface, &request) == BRIO_OK);
+    EXPECT(brio_pole_request_of(ctx, &surface.poles, surface.seed, &request) == BRIO_OK);
     EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
     uint32_t *number = malloc(l.poles.count * sizeof *number);
     size_t n = number_inner(&l, number), edges = 0, triangles = 0;
@@ -162,7 +162,7 @@ static void crust_of_all_balls_is_the_power_crust(void) {
     brio_mesh *shape, *crust, *expected;
     torus_points(4, 1000, p);
     EXPECT(brio_power_shape(ctx, p, 1000, NULL, &shape, &crust, NULL) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, p, 1000, NULL, &expected, NULL) == BRIO_OK);
+    EXPECT(brio_power_crust(ctx, p, 1000, NULL, &expected, NULL, NULL) == BRIO_OK);
     expect_same(crust, expected);
     brio_mesh_free(shape);
     brio_mesh_free(crust);
@@ -232,8 +232,8 @@ static void simplification_takes_the_noise_of_a_sphere_away(void) {
     cloud c = medial_sample(&medial_sphere, 0.15, 1);
     brio_power_shape_options o = brio_power_shape_options_default();
     brio_mesh *all, *few, *crust;
-    brio_power_shape_stats s;
-    brio_certificate certificate = {0};
+    brio_power_shape_stats s = {.size = sizeof s};
+    brio_certificate certificate = {.size = sizeof certificate};
     for (size_t i = 0; i < c.count; i++) {
         double r = 1 + 0.02 * (brio_rng_double(&c.rng) - 0.5);
         for (size_t k = 0; k < 3; k++) c.points[3 * i + k] *= r;
@@ -244,7 +244,7 @@ static void simplification_takes_the_noise_of_a_sphere_away(void) {
     EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &few, &crust, &s) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(largest_norm(all) > 0.3 && largest_norm(few) < 0.1, "%g %g", largest_norm(all), largest_norm(few));
     EXPECT(10 * few->num_vertices < all->num_vertices, "%zu of %zu", few->num_vertices, all->num_vertices);
-    EXPECT(s.left_out > 0 && s.inner + s.outer == s.poles && s.unlabeled == 0);
+    EXPECT(s.left_out > 0 && s.poles.inner + s.poles.outer == s.poles.poles && s.unlabeled == 0);
     EXPECT(brio_mesh_certificate(ctx, crust, &certificate) == BRIO_OK);
     EXPECT(certificate.closed && certificate.manifold && certificate.genus == 0 && certificate.components == 1);
     EXPECT(fabs(certificate.volume - 4.18879) < 0.15, "%g", certificate.volume);
@@ -286,7 +286,7 @@ static void poles_of_a_known_box_are_labeled_by_where_they_are(void) {
     o.sides = BRIO_SIDES_BOTH;
     for (int kind = 0; kind < 4; kind++) {
         brio_mesh *box = box_mesh(ctx, kind & 1, kind & 2, 6);
-        o.solid = box;
+        o.poles.solid = box;
         brio_mesh *shape = shape_of(ctx, c.points, c.count, &o);
         const brio_property *side = brio_mesh_property(shape, "side");
         for (size_t v = 0; v < shape->num_vertices; v++) {
@@ -311,10 +311,10 @@ static void points_within_a_larger_solid_have_closed_crusts(void) {
     double p[3 * 50];
     uniform_points(1, 50, p);
     for (size_t i = 0; i < 3 * box->num_vertices; i++) box->vertices[i] *= 1e4;
-    medial.solid = surface.solid = box;
+    medial.poles.solid = surface.poles.solid = box;
     for (int kind = 0; kind < 2; kind++) {
-        brio_certificate c = {0};
-        brio_status status = kind ? brio_power_crust(ctx, p, 50, &surface, &mesh, NULL)
+        brio_certificate c = {.size = sizeof c};
+        brio_status status = kind ? brio_power_crust(ctx, p, 50, &surface, &mesh, NULL, NULL)
                                   : brio_power_shape(ctx, p, 50, &medial, &shape, &mesh, NULL);
         EXPECT(status == BRIO_OK && brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK, "%s", brio_message(ctx));
         EXPECT(c.closed && c.manifold && c.oriented);
@@ -333,7 +333,7 @@ static void poles_that_are_kept_keep_what_is_theirs(void) {
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_pole_request request;
     o.simplify = 1;
-    EXPECT(brio_pole_request_of(ctx, &o, &request) == BRIO_OK);
+    EXPECT(brio_pole_request_of(ctx, &o.poles, o.seed, &request) == BRIO_OK);
     EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
     EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &all) == BRIO_OK);
     uint8_t *keep = calloc(all.poles.count, 1);
@@ -357,7 +357,7 @@ static void open_mesh_is_no_solid(void) {
     cloud c = medial_sample(&medial_box, 0.5, 1);
     brio_power_shape_options o = brio_power_shape_options_default();
     brio_mesh *shape, *crust, *box = box_mesh(ctx, true, false, 5);
-    o.solid = box;
+    o.poles.solid = box;
     EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &shape, &crust, NULL) == BRIO_ERR_NO_ANSWER && !shape &&
            !crust);
     EXPECT(strstr(brio_message(ctx), "along 4 edges"), "%s", brio_message(ctx));
@@ -394,7 +394,7 @@ static void winding_numbers_of_a_curved_mesh_are_right(void) {
     brio_rng rng = brio_rng_new(7);
     brio_mesh *crust;
     brio_solid solid;
-    EXPECT(brio_power_crust(ctx, c.points, c.count, NULL, &crust, NULL) == BRIO_OK);
+    EXPECT(brio_power_crust(ctx, c.points, c.count, NULL, &crust, NULL, NULL) == BRIO_OK);
     EXPECT(brio_solid_new(ctx, crust, &solid) == BRIO_OK);
     for (int i = 0; i < 2000; i++) {
         double p[3] = {3 * brio_rng_double(&rng) - 1.5, 3 * brio_rng_double(&rng) - 1.5, brio_rng_double(&rng) - 0.5};
@@ -418,7 +418,7 @@ static void small_inputs_have_shapes_and_closed_crusts_or_say_so(void) {
         size_t n = 1 + trial % 40;
         brio_power_shape_options o = brio_power_shape_options_default();
         brio_mesh *shape, *crust;
-        brio_certificate certificate = {0};
+        brio_certificate certificate = {.size = sizeof certificate};
         o.sides = (brio_sides)(trial / 40 % 3);
         o.scale = trial % 2 ? 1.1 : 1;
         o.redundancy = trial % 5 ? 0.05 : 0;
@@ -454,7 +454,7 @@ static void wrong_options_are_refused(void) {
         if (kind == 1) o.redundancy = -1;
         if (kind == 2) o.scale = NAN;
         if (kind == 3) o.sides = BRIO_SIDES_END;
-        if (kind == 4) o.labeling = BRIO_LABELING_END;
+        if (kind == 4) o.poles.labeling = BRIO_LABELING_END;
         EXPECT(brio_power_shape(ctx, p, 60, &o, &shape, NULL, NULL) == BRIO_ERR_ARGUMENT && !shape, "%d", kind);
     }
     brio_context_free(ctx);
@@ -478,9 +478,9 @@ static void work_can_be_cancelled_at_any_time(void) {
     cloud c = medial_sample(&medial_box, 0.2, 1);
     brio_mesh *box = box_mesh(ctx, false, false, 6), *shape, *crust, *offset;
     brio_power_shape_options medial = brio_power_shape_options_default();
-    brio_power_crust_options surface = brio_power_crust_options_default();
+    brio_offset_options surface = brio_offset_options_default();
     size_t held = brio_context_memory(ctx);
-    medial.solid = surface.solid = box;
+    medial.poles.solid = surface.poles.solid = box;
     medial.redundancy = 0.01;
     surface.simplify = 1;
     for (int kind = 0; kind < 2; kind++) {

@@ -182,8 +182,8 @@ static void smoothing_keeps_quadratic_shapes(void) {
 static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_noise noise, brio_power_crust_stats *s) {
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *mesh = NULL;
-    o.noise = noise;
-    EXPECT(brio_power_crust(ctx, p, n, &o, &mesh, s) == BRIO_OK, "%s", brio_message(ctx));
+    o.poles.noise = noise;
+    EXPECT(brio_power_crust(ctx, p, n, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
     return mesh;
 }
 
@@ -203,13 +203,13 @@ static double crust_distance(const brio_mesh *mesh, double (*distance)(const dou
 
 static void check_noisy_crust(brio_context *ctx, const double *p, double sigma, size_t genus,
                               double (*distance)(const double *)) {
-    brio_power_crust_stats kept, smoothed;
-    brio_certificate c;
+    brio_power_crust_stats kept = {.size = sizeof kept}, smoothed = {.size = sizeof smoothed};
+    brio_certificate c = {.size = sizeof c};
     brio_mesh *rough = crust(ctx, p, N, BRIO_NOISE_KEEP, &kept), *calm = crust(ctx, p, N, BRIO_NOISE_AUTO, &smoothed);
-    EXPECT(kept.noise == 0 && !kept.smoothed && smoothed.noise > 0 && smoothed.smoothed);
+    EXPECT(kept.poles.noise == 0 && !kept.poles.smoothed && smoothed.poles.noise > 0 && smoothed.poles.smoothed);
     double before = crust_distance(rough, distance), after = crust_distance(calm, distance);
     EXPECT(before > 0.5 * sigma && after < 0.35 * sigma, "%g and %g sigma", before / sigma, after / sigma);
-    EXPECT(smoothed.energy < 0.2 * kept.energy, "%g and %g", kept.energy, smoothed.energy);
+    EXPECT(smoothed.poles.energy < 0.2 * kept.poles.energy, "%g and %g", kept.poles.energy, smoothed.poles.energy);
     EXPECT(brio_mesh_certificate(ctx, calm, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == (int64_t)genus);
     brio_certificate_free(&c);
@@ -234,13 +234,13 @@ static void crust_of_noisy_samples_runs_through_their_middle(void) {
 static void crust_of_clean_samples_is_the_exact_one(void) {
     static double p[3 * N];
     brio_context *ctx = new_context();
-    brio_power_crust_stats s;
+    brio_power_crust_stats s = {.size = sizeof s};
     torus_points(13, N, p);
     brio_mesh *kept = crust(ctx, p, N, BRIO_NOISE_KEEP, NULL), *found = crust(ctx, p, N, BRIO_NOISE_AUTO, &s);
-    EXPECT(s.noise == 0 && !s.smoothed && kept->num_vertices == found->num_vertices &&
+    EXPECT(s.poles.noise == 0 && !s.poles.smoothed && kept->num_vertices == found->num_vertices &&
            !memcmp(kept->vertices, found->vertices, 3 * kept->num_vertices * sizeof *kept->vertices));
     brio_mesh *smooth = crust(ctx, p, N, BRIO_NOISE_SMOOTH, &s);
-    EXPECT(s.noise == 0 && s.smoothed);
+    EXPECT(s.poles.noise == 0 && s.poles.smoothed);
     brio_mesh_free(kept);
     brio_mesh_free(found);
     brio_mesh_free(smooth);
@@ -251,17 +251,17 @@ static void solids_keep_the_samples(void) {
     static double p[3 * N];
     brio_context *ctx = new_context();
     brio_power_crust_options o = brio_power_crust_options_default();
-    brio_power_crust_stats s;
+    brio_power_crust_stats s = {.size = sizeof s};
     brio_mesh *mesh;
     sphere_points(14, N, p);
     disturb(15, N, 0.01, p);
     brio_mesh *solid = crust(ctx, p, N, BRIO_NOISE_AUTO, &s);
-    EXPECT(s.smoothed);
-    o.solid = solid;
-    EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, &s) == BRIO_OK && !s.smoothed);
+    EXPECT(s.poles.smoothed);
+    o.poles.solid = solid;
+    EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_OK && !s.poles.smoothed);
     brio_mesh_free(mesh);
-    o.noise = BRIO_NOISE_END;
-    EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, &s) == BRIO_ERR_ARGUMENT);
+    o.poles.noise = BRIO_NOISE_END;
+    EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_ERR_ARGUMENT);
     brio_mesh_free(solid);
     brio_context_free(ctx);
 }
@@ -270,15 +270,15 @@ static void medial_axis_of_noisy_samples_is_that_of_smoothed_ones(void) {
     static double p[3 * N];
     brio_context *ctx = new_context();
     brio_power_shape_options o = brio_power_shape_options_default();
-    brio_power_shape_stats s;
+    brio_power_shape_stats s = {.size = sizeof s};
     brio_mesh *shape;
     double mean[2] = {0, 0};
     sphere_points(16, N, p);
     disturb(17, N, 0.01, p);
     for (int i = 0; i < 2; i++) {
-        o.noise = i ? BRIO_NOISE_AUTO : BRIO_NOISE_KEEP;
-        EXPECT(brio_power_shape(ctx, p, N, &o, &shape, NULL, &s) == BRIO_OK && s.smoothed == (size_t)i &&
-               (s.noise > 0) == i);
+        o.poles.noise = i ? BRIO_NOISE_AUTO : BRIO_NOISE_KEEP;
+        EXPECT(brio_power_shape(ctx, p, N, &o, &shape, NULL, &s) == BRIO_OK && s.poles.smoothed == (size_t)i &&
+               (s.poles.noise > 0) == i);
         for (size_t v = 0; v < shape->num_vertices; v++)
             mean[i] += (1 + sphere_distance(shape->vertices + 3 * v)) / (double)shape->num_vertices;
         brio_mesh_free(shape);
@@ -315,7 +315,7 @@ static void smoothing_can_be_cancelled(void) {
     sphere_points(20, N, p);
     disturb(21, N, 0.01, p);
     brio_context_set_progress(ctx, stop, NULL);
-    EXPECT(brio_power_crust(ctx, p, N, NULL, &mesh, NULL) == BRIO_ERR_CANCELLED && !mesh);
+    EXPECT(brio_power_crust(ctx, p, N, NULL, &mesh, NULL, NULL) == BRIO_ERR_CANCELLED && !mesh);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }

@@ -6,7 +6,7 @@
 #include "points.h"
 
 static void expect_closed(brio_context *ctx, const brio_mesh *mesh, const char *what) {
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.boundary_edges == 0 && c.flipped_edges == 0, "%s", what);
     for (size_t i = 0; i < 3 * mesh->num_vertices; i++) EXPECT(isfinite(mesh->vertices[i]));
@@ -55,7 +55,7 @@ static void offsets_of_torus_are_as_far_off_as_the_square_of_the_spacing(void) {
 static void expect_genus(const double *p, size_t n, double distance, size_t components, int64_t genus) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_offset_surface(ctx, p, n, distance, NULL, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.components == components && c.genus == genus,
@@ -101,9 +101,9 @@ static void offset_by_nothing_is_the_power_crust(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_torus, 0.2, 5);
     brio_mesh *offset, *crust;
-    brio_distance d;
+    brio_distance d = {.size = sizeof d};
     EXPECT(brio_offset_surface(ctx, c.points, c.count, 0, NULL, &offset, NULL) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, c.points, c.count, NULL, &crust, NULL) == BRIO_OK);
+    EXPECT(brio_power_crust(ctx, c.points, c.count, NULL, &crust, NULL, NULL) == BRIO_OK);
     EXPECT(brio_mesh_distance(ctx, offset, crust, 2000, 1, &d) == BRIO_OK && d.hausdorff < 1e-9, "%g", d.hausdorff);
     brio_mesh_free(offset);
     brio_mesh_free(crust);
@@ -112,7 +112,7 @@ static void offset_by_nothing_is_the_power_crust(void) {
 }
 
 static void expect_components(brio_context *ctx, const brio_mesh *mesh, size_t components, double volume) {
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.components == components && fabs(c.volume - volume) < 0.05 * volume, "%zu components, %g",
            c.components, c.volume);
@@ -126,16 +126,19 @@ static void known_solid_decides_the_labels(void) {
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_mesh *solid, *mesh;
     size_t n = c.count;
-    EXPECT(brio_power_crust(ctx, c.points, n, NULL, &solid, NULL) == BRIO_OK);
+    EXPECT(brio_power_crust(ctx, c.points, n, NULL, &solid, NULL, NULL) == BRIO_OK);
     for (size_t i = 0; i < n; i++)
         cloud_add(&c, 0.5 * c.points[3 * i], 0.5 * c.points[3 * i + 1], 0.5 * c.points[3 * i + 2]);
     for (int known = 0; known < 2; known++) {
         double ball = 4.18879;
-        o.solid = known ? solid : NULL;
-        EXPECT(brio_power_crust(ctx, c.points, c.count, &o, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+        o.poles.solid = known ? solid : NULL;
+        EXPECT(brio_power_crust(ctx, c.points, c.count, &o, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
         expect_components(ctx, mesh, known ? 1 : 2, known ? ball : ball * (1 - 0.125));
         brio_mesh_free(mesh);
-        EXPECT(brio_offset_surface(ctx, c.points, c.count, 0.1, &o, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+        brio_offset_options moved = brio_offset_options_default();
+        moved.poles = o.poles;
+        EXPECT(brio_offset_surface(ctx, c.points, c.count, 0.1, &moved, &mesh, NULL) == BRIO_OK, "%s",
+               brio_message(ctx));
         expect_components(ctx, mesh, known ? 1 : 2, ball * (1.331 - (known ? 0 : 0.064)));
         brio_mesh_free(mesh);
     }
@@ -240,16 +243,15 @@ static void duplicates_change_nothing(void) {
 static void wrong_options_are_refused(void) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
-    double p[3 * 60], normals[3 * 60];
-    brio_power_crust_options open = brio_power_crust_options_default(), normal = open, dense = open;
+    double p[3 * 60];
+    brio_offset_options dense = brio_offset_options_default(), later = dense, unset = {0};
     sphere_points(3, 60, p);
-    open.open = 2;
-    normal.normals = normals;
-    dense.sampling_density = 1;
+    later.poles.reserved[1] = 1;
+    dense.poles.sampling_density = 1;
     EXPECT(brio_offset_surface(ctx, p, 60, NAN, NULL, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(brio_offset_surface(ctx, p, 60, INFINITY, NULL, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(brio_offset_surface(ctx, p, 60, 1, &open, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(brio_offset_surface(ctx, p, 60, 1, &normal, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_offset_surface(ctx, p, 60, 1, &later, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_offset_surface(ctx, p, 60, 1, &unset, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(brio_offset_surface(ctx, p, 60, 1, &dense, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(brio_offset_surface(ctx, NULL, 0, 1, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     brio_context_free(ctx);
@@ -258,7 +260,7 @@ static void wrong_options_are_refused(void) {
 static brio_status small_offset(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *mesh;
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_offset_options o = brio_offset_options_default();
     o.simplify = 1;
     sphere_points(3, 60, p);
     brio_status status = brio_offset_surface(ctx, p, 60, 0.2, &o, &mesh, NULL);

@@ -80,8 +80,8 @@ typedef struct {
 } method;
 
 static uint64_t hash_crust_stats(brio_power_crust_stats s) {
-    s.delaunay_seconds = s.poles_seconds = s.power_seconds = s.label_seconds = s.crust_seconds = s.simplify_seconds =
-        s.noise_seconds = 0;
+    s.poles.delaunay_seconds = s.poles.poles_seconds = s.poles.power_seconds = s.poles.label_seconds = s.crust_seconds =
+        s.simplify_seconds = s.poles.noise_seconds = 0;
     return hash_bytes(&s, sizeof s);
 }
 
@@ -101,10 +101,10 @@ static brio_power_crust_options surface_options(int bits) {
     brio_power_crust_options o = brio_power_crust_options_default();
     o.triangulate = (bits & TRIANGLES) != 0;
     o.simplify = (bits & SIMPLER) != 0;
-    o.sharp = (bits & SHARP) != 0;
+    o.poles.sharp = (bits & SHARP) != 0;
     o.open = bits & OPEN ? 3 : 0;
-    o.noise = bits & KEPT ? BRIO_NOISE_KEEP : bits & SMOOTHED ? BRIO_NOISE_SMOOTH : BRIO_NOISE_AUTO;
-    o.labeling = (brio_labeling)(bits / LABELING);
+    o.poles.noise = bits & KEPT ? BRIO_NOISE_KEEP : bits & SMOOTHED ? BRIO_NOISE_SMOOTH : BRIO_NOISE_AUTO;
+    o.poles.labeling = (brio_labeling)(bits / LABELING);
     return o;
 }
 
@@ -136,12 +136,11 @@ static void add_normals(const input *in, const double *normals, outcome *out) {
 
 static void run_crust(brio_context *ctx, const input *in, int bits, outcome *out) {
     brio_power_crust_options o = surface_options(bits);
-    brio_power_crust_stats stats;
+    brio_power_crust_stats stats = {.size = sizeof stats};
     brio_mesh *mesh = NULL, *box = bits & SOLID ? box_mesh(ctx, in) : NULL;
     double *normals = bits & NORMALS ? calloc(3 * in->n, sizeof *normals) : NULL;
-    o.normals = normals;
-    o.solid = box;
-    out->status = brio_power_crust(ctx, in->points, in->n, &o, &mesh, &stats);
+    o.poles.solid = box;
+    out->status = brio_power_crust(ctx, in->points, in->n, &o, &mesh, normals, &stats);
     if (mesh) add_mesh(mesh, out);
     if (mesh && normals) add_normals(in, normals, out);
     out->stats = hash_crust_stats(stats);
@@ -151,8 +150,13 @@ static void run_crust(brio_context *ctx, const input *in, int bits, outcome *out
 }
 
 static void run_offset(brio_context *ctx, const input *in, int bits, outcome *out) {
-    brio_power_crust_options o = surface_options(bits & ~OPEN);
-    brio_power_crust_stats stats;
+    brio_power_crust_options crust = surface_options(bits);
+    brio_offset_options o = brio_offset_options_default();
+    o.seed = crust.seed;
+    o.poles = crust.poles;
+    o.triangulate = crust.triangulate;
+    o.simplify = crust.simplify;
+    brio_power_crust_stats stats = {.size = sizeof stats};
     brio_mesh *mesh = NULL;
     double distance = bits & OPEN ? -0.01 * in->size : 0.03 * in->size; /* there is no other use for the bit here */
     out->status = brio_offset_surface(ctx, in->points, in->n, distance, &o, &mesh, &stats);
@@ -163,7 +167,7 @@ static void run_offset(brio_context *ctx, const input *in, int bits, outcome *ou
 
 static void run_medial(brio_context *ctx, const input *in, int way, outcome *out) {
     brio_power_shape_options o = brio_power_shape_options_default();
-    brio_power_shape_stats s = {0};
+    brio_power_shape_stats s = {.size = sizeof s};
     brio_mesh *shape = NULL, *crust = NULL;
     o.sides = way & 1 ? BRIO_SIDES_BOTH : BRIO_SIDES_INNER;
     o.scale = way & 2 ? 1.1 : 1;
@@ -171,8 +175,8 @@ static void run_medial(brio_context *ctx, const input *in, int way, outcome *out
     out->status = brio_power_shape(ctx, in->points, in->n, &o, &shape, way & 1 ? &crust : NULL, &s);
     if (shape) add_mesh(shape, out);
     if (crust) add_mesh(crust, out);
-    s.delaunay_seconds = s.poles_seconds = s.power_seconds = s.label_seconds = s.simplify_seconds = s.shape_seconds =
-        s.noise_seconds = 0;
+    s.poles.delaunay_seconds = s.poles.poles_seconds = s.poles.power_seconds = s.poles.label_seconds =
+        s.simplify_seconds = s.shape_seconds = s.poles.noise_seconds = 0;
     out->stats = hash_bytes(&s, sizeof s);
     brio_mesh_free(shape);
     brio_mesh_free(crust);
@@ -182,7 +186,7 @@ enum { TIGHT = 1, DENSITY = 2, BOUNDARIES = 4, PIECES = 8 };
 
 static void run_cocone(brio_context *ctx, const input *in, int bits, outcome *out) {
     brio_cocone_options o = brio_cocone_options_default();
-    brio_cocone_stats s = {0};
+    brio_cocone_stats s = {.size = sizeof s};
     brio_mesh *mesh = NULL;
     o.tight = (bits & TIGHT) != 0;
     o.density = (bits & DENSITY) != 0;

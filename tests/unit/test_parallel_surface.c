@@ -18,8 +18,8 @@ typedef struct {
 } result;
 
 static void forget_times(brio_power_crust_stats *s) {
-    s->delaunay_seconds = s->poles_seconds = s->power_seconds = s->label_seconds = s->crust_seconds =
-        s->simplify_seconds = s->noise_seconds = 0;
+    s->poles.delaunay_seconds = s->poles.poles_seconds = s->poles.power_seconds = s->poles.label_seconds =
+        s->crust_seconds = s->simplify_seconds = s->poles.noise_seconds = 0;
 }
 
 static void read_back(const char *path, result *r) {
@@ -39,7 +39,7 @@ static void run(brio_context *ctx, size_t n, const brio_power_crust_options *o, 
     EXPECT(file >= 0);
     close(file);
     brio_context_set_threads(ctx, threads);
-    EXPECT(brio_power_crust(ctx, points, n, o, &r->mesh, &r->stats) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_power_crust(ctx, points, n, o, &r->mesh, NULL, &r->stats) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, r->mesh, &r->certificate) == BRIO_OK);
     EXPECT(brio_write(ctx, path, r->mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
     forget_times(&r->stats);
@@ -107,7 +107,7 @@ static void every_labeling_is_the_same_by_threads(void) {
     clustered_points(5, 700, points);
     for (int labeling = 0; labeling < BRIO_LABELING_END; labeling++) {
         brio_power_crust_options o = brio_power_crust_options_default();
-        o.labeling = (brio_labeling)labeling;
+        o.poles.labeling = (brio_labeling)labeling;
         expect_one_answer(700, &o);
     }
 }

@@ -79,12 +79,12 @@ static void edges_are_those_of_the_triangulation_and_the_samples(void) {
             brio_context *ctx = new_context();
             brio_pole_request request;
             brio_labeled_poles l;
-            o.labeling = (brio_labeling)labeling;
+            o.poles.labeling = (brio_labeling)labeling;
             if (shape == 0) uniform_points(1, SAMPLES, p);
             if (shape == 1) clustered_points(2, SAMPLES, p);
             if (shape == 2) sphere_points(3, SAMPLES, p);
             if (shape == 3) integer_points(4, SAMPLES, 5, p);
-            EXPECT(brio_pole_request_of(ctx, &o, &request) == BRIO_OK);
+            EXPECT(brio_pole_request_of(ctx, &o.poles, o.seed, &request) == BRIO_OK);
             EXPECT(brio_labeled_poles_find(ctx, p, SAMPLES, &request, &l) == BRIO_OK, "%s", brio_message(ctx));
             bool balanced = labeling == BRIO_LABELING_GLOBAL;
             check_neighbours(&l.graph, labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0, balanced);
@@ -241,12 +241,12 @@ static void settled_blocks_have_least_energy(void) {
         for (size_t block = 0; block < b.num_blocks; block++) {
             size_t begin = brio_pole_block_begin(&b, block), size = brio_pole_block_begin(&b, block + 1) - begin;
             double before = brio_label_energy(&r.g, r.label), least = least_energy(&r, b.pole + begin, size);
-            roof.open = 0;
+            roof.undecided = 0;
             EXPECT(brio_roof_settle(&roof, &r.g, &b, block, r.label) == BRIO_OK);
             double after = brio_label_energy(&r.g, r.label);
             EXPECT(after <= before && after >= least, "%g, %g, least %g", before, after, least);
-            if (roof.open == 0) EXPECT(after == least, "%g, least %g", after, least);
-            closed += roof.open == 0, improved += after < before;
+            if (roof.undecided == 0) EXPECT(after == least, "%g, least %g", after, least);
+            closed += roof.undecided == 0, improved += after < before;
         }
         brio_pole_blocks_free(&b);
     }

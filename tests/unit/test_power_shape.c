@@ -45,14 +45,14 @@ static errors errors_of(const medial_shape *shape, double h, uint64_t seed) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(shape, h, seed);
     brio_mesh *mesh;
-    brio_power_shape_stats s;
+    brio_power_shape_stats s = {.size = sizeof s};
     errors e = {INFINITY, INFINITY};
     EXPECT(brio_power_shape(ctx, c.points, c.count, NULL, &mesh, NULL, &s) == BRIO_OK, "%s: %s", shape->name,
            brio_message(ctx));
     if (mesh) e = (errors){farthest_pole(shape, mesh), farthest_axis_point(shape, mesh)};
     if (getenv("BRIO_TEST_VERBOSE"))
-        fprintf(stderr, "%s h %g: %zu samples, %zu poles, errors over h %g %g\n", shape->name, h, c.count, s.inner,
-                e.from_poles / h, e.from_axis / h);
+        fprintf(stderr, "%s h %g: %zu samples, %zu poles, errors over h %g %g\n", shape->name, h, c.count,
+                s.poles.inner, e.from_poles / h, e.from_axis / h);
     brio_mesh_free(mesh);
     brio_context_free(ctx);
     free(c.points);
@@ -106,7 +106,7 @@ static long euler_of_shape(const brio_mesh *m) {
 
 /* Of the solid that a closed surface bounds: half of that of the surface. */
 static long euler_of_solid(brio_context *ctx, const brio_mesh *crust) {
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_mesh_certificate(ctx, crust, &c) == BRIO_OK && c.closed && c.manifold);
     long euler = (long)c.components - (long)c.genus;
     brio_certificate_free(&c);

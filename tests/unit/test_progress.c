@@ -88,7 +88,7 @@ static brio_status triangulate_and_check(const double *p, size_t n) {
 static brio_status make_power_crust(const double *p, size_t n) {
     brio_mesh *mesh = NULL;
     int64_t crossings;
-    brio_status status = brio_power_crust(ctx, p, n, NULL, &mesh, NULL);
+    brio_status status = brio_power_crust(ctx, p, n, NULL, &mesh, NULL, NULL);
     if (status == BRIO_OK) status = brio_mesh_self_intersections(ctx, mesh, &crossings);
     brio_mesh_free(mesh);
     return status;

@@ -79,8 +79,8 @@ static brio_subgraph_stats expect_subgraph(const brio_mesh *mesh, uint32_t bound
     EXPECT(components(sub.ends, sub.count, n) == components(all.ends, all.count, n), "%s", name);
     EXPECT(max_degree(&sub, n) == stats.max_degree, "%s", name);
     EXPECT(stats.max_degree <= bound, "%s: degree %u", name, stats.max_degree);
-    brio_edges_free(ctx, &all);
-    brio_edges_free(ctx, &sub);
+    brio_edges_free(&all);
+    brio_edges_free(&sub);
     return stats;
 }
 
@@ -119,7 +119,7 @@ static void random_surfaces_of_genus_0_to_6(void) {
     for (uint64_t seed = 0; seed < RANDOM_SURFACES; seed++) {
         char name[32];
         int genus = genus_of_random_mesh(seed);
-        brio_certificate c;
+        brio_certificate c = {.size = sizeof c};
         brio_mesh *mesh = random_mesh(ctx, seed);
         snprintf(name, sizeof name, "genus %d, seed %d", genus, (int)seed);
         EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
@@ -155,7 +155,7 @@ static void models_when_present(void) {
                            "fandisk", "armadillo",  "bracket", "club",     "anchor_truth"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         brio_mesh *mesh = read_model(names[i]);
-        brio_certificate c;
+        brio_certificate c = {.size = sizeof c};
         if (!mesh) continue;
         EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
         EXPECT(c.manifold && c.oriented, "%s", names[i]);
@@ -261,7 +261,7 @@ static void meshes_that_are_no_surface(void) {
     EXPECT(brio_spanning_subgraph(ctx, mesh, &edges, NULL) == BRIO_ERR_NO_ANSWER);
     EXPECT(strstr(brio_message(ctx), "face 0 has 4 corners"), "%s", brio_message(ctx));
     EXPECT(brio_mesh_edges(ctx, mesh, &edges) == BRIO_OK && edges.count == 4);
-    brio_edges_free(ctx, &edges);
+    brio_edges_free(&edges);
     brio_mesh_free(mesh);
 }
 
@@ -280,7 +280,7 @@ static void steps_grow_linearly(void) {
             fprintf(stderr, "       genus %d, %zu vertices: %.2f steps a vertex\n", genus, mesh->num_vertices, steps);
             least = fmin(least, steps);
             most = fmax(most, steps);
-            brio_edges_free(ctx, &edges);
+            brio_edges_free(&edges);
             brio_mesh_free(mesh);
         }
         EXPECT(most < 1.05 * least && most < 100, "%g to %g steps a vertex", least, most);
@@ -322,10 +322,10 @@ static void breadth_first_tree_is_in_order(void) {
     EXPECT(brio_spanning_subgraph(ctx, mesh, &sub, NULL) == BRIO_OK);
     EXPECT(brio_breadth_first_tree(ctx, &sub, n, &subtree) == BRIO_OK && subtree.count == n - 1);
     EXPECT(is_subset(&subtree, &sub) && max_degree(&subtree, n) <= 24);
-    brio_edges_free(ctx, &all);
-    brio_edges_free(ctx, &tree);
-    brio_edges_free(ctx, &sub);
-    brio_edges_free(ctx, &subtree);
+    brio_edges_free(&all);
+    brio_edges_free(&tree);
+    brio_edges_free(&sub);
+    brio_edges_free(&subtree);
     brio_mesh_free(mesh);
 }
 
@@ -373,8 +373,8 @@ static void minimum_spanning_tree_is_minimal(void) {
         double found = total_length(mesh->vertices, &tree), least = prim(mesh->vertices, &all, n);
         EXPECT(fabs(found - least) <= 1e-12 * least, "%g, not %g", found, least);
         EXPECT(max_degree(&tree, n) <= 12);
-        brio_edges_free(ctx, &all);
-        brio_edges_free(ctx, &tree);
+        brio_edges_free(&all);
+        brio_edges_free(&tree);
         brio_mesh_free(mesh);
     }
 }
@@ -383,7 +383,7 @@ static void minimum_spanning_tree_is_minimal(void) {
 static void minimum_spanning_tree_of_any_scale(void) {
     const double unit[] = {0, 0, 0, 1, 0, 0, 3, 0, 0, 7, 0, 0};
     uint32_t ends[] = {0, 3, 1, 3, 0, 1, 1, 2, 0, 2};
-    const brio_edges graph = {5, ends};
+    const brio_edges graph = {.count = 5, .ends = ends};
     for (int e = -1060; e <= 1020; e += 260) {
         double points[12];
         brio_edges tree;
@@ -391,14 +391,14 @@ static void minimum_spanning_tree_of_any_scale(void) {
         EXPECT(brio_minimum_spanning_tree(ctx, &graph, points, 4, &tree) == BRIO_OK && tree.count == 3);
         const uint32_t expected[] = {0, 1, 1, 2, 1, 3};
         EXPECT(!memcmp(tree.ends, expected, sizeof expected), "2^%d", e);
-        brio_edges_free(ctx, &tree);
+        brio_edges_free(&tree);
     }
 }
 
 static void trees_refuse_vertices_that_are_not_there(void) {
     uint32_t ends[] = {0, 4};
     const double points[12] = {0};
-    const brio_edges graph = {1, ends};
+    const brio_edges graph = {.count = 1, .ends = ends};
     brio_edges tree;
     EXPECT(brio_breadth_first_tree(ctx, &graph, 4, &tree) == BRIO_ERR_ARGUMENT && !tree.ends);
     EXPECT(brio_minimum_spanning_tree(ctx, &graph, points, 4, &tree) == BRIO_ERR_ARGUMENT && !tree.ends);
@@ -420,10 +420,10 @@ static brio_status everything(brio_context *failing) {
     BRIO_TRY(brio_breadth_first_tree(failing, &all, mesh->num_vertices, &tree));
     BRIO_TRY(brio_minimum_spanning_tree(failing, &all, mesh->vertices, mesh->num_vertices, &shortest));
 done:
-    brio_edges_free(failing, &all);
-    brio_edges_free(failing, &sub);
-    brio_edges_free(failing, &tree);
-    brio_edges_free(failing, &shortest);
+    brio_edges_free(&all);
+    brio_edges_free(&sub);
+    brio_edges_free(&tree);
+    brio_edges_free(&shortest);
     brio_mesh_free(mesh);
     return status;
 }

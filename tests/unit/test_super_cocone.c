@@ -20,7 +20,7 @@ static void dense_samples_give_the_faces_of_the_whole(void) {
     for (int sphere = 0; sphere < 2; sphere++) {
         brio_cocone_options o = brio_cocone_options_default();
         brio_mesh *whole, *pieces;
-        brio_cocone_stats s, t;
+        brio_cocone_stats s = {.size = sizeof s}, t = {.size = sizeof t};
         sphere ? sphere_points(3, 4000, p) : torus_points(3, 4000, p);
         EXPECT(brio_cocone(ctx, p, 4000, &o, &whole, &s) == BRIO_OK);
         for (o.pieces = 2; o.pieces < 20; o.pieces += 7) {
@@ -43,7 +43,7 @@ static void noisy_torus_twice(uint64_t seed, double noise, double *p) {
 }
 
 static void expect_closed_torus(brio_context *ctx, const brio_mesh *mesh) {
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == 1);
     brio_certificate_free(&c);
@@ -57,7 +57,7 @@ static void order_of_samples_and_duplicates_change_nothing(void) {
     for (uint64_t seed = 4; seed < 7; seed++) {
         brio_cocone_options o = brio_cocone_options_default();
         brio_mesh *whole, *pieces, *shuffled, *twice;
-        brio_cocone_stats s;
+        brio_cocone_stats s = {.size = sizeof s};
         noisy_torus_twice(seed, seed % 2 ? 0.02 : 0.04, p);
         shuffle_points(seed + 2, 4000, p, q, to);
         EXPECT(brio_cocone(ctx, p, 4000, &o, &whole, NULL) == BRIO_OK);
@@ -83,9 +83,9 @@ static void anything_is_manifold_oriented(void) {
     int surfaces = 0;
     for (uint64_t trial = 0; trial < 120; trial++) {
         brio_cocone_options o = brio_cocone_options_default();
-        brio_certificate c = {0};
+        brio_certificate c = {.size = sizeof c};
         brio_mesh *mesh;
-        brio_cocone_stats s;
+        brio_cocone_stats s = {.size = sizeof s};
         size_t n = 4 + trial * 3;
         o.pieces = 2 + trial % 9;
         o.boundaries = trial >> 1 & 1;

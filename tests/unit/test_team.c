@@ -254,7 +254,7 @@ static void *call_from_small_stack(void *user) {
     uint64_t sum;
     (void)user;
     EXPECT(checksum_of(ctx, 5000, &sum) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, set, 5000, NULL, &crust, NULL) == BRIO_OK);
+    EXPECT(brio_power_crust(ctx, set, 5000, NULL, &crust, NULL, NULL) == BRIO_OK);
     brio_mesh_free(crust);
     brio_context_free(ctx);
     return NULL;

@@ -267,7 +267,7 @@ static double ball(int x, int y, int z) {
 }
 
 static brio_certificate certify(const brio_mesh *mesh) {
-    brio_certificate c = {0};
+    brio_certificate c = {.size = sizeof c};
     EXPECT(brio_mesh_certificate(io_ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.volume > 0);
     return c;

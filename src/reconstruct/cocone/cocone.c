@@ -5,6 +5,7 @@
  * pieces, which are scaled one at a time (super_cocone.c). */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/versioned.h"
 #include "base/scale.h"
 #include "order/canonical_points.h"
 #include "reconstruct/cocone/sampling_density.h"
@@ -13,9 +14,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-brio_cocone_options brio_cocone_options_default(void) {
-    return (brio_cocone_options){.seed = 1, .theta = 0.39269908169872414 /* pi / 8 */};
-}
+static const brio_cocone_options STANDARD = {
+    .size = sizeof STANDARD, .seed = 1, .theta = 0.39269908169872414 /* pi / 8 */};
+
+BRIO_OPTIONS_INIT(brio_cocone_options)
 
 /* The exponent of the least power of two above all coordinates. */
 static int exponent_of(const double *points, size_t num_points) {
@@ -122,24 +124,25 @@ brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_poin
                         brio_mesh **out, brio_cocone_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_cocone_options standard = brio_cocone_options_default();
-    const brio_cocone_options *o = options ? options : &standard;
+    brio_cocone_options o = STANDARD;
     brio_cocone_surface surface = {0};
     brio_mesh *mesh = NULL;
     int exponent = exponent_of(points, num_points);
     *out = NULL;
-    BRIO_TRY(check_options(ctx, o));
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_cocone_stats, stats));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_cocone_options, options, &o));
+    BRIO_TRY(check_options(ctx, &o));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
-    BRIO_TRY(o->pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, o, &surface)
-                           : find_surface(ctx, points, num_points, exponent, o, &surface));
+    BRIO_TRY(o.pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, &o, &surface)
+                          : find_surface(ctx, points, num_points, exponent, &o, &surface));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(fill_mesh(points, num_points, &surface, mesh));
     BRIO_TRY(count_unused(mesh, &surface.stats));
-    if (o->density) BRIO_TRY(add_properties(&surface, exponent, mesh, &surface.stats));
+    if (o.density) BRIO_TRY(add_properties(&surface, exponent, mesh, &surface.stats));
     *out = mesh;
     mesh = NULL;
+    BRIO_GIVE(brio_cocone_stats, stats, &surface.stats);
 done:
-    if (stats) *stats = surface.stats;
     ctx->progress_from = 0, ctx->progress_to = 1;
     brio_mesh_free(mesh);
     brio_cocone_surface_free(ctx, &surface);

@@ -24,8 +24,8 @@ typedef struct {
     const brio_pole_graph *g;
     uint8_t *label, *certain;
     int threads;
-    brio_roof *roof;      /* of each thread */
-    size_t open, toggled; /* in the last pass */
+    brio_roof *roof;           /* of each thread */
+    size_t undecided, toggled; /* in the last pass */
 } problem;
 
 /* --- passes --- */
@@ -54,10 +54,10 @@ static brio_status settle_round(const problem *pr, const brio_pole_blocks *b, si
 }
 
 static void sum_up(problem *pr) {
-    pr->open = pr->toggled = 0;
+    pr->undecided = pr->toggled = 0;
     for (int t = 0; t < pr->threads; t++) {
-        pr->open += pr->roof[t].open, pr->toggled += pr->roof[t].toggled;
-        pr->roof[t].open = pr->roof[t].toggled = 0;
+        pr->undecided += pr->roof[t].undecided, pr->toggled += pr->roof[t].toggled;
+        pr->roof[t].undecided = pr->roof[t].toggled = 0;
     }
 }
 
@@ -127,7 +127,7 @@ brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_lab
     stats->energy_greedy = brio_label_energy(g, label);
     memcpy(before, label, n);
     BRIO_TRY(lower_energy(&pr));
-    stats->open = pr.open;
+    stats->undecided = pr.undecided;
     for (size_t p = 0; p < n; p++) stats->toggled += label[p] != before[p];
 done:
     brio_release(g->ctx, pr.certain);

@@ -8,7 +8,7 @@
 typedef struct {
     size_t confused;      /* poles that had evidence for both labels when they were labeled */
     size_t unreached;     /* left to the greedy labeling by another one */
-    size_t open;          /* not settled by the last roof duality of their blocks */
+    size_t undecided;     /* not settled by the last roof duality of their blocks */
     size_t toggled;       /* that differ from the greedy labeling in the end */
     double energy_greedy; /* sum of the violated weights of the greedy labels to begin with */
 } brio_labeling_stats;

@@ -71,7 +71,7 @@ brio_status brio_roof_settle(brio_roof *r, const brio_pole_graph *g, const brio_
     for (uint32_t i = 0; i < size; i++) {
         bool stays = r->side[i] == BRIO_FLOW_SOURCE, toggles = r->side[size + i] == BRIO_FLOW_SOURCE;
         uint32_t p = b->pole[begin + i];
-        r->open += !stays && !toggles;
+        r->undecided += !stays && !toggles;
         r->toggled += toggles;
         if (toggles) label[p] = brio_other_label(label[p]);
     }

@@ -12,7 +12,7 @@ typedef struct {
     int64_t *terminal;
     uint8_t *side;
     size_t num_edges, edge_capacity, terminal_capacity, side_capacity;
-    size_t open, toggled; /* poles so far: left open, given another label */
+    size_t undecided, toggled; /* poles so far: not decided, given another label */
 } brio_roof;
 
 void brio_roof_free(brio_roof *r);

@@ -22,7 +22,8 @@
 enum { BOUNDING_POINTS = 8 };
 static const double SHARP_DENSITY = 0.5;
 
-brio_status brio_pole_request_of(brio_context *ctx, const brio_power_crust_options *o, brio_pole_request *request) {
+brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *o, uint64_t seed,
+                                 brio_pole_request *request) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, (unsigned)o->labeling < BRIO_LABELING_END, BRIO_ERR_ARGUMENT, "no such labeling: %d",
                  (int)o->labeling);
@@ -30,13 +31,13 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_power_crust_optio
                  "sampling density %g, expected 0 or a number between 0 and 1", o->sampling_density);
     BRIO_REQUIRE(ctx, (unsigned)o->noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
                  (int)o->noise);
-    *request = (brio_pole_request){.seed = o->seed,
+    for (size_t i = 0; i < sizeof o->reserved / sizeof *o->reserved; i++)
+        BRIO_REQUIRE(ctx, !o->reserved[i], BRIO_ERR_ARGUMENT, "brio_pole_options.reserved is not 0");
+    *request = (brio_pole_request){.seed = seed,
                                    .filter = {.sampling_density = o->sampling_density, .both = o->sharp},
                                    .labeling = o->labeling,
                                    .noise = o->noise == BRIO_NOISE_AUTO && o->solid ? BRIO_NOISE_KEEP : o->noise,
                                    .solid = o->solid,
-                                   .spacing = o->open > 0 || o->simplify,
-                                   .representative = o->normals != NULL,
                                    .until = 1};
     if (o->sharp && o->sampling_density == 0) request->filter.sampling_density = SHARP_DENSITY;
 done:
@@ -201,7 +202,7 @@ static brio_status label_along_graph(brio_labeled_poles *l, brio_labeling labeli
     BRIO_TRY(labelings[labeling](&l->graph, l->label, &s));
     l->stats.confused = s.confused;
     l->stats.unreached = s.unreached;
-    l->stats.open = s.open;
+    l->stats.undecided = s.undecided;
     l->stats.toggled = s.toggled;
     l->stats.energy_greedy = s.energy_greedy;
     l->stats.energy = brio_label_energy(&l->graph, l->label);

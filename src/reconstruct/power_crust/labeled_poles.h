@@ -33,11 +33,12 @@ typedef struct {
     brio_triangulation *power;
     brio_pole_graph graph; /* of these poles; without edges where the labels came from elsewhere */
     uint8_t *label;
-    brio_power_crust_stats stats; /* its first part, up to the labels */
+    brio_pole_stats stats;
 } brio_labeled_poles;
 
-/** What the options of a surface ask of the poles; BRIO_ERR_ARGUMENT for numbers out of range. */
-brio_status brio_pole_request_of(brio_context *ctx, const brio_power_crust_options *options,
+/** Checks options and turns them into a request without margin, spacing or representatives, for the whole of the progress
+ *  bar. Returns BRIO_OK, or BRIO_ERR_ARGUMENT for numbers out of range. */
+brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *options, uint64_t seed,
                                  brio_pole_request *request);
 
 /** Finds the poles of points and labels them.   l  to be freed on failure too; it does not move meanwhile.

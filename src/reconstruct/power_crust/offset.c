@@ -7,11 +7,16 @@
  * Differs from the paper: the bounding points are moved out by 4 |D|, so that no outer ball they hold back vanishes. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/versioned.h"
 #include "reconstruct/power_crust/power_crust.h"
 #include <math.h>
 
 static const double POLES_SHARE = 0.6, POWER_SHARE = 0.9; /* of the progress bar */
 static const double MARGIN = 4;                           /* of the bounding points, in distances */
+
+static const brio_offset_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
+
+BRIO_OPTIONS_INIT(brio_offset_options)
 
 /* Changes the radii; keep[p] = 0 for the balls that vanish. */
 static void change_radii(brio_labeled_poles *l, double distance, uint8_t *keep) {
@@ -35,50 +40,55 @@ done:
     return status;
 }
 
-static brio_status check_options(brio_context *ctx, double distance, const brio_power_crust_options *o) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
-    BRIO_REQUIRE(ctx, o->open == 0, BRIO_ERR_ARGUMENT, "an offset surface has no holes: open is not for it");
-    BRIO_REQUIRE(ctx, !o->normals, BRIO_ERR_ARGUMENT, "the points are not on an offset surface: no normals of theirs");
-done:
-    return status;
+/* What the power crust of the moved balls is made with. */
+static brio_power_crust_options crust_options(const brio_offset_options *o) {
+    brio_power_crust_options crust = brio_power_crust_options_default();
+    crust.triangulate = o->triangulate;
+    crust.simplify = o->simplify;
+    return crust;
 }
 
 static brio_status make_offset(brio_labeled_poles *l, const double *points, size_t num_points, double distance,
-                               const brio_power_crust_options *o, brio_mesh *mesh) {
+                               const brio_offset_options *o, brio_mesh *mesh, brio_power_crust_stats *stats) {
     brio_status status = BRIO_OK;
+    brio_context *ctx = l->ctx;
+    brio_power_crust_options crust = crust_options(o);
     brio_pole_request request;
-    BRIO_TRY(check_options(l->ctx, distance, o));
-    BRIO_TRY(brio_pole_request_of(l->ctx, o, &request));
+    BRIO_REQUIRE(ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
+    BRIO_TRY(brio_pole_request_of(ctx, &o->poles, o->seed, &request));
+    request.spacing = o->simplify;
     request.margin = MARGIN * fabs(distance);
     request.until = POLES_SHARE;
-    BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
-    l->ctx->progress_from = POLES_SHARE;
-    l->ctx->progress_to = POWER_SHARE;
-    BRIO_REQUIRE(l->ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
+    BRIO_TRY(brio_labeled_poles_find(ctx, points, num_points, &request, l));
+    ctx->progress_from = POLES_SHARE;
+    ctx->progress_to = POWER_SHARE;
+    BRIO_REQUIRE(ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
     status = move_surface(l, distance);
-    if (status == BRIO_OK) status = brio_make_crust(l, o, POWER_SHARE, mesh);
+    if (status == BRIO_OK) status = brio_make_crust(l, &crust, POWER_SHARE, mesh, NULL, stats);
     if (status == BRIO_ERR_NO_ANSWER && distance < 0)
-        return brio_fail(l->ctx, status, "the offset by %g swallows the whole object: no inside is left", distance);
+        return brio_fail(ctx, status, "the offset by %g swallows the whole object: no inside is left", distance);
 done:
     return status;
 }
 
 brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
-                                const brio_power_crust_options *options, brio_mesh **out,
-                                brio_power_crust_stats *stats) {
+                                const brio_offset_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_power_crust_options standard = brio_power_crust_options_default();
+    brio_offset_options o = STANDARD;
+    brio_power_crust_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
     brio_mesh *mesh = NULL;
     *out = NULL;
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_crust_stats, stats));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_offset_options, options, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
-    BRIO_TRY(make_offset(&l, points, num_points, distance, options ? options : &standard, mesh));
+    BRIO_TRY(make_offset(&l, points, num_points, distance, &o, mesh, &s));
+    s.poles = l.stats;
+    BRIO_GIVE(brio_power_crust_stats, stats, &s);
     *out = mesh;
     mesh = NULL;
 done:
-    if (stats) *stats = l.stats;
     ctx->progress_from = 0;
     ctx->progress_to = 1;
     brio_mesh_free(mesh);

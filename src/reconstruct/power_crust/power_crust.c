@@ -7,6 +7,7 @@
 #include "base/float_state.h"
 #include "base/kept.h"
 #include "base/memory.h"
+#include "base/versioned.h"
 #include "base/scale.h"
 #include "reconstruct/power_crust/crust_faces.h"
 #include "reconstruct/power_crust/sample_normals.h"
@@ -16,12 +17,12 @@
 static const double POLES_SHARE = 0.9;                                /* of the progress bar */
 static const double LONGEST_COLLAPSE = 1.5, COLLAPSE_TOLERANCE = 0.1; /* in spacings */
 
-brio_power_crust_options brio_power_crust_options_default(void) {
-    return (brio_power_crust_options){.seed = 1};
-}
+static const brio_power_crust_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
+
+BRIO_OPTIONS_INIT(brio_power_crust_options)
 
 /* A quarter of the faces, where that can be had. */
-static brio_status simplify(brio_labeled_poles *l, size_t polygons, brio_mesh *mesh) {
+static brio_status simplify(brio_labeled_poles *l, size_t polygons, brio_mesh *mesh, double *seconds) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     brio_simplify_options o = {.target_faces = polygons / 4,
@@ -29,7 +30,7 @@ static brio_status simplify(brio_labeled_poles *l, size_t polygons, brio_mesh *m
                                .longest = LONGEST_COLLAPSE,
                                .tolerance = COLLAPSE_TOLERANCE};
     BRIO_TRY(brio_mesh_simplify(l->ctx, mesh, &o));
-    l->stats.simplify_seconds = brio_seconds() - start;
+    *seconds = brio_seconds() - start;
 done:
     return status;
 }
@@ -38,7 +39,8 @@ static void drop_properties(brio_mesh *mesh) {
     while (mesh->num_properties) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
 }
 
-brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, double from, brio_mesh *mesh) {
+brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, double from, brio_mesh *mesh,
+                            double *normals, brio_power_crust_stats *stats) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     brio_crust_options options = {o->triangulate || o->simplify, o->open, l->spacing};
@@ -46,12 +48,12 @@ brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_option
     l->ctx->progress_from = from;
     l->ctx->progress_to = o->simplify ? from + 0.3 * (1 - from) : 1;
     BRIO_TRY(brio_crust_faces(&l->graph, l->label, &options, mesh, &counts));
-    l->stats.left_out = counts.left_out;
-    l->stats.crust_seconds = brio_seconds() - start;
-    if (o->normals) BRIO_TRY(brio_sample_normals(&l->graph, l->label, l->representative, l->order, mesh, o->normals));
+    stats->left_out = counts.left_out;
+    stats->crust_seconds = brio_seconds() - start;
+    if (normals) BRIO_TRY(brio_sample_normals(&l->graph, l->label, l->representative, l->order, mesh, normals));
     l->ctx->progress_from = l->ctx->progress_to;
     l->ctx->progress_to = 1;
-    if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh));
+    if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh, &stats->simplify_seconds));
     drop_properties(mesh);
     brio_scale(l->ctx, mesh->vertices, 3 * mesh->num_vertices, l->exponent, mesh->vertices);
 done:
@@ -59,28 +61,33 @@ done:
 }
 
 brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
-                             const brio_power_crust_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
+                             const brio_power_crust_options *options, brio_mesh **out, double *normals,
+                             brio_power_crust_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_power_crust_options standard = brio_power_crust_options_default();
+    brio_power_crust_options o = STANDARD;
+    brio_power_crust_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
     brio_pole_request request;
     brio_mesh *mesh = NULL;
     *out = NULL;
     brio_keep_begin(ctx);
-    if (!options) options = &standard;
-    BRIO_TRY(brio_pole_request_of(ctx, options, &request));
-    BRIO_REQUIRE(ctx, options->open >= 0, BRIO_ERR_ARGUMENT, "open: %g spacings, expected 0 or a positive number",
-                 options->open);
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_crust_stats, stats));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_power_crust_options, options, &o));
+    BRIO_TRY(brio_pole_request_of(ctx, &o.poles, o.seed, &request));
+    BRIO_REQUIRE(ctx, o.open >= 0, BRIO_ERR_ARGUMENT, "open: %g spacings, expected 0 or a positive number", o.open);
+    request.spacing = o.open > 0 || o.simplify;
+    request.representative = normals != NULL;
     request.until = POLES_SHARE;
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(brio_labeled_poles_find(ctx, points, num_points, &request, &l));
-    if (options->solid) brio_labeled_poles_close_hull(&l);
-    BRIO_TRY(brio_make_crust(&l, options, POLES_SHARE, mesh));
+    if (o.poles.solid) brio_labeled_poles_close_hull(&l);
+    BRIO_TRY(brio_make_crust(&l, &o, POLES_SHARE, mesh, normals, &s));
+    s.poles = l.stats;
+    BRIO_GIVE(brio_power_crust_stats, stats, &s);
     *out = mesh;
     mesh = NULL;
 done:
-    if (stats) *stats = l.stats;
     ctx->progress_from = 0;
     ctx->progress_to = 1;
     brio_mesh_free(mesh);

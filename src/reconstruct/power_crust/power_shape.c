@@ -10,6 +10,7 @@
  * Differs from the paper: outer poles that only the bounding points hold back are no part of the outer shape. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/versioned.h"
 #include "reconstruct/power_crust/ball_cover.h"
 #include "reconstruct/power_crust/power_crust.h"
 #include <math.h>
@@ -18,9 +19,10 @@
 enum { NO_VERTEX = UINT32_MAX };
 static const double POLES_SHARE = 0.8, SHAPE_SHARE = 0.9; /* of the progress bar */
 
-brio_power_shape_options brio_power_shape_options_default(void) {
-    return (brio_power_shape_options){.seed = 1, .sides = BRIO_SIDES_INNER, .scale = 1};
-}
+static const brio_power_shape_options STANDARD = {
+    .size = sizeof STANDARD, .seed = 1, .sides = BRIO_SIDES_INNER, .scale = 1};
+
+BRIO_OPTIONS_INIT(brio_power_shape_options)
 
 typedef struct {
     brio_labeled_poles *poles;
@@ -220,38 +222,13 @@ done:
     return status;
 }
 
-static brio_power_crust_options surface_options(const brio_power_shape_options *o) {
-    brio_power_crust_options s = brio_power_crust_options_default();
-    s.seed = o->seed;
-    s.labeling = o->labeling;
-    s.solid = o->solid;
-    s.sampling_density = o->sampling_density;
-    s.sharp = o->sharp;
-    s.noise = o->noise;
-    return s;
-}
-
-static void copy_stats(const brio_labeled_poles *l, const brio_mesh *shape, brio_power_shape_stats *s) {
-    s->samples = l->stats.samples;
-    s->poles = l->stats.poles;
-    s->delaunay_seconds = l->stats.delaunay_seconds;
-    s->poles_seconds = l->stats.poles_seconds;
-    s->label_seconds = l->stats.label_seconds;
-    s->edges = shape ? shape->num_edges : 0;
-    s->triangles = shape ? shape->num_faces : 0;
-    s->tetrahedra = shape ? shape->num_tetrahedra : 0;
-}
-
-/* Before any pole is left out. */
+/* Of the poles as they were labeled, before any is left out. */
 static void count_poles(const brio_labeled_poles *l, brio_power_shape_stats *s) {
-    s->hidden_poles = l->stats.hidden_poles;
-    s->power_seconds = l->stats.power_seconds;
-    s->noise = l->stats.noise;
-    s->smoothed = l->stats.smoothed;
-    s->noise_seconds = l->stats.noise_seconds;
+    s->poles = l->stats;
+    s->poles.inner = s->poles.outer = 0;
     for (size_t p = 0; p < l->poles.count; p++) {
-        s->inner += l->label[p] == BRIO_LABEL_INNER;
-        s->outer += l->label[p] == BRIO_LABEL_OUTER;
+        s->poles.inner += l->label[p] == BRIO_LABEL_INNER;
+        s->poles.outer += l->label[p] == BRIO_LABEL_OUTER;
         s->unlabeled += l->label[p] == BRIO_LABEL_NONE;
     }
 }
@@ -265,10 +242,11 @@ static brio_status make_both(brio_labeled_poles *l, const double *points, size_t
                              const brio_power_shape_options *o, brio_mesh *shape, brio_mesh *crust,
                              brio_power_shape_stats *s) {
     brio_status status = BRIO_OK;
-    brio_power_crust_options surface = surface_options(o);
+    brio_power_crust_options surface = brio_power_crust_options_default();
+    brio_power_crust_stats unused;
     brio_pole_request request;
     BRIO_TRY(check_options(l->ctx, o));
-    BRIO_TRY(brio_pole_request_of(l->ctx, &surface, &request));
+    BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->seed, &request));
     request.until = POLES_SHARE;
     BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
     count_poles(l, s);
@@ -278,9 +256,12 @@ static brio_status make_both(brio_labeled_poles *l, const double *points, size_t
     double start = brio_seconds();
     BRIO_TRY(make_shape(l, o, shape));
     s->shape_seconds = brio_seconds() - start;
+    s->edges = shape->num_edges;
+    s->triangles = shape->num_faces;
+    s->tetrahedra = shape->num_tetrahedra;
     if (!crust) goto done;
     brio_labeled_poles_close_hull(l);
-    BRIO_TRY(brio_make_crust(l, &surface, l->ctx->progress_to, crust));
+    BRIO_TRY(brio_make_crust(l, &surface, l->ctx->progress_to, crust, NULL, &unused));
 done:
     return status;
 }
@@ -290,21 +271,22 @@ brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num
                              brio_power_shape_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_power_shape_options standard = brio_power_shape_options_default();
+    brio_power_shape_options o = STANDARD;
     brio_power_shape_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
     brio_mesh *shape_mesh = NULL, *crust_mesh = NULL;
     *shape = NULL;
     if (crust) *crust = NULL;
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_shape_stats, stats));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_power_shape_options, options, &o));
     BRIO_TRY(brio_mesh_new(ctx, &shape_mesh));
     if (crust) BRIO_TRY(brio_mesh_new(ctx, &crust_mesh));
-    BRIO_TRY(make_both(&l, points, num_points, options ? options : &standard, shape_mesh, crust_mesh, &s));
-    copy_stats(&l, shape_mesh, &s);
+    BRIO_TRY(make_both(&l, points, num_points, &o, shape_mesh, crust_mesh, &s));
+    BRIO_GIVE(brio_power_shape_stats, stats, &s);
     *shape = shape_mesh;
     if (crust) *crust = crust_mesh;
     shape_mesh = crust_mesh = NULL;
 done:
-    if (stats) *stats = s;
     progress_part(ctx, 0, 1);
     brio_mesh_free(shape_mesh);
     brio_mesh_free(crust_mesh);

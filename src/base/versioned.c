@@ -1,0 +1,60 @@
+/* Structs of the public interface that can grow: see versioned.h.
+ *
+ * Based on: the copying of structs of any size by the clone3 and openat2 system calls of Linux. */
+#include "base/versioned.h"
+#include <string.h>
+
+/* No struct of this interface is larger, in any version; what claims to be was not initialised. */
+enum { MOST_BYTES = 4096 };
+
+static size_t size_of(const void *given) {
+    size_t size;
+    memcpy(&size, given, sizeof size);
+    return size;
+}
+
+static bool all_zero(const void *bytes, size_t from, size_t to) {
+    for (size_t i = from; i < to; i++)
+        if (((const unsigned char *)bytes)[i]) return false;
+    return true;
+}
+
+static void copy_fields(void *to, size_t to_size, const void *from, size_t from_size) {
+    size_t common = to_size < from_size ? to_size : from_size;
+    if (common > sizeof(size_t))
+        memcpy((char *)to + sizeof(size_t), (const char *)from + sizeof(size_t), common - sizeof(size_t));
+}
+
+void brio_versioned_init(void *given, size_t size, const void *defaults, size_t mine_size) {
+    if (size < sizeof size) return;
+    memset(given, 0, size);
+    memcpy(given, &size, sizeof size);
+    copy_fields(given, size, defaults, mine_size);
+}
+
+brio_status brio_versioned_check(brio_context *ctx, const void *given, const char *name) {
+    if (!given) return BRIO_OK;
+    size_t size = size_of(given);
+    if (size > sizeof size && size <= MOST_BYTES) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s.size is %zu: set it to sizeof(%s), or initialise the struct", name,
+                     size, name);
+}
+
+brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine, size_t mine_size, const char *name) {
+    if (!given) return BRIO_OK;
+    brio_status status = brio_versioned_check(ctx, given, name);
+    if (status != BRIO_OK) return status;
+    size_t size = size_of(given);
+    if (size > mine_size && !all_zero(given, mine_size, size))
+        return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s sets a field that this version of the library does not know",
+                         name);
+    copy_fields(mine, mine_size, given, size);
+    return BRIO_OK;
+}
+
+void brio_versioned_give(void *given, const void *mine, size_t mine_size) {
+    if (!given) return;
+    size_t size = size_of(given);
+    memset((char *)given + sizeof size, 0, size - sizeof size);
+    copy_fields(given, size, mine, mine_size);
+}

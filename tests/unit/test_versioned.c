@@ -1,0 +1,129 @@
+/* Structs that can grow: older and newer callers, sizes that were not set. */
+#include "base/versioned.h"
+#include "harness.h"
+#include "points.h"
+
+static void older_callers_get_what_they_know(void) {
+    struct {
+        brio_cocone_options options;
+        char beyond[64];
+    } older;
+    memset(&older, 0x5a, sizeof older);
+    size_t known = offsetof(brio_cocone_options, tight);
+    brio_cocone_options_init(&older.options, known);
+    EXPECT(older.options.size == known && older.options.seed == 1 && older.options.theta > 0.39);
+    for (size_t i = known; i < sizeof older; i++) EXPECT(((unsigned char *)&older)[i] == 0x5a, "byte %zu", i);
+}
+
+static void newer_callers_get_zeros(void) {
+    struct {
+        brio_cocone_options options;
+        uint64_t later[4];
+    } newer;
+    memset(&newer, 0x5a, sizeof newer);
+    brio_cocone_options_init(&newer.options, sizeof newer);
+    EXPECT(newer.options.size == sizeof newer && newer.options.seed == 1);
+    for (int i = 0; i < 4; i++) EXPECT(newer.later[i] == 0);
+}
+
+static void options_of_any_size_are_taken(void) {
+    brio_context *ctx = new_context();
+    double p[3 * 300];
+    sphere_points(1, 300, p);
+    struct {
+        brio_cocone_options options;
+        uint64_t later;
+    } newer;
+    brio_mesh *mesh = NULL;
+    brio_cocone_options_init(&newer.options, sizeof newer);
+    newer.options.tight = 1;
+    EXPECT(brio_cocone(ctx, p, 300, &newer.options, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    size_t faces = mesh->num_faces;
+    brio_mesh_free(mesh);
+    newer.later = 1;
+    EXPECT(brio_cocone(ctx, p, 300, &newer.options, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "brio_cocone_options") != NULL, "%s", brio_message(ctx));
+    brio_cocone_options older = brio_cocone_options_default();
+    older.size = offsetof(brio_cocone_options, boundaries);
+    older.tight = 1;
+    older.boundaries = older.density = 0x5a5a; /* not the caller's: it was compiled without them */
+    EXPECT(brio_cocone(ctx, p, 300, &older, &mesh, NULL) == BRIO_OK && mesh->num_faces == faces);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
+static void results_stay_within_the_callers_size(void) {
+    brio_context *ctx = new_context();
+    double p[3 * 300];
+    sphere_points(1, 300, p);
+    struct {
+        brio_cocone_stats stats;
+        uint64_t later[2];
+    } s;
+    brio_mesh *mesh;
+    memset(&s, 0x5a, sizeof s);
+    s.stats.size = offsetof(brio_cocone_stats, candidates);
+    EXPECT(brio_cocone(ctx, p, 300, NULL, &mesh, &s.stats) == BRIO_OK);
+    EXPECT(s.stats.size == offsetof(brio_cocone_stats, candidates) && s.stats.samples == 300);
+    for (size_t i = s.stats.size; i < sizeof s; i++) EXPECT(((unsigned char *)&s)[i] == 0x5a, "byte %zu", i);
+    brio_mesh_free(mesh);
+    s.stats.size = sizeof s;
+    EXPECT(brio_cocone(ctx, p, 300, NULL, &mesh, &s.stats) == BRIO_OK);
+    EXPECT(s.stats.size == sizeof s && s.stats.candidates > 300 && s.later[0] == 0 && s.later[1] == 0);
+    brio_certificate c = {.size = offsetof(brio_certificate, area)};
+    c.area = 77;
+    EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.manifold && c.area == 77);
+    brio_certificate_free(&c);
+    EXPECT(c.size == offsetof(brio_certificate, area) && !c.genera && c.area == 77);
+    brio_mesh_free(mesh);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* Each public function that takes a struct with a size. */
+static void sizes_that_were_not_set_are_arguments(void) {
+    brio_context *ctx = new_context();
+    double p[3 * 300];
+    sphere_points(1, 300, p);
+    static const size_t sizes[] = {0, 4, SIZE_MAX, 0x5a5a5a5a};
+    brio_mesh *mesh = NULL, *shape = NULL;
+    EXPECT(brio_generate(ctx, BRIO_KIND_SPHERE, 10, NULL, &mesh) == BRIO_OK);
+    brio_mesh *out;
+    brio_triangulation *t;
+    for (int i = 0; i < 4; i++) {
+        size_t size = sizes[i];
+        EXPECT(brio_delaunay(ctx, p, NULL, 300, &(brio_delaunay_options){.size = size}, &t) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_power_crust(ctx, p, 300, &(brio_power_crust_options){.size = size}, &out, NULL, NULL) ==
+               BRIO_ERR_ARGUMENT);
+        EXPECT(brio_power_crust(ctx, p, 300, NULL, &out, NULL, &(brio_power_crust_stats){.size = size}) ==
+               BRIO_ERR_ARGUMENT);
+        EXPECT(brio_offset_surface(ctx, p, 300, 1, &(brio_offset_options){.size = size}, &out, NULL) ==
+               BRIO_ERR_ARGUMENT);
+        EXPECT(brio_offset_surface(ctx, p, 300, 1, NULL, &out, &(brio_power_crust_stats){.size = size}) ==
+               BRIO_ERR_ARGUMENT);
+        EXPECT(brio_power_shape(ctx, p, 300, &(brio_power_shape_options){.size = size}, &shape, NULL, NULL) ==
+               BRIO_ERR_ARGUMENT);
+        EXPECT(brio_power_shape(ctx, p, 300, NULL, &shape, NULL, &(brio_power_shape_stats){.size = size}) ==
+               BRIO_ERR_ARGUMENT);
+        EXPECT(brio_cocone(ctx, p, 300, &(brio_cocone_options){.size = size}, &out, NULL) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_cocone(ctx, p, 300, NULL, &out, &(brio_cocone_stats){.size = size}) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_generate(ctx, BRIO_KIND_BALL, 9, &(brio_generate_options){.size = size}, &out) ==
+               BRIO_ERR_ARGUMENT);
+        EXPECT(brio_iso_surface(ctx, "no.map", &(brio_iso_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_write(ctx, "no.ply", mesh, &(brio_write_options){.size = size}) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_mesh_certificate(ctx, mesh, &(brio_certificate){.size = size}) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_mesh_distance(ctx, mesh, mesh, 9, 1, &(brio_distance){.size = size}) == BRIO_ERR_ARGUMENT);
+    }
+    brio_mesh_free(mesh);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+int main(void) {
+    RUN(older_callers_get_what_they_know);
+    RUN(newer_callers_get_zeros);
+    RUN(options_of_any_size_are_taken);
+    RUN(results_stay_within_the_callers_size);
+    RUN(sizes_that_were_not_set_are_arguments);
+    return harness_end();
+}
