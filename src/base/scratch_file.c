@@ -98,32 +98,38 @@ static bool whole_pages(size_t offset, const void *memory, size_t size) {
     return (offset | (uintptr_t)memory | size) % BRIO_SCRATCH_PAGE == 0;
 }
 
+/* Bytes to read or to write. */
+typedef struct {
+    size_t offset, size;
+    char *in;        /* where bytes that are read go, or NULL */
+    const char *out; /* where bytes that are written come from, or NULL */
+} transfer;
+
 /* One call, which may move less than it was asked to. */
-static ssize_t transfer(int file, size_t offset, char *in, const char *out, size_t size) {
-    if (in) return pread(file, in, size, (off_t)offset);
+static ssize_t move_some(int file, const transfer *t) {
+    if (t->in) return pread(file, t->in, t->size, (off_t)t->offset);
     brio_quiet_signals quiet;
     brio_signals_block(&quiet);
-    ssize_t n = pwrite(file, out, size, (off_t)offset);
+    ssize_t n = pwrite(file, t->out, t->size, (off_t)t->offset);
     brio_signals_restore(&quiet);
     return n;
 }
 
-/* Moves all bytes, and tells whether they went past the cache. */
-static brio_status transfer_all(brio_context *ctx, const brio_scratch_file *f, size_t offset, char *in, const char *out,
-                                size_t size, bool *direct) {
+/* Moves all bytes.   direct  receives whether they went past the cache. */
+static brio_status move_all(brio_context *ctx, const brio_scratch_file *f, transfer t, bool *direct) {
     *direct = f->direct >= 0;
-    while (size > 0) {
-        bool past = f->direct >= 0 && whole_pages(offset, in ? in : out, size);
-        ssize_t n = transfer(past ? f->direct : f->cached, offset, in, out, size);
-        if (n < 0 && errno == EINVAL && past) n = transfer(f->cached, offset, in, out, size), past = false;
+    while (t.size > 0) {
+        bool past = f->direct >= 0 && whole_pages(t.offset, t.in ? t.in : t.out, t.size);
+        ssize_t n = move_some(past ? f->direct : f->cached, &t);
+        if (n < 0 && errno == EINVAL && past) n = move_some(f->cached, &t), past = false;
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0)
             return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot %s a scratch file: %s", ctx->scratch,
-                             in ? "read" : "write", n ? strerror(errno) : "it ends early");
+                             t.in ? "read" : "write", n ? strerror(errno) : "it ends early");
         *direct &= past;
-        offset += (size_t)n, size -= (size_t)n;
-        if (in) in += n;
-        if (out) out += n;
+        t.offset += (size_t)n, t.size -= (size_t)n;
+        if (t.in) t.in += n;
+        if (t.out) t.out += n;
     }
     return BRIO_OK;
 }
@@ -144,7 +150,7 @@ static void write_behind(int file, size_t begin, size_t end) {
 
 brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, size_t offset, void *to, size_t size) {
     bool direct;
-    brio_status status = transfer_all(ctx, f, offset, to, NULL, size, &direct);
+    brio_status status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .in = to}, &direct);
     if (!direct) posix_fadvise(f->cached, (off_t)offset, (off_t)size, POSIX_FADV_DONTNEED);
     return status;
 }
@@ -152,7 +158,7 @@ brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, siz
 brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, size_t offset, const void *from,
                                size_t size) {
     bool direct;
-    brio_status status = transfer_all(ctx, f, offset, NULL, from, size, &direct);
+    brio_status status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .out = from}, &direct);
     if (!direct) write_behind(f->cached, offset, offset + size);
     return status;
 }

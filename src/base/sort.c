@@ -161,16 +161,15 @@ uint64_t brio_double_key(double x) {
     return bits >> 63 ? ~bits : bits | UINT64_C(1) << 63;
 }
 
-brio_status brio_sort_rows(brio_context *ctx, const double *rows, size_t stride, uint32_t *indices, size_t n,
-                           brio_compare_fn compare, const void *user) {
+brio_status brio_sort_rows(brio_context *ctx, const brio_row_order *by, uint32_t *indices, size_t n) {
     uint64_t *keys = NULL;
     brio_status status = BRIO_ALLOC(ctx, keys, n);
     if (status != BRIO_OK) return status;
-    for (size_t i = 0; i < n; i++) keys[i] = brio_double_key(rows[stride * indices[i]]);
+    for (size_t i = 0; i < n; i++) keys[i] = brio_double_key(by->rows[by->stride * indices[i]]);
     status = brio_radix_sort(ctx, keys, indices, n, 64);
     for (size_t begin = 0, end; status == BRIO_OK && begin < n; begin = end) {
         for (end = begin + 1; end < n && keys[end] == keys[begin];) end++;
-        brio_sort_indices(indices + begin, end - begin, compare, user);
+        brio_sort_indices(indices + begin, end - begin, by->compare, by->user);
     }
     brio_release(ctx, keys);
     return status;

@@ -24,8 +24,15 @@ void brio_sort_indices(uint32_t *indices, size_t n, brio_compare_fn compare, con
 /** Unsigned key with the order of the doubles; -0 and 0 have the same. */
 uint64_t brio_double_key(double x);
 
-/** Sorts rows of an array by their first number, ties by `compare`: indices[i] name the rows of `stride` doubles. */
-brio_status brio_sort_rows(brio_context *ctx, const double *rows, size_t stride, uint32_t *indices, size_t n,
-                           brio_compare_fn compare, const void *user);
+/** An order of the rows of an array: by their first number, then as `compare` says. */
+typedef struct {
+    const double *rows;
+    size_t stride; /* doubles in a row */
+    brio_compare_fn compare;
+    const void *user; /* of compare */
+} brio_row_order;
+
+/** Sorts n indices of rows.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_sort_rows(brio_context *ctx, const brio_row_order *by, uint32_t *indices, size_t n);
 
 #endif

@@ -13,6 +13,10 @@ static size_t size_of(const void *given) {
     return size;
 }
 
+static bool is_plausible(size_t size) {
+    return size > sizeof size && size <= MOST_BYTES;
+}
+
 static bool all_zero(const void *bytes, size_t from, size_t to) {
     for (size_t i = from; i < to; i++)
         if (((const unsigned char *)bytes)[i]) return false;
@@ -35,7 +39,7 @@ void brio_versioned_init(void *given, size_t size, const void *defaults, size_t 
 brio_status brio_versioned_check(brio_context *ctx, const void *given, const char *name) {
     if (!given) return BRIO_OK;
     size_t size = size_of(given);
-    if (size > sizeof size && size <= MOST_BYTES) return BRIO_OK;
+    if (is_plausible(size)) return BRIO_OK;
     return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s.size is %zu: set it to sizeof(%s), or initialise the struct", name,
                      size, name);
 }
@@ -53,8 +57,8 @@ brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine
 }
 
 void brio_versioned_give(void *given, const void *mine, size_t mine_size) {
-    if (!given) return;
-    size_t size = size_of(given);
+    size_t size = given ? size_of(given) : 0;
+    if (!is_plausible(size)) return;
     memset((char *)given + sizeof size, 0, size - sizeof size);
     copy_fields(given, size, mine, mine_size);
 }

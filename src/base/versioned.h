@@ -23,7 +23,7 @@ brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine
 brio_status brio_versioned_check(brio_context *ctx, const void *given, const char *name);
 
 /** Copies a result into the caller's struct as far as that goes: its size stays, bytes beyond the library's struct become
- *  0. Does nothing for NULL. */
+ *  0. Does nothing for NULL and for a size that brio_versioned_check refuses. */
 void brio_versioned_give(void *given, const void *mine, size_t mine_size);
 
 /** The public initialiser of a struct of options whose defaults are the static constant STANDARD of the file. */

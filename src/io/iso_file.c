@@ -73,8 +73,9 @@ static brio_status make_surface(brio_context *ctx, const source *from, const bri
     if (from->kind == SOURCE_MAP)
         BRIO_TRY(brio_volume_surface(ctx, &from->volume, o->level, resolution, o->conforming, out));
     else
-        BRIO_TRY(brio_density_surface(ctx, from->atoms, from->num_atoms, o->level, o->blobbiness, resolution,
-                                      o->conforming, out));
+        BRIO_TRY(brio_density_surface(ctx, from->atoms, from->num_atoms,
+                                      &(brio_density_options){o->level, o->blobbiness, resolution, o->conforming},
+                                      out));
     if ((*out)->num_faces) return BRIO_OK;
     brio_mesh_free(*out);
     *out = NULL;

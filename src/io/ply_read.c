@@ -124,7 +124,7 @@ static void convert_vertices(const ply_reader *r, const brio_ply_element *e, con
             char *target = (char *)mesh->properties[p->target].data + first * size;
             brio_scalar_gather(target, source, rows, stride, size, r->swap);
         } else if (consecutive(e, i) == 3) {
-            brio_scalar_convert(mesh->vertices + 3 * first, source, rows, stride, 3, p->type, r->swap);
+            brio_scalar_convert_triples(mesh->vertices + 3 * first, source, rows, stride, p->type, r->swap);
             i += 2;
         } else {
             convert_axis(mesh->vertices + 3 * first + p->target, source, rows, stride, p->type, r->swap);

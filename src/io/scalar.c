@@ -28,14 +28,13 @@ static inline uint64_t turned_64(uint64_t x) {
         memcpy(&value, &raw, sizeof value);                                                                            \
         return (double)value;                                                                                          \
     }                                                                                                                  \
-    static void convert_##type(double *target, const char *source, size_t rows, size_t stride, size_t lanes,           \
-                               bool swap) {                                                                            \
-        if (stride == lanes * sizeof(type) && !swap) {                                                                 \
-            for (size_t i = 0; i < rows * lanes; i++) target[i] = load_##type(source + i * sizeof(type), false);       \
+    static void convert_##type(double *target, const char *source, size_t rows, size_t stride, bool swap) {            \
+        if (stride == 3 * sizeof(type) && !swap) {                                                                     \
+            for (size_t i = 0; i < 3 * rows; i++) target[i] = load_##type(source + i * sizeof(type), false);           \
             return;                                                                                                    \
         }                                                                                                              \
         for (size_t i = 0; i < rows; i++, source += stride)                                                            \
-            for (size_t j = 0; j < lanes; j++) *target++ = load_##type(source + j * sizeof(type), swap);               \
+            for (size_t j = 0; j < 3; j++) *target++ = load_##type(source + j * sizeof(type), swap);                   \
     }
 
 DEFINE_LOAD(int8_t, 8)
@@ -71,32 +70,32 @@ double brio_scalar_load(const void *bytes, brio_scalar type, bool swap) {
     return 0;
 }
 
-void brio_scalar_convert(double *target, const char *source, size_t rows, size_t stride, size_t lanes, brio_scalar type,
-                         bool swap) {
+void brio_scalar_convert_triples(double *target, const char *source, size_t rows, size_t stride, brio_scalar type,
+                                 bool swap) {
     switch (type) {
     case BRIO_SCALAR_INT8:
-        convert_int8_t(target, source, rows, stride, lanes, swap);
+        convert_int8_t(target, source, rows, stride, swap);
         break;
     case BRIO_SCALAR_UINT8:
-        convert_uint8_t(target, source, rows, stride, lanes, swap);
+        convert_uint8_t(target, source, rows, stride, swap);
         break;
     case BRIO_SCALAR_INT16:
-        convert_int16_t(target, source, rows, stride, lanes, swap);
+        convert_int16_t(target, source, rows, stride, swap);
         break;
     case BRIO_SCALAR_UINT16:
-        convert_uint16_t(target, source, rows, stride, lanes, swap);
+        convert_uint16_t(target, source, rows, stride, swap);
         break;
     case BRIO_SCALAR_INT32:
-        convert_int32_t(target, source, rows, stride, lanes, swap);
+        convert_int32_t(target, source, rows, stride, swap);
         break;
     case BRIO_SCALAR_UINT32:
-        convert_uint32_t(target, source, rows, stride, lanes, swap);
+        convert_uint32_t(target, source, rows, stride, swap);
         break;
     case BRIO_SCALAR_FLOAT32:
-        convert_float(target, source, rows, stride, lanes, swap);
+        convert_float(target, source, rows, stride, swap);
         break;
     case BRIO_SCALAR_FLOAT64:
-        convert_double(target, source, rows, stride, lanes, swap);
+        convert_double(target, source, rows, stride, swap);
         break;
     case BRIO_SCALAR_END:
         break;

@@ -14,9 +14,9 @@ double brio_scalar_load(const void *bytes, brio_scalar type, bool swap);
 /** Stores a value; false when the type cannot hold it (a fraction, or out of range). */
 bool brio_scalar_store(void *target, brio_scalar type, double value);
 
-/** Converts `rows` rows that are `stride` bytes apart and begin with `lanes` scalars, to doubles without gaps. */
-void brio_scalar_convert(double *target, const char *source, size_t rows, size_t stride, size_t lanes, brio_scalar type,
-                         bool swap);
+/** Converts the first three scalars of each of `rows` rows that are `stride` bytes apart, to doubles without gaps. */
+void brio_scalar_convert_triples(double *target, const char *source, size_t rows, size_t stride, brio_scalar type,
+                                 bool swap);
 
 /** Gathers `rows` scalars of `size` bytes that are `stride` bytes apart, and turns their bytes round if asked. */
 void brio_scalar_gather(void *target, const char *source, size_t rows, size_t stride, size_t size, bool swap);

@@ -80,8 +80,8 @@ static brio_status read_points(vtu_reader *r, const brio_vtu_array *a) {
         if (rows > count - s->row) rows = (size_t)(count - s->row);
         if (!rows) return brio_stream_truncated(s);
         BRIO_TRY(brio_builder_add_vertices(r->builder, rows));
-        brio_scalar_convert(r->builder->mesh->vertices + 3 * s->row, s->buffer + s->begin, rows, row, 3,
-                            (brio_scalar)a->type, r->header.swap);
+        brio_scalar_convert_triples(r->builder->mesh->vertices + 3 * s->row, s->buffer + s->begin, rows, row,
+                                    (brio_scalar)a->type, r->header.swap);
         s->begin += rows * row;
         s->row += rows;
     }

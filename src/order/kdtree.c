@@ -137,14 +137,14 @@ static void divide(const void *user, size_t begin, size_t end, int passes) {
     divide(k, middle, end, passes + 1);
 }
 
-brio_status brio_kdtree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, uint32_t *index,
-                               brio_block_fn visit, const void *user) {
-    kdtree k = {points, NULL, index, block_size, visit, user};
+brio_status brio_kdtree_blocks(brio_context *ctx, const brio_blocks *b) {
+    kdtree k = {b->points, NULL, b->index, b->block_size, b->visit, b->user};
+    size_t n = b->n;
     if (n == 0) return BRIO_OK;
     brio_status status = BRIO_ALLOC(ctx, k.nodes, n);
     if (status != BRIO_OK) return status;
     for (size_t i = 0; i < n; i++) k.nodes[i] = (node){{0, 0, 0}, (uint32_t)i};
-    size_t least = block_size > POINTS_A_PIECE ? block_size : POINTS_A_PIECE;
+    size_t least = b->block_size > POINTS_A_PIECE ? b->block_size : POINTS_A_PIECE;
     brio_halve(ctx, &(brio_halving){.count = n, .least = least, .cut = cut, .finish = divide, .user = &k});
     brio_release(ctx, k.nodes);
     return BRIO_OK;

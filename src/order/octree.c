@@ -265,16 +265,20 @@ done:
     return status;
 }
 
-brio_status brio_octree_blocks(brio_context *ctx, const double *points, size_t n, size_t block_size, uint32_t *index,
-                               uint32_t *spare, brio_block_fn visit, const void *user) {
-    octree o = {
-        .points = points, .index = index, .spare = spare, .block_size = block_size, .visit = visit, .user = user};
-    grid g = {.points = points, .end = n, .levels = levels_for(n, block_size, ROOT_LEVELS), .passes = 1};
+brio_status brio_octree_blocks(brio_context *ctx, const brio_blocks *b, uint32_t *spare) {
+    octree o = {.points = b->points,
+                .index = b->index,
+                .spare = spare,
+                .block_size = b->block_size,
+                .visit = b->visit,
+                .user = b->user};
+    size_t n = b->n;
+    grid g = {.points = b->points, .end = n, .levels = levels_for(n, b->block_size, ROOT_LEVELS), .passes = 1};
     int threads = brio_threads(ctx, n, POINTS_A_THREAD);
     if (n == 0) return BRIO_OK;
-    g.cube = brio_cube_of(ctx, points, NULL, n, threads);
-    if (n > block_size && brio_cube_divide(&g.cube, g.levels)) return divide_root(ctx, &o, &g, threads);
-    for (size_t i = 0; i < n; i++) index[i] = (uint32_t)i;
+    g.cube = brio_cube_of(ctx, b->points, NULL, n, threads);
+    if (n > b->block_size && brio_cube_divide(&g.cube, g.levels)) return divide_root(ctx, &o, &g, threads);
+    for (size_t i = 0; i < n; i++) b->index[i] = (uint32_t)i;
     visit_crowd(&o, 0, n, 1);
     return BRIO_OK;
 }

@@ -87,11 +87,11 @@ static brio_status order_blocks(maker *m) {
     size_t block_size = m->options->block_size ? m->options->block_size : BLOCK_SIZE;
     brio_status status = need_room(m, &m->index);
     if (status != BRIO_OK) return status;
-    if (m->options->order == BRIO_ORDER_BRIO_KDTREE)
-        return brio_kdtree_blocks(m->ctx, m->points, m->n, block_size, m->index, shuffle_block, m->options);
+    brio_blocks blocks = {m->points, m->n, block_size, m->index, shuffle_block, m->options};
+    if (m->options->order == BRIO_ORDER_BRIO_KDTREE) return brio_kdtree_blocks(m->ctx, &blocks);
     status = need_room(m, &m->spare);
     if (status != BRIO_OK) return status;
-    return brio_octree_blocks(m->ctx, m->points, m->n, block_size, m->index, m->spare, shuffle_block, m->options);
+    return brio_octree_blocks(m->ctx, &blocks, m->spare);
 }
 
 /* --- all of them --- */
@@ -118,7 +118,8 @@ brio_status brio_order_points(brio_context *ctx, const double *points, size_t n,
     maker m = {ctx, points, n, options, in_rounds ? NULL : order, in_rounds ? order : NULL};
     BRIO_TRY(order_index(&m));
     if (in_rounds)
-        BRIO_TRY(brio_divide_into_rounds(ctx, m.index, n, ratio_of(options), options->seed, order, rank, &ends));
+        BRIO_TRY(brio_divide_into_rounds(
+            ctx, &(brio_division){m.index, n, ratio_of(options), options->seed, order, rank}, &ends));
     else
         for (size_t i = 0; rank && i < n; i++) rank[i] = (uint32_t)i;
     if (rounds) *rounds = ends;

@@ -46,17 +46,16 @@ static void first_places(size_t (*place)[BRIO_MOST_ROUNDS], int threads, brio_ro
 
 /* A division in the making. */
 typedef struct {
-    const uint32_t *index;
-    uint64_t seed, least[BRIO_MOST_ROUNDS + 1];
+    const brio_division *of;
+    uint64_t least[BRIO_MOST_ROUNDS + 1];
     uint8_t *back;                     /* of each index: how many rounds before the last */
     size_t (*place)[BRIO_MOST_ROUNDS]; /* of each thread and round, by rounds before the last: a count, then a place */
-    uint32_t *order, *rank;
 } division;
 
 static void count_part(void *user, size_t begin, size_t end, int thread) {
     const division *d = user;
     for (size_t i = begin; i < end; i++) {
-        d->back[i] = (uint8_t)rounds_before_last(brio_hash(d->seed, d->index[i]), d->least);
+        d->back[i] = (uint8_t)rounds_before_last(brio_hash(d->of->seed, d->of->index[i]), d->least);
         d->place[thread][d->back[i]]++;
     }
 }
@@ -65,22 +64,22 @@ static void place_part(void *user, size_t begin, size_t end, int thread) {
     const division *d = user;
     for (size_t i = begin; i < end; i++) {
         size_t to = d->place[thread][d->back[i]]++;
-        d->order[to] = d->index[i];
-        if (d->rank) d->rank[to] = (uint32_t)i;
+        d->of->order[to] = d->of->index[i];
+        if (d->of->rank) d->of->rank[to] = (uint32_t)i;
     }
 }
 
-brio_status brio_divide_into_rounds(brio_context *ctx, const uint32_t *index, size_t n, double ratio, uint64_t seed,
-                                    uint32_t *order, uint32_t *rank, brio_round_ends *rounds) {
+brio_status brio_divide_into_rounds(brio_context *ctx, const brio_division *of, brio_round_ends *ends) {
     brio_status status = BRIO_OK;
-    division d = {.index = index, .seed = seed, .order = order, .rank = rank};
+    division d = {.of = of};
+    size_t n = of->n;
     int threads = brio_threads(ctx, n, INDICES_A_THREAD);
-    rounds->count = set_rounds(n, ratio, d.least);
+    ends->count = set_rounds(n, of->ratio, d.least);
     BRIO_TRY(BRIO_ALLOC(ctx, d.back, n));
     brio_expect_sequence(d.back);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, d.place, (size_t)threads));
     brio_for(ctx, threads, n, count_part, &d);
-    first_places(d.place, threads, rounds);
+    first_places(d.place, threads, ends);
     brio_for(ctx, threads, n, place_part, &d);
 done:
     brio_release(ctx, d.back);

@@ -12,12 +12,17 @@ typedef struct {
     size_t end[BRIO_MOST_ROUNDS];
 } brio_round_ends;
 
-/** order = the n indices by rounds, in each round in the order in which they stand. The round of a point follows from
- *  the seed and its index.
- *  ratio  share of the points left for the rounds before the last.
- *  rank   NULL, or receives for each place in the order the index's place in `index`.
- *  Needs n bytes of workspace. */
-brio_status brio_divide_into_rounds(brio_context *ctx, const uint32_t *index, size_t n, double ratio, uint64_t seed,
-                                    uint32_t *order, uint32_t *rank, brio_round_ends *rounds);
+/** What is to be divided into rounds, and where the result goes. */
+typedef struct {
+    const uint32_t *index; /* n indices of points */
+    size_t n;
+    double ratio;    /* share of the points left for the rounds before the last */
+    uint64_t seed;   /* the round of a point follows from the seed and the point's index */
+    uint32_t *order; /* receives the indices by rounds, within a round in the order in which they stand in `index` */
+    uint32_t *rank;  /* NULL, or receives for each place in the order the place in `index` */
+} brio_division;
+
+/** Divides indices into rounds.   ends  receives where the rounds end.   Needs n bytes of workspace. */
+brio_status brio_divide_into_rounds(brio_context *ctx, const brio_division *division, brio_round_ends *ends);
 
 #endif

@@ -123,14 +123,14 @@ done:
     return status;
 }
 
-brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size_t num_atoms, double level,
-                                 double blobbiness, size_t resolution, bool conforming, brio_mesh **out) {
+brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size_t num_atoms,
+                                 const brio_density_options *o, brio_mesh **out) {
     brio_status status = BRIO_OK;
-    density d = {.level = level, .blobbiness = blobbiness, .low = {INFINITY, INFINITY, INFINITY}};
+    density d = {.level = o->level, .blobbiness = o->blobbiness, .low = {INFINITY, INFINITY, INFINITY}};
     brio_implicit_grid grid = {.value = below_level, .user = &d};
     double high[3] = {-INFINITY, -INFINITY, -INFINITY}, extent[3], largest = 0;
     *out = NULL;
-    BRIO_TRY(check_arguments(ctx, &d, num_atoms, resolution));
+    BRIO_TRY(check_arguments(ctx, &d, num_atoms, o->resolution));
     for (size_t i = 0; i < num_atoms; i++) {
         largest = fmax(largest, atoms[i].radius);
         for (int k = 0; k < 3; k++) {
@@ -139,14 +139,14 @@ brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size
         }
     }
     for (int k = 0; k < 3; k++) extent[k] = high[k] - d.low[k];
-    d.reach = 1 - log(NEGLIGIBLE * level) / blobbiness; /* not positive for a level above all densities */
+    d.reach = 1 - log(NEGLIGIBLE * o->level) / o->blobbiness; /* not positive for a level above all densities */
     double reach = sqrt(fmax(d.reach, 0.01)) * largest;
     BRIO_REQUIRE(ctx, isfinite(reach) && isfinite(extent[0] + extent[1] + extent[2]), BRIO_ERR_ARGUMENT,
-                 "level %g with blobbiness %g: the atoms reach too far for a grid", level, blobbiness);
+                 "level %g with blobbiness %g: the atoms reach too far for a grid", o->level, o->blobbiness);
     choose_buckets(&d, extent, reach, num_atoms);
     BRIO_TRY(fill_buckets(ctx, &d, atoms, num_atoms));
-    BRIO_TRY(choose_grid(ctx, &d, extent, reach, resolution, &grid));
-    BRIO_TRY(conforming ? brio_conforming_surface(ctx, &grid, out) : brio_marched_surface(ctx, &grid, out));
+    BRIO_TRY(choose_grid(ctx, &d, extent, reach, o->resolution, &grid));
+    BRIO_TRY(o->conforming ? brio_conforming_surface(ctx, &grid, out) : brio_marched_surface(ctx, &grid, out));
 done:
     brio_release(ctx, d.atoms);
     brio_release(ctx, d.start);

@@ -29,7 +29,7 @@ static brio_status number_positions(brio_context *ctx, const brio_mesh *mesh, ui
     size_t n = mesh->num_vertices;
     BRIO_TRY(BRIO_ALLOC(ctx, order, n));
     for (size_t v = 0; v < n; v++) order[v] = (uint32_t)v;
-    BRIO_TRY(brio_sort_rows(ctx, mesh->vertices, 3, order, n, compare_positions, mesh->vertices));
+    BRIO_TRY(brio_sort_rows(ctx, &(brio_row_order){mesh->vertices, 3, compare_positions, mesh->vertices}, order, n));
     for (size_t i = 0; i < n; i++) {
         bool same = i > 0 && compare_positions(order[i - 1], order[i], mesh->vertices) == 0;
         number[order[i]] = same ? number[order[i - 1]] : order[i];

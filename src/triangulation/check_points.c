@@ -116,7 +116,7 @@ static brio_status check_counts(workspace *w) {
     const brio_record *r = w->j->t.record;
     const brio_delaunay_stats *s = &w->result->stats;
     size_t hidden = 0;
-    BRIO_TRY(brio_sort_rows(w->j->ctx, *r, 4, w->hidden, w->num_hidden, compare_positions, r));
+    BRIO_TRY(brio_sort_rows(w->j->ctx, &(brio_row_order){*r, 4, compare_positions, r}, w->hidden, w->num_hidden));
     for (size_t i = 0; i < w->num_hidden; i++)
         hidden += i == 0 || !brio_same_position(r[w->hidden[i - 1]], r[w->hidden[i]]);
     size_t duplicates = w->j->num_points - w->num_vertices - hidden;

@@ -22,7 +22,7 @@ static brio_status lexicographic_ranks(brio_context *ctx, const brio_triangulati
     BRIO_TRY(BRIO_ALLOC(ctx, vertex, t->stats.vertices));
     for (size_t p = 0; p < t->stats.points; p++)
         if (t->representative[p] == p) vertex[n++] = (uint32_t)p;
-    BRIO_TRY(brio_sort_rows(ctx, points, 3, vertex, n, compare_points, points));
+    BRIO_TRY(brio_sort_rows(ctx, &(brio_row_order){points, 3, compare_points, points}, vertex, n));
     for (size_t i = 0; i < n; i++) rank[vertex[i]] = (uint32_t)i;
 done:
     brio_release(ctx, vertex);

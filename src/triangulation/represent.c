@@ -50,7 +50,8 @@ static int compare_hidden(uint32_t p, uint32_t q, const void *user) {
 
 static brio_status count_hidden(workspace *w) {
     brio_kernel *k = w->k;
-    brio_status status = brio_sort_rows(k->ctx, *k->record, 4, w->hidden, w->num_hidden, compare_hidden, k);
+    brio_status status =
+        brio_sort_rows(k->ctx, &(brio_row_order){*k->record, 4, compare_hidden, k}, w->hidden, w->num_hidden);
     if (status != BRIO_OK) return status;
     for (size_t n = 0; n < w->num_hidden; n++) {
         bool again = n > 0 && brio_same_position(k->record[w->hidden[n - 1]], k->record[w->hidden[n]]);

@@ -61,7 +61,7 @@ static void theory_free(theory *x) {
 
 /* The angle at which two balls intersect, 0 where they do not. */
 static double angle_between(const brio_pole_graph *g, uint32_t p, uint32_t q) {
-    return acos(fmin(1, fmax(-1, -brio_pole_graph_weight(g, p, q))));
+    return acos(fmin(1, fmax(-1, -brio_ball_weight(g->diagram->poles, p, q))));
 }
 
 /* Lemma 38, for the two balls of each sample and for all that share a face of the power diagram. */
@@ -186,12 +186,12 @@ static void check_unions(const theory *x) {
 static void check_crust_edges(const theory *x, const brio_pole_graph *g) {
     double narrowest = INFINITY;
     size_t edges = 0;
-    for (size_t facet = 0; facet < 4 * g->num_finite; facet++) {
-        const uint32_t *v = g->power.tet[facet / 4].vertex;
+    for (size_t facet = 0; facet < 4 * g->diagram->num_finite; facet++) {
+        const uint32_t *v = g->diagram->power.tet[facet / 4].vertex;
         uint32_t p[3];
         int inner = 0;
         for (int k = 0; k < 3; k++) p[k] = v[BRIO_FACET[facet % 4][k]], inner += x->truth[p[k]] == BRIO_LABEL_INNER;
-        if (inner == 0 || inner == 3 || *brio_mate(&g->power, (uint32_t)facet) < facet) continue;
+        if (inner == 0 || inner == 3 || *brio_mate(&g->diagram->power, (uint32_t)facet) < facet) continue;
         uint8_t twice = inner == 2 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
         int odd = x->truth[p[0]] != twice ? 0 : x->truth[p[1]] != twice ? 1 : 2;
         narrowest = fmin(narrowest, angle_between(g, p[(odd + 1) % 3], p[(odd + 2) % 3]));
@@ -214,7 +214,9 @@ static void check_labels(const theory *x, const brio_pole_graph *g, label_fn fin
 static brio_pole_graph graph_of(const theory *x, double least_weight) {
     brio_pole_graph g;
     brio_pole_evidence evidence = {least_weight, false};
-    EXPECT(brio_pole_graph_new(x->ctx, &x->poles, x->points, x->n, x->power, evidence, &g) == BRIO_OK);
+    static brio_power_diagram diagram; /* of the one theory there is at a time */
+    diagram = brio_power_diagram_of(&x->poles, x->points, x->n, x->power);
+    EXPECT(brio_pole_graph_new(x->ctx, &diagram, evidence, &g) == BRIO_OK);
     return g;
 }
 

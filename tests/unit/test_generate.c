@@ -356,7 +356,7 @@ static void empty_iso_surface_has_no_faces(void) {
 /* --- memory and cancelling --- */
 
 static brio_status make_scan(brio_context *context) {
-    brio_generate_options options = {.seed = 1, .noise = 0.1, .views = 2};
+    brio_generate_options options = {.size = sizeof options, .seed = 1, .noise = 0.1, .views = 2};
     brio_mesh *mesh = NULL;
     brio_status status = brio_generate(context, BRIO_KIND_SCAN, 40, &options, &mesh);
     brio_mesh_free(mesh);

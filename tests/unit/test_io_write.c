@@ -149,7 +149,7 @@ static void refuse_what_the_format_cannot_hold(void) {
     options.format = BRIO_FORMAT_NODE;
     EXPECT(brio_write(io_ctx, "-", mesh, &options) == BRIO_ERR_ARGUMENT, "two files");
     mesh->vertices[4] = 1e300;
-    options = (brio_write_options){.float32 = 1};
+    options = (brio_write_options){.size = sizeof(brio_write_options), .float32 = 1};
     EXPECT(brio_write(io_ctx, io_path("t.ply"), mesh, &options) == BRIO_ERR_ARGUMENT);
     EXPECT(strstr(brio_message(io_ctx), "point 1 "), "%s", brio_message(io_ctx));
     brio_mesh_free(mesh);
@@ -168,7 +168,9 @@ static void full_disk_is_a_status(void) {
 static void unwritable_folder_is_a_status(void) {
     brio_mesh *mesh = io_make(10, 0);
     EXPECT(brio_write(io_ctx, io_path("no/such/folder/a.ply"), mesh, NULL) == BRIO_ERR_WRITE);
-    EXPECT(brio_write(io_ctx, io_folder, mesh, &(brio_write_options){.format = BRIO_FORMAT_PLY}) == BRIO_ERR_WRITE);
+    EXPECT(brio_write(io_ctx, io_folder, mesh,
+                      &(brio_write_options){.size = sizeof(brio_write_options), .format = BRIO_FORMAT_PLY}) ==
+           BRIO_ERR_WRITE);
     brio_mesh_free(mesh);
 }
 
@@ -257,7 +259,7 @@ static void link_to_no_file_makes_the_file(void) {
 
 static void names_that_cannot_be_written_are_a_status(void) {
     brio_mesh *mesh = io_make(10, 0);
-    brio_write_options ply = {.format = BRIO_FORMAT_PLY};
+    brio_write_options ply = {.size = sizeof(brio_write_options), .format = BRIO_FORMAT_PLY};
     EXPECT(symlink("b.ply", io_path("a.ply")) == 0 && symlink("a.ply", io_path("b.ply")) == 0);
     EXPECT(symlink(".", io_path("folder.ply")) == 0);
     const char *const wrong[] = {"a.ply", "folder.ply", "new/", ".", "a.ply/x.ply"};
@@ -295,7 +297,9 @@ static void file_without_a_name_is_written_in_place(void) {
     int out = dup(1), file = open(io_path("gone.ply"), O_RDWR | O_CREAT, 0600);
     unlink(io_path("gone.ply"));
     dup2(file, 1);
-    brio_status status = brio_write(io_ctx, "/dev/stdout", mesh, &(brio_write_options){.format = BRIO_FORMAT_PLY});
+    brio_status status =
+        brio_write(io_ctx, "/dev/stdout", mesh,
+                   &(brio_write_options){.size = sizeof(brio_write_options), .format = BRIO_FORMAT_PLY});
     dup2(out, 1);
     EXPECT(status == BRIO_OK && io_count_files("") == 0, "%s", brio_message(io_ctx));
     int in = dup(0);
@@ -319,7 +323,7 @@ static void expect_cancelled_wait(int other_side) {
     for (int allowed = 0; allowed < 3; allowed++) {
         int left = allowed;
         brio_context_set_progress(io_ctx, cancel, &left);
-        brio_write_options ply = {.format = BRIO_FORMAT_PLY};
+        brio_write_options ply = {.size = sizeof(brio_write_options), .format = BRIO_FORMAT_PLY};
         EXPECT(brio_write(io_ctx, io_path("fifo"), mesh, &ply) == BRIO_ERR_CANCELLED, "%s", brio_message(io_ctx));
         char taken[4096]; /* what was written must not be there to be read */
         while (other >= 0 && read(other, taken, sizeof taken) > 0) {}

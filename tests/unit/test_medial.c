@@ -40,8 +40,8 @@ static size_t number_inner(const brio_labeled_poles *l, uint32_t *number) {
 /* The shape has the tetrahedra of the dual between inner poles, in their order and as they are turned. */
 static void expect_tetrahedra_of_dual(const brio_labeled_poles *l, const uint32_t *number, const brio_mesh *shape) {
     size_t count = 0;
-    for (size_t tet = 0; tet < l->graph.num_finite; tet++) {
-        const uint32_t *v = l->graph.power.tet[tet].vertex;
+    for (size_t tet = 0; tet < l->diagram.num_finite; tet++) {
+        const uint32_t *v = l->diagram.power.tet[tet].vertex;
         uint32_t w[4];
         int inner = 0;
         for (int i = 0; i < 4; i++) w[i] = number[v[i]], inner += w[i] != UINT32_MAX;
@@ -66,9 +66,9 @@ static void shape_is_the_dual_between_inner_poles(void) {
     size_t n = number_inner(&l, number), edges = 0, triangles = 0;
     uint8_t *edge = calloc(n * n, 1), *triangle = calloc(n * n * n, 1);
     EXPECT(shape->num_vertices == n && n < 400);
-    for (size_t tet = 0; tet < l.graph.num_finite; tet++)
+    for (size_t tet = 0; tet < l.diagram.num_finite; tet++)
         for (int i = 0; i < 64; i++) {
-            const uint32_t *v = l.graph.power.tet[tet].vertex;
+            const uint32_t *v = l.diagram.power.tet[tet].vertex;
             size_t a = number[v[i % 4]], b = number[v[i / 4 % 4]], d = number[v[i / 16]];
             if (a >= b || b == UINT32_MAX) continue;
             edges += !edge[n * a + b], edge[n * a + b] = 1;
@@ -188,7 +188,7 @@ static void expect_cover(const double *centre, const double *square, size_t n, c
     uint32_t *balls = malloc(n * sizeof *balls);
     uint8_t *keep = malloc(n);
     for (size_t i = 0; i < n; i++) balls[i] = (uint32_t)i, keep[i] = 1;
-    EXPECT(brio_cover_balls(ctx, centre, square, balls, n, rule, keep) == BRIO_OK);
+    EXPECT(brio_cover_balls(ctx, &(brio_balls){centre, square, balls, n}, rule, keep) == BRIO_OK);
     for (size_t b = 0; b < n; b++) {
         bool left_out = false, surely = false;
         for (size_t a = 0; a < n; a++) {
@@ -332,8 +332,8 @@ static void poles_that_are_kept_keep_what_is_theirs(void) {
     brio_labeled_poles l, all;
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_pole_request request;
-    o.simplify = 1;
     EXPECT(brio_pole_request_of(ctx, &o.poles, o.seed, &request) == BRIO_OK);
+    request.spacing = true;
     EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
     EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &all) == BRIO_OK);
     uint8_t *keep = calloc(all.poles.count, 1);

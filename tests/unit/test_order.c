@@ -239,8 +239,8 @@ static double make_blocks(bool octree, size_t n, size_t block_size) {
     brio_context *ctx = new_context();
     double work = 0;
     memset(blocks, 0, sizeof blocks);
-    brio_status status = octree ? brio_octree_blocks(ctx, points, n, block_size, index_of, spare, keep_block, NULL)
-                                : brio_kdtree_blocks(ctx, points, n, block_size, index_of, keep_block, NULL);
+    brio_blocks wanted = {points, n, block_size, index_of, keep_block, NULL};
+    brio_status status = octree ? brio_octree_blocks(ctx, &wanted, spare) : brio_kdtree_blocks(ctx, &wanted);
     EXPECT(status == BRIO_OK && is_permutation(index_of, n));
     for (size_t begin = 0; begin < n;) {
         const brio_block *b = &blocks[begin];

@@ -28,15 +28,16 @@ static size_t count_edges(const brio_pole_graph *g, uint32_t p, uint32_t q, bool
 /* Each pair of vertices of a tetrahedron that intersects deeply is an edge, once, and no other pair is but, in the balanced
  * graph, those that intersect a little. */
 static void check_neighbours(const brio_pole_graph *g, double least, bool balanced) {
-    size_t n = g->poles->count, found = 0, listed = 0;
+    size_t n = g->diagram->poles->count, found = 0, listed = 0;
     uint8_t *pair = calloc(n * n, 1);
-    for (size_t tet = 0; tet < g->num_finite; tet++)
+    for (size_t tet = 0; tet < g->diagram->num_finite; tet++)
         for (int i = 0; i < 4; i++)
-            for (int j = 0; j < 4; j++) pair[n * g->power.tet[tet].vertex[i] + g->power.tet[tet].vertex[j]] = 1;
+            for (int j = 0; j < 4; j++)
+                pair[n * g->diagram->power.tet[tet].vertex[i] + g->diagram->power.tet[tet].vertex[j]] = 1;
     for (uint32_t p = 0; p < n; p++)
         for (uint32_t q = 0; q < n; q++) {
             if (p == q || !pair[n * p + q]) continue;
-            double weight = brio_pole_graph_weight(g, p, q);
+            double weight = brio_ball_weight(g->diagram->poles, p, q);
             size_t count = count_edges(g, p, q, false);
             EXPECT(count == (weight > least), "poles %u, %u: %zu edges of weight %g", p, q, count, weight);
             double wanted = fmax(0, fmin(1, balanced ? weight * weight : weight));
@@ -53,12 +54,12 @@ static void check_neighbours(const brio_pole_graph *g, double least, bool balanc
 
 /* The poles of a sample have an edge of the cosine of their angle, less where the cell is badly shaped and this counts. */
 static void check_opposite(const brio_pole_graph *g, bool balanced, size_t *doubted) {
-    for (size_t s = 0; s < g->num_samples; s++) {
-        uint32_t p = g->poles->of_sample[2 * s], q = g->poles->of_sample[2 * s + 1];
+    for (size_t s = 0; s < g->diagram->num_samples; s++) {
+        uint32_t p = g->diagram->poles->of_sample[2 * s], q = g->diagram->poles->of_sample[2 * s + 1];
         if (p == BRIO_NO_POLE || q == BRIO_NO_POLE || p == q) continue;
-        const double *x = g->samples + 3 * s, *a = g->poles->centre + 3 * (size_t)p,
-                     *b = g->poles->centre + 3 * (size_t)q;
-        double ab = 0, aa = 0, bb = 0, trust = balanced ? fmin(1, pow(g->poles->shape[s] / 1.3, 6)) : 1;
+        const double *x = g->diagram->samples + 3 * s, *a = g->diagram->poles->centre + 3 * (size_t)p,
+                     *b = g->diagram->poles->centre + 3 * (size_t)q;
+        double ab = 0, aa = 0, bb = 0, trust = balanced ? fmin(1, pow(g->diagram->poles->shape[s] / 1.3, 6)) : 1;
         for (int k = 0; k < 3; k++) {
             ab += (a[k] - x[k]) * (b[k] - x[k]);
             aa += (a[k] - x[k]) * (a[k] - x[k]);
@@ -137,6 +138,7 @@ enum { POLES = 60, EDGES = 150 };
 /* Poles at random places, and random edges between near numbers, so that there are rounds of several blocks. */
 typedef struct {
     brio_poles poles;
+    brio_power_diagram diagram;
     brio_pole_graph g;
     double centre[3 * POLES];
     size_t first[POLES + 1];
@@ -163,7 +165,8 @@ static void make_graph(random_graph *r, brio_context *ctx, uint64_t seed) {
     }
     r->first[POLES] = count;
     r->poles = (brio_poles){.count = POLES, .centre = r->centre};
-    r->g = (brio_pole_graph){.ctx = ctx, .poles = &r->poles, .first = r->first, .edge = r->edge};
+    r->diagram = (brio_power_diagram){.poles = &r->poles};
+    r->g = (brio_pole_graph){.ctx = ctx, .diagram = &r->diagram, .first = r->first, .edge = r->edge};
 }
 
 static void check_blocks(const random_graph *r, const brio_pole_blocks *b) {

@@ -457,7 +457,8 @@ static void lone_atom_is_the_ball_of_its_radius(void) {
     const brio_atom atom = {{1, 2, 3}, 1.7};
     for (double blobbiness = 0.5; blobbiness < 20; blobbiness *= 2) {
         brio_mesh *mesh = NULL;
-        EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, blobbiness, 40, false, &mesh) == BRIO_OK);
+        EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){1, blobbiness, 40, false}, &mesh) ==
+               BRIO_OK);
         brio_certificate c = certify(mesh);
         EXPECT(c.genus == 0 && c.components == 1);
         for (size_t i = 0; i < mesh->num_vertices; i++) {
@@ -492,7 +493,8 @@ static void vertices_have_the_level(void) {
     }
     for (int l = 0; l < 3; l++) {
         brio_mesh *mesh = NULL;
-        EXPECT(brio_density_surface(io_ctx, atoms, ATOMS, levels[l], 2, 40, false, &mesh) == BRIO_OK);
+        EXPECT(brio_density_surface(io_ctx, atoms, ATOMS, &(brio_density_options){levels[l], 2, 40, false}, &mesh) ==
+               BRIO_OK);
         brio_certificate c = certify(mesh);
         for (size_t i = 0; i < mesh->num_vertices; i++) {
             double found = density_at(atoms, ATOMS, 2, mesh->vertices + 3 * i) / levels[l];
@@ -507,26 +509,32 @@ static void vertices_have_the_level(void) {
 static void atoms_far_apart(void) {
     const brio_atom atoms[2] = {{{-9999, -9999, -9999}, 1.5}, {{9999, 9999, 9999}, 1.5}};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_density_surface(io_ctx, atoms, 2, 1, 2, 30, false, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_density_surface(io_ctx, atoms, 2, &(brio_density_options){1, 2, 30, false}, &mesh) == BRIO_OK, "%s",
+           brio_message(io_ctx));
     brio_mesh_free(mesh);
 }
 
 static void level_above_all_densities(void) {
     const brio_atom atom = {{0, 0, 0}, 1};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1e9, 2, 0, false, &mesh) == BRIO_OK && mesh->num_faces == 0);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){1e9, 2, 0, false}, &mesh) == BRIO_OK &&
+           mesh->num_faces == 0);
     brio_mesh_free(mesh);
 }
 
 static void density_arguments(void) {
     const brio_atom atom = {{0, 0, 0}, 1};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_density_surface(io_ctx, NULL, 0, 1, 2, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 0, 2, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, -1, 2, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 0, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 1e9, 0, false, &mesh) == BRIO_ERR_ARGUMENT);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 2, 40000, false, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_density_surface(io_ctx, NULL, 0, &(brio_density_options){1, 2, 0, false}, &mesh) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){0, 2, 0, false}, &mesh) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){-1, 2, 0, false}, &mesh) ==
+           BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){1, 0, 0, false}, &mesh) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){1, 1e9, 0, false}, &mesh) ==
+           BRIO_ERR_ARGUMENT);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){1, 2, 40000, false}, &mesh) ==
+               BRIO_ERR_ARGUMENT &&
+           !mesh);
 }
 
 /* --- files to surfaces --- */
@@ -535,8 +543,12 @@ static void density_arguments(void) {
 static void density_that_reaches_everywhere_is_refused(void) {
     const brio_atom atom = {{1, 2, 3}, 1.5};
     brio_mesh *mesh = NULL;
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 5e-324, 2, 0, false, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(brio_density_surface(io_ctx, &atom, 1, 1, 5e-324, 0, false, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){5e-324, 2, 0, false}, &mesh) ==
+               BRIO_ERR_ARGUMENT &&
+           !mesh);
+    EXPECT(brio_density_surface(io_ctx, &atom, 1, &(brio_density_options){1, 5e-324, 0, false}, &mesh) ==
+               BRIO_ERR_ARGUMENT &&
+           !mesh);
     EXPECT(strstr(brio_message(io_ctx), "reach too far"), "%s", brio_message(io_ctx));
 }
 

@@ -141,8 +141,8 @@ brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_poin
     if (o.density) BRIO_TRY(add_properties(&surface, exponent, mesh, &surface.stats));
     *out = mesh;
     mesh = NULL;
-    BRIO_GIVE(brio_cocone_stats, stats, &surface.stats);
 done:
+    BRIO_GIVE(brio_cocone_stats, stats, &surface.stats);
     ctx->progress_from = 0, ctx->progress_to = 1;
     brio_mesh_free(mesh);
     brio_cocone_surface_free(ctx, &surface);

@@ -74,13 +74,12 @@ static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
     return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
 }
 
-/* Lists the facet in slot i of a tetrahedron, with its own counts, if it is to be looked at closer: of a facet and its mate
- * the lesser one, unless no closer look is needed. */
-static inline size_t list_if_open(const brio_pole_vectors *v, const side_counts counts, uint8_t all, size_t tet, int i,
-                                  uint8_t here, uint32_t *open) {
-    uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = v->t.tet[tet].mate[i];
+/* Whether a facet has to be looked at closer: of a facet and its mate the lesser one, unless their counts decide.
+ * here  the facet's own count.   all  the bits of `sides` that count. */
+static inline bool is_open(const brio_pole_vectors *v, const side_counts counts, uint8_t all, uint32_t facet,
+                           uint8_t here) {
+    uint32_t mate = v->t.tet[brio_tet_of(facet)].mate[brio_slot_of(facet)];
     uint8_t there = counts[v->sides[brio_tet_of(mate)] & all][brio_slot_of(mate)];
-    *open = facet;
     return (facet < mate) & !misses_surely(here, there);
 }
 
@@ -92,9 +91,12 @@ static size_t list_open_facets(const brio_cocones *c, const side_counts counts, 
     size_t count = 0;
     for (size_t tet = from; tet < to; tet++) {
         const uint8_t *here = counts[v.sides[tet] & all];
-        for (int i = 0; i < 3 && tet < v.num_finite; i++) /* of the others these have the infinite vertex */
-            count += list_if_open(&v, counts, all, tet, i, here[i], open + count);
-        count += list_if_open(&v, counts, all, tet, 3, here[3], open + count);
+        /* facets 0 to 2 of an infinite tetrahedron have the infinite vertex */
+        for (int i = tet < v.num_finite ? 0 : 3; i < 4; i++) {
+            uint32_t facet = brio_facet_of((uint32_t)tet, i);
+            open[count] = facet; /* written always, kept or not: no branch could be foreseen */
+            count += is_open(&v, counts, all, facet, here[i]);
+        }
     }
     for (size_t n = 0; n < count; n++) __builtin_prefetch(&v.t.tet[brio_tet_of(*brio_mate(&v.t, open[n]))]);
     return count;

@@ -90,17 +90,15 @@ done:
 static brio_status extract(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_cocone_surface *out = r->out;
-    uint32_t *facets = NULL;
-    size_t num_facets;
-    BRIO_TRY(brio_make_manifold(r->ctx, &r->labels, &facets, &num_facets, &out->stats.relabeled));
-    BRIO_TRY(
-        brio_extract_faces(r->ctx, &r->labels, !r->options->tight, facets, num_facets, &out->faces, &out->num_faces));
+    brio_facets boundary = {0};
+    BRIO_TRY(brio_make_manifold(r->ctx, &r->labels, &boundary, &out->stats.relabeled));
+    BRIO_TRY(brio_extract_faces(r->ctx, &r->labels, !r->options->tight, &boundary, &out->faces, &out->num_faces));
     BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_ERR_NO_ANSWER, "no inside found");
     lap(r, &out->stats.manifold_seconds);
     if (r->options->density) BRIO_TRY(brio_feature_sizes(r->ctx, &r->dual, &out->size));
     lap(r, &out->stats.density_seconds);
 done:
-    brio_release(r->ctx, facets);
+    brio_release(r->ctx, boundary.facet);
     return status;
 }
 

@@ -45,19 +45,18 @@ static void list_parts(void *user, size_t begin, size_t end, int thread) {
                                           brio_part(a->size, i + 1, PARTS), &a->parts[i]));
 }
 
-brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, uint32_t **facets, size_t *count) {
+brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, brio_facets *out) {
     brio_status status = BRIO_OK;
     part parts[PARTS] = {{0}};
     size_t size = l->cocones->dual->t.count;
-    *facets = NULL;
-    *count = 0;
+    *out = (brio_facets){0};
     listing all = {ctx, l, parts, size, BRIO_OK};
     brio_for_chunks(ctx, brio_threads(ctx, size, TETS_A_THREAD), PARTS, 1, list_parts, &all);
     BRIO_TRY(all.status);
-    for (int i = 0; i < PARTS; i++) *count += parts[i].count;
-    BRIO_TRY(BRIO_ALLOC(ctx, *facets, *count));
+    for (int i = 0; i < PARTS; i++) out->count += parts[i].count;
+    BRIO_TRY(BRIO_ALLOC(ctx, out->facet, out->count));
     for (size_t i = 0, at = 0; i < PARTS; at += parts[i++].count)
-        if (parts[i].count > 0) memcpy(*facets + at, parts[i].facets, parts[i].count * sizeof **facets);
+        if (parts[i].count > 0) memcpy(out->facet + at, parts[i].facets, parts[i].count * sizeof *out->facet);
 done:
     for (int i = 0; i < PARTS; i++) brio_release(ctx, parts[i].facets);
     return status;

@@ -5,9 +5,15 @@
 #include "base/sort.h"
 #include "reconstruct/cocone/tetrahedron_labels.h"
 
-/** The facets between outer and inner tetrahedra, each as seen from the outer one, ascending.
- *  facets  *count of them, owned by the caller (brio_release).   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, uint32_t **facets, size_t *count);
+/** A list of facet handles. */
+typedef struct {
+    uint32_t *facet;
+    size_t count;
+} brio_facets;
+
+/** Lists the facets between outer and inner tetrahedra, each as seen from the outer one, ascending.
+ *  out  its array is owned by the caller (brio_release).   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, brio_facets *out);
 
 /** Whether a facet separates two labels. */
 static inline bool brio_is_boundary(const brio_tet_labels *l, uint32_t facet) {

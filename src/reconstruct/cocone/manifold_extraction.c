@@ -127,9 +127,9 @@ done:
 }
 
 brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only,
-                               const uint32_t *facets, size_t num_facets, uint32_t **faces, size_t *num_faces) {
+                               const brio_facets *facets, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
-    extraction x = {.ctx = ctx, .choice = {.labels = l, .facets = facets, .num_facets = num_facets}};
+    extraction x = {.ctx = ctx, .choice = {.labels = l, .facets = facets->facet, .num_facets = facets->count}};
     uint32_t *open = NULL;
     size_t num_open;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.choice.face, l->cocones->dual->t.count));

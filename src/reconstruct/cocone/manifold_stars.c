@@ -277,20 +277,19 @@ done:
     return status;
 }
 
-brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, uint32_t **facets, size_t *num_facets,
-                               size_t *changed) {
+brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, brio_facets *facets, size_t *changed) {
     brio_status status = BRIO_OK;
     repair r = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
-    BRIO_TRY(brio_boundary_facets(ctx, l, facets, num_facets));
+    BRIO_TRY(brio_boundary_facets(ctx, l, facets));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, l->cocones->dual->num_points));
-    BRIO_TRY(enqueue_singular(&r, *facets, *num_facets));
+    BRIO_TRY(enqueue_singular(&r, facets->facet, facets->count));
     BRIO_TRY(brio_progress(ctx, "manifold", 0.5));
     if (r.size > 0) BRIO_TRY(prepare(&r));
     BRIO_TRY(mend_stars(&r));
     *changed = r.changed;
     if (r.changed > 0) {
-        brio_release(ctx, *facets);
-        BRIO_TRY(brio_boundary_facets(ctx, l, facets, num_facets));
+        brio_release(ctx, facets->facet);
+        BRIO_TRY(brio_boundary_facets(ctx, l, facets));
     }
 done:
     brio_release(ctx, r.tet_of_vertex);

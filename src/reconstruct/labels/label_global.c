@@ -103,12 +103,12 @@ done:
 static void settle_beyond_box(const brio_pole_graph *g, uint8_t *certain, uint8_t *label) {
     for (size_t k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;
-        for (size_t s = 0; s < g->num_samples; s++) {
-            low = fmin(low, g->samples[3 * s + k]);
-            high = fmax(high, g->samples[3 * s + k]);
+        for (size_t s = 0; s < g->diagram->num_samples; s++) {
+            low = fmin(low, g->diagram->samples[3 * s + k]);
+            high = fmax(high, g->diagram->samples[3 * s + k]);
         }
-        for (size_t p = 0; p < g->poles->count; p++) {
-            double x = g->poles->centre[3 * p + k], half = 0.5 * sqrt(g->poles->square[p]);
+        for (size_t p = 0; p < g->diagram->poles->count; p++) {
+            double x = g->diagram->poles->centre[3 * p + k], half = 0.5 * sqrt(g->diagram->poles->square[p]);
             if (x < low - half || x > high + half) certain[p] = 1, label[p] = BRIO_LABEL_OUTER;
         }
     }
@@ -116,7 +116,7 @@ static void settle_beyond_box(const brio_pole_graph *g, uint8_t *certain, uint8_
 
 brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
     brio_status status = BRIO_OK;
-    size_t n = g->poles->count;
+    size_t n = g->diagram->poles->count;
     problem pr = {.g = g, .label = label, .threads = brio_threads(g->ctx, n, POLES_A_THREAD)};
     uint8_t *before = NULL;
     BRIO_TRY(brio_label_greedy(g, label, stats));

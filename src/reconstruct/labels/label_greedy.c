@@ -95,7 +95,7 @@ static void mark_settled(labeller *l, size_t p) {
 
 static brio_status settle(labeller *l, uint32_t p, int side, double strength) {
     if (l->labeled++ % 65536 == 0) {
-        double share = (double)l->labeled / (double)l->g->poles->count;
+        double share = (double)l->labeled / (double)l->g->diagram->poles->count;
         brio_status status = brio_progress(l->ctx, "label", 0.5 + 0.5 * (share < 1 ? share : 1));
         if (status != BRIO_OK) return status;
     }
@@ -109,7 +109,7 @@ static brio_status settle(labeller *l, uint32_t p, int side, double strength) {
 /* Certain poles are outer; labeled ones are as certain of their labels. */
 static brio_status settle_certain(labeller *l) {
     brio_status status = BRIO_OK;
-    size_t n = l->g->poles->count;
+    size_t n = l->g->diagram->poles->count;
     uint8_t *certain = NULL;
     BRIO_TRY(BRIO_ALLOC(l->ctx, certain, n));
     brio_label_certain(l->g, certain);
@@ -168,7 +168,7 @@ done:
 
 /* Nothing reaches these: they are outer, and pass nothing on. */
 static void settle_without_evidence(labeller *l) {
-    for (size_t p = 0; p < l->g->poles->count; p++) {
+    for (size_t p = 0; p < l->g->diagram->poles->count; p++) {
         if (l->nodes[p].belief[0] > 0 || l->nodes[p].belief[1] > 0) continue;
         l->label[p] = BRIO_LABEL_OUTER;
         mark_settled(l, p);
@@ -180,7 +180,7 @@ static brio_status settle_confused(labeller *l, brio_labeling_stats *stats) {
     l->all_confused = true;
     brio_pole_queue_free(&l->queue);
     l->queue = brio_pole_queue_new(l->ctx, CERTAIN);
-    for (uint32_t p = 0; p < l->g->poles->count; p++) {
+    for (uint32_t p = 0; p < l->g->diagram->poles->count; p++) {
         if (l->label[p] != BRIO_LABEL_NONE) continue;
         stats->confused++;
         BRIO_TRY(brio_pole_queue_push(&l->queue, p, clarity(&l->nodes[p])));
@@ -191,7 +191,7 @@ done:
 }
 
 static brio_status nodes_new(labeller *l) {
-    size_t n = l->g->poles->count;
+    size_t n = l->g->diagram->poles->count;
     brio_status status = BRIO_ALLOC(l->ctx, l->nodes, n + 1);
     if (status != BRIO_OK) return status;
     for (size_t p = 0; p <= n; p++) l->nodes[p] = (node){{0, 0}, l->g->first[p]};
@@ -213,6 +213,6 @@ done:
 }
 
 brio_status brio_label_finish(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
-    for (size_t p = 0; p < g->poles->count; p++) stats->unreached += label[p] == BRIO_LABEL_NONE;
+    for (size_t p = 0; p < g->diagram->poles->count; p++) stats->unreached += label[p] == BRIO_LABEL_NONE;
     return stats->unreached ? brio_label_greedy(g, label, stats) : BRIO_OK;
 }

@@ -11,7 +11,7 @@ brio_status brio_label_naive(const brio_pole_graph *g, uint8_t *label, brio_labe
     brio_status status = BRIO_OK;
     uint8_t *certain = NULL;
     uint32_t *queue = NULL;
-    size_t n = g->poles->count, size = 0;
+    size_t n = g->diagram->poles->count, size = 0;
     BRIO_TRY(BRIO_ALLOC(g->ctx, certain, n));
     BRIO_TRY(BRIO_ALLOC(g->ctx, queue, n));
     brio_label_certain(g, certain);

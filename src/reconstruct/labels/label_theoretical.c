@@ -10,7 +10,7 @@
 /* The first pole whose tetrahedron has a bounding point: that pole's samples are on the hull or see out of it. */
 static size_t seed_pole(const brio_pole_graph *g) {
     size_t p = 0;
-    while (p < g->poles->count && !g->poles->bounding[p]) p++;
+    while (p < g->diagram->poles->count && !g->diagram->poles->bounding[p]) p++;
     return p;
 }
 
@@ -18,7 +18,7 @@ brio_status brio_label_theoretical(const brio_pole_graph *g, uint8_t *label, bri
     brio_status status = BRIO_OK;
     uint8_t *certain = NULL;
     uint32_t *queue = NULL;
-    size_t n = g->poles->count, seed = seed_pole(g);
+    size_t n = g->diagram->poles->count, seed = seed_pole(g);
     BRIO_TRY(BRIO_ALLOC(g->ctx, certain, n));
     BRIO_TRY(BRIO_ALLOC(g->ctx, queue, n));
     brio_label_certain(g, certain);

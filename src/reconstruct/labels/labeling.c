@@ -7,9 +7,9 @@
 enum { PARTS = 256, POLES_A_THREAD = 2048 };
 
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain) {
-    memcpy(certain, g->poles->bounding, g->poles->count);
-    for (size_t tet = g->num_finite; tet < g->power.count; tet++)
-        for (int i = 0; i < 3; i++) certain[g->power.tet[tet].vertex[i]] = 1;
+    memcpy(certain, g->diagram->poles->bounding, g->diagram->poles->count);
+    for (size_t tet = g->diagram->num_finite; tet < g->diagram->power.count; tet++)
+        for (int i = 0; i < 3; i++) certain[g->diagram->power.tet[tet].vertex[i]] = 1;
 }
 
 /* --- energy --- */
@@ -33,9 +33,9 @@ static void sum_parts(void *user, size_t begin, size_t end, int thread) {
     energy *e = user;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
-        size_t to = brio_part(e->g->poles->count, (int)i + 1, PARTS);
+        size_t to = brio_part(e->g->diagram->poles->count, (int)i + 1, PARTS);
         double sum = 0;
-        for (size_t p = brio_part(e->g->poles->count, (int)i, PARTS); p < to; p++)
+        for (size_t p = brio_part(e->g->diagram->poles->count, (int)i, PARTS); p < to; p++)
             sum += violated_at(e->g, e->label, p);
         e->part[i] = sum;
     }
@@ -45,7 +45,7 @@ static void sum_parts(void *user, size_t begin, size_t end, int thread) {
 double brio_label_energy(const brio_pole_graph *g, const uint8_t *label) {
     energy e = {.g = g, .label = label};
     double sum = 0;
-    brio_for_chunks(g->ctx, brio_threads(g->ctx, g->poles->count, POLES_A_THREAD), PARTS, 1, sum_parts, &e);
+    brio_for_chunks(g->ctx, brio_threads(g->ctx, g->diagram->poles->count, POLES_A_THREAD), PARTS, 1, sum_parts, &e);
     for (int i = 0; i < PARTS; i++) sum += e.part[i];
     return sum;
 }

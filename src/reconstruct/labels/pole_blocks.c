@@ -73,7 +73,7 @@ static void hop_from(void *user, size_t begin, size_t end, int thread) {
 
 static void mark_region(finder *f) {
     brio_context *ctx = f->g->ctx;
-    size_t n = f->g->poles->count;
+    size_t n = f->g->diagram->poles->count;
     brio_for_chunks(ctx, f->threads, n, POLES_A_CHUNK, mark_troubled, f);
     for (f->hop = 0; f->hop < HOPS; f->hop++) brio_for_chunks(ctx, f->threads, n, POLES_A_CHUNK, hop_from, f);
 }
@@ -81,7 +81,7 @@ static void mark_region(finder *f) {
 static brio_status list_region(finder *f) {
     brio_status status = BRIO_OK;
     brio_pole_blocks *b = f->out;
-    size_t n = f->g->poles->count, count = 0;
+    size_t n = f->g->diagram->poles->count, count = 0;
     BRIO_TRY(BRIO_ALLOC(b->ctx, f->depth, n));
     mark_region(f);
     for (size_t p = 0; p < n; p++) b->count += f->depth[p] != OUTSIDE;
@@ -116,7 +116,7 @@ static void copy_positions(void *user, size_t begin, size_t end, int thread) {
     const finder *f = user;
     (void)thread;
     for (size_t i = begin; i < end; i++)
-        memcpy(f->points + 3 * i, f->g->poles->centre + 3 * (size_t)f->out->pole[i], 3 * sizeof *f->points);
+        memcpy(f->points + 3 * i, f->g->diagram->poles->centre + 3 * (size_t)f->out->pole[i], 3 * sizeof *f->points);
 }
 
 static brio_status sort_along_curve(finder *f, uint64_t draw) {
@@ -139,9 +139,9 @@ done:
 
 static brio_status set_places(const finder *f) {
     brio_pole_blocks *b = f->out;
-    brio_status status = BRIO_ALLOC(b->ctx, b->place, f->g->poles->count);
+    brio_status status = BRIO_ALLOC(b->ctx, b->place, f->g->diagram->poles->count);
     if (status != BRIO_OK) return status;
-    memset(b->place, 255, f->g->poles->count * sizeof *b->place);
+    memset(b->place, 255, f->g->diagram->poles->count * sizeof *b->place);
     for (size_t i = 0; i < b->count; i++) b->place[b->pole[i]] = (uint32_t)i;
     return BRIO_OK;
 }
@@ -260,7 +260,7 @@ done:
 brio_status brio_pole_blocks_find(const brio_pole_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
                                   uint64_t draw, brio_pole_blocks *out) {
     brio_status status = BRIO_OK;
-    int threads = brio_threads(g->ctx, g->poles->count, POLES_A_THREAD);
+    int threads = brio_threads(g->ctx, g->diagram->poles->count, POLES_A_THREAD);
     finder f = {.g = g, .label = label, .fixed = fixed, .threads = threads, .out = out};
     *out = (brio_pole_blocks){.ctx = g->ctx, .bits = bits};
     BRIO_TRY(list_region(&f));

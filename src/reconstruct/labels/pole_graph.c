@@ -40,13 +40,7 @@ static const uint64_t NOTHING = UINT64_MAX;
 static const double TOUCHING = -0.95, SHALLOW = -0.5, SHALLOW_WEIGHT = 0.1;
 
 static const double *centre_of(const brio_pole_graph *g, uint32_t p) {
-    return g->poles->centre + 3 * (size_t)p;
-}
-
-double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q) {
-    const double *a = centre_of(g, p), *b = centre_of(g, q);
-    double pp = g->poles->square[p], qq = g->poles->square[q], x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-    return (pp + qq - (x * x + y * y + z * z)) / (2 * sqrt(pp * qq));
+    return g->diagram->poles->centre + 3 * (size_t)p;
 }
 
 /* --- weights --- */
@@ -68,7 +62,7 @@ static double trust_in(double shape) {
 
 /* The weight of an edge between two neighbours, and whether there is one. */
 static bool weigh_neighbours(const builder *b, uint32_t p, uint32_t q, float *weight) {
-    double of_balls = brio_pole_graph_weight(b->g, p, q);
+    double of_balls = brio_ball_weight(b->g->diagram->poles, p, q);
     *weight = (float)(b->evidence.balanced ? balanced_weight(of_balls) : fmax(fmin(of_balls, 1), 0));
     return b->evidence.balanced ? *weight != 0 : of_balls > b->evidence.least;
 }
@@ -118,7 +112,7 @@ static const uint8_t PAIR[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3
 static const uint8_t EDGES[16] = {0, 0, 0, 32, 0, 16, 4, 52, 0, 8, 2, 42, 1, 25, 7, 63};
 
 static inline void note_tetrahedron(const builder *b, uint32_t tet) {
-    const brio_tetrahedron *t = &b->g->power.tet[tet];
+    const brio_tetrahedron *t = &b->g->diagram->power.tet[tet];
     unsigned later = 0;
     for (unsigned i = 0; i < 4; i++) later |= (unsigned)(brio_tet_of(t->mate[i]) > tet) << i;
     for (unsigned edges = EDGES[later]; edges; edges &= edges - 1) {
@@ -143,12 +137,13 @@ static void note_hidden(void *user, size_t begin, size_t end, int thread) {
 static brio_status note_all(builder *b, double from, double to) {
     const brio_pole_graph *g = b->g;
     brio_status status = BRIO_OK;
-    for (b->start = 0; b->start < g->num_finite; b->start += STEP) {
-        size_t count = g->num_finite - b->start < STEP ? g->num_finite - b->start : STEP;
-        BRIO_TRY(brio_progress(g->ctx, "label", from + (to - from) * (double)b->start / (double)g->num_finite));
+    for (b->start = 0; b->start < g->diagram->num_finite; b->start += STEP) {
+        size_t count = g->diagram->num_finite - b->start < STEP ? g->diagram->num_finite - b->start : STEP;
+        BRIO_TRY(
+            brio_progress(g->ctx, "label", from + (to - from) * (double)b->start / (double)g->diagram->num_finite));
         brio_for_chunks(g->ctx, b->threads, count, CHUNK, note_tetrahedra, b);
     }
-    brio_for(g->ctx, b->threads, g->poles->count, note_hidden, b);
+    brio_for(g->ctx, b->threads, g->diagram->poles->count, note_hidden, b);
 done:
     return status;
 }
@@ -179,7 +174,7 @@ static void weigh_part(void *user, size_t begin, size_t end, int thread) {
 static brio_status list_neighbours(builder *b) {
     brio_status status = BRIO_OK;
     brio_context *ctx = b->g->ctx;
-    size_t n = b->g->poles->count;
+    size_t n = b->g->diagram->poles->count;
     BRIO_TRY(BRIO_ALLOC(ctx, b->first_low, n + 1));
     BRIO_TRY(note_all(b, 0, 0.15));
     first_places(b->first_low, b->place, n);
@@ -200,11 +195,11 @@ static double dot_from(const double *o, const double *p, const double *q) {
 /* The weight between the poles of a sample, 0 where there is no edge. */
 static float opposite_weight(const builder *b, size_t sample) {
     const brio_pole_graph *g = b->g;
-    uint32_t p = g->poles->of_sample[2 * sample], q = g->poles->of_sample[2 * sample + 1];
+    uint32_t p = g->diagram->poles->of_sample[2 * sample], q = g->diagram->poles->of_sample[2 * sample + 1];
     if (p == BRIO_NO_POLE || q == BRIO_NO_POLE) return 0;
-    const double *s = g->samples + 3 * sample, *x = centre_of(g, p), *y = centre_of(g, q);
+    const double *s = g->diagram->samples + 3 * sample, *x = centre_of(g, p), *y = centre_of(g, q);
     double cosine = dot_from(s, x, y) / sqrt(dot_from(s, x, x) * dot_from(s, y, y));
-    double trust = b->evidence.balanced ? trust_in(g->poles->shape[sample]) : 1;
+    double trust = b->evidence.balanced ? trust_in(g->diagram->poles->shape[sample]) : 1;
     return cosine < 0 ? (float)(trust * fmax(cosine, -1)) : 0;
 }
 
@@ -215,15 +210,15 @@ static void weigh_opposite(void *user, size_t begin, size_t end, int thread) {
     for (size_t s = begin; s < end; s++) {
         b->opposite[s] = opposite_weight(b, s);
         if (!(b->opposite[s] < 0)) continue;
-        count_up(b, &b->place[g->poles->of_sample[2 * s]]);
-        count_up(b, &b->place[g->poles->of_sample[2 * s + 1]]);
+        count_up(b, &b->place[g->diagram->poles->of_sample[2 * s]]);
+        count_up(b, &b->place[g->diagram->poles->of_sample[2 * s + 1]]);
     }
 }
 
 static brio_status list_opposite(builder *b) {
     brio_context *ctx = b->g->ctx;
-    brio_status status = BRIO_ALLOC(ctx, b->opposite, b->g->num_samples);
-    if (status == BRIO_OK) brio_for(ctx, b->threads, b->g->num_samples, weigh_opposite, b);
+    brio_status status = BRIO_ALLOC(ctx, b->opposite, b->g->diagram->num_samples);
+    if (status == BRIO_OK) brio_for(ctx, b->threads, b->g->diagram->num_samples, weigh_opposite, b);
     return status;
 }
 
@@ -246,7 +241,7 @@ static void deal_out_neighbours(void *user, size_t begin, size_t end, int thread
 
 static void deal_out_opposite(void *user, size_t begin, size_t end, int thread) {
     const builder *b = user;
-    const uint32_t *of_sample = b->g->poles->of_sample;
+    const uint32_t *of_sample = b->g->diagram->poles->of_sample;
     (void)thread;
     for (size_t s = begin; s < end; s++)
         if (b->opposite[s] < 0) deal(b, of_sample[2 * s], of_sample[2 * s + 1], b->opposite[s]);
@@ -269,8 +264,8 @@ static void sort_edges(void *user, size_t begin, size_t end, int thread) {
 static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative, brio_pole_evidence evidence) {
     brio_status status = BRIO_OK;
     brio_context *ctx = g->ctx;
-    size_t n = g->poles->count;
-    int threads = brio_threads(ctx, g->num_finite, TETRAHEDRA_A_THREAD);
+    size_t n = g->diagram->poles->count;
+    int threads = brio_threads(ctx, g->diagram->num_finite, TETRAHEDRA_A_THREAD);
     builder b = {.g = g, .threads = threads, .representative = representative, .evidence = evidence};
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.place, n));
     BRIO_TRY(list_neighbours(&b));
@@ -279,7 +274,7 @@ static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative
     first_places(g->first, b.place, n);
     BRIO_TRY(BRIO_ALLOC(ctx, b.edge, g->first[n]));
     brio_for(ctx, threads, n, deal_out_neighbours, &b);
-    brio_for(ctx, threads, g->num_samples, deal_out_opposite, &b);
+    brio_for(ctx, threads, g->diagram->num_samples, deal_out_opposite, &b);
     brio_for_chunks(ctx, threads, n, CHUNK, sort_edges, &b);
     g->edge = (brio_pole_edge *)b.edge; /* of the same size, and written as edges */
 done:
@@ -291,19 +286,10 @@ done:
     return status;
 }
 
-brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
-                                const brio_triangulation *power, brio_pole_evidence evidence, brio_pole_graph *g) {
-    brio_status status = BRIO_OK;
-    const brio_delaunay_stats *stats = brio_triangulation_stats(power);
-    *g = (brio_pole_graph){.ctx = ctx, .poles = poles, .samples = samples, .num_samples = num_samples};
-    g->num_finite = stats->tetrahedra;
-    /* the view is read only: the structure is shared with code that builds triangulations */
-    g->power = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(power),
-                                 .count = stats->tetrahedra + stats->hull_facets,
-                                 .infinite = BRIO_INFINITE};
-    BRIO_TRY(list_edges(g, brio_triangulation_representatives(power), evidence));
-done:
-    return status;
+brio_status brio_pole_graph_new(brio_context *ctx, const brio_power_diagram *diagram, brio_pole_evidence evidence,
+                                brio_pole_graph *g) {
+    *g = (brio_pole_graph){.ctx = ctx, .diagram = diagram};
+    return list_edges(g, diagram->representative, evidence);
 }
 
 void brio_pole_graph_free(brio_pole_graph *g) {

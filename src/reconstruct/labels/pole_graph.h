@@ -2,7 +2,7 @@
 #ifndef BRIO_RECONSTRUCT_POLE_GRAPH_H
 #define BRIO_RECONSTRUCT_POLE_GRAPH_H
 
-#include "dual/poles.h"
+#include "dual/power_diagram.h"
 #include "reconstruct/labels/label.h"
 #include "triangulation/star.h"
 
@@ -17,11 +17,7 @@ typedef struct {
  *  one sample. */
 typedef struct {
     brio_context *ctx;
-    const brio_poles *poles;
-    const double *samples; /* #samples by 3 */
-    size_t num_samples;
-    brio_tetrahedra power; /* the regular triangulation of the polar balls, caller's indices */
-    size_t num_finite;
+    const brio_power_diagram *diagram;
     size_t *first;        /* #poles + 1: the edges of each pole, by the numbers of their other ends */
     brio_pole_edge *edge; /* between two poles there may be several */
 } brio_pole_graph;
@@ -35,17 +31,14 @@ typedef struct {
     bool balanced; /* ... or as the surest evidence has it on samples of any density; needs the shapes of cells */
 } brio_pole_evidence;
 
-/** Prepares the graph; what it holds is to be freed on failure too. Keeps pointers to poles, samples and power. The
+/** Prepares the graph; what it holds is to be freed on failure too. Keeps the pointer to the diagram. The
  *  weight of two balls is -cos of the angle at which they intersect: -1 where they touch, 0 at a right angle, 1 for a
  *  ball inside the other. An edge between neighbours has this weight, or 0 where it is negative; one between opposite
  *  poles the cosine of their angle at the sample, and at less than a right angle there is none. In the balanced graph deep
  *  edges have the square, shallow ones, which want different labels, a small weight, and opposite poles are the less sure
  *  of each other the worse the cell of their sample is shaped. */
-brio_status brio_pole_graph_new(brio_context *ctx, const brio_poles *poles, const double *samples, size_t num_samples,
-                                const brio_triangulation *power, brio_pole_evidence evidence, brio_pole_graph *out);
+brio_status brio_pole_graph_new(brio_context *ctx, const brio_power_diagram *diagram, brio_pole_evidence evidence,
+                                brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);
-
-/** The weight of the balls of two neighbours, deep or not; over 1 for a ball inside the other. */
-double brio_pole_graph_weight(const brio_pole_graph *g, uint32_t p, uint32_t q);
 
 #endif

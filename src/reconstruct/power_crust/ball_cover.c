@@ -133,10 +133,10 @@ done:
     return status;
 }
 
-brio_status brio_cover_balls(brio_context *ctx, const double *centre, const double *square, const uint32_t *balls,
-                             size_t count, const brio_cover_rule *rule, uint8_t *keep) {
+brio_status brio_cover_balls(brio_context *ctx, const brio_balls *b, const brio_cover_rule *rule, uint8_t *keep) {
     brio_status status = BRIO_OK;
-    cover c = {.centre = centre, .square = square, .balls = balls, .count = count, .rule = rule};
+    size_t count = b->count;
+    cover c = {.centre = b->centre, .square = b->square, .balls = b->ball, .count = count, .rule = rule};
     uint32_t *order = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, order, count));
     BRIO_TRY(BRIO_ALLOC(ctx, c.nodes, count_nodes(count)));
@@ -145,8 +145,8 @@ brio_status brio_cover_balls(brio_context *ctx, const double *centre, const doub
     build_node(&c, (range){0, 0, count});
     for (size_t i = 0; i < count; i++) {
         if (i % 65536 == 0) BRIO_TRY(brio_progress(ctx, "simplify", (double)i / (double)count));
-        if (covered(&c, balls[order[i]]))
-            keep[balls[order[i]]] = 0;
+        if (covered(&c, b->ball[order[i]]))
+            keep[b->ball[order[i]]] = 0;
         else
             keep_ball(&c, order[i]);
     }

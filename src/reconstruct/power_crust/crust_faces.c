@@ -36,7 +36,7 @@ typedef struct {
 } face_list;
 
 typedef struct {
-    const brio_pole_graph *g;
+    const brio_power_diagram *d;
     int threads;
     const uint8_t *label;
     const brio_crust_options *options;
@@ -50,7 +50,7 @@ typedef struct {
 
 /* Blocks are handed to threads one by one: the functions that a loop over blocks calls do one block each. */
 static size_t block_begin(const builder *b, size_t block) {
-    return block < b->num_blocks ? block * BLOCK : b->g->num_finite;
+    return block < b->num_blocks ? block * BLOCK : b->d->num_finite;
 }
 
 /* --- vertices --- */
@@ -61,7 +61,7 @@ static bool inner(const builder *b, uint32_t pole) {
 
 /* The orthocentres of poles, four each; where there is none that doubles can hold, the middle of the poles. */
 static void find_positions(const builder *b, const uint32_t (*v)[4], size_t count, double *position) {
-    const brio_poles *poles = b->g->poles;
+    const brio_poles *poles = b->d->poles;
     brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count, position});
     for (size_t n = 0; n < count; n++, position += 3) {
         if (!isnan(position[0])) continue;
@@ -84,8 +84,8 @@ static brio_status add_spacing(builder *b) {
     void *data;
     BRIO_TRY(brio_mesh_add_property(b->mesh, "spacing", BRIO_SCALAR_FLOAT64, &data));
     double *spacing = data;
-    for (size_t tet = 0; tet < b->g->num_finite; tet++)
-        if (b->number[tet] != NO_VERTEX) spacing[b->number[tet]] = vertex_spacing(b, b->g->power.tet[tet].vertex);
+    for (size_t tet = 0; tet < b->d->num_finite; tet++)
+        if (b->number[tet] != NO_VERTEX) spacing[b->number[tet]] = vertex_spacing(b, b->d->power.tet[tet].vertex);
 done:
     return status;
 }
@@ -95,7 +95,7 @@ static void count_vertices(void *user, size_t block, size_t end_block, int threa
     (void)end_block, (void)thread;
     for (size_t tet = block_begin(b, block); tet < block_begin(b, block + 1); tet++) {
         int inside = 0;
-        for (int i = 0; i < 4; i++) inside += inner(b, b->g->power.tet[tet].vertex[i]);
+        for (int i = 0; i < 4; i++) inside += inner(b, b->d->power.tet[tet].vertex[i]);
         b->number[tet] = inside % 4 ? 0 : NO_VERTEX;
         b->blocks[block].vertices += inside % 4 != 0;
     }
@@ -109,7 +109,7 @@ static void fill_vertices(void *user, size_t block, size_t end_block, int thread
     for (size_t tet = block_begin(b, block); tet < end; tet++) {
         if (b->number[tet] == NO_VERTEX) continue;
         b->number[tet] = (uint32_t)next++;
-        memcpy(vertex[waiting++], b->g->power.tet[tet].vertex, sizeof *vertex);
+        memcpy(vertex[waiting++], b->d->power.tet[tet].vertex, sizeof *vertex);
         if (waiting < BRIO_CENTRE_BATCH) continue;
         find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
         waiting = 0;
@@ -133,10 +133,10 @@ static void sum_blocks(builder *b) {
 
 static brio_status make_vertices(builder *b) {
     brio_status status = BRIO_OK;
-    brio_for_chunks(b->g->ctx, b->threads, b->num_blocks, 1, count_vertices, b);
+    brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, count_vertices, b);
     sum_blocks(b);
     BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, b->blocks[b->num_blocks].vertices));
-    brio_for_chunks(b->g->ctx, b->threads, b->num_blocks, 1, fill_vertices, b);
+    brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, fill_vertices, b);
     memset(b->blocks, 0, (b->num_blocks + 1) * sizeof *b->blocks);
 done:
     return status;
@@ -147,13 +147,13 @@ done:
 /* A pair of large balls that intersect deeply: no sample is where they meet. Deep is what well sampled surfaces do not
  * have, an angle over pi / 4 [Choi 2003, lemma 38]. */
 static bool spans_hole(const builder *b, uint32_t p, uint32_t q) {
-    if (!(b->options->open > 0) || !(brio_pole_graph_weight(b->g, p, q) > BRIO_THEORETICAL_WEIGHT)) return false;
+    if (!(b->options->open > 0) || !(brio_ball_weight(b->d->poles, p, q) > BRIO_THEORETICAL_WEIGHT)) return false;
     double limit = b->options->open * fmax(b->options->spacing[p], b->options->spacing[q]);
-    return fmin(b->g->poles->square[p], b->g->poles->square[q]) > limit * limit;
+    return fmin(b->d->poles->square[p], b->d->poles->square[q]) > limit * limit;
 }
 
 static brio_status push_corner(const builder *b, face_list *list, size_t n, uint32_t tet) {
-    brio_status status = BRIO_RESERVE(b->g->ctx, list->entry, list->capacity, n + 1);
+    brio_status status = BRIO_RESERVE(b->mesh->context, list->entry, list->capacity, n + 1);
     if (status == BRIO_OK) list->entry[n] = b->number[tet];
     return status;
 }
@@ -163,7 +163,7 @@ static brio_status push_corner(const builder *b, face_list *list, size_t n, uint
 static brio_status find_corners(const builder *b, uint32_t tet, int i, int j, face_list *list, size_t *size) {
     size_t n = list->count + 1;
     brio_status status = BRIO_OK;
-    brio_ring r = brio_ring_second(&b->g->power, tet, i, j);
+    brio_ring r = brio_ring_second(&b->d->power, tet, i, j);
     *size = 0;
     BRIO_TRY(push_corner(b, list, n++, tet));
     do {
@@ -176,9 +176,9 @@ done:
 }
 
 static brio_status list_face(const builder *b, uint32_t tet, int i, int j, face_list *list, block_counts *counts) {
-    const uint32_t *v = b->g->power.tet[tet].vertex;
+    const uint32_t *v = b->d->power.tet[tet].vertex;
     size_t size;
-    if (!brio_ring_may_lead(&b->g->power, tet, i, j)) return BRIO_OK;
+    if (!brio_ring_may_lead(&b->d->power, tet, i, j)) return BRIO_OK;
     brio_status status = find_corners(b, tet, i, j, list, &size);
     if (status != BRIO_OK || !size) return status;
     if (spans_hole(b, v[i], v[j])) {
@@ -199,9 +199,9 @@ static brio_status list_faces(const builder *b, size_t block) {
     size_t end = block_begin(b, block + 1);
     for (size_t tet = block_begin(b, block); tet < end; tet++) {
         bool inside[4];
-        if (tet + AHEAD < end && b->number[tet + AHEAD] != NO_VERTEX) brio_ring_fetch(&b->g->power, tet + AHEAD);
+        if (tet + AHEAD < end && b->number[tet + AHEAD] != NO_VERTEX) brio_ring_fetch(&b->d->power, tet + AHEAD);
         if (b->number[tet] == NO_VERTEX) continue;
-        for (int i = 0; i < 4; i++) inside[i] = inner(b, b->g->power.tet[tet].vertex[i]);
+        for (int i = 0; i < 4; i++) inside[i] = inner(b, b->d->power.tet[tet].vertex[i]);
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++)
                 if (inside[i] && !inside[j]) BRIO_TRY(list_face(b, (uint32_t)tet, i, j, &b->lists[block], &counts));
@@ -257,7 +257,7 @@ static void copy_faces(void *user, size_t block, size_t end_block, int thread) {
 
 static brio_status make_faces(builder *b) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = b->g->ctx;
+    brio_context *ctx = b->mesh->context;
     brio_mesh *m = b->mesh;
     BRIO_TRY(brio_progress(ctx, "crust", 0.4));
     brio_for_chunks(ctx, b->threads, b->num_blocks, 1, list_block, b);
@@ -270,19 +270,19 @@ static brio_status make_faces(builder *b) {
     BRIO_TRY(BRIO_ALLOC(ctx, m->face_vertices, total->corners));
     m->face_offsets[0] = 0;
     m->num_faces = total->faces;
-    brio_for_chunks(b->g->ctx, b->threads, b->num_blocks, 1, copy_faces, b);
+    brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, copy_faces, b);
 done:
     return status;
 }
 
-brio_status brio_crust_faces(const brio_pole_graph *g, const uint8_t *label, const brio_crust_options *options,
+brio_status brio_crust_faces(const brio_power_diagram *d, const uint8_t *label, const brio_crust_options *options,
                              brio_mesh *mesh, brio_crust_counts *counts) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = g->ctx;
-    builder b = {.g = g, .label = label, .options = options, .mesh = mesh};
-    b.num_blocks = (g->num_finite + BLOCK - 1) / BLOCK;
+    brio_context *ctx = mesh->context;
+    builder b = {.d = d, .label = label, .options = options, .mesh = mesh};
+    b.num_blocks = (d->num_finite + BLOCK - 1) / BLOCK;
     b.threads = brio_threads(ctx, b.num_blocks, 1);
-    BRIO_TRY(BRIO_ALLOC(ctx, b.number, g->num_finite));
+    BRIO_TRY(BRIO_ALLOC(ctx, b.number, d->num_finite));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.blocks, b.num_blocks + 1));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.lists, b.num_blocks));
     BRIO_TRY(make_vertices(&b));

@@ -2,7 +2,8 @@
 #ifndef BRIO_RECONSTRUCT_CRUST_FACES_H
 #define BRIO_RECONSTRUCT_CRUST_FACES_H
 
-#include "reconstruct/labels/pole_graph.h"
+#include "dual/power_diagram.h"
+#include "reconstruct/labels/label.h"
 
 typedef struct {
     bool triangulate;
@@ -19,7 +20,7 @@ typedef struct {
 /** Writes the crust into an empty mesh, as polygons seen counterclockwise from the outer side, or as triangles. Every
  *  pole must be labeled and every hull vertex of the power triangulation be outer.
  *  BRIO_ERR_NO_ANSWER when no pole with a cell is inner, or nothing is left. */
-brio_status brio_crust_faces(const brio_pole_graph *g, const uint8_t *label, const brio_crust_options *options,
+brio_status brio_crust_faces(const brio_power_diagram *d, const uint8_t *label, const brio_crust_options *options,
                              brio_mesh *mesh, brio_crust_counts *counts);
 
 #endif

@@ -176,6 +176,7 @@ static brio_status triangulate_poles(brio_labeled_poles *l) {
     l->stats.power_seconds += brio_seconds() - start;
     BRIO_REQUIRE(l->ctx, brio_triangulation_stats(l->power)->dimension == 3, BRIO_ERR_NO_ANSWER,
                  "no inside found: the poles span no solid");
+    l->diagram = brio_power_diagram_of(&l->poles, l->points, l->num_samples, l->power);
 done:
     return status;
 }
@@ -198,7 +199,7 @@ static brio_status label_along_graph(brio_labeled_poles *l, brio_labeling labeli
     brio_labeling_stats s = {0};
     brio_pole_evidence evidence = {labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0,
                                    labeling == BRIO_LABELING_GLOBAL};
-    BRIO_TRY(brio_pole_graph_new(l->ctx, &l->poles, l->points, l->num_samples, l->power, evidence, &l->graph));
+    BRIO_TRY(brio_pole_graph_new(l->ctx, &l->diagram, evidence, &l->graph));
     BRIO_TRY(labelings[labeling](&l->graph, l->label, &s));
     l->stats.confused = s.confused;
     l->stats.unreached = s.unreached;
@@ -210,24 +211,11 @@ done:
     return status;
 }
 
-/* The graph with nothing but the triangulation. */
-static void make_bare_graph(brio_labeled_poles *l) {
-    const brio_delaunay_stats *s = brio_triangulation_stats(l->power);
-    brio_pole_graph_free(&l->graph);
-    l->graph =
-        (brio_pole_graph){.ctx = l->ctx, .poles = &l->poles, .samples = l->points, .num_samples = l->num_samples};
-    l->graph.num_finite = s->tetrahedra;
-    l->graph.power = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(l->power),
-                                       .count = s->tetrahedra + s->hull_facets,
-                                       .infinite = BRIO_INFINITE};
-}
-
 static brio_status label_poles(brio_labeled_poles *l, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     BRIO_TRY(BRIO_ALLOC_ZERO(l->ctx, l->label, l->poles.count));
     if (request->solid) {
-        make_bare_graph(l);
         BRIO_TRY(brio_label_by_solid(l->ctx, &l->poles, l->exponent, request->solid, l->label));
     } else {
         BRIO_TRY(label_along_graph(l, request->labeling));
@@ -280,15 +268,14 @@ brio_status brio_labeled_poles_keep(brio_labeled_poles *l, const uint8_t *keep) 
     brio_triangulation_free(l->power);
     l->power = NULL;
     BRIO_TRY(triangulate_poles(l));
-    make_bare_graph(l);
     count_labels(l);
 done:
     return status;
 }
 
 void brio_labeled_poles_close_hull(brio_labeled_poles *l) {
-    const brio_tetrahedra *power = &l->graph.power;
-    for (size_t tet = l->graph.num_finite; tet < power->count; tet++)
+    const brio_tetrahedra *power = &l->diagram.power;
+    for (size_t tet = l->diagram.num_finite; tet < power->count; tet++)
         for (int i = 0; i < 3; i++) l->label[power->tet[tet].vertex[i]] = BRIO_LABEL_OUTER;
     count_labels(l);
 }

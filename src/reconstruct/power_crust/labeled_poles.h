@@ -31,7 +31,8 @@ typedef struct {
     double *spacing;          /* of the poles, or NULL */
     uint32_t *representative; /* of the samples, or NULL */
     brio_triangulation *power;
-    brio_pole_graph graph; /* of these poles; without edges where the labels came from elsewhere */
+    brio_power_diagram diagram; /* a view of the poles and of `power` */
+    brio_pole_graph graph;      /* without edges where the labels came from elsewhere */
     uint8_t *label;
     brio_pole_stats stats;
 } brio_labeled_poles;

@@ -48,26 +48,30 @@ static brio_power_crust_options crust_options(const brio_offset_options *o) {
     return crust;
 }
 
-static brio_status make_offset(brio_labeled_poles *l, const double *points, size_t num_points, double distance,
-                               const brio_offset_options *o, brio_mesh *mesh, brio_power_crust_stats *stats) {
+static brio_status find_balls(brio_labeled_poles *l, const double *points, size_t num_points, double distance,
+                              const brio_offset_options *o) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = l->ctx;
-    brio_power_crust_options crust = crust_options(o);
     brio_pole_request request;
-    BRIO_REQUIRE(ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
-    BRIO_TRY(brio_pole_request_of(ctx, &o->poles, o->seed, &request));
+    BRIO_REQUIRE(l->ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
+    BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->seed, &request));
     request.spacing = o->simplify;
     request.margin = MARGIN * fabs(distance);
     request.until = POLES_SHARE;
-    BRIO_TRY(brio_labeled_poles_find(ctx, points, num_points, &request, l));
-    ctx->progress_from = POLES_SHARE;
-    ctx->progress_to = POWER_SHARE;
-    BRIO_REQUIRE(ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
-    status = move_surface(l, distance);
+    BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
+    BRIO_REQUIRE(l->ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
+done:
+    return status;
+}
+
+static brio_status make_offset(brio_labeled_poles *l, double distance, const brio_offset_options *o, brio_mesh *mesh,
+                               brio_power_crust_stats *stats) {
+    brio_power_crust_options crust = crust_options(o);
+    l->ctx->progress_from = POLES_SHARE;
+    l->ctx->progress_to = POWER_SHARE;
+    brio_status status = move_surface(l, distance);
     if (status == BRIO_OK) status = brio_make_crust(l, &crust, POWER_SHARE, mesh, NULL, stats);
     if (status == BRIO_ERR_NO_ANSWER && distance < 0)
-        return brio_fail(ctx, status, "the offset by %g swallows the whole object: no inside is left", distance);
-done:
+        return brio_fail(l->ctx, status, "the offset by %g swallows the whole object: no inside is left", distance);
     return status;
 }
 
@@ -83,12 +87,13 @@ brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t 
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_crust_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_offset_options, options, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
-    BRIO_TRY(make_offset(&l, points, num_points, distance, &o, mesh, &s));
-    s.poles = l.stats;
-    BRIO_GIVE(brio_power_crust_stats, stats, &s);
+    BRIO_TRY(find_balls(&l, points, num_points, distance, &o));
+    BRIO_TRY(make_offset(&l, distance, &o, mesh, &s));
     *out = mesh;
     mesh = NULL;
 done:
+    s.poles = l.stats;
+    BRIO_GIVE(brio_power_crust_stats, stats, &s);
     ctx->progress_from = 0;
     ctx->progress_to = 1;
     brio_mesh_free(mesh);

@@ -47,10 +47,10 @@ brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_option
     brio_crust_counts counts;
     l->ctx->progress_from = from;
     l->ctx->progress_to = o->simplify ? from + 0.3 * (1 - from) : 1;
-    BRIO_TRY(brio_crust_faces(&l->graph, l->label, &options, mesh, &counts));
+    BRIO_TRY(brio_crust_faces(&l->diagram, l->label, &options, mesh, &counts));
     stats->left_out = counts.left_out;
     stats->crust_seconds = brio_seconds() - start;
-    if (normals) BRIO_TRY(brio_sample_normals(&l->graph, l->label, l->representative, l->order, mesh, normals));
+    if (normals) BRIO_TRY(brio_sample_normals(&l->diagram, l->label, l->representative, l->order, mesh, normals));
     l->ctx->progress_from = l->ctx->progress_to;
     l->ctx->progress_to = 1;
     if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh, &stats->simplify_seconds));
@@ -83,11 +83,11 @@ brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num
     BRIO_TRY(brio_labeled_poles_find(ctx, points, num_points, &request, &l));
     if (o.poles.solid) brio_labeled_poles_close_hull(&l);
     BRIO_TRY(brio_make_crust(&l, &o, POLES_SHARE, mesh, normals, &s));
-    s.poles = l.stats;
-    BRIO_GIVE(brio_power_crust_stats, stats, &s);
     *out = mesh;
     mesh = NULL;
 done:
+    s.poles = l.stats;
+    BRIO_GIVE(brio_power_crust_stats, stats, &s);
     ctx->progress_from = 0;
     ctx->progress_to = 1;
     brio_mesh_free(mesh);

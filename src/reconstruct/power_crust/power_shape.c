@@ -43,7 +43,7 @@ static bool wants(const brio_power_shape_options *o, uint8_t label) {
 }
 
 static bool has_cell(const brio_labeled_poles *l, size_t p) {
-    return brio_triangulation_representatives(l->power)[p] == p;
+    return l->diagram.representative[p] == p;
 }
 
 /* Poles of one label; those without a cell add nothing to the union of the others, and go. */
@@ -59,7 +59,7 @@ static brio_status simplify_side(brio_labeled_poles *l, const brio_cover_rule *r
         else
             keep[p] = 0;
     }
-    BRIO_TRY(brio_cover_balls(l->ctx, l->poles.centre, l->poles.square, balls, count, rule, keep));
+    BRIO_TRY(brio_cover_balls(l->ctx, &(brio_balls){l->poles.centre, l->poles.square, balls, count}, rule, keep));
 done:
     brio_release(l->ctx, balls);
     return status;
@@ -131,7 +131,7 @@ static bool leads_edge(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
 
 static brio_status add_edges(builder *b, uint32_t tet) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedra *power = &b->poles->graph.power;
+    const brio_tetrahedra *power = &b->poles->diagram.power;
     const uint32_t *v = power->tet[tet].vertex;
     for (int i = 0; i < 4; i++)
         for (int j = i + 1; j < 4; j++) {
@@ -148,7 +148,7 @@ done:
 /* Each triangle once, from the tetrahedron that comes first; the infinite ones come last. */
 static brio_status add_triangles(builder *b, uint32_t tet) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedron *t = &b->poles->graph.power.tet[tet];
+    const brio_tetrahedron *t = &b->poles->diagram.power.tet[tet];
     for (int i = 0; i < 4; i++) {
         const uint8_t *slot = BRIO_FACET[i];
         uint32_t p = t->vertex[slot[0]], q = t->vertex[slot[1]], r = t->vertex[slot[2]];
@@ -165,7 +165,7 @@ done:
 /* A tetrahedron of the regular triangulation is positive, and so is the shape's. */
 static brio_status add_tetrahedron(builder *b, uint32_t tet) {
     brio_status status = BRIO_OK;
-    const uint32_t *v = b->poles->graph.power.tet[tet].vertex;
+    const uint32_t *v = b->poles->diagram.power.tet[tet].vertex;
     for (int i = 1; i < 4; i++)
         if (!joined(b, v[0], v[i])) return BRIO_OK;
     BRIO_TRY(BRIO_RESERVE(b->poles->ctx, b->tetrahedra, b->tetrahedron_capacity, b->num_tetrahedra + 4));
@@ -193,8 +193,8 @@ static brio_status make_shape(brio_labeled_poles *l, const brio_power_shape_opti
     BRIO_TRY(make_vertices(&b));
     BRIO_REQUIRE(l->ctx, mesh->num_vertices > 0, BRIO_ERR_NO_ANSWER,
                  "no pole with a cell is on the side that was asked for");
-    for (size_t tet = 0; tet < l->graph.num_finite; tet++) {
-        if (tet % 65536 == 0) BRIO_TRY(brio_progress(l->ctx, "shape", (double)tet / (double)l->graph.num_finite));
+    for (size_t tet = 0; tet < l->diagram.num_finite; tet++) {
+        if (tet % 65536 == 0) BRIO_TRY(brio_progress(l->ctx, "shape", (double)tet / (double)l->diagram.num_finite));
         BRIO_TRY(add_edges(&b, (uint32_t)tet));
         BRIO_TRY(add_triangles(&b, (uint32_t)tet));
         BRIO_TRY(add_tetrahedron(&b, (uint32_t)tet));
@@ -238,17 +238,23 @@ static void progress_part(brio_context *ctx, double from, double to) {
     ctx->progress_to = to;
 }
 
-static brio_status make_both(brio_labeled_poles *l, const double *points, size_t num_points,
-                             const brio_power_shape_options *o, brio_mesh *shape, brio_mesh *crust,
-                             brio_power_shape_stats *s) {
+static brio_status find_balls(brio_labeled_poles *l, const double *points, size_t num_points,
+                              const brio_power_shape_options *o) {
     brio_status status = BRIO_OK;
-    brio_power_crust_options surface = brio_power_crust_options_default();
-    brio_power_crust_stats unused;
     brio_pole_request request;
     BRIO_TRY(check_options(l->ctx, o));
     BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->seed, &request));
     request.until = POLES_SHARE;
     BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
+done:
+    return status;
+}
+
+static brio_status make_both(brio_labeled_poles *l, const brio_power_shape_options *o, brio_mesh *shape,
+                             brio_mesh *crust, brio_power_shape_stats *s) {
+    brio_status status = BRIO_OK;
+    brio_power_crust_options surface = brio_power_crust_options_default();
+    brio_power_crust_stats unused;
     count_poles(l, s);
     progress_part(l->ctx, POLES_SHARE, SHAPE_SHARE);
     BRIO_TRY(simplify(l, o, s));
@@ -281,12 +287,13 @@ brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num
     BRIO_TRY(BRIO_TAKE(ctx, brio_power_shape_options, options, &o));
     BRIO_TRY(brio_mesh_new(ctx, &shape_mesh));
     if (crust) BRIO_TRY(brio_mesh_new(ctx, &crust_mesh));
-    BRIO_TRY(make_both(&l, points, num_points, &o, shape_mesh, crust_mesh, &s));
-    BRIO_GIVE(brio_power_shape_stats, stats, &s);
+    BRIO_TRY(find_balls(&l, points, num_points, &o));
+    BRIO_TRY(make_both(&l, &o, shape_mesh, crust_mesh, &s));
     *shape = shape_mesh;
     if (crust) *crust = crust_mesh;
     shape_mesh = crust_mesh = NULL;
 done:
+    BRIO_GIVE(brio_power_shape_stats, stats, &s);
     progress_part(ctx, 0, 1);
     brio_mesh_free(shape_mesh);
     brio_mesh_free(crust_mesh);

@@ -16,17 +16,17 @@ static bool normalise(double *n) {
 }
 
 /* Adds the direction from the sample to a pole, outwards. */
-static void add_pole(const brio_pole_graph *g, const uint8_t *label, size_t s, uint32_t pole, double *n) {
+static void add_pole(const brio_power_diagram *d, const uint8_t *label, size_t s, uint32_t pole, double *n) {
     double sign = label[pole] == BRIO_LABEL_INNER ? -1 : 1;
-    for (size_t k = 0; k < 3; k++) n[k] += sign * (g->poles->centre[3 * (size_t)pole + k] - g->samples[3 * s + k]);
+    for (size_t k = 0; k < 3; k++) n[k] += sign * (d->poles->centre[3 * (size_t)pole + k] - d->samples[3 * s + k]);
 }
 
-static bool normal_from_poles(const brio_pole_graph *g, const uint8_t *label, size_t s, double *n) {
-    uint32_t far = g->poles->of_sample[2 * s], near = g->poles->of_sample[2 * s + 1];
+static bool normal_from_poles(const brio_power_diagram *d, const uint8_t *label, size_t s, double *n) {
+    uint32_t far = d->poles->of_sample[2 * s], near = d->poles->of_sample[2 * s + 1];
     n[0] = n[1] = n[2] = 0;
     if (far == BRIO_NO_POLE) return false;
-    add_pole(g, label, s, far, n);
-    if (near != BRIO_NO_POLE && label[near] != label[far]) add_pole(g, label, s, near, n);
+    add_pole(d, label, s, far, n);
+    if (near != BRIO_NO_POLE && label[near] != label[far]) add_pole(d, label, s, near, n);
     return normalise(n);
 }
 
@@ -43,21 +43,21 @@ static void normal_from_crust(const brio_triangle_tree *tree, const double *p, d
     if (!normalise(n)) n[0] = n[1] = n[2] = 0;
 }
 
-brio_status brio_sample_normals(const brio_pole_graph *g, const uint8_t *label, const uint32_t *representative,
+brio_status brio_sample_normals(const brio_power_diagram *d, const uint8_t *label, const uint32_t *representative,
                                 const uint32_t *order, const brio_mesh *crust, double *normals) {
     brio_status status = BRIO_OK;
     brio_triangle_tree tree = {0};
-    for (size_t s = 0; s < g->num_samples; s++) {
+    for (size_t s = 0; s < d->num_samples; s++) {
         double *n = normals + 3 * (size_t)order[s];
         size_t r = representative[s];
         if (r < s) {
             memcpy(n, normals + 3 * (size_t)order[r], 3 * sizeof *n);
-        } else if (!normal_from_poles(g, label, r, n)) {
-            if (!tree.boxes) BRIO_TRY(brio_triangle_tree_new(g->ctx, crust, &tree));
-            normal_from_crust(&tree, g->samples + 3 * r, n);
+        } else if (!normal_from_poles(d, label, r, n)) {
+            if (!tree.boxes) BRIO_TRY(brio_triangle_tree_new(crust->context, crust, &tree));
+            normal_from_crust(&tree, d->samples + 3 * r, n);
         }
     }
 done:
-    brio_triangle_tree_free(g->ctx, &tree);
+    brio_triangle_tree_free(crust->context, &tree);
     return status;
 }
