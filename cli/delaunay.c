@@ -95,14 +95,6 @@ done:
     return status;
 }
 
-static brio_status require_memory(run *r, const arguments *a, const brio_mesh *mesh, const double *weights) {
-    triangulation_size size;
-    brio_status status = cli_sample_size(r, mesh, weights, &size);
-    if (status != BRIO_OK) return status;
-    return cli_require_memory(r, cli_delaunay_bytes(mesh, weights != NULL, brio_context_threads(r->ctx), &size) +
-                                     cli_location_bytes((brio_location)a->locate, mesh));
-}
-
 static brio_delaunay_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
     brio_delaunay_options o = brio_delaunay_options_default();
     o.order = insertion_order(a);
@@ -115,6 +107,14 @@ static brio_delaunay_options library_options(const run *r, const arguments *a, c
     o.record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every;
     if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
     return o;
+}
+
+static brio_status require_memory(run *r, const arguments *a, const brio_mesh *mesh, const double *weights) {
+    brio_edges expected = {.count = mesh->num_faces ? (size_t)mesh->face_offsets[mesh->num_faces] / 2 : 0};
+    brio_delaunay_options o = library_options(r, a, &expected);
+    double bytes;
+    brio_status status = cli_delaunay_bytes(r, mesh, weights, &o, &bytes);
+    return status == BRIO_OK ? cli_require_memory(r, bytes) : status;
 }
 
 /* Goes along the edges of the mesh where the location wants them; its faces are dropped before the triangulation. */

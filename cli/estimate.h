@@ -1,35 +1,23 @@
-/* How much memory a command takes, the program and its input included: what --max-memory and `brio info` go by. */
+/* How much memory a command takes: the library's estimate for the work, and beside it the program and its input. */
 #ifndef BRIO_CLI_ESTIMATE_H
 #define BRIO_CLI_ESTIMATE_H
 
-#include "brio/brio.h"
-#include "sample.h"
-#include <stdbool.h>
+#include "run.h"
 
-/** Bytes of the mesh as it was read: its points, faces, tetrahedra and properties. */
+/** Bytes of the program itself, its libraries and small blocks. */
+#define CLI_PROGRAM_BYTES 4.5e6
+
+/** Returns the bytes of a mesh as it was read: its points, faces, tetrahedra and properties. */
 double cli_mesh_bytes(const brio_mesh *mesh);
 
-/** Of `brio delaunay`, for a triangulation of that size. */
-double cli_delaunay_bytes(const brio_mesh *mesh, bool weighted, int threads, const triangulation_size *size);
+/** Estimates `brio delaunay` of a mesh; weights may be NULL. */
+brio_status cli_delaunay_bytes(run *r, const brio_mesh *mesh, const double *weights, const brio_delaunay_options *o,
+                               double *bytes);
 
-/** Bytes that a location takes besides; of one that goes along edges, those of the mesh. */
-double cli_location_bytes(brio_location location, const brio_mesh *mesh);
-
-/** Of `brio surface`: a power crust, and of what begins as one does (medial, offset); or a co-cone. */
-double cli_crust_bytes(const brio_mesh *mesh);
-double cli_cocone_bytes(const brio_mesh *mesh);
-
-/** Bytes that a power crust takes besides with simplification, and with triangulated faces. */
-double cli_crust_extra_bytes(size_t points, bool simplify, bool triangulate);
-
-/** Of `brio info`. */
+/** Returns the estimate for `brio info`. */
 double cli_info_bytes(const brio_mesh *mesh);
 
-/** Of `brio subdivide`. */
-double cli_subdivide_bytes(const brio_mesh *mesh, int levels);
-
-/** Of `brio generate`: points of a kind, and an iso-surface of so many vertices. */
-double cli_generate_bytes(size_t points);
-double cli_iso_bytes(size_t vertices);
+/** Refuses work over --max-memory.   status, work  from the library's estimate.   input  may be NULL. */
+brio_status cli_require_work(run *r, brio_status status, const brio_mesh *input, uint64_t work);
 
 #endif

@@ -104,7 +104,7 @@ static brio_status generate_points(run *r, const arguments *a, brio_kind kind) {
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a, kind));
-    TRY(cli_require_memory(r, cli_generate_bytes((size_t)a->points)));
+    TRY(cli_require_work(r, BRIO_OK, NULL, brio_estimate_generate((size_t)a->points)));
     o.seed = r->common.seed;
     if (!isnan(a->noise)) o.noise = a->noise;
     if (a->views != NO_VIEWS) o.views = a->views;

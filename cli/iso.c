@@ -52,7 +52,7 @@ static brio_status iso(run *r) {
     o.resolution = (size_t)a->resolution;
     if (!isnan(a->blobbiness)) o.blobbiness = a->blobbiness;
     if (a->vertices != NO_COUNT) o.vertices = (size_t)a->vertices;
-    if (o.vertices) TRY(cli_require_memory(r, cli_iso_bytes(o.vertices)));
+    if (o.vertices) TRY(cli_require_work(r, BRIO_OK, NULL, brio_estimate_iso_surface(o.vertices)));
     TRY(brio_iso_surface(r->ctx, r->operands[0], &o, &mesh));
     cli_lap(r, "iso");
     cli_fact_count(&r->facts, "points", mesh->num_vertices);

@@ -132,8 +132,10 @@ static brio_status medial(run *r) {
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read(r, r->operands[0], &input));
     TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
-    TRY(cli_require_memory(r, cli_crust_bytes(input)));
+    uint64_t work;
     brio_power_shape_options o = medial_options(r, labeling, by_mesh ? input : NULL);
+    status = brio_estimate_power_shape(r->ctx, input->num_vertices, &o, &work);
+    TRY(cli_require_work(r, status, input, work));
     status = brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
     cli_suggest_labeling(r, status, a->labeling, by_mesh);
     if (status != BRIO_OK) goto done;

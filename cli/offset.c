@@ -58,8 +58,11 @@ static brio_status offset_surface(run *r, const power_crust_options *crust, cons
     o.triangulate = crust->triangulate;
     o.simplify = crust->simplify;
     if (by_mesh) o.poles.solid = points;
-    brio_status status =
-        brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &s);
+    uint64_t work;
+    brio_status status = brio_estimate_offset_surface(r->ctx, points->num_vertices, &o, &work);
+    status = cli_require_work(r, status, points, work);
+    if (status != BRIO_OK) return status;
+    status = brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &s);
     cli_suggest_labeling(r, status, a->crust.labeling, by_mesh);
     if (status != BRIO_OK) return status;
     cli_report_power_crust_stages(r, crust, &s);
@@ -85,8 +88,6 @@ static brio_status offset(run *r) {
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read(r, r->operands[0], &points));
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));
-    double extra = cli_crust_extra_bytes(points->num_vertices, crust.simplify, crust.triangulate);
-    TRY(cli_require_memory(r, cli_crust_bytes(points) + extra));
     TRY(offset_surface(r, &crust, points, by_mesh, &surface));
     TRY(cli_check_interrupt(r));
     brio_mesh_free(points);

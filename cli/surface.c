@@ -103,7 +103,11 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     o.boundaries = a->boundaries;
     o.pieces = a->pieces;
     o.density = a->density || r->common.json;
-    brio_status status = brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
+    uint64_t work;
+    brio_status status = brio_estimate_cocone(r->ctx, points->num_vertices, &o, &work);
+    status = cli_require_work(r, status, points, work);
+    if (status != BRIO_OK) return status;
+    status = brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
     if (status != BRIO_OK) return status;
     cli_stage(r, "delaunay", s.delaunay_seconds);
     cli_stage(r, "poles", s.poles_seconds);
@@ -155,8 +159,6 @@ static brio_status surface(run *r) {
     TRY(check_arguments(r));
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read_points(r, r->operands[0], &points));
-    double extra = cli_crust_extra_bytes(points->num_vertices, a->crust.simplify, a->crust.triangulate);
-    TRY(cli_require_memory(r, (a->method == POWER_CRUST ? cli_crust_bytes(points) : cli_cocone_bytes(points)) + extra));
     TRY(a->method == POWER_CRUST ? power_crust(r, points, &result) : cocone(r, points, &result));
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));

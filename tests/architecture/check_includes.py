@@ -6,7 +6,8 @@ import re
 import sys
 
 LAYERS = ["base", "predicates", "order", "triangulation", "dual", "surface", "reconstruct"]
-MAY_SEE = {layer: set(LAYERS[:i + 1]) for i, layer in enumerate(LAYERS)} | {"io": {"base", "surface", "io"}}
+MAY_SEE = {layer: set(LAYERS[:i + 1]) for i, layer in enumerate(LAYERS)} | {"io": {"base", "surface", "io"},
+                                                                   "estimate": {"base", "order", "estimate"}}
 # the rooms of src/reconstruct
 MAY_SEE_ROOM = {"labels": {"labels"}, "power_crust": {"labels", "power_crust"}, "cocone": {"cocone"}}
 LABEL = ("src", "reconstruct", "labels", "label.h")

@@ -2,7 +2,7 @@
  * reconstruction with guarantees on top of them.   MIT licence.
  *
  * This header is the manual. Its sections follow a user's work: versions, status and context, triangulation, meshes and
- * their certificates, surface reconstruction, iso-surfaces, files, test data, predicates.
+ * their certificates, surface reconstruction, iso-surfaces, files, test data, memory estimates, predicates.
  *
  * Words, used in one meaning throughout:
  *   points      the rows of the input
@@ -859,6 +859,39 @@ BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, 
 /** Makes the surface that BRIO_KIND_SCAN scans: a closed triangle mesh from a grid of `resolution` cells along the longest
  *  side of its box (0: 160).   Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Memory estimates
+ *
+ * Each estimates the bytes that the function of its name holds at its peak, the result included and the caller's arrays
+ * not. The estimates are within 15 % on the inputs of docs/performance.md; other inputs can need more. To make sure, set
+ * the limit of the context: work over it fails with BRIO_ERR_NO_MEMORY.
+ */
+
+/** Estimates the memory of brio_delaunay for these points and the threads of the context. Triangulates the surroundings
+ *  of twelve points to learn how many tetrahedra a point there are.   options  NULL for the defaults.
+ *  Cost: about 20,000 insertions and fifty passes over the points.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights,
+                                            size_t num_points, const brio_delaunay_options *options, uint64_t *bytes);
+
+/** Estimates the memory of a reconstruction from num_points samples.   options  NULL for the defaults.
+ *  Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
+BRIO_API brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points,
+                                               const brio_power_crust_options *options, uint64_t *bytes);
+BRIO_API brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points,
+                                                  const brio_offset_options *options, uint64_t *bytes);
+BRIO_API brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points,
+                                               const brio_power_shape_options *options, uint64_t *bytes);
+BRIO_API brio_status brio_estimate_cocone(brio_context *ctx, size_t num_points, const brio_cocone_options *options,
+                                          uint64_t *bytes);
+
+/** Returns the estimate for brio_mesh_subdivide of a mesh of num_faces triangles. */
+BRIO_API uint64_t brio_estimate_mesh_subdivide(size_t num_faces, int levels);
+/** Returns the estimate for a brio_iso_surface of num_vertices vertices, the map or the atoms not included. */
+BRIO_API uint64_t brio_estimate_iso_surface(size_t num_vertices);
+/** Returns the estimate for brio_generate. */
+BRIO_API uint64_t brio_estimate_generate(size_t num_points);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Predicates, exact for all finite doubles. Points are 3 doubles each.

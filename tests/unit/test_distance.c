@@ -204,7 +204,6 @@ static void perpendicular_squares_have_no_common_normal(void) {
 static void figures_do_not_depend_on_threads(void) {
     brio_mesh *a, *b;
     brio_distance d[2] = {{.size = sizeof *d}, {.size = sizeof *d}};
-    memset(d, 0, sizeof d);
     EXPECT(brio_generate_truth(ctx, 20, &a) == BRIO_OK && brio_generate_truth(ctx, 30, &b) == BRIO_OK);
     for (int i = 0; i < 2; i++) {
         brio_context_set_threads(ctx, i ? 1 : 3);

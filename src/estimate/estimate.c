@@ -1,0 +1,132 @@
+/* Memory estimates.
+ *
+ * The constants are those of the data structures or measured, as said beside them; measurement adjusts them here and
+ * nowhere else. docs/performance.md compares the estimates with the peaks of many inputs. An input that no estimate
+ * foresees meets the memory limit of the context, which refuses memory while the work runs. */
+#include "base/float_state.h"
+#include "base/versioned.h"
+#include "estimate/triangulation_size.h"
+#include "order/canonical_points.h"
+#include <math.h>
+
+/* While points are inserted: record, index in the input, representative, number in the cavity. */
+static const double INSERT_BYTES_A_POINT = 41, INSERT_BYTES_A_TETRAHEDRON = 33;
+/* Then, where points are hidden, what finds the vertices that represent them (autzen and csite4: 32). */
+static const double BYTES_A_HIDDEN_POINT = 32;
+/* While the result is sorted: index, representative and two buckets; two numbers a tetrahedron. */
+static const double SORT_BYTES_A_POINT = 16, SORT_BYTES_A_TETRAHEDRON = 41;
+/* With threads: the rank on the curve, and a thirty-second of the result moved at a time, with the lists for it. */
+static const double THREADS_BYTES_A_POINT = 4, THREADS_BYTES_A_TETRAHEDRON = 1.25;
+/* Other locations than the walk. HISTORY and TRACE: 300,000 points of a scan peak at 892 bytes a point resident, 322 by
+ * the walk. An edge takes 8 bytes as a pair and 8 in the graph. */
+static const double HISTORY_BYTES_A_POINT = 570, LOCATION_BYTES_A_POINT = 8, BYTES_AN_EDGE = 16;
+
+/* Measured, the samples not included: models take 1,460 to 1,570 bytes a sample, a raw scan 1,590, offsets 1,240, the
+ * co-cone 540 to 640. */
+static const double CRUST_BYTES_A_POINT = 1426, COCONE_BYTES_A_POINT = 616;
+static const double TRIANGLE_BYTES_A_POINT = 300;  /* more, triangulated: a scan of 20,000 points 210, bunny 350 */
+static const double SIMPLIFY_BYTES_A_POINT = 2300; /* more, simplified: knot2 2,070, bunny 2,400, fandisk 2,510 */
+static const double SUBDIVIDE_BYTES_A_FACE = 76;   /* of the result, a certificate included */
+static const double ISO_BYTES_A_VERTEX = 71, COORDINATE_BYTES = 24;
+
+/* As an integer; the greatest one for what is larger. */
+static uint64_t bytes_of(double bytes) {
+    return bytes < 0x1p64 ? (uint64_t)bytes : UINT64_MAX;
+}
+
+static double location_bytes(double points, const brio_delaunay_options *o) {
+    switch (o->locate) {
+    case BRIO_LOCATION_WALK:
+        return 0;
+    case BRIO_LOCATION_HISTORY:
+        return HISTORY_BYTES_A_POINT * points;
+    case BRIO_LOCATION_TRACE:
+        return HISTORY_BYTES_A_POINT * points + BYTES_AN_EDGE * (double)o->num_edges;
+    case BRIO_LOCATION_NEIGHBOUR:
+        return LOCATION_BYTES_A_POINT * points + BYTES_AN_EDGE * (double)o->num_edges;
+    default:
+        return LOCATION_BYTES_A_POINT * points;
+    }
+}
+
+static double delaunay_bytes(double points, const brio_triangulation_size *size, bool threads) {
+    double insert = INSERT_BYTES_A_POINT * points + INSERT_BYTES_A_TETRAHEDRON * size->tetrahedra +
+                    BYTES_A_HIDDEN_POINT * size->hidden;
+    double sort = SORT_BYTES_A_POINT * points + SORT_BYTES_A_TETRAHEDRON * size->tetrahedra;
+    if (threads) sort += THREADS_BYTES_A_TETRAHEDRON * size->tetrahedra;
+    return fmax(insert, sort) + (threads ? THREADS_BYTES_A_POINT * points : 0);
+}
+
+brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                   const brio_delaunay_options *options, uint64_t *bytes) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_triangulation_size size = {0};
+    *bytes = 0;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
+    BRIO_TRY(brio_refuse_points(ctx, points, num_points));
+    BRIO_TRY(brio_estimate_size(ctx, points, weights, num_points, &size));
+    double n = (double)num_points;
+    *bytes = bytes_of(delaunay_bytes(n, &size, brio_context_threads(ctx) > 1) + location_bytes(n, &o));
+done:
+    return status;
+}
+
+static uint64_t crust_bytes(size_t num_points, bool triangulate, bool simplify) {
+    double each = CRUST_BYTES_A_POINT;
+    if (triangulate) each += TRIANGLE_BYTES_A_POINT;
+    if (simplify) each += SIMPLIFY_BYTES_A_POINT;
+    return bytes_of(each * (double)num_points);
+}
+
+brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points, const brio_power_crust_options *options,
+                                      uint64_t *bytes) {
+    BRIO_DOOR;
+    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_status status = BRIO_TAKE(ctx, brio_power_crust_options, options, &o);
+    *bytes = status == BRIO_OK ? crust_bytes(num_points, o.triangulate, o.simplify) : 0;
+    return status;
+}
+
+brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points, const brio_offset_options *options,
+                                         uint64_t *bytes) {
+    BRIO_DOOR;
+    brio_offset_options o = brio_offset_options_default();
+    brio_status status = BRIO_TAKE(ctx, brio_offset_options, options, &o);
+    *bytes = status == BRIO_OK ? crust_bytes(num_points, o.triangulate, o.simplify) : 0;
+    return status;
+}
+
+brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points, const brio_power_shape_options *options,
+                                      uint64_t *bytes) {
+    BRIO_DOOR;
+    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_status status = BRIO_TAKE(ctx, brio_power_shape_options, options, &o);
+    *bytes = status == BRIO_OK ? crust_bytes(num_points, false, false) : 0;
+    return status;
+}
+
+brio_status brio_estimate_cocone(brio_context *ctx, size_t num_points, const brio_cocone_options *options,
+                                 uint64_t *bytes) {
+    BRIO_DOOR;
+    brio_cocone_options o = brio_cocone_options_default();
+    brio_status status = BRIO_TAKE(ctx, brio_cocone_options, options, &o);
+    *bytes = status == BRIO_OK ? bytes_of(COCONE_BYTES_A_POINT * (double)num_points) : 0;
+    return status;
+}
+
+uint64_t brio_estimate_mesh_subdivide(size_t num_faces, int levels) {
+    BRIO_DOOR;
+    return bytes_of(ldexp((double)num_faces, 2 * levels) * SUBDIVIDE_BYTES_A_FACE);
+}
+
+uint64_t brio_estimate_iso_surface(size_t num_vertices) {
+    BRIO_DOOR;
+    return bytes_of((double)num_vertices * ISO_BYTES_A_VERTEX);
+}
+
+uint64_t brio_estimate_generate(size_t num_points) {
+    BRIO_DOOR;
+    return bytes_of((double)num_points * COORDINATE_BYTES);
+}

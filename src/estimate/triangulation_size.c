@@ -1,0 +1,175 @@
+/* The size of a triangulation, estimated from the surroundings of a few points.
+ *
+ * What the triangulation is like near a point depends on the points near it, and these are triangulated as they are. A
+ * random sample of all points would not do: it keeps neither the noise of a scan, nor a lattice, nor what a weight hides.
+ * On exact curved surfaces the number of tetrahedra a point grows with the size of the surroundings. There it is
+ * extrapolated with the logarithm of the number of points. */
+#include "estimate/triangulation_size.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/vector.h"
+#include <math.h>
+
+enum { ALL = 2048, BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400 };
+
+static const double USUAL = 6.8; /* tetrahedra a point of uniform points */
+/* The share of the tetrahedra a point that a ball has more than the ball of half its radius. In space the border of the
+ * balls makes a share of 0.03. */
+static const double GROWS = 0.1;
+
+/* A set of points. */
+typedef struct {
+    brio_context *ctx;
+    const double *points, *weights;
+    size_t count;
+} cloud;
+
+typedef struct {
+    double centre[3], radius2;
+    size_t count;
+    uint32_t member[BALL_MOST];
+} ball;
+
+/* Point i of `count` random points, one of each of `count` equal parts of all points. */
+static size_t nth_choice(size_t i, size_t count, size_t points) {
+    double part = (double)points / (double)count, within = (double)(brio_mix(i + 1) >> 11) * 0x1p-53;
+    size_t at = (size_t)(((double)i + within) * part);
+    return at < points ? at : points - 1;
+}
+
+/* The squared diagonal of the bounding box. */
+static double squared_diagonal(const cloud *c) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < c->count; i++)
+        for (int k = 0; k < 3; k++) {
+            double x = c->points[3 * i + (size_t)k];
+            low[k] = fmin(low[k], x), high[k] = fmax(high[k], x);
+        }
+    return brio_square_distance(low, high);
+}
+
+static void gather_ball(const cloud *c, ball *b) {
+    b->count = 0;
+    for (size_t i = 0; i < c->count; i++)
+        if (brio_square_distance(c->points + 3 * i, b->centre) <= b->radius2) {
+            if (b->count < BALL_MOST) b->member[b->count] = (uint32_t)i;
+            b->count++;
+        }
+}
+
+/* Finds a ball around a point with some hundreds or thousands of points; false when there is none. */
+static bool find_ball(const cloud *c, double diagonal2, size_t centre, ball *b) {
+    enum { TRIES = 16 };
+    for (size_t k = 0; k < 3; k++) b->centre[k] = c->points[3 * centre + k];
+    b->radius2 = diagonal2 * BALL_AIM / (double)c->count;
+    for (int i = 0; i < TRIES; i++) {
+        gather_ball(c, b);
+        if (b->count >= BALL_LEAST && b->count <= BALL_MOST) return true;
+        b->radius2 *= (double)BALL_AIM / (double)(b->count ? b->count : 1);
+    }
+    return false;
+}
+
+/* What was counted at the inner points of balls: those within half of the radius. */
+typedef struct {
+    double points, hidden, tetrahedra;
+} tally;
+
+/* A tetrahedron counts for each of its finite vertices with an equal share. */
+static void count_inner(const brio_triangulation *t, const uint8_t *inner, tally *sum) {
+    const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    for (size_t i = 0; i < s->tetrahedra + s->hull_facets; i++) {
+        int finite = tet[i].vertex[3] == BRIO_INFINITE ? 3 : 4;
+        for (int v = 0; v < finite; v++)
+            if (inner[tet[i].vertex[v]]) sum->tetrahedra += 1.0 / finite;
+    }
+}
+
+/* Triangulates the points of a ball within radius2 of its centre and counts at the inner ones. */
+static brio_status count_ball(const cloud *c, const ball *b, double radius2, tally *sum) {
+    brio_status status = BRIO_OK;
+    double *points = NULL, *weights = NULL;
+    uint8_t *inner = NULL;
+    brio_triangulation *t = NULL;
+    size_t n = 0;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, points, 3 * b->count));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, weights, b->count));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, inner, b->count));
+    for (size_t i = 0; i < b->count; i++) {
+        const double *p = c->points + 3 * (size_t)b->member[i];
+        double distance = brio_square_distance(p, b->centre);
+        if (distance > radius2) continue;
+        for (size_t k = 0; k < 3; k++) points[3 * n + k] = p[k];
+        weights[n] = c->weights ? c->weights[b->member[i]] : 0;
+        inner[n++] = distance <= radius2 / 4;
+    }
+    BRIO_TRY(brio_delaunay(c->ctx, points, c->weights ? weights : NULL, n, NULL, &t));
+    const uint32_t *representative = brio_triangulation_representatives(t);
+    for (size_t i = 0; i < n; i++) {
+        sum->points += inner[i];
+        sum->hidden += inner[i] && representative[i] != i;
+    }
+    count_inner(t, inner, sum);
+done:
+    brio_triangulation_free(t);
+    brio_release(c->ctx, points);
+    brio_release(c->ctx, weights);
+    brio_release(c->ctx, inner);
+    return status;
+}
+
+/* Counts in the surroundings of some points (far), and half as far around them (near). The bar of the caller stands
+ * still meanwhile. */
+static brio_status count_surroundings(const cloud *c, tally *far, tally *near) {
+    brio_status status = BRIO_OK;
+    ball *b = NULL;
+    double diagonal2 = squared_diagonal(c);
+    BRIO_TRY(BRIO_ALLOC(c->ctx, b, 1));
+    for (size_t i = 0; i < BALLS; i++) {
+        BRIO_TRY(brio_progress(c->ctx, "estimate", 0));
+        if (!find_ball(c, diagonal2, nth_choice(i, BALLS, c->count), b)) continue;
+        BRIO_TRY(count_ball(c, b, b->radius2, far));
+        BRIO_TRY(count_ball(c, b, b->radius2 / 4, near));
+    }
+done:
+    brio_release(c->ctx, b);
+    return status;
+}
+
+static brio_status size_of_all(const cloud *c, brio_triangulation_size *size) {
+    brio_triangulation *t = NULL;
+    brio_status status = brio_delaunay(c->ctx, c->points, c->weights, c->count, NULL, &t);
+    if (status != BRIO_OK) return status;
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    *size = (brio_triangulation_size){(double)(s->tetrahedra + s->hull_facets), (double)s->hidden};
+    brio_triangulation_free(t);
+    return BRIO_OK;
+}
+
+static void extrapolate(const cloud *c, const tally *far, const tally *near, brio_triangulation_size *size) {
+    double points = (double)c->count;
+    if (far->points == 0 || near->points == 0) { /* nearly all points are at a few positions */
+        *size = (brio_triangulation_size){points * USUAL, 0};
+        return;
+    }
+    double ratio = far->tetrahedra / far->points, growth = ratio - near->tetrahedra / near->points;
+    if (growth > GROWS * ratio)
+        ratio += growth * log(points * BALLS / (4 * far->points)) / log(far->points / near->points);
+    *size = (brio_triangulation_size){points * ratio, c->weights ? points * far->hidden / far->points : 0};
+}
+
+brio_status brio_estimate_size(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                               brio_triangulation_size *size) {
+    cloud c = {ctx, points, weights, num_points};
+    tally far = {0}, near = {0};
+    int threads = ctx->threads;
+    double to = ctx->progress_to;
+    ctx->threads = 1;                      /* enough for so few points */
+    ctx->progress_to = ctx->progress_from; /* the bar stands still */
+    brio_status status = num_points <= ALL ? size_of_all(&c, size) : count_surroundings(&c, &far, &near);
+    if (status == BRIO_OK && num_points > ALL) extrapolate(&c, &far, &near, size);
+    ctx->threads = threads;
+    ctx->progress_to = to;
+    return status;
+}

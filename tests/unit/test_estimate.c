@@ -1,0 +1,114 @@
+/* Memory estimates against what the context counts. Estimates are of the memory that is touched; the context also counts
+ * room that is set aside for growth, which threads do for themselves. */
+#include "harness.h"
+#include "points.h"
+
+enum { N = 40000 };
+
+static double points[3 * N], weights[N];
+
+/* The most bytes that the context held, beyond what it held before. */
+static double peak_of_delaunay(const double *w, int threads) {
+    brio_context *ctx = new_context();
+    brio_triangulation *t;
+    brio_context_set_threads(ctx, threads);
+    EXPECT(brio_delaunay(ctx, points, w, N, NULL, &t) == BRIO_OK);
+    double peak = (double)brio_context_memory_peak(ctx);
+    brio_triangulation_free(t);
+    brio_context_free(ctx);
+    return peak;
+}
+
+static void triangulations_take_what_was_estimated(void) {
+    for (int set = 0; set < 4; set++) {
+        if (set == 0) uniform_points(1, N, points);
+        if (set == 1) clustered_points(2, N, points);
+        if (set == 2) integer_points(3, N, 40, points);
+        if (set == 3) sphere_points(4, N, points);
+        integer_weights(7, N, 5, weights);
+        for (size_t i = 0; i < N; i++) weights[i] *= 1e-6;
+        for (int way = 0; way < 4; way++) {
+            const double *w = way % 2 ? weights : NULL;
+            brio_context *ctx = new_context();
+            uint64_t bytes;
+            brio_context_set_threads(ctx, 1 + way / 2);
+            EXPECT(brio_estimate_delaunay(ctx, points, w, N, NULL, &bytes) == BRIO_OK);
+            EXPECT(brio_context_memory(ctx) == 0 && brio_context_threads(ctx) == 1 + way / 2);
+            brio_context_free(ctx);
+            double ratio = (double)bytes / peak_of_delaunay(w, 1 + way / 2);
+            EXPECT(ratio > (way < 2 ? 0.8 : 0.6) && ratio < 1.3, "set %d, way %d: %g", set, way, ratio);
+        }
+    }
+}
+
+static void surfaces_take_what_was_estimated(void) {
+    brio_context *scanner = new_context();
+    brio_mesh *scan;
+    EXPECT(brio_generate(scanner, BRIO_KIND_SCAN, N, NULL, &scan) == BRIO_OK);
+    const double *p = scan->vertices;
+    size_t n = scan->num_vertices;
+    for (int method = 0; method < 4; method++) {
+        brio_context *ctx = new_context();
+        brio_mesh *mesh = NULL;
+        uint64_t bytes = 0;
+        brio_context_set_threads(ctx, 1);
+        if (method == 0) {
+            EXPECT(brio_estimate_power_crust(ctx, n, NULL, &bytes) == BRIO_OK);
+            EXPECT(brio_power_crust(ctx, p, n, NULL, &mesh, NULL, NULL) == BRIO_OK);
+        } else if (method == 1) {
+            EXPECT(brio_estimate_offset_surface(ctx, n, NULL, &bytes) == BRIO_OK);
+            EXPECT(brio_offset_surface(ctx, p, n, 0.02, NULL, &mesh, NULL) == BRIO_OK);
+        } else if (method == 2) {
+            EXPECT(brio_estimate_power_shape(ctx, n, NULL, &bytes) == BRIO_OK);
+            EXPECT(brio_power_shape(ctx, p, n, NULL, &mesh, NULL, NULL) == BRIO_OK);
+        } else {
+            EXPECT(brio_estimate_cocone(ctx, n, NULL, &bytes) == BRIO_OK);
+            EXPECT(brio_cocone(ctx, p, n, NULL, &mesh, NULL) == BRIO_OK);
+        }
+        double ratio = (double)bytes / (double)brio_context_memory_peak(ctx);
+        EXPECT(ratio > 0.8 && ratio < 1.7, "method %d: %g", method, ratio);
+        brio_mesh_free(mesh);
+        brio_context_free(ctx);
+    }
+    brio_mesh_free(scan);
+    brio_context_free(scanner);
+}
+
+static void wrong_arguments_are_refused(void) {
+    brio_context *ctx = new_context();
+    uint64_t bytes = 77;
+    uniform_points(1, 5000, points);
+    points[3 * 4000] = NAN;
+    EXPECT(brio_estimate_delaunay(ctx, points, NULL, 5000, NULL, &bytes) == BRIO_ERR_NOT_FINITE && bytes == 0);
+    EXPECT(brio_estimate_delaunay(ctx, points, NULL, 50, &(brio_delaunay_options){0}, &bytes) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_estimate_delaunay(ctx, NULL, NULL, 0, NULL, &bytes) == BRIO_OK && bytes < 4096);
+    EXPECT(brio_estimate_cocone(ctx, 9, &(brio_cocone_options){0}, &bytes) == BRIO_ERR_ARGUMENT && bytes == 0);
+    EXPECT(brio_estimate_generate(SIZE_MAX) > SIZE_MAX / 2 && brio_estimate_mesh_subdivide(1000, 2) > 64000);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static int cancel_at_once(const char *stage, double fraction, void *user) {
+    (void)stage;
+    EXPECT(fraction == 0);
+    return ++*(int *)user > 3;
+}
+
+static void estimates_can_be_cancelled(void) {
+    brio_context *ctx = new_context();
+    uint64_t bytes;
+    int calls = 0;
+    uniform_points(1, N, points);
+    brio_context_set_progress(ctx, cancel_at_once, &calls);
+    EXPECT(brio_estimate_delaunay(ctx, points, NULL, N, NULL, &bytes) == BRIO_ERR_CANCELLED && bytes == 0);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+int main(void) {
+    RUN(triangulations_take_what_was_estimated);
+    RUN(surfaces_take_what_was_estimated);
+    RUN(wrong_arguments_are_refused);
+    RUN(estimates_can_be_cancelled);
+    return harness_end();
+}
