@@ -122,7 +122,8 @@ static inline void create(brio_tetrahedron *tets, uint32_t tet, uint32_t outer, 
     store_four(inside->vertex, p, v[0], v[1], v[2]);
 }
 
-/* Where vertices have their numbers; by value, since stores to bytes may alias anything. */
+/* Where the vertices of a cavity, which the thread holds, have their numbers (P4). By value, since stores to bytes may
+ * alias anything. */
 typedef struct {
     uint8_t *local, *infinite_local;
     uint32_t infinite;
@@ -139,13 +140,13 @@ static inline uint8_t *number_of(numbers n, uint32_t v) {
 /* Numbers the vertices of the cavity: those of the first tetrahedron by their slots, and what each later one added, the
  * vertex opposite to the facet it was found through, by when it was found. The last number of a vertex counts. */
 static void number_vertices(brio_inserter *ins) {
-    const brio_cavity *c = &ins->cavity;
-    const brio_tetrahedra t = ins->store->t;
-    const uint32_t *entry = c->entry;
+    const brio_tetrahedron *tets = ins->store->t.tet;
     const numbers number = numbers_of(ins);
-    size_t num_tets = c->num_tets;
-    for (int i = 0; i < 4; i++) *number_of(number, brio_apex(&t, entry[0] ^ (uint32_t)i)) = (uint8_t)i;
-    for (size_t n = 1; n < num_tets; n++) *number_of(number, brio_apex(&t, entry[n])) = (uint8_t)(n + 3);
+    const uint32_t *entry = ins->cavity.entry;
+    size_t num_tets = ins->cavity.num_tets;
+    for (uint32_t i = 0; i < 4; i++) *number_of(number, tets[brio_tet_of(entry[0])].vertex[i]) = (uint8_t)i;
+    for (size_t n = 1; n < num_tets; n++)
+        *number_of(number, tets[brio_tet_of(entry[n])].vertex[brio_slot_of(entry[n])]) = (uint8_t)(n + 3);
 }
 
 /* Joins the star by a table of edges. Facet i > 0 of a new tetrahedron holds the point and the edge from vertex i % 3 +

@@ -20,7 +20,19 @@
  *     representatives lead to a vertex.
  * I8  caller permutes 0 .. n - 1. Insertion swaps two entries only, and only of coincident points of one weight.
  *
- * Who writes in a pass, and who may read meanwhile; the proof is in docs/decisions/006-segments-held-by-threads.md:
+ *   field                          written by, when                               read in a pass by
+ *   t.tet, state, capacity:        brio_store_reserve, alone; the canonical       every thread
+ *   the arrays and their size      order, which frees the states
+ *   t.tet[s], state[s]             the inserter alone; in a pass P1, P2           P3
+ *   t.count                        brio_store_take, at any time, atomically;      brio_store_take
+ *                                  alone also the inserter and the last step
+ *   record, rank                   before the first insertion; brio_start         every thread
+ *                                  brings some records to the front
+ *   caller, representative, local  the inserter alone; in a pass P4               P4
+ *   dimension, filter              brio_start                                     every thread
+ *   all others                     the constructor                                every thread
+ *
+ * In a pass; decision 006 (docs/decisions/006-segments-held-by-threads.md) is the proof that no two threads collide:
  * P1  The thread that holds all finite vertices of a tetrahedron writes its vertices and its state.
  * P2  The mate at a facet is written by the thread that destroys the tetrahedron on one of the facet's sides.
  * P3  A thread reads tetrahedra that it holds, and their neighbours: their vertices and states, and their mates at the
@@ -41,26 +53,22 @@ typedef enum {
     TET_UNUSED = 2  /* nothing */
 } brio_tet_state;
 
-/** "Alone" below: written by the one inserter that works, or by the step named; in a pass all threads read. */
 typedef struct {
-    brio_context *ctx;        /* constant */
-    brio_tetrahedra t;        /* t.tet: moved alone by brio_store_reserve; what it holds: I1 to I4, P1 to P3.
-                                 t.count: raised alone, or in a pass by any thread through brio_store_take, atomically;
-                                 lowered by the canonical order. t.infinite, t.record: constant */
-    uint8_t *state;           /* of each slot: brio_tet_state; moved alone by brio_store_reserve; I5, I6, P1, P3.
-                                 The canonical order takes it over and frees it */
-    size_t capacity;          /* slots there is room for; written alone */
-    size_t max_tetrahedra;    /* constant: the most slots */
-    brio_record *record;      /* written before the first insertion; freed before the canonical order */
-    uint32_t *rank;           /* of each record along the curve, or NULL: never parallel; constant after brio_start */
-    uint32_t *caller;         /* of each record: its index in the caller's arrays; I8, P4 */
-    uint32_t *representative; /* of each record: itself, or a record that took its place; I7, P4 */
-    uint8_t *local;           /* of each vertex: its number in the cavity where it was last; P4 */
-    size_t num_points;        /* constant */
-    bool weighted;            /* constant */
-    bool follows;             /* a record is often close to the one before it; constant */
-    int dimension;            /* of the points' affine hull, -1 without points; written by brio_start */
-    brio_filter filter;       /* bounds for all records, which each inserter copies; written by brio_start */
+    brio_context *ctx;
+    brio_tetrahedra t; /* t.count: slots handed out; t.record: the records */
+    uint8_t *state;    /* of each slot: brio_tet_state */
+    size_t capacity;   /* slots that there is room for */
+    size_t max_tetrahedra;
+    brio_record *record;      /* NULL once only their indices matter */
+    uint32_t *rank;           /* of each record: its place along the curve; NULL when one thread is to insert */
+    uint32_t *caller;         /* of each record: its index in the caller's arrays */
+    uint32_t *representative; /* of each record: itself, or a record that took its place */
+    uint8_t *local;           /* of each vertex: its number in the cavity where it was last */
+    size_t num_points;
+    bool weighted;
+    bool follows;       /* a record is often close to the one before it */
+    int dimension;      /* of the points' affine hull, -1 without points */
+    brio_filter filter; /* bounds for all records, which each inserter copies */
 } brio_store;
 
 /** Orders the points and makes a store of their records, without tetrahedra.
