@@ -35,8 +35,8 @@
  * In a pass; decision 006 (docs/decisions/006-segments-held-by-threads.md) is the proof that no two threads collide:
  * P1  The thread that holds all finite vertices of a tetrahedron writes its vertices and its state.
  * P2  The mate at a facet is written by the thread that destroys the tetrahedron on one of the facet's sides.
- * P3  A thread reads tetrahedra that it holds, and their neighbours: their vertices and states, and their mates at the
- *     common facet.
+ * P3  A thread reads vertices, states and mates of the tetrahedra that it holds and of their neighbours. It reads the
+ *     vertices behind a neighbour's facet, too: the conflict test of an infinite tetrahedron may need them.
  * P4  The thread that holds the segment of record v writes and reads representative[v], caller[v] and local[v].
  *     Every inserter keeps a number of its own for the infinite vertex.
  *
