@@ -327,7 +327,7 @@ brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *
                                .num_vertices = s->vertices,
                                .points = points,
                                .theta = theta};
-    /* the kernel's structure is shared by those who only read */
+    /* the structure that insertion writes, for those who only read */
     out->t = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(t),
                                .count = s->tetrahedra + s->hull_facets,
                                .infinite = BRIO_INFINITE};

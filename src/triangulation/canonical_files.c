@@ -12,9 +12,10 @@
  *
  * Based on: Aggarwal, Vitter. The input/output complexity of sorting and related problems. CACM 1988 (the distribution
  * sort). */
+#include "triangulation/canonical_files.h"
 #include "base/memory.h"
+#include "base/read_ahead.h"
 #include "triangulation/canonical_turn.h"
-#include "triangulation/kernel.h"
 
 /* A tetrahedron, turned but not renamed, and the slot where the insertion left it. */
 typedef struct {
@@ -36,7 +37,8 @@ typedef struct {
 } partition;
 
 typedef struct {
-    brio_kernel *k;
+    brio_store *store;
+    brio_read_ahead *read_ahead;
     size_t live;
     size_t ranges, range;            /* of latest vertices; vertices in each */
     size_t chunk;                    /* entries in each */
@@ -69,20 +71,20 @@ static size_t between(size_t least, size_t x, size_t most) {
 }
 
 static void choose_partitions(distribution *d) {
-    size_t bytes = budget(d->k->ctx), chunks = bytes / (ALIGNED * sizeof(entry));
+    size_t bytes = budget(d->store->ctx), chunks = bytes / (ALIGNED * sizeof(entry));
     size_t each = sizeof *d->entries + sizeof *d->sorted + sizeof *d->order + sizeof *d->name + sizeof *d->key;
     d->ranges = between(LEAST_RANGES, d->live * each / bytes + 1, chunks / 2 < MOST_RANGES ? chunks / 2 : MOST_RANGES);
-    d->range = (d->k->num_points + 2) / d->ranges + 1;
+    d->range = (d->store->num_points + 2) / d->ranges + 1;
     d->chunk = between(1, chunks / (2 * d->ranges), MOST_CHUNK) * ALIGNED;
 }
 
 /* The three passes are about as long. */
 static brio_status tell_progress(const distribution *d, int pass, size_t done, size_t all) {
-    return brio_progress(d->k->ctx, "sort", (pass + (double)done / (double)all) / 3);
+    return brio_progress(d->store->ctx, "sort", (pass + (double)done / (double)all) / 3);
 }
 
 static brio_status flush_chunk(distribution *d, size_t p) {
-    brio_context *ctx = d->k->ctx;
+    brio_context *ctx = d->store->ctx;
     brio_status status = BRIO_OK;
     bool first = !d->chunks;
     BRIO_TRY(BRIO_RESERVE(ctx, d->chunks, d->chunk_capacity, (d->num_chunks + 1) * d->chunk));
@@ -96,16 +98,16 @@ done:
 }
 
 static brio_status append(distribution *d, const brio_tetrahedron *t, uint32_t slot) {
-    brio_kernel *k = d->k;
+    brio_store *store = d->store;
     uint8_t turn;
-    brio_turn_key(t->vertex, k->t.infinite, &turn);
+    brio_turn_key(t->vertex, store->t.infinite, &turn);
     const uint8_t *from = BRIO_TURNED[turn];
-    size_t p = t->vertex[from[0]] / d->range + (t->vertex[3] == k->t.infinite ? d->ranges : 0);
+    size_t p = t->vertex[from[0]] / d->range + (t->vertex[3] == store->t.infinite ? d->ranges : 0);
     partition *part = &d->part[p];
     entry *e = &part->last[part->count++ % d->chunk];
     for (int i = 0; i < 4; i++) e->tet.vertex[i] = t->vertex[from[i]], e->tet.mate[i] = t->mate[from[i]];
     e->slot = slot;
-    k->state[slot] = turn;
+    store->state[slot] = turn;
     return part->count % d->chunk ? BRIO_OK : flush_chunk(d, p);
 }
 
@@ -124,32 +126,33 @@ done:
 }
 
 static brio_status distribute(distribution *d) {
-    brio_kernel *k = d->k;
+    brio_store *store = d->store;
     enum { AT_ONCE = 1 << 15 };
     brio_tetrahedron *some = NULL;
     brio_status status = BRIO_OK;
     size_t in_use = 0;
-    BRIO_TRY(BRIO_ALLOC_IN_MEMORY(k->ctx, some, AT_ONCE));
-    BRIO_TRY(BRIO_ALLOC_IN_MEMORY(k->ctx, d->last, 2 * d->ranges * d->chunk));
+    BRIO_TRY(BRIO_ALLOC_IN_MEMORY(store->ctx, some, AT_ONCE));
+    BRIO_TRY(BRIO_ALLOC_IN_MEMORY(store->ctx, d->last, 2 * d->ranges * d->chunk));
     for (size_t p = 0; p < 2 * d->ranges; p++) d->part[p].last = d->last + p * d->chunk;
-    brio_block_direct(k->t.tet, true);
-    brio_expect_sequence(k->state);
-    for (size_t begin = 0; begin < k->t.count; begin += AT_ONCE) {
-        size_t n = k->t.count - begin < AT_ONCE ? k->t.count - begin : AT_ONCE;
-        BRIO_TRY(tell_progress(d, 0, begin, k->t.count));
-        BRIO_TRY(brio_block_read(k->ctx, k->t.tet, begin * sizeof *some, some, n * sizeof *some));
+    brio_block_direct(store->t.tet, true);
+    brio_expect_sequence(store->state);
+    for (size_t begin = 0; begin < store->t.count; begin += AT_ONCE) {
+        size_t n = store->t.count - begin < AT_ONCE ? store->t.count - begin : AT_ONCE;
+        BRIO_TRY(tell_progress(d, 0, begin, store->t.count));
+        BRIO_TRY(brio_block_read(store->ctx, store->t.tet, begin * sizeof *some, some, n * sizeof *some));
         for (size_t i = 0; i < n; i++) {
-            if (k->state[begin + i] == TET_UNUSED) continue;
+            if (store->state[begin + i] == TET_UNUSED) continue;
             BRIO_TRY(append(d, &some[i], (uint32_t)(begin + i)));
             in_use++;
         }
     }
-    BRIO_REQUIRE(k->ctx, in_use == d->live, BRIO_ERR_INTERNAL, "%zu slots are in use instead of %zu", in_use, d->live);
-    brio_expect_random(k->state);
+    BRIO_REQUIRE(store->ctx, in_use == d->live, BRIO_ERR_INTERNAL, "%zu slots are in use instead of %zu", in_use,
+                 d->live);
+    brio_expect_random(store->state);
     status = flush_all(d);
 done:
-    brio_release(k->ctx, some);
-    brio_release(k->ctx, d->last);
+    brio_release(store->ctx, some);
+    brio_release(store->ctx, d->last);
     d->last = NULL;
     return status;
 }
@@ -158,7 +161,7 @@ done:
 
 /* Room for a partition: in memory, unless one vertex is the latest of very many tetrahedra. */
 static brio_status reserve_entries(distribution *d) {
-    brio_context *ctx = d->k->ctx;
+    brio_context *ctx = d->store->ctx;
     size_t n = d->most;
     d->in_memory = n * (sizeof *d->entries + sizeof *d->sorted) <= 2 * budget(ctx);
     brio_status (*room)(brio_context *, void *, size_t, size_t) = d->in_memory ? brio_in_memory : brio_resize_to;
@@ -187,7 +190,7 @@ static brio_status read_partition(distribution *d, size_t p) {
     brio_status status = BRIO_OK;
     size_t n = 0, bytes = d->chunk * sizeof(entry);
     for (size_t c = 0, run; (run = next_run(d, p, &c)) > 0; c += run, n += run * d->chunk)
-        BRIO_TRY(brio_block_read(d->k->ctx, d->chunks, c * bytes, &d->entries[n], run * bytes));
+        BRIO_TRY(brio_block_read(d->store->ctx, d->chunks, c * bytes, &d->entries[n], run * bytes));
 done:
     return status;
 }
@@ -221,7 +224,7 @@ static brio_status sort_partition(distribution *d, size_t p) {
         brio_sort_names(d->key + begin, d->name + begin, d->end[b] - begin, d->order + begin);
     for (size_t i = 0; i < d->part[p].count; i++) {
         uint32_t *place = &d->place[d->entries[d->order[i]].slot];
-        brio_expect(&d->k->read_ahead, place);
+        brio_expect(d->read_ahead, place);
         *place = (uint32_t)(d->part[p].begin + i);
     }
     return BRIO_OK;
@@ -230,29 +233,29 @@ static brio_status sort_partition(distribution *d, size_t p) {
 /* --- renaming --- */
 
 static inline void rename_one(const distribution *d, const brio_tetrahedron *old, brio_tetrahedron *out) {
-    const brio_kernel *k = d->k;
+    const brio_store *store = d->store;
     for (int i = 0; i < 4; i++) {
         uint32_t other = brio_tet_of(old->mate[i]), v = old->vertex[i];
-        out->mate[i] = brio_facet_of(d->place[other], BRIO_BACK[k->state[other]][brio_slot_of(old->mate[i])]);
-        out->vertex[i] = v == k->t.infinite ? BRIO_INFINITE : k->caller[v];
+        out->mate[i] = brio_facet_of(d->place[other], BRIO_BACK[store->state[other]][brio_slot_of(old->mate[i])]);
+        out->vertex[i] = v == store->t.infinite ? BRIO_INFINITE : store->caller[v];
     }
 }
 
 /* The places and turns of all neighbours of the entries at hand. */
 static void expect_neighbours(distribution *d, size_t n) {
-    brio_read_ahead *r = &d->k->read_ahead;
+    brio_read_ahead *r = d->read_ahead;
     for (size_t i = 0; i < n; i++, r->now++)
         for (int f = 0; f < 4; f++) {
             uint32_t other = brio_tet_of(d->entries[i].tet.mate[f]);
             brio_expect(r, &d->place[other]);
-            brio_expect(r, &d->k->state[other]);
+            brio_expect(r, &d->store->state[other]);
         }
 }
 
 /* Writes what is sorted as far as it fills pages; `end` is its last place. */
 static brio_status write_pages(distribution *d, brio_tetrahedron *out, size_t end) {
     size_t begin = end - d->carried, whole = d->carried / ALIGNED * ALIGNED;
-    brio_status status = brio_block_write(d->k->ctx, out, begin * sizeof *out, d->sorted, whole * sizeof *out);
+    brio_status status = brio_block_write(d->store->ctx, out, begin * sizeof *out, d->sorted, whole * sizeof *out);
     d->carried -= whole;
     memmove(d->sorted, d->sorted + whole, d->carried * sizeof *out);
     return status;
@@ -278,13 +281,14 @@ static brio_status write_all(distribution *d, brio_tetrahedron *out) {
     for (size_t p = 0; p < 2 * d->ranges; p++) BRIO_TRY(write_partition(d, p, out));
     brio_block_direct(out, false);
     status =
-        brio_block_write(d->k->ctx, out, (d->live - d->carried) * sizeof *out, d->sorted, d->carried * sizeof *out);
+        brio_block_write(d->store->ctx, out, (d->live - d->carried) * sizeof *out, d->sorted, d->carried * sizeof *out);
 done:
     return status;
 }
 
 static void distribution_free(distribution *d) {
-    brio_context *ctx = d->k->ctx;
+    brio_context *ctx = d->store->ctx;
+    brio_release(ctx, d->read_ahead);
     brio_release(ctx, d->last);
     brio_release(ctx, d->chunks);
     brio_release(ctx, d->owner);
@@ -297,24 +301,25 @@ static void distribution_free(distribution *d) {
     brio_release(ctx, d->key);
 }
 
-brio_status brio_kernel_sort_files(brio_kernel *k) {
-    distribution d = {.k = k, .live = k->t.count - k->num_unused};
+brio_status brio_canonical_files(brio_store *store, size_t live, size_t *finite) {
+    brio_context *ctx = store->ctx;
+    distribution d = {.store = store, .live = live};
     brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_IN_MEMORY(ctx, d.read_ahead, 1));
+    brio_read_ahead_start(d.read_ahead, ctx);
     choose_partitions(&d);
     BRIO_TRY(distribute(&d));
-    brio_release(k->ctx, k->t.tet);
-    k->t.tet = NULL;
-    BRIO_TRY(BRIO_ALLOC(k->ctx, d.place, k->t.count));
+    brio_release(ctx, store->t.tet);
+    store->t.tet = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, d.place, store->t.count));
     BRIO_TRY(reserve_entries(&d));
     for (size_t p = 0; p < 2 * d.ranges; p++) BRIO_TRY(sort_partition(&d, p));
-    BRIO_TRY(BRIO_ALLOC(k->ctx, k->t.tet, d.live));
-    BRIO_TRY(write_all(&d, k->t.tet));
-    k->t.count = k->capacity = d.live;
-    k->num_unused = 0;
-    k->stats.tetrahedra = d.part[d.ranges].begin;
-    k->stats.hull_facets = d.live - k->stats.tetrahedra;
-    brio_release(k->ctx, k->state);
-    k->state = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, store->t.tet, live));
+    BRIO_TRY(write_all(&d, store->t.tet));
+    store->t.count = store->capacity = live;
+    *finite = d.part[d.ranges].begin;
+    brio_release(ctx, store->state);
+    store->state = NULL;
 done:
     distribution_free(&d);
     return status;

@@ -12,10 +12,11 @@
  * of a block are independent, which following cycles would not be. Two numbers a tetrahedron are added, no second copy.
  *
  * In scratch files it is done by partitions instead (canonical_files.c). */
+#include "triangulation/canonical_order.h"
 #include "base/memory.h"
 #include "base/team.h"
+#include "triangulation/canonical_files.h"
 #include "triangulation/canonical_turn.h"
-#include "triangulation/kernel.h"
 #include <string.h>
 
 enum { BLOCK = 1 << 13, STEPS = 32, AHEAD = 24 };
@@ -28,7 +29,7 @@ enum { TURN = 15, SLOT_MOVED = 16, SLOT_FREE = 32 };
 
 /* Workspace: bucket b of tetrahedra holds places end[b - 1] to end[b]. */
 typedef struct {
-    brio_kernel *k;
+    brio_store *store;
     uint32_t *order; /* of each place: the slot whose tetrahedron belongs there */
     uint32_t *place; /* of each tetrahedron by its slot in the insertion: its bucket, then its place */
     uint32_t *end;
@@ -54,12 +55,12 @@ static inline uint32_t count_one(const sorter *s, size_t b) {
 
 /* place = bucket of the tetrahedron in a slot: finite ones by latest vertex, then infinite ones. */
 static inline void find_bucket(sorter *s, size_t slot) {
-    const brio_kernel *k = s->k;
-    const uint32_t *v = k->t.tet[slot].vertex;
-    uint32_t infinite = k->t.infinite, first_infinite = (uint32_t)k->num_points + 2;
-    if (k->state[slot] == TET_UNUSED) {
+    const brio_store *store = s->store;
+    const uint32_t *v = store->t.tet[slot].vertex;
+    uint32_t infinite = store->t.infinite, first_infinite = (uint32_t)store->num_points + 2;
+    if (store->state[slot] == TET_UNUSED) {
         s->place[slot] = NOWHERE;
-        k->state[slot] = SLOT_FREE;
+        store->state[slot] = SLOT_FREE;
         return;
     }
     s->place[slot] = v[brio_latest_slot(v, infinite)] + (v[3] == infinite ? first_infinite : 0);
@@ -94,17 +95,17 @@ static void list_buckets(void *user, size_t from, size_t to, int thread) {
 
 static brio_status fill_buckets(sorter *s) {
     brio_status status = BRIO_OK;
-    size_t count = s->k->t.count;
+    size_t count = s->store->t.count;
     uint32_t sum = 0;
-    brio_for(s->k->ctx, s->threads, count, count_buckets, s);
+    brio_for(s->store->ctx, s->threads, count, count_buckets, s);
     for (size_t b = 0; b < s->buckets; b++) {
         uint32_t c = s->end[b];
         s->end[b] = sum;
         sum += c;
     }
-    BRIO_REQUIRE(s->k->ctx, sum == s->live, BRIO_ERR_INTERNAL, "%u slots are in use instead of %zu", (unsigned)sum,
+    BRIO_REQUIRE(s->store->ctx, sum == s->live, BRIO_ERR_INTERNAL, "%u slots are in use instead of %zu", (unsigned)sum,
                  s->live);
-    brio_for(s->k->ctx, s->threads, count, list_buckets, s);
+    brio_for(s->store->ctx, s->threads, count, list_buckets, s);
 done:
     return status;
 }
@@ -112,13 +113,13 @@ done:
 /* Sorts the tetrahedra of the places [begin, end) and tells each its place and turn. */
 static brio_status sort_bucket(sorter *s, bucket *b, size_t begin, size_t end) {
     size_t n = end - begin;
-    const brio_tetrahedron *tets = s->k->t.tet;
-    uint32_t *order = s->order + begin, infinite = s->k->t.infinite;
-    brio_status status = BRIO_RESERVE(s->k->ctx, b->key, b->key_capacity, n);
-    if (status == BRIO_OK) status = BRIO_RESERVE(s->k->ctx, b->name, b->name_capacity, n);
+    const brio_tetrahedron *tets = s->store->t.tet;
+    uint32_t *order = s->order + begin, infinite = s->store->t.infinite;
+    brio_status status = BRIO_RESERVE(s->store->ctx, b->key, b->key_capacity, n);
+    if (status == BRIO_OK) status = BRIO_RESERVE(s->store->ctx, b->name, b->name_capacity, n);
     if (status != BRIO_OK) return status;
     for (size_t i = 0; i < n; i++) {
-        b->key[i] = brio_turn_key(tets[order[i]].vertex, infinite, &s->k->state[order[i]]);
+        b->key[i] = brio_turn_key(tets[order[i]].vertex, infinite, &s->store->state[order[i]]);
         b->name[i] = order[i];
     }
     brio_sort_names(b->key, b->name, n, order);
@@ -133,11 +134,11 @@ static brio_status sort_some(sorter *s, size_t from, size_t to) {
     size_t last = to ? s->end[to - 1] : 0;
     for (size_t i = from, begin = from ? s->end[from - 1] : 0; i < to && status == BRIO_OK; begin = s->end[i++]) {
         for (size_t a = begin; a < s->end[i] && a + AHEAD < last; a++)
-            __builtin_prefetch(&s->k->t.tet[s->order[a + AHEAD]]);
+            __builtin_prefetch(&s->store->t.tet[s->order[a + AHEAD]]);
         status = sort_bucket(s, &b, begin, s->end[i]);
     }
-    brio_release(s->k->ctx, b.key);
-    brio_release(s->k->ctx, b.name);
+    brio_release(s->store->ctx, b.key);
+    brio_release(s->store->ctx, b.name);
     return status;
 }
 
@@ -150,7 +151,7 @@ static void sort_chunk(void *user, size_t from, size_t to, int thread) {
 static brio_status sort_buckets(sorter *s) {
     enum { PARTS = 16 }; /* a thread, since buckets are not alike */
     size_t chunk = s->threads > 1 ? s->buckets / (size_t)(PARTS * s->threads) + 1 : s->buckets;
-    brio_for_chunks(s->k->ctx, s->threads, s->buckets, chunk, sort_chunk, s);
+    brio_for_chunks(s->store->ctx, s->threads, s->buckets, chunk, sort_chunk, s);
     return s->status;
 }
 
@@ -158,15 +159,15 @@ static brio_status sort_buckets(sorter *s) {
 
 /* Threads mark their own slots while others read the turns there. */
 static inline unsigned load_state(const sorter *s, uint32_t slot) {
-    return __atomic_load_n(&s->k->state[slot], __ATOMIC_RELAXED);
+    return __atomic_load_n(&s->store->state[slot], __ATOMIC_RELAXED);
 }
 static inline void mark_slot(sorter *s, uint32_t slot, unsigned mark) {
-    __atomic_store_n(&s->k->state[slot], (uint8_t)((load_state(s, slot) & TURN) | mark), __ATOMIC_RELAXED);
+    __atomic_store_n(&s->store->state[slot], (uint8_t)((load_state(s, slot) & TURN) | mark), __ATOMIC_RELAXED);
 }
 
 /* Place of the tetrahedron in a slot. */
 static inline uint32_t place_of(const sorter *s, uint32_t slot) {
-    return load_state(s, slot) & SLOT_MOVED ? s->k->t.tet[slot].vertex[0] : s->place[slot];
+    return load_state(s, slot) & SLOT_MOVED ? s->store->t.tet[slot].vertex[0] : s->place[slot];
 }
 
 /* The slots of the tetrahedron in a slot, in the order in which it will stand. */
@@ -177,8 +178,8 @@ static inline const uint8_t *turn_of(const sorter *s, uint32_t slot) {
 
 /* The tetrahedron in a slot as it will stand, but for its first vertex. */
 static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *out) {
-    const brio_kernel *k = s->k;
-    const brio_tetrahedron *old = &k->t.tet[slot];
+    const brio_store *store = s->store;
+    const brio_tetrahedron *old = &store->t.tet[slot];
     const uint8_t *from = turn_of(s, slot);
     for (int i = 0; i < 4; i++) {
         uint32_t facet = old->mate[from[i]], other = brio_tet_of(facet);
@@ -186,14 +187,14 @@ static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *
     }
     for (int i = 1; i < 4; i++) {
         uint32_t v = old->vertex[from[i]];
-        out->vertex[i] = v == k->t.infinite ? BRIO_INFINITE : k->caller[v];
+        out->vertex[i] = v == store->t.infinite ? BRIO_INFINITE : store->caller[v];
     }
 }
 
 /* Turns the tetrahedron of a slot into another slot, where vertex[0] tells its place, which tells that vertex. */
 static inline void move_one(sorter *s, uint32_t slot, uint32_t to) {
-    const brio_tetrahedron *old = &s->k->t.tet[slot];
-    brio_tetrahedron *new = &s->k->t.tet[to];
+    const brio_tetrahedron *old = &s->store->t.tet[slot];
+    brio_tetrahedron *new = &s->store->t.tet[to];
     const uint8_t *from = turn_of(s, slot);
     uint32_t place = place_of(s, slot);
     for (int i = 0; i < 4; i++) new->vertex[i] = old->vertex[from[i]], new->mate[i] = old->mate[from[i]];
@@ -215,7 +216,7 @@ typedef struct {
 
 /* Gathers the tetrahedra of the places [begin + from, begin + to) aside. */
 static void gather(sorter *s, const mover *m, size_t begin, size_t from, size_t to) {
-    const brio_tetrahedron *tets = s->k->t.tet;
+    const brio_tetrahedron *tets = s->store->t.tet;
     const uint32_t *order = s->order + begin;
     for (size_t i = from; i < to; i++) {
         if (i + AHEAD < to) {
@@ -235,7 +236,7 @@ static void list_moves(const sorter *s, const mover *m, size_t begin, size_t end
     size_t leaving = counts_only ? 0 : m->num_leaving[thread], vacant = counts_only ? 0 : m->num_vacant[thread];
     for (size_t x = begin + from; x < begin + to; x++) {
         uint32_t source = s->order[x];
-        bool stays = !(s->k->state[x] & SLOT_FREE), outside = source < begin || source >= end;
+        bool stays = !(s->store->state[x] & SLOT_FREE), outside = source < begin || source >= end;
         if (!counts_only && stays) m->leaving[leaving] = (uint32_t)x;
         if (!counts_only && outside) m->vacant[vacant] = source;
         leaving += stays;
@@ -265,7 +266,7 @@ static void leave_block(sorter *s, const mover *m, size_t from, size_t to) {
 
 /* Writes what was gathered, each with its first vertex. */
 static void write_block(sorter *s, const mover *m, size_t begin, size_t from, size_t to) {
-    brio_kernel *k = s->k;
+    brio_store *store = s->store;
     size_t low = 0, high = s->buckets; /* to the bucket of the first place */
     while (low < high) {
         size_t middle = (low + high) / 2;
@@ -276,8 +277,8 @@ static void write_block(sorter *s, const mover *m, size_t begin, size_t from, si
     }
     for (size_t i = from, b = low; i < to; i++) {
         while (s->end[b] <= begin + i) b++;
-        k->t.tet[begin + i] = m->aside[i];
-        k->t.tet[begin + i].vertex[0] = k->caller[b < k->num_points + 2 ? b : b - k->num_points - 2];
+        store->t.tet[begin + i] = m->aside[i];
+        store->t.tet[begin + i].vertex[0] = store->caller[b < store->num_points + 2 ? b : b - store->num_points - 2];
     }
 }
 
@@ -306,7 +307,7 @@ static void move_blocks(void *user, const brio_member *member) {
 }
 
 static brio_status move_all(sorter *s) {
-    brio_context *ctx = s->k->ctx;
+    brio_context *ctx = s->store->ctx;
     brio_status status = BRIO_OK;
     size_t block = (size_t)BLOCK * (size_t)s->threads;
     if (s->threads > 1 && block < s->live / STEPS) block = s->live / STEPS; /* threads wait for each other each time */
@@ -326,29 +327,28 @@ done:
     return status;
 }
 
-brio_status brio_kernel_sort(brio_kernel *k) {
-    if (k->read_ahead.active) return brio_kernel_sort_files(k);
-    sorter s = {.k = k, .buckets = 2 * (k->num_points + 2), .live = k->t.count - k->num_unused};
-    s.threads = brio_threads(k->ctx, s.live, BLOCK);
+brio_status brio_canonical_order(brio_store *store, size_t live, size_t *finite) {
+    brio_context *ctx = store->ctx;
+    if (ctx->scratch) return brio_canonical_files(store, live, finite);
+    sorter s = {.store = store, .buckets = 2 * (store->num_points + 2), .live = live};
+    s.threads = brio_threads(ctx, live, BLOCK);
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.order, s.live + AHEAD));
-    BRIO_TRY(BRIO_ALLOC(k->ctx, s.place, k->t.count));
-    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, s.end, s.buckets));
-    BRIO_TRY(brio_progress(k->ctx, "sort", 1)); /* the insertion owns the bar */
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.order, live + AHEAD));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.place, store->t.count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.end, s.buckets));
+    BRIO_TRY(brio_progress(ctx, "sort", 1)); /* the insertion owns the bar */
     BRIO_TRY(fill_buckets(&s));
-    BRIO_TRY(brio_progress(k->ctx, "sort", 1));
+    BRIO_TRY(brio_progress(ctx, "sort", 1));
     BRIO_TRY(sort_buckets(&s));
-    BRIO_TRY(brio_progress(k->ctx, "sort", 1));
+    BRIO_TRY(brio_progress(ctx, "sort", 1));
     BRIO_TRY(move_all(&s));
-    k->t.count = k->capacity = s.live;
-    k->num_unused = 0;
-    k->stats.hull_facets = s.live - s.end[k->num_points + 1];
-    k->stats.tetrahedra = s.live - k->stats.hull_facets;
-    brio_release(k->ctx, k->state);
-    k->state = NULL;
+    store->t.count = store->capacity = live;
+    *finite = s.end[store->num_points + 1];
+    brio_release(ctx, store->state);
+    store->state = NULL;
 done:
-    brio_release(k->ctx, s.order);
-    brio_release(k->ctx, s.place);
-    brio_release(k->ctx, s.end);
+    brio_release(ctx, s.order);
+    brio_release(ctx, s.place);
+    brio_release(ctx, s.end);
     return status;
 }

@@ -11,13 +11,16 @@
  *
  * Based on: Bowyer. Computing Dirichlet tessellations. Comput. J. 1981.
  *           Watson. Computing the n-dimensional Delaunay tessellation ... Comput. J. 1981. */
+#include "triangulation/cavity.h"
 #include "base/memory.h"
 #include "base/poison.h"
 #include "base/rng.h"
-#include "triangulation/kernel.h"
+#include "triangulation/inserter.h"
+#include <assert.h>
 #include <string.h>
 
 enum { HASHED_BETWEEN = BRIO_INSERT_WORK / 4 }; /* border facets between two reports of progress */
+enum { FIRST_TETS = 64 };                       /* of a cavity that there is room for at first */
 enum { SMALL_MOST = 60, BYTES_MOST = 252 };     /* tetrahedra of a cavity whose vertices are numbered in 6 bits, in 8 */
 
 void brio_cavity_free(brio_context *ctx, brio_cavity *c) {
@@ -25,14 +28,14 @@ void brio_cavity_free(brio_context *ctx, brio_cavity *c) {
     brio_release(ctx, c->created);
     brio_release(ctx, c->facet);
     brio_release(ctx, c->border);
-    brio_release(ctx, c->local);
     brio_release(ctx, c->table);
     brio_release(ctx, c->edge_key);
     brio_release(ctx, c->edge_facet);
     brio_release(ctx, c->cavity_vertex);
 }
 
-brio_status brio_cavity_reserve(brio_context *ctx, brio_cavity *c, size_t tets) {
+/* Room for the lists of a cavity of at most `tets` tetrahedra. */
+static brio_status reserve_lists(brio_context *ctx, brio_cavity *c, size_t tets) {
     if (tets <= c->capacity) return BRIO_OK;
     brio_status status = BRIO_RESIZE(ctx, c->entry, tets);
     if (status == BRIO_OK) status = BRIO_RESIZE(ctx, c->facet, 4 * tets);
@@ -42,48 +45,58 @@ brio_status brio_cavity_reserve(brio_context *ctx, brio_cavity *c, size_t tets) 
     return status;
 }
 
-brio_status brio_cavity_pause(brio_kernel *k) {
-    brio_cavity *c = &k->cavity;
+brio_status brio_cavity_new(brio_context *ctx, brio_cavity *out) {
+    *out = (brio_cavity){0};
+    brio_status status = BRIO_ALLOC(ctx, out->table, BRIO_TABLE);
+    return status == BRIO_OK ? reserve_lists(ctx, out, FIRST_TETS) : status;
+}
+
+brio_status brio_cavity_pause(brio_inserter *ins) {
+    brio_cavity *c = &ins->cavity;
     brio_status status = BRIO_OK;
-    if (c->pause == c->capacity) BRIO_TRY(brio_cavity_reserve(k->ctx, c, 2 * c->capacity));
-    if (c->num_tets >= BRIO_INSERT_WORK / 2) BRIO_TRY(brio_kernel_report(k, k->done));
+    if (c->pause == c->capacity) BRIO_TRY(reserve_lists(ins->store->ctx, c, 2 * c->capacity));
+    if (c->num_tets >= BRIO_INSERT_WORK / 2) BRIO_TRY(brio_inserter_report(ins, ins->done));
     c->pause = c->capacity - c->num_tets < BRIO_INSERT_WORK ? c->capacity : c->num_tets + BRIO_INSERT_WORK;
 done:
     return status;
 }
 
-brio_status brio_cavity_defer(brio_kernel *k) {
-    for (size_t i = 0; i < k->cavity.num_tets; i++) k->state[brio_tet_of(k->cavity.entry[i])] = TET_PLAIN;
-    return BRIO_DEFERRED;
+void brio_cavity_undo(brio_inserter *ins) {
+    const brio_cavity *c = &ins->cavity;
+    for (size_t i = 0; i < c->num_tets; i++) ins->store->state[brio_tet_of(c->entry[i])] = TET_PLAIN;
 }
 
 /* OUT[s]: the slots other than s, so that (x, OUT[s]) is positive for x on the other side of facet s; slot 3, which may
  * hold the infinite vertex, last. */
 static const uint8_t OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}};
 
-/* Slots for the new tetrahedra: those of the cavity, of older ones, then new ones (room is there). What the star does
- * not need of the cavity becomes unused. */
-static brio_status take_slots(brio_kernel *k) {
-    brio_cavity *c = &k->cavity;
+/* Slots for the new tetrahedra: those of the cavity, then unused ones, then fresh ones (room is there). What the star
+ * does not need of the cavity becomes unused. */
+static brio_status take_slots(brio_inserter *ins) {
+    brio_cavity *c = &ins->cavity;
     size_t n = 0;
     uint32_t *created = c->created;
-    uint8_t *state = k->state;
+    uint8_t *state = ins->store->state;
     for (; n < c->num_tets && n < c->num_border; n++) {
         created[n] = brio_tet_of(c->entry[n]);
+        assert(state[created[n]] == TET_CAVITY);
         state[created[n]] = TET_PLAIN;
     }
     for (; n < c->num_border; n++) {
-        created[n] = k->num_unused ? k->unused[--k->num_unused] : (uint32_t)k->t.count++;
+        assert(ins->num_unused ? state[ins->unused[ins->num_unused - 1]] == TET_UNUSED
+                               : ins->next_slot < ins->end_slot);
+        created[n] = ins->num_unused ? ins->unused[--ins->num_unused] : (uint32_t)ins->next_slot++;
         state[created[n]] = TET_PLAIN;
     }
     if (n >= c->num_tets) return BRIO_OK;
-    brio_status status = BRIO_RESERVE(k->ctx, k->unused, k->unused_capacity, k->num_unused + c->num_tets - n);
+    brio_status status =
+        BRIO_RESERVE(ins->store->ctx, ins->unused, ins->unused_capacity, ins->num_unused + c->num_tets - n);
     if (status != BRIO_OK) return status;
     for (; n < c->num_tets; n++) {
         uint32_t slot = brio_tet_of(c->entry[n]);
-        k->unused[k->num_unused++] = slot;
+        ins->unused[ins->num_unused++] = slot;
         state[slot] = TET_UNUSED;
-        brio_poison_fill(&k->t.tet[slot], sizeof *k->t.tet);
+        brio_poison_fill(&ins->store->t.tet[slot], sizeof *ins->store->t.tet);
     }
     return BRIO_OK;
 }
@@ -99,7 +112,8 @@ static inline void store_four(uint32_t *to, uint64_t a, uint64_t b, uint64_t c, 
     memcpy(to + 2, &pair[1], sizeof *pair);
 }
 
-/* The tetrahedron of a border facet: the new vertex in slot 0, the facet's, v, in 1 to 3. */
+/* The tetrahedron of a border facet: the new vertex in slot 0, the facet's, v, in 1 to 3. The tetrahedron outside need
+ * not be the thread's own: no other thread writes its vertices, nor its mate at this facet (P1, P2). */
 static inline void create(brio_tetrahedron *tets, uint32_t tet, uint32_t outer, uint32_t p, uint32_t v[3]) {
     brio_tetrahedron *outside = &tets[brio_tet_of(outer)], *inside = &tets[tet];
     int slot = brio_slot_of(outer);
@@ -108,32 +122,48 @@ static inline void create(brio_tetrahedron *tets, uint32_t tet, uint32_t outer, 
     store_four(inside->vertex, p, v[0], v[1], v[2]);
 }
 
-static inline uint8_t *number_of(brio_kernel *k, uint32_t v) {
-    return v == k->t.infinite ? &k->cavity.infinite_local : &k->cavity.local[v];
+/* Where the vertices of a cavity, which the thread holds, have their numbers (P4). By value, since stores to bytes may
+ * alias anything. */
+typedef struct {
+    uint8_t *local, *infinite_local;
+    uint32_t infinite;
+} numbers;
+
+static inline numbers numbers_of(brio_inserter *ins) {
+    return (numbers){ins->store->local, &ins->cavity.infinite_local, ins->store->t.infinite};
+}
+
+static inline uint8_t *number_of(numbers n, uint32_t v) {
+    return v == n.infinite ? n.infinite_local : &n.local[v];
 }
 
 /* Numbers the vertices of the cavity: those of the first tetrahedron by their slots, and what each later one added, the
  * vertex opposite to the facet it was found through, by when it was found. The last number of a vertex counts. */
-static void number_vertices(brio_kernel *k) {
-    brio_cavity *c = &k->cavity;
-    for (int i = 0; i < 4; i++) *number_of(k, brio_apex(&k->t, c->entry[0] ^ (uint32_t)i)) = (uint8_t)i;
-    for (size_t n = 1; n < c->num_tets; n++) *number_of(k, brio_apex(&k->t, c->entry[n])) = (uint8_t)(n + 3);
+static void number_vertices(brio_inserter *ins) {
+    const brio_tetrahedron *tets = ins->store->t.tet;
+    const numbers number = numbers_of(ins);
+    const uint32_t *entry = ins->cavity.entry;
+    size_t num_tets = ins->cavity.num_tets;
+    for (uint32_t i = 0; i < 4; i++) *number_of(number, tets[brio_tet_of(entry[0])].vertex[i]) = (uint8_t)i;
+    for (size_t n = 1; n < num_tets; n++)
+        *number_of(number, tets[brio_tet_of(entry[n])].vertex[brio_slot_of(entry[n])]) = (uint8_t)(n + 3);
 }
 
 /* Joins the star by a table of edges. Facet i > 0 of a new tetrahedron holds the point and the edge from vertex i % 3 +
  * 1 to the one after it. The numbers x, y, z of the vertices 1, 2, 3, of so many bits each, are packed as x y z x from
  * the lowest on, so that each edge is a pair of neighbours; packed as x z y x, each edge the other way round is one. */
-static inline void join_by_table(brio_kernel *k, uint32_t p, const int bits) {
-    brio_cavity *c = &k->cavity;
+static inline void join_by_table(brio_inserter *ins, uint32_t p, const int bits) {
+    brio_cavity *c = &ins->cavity;
     const uint32_t *border = c->border, *created = c->created, pair = (1u << 2 * bits) - 1;
-    const uint8_t *local = c->local;
-    brio_tetrahedron *tets = k->t.tet;
+    const numbers number = numbers_of(ins);
+    const uint8_t *local = number.local;
+    brio_tetrahedron *tets = ins->store->t.tet;
     uint32_t *table = c->table, *code = c->facet;
     size_t num_border = c->num_border;
     for (size_t b = 0; b < num_border; b++) {
         uint32_t tet = created[b], v[3];
         create(tets, tet, border[b], p, v);
-        uint32_t x = local[v[0]], y = local[v[1]], z = *number_of(k, v[2]), xx = x | x << 3 * bits;
+        uint32_t x = local[v[0]], y = local[v[1]], z = *number_of(number, v[2]), xx = x | x << 3 * bits;
         uint32_t xyzx = xx | y << bits | z << 2 * bits;
         code[b] = xx | z << bits | y << 2 * bits;
         table[xyzx >> bits & pair] = brio_facet_of(tet, 1);
@@ -153,20 +183,26 @@ static inline size_t edge_place(const brio_cavity *c, uint64_t key, size_t mask)
     return at;
 }
 
+/* Reports progress after every HASHED_BETWEEN border facets. */
+static brio_status report_between(brio_inserter *ins, size_t b) {
+    return (b + 1) % HASHED_BETWEEN == 0 ? brio_inserter_report(ins, ins->done) : BRIO_OK;
+}
+
 /* The same with a hash table of edges, where there are too many numbers for bytes. */
-static brio_status join_by_hash(brio_kernel *k, uint32_t p) {
-    brio_cavity *c = &k->cavity;
+static brio_status join_by_hash(brio_inserter *ins, uint32_t p) {
+    brio_cavity *c = &ins->cavity;
+    brio_context *ctx = ins->store->ctx;
+    brio_tetrahedron *tets = ins->store->t.tet;
+    brio_status status = BRIO_OK;
     size_t size = 64;
     while (size < 6 * c->num_border) size *= 2;
-    brio_status status = BRIO_RESERVE(k->ctx, c->edge_key, c->hash_capacity, size);
-    if (status == BRIO_OK) status = BRIO_RESERVE(k->ctx, c->edge_facet, c->hash_facet_capacity, size);
-    if (status != BRIO_OK) return status;
+    BRIO_TRY(BRIO_RESERVE(ctx, c->edge_key, c->hash_capacity, size));
+    BRIO_TRY(BRIO_RESERVE(ctx, c->edge_facet, c->hash_facet_capacity, size));
     memset(c->edge_key, 0xff, size * sizeof *c->edge_key);
     for (size_t b = 0; b < c->num_border; b++) {
         uint32_t v[3];
-        if ((b + 1) % HASHED_BETWEEN == 0) status = brio_kernel_report(k, k->done);
-        if (status != BRIO_OK) return status;
-        create(k->t.tet, c->created[b], c->border[b], p, v);
+        BRIO_TRY(report_between(ins, b));
+        create(tets, c->created[b], c->border[b], p, v);
         for (int i = 0; i < 3; i++) {
             uint64_t key = (uint64_t)v[(i + 1) % 3] << 32 | v[(i + 2) % 3];
             size_t at = edge_place(c, key, size - 1);
@@ -174,69 +210,109 @@ static brio_status join_by_hash(brio_kernel *k, uint32_t p) {
         }
     }
     for (size_t b = 0; b < c->num_border; b++) {
-        brio_tetrahedron *tet = &k->t.tet[c->created[b]];
-        if ((b + 1) % HASHED_BETWEEN == 0) status = brio_kernel_report(k, k->done);
-        if (status != BRIO_OK) return status;
+        brio_tetrahedron *tet = &tets[c->created[b]];
+        BRIO_TRY(report_between(ins, b));
         tet->mate[0] = c->border[b];
         for (int i = 0; i < 3; i++) {
             uint64_t key = (uint64_t)tet->vertex[(i + 2) % 3 + 1] << 32 | tet->vertex[(i + 1) % 3 + 1];
             tet->mate[i + 1] = c->edge_facet[edge_place(c, key, size - 1)];
         }
     }
-    return BRIO_OK;
+done:
+    return status;
 }
 
 /* Lists the vertices of the cavity before it is overwritten; only needed where points can be hidden. */
-static brio_status list_vertices(brio_kernel *k) {
-    brio_cavity *c = &k->cavity;
-    brio_status status = BRIO_RESERVE(k->ctx, c->cavity_vertex, c->cavity_vertex_capacity, c->num_tets + 3);
+static brio_status list_vertices(brio_inserter *ins) {
+    brio_cavity *c = &ins->cavity;
+    const brio_tetrahedra *t = &ins->store->t;
+    brio_status status = BRIO_RESERVE(ins->store->ctx, c->cavity_vertex, c->cavity_vertex_capacity, c->num_tets + 3);
     if (status != BRIO_OK) return status;
-    for (uint32_t i = 0; i < 4; i++) c->cavity_vertex[i] = brio_apex(&k->t, c->entry[0] ^ i);
-    for (size_t n = 1; n < c->num_tets; n++) c->cavity_vertex[n + 3] = brio_apex(&k->t, c->entry[n]);
+    for (uint32_t i = 0; i < 4; i++) c->cavity_vertex[i] = brio_apex(t, c->entry[0] ^ i);
+    for (size_t n = 1; n < c->num_tets; n++) c->cavity_vertex[n + 3] = brio_apex(t, c->entry[n]);
     return BRIO_OK;
 }
 
-/* Whether some vertex of the cavity is not on its border: a sphere of b triangles has b / 2 + 2 vertices, and so many
- * numbers are still their vertices' own where the cavity has no more. */
-static bool has_interior(brio_kernel *k) {
-    brio_cavity *c = &k->cavity;
+/* Whether some vertex of the cavity is not on its border: a sphere of b triangles has b / 2 + 2 vertices. A vertex of the
+ * cavity counts where its last number stands, so the count is that of the vertices. */
+static bool has_interior(brio_inserter *ins) {
+    const brio_cavity *c = &ins->cavity;
+    const numbers number = numbers_of(ins);
     size_t vertices = 0;
     if (c->num_tets > BYTES_MOST) return true; /* perhaps: there are no numbers */
-    for (size_t i = 0; i < c->num_tets + 3; i++) vertices += *number_of(k, c->cavity_vertex[i]) == i;
+    for (size_t i = 0; i < c->num_tets + 3; i++) vertices += *number_of(number, c->cavity_vertex[i]) == i;
     return vertices != c->num_border / 2 + 2;
 }
 
 /* Vertices of the cavity that are not on its border are hidden by p. */
-static void hide_interior(brio_kernel *k, uint32_t p) {
-    brio_cavity *c = &k->cavity;
-    if (!has_interior(k)) return;
-    for (size_t i = 0; i < c->num_tets + 3; i++) *number_of(k, c->cavity_vertex[i]) = 0;
+static void hide_interior(brio_inserter *ins, uint32_t p) {
+    const brio_cavity *c = &ins->cavity;
+    const brio_store *s = ins->store;
+    const numbers number = numbers_of(ins);
+    if (!has_interior(ins)) return;
+    for (size_t i = 0; i < c->num_tets + 3; i++) *number_of(number, c->cavity_vertex[i]) = 0;
     for (size_t b = 0; b < c->num_border; b++)
-        for (int i = 1; i < 4; i++) *number_of(k, k->t.tet[c->created[b]].vertex[i]) = 1;
+        for (int i = 1; i < 4; i++) *number_of(number, s->t.tet[c->created[b]].vertex[i]) = 1;
     for (size_t i = 0; i < c->num_tets + 3; i++)
-        if (!*number_of(k, c->cavity_vertex[i])) k->representative[c->cavity_vertex[i]] = p;
+        if (!*number_of(number, c->cavity_vertex[i])) s->representative[c->cavity_vertex[i]] = p;
 }
 
-brio_status brio_cavity_fill(brio_kernel *k, uint32_t p) {
-    brio_cavity *c = &k->cavity;
+#ifndef NDEBUG
+/* I2: a finite vertex in each slot but the last. I3 at facet i: the mate leads back, and has the facet's vertices. */
+static bool facet_is_mated(const brio_tetrahedra *t, uint32_t tet, int i) {
+    const uint32_t *v = t->tet[tet].vertex;
+    uint32_t facet = brio_facet_of(tet, i), mate = *brio_mate(t, facet);
+    if (i < 3 && v[i] == t->infinite) return false;
+    if (mate == facet || *brio_mate(t, mate) != facet) return false;
+    for (int j = 0; j < 4; j++) {
+        int slot = brio_slot_of_vertex(t->tet[brio_tet_of(mate)].vertex, v[j]);
+        if (j != i && (slot == 4 || slot == brio_slot_of(mate))) return false;
+    }
+    return true;
+}
+
+/* I1 to I3 and I5 for the new tetrahedra. */
+static bool star_is_valid(const brio_inserter *ins, uint32_t p) {
+    const brio_tetrahedra *t = &ins->store->t;
+    const brio_record *r = t->record;
+    brio_filter filter = ins->filter; /* a copy, which counts apart */
+    for (size_t b = 0; b < ins->cavity.num_created; b++) {
+        uint32_t tet = ins->cavity.created[b];
+        const uint32_t *v = t->tet[tet].vertex;
+        if (v[0] != p || ins->store->state[tet] != TET_PLAIN) return false;
+        if (v[3] != t->infinite && brio_orient3d_sign(&filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]]) <= 0) return false;
+        for (int i = 0; i < 4; i++)
+            if (!facet_is_mated(t, tet, i)) return false;
+    }
+    return true;
+}
+#endif
+
+brio_status brio_cavity_fill(brio_inserter *ins, uint32_t p, bool *deferred) {
+    brio_cavity *c = &ins->cavity;
+    const bool weighted = ins->store->weighted;
     brio_status status = BRIO_OK;
-    size_t slots = c->num_tets + k->num_unused;
-    if (c->num_border > slots) status = brio_kernel_reserve(k, c->num_border - slots);
-    if (status != BRIO_OK) return status == BRIO_DEFERRED ? brio_cavity_defer(k) : status;
-    if (k->weighted) BRIO_TRY(list_vertices(k));
-    if (c->num_tets <= BYTES_MOST) number_vertices(k);
-    BRIO_TRY(take_slots(k));
+    size_t slots = c->num_tets + ins->num_unused;
+    if (c->num_border > slots) BRIO_TRY(brio_inserter_reserve(ins, c->num_border - slots, deferred));
+    if (*deferred) {
+        brio_cavity_undo(ins);
+        return BRIO_OK;
+    }
+    if (weighted) BRIO_TRY(list_vertices(ins));
+    if (c->num_tets <= BYTES_MOST) number_vertices(ins);
+    BRIO_TRY(take_slots(ins));
     if (c->num_tets <= SMALL_MOST)
-        join_by_table(k, p, 6);
+        join_by_table(ins, p, 6);
     else if (c->num_tets <= BYTES_MOST)
-        join_by_table(k, p, 8);
+        join_by_table(ins, p, 8);
     else
-        BRIO_TRY(join_by_hash(k, p));
-    if (k->weighted) hide_interior(k, p);
-    k->stats.created += c->num_border;
-    k->stats.destroyed += c->num_tets;
+        BRIO_TRY(join_by_hash(ins, p));
+    if (weighted) hide_interior(ins, p);
+    ins->stats.created += c->num_border;
+    ins->stats.destroyed += c->num_tets;
     c->num_created = c->num_border;
-    k->walk.start = c->created[0];
+    ins->walk.start = c->created[0];
+    assert(star_is_valid(ins, p));
 done:
     return status;
 }

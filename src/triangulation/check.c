@@ -55,6 +55,7 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "triangulation/adjacency.h"
+#include "triangulation/records.h"
 #include "triangulation/triangulation.h"
 
 brio_judge brio_judge_of(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, bool weighted) {
@@ -263,7 +264,7 @@ done:
 static brio_status check_solid(brio_context *ctx, const brio_triangulation *t, const brio_record *record,
                                bool weighted) {
     brio_status status = BRIO_OK;
-    brio_tetrahedra view = {t->tet, t->stats.tetrahedra + t->stats.hull_facets, BRIO_INFINITE, record, NULL};
+    brio_tetrahedra view = {t->tet, t->stats.tetrahedra + t->stats.hull_facets, BRIO_INFINITE, record};
     brio_judge j = brio_judge_of(ctx, &view, t->stats.points, weighted);
     BRIO_TRY(check_sequence(ctx, t));
     BRIO_TRY(brio_check_tetrahedra(&j));

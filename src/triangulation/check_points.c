@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "triangulation/check.h"
-#include "triangulation/locate.h"
+#include "triangulation/locate_walk.h"
 #include "triangulation/nearest_vertex.h"
 #include "triangulation/triangulation.h"
 
@@ -97,7 +97,7 @@ static brio_status check_point(workspace *w, uint32_t p) {
     brio_judge *j = w->j;
     const double *x = j->t.record[p];
     if (w->result) w->walk.start = w->vertex_tet[w->result->representative[p]];
-    uint32_t tet = brio_locate_walk(&j->t, &j->filter, &w->walk, x, UINT64_MAX);
+    uint32_t tet = brio_locate_walk(&j->t, NULL, &j->filter, &w->walk, x, UINT64_MAX);
     w->walk.start = tet;
     BRIO_REQUIRE(j->ctx, !brio_is_infinite(&j->t, tet), BRIO_ERR_CHECK, "point %u is outside the hull", p);
     uint32_t v = vertex_at(j, tet, x);

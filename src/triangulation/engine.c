@@ -21,7 +21,7 @@ static inline unsigned batch_in_conflict(const brio_tetrahedra *t, brio_filter *
     return mask;
 }
 
-#define walk   brio_locate_walk
+#define WALK   brio_locate_walk
 #define ENGINE brio_engine_plain
 #include "triangulation/engine_body.h"
 

@@ -1,10 +1,10 @@
-/* The inner loops of the kernel, in versions for several instruction sets. */
+/* The inner loops of the insertion, in versions for several instruction sets. */
 #ifndef BRIO_TRIANGULATION_ENGINE_H
 #define BRIO_TRIANGULATION_ENGINE_H
 
-#include "triangulation/locate.h"
+#include "triangulation/locate_walk.h"
 
-typedef struct brio_kernel brio_kernel;
+typedef struct brio_inserter brio_inserter;
 
 enum { BRIO_BATCH = 8 };
 
@@ -13,10 +13,12 @@ typedef struct {
      *  BRIO_BATCH entries must be handles of valid tetrahedra. Same answers as brio_in_conflict. */
     unsigned (*conflicts)(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[BRIO_BATCH], size_t count,
                           const double *p);
-    /** Finds all tetrahedra in conflict with record p, from one of them, and the border of their union. */
-    brio_status (*dig)(brio_kernel *k, uint32_t first, uint32_t p);
+    /** Finds all tetrahedra in conflict with record p, from one of them, which the thread owns, and the border of their
+     *  union. *deferred becomes true, and everything is as before, when one of them may be another thread's. */
+    brio_status (*dig)(brio_inserter *ins, uint32_t first, uint32_t p, bool *deferred);
     /** brio_locate_walk. */
-    uint32_t (*walk)(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p, uint64_t most_steps);
+    uint32_t (*walk)(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, brio_walk *walk, const double *p,
+                     uint64_t most_steps);
 } brio_engine;
 
 /** The fastest version that this processor runs. */

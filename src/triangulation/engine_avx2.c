@@ -5,6 +5,7 @@
 #include "triangulation/conflict_lanes.h"
 #include "triangulation/walk_lanes.h"
 
+#define WALK   walk
 #define ENGINE brio_engine_avx2
 #include "triangulation/engine_body.h"
 #else

@@ -1,14 +1,14 @@
 /* The inner loops around the conflict test; included by one source file an instruction set, after its
- * batch_in_conflict. See cavity.c for the method.
+ * batch_in_conflict, with ENGINE, the name of its table, and WALK. See cavity.c for the method.
  *
  * Lists are written always and their length is advanced by a bit, since no branch could be foreseen. */
 #include "base/memory.h"
-#include "triangulation/kernel.h"
+#include "triangulation/inserter.h"
 
-/* Lists the facets of a cavity tetrahedron that leave the cavity as it is; their number afterwards. */
-static inline size_t leave(const brio_kernel *k, uint32_t tet, uint32_t *facet, size_t n) {
-    const brio_tetrahedron *tets = k->t.tet;
-    const uint8_t *state = k->state;
+/* Lists the facets of a cavity tetrahedron that leave the cavity as it is; their number afterwards. The tetrahedra
+ * behind them may be others' to hold, but not to destroy or mark (P1, P3). */
+static inline size_t leave(const brio_tetrahedron *tets, const uint8_t *state, uint32_t tet, uint32_t *facet,
+                           size_t n) {
     for (int i = 0; i < 4; i++) {
         uint32_t outer = tets[tet].mate[i], other = brio_tet_of(outer);
         __builtin_prefetch(&tets[other]);
@@ -20,10 +20,12 @@ static inline size_t leave(const brio_kernel *k, uint32_t tet, uint32_t *facet, 
 
 /* Adds the tetrahedra of those facets that are in conflict, each once, and the other facets to the border. False when
  * one of them is not the thread's own. */
-static inline bool divide(brio_kernel *k, const uint32_t *facet, size_t count, unsigned conflicts) {
-    brio_cavity *c = &k->cavity;
+static inline bool divide(brio_inserter *ins, const uint32_t *facet, size_t count, unsigned conflicts) {
+    brio_cavity *c = &ins->cavity;
+    const brio_tetrahedra *t = &ins->store->t;
+    brio_zone *zone = ins->zone;
     uint32_t *entries = c->entry, *border = c->border;
-    uint8_t *state = k->state; /* stores to bytes may alias anything: what is used again stays in locals */
+    uint8_t *state = ins->store->state; /* stores to bytes may alias anything: what is used again stays in locals */
     size_t num_tets = c->num_tets, num_border = c->num_border;
     bool own = true;
     unsigned borders = ~conflicts & ((1u << count) - 1);
@@ -34,7 +36,7 @@ static inline bool divide(brio_kernel *k, const uint32_t *facet, size_t count, u
     for (; conflicts; conflicts &= conflicts - 1) {
         uint32_t entry = facet[__builtin_ctz(conflicts)], tet = brio_tet_of(entry);
         entries[num_tets] = entry;
-        if (!brio_owns_beyond(&k->t, entry)) {
+        if (!brio_owns_beyond(t, zone, entry)) {
             own = false;
             break;
         }
@@ -46,30 +48,37 @@ static inline bool divide(brio_kernel *k, const uint32_t *facet, size_t count, u
     return own;
 }
 
-static inline __attribute__((always_inline)) brio_status dig_cavity(brio_kernel *k, uint32_t first, const double *point,
-                                                                    const bool weighted) {
-    brio_cavity *c = &k->cavity;
+static inline __attribute__((always_inline)) brio_status
+dig_cavity(brio_inserter *ins, uint32_t first, const double *point, bool *deferred, const bool weighted) {
+    brio_cavity *c = &ins->cavity;
+    const brio_tetrahedra *t = &ins->store->t;
+    const brio_tetrahedron *tets = t->tet; /* which no dig moves, nor the states */
+    uint8_t *state = ins->store->state;
     size_t expanded = 0, tested = 0, listed = 0;
     c->entry[0] = brio_facet_of(first, 0);
     c->num_tets = 1;
     c->num_border = 0;
     c->pause = c->capacity < BRIO_INSERT_WORK ? c->capacity : BRIO_INSERT_WORK;
-    k->state[first] = TET_CAVITY;
+    state[first] = TET_CAVITY;
     for (;;) {
         while (expanded < c->num_tets && listed - tested < BRIO_BATCH)
-            listed = leave(k, brio_tet_of(c->entry[expanded++]), c->facet, listed);
+            listed = leave(tets, state, brio_tet_of(c->entry[expanded++]), c->facet, listed);
         size_t count = listed - tested < BRIO_BATCH ? listed - tested : BRIO_BATCH;
         if (count == 0) break;
         uint32_t *facet = c->facet + tested;
         for (size_t i = count; i < BRIO_BATCH; i++) facet[i] = facet[0];
-        unsigned conflicts = batch_in_conflict(&k->t, &k->filter, facet, count, point, weighted);
-        if (!divide(k, facet, count, conflicts)) return brio_cavity_defer(k);
+        unsigned conflicts = batch_in_conflict(t, &ins->filter, facet, count, point, weighted);
+        if (!divide(ins, facet, count, conflicts)) {
+            brio_cavity_undo(ins);
+            *deferred = true;
+            return BRIO_OK;
+        }
         tested += count;
         if (c->num_tets + 2 * BRIO_BATCH <= c->pause) continue;
-        brio_status status = brio_cavity_pause(k);
+        brio_status status = brio_cavity_pause(ins);
         if (status != BRIO_OK) return status;
     }
-    k->stats.insphere_calls += tested;
+    ins->stats.insphere_calls += tested;
     return BRIO_OK;
 }
 
@@ -83,12 +92,12 @@ static unsigned test_batch_weighted(const brio_tetrahedra *t, brio_filter *f, co
     return batch_in_conflict(t, f, facets, count, p, true);
 }
 
-static brio_status dig(brio_kernel *k, uint32_t first, uint32_t p) {
-    return dig_cavity(k, first, k->record[p], false);
+static brio_status dig(brio_inserter *ins, uint32_t first, uint32_t p, bool *deferred) {
+    return dig_cavity(ins, first, ins->store->record[p], deferred, false);
 }
 
-static brio_status dig_weighted(brio_kernel *k, uint32_t first, uint32_t p) {
-    return dig_cavity(k, first, k->record[p], true);
+static brio_status dig_weighted(brio_inserter *ins, uint32_t first, uint32_t p, bool *deferred) {
+    return dig_cavity(ins, first, ins->store->record[p], deferred, true);
 }
 
-const brio_engine ENGINE[2] = {{test_batch, dig, walk}, {test_batch_weighted, dig_weighted, walk}};
+const brio_engine ENGINE[2] = {{test_batch, dig, WALK}, {test_batch_weighted, dig_weighted, WALK}};

@@ -33,62 +33,64 @@ static inline uint32_t live_slot(const brio_history_node *node) {
 }
 
 /* Room for `count` more nodes. Doubling would set aside too much of the largest array there is. */
-static brio_status reserve_nodes(brio_kernel *k, brio_history *h, size_t count) {
+static brio_status reserve_nodes(brio_inserter *ins, brio_history *h, size_t count) {
+    const brio_store *s = ins->store;
     brio_status status = BRIO_OK;
     size_t need = h->num_nodes + count, capacity = need + need / 8 + 1024;
-    BRIO_REQUIRE(k->ctx, need < UINT32_MAX, BRIO_ERR_TOO_LARGE, "more than 2^32 - 2 nodes of the history DAG");
+    BRIO_REQUIRE(s->ctx, need < UINT32_MAX, BRIO_ERR_TOO_LARGE, "more than 2^32 - 2 nodes of the history DAG");
     if (need > h->node_capacity) {
-        BRIO_TRY(BRIO_RESIZE(k->ctx, h->node, capacity));
+        BRIO_TRY(BRIO_RESIZE(s->ctx, h->node, capacity));
         h->node_capacity = capacity;
     }
-    if (k->capacity > h->slot_capacity) {
-        BRIO_TRY(BRIO_RESIZE(k->ctx, h->node_of, k->capacity));
-        h->slot_capacity = k->capacity;
+    if (s->capacity > h->slot_capacity) {
+        BRIO_TRY(BRIO_RESIZE(s->ctx, h->node_of, s->capacity));
+        h->slot_capacity = s->capacity;
     }
-    status = BRIO_RESERVE(k->ctx, h->first, h->first_capacity, h->num_insertions + 2);
+    status = BRIO_RESERVE(s->ctx, h->first, h->first_capacity, h->num_insertions + 2);
 done:
     return status;
 }
 
 /* Nodes of `count` new tetrahedra in those slots (NULL: slots 0, 1, ...). */
-static brio_status add_nodes(brio_kernel *k, brio_history *h, const uint32_t *slots, size_t count) {
-    brio_status status = reserve_nodes(k, h, count);
+static brio_status add_nodes(brio_inserter *ins, brio_history *h, const uint32_t *slots, size_t count) {
+    brio_status status = reserve_nodes(ins, h, count);
     if (status != BRIO_OK) return status;
     for (size_t i = 0; i < count; i++) {
         uint32_t slot = slots ? slots[i] : (uint32_t)i;
-        const uint32_t *v = k->t.tet[slot].vertex;
+        const uint32_t *v = ins->store->t.tet[slot].vertex;
         h->node_of[slot] = (uint32_t)h->num_nodes;
         h->node[h->num_nodes++] = (brio_history_node){{v[0], v[1], v[2], v[3]}, BRIO_HISTORY_LIVE | slot};
     }
     h->first[++h->num_insertions] = (uint32_t)h->num_nodes;
-    k->stats.history = h->num_nodes;
+    ins->stats.history = h->num_nodes;
     return BRIO_OK;
 }
 
-brio_status brio_history_new(brio_kernel *k, const brio_delaunay_options *options, brio_history *out) {
+brio_status brio_history_new(brio_inserter *ins, const brio_delaunay_options *options, brio_history *out) {
     *out = (brio_history){.all_conflicts = options->all_conflicts != 0};
-    brio_status status = add_nodes(k, out, NULL, k->t.count);
+    brio_status status = add_nodes(ins, out, NULL, ins->store->t.count);
     if (status == BRIO_OK) out->first[0] = 0;
     return status;
 }
 
-brio_status brio_history_add(brio_kernel *k, brio_history *h) {
-    const brio_cavity *c = &k->cavity;
+brio_status brio_history_add(brio_inserter *ins, brio_history *h) {
+    const brio_cavity *c = &ins->cavity;
     for (size_t i = 0; i < c->num_tets; i++)
         h->node[h->node_of[brio_tet_of(c->entry[i])]].next = (uint32_t)h->num_insertions;
-    return add_nodes(k, h, c->created, c->num_created);
+    return add_nodes(ins, h, c->created, c->num_created);
 }
 
 /* --- one path --- */
 
 /* Whether p is in the closure of a finite tetrahedron, or strictly outside the facet of an infinite one. The facet
  * opposite to the latest vertex, which seldom tells, is tried last. */
-static bool holds(brio_kernel *k, const uint32_t v[4], const double *p) {
-    const brio_record *r = k->t.record;
-    if (v[3] == k->t.infinite) return brio_orient3d_sign(&k->filter, r[v[0]], r[v[1]], r[v[2]], p) > 0;
+static bool holds(brio_inserter *ins, const uint32_t v[4], const double *p) {
+    const brio_store *s = ins->store;
+    const brio_record *r = s->t.record;
+    if (v[3] == s->t.infinite) return brio_orient3d_sign(&ins->filter, r[v[0]], r[v[1]], r[v[2]], p) > 0;
     for (int i = 3; i >= 0; i--) {
         const uint8_t *facet = BRIO_FACET[i];
-        if (brio_orient3d_sign(&k->filter, r[v[facet[0]]], r[v[facet[1]]], r[v[facet[2]]], p) < 0) return false;
+        if (brio_orient3d_sign(&ins->filter, r[v[facet[0]]], r[v[facet[1]]], r[v[facet[2]]], p) < 0) return false;
     }
     return true;
 }
@@ -97,12 +99,12 @@ static inline uint32_t next_of(const brio_history *h, uint32_t from) {
     return from == BRIO_HISTORY_ROOT ? 0 : h->node[from].next;
 }
 
-uint32_t brio_history_path(brio_kernel *k, brio_history *h, uint32_t from, const double *p) {
+uint32_t brio_history_path(brio_inserter *ins, brio_history *h, uint32_t from, const double *p) {
     uint32_t next = next_of(h, from);
     while (!(next & BRIO_HISTORY_LIVE)) {
         uint32_t node = h->first[next];
-        while (!holds(k, h->node[node].vertex, p)) node++;
-        k->stats.history_tests += node - h->first[next] + 1;
+        while (!holds(ins, h->node[node].vertex, p)) node++;
+        ins->stats.history_tests += node - h->first[next] + 1;
         next = h->node[node].next;
     }
     return next & ~BRIO_HISTORY_LIVE;
@@ -110,13 +112,14 @@ uint32_t brio_history_path(brio_kernel *k, brio_history *h, uint32_t from, const
 
 /* --- all conflicts --- */
 
-static bool conflicts(brio_kernel *k, const brio_history_node *node, const double *p) {
-    const brio_record *r = k->t.record;
+static bool conflicts(brio_inserter *ins, const brio_history_node *node, const double *p) {
+    const brio_store *s = ins->store;
+    const brio_record *r = s->t.record;
     const uint32_t *v = node->vertex;
-    if (v[3] == k->t.infinite) return brio_orient3d_sign(&k->filter, r[v[0]], r[v[1]], r[v[2]], p) > 0;
+    if (v[3] == s->t.infinite) return brio_orient3d_sign(&ins->filter, r[v[0]], r[v[1]], r[v[2]], p) > 0;
     for (int i = 0; i < 4; i++)
         if (brio_same_position(r[v[i]], p)) return true;
-    return brio_conflict(&k->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]], p, k->weighted);
+    return brio_conflict(&ins->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]], p, s->weighted);
 }
 
 /* Lists an insertion to be searched, once. */
@@ -146,38 +149,39 @@ static brio_status begin_search(brio_context *ctx, brio_history *h) {
     return BRIO_OK;
 }
 
-brio_status brio_history_conflicts(brio_kernel *k, brio_history *h, uint32_t from, const double *p) {
+brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p) {
+    const brio_store *s = ins->store;
     brio_status status = BRIO_OK;
     size_t count = 0;
     uint32_t next = next_of(h, from);
-    BRIO_TRY(begin_search(k->ctx, h));
-    if (next & BRIO_HISTORY_LIVE) return list_conflict(k->ctx, h, next & ~BRIO_HISTORY_LIVE);
-    BRIO_TRY(come_to(k->ctx, h, next, &count));
+    BRIO_TRY(begin_search(s->ctx, h));
+    if (next & BRIO_HISTORY_LIVE) return list_conflict(s->ctx, h, next & ~BRIO_HISTORY_LIVE);
+    BRIO_TRY(come_to(s->ctx, h, next, &count));
     while (count > 0) {
         uint32_t insertion = h->insertion[--count];
         for (uint32_t i = h->first[insertion]; i < h->first[insertion + 1]; i++) {
             const brio_history_node *node = &h->node[i];
-            k->stats.history_tests++;
-            if (!conflicts(k, node, p)) continue;
+            ins->stats.history_tests++;
+            if (!conflicts(ins, node, p)) continue;
             if (is_live(node))
-                BRIO_TRY(list_conflict(k->ctx, h, live_slot(node)));
+                BRIO_TRY(list_conflict(s->ctx, h, live_slot(node)));
             else
-                BRIO_TRY(come_to(k->ctx, h, node->next, &count));
+                BRIO_TRY(come_to(s->ctx, h, node->next, &count));
         }
     }
 done:
     return status;
 }
 
-brio_status brio_history_locate(brio_kernel *k, brio_history *h, uint32_t from, const double *p, uint32_t *tet) {
+brio_status brio_history_locate(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, uint32_t *tet) {
     if (h->all_conflicts) {
-        brio_status status = brio_history_conflicts(k, h, from, p);
+        brio_status status = brio_history_conflicts(ins, h, from, p);
         if (status != BRIO_OK) return status;
         if (h->num_conflicts > 0) {
             *tet = h->conflict[0];
             return BRIO_OK;
         }
     }
-    *tet = brio_history_path(k, h, from, p);
+    *tet = brio_history_path(ins, h, from, p);
     return BRIO_OK;
 }

@@ -5,7 +5,7 @@
 #ifndef BRIO_TRIANGULATION_HISTORY_H
 #define BRIO_TRIANGULATION_HISTORY_H
 
-#include "triangulation/kernel.h"
+#include "triangulation/inserter.h"
 
 typedef struct {
     uint32_t vertex[4];
@@ -33,21 +33,21 @@ typedef struct {
 } brio_history;
 
 /** A history of the first tetrahedra. After a failure the history is to be freed, too. */
-brio_status brio_history_new(brio_kernel *k, const brio_delaunay_options *options, brio_history *out);
+brio_status brio_history_new(brio_inserter *ins, const brio_delaunay_options *options, brio_history *out);
 void brio_history_free(brio_context *ctx, brio_history *h);
 
 /** Adds the insertion whose cavity was filled last. BRIO_ERR_TOO_LARGE beyond 2^32 - 2 nodes. */
-brio_status brio_history_add(brio_kernel *k, brio_history *h);
+brio_status brio_history_add(brio_inserter *ins, brio_history *h);
 
 /** The live tetrahedron whose closure holds p, or, for p strictly outside the hull, an infinite one whose facet p is
  *  strictly outside of.   from  a node of which the same is true, or BRIO_HISTORY_ROOT. */
-uint32_t brio_history_path(brio_kernel *k, brio_history *h, uint32_t from, const double *p);
+uint32_t brio_history_path(brio_inserter *ins, brio_history *h, uint32_t from, const double *p);
 
 /** h->conflict = the live tetrahedra in conflict with p that can be reached from that node through nodes in conflict
  *  with p; or those of the vertex at p's position. None when p is hidden. */
-brio_status brio_history_conflicts(brio_kernel *k, brio_history *h, uint32_t from, const double *p);
+brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p);
 
 /** What a strategy's `locate` gives, by the search of the options. */
-brio_status brio_history_locate(brio_kernel *k, brio_history *h, uint32_t from, const double *p, uint32_t *tet);
+brio_status brio_history_locate(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, uint32_t *tet);
 
 #endif

@@ -8,8 +8,8 @@
  *
  * Based on: the nearest-neighbour graph is a part of the Delaunay triangulation; Birn, Holtgrewe, Sanders, Singler.
  * Simple and fast nearest neighbor search. ALENEX 2010, for the descent. */
+#include "triangulation/locate_descent.h"
 #include "base/memory.h"
-#include "triangulation/kernel.h"
 
 enum { MOST_OF_STAR = 512 }; /* tetrahedra to look at round one vertex, so that the apex of a cone costs no more */
 
@@ -29,53 +29,57 @@ static inline void offer(const brio_tetrahedra *t, candidate *best, uint32_t tet
 }
 
 /* The first of some tetrahedra in conflict with p, or BRIO_NO_TET. */
-static uint32_t first_conflict(brio_kernel *k, const uint32_t *tets, size_t count, const double *p) {
+static uint32_t first_conflict(brio_inserter *ins, const uint32_t *tets, size_t count, const double *p) {
     for (size_t n = 0; n < count; n += BRIO_BATCH) {
         size_t size = count - n < BRIO_BATCH ? count - n : BRIO_BATCH;
         uint32_t facet[BRIO_BATCH];
         for (size_t i = 0; i < BRIO_BATCH; i++) facet[i] = brio_facet_of(tets[i < size ? n + i : n], 0);
-        unsigned mask = k->engine->conflicts(&k->t, &k->filter, facet, size, p);
-        k->stats.insphere_calls += size;
+        unsigned mask = ins->engine->conflicts(&ins->store->t, &ins->filter, facet, size, p);
+        ins->stats.insphere_calls += size;
         if (mask) return tets[n + (size_t)__builtin_ctz(mask)];
     }
     return BRIO_NO_TET;
 }
 
 /* Of the star of the last inserted vertex, which is still in the caches, the tetrahedra that also have vertex v. */
-static brio_status collect_last(brio_kernel *k, uint32_t v) {
-    brio_star *star = &k->star;
-    brio_status status = BRIO_RESERVE(k->ctx, star->tet, star->capacity, k->cavity.num_created);
+static brio_status collect_last(brio_inserter *ins, uint32_t v) {
+    const brio_store *s = ins->store;
+    brio_star *star = &ins->star;
+    brio_status status = BRIO_RESERVE(s->ctx, star->tet, star->capacity, ins->cavity.num_created);
     if (status != BRIO_OK) return status;
     star->size = 0;
-    for (size_t b = 0; b < k->cavity.num_created; b++) {
-        uint32_t tet = k->cavity.created[b];
+    for (size_t b = 0; b < ins->cavity.num_created; b++) {
+        uint32_t tet = ins->cavity.created[b];
         star->tet[star->size] = tet;
-        star->size += brio_slot_of_vertex(k->t.tet[tet].vertex, v) < 4;
+        star->size += brio_slot_of_vertex(s->t.tet[tet].vertex, v) < 4;
     }
     return BRIO_OK;
 }
 
-brio_status brio_locate_descent(brio_kernel *k, const double *p, uint32_t *tet) {
-    candidate best = {k->t.infinite, BRIO_NO_TET, INFINITY};
-    offer(&k->t, &best, k->walk.start, p);
-    for (size_t b = 0; b < k->cavity.num_created; b++) offer(&k->t, &best, k->cavity.created[b], p);
-    if (best.square > 0 && best.vertex != k->t.infinite) {
-        brio_status status = collect_last(k, best.vertex);
+brio_status brio_locate_descent(brio_inserter *ins, const double *p, uint32_t *tet) {
+    const brio_store *s = ins->store;
+    candidate best = {s->t.infinite, BRIO_NO_TET, INFINITY};
+    ins->star.mark = s->state; /* 0 for every tetrahedron, since no insertion is under way (I5) */
+    ins->star.zone = ins->zone;
+    offer(&s->t, &best, ins->walk.start, p);
+    for (size_t b = 0; b < ins->cavity.num_created; b++) offer(&s->t, &best, ins->cavity.created[b], p);
+    if (best.square > 0 && best.vertex != s->t.infinite) {
+        brio_status status = collect_last(ins, best.vertex);
         if (status != BRIO_OK) return status;
-        *tet = first_conflict(k, k->star.tet, k->star.size, p);
+        *tet = first_conflict(ins, ins->star.tet, ins->star.size, p);
         if (*tet != BRIO_NO_TET) return BRIO_OK;
     }
-    for (uint32_t from = k->t.infinite; best.vertex != from && best.square > 0;) {
+    for (uint32_t from = s->t.infinite; best.vertex != from && best.square > 0;) {
         from = best.vertex;
-        brio_status status = brio_star_collect(k->ctx, &k->t, from, best.tet, MOST_OF_STAR, &k->star);
+        brio_status status = brio_star_collect(s->ctx, &s->t, from, best.tet, MOST_OF_STAR, &ins->star);
         if (status != BRIO_OK) return status;
-        for (size_t n = 0; n < k->star.size; n++) offer(&k->t, &best, k->star.tet[n], p);
-        k->walk.steps++;
+        for (size_t n = 0; n < ins->star.size; n++) offer(&s->t, &best, ins->star.tet[n], p);
+        ins->walk.steps++;
         if (best.square == 0) break;
-        *tet = first_conflict(k, k->star.tet, k->star.size, p);
+        *tet = first_conflict(ins, ins->star.tet, ins->star.size, p);
         if (*tet != BRIO_NO_TET) return BRIO_OK;
     }
-    if (best.tet != BRIO_NO_TET) k->walk.start = best.tet;
-    *tet = k->engine->walk(&k->t, &k->filter, &k->walk, p, UINT64_MAX);
-    return *tet == BRIO_NO_TET ? BRIO_DEFERRED : BRIO_OK;
+    if (best.tet != BRIO_NO_TET) ins->walk.start = best.tet;
+    *tet = brio_inserter_walk(ins, p, UINT64_MAX);
+    return BRIO_OK;
 }

@@ -7,7 +7,7 @@
  *           Delaunay triangulations. CGTA 1999. */
 #include "base/memory.h"
 #include "base/rng.h"
-#include "triangulation/kernel.h"
+#include "triangulation/inserter.h"
 #include "triangulation/vertex_tets.h"
 
 typedef struct {
@@ -15,45 +15,48 @@ typedef struct {
     brio_rng rng;
 } jump;
 
-static brio_status start_jump(brio_kernel *k, const brio_delaunay_options *options) {
+static brio_status start_jump(brio_inserter *ins, const brio_delaunay_options *options) {
+    const brio_store *s = ins->store;
     jump *own = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, own, 1));
-    k->location = own;
+    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, own, 1));
+    ins->location = own;
     own->rng = brio_rng_new(options->seed);
-    BRIO_TRY(BRIO_ALLOC(k->ctx, own->vertex_tet, k->num_points + 3));
-    brio_vertex_tets_fill(k, own->vertex_tet);
+    BRIO_TRY(BRIO_ALLOC(s->ctx, own->vertex_tet, s->num_points + 3));
+    brio_vertex_tets_fill(s, own->vertex_tet);
 done:
     return status;
 }
 
-static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
-    jump *own = k->location;
-    const double *point = k->record[p];
+static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
+    const brio_store *s = ins->store;
+    jump *own = ins->location;
+    const double *point = s->record[p];
     uint32_t best = own->last;
-    double least = brio_square_distance(point, k->record[best]);
+    double least = brio_square_distance(point, s->record[best]);
     for (int samples = (int)sqrt(sqrt(p)); samples > 0; samples--) {
         uint32_t v = brio_rng_below(&own->rng, p);
-        double square = brio_square_distance(point, k->record[v]);
-        if (k->representative[v] == v && square < least) best = v, least = square;
+        double square = brio_square_distance(point, s->record[v]);
+        if (s->representative[v] == v && square < least) best = v, least = square;
     }
-    k->walk.start = own->vertex_tet[best];
-    *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, UINT64_MAX);
+    ins->walk.start = own->vertex_tet[best];
+    *tet = brio_inserter_walk(ins, point, UINT64_MAX);
     return BRIO_OK;
 }
 
-static brio_status filled(brio_kernel *k, uint32_t p) {
-    jump *own = k->location;
-    brio_vertex_tets_filled(k, own->vertex_tet);
+static brio_status filled(brio_inserter *ins, uint32_t p) {
+    jump *own = ins->location;
+    brio_vertex_tets_filled(ins, own->vertex_tet);
     own->last = p;
     return BRIO_OK;
 }
 
-static void free_jump(brio_kernel *k) {
-    jump *own = k->location;
-    if (own) brio_release(k->ctx, own->vertex_tet);
-    brio_release(k->ctx, own);
-    k->location = NULL;
+static void free_jump(brio_inserter *ins) {
+    const brio_store *s = ins->store;
+    jump *own = ins->location;
+    if (own) brio_release(s->ctx, own->vertex_tet);
+    brio_release(s->ctx, own);
+    ins->location = NULL;
 }
 
 const brio_locator brio_locator_jump = {start_jump, locate, filled, free_jump};

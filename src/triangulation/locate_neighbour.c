@@ -14,50 +14,53 @@ typedef struct {
     uint32_t *vertex_tet, last;
 } neighbours;
 
-static brio_status start_neighbours(brio_kernel *k, const brio_delaunay_options *options) {
+static brio_status start_neighbours(brio_inserter *ins, const brio_delaunay_options *options) {
+    const brio_store *s = ins->store;
     neighbours *own = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, own, 1));
-    k->location = own;
-    BRIO_TRY(BRIO_ALLOC(k->ctx, own->vertex_tet, k->num_points + 3));
-    brio_vertex_tets_fill(k, own->vertex_tet);
-    status = brio_point_graph_new(k, options, &own->graph);
+    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, own, 1));
+    ins->location = own;
+    BRIO_TRY(BRIO_ALLOC(s->ctx, own->vertex_tet, s->num_points + 3));
+    brio_vertex_tets_fill(s, own->vertex_tet);
+    status = brio_point_graph_new(s, options, &own->graph);
 done:
     return status;
 }
 
-static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
-    const neighbours *own = k->location;
+static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
+    const brio_store *s = ins->store;
+    const neighbours *own = ins->location;
     const brio_point_graph *graph = &own->graph;
-    const double *point = k->record[p];
+    const double *point = s->record[p];
     uint32_t best = own->last;
-    double least = brio_square_distance(point, k->record[best]);
+    double least = brio_square_distance(point, s->record[best]);
     for (uint32_t e = graph->first[p]; e < graph->first[p + 1]; e++) {
         if (graph->neighbour[e] >= p) continue;
-        uint32_t v = brio_alive(k, graph->neighbour[e]);
-        double square = brio_square_distance(point, k->record[v]);
+        uint32_t v = brio_alive(s, graph->neighbour[e]);
+        double square = brio_square_distance(point, s->record[v]);
         if (square < least) best = v, least = square;
     }
-    k->walk.start = own->vertex_tet[best];
-    *tet = k->engine->walk(&k->t, &k->filter, &k->walk, point, UINT64_MAX);
+    ins->walk.start = own->vertex_tet[best];
+    *tet = brio_inserter_walk(ins, point, UINT64_MAX);
     return BRIO_OK;
 }
 
-static brio_status filled(brio_kernel *k, uint32_t p) {
-    neighbours *own = k->location;
-    brio_vertex_tets_filled(k, own->vertex_tet);
+static brio_status filled(brio_inserter *ins, uint32_t p) {
+    neighbours *own = ins->location;
+    brio_vertex_tets_filled(ins, own->vertex_tet);
     own->last = p;
     return BRIO_OK;
 }
 
-static void free_neighbours(brio_kernel *k) {
-    neighbours *own = k->location;
+static void free_neighbours(brio_inserter *ins) {
+    const brio_store *s = ins->store;
+    neighbours *own = ins->location;
     if (own) {
-        brio_release(k->ctx, own->vertex_tet);
-        brio_point_graph_free(k->ctx, &own->graph);
+        brio_release(s->ctx, own->vertex_tet);
+        brio_point_graph_free(s->ctx, &own->graph);
     }
-    brio_release(k->ctx, own);
-    k->location = NULL;
+    brio_release(s->ctx, own);
+    ins->location = NULL;
 }
 
 const brio_locator brio_locator_neighbour = {start_neighbours, locate, filled, free_neighbours};

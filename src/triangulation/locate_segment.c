@@ -12,47 +12,49 @@
 #include "triangulation/locate_segment.h"
 
 /* Whether the line through u and w meets the closed triangle of a facet; w is off its plane. */
-static bool line_meets(brio_kernel *k, const uint32_t *v, int slot, const double *u, const double *w) {
+static bool line_meets(brio_inserter *ins, const uint32_t *v, int slot, const double *u, const double *w) {
+    const brio_store *s = ins->store;
     unsigned sides = 0;
     for (int i = 0; i < 3; i++) {
-        const double *a = k->t.record[v[BRIO_FACET[slot][i]]], *b = k->t.record[v[BRIO_FACET[slot][(i + 1) % 3]]];
-        int side = brio_orient3d_sign(&k->filter, u, w, a, b);
+        const double *a = s->t.record[v[BRIO_FACET[slot][i]]], *b = s->t.record[v[BRIO_FACET[slot][(i + 1) % 3]]];
+        int side = brio_orient3d_sign(&ins->filter, u, w, a, b);
         sides |= side > 0 ? 1u : side < 0 ? 2u : 0u;
     }
     return sides != 3;
 }
 
 /* The slots of the facets that have w strictly on their other side, as bits. */
-static unsigned facets_before(brio_kernel *k, const uint32_t *v, int came_through, const double *w) {
-    const brio_record *r = k->t.record;
+static unsigned facets_before(brio_inserter *ins, const uint32_t *v, int came_through, const double *w) {
+    const brio_record *r = ins->store->t.record;
     unsigned before = 0;
     for (int i = 0; i < 4; i++) {
         if (i == came_through) continue;
         const uint8_t *facet = BRIO_FACET[i];
-        bool beyond = brio_orient3d_sign(&k->filter, r[v[facet[0]]], r[v[facet[1]]], r[v[facet[2]]], w) < 0;
+        bool beyond = brio_orient3d_sign(&ins->filter, r[v[facet[0]]], r[v[facet[1]]], r[v[facet[2]]], w) < 0;
         before |= (unsigned)beyond << i;
     }
     return before;
 }
 
 /* Of those facets the one to cross. */
-static int facet_ahead(brio_kernel *k, const uint32_t *v, unsigned before, const double *u, const double *w) {
+static int facet_ahead(brio_inserter *ins, const uint32_t *v, unsigned before, const double *u, const double *w) {
     int any = __builtin_ctz(before);
     if ((before & (before - 1)) == 0) return any;
     for (; before; before &= before - 1)
-        if (line_meets(k, v, __builtin_ctz(before), u, w)) return __builtin_ctz(before);
+        if (line_meets(ins, v, __builtin_ctz(before), u, w)) return __builtin_ctz(before);
     return any;
 }
 
-uint32_t brio_locate_segment(brio_kernel *k, uint32_t tet, const double *u, const double *w, uint64_t *entered) {
+uint32_t brio_locate_segment(brio_inserter *ins, uint32_t tet, const double *u, const double *w, uint64_t *entered) {
+    const brio_store *s = ins->store;
     int came_through = 4;
-    if (brio_is_infinite(&k->t, tet)) tet = brio_tet_of(k->t.tet[tet].mate[3]);
+    if (brio_is_infinite(&s->t, tet)) tet = brio_tet_of(s->t.tet[tet].mate[3]);
     for (;; ++*entered) {
-        const uint32_t *v = k->t.tet[tet].vertex;
-        if (v[3] == k->t.infinite) return tet;
-        unsigned before = facets_before(k, v, came_through, w);
+        const uint32_t *v = s->t.tet[tet].vertex;
+        if (v[3] == s->t.infinite) return tet;
+        unsigned before = facets_before(ins, v, came_through, w);
         if (!before) return tet;
-        uint32_t mate = k->t.tet[tet].mate[facet_ahead(k, v, before, u, w)];
+        uint32_t mate = s->t.tet[tet].mate[facet_ahead(ins, v, before, u, w)];
         tet = brio_tet_of(mate);
         came_through = brio_slot_of(mate);
     }

@@ -26,23 +26,24 @@ typedef struct {
 
 /* One tracing. */
 typedef struct {
-    brio_kernel *k;
+    brio_inserter *ins;
     trace *own;
     uint32_t *tet;   /* of each record that was found, else BRIO_NO_TET */
     uint32_t *queue; /* the records that were found, of which [0, head) were traced from */
     size_t head, tail;
 } tracing;
 
-static brio_status start_trace(brio_kernel *k, const brio_delaunay_options *options) {
+static brio_status start_trace(brio_inserter *ins, const brio_delaunay_options *options) {
+    const brio_store *s = ins->store;
     trace *own = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, own, 1));
-    k->location = own;
-    own->logarithm = log((double)k->num_points);
-    BRIO_TRY(brio_history_new(k, options, &own->history));
-    BRIO_TRY(brio_point_graph_new(k, options, &own->graph));
-    BRIO_TRY(BRIO_ALLOC(k->ctx, own->node, k->num_points));
-    for (size_t p = 0; p < k->num_points; p++) own->node[p] = BRIO_HISTORY_ROOT;
+    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, own, 1));
+    ins->location = own;
+    own->logarithm = log((double)s->num_points);
+    BRIO_TRY(brio_history_new(ins, options, &own->history));
+    BRIO_TRY(brio_point_graph_new(s, options, &own->graph));
+    BRIO_TRY(BRIO_ALLOC(s->ctx, own->node, s->num_points));
+    for (size_t p = 0; p < s->num_points; p++) own->node[p] = BRIO_HISTORY_ROOT;
 done:
     return status;
 }
@@ -54,72 +55,78 @@ static void found(tracing *t, uint32_t p, uint32_t tet) {
 
 /* From the records in the queue to all that their edges reach. */
 static void trace_edges(tracing *t) {
-    brio_kernel *k = t->k;
+    brio_inserter *ins = t->ins;
+    const brio_store *s = ins->store;
     const brio_point_graph *graph = &t->own->graph;
     while (t->head < t->tail) {
         uint32_t u = t->queue[t->head++];
         for (uint32_t e = graph->first[u]; e < graph->first[u + 1]; e++) {
             uint32_t w = graph->neighbour[e];
             if (t->tet[w] != BRIO_NO_TET) continue;
-            found(t, w, brio_locate_segment(k, t->tet[u], k->record[u], k->record[w], &k->stats.trace_intersections));
+            found(t, w,
+                  brio_locate_segment(ins, t->tet[u], s->record[u], s->record[w], &ins->stats.trace_intersections));
         }
     }
 }
 
 /* The vertices first, then what they are not connected to. */
 static void trace_all(tracing *t) {
-    brio_kernel *k = t->k;
+    brio_inserter *ins = t->ins;
+    const brio_store *s = ins->store;
     const brio_point_graph *graph = &t->own->graph;
-    for (size_t p = 0; p < k->num_points + 3; p++) t->tet[p] = BRIO_NO_TET;
-    brio_vertex_tets_fill(k, t->tet);
-    for (uint32_t p = 0; p < k->num_points; p++)
+    for (size_t p = 0; p < s->num_points + 3; p++) t->tet[p] = BRIO_NO_TET;
+    brio_vertex_tets_fill(s, t->tet);
+    for (uint32_t p = 0; p < s->num_points; p++)
         if (t->tet[p] != BRIO_NO_TET) t->queue[t->tail++] = p;
     trace_edges(t);
-    for (uint32_t p = 0; p < k->num_points; p++) {
+    for (uint32_t p = 0; p < s->num_points; p++) {
         if (t->tet[p] != BRIO_NO_TET || graph->first[p] == graph->first[p + 1]) continue;
-        found(t, p, brio_history_path(k, &t->own->history, t->own->node[p], k->record[p]));
+        found(t, p, brio_history_path(ins, &t->own->history, t->own->node[p], s->record[p]));
         trace_edges(t);
     }
     for (size_t i = 0; i < t->tail; i++) t->own->node[t->queue[i]] = t->own->history.node_of[t->tet[t->queue[i]]];
 }
 
-static brio_status trace_now(brio_kernel *k, trace *own) {
-    tracing t = {.k = k, .own = own};
+static brio_status trace_now(brio_inserter *ins, trace *own) {
+    const brio_store *s = ins->store;
+    tracing t = {.ins = ins, .own = own};
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(k->ctx, t.tet, k->num_points + 3));
-    BRIO_TRY(BRIO_ALLOC(k->ctx, t.queue, k->num_points));
+    BRIO_TRY(BRIO_ALLOC(s->ctx, t.tet, s->num_points + 3));
+    BRIO_TRY(BRIO_ALLOC(s->ctx, t.queue, s->num_points));
     trace_all(&t);
 done:
-    brio_release(k->ctx, t.tet);
-    brio_release(k->ctx, t.queue);
+    brio_release(s->ctx, t.tet);
+    brio_release(s->ctx, t.queue);
     return status;
 }
 
-static brio_status locate(brio_kernel *k, uint32_t p, uint32_t *tet) {
-    trace *own = k->location;
-    if (own->logarithm > 1 && (double)p >= (double)k->num_points / own->logarithm) {
-        brio_status status = trace_now(k, own);
+static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
+    const brio_store *s = ins->store;
+    trace *own = ins->location;
+    if (own->logarithm > 1 && (double)p >= (double)s->num_points / own->logarithm) {
+        brio_status status = trace_now(ins, own);
         if (status != BRIO_OK) return status;
         own->logarithm = log(own->logarithm);
     }
-    return brio_history_locate(k, &own->history, own->node[p], k->record[p], tet);
+    return brio_history_locate(ins, &own->history, own->node[p], s->record[p], tet);
 }
 
-static brio_status filled(brio_kernel *k, uint32_t p) {
-    trace *own = k->location;
+static brio_status filled(brio_inserter *ins, uint32_t p) {
+    trace *own = ins->location;
     (void)p;
-    return brio_history_add(k, &own->history);
+    return brio_history_add(ins, &own->history);
 }
 
-static void free_trace(brio_kernel *k) {
-    trace *own = k->location;
+static void free_trace(brio_inserter *ins) {
+    const brio_store *s = ins->store;
+    trace *own = ins->location;
     if (own) {
-        brio_history_free(k->ctx, &own->history);
-        brio_point_graph_free(k->ctx, &own->graph);
-        brio_release(k->ctx, own->node);
+        brio_history_free(s->ctx, &own->history);
+        brio_point_graph_free(s->ctx, &own->graph);
+        brio_release(s->ctx, own->node);
     }
-    brio_release(k->ctx, own);
-    k->location = NULL;
+    brio_release(s->ctx, own);
+    ins->location = NULL;
 }
 
 const brio_locator brio_locator_trace = {start_trace, locate, filled, free_trace};

@@ -5,13 +5,13 @@
  * avoids the long detours of a fixed order.
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
-#include "triangulation/locate.h"
+#include "triangulation/locate_walk.h"
 
-uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
+uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps) {
     uint32_t tet = brio_walk_begin(t, walk);
     int came_through = 4;
-    if ((walk->blocked = !brio_owns(t, tet))) return BRIO_NO_TET;
+    if ((walk->blocked = !brio_owns(t, zone, tet))) return BRIO_NO_TET;
     for (uint64_t steps = 0;; steps++, walk->steps++) {
         if (steps > most_steps) return BRIO_NO_TET;
         const uint32_t *v = t->tet[tet].vertex;
@@ -24,7 +24,7 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w
             const uint8_t *facet = BRIO_FACET[slot];
             if (brio_orient3d_sign(f, t->record[v[facet[0]]], t->record[v[facet[1]]], t->record[v[facet[2]]], p) < 0) {
                 uint32_t mate = t->tet[tet].mate[slot];
-                if ((walk->blocked = !brio_owns_beyond(t, mate))) return BRIO_NO_TET;
+                if ((walk->blocked = !brio_owns_beyond(t, zone, mate))) return BRIO_NO_TET;
                 tet = brio_tet_of(mate);
                 came_through = brio_slot_of(mate);
                 break;

@@ -5,9 +5,10 @@
  * it holds, its zone: it takes a segment when it first meets a vertex there, and gives it back when it has moved on. A
  * point whose walk or cavity meets a segment of another thread is deferred, since that thread is at work there now;
  * later it will not be. The tetrahedra round a cavity share three vertices with it, so no other thread can destroy them,
- * and what is read of them does not change: their mates are written only through the facet that both share. So threads
- * never wait for each other, and share nothing but the segments' marks and the count of slots, taken in large stretches.
- * What is left when a thread has tried all its points again goes into another pass, and at the end to one thread.
+ * and what is read of them does not change: their mates are written only through the facet that both share (P1 to P4 in
+ * store.h, proved in docs/decisions/006-segments-held-by-threads.md). So threads never wait for each other, and share
+ * nothing but the segments' marks and the count of slots, taken in large stretches. What is left when a thread has tried
+ * all its points again goes into another pass, and at the end to one thread.
  *
  * The result is the one triangulation that exact predicates and the symbolic perturbation determine, whatever was
  * deferred.
@@ -18,41 +19,44 @@
  * Differs from both: zones of the curve are not fixed for a pass but follow the thread, and locks are neither of
  * tetrahedra nor of vertices but of segments, kept from one insertion to the next.
  */
+#include "triangulation/parallel.h"
 #include "base/memory.h"
 #include "base/team.h"
-#include "triangulation/kernel.h"
+#include "triangulation/insert.h"
+#include "triangulation/zone.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>
 
 enum {
-    STRETCH = 4096, /* slots taken at once */
-    LEAST = 512,    /* points to insert that are worth a thread */
-    CROWD = 256,    /* points in all that are worth a thread */
-    PASSES = 4,     /* then one thread goes on */
-    RETRIES = 4,    /* of a thread's deferred points in a pass */
-    STARTS = 32,    /* places along a thread's part where it may begin */
-    SEGMENT = 4,    /* vertices in a segment when a pass begins */
+    LEAST = 512, /* points to insert that are worth a thread */
+    CROWD = 256, /* points in all that are worth a thread */
+    PASSES = 4,  /* then one thread goes on */
+    RETRIES = 4, /* of a thread's deferred points in a pass */
+    STARTS = 32, /* places along a thread's part where it may begin */
+    SEGMENT = 4, /* vertices in a segment when a pass begins */
     MOST_SEGMENTS = 1 << 16
 };
 
-/* What the threads of a pass share. */
-typedef struct brio_pass {
-    brio_kernel *main;
+/* What the threads of a pass share, beside the store. All but the last three fields are constant in a pass. */
+typedef struct {
+    brio_inserter *main; /* the one that works alone between passes, and rests in them */
+    brio_store *store;
     uint32_t first; /* the records to insert, along the curve: from `first` on, or those listed */
     uint32_t *list;
     size_t count;
     int shift; /* of ranks to segments */
     size_t segments;
-    uint8_t *taken; /* of each segment */
-    size_t next_slot, last_slot;
-    int stop;    /* some thread failed; only hastens the others' end */
-    int running; /* threads at work */
-} brio_pass;
+    uint8_t *taken; /* of each segment; see brio_zone */
+    int stop;       /* some thread failed; only hastens the others' end */
+    int running;    /* threads at work */
+} pass;
 
-/* One thread's work in a pass. */
+/* One thread's work in a pass. Made by the calling thread before the pass, and read by it after the pass. */
 typedef struct {
-    brio_kernel kernel;
+    pass *pass;
+    brio_inserter *inserter;
     brio_zone zone;
     size_t begin, end; /* of the records to insert */
     bool placed;       /* it has a tetrahedron to start from */
@@ -61,80 +65,54 @@ typedef struct {
     brio_status status;
 } worker;
 
-static inline uint32_t record_of(const brio_pass *pass, size_t i) {
-    return pass->list ? pass->list[i] : pass->first + (uint32_t)i;
-}
-
-/* --- slots --- */
-
-/* What is left of a stretch becomes unused slots. */
-static brio_status give_back_stretch(brio_kernel *k) {
-    size_t left = k->capacity - k->t.count;
-    brio_status status = BRIO_RESERVE(k->ctx, k->unused, k->unused_capacity, k->num_unused + left);
-    if (status != BRIO_OK) return status;
-    for (; k->t.count < k->capacity; k->t.count++) {
-        k->state[k->t.count] = TET_UNUSED;
-        k->unused[k->num_unused++] = (uint32_t)k->t.count;
-    }
-    return BRIO_OK;
-}
-
-brio_status brio_pass_reserve(brio_kernel *k, size_t more) {
-    brio_pass *pass = k->pass;
-    size_t size = more > STRETCH ? more : STRETCH, begin;
-    brio_status status = give_back_stretch(k);
-    if (status != BRIO_OK) return status;
-    begin = __atomic_load_n(&pass->next_slot, __ATOMIC_RELAXED);
-    do { /* taken only when it fits: giving back what did not could give away another thread's slots */
-        if (begin + size > pass->last_slot) return BRIO_DEFERRED;
-    } while (
-        !__atomic_compare_exchange_n(&pass->next_slot, &begin, begin + size, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED));
-    k->t.count = begin;
-    k->capacity = begin + size;
-    return BRIO_OK;
+static inline uint32_t record_of(const pass *own, size_t i) {
+    return own->list ? own->list[i] : own->first + (uint32_t)i;
 }
 
 /* --- one thread --- */
 
-/* Inserts a record, or BRIO_DEFERRED. Where the next walk starts stays in the zone. */
-static brio_status insert_in_zone(brio_kernel *k, uint32_t p) {
-    brio_zone *zone = k->t.zone;
-    if (!brio_zone_has(zone, p)) return BRIO_DEFERRED;
-    uint64_t created = k->stats.created;
-    brio_status status = brio_kernel_insert(k, p);
-    brio_owns(&k->t, k->walk.start);
-    if (brio_zone_tidy(zone) && k->stats.created == created)
-        k->cavity.num_created = 0; /* the last star is no longer held */
-    return status;
-}
-
-static brio_status defer(worker *w, uint32_t p) {
-    brio_status status = BRIO_RESERVE(w->kernel.ctx, w->deferred, w->deferred_capacity, w->num_deferred + 1);
-    if (status == BRIO_OK) w->deferred[w->num_deferred++] = p;
+/* Inserts a record, or defers it. Where the next walk starts stays in the zone (N1). */
+static brio_status insert_in_zone(brio_inserter *ins, uint32_t p, brio_insertion *outcome) {
+    *outcome = BRIO_DEFERRED;
+    if (!brio_zone_has(ins->zone, p)) return BRIO_OK;
+    brio_status status = brio_insert(ins, p, outcome);
+    brio_owns(&ins->store->t, ins->zone, ins->walk.start);
+    if (brio_zone_tidy(ins->zone) && *outcome != BRIO_INSERTED)
+        ins->cavity.num_created = 0; /* the last star is no longer held (N2) */
     return status;
 }
 
 static brio_status try_point(worker *w, uint32_t p) {
-    brio_status status = w->placed ? insert_in_zone(&w->kernel, p) : BRIO_DEFERRED;
-    return status == BRIO_DEFERRED ? defer(w, p) : status;
+    brio_insertion outcome = BRIO_DEFERRED;
+    brio_status status = BRIO_OK;
+    if (w->placed) BRIO_TRY(insert_in_zone(w->inserter, p, &outcome));
+    if (outcome != BRIO_DEFERRED) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(w->pass->store->ctx, w->deferred, w->deferred_capacity, w->num_deferred + 1));
+    w->deferred[w->num_deferred++] = p;
+done:
+    return status;
 }
 
 /* Progress of a thread stands for that of all. */
 static brio_status report(worker *w, size_t i) {
-    const brio_pass *pass = w->kernel.pass;
-    double done = (double)pass->first + (double)(i - w->begin) / (double)(w->end - w->begin) * (double)pass->count;
-    return brio_kernel_report(&w->kernel, done / (double)w->kernel.num_points);
+    const pass *own = w->pass;
+    double done = (double)own->first + (double)(i - w->begin) / (double)(w->end - w->begin) * (double)own->count;
+    return brio_inserter_report(w->inserter, done / (double)own->store->num_points);
 }
 
-/* Once more what was deferred. */
+static bool is_report_due(const brio_inserter *ins) {
+    return brio_inserter_work(ins) >= ins->report_at;
+}
+
+/* Tries the deferred points again. */
 static brio_status try_again(worker *w) {
     brio_status status = BRIO_OK;
     size_t count = w->num_deferred;
     w->num_deferred = 0;
     for (size_t i = 0; i < count; i++) {
-        if (__atomic_load_n(&w->kernel.pass->stop, __ATOMIC_RELAXED)) break;
+        if (__atomic_load_n(&w->pass->stop, __ATOMIC_RELAXED)) break;
         BRIO_TRY(try_point(w, w->deferred[i]));
-        if (brio_kernel_work(&w->kernel) >= w->kernel.report_at) BRIO_TRY(report(w, w->end));
+        if (is_report_due(w->inserter)) BRIO_TRY(report(w, w->end));
     }
 done:
     return status;
@@ -144,10 +122,9 @@ done:
  * of the time that it has waited, so that it is late by no more than that share. */
 static brio_status wait_for_others(worker *w) {
     const double SHARE = 1.0 / 16, LEAST_SLEEP = 2e-5, MOST_SLEEP = 1e-2, BETWEEN = 0.05;
-    brio_pass *pass = w->kernel.pass;
     brio_status status = BRIO_OK;
     double start = brio_seconds(), told = start, now = start;
-    while (__atomic_load_n(&pass->running, __ATOMIC_ACQUIRE) > 0) {
+    while (__atomic_load_n(&w->pass->running, __ATOMIC_ACQUIRE) > 0) {
         double sleep = fmin(fmax(SHARE * (now - start), LEAST_SLEEP), MOST_SLEEP);
         nanosleep(&(struct timespec){0, (long)(1e9 * sleep)}, NULL);
         now = brio_seconds();
@@ -160,161 +137,144 @@ done:
 }
 
 /* A failed insertion may have left its cavity half filled: then the thread's segments stay taken. */
-static brio_status work(worker *w, bool reports) {
-    brio_pass *pass = w->kernel.pass;
+static brio_status work(worker *w) {
+    brio_inserter *ins = w->inserter;
+    pass *own = w->pass;
     brio_status status = BRIO_OK;
-    w->kernel.reports = reports;
-    __atomic_add_fetch(&pass->running, 1, __ATOMIC_RELAXED);
-    for (size_t i = w->begin; i < w->end && !__atomic_load_n(&pass->stop, __ATOMIC_RELAXED); i++) {
-        BRIO_TRY(try_point(w, record_of(pass, i)));
-        if (brio_kernel_work(&w->kernel) >= w->kernel.report_at) BRIO_TRY(report(w, i));
+    __atomic_add_fetch(&own->running, 1, __ATOMIC_RELAXED);
+    for (size_t i = w->begin; i < w->end && !__atomic_load_n(&own->stop, __ATOMIC_RELAXED); i++) {
+        BRIO_TRY(try_point(w, record_of(own, i)));
+        if (is_report_due(ins)) BRIO_TRY(report(w, i));
     }
-    w->kernel.stats.deferred = w->num_deferred;
+    ins->stats.deferred = w->num_deferred;
     for (int i = 0; i < RETRIES && w->num_deferred && w->placed; i++) BRIO_TRY(try_again(w));
 done:
     if (status == BRIO_OK) brio_zone_leave(&w->zone);
-    __atomic_sub_fetch(&pass->running, 1, __ATOMIC_RELEASE);
-    if (status == BRIO_OK && reports && w->kernel.ctx->progress) status = wait_for_others(w);
-    if (status != BRIO_OK) __atomic_store_n(&pass->stop, 1, __ATOMIC_RELAXED);
-    return status;
-}
-
-/* --- workers --- */
-
-/* A kernel with the main one's arrays and its own workspace. */
-static brio_status join_pass(worker *w, brio_pass *pass) {
-    brio_kernel *k = &w->kernel, *main = pass->main;
-    brio_cavity cavity = k->cavity;
-    brio_star star = k->star;
-    uint32_t *unused = k->unused;
-    size_t unused_capacity = k->unused_capacity;
-    *k = *main;
-    k->pass = pass;
-    k->t.count = k->capacity = 0;
-    k->unused = unused, k->unused_capacity = unused_capacity, k->num_unused = 0;
-    k->star = star;
-    k->cavity = cavity;
-    k->cavity.local = main->cavity.local;
-    k->cavity.num_created = 0;
-    k->stats = (brio_delaunay_stats){0};
-    k->filter.unsettled = k->walk.steps = 0;
-    k->report_at = 0;
-    if (k->cavity.table) return BRIO_OK;
-    brio_status status = BRIO_ALLOC(k->ctx, k->cavity.table, BRIO_TABLE);
-    return status == BRIO_OK ? brio_cavity_reserve(k->ctx, &k->cavity, 64) : status;
-}
-
-/* Gives the main kernel what the thread has left and counted. */
-static brio_status leave_pass(worker *w, brio_pass *pass) {
-    brio_kernel *k = &w->kernel, *main = pass->main;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(give_back_stretch(k));
-    BRIO_TRY(BRIO_RESERVE(k->ctx, main->unused, main->unused_capacity, main->num_unused + k->num_unused));
-    if (k->num_unused) memcpy(main->unused + main->num_unused, k->unused, k->num_unused * sizeof *k->unused);
-    main->num_unused += k->num_unused;
-    main->stats.created += k->stats.created;
-    main->stats.destroyed += k->stats.destroyed;
-    main->stats.insphere_calls += k->stats.insphere_calls;
-    main->stats.deferred += k->stats.deferred;
-    main->stats.locate_seconds += k->stats.locate_seconds;
-    main->walk.steps += k->walk.steps;
-    main->filter.unsettled += k->filter.unsettled;
-    /* once a thread has left its zone, others may destroy the tetrahedron where it stopped; that of the last is left */
-    if (k->stats.created && main->state[k->walk.start] == TET_PLAIN) main->walk.start = k->walk.start;
-    main->done = fmax(main->done, k->done);
-done:
-    return status;
-}
-
-static void worker_free(worker *w) {
-    w->kernel.cavity.local = NULL; /* the main kernel's */
-    brio_cavity_free(w->kernel.ctx, &w->kernel.cavity);
-    brio_release(w->kernel.ctx, w->kernel.star.tet);
-    brio_release(w->kernel.ctx, w->kernel.unused);
-    brio_release(w->kernel.ctx, w->deferred);
-    brio_zone_free(w->kernel.ctx, &w->zone);
-}
-
-/* --- passes --- */
-
-/* Finds a tetrahedron along the worker's part that it can hold; whether there is one. */
-static bool place_worker(worker *w, brio_pass *pass) {
-    brio_kernel *k = &w->kernel, *main = pass->main;
-    size_t n = w->end - w->begin;
-    for (size_t i = 0; i < STARTS && n; i++) {
-        const double *p = main->record[record_of(pass, w->begin + i * n / STARTS)];
-        k->walk.start = main->walk.start = main->engine->walk(&main->t, &main->filter, &main->walk, p, UINT64_MAX);
-        if (brio_owns(&k->t, k->walk.start)) return true;
-        brio_zone_leave(&w->zone);
-    }
-    return false;
-}
-
-/* Segments of the curve so that each has some vertices already. */
-static brio_status divide_curve(brio_pass *pass, size_t inserted) {
-    size_t points = pass->main->num_points,
-           most = inserted / SEGMENT < MOST_SEGMENTS ? inserted / SEGMENT : MOST_SEGMENTS;
-    pass->shift = 0;
-    while (points >> pass->shift > most) pass->shift++;
-    pass->segments = (points >> pass->shift) + 1;
-    brio_release(pass->main->ctx, pass->taken);
-    return BRIO_ALLOC_ZERO(pass->main->ctx, pass->taken, pass->segments);
-}
-
-static brio_status start_pass(brio_pass *pass, worker *workers, int threads) {
-    brio_status status = BRIO_OK;
-    for (int i = 0; i < threads; i++) {
-        worker *w = &workers[i];
-        w->begin = brio_part(pass->count, i, threads);
-        w->end = brio_part(pass->count, i + 1, threads);
-        w->num_deferred = 0;
-        BRIO_TRY(join_pass(w, pass));
-        brio_zone_free(pass->main->ctx, &w->zone);
-        BRIO_TRY(brio_zone_new(pass->main->ctx, pass->main->rank, pass->shift, pass->segments, pass->taken, &w->zone));
-        w->kernel.t.zone = &w->zone;
-        w->placed = place_worker(w, pass);
-    }
-done:
-    return status;
-}
-
-/* Slots for a pass: as many a point as up to now, and some more. */
-static brio_status reserve_slots(brio_pass *pass, size_t inserted, int threads) {
-    brio_kernel *main = pass->main;
-    double each = (double)(main->t.count - main->num_unused) / (double)inserted;
-    size_t more = (size_t)(1.04 * each * (double)pass->count) + (size_t)threads * 2 * STRETCH, room;
-    room = main->max_tetrahedra - main->t.count;
-    brio_status status = brio_kernel_reserve(main, more < room ? more : room);
-    pass->next_slot = main->t.count;
-    pass->last_slot = main->capacity;
+    __atomic_sub_fetch(&own->running, 1, __ATOMIC_RELEASE);
+    if (status == BRIO_OK && ins->reports && own->store->ctx->progress) status = wait_for_others(w);
+    if (status != BRIO_OK) __atomic_store_n(&own->stop, 1, __ATOMIC_RELAXED);
     return status;
 }
 
 static void work_as_member(void *user, const brio_member *m) {
     worker *w = (worker *)user + m->thread;
-    w->status = work(w, m->thread == 0);
+    w->status = work(w);
 }
 
-/* One pass over the records; afterwards the deferred ones are in *left. */
-static brio_status run_pass(brio_pass *pass, worker *workers, int threads, uint32_t **left, size_t *num_left) {
-    brio_status status = BRIO_OK;
-    brio_run(pass->main->ctx, threads, work_as_member, workers);
-    size_t total = 0;
-    for (int w = 0; w < threads; w++) {
-        BRIO_TRY(workers[w].status);
-        BRIO_TRY(leave_pass(&workers[w], pass));
-        total += workers[w].num_deferred;
+/* --- workers --- */
+
+/* Finds a tetrahedron along the worker's part that it can hold; whether there is one. */
+static bool place_worker(worker *w) {
+    brio_inserter *ins = w->inserter, *main = w->pass->main;
+    const brio_store *store = w->pass->store;
+    size_t n = w->end - w->begin;
+    for (size_t i = 0; i < STARTS && n; i++) {
+        const double *p = store->record[record_of(w->pass, w->begin + i * n / STARTS)];
+        ins->walk.start = main->walk.start = brio_inserter_walk(main, p, UINT64_MAX);
+        if (brio_owns(&store->t, ins->zone, ins->walk.start)) return true;
+        brio_zone_leave(&w->zone);
     }
-    pass->main->t.count = pass->next_slot;
-    pass->main->cavity.num_created = 0; /* its last star may be gone */
-    BRIO_TRY(BRIO_ALLOC(pass->main->ctx, *left, total));
-    *num_left = 0;
-    for (int w = 0; w < threads; w++) {
-        if (!workers[w].num_deferred) continue;
-        memcpy(*left + *num_left, workers[w].deferred, workers[w].num_deferred * sizeof **left);
-        *num_left += workers[w].num_deferred;
+    return false;
+}
+
+/* The worker of thread i of so many, placed in its zone. */
+static brio_status worker_new(pass *own, int i, int threads, worker *w) {
+    brio_context *ctx = own->store->ctx;
+    const brio_inserter *main = own->main;
+    brio_status status = BRIO_OK;
+    *w =
+        (worker){.pass = own, .begin = brio_part(own->count, i, threads), .end = brio_part(own->count, i + 1, threads)};
+    BRIO_TRY(brio_zone_new(ctx, own->store->rank, own->shift, own->segments, own->taken, &w->zone));
+    BRIO_TRY(brio_inserter_new(own->store, &w->inserter));
+    w->inserter->zone = &w->zone;
+    w->inserter->long_walks = main->long_walks;
+    w->inserter->done = main->done;
+    w->inserter->reports = i == 0;
+    w->placed = place_worker(w);
+done:
+    return status;
+}
+
+/* NULL pointers inside are accepted. */
+static void worker_free(worker *w, brio_context *ctx) {
+    brio_inserter_free(w->inserter);
+    brio_zone_free(ctx, &w->zone);
+    brio_release(ctx, w->deferred);
+    *w = (worker){0};
+}
+
+/* Gives the main inserter the slots that the worker has left, and what it counted. */
+static brio_status leave_pass(worker *w) {
+    brio_inserter *ins = w->inserter, *main = w->pass->main;
+    brio_store *store = w->pass->store;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_inserter_return_stretch(ins));
+    BRIO_TRY(BRIO_RESERVE(store->ctx, main->unused, main->unused_capacity, main->num_unused + ins->num_unused));
+    if (ins->num_unused) memcpy(main->unused + main->num_unused, ins->unused, ins->num_unused * sizeof *ins->unused);
+    main->num_unused += ins->num_unused;
+    ins->num_unused = 0;
+    main->stats.created += ins->stats.created;
+    main->stats.destroyed += ins->stats.destroyed;
+    main->stats.insphere_calls += ins->stats.insphere_calls;
+    main->stats.deferred += ins->stats.deferred;
+    main->stats.locate_seconds += ins->stats.locate_seconds;
+    main->walk.steps += ins->walk.steps;
+    main->filter.unsettled += ins->filter.unsettled;
+    /* once a thread has left its zone, others may destroy the tetrahedron where it stopped; that of the last is left */
+    if (ins->stats.created && store->state[ins->walk.start] == TET_PLAIN) main->walk.start = ins->walk.start;
+    main->done = fmax(main->done, ins->done);
+done:
+    return status;
+}
+
+/* --- passes --- */
+
+/* Segments of the curve so that each has some vertices already. */
+static brio_status divide_curve(pass *own, size_t inserted) {
+    brio_context *ctx = own->store->ctx;
+    size_t points = own->store->num_points,
+           most = inserted / SEGMENT < MOST_SEGMENTS ? inserted / SEGMENT : MOST_SEGMENTS;
+    own->shift = 0;
+    while (points >> own->shift > most) own->shift++;
+    own->segments = (points >> own->shift) + 1;
+    brio_release(ctx, own->taken);
+    return BRIO_ALLOC_ZERO(ctx, own->taken, own->segments);
+}
+
+/* Slots for a pass: as many a point as up to now, and some more. */
+static brio_status reserve_slots(pass *own, size_t inserted, int threads) {
+    brio_store *store = own->store;
+    double each = (double)(store->t.count - own->main->num_unused) / (double)inserted;
+    size_t more = (size_t)(1.04 * each * (double)own->count) + (size_t)threads * 2 * BRIO_SLOT_STRETCH;
+    size_t room = store->max_tetrahedra - store->t.count;
+    return brio_store_reserve(store, more < room ? more : room);
+}
+
+/* One pass over the records; the deferred ones take their place. */
+static brio_status run_pass(pass *own, worker *workers, int threads) {
+    brio_context *ctx = own->store->ctx;
+    brio_status status = BRIO_OK;
+    uint32_t *left = NULL;
+    size_t num_left = 0;
+    for (int i = 0; i < threads; i++) BRIO_TRY(worker_new(own, i, threads, &workers[i]));
+    brio_run(ctx, threads, work_as_member, workers);
+    for (int i = 0; i < threads; i++) {
+        BRIO_TRY(workers[i].status);
+        BRIO_TRY(leave_pass(&workers[i]));
+        num_left += workers[i].num_deferred;
+    }
+    own->main->cavity.num_created = 0; /* its last star may be gone (N2) */
+    BRIO_TRY(BRIO_ALLOC(ctx, left, num_left));
+    brio_release(ctx, own->list);
+    own->list = left;
+    own->count = 0;
+    for (int i = 0; i < threads; i++) {
+        const worker *w = &workers[i];
+        if (w->num_deferred) memcpy(left + own->count, w->deferred, w->num_deferred * sizeof *left);
+        own->count += w->num_deferred;
     }
 done:
+    for (int i = 0; i < threads; i++) worker_free(&workers[i], ctx);
     return status;
 }
 
@@ -323,37 +283,41 @@ static int useful_threads(size_t count, size_t inserted, int most) {
     return threads < (size_t)most ? (int)threads : most;
 }
 
-brio_status brio_kernel_insert_parallel(brio_kernel *k, size_t begin, size_t end) {
+/* What the passes have left, by the main inserter alone. */
+static brio_status insert_rest(pass *own, double done) {
+    brio_inserter *ins = own->main;
     brio_status status = BRIO_OK;
-    brio_pass pass = {.main = k, .first = (uint32_t)begin, .count = end - begin};
-    int most = brio_threads(k->ctx, pass.count, LEAST);
-    worker *workers = NULL;
-    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, workers, (size_t)most));
-    for (int w = 0; w < most; w++) workers[w].kernel.ctx = k->ctx;
-    for (int n = 0; n < PASSES; n++) {
-        size_t inserted = end - pass.count, num_left = 0;
-        int threads = useful_threads(pass.count, inserted, most);
-        uint32_t *left = NULL;
-        if (threads < 2) break;
-        BRIO_TRY(reserve_slots(&pass, inserted, threads));
-        BRIO_TRY(divide_curve(&pass, inserted));
-        BRIO_TRY(start_pass(&pass, workers, threads));
-        BRIO_TRY(run_pass(&pass, workers, threads, &left, &num_left));
-        bool stuck = num_left > pass.count / 2;
-        brio_release(k->ctx, pass.list);
-        pass.list = left;
-        pass.count = num_left;
-        if (stuck) break;
+    for (size_t i = 0; i < own->count; i++) {
+        brio_insertion outcome;
+        BRIO_TRY(brio_insert(ins, record_of(own, i), &outcome));
+        assert(outcome != BRIO_DEFERRED);
+        if (is_report_due(ins)) BRIO_TRY(brio_inserter_report(ins, done));
     }
-    for (size_t i = 0; i < pass.count; i++) {
-        BRIO_TRY(brio_kernel_insert(k, record_of(&pass, i)));
-        if (brio_kernel_work(k) >= k->report_at) BRIO_TRY(brio_kernel_report(k, (double)end / (double)k->num_points));
-    }
-    k->stats.serial += pass.count;
+    ins->stats.serial += own->count;
 done:
-    for (int w = 0; workers && w < most; w++) worker_free(&workers[w]);
-    brio_release(k->ctx, workers);
-    brio_release(k->ctx, pass.list);
-    brio_release(k->ctx, pass.taken);
+    return status;
+}
+
+brio_status brio_insert_parallel(brio_inserter *ins, size_t begin, size_t end) {
+    brio_context *ctx = ins->store->ctx;
+    brio_status status = BRIO_OK;
+    pass own = {.main = ins, .store = ins->store, .first = (uint32_t)begin, .count = end - begin};
+    int most = brio_threads(ctx, own.count, LEAST);
+    worker *workers = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, workers, (size_t)most));
+    for (int n = 0; n < PASSES; n++) {
+        size_t count = own.count, inserted = end - count;
+        int threads = useful_threads(count, inserted, most);
+        if (threads < 2) break;
+        BRIO_TRY(reserve_slots(&own, inserted, threads));
+        BRIO_TRY(divide_curve(&own, inserted));
+        BRIO_TRY(run_pass(&own, workers, threads));
+        if (own.count > count / 2) break;
+    }
+    BRIO_TRY(insert_rest(&own, (double)end / (double)ins->store->num_points));
+done:
+    brio_release(ctx, workers);
+    brio_release(ctx, own.list);
+    brio_release(ctx, own.taken);
     return status;
 }

@@ -8,17 +8,17 @@ void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph) {
     brio_release(ctx, graph->neighbour);
 }
 
-brio_status brio_point_graph_new(const brio_kernel *k, const brio_delaunay_options *options, brio_point_graph *out) {
+brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_options *options, brio_point_graph *out) {
     brio_status status = BRIO_OK;
-    size_t n = k->num_points, ends = 2 * options->num_edges;
+    size_t n = store->num_points, ends = 2 * options->num_edges;
     uint32_t *record = NULL, *first, sum = 0;
     memset(out, 0, sizeof *out);
-    BRIO_REQUIRE(k->ctx, options->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1",
+    BRIO_REQUIRE(store->ctx, options->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1",
                  options->num_edges);
-    BRIO_TRY(BRIO_ALLOC(k->ctx, record, n));
-    for (uint32_t p = 0; p < n; p++) record[k->caller[p]] = p;
-    BRIO_TRY(BRIO_ALLOC_ZERO(k->ctx, out->first, n + 1));
-    BRIO_TRY(BRIO_ALLOC(k->ctx, out->neighbour, ends));
+    BRIO_TRY(BRIO_ALLOC(store->ctx, record, n));
+    for (uint32_t p = 0; p < n; p++) record[store->caller[p]] = p;
+    BRIO_TRY(BRIO_ALLOC_ZERO(store->ctx, out->first, n + 1));
+    BRIO_TRY(BRIO_ALLOC(store->ctx, out->neighbour, ends));
     first = out->first;
     for (size_t i = 0; i < ends; i++) first[record[options->edges[i]]]++;
     for (size_t p = 0; p < n; p++) first[p] = sum += first[p]; /* the end of its list, and filling moves it back */
@@ -26,6 +26,6 @@ brio_status brio_point_graph_new(const brio_kernel *k, const brio_delaunay_optio
     for (size_t i = 0; i < ends; i++)
         out->neighbour[--first[record[options->edges[i]]]] = record[options->edges[i ^ 1]];
 done:
-    brio_release(k->ctx, record);
+    brio_release(store->ctx, record);
     return status;
 }

@@ -2,7 +2,7 @@
 #ifndef BRIO_TRIANGULATION_POINT_GRAPH_H
 #define BRIO_TRIANGULATION_POINT_GRAPH_H
 
-#include "triangulation/kernel.h"
+#include "triangulation/store.h"
 
 /** Record p has the neighbours neighbour[first[p] .. first[p + 1]), records too. */
 typedef struct {
@@ -10,7 +10,7 @@ typedef struct {
 } brio_point_graph;
 
 /** The graph of the options' edges; BRIO_ERR_TOO_LARGE beyond 2^31 - 1 edges. After a failure it is to be freed, too. */
-brio_status brio_point_graph_new(const brio_kernel *k, const brio_delaunay_options *options, brio_point_graph *out);
+brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_options *options, brio_point_graph *out);
 void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph);
 
 #endif

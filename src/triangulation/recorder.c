@@ -21,20 +21,21 @@ size_t brio_recorder_next(const brio_recorder *r, size_t inserted) {
     return next;
 }
 
-brio_status brio_recorder_note(brio_recorder *r, const brio_kernel *k, size_t inserted) {
+brio_status brio_recorder_note(brio_recorder *r, const brio_inserter *ins, size_t inserted) {
+    const brio_store *s = ins->store;
     brio_status status = BRIO_OK;
     bool due = inserted > 0 && brio_recorder_next(r, inserted - 1) == inserted;
-    if (r->every == 0 || !(due || inserted == k->num_points)) return BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(k->ctx, r->list, r->capacity, r->count + 1));
+    if (r->every == 0 || !(due || inserted == s->num_points)) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(s->ctx, r->list, r->capacity, r->count + 1));
     r->list[r->count++] = (brio_round){
         .points = inserted,
-        .tetrahedra = (size_t)(k->stats.created - k->stats.destroyed),
-        .created = k->stats.created,
-        .destroyed = k->stats.destroyed,
-        .walk_steps = k->walk.steps,
-        .insphere_calls = k->stats.insphere_calls,
-        .history = k->stats.history,
-        .locate_seconds = k->stats.locate_seconds,
+        .tetrahedra = (size_t)(ins->stats.created - ins->stats.destroyed),
+        .created = ins->stats.created,
+        .destroyed = ins->stats.destroyed,
+        .walk_steps = ins->walk.steps,
+        .insphere_calls = ins->stats.insphere_calls,
+        .history = ins->stats.history,
+        .locate_seconds = ins->stats.locate_seconds,
         .seconds = brio_seconds() - r->start,
     };
 done:

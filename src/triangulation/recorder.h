@@ -3,7 +3,7 @@
 #define BRIO_TRIANGULATION_RECORDER_H
 
 #include "order/rounds.h"
-#include "triangulation/kernel.h"
+#include "triangulation/inserter.h"
 
 typedef struct {
     uint64_t every; /* as brio_delaunay_options.record_every */
@@ -17,6 +17,6 @@ typedef struct {
 size_t brio_recorder_next(const brio_recorder *r, size_t inserted);
 
 /** Adds an entry when one is due, or when all points are in. */
-brio_status brio_recorder_note(brio_recorder *r, const brio_kernel *k, size_t inserted);
+brio_status brio_recorder_note(brio_recorder *r, const brio_inserter *ins, size_t inserted);
 
 #endif

@@ -25,7 +25,7 @@ brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint3
         BRIO_TRY(BRIO_RESERVE(ctx, star->tet, star->capacity, star->size + 4));
         for (int i = 0; i < 4; i++) {
             uint32_t other = brio_tet_of(t->tet[tet].mate[i]);
-            if (t->tet[tet].vertex[i] == v || !brio_owns(t, other) || star->mark[other]) continue;
+            if (t->tet[tet].vertex[i] == v || !brio_owns(t, star->zone, other) || star->mark[other]) continue;
             star->mark[other] = 1;
             star->tet[star->size++] = other;
             __builtin_prefetch(&t->tet[other]);

@@ -5,42 +5,44 @@
  * tetrahedron then has all apexes, its orthosphere meets the points' plane (line) in the orthocircle of its other
  * vertices, and the symbolic perturbation skips the apexes, so the link of the apexes is the perturbed regular
  * triangulation of the points in their own dimension, with the same hidden points. */
+#include "triangulation/start.h"
 #include "base/memory.h"
-#include "triangulation/kernel.h"
 #include <string.h>
 
-static void swap_records(brio_kernel *k, size_t i, size_t j) {
+enum { FIRST = 5 }; /* tetrahedra that a triangulation begins with */
+
+static void swap_records(brio_store *s, size_t i, size_t j) {
     if (i == j) return;
     brio_record r;
-    memcpy(r, k->record[i], sizeof r);
-    memcpy(k->record[i], k->record[j], sizeof r);
-    memcpy(k->record[j], r, sizeof r);
-    uint32_t c = k->caller[i];
-    k->caller[i] = k->caller[j], k->caller[j] = c;
-    if (!k->rank) return;
-    c = k->rank[i];
-    k->rank[i] = k->rank[j], k->rank[j] = c;
+    memcpy(r, s->record[i], sizeof r);
+    memcpy(s->record[i], s->record[j], sizeof r);
+    memcpy(s->record[j], r, sizeof r);
+    uint32_t c = s->caller[i];
+    s->caller[i] = s->caller[j], s->caller[j] = c;
+    if (!s->rank) return;
+    c = s->rank[i];
+    s->rank[i] = s->rank[j], s->rank[j] = c;
 }
 
 /* Whether record i is off the affine hull of the first `count` records, which are in general position. */
-static bool off_hull(brio_kernel *k, size_t i, int count) {
-    const brio_record *r = k->record;
+static bool off_hull(brio_store *s, size_t i, int count) {
+    const brio_record *r = s->record;
     switch (count) {
     case 1:
         return !brio_same_position(r[0], r[i]);
     case 2:
         return !brio_collinear(r[0], r[1], r[i]);
     default:
-        return brio_orient3d_sign(&k->filter, r[0], r[1], r[2], r[i]) != 0;
+        return brio_orient3d_sign(&s->filter, r[0], r[1], r[2], r[i]) != 0;
     }
 }
 
 /* Brings records in general position to the front; their number. */
-static int general_position(brio_kernel *k) {
-    int count = k->num_points > 0;
-    for (size_t i = 1; i < k->num_points && count < 4; i++) {
-        if (count == 0 || !off_hull(k, i, count)) continue;
-        swap_records(k, i, (size_t)count);
+static int general_position(brio_store *s) {
+    int count = s->num_points > 0;
+    for (size_t i = 1; i < s->num_points && count < 4; i++) {
+        if (count == 0 || !off_hull(s, i, count)) continue;
+        swap_records(s, i, (size_t)count);
         count++;
     }
     return count;
@@ -54,10 +56,10 @@ static double moved(double x, double step) {
 }
 
 /* corner[0 .. count) are records in general position; writes record `apex` off their affine hull. */
-static void place_apex(brio_kernel *k, uint32_t corner[4], int count, uint32_t apex, double step) {
-    const brio_record *r = k->record;
+static void place_apex(brio_store *s, uint32_t corner[4], int count, uint32_t apex, double step) {
+    const brio_record *r = s->record;
     for (int axis = 0; axis < 3; axis++) {
-        double *p = k->record[apex];
+        double *p = s->record[apex];
         memcpy(p, r[corner[0]], sizeof(brio_record));
         p[3] = 0;
         p[axis] = moved(p[axis], step);
@@ -68,9 +70,9 @@ static void place_apex(brio_kernel *k, uint32_t corner[4], int count, uint32_t a
     corner[count] = apex;
 }
 
-static double largest_difference(const brio_kernel *k) {
+static double largest_difference(const brio_store *s) {
     double most = 0;
-    for (int c = 0; c < 3; c++) most = fmax(most, fabs(k->record[1][c] - k->record[0][c]));
+    for (int c = 0; c < 3; c++) most = fmax(most, fabs(s->record[1][c] - s->record[0][c]));
     return fmin(most, 1e300);
 }
 
@@ -84,13 +86,13 @@ static void latest_first(uint32_t *v) {
 
 /* The tetrahedron of four records and the four infinite ones around it; the latest vertex in slot 0, as after any
  * insertion. */
-static void first_tetrahedron(brio_kernel *k, uint32_t corner[4]) {
-    const brio_record *r = k->record;
-    brio_tetrahedra *t = &k->t;
+static void first_tetrahedron(brio_store *s, uint32_t corner[4]) {
+    const brio_record *r = s->record;
+    brio_tetrahedra *t = &s->t;
     uint32_t *own = t->tet[0].vertex;
     own[0] = corner[3], own[1] = corner[0], own[2] = corner[1], own[3] = corner[2];
     if (brio_orient3d_exact(r[own[0]], r[own[1]], r[own[2]], r[own[3]]) < 0) own[2] = corner[2], own[3] = corner[1];
-    t->count = 5;
+    t->count = FIRST;
     for (uint32_t i = 0; i < 4; i++) { /* facet i seen from outside: its order reversed */
         uint32_t *v = t->tet[i + 1].vertex;
         v[0] = own[BRIO_FACET[i][0]], v[1] = own[BRIO_FACET[i][2]], v[2] = own[BRIO_FACET[i][1]];
@@ -100,41 +102,39 @@ static void first_tetrahedron(brio_kernel *k, uint32_t corner[4]) {
         t->tet[i + 1].mate[3] = i;
     }
     for (uint32_t i = 0; i < 4; i++)
-        for (uint32_t s = 0; s < 3; s++) { /* across the edge opposite to vertex s lies the facet opposite to it */
-            uint32_t j = (uint32_t)brio_slot_of_vertex(own, t->tet[i + 1].vertex[s]);
+        for (uint32_t e = 0; e < 3; e++) { /* across the edge opposite to vertex e lies the facet opposite to it */
+            uint32_t j = (uint32_t)brio_slot_of_vertex(own, t->tet[i + 1].vertex[e]);
             int other = brio_slot_of_vertex(t->tet[j + 1].vertex, own[i]);
-            t->tet[i + 1].mate[s] = brio_facet_of(j + 1, other);
+            t->tet[i + 1].mate[e] = brio_facet_of(j + 1, other);
         }
-    memset(k->state, TET_PLAIN, t->count);
-    k->stats.created = t->count;
-    k->walk.start = 0;
+    memset(s->state, TET_PLAIN, t->count);
 }
 
 /* Reads all records once, in their order. */
-static void choose_filter(brio_kernel *k, size_t records) {
-    brio_expect_sequence(k->record);
-    brio_filter_for(&k->filter, (const brio_record *)k->record, records, k->weighted);
-    brio_expect_random(k->record);
+static void choose_filter(brio_store *s, size_t records) {
+    brio_expect_sequence(s->record);
+    brio_filter_for(&s->filter, (const brio_record *)s->record, records, s->weighted);
+    brio_expect_random(s->record);
 }
 
-brio_status brio_kernel_start(brio_kernel *k) {
-    if (k->num_points == 0) {
-        k->dimension = -1;
+brio_status brio_start(brio_store *s) {
+    if (s->num_points == 0) {
+        s->dimension = -1;
         return BRIO_OK;
     }
-    choose_filter(k, k->num_points);
-    int count = general_position(k);
-    k->dimension = count - 1;
-    if (k->dimension == 0) return BRIO_OK;
+    choose_filter(s, s->num_points);
+    int count = general_position(s);
+    s->dimension = count - 1;
+    if (s->dimension == 0) return BRIO_OK;
     uint32_t corner[4] = {0, 1, 2, 3};
-    double step = largest_difference(k);
+    double step = largest_difference(s);
     for (int apex = 0; count < 4; apex++, count++)
-        place_apex(k, corner, count, (uint32_t)k->num_points + (uint32_t)apex, step);
-    if (k->dimension < 3) {
-        size_t records = k->num_points + (size_t)(3 - k->dimension);
-        choose_filter(k, records);
+        place_apex(s, corner, count, (uint32_t)s->num_points + (uint32_t)apex, step);
+    if (s->dimension < 3) {
+        size_t records = s->num_points + (size_t)(3 - s->dimension);
+        choose_filter(s, records);
     }
-    brio_status status = brio_kernel_reserve(k, 5);
-    if (status == BRIO_OK) first_tetrahedron(k, corner);
+    brio_status status = brio_store_reserve(s, FIRST);
+    if (status == BRIO_OK) first_tetrahedron(s, corner);
     return status;
 }

@@ -1,13 +1,14 @@
-/* The tetrahedra: the one data structure of the kernel, of the result and of the checks.
+/* The tetrahedra: the one data structure of the insertion (store.h), of the result and of the checks.
  *
  *   tet[t].vertex[i]   vertex i of tetrahedron t: the row of a record, or `infinite`
  *   tet[t].mate[i]     facet handle 4 u + j of the same triangle seen from the tetrahedron u on its other side
  *
  * I1  A finite tetrahedron is positive: det [b-a, c-a, d-a] > 0.
  * I2  The infinite vertex is only ever in slot 3, and (a, b, c, x) is positive for x strictly outside the hull facet
- * abc.
+ *     abc.
  * I3  mate is an involution, and mates have the same three vertices.
- * I4  In the kernel the tetrahedra are those of the perturbed regular triangulation of the points inserted so far.
+ * I4  Between insertions the tetrahedra of a store are those of the perturbed regular triangulation of the points
+ *     inserted so far.
  *
  * Not stored: a tetrahedron of each vertex, circumcentres, anything about facets or edges.
  *
@@ -18,7 +19,6 @@
 
 #include "base/context.h"
 #include "predicates/predicates.h"
-#include "triangulation/zone.h"
 
 typedef double brio_record[4];
 
@@ -27,7 +27,6 @@ typedef struct {
     size_t count;
     uint32_t infinite;
     const brio_record *record;
-    brio_zone *zone; /* what this thread may change; NULL outside of parallel passes */
 } brio_tetrahedra;
 
 static inline uint32_t brio_facet_of(uint32_t tet, int i) {
@@ -66,21 +65,6 @@ static const uint8_t BRIO_EDGE[4][4][2] = {
 /* Slot of vertex v in a tetrahedron; 4 when it is none of them. */
 static inline int brio_slot_of_vertex(const uint32_t v4[4], uint32_t v) {
     return v4[0] == v ? 0 : v4[1] == v ? 1 : v4[2] == v ? 2 : v4[3] == v ? 3 : 4;
-}
-
-/* Whether this thread may destroy a tetrahedron: all its finite vertices are in its zone, which grows where it can. No
- * other thread destroys it then, nor any that shares a facet with it, see parallel.c. */
-static inline bool brio_owns(const brio_tetrahedra *t, uint32_t tet) {
-    const uint32_t *v = t->tet[tet].vertex;
-    if (!t->zone) return true;
-    return brio_zone_has(t->zone, v[0]) && brio_zone_has(t->zone, v[1]) && brio_zone_has(t->zone, v[2]) &&
-           (v[3] == t->infinite || brio_zone_has(t->zone, v[3]));
-}
-
-/* The same for the tetrahedron of a facet whose mate's tetrahedron the thread owns: one vertex is new. */
-static inline bool brio_owns_beyond(const brio_tetrahedra *t, uint32_t facet) {
-    uint32_t apex = brio_apex(t, facet);
-    return !t->zone || apex == t->infinite || brio_zone_has(t->zone, apex);
 }
 
 /* Whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the plane of

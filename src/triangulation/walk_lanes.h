@@ -1,6 +1,6 @@
 /* The walk of locate_walk.c with the four facets of a tetrahedron side by side in the lanes of one AVX2 register;
  * included by the engines that have it. */
-#include "triangulation/locate.h"
+#include "triangulation/locate_walk.h"
 #include <immintrin.h>
 
 /* x, y, z of the vertices of a tetrahedron relative to p, a vertex a lane. */
@@ -33,11 +33,12 @@ static inline int sign_of_side(const brio_tetrahedra *t, brio_filter *f, const u
     return brio_orient3d_sign(f, t->record[v[facet[0]]], t->record[v[facet[1]]], t->record[v[facet[2]]], p);
 }
 
-static uint32_t walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w, const double *p, uint64_t most_steps) {
+static uint32_t walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, brio_walk *w, const double *p,
+                     uint64_t most_steps) {
     uint32_t tet = brio_walk_begin(t, w);
     unsigned ahead = 15; /* all facets but the one that the walk came through */
     __m256d bound = _mm256_set1_pd(f->orient_static);
-    if ((w->blocked = !brio_owns(t, tet))) return BRIO_NO_TET;
+    if ((w->blocked = !brio_owns(t, zone, tet))) return BRIO_NO_TET;
     for (uint64_t steps = 0; steps <= most_steps; steps++, w->steps++) {
         const uint32_t *v = t->tet[tet].vertex;
         if (v[3] == t->infinite) return tet;
@@ -56,7 +57,7 @@ static uint32_t walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *w, con
         unsigned first = w->random >> 30;
         unsigned slot = (first + (unsigned)__builtin_ctz((beyond | beyond << 4) >> first)) & 3;
         uint32_t mate = t->tet[tet].mate[slot];
-        if ((w->blocked = !brio_owns_beyond(t, mate))) return BRIO_NO_TET;
+        if ((w->blocked = !brio_owns_beyond(t, zone, mate))) return BRIO_NO_TET;
         tet = brio_tet_of(mate);
         ahead = 15u ^ 1u << brio_slot_of(mate);
     }

@@ -1,19 +1,20 @@
-/* What a thread may change while others work on the same triangulation: its zone.
+/* What a thread may change while others work on the same store: its zone.
  *
  * A space-filling curve through the points is divided into segments. A thread holds segments, each held by one thread at
  * most; it takes one when it meets a vertex there and gives it back some insertions later. A segment that another
- * thread holds is never waited for. */
+ * thread holds is never waited for. docs/decisions/006-segments-held-by-threads.md proves that nothing else needs a lock. */
 #ifndef BRIO_TRIANGULATION_ZONE_H
 #define BRIO_TRIANGULATION_ZONE_H
 
-#include "base/context.h"
+#include "triangulation/tetrahedra.h"
 
-typedef struct brio_zone {
-    const uint32_t *rank; /* of each vertex along the curve */
+/** All fields belong to one thread, except what `taken` points to. */
+typedef struct {
+    const uint32_t *rank; /* of each vertex along the curve; constant in a pass */
     int shift;            /* of a rank, to its segment */
-    uint8_t *taken;       /* of each segment, shared by all threads: whether one holds it */
-    uint8_t *held;        /* of each segment: when this thread last met it, 0: it does not hold it */
-    uint32_t *segment;    /* those it holds, count of them */
+    uint8_t *taken;       /* of each segment: whether a thread holds it; all threads write and read it atomically */
+    uint8_t *held;        /* of each segment: when this thread last met it; 0: this thread does not hold it */
+    uint32_t *segment;    /* the segments that this thread holds, count of them */
     size_t count;
     uint8_t now; /* number of the insertion, never 0 */
 } brio_zone;
@@ -38,6 +39,24 @@ static inline bool brio_zone_has(brio_zone *zone, uint32_t vertex) {
     if (!zone->held[segment] && !brio_zone_take(zone, segment)) return false;
     zone->held[segment] = zone->now;
     return true;
+}
+
+/** Whether this thread may destroy a tetrahedron: all its finite vertices are in the zone, which grows where it can. No
+ *  other thread then destroys the tetrahedron or one that shares a facet with it (decision 006). Without a zone, which
+ *  is NULL, always. */
+static inline bool brio_owns(const brio_tetrahedra *t, brio_zone *zone, uint32_t tet) {
+    const uint32_t *v = t->tet[tet].vertex;
+    if (!zone) return true;
+    return brio_zone_has(zone, v[0]) && brio_zone_has(zone, v[1]) && brio_zone_has(zone, v[2]) &&
+           (v[3] == t->infinite || brio_zone_has(zone, v[3]));
+}
+
+/** The same for the tetrahedron of a facet whose mate's tetrahedron the thread owns: one vertex is new. */
+static inline bool brio_owns_beyond(const brio_tetrahedra *t, brio_zone *zone, uint32_t facet) {
+    uint32_t apex;
+    if (!zone) return true;
+    apex = brio_apex(t, facet);
+    return apex == t->infinite || brio_zone_has(zone, apex);
 }
 
 #endif

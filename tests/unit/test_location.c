@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include "failing_allocator.h"
 #include "harness.h"
-#include "kernel.h"
+#include "insertion.h"
 #include "points.h"
 #include "triangulation/history.h"
 #include "triangulation/locate_segment.h"
@@ -230,22 +230,23 @@ static void traced_pairs_save_their_history_tests(void) {
 /* --- searches --- */
 
 /* A search for p against all live tetrahedra. */
-static void expect_searches_right(brio_kernel *k, brio_history *h, const double *p) {
-    uint32_t tet = brio_history_path(k, h, BRIO_HISTORY_ROOT, p);
-    EXPECT(k->state[tet] == TET_PLAIN && kernel_holds(k, tet, p));
-    EXPECT(brio_history_path(k, h, h->node_of[tet], p) == tet);
-    EXPECT(brio_history_conflicts(k, h, BRIO_HISTORY_ROOT, p) == BRIO_OK);
+static void expect_searches_right(brio_inserter *ins, brio_history *h, const double *p) {
+    const brio_store *s = ins->store;
+    uint32_t tet = brio_history_path(ins, h, BRIO_HISTORY_ROOT, p);
+    EXPECT(s->state[tet] == TET_PLAIN && tetrahedron_holds(s, tet, p));
+    EXPECT(brio_history_path(ins, h, h->node_of[tet], p) == tet);
+    EXPECT(brio_history_conflicts(ins, h, BRIO_HISTORY_ROOT, p) == BRIO_OK);
     bool any = false, listed = false;
-    for (uint32_t t = 0; t < k->t.count; t++)
-        any |= k->state[t] == TET_PLAIN && brio_in_conflict(&k->t, &k->filter, t, p, k->weighted);
+    for (uint32_t t = 0; t < s->t.count; t++)
+        any |= s->state[t] == TET_PLAIN && brio_in_conflict(&s->t, &ins->filter, t, p, s->weighted);
     for (size_t i = 0; i < h->num_conflicts; i++) {
         uint32_t found = h->conflict[i];
-        EXPECT(k->state[found] == TET_PLAIN && brio_in_conflict(&k->t, &k->filter, found, p, k->weighted));
+        EXPECT(s->state[found] == TET_PLAIN && brio_in_conflict(&s->t, &ins->filter, found, p, s->weighted));
         for (size_t j = 0; j < i; j++) EXPECT(h->conflict[j] != found);
         listed |= found == tet;
     }
     EXPECT(any == (h->num_conflicts > 0));
-    if (brio_in_conflict(&k->t, &k->filter, tet, p, k->weighted) && !brio_is_infinite(&k->t, tet)) EXPECT(listed);
+    if (brio_in_conflict(&s->t, &ins->filter, tet, p, s->weighted) && !brio_is_infinite(&s->t, tet)) EXPECT(listed);
 }
 
 static void history_searches_find_what_brute_force_finds(void) {
@@ -253,18 +254,18 @@ static void history_searches_find_what_brute_force_finds(void) {
         for (int weighted = 0; weighted < 2; weighted++) {
             make_set(set);
             brio_context *ctx = new_context();
-            brio_kernel k;
             brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
-            kernel_begin(&k, ctx, points, weighted ? weights : NULL, N, &o);
+            brio_inserter *ins = insertion_begin(ctx, points, weighted ? weights : NULL, N, &o);
+            const brio_store *s = ins->store;
             for (uint32_t end = 4, begin = 0; end < N; begin = end, end += 120) {
-                kernel_insert(&k, begin, end);
+                insert_records(ins, begin, end);
                 for (uint32_t p = end; p < N; p += 23) {
                     bool vertex = false;
-                    for (uint32_t v = 0; v < end; v++) vertex |= brio_same_position(k.record[v], k.record[p]);
-                    if (!vertex) expect_searches_right(&k, k.location, k.record[p]);
+                    for (uint32_t v = 0; v < end; v++) vertex |= brio_same_position(s->record[v], s->record[p]);
+                    if (!vertex) expect_searches_right(ins, ins->location, s->record[p]);
                 }
             }
-            brio_kernel_free(&k);
+            insertion_end(ins);
             EXPECT(brio_context_memory(ctx) == 0);
             brio_context_free(ctx);
         }
@@ -284,19 +285,20 @@ static void segments_lead_to_their_ends(void) {
     for (int set = 0; set < SETS; set++) {
         make_set(set);
         brio_context *ctx = new_context();
-        brio_kernel k;
         brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
         uint64_t entered = 0;
-        kernel_begin(&k, ctx, points, NULL, N, &o);
-        kernel_insert(&k, 0, 80);
+        brio_inserter *ins = insertion_begin(ctx, points, NULL, N, &o);
+        const brio_store *s = ins->store;
+        insert_records(ins, 0, 80);
         brio_rng rng = brio_rng_new((uint64_t)set);
         for (int i = 0; i < 1500; i++) {
-            const double *u = k.record[brio_rng_below(&rng, N)], *w = k.record[brio_rng_below(&rng, N)];
-            uint32_t from = brio_history_path(&k, k.location, BRIO_HISTORY_ROOT, u);
-            EXPECT(kernel_holds(&k, brio_locate_segment(&k, from, u, w, &entered), w), "set %d, segment %d", set, i);
+            const double *u = s->record[brio_rng_below(&rng, N)], *w = s->record[brio_rng_below(&rng, N)];
+            uint32_t from = brio_history_path(ins, ins->location, BRIO_HISTORY_ROOT, u);
+            EXPECT(tetrahedron_holds(s, brio_locate_segment(ins, from, u, w, &entered), w), "set %d, segment %d", set,
+                   i);
         }
         EXPECT(entered > 1500);
-        brio_kernel_free(&k);
+        insertion_end(ins);
         brio_context_free(ctx);
     }
 }
@@ -305,28 +307,28 @@ static void segments_lead_to_their_ends(void) {
 static void segments_enter_what_they_cross(void) {
     static double ends[6 * 100];
     brio_context *ctx = new_context();
-    brio_kernel k;
     brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
     uniform_points(1, N, points);
     uniform_points(2, 200, ends);
-    kernel_begin(&k, ctx, points, NULL, N, &o);
-    kernel_insert(&k, 0, N);
+    brio_inserter *ins = insertion_begin(ctx, points, NULL, N, &o);
+    const brio_store *s = ins->store;
+    insert_records(ins, 0, N);
     for (int i = 0; i < 100; i++) {
         double u[4] = {0}, w[4] = {0};
         for (int c = 0; c < 3; c++) u[c] = 0.3 + 0.4 * ends[6 * i + c], w[c] = 0.3 + 0.4 * ends[6 * i + 3 + c];
         uint64_t entered = 0, crossed = 0;
-        uint32_t from = brio_history_path(&k, k.location, BRIO_HISTORY_ROOT, u);
-        brio_locate_segment(&k, from, u, w, &entered);
-        for (size_t f = 0; f < 4 * k.t.count; f++) {
-            const uint32_t *v = k.t.tet[f / 4].vertex;
-            if (k.state[f / 4] != TET_PLAIN || v[3] == k.t.infinite || *brio_mate(&k.t, (uint32_t)f) < f) continue;
+        uint32_t from = brio_history_path(ins, ins->location, BRIO_HISTORY_ROOT, u);
+        brio_locate_segment(ins, from, u, w, &entered);
+        for (size_t f = 0; f < 4 * s->t.count; f++) {
+            const uint32_t *v = s->t.tet[f / 4].vertex;
+            if (s->state[f / 4] != TET_PLAIN || v[3] == s->t.infinite || *brio_mate(&s->t, (uint32_t)f) < f) continue;
             const double *triangle[3];
-            for (size_t c = 0; c < 3; c++) triangle[c] = k.record[v[(f + 1 + c) % 4]];
+            for (size_t c = 0; c < 3; c++) triangle[c] = s->record[v[(f + 1 + c) % 4]];
             crossed += crosses(u, w, triangle);
         }
         EXPECT(entered == crossed, "segment %d enters %d, crosses %d", i, (int)entered, (int)crossed);
     }
-    brio_kernel_free(&k);
+    insertion_end(ins);
     brio_context_free(ctx);
 }
 
@@ -336,19 +338,19 @@ static void segments_enter_what_they_cross(void) {
  * was traced. */
 static size_t list_tracings(uint32_t first, uint32_t tracings[8]) {
     brio_context *ctx = new_context();
-    brio_kernel k;
     brio_delaunay_options o = strategy(BRIO_LOCATION_TRACE);
     size_t count = 0;
     for (uint32_t i = first; i + 1 < N; i++) edges[2 * (i - first)] = i, edges[2 * (i - first) + 1] = i + 1;
     o.num_edges = N - 1 - first;
     uniform_points(1, N, points);
-    kernel_begin(&k, ctx, points, NULL, N, &o);
-    for (uint32_t p = (uint32_t)k.dimension + 1; p < N; p++) {
-        uint64_t before = k.stats.trace_intersections;
-        kernel_insert(&k, p, p + 1);
-        if (k.stats.trace_intersections > before && count < 8) tracings[count++] = p;
+    brio_inserter *ins = insertion_begin(ctx, points, NULL, N, &o);
+    const brio_store *s = ins->store;
+    for (uint32_t p = (uint32_t)s->dimension + 1; p < N; p++) {
+        uint64_t before = ins->stats.trace_intersections;
+        insert_records(ins, p, p + 1);
+        if (ins->stats.trace_intersections > before && count < 8) tracings[count++] = p;
     }
-    brio_kernel_free(&k);
+    insertion_end(ins);
     brio_context_free(ctx);
     return count;
 }

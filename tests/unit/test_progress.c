@@ -1,7 +1,7 @@
 /* Progress is told by work, not by points: between two reports the library does a bounded amount of it, so that a caller
  * who wants to stop is heard. Where the callback stops the work, everything is given back. */
 #include "points.h"
-#include "triangulation/kernel.h"
+#include "triangulation/inserter.h"
 #include "harness.h"
 
 static brio_context *ctx;

@@ -1,54 +1,51 @@
 /* Representatives of coincident points after a parallel insertion. */
-#include "harness.h"
-#include "points.h"
 #include "base/memory.h"
-#include "triangulation/kernel.h"
+#include "insertion.h"
+#include "points.h"
+#include "triangulation/represent.h"
 #include <string.h>
 
-enum { POINTS = 6, FIRST = 1, LATER = 5, SLOTS = 2, NO_INDEX = 0x7ffda5a5 };
+enum { POINTS = 6, FIRST = 1, LATER = 5, NO_INDEX = 0x7ffda5a5 };
 
-/* A kernel as threads may leave it: record 1 was deferred, its twin 5 became the vertex, and 1 was absorbed by it. */
-static void make_kernel(brio_kernel *k, brio_context *ctx) {
-    static const double position[POINTS][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, {1, 0, 0}};
-    *k = (brio_kernel){.ctx = ctx, .num_points = POINTS, .dimension = 3};
-    EXPECT(BRIO_ALLOC_ZERO(ctx, k->record, POINTS + 3) == BRIO_OK && BRIO_ALLOC(ctx, k->caller, POINTS + 3) == BRIO_OK);
-    EXPECT(BRIO_ALLOC(ctx, k->representative, POINTS + 3) == BRIO_OK);
-    EXPECT(BRIO_ALLOC_ZERO(ctx, k->rank, POINTS + 3) == BRIO_OK && BRIO_ALLOC_ZERO(ctx, k->t.tet, SLOTS) == BRIO_OK);
-    EXPECT(BRIO_ALLOC(ctx, k->state, SLOTS) == BRIO_OK);
-    for (uint32_t i = 0; i < POINTS + 3; i++) k->caller[i] = 100 + i, k->representative[i] = i;
-    for (int i = 0; i < POINTS; i++) memcpy(k->record[i], position[i], sizeof position[i]);
-    k->t.record = k->record;
-    k->t.infinite = POINTS + 2;
-    k->t.count = SLOTS;
-    k->num_unused = 1;
-    k->state[0] = TET_PLAIN, k->state[1] = TET_UNUSED;
-    for (int i = 0; i < 4; i++) k->t.tet[1].vertex[i] = NO_INDEX; /* what an unused slot holds may be anything */
-    memcpy(k->t.tet[0].vertex, (uint32_t[]){LATER, 0, 2, 3}, sizeof k->t.tet[0].vertex);
-    k->representative[4] = 0;
-    k->representative[FIRST] = LATER;
-    k->caller[FIRST] = 100 + LATER, k->caller[LATER] = 100 + FIRST; /* the lower index keeps the name */
-}
+static const double position[3 * POINTS] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
 
-static void free_kernel(brio_kernel *k) {
-    brio_release(k->ctx, k->record);
-    brio_release(k->ctx, k->caller);
-    brio_release(k->ctx, k->representative);
-    brio_release(k->ctx, k->rank);
-    brio_release(k->ctx, k->t.tet);
-    brio_release(k->ctx, k->state);
+/* An insertion as threads may leave it: record 1 was deferred, its twin 5 became the vertex, and 1 was absorbed by it. The
+ * caller's lower index keeps the name. *unused is a slot without a tetrahedron, which may hold anything. */
+static brio_inserter *leave_insertion(brio_context *ctx, size_t *unused) {
+    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_inserter *ins = insertion_begin(ctx, position, NULL, POINTS, &o);
+    brio_store *s = ins->store;
+    insert_records(ins, 0, POINTS);
+    EXPECT(s->representative[4] == 0 && s->representative[LATER] == FIRST);
+    EXPECT(s->rank || BRIO_ALLOC_ZERO(ctx, s->rank, POINTS + 3) == BRIO_OK);
+    for (size_t t = 0; t < s->t.count; t++)
+        for (int i = 0; i < 4; i++)
+            if (s->t.tet[t].vertex[i] == FIRST) s->t.tet[t].vertex[i] = LATER;
+    s->representative[FIRST] = s->representative[LATER] = LATER;
+    s->caller[FIRST] = LATER, s->caller[LATER] = FIRST;
+    EXPECT(brio_store_reserve(s, 1) == BRIO_OK && brio_store_take(s, 1, unused));
+    s->state[*unused] = TET_UNUSED;
+    for (int i = 0; i < 4; i++) s->t.tet[*unused].vertex[i] = NO_INDEX;
+    return ins;
 }
 
 static void the_first_of_coincident_points_becomes_the_vertex(void) {
     brio_context *ctx = new_context();
-    brio_kernel k;
-    make_kernel(&k, ctx);
-    EXPECT(brio_kernel_represent(&k) == BRIO_OK);
-    EXPECT(k.representative[FIRST] == FIRST && k.representative[LATER] == FIRST);
-    EXPECT(k.t.tet[0].vertex[0] == FIRST, "vertex %u", k.t.tet[0].vertex[0]);
-    EXPECT(k.t.tet[1].vertex[0] == NO_INDEX, "an unused slot is left alone");
-    EXPECT(k.caller[FIRST] == 100 + FIRST && k.caller[LATER] == 100 + LATER, "the name goes with the vertex");
-    EXPECT(k.representative[4] == 0 && k.stats.duplicates == 2 && k.stats.vertices == 4);
-    free_kernel(&k);
+    size_t unused, with_first = 0, with_later = 0;
+    brio_inserter *ins = leave_insertion(ctx, &unused);
+    const brio_store *s = ins->store;
+    EXPECT(brio_represent(ins) == BRIO_OK);
+    EXPECT(s->representative[FIRST] == FIRST && s->representative[LATER] == FIRST);
+    for (size_t t = 0; t < unused; t++)
+        for (int i = 0; i < 4; i++) {
+            with_first += s->t.tet[t].vertex[i] == FIRST;
+            with_later += s->t.tet[t].vertex[i] == LATER;
+        }
+    EXPECT(with_first == 4 && with_later == 0, "%zu and %zu corners", with_first, with_later);
+    EXPECT(s->t.tet[unused].vertex[0] == NO_INDEX, "an unused slot is left alone");
+    EXPECT(s->caller[FIRST] == FIRST && s->caller[LATER] == LATER, "the name goes with the vertex");
+    EXPECT(s->representative[4] == 0 && ins->stats.duplicates == 2 && ins->stats.vertices == 4);
+    insertion_end(ins);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }

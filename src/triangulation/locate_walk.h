@@ -1,8 +1,8 @@
-/* Point location. */
-#ifndef BRIO_TRIANGULATION_LOCATE_H
-#define BRIO_TRIANGULATION_LOCATE_H
+/* The walk. */
+#ifndef BRIO_TRIANGULATION_LOCATE_WALK_H
+#define BRIO_TRIANGULATION_LOCATE_WALK_H
 
-#include "triangulation/tetrahedra.h"
+#include "triangulation/zone.h"
 
 /** State of a line of walks: where the next one starts, its random bits, and the steps of all of them. */
 typedef struct {
@@ -15,8 +15,9 @@ typedef struct {
 enum { BRIO_NO_TET = UINT32_MAX };
 
 /** The tetrahedron whose closure holds p, or, for p strictly outside the hull, an infinite one whose facet p is
- *  strictly outside of. Exact. BRIO_NO_TET when that takes more than most_steps, or leads out of the thread's zone. */
-uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_filter *f, brio_walk *walk, const double *p,
+ *  strictly outside of. Exact. BRIO_NO_TET when that takes more than most_steps, or leads out of the zone.
+ *  zone  of the thread, which then owns what it walks through; NULL for no bound. */
+uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps);
 
 /** The tetrahedron where a walk starts: the given one, or the finite one next to it. */

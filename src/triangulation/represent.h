@@ -1,0 +1,11 @@
+/* Representatives of the points that are no vertices. */
+#ifndef BRIO_TRIANGULATION_REPRESENT_H
+#define BRIO_TRIANGULATION_REPRESENT_H
+
+#include "triangulation/inserter.h"
+
+/** Gives every point that is no vertex the vertex that represents it, once all are inserted; counts duplicates and
+ *  hidden points. */
+brio_status brio_represent(brio_inserter *ins);
+
+#endif

@@ -1,0 +1,13 @@
+/* The beginning of a triangulation. */
+#ifndef BRIO_TRIANGULATION_START_H
+#define BRIO_TRIANGULATION_START_H
+
+#include "triangulation/store.h"
+
+/** Finds four points in general position, or the dimension that they have instead, and brings them to the front; adds
+ *  apexes off the points' affine hull so that every input of at least two distinct positions becomes three-dimensional;
+ *  makes the first tetrahedron, in slot 0, and the infinite ones around it. None for dimensions -1 and 0. Sets the
+ *  store's dimension and filter. */
+brio_status brio_start(brio_store *store);
+
+#endif
