@@ -27,8 +27,7 @@ def functions(path):
     for match in DEFINED.finditer(text):
         end = text.find("\n}", match.end() - 1)
         lines = text.count("\n", match.start(), end) + 2
-        if not match.group(1).isupper() and "_LOAD" not in match.group(1):
-            if not match.group(1).startswith("DEFINE_"):
+        if not match.group(1).startswith("DEFINE_"):
             yield match.group(1), lines, parameters(match.group(2)), text.count("\n", 0, match.start()) + 1
 
 

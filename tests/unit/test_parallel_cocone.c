@@ -13,7 +13,7 @@ typedef struct {
 } result;
 
 static result run(brio_context *ctx, size_t n, const brio_cocone_options *o, int threads) {
-    result r;
+    result r = {.stats.size = sizeof r.stats};
     brio_context_set_threads(ctx, threads);
     EXPECT(brio_cocone(ctx, points, n, o, &r.mesh, &r.stats) == BRIO_OK, "%s", brio_message(ctx));
     r.stats.delaunay_seconds = r.stats.poles_seconds = r.stats.candidates_seconds = r.stats.labels_seconds =

@@ -39,6 +39,7 @@ static void run(brio_context *ctx, size_t n, const brio_power_crust_options *o, 
     EXPECT(file >= 0);
     close(file);
     brio_context_set_threads(ctx, threads);
+    *r = (result){.stats.size = sizeof r->stats, .certificate.size = sizeof r->certificate};
     EXPECT(brio_power_crust(ctx, points, n, o, &r->mesh, NULL, &r->stats) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, r->mesh, &r->certificate) == BRIO_OK);
     EXPECT(brio_write(ctx, path, r->mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
