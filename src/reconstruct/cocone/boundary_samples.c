@@ -1,10 +1,11 @@
-/* Samples at boundaries and where the sampling is too sparse, by the shape of their Voronoi cells.
+/* Boundary samples, found by the shape of their Voronoi cells.
  *
- * The cell of a sample in the middle of a well-sampled surface is long along the normal and thin across: its height,
- * the distance to the pole on the side away from the farther one, is much more than its radius, the distance to the
- * farthest point of the cell in the co-cone (measured along the cell's edges). And the axes of its neighbours within
- * the co-cone are nearly parallel to its own. A sample of which both is true is interior; so is one that is long and
- * thin and has one interior neighbour whose axis is nearly parallel. All others are boundary samples.
+ * The cell of a sample in the middle of a well-sampled surface is long along the normal and thin across it. Its height
+ * is the distance to the pole on the side away from the farther pole. Its radius is the distance to the farthest point
+ * of the cell's edges in the co-cone. The cell is thin if the height is large against the radius. A sample is interior
+ * if its cell is thin and the axes of its neighbours within the co-cone are nearly parallel to its own. A sample with a
+ * thin cell is interior, too, if one interior neighbour has a nearly parallel axis. All other samples are boundary
+ * samples.
  *
  * Based on: Dey, Giesen. Detecting undersampling in surface reconstruction. SoCG 2001. */
 #include "reconstruct/cocone/boundary_samples.h"
@@ -12,12 +13,12 @@
 #include "base/vector.h"
 #include <math.h>
 
-/* Radius over height, and the cosine of the angle between axes (pi / 6), for interior samples. A ratio of 0.8 finds the
- * rim of the club (63 boundary edges, 56 in truth) and of holes cut into closed models, and leaves these closed but for
- * a hundredth of their samples; 0.6 opens many sharp places, 1.2 misses the holes. */
+/* Limits for interior samples: radius over height, and the cosine of the angle between axes (pi / 6). A ratio of 0.8
+ * finds the rim of the club (63 boundary edges, 56 in truth) and of holes cut into closed models. Closed models stay
+ * closed, except for a hundredth of their samples. A ratio of 0.6 opens many sharp places, 1.2 misses the holes. */
 static const double MOST_RATIO = 0.8, LEAST_COSINE = 0.8660254037844386;
 
-/* That a sample becomes interior together with another one. */
+/* If sample `from` is interior, sample `to` is, too. */
 typedef struct {
     uint32_t from, to;
 } follower;
@@ -25,17 +26,18 @@ typedef struct {
 typedef struct {
     brio_context *ctx;
     const brio_cocones *cocones;
-    double *radius;    /* of each sample's cell in its co-cone */
-    uint8_t *thin;     /* 1: the ratio is that of an interior sample */
-    uint8_t *interior; /* the result */
+    double *radius;    /* #P: the radius of the sample's cell */
+    uint8_t *thin;     /* #P: 1 if the cell is thin */
+    uint8_t *interior; /* #P: 1 if the sample is interior */
     follower *pair;
     size_t num_pairs, pair_capacity;
 } detection;
 
 /* --- radius --- */
 
-/* How far from the sample the way from `in`, in its co-cone, along `way` leaves it: the one positive root t of
- * (x . axis)^2 = sine^2 |x|^2 at x = in + t way. All relative to the sample. */
+/* Returns the distance from the sample at which the ray from `in`, in the co-cone, along `way` leaves the co-cone. This
+ * is |x| for x = in + t way, t being the positive root of (x . axis)^2 = sine^2 |x|^2. All vectors are relative to the
+ * sample. */
 static double border_distance(const double *axis, double sine, const double *in, const double *way) {
     double along = brio_dot(in, axis), slope = brio_dot(way, axis), s = sine * sine;
     double a = slope * slope - s * brio_dot(way, way), b = along * slope - s * brio_dot(in, way);
@@ -45,8 +47,8 @@ static double border_distance(const double *axis, double sine, const double *in,
     return sqrt(brio_dot(x, x));
 }
 
-/* How far from p the Voronoi edge between two tetrahedra reaches within the co-cone of p, which it meets. At least the
- * first of them is finite. */
+/* Returns the greatest distance from p of the part of a Voronoi edge in the co-cone of p, which the edge meets. The
+ * edge joins the Voronoi vertices of two tetrahedra, the first of them finite. */
 static double reach(const brio_cocones *c, uint32_t p, const uint32_t tet[2]) {
     const brio_pole_vectors *v = c->dual;
     const double *axis = v->plane + 4 * (size_t)p;
@@ -72,10 +74,10 @@ static double axis_cosine(const brio_cocones *c, uint32_t p, uint32_t q) {
     return fabs(brio_dot(u, v));
 }
 
-/* Called for a facet whose Voronoi edge meets the co-cone of its corner k. */
+/* Called for a facet whose Voronoi edge meets the co-cone of corner[0]. */
 typedef brio_status (*visit_fn)(detection *d, uint32_t facet, const uint32_t corner[3]);
 
-/* Visits every facet for each corner whose co-cone its Voronoi edge meets; that one is corner[0]. */
+/* Visits every facet once for each corner whose co-cone its Voronoi edge meets. That corner comes first. */
 static brio_status visit_meetings(detection *d, visit_fn visit) {
     brio_status status = BRIO_OK;
     const brio_tetrahedra *t = &d->cocones->dual->t;
@@ -109,7 +111,7 @@ static double height(const brio_pole_vectors *v, size_t p) {
     return sqrt(brio_dot(to, to));
 }
 
-/* Notes which samples a later interior one makes interior. */
+/* Lists the samples with thin cells that become interior if corner[0] is. */
 static brio_status follow(detection *d, uint32_t facet, const uint32_t corner[3]) {
     brio_status status = BRIO_OK;
     (void)facet;
@@ -123,7 +125,7 @@ done:
     return status;
 }
 
-/* Makes followers interior, breadth first over the pairs in a table by their first samples. */
+/* Makes followers of interior samples interior, breadth first. A table gives the followers of each sample. */
 static brio_status spread(detection *d) {
     brio_status status = BRIO_OK;
     size_t n = d->cocones->dual->num_points, size = 0;

@@ -1,27 +1,27 @@
-/* Delaunay tetrahedra inside and outside of the surface that the co-cones suggest.
+/* Labels of Delaunay tetrahedra: inside or outside the surface that the co-cones suggest.
  *
- * A sample knows of the tetrahedra whose Voronoi vertices lie in its two cones that they are on either side of the
- * surface. Each tetrahedron goes by the majority of its samples. What no sample knows of (the flat tetrahedra within
- * the surface) takes the label that reaches it first across facets that are no candidates; what candidates close off on
- * all sides are the pockets between two layers of candidates, and these are inside. So on a dense sample the boundary
- * between the labels is the outer boundary of the candidates, as the depth-first walk of the paper finds it; and a
- * missing triangle far away does not matter, as it would to the walk.
+ * A sample votes on the tetrahedra whose Voronoi vertices lie in its two cones: those in one cone are outside, those in
+ * the other are inside. The majority of its samples labels a tetrahedron. A tetrahedron without a majority, such as a
+ * flat one within the surface, takes the label that reaches it first across facets that are no candidates. Tetrahedra
+ * that candidates enclose on all sides are pockets between two layers of candidates, and inner. So on a dense sample
+ * the boundary between the labels is the outer boundary of the candidates, which the paper finds by a depth-first walk.
+ * A missing triangle far away does not matter here; to the walk it would.
  *
  * Based on: Dey, Goswami. Tight cocone: a water-tight surface reconstructor. JCISE 2003, for labels of tetrahedra from
  *           the two sides of each sample.
- * Differs from the paper: the sides are those of the cones, by majority, instead of an umbrella of triangles that some
- * samples do not have. */
+ * Differs from the paper: a majority of cones decides, instead of an umbrella of triangles, which some samples do not
+ *                         have. */
 #include "reconstruct/cocone/tetrahedron_labels.h"
 #include "base/memory.h"
 #include "base/team.h"
 
-/* The number of bits of four. */
+/* Returns the number of bits that are set in a number below 16, from a table of digits. */
 static inline int count_bits(unsigned bits) {
     return (int)(0x4332322132212110u >> 4 * bits & 7);
 }
 
-/* The votes of the first `count` slots: those in whose cone to the pole the centre lies are for outer, those that see it
- * in the other one for inner; where the axis is turned, the other way round. */
+/* Returns the vote of the samples in the first `count` slots: 1 for each sample that sees the centre in its cone to the
+ * pole, -1 for each that sees it in the opposite cone. A sample whose axis is turned votes the other way. */
 static inline int vote_of(const brio_pole_vectors *v, const uint8_t *turned, size_t tet, int count) {
     const uint32_t *vertex = v->t.tet[tet].vertex;
     unsigned sides = v->sides[tet], turn = 0;
@@ -40,7 +40,7 @@ static inline uint8_t label_of(int vote) {
     return vote > 0 ? BRIO_LABEL_OUTER : vote < 0 ? BRIO_LABEL_INNER : BRIO_LABEL_NONE;
 }
 
-/* Labels the tetrahedra [from, to); returns the number of undecided ones. */
+/* Labels tetrahedra from to to - 1. Returns the number of tetrahedra without a majority. */
 static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
     const brio_pole_vectors v = *l->cocones->dual;
     uint8_t *label = l->label;
@@ -72,7 +72,7 @@ static void vote_in_part(void *user, size_t begin, size_t end, int thread) {
     __atomic_fetch_add(&v->undecided, label_by_votes(v->labels, begin, end), __ATOMIC_RELAXED);
 }
 
-/* The same for all. */
+/* Labels all tetrahedra. Returns the number of tetrahedra without a majority. */
 static size_t label_all_by_votes(brio_context *ctx, brio_tet_labels *l) {
     voting v = {l, 0};
     size_t size = l->cocones->dual->t.count;
@@ -91,16 +91,16 @@ done:
     return status;
 }
 
-/* Workspace of the spreading: the tetrahedra that the last wave reached, and the new labels of those of this one. */
+/* Workspace of the spreading: the tetrahedra reached so far, and the new labels of those that the last wave reached. */
 typedef struct {
     uint32_t *reached;
     uint8_t *news;
     size_t size, capacity, news_capacity;
 } wave;
 
-static const uint8_t REACHED = 0xff; /* a label that is still to be found */
+static const uint8_t REACHED = 0xff; /* the tetrahedron is reached, and its label comes with this wave */
 
-/* Adds the tetrahedra without a label next to one, across the facets that are no candidates. */
+/* Appends to w->reached the neighbours of a tetrahedron without a label, across facets that are no candidates. */
 static brio_status reach_from(brio_context *ctx, brio_tet_labels *l, size_t tet, wave *w) {
     brio_status status = BRIO_OK;
     const brio_tetrahedra *t = &l->cocones->dual->t;
@@ -115,7 +115,8 @@ done:
     return status;
 }
 
-/* The label that most neighbours of a tetrahedron had before this wave; outer at a tie. */
+/* Returns the label of most neighbours of a tetrahedron before this wave, outer at a tie. Neighbours across candidates
+ * do not count. */
 static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
     const brio_tetrahedra *t = &l->cocones->dual->t;
     int inner = 0;
@@ -128,7 +129,7 @@ static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
     return inner > 0 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
 }
 
-/* Whether a tetrahedron has a neighbour with a label across a facet that is no candidate. */
+/* Returns whether a tetrahedron has a neighbour with a label across a facet that is no candidate. */
 static bool is_next_to_label(const brio_tet_labels *l, uint32_t tet) {
     for (int i = 0; i < 4; i++) {
         uint8_t label = l->label[brio_tet_of(l->cocones->dual->t.tet[tet].mate[i])];
@@ -139,8 +140,8 @@ static bool is_next_to_label(const brio_tet_labels *l, uint32_t tet) {
     return false;
 }
 
-/* Passes labels on in waves; within a wave none depends on another, so that the order of the tetrahedra is of no
- * importance. */
+/* Spreads labels in waves. Labels of one wave do not depend on each other, so the result does not depend on the order
+ * of the tetrahedra. */
 brio_status brio_tet_labels_spread(brio_context *ctx, brio_tet_labels *l) {
     brio_status status = BRIO_OK;
     wave w = {0};
