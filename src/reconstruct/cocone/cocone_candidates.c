@@ -46,7 +46,7 @@ static void count_sides(side_counts counts) {
         for (int i = 0; i < 4; i++) {
             counts[sides][i] = 0;
             for (int k = 0; k < 3; k++)
-                counts[sides][i] += (sides >> BRIO_FACET[i][k] & 1) + (sides >> BRIO_FACET[i][k] & 16);
+                counts[sides][i] += (uint8_t)brio_slot_sides((unsigned)sides, BRIO_FACET[i][k]);
         }
 }
 
@@ -68,8 +68,9 @@ static inline bool meets_every(const brio_pole_vectors *v, uint32_t facet, uint3
     unsigned x = v->sides[brio_tet_of(facet)], y = v->sides[brio_tet_of(mate)];
     uint32_t first = here->vertex[a[0]];
     int k = (there->vertex[b[1]] == first) + 2 * (there->vertex[b[2]] == first);
-    unsigned common = (x >> a[0] & y >> b[k]) | (x >> a[1] & y >> b[ROUND[k + 2]]) | (x >> a[2] & y >> b[ROUND[k + 1]]);
-    return !(common & 0x11);
+    return !((brio_slot_sides(x, a[0]) & brio_slot_sides(y, b[k])) |
+             (brio_slot_sides(x, a[1]) & brio_slot_sides(y, b[ROUND[k + 2]])) |
+             (brio_slot_sides(x, a[2]) & brio_slot_sides(y, b[ROUND[k + 1]])));
 }
 
 static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {

@@ -215,8 +215,8 @@ static inline int class_of(const brio_pole_vectors *v, size_t tet, int i, int j)
  * contradiction. */
 static bool join_samples_of(forest *f, size_t tet) {
     const uint32_t *v = f->cocones->dual->t.tet[tet].vertex;
-    unsigned sides = f->cocones->dual->sides[tet], antipole = sides >> 4 & 15, worst = sides >> 8 & sides >> 12;
-    unsigned left = (sides | antipole) & 15 & ~worst;
+    unsigned sides = f->cocones->dual->sides[tet], antipole = brio_antipole_slots(sides);
+    unsigned left = (brio_pole_slots(sides) | antipole) & ~brio_shallow_slots(sides);
     if ((left & (left - 1)) == 0) return true;
     int first = __builtin_ctz(left);
     uint32_t root = find_root(f, v[first]) ^ (antipole >> first & 1);

@@ -24,11 +24,10 @@ static inline int count_bits(unsigned bits) {
  * pole, -1 for each that sees it in the opposite cone. A sample whose axis is turned votes the other way. */
 static inline int vote_of(const brio_pole_vectors *v, const uint8_t *turned, size_t tet, int count) {
     const uint32_t *vertex = v->t.tet[tet].vertex;
-    unsigned sides = v->sides[tet], turn = 0;
+    unsigned outer = brio_pole_slots(v->sides[tet]), inner = brio_antipole_slots(v->sides[tet]), turn = 0;
     for (int i = 0; i < count; i++) turn |= (unsigned)turned[vertex[i]] << i;
-    unsigned change = ((sides >> 4 ^ sides) & turn) * 0x11;
-    sides ^= change;
-    return count_bits(sides & 15) - count_bits(sides >> 4 & 15);
+    unsigned change = (outer ^ inner) & turn;
+    return count_bits(outer ^ change) - count_bits(inner ^ change);
 }
 
 int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
