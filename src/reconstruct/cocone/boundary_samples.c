@@ -26,6 +26,7 @@ typedef struct {
 typedef struct {
     brio_context *ctx;
     const brio_cocones *cocones;
+    const brio_pole_vectors *dual;
     double *radius;    /* #P: the radius of the sample's cell */
     uint8_t *thin;     /* #P: 1 if the cell is thin */
     uint8_t *interior; /* #P: 1 if the sample is interior */
@@ -52,7 +53,7 @@ static double border_distance(const double *axis, double sine, const double *in,
 static double reach(const brio_cocones *c, uint32_t p, const uint32_t tet[2]) {
     const brio_pole_vectors *v = c->dual;
     const double *axis = v->plane + 4 * (size_t)p;
-    double end[2][3], way[3], back[3], middle[3], sine = sin(c->dual->theta);
+    double end[2][3], way[3], back[3], middle[3], sine = sin(v->theta);
     bool inside[2], ray = tet[1] >= v->num_finite;
     for (int i = 0; i < 2; i++) {
         brio_towards_centre(v, tet[i], p, end[i]);
@@ -80,7 +81,7 @@ typedef brio_status (*visit_fn)(detection *d, uint32_t facet, const uint32_t cor
 /* Visits every facet once for each corner whose co-cone its Voronoi edge meets. That corner comes first. */
 static brio_status visit_meetings(detection *d, visit_fn visit) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedra *t = &d->cocones->dual->t;
+    const brio_tetrahedra *t = &d->dual->t;
     for (size_t tet = 0; tet < t->count; tet++)
         for (int i = 0; i < 4; i++) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i), v[3];
@@ -95,8 +96,8 @@ done:
 }
 
 static brio_status measure(detection *d, uint32_t facet, const uint32_t corner[3]) {
-    uint32_t p = corner[0], tet[2] = {brio_tet_of(facet), brio_tet_of(*brio_mate(&d->cocones->dual->t, facet))};
-    if (tet[0] >= d->cocones->dual->num_finite) tet[0] = tet[1], tet[1] = brio_tet_of(facet);
+    uint32_t p = corner[0], tet[2] = {brio_tet_of(facet), brio_tet_of(*brio_mate(&d->dual->t, facet))};
+    if (tet[0] >= d->dual->num_finite) tet[0] = tet[1], tet[1] = brio_tet_of(facet);
     d->radius[p] = fmax(d->radius[p], reach(d->cocones, p, tet));
     for (int m = 1; m < 3; m++)
         if (axis_cosine(d->cocones, p, corner[m]) < LEAST_COSINE) d->interior[p] = 0;
@@ -128,7 +129,7 @@ done:
 /* Makes followers of interior samples interior, breadth first. A table gives the followers of each sample. */
 static brio_status spread(detection *d) {
     brio_status status = BRIO_OK;
-    size_t n = d->cocones->dual->num_points, size = 0;
+    size_t n = d->dual->num_points, size = 0;
     size_t *first = NULL;
     uint32_t *to = NULL, *queue = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, first, n + 2));
@@ -157,7 +158,7 @@ static brio_status detect(detection *d, size_t n) {
     for (size_t p = 0; p < n; p++) d->interior[p] = 1;
     BRIO_TRY(visit_meetings(d, measure));
     for (size_t p = 0; p < n; p++) {
-        d->thin[p] = d->radius[p] < INFINITY && d->radius[p] <= MOST_RATIO * height(d->cocones->dual, p);
+        d->thin[p] = d->radius[p] < INFINITY && d->radius[p] <= MOST_RATIO * height(d->dual, p);
         d->interior[p] &= d->thin[p];
     }
     BRIO_TRY(visit_meetings(d, follow));
@@ -169,7 +170,7 @@ done:
 brio_status brio_boundary_samples(brio_context *ctx, const brio_cocones *c, uint8_t **boundary, size_t *count) {
     brio_status status = BRIO_OK;
     const brio_pole_vectors *v = c->dual;
-    detection d = {.ctx = ctx, .cocones = c};
+    detection d = {.ctx = ctx, .cocones = c, .dual = v};
     *boundary = NULL;
     *count = 0;
     BRIO_TRY(detect(&d, v->num_points));

@@ -45,8 +45,7 @@ static void count_sides(side_counts counts) {
     for (int sides = 0; sides < 256; sides++)
         for (int i = 0; i < 4; i++) {
             counts[sides][i] = 0;
-            for (int k = 0; k < 3; k++)
-                counts[sides][i] += (uint8_t)brio_slot_sides((unsigned)sides, BRIO_FACET[i][k]);
+            for (int k = 0; k < 3; k++) counts[sides][i] += (uint8_t)brio_slot_sides((unsigned)sides, BRIO_FACET[i][k]);
         }
 }
 

@@ -24,6 +24,7 @@ typedef struct {
     const brio_tet_labels *labels;
     const brio_cocones *cocones;
     const brio_tetrahedra *t;
+    const double *points;
     uint32_t *stack; /* candidates to test */
     size_t size, capacity;
 } pruning;
@@ -57,7 +58,7 @@ static facet_edge next_candidate(const pruning *x, facet_edge e) {
 /* Returns the dot product of the components of the two apexes perpendicular to the edge, times the edge's squared
  * length. Negative: the two triangles make more than a right angle. */
 static double across(const pruning *x, facet_edge e, facet_edge f) {
-    const double *points = x->cocones->dual->points;
+    const double *points = x->points;
     const double *a = points + 3 * (size_t)e.from, *b = points + 3 * (size_t)e.to;
     const double *p = points + 3 * (size_t)e.apex, *q = points + 3 * (size_t)f.apex;
     double pq = 0, pe = 0, qe = 0, ee = 0;
@@ -72,7 +73,7 @@ static double across(const pruning *x, facet_edge e, facet_edge f) {
 
 /* Returns whether the angle from one candidate to the next round their edge is more than 3 pi / 2. */
 static bool is_wide(const pruning *x, facet_edge from, facet_edge to) {
-    const double *points = x->cocones->dual->points;
+    const double *points = x->points;
     if (from.facet == to.facet) return true; /* the edge has one candidate only */
     return across(x, from, to) > 0 && brio_orient3d(points + 3 * (size_t)from.from, points + 3 * (size_t)from.to,
                                                     points + 3 * (size_t)from.apex, points + 3 * (size_t)to.apex) < 0;
@@ -158,7 +159,8 @@ brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *l, size_
                  .ctx = ctx,
                  .labels = l,
                  .cocones = l->cocones,
-                 .t = &l->cocones->dual->t};
+                 .t = &l->dual->t,
+                 .points = l->dual->points};
     *dropped = 0;
     brio_for_chunks(ctx, brio_threads(ctx, x.t->count, CHUNK), x.t->count, CHUNK, find_sharp, &x);
     BRIO_TRY(x.status);

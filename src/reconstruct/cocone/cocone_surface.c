@@ -77,7 +77,8 @@ done:
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_orient_samples(r->ctx, &r->cocones, &r->turned));
-    r->labels = (brio_tet_labels){.cocones = &r->cocones, .turned = r->turned, .watertight = r->options->tight};
+    r->labels = (brio_tet_labels){
+        .cocones = &r->cocones, .dual = &r->dual, .turned = r->turned, .watertight = r->options->tight};
     BRIO_TRY(brio_tet_labels_vote(r->ctx, &r->labels));
     BRIO_TRY(brio_cocone_prune(r->ctx, &r->labels, &r->out->stats.pruned));
     BRIO_TRY(brio_tet_labels_spread(r->ctx, &r->labels));

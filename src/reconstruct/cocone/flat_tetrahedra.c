@@ -20,6 +20,8 @@ static const double SIGNIFICANT = 1e-9;
 
 typedef struct {
     const brio_tet_labels *labels;
+    const brio_cocones *cocones;
+    const brio_pole_vectors *dual;
     const brio_tetrahedra *t;
     uint32_t *tet; /* the tetrahedra that may change, ascending */
     size_t count;
@@ -30,8 +32,7 @@ typedef struct {
 static double area(const flattening *x, uint32_t facet) {
     const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
     const double *corner[3];
-    for (int k = 0; k < 3; k++)
-        corner[k] = x->labels->cocones->dual->points + 3 * (size_t)v[BRIO_FACET[brio_slot_of(facet)][k]];
+    for (int k = 0; k < 3; k++) corner[k] = x->dual->points + 3 * (size_t)v[BRIO_FACET[brio_slot_of(facet)][k]];
     return brio_triangle_area(corner[0], corner[1], corner[2]);
 }
 
@@ -40,7 +41,7 @@ static bool may_change(const flattening *x, uint32_t tet) {
     int leaving = 0;
     for (int i = 0; i < 4; i++) {
         bool leaves = brio_is_boundary(x->labels, brio_facet_of(tet, i));
-        if (!leaves && !brio_is_candidate(x->labels->cocones, brio_facet_of(tet, i))) return false;
+        if (!leaves && !brio_is_candidate(x->cocones, brio_facet_of(tet, i))) return false;
         leaving += leaves;
     }
     return leaving == 2;
@@ -85,8 +86,8 @@ static brio_status collect(brio_context *ctx, flattening *x) {
     BRIO_TRY(BRIO_ALLOC(ctx, x->tet, x->labels->num_undecided));
     for (size_t n = 0; n < x->labels->num_undecided; n++) {
         uint32_t tet = x->labels->undecided[n];
-        bool finite = tet < x->labels->cocones->dual->num_finite;
-        if (finite && x->labels->cocones->candidates[tet]) x->tet[x->count++] = tet;
+        bool finite = tet < x->dual->num_finite;
+        if (finite && x->cocones->candidates[tet]) x->tet[x->count++] = tet;
     }
 done:
     return status;
@@ -117,7 +118,7 @@ static size_t change_best(flattening *x) {
 
 brio_status brio_flatten(brio_context *ctx, const brio_tet_labels *l) {
     brio_status status = BRIO_OK;
-    flattening x = {.labels = l, .t = &l->cocones->dual->t};
+    flattening x = {.labels = l, .cocones = l->cocones, .dual = l->dual, .t = &l->dual->t};
     BRIO_TRY(collect(ctx, &x));
     BRIO_TRY(BRIO_ALLOC(ctx, x.gain, x.count));
     BRIO_TRY(BRIO_ALLOC(ctx, x.change, x.count));

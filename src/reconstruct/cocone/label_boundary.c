@@ -16,7 +16,7 @@ typedef struct {
 /* Lists the boundary facets of the outer ones among tetrahedra from to to - 1. */
 static brio_status list_part(brio_context *ctx, const brio_tet_labels *l, size_t from, size_t to, part *p) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedron *t = l->cocones->dual->t.tet;
+    const brio_tetrahedron *t = l->dual->t.tet;
     const uint8_t *label = l->label;
     for (size_t tet = from; tet < to; tet++) {
         if (label[tet] != BRIO_LABEL_OUTER) continue;
@@ -49,7 +49,7 @@ static void list_parts(void *user, size_t begin, size_t end, int thread) {
 brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, brio_facets *out) {
     brio_status status = BRIO_OK;
     part parts[PARTS] = {{0}};
-    size_t size = l->cocones->dual->t.count;
+    size_t size = l->dual->t.count;
     *out = (brio_facets){0};
     listing all = {ctx, l, parts, size, BRIO_OK};
     brio_for_chunks(ctx, brio_threads(ctx, size, TETS_A_THREAD), PARTS, 1, list_parts, &all);

@@ -19,7 +19,7 @@ brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, br
 
 /** Returns whether a facet separates two labels. */
 static inline bool brio_is_boundary(const brio_tet_labels *l, uint32_t facet) {
-    uint32_t mate = *brio_mate(&l->cocones->dual->t, facet);
+    uint32_t mate = *brio_mate(&l->dual->t, facet);
     return l->label[brio_tet_of(facet)] != l->label[brio_tet_of(mate)];
 }
 
@@ -33,7 +33,7 @@ static inline int brio_last_slot(const uint32_t v[4], uint32_t a, uint32_t b, in
 /** Returns the next boundary facet round edge ab. The tetrahedra of `facet` and of the result have one label, and so
  *  have the tetrahedra between them. */
 static inline uint32_t brio_next_round_edge(const brio_tet_labels *l, uint32_t facet, uint32_t a, uint32_t b) {
-    const brio_tetrahedra *t = &l->cocones->dual->t;
+    const brio_tetrahedra *t = &l->dual->t;
     for (;;) {
         uint32_t tet = brio_tet_of(facet);
         facet = brio_facet_of(tet, brio_last_slot(t->tet[tet].vertex, a, b, brio_slot_of(facet)));
@@ -52,7 +52,7 @@ static inline uint32_t brio_corner_after(const brio_tetrahedra *t, uint32_t face
 
 /** Returns the next boundary facet round vertex v, counterclockwise as seen from the facet's tetrahedron. */
 static inline uint32_t brio_next_round_vertex(const brio_tet_labels *l, uint32_t facet, uint32_t v) {
-    const brio_tetrahedra *t = &l->cocones->dual->t;
+    const brio_tetrahedra *t = &l->dual->t;
     uint32_t after = brio_corner_after(t, facet, v);
     return brio_next_round_edge(l, facet, v, brio_corner_after(t, facet, after));
 }

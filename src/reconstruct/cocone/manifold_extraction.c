@@ -23,7 +23,7 @@ typedef struct {
 
 static void choose_candidates(const brio_face_choice *c) {
     for (size_t n = 0; n < c->num_facets; n++)
-        if (brio_is_candidate(c->labels->cocones, c->facets[n])) brio_set_face(c, c->facets[n]);
+        if (brio_is_candidate(c->cocones, c->facets[n])) brio_set_face(c, c->facets[n]);
 }
 
 /* Queues the samples of a boundary facet. */
@@ -51,11 +51,10 @@ typedef struct {
 /* Returns whether to keep fan a rather than b: the longer one. Among equal lengths, the positions where they begin
  * decide. */
 static bool is_better(const extraction *x, uint32_t v, fan a, fan b) {
-    const double *points = x->choice.labels->cocones->dual->points;
+    const double *points = x->choice.dual->points;
     if (a.length != b.length) return a.length > b.length;
-    return brio_lexicographic(points + 3 * (size_t)brio_corner_after(&x->choice.labels->cocones->dual->t, a.first, v),
-                              points + 3 * (size_t)brio_corner_after(&x->choice.labels->cocones->dual->t, b.first, v)) >
-           0;
+    return brio_lexicographic(points + 3 * (size_t)brio_corner_after(&x->choice.dual->t, a.first, v),
+                              points + 3 * (size_t)brio_corner_after(&x->choice.dual->t, b.first, v)) > 0;
 }
 
 /* Counts the fans of faces at v that have two ends, and finds the best of them. Returns 0 for a closed fan. */
@@ -102,7 +101,7 @@ static brio_status drop_small_fans(extraction *x) {
     fan best = {0};
     for (size_t begin = 0, end; begin < x->size; begin = end) {
         end = x->size;
-        brio_sort_by_position(x->choice.labels->cocones->dual->points, x->queue + begin, end - begin);
+        brio_sort_by_position(x->choice.dual->points, x->queue + begin, end - begin);
         for (size_t n = begin; n < end; n++) {
             uint32_t v = x->queue[n];
             if (count_fans(x, v, &best) > 1) BRIO_TRY(keep_fan(x, v, best));
@@ -130,11 +129,14 @@ done:
 brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only,
                                const brio_facets *facets, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
-    extraction x = {.ctx = ctx, .choice = {.labels = l, .facets = facets->facet, .num_facets = facets->count}};
+    extraction x = {
+        .ctx = ctx,
+        .choice = {
+            .labels = l, .cocones = l->cocones, .dual = l->dual, .facets = facets->facet, .num_facets = facets->count}};
     uint32_t *open = NULL;
     size_t num_open;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.choice.face, l->cocones->dual->t.count));
-    BRIO_TRY(BRIO_ALLOC(ctx, x.facet_of, l->cocones->dual->num_points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.choice.face, l->dual->t.count));
+    BRIO_TRY(BRIO_ALLOC(ctx, x.facet_of, l->dual->num_points));
     choose_candidates(&x.choice);
     BRIO_TRY(brio_fill_gaps(ctx, &x.choice, !candidates_only, &open, &num_open));
     for (size_t n = 0; n < num_open; n++) BRIO_TRY(push_corners(&x, open[n]));

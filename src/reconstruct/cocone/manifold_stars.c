@@ -33,6 +33,7 @@ typedef struct {
 typedef struct {
     brio_context *ctx;
     brio_tet_labels *labels;
+    const brio_pole_vectors *dual;
     const brio_tetrahedra *t;
     uint32_t *tet_of_vertex; /* #P: a finite tetrahedron at each vertex; not set for points that are no vertices */
     uint8_t *visits;         /* #P: how often the star of the sample was mended */
@@ -97,7 +98,7 @@ static bool is_one_fan(fan_corner *fan, size_t count) {
 
 /* Stores the corners of the boundary by sample: those of sample v end before corner[end[v]]. */
 static void deal_corners(const repair *r, const uint32_t *facets, size_t count, uint32_t *end, fan_corner *corner) {
-    size_t n = r->labels->cocones->dual->num_points;
+    size_t n = r->dual->num_points;
     uint32_t sum = 0;
     for (int writing = 0; writing < 2; writing++) {
         for (size_t f = 0; f < count; f++) {
@@ -137,7 +138,7 @@ static void mark_singular(void *user, size_t first, size_t last, int thread) {
 /* Queues the samples where the boundary is not one fan. */
 static brio_status enqueue_singular(repair *r, const uint32_t *facets, size_t count) {
     brio_status status = BRIO_OK;
-    size_t n = r->labels->cocones->dual->num_points;
+    size_t n = r->dual->num_points;
     uint32_t *end = NULL;
     fan_corner *corner = NULL;
     uint8_t *singular = NULL;
@@ -171,7 +172,7 @@ static brio_status collect_piece(repair *r, uint32_t v, uint32_t first) {
     while (size > 0) {
         uint32_t tet = r->stack[--size];
         p.fixed |= r->fixed[tet];
-        const double *centre = r->labels->cocones->dual->centre + 4 * (size_t)tet;
+        const double *centre = r->dual->centre + 4 * (size_t)tet;
         if (!p.mark || brio_lexicographic(centre, p.mark) > 0) p.mark = centre;
         p.weight += 1 + (uint64_t)abs(brio_tet_vote(r->labels, tet));
         for (int i = 0; i < 4; i++) {
@@ -253,7 +254,7 @@ done:
 
 static brio_status prepare(repair *r) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *v = r->labels->cocones->dual;
+    const brio_pole_vectors *v = r->dual;
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->tet_of_vertex, v->num_points));
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->visits, v->num_points));
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->fixed, r->t->count));
@@ -270,7 +271,7 @@ static brio_status mend_stars(repair *r) {
     brio_status status = BRIO_OK;
     for (size_t begin = 0, end; begin < r->size; begin = end) {
         end = r->size;
-        brio_sort_by_position(r->labels->cocones->dual->points, r->queue + begin, end - begin);
+        brio_sort_by_position(r->dual->points, r->queue + begin, end - begin);
         for (size_t n = begin; n < end; n++) {
             r->waiting[r->queue[n]] = 0;
             BRIO_TRY(mend_star(r, r->queue[n]));
@@ -282,9 +283,9 @@ done:
 
 brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, brio_facets *facets, size_t *changed) {
     brio_status status = BRIO_OK;
-    repair r = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
+    repair r = {.ctx = ctx, .labels = l, .dual = l->dual, .t = &l->dual->t};
     BRIO_TRY(brio_boundary_facets(ctx, l, facets));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, l->cocones->dual->num_points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, l->dual->num_points));
     BRIO_TRY(enqueue_singular(&r, facets->facet, facets->count));
     BRIO_TRY(brio_progress(ctx, "manifold", 0.5));
     if (r.size > 0) BRIO_TRY(prepare(&r));

@@ -38,6 +38,7 @@ enum { OPPOSITE = 0x80 };
 typedef struct {
     brio_context *ctx;
     const brio_cocones *cocones;
+    const brio_pole_vectors *dual;
     uint32_t *up;      /* #P: 2 * parent, plus 1 if the parent's sign is opposite */
     size_t num_pieces; /* pieces that the vertices form */
     sample_link *link;
@@ -47,8 +48,8 @@ typedef struct {
 
 /* Makes every sample a piece. */
 static void take_apart(forest *f) {
-    for (size_t p = 0; p < f->cocones->dual->num_points; p++) f->up[p] = (uint32_t)(2 * p);
-    f->num_pieces = f->cocones->dual->num_vertices;
+    for (size_t p = 0; p < f->dual->num_points; p++) f->up[p] = (uint32_t)(2 * p);
+    f->num_pieces = f->dual->num_vertices;
 }
 
 /* Returns 2 * root of x, plus 1 if the root's sign is opposite to that of x. Halves the path on its way. */
@@ -65,7 +66,7 @@ static inline uint32_t find_root(forest *f, uint32_t x) {
 
 /* Makes the root of every sample its parent. */
 static void flatten(forest *f) {
-    for (size_t p = 0; p < f->cocones->dual->num_points; p++) f->up[p] = find_root(f, (uint32_t)p);
+    for (size_t p = 0; p < f->dual->num_points; p++) f->up[p] = find_root(f, (uint32_t)p);
 }
 
 /* Joins the piece of p to a root, with the same or the opposite sign. `root` is what find_root returned for another
@@ -99,7 +100,7 @@ static double cosine_of(const brio_pole_vectors *v, size_t p, size_t q) {
 
 /* Returns the sort key of a link: the best link of a class has the least key. */
 static uint32_t key_of(const forest *f, const sample_link *l) {
-    const brio_pole_vectors *v = f->cocones->dual;
+    const brio_pole_vectors *v = f->dual;
     double cosine = l->tet == NO_TET ? cosine_of(v, l->a, l->b) : 0;
     double weight = l->tet == NO_TET ? cosine * cosine : fmin(depth(v, l->tet, l->a), depth(v, l->tet, l->b));
     return (uint32_t)((weight < 1 ? 1 - weight : 0) * UINT32_MAX);
@@ -108,7 +109,7 @@ static uint32_t key_of(const forest *f, const sample_link *l) {
 /* Compares links of equal weight by the positions of their ends, the lesser end first. */
 static int compare_links(uint32_t i, uint32_t j, const void *user) {
     const forest *f = user;
-    const double *points = f->cocones->dual->points, *end[2][2];
+    const double *points = f->dual->points, *end[2][2];
     for (int n = 0; n < 2; n++) {
         const sample_link *l = &f->link[n == 0 ? i : j];
         bool swap = brio_lexicographic(points + 3 * (size_t)l->a, points + 3 * (size_t)l->b) > 0;
@@ -166,7 +167,7 @@ done:
 /* Joins all links, the best class first, and empties the list of links. */
 static brio_status join_links(forest *f) {
     brio_status status = BRIO_OK;
-    size_t n = f->cocones->dual->num_points;
+    size_t n = f->dual->num_points;
     uint32_t *before = NULL; /* f->up, flat, before the class at hand */
     BRIO_REQUIRE(f->ctx, f->num_links < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu links between samples, 2^32 is the limit",
                  f->num_links);
@@ -214,8 +215,8 @@ static inline int class_of(const brio_pole_vectors *v, size_t tet, int i, int j)
 /* Joins the samples that see a tetrahedron in a cone, except samples of the worst class. Returns false at a
  * contradiction. */
 static bool join_samples_of(forest *f, size_t tet) {
-    const uint32_t *v = f->cocones->dual->t.tet[tet].vertex;
-    unsigned sides = f->cocones->dual->sides[tet], antipole = brio_antipole_slots(sides);
+    const uint32_t *v = f->dual->t.tet[tet].vertex;
+    unsigned sides = f->dual->sides[tet], antipole = brio_antipole_slots(sides);
     unsigned left = (brio_pole_slots(sides) | antipole) & ~brio_shallow_slots(sides);
     if ((left & (left - 1)) == 0) return true;
     int first = __builtin_ctz(left);
@@ -230,7 +231,7 @@ static bool join_samples_of(forest *f, size_t tet) {
 /* Joins the samples of each pole. If there is a contradiction, undoes all of this. */
 static brio_status join_at_poles(forest *f) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *v = f->cocones->dual;
+    const brio_pole_vectors *v = f->dual;
     uint8_t *is_pole = NULL; /* #T */
     bool agree = true;
     BRIO_TRY(BRIO_ALLOC_ZERO(f->ctx, is_pole, v->t.count));
@@ -248,7 +249,7 @@ done:
 /* Links sample p to the samples of other pieces in tetrahedron tet, a pole of p, that see tet in a cone. */
 static brio_status link_pole(forest *f, uint32_t p, uint32_t tet) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *d = f->cocones->dual;
+    const brio_pole_vectors *d = f->dual;
     const uint32_t *v = d->t.tet[tet].vertex;
     int slot = brio_slot_of_vertex(v, p), side = brio_side_of(d, tet, slot);
     for (int i = 1; i < 4 && side != BRIO_SIDE_COCONE; i++) {
@@ -264,7 +265,7 @@ done:
 
 static brio_status link_poles(forest *f) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *v = f->cocones->dual;
+    const brio_pole_vectors *v = f->dual;
     size_t poles = 2 * v->num_points;
     for (size_t i = 0; i < poles && f->num_pieces > 1; i++) {
         if (i + AHEAD < poles && v->pole[i + AHEAD] != BRIO_INFINITE) __builtin_prefetch(&v->t.tet[v->pole[i + AHEAD]]);
@@ -277,7 +278,7 @@ done:
 /* --- links along candidates --- */
 
 static brio_status link_edge(forest *f, uint32_t p, uint32_t q) {
-    double cosine = cosine_of(f->cocones->dual, p, q), square = 1 - cosine * cosine;
+    double cosine = cosine_of(f->dual, p, q), square = 1 - cosine * cosine;
     if (!are_apart(f, p, q)) return BRIO_OK;
     int class = (square > 0x1p-8) + (square > 0x1p-6) + (square > 0x1p-4);
     return add_link(f, (sample_link){p, q, NO_TET}, cosine < 0, class);
@@ -285,7 +286,7 @@ static brio_status link_edge(forest *f, uint32_t p, uint32_t q) {
 
 static brio_status link_candidates(forest *f) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedra *t = &f->cocones->dual->t;
+    const brio_tetrahedra *t = &f->dual->t;
     for (size_t tet = 0; f->num_pieces > 1 && tet < t->count; tet++)
         for (int i = 0; f->cocones->candidates[tet] && i < 4; i++) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i);
@@ -302,8 +303,8 @@ done:
 
 static brio_status link_across(forest *f, size_t tet) {
     brio_status status = BRIO_OK;
-    const uint32_t *v = f->cocones->dual->t.tet[tet].vertex;
-    const brio_pole_vectors *d = f->cocones->dual;
+    const uint32_t *v = f->dual->t.tet[tet].vertex;
+    const brio_pole_vectors *d = f->dual;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < i && brio_side_of(d, tet, i) != BRIO_SIDE_COCONE; j++) {
             if (brio_side_of(d, tet, j) == BRIO_SIDE_COCONE || !are_apart(f, v[i], v[j])) continue;
@@ -316,7 +317,7 @@ done:
 
 static brio_status link_pieces(forest *f) {
     brio_status status = BRIO_OK;
-    for (size_t tet = 0; f->num_pieces > 1 && tet < f->cocones->dual->t.count; tet++) BRIO_TRY(link_across(f, tet));
+    for (size_t tet = 0; f->num_pieces > 1 && tet < f->dual->t.count; tet++) BRIO_TRY(link_across(f, tet));
 done:
     return status;
 }
@@ -325,7 +326,7 @@ done:
 
 /* Counts for each root how often its piece looks outwards on the hull, minus how often it looks inwards. */
 static void count_outwards(const forest *f, int64_t *outwards) {
-    const brio_pole_vectors *v = f->cocones->dual;
+    const brio_pole_vectors *v = f->dual;
     for (size_t tet = v->num_finite; tet < v->t.count; tet++)
         for (int i = 0; i < 3; i++) {
             int side = brio_side_of(v, tet, i);
@@ -338,8 +339,8 @@ static void count_outwards(const forest *f, int64_t *outwards) {
 /* Decides for each piece whether to turn it. A piece is turned so that most of its part of the hull looks outwards.
  * Where the counts are even, the sample of least position keeps its sign. */
 static void choose_turns(const forest *f, const int64_t *outwards, uint32_t *least, uint8_t *turn) {
-    const double *points = f->cocones->dual->points;
-    size_t n = f->cocones->dual->num_points;
+    const double *points = f->dual->points;
+    size_t n = f->dual->num_points;
     for (size_t p = 0; p < n; p++) least[p] = (uint32_t)p;
     for (size_t p = 0; p < n; p++) {
         uint32_t root = f->up[p] >> 1;
@@ -351,7 +352,7 @@ static void choose_turns(const forest *f, const int64_t *outwards, uint32_t *lea
 
 static brio_status sign_samples(const forest *f, uint8_t *turned) {
     brio_status status = BRIO_OK;
-    size_t n = f->cocones->dual->num_points;
+    size_t n = f->dual->num_points;
     int64_t *outwards = NULL;
     uint32_t *least = NULL; /* of each root: the sample of its piece with the least position */
     uint8_t *turn = NULL;   /* of each root: 1 if its piece is turned */
@@ -372,7 +373,7 @@ done:
 brio_status brio_orient_samples(brio_context *ctx, const brio_cocones *c, uint8_t **turned) {
     brio_status status = BRIO_OK;
     size_t n = c->dual->num_points;
-    forest f = {.ctx = ctx, .cocones = c};
+    forest f = {.ctx = ctx, .cocones = c, .dual = c->dual};
     *turned = NULL;
     BRIO_REQUIRE(ctx, n < UINT32_C(1) << 31, BRIO_ERR_TOO_LARGE, "%zu points; the co-cone takes less than 2^31", n);
     BRIO_TRY(BRIO_ALLOC(ctx, f.up, n));

@@ -36,6 +36,7 @@ typedef enum { NOT_MEASURED, CANDIDATES_MEASURED, FACES_MEASURED } measured;
 
 typedef struct {
     const brio_face_choice *choice;
+    const brio_tet_labels *labels; /* of the choice */
     const double *points;
     uint8_t *measured; /* #P, a `measured` each */
     double *size;      /* #P: squared radius of the largest circle of a candidate at the sample; 0 without candidates */
@@ -70,12 +71,12 @@ static double area(const gaps *g, uint32_t facet) {
 }
 
 static bool is_finite(const gaps *g, uint32_t facet) {
-    const brio_tetrahedron *tet = g->choice->labels->cocones->dual->t.tet;
+    const brio_tetrahedron *tet = g->choice->dual->t.tet;
     return brio_slot_of(facet) == 3 || tet[brio_tet_of(facet)].vertex[3] != BRIO_INFINITE;
 }
 
 static bool is_among_boundary(const gaps *g, uint32_t facet) {
-    return brio_is_among_boundary(g->choice->labels->cocones, facet);
+    return brio_is_among_boundary(g->choice->cocones, facet);
 }
 
 /* --- the surroundings of gaps --- */
@@ -91,7 +92,7 @@ static void measure_candidates(gaps *g, uint32_t p, uint32_t first) {
             g->size[p] = fmax(g->size[p], circle_square(g, facet));
             g->shortest[p] = fmin(g->shortest[p], length_square(g, facet));
         }
-        facet = brio_next_round_vertex(g->choice->labels, facet, p);
+        facet = brio_next_round_vertex(g->labels, facet, p);
     } while (facet != first);
 }
 
@@ -109,7 +110,7 @@ static void measure_faces(gaps *g, uint32_t p, uint32_t first) {
             g->edges[p] += (length + ROUND_LENGTH) - ROUND_LENGTH;
             g->degree[p]++;
         }
-        facet = brio_next_round_vertex(g->choice->labels, facet, p);
+        facet = brio_next_round_vertex(g->labels, facet, p);
     } while (facet != first);
 }
 
@@ -118,8 +119,8 @@ static void measure_faces(gaps *g, uint32_t p, uint32_t first) {
 static brio_status measure_gaps(brio_context *ctx, gaps *g) {
     brio_status status = BRIO_OK;
     const brio_face_choice *c = g->choice;
-    const uint8_t *boundary = c->labels->cocones->boundary;
-    size_t num_points = c->labels->cocones->dual->num_points;
+    const uint8_t *boundary = c->cocones->boundary;
+    size_t num_points = c->dual->num_points;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, g->measured, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, g->size, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, g->shortest, num_points));
@@ -179,7 +180,7 @@ static bool collect_opening(gaps *g, uint32_t first) {
         is_long = is_long || !finite || is_longer(g, facet, OPENING);
         for (int k = 0; k < 3; k++) {
             uint32_t a = brio_corner_of(g->choice, facet, k), b = brio_corner_of(g->choice, facet, (k + 1) % 3);
-            uint32_t other = brio_next_round_edge(g->choice->labels, facet, a, b);
+            uint32_t other = brio_next_round_edge(g->labels, facet, a, b);
             if (brio_is_face(g->choice, other) || !is_among_boundary(g, other)) continue;
             brio_set_face(g->choice, other);
             g->open[g->num_open++] = other;
@@ -258,7 +259,7 @@ static void collect_gap(gaps *g, uint32_t first) {
         for (int k = 0; k < 3; k++) {
             uint32_t facet = g->open[next], a = brio_corner_of(g->choice, facet, k);
             uint32_t b = brio_corner_of(g->choice, facet, (k + 1) % 3);
-            uint32_t other = brio_next_round_edge(g->choice->labels, facet, a, b);
+            uint32_t other = brio_next_round_edge(g->labels, facet, a, b);
             if (brio_is_face(g->choice, other)) continue;
             brio_set_face(g->choice, other);
             g->open[g->num_open++] = other;
@@ -317,13 +318,13 @@ done:
 
 brio_status brio_fill_gaps(brio_context *ctx, const brio_face_choice *c, bool all, uint32_t **open, size_t *num_open) {
     brio_status status = BRIO_OK;
-    gaps g = {.choice = c, .points = c->labels->cocones->dual->points};
+    gaps g = {.choice = c, .labels = c->labels, .points = c->dual->points};
     *open = NULL;
     *num_open = 0;
     BRIO_TRY(list_facets(ctx, &g));
-    if (g.num_facets == 0 && !c->labels->cocones->boundary) goto done;
+    if (g.num_facets == 0 && !c->cocones->boundary) goto done;
     BRIO_TRY(measure_gaps(ctx, &g));
-    if (c->labels->cocones->boundary) {
+    if (c->cocones->boundary) {
         suspect_long_candidates(&g);
         BRIO_TRY(list_facets(ctx, &g));
     }

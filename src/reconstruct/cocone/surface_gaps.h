@@ -7,7 +7,9 @@
 /** The facets of the boundary between two labels, and which of them are faces. */
 typedef struct {
     const brio_tet_labels *labels;
-    const uint32_t *facets; /* as brio_boundary_facets lists them */
+    const brio_cocones *cocones;   /* of the labels */
+    const brio_pole_vectors *dual; /* of the cocones */
+    const uint32_t *facets;        /* as brio_boundary_facets lists them */
     size_t num_facets;
     uint8_t *face; /* #T: bit i is 1 if facet i is a face */
 } brio_face_choice;
@@ -26,7 +28,7 @@ static inline void brio_clear_face(const brio_face_choice *c, uint32_t facet) {
 
 /** Returns corner k (0, 1, 2) of a facet, counterclockwise as seen from the facet's tetrahedron. */
 static inline uint32_t brio_corner_of(const brio_face_choice *c, uint32_t facet, int k) {
-    return c->labels->cocones->dual->t.tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
+    return c->dual->t.tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
 }
 
 /** Makes faces of the facets in gaps that are no openings or, with `all`, of all finite facets. With boundary samples,

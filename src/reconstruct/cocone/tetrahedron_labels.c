@@ -31,7 +31,7 @@ static inline int vote_of(const brio_pole_vectors *v, const uint8_t *turned, siz
 }
 
 int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
-    const brio_pole_vectors *v = l->cocones->dual;
+    const brio_pole_vectors *v = l->dual;
     return vote_of(v, l->turned, tet, tet < v->num_finite ? 4 : 3);
 }
 
@@ -41,7 +41,7 @@ static inline uint8_t label_of(int vote) {
 
 /* Labels tetrahedra from to to - 1. Returns the number of tetrahedra without a majority. */
 static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
-    const brio_pole_vectors v = *l->cocones->dual;
+    const brio_pole_vectors v = *l->dual;
     uint8_t *label = l->label;
     const uint8_t *turned = l->turned;
     size_t undecided = 0;
@@ -74,14 +74,14 @@ static void vote_in_part(void *user, size_t begin, size_t end, int thread) {
 /* Labels all tetrahedra. Returns the number of tetrahedra without a majority. */
 static size_t label_all_by_votes(brio_context *ctx, brio_tet_labels *l) {
     voting v = {l, 0};
-    size_t size = l->cocones->dual->t.count;
+    size_t size = l->dual->t.count;
     brio_for(ctx, brio_threads(ctx, size, TETS_A_THREAD), size, vote_in_part, &v);
     return v.undecided;
 }
 
 brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *l) {
     brio_status status = BRIO_OK;
-    size_t count = l->cocones->dual->t.count;
+    size_t count = l->dual->t.count;
     BRIO_TRY(BRIO_ALLOC(ctx, l->label, count));
     BRIO_TRY(BRIO_ALLOC(ctx, l->undecided, label_all_by_votes(ctx, l)));
     for (size_t tet = 0; tet < count; tet++)
@@ -102,7 +102,7 @@ static const uint8_t REACHED = 0xff; /* the tetrahedron is reached, and its labe
 /* Appends to w->reached the neighbours of a tetrahedron without a label, across facets that are no candidates. */
 static brio_status reach_from(brio_context *ctx, brio_tet_labels *l, size_t tet, wave *w) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedra *t = &l->cocones->dual->t;
+    const brio_tetrahedra *t = &l->dual->t;
     BRIO_TRY(BRIO_RESERVE(ctx, w->reached, w->capacity, w->size + 4));
     for (int i = 0; i < 4; i++) {
         uint32_t facet = brio_facet_of((uint32_t)tet, i), other = brio_tet_of(*brio_mate(t, facet));
@@ -117,7 +117,7 @@ done:
 /* Returns the label of most neighbours of a tetrahedron before this wave, outer at a tie. Neighbours across candidates
  * do not count. */
 static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
-    const brio_tetrahedra *t = &l->cocones->dual->t;
+    const brio_tetrahedra *t = &l->dual->t;
     int inner = 0;
     for (int i = 0; i < 4; i++) {
         uint8_t label = l->label[brio_tet_of(t->tet[tet].mate[i])];
@@ -131,7 +131,7 @@ static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
 /* Returns whether a tetrahedron has a neighbour with a label across a facet that is no candidate. */
 static bool is_next_to_label(const brio_tet_labels *l, uint32_t tet) {
     for (int i = 0; i < 4; i++) {
-        uint8_t label = l->label[brio_tet_of(l->cocones->dual->t.tet[tet].mate[i])];
+        uint8_t label = l->label[brio_tet_of(l->dual->t.tet[tet].mate[i])];
         if ((label == BRIO_LABEL_INNER || label == BRIO_LABEL_OUTER) &&
             !brio_is_candidate(l->cocones, brio_facet_of(tet, i)))
             return true;
