@@ -153,14 +153,14 @@ static void find_sharp(void *user, size_t begin, size_t end, int thread) {
         }
 }
 
-brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *l, size_t *dropped) {
+brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *labels, size_t *dropped) {
     brio_status status = BRIO_OK;
     pruning x = {.stack_lock = PTHREAD_MUTEX_INITIALIZER,
                  .ctx = ctx,
-                 .labels = l,
-                 .cocones = l->cocones,
-                 .t = &l->dual->t,
-                 .points = l->dual->points};
+                 .labels = labels,
+                 .cocones = labels->cocones,
+                 .t = &labels->dual->t,
+                 .points = labels->dual->points};
     *dropped = 0;
     brio_for_chunks(ctx, brio_threads(ctx, x.t->count, CHUNK), x.t->count, CHUNK, find_sharp, &x);
     BRIO_TRY(x.status);

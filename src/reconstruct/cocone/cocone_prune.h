@@ -8,9 +8,9 @@
  *  between two consecutive candidates round it is more than 3 pi / 2, or if it has one candidate only. The function
  *  keeps candidates between a tetrahedron voted outer and one voted inner. It ignores edges between two boundary
  *  samples.
- *  l        after brio_tet_labels_vote.
+ *  labels   after brio_tet_labels_vote.
  *  dropped  receives the number of candidates removed.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *l, size_t *dropped);
+brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *labels, size_t *dropped);
 
 #endif

@@ -116,9 +116,9 @@ static size_t change_best(flattening *x) {
     return changes;
 }
 
-brio_status brio_flatten(brio_context *ctx, const brio_tet_labels *l) {
+brio_status brio_flatten(brio_context *ctx, const brio_tet_labels *labels) {
     brio_status status = BRIO_OK;
-    flattening x = {.labels = l, .cocones = l->cocones, .dual = l->dual, .t = &l->dual->t};
+    flattening x = {.labels = labels, .cocones = labels->cocones, .dual = labels->dual, .t = &labels->dual->t};
     BRIO_TRY(collect(ctx, &x));
     BRIO_TRY(BRIO_ALLOC(ctx, x.gain, x.count));
     BRIO_TRY(BRIO_ALLOC(ctx, x.change, x.count));

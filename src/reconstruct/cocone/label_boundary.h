@@ -15,12 +15,12 @@ typedef struct {
  *  tetrahedron.
  *  out  receives the list; out->facet is owned by the caller (brio_release).
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, brio_facets *out);
+brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *labels, brio_facets *out);
 
 /** Returns whether a facet separates two labels. */
-static inline bool brio_is_boundary(const brio_tet_labels *l, uint32_t facet) {
-    uint32_t mate = *brio_mate(&l->dual->t, facet);
-    return l->label[brio_tet_of(facet)] != l->label[brio_tet_of(mate)];
+static inline bool brio_is_boundary(const brio_tet_labels *labels, uint32_t facet) {
+    uint32_t mate = *brio_mate(&labels->dual->t, facet);
+    return labels->label[brio_tet_of(facet)] != labels->label[brio_tet_of(mate)];
 }
 
 /** Returns the slot that is neither `but` nor that of vertex a or b. The slots of a tetrahedron sum to 6. */
@@ -32,12 +32,12 @@ static inline int brio_last_slot(const uint32_t v[4], uint32_t a, uint32_t b, in
 
 /** Returns the next boundary facet round edge ab. The tetrahedra of `facet` and of the result have one label, and so
  *  have the tetrahedra between them. */
-static inline uint32_t brio_next_round_edge(const brio_tet_labels *l, uint32_t facet, uint32_t a, uint32_t b) {
-    const brio_tetrahedra *t = &l->dual->t;
+static inline uint32_t brio_next_round_edge(const brio_tet_labels *labels, uint32_t facet, uint32_t a, uint32_t b) {
+    const brio_tetrahedra *t = &labels->dual->t;
     for (;;) {
         uint32_t tet = brio_tet_of(facet);
         facet = brio_facet_of(tet, brio_last_slot(t->tet[tet].vertex, a, b, brio_slot_of(facet)));
-        if (brio_is_boundary(l, facet)) return facet;
+        if (brio_is_boundary(labels, facet)) return facet;
         facet = *brio_mate(t, facet);
     }
 }
@@ -51,10 +51,10 @@ static inline uint32_t brio_corner_after(const brio_tetrahedra *t, uint32_t face
 }
 
 /** Returns the next boundary facet round vertex v, counterclockwise as seen from the facet's tetrahedron. */
-static inline uint32_t brio_next_round_vertex(const brio_tet_labels *l, uint32_t facet, uint32_t v) {
-    const brio_tetrahedra *t = &l->dual->t;
+static inline uint32_t brio_next_round_vertex(const brio_tet_labels *labels, uint32_t facet, uint32_t v) {
+    const brio_tetrahedra *t = &labels->dual->t;
     uint32_t after = brio_corner_after(t, facet, v);
-    return brio_next_round_edge(l, facet, v, brio_corner_after(t, facet, after));
+    return brio_next_round_edge(labels, facet, v, brio_corner_after(t, facet, after));
 }
 
 static inline int brio_compare_positions(uint32_t a, uint32_t b, const void *points) {

@@ -126,17 +126,19 @@ done:
     return status;
 }
 
-brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *l, bool candidates_only,
+brio_status brio_extract_faces(brio_context *ctx, const brio_tet_labels *labels, bool candidates_only,
                                const brio_facets *facets, uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
-    extraction x = {
-        .ctx = ctx,
-        .choice = {
-            .labels = l, .cocones = l->cocones, .dual = l->dual, .facets = facets->facet, .num_facets = facets->count}};
+    extraction x = {.ctx = ctx,
+                    .choice = {.labels = labels,
+                               .cocones = labels->cocones,
+                               .dual = labels->dual,
+                               .facets = facets->facet,
+                               .num_facets = facets->count}};
     uint32_t *open = NULL;
     size_t num_open;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.choice.face, l->dual->t.count));
-    BRIO_TRY(BRIO_ALLOC(ctx, x.facet_of, l->dual->num_points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, x.choice.face, labels->dual->t.count));
+    BRIO_TRY(BRIO_ALLOC(ctx, x.facet_of, labels->dual->num_points));
     choose_candidates(&x.choice);
     BRIO_TRY(brio_fill_gaps(ctx, &x.choice, !candidates_only, &open, &num_open));
     for (size_t n = 0; n < num_open; n++) BRIO_TRY(push_corners(&x, open[n]));

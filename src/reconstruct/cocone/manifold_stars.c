@@ -281,11 +281,11 @@ done:
     return status;
 }
 
-brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, brio_facets *facets, size_t *changed) {
+brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *labels, brio_facets *facets, size_t *changed) {
     brio_status status = BRIO_OK;
-    repair r = {.ctx = ctx, .labels = l, .dual = l->dual, .t = &l->dual->t};
-    BRIO_TRY(brio_boundary_facets(ctx, l, facets));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, l->dual->num_points));
+    repair r = {.ctx = ctx, .labels = labels, .dual = labels->dual, .t = &labels->dual->t};
+    BRIO_TRY(brio_boundary_facets(ctx, labels, facets));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, labels->dual->num_points));
     BRIO_TRY(enqueue_singular(&r, facets->facet, facets->count));
     BRIO_TRY(brio_progress(ctx, "manifold", 0.5));
     if (r.size > 0) BRIO_TRY(prepare(&r));
@@ -293,7 +293,7 @@ brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, brio_facet
     *changed = r.changed;
     if (r.changed > 0) {
         brio_release(ctx, facets->facet);
-        BRIO_TRY(brio_boundary_facets(ctx, l, facets));
+        BRIO_TRY(brio_boundary_facets(ctx, labels, facets));
     }
 done:
     brio_release(ctx, r.tet_of_vertex);

@@ -30,9 +30,9 @@ static inline int vote_of(const brio_pole_vectors *v, const uint8_t *turned, siz
     return count_bits(outer ^ change) - count_bits(inner ^ change);
 }
 
-int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
-    const brio_pole_vectors *v = l->dual;
-    return vote_of(v, l->turned, tet, tet < v->num_finite ? 4 : 3);
+int brio_tet_vote(const brio_tet_labels *labels, size_t tet) {
+    const brio_pole_vectors *v = labels->dual;
+    return vote_of(v, labels->turned, tet, tet < v->num_finite ? 4 : 3);
 }
 
 static inline uint8_t label_of(int vote) {
@@ -40,10 +40,10 @@ static inline uint8_t label_of(int vote) {
 }
 
 /* Labels tetrahedra from to to - 1. Returns the number of tetrahedra without a majority. */
-static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
-    const brio_pole_vectors v = *l->dual;
-    uint8_t *label = l->label;
-    const uint8_t *turned = l->turned;
+static size_t label_by_votes(const brio_tet_labels *labels, size_t from, size_t to) {
+    const brio_pole_vectors v = *labels->dual;
+    uint8_t *label = labels->label;
+    const uint8_t *turned = labels->turned;
     size_t undecided = 0;
     for (size_t tet = from; tet < to && tet < v.num_finite; tet++) {
         int vote = vote_of(&v, turned, tet, 4);
@@ -51,7 +51,7 @@ static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
         undecided += vote == 0;
     }
     for (size_t tet = from < v.num_finite ? v.num_finite : from; tet < to; tet++) {
-        int vote = l->watertight ? 1 : vote_of(&v, turned, tet, 3);
+        int vote = labels->watertight ? 1 : vote_of(&v, turned, tet, 3);
         label[tet] = label_of(vote);
         undecided += vote == 0;
     }
@@ -72,20 +72,20 @@ static void vote_in_part(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* Labels all tetrahedra. Returns the number of tetrahedra without a majority. */
-static size_t label_all_by_votes(brio_context *ctx, brio_tet_labels *l) {
-    voting v = {l, 0};
-    size_t size = l->dual->t.count;
+static size_t label_all_by_votes(brio_context *ctx, brio_tet_labels *labels) {
+    voting v = {labels, 0};
+    size_t size = labels->dual->t.count;
     brio_for(ctx, brio_threads(ctx, size, TETS_A_THREAD), size, vote_in_part, &v);
     return v.undecided;
 }
 
-brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *l) {
+brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *labels) {
     brio_status status = BRIO_OK;
-    size_t count = l->dual->t.count;
-    BRIO_TRY(BRIO_ALLOC(ctx, l->label, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, l->undecided, label_all_by_votes(ctx, l)));
+    size_t count = labels->dual->t.count;
+    BRIO_TRY(BRIO_ALLOC(ctx, labels->label, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, labels->undecided, label_all_by_votes(ctx, labels)));
     for (size_t tet = 0; tet < count; tet++)
-        if (l->label[tet] == BRIO_LABEL_NONE) l->undecided[l->num_undecided++] = (uint32_t)tet;
+        if (labels->label[tet] == BRIO_LABEL_NONE) labels->undecided[labels->num_undecided++] = (uint32_t)tet;
 done:
     return status;
 }
@@ -100,14 +100,14 @@ typedef struct {
 static const uint8_t REACHED = 0xff; /* the tetrahedron is reached, and its label comes with this wave */
 
 /* Appends to w->reached the neighbours of a tetrahedron without a label, across facets that are no candidates. */
-static brio_status reach_from(brio_context *ctx, brio_tet_labels *l, size_t tet, wave *w) {
+static brio_status reach_from(brio_context *ctx, brio_tet_labels *labels, size_t tet, wave *w) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedra *t = &l->dual->t;
+    const brio_tetrahedra *t = &labels->dual->t;
     BRIO_TRY(BRIO_RESERVE(ctx, w->reached, w->capacity, w->size + 4));
     for (int i = 0; i < 4; i++) {
         uint32_t facet = brio_facet_of((uint32_t)tet, i), other = brio_tet_of(*brio_mate(t, facet));
-        if (l->label[other] != BRIO_LABEL_NONE || brio_is_candidate(l->cocones, facet)) continue;
-        l->label[other] = REACHED;
+        if (labels->label[other] != BRIO_LABEL_NONE || brio_is_candidate(labels->cocones, facet)) continue;
+        labels->label[other] = REACHED;
         w->reached[w->size++] = other;
     }
 done:
@@ -116,12 +116,12 @@ done:
 
 /* Returns the label of most neighbours of a tetrahedron before this wave, outer at a tie. Neighbours across candidates
  * do not count. */
-static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
-    const brio_tetrahedra *t = &l->dual->t;
+static uint8_t label_of_neighbours(const brio_tet_labels *labels, uint32_t tet) {
+    const brio_tetrahedra *t = &labels->dual->t;
     int inner = 0;
     for (int i = 0; i < 4; i++) {
-        uint8_t label = l->label[brio_tet_of(t->tet[tet].mate[i])];
-        if (label == REACHED || label == BRIO_LABEL_NONE || brio_is_candidate(l->cocones, brio_facet_of(tet, i)))
+        uint8_t label = labels->label[brio_tet_of(t->tet[tet].mate[i])];
+        if (label == REACHED || label == BRIO_LABEL_NONE || brio_is_candidate(labels->cocones, brio_facet_of(tet, i)))
             continue;
         inner += label == BRIO_LABEL_INNER ? 1 : -1;
     }
@@ -129,11 +129,11 @@ static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
 }
 
 /* Returns whether a tetrahedron has a neighbour with a label across a facet that is no candidate. */
-static bool is_next_to_label(const brio_tet_labels *l, uint32_t tet) {
+static bool is_next_to_label(const brio_tet_labels *labels, uint32_t tet) {
     for (int i = 0; i < 4; i++) {
-        uint8_t label = l->label[brio_tet_of(l->dual->t.tet[tet].mate[i])];
+        uint8_t label = labels->label[brio_tet_of(labels->dual->t.tet[tet].mate[i])];
         if ((label == BRIO_LABEL_INNER || label == BRIO_LABEL_OUTER) &&
-            !brio_is_candidate(l->cocones, brio_facet_of(tet, i)))
+            !brio_is_candidate(labels->cocones, brio_facet_of(tet, i)))
             return true;
     }
     return false;
@@ -141,30 +141,31 @@ static bool is_next_to_label(const brio_tet_labels *l, uint32_t tet) {
 
 /* Spreads labels in waves. Labels of one wave do not depend on each other, so the result does not depend on the order
  * of the tetrahedra. */
-brio_status brio_tet_labels_spread(brio_context *ctx, brio_tet_labels *l) {
+brio_status brio_tet_labels_spread(brio_context *ctx, brio_tet_labels *labels) {
     brio_status status = BRIO_OK;
     wave w = {0};
-    BRIO_TRY(BRIO_RESERVE(ctx, w.reached, w.capacity, l->num_undecided));
-    for (size_t n = 0; n < l->num_undecided; n++)
-        if (is_next_to_label(l, l->undecided[n])) w.reached[w.size++] = l->undecided[n];
-    for (size_t n = 0; n < w.size; n++) l->label[w.reached[n]] = REACHED;
+    BRIO_TRY(BRIO_RESERVE(ctx, w.reached, w.capacity, labels->num_undecided));
+    for (size_t n = 0; n < labels->num_undecided; n++)
+        if (is_next_to_label(labels, labels->undecided[n])) w.reached[w.size++] = labels->undecided[n];
+    for (size_t n = 0; n < w.size; n++) labels->label[w.reached[n]] = REACHED;
     for (size_t begin = 0, end; begin < w.size; begin = end) {
         end = w.size;
         BRIO_TRY(BRIO_RESERVE(ctx, w.news, w.news_capacity, end - begin));
-        for (size_t n = begin; n < end; n++) w.news[n - begin] = label_of_neighbours(l, w.reached[n]);
-        for (size_t n = begin; n < end; n++) l->label[w.reached[n]] = w.news[n - begin];
-        for (size_t n = begin; n < end; n++) BRIO_TRY(reach_from(ctx, l, w.reached[n], &w));
+        for (size_t n = begin; n < end; n++) w.news[n - begin] = label_of_neighbours(labels, w.reached[n]);
+        for (size_t n = begin; n < end; n++) labels->label[w.reached[n]] = w.news[n - begin];
+        for (size_t n = begin; n < end; n++) BRIO_TRY(reach_from(ctx, labels, w.reached[n], &w));
     }
-    for (size_t n = 0; n < l->num_undecided; n++)
-        if (l->label[l->undecided[n]] == BRIO_LABEL_NONE) l->label[l->undecided[n]] = BRIO_LABEL_INNER;
+    for (size_t n = 0; n < labels->num_undecided; n++)
+        if (labels->label[labels->undecided[n]] == BRIO_LABEL_NONE)
+            labels->label[labels->undecided[n]] = BRIO_LABEL_INNER;
 done:
     brio_release(ctx, w.reached);
     brio_release(ctx, w.news);
     return status;
 }
 
-void brio_tet_labels_free(brio_context *ctx, brio_tet_labels *l) {
-    brio_release(ctx, l->label);
-    brio_release(ctx, l->undecided);
-    *l = (brio_tet_labels){0};
+void brio_tet_labels_free(brio_context *ctx, brio_tet_labels *labels) {
+    brio_release(ctx, labels->label);
+    brio_release(ctx, labels->undecided);
+    *labels = (brio_tet_labels){0};
 }

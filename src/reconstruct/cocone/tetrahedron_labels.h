@@ -17,17 +17,17 @@ typedef struct {
 } brio_tet_labels;
 
 /** Labels each tetrahedron by the majority of its samples. Tetrahedra without a majority get BRIO_LABEL_NONE.
- *  l  The caller sets cocones, dual, turned and watertight, and the rest to 0. Freed with brio_tet_labels_free, on failure
- *     too.
+ *  labels  The caller sets cocones, dual, turned and watertight, and the rest to 0. Freed with brio_tet_labels_free, on
+ *          failure too.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *l);
+brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *labels);
 
 /** Labels the tetrahedra that have BRIO_LABEL_NONE. Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_tet_labels_spread(brio_context *ctx, brio_tet_labels *l);
+brio_status brio_tet_labels_spread(brio_context *ctx, brio_tet_labels *labels);
 
-void brio_tet_labels_free(brio_context *ctx, brio_tet_labels *l);
+void brio_tet_labels_free(brio_context *ctx, brio_tet_labels *labels);
 
 /** Returns the number of the tetrahedron's samples that see it outside, minus the number that see it inside. */
-int brio_tet_vote(const brio_tet_labels *l, size_t tet);
+int brio_tet_vote(const brio_tet_labels *labels, size_t tet);
 
 #endif
