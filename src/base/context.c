@@ -1,4 +1,4 @@
-/* Context: settings, last message, progress. */
+/* The context: settings, last message, progress. */
 #include "base/context.h"
 #include "base/kept.h"
 #include "base/memory.h"
@@ -23,8 +23,8 @@ static void system_free(void *block, void *user) {
     free(block);
 }
 
-/* The most threads that a context takes: more than four for a processor only wait for each other; on few processors a
- * test may want some. */
+/* Returns the most threads that a context takes. More than four threads for a processor only wait for each other. On a
+ * few processors a test may want more: 64 is chosen. */
 static int most_threads(int processors) {
     int most = 4 * processors;
     return most > 64 ? most : 64;
@@ -98,7 +98,7 @@ done:
 brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    pthread_mutex_lock(&ctx->lock); /* threads may fail together */
+    pthread_mutex_lock(&ctx->lock); /* several threads may fail at a time */
     vsnprintf(ctx->message, sizeof ctx->message, format, arguments);
     pthread_mutex_unlock(&ctx->lock);
     va_end(arguments);

@@ -1,6 +1,7 @@
-/* The context behind the public handle, and the ways every other part reports failure, takes memory, and shows
- * progress. Error handling in one shape everywhere: a function keeps `brio_status status = BRIO_OK`, uses BRIO_TRY and
- * BRIO_REQUIRE, which jump to its one label `done:`, and frees its workspace there. */
+/* The context behind the public handle: how all code reports failures, takes memory and reports progress.
+ *
+ * Error handling has one shape. A function that can fail declares `brio_status status = BRIO_OK`. BRIO_TRY and
+ * BRIO_REQUIRE jump to its one label `done:`, where it frees its workspace and returns the status. */
 #ifndef BRIO_BASE_CONTEXT_H
 #define BRIO_BASE_CONTEXT_H
 
@@ -8,6 +9,7 @@
 #include <pthread.h>
 #include <stdbool.h>
 
+/* BRIO_PAGE: sizes of mappings are multiples of this. Both chosen. */
 enum { BRIO_MOST_KEPT = 64, BRIO_PAGE = 1 << 14 };
 
 typedef struct {
@@ -17,15 +19,15 @@ typedef struct {
 
 struct brio_context {
     brio_allocator allocator;
-    bool custom;                       /* allocator is the caller's: no mappings */
-    int threads, most_threads;         /* as set; 0 = all; and the most that can be set */
-    int processors;                    /* that the process might run on when the context was made */
-    struct brio_team *team;            /* the threads, see team.h; behind the context in its block */
-    pthread_mutex_t lock;              /* of the kept mappings and the message */
-    size_t caller_limit;               /* bytes, 0 = none */
-    size_t machine_limit;              /* of the memory cgroup and the machine */
-    size_t live, peak;                 /* bytes of anonymous memory; updated atomically */
-    brio_mapping kept[BRIO_MOST_KEPT]; /* given back by blocks, see kept.h */
+    bool custom;                       /* the allocator is the caller's: no mappings */
+    int threads, most_threads;         /* as set (0: all processors), and the most that can be set */
+    int processors;                    /* processors that the process could run on when the context was made */
+    struct brio_team *team;            /* the threads (team.h); lies behind the context in its block */
+    pthread_mutex_t lock;              /* protects the kept mappings and the message */
+    size_t caller_limit;               /* bytes, 0 for none */
+    size_t machine_limit;              /* bytes: the lesser of the machine's memory and the memory cgroup's limit */
+    size_t live, peak;                 /* bytes of blocks outside scratch files, now and at most; atomic */
+    brio_mapping kept[BRIO_MOST_KEPT]; /* unused mappings, see kept.h */
     int num_kept, keeping;
     size_t kept_bytes;
     char *scratch; /* folder of mapped files, or NULL */
@@ -35,22 +37,25 @@ struct brio_context {
     char message[512];
 };
 
-/** Stores the sentence for the status and returns the status. */
+/** Stores a message in the context and returns the status. Threads may call this together. */
 brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/** Tells the caller how far a stage is; BRIO_ERR_CANCELLED when the caller wants to stop. */
+/** Reports that a fraction of a stage is done. Returns BRIO_OK, or BRIO_ERR_CANCELLED if the callback asked to stop.
+ *  Only the thread that called the library may call this. */
 brio_status brio_progress(brio_context *ctx, const char *stage, double fraction);
 
-/** Seconds of a monotonic clock. */
+/** Returns the seconds of a monotonic clock. */
 double brio_seconds(void);
 
+/** Assigns the result of a call to `status`; jumps to `done` unless it is BRIO_OK. */
 #define BRIO_TRY(call)                                                                                                 \
     do {                                                                                                               \
         status = (call);                                                                                               \
         if (status != BRIO_OK) goto done;                                                                              \
     } while (0)
 
+/** If the condition is false, stores a message, assigns `code` to `status` and jumps to `done`. */
 #define BRIO_REQUIRE(ctx, condition, code, ...)                                                                        \
     do {                                                                                                               \
         if (!(condition)) {                                                                                            \

@@ -1,8 +1,8 @@
-/* The floating-point state of a thread: rounding, treatment of subnormal numbers, trapped exceptions.
+/* The floating-point state of a thread: rounding, subnormal numbers, trapped exceptions.
  *
- * The library's results hold for rounding to nearest with subnormal numbers. A host may have set something else. So every
- * public function that computes is a door: it sets the standard state, and gives the host's state back when it returns.
- * The threads of a team set the standard state when they start. */
+ * The library's results hold for rounding to nearest with subnormal numbers. A host program may have set something
+ * else. So every public function that computes begins with BRIO_DOOR, which sets the standard state and restores the
+ * host's state when the function returns. The threads of a team set the standard state when they start. */
 #ifndef BRIO_BASE_FLOAT_STATE_H
 #define BRIO_BASE_FLOAT_STATE_H
 
@@ -21,13 +21,13 @@
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 typedef unsigned brio_float_state;
-/* all exceptions masked, to nearest, no flush to zero, subnormal numbers kept; the flags are bits 0 to 5 */
+/* all exceptions masked, to nearest, no flush to zero, subnormal numbers kept; bits 0 to 5 are the flags */
 enum { BRIO_FLOAT_STANDARD = 0x1f80, BRIO_FLOAT_FLAGS = 0x3f };
 static inline brio_float_state brio_float_read(void) {
     return _mm_getcsr();
 }
 static inline void brio_float_write(brio_float_state state) {
-    __asm__ volatile("" ::: "memory"); /* nothing that was loaded before is computed after */
+    __asm__ volatile("" ::: "memory"); /* no load from before is used in a computation after */
     _mm_setcsr(state);
     __asm__ volatile("" ::: "memory");
 }
@@ -45,7 +45,7 @@ static inline void brio_float_write(brio_float_state state) {
 }
 #else
 #include <fenv.h>
-typedef int brio_float_state; /* the rounding mode is all that can be asked for here */
+typedef int brio_float_state; /* here only the rounding mode can be read */
 enum { BRIO_FLOAT_STANDARD = FE_TONEAREST, BRIO_FLOAT_FLAGS = 0 };
 static inline brio_float_state brio_float_read(void) {
     return fegetround();
@@ -55,19 +55,19 @@ static inline void brio_float_write(brio_float_state state) {
 }
 #endif
 
-/** Sets the standard state where it is another.   Returns the state that was there. */
+/** Sets the standard state, if another one is set. Returns the state that was set. */
 static inline brio_float_state brio_float_enter(void) {
     brio_float_state host = brio_float_read();
     if ((host & ~(brio_float_state)BRIO_FLOAT_FLAGS) != BRIO_FLOAT_STANDARD) brio_float_write(BRIO_FLOAT_STANDARD);
     return host;
 }
 
-/** Gives the host its state back, with the flags of exceptions that it had. */
+/** Restores the host's state, with the exception flags that the host had. */
 static inline void brio_float_leave(const brio_float_state *host) {
     if (brio_float_read() != *host) brio_float_write(*host);
 }
 
-/** Stands first in every public function that computes. */
+/** The first statement of every public function that computes. */
 #define BRIO_DOOR brio_float_state brio_door __attribute__((unused, cleanup(brio_float_leave))) = brio_float_enter()
 
 #endif

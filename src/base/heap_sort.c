@@ -1,8 +1,9 @@
-/* Sorting in place, without workspace: insertion where there are few, else a heap.
+/* Sorting in place, without workspace: insertion sort for at most FEW entries, otherwise heapsort.
  *
  * Based on: Williams. Algorithm 232: Heapsort. Communications of the ACM 1964. */
 #include "base/sort.h"
 
+/* Chosen. */
 enum { FEW = 24 };
 
 /* --- keys --- */
@@ -16,7 +17,7 @@ static void insert_keys(uint64_t *keys, size_t n) {
     }
 }
 
-/* Restores the heap under `root` after its key has shrunk. */
+/* Restores the heap below `root` after its key has become smaller. */
 static void sift_key_down(uint64_t *keys, size_t root, size_t n) {
     uint64_t moved = keys[root];
     for (size_t child; (child = 2 * root + 1) < n; root = child) {

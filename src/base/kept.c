@@ -1,14 +1,15 @@
-/* Mappings that blocks have given back, kept for the next blocks.
+/* Mappings that blocks have given back, kept for later blocks.
  *
- * What is kept and what is live are never more together than what was live at the peak, so that keeping takes no more
- * memory than the work did without it. */
+ * I1  Outside the functions of this file, kept bytes + live bytes <= peak of live bytes. So keeping mappings needs no
+ *     more memory than the work needed without. */
 #include "base/kept.h"
 #include "base/poison.h"
 #include <sys/mman.h>
 
+/* Most bytes kept outside brio_keep_begin and brio_keep_end. Chosen. */
 static const size_t BETWEEN_CALLS = (size_t)64 << 20;
 
-/* Gives back the last bytes of the mapping in a place. */
+/* Unmaps the last bytes of kept mapping i. */
 static void cut(brio_context *ctx, int i, size_t size) {
     brio_mapping *m = &ctx->kept[i];
     m->size -= size;
@@ -17,7 +18,7 @@ static void cut(brio_context *ctx, int i, size_t size) {
     if (!m->size) *m = ctx->kept[--ctx->num_kept];
 }
 
-/* Leaves at most so many bytes, those of the largest mappings. */
+/* Unmaps kept bytes until at most `most` are left, the smallest mappings first. */
 static void trim(brio_context *ctx, size_t most) {
     while (ctx->kept_bytes > most) {
         int least = 0;
@@ -28,14 +29,14 @@ static void trim(brio_context *ctx, size_t most) {
     }
 }
 
-/* How much may be kept now. */
+/* Returns how many bytes may be kept now. */
 static size_t most_kept(const brio_context *ctx) {
     size_t live = __atomic_load_n(&ctx->live, __ATOMIC_RELAXED), peak = __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED);
     size_t most = peak > live ? peak - live : 0;
     return ctx->keeping || most < BETWEEN_CALLS ? most : BETWEEN_CALLS;
 }
 
-/* The smallest mapping of at least so many bytes, or -1. */
+/* Returns the index of the smallest kept mapping of at least `least` bytes, or -1. */
 static int smallest(const brio_context *ctx, size_t least) {
     int best = -1;
     for (int i = 0; i < ctx->num_kept; i++)

@@ -1,23 +1,25 @@
-/* Mappings that blocks have given back, kept for the next blocks: clearing fresh pages was a tenth of a surface's time. */
+/* Mappings that blocks have given back, kept for later blocks. Measured: without them, clearing fresh pages took a
+ * tenth of the time of a surface. */
 #ifndef BRIO_BASE_KEPT_H
 #define BRIO_BASE_KEPT_H
 
 #include "base/context.h"
 
-/** Takes a mapping out of those that are kept, off the smallest that has so many bytes, a multiple of BRIO_PAGE; NULL when
- *  there is none. Its bytes are what they were. */
+/** Takes `size` bytes, a multiple of BRIO_PAGE, off the smallest kept mapping that has as many. Returns NULL if there
+ *  is none. The bytes have the values that they had. */
 void *brio_kept_take(brio_context *ctx, size_t size);
 
-/** Keeps a mapping that is no longer counted as live, or gives it back to the system. */
+/** Keeps a mapping, or unmaps it if there is no room. The caller has already subtracted it from the live bytes. */
 void brio_kept_give(brio_context *ctx, void *base, size_t size);
 
-/** Gives back what is kept beyond the peak, now that more is live. */
+/** Unmaps what is kept beyond the limit, after more bytes have become live. */
 void brio_kept_make_room(brio_context *ctx);
 
-/** Gives everything back. */
+/** Unmaps all kept mappings. */
 void brio_kept_free(brio_context *ctx);
 
-/** Between these two, which nest, all may be kept that the peak leaves room for; else 64 MiB. */
+/** Between these two calls, which can be nested, the context keeps up to peak - live bytes. Otherwise it keeps at most
+ *  64 MiB of these. */
 void brio_keep_begin(brio_context *ctx);
 void brio_keep_end(brio_context *ctx);
 

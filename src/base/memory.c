@@ -1,11 +1,12 @@
-/* Counted memory: small blocks from the allocator, large ones in mappings that grow without copying.
+/* Counted memory: small blocks from the allocator, large blocks in mappings that grow without copying.
  *
- * Invariants: a block's header, the 64 bytes before it, tells how it was made; a mapped block starts a page; `live` is
- * the sum of the sizes of anonymous blocks.
+ * I1  The header of a block, the 64 bytes before it, says how the block was made.
+ * I2  A mapped block starts at a page.
+ * I3  `live` is the sum of the sizes of all blocks outside scratch files.
  *
- * A fault on a mapped file reads a single page, unless the block is read in sequence: the system would read what its
- * device is set to, up to megabytes, and where memory is short these throw out what is used. What is needed next is
- * asked for where that is known (read_ahead.h). */
+ * A page fault on a scratch file reads one page, unless the block is read in sequence. By default the system would read
+ * as much as its device is set to, up to megabytes. Where memory is short, such reads displace pages in use. Code that
+ * knows what it needs next asks for that (read_ahead.h). */
 #define _GNU_SOURCE
 #include "base/memory.h"
 #include "base/kept.h"
@@ -17,23 +18,25 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+/* HEADER: a cache line. FRONT: the bytes before a mapped block. MAP_FROM: bytes from which blocks are mappings;
+ * chosen. */
 enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = 1 << 20 };
 
 typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
 typedef struct {
-    size_t size;            /* of the whole block, with what is in front of it */
-    size_t used;            /* bytes that were asked for; kept where BRIO_POISON */
+    size_t size;            /* bytes of the block and of what is in front of it */
+    size_t used;            /* bytes that the caller requested; maintained if BRIO_POISON */
     brio_scratch_file file; /* of KIND_FILE */
     block_kind kind;
-    bool cleared; /* it is a new mapping, all zero where nothing was written; never where BRIO_POISON */
+    bool cleared; /* a new mapping, all zero where nothing was written; never set if BRIO_POISON */
 } block_header;
 
 static block_header *header_of(const void *block) {
     return (block_header *)((char *)block - HEADER);
 }
 
-/* The bytes in front of a block: its header, and in mappings what fills the page. */
+/* Returns the bytes in front of a block: its header and, in mappings, the rest of the page. */
 static size_t front_of(block_kind kind) {
     return kind == KIND_HEAP ? HEADER : FRONT;
 }
@@ -81,7 +84,7 @@ static size_t number_in_file(const char *path) {
     return read == 1 && bytes ? (size_t)bytes : SIZE_MAX;
 }
 
-/* The least limit over the process' memory cgroup and its ancestors. */
+/* Returns the least limit of the process' memory cgroup and its ancestors, or SIZE_MAX. */
 static size_t cgroup_memory(void) {
     size_t least = SIZE_MAX;
     char line[512];
@@ -123,13 +126,13 @@ static size_t round_up(size_t size, size_t unit) {
     return (size + unit - 1) / unit * unit;
 }
 
-/* Of a mapping for so many bytes and a header. */
+/* Returns the bytes of a mapping for a block of `size` bytes, header included. */
 static size_t mapped_size(size_t size) {
     return round_up(size - HEADER + FRONT, BRIO_PAGE);
 }
 
-/* Pages of the usual size: clearing a huge page at its first touch drives everything else out of the caches, which cost
- * the triangulation of four million points a fifth of its time (docs/performance.md). */
+/* Uses pages of the usual size: clearing a huge page at its first touch displaces everything else from the caches.
+ * Measured: this cost the triangulation of four million points a fifth of its time (docs/performance.md). */
 static void *map_anonymous(size_t size) {
     void *base = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     return base == MAP_FAILED ? NULL : base;
@@ -149,7 +152,7 @@ static void *map_file(brio_context *ctx, size_t size, brio_scratch_file *file, b
     return NULL;
 }
 
-/* A mapping, one that was kept where there is one; *cleared: it is new and all zero. NULL when there is no memory. */
+/* Returns a kept mapping or a new one; NULL if there is no memory.   cleared  set to true if it is new and all zero. */
 static void *map_memory(brio_context *ctx, size_t size, bool *cleared) {
     void *base = brio_kept_take(ctx, size);
     *cleared = !base && !BRIO_POISON;
@@ -168,8 +171,8 @@ static size_t bytes_in(const void *block) {
     return header_of(block)->size - front_of(header_of(block)->kind);
 }
 
-/* Makes the first `used` bytes usable, the new ones filled with the pattern of poison.h, and hides the rest of a
- * mapping. */
+/* Makes the first `used` bytes usable, and hides the rest of a mapping. Fills new bytes with the pattern of
+ * poison.h. */
 static void settle(void *block, size_t used) {
     if (!BRIO_POISON) return;
     block_header *h = header_of(block);
@@ -183,7 +186,8 @@ static brio_status refuse(brio_context *ctx, size_t size) {
                      brio_context_memory(ctx), brio_memory_limit(ctx));
 }
 
-/* A new block of so many bytes with its header; in a scratch file where the context has these and it may be. */
+/* Makes a block of `size` bytes, header included. The block is in a scratch file if the context has a folder for them,
+ * unless `in_memory` or too small. */
 static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_status *status) {
     block_header h = {.size = size, .file = {-1, -1}, .kind = KIND_HEAP};
     char *base = NULL;
@@ -259,7 +263,7 @@ brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, cons
 
 /* --- blocks that grow --- */
 
-/* Grows a mapping, or shrinks that of a file, in place of copying it. */
+/* Grows a mapping, or shrinks the mapping of a file, without copying. */
 static void *block_remap(brio_context *ctx, void *block, size_t target, brio_status *status) {
     block_header h = *header_of(block);
     bool grows = target > h.size, file = h.kind == KIND_FILE;
@@ -320,7 +324,7 @@ static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_sta
     return base + HEADER;
 }
 
-/* Bytes of a block with its header. */
+/* Computes the bytes of a block, header included. Returns false if they overflow. */
 static bool block_bytes(brio_context *ctx, size_t count, size_t size, size_t *bytes, brio_status *status) {
     bool fits = !__builtin_mul_overflow(count, size, bytes) && *bytes <= SIZE_MAX / 2;
     if (!fits) *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "out of memory: %zu objects of %zu bytes", count, size);
@@ -334,7 +338,7 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
     if (!block) return block_new(ctx, bytes, false, status);
     block_kind kind = header_of(block)->kind;
     bool mapped = !ctx->custom && bytes >= MAP_FROM;
-    /* these sanitizers do not see mremap: what they know of the old addresses would not move along */
+    /* the sanitizers of threads and memory do not see mremap: their shadow memory would stay at the old addresses */
     if (kind != KIND_HEAP && mapped && !BRIO_TSAN && !BRIO_MSAN)
         block = block_resize_mapped(ctx, block, bytes, status);
     else if (kind == KIND_HEAP && !mapped)

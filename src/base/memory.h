@@ -1,46 +1,50 @@
 /* All memory of the library comes from here and is counted against the context's limit.
  *
- * Small blocks come from the context's allocator. Large ones (from 1 MiB on, with the system's allocator) are mappings
- * of their own, or of an unlinked file in the scratch folder; they grow by mremap, which moves pages and copies
- * nothing. Mappings that are given back are kept for later blocks (kept.h). A header of 64 bytes before each block holds its
- * size, so the block stays aligned to a cache line; large blocks start a page. */
+ * Small blocks come from the context's allocator. With the system's allocator, blocks from 1 MiB on are mappings,
+ * anonymous or of unlinked files in the scratch folder. Mappings grow by mremap, which moves pages and copies nothing.
+ * Anonymous mappings that are released are kept for later blocks (kept.h). Before each block is a header of 64 bytes,
+ * so blocks are aligned to a cache line. Mapped blocks start at a page. */
 #ifndef BRIO_BASE_MEMORY_H
 #define BRIO_BASE_MEMORY_H
 
 #include "base/context.h"
 
-/** Makes block hold count elements of `size` bytes, keeping what it held; NULL makes a new one. On failure *status
- *  tells and the old block stays. New bytes are not set. */
+/** Resizes a block to count elements of `size` bytes and keeps its contents; block NULL makes a new block. New bytes
+ *  are not set. Returns the block. On failure sets *status, returns NULL and leaves the old block as it was. */
 void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, brio_status *status);
 
 /** Frees a block; NULL is accepted. */
 void brio_release(brio_context *ctx, void *block);
 
-/** Memory that this process may use: the least of the machine's and its cgroups' (v1 and v2). */
+/** Returns the memory that this process may use: the least of the machine's memory and the limits of its cgroups (v1
+ *  and v2). */
 size_t brio_machine_memory(void);
 
-/** The same for a context, which may allow less. */
+/** Returns the lesser of the machine's memory, as above when the context was made, and the caller's limit. */
 size_t brio_memory_limit(const brio_context *ctx);
 
-/** The block will be read from its beginning to its end: a fault on its scratch file then reads on. Other blocks' faults
- *  read a single page. Nothing for blocks in memory. */
+/** Announces that the block will be read from its beginning to its end: a page fault on its scratch file then reads
+ *  ahead. No effect on blocks in memory. */
 void brio_expect_sequence(const void *block);
 
-/** What holds for every block at first, again. */
+/** Ends brio_expect_sequence: a page fault reads one page again, as it does for new blocks. */
 void brio_expect_random(const void *block);
 
-/** Copies the bytes [offset, offset + size) of a block. Those of a scratch file come and go by whole calls, without a
- *  fault for each page, and do not stay in memory: for what is read or written in sequence. The other side is memory. */
+/** Copies the bytes [offset, offset + size) of a block from or to memory, for data that is used once, in sequence. A
+ *  scratch file is read or written by system calls, without a page fault for each page, and its bytes do not stay in
+ *  memory.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset, void *to, size_t size);
 brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, const void *from, size_t size);
 
-/** Whether, from here on, copies of whole pages, which start at a page of the block and of the memory on the other side,
- *  pass the system's cache by. Nothing for blocks in memory. */
+/** Sets whether brio_block_read and brio_block_write bypass the system's cache from now on, where block and memory both
+ *  start at a page and whole pages are copied. No effect on blocks in memory. */
 void brio_block_direct(void *block, bool direct);
 
-/** These bytes will be read soon. */
+/** Announces that these bytes will be read soon. */
 void brio_block_expect(const void *block, size_t offset, size_t size);
 
+/* The functions below take a pointer to the caller's pointer, of any type. On failure the pointer stays as it was. */
 static inline brio_status brio_resize_to(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
     brio_status status = BRIO_OK;
     void *block;
@@ -53,17 +57,18 @@ static inline brio_status brio_resize_to(brio_context *ctx, void *pointer_to_blo
 brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count, size_t size);
 brio_status brio_in_memory(brio_context *ctx, void *pointer_to_block, size_t count, size_t size);
 
-/** p = room for count elements of *p; bytes not set. */
+/** Sets p to a new block of count elements of *p. The bytes are not set. On failure p is NULL. */
 #define BRIO_ALLOC(ctx, p, count) ((p) = NULL, brio_resize_to(ctx, &(p), count, sizeof *(p)))
-/** The same in memory, even where big arrays are in scratch files, and from a page on: for workspace of a bounded
- *  size, which is not resized. */
+/** BRIO_ALLOC in memory, not in a scratch file: a mapping, which starts at a page, whatever its size. For workspace of
+ *  bounded size, which is not resized. */
 #define BRIO_ALLOC_IN_MEMORY(ctx, p, count) ((p) = NULL, brio_in_memory(ctx, &(p), count, sizeof *(p)))
-/** p = room for count elements of *p, all bytes 0. */
+/** BRIO_ALLOC with all bytes 0. */
 #define BRIO_ALLOC_ZERO(ctx, p, count) ((p) = NULL, brio_zeroed(ctx, &(p), count, sizeof *(p)))
-/** p = the same block with room for count elements. */
+/** Resizes the block p to count elements of *p. */
 #define BRIO_RESIZE(ctx, p, count) brio_resize_to(ctx, &(p), count, sizeof *(p))
 
-/** Makes room for at least `need` elements in a growing array: doubles *capacity as often as needed. */
+/** Makes room for at least `need` elements in a growing array: doubles *capacity until it suffices, starting from
+ *  16. */
 #define BRIO_RESERVE(ctx, p, capacity, need)                                                                           \
     ((size_t)(need) <= (size_t)(capacity) ? BRIO_OK : brio_reserve(ctx, &(p), &(capacity), need, sizeof *(p)))
 brio_status brio_reserve(brio_context *ctx, void *pointer_to_block, size_t *capacity, size_t need, size_t size);

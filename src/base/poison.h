@@ -1,9 +1,9 @@
-/* What debug and sanitizer builds do to memory that holds nothing: the sanitizers do not see into the library's own
- * mappings, which are kept and handed out again.
+/* Memory without contents in debug and sanitizer builds. The sanitizers do not see inside the library's own mappings,
+ * which are kept and reused.
  *
- * Bytes that are handed out or grown into are filled with a pattern, which is no number, no index of anything and no
- * small count. Bytes that a block has given back are poisoned: the address sanitizer stops at the first touch, and in
- * other builds they hold the pattern. The memory sanitizer takes filled bytes as never written. */
+ * Bytes of new blocks, and bytes by which blocks grow, are filled with a pattern that is no number, no valid index and
+ * no small count. Bytes that a block has given back are poisoned: the address sanitizer stops at the first access, and
+ * in other builds they hold the pattern. The memory sanitizer treats filled bytes as uninitialised. */
 #ifndef BRIO_BASE_POISON_H
 #define BRIO_BASE_POISON_H
 
@@ -26,13 +26,13 @@
 #define BRIO_POISON 0
 #endif
 
-/** Makes bytes usable, with nothing in them. */
+/** Makes bytes usable and fills them with the pattern. */
 static inline void brio_poison_fill(void *bytes, size_t size) {
     if (!BRIO_POISON) return;
 #if BRIO_ASAN
     ASAN_UNPOISON_MEMORY_REGION(bytes, size);
 #endif
-    const wchar_t pattern = 0x7ffda5a5; /* as two floats, or a double: not a number */
+    const wchar_t pattern = 0x7ffda5a5; /* two floats or a double of these bytes are NaN */
     uint8_t *at = bytes, *end = at + size;
     for (; at < end && (uintptr_t)at % sizeof pattern; at++) *at = 0xa5;
     wmemset((wchar_t *)(void *)at, pattern, (size_t)(end - at) / sizeof pattern);
@@ -42,7 +42,7 @@ static inline void brio_poison_fill(void *bytes, size_t size) {
 #endif
 }
 
-/** Makes bytes unusable until they are filled or shown. */
+/** Makes bytes unusable until brio_poison_fill or brio_poison_show. */
 static inline void brio_poison_hide(void *bytes, size_t size) {
     if (!BRIO_POISON) return;
     brio_poison_fill(bytes, size);
@@ -51,7 +51,7 @@ static inline void brio_poison_hide(void *bytes, size_t size) {
 #endif
 }
 
-/** Makes bytes usable as they are. */
+/** Makes bytes usable and leaves them as they are. */
 static inline void brio_poison_show(void *bytes, size_t size) {
 #if BRIO_ASAN
     ASAN_UNPOISON_MEMORY_REGION(bytes, size);
@@ -59,7 +59,7 @@ static inline void brio_poison_show(void *bytes, size_t size) {
     (void)bytes, (void)size;
 }
 
-/** munmap, after which the addresses may serve others. */
+/** Unmaps memory; the system may then reuse the addresses. */
 static inline void brio_unmap(void *base, size_t size) {
     brio_poison_show(base, size);
     munmap(base, size);

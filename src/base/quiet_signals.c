@@ -1,4 +1,4 @@
-/* Writes that cannot end the process: SIGPIPE and SIGXFSZ are blocked round a call and taken back after it. */
+/* Writes that cannot end the process: SIGPIPE and SIGXFSZ are blocked during a call and removed after it. */
 #define _GNU_SOURCE
 #include "base/quiet_signals.h"
 #include <errno.h>
@@ -17,7 +17,8 @@ void brio_signals_block(brio_quiet_signals *quiet) {
     pthread_sigmask(SIG_BLOCK, &both, &quiet->mask);
 }
 
-/* Takes one pending signal back. It does not wait: another thread may have taken a signal sent to the process. */
+/* Removes one pending signal. Does not wait, because another thread may have received a signal that was sent to the
+ * process. */
 static void take_back(int signal) {
     const struct timespec no_time = {0, 0};
     sigset_t one;

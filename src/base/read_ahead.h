@@ -1,7 +1,8 @@
-/* Reading ahead in scratch files, by stretches of 32 KiB.
+/* Reading ahead in scratch files, in stretches of 32 KiB.
  *
- * A fault reads one page and waits for the disk (memory.h). Who knows what comes next says so here, and it is read
- * meanwhile. A stretch that was asked for a short while ago is not asked for again. */
+ * A page fault reads one page and waits for the disk (memory.h). Code that knows the next address passes it to
+ * brio_expect, and the system reads that stretch meanwhile. A stretch is not requested again within BRIO_STRETCH_KEEPS
+ * steps. */
 #ifndef BRIO_BASE_READ_AHEAD_H
 #define BRIO_BASE_READ_AHEAD_H
 
@@ -10,11 +11,13 @@
 #include <string.h>
 #include <sys/mman.h>
 
+/* All chosen. */
 enum { BRIO_STRETCH_BITS = 15, BRIO_STRETCHES = 2048, BRIO_STRETCH_KEEPS = 1 << 14 };
 
 typedef struct {
-    bool active;  /* arrays are in scratch files */
-    uint32_t now; /* counts the steps of the work */
+    bool active;  /* whether arrays are in scratch files */
+    uint32_t now; /* the caller counts the steps of its work here */
+    /* a hash table: the stretch that was requested last at each place, and the step when */
     uint32_t when[BRIO_STRETCHES];
     uintptr_t asked[BRIO_STRETCHES];
 } brio_read_ahead;
@@ -24,7 +27,7 @@ static inline void brio_read_ahead_start(brio_read_ahead *r, const brio_context 
     r->active = ctx->scratch != NULL;
 }
 
-/** What is at the address will be needed soon. */
+/** Announces that the memory at an address will be needed soon. */
 static inline void brio_expect(brio_read_ahead *r, const void *address) {
     if (!r->active) return;
     uintptr_t stretch = (uintptr_t)address >> BRIO_STRETCH_BITS;

@@ -1,5 +1,5 @@
-/* Random numbers that follow from a seed alone: SplitMix64, a bijective mixer of a counter, so that the number of an
- * index needs no state and is the same for any number of threads.
+/* Random numbers that depend on a seed and an index only: SplitMix64, a bijective mixer of a counter. The number of an
+ * index needs no state, so it is the same for every number of threads.
  *
  * Based on: Steele, Lea, Flood. Fast splittable pseudorandom number generators. OOPSLA 2014. */
 #ifndef BRIO_BASE_RNG_H
@@ -14,7 +14,7 @@ static inline uint64_t brio_mix(uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/** The random number of an index. */
+/** Returns the random number of an index. */
 static inline uint64_t brio_hash(uint64_t seed, uint64_t index) {
     return brio_mix(seed + brio_mix(index));
 }
@@ -31,12 +31,12 @@ static inline uint64_t brio_rng_next(brio_rng *rng) {
     return brio_mix(rng->state++);
 }
 
-/** Uniform in [0, 1). */
+/** Returns a number that is uniform in [0, 1). */
 static inline double brio_rng_double(brio_rng *rng) {
     return (double)(brio_rng_next(rng) >> 11) * 0x1p-53;
 }
 
-/** Uniform in [0, n), n < 2^32. */
+/** Returns a number that is uniform in [0, n), n < 2^32. */
 static inline uint32_t brio_rng_below(brio_rng *rng, uint32_t n) {
     return (uint32_t)(((brio_rng_next(rng) >> 32) * (uint64_t)n) >> 32);
 }

@@ -1,4 +1,4 @@
-/* Which sanitizers this build is for: 1 or 0 each. */
+/* The sanitizers of this build: each macro is 1 or 0. */
 #ifndef BRIO_BASE_SANITIZERS_H
 #define BRIO_BASE_SANITIZERS_H
 

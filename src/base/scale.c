@@ -14,7 +14,7 @@ typedef struct {
 static void scale_part(void *user, size_t begin, size_t end, int thread) {
     const scaling *s = user;
     bool by_product =
-        s->exponent > -1000 && s->exponent < 1000; /* the factor is a normal number, the result the same */
+        s->exponent > -1000 && s->exponent < 1000; /* the factor is a normal number, so the product equals ldexp */
     double factor = by_product ? brio_power_of_two(s->exponent) : 0;
     (void)thread;
     for (size_t i = begin; i < end; i++)

@@ -5,7 +5,7 @@
 #include "base/context.h"
 #include <string.h>
 
-/** 2^exponent for the exponents of normal numbers, -1022 to 1023, without a call. */
+/** Returns 2^exponent for exponents of normal numbers, -1022 to 1023, without a call. */
 static inline double brio_power_of_two(int exponent) {
     uint64_t bits = (uint64_t)(exponent + 1023) << 52;
     double x;
@@ -13,7 +13,7 @@ static inline double brio_power_of_two(int exponent) {
     return x;
 }
 
-/** out[i] = x[i] 2^exponent, i < n, -0 made 0, by all threads; out may be x. */
+/** Sets out[i] to x[i] * 2^exponent for i < n, and -0 to 0. Uses all threads. `out` may be x. */
 void brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out);
 
 #endif

@@ -1,8 +1,8 @@
-/* Scratch files: room on disk, and transfers by whole calls.
+/* Scratch files: space on disk, and transfers by system calls.
  *
- * What is read or written once, in sequence, has no use for the system's cache, which costs a copy, and room that other
- * arrays need: transfers of whole pages pass it by where the file system can do that. Otherwise they go through the
- * cache, and what has been transferred is let go at once. */
+ * Data that is read or written once, in sequence, does not profit from the system's cache, which costs a copy and
+ * memory that other arrays need. So transfers of whole pages bypass the cache, where the file system can do that. Other
+ * transfers go through the cache, and their pages are released at once. */
 #define _GNU_SOURCE
 #include "base/scratch_file.h"
 #include "base/quiet_signals.h"
@@ -33,13 +33,13 @@ brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file 
     *out = (brio_scratch_file){file, -1};
     brio_status status = brio_scratch_grow(ctx, out, size);
     if (status != BRIO_OK) brio_scratch_close(out);
-    /* a fault reads a single page unless the block is read in sequence, see memory.c */
+    /* a page fault reads one page unless the block is read in sequence, see memory.c */
     if (status == BRIO_OK) posix_fadvise(file, 0, 0, POSIX_FADV_RANDOM);
     return status;
 }
 
-/* Where the file system cannot allocate, the C library writes a byte to each block, and a limit on the size of files
- * raises a signal in either case. */
+/* Allocates space. The signals are blocked, because a limit on the size of files raises one. Where the file system
+ * cannot allocate, the C library writes a byte to each block instead. */
 static int allocate(int file, size_t offset, size_t size) {
     brio_quiet_signals quiet;
     brio_signals_block(&quiet);
@@ -48,7 +48,7 @@ static int allocate(int file, size_t offset, size_t size) {
     return error;
 }
 
-/* Changes the size of a file that shrinks. Room that is not given back is lost only until the file is closed. */
+/* Shrinks a file. If this fails, the space is lost only until the file is closed. */
 static void cut(int file, size_t size) {
     brio_quiet_signals quiet;
     brio_signals_block(&quiet);
@@ -56,8 +56,9 @@ static void cut(int file, size_t size) {
     brio_signals_restore(&quiet);
 }
 
-/* Allocates in pieces of PIECE bytes. A signal that the process handles ends a call early, and some file systems then
- * give back all that the call had allocated: a timer's signals could keep one call for all bytes from ever ending. */
+/* Allocates in pieces of PIECE bytes (chosen). A signal that the process handles ends a call early, and some file
+ * systems then give back all that the call had allocated. With one call for all bytes, the signals of a timer could
+ * keep it from ever ending. */
 brio_status brio_scratch_grow(brio_context *ctx, const brio_scratch_file *f, size_t size) {
     enum { PIECE = 1 << 24 };
     struct stat facts;
@@ -101,11 +102,11 @@ static bool whole_pages(size_t offset, const void *memory, size_t size) {
 /* Bytes to read or to write. */
 typedef struct {
     size_t offset, size;
-    char *in;        /* where bytes that are read go, or NULL */
-    const char *out; /* where bytes that are written come from, or NULL */
+    char *in;        /* destination of a read, or NULL */
+    const char *out; /* source of a write, or NULL */
 } transfer;
 
-/* One call, which may move less than it was asked to. */
+/* Makes one system call, which may move only some of the bytes. */
 static ssize_t move_some(int file, const transfer *t) {
     if (t->in) return pread(file, t->in, t->size, (off_t)t->offset);
     brio_quiet_signals quiet;
@@ -115,7 +116,7 @@ static ssize_t move_some(int file, const transfer *t) {
     return n;
 }
 
-/* Moves all bytes.   direct  receives whether they went past the cache. */
+/* Moves all bytes.   direct  set to whether they bypassed the cache. */
 static brio_status move_all(brio_context *ctx, const brio_scratch_file *f, transfer t, bool *direct) {
     *direct = f->direct >= 0;
     while (t.size > 0) {
@@ -134,8 +135,9 @@ static brio_status move_all(brio_context *ctx, const brio_scratch_file *f, trans
     return BRIO_OK;
 }
 
-/* Has the stretch that ends here written, waits for the one before and lets its pages go: what is written in sequence
- * would otherwise fill the memory with pages that have to be written before they can be taken. */
+/* Starts writing each stretch that ends between `begin` and `end`, waits for the stretch before it, and releases that
+ * stretch's pages. Otherwise sequential writes would fill memory with pages that cannot be reused before they are
+ * written. STRETCH is chosen. */
 static void write_behind(int file, size_t begin, size_t end) {
     enum { STRETCH = 1 << 22 };
     for (size_t at = (begin / STRETCH + 1) * STRETCH; at <= end; at += STRETCH) {

@@ -1,9 +1,10 @@
-/* Least-significant-digit radix sorts: of pairs, of items, of rows by their first number. */
+/* Least-significant-digit radix sorts of pairs and of items, and a sort of rows by their first number. */
 #include "base/sort.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include <string.h>
 
+/* DIGIT: bits sorted in a pass. Both chosen. */
 enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PAIRS_A_THREAD = 1 << 12 };
 
 typedef struct {
@@ -11,8 +12,8 @@ typedef struct {
     uint32_t *value;
 } pairs;
 
-/* Turns each thread's counts into where it writes: all threads' of one digit, then of the next; false when all keys
- * share this digit. */
+/* Replaces each thread's counts by the places where the thread writes: all threads for one digit, then all for the next
+ * digit. Returns false if all keys have one digit. */
 static bool first_positions(size_t (*count)[BUCKETS], int threads, size_t n) {
     size_t sum = 0;
     for (int b = 0; b < BUCKETS; b++) {
@@ -27,17 +28,17 @@ static bool first_positions(size_t (*count)[BUCKETS], int threads, size_t n) {
     return true;
 }
 
-/* What the members of a sort of pairs share. */
+/* What the threads of a sort of pairs share. */
 typedef struct {
     pairs given, spare;
     size_t n;
     int bits;
-    size_t (*count)[BUCKETS]; /* of each thread */
-    bool moved;               /* the last digit moved the pairs */
-    bool in_spare;            /* where the pairs are in the end */
+    size_t (*count)[BUCKETS]; /* one for each thread */
+    bool moved;               /* whether the last digit moved the pairs */
+    bool in_spare;            /* whether the sorted pairs are in `spare` */
 } pair_sort;
 
-/* One digit, from one room to the other; every member calls this. Leaves s->moved. */
+/* Sorts by one digit, from one array to the other. Every thread calls this. Sets s->moved. */
 static void sort_pairs_digit(pair_sort *s, pairs from, pairs to, int shift, const brio_member *m) {
     size_t begin = brio_part(s->n, m->thread, m->threads), end = brio_part(s->n, m->thread + 1, m->threads);
     size_t *mine = s->count[m->thread];
@@ -60,7 +61,7 @@ static void sort_pairs(void *user, const brio_member *m) {
     for (int shift = 0; shift < s->bits; shift += DIGIT) {
         sort_pairs_digit(s, in_spare ? s->spare : s->given, in_spare ? s->given : s->spare, shift, m);
         in_spare ^= s->moved;
-        brio_barrier(m); /* s->moved has been read */
+        brio_barrier(m); /* every thread has read s->moved */
     }
     if (m->thread == 0) s->in_spare = in_spare;
 }
@@ -98,7 +99,8 @@ static void insert_items(uint64_t *items, size_t n) {
     }
 }
 
-/* Turns each thread's counts into where it writes: all threads' of one digit, then of the next. */
+/* Replaces each thread's counts by the places where the thread writes: all threads for one digit, then all for the next
+ * digit. */
 static void first_places(size_t (*count)[ITEM_BUCKETS], int threads) {
     size_t sum = 0;
     for (int b = 0; b < ITEM_BUCKETS; b++)
@@ -109,15 +111,15 @@ static void first_places(size_t (*count)[ITEM_BUCKETS], int threads) {
         }
 }
 
-/* What the members of a sort of items share. */
+/* What the threads of a sort of items share. */
 typedef struct {
     uint64_t *items, *spare;
     size_t n;
     int passes;
-    size_t (*count)[ITEM_BUCKETS]; /* of each thread */
+    size_t (*count)[ITEM_BUCKETS]; /* one for each thread */
 } item_sort;
 
-/* One digit; every member calls this. */
+/* Sorts by one digit. Every thread calls this. */
 static void sort_digit(const item_sort *s, int pass, const brio_member *m) {
     const uint64_t *from = pass % 2 ? s->spare : s->items;
     uint64_t *to = pass % 2 ? s->items : s->spare;

@@ -1,4 +1,4 @@
-/* Sentences for statuses. */
+/* A sentence for each status. */
 #include "brio/brio.h"
 
 const char *brio_status_string(brio_status status) {

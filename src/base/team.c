@@ -1,13 +1,13 @@
-/* A team of threads: created when they are first needed, asleep between two runs.
+/* A team of threads, created when they are first needed, asleep between runs.
  *
- * Everything that a thread waits for is a gate, a number that another thread changes: the start of a run (one gate for
- * each thread), the barrier, which also ends a run. A thread that waits looks at the number for a few microseconds and
- * then sleeps on a condition variable, so that a waiting team costs nothing on a busy machine.
+ * A thread waits at a gate, a number that another thread changes. Each thread has a gate for the start of a run. The
+ * barrier is a gate, too, and ends a run. A waiting thread reads the number for a few microseconds, then sleeps on a
+ * condition variable, so that a waiting team costs nothing on a busy machine.
  *
- * The job's fields are written by member 0 before it changes the start gates, and read by members after; the barrier
- * at the end of a run orders those reads before the next run's writes.
- *
- * After a fork the child has a copy of the team without its threads. The child forgets them, and creates its own. */
+ * I1  Member 0 writes `work`, `user` and the members before it changes the start gates; the other members read them
+ *     after. The barrier at the end of a run orders these reads before the writes of the next run.
+ * I2  After a fork, the child has a copy of the team without its threads. The child forgets them and creates new
+ * ones. */
 #define _GNU_SOURCE
 #include "base/team.h"
 #include "base/float_state.h"
@@ -19,9 +19,11 @@
 #include <string.h>
 #include <unistd.h>
 
-/* LOOKS: about 5 us, less than it takes to wake a thread. */
+/* LOOKS: reads of a gate before sleeping, about 5 us together, which is less than waking a thread takes. LINE: bytes of
+ * a cache line. */
 enum { LOOKS = 256, LINE = 64 };
-/* Frames are several times larger in builds for the sanitizers and in those without optimization. */
+/* Bytes of a thread's stack; chosen. Stack frames are several times larger in sanitizer builds and without
+ * optimization. */
 #if BRIO_ASAN || BRIO_TSAN || BRIO_MSAN || !defined(__OPTIMIZE__)
 static const size_t STACK = (size_t)4 << 20;
 #else
@@ -33,7 +35,7 @@ typedef struct {
     int sleepers;
     pthread_mutex_t lock;
     pthread_cond_t changed;
-    char apart[LINE]; /* from what other threads write */
+    char apart[LINE]; /* keeps what other threads write on another cache line */
 } gate;
 
 typedef struct {
@@ -44,14 +46,14 @@ typedef struct {
 } thread;
 
 struct brio_team {
-    int size;       /* threads there are, the caller's included */
-    pid_t process;  /* that the threads belong to */
-    bool busy;      /* a run is going on */
-    int processors; /* a member that waits looks first where each member of its run has a processor */
+    int size;       /* number of threads, the caller's included */
+    pid_t process;  /* the process of the threads */
+    bool busy;      /* whether a run is going on */
+    int processors; /* waiting threads read a gate before they sleep only if a run has at most as many members */
     brio_work_fn work;
     void *user;
     gate barrier;
-    int arrived; /* members at the barrier */
+    int arrived; /* members that have arrived at the barrier */
     thread thread[];
 };
 
@@ -69,8 +71,8 @@ static void gate_free(gate *g) {
     pthread_mutex_destroy(&g->lock);
 }
 
-/* The order of the two stores and two loads in gate_change and gate_sleep is sequential: either the sleeper sees the new
- * value, or the changer sees the sleeper. */
+/* The stores and loads of `value` and `sleepers` in gate_change and gate_sleep are sequentially consistent: either the
+ * sleeper sees the new value, or gate_change sees the sleeper. */
 static void gate_change(gate *g) {
     __atomic_add_fetch(&g->value, 1, __ATOMIC_SEQ_CST);
     if (!__atomic_load_n(&g->sleepers, __ATOMIC_SEQ_CST)) return;
@@ -108,7 +110,7 @@ static void gate_wait(gate *g, unsigned old, bool looks) {
 void brio_barrier(const brio_member *member) {
     brio_team *team = member->team;
     if (!team) return;
-    int threads = member->threads; /* read before arriving: then the next run may begin, and write another number */
+    int threads = member->threads; /* read before arriving: after the last arrival the next run may write it */
     bool looks = threads <= team->processors;
     unsigned old = __atomic_load_n(&team->barrier.value, __ATOMIC_ACQUIRE);
     if (__atomic_add_fetch(&team->arrived, 1, __ATOMIC_ACQ_REL) == threads) {
@@ -119,7 +121,7 @@ void brio_barrier(const brio_member *member) {
     }
 }
 
-/* A thread's life: runs what it is given until it is given nothing. */
+/* The function of a thread: does the work of each run until a run has none. */
 static void *live(void *argument) {
     thread *self = argument;
     brio_team *team = self->team;
@@ -136,7 +138,8 @@ static void *live(void *argument) {
     return NULL;
 }
 
-/* Creates one more thread, which takes no signals: the host's handlers run in the host's threads. */
+/* Creates one more thread. The thread takes no signals, so the host's handlers run in the host's threads. Returns
+ * whether the system created it. */
 static bool grow(brio_team *team) {
     thread *t = &team->thread[team->size];
     pthread_attr_t attributes;
@@ -157,7 +160,7 @@ static bool grow(brio_team *team) {
     return created;
 }
 
-/* A child process has none of its parent's threads. */
+/* Resets the team in a child process, which has none of its parent's threads. */
 static void forget_other_process(brio_team *team) {
     pid_t process = getpid();
     if (process == team->process) return;
@@ -215,7 +218,7 @@ int brio_threads(brio_context *ctx, size_t n, size_t least) {
 
 void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user) {
     brio_team *team = ctx->team;
-    assert(threads == 1 || (threads <= team->size && !team->busy)); /* threads is what brio_threads gave */
+    assert(threads == 1 || (threads <= team->size && !team->busy)); /* threads is what brio_threads returned */
     if (threads > team->size) threads = team->size;
     if (threads < 2 || team->busy) {
         work(user, &(brio_member){NULL, 0, 1});

@@ -1,8 +1,8 @@
-/* The threads of a context, and the loops that they share.
+/* The threads of a context, and loops that they share.
  *
- * A context owns a team. Member 0 is the thread that calls the library; the team creates the others when work first asks
- * for them, and keeps them, asleep, until the context is freed. Where the system refuses a thread, the team is smaller.
- * Work that a member starts from within work runs in that member alone. */
+ * A context owns a team. Member 0 is the thread that calls the library. The team creates the other threads when they
+ * are first needed and keeps them, asleep, until the context is freed. If the system refuses a thread, the team is
+ * smaller. A run that a member starts within a run uses that member only. */
 #ifndef BRIO_BASE_TEAM_H
 #define BRIO_BASE_TEAM_H
 
@@ -10,54 +10,55 @@
 
 typedef struct brio_team brio_team;
 
-/** One thread of a team that runs something together. */
+/** One thread of a run. */
 typedef struct brio_member {
-    brio_team *team; /* NULL for a member that is alone */
+    brio_team *team; /* NULL in a run of one member */
     int thread;      /* 0 to threads - 1; 0 is the thread that called */
-    int threads;     /* members of this run */
+    int threads;     /* the number of members in the run */
 } brio_member;
 
 typedef void (*brio_work_fn)(void *user, const brio_member *member);
 
-/** The body of a loop over indices: does [begin, end). `thread` is the member's number. */
+/** The body of a loop over indices: works on [begin, end).   thread  the number of the member. */
 typedef void (*brio_part_fn)(void *user, size_t begin, size_t end, int thread);
 
-/** The size in bytes of the memory for a team of at most `most` threads. */
+/** Returns the bytes of memory for a team of at most `most` threads. */
 size_t brio_team_bytes(int most);
 
-/** Makes a team with no thread but the caller's, in memory of that many bytes. */
+/** Makes a team of the caller's thread only.   memory  brio_team_bytes(most) bytes, owned by the caller. */
 brio_team *brio_team_begin(void *memory, int most, int processors);
 
-/** Ends the threads of a team. Its memory is the caller's. */
+/** Ends the threads of a team. Does not free its memory. */
 void brio_team_end(brio_team *team);
 
-/** Processors that this process may run on, at least 1. */
+/** Returns the number of processors that this process may run on, at least 1. */
 int brio_processors(void);
 
-/** The number of threads for n items of which `least` are worth a thread: at least 1, at most the context's setting.
- *  Creates the threads that are missing. Workspace for each thread is sized with this number, and the same number is
- *  given to the functions below. */
+/** Returns the number of threads for n items if `least` items are worth a thread: at least 1, at most the context's
+ *  setting. Creates the threads that are missing. The caller sizes its workspace for each thread by this number, and
+ *  passes the same number to the functions below. */
 int brio_threads(brio_context *ctx, size_t n, size_t least);
 
-/** Calls work(user, member) in that many threads at once and returns when all have returned. */
+/** Calls work(user, member) in `threads` threads at once. Returns when all calls have returned. */
 void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user);
 
-/** Waits until every member of the run is here. What any of them wrote before is then seen by all. */
+/** Waits until every member of the run has called this. Afterwards each member sees what the others wrote before. */
 void brio_barrier(const brio_member *member);
 
-/** Calls body once in each thread, with equal parts of [0, n) in the threads' order. */
+/** Calls body once in each thread: [0, n) is divided into equal parts in the order of the threads. */
 void brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user);
 
-/** Calls body for chunks of [0, n), each taken by the next thread that is free. */
+/** Calls body for chunks of [0, n). Each chunk goes to the next thread that is free, in ascending order. */
 void brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user);
 
-/** Keeps the first failure that the members of a run report to *shared, which starts as BRIO_OK. */
+/** Stores a member's status in *shared if that is its first failure. *shared starts as BRIO_OK; members may call this
+ *  together. */
 static inline void brio_report(brio_status *shared, brio_status own) {
     brio_status none = BRIO_OK;
     if (own != BRIO_OK) __atomic_compare_exchange_n(shared, &none, own, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 }
 
-/** Where part i of n equal parts of [0, size) begins. */
+/** Returns where part i of n equal parts of [0, size) begins. */
 static inline size_t brio_part(size_t size, int i, int n) {
     return size / (size_t)n * (size_t)i + size % (size_t)n * (size_t)i / (size_t)n;
 }

@@ -1,4 +1,4 @@
-/* Vectors of three doubles. Sums run from x to z everywhere, so that the same points give the same bits. */
+/* Vectors of three doubles. Sums always run from x to z, so that the same points give the same bits. */
 #ifndef BRIO_BASE_VECTOR_H
 #define BRIO_BASE_VECTOR_H
 
@@ -6,7 +6,7 @@ static inline double brio_dot(const double *a, const double *b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/** Infinite where doubles overflow. */
+/** Returns the squared distance, INFINITY if doubles overflow. */
 static inline double brio_square_distance(const double *a, const double *b) {
     double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
     return brio_dot(d, d);

@@ -1,10 +1,11 @@
 /* Structs of the public interface that can grow: see versioned.h.
  *
- * Based on: the copying of structs of any size by the clone3 and openat2 system calls of Linux. */
+ * Based on: the system calls clone3 and openat2 of Linux, which copy structs of any size. */
 #include "base/versioned.h"
 #include <string.h>
 
-/* No struct of this interface is larger, in any version; what claims to be was not initialised. */
+/* Chosen: no struct of this interface is larger, in any version. A larger size means a struct that was not
+ * initialised. */
 enum { MOST_BYTES = 4096 };
 
 static size_t size_of(const void *given) {

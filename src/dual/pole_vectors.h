@@ -23,9 +23,9 @@ typedef struct {
                        facets; zero for points that are no vertices */
     uint32_t *pole; /* #P by 2: the farther pole (on the hull an infinite tetrahedron) and the farthest Voronoi vertex
                        on its other side; BRIO_INFINITE where there is none */
-    uint16_t
-        *sides; /* #T: four times a bit for each slot: whether its sample sees the Voronoi vertex in the cone to its
-                        pole; in the other one; how near to the axis (the lower bits of that, the upper ones) */
+    uint16_t *sides; /* #T: what the samples in the slots see of the Voronoi vertex. Bit i: the sample in slot i sees it
+                        in its cone to the pole. Bit 4 + i: in its opposite cone. Bits 8 + i, 12 + i: the lower and the
+                        upper bit of brio_depth_class. */
 } brio_pole_vectors;
 
 /** Finds them.   theta  in (0, pi/2).   t and points must outlive the result; what it holds is to be freed on failure
@@ -41,6 +41,24 @@ static inline void brio_towards_centre(const brio_pole_vectors *v, size_t tet, s
     const double *c = v->centre + 4 * tet, *from = v->points + 3 * p;
     bool ray = tet >= v->num_finite;
     for (int k = 0; k < 3; k++) to[k] = ray ? c[k] : c[k] - from[k];
+}
+
+/** Decode `sides`: bit i of the result belongs to slot i. The samples that see the Voronoi vertex in their cone to the
+ *  pole, those that see it in their opposite cone, and those whose depth class is the worst, BRIO_DEPTHS - 1. */
+static inline unsigned brio_pole_slots(unsigned sides) {
+    return sides & 15;
+}
+static inline unsigned brio_antipole_slots(unsigned sides) {
+    return sides >> 4 & 15;
+}
+static inline unsigned brio_shallow_slots(unsigned sides) {
+    return sides >> 8 & sides >> 12 & 15;
+}
+
+/** Returns the two side bits of a slot: bit 0 for the cone to the pole, bit 4 for the opposite cone, at most one of them
+ *  set. */
+static inline unsigned brio_slot_sides(unsigned sides, int slot) {
+    return sides >> slot & 0x11;
 }
 
 static inline int brio_side_of(const brio_pole_vectors *v, size_t tet, int slot) {

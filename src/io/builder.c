@@ -1,14 +1,15 @@
 /* A mesh under construction.
  *
- * Arrays grow by half while they are small and by an eighth when they are large: the large ones are mappings that grow
- * without copying, and what is reserved counts against the memory limit. Points, faces and tetrahedra are counted from
- * 0 in all messages; indices of vertices appear as in the file. */
+ * Small arrays grow by half, large ones by an eighth: large arrays are mappings that grow without copying, and unused
+ * capacity counts against the memory limit. Messages count points, faces and tetrahedra from 0, and show indices of
+ * vertices as they are in the file. */
 #include "io/builder.h"
 #include "base/memory.h"
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
+/* Both chosen. */
 enum { FIRST_CAPACITY = 64, LARGE = 1 << 22 };
 
 static size_t grown(size_t capacity, size_t need) {

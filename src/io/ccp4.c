@@ -1,14 +1,14 @@
 /* Reads maps of densities: CCP4, MRC.
  *
- * A header of 256 words of four bytes, symmetry records that are passed over, then sections of rows of columns; which
- * of them run along x, y and z is told by the header. The byte order is the one in which mode and axes make sense: the
- * machine stamp is missing from many files. The cell's lengths and angles give the axes in space, x along the first and
- * y in the plane of the first two; the start of the columns, rows and sections or, where it is given, the origin in the
- * words of MRC says where the first value stands.
+ * A file has a header of 256 words of four bytes, symmetry records, which are skipped, and the values: sections of rows
+ * of columns. The header says which of columns, rows and sections run along x, y and z. The byte order is the one in
+ * which the mode and the axes make sense, because many files lack the machine stamp. The cell's lengths and angles give
+ * the axes in space: x is along the first axis of the cell, y in the plane of the first two. The place of the first
+ * value is the origin in the words of MRC or, if that is 0, the start of columns, rows and sections.
  *
  * Based on: Cheng, Henderson, Mastronarde, Ludtke, Schoenmakers, Short, Marabini, Dallakyan, Agard, Winn. MRC2014:
- * Extensions to the MRC format header for electron cryo-microscopy and tomography. Journal of Structural Biology 2015.
- * */
+ *           Extensions to the MRC format header for electron cryo-microscopy and tomography. Journal of Structural
+ *           Biology 2015. */
 #include "io/ccp4.h"
 #include "io/scalar.h"
 #include <inttypes.h>
@@ -17,7 +17,7 @@
 
 enum { HEADER_BYTES = 1024 };
 
-/* Offsets in the header, in bytes. */
+/* Byte offsets in the header. */
 enum {
     SIZE = 0,
     MODE = 12,
@@ -34,7 +34,7 @@ enum {
 typedef struct {
     const char *bytes;
     bool swap;
-    int64_t size[3], start[3], intervals[3]; /* of columns, rows, sections; the last along x, y, z */
+    int64_t size[3], start[3], intervals[3]; /* size and start: of columns, rows, sections; intervals: along x, y, z */
     int axis[3];                             /* of columns, rows, sections: 0, 1, 2 for x, y, z */
     double length[3], angle[3], origin[3];
     int64_t mode, symmetry_bytes;
@@ -51,8 +51,8 @@ static double real(const ccp4_header *h, int offset) {
     return brio_scalar_load(h->bytes + offset, BRIO_SCALAR_FLOAT32, h->swap);
 }
 
-/* Whether mode and axes make sense in a byte order. Some programs leave the axes 0, which stands for 1, 2, 3; then the
- * number of columns has to tell. */
+/* Returns whether mode and axes make sense in a byte order, and sets h->swap and h->axis. Some programs leave the axes
+ * 0, which stands for 1, 2, 3; then the number of columns decides. */
 static bool makes_sense(ccp4_header *h, bool swap) {
     unsigned seen = 0;
     int64_t axes[3];
@@ -128,12 +128,13 @@ done:
 
 /* --- axes in space --- */
 
-/* The three axes of the cell, of length 1. Angles are between y and z, x and z, x and y; all 0 stand for right ones. */
+/* Computes the three axes of the cell, of length 1. The angles are between y and z, x and z, x and y; if all are 0,
+ * they are right angles. */
 static brio_status find_axes(const brio_stream *s, const ccp4_header *h, double axes[3][3]) {
     brio_status status = BRIO_OK;
     double c[3];
     bool none = h->angle[0] == 0 && h->angle[1] == 0 && h->angle[2] == 0;
-    for (int k = 0; k < 3; k++) /* the cosine of a right angle is to be 0 */
+    for (int k = 0; k < 3; k++) /* a right angle must have the cosine 0 */
         c[k] = none || h->angle[k] == 90 ? 0 : cos(h->angle[k] * (3.14159265358979323846 / 180));
     double sine = sqrt(1 - c[2] * c[2]), across = (c[0] - c[1] * c[2]) / sine;
     double up = 1 - c[1] * c[1] - across * across;
@@ -165,7 +166,7 @@ done:
 /* --- values --- */
 
 typedef struct {
-    uint64_t offset, count; /* of the first value that is not finite, and how many there are */
+    uint64_t offset, count; /* offset of the first value that is not finite, and the number of such values */
 } not_finite;
 
 static void convert_row(const ccp4_header *h, const char *bytes, uint64_t offset, float *target, size_t stride,

@@ -1,4 +1,4 @@
-/* Maps of densities in the CCP4 and MRC format. */
+/* Maps of densities in the CCP4 and MRC formats. */
 #ifndef BRIO_IO_CCP4_H
 #define BRIO_IO_CCP4_H
 
@@ -6,9 +6,10 @@
 #include "surface/volume.h"
 
 /** Reads a map of mode 0 (8-bit), 1 (16-bit), 2 (32-bit float) or 6 (unsigned 16-bit), in either byte order and any
- *  order of axes; the volume has the axes x, y, z and is in the unit of the cell.   out  to be freed, also when this
- *  fails. Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (with file and byte offset), BRIO_ERR_NOT_FINITE (the first
- *  such value and how many there are), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  order of axes. The volume has the axes x, y, z and the unit of the cell.
+ *  out  freed with brio_volume_free, on failure too.
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (with file and byte offset), BRIO_ERR_NOT_FINITE (with the first
+ *  such value and their number), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_ccp4_read(brio_stream *s, brio_volume *out);
 
 #endif

@@ -1,4 +1,5 @@
-/* The formats, each in its own file: readers take a stream and fill a builder, writers put a mesh on an output. */
+/* The formats, each in its own file. A reader takes a stream and fills a builder; a writer writes a mesh to an
+ * output. */
 #ifndef BRIO_IO_FORMATS_H
 #define BRIO_IO_FORMATS_H
 
@@ -9,7 +10,7 @@
 typedef struct brio_write_job {
     const brio_mesh *mesh;
     const brio_write_options *options;
-    char (*names)[64]; /* of the properties, made one word each; PLY and XYZ only */
+    char (*names)[64]; /* PLY and XYZ: the names of the properties, each as one word */
 } brio_write_job;
 
 brio_status brio_ply_read(brio_stream *s, brio_builder *b);
@@ -18,7 +19,7 @@ brio_status brio_obj_read(brio_stream *s, brio_builder *b);
 brio_status brio_off_read(brio_stream *s, brio_builder *b);
 brio_status brio_vtu_read(brio_stream *s, brio_builder *b);
 brio_status brio_node_read(brio_stream *s, brio_builder *b);
-brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node: its index base is in the builder */
+brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
 
 brio_status brio_ply_write(brio_output *out, const brio_write_job *job);
 brio_status brio_xyz_write(brio_output *out, const brio_write_job *job);
@@ -29,14 +30,15 @@ brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
 brio_status brio_node_write(brio_output *out, const brio_write_job *job);
 brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
 
-/** True when the first bytes of a file are those of a PLY, OFF or VTU file. */
+/** Return whether the first bytes of a file are those of a PLY, OFF or VTU file. */
 bool brio_ply_starts(const char *bytes, size_t size);
 bool brio_off_starts(const char *bytes, size_t size);
 bool brio_vtu_starts(const char *bytes, size_t size);
 
-/** True for the name of an .ele file, which stands for the pair of .node and .ele. */
+/** Returns whether a path names an .ele file, which stands for the pair of .node and .ele. */
 bool brio_is_ele(const char *path);
-/** The name of the other file of the pair; the caller releases it. */
+/** Makes the name of the other file of the pair.   out  owned by the caller (brio_release).
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_sibling(brio_context *ctx, const char *path, const char *extension, char **out);
 
 #endif

@@ -1,7 +1,7 @@
-/* The iso-surface of a file: finds out whether it is a map or a list of atoms, reads it, and makes the surface.
+/* The iso-surface of a file: finds out whether the file is a map or a list of atoms, reads it, and makes the surface.
  *
- * For a wanted number of vertices the resolution is found by trial: the number grows with its square but for what finer
- * cells bring to light, so that a few rounds do. */
+ * For a wanted number of vertices, the resolution is found by trial. The number of vertices grows about with the square
+ * of the resolution, so a few rounds suffice; finer cells also show more detail. */
 #include "io/ccp4.h"
 #include "base/float_state.h"
 #include "base/versioned.h"
@@ -10,13 +10,14 @@
 #include <string.h>
 #include <strings.h>
 
+/* MAP_WORD: byte offset of "MAP " in the header of a map. The others are chosen. */
 enum { MAP_WORD = 208, FIRST_RESOLUTION = 100, MOST_RESOLUTION = 1 << 15, MOST_ROUNDS = 5 };
 
-static const double CLOSE_ENOUGH = 0.02; /* share of the wanted number of vertices */
+static const double CLOSE_ENOUGH = 0.02; /* share of the wanted number of vertices; chosen */
 
 typedef enum { SOURCE_MAP, SOURCE_ATOMS } source_kind;
 
-/* What the surface is made of: a volume, or atoms. */
+/* The source of the surface: a volume, or atoms. */
 typedef struct {
     source_kind kind;
     brio_volume volume;
@@ -37,7 +38,8 @@ static bool has_extension(const char *path, const char *const *extensions) {
     return false;
 }
 
-/* Content before extension; standard input that is no map is taken for atoms. */
+/* Finds the kind of a source by its content or, failing that, its extension. Standard input that is no map is read as
+ * atoms. */
 static brio_status find_kind(brio_stream *s, const char *path, source_kind *kind) {
     static const char *const maps[] = {".map", ".mrc", ".ccp4", NULL}, *const atoms[] = {".pdb", ".ent", NULL};
     brio_status status = BRIO_OK;
@@ -84,8 +86,8 @@ done:
     return status;
 }
 
-/* The resolution to try next, when the number of vertices grows with a power of the resolution: the square, or what the
- * last two tries say. */
+/* Returns the resolution to try next. Assumes that the number of vertices grows with a power of the resolution: 2 at
+ * first, then the power that the last two tries show. */
 static size_t next_resolution(double wanted, const double resolution[2], const double vertices[2]) {
     double power = 2;
     if (resolution[0] > 0 && resolution[0] != resolution[1])
@@ -94,7 +96,7 @@ static size_t next_resolution(double wanted, const double resolution[2], const d
     return (size_t)fmin(fmax(rint(next), 2), MOST_RESOLUTION);
 }
 
-/* Tries resolutions until there are about as many vertices as wanted; the last try stands. */
+/* Tries resolutions until the number of vertices is about the wanted one. The surface of the last try is the result. */
 static brio_status make_surface_of_size(brio_context *ctx, const source *from, const brio_iso_options *o,
                                         brio_mesh **out) {
     brio_status status = BRIO_OK;
@@ -123,7 +125,7 @@ done:
     return status;
 }
 
-/* Turns a level that counts deviations into one of the map's unit. */
+/* Converts a level in standard deviations to the unit of the map. */
 static brio_status settle_level(brio_context *ctx, const source *from, brio_iso_options *o) {
     brio_status status = BRIO_OK;
     double mean, deviation;

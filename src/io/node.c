@@ -1,8 +1,8 @@
 /* TetGen's pair of text files: .node with points, attributes and boundary markers, and .ele with tetrahedra.
  *
  * Rows are numbered from 0 or 1: the number of the first point decides for both files. Attributes become the properties
- * attribute1, attribute2, ..., the marker the property boundary_marker; of quadratic tetrahedra the four corners are
- * kept.
+ * attribute1, attribute2, ..., and the marker becomes the property boundary_marker. Of quadratic tetrahedra the four
+ * corners are read.
  *
  * Based on: Si. TetGen user's manual, section 5.2. WIAS 2015. */
 #include "base/memory.h"
@@ -15,9 +15,9 @@
 
 static const char marker_name[] = "boundary_marker";
 
-enum { MAX_ATTRIBUTES = 4096 }; /* no file has so many; bounds what a false header can ask for */
+enum { MAX_ATTRIBUTES = 4096 }; /* chosen: no file has more; limits what a false header can request */
 
-/* The numbers in the first line of a file; those that are not there are 0. */
+/* Reads the numbers in the first line of a file. Numbers that are missing become 0. */
 static brio_status read_header(brio_text *t, uint64_t *counts, size_t num_counts) {
     brio_status status = BRIO_OK;
     memset(counts, 0, num_counts * sizeof *counts);
@@ -31,7 +31,7 @@ done:
     return status;
 }
 
-/* The number in front of each row, which counts from `base`. */
+/* Reads the number in front of a row. Row i must have the number base + i. */
 static brio_status read_row_number(brio_text *t, unsigned base) {
     brio_status status = BRIO_OK;
     brio_stream *s = t->stream;
@@ -43,7 +43,7 @@ done:
     return status;
 }
 
-/* The first row's number, looked at without using it up. */
+/* Reads the first row's number without using it up. */
 static brio_status find_base(brio_text *t, unsigned *base) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_text_next_line(t));
@@ -93,7 +93,7 @@ brio_status brio_node_read(brio_stream *s, brio_builder *b) {
     uint64_t counts[4];
     BRIO_TRY(read_header(&t, counts, 4));
     BRIO_TRY(plan_node(b, counts));
-    /* each number with a blank or the line's end behind it, the last one apart */
+    /* each number has a blank or the line's end behind it, except the last one */
     BRIO_TRY(brio_stream_expect(s, counts[0], 2 * (4 + counts[2] + counts[3]) - 1, "the number of points"));
     brio_stream_element(s, "point", counts[0]);
     BRIO_TRY(find_base(&t, &b->index_base));
@@ -117,7 +117,7 @@ static brio_status read_ele_row(brio_text *t, brio_builder *b, uint64_t corners)
         if (i < 4) indices[i] = (double)(index - b->index_base);
     }
     BRIO_TRY(brio_builder_tetrahedron(b, indices));
-    t->at = NULL; /* the rest of the line is the region's attribute */
+    t->at = NULL; /* the rest of the line is the attribute of the region */
 done:
     return status;
 }

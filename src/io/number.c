@@ -1,10 +1,12 @@
 /* Numbers as text, correctly rounded both ways.
  *
- * A decimal number is w * 10^e with an integer w of up to 19 digits. When w and 10^|e| are doubles, one multiplication
- * or division rounds once and is the answer. Otherwise, for |e| <= 27, 5^|e| has 64 bits, so that w * 5^e or w / 5^-e
- * is formed in 128-bit integers with the remainder known, and rounds once too. What is left (longer mantissas, far
- * exponents) goes to strtod in the C locale. Printing runs the same integers backwards: 17 digits identify a double, 9
- * a float; one or two fewer are printed when they read back the same.
+ * A decimal number is w * 10^e with an integer w of up to 19 digits. If w and 10^|e| are doubles, one multiplication or
+ * division rounds once and is the answer. Otherwise, for |e| <= 27, 5^|e| fits in 64 bits: w * 5^e, or w / 5^-e with
+ * its remainder, is computed in 128-bit integers and rounded once. All other numbers (longer mantissas, larger
+ * exponents) go to strtod in the C locale.
+ *
+ * Printing uses the same integers. 17 digits identify a double, 9 a float; one or two digits fewer are printed if they
+ * read back as the same number.
  *
  * Based on: Clinger. How to read floating point numbers accurately. PLDI 1990. */
 #define _GNU_SOURCE
@@ -38,8 +40,8 @@ static bool is_digit(char c) {
 
 /* --- reading --- */
 
-/* w * 10^power for 0 <= power <= MAX_POWER: the product is exact in 128 bits; its lower half only has to tell whether
- * anything is there. */
+/* Returns w * 10^power for 0 <= power <= MAX_POWER. The product is exact in 128 bits; of its lower half only matters
+ * whether it is 0. */
 static double rounded_product(uint64_t w, int power) {
     wide product = (wide)w * powers_of_5[power];
     uint64_t high = (uint64_t)(product >> 64);
@@ -50,7 +52,8 @@ static double rounded_product(uint64_t w, int power) {
     return ldexp((double)((uint64_t)(product >> 64) | sticky), 64 - lift + power);
 }
 
-/* w / 10^power for 0 < power <= MAX_POWER: a quotient of 63 or 64 bits whose last bit also stands for the remainder. */
+/* Returns w / 10^power for 0 < power <= MAX_POWER. The quotient has 63 or 64 bits; its last bit also records a
+ * remainder. */
 static double rounded_quotient(uint64_t w, int power) {
     uint64_t divisor = powers_of_5[power];
     int lift_w = __builtin_clzll(w), lift_d = __builtin_clzll(divisor);
@@ -61,7 +64,7 @@ static double rounded_quotient(uint64_t w, int power) {
     return ldexp((double)(quotient | sticky), lift_d - lift_w - 63 - power);
 }
 
-/* w * 10^power, correctly rounded; false where the integers do not reach. */
+/* Computes w * 10^power, correctly rounded. Returns false where the integers do not suffice. */
 static bool compose(uint64_t w, int power, double *value) {
     if (w == 0) {
         *value = 0;
@@ -79,8 +82,8 @@ static bool compose(uint64_t w, int power, double *value) {
 
 typedef struct {
     uint64_t mantissa; /* the first MAX_DIGITS significant digits */
-    int digits;        /* significant ones, all */
-    int power;         /* of 10, with which the mantissa is to be multiplied */
+    int digits;        /* number of significant digits, at most MAX_DIGITS + 1 */
+    int power;         /* the number is mantissa * 10^power */
 } decimal;
 
 static const char *scan_digits(const char *p, decimal *d, bool fraction) {
@@ -106,7 +109,7 @@ static const char *scan_exponent(const char *p, decimal *d) {
     return q;
 }
 
-/* Moves behind the number at p; NULL when there is none. */
+/* Returns the place behind the number at p, or NULL if there is none. */
 static const char *scan_decimal(const char *p, decimal *d) {
     const char *start = p;
     p = scan_digits(p, d, false);
@@ -130,7 +133,8 @@ static const char *scan_word(const char *p, double *value) {
     return p + (strncasecmp(p, "infinity", 8) ? 3 : 8);
 }
 
-/* The C locale is a constant of the C library: asking for it allocates nothing. */
+/* Reads a number with strtod in the C locale. This locale is a constant of the C library: newlocale allocates
+ * nothing. */
 static double parse_far(const char *text) {
     locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     double value = c ? strtod_l(text, NULL, c) : strtod(text, NULL);
@@ -173,7 +177,7 @@ static uint64_t power_of_10(int n) {
     return powers_of_5[n] << n;
 }
 
-/* x * 10^power, rounded half to even; x > 0 and the result below 2^62. */
+/* Returns x * 10^power, rounded half to even, for x > 0 and a result below 2^62. */
 static uint64_t scaled(double x, int power) {
     int exponent;
     uint64_t mantissa = (uint64_t)ldexp(frexp(x, &exponent), 53);
@@ -184,7 +188,8 @@ static uint64_t scaled(double x, int power) {
     return (uint64_t)whole + (rest > half || (rest == half && (whole & 1)));
 }
 
-/* What the C library prints, taken apart because its decimal point is the locale's. */
+/* Returns what digits_of does, from text that the C library prints. Takes the text apart because its decimal point
+ * depends on the locale. */
 static uint64_t digits_far(double x, int count, int *exponent) {
     char text[64];
     uint64_t digits = 0;
@@ -196,11 +201,11 @@ static uint64_t digits_far(double x, int count, int *exponent) {
     return digits;
 }
 
-/* The first `count` digits of x > 0, rounded, the first of them worth 10^*exponent. */
+/* Returns the first `count` digits of x > 0, rounded. The first digit is worth 10^*exponent. */
 static uint64_t digits_of(double x, int count, int *exponent) {
     int binary;
     frexp(x, &binary);
-    int guess = (int)floor((binary - 1) * 0.30102999566398120); /* log10(2): right, or one too low */
+    int guess = (int)floor((binary - 1) * 0.30102999566398120); /* log10(2): the guess is right or one too low */
     for (int e = guess; e <= guess + 2; e++) {
         int power = count - 1 - e;
         if (power < 0 || power > MAX_POWER) break;
@@ -213,7 +218,7 @@ static uint64_t digits_of(double x, int count, int *exponent) {
     return digits_far(x, count, exponent);
 }
 
-/* n digits, the first worth 10^exponent, as text. */
+/* Writes n digits, the first worth 10^exponent, as text. Returns the length. */
 static size_t layout(char *text, const char *digits, int n, int exponent) {
     char *p = text;
     if (exponent < -5 || exponent > 16) {
@@ -251,7 +256,7 @@ static bool reads_back(uint64_t digits, int power, double x, bool single) {
 static size_t print_positive(char *text, double x, bool single) {
     int exponent, count = single ? 9 : 17;
     uint64_t digits = digits_of(x, count, &exponent);
-    uint64_t fifteen = (digits + 50) / 100, sixteen = (digits + 5) / 10; /* names for a double */
+    uint64_t fifteen = (digits + 50) / 100, sixteen = (digits + 5) / 10; /* for a float: 7 and 8 digits */
     if (reads_back(fifteen, exponent - (count - 3), x, single))
         digits = fifteen * 100;
     else if (reads_back(sixteen, exponent - (count - 2), x, single))

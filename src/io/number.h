@@ -1,5 +1,5 @@
-/* Numbers as text: read with the correctly rounded result of strtod, printed so that they read back bit for bit, both
- * without regard to the process' locale. */
+/* Numbers as text. Reading rounds correctly, as strtod does. Printed numbers read back bit for bit. Neither depends on
+ * the locale of the process. */
 #ifndef BRIO_IO_NUMBER_H
 #define BRIO_IO_NUMBER_H
 
@@ -9,14 +9,15 @@
 
 enum { BRIO_NUMBER_LENGTH = 32 }; /* no printed number is longer */
 
-/** Reads the decimal number, "nan" or "inf" at *text and moves *text behind it; false, and nothing moved, when there is
- *  none. The text ends with a 0. */
+/** Reads the decimal number, "nan" or "inf" at *text and moves *text behind it. Returns false, and moves nothing, if
+ *  there is none.   text  ends with a 0. */
 bool brio_parse_number(const char **text, double *value);
 
-/** Reads the digits at *text; false when there are none or they exceed 2^64 - 1. */
+/** Reads the digits at *text and moves *text behind them. Returns false, and moves nothing, if there are none or they
+ *  exceed 2^64 - 1. */
 bool brio_parse_count(const char **text, uint64_t *value);
 
-/** Print a number without a closing 0 and return its length. */
+/** Print a number without a 0 at its end, and return its length.   text  room for BRIO_NUMBER_LENGTH bytes. */
 size_t brio_print_double(char *text, double x);
 size_t brio_print_float(char *text, float x);
 size_t brio_print_integer(char *text, int64_t x);

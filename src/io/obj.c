@@ -1,4 +1,4 @@
-/* Wavefront OBJ: v and f are read and written, every other statement is passed over.
+/* Wavefront OBJ: reads and writes the statements v and f, skips all others.
  *
  * Based on: Wavefront Technologies. Object files (.obj). Advanced Visualizer Manual, appendix B1. */
 #include "io/formats.h"
@@ -6,7 +6,7 @@
 #include "io/textrow.h"
 #include <string.h>
 
-/* The line that continues the current one. */
+/* Reads the line that continues the current one. */
 static brio_status continue_line(brio_text *t) {
     brio_status status = brio_stream_line(t->stream, &t->at);
     char *comment = status == BRIO_OK && t->at ? strchr(t->at, t->comment) : NULL;
@@ -14,7 +14,7 @@ static brio_status continue_line(brio_text *t) {
     return status;
 }
 
-/* Moves to the next word of the statement, if need be over a backslash at the end of the line. */
+/* Moves to the next word of the statement, across a backslash at the end of a line. */
 static brio_status next_word(brio_text *t, bool *more) {
     brio_status status = BRIO_OK;
     for (;;) {
@@ -45,7 +45,8 @@ done:
     return status;
 }
 
-/* A corner v, v/vt, v//vn or v/vt/vn; v counts from 1, or backwards from the vertex before this statement, -1. */
+/* Reads a corner v, v/vt, v//vn or v/vt/vn. v counts from 1, or backwards: -1 is the last vertex before this
+ * statement. */
 static brio_status read_corner(brio_text *t, brio_builder *b) {
     const char *p = t->at;
     bool backwards = *p == '-';
@@ -71,7 +72,7 @@ done:
     return status;
 }
 
-/* A statement that is passed over, with the lines that continue it. */
+/* Skips a statement with the lines that continue it. */
 static brio_status skip_statement(brio_text *t) {
     brio_status status = BRIO_OK;
     while (t->at && *t->at && t->at[strlen(t->at) - 1] == '\\') BRIO_TRY(continue_line(t));

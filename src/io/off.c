@@ -1,5 +1,5 @@
-/* OFF, the Object File Format of Geomview, as text: OFF, and its variants with colours (C), normals (N) and texture
- * coordinates (ST) of the vertices, which are kept as properties; colours of faces are passed over.
+/* OFF, the Object File Format of Geomview, as text. Reads OFF and its variants with normals (N), colours (C) and
+ * texture coordinates (ST) of the vertices, which become properties. Skips colours of faces.
  *
  * Based on: Phillips et al. Geomview manual, section 4.2.5. The Geometry Center 1992. */
 #include "base/memory.h"
@@ -8,14 +8,14 @@
 #include "io/textrow.h"
 #include <string.h>
 
-enum { MAX_EXTRA = 9 }; /* three of the normal, four of the colour, two of the texture */
+enum { MAX_EXTRA = 9 }; /* three for the normal, four for the colour, two for the texture */
 
 typedef struct {
     bool texture, colour, normal;
-    size_t num_extra; /* numbers of a vertex behind its coordinates */
+    size_t num_extra; /* numbers behind the coordinates of a vertex */
 } off_kind;
 
-/* Reads the keyword at p; NULL when there is none. */
+/* Reads the keyword at p. Returns the place behind it, or NULL if there is none. */
 static const char *scan_keyword(const char *p, off_kind *kind) {
     *kind = (off_kind){.num_extra = 0};
     if (!strncmp(p, "ST", 2)) {
@@ -42,7 +42,7 @@ bool brio_off_starts(const char *bytes, size_t size) {
     return scan_keyword(start, &kind) != NULL;
 }
 
-/* The keyword is optional in a file that is called .off. */
+/* Reads the keyword, which a file named .off may lack. */
 static brio_status read_keyword(brio_text *t, off_kind *kind) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_text_next_line(t));
@@ -66,14 +66,14 @@ static brio_status read_counts(brio_text *t, uint64_t *vertices, uint64_t *faces
     BRIO_TRY(brio_text_count(t, "the number of faces", UINT64_MAX >> 1, faces));
     if (brio_text_more(t)) BRIO_TRY(brio_text_count(t, "the number of edges", UINT64_MAX >> 1, &edges));
     BRIO_TRY(brio_text_row_end(t));
-    /* "0 0 0" and a line's end but for the last; "0" */
+    /* a vertex has at least "0 0 0" and a line's end, except the last one; a face has at least "0" */
     BRIO_TRY(brio_stream_expect(s, *vertices, 5, "the number of vertices"));
     BRIO_TRY(brio_stream_expect(s, *faces, 1, "the number of faces"));
 done:
     return status;
 }
 
-/* The numbers behind a vertex' coordinates, from those of the first vertex: a colour has three or four. */
+/* Plans properties for the numbers behind the coordinates, from the first vertex: a colour has three or four. */
 static brio_status plan_extra(brio_text *t, brio_builder *b, off_kind *kind, size_t found) {
     static const char *const normal[] = {"nx", "ny", "nz"}, *const colour[] = {"red", "green", "blue", "alpha"},
                              *const texture[] = {"s", "t"};
@@ -96,7 +96,7 @@ static brio_status read_vertex(brio_text *t, brio_builder *b, off_kind *kind) {
     double point[3], extra[MAX_EXTRA];
     size_t found = 0;
     for (int k = 0; k < 3; k++) BRIO_TRY(brio_text_number(t, &point[k]));
-    /* plain OFF files with colours behind the coordinates are common: their extra numbers are passed over */
+    /* plain OFF files with colours behind the coordinates are common: their extra numbers are skipped */
     bool kept = kind->normal || kind->colour || kind->texture;
     while (kept && found < MAX_EXTRA && brio_text_more(t)) BRIO_TRY(brio_text_number(t, &extra[found++]));
     if (kept && t->stream->row == 0) BRIO_TRY(plan_extra(t, b, kind, found));
@@ -121,7 +121,7 @@ static brio_status read_face(brio_text *t, brio_builder *b) {
         BRIO_TRY(brio_builder_corner(b, index));
     }
     BRIO_TRY(brio_builder_face(b));
-    t->at = NULL; /* the rest of the line is the face's colour */
+    t->at = NULL; /* the rest of the line is the colour of the face */
 done:
     return status;
 }

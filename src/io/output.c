@@ -1,7 +1,7 @@
 /* Buffered output to a file that appears only when it is complete.
  *
- * Which file that is, target.h says. What is no regular file is written in place. A reader may keep a pipe waiting for
- * ever: such an output waits where the caller can cancel (wait.h). */
+ * target.c finds the file. A target that is no regular file is written in place. The reader of a pipe may never be
+ * ready: such an output waits in wait.h, where the caller can cancel. */
 #define _GNU_SOURCE
 #include "io/output.h"
 #include "base/memory.h"
@@ -23,7 +23,7 @@ static brio_status fail(brio_output *out) {
     return brio_fail(out->ctx, BRIO_ERR_WRITE, "%s: %s", out->name, strerror(errno));
 }
 
-/* Opens a FIFO, which waits for its reader here and not in the system, where only a signal could end the wait. */
+/* Opens a FIFO, and waits here for a reader. The system's own wait could only be ended by a signal. */
 static brio_status open_fifo(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
     for (;;) {
@@ -37,7 +37,7 @@ done:
     return status;
 }
 
-/* What is no regular file is written in place: a pipe, a terminal, a device. */
+/* Opens a pipe, a terminal or a device, which is written in place. */
 static brio_status open_special(brio_output *out, const char *path, const struct stat *facts) {
     out->waits = true;
     if (S_ISFIFO(facts->st_mode)) return open_fifo(out, path);
@@ -46,21 +46,21 @@ static brio_status open_special(brio_output *out, const char *path, const struct
     return out->owned ? BRIO_OK : fail(out);
 }
 
-/* Whether the target has the name of the file that the path opens. It has not when the file's name is gone, as that of
- * /dev/stdout can be. */
+/* Returns whether the target's name leads to the file that the path opened. It does not if the file has no name any
+ * more, as can happen with /dev/stdout. */
 static bool is_named(const brio_target *target, const struct stat *facts) {
     struct stat found;
     return fstatat(target->folder, target->name, &found, 0) == 0 && found.st_ino == facts->st_ino &&
            found.st_dev == facts->st_dev;
 }
 
-/* Symbolic links stay, and the file that they lead to is replaced. */
+/* Opens a file. Symbolic links stay; the file that they lead to is replaced. */
 static brio_status open_file(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
     struct stat old;
     bool exists = stat(path, &old) == 0;
     if (exists && !S_ISREG(old.st_mode)) return open_special(out, path, &old);
-    /* a rename does not ask whether the old file may be written */
+    /* a rename does not check whether the old file may be written */
     if (exists && access(path, W_OK) != 0) return fail(out);
     BRIO_TRY(brio_target_find(&out->target, out->ctx, path, out->name));
     if (exists && !is_named(&out->target, &old)) {
@@ -74,7 +74,7 @@ done:
     return status;
 }
 
-/* Standard output belongs to other processes too, so its flags stay as they are. */
+/* Opens standard output. Its flags stay as they are, because other processes share them. */
 static void open_standard(brio_output *out) {
     struct stat facts;
     out->file = STDOUT_FILENO;
@@ -100,7 +100,7 @@ static double share_written(const brio_output *out) {
     return share < 1 ? share : 1;
 }
 
-/* One call. To what may block goes no more at a time than fits whenever there is room: PIPE_BUF bytes. */
+/* Makes one system call. A target that may block gets at most PIPE_BUF bytes, which fit whenever poll reports room. */
 static ssize_t write_some(const brio_output *out, const char *bytes, size_t size) {
     brio_quiet_signals quiet;
     brio_signals_block(&quiet);
@@ -127,7 +127,8 @@ done:
     return status;
 }
 
-/* Has the disk take what is written, a stretch at a time: flushing a big file at its end could not be cancelled. */
+/* Makes the disk take what was written, STRETCH bytes (chosen) at a time: one flush of a big file at its end could not
+ * be cancelled. */
 static void write_back(brio_output *out) {
     enum { STRETCH = 1 << 25 };
     uint64_t size = out->written - out->given;
@@ -155,7 +156,7 @@ done:
     return status;
 }
 
-/* A signal may end fsync early; after close the descriptor is gone whatever close returns. */
+/* Flushes a file. A signal may end fsync early. */
 static bool is_on_disk(int file) {
     while (fsync(file) != 0)
         if (errno != EINTR) return false;
@@ -198,7 +199,7 @@ brio_status brio_output_bytes(brio_output *out, const void *bytes, size_t size) 
     const char *p = bytes;
     while (size) {
         if (out->used == BLOCK || (out->used && size >= BLOCK)) BRIO_TRY(flush(out));
-        if (size >= BLOCK) { /* by way of no buffer */
+        if (size >= BLOCK) { /* past the buffer */
             BRIO_TRY(write_all(out, p, BLOCK));
             BRIO_TRY(report(out));
             p += BLOCK;
@@ -228,7 +229,7 @@ brio_status brio_output_format(brio_output *out, const char *format, ...) {
     return brio_output_string(out, text);
 }
 
-/* Room for one number with what is before it. */
+/* Makes room in the buffer for one number and the character before it. */
 static brio_status room(brio_output *out, char before) {
     if (out->used + BRIO_NUMBER_LENGTH + 1 > BLOCK) {
         brio_status status = flush(out);

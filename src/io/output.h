@@ -1,6 +1,8 @@
-/* Buffered output to a file that appears only when it is complete: written under a temporary name beside the target,
- * flushed to the disk, renamed (target.h). What is not a regular file (standard output, a device, a pipe) is written
- * directly. */
+/* Buffered output to a file that appears only when it is complete. The output is written under a temporary name beside
+ * the target, flushed to the disk and renamed (target.h). A target that is no regular file (standard output, a device,
+ * a pipe) is written directly.
+ *
+ * All functions that return a status return BRIO_OK, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
 #ifndef BRIO_IO_OUTPUT_H
 #define BRIO_IO_OUTPUT_H
 
@@ -9,42 +11,45 @@
 typedef struct brio_output {
     brio_context *ctx;
     const char *name;   /* for messages */
-    brio_target target; /* its temporary is NULL for what is written directly */
+    brio_target target; /* target.temporary is NULL if the output is written directly */
     int file;
-    bool owned; /* the file is to be closed */
-    bool waits; /* a write may block: no regular file */
+    bool owned; /* whether to close the file */
+    bool waits; /* whether a write may block: the target is no regular file */
     char *buffer;
     size_t used;
-    uint64_t written;  /* bytes that left the buffer */
-    uint64_t given;    /* of these the disk was told to take, see output.c */
-    uint64_t taken;    /* of these the disk has taken */
-    uint64_t expected; /* bytes in all, about; for progress */
+    uint64_t written;  /* bytes written to the file */
+    uint64_t given;    /* of these, the bytes that write_back (output.c) has asked the disk to take */
+    uint64_t taken;    /* of these, the bytes that the disk has taken */
+    uint64_t expected; /* estimate of all bytes, for progress */
 } brio_output;
 
-/** Opens an output, "-" being standard output. The output is to be closed even when this fails. */
+/** Opens an output; "-" is standard output. Call brio_output_close even if this fails.
+ *  expected  an estimate of all bytes, for progress. */
 brio_status brio_output_open(brio_output *out, brio_context *ctx, const char *path, uint64_t expected);
 
-/** Writes what is in the buffer and flushes the file: after this only the rename can fail. */
+/** Writes the buffer and flushes the file to the disk. After this only the rename can fail. */
 brio_status brio_output_finish(brio_output *out);
 /** Gives a finished file its name. */
 brio_status brio_output_publish(brio_output *out);
-/** Frees everything; a file that is not published disappears. */
+/** Frees everything. A file that was not published disappears. */
 void brio_output_close(brio_output *out);
 
+/** Write bytes, or a text that ends with a 0. */
 brio_status brio_output_bytes(brio_output *out, const void *bytes, size_t size);
 brio_status brio_output_string(brio_output *out, const char *text);
-/** Text made like that of printf; at most 511 bytes, and without floating-point numbers, which follow the locale. */
+/** Writes text as printf does: at most 511 bytes, no floating-point numbers, because printf prints these by the
+ *  locale. */
 brio_status brio_output_format(brio_output *out, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/** Numbers as text, each behind `before` unless that is 0. */
+/** Write a number as text. The character `before` comes first, unless it is 0. */
 brio_status brio_output_double(brio_output *out, char before, double x);
 brio_status brio_output_integer(brio_output *out, char before, int64_t x);
-/** Scalar i of a property. */
+/** Writes scalar i of a property. */
 brio_status brio_output_scalar(brio_output *out, char before, const brio_property *property, size_t i);
-/** The three coordinates of a vertex, with blanks between. */
+/** Writes the three coordinates of a vertex, separated by blanks. */
 brio_status brio_output_point(brio_output *out, const double *point);
 
-/** A comment, each of its lines behind a prefix; NULL writes nothing. */
+/** Writes a comment, each line behind `prefix`. comment NULL writes nothing. */
 brio_status brio_output_comment(brio_output *out, const char *prefix, const char *comment);
 
 #endif

@@ -1,12 +1,13 @@
 /* Reads atoms from files of the Protein Data Bank.
  *
- * Lines that begin with ATOM or HETATM, in fixed columns: 13 to 16 the atom's name, 17 the alternate location, 18 to 20
- * the residue, 31 to 54 the coordinates in angstrom, 77 and 78 the element. Where the element is missing, it is what
- * the first two columns of the name say, which are right-justified.
+ * An atom is a line that begins with ATOM or HETATM. Its columns are fixed: 13 to 16 the name, 17 the alternate
+ * location, 18 to 20 the residue, 31 to 54 the coordinates in angstrom, 77 and 78 the element. If the element is
+ * missing, the first two columns of the name give it, right-justified.
  *
- * Based on: Worldwide Protein Data Bank. Atomic coordinate entry format version 3.3. 2012. Bondi. Van der Waals volumes
- * and radii. Journal of Physical Chemistry 1964. Rowland, Taylor. Intermolecular nonbonded contact distances in organic
- * crystal structures. Journal of Physical Chemistry 1996 (hydrogen). */
+ * Based on: Worldwide Protein Data Bank. Atomic coordinate entry format version 3.3. 2012.
+ *           Bondi. Van der Waals volumes and radii. Journal of Physical Chemistry 1964.
+ *           Rowland, Taylor. Intermolecular nonbonded contact distances in organic crystal structures. Journal of
+ *           Physical Chemistry 1996 (hydrogen). */
 #include "io/pdb.h"
 #include "base/memory.h"
 #include "io/number.h"
@@ -25,7 +26,7 @@ enum {
     NEEDED = COORDINATES + 3 * COORDINATE_WIDTH
 };
 
-static const double OTHER_RADIUS = 1.8; /* of elements that are not in the table, metals for the most part */
+static const double OTHER_RADIUS = 1.8; /* of elements that are not in the table, mostly metals; chosen */
 
 static const struct {
     char element[3];
@@ -40,7 +41,7 @@ static double radius_of(const char *element) {
     return OTHER_RADIUS;
 }
 
-/* The letters of two columns, in capitals. */
+/* Copies the letters of two columns, in capitals. */
 static void take_letters(const char *columns, char element[3]) {
     size_t n = 0;
     for (int i = 0; i < 2; i++)
@@ -48,8 +49,7 @@ static void take_letters(const char *columns, char element[3]) {
     element[n] = 0;
 }
 
-/* A name of four characters that begins with H is a hydrogen's, though its first column is an element's first letter.
- * */
+/* Finds the element of an atom. A name of four characters that begins with H is that of a hydrogen. */
 static void find_element(const char *line, size_t length, char element[3]) {
     element[0] = 0;
     if (length >= ELEMENT + 2) take_letters(line + ELEMENT, element);

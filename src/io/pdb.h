@@ -5,9 +5,10 @@
 #include "io/stream.h"
 #include "surface/density.h"
 
-/** Reads the atoms of the first model, each with the van der Waals radius of its element. Of alternate locations the
- *  first of each atom's (blank, A or 1) is taken; water is left out.   atoms  owned by the caller (brio_release).
- *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (with file and line; also a file without atoms),
+/** Reads the atoms of the first model, each with the van der Waals radius of its element. Of alternate locations, reads
+ *  those marked blank, A or 1. Leaves out water.
+ *  atoms  *num_atoms atoms, owned by the caller (brio_release).
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (with file and line; also for a file without atoms),
  *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_pdb_read(brio_stream *s, brio_atom **atoms, size_t *num_atoms);
 

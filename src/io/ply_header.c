@@ -1,7 +1,7 @@
-/* The header of a PLY file.
+/* The header of a PLY file: lines of words up to end_header.
  *
- * Lines of words up to end_header. What the header promises is added up at its least, all lists empty, and held against
- * the size of the file before anything of that size is allocated.
+ * The reader adds up the least bytes that the announced rows need, with all lists empty. It compares the sum with the
+ * size of the file before it allocates anything.
  *
  * Based on: Turk. The PLY polygon file format. Stanford 1994. */
 #include "io/ply_header.h"
@@ -32,7 +32,7 @@ static brio_status bad_line(brio_stream *s, const char *expected) {
     return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: expected %s", s->name, s->line, expected);
 }
 
-/* Cuts a line into words in place; more than MAX_WORDS are counted only. */
+/* Cuts a line into words in place. Words after MAX_WORDS are counted only. */
 static size_t split(char *line, char *words[MAX_WORDS]) {
     size_t count = 0;
     for (char *p = brio_skip_blanks(line); *p; p = brio_skip_blanks(p)) {
@@ -95,7 +95,7 @@ done:
     return status;
 }
 
-/* One line between the first and the last of the header. */
+/* Reads one line between the first and the last line of the header. */
 static brio_status read_line(brio_stream *s, brio_ply_header *header, char *line, bool *format, bool *end) {
     char *words[MAX_WORDS];
     size_t count = split(line, words);
@@ -122,7 +122,7 @@ static brio_status check_promise(brio_stream *s, const brio_ply_header *header) 
         if (__builtin_mul_overflow(e->count, row, &rows) || __builtin_add_overflow(bytes, rows, &bytes))
             bytes = UINT64_MAX;
     }
-    /* the last number of a text needs nothing behind it */
+    /* nothing need follow the last number of a text */
     if (header->encoding == BRIO_PLY_ASCII && bytes) bytes--;
     return brio_stream_expect(s, bytes, 1, "the header");
 }

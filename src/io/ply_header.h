@@ -1,4 +1,4 @@
-/* The header of a PLY file: elements, each with properties that are scalars or lists. */
+/* The header of a PLY file: elements with properties. A property is a scalar or a list. */
 #ifndef BRIO_IO_PLY_HEADER_H
 #define BRIO_IO_PLY_HEADER_H
 
@@ -6,7 +6,7 @@
 
 typedef enum { BRIO_PLY_ASCII, BRIO_PLY_LITTLE, BRIO_PLY_BIG } brio_ply_encoding;
 
-/* What becomes of a property's values. */
+/* What the reader does with the values of a property. */
 typedef enum {
     BRIO_PLY_SKIP,
     BRIO_PLY_COORDINATE,
@@ -17,11 +17,11 @@ typedef enum {
 
 typedef struct brio_ply_property {
     char name[64];
-    brio_scalar type, count_type; /* the second of lists */
+    brio_scalar type, count_type; /* count_type: of the count of a list */
     bool list;
     brio_ply_role role;
-    size_t target; /* axis of a coordinate, number of a property of the mesh */
-    size_t offset; /* in a binary row without lists */
+    size_t target; /* axis of a coordinate, or index of a property of the mesh */
+    size_t offset; /* byte offset in a binary row without lists */
 } brio_ply_property;
 
 typedef struct brio_ply_element {
@@ -30,7 +30,7 @@ typedef struct brio_ply_element {
     brio_ply_property *properties;
     size_t num_properties, property_capacity;
     bool has_list;
-    size_t row_size; /* binary, each list empty: the least a row can take */
+    size_t row_size; /* bytes of a binary row with empty lists, the least that a row can have */
 } brio_ply_element;
 
 typedef struct brio_ply_header {
@@ -39,11 +39,12 @@ typedef struct brio_ply_header {
     size_t num_elements, element_capacity;
 } brio_ply_header;
 
-/** PLY's name of a scalar type. */
+/** Returns PLY's name of a scalar type. */
 const char *brio_ply_type_name(brio_scalar type);
 
-/** Reads the header and holds its promises against the size of the file. The header is to be freed even when this
- *  fails. */
+/** Reads the header and checks that the file is large enough for what the header announces. Call brio_ply_header_free
+ *  even if this fails.
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_ply_header_read(brio_stream *s, brio_ply_header *header);
 void brio_ply_header_free(brio_context *ctx, brio_ply_header *header);
 

@@ -1,8 +1,8 @@
 /* Reads PLY files: text, little and big endian.
  *
- * Each element is read in one of three ways. Binary rows of fixed size are taken by the buffer: those of vertices are
- * converted column by column, all others passed over. Every other row is walked scalar by scalar, whatever its lists
- * and encoding.
+ * Each element is read in one of three ways. Binary rows of fixed size are read block by block: vertices are converted
+ * column by column, and other elements are skipped. All other rows are read scalar by scalar, whatever their lists and
+ * encoding.
  *
  * Based on: Turk. The PLY polygon file format. Stanford 1994. */
 #include "io/formats.h"
@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BLOCK_BYTES = 1 << 16 }; /* a block of rows and what it becomes stay in the cache */
+enum { BLOCK_BYTES = 1 << 16 }; /* chosen: a block of rows and its result fit in the cache */
 
 typedef struct {
     brio_stream *stream;
@@ -98,7 +98,7 @@ done:
 
 /* --- rows of fixed size --- */
 
-/* Number of coordinates, from property i on, that are x, y, z in this order, of one type and without gaps. */
+/* Returns 3 if properties i to i + 2 are x, y, z in this order, of one type and without gaps, otherwise 1. */
 static size_t consecutive(const brio_ply_element *e, size_t i) {
     for (size_t j = 0; j < 3; j++) {
         if (i + j >= e->num_properties) return 1;
@@ -168,7 +168,7 @@ static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, doubl
     const brio_mesh *mesh = r->builder->mesh;
     size_t row = (size_t)r->stream->row;
     if (p->role == BRIO_PLY_COORDINATE) {
-        /* not rounded to the declared type: texts often carry more digits than the float they declare */
+        /* not rounded to the declared type: texts often have more digits than the float that they declare */
         mesh->vertices[3 * row + p->target] = value;
         return BRIO_OK;
     }

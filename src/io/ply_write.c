@@ -1,6 +1,7 @@
 /* Writes PLY files: binary in this machine's byte order, or text.
  *
- * The place of every binary row is known beforehand: threads encode chunks of them, which are written as a whole. */
+ * The place of every binary row is known in advance: threads encode chunks of rows, and each chunk is written as a
+ * whole. */
 #include "base/memory.h"
 #include "base/team.h"
 #include "io/formats.h"
@@ -66,12 +67,12 @@ static void encode_vertex(const brio_write_job *job, size_t v, char *bytes) {
     }
 }
 
-/* A chunk of rows: vertices or faces from `first` on, encoded into bytes. */
+/* A chunk of encoded rows: vertices or faces from `first` on. */
 typedef struct {
     const brio_write_job *job;
     size_t first;
     char *bytes;
-    size_t size; /* of a vertex; of the number before the corners of a face */
+    size_t size; /* bytes of a vertex, or of the number before the corners of a face */
 } rows;
 
 static void encode_vertices(void *user, size_t begin, size_t end, int thread) {

@@ -1,4 +1,4 @@
-/* Reads a file: finds out its format, and hands it to the format's reader. */
+/* Reads a file: finds its format and calls the format's reader. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "io/formats.h"
@@ -6,7 +6,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-enum { START = 4096 }; /* bytes in which a file's content may tell its format */
+enum { START = 4096 }; /* bytes of a file in which its content may show the format */
 
 static const struct {
     const char *extension;
@@ -16,7 +16,7 @@ static const struct {
                   {"off", BRIO_FORMAT_OFF},  {"vtu", BRIO_FORMAT_VTU}, {"node", BRIO_FORMAT_NODE},
                   {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}};
 
-/* The part of a name behind its last dot; all of it when there is none. */
+/* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     return dot ? dot + 1 : name;
@@ -45,7 +45,8 @@ done:
     return status;
 }
 
-/* Content before extension; numbers alone are what standard input is taken for. */
+/* Finds the format by the content or, failing that, the extension. Standard input in no known format is read as rows of
+ * numbers. */
 static brio_status find_format(brio_stream *s, const char *path, brio_format *format) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_stream_fill(s, START));
@@ -88,7 +89,7 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
     return brio_fail(s->ctx, BRIO_ERR_ARGUMENT, "%s: no such format: %d", s->name, (int)format);
 }
 
-/* Reads the tetrahedra in the .ele beside a .node, if it is there or was asked for. */
+/* Reads the tetrahedra in the .ele file beside a .node file. The file may be missing unless `asked_for` is set. */
 static brio_status read_tetrahedra(brio_builder *b, const char *path, bool asked_for) {
     brio_status status = BRIO_OK;
     brio_stream s = {.ctx = b->ctx, .file = -1};

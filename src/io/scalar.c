@@ -1,7 +1,7 @@
 /* Scalars of any type and byte order.
  *
- * Every scalar type converts to double without loss. The loops over columns are written out by type and byte order, so
- * that the test of neither is in them. */
+ * Every scalar type converts to double without loss. The loops over columns are written out for each type and byte
+ * order, so that they test neither. */
 #include "io/scalar.h"
 #include <math.h>
 #include <string.h>
@@ -125,7 +125,7 @@ bool brio_scalar_store(void *target, brio_scalar type, double value) {
     case BRIO_SCALAR_UINT32:
         STORE(uint32_t, 0, UINT32_MAX);
     case BRIO_SCALAR_FLOAT32: {
-        /* beyond the largest float the conversion of C is undefined, that of the format an infinity */
+        /* beyond the largest float, C leaves the conversion undefined; the format has an infinity */
         bool beyond = fabs(value) > 0x1.ffffffp127;
         float stored = beyond ? (float)copysign((double)INFINITY, value) : (float)value;
         memcpy(target, &stored, sizeof stored);

@@ -1,7 +1,7 @@
-/* Buffered input of a file or a pipe.
+/* Buffered input from a file or a pipe.
  *
- * The buffer holds a megabyte, or a smaller file as a whole, and moves forward over the file; what is not yet used
- * is shifted to its front when more is needed. It grows only for a line or a request longer than itself, up to
+ * The buffer has BLOCK bytes, or the size of a smaller file, and moves forward over the file. When more bytes are
+ * needed, the unused ones move to the front. The buffer grows only for a line or a request longer than itself, up to
  * MAX_LINE. */
 #include "io/stream.h"
 #include "base/memory.h"
@@ -13,11 +13,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define BYTE_ORDER_MARK "\xef\xbb\xbf" /* of UTF-8; some editors begin texts with it */
+#define BYTE_ORDER_MARK "\xef\xbb\xbf" /* of UTF-8: some editors begin texts with it */
 
+/* Both chosen. */
 enum { BLOCK = 1 << 20, MAX_LINE = 1 << 28 };
 
-/* A FIFO is opened at once, with no writer yet: the wait for the first bytes is one that can be cancelled. */
+/* Opens a file. A FIFO is opened at once, without a writer: the wait for its first bytes can be cancelled. */
 static int open_input(const char *path) {
     struct stat facts;
     bool special = stat(path, &facts) == 0 && !S_ISREG(facts.st_mode);
@@ -35,7 +36,7 @@ brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path
     bool regular = fstat(s->file, &facts) == 0 && S_ISREG(facts.st_mode);
     off_t at = regular ? lseek(s->file, 0, SEEK_CUR) : -1;
     s->waits = !regular;
-    /* a size of 0 is also what special file systems say of files that have content */
+    /* special file systems report a size of 0 for files with content */
     if (at >= 0 && facts.st_size > at) s->size = (uint64_t)(facts.st_size - at);
     size_t capacity = s->size < BLOCK ? (size_t)s->size + 1 : BLOCK;
     BRIO_TRY(BRIO_ALLOC(ctx, s->buffer, capacity + 1));
@@ -80,7 +81,7 @@ brio_status brio_stream_fill(brio_stream *s, size_t need) {
     while (brio_stream_left(s) < need && !s->ended) {
         if (s->waits) BRIO_TRY(brio_wait_for(s->ctx, s->file, BRIO_WAIT_READ, 0));
         ssize_t got = read(s->file, s->buffer + s->end, s->capacity - s->end);
-        if (got < 0 && (errno == EINTR || errno == EAGAIN)) { /* a signal: the caller may want to stop */
+        if (got < 0 && (errno == EINTR || errno == EAGAIN)) { /* a signal: the caller may want to cancel */
             BRIO_TRY(brio_wait_a_moment(s->ctx, BRIO_WAIT_READ, 0));
             continue;
         }
@@ -107,7 +108,7 @@ done:
     return status;
 }
 
-/* Length of the next line, its end not counted; brio_stream_left when the file ends without one. */
+/* Finds the length of the next line without its end, or brio_stream_left if the file ends without one. */
 static brio_status line_length(brio_stream *s, size_t *length) {
     brio_status status = BRIO_OK;
     size_t searched = 0;

@@ -1,7 +1,8 @@
-/* A file or a pipe read once from front to end through one buffer. It knows where it is (byte offset, line) and what is
- * being read (row of an element), so that every message can say so; it reports progress and can be cancelled.
+/* A file or a pipe, read once from front to end through one buffer. The stream knows the byte offset, the line, and the
+ * row of the element that is being read, so that every message can name them. It reports progress and can be cancelled.
  *
- * Pointers into the buffer are valid until the next call with the stream. */
+ * Pointers into the buffer are valid until the next call with the stream. All functions that return a status return
+ * BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
 #ifndef BRIO_IO_STREAM_H
 #define BRIO_IO_STREAM_H
 
@@ -13,25 +14,25 @@ typedef struct brio_stream {
     brio_context *ctx;
     const char *name; /* for messages */
     int file;
-    uint64_t size;   /* of a regular file, else BRIO_SIZE_UNKNOWN */
-    char *buffer;    /* one byte more than its capacity, so that a line at its end can be closed with a 0 */
-    size_t capacity; /* the bytes begin .. end are read and not yet used */
+    uint64_t size;   /* bytes of a regular file, otherwise BRIO_SIZE_UNKNOWN */
+    char *buffer;    /* capacity + 1 bytes: brio_stream_line can put a 0 behind a line at the end */
+    size_t capacity; /* bytes begin to end - 1 were read and are not yet used */
     size_t begin, end;
-    uint64_t base;       /* offset in the file of the buffer's first byte */
-    uint64_t reported;   /* bytes read at the last report of progress */
-    size_t line;         /* number of the line read last, from 1 */
-    bool owned;          /* the file is to be closed */
-    bool waits;          /* a read may block: no regular file */
-    bool ended;          /* the file holds nothing behind the buffer */
-    const char *element; /* what is being read, e.g. "vertex", and which of how many; for messages */
+    uint64_t base;       /* file offset of the first byte of the buffer */
+    uint64_t reported;   /* bytes read when progress was last reported */
+    size_t line;         /* number of the last line, counted from 1 */
+    bool owned;          /* whether to close the file */
+    bool waits;          /* whether a read may block: the input is no regular file */
+    bool ended;          /* whether the file has no bytes behind the buffer */
+    const char *element; /* what is being read, e.g. "vertex", with its row and the number of rows; for messages */
     uint64_t row, rows;
 } brio_stream;
 
-/** Opens a file, "-" being standard input. The stream is to be closed even when this fails. */
+/** Opens a file; "-" is standard input. Call brio_stream_close even if this fails. */
 brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path);
 void brio_stream_close(brio_stream *s);
 
-/** Reads until `need` bytes are there or the file ends. */
+/** Reads until the buffer has `need` unused bytes or the file ends. */
 brio_status brio_stream_fill(brio_stream *s, size_t need);
 
 static inline size_t brio_stream_left(const brio_stream *s) {
@@ -41,23 +42,24 @@ static inline uint64_t brio_stream_offset(const brio_stream *s) {
     return s->base + s->begin;
 }
 
-/** The next `need` bytes, which are used up; an error when the file ends before. */
+/** Returns the next `need` bytes in *bytes and marks them as used. Fails if the file ends before. */
 static inline brio_status brio_stream_take(brio_stream *s, size_t need, const char **bytes);
 
-/** Uses up `count` bytes without looking at them. */
+/** Skips `count` bytes. Fails if the file ends before. */
 brio_status brio_stream_skip(brio_stream *s, uint64_t count);
 
-/** The next line, closed with a 0 in place of its end (LF or CR LF); NULL at the end of the file. */
+/** Returns the next line in *line, with a 0 in place of its end (LF or CR LF), or NULL at the end of the file. */
 brio_status brio_stream_line(brio_stream *s, char **line);
 
-/** Starts the messages' count of rows of an element. */
+/** Names the element that is read from now on, and its number of rows, for messages; row becomes 0. */
 void brio_stream_element(brio_stream *s, const char *element, uint64_t rows);
 
-/** The error of a file that ends too early. */
+/** Returns the error of a file that ends too early. */
 brio_status brio_stream_truncated(brio_stream *s);
 
-/** Fails unless a regular file still has `rows` times `row` bytes to read, so that nothing is allocated on a false
- *  promise.   what  promises them, for the message. */
+/** Fails unless a regular file still has rows * row bytes to read, so that no memory is allocated for rows that are not
+ *  there. Accepts every input that is no regular file.
+ *  what  the part of the file that announces the rows, for the message. */
 brio_status brio_stream_expect(brio_stream *s, uint64_t rows, uint64_t row, const char *what);
 
 static inline brio_status brio_stream_take(brio_stream *s, size_t need, const char **bytes) {

@@ -1,11 +1,11 @@
 /* Output files under a temporary name, renamed when complete.
  *
- * Symbolic links are followed by hand, one at a time, from folder to folder: realpath refuses a link that leads to no
- * file. A shell's redirection and other programs write through such a link and create the file that it names; so does
- * this, and the link stays a link.
+ * Symbolic links are followed here, one at a time, from folder to folder, because realpath refuses a link that leads to
+ * no file. A shell's redirection writes through such a link and creates the file that it names. This code does the
+ * same, and the link stays a link.
  *
- * The temporary name begins with at most BRIO_NAME_IN_TEMPORARY bytes of the name, so that it is not longer than file
- * systems allow where the name itself has the greatest length. */
+ * The temporary name begins with at most BRIO_NAME_IN_TEMPORARY bytes of the name. So it is not too long for a file
+ * system even if the name has the greatest length. */
 #define _GNU_SOURCE
 #include "io/target.h"
 #include "base/memory.h"
@@ -26,13 +26,14 @@ static brio_status fail(brio_context *ctx, const char *shown, int error) {
 
 /* --- links --- */
 
-/* Bytes of a path's folder, with the slash at its end; 0 for a path that is a name only. */
+/* Returns the bytes of a path's folder with the slash at its end, or 0 for a name without a folder. */
 static size_t folder_length(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* Opens the folder of a path, which is relative to the target's present folder, and takes its name. */
+/* Opens the folder of a path and copies its name. The path is relative to target->folder, which the new folder
+ * replaces. */
 static brio_status step_to(brio_target *target, brio_context *ctx, const char *path, const char *shown) {
     brio_status status = BRIO_OK;
     size_t length = folder_length(path);
@@ -75,7 +76,8 @@ done:
 
 /* --- the temporary file --- */
 
-/* How many bytes of a name the temporary name begins with: whole characters of UTF-8, as some file systems insist. */
+/* Returns how many bytes of a name the temporary name begins with: whole UTF-8 characters, as some file systems
+ * require. */
 static int kept_bytes(const char *name) {
     size_t length = strlen(name);
     if (length <= BRIO_NAME_IN_TEMPORARY) return (int)length;
@@ -84,7 +86,8 @@ static int kept_bytes(const char *name) {
     return (int)length;
 }
 
-/* Permissions beyond reading, writing and running are kept only together with the owner they speak of. */
+/* Copies the permissions of a file. Permissions beyond read, write and execute depend on the owner, and are copied only
+ * if the owner could be. */
 static bool take_permissions(int file, const struct stat *old) {
     mode_t kept = fchown(file, old->st_uid, old->st_gid) == 0 ? 07777 : 0777;
     return fchmod(file, old->st_mode & kept) == 0;

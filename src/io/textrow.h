@@ -1,5 +1,8 @@
-/* Rows of numbers in a text: the next line that holds something, its words, and the errors that name line and word. A
- * row that runs out of numbers goes on in the next line. */
+/* Rows of numbers in a text: the next line that is not empty, its words, and errors that name line and word. A row can
+ * continue in the next line.
+ *
+ * All functions that return a status return BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY or
+ * BRIO_ERR_CANCELLED. */
 #ifndef BRIO_IO_TEXTROW_H
 #define BRIO_IO_TEXTROW_H
 
@@ -7,11 +10,11 @@
 
 typedef struct brio_text {
     brio_stream *stream;
-    char comment; /* what starts a comment, 0 for nothing */
-    char *at;     /* place in the current line; NULL at the end of the file */
+    char comment; /* the character that starts a comment, or 0 */
+    char *at;     /* the place in the current line; NULL at the end of the file */
 } brio_text;
 
-/** Words of the file as messages may show them. */
+/** A word of the file in a form that messages can show. */
 typedef struct brio_excerpt {
     char text[32];
 } brio_excerpt;
@@ -25,22 +28,23 @@ static inline char *brio_skip_blanks(char *p) {
     return p;
 }
 
-/** Moves to the next line that holds more than blanks and comment; at becomes NULL when there is none. */
+/** Moves to the next line that has more than blanks and a comment. t->at becomes NULL if there is none. */
 brio_status brio_text_next_line(brio_text *t);
 
-/** True when the current line holds another word. */
+/** Returns whether the current line has another word, and moves to the word. */
 bool brio_text_more(brio_text *t);
 
-/** The next number, if need be of the next line; errors for another word and for the end of the file. */
+/** Reads the next number, from the next line if the current one has no more. Fails at any other word and at the end of
+ *  the file. */
 brio_status brio_text_number(brio_text *t, double *value);
 
-/** The next number, which is to be whole and in 0 .. most.   what  it is, for the message. */
+/** Reads the next number. Fails unless it is an integer from 0 to `most`.   what  names the number in the message. */
 brio_status brio_text_count(brio_text *t, const char *what, uint64_t most, uint64_t *value);
 
-/** Fails when the current line holds another word. */
+/** Fails if the current line has another word. */
 brio_status brio_text_row_end(brio_text *t);
 
-/** The error of a line where something else was expected. */
+/** Returns the error of a line in which `what` was expected. */
 brio_status brio_text_expected(const brio_text *t, const char *what);
 
 #endif

@@ -1,4 +1,5 @@
-/* What VTK's XML files have in common: the header, points with their properties, arrays appended raw behind the XML.
+/* What VTK's XML files have in common: the header, points with their properties, and arrays of raw bytes behind the
+ * XML.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "io/vtk_xml.h"
@@ -32,14 +33,14 @@ static brio_status write_escaped(brio_output *out, const char *text) {
                              : *text == '>' ? "&gt;"
                              : *text == '"' ? "&quot;"
                                             : NULL;
-        char control = (unsigned char)*text < ' ' ? ' ' : *text; /* XML has no way to write it */
+        char control = (unsigned char)*text < ' ' ? ' ' : *text; /* XML cannot represent control characters */
         BRIO_TRY(escape ? brio_output_string(out, escape) : brio_output_bytes(out, &control, 1));
     }
 done:
     return status;
 }
 
-/* Two hyphens end a comment of XML too early. */
+/* Writes a comment. Two hyphens would end an XML comment too early. */
 static brio_status write_comment(brio_output *out, const char *comment) {
     brio_status status = BRIO_OK;
     if (!comment || !*comment) return BRIO_OK;

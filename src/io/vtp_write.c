@@ -1,5 +1,5 @@
-/* Writes VTP, VTK's XML file of polygonal data: polygons, edges as lines, or one vertex cell for each point when there
- * is neither.
+/* Writes VTP, VTK's XML file of polygonal data: polygons, and edges as lines. Without either, writes one vertex cell
+ * for each point.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "io/vtk_xml.h"
@@ -7,7 +7,7 @@
 typedef struct {
     brio_vtk_writer xml;
     const brio_mesh *mesh;
-    size_t num_verts, num_corners; /* cells that are points; corners of the faces */
+    size_t num_verts, num_corners; /* num_verts: cells that are points; num_corners: of the faces */
 } vtp_writer;
 
 static brio_status declare_section(vtp_writer *w, const char *name, size_t num_cells, size_t num_corners) {

@@ -1,5 +1,5 @@
-/* The XML of a VTU file, read tag by tag: what stands between tags does not matter, because only files with their
- * arrays appended are read. */
+/* The XML of a VTU file, read tag by tag. Text between tags is skipped, because arrays are read only from appended
+ * data. */
 #include "io/vtu_header.h"
 #include "base/memory.h"
 #include "io/number.h"
@@ -24,7 +24,7 @@ static brio_status bad(brio_stream *s, const char *expected) {
 
 /* --- tags --- */
 
-/* Uses up all before the next `mark`; an error when there is none. */
+/* Skips to the next `mark`. Fails if there is none. */
 static brio_status skip_to(brio_stream *s, char mark, const char *expected) {
     brio_status status = BRIO_OK;
     for (;;) {
@@ -39,7 +39,7 @@ done:
     return status;
 }
 
-/* Length of the tag that begins here, up to its '>'; the tag of a comment ends with "--". */
+/* Finds the length of the tag that begins here, up to its '>'. The tag of a comment ends with "-->". */
 static brio_status tag_length(brio_stream *s, size_t *length) {
     brio_status status = BRIO_OK;
     for (size_t n = 1;; n++) {
@@ -56,7 +56,7 @@ done:
     return status;
 }
 
-/* The next tag, without < and >, closed with a 0. */
+/* Returns the next tag in *tag, without < and >, with a 0 at its end. */
 static brio_status next_tag(brio_stream *s, const char **tag) {
     brio_status status = BRIO_OK;
     size_t length = 0;
@@ -87,7 +87,7 @@ static const char *unescape(const char *p, char *out) {
     return p + 1;
 }
 
-/* The value of an attribute of a tag, cut to 63 characters; false when the tag has none of the name. */
+/* Copies the value of an attribute of a tag, at most 63 characters. Returns false if the tag has no such attribute. */
 static bool attribute(const char *tag, const char *name, char value[64]) {
     size_t length = strlen(name), n = 0;
     for (const char *p = tag; (p = strstr(p, name)) != NULL; p += length) {

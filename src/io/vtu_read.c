@@ -1,7 +1,7 @@
-/* Reads VTU files with their arrays appended raw: points, point data, tetrahedra and polygons.
+/* Reads VTU files with arrays appended as raw bytes: points, point data, tetrahedra and polygons.
  *
- * The arrays are taken in the order of the file. Points become vertices as they come, point data properties; the three
- * arrays of the cells are kept until all are there. Cells of other types are passed over.
+ * Arrays are read in the order of the file. Points become vertices at once, and point data become properties. The three
+ * arrays of the cells are stored until all have been read. Cells of other types are skipped.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #define _GNU_SOURCE
@@ -36,7 +36,8 @@ bool brio_vtu_starts(const char *bytes, size_t size) {
 
 /* --- arrays --- */
 
-/* Goes to an array and reads its size, which is to be that of `count` rows; UINT64_MAX takes any. */
+/* Moves to an array and reads its size. The array must have *count rows; UINT64_MAX accepts any number and receives
+ * it. */
 static brio_status open_array(vtu_reader *r, const brio_vtu_array *a, uint64_t *count) {
     brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
@@ -69,8 +70,8 @@ static brio_status read_points(vtu_reader *r, const brio_vtu_array *a) {
     BRIO_REQUIRE(s->ctx, a->components == 3 && a->type < BRIO_SCALAR_END && !r->builder->mesh->num_vertices,
                  BRIO_ERR_FORMAT, "%s: expected one array of points with 3 components Float32 or Float64", s->name);
     BRIO_TRY(open_array(r, a, &count));
-    /* properties read before say as much as the size of a file that the count is true; and their room follows that of
-     * the vertices */
+    /* the size of the file, or properties that were read before, show that the count is true; room for properties
+     * follows that for the vertices */
     bool true_count = s->size != BRIO_SIZE_UNKNOWN || r->builder->mesh->num_properties;
     if (true_count) BRIO_TRY(brio_builder_expect_vertices(r->builder, count));
     size_t row = 3 * brio_vtu_type_size(a->type);
@@ -89,7 +90,7 @@ done:
     return status;
 }
 
-/* Reads an array into a block of its own, which grows as data comes. */
+/* Reads an array into a new block, which grows as data are read. */
 static brio_status read_block(vtu_reader *r, const brio_vtu_array *a, uint64_t count, cell_array *out) {
     brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
@@ -113,7 +114,7 @@ done:
     return status;
 }
 
-/* Arrays of vectors and of 64-bit integers are no properties: they are passed over. */
+/* Reads an array as a property. Skips arrays of vectors and of 64-bit integers, which no property can hold. */
 static brio_status read_property(vtu_reader *r, const brio_vtu_array *a) {
     brio_status status = BRIO_OK;
     cell_array values = {NULL, 0, 0};

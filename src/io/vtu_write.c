@@ -1,5 +1,5 @@
-/* Writes VTU, VTK's XML file of an unstructured grid: tetrahedra, polygons and edges, or one vertex cell for each point
- * when there is none of them.
+/* Writes VTU, VTK's XML file of an unstructured grid: tetrahedra, polygons and edges. Without any of them, writes one
+ * vertex cell for each point.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "io/vtk_xml.h"
@@ -10,7 +10,7 @@ typedef struct {
     brio_vtk_writer xml;
     const brio_mesh *mesh;
     size_t num_corners, num_cells; /* of all cells: tetrahedra, then faces, then edges */
-    bool vertices;                 /* cells are the points */
+    bool vertices;                 /* whether the cells are the points */
 } vtu_writer;
 
 static brio_status write_xml(vtu_writer *w) {
@@ -44,7 +44,7 @@ done:
     return status;
 }
 
-/* Where the corners of a cell end. */
+/* Returns the index behind the last corner of a cell. */
 static uint64_t end_of_cell(const vtu_writer *w, size_t c) {
     const brio_mesh *m = w->mesh;
     size_t t = m->num_tetrahedra, f = m->num_faces;

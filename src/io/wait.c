@@ -1,9 +1,10 @@
-/* Waiting with progress. A signal also ends the wait at once: its handler may be what the progress callback asks. */
+/* Waiting with progress. A signal also ends the wait at once, because the progress callback may depend on its
+ * handler. */
 #include "io/wait.h"
 #include <errno.h>
 #include <poll.h>
 
-enum { TURN = 100, MOMENT = 20 /* milliseconds: what a person does not notice after Ctrl-C */ };
+enum { TURN = 100, MOMENT = 20 /* milliseconds, chosen: too short to notice after Ctrl-C */ };
 
 static brio_status report(brio_context *ctx, brio_wait what, double fraction) {
     return brio_progress(ctx, what == BRIO_WAIT_READ ? "read" : "write", fraction);

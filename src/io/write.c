@@ -1,4 +1,4 @@
-/* Writes a mesh: refuses what the format cannot hold, and hands the rest to the format's writer. */
+/* Writes a mesh: refuses what the format cannot hold, and calls the format's writer. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
@@ -14,7 +14,7 @@ BRIO_OPTIONS_INIT(brio_write_options)
 
 /* --- what a format can hold --- */
 
-/* Names as words: PLY and the header of XYZ have no way to quote a blank or a comma. */
+/* Makes a name one word: PLY and the header of XYZ cannot quote a blank or a comma. */
 static void make_word(char name[64], const char *source) {
     size_t n = 0;
     for (; n < 63 && source[n]; n++) {
@@ -118,7 +118,7 @@ done:
     return status;
 }
 
-/* Writes .node and .ele, both complete before either gets its name. */
+/* Writes .node and .ele. Both files are complete before either gets its name. */
 static brio_status write_pair(brio_context *ctx, const char *node_path, const char *ele_path,
                               const brio_write_job *job) {
     brio_status status = BRIO_OK;
@@ -139,7 +139,8 @@ done:
     return status;
 }
 
-/* An .ele that is there already is replaced even by an empty one: it belongs to the points that are replaced. */
+/* Writes a .node file and the .ele file beside it. An old .ele file is replaced even by an empty one, because it
+ * belongs to the points that are replaced. */
 static brio_status write_node(brio_context *ctx, const char *path, const brio_write_job *job) {
     brio_status status = BRIO_OK;
     char *node = NULL, *ele = NULL;

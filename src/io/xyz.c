@@ -1,10 +1,10 @@
 /* Points as rows of numbers: .xyz .pts .txt .csv.
  *
- * Fields are separated by blanks, or by a comma or semicolon with blanks around it; two commas have an empty field
- * between them. Comments run from # or % or // to the end of the line, and from ; at its start. A line of names,
- * plain or as a comment, before the first row says where x, y, z stand and how the other columns are called. A
- * column is kept as a property when the first row has a number (or nothing) in it and no row lacks it. A lone number
- * before the first row is the number of rows. */
+ * Fields are separated by blanks, or by a comma or semicolon with blanks around it. Between two commas is an empty
+ * field. Comments begin with #, % or // and end with the line; a ; at the start of a line begins a comment, too. A line
+ * of names before the first row, plain or as a comment, names the columns and gives the places of x, y and z. A column
+ * becomes a property if the first row has a number (or nothing) in it and no row lacks it. A single number before the
+ * first row is the number of rows. */
 #include "base/memory.h"
 #include "io/formats.h"
 #include "io/number.h"
@@ -19,8 +19,8 @@ typedef enum { FIELD_NUMBER, FIELD_EMPTY, FIELD_WORD } field_kind;
 
 typedef struct {
     field_kind kind;
-    double value;     /* NaN when empty */
-    const char *word; /* where it stands in the line */
+    double value;     /* NaN if the field is empty */
+    const char *word; /* its place in the line */
     size_t length;
 } field;
 
@@ -28,22 +28,22 @@ typedef enum { COLUMN_IGNORED, COLUMN_AXIS, COLUMN_PROPERTY } column_role;
 
 typedef struct {
     column_role role;
-    size_t target; /* axis, or number of the property */
-    bool missing;  /* from some row */
+    size_t target; /* axis, or index of the property */
+    bool missing;  /* whether some row lacks it */
 } column;
 
 typedef struct {
     brio_stream *stream;
     brio_builder *builder;
-    field *fields; /* of the line read last */
+    field *fields; /* the fields of the last line */
     size_t num_fields, field_capacity;
     char (*names)[64];
     size_t num_names, name_capacity;
-    bool plain_names; /* from a line that is no comment: they hold whatever the number of columns */
+    bool plain_names; /* the names are no comment: they hold for any number of columns */
     column *columns;
     size_t num_columns;
     size_t axes[3]; /* columns of x, y, z */
-    bool counted;   /* the first line promised a number of rows */
+    bool counted;   /* whether the first line announced a number of rows */
     uint64_t promised;
     size_t count_line;
 } xyz_reader;
@@ -58,7 +58,7 @@ static bool ends_field(const char *p) {
     return !*p || brio_is_blank(*p) || *p == ',' || *p == ';' || starts_comment(p);
 }
 
-/* The field at p, which is neither blank nor the end; returns the place behind it. */
+/* Reads the field at p, which is neither a blank nor the end of the line. Returns the place behind the field. */
 static const char *scan_field(const char *p, field *f) {
     *f = (field){FIELD_EMPTY, (double)NAN, p, 0};
     if (*p == ',' || *p == ';') return p;
@@ -84,7 +84,8 @@ static brio_status add_field(xyz_reader *r, field f) {
     return status;
 }
 
-/* A comma at the end of the line stands before an empty field when a column is left for it; else it means nothing. */
+/* Splits a line into fields. A comma at the end of the line is followed by an empty field if there is a column for it;
+ * otherwise it means nothing. */
 static brio_status split_fields(xyz_reader *r, const char *p) {
     brio_status status = BRIO_OK;
     field f;
@@ -119,7 +120,7 @@ static void copy_name(char name[64], const field *f) {
     name[length] = 0;
 }
 
-/* In a line with commas they alone separate names, which may then hold blanks. */
+/* Joins words that no comma separates: in a line with commas, names can contain blanks. */
 static void join_words(xyz_reader *r) {
     size_t kept = 0;
     for (size_t i = 0; i < r->num_fields; i++) {
@@ -161,7 +162,7 @@ static bool find_axes(const xyz_reader *r, size_t count, size_t axes[3]) {
     return true;
 }
 
-/* A comment before the first row counts as a line of names when x, y and z are among them. */
+/* Reads a comment before the first row as a line of names if x, y and z are among its words. */
 static brio_status try_comment(xyz_reader *r, const char *comment) {
     brio_status status = BRIO_OK;
     size_t axes[3];
@@ -257,7 +258,7 @@ static size_t count_words(const xyz_reader *r) {
     return words;
 }
 
-/* A line before the first row: names, the number of rows, or the first row itself. */
+/* Reads a line before the first row: names, the number of rows, or the first row itself. */
 static brio_status read_first(xyz_reader *r) {
     brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
@@ -323,7 +324,7 @@ static bool wants_commas(const char *path) {
 
 static brio_status write_names(brio_output *out, const brio_write_job *job, char separator) {
     brio_status status = BRIO_OK;
-    /* spreadsheets take a line of names for data when it begins with # */
+    /* spreadsheets read a line that begins with # as data */
     BRIO_TRY(brio_output_format(out, "%sx%cy%cz", separator == ',' ? "" : "# ", separator, separator));
     for (size_t i = 0; i < job->mesh->num_properties; i++)
         BRIO_TRY(brio_output_format(out, "%c%s", separator, job->names[i]));

@@ -1,10 +1,11 @@
-/* Samples at boundaries and where the sampling is too sparse, by the shape of their Voronoi cells.
+/* Boundary samples, found by the shape of their Voronoi cells.
  *
- * The cell of a sample in the middle of a well-sampled surface is long along the normal and thin across: its height,
- * the distance to the pole on the side away from the farther one, is much more than its radius, the distance to the
- * farthest point of the cell in the co-cone (measured along the cell's edges). And the axes of its neighbours within
- * the co-cone are nearly parallel to its own. A sample of which both is true is interior; so is one that is long and
- * thin and has one interior neighbour whose axis is nearly parallel. All others are boundary samples.
+ * The cell of a sample in the middle of a well-sampled surface is long along the normal and thin across it. Its height
+ * is the distance to the pole on the side away from the farther pole. Its radius is the distance to the farthest point
+ * of the cell's edges in the co-cone. The cell is thin if the height is large against the radius. A sample is interior
+ * if its cell is thin and the axes of its neighbours within the co-cone are nearly parallel to its own. A sample with a
+ * thin cell is interior, too, if one interior neighbour has a nearly parallel axis. All other samples are boundary
+ * samples.
  *
  * Based on: Dey, Giesen. Detecting undersampling in surface reconstruction. SoCG 2001. */
 #include "reconstruct/cocone/boundary_samples.h"
@@ -12,12 +13,12 @@
 #include "base/vector.h"
 #include <math.h>
 
-/* Radius over height, and the cosine of the angle between axes (pi / 6), for interior samples. A ratio of 0.8 finds the
- * rim of the club (63 boundary edges, 56 in truth) and of holes cut into closed models, and leaves these closed but for
- * a hundredth of their samples; 0.6 opens many sharp places, 1.2 misses the holes. */
+/* Limits for interior samples: radius over height, and the cosine of the angle between axes (pi / 6). A ratio of 0.8
+ * finds the rim of the club (63 boundary edges, 56 in truth) and of holes cut into closed models. Closed models stay
+ * closed, except for a hundredth of their samples. A ratio of 0.6 opens many sharp places, 1.2 misses the holes. */
 static const double MOST_RATIO = 0.8, LEAST_COSINE = 0.8660254037844386;
 
-/* That a sample becomes interior together with another one. */
+/* If sample `from` is interior, sample `to` is, too. */
 typedef struct {
     uint32_t from, to;
 } follower;
@@ -25,17 +26,19 @@ typedef struct {
 typedef struct {
     brio_context *ctx;
     const brio_cocones *cocones;
-    double *radius;    /* of each sample's cell in its co-cone */
-    uint8_t *thin;     /* 1: the ratio is that of an interior sample */
-    uint8_t *interior; /* the result */
+    const brio_pole_vectors *dual;
+    double *radius;    /* #P: the radius of the sample's cell */
+    uint8_t *thin;     /* #P: 1 if the cell is thin */
+    uint8_t *interior; /* #P: 1 if the sample is interior */
     follower *pair;
     size_t num_pairs, pair_capacity;
 } detection;
 
 /* --- radius --- */
 
-/* How far from the sample the way from `in`, in its co-cone, along `way` leaves it: the one positive root t of
- * (x . axis)^2 = sine^2 |x|^2 at x = in + t way. All relative to the sample. */
+/* Returns the distance from the sample at which the ray from `in`, in the co-cone, along `way` leaves the co-cone. This
+ * is |x| for x = in + t way, t being the positive root of (x . axis)^2 = sine^2 |x|^2. All vectors are relative to the
+ * sample. */
 static double border_distance(const double *axis, double sine, const double *in, const double *way) {
     double along = brio_dot(in, axis), slope = brio_dot(way, axis), s = sine * sine;
     double a = slope * slope - s * brio_dot(way, way), b = along * slope - s * brio_dot(in, way);
@@ -45,12 +48,12 @@ static double border_distance(const double *axis, double sine, const double *in,
     return sqrt(brio_dot(x, x));
 }
 
-/* How far from p the Voronoi edge between two tetrahedra reaches within the co-cone of p, which it meets. At least the
- * first of them is finite. */
+/* Returns the greatest distance from p of the part of a Voronoi edge in the co-cone of p, which the edge meets. The
+ * edge joins the Voronoi vertices of two tetrahedra, the first of them finite. */
 static double reach(const brio_cocones *c, uint32_t p, const uint32_t tet[2]) {
     const brio_pole_vectors *v = c->dual;
     const double *axis = v->plane + 4 * (size_t)p;
-    double end[2][3], way[3], back[3], middle[3], sine = sin(c->dual->theta);
+    double end[2][3], way[3], back[3], middle[3], sine = sin(v->theta);
     bool inside[2], ray = tet[1] >= v->num_finite;
     for (int i = 0; i < 2; i++) {
         brio_towards_centre(v, tet[i], p, end[i]);
@@ -72,13 +75,13 @@ static double axis_cosine(const brio_cocones *c, uint32_t p, uint32_t q) {
     return fabs(brio_dot(u, v));
 }
 
-/* Called for a facet whose Voronoi edge meets the co-cone of its corner k. */
+/* Called for a facet whose Voronoi edge meets the co-cone of corner[0]. */
 typedef brio_status (*visit_fn)(detection *d, uint32_t facet, const uint32_t corner[3]);
 
-/* Visits every facet for each corner whose co-cone its Voronoi edge meets; that one is corner[0]. */
+/* Visits every facet once for each corner whose co-cone its Voronoi edge meets. That corner comes first. */
 static brio_status visit_meetings(detection *d, visit_fn visit) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedra *t = &d->cocones->dual->t;
+    const brio_tetrahedra *t = &d->dual->t;
     for (size_t tet = 0; tet < t->count; tet++)
         for (int i = 0; i < 4; i++) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i), v[3];
@@ -93,8 +96,8 @@ done:
 }
 
 static brio_status measure(detection *d, uint32_t facet, const uint32_t corner[3]) {
-    uint32_t p = corner[0], tet[2] = {brio_tet_of(facet), brio_tet_of(*brio_mate(&d->cocones->dual->t, facet))};
-    if (tet[0] >= d->cocones->dual->num_finite) tet[0] = tet[1], tet[1] = brio_tet_of(facet);
+    uint32_t p = corner[0], tet[2] = {brio_tet_of(facet), brio_tet_of(*brio_mate(&d->dual->t, facet))};
+    if (tet[0] >= d->dual->num_finite) tet[0] = tet[1], tet[1] = brio_tet_of(facet);
     d->radius[p] = fmax(d->radius[p], reach(d->cocones, p, tet));
     for (int m = 1; m < 3; m++)
         if (axis_cosine(d->cocones, p, corner[m]) < LEAST_COSINE) d->interior[p] = 0;
@@ -109,7 +112,7 @@ static double height(const brio_pole_vectors *v, size_t p) {
     return sqrt(brio_dot(to, to));
 }
 
-/* Notes which samples a later interior one makes interior. */
+/* Lists the samples with thin cells that become interior if corner[0] is. */
 static brio_status follow(detection *d, uint32_t facet, const uint32_t corner[3]) {
     brio_status status = BRIO_OK;
     (void)facet;
@@ -123,10 +126,10 @@ done:
     return status;
 }
 
-/* Makes followers interior, breadth first over the pairs in a table by their first samples. */
+/* Makes followers of interior samples interior, breadth first. A table gives the followers of each sample. */
 static brio_status spread(detection *d) {
     brio_status status = BRIO_OK;
-    size_t n = d->cocones->dual->num_points, size = 0;
+    size_t n = d->dual->num_points, size = 0;
     size_t *first = NULL;
     uint32_t *to = NULL, *queue = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, first, n + 2));
@@ -155,7 +158,7 @@ static brio_status detect(detection *d, size_t n) {
     for (size_t p = 0; p < n; p++) d->interior[p] = 1;
     BRIO_TRY(visit_meetings(d, measure));
     for (size_t p = 0; p < n; p++) {
-        d->thin[p] = d->radius[p] < INFINITY && d->radius[p] <= MOST_RATIO * height(d->cocones->dual, p);
+        d->thin[p] = d->radius[p] < INFINITY && d->radius[p] <= MOST_RATIO * height(d->dual, p);
         d->interior[p] &= d->thin[p];
     }
     BRIO_TRY(visit_meetings(d, follow));
@@ -167,7 +170,7 @@ done:
 brio_status brio_boundary_samples(brio_context *ctx, const brio_cocones *c, uint8_t **boundary, size_t *count) {
     brio_status status = BRIO_OK;
     const brio_pole_vectors *v = c->dual;
-    detection d = {.ctx = ctx, .cocones = c};
+    detection d = {.ctx = ctx, .cocones = c, .dual = v};
     *boundary = NULL;
     *count = 0;
     BRIO_TRY(detect(&d, v->num_points));

@@ -1,8 +1,8 @@
-/* The co-cones: from points and options to a mesh.
+/* The co-cone: from points and options to a mesh.
  *
- * The samples are taken in their canonical order and scaled by a power of two to coordinates of at most 1, so that nothing
- * over- or underflows on the way; their triangles are those of the whole set (cocone_surface.c) or matched together from
- * pieces, which are scaled one at a time (super_cocone.c). */
+ * The samples are taken in canonical order and scaled by a power of two to coordinates of at most 1, so that nothing
+ * overflows or underflows. Their triangles come from the whole set (cocone_surface.c), or from pieces whose triangles
+ * are matched (super_cocone.c). Pieces are scaled one at a time. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
@@ -19,7 +19,7 @@ static const brio_cocone_options STANDARD = {
 
 BRIO_OPTIONS_INIT(brio_cocone_options)
 
-/* The exponent of the least power of two above all coordinates. */
+/* Returns the exponent of the least power of two above the magnitude of all coordinates. */
 static int exponent_of(const double *points, size_t num_points) {
     double most = 0;
     int exponent = 0;
@@ -28,7 +28,7 @@ static int exponent_of(const double *points, size_t num_points) {
     return exponent;
 }
 
-/* Gives samples the caller's indices in place of their ranks. */
+/* Replaces the ranks of samples by the caller's indices. */
 static brio_status name_samples(brio_context *ctx, const uint32_t *order, size_t n, brio_cocone_surface *s) {
     brio_status status = BRIO_OK;
     uint8_t *boundary = NULL;
@@ -50,7 +50,7 @@ done:
     return status;
 }
 
-/* The co-cone of the whole set, scaled by 2^-exponent. */
+/* Finds the co-cone of the whole set, scaled by 2^-exponent. */
 static brio_status find_surface(brio_context *ctx, const double *points, size_t num_points, int exponent,
                                 const brio_cocone_options *options, brio_cocone_surface *surface) {
     brio_status status = BRIO_OK;
@@ -94,7 +94,7 @@ done:
     return status;
 }
 
-/* What --density asks for, as properties of the mesh. */
+/* Adds the properties that options.density asks for. */
 static brio_status add_properties(const brio_cocone_surface *s, int exponent, brio_mesh *mesh,
                                   brio_cocone_stats *stats) {
     brio_status status = BRIO_OK;

@@ -2,9 +2,9 @@
  *
  * The co-cone of a sample p is the complement of the double cone about the direction v to its pole: the points x with
  * the angle between x - p and v in [pi/2 - theta, pi/2 + theta]. The Voronoi edge dual to a triangle is the segment
- * between the centres of the tetrahedra on its two sides, or a ray for a triangle on the hull. Each half of the double
- * cone is convex, so the edge misses the co-cone exactly when both its ends lie in the same half; the end of a ray is
- * its direction. So the test needs two bits for each tetrahedron and each of its vertices.
+ * between the centres of the tetrahedra on its two sides, or a ray for a triangle on the hull. Each cone is convex, so
+ * the edge misses the co-cone exactly if both its ends lie in the same cone; the end of a ray is its direction. So the
+ * test needs two bits for each tetrahedron and each of its vertices (`sides`).
  *
  * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.2. */
@@ -12,7 +12,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 
-/* Tetrahedra that are looked at together. */
+/* BLOCK: tetrahedra whose facets are listed before their mates are read. Both chosen. */
 enum { BLOCK = 64, TETS_A_THREAD = 1 << 12 };
 
 brio_status brio_cocones_new(brio_context *ctx, const brio_pole_vectors *dual, brio_cocones *out) {
@@ -25,7 +25,8 @@ void brio_cocones_free(brio_context *ctx, brio_cocones *c) {
     *c = (brio_cocones){0};
 }
 
-/* Whether the Voronoi edge of a facet meets the co-cones of its samples, or of those that are no boundary samples. */
+/* Returns whether the Voronoi edge of a facet meets the co-cones of all its samples that are no boundary samples. With
+ * boundary NULL, of all its samples. */
 static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_t *boundary) {
     const uint32_t *v = c->dual->t.tet[brio_tet_of(facet)].vertex;
     for (int k = 0; k < 3; k++) {
@@ -36,28 +37,29 @@ static inline bool meets_all(const brio_cocones *c, uint32_t facet, const uint8_
     return true;
 }
 
-/* For each pair of sides of a tetrahedron's samples, in byte i: how many samples of facet i see the Voronoi vertex in the
- * cone to their pole and, in the upper half, how many in the other one. */
+/* counts[low byte of `sides`][i]: how many samples of facet i see the Voronoi vertex in their cone to the pole and,
+ * times 16, in their opposite cone. */
 typedef uint8_t side_counts[256][4];
 
 static void count_sides(side_counts counts) {
     for (int sides = 0; sides < 256; sides++)
         for (int i = 0; i < 4; i++) {
             counts[sides][i] = 0;
-            for (int k = 0; k < 3; k++)
-                counts[sides][i] += (sides >> BRIO_FACET[i][k] & 1) + (sides >> BRIO_FACET[i][k] & 16);
+            for (int k = 0; k < 3; k++) counts[sides][i] += (uint8_t)brio_slot_sides((unsigned)sides, BRIO_FACET[i][k]);
         }
 }
 
-/* Whether both ends of a facet's Voronoi edge lie in the same cone of one of its samples, whichever that is: four times
- * the same side for three samples. This tells of most facets far from the surface without a look at the mate. */
+/* Returns true only if both ends of a facet's Voronoi edge lie in the same cone of one of its samples. `here` and
+ * `there` are the counts of the facet and of its mate. If they add up to 4 or more for one of the cones, one of the
+ * three samples sees both ends in that cone. This settles most facets far from the surface without reading the mate's
+ * vertices. */
 static inline bool misses_surely(uint8_t here, uint8_t there) {
     return (here + there) & 0x44;
 }
 
-/* The same for all samples of a facet without infinite vertex. The mate has the same vertices the other way round, so
- * that one of them tells where the others are; and of the two bits of a side one is set at most, so that a side in
- * common leaves a bit. */
+/* Returns whether the Voronoi edge of a facet meets the co-cones of all its samples, none of which is infinite. The
+ * mate has the same vertices in the opposite order, so the place of one of them gives the places of the others. Of the
+ * two bits of a side at most one is set, so a common bit means a common cone. */
 static inline bool meets_every(const brio_pole_vectors *v, uint32_t facet, uint32_t mate) {
     static const uint8_t ROUND[5] = {0, 1, 2, 0, 1};
     const brio_tetrahedron *here = &v->t.tet[brio_tet_of(facet)], *there = &v->t.tet[brio_tet_of(mate)];
@@ -65,8 +67,9 @@ static inline bool meets_every(const brio_pole_vectors *v, uint32_t facet, uint3
     unsigned x = v->sides[brio_tet_of(facet)], y = v->sides[brio_tet_of(mate)];
     uint32_t first = here->vertex[a[0]];
     int k = (there->vertex[b[1]] == first) + 2 * (there->vertex[b[2]] == first);
-    unsigned common = (x >> a[0] & y >> b[k]) | (x >> a[1] & y >> b[ROUND[k + 2]]) | (x >> a[2] & y >> b[ROUND[k + 1]]);
-    return !(common & 0x11);
+    return !((brio_slot_sides(x, a[0]) & brio_slot_sides(y, b[k])) |
+             (brio_slot_sides(x, a[1]) & brio_slot_sides(y, b[ROUND[k + 2]])) |
+             (brio_slot_sides(x, a[2]) & brio_slot_sides(y, b[ROUND[k + 1]])));
 }
 
 static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
@@ -74,8 +77,8 @@ static bool passes(const brio_cocones *c, uint32_t facet, uint32_t mate) {
     return meets_all(c, facet, c->boundary) && (!brio_is_among_boundary(c, facet) || meets_all(c, facet, NULL));
 }
 
-/* Whether a facet has to be looked at closer: of a facet and its mate the lesser one, unless their counts decide.
- * here  the facet's own count.   all  the bits of `sides` that count. */
+/* Returns whether `passes` must test a facet: it is lower than its mate, and the counts do not settle it.
+ * here  the facet's count.   all  mask of the bits of `sides` that count. */
 static inline bool is_open(const brio_pole_vectors *v, const side_counts counts, uint8_t all, uint32_t facet,
                            uint8_t here) {
     uint32_t mate = v->t.tet[brio_tet_of(facet)].mate[brio_slot_of(facet)];
@@ -83,18 +86,18 @@ static inline bool is_open(const brio_pole_vectors *v, const side_counts counts,
     return (facet < mate) & !misses_surely(here, there);
 }
 
-/* Lists the facets of the tetrahedra [from, to) to look at closer. Their mates are fetched meanwhile. */
+/* Lists the facets of tetrahedra from to to - 1 that `passes` must test, and prefetches their mates. */
 static size_t list_open_facets(const brio_cocones *c, const side_counts counts, size_t from, size_t to,
                                uint32_t *open) {
     const brio_pole_vectors v = *c->dual;
-    uint8_t all = c->boundary ? 0 : 0xff; /* boundary samples do not count */
+    uint8_t all = c->boundary ? 0 : 0xff; /* with boundary samples no count settles a facet */
     size_t count = 0;
     for (size_t tet = from; tet < to; tet++) {
         const uint8_t *here = counts[v.sides[tet] & all];
         /* facets 0 to 2 of an infinite tetrahedron have the infinite vertex */
         for (int i = tet < v.num_finite ? 0 : 3; i < 4; i++) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            open[count] = facet; /* written always, kept or not: no branch could be foreseen */
+            open[count] = facet; /* written in any case, because no processor could predict a branch here */
             count += is_open(&v, counts, all, facet, here[i]);
         }
     }
@@ -102,7 +105,7 @@ static size_t list_open_facets(const brio_cocones *c, const side_counts counts, 
     return count;
 }
 
-/* Marks a facet; `alone`: no other thread does. */
+/* Marks a facet as a candidate.   alone  no other thread marks facets. */
 static inline void mark(const brio_cocones *c, uint32_t facet, bool alone) {
     uint8_t *candidates = &c->candidates[brio_tet_of(facet)], bit = (uint8_t)(1 << brio_slot_of(facet));
     if (alone)

@@ -1,33 +1,36 @@
-/* Candidates at sharp edges.
+/* Removes candidates at sharp edges.
  *
- * Triangles of the restricted Delaunay triangulation never meet at a sharp edge, so what does is a fin, or the border
- * of one. On real data an edge with a single candidate can also be the rim of a hole, from which literal pruning would
- * unravel the whole surface. A fin has the same side of the surface on both its sides; so candidates with an outer
- * tetrahedron on one side and an inner one on the other, by the votes of their samples, are kept.
+ * Triangles of the restricted Delaunay triangulation never meet at a sharp edge. So a candidate at a sharp edge belongs
+ * to a fin or to the border of one. On real data an edge with one candidate can also be the rim of a hole, and literal
+ * pruning would unravel the whole surface from there. Both sides of a fin are on one side of the surface. So candidates
+ * between an outer and an inner tetrahedron, by the votes of the samples, are kept.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999, for the pruning.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, appendix A, for the angle.
- * Differs from the paper: what the votes of the samples hold to be surface is kept. */
+ * Differs from the paper: candidates that the votes of the samples support are kept. */
 #include "reconstruct/cocone/cocone_prune.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "reconstruct/cocone/label_boundary.h"
 
+/* Chosen. */
 enum { CHUNK = 4096 };
 
 typedef struct {
     brio_context *ctx;
-    pthread_mutex_t stack_lock; /* while threads fill the stack */
-    brio_status status;         /* the first failure of a thread */
+    pthread_mutex_t stack_lock; /* held while a thread pushes */
+    brio_status status;         /* the first failure that a thread reported */
     const brio_tet_labels *labels;
     const brio_cocones *cocones;
     const brio_tetrahedra *t;
-    uint32_t *stack; /* facets to look at */
+    const double *points;
+    uint32_t *stack; /* candidates to test */
     size_t size, capacity;
 } pruning;
 
-/* A directed edge of a facet: from corner k to the next, counterclockwise as seen from the facet's tetrahedron. */
+/* A directed edge of a facet, from corner k to the next corner, counterclockwise as seen from the facet's
+ * tetrahedron. */
 typedef struct {
     uint32_t facet, from, to, apex;
 } facet_edge;
@@ -38,8 +41,8 @@ static facet_edge edge_of(const pruning *x, uint32_t facet, int k) {
     return (facet_edge){facet, v[corner[k]], v[corner[(k + 1) % 3]], v[corner[(k + 2) % 3]]};
 }
 
-/* The next candidate round the edge, on the facet's own side, seen from its far side: going on from it goes on round
- * the edge. */
+/* Returns the next candidate round the edge, starting on the side of the facet's tetrahedron. The result is the handle
+ * on the far side of that candidate, so that the next call continues round the edge. */
 static facet_edge next_candidate(const pruning *x, facet_edge e) {
     uint32_t facet = e.facet;
     do {
@@ -52,10 +55,10 @@ static facet_edge next_candidate(const pruning *x, facet_edge e) {
     return e;
 }
 
-/* The part of the apexes' dot product across the edge, times its squared length: negative when the two triangles make
- * more than a right angle. */
+/* Returns the dot product of the components of the two apexes perpendicular to the edge, times the edge's squared
+ * length. Negative: the two triangles make more than a right angle. */
 static double across(const pruning *x, facet_edge e, facet_edge f) {
-    const double *points = x->cocones->dual->points;
+    const double *points = x->points;
     const double *a = points + 3 * (size_t)e.from, *b = points + 3 * (size_t)e.to;
     const double *p = points + 3 * (size_t)e.apex, *q = points + 3 * (size_t)f.apex;
     double pq = 0, pe = 0, qe = 0, ee = 0;
@@ -68,15 +71,16 @@ static double across(const pruning *x, facet_edge e, facet_edge f) {
     return pq * ee - pe * qe;
 }
 
-/* Whether the angle from one candidate to the next round their edge is more than 3 pi / 2. */
+/* Returns whether the angle from one candidate to the next round their edge is more than 3 pi / 2. */
 static bool is_wide(const pruning *x, facet_edge from, facet_edge to) {
-    const double *points = x->cocones->dual->points;
-    if (from.facet == to.facet) return true; /* a single one */
+    const double *points = x->points;
+    if (from.facet == to.facet) return true; /* the edge has one candidate only */
     return across(x, from, to) > 0 && brio_orient3d(points + 3 * (size_t)from.from, points + 3 * (size_t)from.to,
                                                     points + 3 * (size_t)from.apex, points + 3 * (size_t)to.apex) < 0;
 }
 
-/* Two candidates at more than a right angle leave no room for a wide gap, so that most walks end early. */
+/* Returns whether an edge of a candidate is sharp. Two candidates at more than a right angle leave no room for a gap of
+ * 3 pi / 2, so the first loop ends most calls early. */
 static bool is_sharp(const pruning *x, facet_edge first) {
     const uint8_t *boundary = x->cocones->boundary;
     facet_edge e = first;
@@ -98,7 +102,7 @@ static bool has_sharp_edge(const pruning *x, uint32_t facet) {
     return is_sharp(x, edge_of(x, facet, 0)) || is_sharp(x, edge_of(x, facet, 1)) || is_sharp(x, edge_of(x, facet, 2));
 }
 
-/* Whether the samples of a candidate see the outside on one of its sides and the inside on the other. */
+/* Returns whether the samples voted a candidate's two tetrahedra outer and inner. */
 static inline bool is_surface(const pruning *x, uint32_t facet) {
     uint8_t here = x->labels->label[brio_tet_of(facet)], there = x->labels->label[brio_tet_of(*brio_mate(x->t, facet))];
     return here != there && here != BRIO_LABEL_NONE && there != BRIO_LABEL_NONE;
@@ -113,7 +117,7 @@ done:
     return status;
 }
 
-/* Drops a facet; the others at its edges are to be looked at again. */
+/* Removes a candidate, and pushes the other candidates at its edges. */
 static brio_status drop(pruning *x, uint32_t facet) {
     brio_status status = BRIO_OK;
     for (int k = 0; k < 3; k++) {
@@ -126,14 +130,15 @@ done:
     return status;
 }
 
-/* By number. */
+/* Compares facets by their handles. */
 static int compare_facets(uint32_t f, uint32_t g, const void *user) {
     (void)user;
     return (f > g) - (f < g);
 }
 
-/* Finds the candidates that have a sharp edge to begin with. Apart from rounding, what is dropped does not depend on the
- * order, since edges only get sharper; the stack is sorted, so that the threads leave no trace of that either. */
+/* Pushes the candidates that have a sharp edge. The final set of candidates does not depend on the order of removals,
+ * except for rounding, because edges only become sharper. The stack is sorted afterwards, so that rounding does not
+ * depend on the threads either. */
 static void find_sharp(void *user, size_t begin, size_t end, int thread) {
     pruning *x = user;
     (void)thread;
@@ -148,13 +153,14 @@ static void find_sharp(void *user, size_t begin, size_t end, int thread) {
         }
 }
 
-brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *l, size_t *dropped) {
+brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *labels, size_t *dropped) {
     brio_status status = BRIO_OK;
     pruning x = {.stack_lock = PTHREAD_MUTEX_INITIALIZER,
                  .ctx = ctx,
-                 .labels = l,
-                 .cocones = l->cocones,
-                 .t = &l->cocones->dual->t};
+                 .labels = labels,
+                 .cocones = labels->cocones,
+                 .t = &labels->dual->t,
+                 .points = labels->dual->points};
     *dropped = 0;
     brio_for_chunks(ctx, brio_threads(ctx, x.t->count, CHUNK), x.t->count, CHUNK, find_sharp, &x);
     BRIO_TRY(x.status);

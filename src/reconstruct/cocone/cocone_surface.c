@@ -1,11 +1,11 @@
 /* The co-cone and the tight co-cone of one set of samples.
  *
- *   1. Delaunay triangulation of the samples.
+ *   1. The Delaunay triangulation of the samples.
  *   2. The direction of each sample's pole.
- *   3. Candidates: the triangles whose dual Voronoi edges meet the co-cones of their samples, less those at sharp
+ *   3. Candidates: the triangles whose dual Voronoi edges meet the co-cones of their samples, except those at sharp
  *      edges.
- *   4. Outer or inner, for each sample's pole and then for each tetrahedron.
- *   5. A manifold: the boundary between the labels; of that, the candidates (co-cone) or all of it (tight co-cone).
+ *   4. Labels, outer or inner, for each sample's pole and then for each tetrahedron.
+ *   5. A manifold: the candidates in the boundary between the labels (co-cone), or the whole boundary (tight co-cone).
  *
  * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000.
  *           Dey, Goswami. Tight cocone: a water-tight surface reconstructor. JCISE 2003.
@@ -33,7 +33,7 @@ typedef struct {
     double lap;
 } reconstruction;
 
-/* Adds the seconds since the last call. */
+/* Adds the seconds since the last call to *seconds. */
 static void lap(reconstruction *r, double *seconds) {
     double now = brio_seconds();
     *seconds += now - r->lap;
@@ -77,7 +77,8 @@ done:
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_orient_samples(r->ctx, &r->cocones, &r->turned));
-    r->labels = (brio_tet_labels){.cocones = &r->cocones, .turned = r->turned, .watertight = r->options->tight};
+    r->labels = (brio_tet_labels){
+        .cocones = &r->cocones, .dual = &r->dual, .turned = r->turned, .watertight = r->options->tight};
     BRIO_TRY(brio_tet_labels_vote(r->ctx, &r->labels));
     BRIO_TRY(brio_cocone_prune(r->ctx, &r->labels, &r->out->stats.pruned));
     BRIO_TRY(brio_tet_labels_spread(r->ctx, &r->labels));

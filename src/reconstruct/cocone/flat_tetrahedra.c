@@ -1,51 +1,53 @@
 /* Flat tetrahedra within the surface.
  *
- * Four neighbouring samples of a surface often make a flat tetrahedron that lies within it, all of whose facets are
- * candidates: two of them are one way to cover the quadrilateral of the samples, two the other. Both are manifolds of
- * candidates, so any choice keeps the guarantee; that of less area is nearer to a smooth surface and has the steadier
- * normals (on knot2, by 1 % of the distance to the true surface).
+ * Four neighbouring samples of a surface often make a flat tetrahedron within the surface, whose facets are all
+ * candidates. Two of its facets are one way to cover the quadrilateral of the samples, the other two are the other way.
+ * Both ways are manifolds of candidates, so either keeps the guarantee. The one of smaller area is nearer to a smooth
+ * surface and has steadier normals: on knot2 the distance to the true surface is 1 % smaller.
  *
- * Works in rounds: a tetrahedron changes sides when its gain is larger than that of every neighbour. So within a round
- * no change touches another and the order of the tetrahedra is of no importance. */
+ * The method works in rounds. In a round, a tetrahedron changes sides if its gain is larger than the gain of each of
+ * its neighbours. So no two changes of a round touch, and the result does not depend on the order of the tetrahedra. */
 #include "reconstruct/cocone/flat_tetrahedra.h"
 #include "base/memory.h"
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/triangle.h"
 
+/* Most rounds. Chosen. */
 enum { ROUNDS = 4 };
 
-/* Far above rounding: what is equal but for rounding counts as equal. */
+/* Relative; chosen far above rounding. A smaller difference counts as none. */
 static const double SIGNIFICANT = 1e-9;
 
 typedef struct {
     const brio_tet_labels *labels;
+    const brio_cocones *cocones;
+    const brio_pole_vectors *dual;
     const brio_tetrahedra *t;
     uint32_t *tet; /* the tetrahedra that may change, ascending */
     size_t count;
-    double *gain;   /* of each of these: the area that its change saves; 0 where it may not change */
-    size_t *change; /* those that change in this round */
+    double *gain;   /* count: the area that the change of the tetrahedron saves; 0 if it may not change */
+    size_t *change; /* the places in `tet` of those that change in this round */
 } flattening;
 
 static double area(const flattening *x, uint32_t facet) {
     const uint32_t *v = x->t->tet[brio_tet_of(facet)].vertex;
     const double *corner[3];
-    for (int k = 0; k < 3; k++)
-        corner[k] = x->labels->cocones->dual->points + 3 * (size_t)v[BRIO_FACET[brio_slot_of(facet)][k]];
+    for (int k = 0; k < 3; k++) corner[k] = x->dual->points + 3 * (size_t)v[BRIO_FACET[brio_slot_of(facet)][k]];
     return brio_triangle_area(corner[0], corner[1], corner[2]);
 }
 
-/* Whether one pair of candidates gives way to another when a tetrahedron changes sides. */
+/* Returns whether a change of sides replaces two boundary facets by two candidates. */
 static bool may_change(const flattening *x, uint32_t tet) {
     int leaving = 0;
     for (int i = 0; i < 4; i++) {
         bool leaves = brio_is_boundary(x->labels, brio_facet_of(tet, i));
-        if (!leaves && !brio_is_candidate(x->labels->cocones, brio_facet_of(tet, i))) return false;
+        if (!leaves && !brio_is_candidate(x->cocones, brio_facet_of(tet, i))) return false;
         leaving += leaves;
     }
     return leaving == 2;
 }
 
-/* The area that is saved when a tetrahedron changes sides; 0 for one that may not. */
+/* Returns the area that a change of sides saves, or 0 if the tetrahedron may not change. */
 static double gain_of(const flattening *x, uint32_t tet) {
     double saved = 0, all = 0;
     if (!may_change(x, tet)) return 0;
@@ -57,7 +59,7 @@ static double gain_of(const flattening *x, uint32_t tet) {
     return saved > SIGNIFICANT * all ? saved : 0;
 }
 
-/* The place of a tetrahedron among those that may change; x->count when it is none of them. */
+/* Returns the index of a tetrahedron in x->tet, or x->count if it is not there. */
 static size_t place_of(const flattening *x, uint32_t tet) {
     size_t low = 0, high = x->count;
     while (low < high) {
@@ -84,14 +86,14 @@ static brio_status collect(brio_context *ctx, flattening *x) {
     BRIO_TRY(BRIO_ALLOC(ctx, x->tet, x->labels->num_undecided));
     for (size_t n = 0; n < x->labels->num_undecided; n++) {
         uint32_t tet = x->labels->undecided[n];
-        bool finite = tet < x->labels->cocones->dual->num_finite;
-        if (finite && x->labels->cocones->candidates[tet]) x->tet[x->count++] = tet;
+        bool finite = tet < x->dual->num_finite;
+        if (finite && x->cocones->candidates[tet]) x->tet[x->count++] = tet;
     }
 done:
     return status;
 }
 
-/* Finds the gains of a tetrahedron and its neighbours anew. */
+/* Updates the gains of a tetrahedron and its neighbours. */
 static void update_gains(const flattening *x, size_t n) {
     x->gain[n] = gain_of(x, x->tet[n]);
     for (int i = 0; i < 4; i++) {
@@ -101,7 +103,7 @@ static void update_gains(const flattening *x, size_t n) {
     }
 }
 
-/* One round; the number of changes. */
+/* Works one round and returns the number of changes. */
 static size_t change_best(flattening *x) {
     size_t changes = 0;
     for (size_t n = 0; n < x->count; n++)
@@ -114,9 +116,9 @@ static size_t change_best(flattening *x) {
     return changes;
 }
 
-brio_status brio_flatten(brio_context *ctx, const brio_tet_labels *l) {
+brio_status brio_flatten(brio_context *ctx, const brio_tet_labels *labels) {
     brio_status status = BRIO_OK;
-    flattening x = {.labels = l, .t = &l->cocones->dual->t};
+    flattening x = {.labels = labels, .cocones = labels->cocones, .dual = labels->dual, .t = &labels->dual->t};
     BRIO_TRY(collect(ctx, &x));
     BRIO_TRY(BRIO_ALLOC(ctx, x.gain, x.count));
     BRIO_TRY(BRIO_ALLOC(ctx, x.change, x.count));

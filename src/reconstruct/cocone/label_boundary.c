@@ -1,10 +1,11 @@
-/* The boundary between two labels of tetrahedra, as a list of facets: each thread lists some parts of the tetrahedra,
- * and the parts are joined in order. */
+/* The boundary between two labels of tetrahedra, as a list of facets. Each thread lists parts of the tetrahedra, and
+ * the parts are joined in order. */
 #include "reconstruct/cocone/label_boundary.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include <string.h>
 
+/* Both chosen. */
 enum { PARTS = 64, TETS_A_THREAD = 1 << 13 };
 
 typedef struct {
@@ -12,14 +13,14 @@ typedef struct {
     size_t count, capacity;
 } part;
 
-/* Lists the boundary facets of the tetrahedra [from, to). */
-static brio_status list_part(brio_context *ctx, const brio_tet_labels *l, size_t from, size_t to, part *p) {
+/* Lists the boundary facets of the outer ones among tetrahedra from to to - 1. */
+static brio_status list_part(brio_context *ctx, const brio_tet_labels *labels, size_t from, size_t to, part *p) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedron *t = l->cocones->dual->t.tet;
-    const uint8_t *label = l->label;
+    const brio_tetrahedron *t = labels->dual->t.tet;
+    const uint8_t *label = labels->label;
     for (size_t tet = from; tet < to; tet++) {
         if (label[tet] != BRIO_LABEL_OUTER) continue;
-        unsigned inner = 0; /* the slots with an inner neighbour */
+        unsigned inner = 0; /* bit i: the neighbour behind facet i is inner */
         for (int i = 0; i < 4; i++) inner |= (unsigned)(label[brio_tet_of(t[tet].mate[i])] != BRIO_LABEL_OUTER) << i;
         if (inner == 0) continue;
         BRIO_TRY(BRIO_RESERVE(ctx, p->facets, p->capacity, p->count + 4));
@@ -45,12 +46,12 @@ static void list_parts(void *user, size_t begin, size_t end, int thread) {
                                           brio_part(a->size, i + 1, PARTS), &a->parts[i]));
 }
 
-brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *l, brio_facets *out) {
+brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *labels, brio_facets *out) {
     brio_status status = BRIO_OK;
     part parts[PARTS] = {{0}};
-    size_t size = l->cocones->dual->t.count;
+    size_t size = labels->dual->t.count;
     *out = (brio_facets){0};
-    listing all = {ctx, l, parts, size, BRIO_OK};
+    listing all = {ctx, labels, parts, size, BRIO_OK};
     brio_for_chunks(ctx, brio_threads(ctx, size, TETS_A_THREAD), PARTS, 1, list_parts, &all);
     BRIO_TRY(all.status);
     for (int i = 0; i < PARTS; i++) out->count += parts[i].count;

@@ -1,14 +1,15 @@
 /* Labels whose boundary is a manifold.
  *
- * Round a sample, tetrahedra are triangles on a sphere. The boundary is one fan at the sample exactly when both the
- * outer and the inner tetrahedra of its star hang together across facets (then they meet in one closed curve on that
- * sphere, which by Jordan's theorem nowhere touches itself, so that its edges have two faces each as well). At every
- * other sample the largest outer and the largest inner piece of the star keep their labels and the smaller pieces give
- * theirs up; the samples of what changed are looked at again. A sample that comes up more than PATIENCE times is given
- * up itself: its whole star becomes outer, for good. So the work ends, whatever the input. It goes in rounds, each in
- * the order of positions, so that the order of the samples is of no importance.
+ * Round a sample, tetrahedra are triangles on a sphere. The boundary is one fan at the sample exactly if the outer
+ * tetrahedra of its star are connected across facets, and the inner ones are, too. Then they meet in one closed curve
+ * on that sphere. By Jordan's theorem the curve nowhere touches itself, so its edges have two faces each.
  *
- * Invariant: a fixed tetrahedron is outer. */
+ * At every other sample, the largest outer piece and the largest inner piece of the star keep their labels, and the
+ * smaller pieces change theirs. The samples of changed tetrahedra are tested again. A sample that is mended more than
+ * PATIENCE times is given up: its whole star becomes outer, for good. So the work ends for every input. It goes in
+ * rounds, each in the order of positions, so that the result does not depend on the numbers of the samples.
+ *
+ * I1  A fixed tetrahedron is outer. */
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
@@ -18,30 +19,32 @@
 #include "triangulation/star.h"
 #include <stdlib.h>
 
+/* AHEAD: the tetrahedron this many facets ahead is prefetched. All chosen, except NO_PIECE. */
 enum { AHEAD = 16, PATIENCE = 8, SAMPLES_A_THREAD = 1 << 10, NO_PIECE = UINT32_MAX };
 
-/* A part of a star that hangs together. */
+/* A part of a star that is connected across facets. */
 typedef struct {
     uint8_t label;
     bool fixed;
     uint64_t weight;
-    const double *mark; /* the largest of its centres, which decides ties */
+    const double *mark; /* the lexicographically largest of its centres, which decides ties */
 } piece;
 
 typedef struct {
     brio_context *ctx;
     brio_tet_labels *labels;
+    const brio_pole_vectors *dual;
     const brio_tetrahedra *t;
-    uint32_t *tet_of_vertex; /* any one; BRIO_INFINITE for points that are no vertices */
-    uint8_t *visits;         /* of each sample, to its star */
-    uint8_t *waiting;        /* 1: the sample is in the queue */
-    uint8_t *fixed;          /* of each tetrahedron */
-    uint32_t *piece_of;      /* of each tetrahedron, valid in the star at hand */
+    uint32_t *tet_of_vertex; /* #P: a finite tetrahedron at each vertex; not set for points that are no vertices */
+    uint8_t *visits;         /* #P: how often the star of the sample was mended */
+    uint8_t *waiting;        /* #P: 1 if the sample is in the queue */
+    uint8_t *fixed;          /* #T: 1 if the tetrahedron is outer for good */
+    uint32_t *piece_of;      /* #T: the piece of each tetrahedron of the star at hand */
     brio_star star;
     piece *pieces;
     uint32_t *stack;
     size_t num_pieces, piece_capacity, stack_capacity;
-    uint32_t *queue; /* samples to look at */
+    uint32_t *queue; /* samples to test */
     size_t size, queue_capacity;
     size_t changed;
 } repair;
@@ -58,11 +61,11 @@ done:
     return status;
 }
 
-/* A facet of the boundary at a sample: in the upper half its corner after the sample, counterclockwise from outside, in
- * the lower half the one before. */
+/* A facet of the boundary at a sample: corner after the sample << 32 | corner before the sample, counterclockwise from
+ * outside. */
 typedef uint64_t fan_corner;
 
-/* The corner of a fan that begins at a vertex; `count` for none. */
+/* Returns the index of the fan corner that begins at vertex `at`, or `count` if there is none. */
 static size_t corner_that_begins(const fan_corner *fan, size_t count, bool sorted, uint32_t at) {
     size_t low = 0, high = count;
     if (!sorted) {
@@ -79,8 +82,8 @@ static size_t corner_that_begins(const fan_corner *fan, size_t count, bool sorte
     return low < count && fan[low] >> 32 == at ? low : count;
 }
 
-/* Whether the facets at a sample are one closed fan: going from each to the one that begins where it ends comes back to
- * the first only after all of them. */
+/* Returns whether the facets at a sample are one closed fan: following each facet by the one that begins where it ends
+ * returns to the first facet only after all others. */
 static bool is_one_fan(fan_corner *fan, size_t count) {
     enum { FEW = 16 };
     if (count > FEW) brio_sort_keys(fan, count);
@@ -93,9 +96,9 @@ static bool is_one_fan(fan_corner *fan, size_t count) {
     return at == first;
 }
 
-/* Deals the corners of the boundary to their samples: those of v end before end[v]. */
+/* Stores the corners of the boundary by sample: those of sample v end before corner[end[v]]. */
 static void deal_corners(const repair *r, const uint32_t *facets, size_t count, uint32_t *end, fan_corner *corner) {
-    size_t n = r->labels->cocones->dual->num_points;
+    size_t n = r->dual->num_points;
     uint32_t sum = 0;
     for (int writing = 0; writing < 2; writing++) {
         for (size_t f = 0; f < count; f++) {
@@ -118,7 +121,7 @@ static void deal_corners(const repair *r, const uint32_t *facets, size_t count, 
 }
 
 typedef struct {
-    const uint32_t *end; /* of each sample's corners */
+    const uint32_t *end; /* #P: where the corners of each sample end */
     fan_corner *corner;
     uint8_t *singular;
 } fan_marks;
@@ -132,10 +135,10 @@ static void mark_singular(void *user, size_t first, size_t last, int thread) {
     }
 }
 
-/* Fills the queue with the samples where the boundary is not one fan. */
+/* Queues the samples where the boundary is not one fan. */
 static brio_status enqueue_singular(repair *r, const uint32_t *facets, size_t count) {
     brio_status status = BRIO_OK;
-    size_t n = r->labels->cocones->dual->num_points;
+    size_t n = r->dual->num_points;
     uint32_t *end = NULL;
     fan_corner *corner = NULL;
     uint8_t *singular = NULL;
@@ -157,7 +160,7 @@ done:
 
 /* --- one star --- */
 
-/* The piece of the star of v that holds a tetrahedron. */
+/* Collects the piece of the star of v that contains tetrahedron `first`. */
 static brio_status collect_piece(repair *r, uint32_t v, uint32_t first) {
     brio_status status = BRIO_OK;
     piece p = {.label = r->labels->label[first]};
@@ -169,7 +172,7 @@ static brio_status collect_piece(repair *r, uint32_t v, uint32_t first) {
     while (size > 0) {
         uint32_t tet = r->stack[--size];
         p.fixed |= r->fixed[tet];
-        const double *centre = r->labels->cocones->dual->centre + 4 * (size_t)tet;
+        const double *centre = r->dual->centre + 4 * (size_t)tet;
         if (!p.mark || brio_lexicographic(centre, p.mark) > 0) p.mark = centre;
         p.weight += 1 + (uint64_t)abs(brio_tet_vote(r->labels, tet));
         for (int i = 0; i < 4; i++) {
@@ -196,13 +199,13 @@ done:
     return status;
 }
 
-/* Whether a piece is to keep its label rather than another one. */
+/* Returns whether to keep the label of piece a rather than b. */
 static bool is_better(const piece *a, const piece *b) {
     if (a->fixed != b->fixed) return a->fixed;
     return a->weight != b->weight ? a->weight > b->weight : brio_lexicographic(a->mark, b->mark) > 0;
 }
 
-/* The piece that keeps a label, NO_PIECE when there is none; *fixed counts the fixed pieces of that label. */
+/* Returns the piece that keeps a label, or NO_PIECE.   fixed  receives the number of fixed pieces of that label. */
 static uint32_t piece_to_keep(const repair *r, uint8_t label, size_t *fixed) {
     uint32_t best = NO_PIECE;
     *fixed = 0;
@@ -224,7 +227,8 @@ done:
     return status;
 }
 
-/* Gives the star one outer and one inner piece or, where that cannot be or was tried too often, one outer piece. */
+/* Changes labels in a star so that it has one outer and one inner piece. Where this is impossible, or was tried
+ * PATIENCE times, the whole star becomes outer. */
 static brio_status mend_star(repair *r, uint32_t v) {
     brio_status status = BRIO_OK;
     size_t fixed_outer, fixed_inner;
@@ -250,7 +254,7 @@ done:
 
 static brio_status prepare(repair *r) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *v = r->labels->cocones->dual;
+    const brio_pole_vectors *v = r->dual;
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->tet_of_vertex, v->num_points));
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->visits, v->num_points));
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->fixed, r->t->count));
@@ -267,7 +271,7 @@ static brio_status mend_stars(repair *r) {
     brio_status status = BRIO_OK;
     for (size_t begin = 0, end; begin < r->size; begin = end) {
         end = r->size;
-        brio_sort_by_position(r->labels->cocones->dual->points, r->queue + begin, end - begin);
+        brio_sort_by_position(r->dual->points, r->queue + begin, end - begin);
         for (size_t n = begin; n < end; n++) {
             r->waiting[r->queue[n]] = 0;
             BRIO_TRY(mend_star(r, r->queue[n]));
@@ -277,11 +281,11 @@ done:
     return status;
 }
 
-brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, brio_facets *facets, size_t *changed) {
+brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *labels, brio_facets *facets, size_t *changed) {
     brio_status status = BRIO_OK;
-    repair r = {.ctx = ctx, .labels = l, .t = &l->cocones->dual->t};
-    BRIO_TRY(brio_boundary_facets(ctx, l, facets));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, l->cocones->dual->num_points));
+    repair r = {.ctx = ctx, .labels = labels, .dual = labels->dual, .t = &labels->dual->t};
+    BRIO_TRY(brio_boundary_facets(ctx, labels, facets));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.waiting, labels->dual->num_points));
     BRIO_TRY(enqueue_singular(&r, facets->facet, facets->count));
     BRIO_TRY(brio_progress(ctx, "manifold", 0.5));
     if (r.size > 0) BRIO_TRY(prepare(&r));
@@ -289,7 +293,7 @@ brio_status brio_make_manifold(brio_context *ctx, brio_tet_labels *l, brio_facet
     *changed = r.changed;
     if (r.changed > 0) {
         brio_release(ctx, facets->facet);
-        BRIO_TRY(brio_boundary_facets(ctx, l, facets));
+        BRIO_TRY(brio_boundary_facets(ctx, labels, facets));
     }
 done:
     brio_release(ctx, r.tet_of_vertex);

@@ -1,12 +1,12 @@
 /* Samples divided into pieces by an octree.
  *
- * The samples are sorted along a Hilbert curve, so that every cell of the octree is a range of them. A cell with too
- * many samples is divided into its eight parts; parts that follow each other along the curve, and so lie side by side,
- * stay together while they have few enough.
+ * The samples are sorted along a Hilbert curve, so every cell of the octree is a range of them. A cell with too many
+ * samples is divided into its eight parts. Parts that follow each other along the curve lie side by side; they stay
+ * together while they have few enough samples.
  *
- * A piece sees its own samples, those within a margin of many spacings, and a thin selection of all others, every so
- * many along the curve: so its Voronoi cells end where they end in the whole, its poles lie near theirs, and what is
- * outside and inside can be told as from the whole.
+ * The surface of a piece is found from its own samples, all samples within a margin of many spacings, and a thin
+ * selection of all others. So its Voronoi cells end where they end in the whole set, its poles lie near theirs, and
+ * outside and inside are decided as in the whole set.
  *
  * Based on: Dey, Giesen, Hudson. Delaunay based shape reconstruction from large data. PVG 2001.
  * Differs from the paper: the selection from everywhere. */
@@ -18,19 +18,20 @@
 #include <math.h>
 #include <string.h>
 
+/* THIN: the selection has one sample in THIN * pieces. Chosen. */
 enum { BITS = BRIO_HILBERT_MAX_BITS, THIN = 4 };
 
-/* Width of the margin over the side of a square with one sample, if the samples of the piece lay on a square as wide as
- * their box. */
+/* Width of the margin, in spacings of the piece's samples, if these lay in a square lattice as wide as their box.
+ * Chosen. */
 static const double MARGIN = 12;
 
 /* --- the cells --- */
 
 typedef struct {
     brio_context *ctx;
-    const uint64_t *keys; /* of each place in the order */
+    const uint64_t *keys; /* one for each entry of out->order */
     brio_pieces *out;
-    size_t most; /* samples in a piece */
+    size_t most; /* most samples in a piece */
 } divider;
 
 static brio_status add_piece(divider *d, size_t begin, size_t end) {
@@ -43,7 +44,7 @@ done:
     return status;
 }
 
-/* The first place of [begin, end) whose key is at least `key`. */
+/* Returns the first index in [begin, end) whose key is at least `key`, or end. */
 static size_t find_key(const divider *d, size_t begin, size_t end, uint64_t key) {
     while (begin < end) {
         size_t middle = begin + (end - begin) / 2;
@@ -55,11 +56,11 @@ static size_t find_key(const divider *d, size_t begin, size_t end, uint64_t key)
     return begin;
 }
 
-/* Divides the cell of 2^levels smallest cells a side that begins at `key`; its samples are [begin, end). Recursion at
- * most BITS deep. */
+/* Divides the cell that begins at `key` and has 2^levels smallest cells on a side. Its samples are [begin, end). The
+ * recursion is at most BITS deep. */
 static brio_status divide(divider *d, size_t begin, size_t end, uint64_t key, int levels) {
     brio_status status = BRIO_OK;
-    size_t first = begin; /* of the parts that are put together */
+    size_t first = begin; /* the first sample of the parts put together so far */
     if (end - begin <= d->most || levels == 0) return add_piece(d, begin, end);
     for (uint64_t part = 0, at = begin; part < 8; part++) {
         uint64_t next_key = key + ((part + 1) << 3 * (levels - 1));
@@ -81,7 +82,7 @@ done:
 
 /* --- boxes --- */
 
-/* Diagonal of a box; infinite where doubles overflow, and nowhere before. */
+/* Returns the diagonal of a box. It is infinite only if doubles cannot hold it. */
 static double diagonal_of(const double *low, const double *high) {
     double half[3], most = 0, square = 0;
     for (int k = 0; k < 3; k++) half[k] = 0.5 * high[k] - 0.5 * low[k], most = fmax(most, half[k]);
@@ -100,7 +101,7 @@ static void find_box(const brio_pieces *p, brio_piece *piece) {
     piece->margin = MARGIN / sqrt((double)(piece->end - piece->begin)) * diagonal_of(piece->low, piece->high);
 }
 
-/* Largest difference in a coordinate between two boxes, 0 when they overlap. */
+/* Returns the largest gap between two boxes along an axis, 0 if they overlap. */
 static double gap(const double *low, const double *high, const double *other_low, const double *other_high) {
     double most = 0;
     for (int k = 0; k < 3; k++) most = fmax(most, fmax(other_low[k] - high[k], low[k] - other_high[k]));
@@ -155,7 +156,7 @@ void brio_pieces_free(brio_context *ctx, brio_pieces *pieces) {
 
 typedef struct {
     brio_context *ctx;
-    uint64_t *place; /* in the order of the samples, in the upper half */
+    uint64_t *place; /* index in the order of the samples << 32 */
     size_t count, capacity;
 } selection;
 
@@ -167,7 +168,7 @@ done:
     return status;
 }
 
-/* Adds the samples of another piece within the margin of either. */
+/* Adds the samples of another piece that lie within the margin of `piece` or of `other`, the larger one. */
 static brio_status add_margin(selection *s, const brio_pieces *p, const brio_piece *piece, const brio_piece *other) {
     brio_status status = BRIO_OK;
     double margin = fmax(piece->margin, other->margin);

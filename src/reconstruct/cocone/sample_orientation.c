@@ -1,17 +1,18 @@
-/* Which way the pole of each sample lies: outside or inside.
+/* The orientation of samples: whether the pole of a sample is outside or inside.
  *
- * Every sample knows the axis of its surface normal, up to sign. The signs agree along a spanning forest (Kruskal, over
- * a union-find that knows for each element whether its sign is that of its root). First come the links between samples
- * that see the same pole in one of their cones and so are on the same side of their surfaces, or on opposite ones, those
- * first that see it nearest to their axes; then, between the pieces of surface that are left, the edges of candidates,
- * those first whose axes are most nearly parallel; then all other tetrahedra that two samples see in their cones. What
- * is one piece then is turned so that the hull sees its outside.
+ * Every sample knows the axis of its surface normal, up to sign. Signs are chosen to agree along a spanning forest, by
+ * Kruskal's algorithm. Its union-find stores for each element whether its sign is that of its parent. Three kinds of
+ * links follow each other:
+ * 1. Two samples see one pole in one of their cones. Links whose samples see the pole nearest to their axes come first.
+ * 2. Edges of candidates between pieces that are not joined yet. Links with the most nearly parallel axes come first.
+ * 3. Other tetrahedra that two samples see in their cones.
+ * Finally each piece is turned so that the hull sees its outside.
  *
- * Links that agree with each other can be joined in any order with the same result. So all that a sample's poles tell,
- * but for the worst class, is joined as it is found, and kept unless there is a contradiction: in dense samples there is
- * none, and little is left. The links that are left are not sorted but dealt into a few classes by weight, and only a
- * class with a contradiction is undone and joined again in the order of weights. Links within a piece of the classes
- * before can change nothing and are left out, contradictions among them too.
+ * Links that agree with each other give one result in any order. So all links of the first kind, except those of the
+ * worst class, are joined as they are found, and kept unless there is a contradiction. In dense samples there is none,
+ * and few links are left. The remaining links are not sorted but divided into a few classes by weight. Only a class
+ * with a contradiction is undone and joined again in the order of weights. Links within a piece of earlier classes
+ * change nothing and are left out, even if they contradict.
  *
  * Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH 1992,
  *           for signs along a spanning tree of parallel normals. */
@@ -20,36 +21,38 @@
 #include "base/sort.h"
 #include <string.h>
 
-/* Two samples whose axes have the same sign, or opposite ones, by what they see of a tetrahedron or, along the edge of a
- * candidate, of each other. */
+/* A link between two samples whose axes have equal or opposite signs: both see one tetrahedron in a cone, or they are
+ * the ends of a candidate's edge. */
 typedef struct {
-    uint32_t a, b, tet; /* tet is NO_TET on an edge */
+    uint32_t a, b, tet; /* tet is NO_TET for an edge */
 } sample_link;
 
+/* KEY_BITS: of the sort key of a link. AHEAD: how far ahead links are prefetched; chosen. */
 enum { KEY_BITS = 32, AHEAD = 16 };
 
 static const uint32_t NO_TET = UINT32_MAX;
 
-/* What is kept of a link beside its ends: its class, and a bit for opposite signs. */
+/* kind[i]: the class of link i, plus OPPOSITE if the signs are opposite. */
 enum { OPPOSITE = 0x80 };
 
 typedef struct {
     brio_context *ctx;
     const brio_cocones *cocones;
-    uint32_t *up;      /* of each sample: twice its parent, plus 1 when the parent's sign is not its own */
-    size_t num_pieces; /* of the vertices */
+    const brio_pole_vectors *dual;
+    uint32_t *up;      /* #P: 2 * parent, plus 1 if the parent's sign is opposite */
+    size_t num_pieces; /* pieces that the vertices form */
     sample_link *link;
     uint8_t *kind;
     size_t num_links, link_capacity, kind_capacity;
 } forest;
 
-/* Every sample is a piece. */
+/* Makes every sample a piece. */
 static void take_apart(forest *f) {
-    for (size_t p = 0; p < f->cocones->dual->num_points; p++) f->up[p] = (uint32_t)(2 * p);
-    f->num_pieces = f->cocones->dual->num_vertices;
+    for (size_t p = 0; p < f->dual->num_points; p++) f->up[p] = (uint32_t)(2 * p);
+    f->num_pieces = f->dual->num_vertices;
 }
 
-/* Twice the root of x, plus 1 when the root's sign is not that of x. Halves the path on its way. */
+/* Returns 2 * root of x, plus 1 if the root's sign is opposite to that of x. Halves the path on its way. */
 static inline uint32_t find_root(forest *f, uint32_t x) {
     uint32_t sign = 0;
     for (;;) {
@@ -61,13 +64,13 @@ static inline uint32_t find_root(forest *f, uint32_t x) {
     }
 }
 
-/* Lets every sample know its root at once. */
+/* Makes the root of every sample its parent. */
 static void flatten(forest *f) {
-    for (size_t p = 0; p < f->cocones->dual->num_points; p++) f->up[p] = find_root(f, (uint32_t)p);
+    for (size_t p = 0; p < f->dual->num_points; p++) f->up[p] = find_root(f, (uint32_t)p);
 }
 
-/* Lets the sign of a sample be that of a root, found for another one, or opposite; false where that contradicts what was
- * joined before. The root stays one. */
+/* Joins the piece of p to a root, with the same or the opposite sign. `root` is what find_root returned for another
+ * sample; it stays a root. Returns false if this contradicts earlier links. */
 static inline bool join_to_root(forest *f, uint32_t root, uint32_t p, uint32_t opposite) {
     uint32_t other = find_root(f, p);
     if (root >> 1 == other >> 1) return ((root ^ other) & 1) == opposite;
@@ -80,7 +83,8 @@ static inline bool join_link(forest *f, size_t i) {
     return join_to_root(f, find_root(f, f->link[i].a), f->link[i].b, f->kind[i] >= OPPOSITE);
 }
 
-/* Square of the cosine of the angle at which a sample sees the Voronoi vertex of a tetrahedron from its axis. */
+/* Returns the squared cosine of the angle between a sample's axis and its direction to the Voronoi vertex of a
+ * tetrahedron. */
 static double depth(const brio_pole_vectors *v, size_t tet, size_t p) {
     const double *axis = v->plane + 4 * p;
     double to[3];
@@ -94,18 +98,18 @@ static double cosine_of(const brio_pole_vectors *v, size_t p, size_t q) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* What sorts the links of a class, the best first. */
+/* Returns the sort key of a link: the best link of a class has the least key. */
 static uint32_t key_of(const forest *f, const sample_link *l) {
-    const brio_pole_vectors *v = f->cocones->dual;
+    const brio_pole_vectors *v = f->dual;
     double cosine = l->tet == NO_TET ? cosine_of(v, l->a, l->b) : 0;
     double weight = l->tet == NO_TET ? cosine * cosine : fmin(depth(v, l->tet, l->a), depth(v, l->tet, l->b));
     return (uint32_t)((weight < 1 ? 1 - weight : 0) * UINT32_MAX);
 }
 
-/* Order of links of the same weight: by the positions of their ends, the lesser one first. */
+/* Compares links of equal weight by the positions of their ends, the lesser end first. */
 static int compare_links(uint32_t i, uint32_t j, const void *user) {
     const forest *f = user;
-    const double *points = f->cocones->dual->points, *end[2][2];
+    const double *points = f->dual->points, *end[2][2];
     for (int n = 0; n < 2; n++) {
         const sample_link *l = &f->link[n == 0 ? i : j];
         bool swap = brio_lexicographic(points + 3 * (size_t)l->a, points + 3 * (size_t)l->b) > 0;
@@ -117,18 +121,20 @@ static int compare_links(uint32_t i, uint32_t j, const void *user) {
     return sign ? sign : (int)f->kind[i] - (int)f->kind[j];
 }
 
-/* Whether a link is one of a class, and between pieces that were apart before it; others can change nothing. */
+/* Returns whether a link belongs to a class and joins two pieces that were apart before the class.   before  f->up,
+ * flat, before the class. */
 static inline bool is_of(const forest *f, size_t i, int class, const uint32_t *before) {
     return (f->kind[i] & ~OPPOSITE) == class && before[f->link[i].a] >> 1 != before[f->link[i].b] >> 1;
 }
 
-/* Joins along the links of a class in any order; false at a contradiction. */
+/* Joins the links of a class in any order. Returns false at a contradiction. */
 static bool join_unsorted(forest *f, int class, const uint32_t *before) {
     for (size_t i = 0; i < f->num_links; i++)
         if (is_of(f, i, class, before) && !join_link(f, i)) return false;
     return true;
 }
 
+/* Joins the links of a class in the order of their weights. Links that contradict earlier ones are ignored. */
 static brio_status join_sorted(forest *f, int class, const uint32_t *before) {
     brio_status status = BRIO_OK;
     uint32_t *order = NULL;
@@ -158,10 +164,10 @@ done:
     return status;
 }
 
-/* Joins along the links, the best first, and forgets them. */
+/* Joins all links, the best class first, and empties the list of links. */
 static brio_status join_links(forest *f) {
     brio_status status = BRIO_OK;
-    size_t n = f->cocones->dual->num_points;
+    size_t n = f->dual->num_points;
     uint32_t *before = NULL; /* f->up, flat, before the class at hand */
     BRIO_REQUIRE(f->ctx, f->num_links < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu links between samples, 2^32 is the limit",
                  f->num_links);
@@ -182,12 +188,12 @@ done:
     return status;
 }
 
-/* Whether two samples are in different pieces; the forest is flat. */
+/* Returns whether two samples are in different pieces. The forest must be flat. */
 static inline bool are_apart(const forest *f, uint32_t p, uint32_t q) {
     return f->up[p] >> 1 != f->up[q] >> 1;
 }
 
-/* Adds a link between samples of different pieces. */
+/* Adds a link. */
 static brio_status add_link(forest *f, sample_link link, bool opposite, int class) {
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_RESERVE(f->ctx, f->link, f->link_capacity, f->num_links + 1));
@@ -198,7 +204,7 @@ done:
     return status;
 }
 
-/* The class of a link between two samples through a tetrahedron. */
+/* Returns the class of a link between the samples in slots i and j of a tetrahedron, the worse of the two. */
 static inline int class_of(const brio_pole_vectors *v, size_t tet, int i, int j) {
     int a = brio_depth_class(v, tet, i), b = brio_depth_class(v, tet, j);
     return a > b ? a : b;
@@ -206,11 +212,12 @@ static inline int class_of(const brio_pole_vectors *v, size_t tet, int i, int j)
 
 /* --- links through poles --- */
 
-/* Joins the samples that see a tetrahedron in a cone, but for those of the worst class; false at a contradiction. */
+/* Joins the samples that see a tetrahedron in a cone, except samples of the worst class. Returns false at a
+ * contradiction. */
 static bool join_samples_of(forest *f, size_t tet) {
-    const uint32_t *v = f->cocones->dual->t.tet[tet].vertex;
-    unsigned sides = f->cocones->dual->sides[tet], antipole = sides >> 4 & 15, worst = sides >> 8 & sides >> 12;
-    unsigned left = (sides | antipole) & 15 & ~worst;
+    const uint32_t *v = f->dual->t.tet[tet].vertex;
+    unsigned sides = f->dual->sides[tet], antipole = brio_antipole_slots(sides);
+    unsigned left = (brio_pole_slots(sides) | antipole) & ~brio_shallow_slots(sides);
     if ((left & (left - 1)) == 0) return true;
     int first = __builtin_ctz(left);
     uint32_t root = find_root(f, v[first]) ^ (antipole >> first & 1);
@@ -221,11 +228,11 @@ static bool join_samples_of(forest *f, size_t tet) {
     return true;
 }
 
-/* Joins the samples of all poles; where they contradict each other, none. */
+/* Joins the samples of each pole. If there is a contradiction, undoes all of this. */
 static brio_status join_at_poles(forest *f) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *v = f->cocones->dual;
-    uint8_t *is_pole = NULL; /* of each tetrahedron */
+    const brio_pole_vectors *v = f->dual;
+    uint8_t *is_pole = NULL; /* #T */
     bool agree = true;
     BRIO_TRY(BRIO_ALLOC_ZERO(f->ctx, is_pole, v->t.count));
     for (size_t i = 0; i < 2 * v->num_points; i++)
@@ -239,17 +246,17 @@ done:
     return status;
 }
 
-/* Links a sample to those others of a tetrahedron, one of its poles, that are in other pieces. */
+/* Links sample p to the samples of other pieces in tetrahedron tet, a pole of p, that see tet in a cone. */
 static brio_status link_pole(forest *f, uint32_t p, uint32_t tet) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *d = f->cocones->dual;
+    const brio_pole_vectors *d = f->dual;
     const uint32_t *v = d->t.tet[tet].vertex;
     int slot = brio_slot_of_vertex(v, p), side = brio_side_of(d, tet, slot);
     for (int i = 1; i < 4 && side != BRIO_SIDE_COCONE; i++) {
-        int at = (slot + i) & 3, other = brio_side_of(d, tet, at); /* of the infinite vertex: BRIO_SIDE_COCONE */
+        int at = (slot + i) & 3, other = brio_side_of(d, tet, at); /* BRIO_SIDE_COCONE for the infinite vertex */
         if (other == BRIO_SIDE_COCONE || !are_apart(f, p, v[at])) continue;
         const uint32_t *poles = d->pole + 2 * (size_t)v[at];
-        if (v[at] < p && (poles[0] == tet || poles[1] == tet)) continue; /* that one has linked the two */
+        if (v[at] < p && (poles[0] == tet || poles[1] == tet)) continue; /* the call for v[at] has added it */
         BRIO_TRY(add_link(f, (sample_link){p, v[at], tet}, side != other, class_of(d, tet, slot, at)));
     }
 done:
@@ -258,7 +265,7 @@ done:
 
 static brio_status link_poles(forest *f) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *v = f->cocones->dual;
+    const brio_pole_vectors *v = f->dual;
     size_t poles = 2 * v->num_points;
     for (size_t i = 0; i < poles && f->num_pieces > 1; i++) {
         if (i + AHEAD < poles && v->pole[i + AHEAD] != BRIO_INFINITE) __builtin_prefetch(&v->t.tet[v->pole[i + AHEAD]]);
@@ -271,7 +278,7 @@ done:
 /* --- links along candidates --- */
 
 static brio_status link_edge(forest *f, uint32_t p, uint32_t q) {
-    double cosine = cosine_of(f->cocones->dual, p, q), square = 1 - cosine * cosine;
+    double cosine = cosine_of(f->dual, p, q), square = 1 - cosine * cosine;
     if (!are_apart(f, p, q)) return BRIO_OK;
     int class = (square > 0x1p-8) + (square > 0x1p-6) + (square > 0x1p-4);
     return add_link(f, (sample_link){p, q, NO_TET}, cosine < 0, class);
@@ -279,7 +286,7 @@ static brio_status link_edge(forest *f, uint32_t p, uint32_t q) {
 
 static brio_status link_candidates(forest *f) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedra *t = &f->cocones->dual->t;
+    const brio_tetrahedra *t = &f->dual->t;
     for (size_t tet = 0; f->num_pieces > 1 && tet < t->count; tet++)
         for (int i = 0; f->cocones->candidates[tet] && i < 4; i++) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i);
@@ -296,8 +303,8 @@ done:
 
 static brio_status link_across(forest *f, size_t tet) {
     brio_status status = BRIO_OK;
-    const uint32_t *v = f->cocones->dual->t.tet[tet].vertex;
-    const brio_pole_vectors *d = f->cocones->dual;
+    const uint32_t *v = f->dual->t.tet[tet].vertex;
+    const brio_pole_vectors *d = f->dual;
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < i && brio_side_of(d, tet, i) != BRIO_SIDE_COCONE; j++) {
             if (brio_side_of(d, tet, j) == BRIO_SIDE_COCONE || !are_apart(f, v[i], v[j])) continue;
@@ -310,16 +317,16 @@ done:
 
 static brio_status link_pieces(forest *f) {
     brio_status status = BRIO_OK;
-    for (size_t tet = 0; f->num_pieces > 1 && tet < f->cocones->dual->t.count; tet++) BRIO_TRY(link_across(f, tet));
+    for (size_t tet = 0; f->num_pieces > 1 && tet < f->dual->t.count; tet++) BRIO_TRY(link_across(f, tet));
 done:
     return status;
 }
 
 /* --- signs --- */
 
-/* Of each root: how often its piece looks outwards on the hull, less how often it looks inwards. */
+/* Counts for each root how often its piece looks outwards on the hull, minus how often it looks inwards. */
 static void count_outwards(const forest *f, int64_t *outwards) {
-    const brio_pole_vectors *v = f->cocones->dual;
+    const brio_pole_vectors *v = f->dual;
     for (size_t tet = v->num_finite; tet < v->t.count; tet++)
         for (int i = 0; i < 3; i++) {
             int side = brio_side_of(v, tet, i);
@@ -329,11 +336,11 @@ static void count_outwards(const forest *f, int64_t *outwards) {
         }
 }
 
-/* Whether the pieces are to be turned so that most of what they have on the hull looks outwards; where that is even, so
- * that the sample of least position keeps its sign. */
+/* Decides for each piece whether to turn it. A piece is turned so that most of its part of the hull looks outwards.
+ * Where the counts are even, the sample of least position keeps its sign. */
 static void choose_turns(const forest *f, const int64_t *outwards, uint32_t *least, uint8_t *turn) {
-    const double *points = f->cocones->dual->points;
-    size_t n = f->cocones->dual->num_points;
+    const double *points = f->dual->points;
+    size_t n = f->dual->num_points;
     for (size_t p = 0; p < n; p++) least[p] = (uint32_t)p;
     for (size_t p = 0; p < n; p++) {
         uint32_t root = f->up[p] >> 1;
@@ -345,10 +352,10 @@ static void choose_turns(const forest *f, const int64_t *outwards, uint32_t *lea
 
 static brio_status sign_samples(const forest *f, uint8_t *turned) {
     brio_status status = BRIO_OK;
-    size_t n = f->cocones->dual->num_points;
+    size_t n = f->dual->num_points;
     int64_t *outwards = NULL;
-    uint32_t *least = NULL; /* of each root: the sample of least position */
-    uint8_t *turn = NULL;   /* of each root */
+    uint32_t *least = NULL; /* of each root: the sample of its piece with the least position */
+    uint8_t *turn = NULL;   /* of each root: 1 if its piece is turned */
     BRIO_TRY(BRIO_ALLOC_ZERO(f->ctx, outwards, n));
     BRIO_TRY(BRIO_ALLOC(f->ctx, least, n));
     BRIO_TRY(BRIO_ALLOC_ZERO(f->ctx, turn, n));
@@ -366,7 +373,7 @@ done:
 brio_status brio_orient_samples(brio_context *ctx, const brio_cocones *c, uint8_t **turned) {
     brio_status status = BRIO_OK;
     size_t n = c->dual->num_points;
-    forest f = {.ctx = ctx, .cocones = c};
+    forest f = {.ctx = ctx, .cocones = c, .dual = c->dual};
     *turned = NULL;
     BRIO_REQUIRE(ctx, n < UINT32_C(1) << 31, BRIO_ERR_TOO_LARGE, "%zu points; the co-cone takes less than 2^31", n);
     BRIO_TRY(BRIO_ALLOC(ctx, f.up, n));

@@ -1,8 +1,8 @@
-/* How dense a sample is, held against the guarantee.
+/* The density of a sample, compared with the guarantee.
  *
- * A sample is an r-sample when every point x of the surface has a sample within r times its local feature size. The
- * points that are farthest from their samples are close to the circumcentres of the triangles of the surface; so the
- * circumradius of a triangle over the local feature size at its corners estimates r there.
+ * An r-sample has, for every point x of the surface, a sample within r times the local feature size at x. The points
+ * farthest from their samples are near the circumcentres of the surface's triangles. So the circumradius of a triangle
+ * divided by the local feature size at its corners estimates r there.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.6 and theorem 19. */
 #include "reconstruct/cocone/sampling_density.h"
@@ -11,10 +11,11 @@
 #include "predicates/predicates.h"
 #include "reconstruct/cocone/triangle.h"
 
-/* The guarantee of theorem 19 holds up to this r. */
+/* Derived: the guarantee of theorem 19 holds up to this r. */
 static const double GUARANTEED_R = 0.08;
 
-/* The corner of a face from which its circle is computed, so that rounding does not depend on where the face starts. */
+/* Returns the corner of a face with the least position. The circle is computed from there, so that its rounding does
+ * not depend on the corner that comes first. */
 static size_t least_corner(const double (*p)[3]) {
     size_t least = 0;
     for (size_t k = 1; k < 3; k++)
@@ -22,7 +23,7 @@ static size_t least_corner(const double (*p)[3]) {
     return least;
 }
 
-/* r[p] = the largest circumradius of the faces of each sample. */
+/* Sets r[p] to the largest circumradius of the faces at sample p, times 2^-exponent. */
 static void largest_circles(const brio_mesh *mesh, int exponent, double *r) {
     double factor = ldexp(1, -exponent);
     bool ordinary = isnormal(factor) && factor < INFINITY;

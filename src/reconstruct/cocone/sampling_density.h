@@ -1,13 +1,14 @@
-/* How dense a sample is, held against the guarantee. */
+/* The density of a sample, compared with the guarantee. */
 #ifndef BRIO_RECONSTRUCT_SAMPLING_DENSITY_H
 #define BRIO_RECONSTRUCT_SAMPLING_DENSITY_H
 
 #include "base/context.h"
 
-/** Adds to the mesh, whose faces are triangles of the samples, the vertex properties "feature_size" (`size` in the unit
- *  of the mesh) and "r": the largest circumradius among the faces of a sample over its feature size, 0 without faces.
- *  Sets outside_guarantee, r_median and r_p95 of the stats.
- *  size  #P, in units of 2^exponent, in which all coordinates are at most 1.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+/** Adds two vertex properties to a mesh of triangles. "feature_size" is `size` in the unit of the mesh. "r" is the
+ *  largest circumradius of the faces at a sample divided by its feature size, or 0 without faces. Sets
+ *  outside_guarantee, r_median and r_p95 of the stats.
+ *  size  #P: size[p] * 2^exponent is in the unit of the mesh. All coordinates are at most 2^exponent.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has such properties), BRIO_ERR_NO_MEMORY. */
 brio_status brio_sampling_density(const double *size, int exponent, brio_mesh *mesh, brio_cocone_stats *stats);
 
 #endif

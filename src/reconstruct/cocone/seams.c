@@ -1,9 +1,9 @@
 /* Triangles at the seams between pieces of a surface.
  *
- * A triangle whose samples belong to several pieces is taken when all of these pieces have found it. Then whatever the
- * pieces disagree on, all triangles at a sample are triangles of the one piece that it belongs to, which is a manifold:
- * so no edge has more than two of them, and their orientations agree. Only the fan round a sample can have been torn
- * apart; there the longest part is kept.
+ * A triangle with samples of several pieces is accepted if all of these pieces have found it. Then all triangles at a
+ * sample are triangles of the one piece that the sample belongs to, whatever the pieces disagree on. This piece is a
+ * manifold, so no edge has more than two triangles, and their orientations agree. Only the fan round a sample can be
+ * incomplete; there the longest part is kept.
  *
  * Based on: Dey, Giesen, Hudson. Delaunay based shape reconstruction from large data. PVG 2001, for the matching. */
 #include "reconstruct/cocone/seams.h"
@@ -22,7 +22,7 @@ done:
 
 /* --- matching --- */
 
-/* Turns a triangle so that its least corner comes first. */
+/* Rotates the corners of a triangle so that the least comes first. */
 static void turn(uint32_t corner[3]) {
     for (int n = 0; n < 2 && (corner[0] > corner[1] || corner[0] > corner[2]); n++) {
         uint32_t first = corner[0];
@@ -72,7 +72,7 @@ done:
 
 /* --- fans --- */
 
-/* A face at a frayed sample: the corners after and before the sample. */
+/* A face at a frayed sample: its corners after and before the sample. */
 typedef struct {
     uint32_t sample, after, before, face;
 } spoke;
@@ -81,10 +81,10 @@ typedef struct {
     brio_context *ctx;
     const double *points;
     brio_triangles *faces;
-    spoke *spokes; /* by sample, then by the corner after it */
+    spoke *spokes; /* sorted by sample, then by the corner after it */
     size_t num_spokes, capacity;
     uint8_t *frayed;
-    bool *dropped; /* of each face */
+    bool *dropped; /* #faces */
 } trimming;
 
 static int compare_spokes(uint32_t a, uint32_t b, const void *user) {
@@ -117,7 +117,7 @@ done:
     return status;
 }
 
-/* Which of the spokes [begin, end) of a sample has a corner after the sample; `end` for none. */
+/* Returns the spoke among [begin, end) that has `corner` after the sample, or `end`. */
 static size_t spoke_after(const trimming *t, size_t begin, size_t end, uint32_t corner) {
     size_t low = begin, high = end;
     while (low < high) {
@@ -130,7 +130,8 @@ static size_t spoke_after(const trimming *t, size_t begin, size_t end, uint32_t 
     return low < end && t->spokes[low].after == corner ? low : end;
 }
 
-/* The spoke that a fan begins with and its length, for the longest fan of a sample; ties by position. */
+/* Finds the longest fan of a sample. Returns the spoke that the fan begins with, or `end` if no fan has a beginning.
+ * Among equal lengths, the position of the first corner decides. */
 static size_t longest_fan(const trimming *t, size_t begin, size_t end, const bool *follows, size_t *length) {
     size_t best = end;
     *length = 0;
@@ -146,10 +147,11 @@ static size_t longest_fan(const trimming *t, size_t begin, size_t end, const boo
     return best;
 }
 
-/* Drops all fans of a sample, whose spokes are [begin, end), but the longest; *changed tells whether there were any. */
+/* Removes all fans of a sample except the longest.   [begin, end)  the spokes of the sample.   changed  set to true if
+ * a face was removed. */
 static brio_status trim(trimming *t, size_t begin, size_t end, bool *changed) {
     brio_status status = BRIO_OK;
-    bool *follows = NULL, *kept = NULL; /* of each spoke */
+    bool *follows = NULL, *kept = NULL; /* one for each spoke */
     size_t length;
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, follows, end - begin));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, kept, end - begin));
@@ -158,7 +160,7 @@ static brio_status trim(trimming *t, size_t begin, size_t end, bool *changed) {
         if (next < end) follows[next - begin] = true;
     }
     size_t best = longest_fan(t, begin, end, follows, &length);
-    if (best == end || length == end - begin) goto done; /* a closed fan, or a single one */
+    if (best == end || length == end - begin) goto done; /* a closed fan, or a single open one */
     for (size_t j = best; j < end; j = spoke_after(t, begin, end, t->spokes[j].before)) kept[j - begin] = true;
     for (size_t i = begin; i < end; i++) {
         if (kept[i - begin]) continue;
@@ -172,7 +174,7 @@ done:
     return status;
 }
 
-/* Works in rounds, in each of which the faces are those that the last one left: so the order is of no importance. */
+/* Works in rounds. A round tests the faces that the round before left, so the result does not depend on the order. */
 brio_status brio_trim_fans(brio_context *ctx, const double *points, size_t num_points, uint8_t *frayed,
                            brio_triangles *faces) {
     brio_status status = BRIO_OK;

@@ -4,23 +4,27 @@
 
 #include "base/context.h"
 
-/** Triangles as they grow. */
+/** A growing list of triangles. */
 typedef struct {
     uint32_t (*corner)[3];
     size_t count, capacity;
 } brio_triangles;
 
+/** Appends a triangle. Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_triangles_add(brio_context *ctx, brio_triangles *list, const uint32_t corner[3]);
 
-/** Moves to `faces` the seam triangles that every piece with a sample of theirs has found, with the same orientation;
- *  each piece has added to `seam`, once, those it found. Samples of the others are marked in `frayed`.
- *  piece_of  #P.   frayed  #P.   unmatched  receives how many triangles were left out.
+/** Appends to `faces` each seam triangle that all pieces with one of its samples have found, in one orientation. Sets
+ *  frayed[p] to 1 for the samples of the other seam triangles.
+ *  piece_of   #P.   frayed  #P.
+ *  seam       each piece has added each of its triangles once. The function rotates the corners of triangles.
+ *  unmatched  receives the number of seam triangles that are left out.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
 brio_status brio_match_seams(brio_context *ctx, const uint32_t *piece_of, brio_triangles *seam, brio_triangles *faces,
                              uint8_t *frayed, size_t *unmatched);
 
-/** Drops faces until those at each frayed sample are a single fan, the longest that there was. A face has no more than
- *  one neighbour across each edge, with the same orientation.   frayed  #P; cleared.
+/** Removes faces until the faces at each frayed sample are one fan: the longest of the fans that were there. Each edge
+ *  must have at most two faces, and these must run along it in opposite directions.
+ *  frayed  #P: all 0 afterwards.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_trim_fans(brio_context *ctx, const double *points, size_t num_points, uint8_t *frayed,
                            brio_triangles *faces);

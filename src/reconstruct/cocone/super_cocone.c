@@ -1,12 +1,12 @@
 /* The co-cone of a large set of samples, in pieces: the super co-cone.
  *
- * An octree divides the samples into pieces (octree_pieces.c). The surface of each is found from its samples and their
- * surroundings, one piece after the other, so that only one is ever triangulated at a time; of what comes out, the
- * triangles of the piece's own samples count. Those at the seams are matched (seams.c).
+ * An octree divides the samples into pieces (octree_pieces.c). One piece after the other is triangulated, and its
+ * surface is found from its samples and their surroundings. Of the resulting triangles, those with a sample of the
+ * piece count. Triangles at the seams are matched (seams.c).
  *
  * Based on: Dey, Giesen, Hudson. Delaunay based shape reconstruction from large data. PVG 2001.
- * Differs from the paper: pieces are matched after each has become a manifold, by agreement, so that the result is one,
- * too. */
+ * Differs from the paper: the pieces are matched after each has become a manifold, and by agreement, so that the result
+ *                         is a manifold, too. */
 #include "reconstruct/cocone/super_cocone.h"
 #include "base/memory.h"
 #include "base/scale.h"
@@ -18,15 +18,16 @@ typedef struct {
     brio_context *ctx;
     const double *points;
     size_t num_points;
-    int exponent; /* pieces are scaled by 2^-exponent */
+    int exponent; /* each piece is scaled by 2^-exponent */
     const brio_cocone_options *options;
     brio_pieces pieces;
     brio_triangles faces, seam;
-    uint8_t *frayed; /* of each sample: pieces disagree there */
+    uint8_t *frayed; /* #P: 1 where pieces disagree */
     brio_cocone_surface *out;
 } assembly;
 
-/* Sorts the faces of a piece that have samples of its own into finished ones and those at the seams. */
+/* Adds the faces of a piece with at least one sample of the piece: to `faces` if all samples are, otherwise to
+ * `seam`. */
 static brio_status take_faces(assembly *a, uint32_t piece, const uint32_t *samples, const brio_cocone_surface *s) {
     brio_status status = BRIO_OK;
     for (size_t f = 0; f < s->num_faces; f++) {
@@ -42,7 +43,7 @@ done:
     return status;
 }
 
-/* Takes what was learnt of the piece's own samples. */
+/* Copies what was found out about the piece's own samples. */
 static void take_samples(assembly *a, uint32_t piece, const uint32_t *samples, size_t count,
                          const brio_cocone_surface *s) {
     for (size_t n = 0; n < count; n++) {
@@ -67,7 +68,7 @@ static void add_stats(brio_cocone_stats *sum, const brio_cocone_stats *s) {
     sum->density_seconds += s->density_seconds;
 }
 
-/* A piece may have no surface. */
+/* Finds the surface of a piece. A piece without a surface is no error. */
 static brio_status find_piece(assembly *a, uint32_t piece) {
     brio_status status = BRIO_OK;
     brio_context *ctx = a->ctx;

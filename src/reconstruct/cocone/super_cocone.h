@@ -4,8 +4,9 @@
 
 #include "reconstruct/cocone/cocone_surface.h"
 
-/** As brio_cocone_surface_find of the points times 2^-exponent, which have coordinates of at most 1; in about
- *  options.pieces pieces, which is over 1. Without a copy of the points. */
+/** Finds the co-cone of points in about options.pieces pieces, with the contract of brio_cocone_surface_find. Scales
+ *  each piece by 2^-exponent, which makes coordinates at most 1; makes no copy of all points.
+ *  options  pieces is greater than 1. */
 brio_status brio_super_cocone(brio_context *ctx, const double *points, size_t num_points, int exponent,
                               const brio_cocone_options *options, brio_cocone_surface *out);
 

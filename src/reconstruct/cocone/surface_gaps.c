@@ -1,47 +1,49 @@
-/* Gaps in a surface: which of them are openings, and which are only places where no candidate was found.
+/* Gaps in a surface: some are openings of the surface, others are places where no candidate was found.
  *
- * The candidates among the boundary facets leave gaps. A single facet is filled in when it is about as small as the
- * candidates around it. What then is left is looked at as a whole: a gap that offers no room for a sample more is a
- * lapse, since an opening of that size the samples could not show. Only the surroundings of gaps are looked at.
+ * The candidates among the boundary facets leave gaps. First, a single facet is filled if it is about as small as the
+ * candidates around it. Then each remaining gap is measured as a whole. A gap without room for one more sample is a
+ * lapse and is filled, because samples could not show an opening of that size. Only the surroundings of gaps are
+ * measured.
  *
- * Lengths and areas are rounded to multiples of one power of two before they are added, so that their sums do not depend
- * on the order of the facets. */
+ * Lengths and areas are rounded to multiples of one power of two before they are added, so that their sums do not
+ * depend on the order of the facets. */
 #include "reconstruct/cocone/surface_gaps.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include "reconstruct/cocone/triangle.h"
 
-/* A facet of the boundary that is no candidate fills a small hole when its circle is at most this many times as large
- * as the largest one of a candidate at its corners. From 1.5 on the closed models of the tests come out closed. */
+/* A facet that is no candidate is filled if its circle is at most FILLING times as large as the largest circle of a
+ * candidate at its corners. From 1.5 on, the closed models of the tests come out closed. */
 static const double FILLING = 1.5;
 
-/* A gap is a lapse when none of its edges is over LONG times as long as the mean edge of the faces at its corners, and
- * its area is at most DISC times the square of that mean: then there is no room for a disc of one mean edge, in which
- * a surface would have a sample. What is left of the club's opening, which other faces span, has an edge of 3.4 times
- * the mean; of the 258 gaps of ten raw scans of the bunny 241 are lapses, and none of the four with over ten edges. */
+/* A gap is a lapse if no edge is over LONG times the mean edge of the faces at its corners, and its area is at most
+ * DISC times the square of that mean. Then there is no room for a disc with a radius of one mean edge, in which a
+ * surface would have a sample. Measured: the remaining opening of the club has an edge of 3.4 times the mean. Of the
+ * 258 gaps of ten raw scans of the bunny 241 are lapses, and none of the four with over ten edges is. */
 static const double LONG = 2.5, DISC = 3.141592653589793;
 
-/* Among boundary samples, a triangle over SUSPECT times as long as the shortest ones around may span an opening of the
- * surface. Such triangles together are one when one of them is over OPENING times as long and there would be room for
- * MISSING samples; at sharp edges, where samples are too few as well, there is not (club: 16 samples at the opening, 4
- * at the largest sharp edge). */
+/* Among boundary samples, a triangle over SUSPECT times as long as the shortest ones around it may span an opening.
+ * Connected triangles of this kind are an opening if one of them is over OPENING times as long, and if they have room
+ * for MISSING samples. At sharp edges, where samples are too few as well, there is no such room. Measured on the club:
+ * 16 samples at the opening, 4 at the largest sharp edge. */
 static const double SUSPECT = 1.5, OPENING = 4, MISSING = 8;
 
-/* Added to a length of at most 4 and taken away again, rounds it to a multiple of 2^-40. */
+/* Adding this to a length of at most 4 and subtracting it rounds the length to a multiple of 2^-40. */
 static const double ROUND_LENGTH = 0x1.8p12;
 
-/* What is known of a sample at a gap. */
+/* What has been measured at a sample of a gap. */
 typedef enum { NOT_MEASURED, CANDIDATES_MEASURED, FACES_MEASURED } measured;
 
 typedef struct {
     const brio_face_choice *choice;
+    const brio_tet_labels *labels; /* of the choice */
     const double *points;
-    uint8_t *measured; /* of each sample */
-    double *size;      /* squared radius of the largest circle round a candidate at the sample; 0 for none */
-    double *shortest;  /* squared length of the candidate there that is shortest; infinite for none */
-    double *edges;     /* the lengths of the faces' edges there, each once a face */
-    uint32_t *degree;  /* how many these are */
-    uint32_t *facet;   /* the facets that are no faces to begin with, ascending */
+    uint8_t *measured; /* #P, a `measured` each */
+    double *size;      /* #P: squared radius of the largest circle of a candidate at the sample; 0 without candidates */
+    double *shortest;  /* #P: least length_square of a candidate at the sample; infinite without candidates */
+    double *edges;     /* #P: sum of the lengths of the edges at the sample, counted once for each face */
+    uint32_t *degree;  /* #P: number of the lengths in that sum */
+    uint32_t *facet;   /* the boundary facets that are no faces, ascending */
     size_t num_facets;
     uint32_t *open; /* facets of the gaps that stay open */
     size_t num_open;
@@ -57,7 +59,7 @@ static double circle_square(const gaps *g, uint32_t facet) {
     return brio_circle_square(corner_point(g, facet, 0), corner_point(g, facet, 1), corner_point(g, facet, 2));
 }
 
-/* Square of the longest edge. */
+/* Returns the squared length of the longest edge. */
 static double length_square(const gaps *g, uint32_t facet) {
     double square[3];
     brio_cross_square(corner_point(g, facet, 0), corner_point(g, facet, 1), corner_point(g, facet, 2), square);
@@ -69,17 +71,17 @@ static double area(const gaps *g, uint32_t facet) {
 }
 
 static bool is_finite(const gaps *g, uint32_t facet) {
-    const brio_tetrahedron *tet = g->choice->labels->cocones->dual->t.tet;
+    const brio_tetrahedron *tet = g->choice->dual->t.tet;
     return brio_slot_of(facet) == 3 || tet[brio_tet_of(facet)].vertex[3] != BRIO_INFINITE;
 }
 
 static bool is_among_boundary(const gaps *g, uint32_t facet) {
-    return brio_is_among_boundary(g->choice->labels->cocones, facet);
+    return brio_is_among_boundary(g->choice->cocones, facet);
 }
 
 /* --- the surroundings of gaps --- */
 
-/* Measures the candidates at sample p, which a facet has. */
+/* Measures the candidates at sample p, a corner of facet `first`. */
 static void measure_candidates(gaps *g, uint32_t p, uint32_t first) {
     uint32_t facet = first;
     if (p == BRIO_INFINITE || g->measured[p] != NOT_MEASURED) return;
@@ -90,11 +92,11 @@ static void measure_candidates(gaps *g, uint32_t p, uint32_t first) {
             g->size[p] = fmax(g->size[p], circle_square(g, facet));
             g->shortest[p] = fmin(g->shortest[p], length_square(g, facet));
         }
-        facet = brio_next_round_vertex(g->choice->labels, facet, p);
+        facet = brio_next_round_vertex(g->labels, facet, p);
     } while (facet != first);
 }
 
-/* Measures the edges of the faces at sample p, which a facet has. */
+/* Measures the edges of the faces at sample p, a corner of facet `first`. */
 static void measure_faces(gaps *g, uint32_t p, uint32_t first) {
     uint32_t facet = first;
     if (g->measured[p] == FACES_MEASURED) return;
@@ -108,17 +110,17 @@ static void measure_faces(gaps *g, uint32_t p, uint32_t first) {
             g->edges[p] += (length + ROUND_LENGTH) - ROUND_LENGTH;
             g->degree[p]++;
         }
-        facet = brio_next_round_vertex(g->choice->labels, facet, p);
+        facet = brio_next_round_vertex(g->labels, facet, p);
     } while (facet != first);
 }
 
-/* Measures the candidates at all samples of gaps, and at all boundary samples. Other samples' places in the arrays are
- * never touched. */
+/* Measures the candidates at all samples of gaps and at all boundary samples. Entries of other samples are neither
+ * written nor read. */
 static brio_status measure_gaps(brio_context *ctx, gaps *g) {
     brio_status status = BRIO_OK;
     const brio_face_choice *c = g->choice;
-    const uint8_t *boundary = c->labels->cocones->boundary;
-    size_t num_points = c->labels->cocones->dual->num_points;
+    const uint8_t *boundary = c->cocones->boundary;
+    size_t num_points = c->dual->num_points;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, g->measured, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, g->size, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, g->shortest, num_points));
@@ -137,7 +139,7 @@ done:
 
 /* --- openings among boundary samples --- */
 
-/* Squared length of the longest of the shortest candidates of a facet's samples: how far they are from each other. */
+/* Returns the squared spacing of a facet's samples: the largest of their entries in `shortest`. */
 static double spacing_square(const gaps *g, uint32_t facet) {
     double most = 0;
     for (int k = 0; k < 3; k++) {
@@ -147,13 +149,13 @@ static double spacing_square(const gaps *g, uint32_t facet) {
     return most;
 }
 
-/* Whether a facet of the boundary is over so many times as long as the spacing of its samples. */
+/* Returns whether a boundary facet is over `times` times as long as the spacing of its samples. */
 static bool is_longer(const gaps *g, uint32_t facet, double times) {
     return length_square(g, facet) > times * times * spacing_square(g, facet);
 }
 
-/* Takes the candidates among boundary samples that are longer than those around them, and may span an opening, for gaps
- * until it is known how long the longest of them is. */
+/* Removes from the faces the candidates among boundary samples that are longer than those around them. They may span an
+ * opening; collect_opening decides. */
 static void suspect_long_candidates(const gaps *g) {
     const brio_face_choice *c = g->choice;
     for (size_t n = 0; n < c->num_facets; n++) {
@@ -163,11 +165,11 @@ static void suspect_long_candidates(const gaps *g) {
     }
 }
 
-/* Adds to g->open all facets of the gap among boundary samples that a facet belongs to, across the edges of the boundary,
- * as faces for now. Whether it is too large for a place where samples are merely too few. */
+/* Appends to g->open all facets of the gap among boundary samples that contains facet `first`, across edges of the
+ * boundary, and marks them as faces for now. Returns whether the gap is an opening. */
 static bool collect_opening(gaps *g, uint32_t first) {
     bool is_long = false;
-    double missing = 0; /* samples of this spacing that the gap has room for */
+    double missing = 0; /* samples of the local spacing that the gap has room for */
     size_t next = g->num_open;
     g->open[g->num_open++] = first;
     brio_set_face(g->choice, first);
@@ -178,7 +180,7 @@ static bool collect_opening(gaps *g, uint32_t first) {
         is_long = is_long || !finite || is_longer(g, facet, OPENING);
         for (int k = 0; k < 3; k++) {
             uint32_t a = brio_corner_of(g->choice, facet, k), b = brio_corner_of(g->choice, facet, (k + 1) % 3);
-            uint32_t other = brio_next_round_edge(g->choice->labels, facet, a, b);
+            uint32_t other = brio_next_round_edge(g->labels, facet, a, b);
             if (brio_is_face(g->choice, other) || !is_among_boundary(g, other)) continue;
             brio_set_face(g->choice, other);
             g->open[g->num_open++] = other;
@@ -189,15 +191,15 @@ static bool collect_opening(gaps *g, uint32_t first) {
 
 /* --- single facets --- */
 
-/* Whether a facet of the boundary that is no candidate is as small as the candidates around it. */
+/* Returns whether a boundary facet that is no candidate is as small as the candidates around it. */
 static bool is_small(const gaps *g, uint32_t facet) {
     double size = 0;
     for (int k = 0; k < 3; k++) size = fmax(size, g->size[brio_corner_of(g->choice, facet, k)]);
     return circle_square(g, facet) <= FILLING * FILLING * size;
 }
 
-/* Fills the facets that are no larger than the candidates around them, or all that are finite, and the gaps among
- * boundary samples that are no openings. */
+/* Fills the facets that are as small as the candidates around them or, with `all`, all finite facets. Fills the gaps
+ * among boundary samples that are no openings. */
 static void fill_facets(gaps *g, bool all) {
     const brio_face_choice *c = g->choice;
     for (size_t n = 0; n < g->num_facets; n++) {
@@ -215,7 +217,8 @@ static void fill_facets(gaps *g, bool all) {
 
 /* --- whole gaps --- */
 
-/* Whether all facets of a gap are finite, and none is of an opening among boundary samples; the longest edge. */
+/* Returns whether all facets of a gap are finite and have a sample that is no boundary sample.   longest  receives the
+ * longest edge. */
 static bool is_between_samples(const gaps *g, const uint32_t *facets, size_t count, double *longest) {
     double most = 0;
     for (size_t n = 0; n < count; n++) {
@@ -226,14 +229,14 @@ static bool is_between_samples(const gaps *g, const uint32_t *facets, size_t cou
     return true;
 }
 
-/* Whether a gap is no opening that the samples could show. Its facets are no faces. */
+/* Returns whether a gap, whose facets are no faces, is a lapse. */
 static bool is_lapse(gaps *g, const uint32_t *facets, size_t count) {
     double longest, edges = 0, room = 0;
     uint64_t degree = 0;
     int exponent;
     if (!is_between_samples(g, facets, count, &longest)) return false;
     frexp(longest, &exponent);
-    double round = ldexp(0x1.8p16, 2 * exponent); /* to multiples of 2^-36 of the square of the longest edge */
+    double round = ldexp(0x1.8p16, 2 * exponent); /* rounds to multiples of 2^-36 of the square of the longest edge */
     for (size_t n = 0; n < count; n++) {
         room += (area(g, facets[n]) + round) - round;
         for (int k = 0; k < 3; k++) {
@@ -246,7 +249,8 @@ static bool is_lapse(gaps *g, const uint32_t *facets, size_t count) {
     return longest <= LONG * spacing && room <= DISC * spacing * spacing;
 }
 
-/* Adds to g->open all facets of the gap that a facet belongs to, across the edges of the boundary, as faces for now. */
+/* Appends to g->open all facets of the gap that contains facet `first`, across edges of the boundary, and marks them as
+ * faces for now. */
 static void collect_gap(gaps *g, uint32_t first) {
     size_t next = g->num_open;
     g->open[g->num_open++] = first;
@@ -255,21 +259,21 @@ static void collect_gap(gaps *g, uint32_t first) {
         for (int k = 0; k < 3; k++) {
             uint32_t facet = g->open[next], a = brio_corner_of(g->choice, facet, k);
             uint32_t b = brio_corner_of(g->choice, facet, (k + 1) % 3);
-            uint32_t other = brio_next_round_edge(g->choice->labels, facet, a, b);
+            uint32_t other = brio_next_round_edge(g->labels, facet, a, b);
             if (brio_is_face(g->choice, other)) continue;
             brio_set_face(g->choice, other);
             g->open[g->num_open++] = other;
         }
 }
 
-/* A gap: where its facets end in g->open. */
+/* A gap: the index in g->open where its facets end. */
 typedef struct {
     size_t end;
     bool lapse;
 } gap;
 
-/* Fills those gaps that are lapses; the others are left in g->open. All are looked at before any is filled, so that none
- * counts as a face beside another. */
+/* Fills the gaps that are lapses, and leaves the others in g->open. Measures all gaps before it fills any, so that no
+ * gap counts as faces beside another. */
 static brio_status fill_lapses(brio_context *ctx, gaps *g) {
     brio_status status = BRIO_OK;
     const brio_face_choice *c = g->choice;
@@ -297,7 +301,7 @@ done:
     return status;
 }
 
-/* Lists the facets that are no faces. */
+/* Lists the boundary facets that are no faces. */
 static brio_status list_facets(brio_context *ctx, gaps *g) {
     brio_status status = BRIO_OK;
     const brio_face_choice *c = g->choice;
@@ -314,13 +318,13 @@ done:
 
 brio_status brio_fill_gaps(brio_context *ctx, const brio_face_choice *c, bool all, uint32_t **open, size_t *num_open) {
     brio_status status = BRIO_OK;
-    gaps g = {.choice = c, .points = c->labels->cocones->dual->points};
+    gaps g = {.choice = c, .labels = c->labels, .points = c->dual->points};
     *open = NULL;
     *num_open = 0;
     BRIO_TRY(list_facets(ctx, &g));
-    if (g.num_facets == 0 && !c->labels->cocones->boundary) goto done;
+    if (g.num_facets == 0 && !c->cocones->boundary) goto done;
     BRIO_TRY(measure_gaps(ctx, &g));
-    if (c->labels->cocones->boundary) {
+    if (c->cocones->boundary) {
         suspect_long_candidates(&g);
         BRIO_TRY(list_facets(ctx, &g));
     }

@@ -1,50 +1,49 @@
-/* Delaunay tetrahedra inside and outside of the surface that the co-cones suggest.
+/* Labels of Delaunay tetrahedra: inside or outside the surface that the co-cones suggest.
  *
- * A sample knows of the tetrahedra whose Voronoi vertices lie in its two cones that they are on either side of the
- * surface. Each tetrahedron goes by the majority of its samples. What no sample knows of (the flat tetrahedra within
- * the surface) takes the label that reaches it first across facets that are no candidates; what candidates close off on
- * all sides are the pockets between two layers of candidates, and these are inside. So on a dense sample the boundary
- * between the labels is the outer boundary of the candidates, as the depth-first walk of the paper finds it; and a
- * missing triangle far away does not matter, as it would to the walk.
+ * A sample votes on the tetrahedra whose Voronoi vertices lie in its two cones: those in one cone are outside, those in
+ * the other are inside. The majority of its samples labels a tetrahedron. A tetrahedron without a majority, such as a
+ * flat one within the surface, takes the label that reaches it first across facets that are no candidates. Tetrahedra
+ * that candidates enclose on all sides are pockets between two layers of candidates, and inner. So on a dense sample
+ * the boundary between the labels is the outer boundary of the candidates, which the paper finds by a depth-first walk.
+ * A missing triangle far away does not matter here; to the walk it would.
  *
  * Based on: Dey, Goswami. Tight cocone: a water-tight surface reconstructor. JCISE 2003, for labels of tetrahedra from
  *           the two sides of each sample.
- * Differs from the paper: the sides are those of the cones, by majority, instead of an umbrella of triangles that some
- * samples do not have. */
+ * Differs from the paper: a majority of cones decides, instead of an umbrella of triangles, which some samples do not
+ *                         have. */
 #include "reconstruct/cocone/tetrahedron_labels.h"
 #include "base/memory.h"
 #include "base/team.h"
 
-/* The number of bits of four. */
+/* Returns the number of bits that are set in a number below 16, from a table of digits. */
 static inline int count_bits(unsigned bits) {
     return (int)(0x4332322132212110u >> 4 * bits & 7);
 }
 
-/* The votes of the first `count` slots: those in whose cone to the pole the centre lies are for outer, those that see it
- * in the other one for inner; where the axis is turned, the other way round. */
+/* Returns the vote of the samples in the first `count` slots: 1 for each sample that sees the centre in its cone to the
+ * pole, -1 for each that sees it in the opposite cone. A sample whose axis is turned votes the other way. */
 static inline int vote_of(const brio_pole_vectors *v, const uint8_t *turned, size_t tet, int count) {
     const uint32_t *vertex = v->t.tet[tet].vertex;
-    unsigned sides = v->sides[tet], turn = 0;
+    unsigned outer = brio_pole_slots(v->sides[tet]), inner = brio_antipole_slots(v->sides[tet]), turn = 0;
     for (int i = 0; i < count; i++) turn |= (unsigned)turned[vertex[i]] << i;
-    unsigned change = ((sides >> 4 ^ sides) & turn) * 0x11;
-    sides ^= change;
-    return count_bits(sides & 15) - count_bits(sides >> 4 & 15);
+    unsigned change = (outer ^ inner) & turn;
+    return count_bits(outer ^ change) - count_bits(inner ^ change);
 }
 
-int brio_tet_vote(const brio_tet_labels *l, size_t tet) {
-    const brio_pole_vectors *v = l->cocones->dual;
-    return vote_of(v, l->turned, tet, tet < v->num_finite ? 4 : 3);
+int brio_tet_vote(const brio_tet_labels *labels, size_t tet) {
+    const brio_pole_vectors *v = labels->dual;
+    return vote_of(v, labels->turned, tet, tet < v->num_finite ? 4 : 3);
 }
 
 static inline uint8_t label_of(int vote) {
     return vote > 0 ? BRIO_LABEL_OUTER : vote < 0 ? BRIO_LABEL_INNER : BRIO_LABEL_NONE;
 }
 
-/* Labels the tetrahedra [from, to); returns the number of undecided ones. */
-static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
-    const brio_pole_vectors v = *l->cocones->dual;
-    uint8_t *label = l->label;
-    const uint8_t *turned = l->turned;
+/* Labels tetrahedra from to to - 1. Returns the number of tetrahedra without a majority. */
+static size_t label_by_votes(const brio_tet_labels *labels, size_t from, size_t to) {
+    const brio_pole_vectors v = *labels->dual;
+    uint8_t *label = labels->label;
+    const uint8_t *turned = labels->turned;
     size_t undecided = 0;
     for (size_t tet = from; tet < to && tet < v.num_finite; tet++) {
         int vote = vote_of(&v, turned, tet, 4);
@@ -52,7 +51,7 @@ static size_t label_by_votes(const brio_tet_labels *l, size_t from, size_t to) {
         undecided += vote == 0;
     }
     for (size_t tet = from < v.num_finite ? v.num_finite : from; tet < to; tet++) {
-        int vote = l->watertight ? 1 : vote_of(&v, turned, tet, 3);
+        int vote = labels->watertight ? 1 : vote_of(&v, turned, tet, 3);
         label[tet] = label_of(vote);
         undecided += vote == 0;
     }
@@ -72,99 +71,101 @@ static void vote_in_part(void *user, size_t begin, size_t end, int thread) {
     __atomic_fetch_add(&v->undecided, label_by_votes(v->labels, begin, end), __ATOMIC_RELAXED);
 }
 
-/* The same for all. */
-static size_t label_all_by_votes(brio_context *ctx, brio_tet_labels *l) {
-    voting v = {l, 0};
-    size_t size = l->cocones->dual->t.count;
+/* Labels all tetrahedra. Returns the number of tetrahedra without a majority. */
+static size_t label_all_by_votes(brio_context *ctx, brio_tet_labels *labels) {
+    voting v = {labels, 0};
+    size_t size = labels->dual->t.count;
     brio_for(ctx, brio_threads(ctx, size, TETS_A_THREAD), size, vote_in_part, &v);
     return v.undecided;
 }
 
-brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *l) {
+brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *labels) {
     brio_status status = BRIO_OK;
-    size_t count = l->cocones->dual->t.count;
-    BRIO_TRY(BRIO_ALLOC(ctx, l->label, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, l->undecided, label_all_by_votes(ctx, l)));
+    size_t count = labels->dual->t.count;
+    BRIO_TRY(BRIO_ALLOC(ctx, labels->label, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, labels->undecided, label_all_by_votes(ctx, labels)));
     for (size_t tet = 0; tet < count; tet++)
-        if (l->label[tet] == BRIO_LABEL_NONE) l->undecided[l->num_undecided++] = (uint32_t)tet;
+        if (labels->label[tet] == BRIO_LABEL_NONE) labels->undecided[labels->num_undecided++] = (uint32_t)tet;
 done:
     return status;
 }
 
-/* Workspace of the spreading: the tetrahedra that the last wave reached, and the new labels of those of this one. */
+/* Workspace of the spreading: the tetrahedra reached so far, and the new labels of those that the last wave reached. */
 typedef struct {
     uint32_t *reached;
     uint8_t *news;
     size_t size, capacity, news_capacity;
 } wave;
 
-static const uint8_t REACHED = 0xff; /* a label that is still to be found */
+static const uint8_t REACHED = 0xff; /* the tetrahedron is reached, and its label comes with this wave */
 
-/* Adds the tetrahedra without a label next to one, across the facets that are no candidates. */
-static brio_status reach_from(brio_context *ctx, brio_tet_labels *l, size_t tet, wave *w) {
+/* Appends to w->reached the neighbours of a tetrahedron without a label, across facets that are no candidates. */
+static brio_status reach_from(brio_context *ctx, brio_tet_labels *labels, size_t tet, wave *w) {
     brio_status status = BRIO_OK;
-    const brio_tetrahedra *t = &l->cocones->dual->t;
+    const brio_tetrahedra *t = &labels->dual->t;
     BRIO_TRY(BRIO_RESERVE(ctx, w->reached, w->capacity, w->size + 4));
     for (int i = 0; i < 4; i++) {
         uint32_t facet = brio_facet_of((uint32_t)tet, i), other = brio_tet_of(*brio_mate(t, facet));
-        if (l->label[other] != BRIO_LABEL_NONE || brio_is_candidate(l->cocones, facet)) continue;
-        l->label[other] = REACHED;
+        if (labels->label[other] != BRIO_LABEL_NONE || brio_is_candidate(labels->cocones, facet)) continue;
+        labels->label[other] = REACHED;
         w->reached[w->size++] = other;
     }
 done:
     return status;
 }
 
-/* The label that most neighbours of a tetrahedron had before this wave; outer at a tie. */
-static uint8_t label_of_neighbours(const brio_tet_labels *l, uint32_t tet) {
-    const brio_tetrahedra *t = &l->cocones->dual->t;
+/* Returns the label of most neighbours of a tetrahedron before this wave, outer at a tie. Neighbours across candidates
+ * do not count. */
+static uint8_t label_of_neighbours(const brio_tet_labels *labels, uint32_t tet) {
+    const brio_tetrahedra *t = &labels->dual->t;
     int inner = 0;
     for (int i = 0; i < 4; i++) {
-        uint8_t label = l->label[brio_tet_of(t->tet[tet].mate[i])];
-        if (label == REACHED || label == BRIO_LABEL_NONE || brio_is_candidate(l->cocones, brio_facet_of(tet, i)))
+        uint8_t label = labels->label[brio_tet_of(t->tet[tet].mate[i])];
+        if (label == REACHED || label == BRIO_LABEL_NONE || brio_is_candidate(labels->cocones, brio_facet_of(tet, i)))
             continue;
         inner += label == BRIO_LABEL_INNER ? 1 : -1;
     }
     return inner > 0 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
 }
 
-/* Whether a tetrahedron has a neighbour with a label across a facet that is no candidate. */
-static bool is_next_to_label(const brio_tet_labels *l, uint32_t tet) {
+/* Returns whether a tetrahedron has a neighbour with a label across a facet that is no candidate. */
+static bool is_next_to_label(const brio_tet_labels *labels, uint32_t tet) {
     for (int i = 0; i < 4; i++) {
-        uint8_t label = l->label[brio_tet_of(l->cocones->dual->t.tet[tet].mate[i])];
+        uint8_t label = labels->label[brio_tet_of(labels->dual->t.tet[tet].mate[i])];
         if ((label == BRIO_LABEL_INNER || label == BRIO_LABEL_OUTER) &&
-            !brio_is_candidate(l->cocones, brio_facet_of(tet, i)))
+            !brio_is_candidate(labels->cocones, brio_facet_of(tet, i)))
             return true;
     }
     return false;
 }
 
-/* Passes labels on in waves; within a wave none depends on another, so that the order of the tetrahedra is of no
- * importance. */
-brio_status brio_tet_labels_spread(brio_context *ctx, brio_tet_labels *l) {
+/* Spreads labels in waves. Labels of one wave do not depend on each other, so the result does not depend on the order
+ * of the tetrahedra. */
+brio_status brio_tet_labels_spread(brio_context *ctx, brio_tet_labels *labels) {
     brio_status status = BRIO_OK;
     wave w = {0};
-    BRIO_TRY(BRIO_RESERVE(ctx, w.reached, w.capacity, l->num_undecided));
-    for (size_t n = 0; n < l->num_undecided; n++)
-        if (is_next_to_label(l, l->undecided[n])) w.reached[w.size++] = l->undecided[n];
-    for (size_t n = 0; n < w.size; n++) l->label[w.reached[n]] = REACHED;
+    BRIO_TRY(BRIO_RESERVE(ctx, w.reached, w.capacity, labels->num_undecided));
+    for (size_t n = 0; n < labels->num_undecided; n++)
+        if (is_next_to_label(labels, labels->undecided[n])) w.reached[w.size++] = labels->undecided[n];
+    for (size_t n = 0; n < w.size; n++) labels->label[w.reached[n]] = REACHED;
     for (size_t begin = 0, end; begin < w.size; begin = end) {
         end = w.size;
         BRIO_TRY(BRIO_RESERVE(ctx, w.news, w.news_capacity, end - begin));
-        for (size_t n = begin; n < end; n++) w.news[n - begin] = label_of_neighbours(l, w.reached[n]);
-        for (size_t n = begin; n < end; n++) l->label[w.reached[n]] = w.news[n - begin];
-        for (size_t n = begin; n < end; n++) BRIO_TRY(reach_from(ctx, l, w.reached[n], &w));
+        for (size_t n = begin; n < end; n++) w.news[n - begin] = label_of_neighbours(labels, w.reached[n]);
+        for (size_t n = begin; n < end; n++) labels->label[w.reached[n]] = w.news[n - begin];
+        for (size_t n = begin; n < end; n++) BRIO_TRY(reach_from(ctx, labels, w.reached[n], &w));
     }
-    for (size_t n = 0; n < l->num_undecided; n++)
-        if (l->label[l->undecided[n]] == BRIO_LABEL_NONE) l->label[l->undecided[n]] = BRIO_LABEL_INNER;
+    for (size_t n = 0; n < labels->num_undecided; n++)
+        if (labels->label[labels->undecided[n]] == BRIO_LABEL_NONE)
+            labels->label[labels->undecided[n]] = BRIO_LABEL_INNER;
 done:
     brio_release(ctx, w.reached);
     brio_release(ctx, w.news);
     return status;
 }
 
-void brio_tet_labels_free(brio_context *ctx, brio_tet_labels *l) {
-    brio_release(ctx, l->label);
-    brio_release(ctx, l->undecided);
-    *l = (brio_tet_labels){0};
+void brio_tet_labels_free(brio_context *ctx, brio_tet_labels *labels) {
+    brio_release(ctx, labels->label);
+    brio_release(ctx, labels->undecided);
+    *labels = (brio_tet_labels){0};
 }

@@ -1,10 +1,11 @@
-/* The size of a triangle. */
+/* Sizes of a triangle. */
 #ifndef BRIO_RECONSTRUCT_TRIANGLE_H
 #define BRIO_RECONSTRUCT_TRIANGLE_H
 
 #include <math.h>
 
-/** Squared length of the cross product of ab and ac; square receives those of ab, ac and bc. */
+/** Returns the squared length of the cross product of ab and ac.   square  receives the squared lengths of ab, ac and
+ *  bc. */
 static inline double brio_cross_square(const double *a, const double *b, const double *c, double square[3]) {
     double u[3], v[3], cross = 0;
     square[0] = square[1] = square[2] = 0;
@@ -20,7 +21,7 @@ static inline double brio_cross_square(const double *a, const double *b, const d
     return cross;
 }
 
-/** Squared radius of the circle through three points; infinite when they are collinear. */
+/** Returns the squared radius of the circle through three points, INFINITY if they are collinear. */
 static inline double brio_circle_square(const double *a, const double *b, const double *c) {
     double square[3], cross = brio_cross_square(a, b, c, square);
     return cross > 0 ? square[0] / cross * square[1] * square[2] / 4 : INFINITY;

@@ -1,4 +1,4 @@
-/* Inside or outside. */
+/* The label of a pole or of a tetrahedron: inner, outer, or none yet. */
 #ifndef BRIO_RECONSTRUCT_LABEL_H
 #define BRIO_RECONSTRUCT_LABEL_H
 

@@ -1,15 +1,16 @@
-/* Labeling of poles that lowers one energy: the sum of the weights that are violated, neighbours that intersect deeply
- * wanting the same label and opposite poles different ones. The weights are the balanced ones of the graph of poles.
+/* Global labeling of poles: seeks labels of low energy. The energy is the sum of |weight| over the edges that the
+ * labels contradict, with the balanced weights of the graph of poles.
  *
- * Least energy is as hard as a maximum cut, since edges of the second kind make it not submodular. Roof duality tells
- * part of an optimum by one flow, but on a large sample with trouble all over the flow is slow and leaves nearly all
- * poles open, far from any that is certain. In a block of poles among others whose labels stay it tells nearly all, fast.
- * So begin with the greedy labels and settle block after block, then other blocks with other borders, larger ones in the
- * end. No step raises the energy.
+ * Finding the least energy is as hard as a maximum cut, because edges that want different labels make the energy not
+ * submodular. Roof duality finds part of an optimal labeling by one flow. On all poles of a large sample the flow is
+ * slow and decides almost none of them. On a block of poles, with the labels around it fixed, it is fast and decides
+ * nearly all. So the method starts from the greedy labels and improves one block after the other, then blocks with
+ * other borders and of twice the size. No step raises the energy.
  *
  * Based on: Rother, Kolmogorov, Lempitsky, Szummer. Optimizing binary MRFs via extended roof duality. CVPR 2007 (to
  *           improve labels by roof duality with the labels of some nodes kept).
- * Differs from the paper: the nodes that are not kept are blocks near each other in space, many of them side by side. */
+ * Differs from the paper: the nodes that are free are blocks of poles near each other in space. Threads work on many
+ *                         blocks at a time. */
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/team.h"
@@ -18,13 +19,15 @@
 #include <math.h>
 #include <string.h>
 
+/* All chosen. PASSES: most passes. Pass i has blocks of 2^(FIRST_BITS + i) poles. FEW: the passes end with one that
+ * flips at most 1/FEW of all poles flipped so far. */
 enum { PASSES = 5, FIRST_BITS = 9, FEW = 100, POLES_A_THREAD = 1 << FIRST_BITS };
 
 typedef struct {
     const brio_pole_graph *g;
     uint8_t *label, *certain;
     int threads;
-    brio_roof *roof;           /* of each thread */
+    brio_roof *roof;           /* one for each thread */
     size_t undecided, toggled; /* in the last pass */
 } problem;
 
@@ -33,11 +36,11 @@ typedef struct {
 typedef struct {
     const problem *pr;
     const brio_pole_blocks *b;
-    const uint32_t *block; /* of the round */
+    const uint32_t *block; /* the blocks of the round */
     brio_status status;
 } round_of_blocks;
 
-/* Two blocks of a round have no edge in common: what one thread writes no other one reads. */
+/* By I1 of brio_pole_blocks no thread reads a label that another thread writes. */
 static void settle_part(void *user, size_t begin, size_t end, int thread) {
     round_of_blocks *r = user;
     const problem *pr = r->pr;
@@ -61,7 +64,7 @@ static void sum_up(problem *pr) {
     }
 }
 
-/* Settles every block with violated edges once. Each pass doubles their size. */
+/* Improves every block that has a violated edge once. Each pass doubles the size of the blocks. */
 static brio_status settle_blocks(problem *pr, int pass) {
     brio_status status = BRIO_OK;
     brio_pole_blocks b;
@@ -96,10 +99,10 @@ done:
 
 /* --- the whole --- */
 
-/* A solid is inside the convex hull of its surface, so a ball that is for the most part beyond the box of the samples is
- * outer: one whose centre is beyond it by half its radius, and with it five sixths of the ball. Others may be inner ones
- * that reach through an opening. Only now: given to the greedy labeling, whose mistakes spread, more certain poles were
- * seen to mislead it on sparse samples. */
+/* Sets a pole to outer and certain if its centre is beyond the samples' bounding box by half its radius or more
+ * (docs/decisions/008-balanced-weights.md). Five sixths of such a ball are outside the box, and a solid is inside the
+ * convex hull of its surface. Balls less far outside may be inner balls that reach through an opening. The greedy
+ * labeling does not get these certain poles: on sparse samples they misled it. */
 static void settle_beyond_box(const brio_pole_graph *g, uint8_t *certain, uint8_t *label) {
     for (size_t k = 0; k < 3; k++) {
         double low = INFINITY, high = -INFINITY;

@@ -1,33 +1,34 @@
-/* Greedy labeling of poles: the surest first.
+/* Greedy labeling of poles: the pole with the strongest evidence comes first.
  *
- * Each unlabeled pole holds two beliefs, in and out, between 0 (unknown) and 1 (certain). The pole of highest priority
- * is labeled by the larger belief and passes its strength on, weakened by the weight of the edge: opposite poles are
- * pushed to the opposite label, deeply intersecting neighbours to the same. A pole with evidence for both labels is
- * "confused" and waits until the end of the queue. Equal priorities go by the poles' canonical numbers.
+ * Each pole without a label holds two beliefs, inner and outer, between 0 (unknown) and 1 (certain). The pole of
+ * highest priority takes the label of its larger belief. It passes this belief on along its edges, times |weight|: to
+ * opposite poles for the opposite label, to deeply intersecting neighbours for the same label. A pole with evidence for
+ * both labels is "confused" and waits until only confused poles are left. Among equal priorities the pole of the lowest
+ * number comes first.
  *
- * Poles without evidence and confused ones come last, and beliefs are passed on weakened, so that until then no
- * priority rises above the last one taken, and seldom after: the queue is a radix heap. A pole whose priority changes
- * gets a new entry; the old one is passed over when it comes up.
+ * Weights are at most 1, so no priority rises above the last one taken until the confused poles begin, and seldom after
+ * that: the queue is a radix heap. A pole whose priority changes gets a new entry in the queue; its old entry is
+ * skipped when it comes up.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.8.
  *           Amenta, Choi, Kolluri. The power crust. Solid Modeling 2001.
- * Differs from the paper: poles on the hull of the regular triangulation are certainly outer too, and what is certain
- * is never pushed. */
+ * Differs from the paper: poles on the hull of the regular triangulation are certainly outer, too, and the beliefs of
+ *                         certain poles never change. */
 #include "base/memory.h"
 #include "reconstruct/labels/labeling.h"
 #include "reconstruct/labels/pole_queue.h"
 #include <math.h>
 #include <string.h>
 
-/* Beliefs of a pole, out and in; both SETTLED once no evidence can change them. A belief is the upper half of a double,
- * which 20 binary digits are enough for, and the range of which strengths need far from the hull. And where the pole's
- * edges begin: poles come up all over the surface, and what is fetched for one of them should be in one place. */
+/* What is known of a pole. belief[0] is for outer, belief[1] for inner; both are SETTLED once no evidence can change
+ * them. A belief is the upper half of a double: its 20 binary digits suffice, and strengths far from the hull need its
+ * exponents. `first` is a copy of the graph's first[p], so that one cache miss brings all that a pole needs. */
 typedef struct {
     uint32_t belief[2];
     size_t first;
 } node;
 
-enum { CERTAIN = 0x3ff00000 /* 1.0 */ };
+enum { CERTAIN = 0x3ff00000 /* the upper half of the double 1.0 */ };
 #define SETTLED UINT32_MAX
 
 typedef struct {
@@ -35,10 +36,10 @@ typedef struct {
     const brio_pole_graph *g;
     uint8_t *label;
     node *nodes;
-    brio_pole_queue queue; /* of the poles that are not confused, then of those that are */
-    bool all_confused;     /* the poles that are left */
+    brio_pole_queue queue; /* the poles that are not confused; after these, the confused poles */
+    bool all_confused;     /* only confused poles are left */
     size_t labeled;
-    uint32_t ahead[BRIO_POLE_PEEK]; /* poles that come up soon, whose nodes were called for */
+    uint32_t ahead[BRIO_POLE_PEEK]; /* poles that are likely to be next, whose nodes were prefetched */
     int num_ahead;
 } labeller;
 
@@ -69,7 +70,7 @@ static uint32_t clarity(const node *n) {
     return belief_of(fabs(strength_of(n->belief[1]) - strength_of(n->belief[0])));
 }
 
-/* Evidence of some strength for the side (0 out, 1 in) of a pole. */
+/* Raises the belief of pole p in a side (0 outer, 1 inner) to `strength`, if it is lower, and queues the pole again. */
 static inline brio_status offer(labeller *l, uint32_t p, int side, double strength) {
     node *n = &l->nodes[p];
     uint32_t belief = belief_of(strength);
@@ -106,7 +107,7 @@ static brio_status settle(labeller *l, uint32_t p, int side, double strength) {
 
 /* --- in order of priority --- */
 
-/* Certain poles are outer; labeled ones are as certain of their labels. */
+/* Settles the poles that are certain (outer) or labeled already (by their labels), with strength 1. */
 static brio_status settle_certain(labeller *l) {
     brio_status status = BRIO_OK;
     size_t n = l->g->diagram->poles->count;
@@ -123,7 +124,8 @@ done:
     return status;
 }
 
-/* Calls for what the next poles need: first their nodes, the next time their edges. */
+/* Prefetches what the next poles need: the edges of the poles whose nodes were prefetched last time, and the nodes of
+ * the poles that come after. */
 static inline void look_ahead(labeller *l) {
     for (int i = 0; i < l->num_ahead; i++) {
         const brio_pole_edge *edge = l->g->edge + l->nodes[l->ahead[i]].first;
@@ -134,7 +136,7 @@ static inline void look_ahead(labeller *l) {
     for (int i = 0; i < l->num_ahead; i++) __builtin_prefetch(&l->nodes[l->ahead[i]]);
 }
 
-/* Takes the pole of highest priority that is still what it was when it got it. */
+/* Takes the pole of highest priority, skipping entries that are not up to date. */
 static brio_status next_pole(labeller *l, uint32_t *p, bool *found) {
     brio_status status = BRIO_OK;
     for (;;) {
@@ -166,7 +168,7 @@ done:
     return status;
 }
 
-/* Nothing reaches these: they are outer, and pass nothing on. */
+/* Makes the poles that no evidence reached outer. They pass nothing on. */
 static void settle_without_evidence(labeller *l) {
     for (size_t p = 0; p < l->g->diagram->poles->count; p++) {
         if (l->nodes[p].belief[0] > 0 || l->nodes[p].belief[1] > 0) continue;

@@ -1,9 +1,9 @@
-/* Naive labeling of poles: breadth first from the poles that are certainly outer. A wrong label spreads as far as a
- * right one, so this is for comparison, and for samples that are known to be dense.
+/* Naive labeling of poles: labels spread breadth first from the certain poles. A wrong label spreads as far as a right
+ * one, so this labeling serves for comparison, and for samples that are known to be dense.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.3.
- * Differs from the paper: poles on the hull of the regular triangulation are certain too; what is not reached is left
- * to the greedy labeling. */
+ * Differs from the paper: poles on the hull of the regular triangulation are certain, too; the greedy labeling labels
+ *                         the poles that are not reached. */
 #include "base/memory.h"
 #include "reconstruct/labels/labeling.h"
 

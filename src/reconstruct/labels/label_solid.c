@@ -1,16 +1,17 @@
-/* Labels of poles from a known surface: a pole is inner when the surface winds round it, which is decided exactly.
+/* Labels of poles from a known surface: a pole is inner if the surface winds round its centre. The decision is exact.
  *
- * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, chapter 4 (the medial axis of a known surface).
- */
+ * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, chapter 4 (the medial axis of a known
+ * surface). */
 #include "reconstruct/labels/label_solid.h"
 #include "base/team.h"
 #include "surface/solid.h"
 #include <math.h>
 
-/* STEP: poles between two looks at the caller's wish to stop. */
+/* STEP: poles between two calls of the progress callback. All chosen. */
 enum { STEP = 1 << 16, POLES_A_THREAD = 32, CHUNK = 64 };
 
-/* A pole that doubles cannot hold in the unit of the mesh is farther away than the mesh reaches. */
+/* Returns the label of a pole. A centre that doubles cannot hold in the unit of the mesh is outside, since the
+ * coordinates of the mesh are finite. */
 static uint8_t label_of(const brio_solid *solid, const double *centre, int exponent) {
     double q[3];
     for (int k = 0; k < 3; k++) q[k] = ldexp(centre[k], exponent);
@@ -20,9 +21,9 @@ static uint8_t label_of(const brio_solid *solid, const double *centre, int expon
 
 typedef struct {
     const brio_solid *solid;
-    const double *centre; /* of the first pole of the step */
+    const double *centre; /* centre and label begin at the first pole of the step */
     int exponent;
-    uint8_t *label; /* of the same */
+    uint8_t *label;
 } labeller;
 
 static void label_part(void *user, size_t begin, size_t end, int thread) {

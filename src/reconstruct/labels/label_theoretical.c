@@ -1,13 +1,14 @@
-/* Theoretical labeling of poles: breadth first from one sample of the hull, whose far pole is outer and whose other
- * pole is inner. On a dense sample of a smooth closed surface every pole is reached and every label is right.
+/* Theoretical labeling of poles: labels spread breadth first from one sample of the hull, whose farther pole is outer.
+ * On a dense sample of a smooth closed surface every pole is reached and every label is right.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, appendix B.3 (lemmata 56 and 57).
- * Differs from the paper: the poles that are outer for good get no other label, whatever reaches them; what is not
- * reached is left to the greedy labeling. */
+ * Differs from the paper: certain poles stay outer, whatever label reaches them; the greedy labeling labels the poles
+ *                         that are not reached. */
 #include "base/memory.h"
 #include "reconstruct/labels/labeling.h"
 
-/* The first pole whose tetrahedron has a bounding point: that pole's samples are on the hull or see out of it. */
+/* Returns the first pole whose tetrahedron has a bounding point, or #poles. The samples of that pole are on the hull or
+ * see out of it. */
 static size_t seed_pole(const brio_pole_graph *g) {
     size_t p = 0;
     while (p < g->diagram->poles->count && !g->diagram->poles->bounding[p]) p++;

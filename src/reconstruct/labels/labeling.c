@@ -1,9 +1,10 @@
-/* What the labelings share: which poles are certain, the energy of labels, spreading breadth first. */
+/* What the labelings share: the certain poles, the energy of labels, spreading labels breadth first. */
 #include "reconstruct/labels/labeling.h"
 #include "base/team.h"
 #include <math.h>
 #include <string.h>
 
+/* Both chosen. */
 enum { PARTS = 256, POLES_A_THREAD = 2048 };
 
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain) {
@@ -14,7 +15,7 @@ void brio_label_certain(const brio_pole_graph *g, uint8_t *certain) {
 
 /* --- energy --- */
 
-/* Both ends see an edge; it counts at the lower one. */
+/* Sums |weight| over the violated edges from pole p to poles of higher number, so that each edge counts once. */
 static double violated_at(const brio_pole_graph *g, const uint8_t *label, size_t p) {
     double sum = 0;
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
@@ -41,7 +42,7 @@ static void sum_parts(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* Sums in PARTS parts for every number of threads, so that the rounding is the same. */
+/* Sums in PARTS parts for every number of threads, so that the rounding does not depend on the threads. */
 double brio_label_energy(const brio_pole_graph *g, const uint8_t *label) {
     energy e = {.g = g, .label = label};
     double sum = 0;

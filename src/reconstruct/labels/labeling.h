@@ -1,56 +1,64 @@
-/* Labeling of poles as inner or outer. */
+/* Labelings of poles as inner or outer. */
 #ifndef BRIO_RECONSTRUCT_LABELING_H
 #define BRIO_RECONSTRUCT_LABELING_H
 
 #include "reconstruct/labels/pole_graph.h"
 
-/** What a labeling counts; fields it does not know of stay as they were. */
+/** What a labeling counts. A labeling leaves the fields that it does not compute unchanged. */
 typedef struct {
-    size_t confused;      /* poles that had evidence for both labels when they were labeled */
-    size_t unreached;     /* left to the greedy labeling by another one */
-    size_t undecided;     /* not settled by the last roof duality of their blocks */
-    size_t toggled;       /* that differ from the greedy labeling in the end */
-    double energy_greedy; /* sum of the violated weights of the greedy labels to begin with */
+    size_t confused;      /* greedy: poles that had evidence for both labels when they were labeled */
+    size_t unreached;     /* naive, theoretical: poles that were left to the greedy labeling */
+    size_t undecided;     /* global: poles that the last roof duality of their block did not decide */
+    size_t toggled;       /* global: poles whose final label differs from the one it started from */
+    double energy_greedy; /* global: the energy of the labels that it started from */
 } brio_labeling_stats;
 
-/* Every labeling gives label[p] to every pole, hidden ones too; *label is BRIO_LABEL_NONE throughout to begin with.
- * Poles whose tetrahedron has a bounding point and the poles on the hull of the power diagram's dual are certain: outer
- * for good. Only then does every crust face close. */
+/* Every labeling writes label[p] for every pole p, hidden poles included. The caller sets all labels to BRIO_LABEL_NONE
+ * before.
+ *
+ * A pole is certain if its tetrahedron has a bounding point, or if it is on the hull of the dual of the power diagram.
+ * Every labeling makes certain poles outer, because only then is the crust closed.
+ *
+ * All labelings return BRIO_OK, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
 
-/** The surest pole first. Poles that are labeled already keep their labels and are as sure as the certain ones. */
+/** Labels the pole with the strongest evidence first. A pole that has a label keeps it, and its evidence is as strong
+ *  as that of a certain pole. */
 brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats);
 
-/** Breadth first from all certain poles. */
+/** Spreads labels breadth first from all certain poles. The greedy labeling labels the poles that are not reached. */
 brio_status brio_label_naive(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats);
 
-/** Breadth first from one sample of the hull; the graph has the edges of weight over BRIO_THEORETICAL_WEIGHT. */
+/** Spreads labels breadth first from one sample of the hull. The edges of the graph must weigh more than
+ *  BRIO_THEORETICAL_WEIGHT. The greedy labeling labels the poles that are not reached. */
 brio_status brio_label_theoretical(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats);
 
-/** The greedy labels, but for poles beyond the box of the samples being outer, toggled as long as roof duality finds sets
- *  of poles in one of many blocks to lower the energy by. */
+/** Starts from the greedy labels and sets poles far outside the samples' bounding box to outer. Then repeats over
+ *  blocks of poles: roof duality finds poles whose flip lowers the energy, and flips them. Stops after five passes, or
+ *  after a pass that flips next to nothing. */
 brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats);
 
-/** -cos of pi / 4: the balls of the theoretical algorithm's neighbours intersect at a larger angle. */
+/** -cos of pi / 4. The theoretical labeling joins two poles whose balls intersect at a larger angle than pi / 4. */
 #define BRIO_THEORETICAL_WEIGHT (-0.70710678118654752)
 
-/** certain[p] = 1 for the poles that are outer for good, else 0; others are not written where they are 1. */
+/** Sets certain[p] to 1 for the certain poles and to 0 for all others.   certain  #poles, written. */
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain);
 
-/** Whether the labels of pole p and of the other end of its edge are not as the edge wants them. */
+/** Returns whether the labels of pole p and of the other end of its edge contradict the edge: labels that differ
+ *  although the weight is at least 0, or labels that are equal although it is negative. */
 static inline bool brio_label_violates(const uint8_t *label, uint32_t p, brio_pole_edge edge) {
     return (label[p] == label[edge.pole]) == (edge.weight < 0);
 }
 
-/** The sum of the violated weights: neighbours of different labels, or of one where different ones are wanted, opposite
- *  poles of the same. */
+/** Returns the energy of labels: the sum of |weight| over the edges that the labels contradict, each edge counted
+ *  once. */
 double brio_label_energy(const brio_pole_graph *g, const uint8_t *label);
 
-/** Spreads labels breadth first from the poles of a queue, that are labeled: deeply intersecting neighbours get the
- *  same label, opposite poles the opposite one, certain poles outer whatever reaches them.
- *  queue  #poles, of which `size` are filled. */
+/** Spreads labels breadth first along the edges to poles without a label. A certain pole becomes outer. Any other pole
+ *  takes the label of the pole that reaches it, or the opposite label if the weight of the edge is negative.
+ *  queue  #poles, workspace: the first `size` entries are the labeled poles to start from. */
 void brio_label_spread(const brio_pole_graph *g, const uint8_t *certain, uint8_t *label, uint32_t *queue, size_t size);
 
-/** Lets the greedy labeling label what is not yet labeled, and counts it. */
+/** Counts the poles without a label in stats->unreached and lets the greedy labeling label them. */
 brio_status brio_label_finish(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats);
 
 #endif

@@ -1,14 +1,14 @@
 /* Maximum flow by two search trees that are kept between augmentations.
  *
- * A tree grows from the source along arcs with residual capacity, another one from the sink against them. Where they
- * meet there is an augmenting path; the flow along it saturates arcs, and the nodes below a saturated arc of their tree
- * become orphans: each looks for another parent in its tree, or leaves the tree and makes its children orphans. The
- * flow is maximal when no node of either tree can grow. Nodes of the trees keep the time of their last check and their
- * distance from the terminal, so that an orphan sees quickly whether a parent still hangs on the tree, and takes the
- * nearest one.
+ * One tree grows from the source along arcs with residual capacity, the other grows from the sink against such arcs. An
+ * arc between the trees closes an augmenting path. The flow along the path saturates arcs, and the node below a
+ * saturated arc of its tree becomes an orphan. An orphan looks for another parent in its tree. If there is none, it
+ * leaves the tree and its children become orphans. The flow is maximal when no node of either tree can grow. Each node
+ * of a tree keeps its distance from the terminal and the time of its last check. With these an orphan finds out quickly
+ * which nodes are still connected to the terminal, and takes the nearest one as its parent.
  *
  * Based on: Boykov, Kolmogorov. An experimental comparison of min-cut/max-flow algorithms for energy minimization in
- * vision. IEEE PAMI 2004. */
+ *           vision. IEEE PAMI 2004. */
 #include "reconstruct/labels/max_flow.h"
 #include "base/memory.h"
 #include <string.h>
@@ -26,7 +26,7 @@ static brio_status make_arcs(brio_flow *f, const brio_flow_edge *edges, size_t n
     for (size_t e = 0; e < num_edges; e++) f->node[edges[e].a].first++, f->node[edges[e].b].first++;
     for (size_t v = 0, start = 0; v <= f->num_nodes; v++) {
         start += f->node[v].first;
-        f->node[v].first = (uint32_t)start; /* the end of its run; filling goes down to the beginning */
+        f->node[v].first = (uint32_t)start; /* the end of the arcs of v; the next loop fills them backwards */
     }
     for (size_t e = 0; e < num_edges; e++) {
         brio_flow_edge x = edges[e];
@@ -38,11 +38,12 @@ done:
     return status;
 }
 
-/* What an arc of a node's run still carries away from the terminal of the node's tree. */
+/* Returns the residual capacity of an arc in the direction away from the terminal of the tree `side`. */
 static int32_t capacity_outwards(const brio_flow *f, uint8_t side, uint32_t arc) {
     return f->arc[side == SOURCE ? arc : f->arc[arc].mate].residual;
 }
 
+/* Returns the residual capacity of an arc in the direction towards the terminal of the tree `side`. */
 static int32_t capacity_inwards(const brio_flow *f, uint8_t side, uint32_t arc) {
     return f->arc[side == SOURCE ? f->arc[arc].mate : arc].residual;
 }
@@ -101,13 +102,13 @@ static void hang(brio_flow *f, uint32_t v, uint32_t arc_to_parent, uint32_t pare
     f->node[v].checked = f->node[parent].checked;
 }
 
-/* Whether w, of the same tree, is known to be nearer to the terminal by way of v. */
+/* Returns whether w, a node of the tree of v, is known to come nearer to the terminal with v as its parent. */
 static bool is_nearer_by(const brio_flow *f, uint32_t v, uint32_t w) {
     const brio_flow_node *here = &f->node[v], *there = &f->node[w];
     return there->checked <= here->checked && there->distance > here->distance + 1 && there->parent < ORPHAN;
 }
 
-/* Grows the tree from an active node. Returns an arc from the tree of the source to that of the sink, or NO_ARC when
+/* Grows the tree from an active node. Returns an arc that leads from the source's tree to the sink's tree, or NO_ARC if
  * the node cannot grow any more. */
 static uint32_t grow(brio_flow *f, uint32_t v) {
     uint8_t side = f->side[v];
@@ -127,12 +128,12 @@ static uint32_t grow(brio_flow *f, uint32_t v) {
 
 /* --- augmenting --- */
 
-/* The arc between v and its parent that flow takes. */
+/* Returns the arc between v and its parent in the direction of the flow. */
 static uint32_t flow_arc(const brio_flow *f, uint32_t v) {
     return f->side[v] == SOURCE ? f->arc[f->node[v].parent].mate : f->node[v].parent;
 }
 
-/* The least that the path between v and its terminal still carries. */
+/* Returns the least residual capacity on the path between v and its terminal. */
 static int64_t least_along(const brio_flow *f, uint32_t v) {
     int64_t least = INT64_MAX;
     for (; f->node[v].parent != AT_TERMINAL; v = f->arc[f->node[v].parent].head) {
@@ -168,8 +169,8 @@ static void augment(brio_flow *f, uint32_t arc) {
 
 /* --- adopting --- */
 
-/* Distance of v from its terminal along parents, or UINT32_MAX when the way up ends at an orphan; nodes on a good way
- * are marked as checked. */
+/* Returns the distance of v from its terminal along parents, or UINT32_MAX if the path ends at an orphan. Marks the
+ * nodes of a path that reaches the terminal as checked. */
 static uint32_t distance_to_terminal(brio_flow *f, uint32_t v) {
     uint32_t distance = 0, top = v;
     for (;; top = f->arc[f->node[top].parent].head) {
@@ -192,7 +193,7 @@ static uint32_t distance_to_terminal(brio_flow *f, uint32_t v) {
     return distance;
 }
 
-/* Makes the children of v orphans and v free. */
+/* Frees v from its tree and makes the children of v orphans. */
 static void abandon(brio_flow *f, uint32_t v) {
     uint8_t side = f->side[v];
     for (uint32_t arc = f->node[v].first; arc < f->node[v + 1].first; arc++) {

@@ -4,19 +4,19 @@
 
 #include "base/context.h"
 
-/** An edge between nodes a and b that carries up to `capacity` either way, less than 2^30. */
+/** An edge between nodes a and b. Its capacity, in each direction, is less than 2^30. */
 typedef struct {
     uint32_t a, b;
     int32_t capacity;
 } brio_flow_edge;
 
-/** Where a node is after a maximum flow. The two sides do not depend on the flow that was found: they are the least
- *  sets on either side of a minimum cut. */
+/** The side of a node after a maximum flow. SOURCE: the residual arcs lead from the source to the node. SINK: they lead
+ *  from the node to the sink. FREE: neither. The sides are the same for every maximum flow. */
 typedef enum { BRIO_FLOW_FREE = 0, BRIO_FLOW_SOURCE = 1, BRIO_FLOW_SINK = 2 } brio_flow_side;
 
-/** Workspace for many flows, one after another. Arcs leave a node in the run node[v].first .. node[v + 1].first; the mate
- *  of an arc runs the other way. */
+/** An arc of the residual graph. The arcs that leave node v are node[v].first to node[v + 1].first - 1. */
 typedef struct {
+    /* The arc ends at `head`; arc `mate` is the same edge in the other direction. */
     uint32_t head, mate;
     int32_t residual;
 } brio_flow_arc;
@@ -24,12 +24,13 @@ typedef struct {
 typedef struct {
     uint32_t first;
     uint32_t parent;   /* the arc from the node to its parent, or a mark */
-    uint32_t distance; /* to the terminal, right at the time of `checked` */
+    uint32_t distance; /* of the node from its terminal, right at the time `checked` */
     uint32_t checked;
-    uint32_t next_active; /* queue of active nodes, linked; a node in it points to itself at the end */
-    uint32_t orphan;      /* not of this node: a place in the ring of orphans, which has each node at most once */
+    uint32_t next_active; /* next in the queue of active nodes; the last node names itself; NO_NODE outside */
+    uint32_t orphan;      /* an entry of the ring of orphans, unrelated to this node */
 } brio_flow_node;
 
+/** Workspace for many flows, one after another. */
 typedef struct {
     brio_context *ctx;
     brio_flow_node *node;
@@ -44,11 +45,13 @@ typedef struct {
 brio_flow brio_flow_new(brio_context *ctx);
 void brio_flow_free(brio_flow *flow);
 
-/** Finds a maximum flow.
- *  terminal  #nodes: what comes from the source at a node, or, negative, goes to the sink; used as workspace.
- *  side      #nodes, written.   num_edges  less than 2^31.
- *  Cost: linear where the flow is short, as in graphs nearly all of whose edges are at peace; 24 bytes an edge and as
- *  many a node.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE.
+/** Finds a maximum flow and the side of every node.
+ *  num_nodes, num_edges  num_edges is less than 2^31 - 2.
+ *  terminal  #nodes: a positive entry is the capacity from the source to the node, a negative one that from the node to
+ *            the sink. The function overwrites the array.
+ *  side      #nodes, written: a brio_flow_side for each node.
+ *  Cost: linear in the edges if the augmenting paths are few and short. Memory: 24 bytes an edge and 24 a node.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE.
  *  Based on: [Boykov Kolmogorov 2004]. */
 brio_status brio_flow_maximum(brio_flow *flow, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
                               int64_t *terminal, uint8_t *side);

@@ -1,9 +1,9 @@
 /* Blocks of poles for the improvement of labels.
  *
- * A set of poles whose toggling lowers the energy has a violated edge on its border, so only poles near violated edges
- * take part. They are sorted along a Hilbert curve through a cube that is drawn anew each time, and cut into runs: what
- * one drawing separates another one keeps together. Two blocks that an edge joins must not change at the same time; the
- * blocks are coloured, and a colour is a round. */
+ * Only poles near violated edges take part, because a set of poles whose flip lowers the energy has a violated edge on
+ * its border. The poles are sorted along a Hilbert curve through a cube at a random place, and the sorted list is cut
+ * into runs. Poles that one cube separates, another cube keeps together. Two blocks that an edge joins must not change
+ * at the same time, so the blocks are coloured, and a colour is a round. */
 #include "reconstruct/labels/pole_blocks.h"
 #include "base/memory.h"
 #include "base/rng.h"
@@ -14,26 +14,28 @@
 #include <math.h>
 #include <string.h>
 
+/* HOPS: a pole of a block is at most this many edges from a pole with a violated edge. CURVE_BITS: the curve has
+ * 2^CURVE_BITS cells on each side of the cube. All are chosen, except OUTSIDE. */
 enum { HOPS = 3, OUTSIDE = 255, CURVE_BITS = 11, POLES_A_THREAD = 1024, POLES_A_CHUNK = 1024 };
 
-/* A thread's list of pairs of blocks that an edge joins, the higher number first, and its marks. */
+/* What one thread finds: the pairs of blocks that an edge joins, as higher number << 32 | lower number. */
 typedef struct {
     uint64_t *pair;
     size_t count, capacity;
-    uint32_t *seen; /* of each block: 1 + the last block that was found to be joined with it */
+    uint32_t *seen; /* #blocks: 1 + the last block that was found to be joined to the block */
 } joiner;
 
 typedef struct {
     const brio_pole_graph *g;
     const uint8_t *label, *fixed;
-    int threads;     /* of the loops over poles and blocks */
-    uint8_t hop;     /* of the poles whose neighbours are reached now */
-    joiner *joiners; /* of each thread */
+    int threads;     /* of all loops here */
+    uint8_t hop;     /* the depth of the poles whose neighbours are reached now */
+    joiner *joiners; /* one for each thread */
     brio_status joined;
-    double *points;   /* positions of the poles of the region */
-    uint8_t *depth;   /* of each pole: how many edges from trouble, OUTSIDE beyond the region */
-    uint8_t *trouble; /* of each block: it has violated edges */
-    uint64_t *pair;   /* of blocks, sorted */
+    double *points;   /* positions of the poles of the region, and two corners of the cube */
+    uint8_t *depth;   /* #poles: edges from the nearest pole with a violated edge, or OUTSIDE */
+    uint8_t *trouble; /* #blocks: 1 if one of the block's poles has a violated edge */
+    uint64_t *pair;   /* the pairs of all threads, sorted */
     size_t num_pairs;
     brio_pole_blocks *out;
 } finder;
@@ -47,8 +49,8 @@ static bool is_troubled(const finder *f, uint32_t p) {
     return false;
 }
 
-/* Threads that reach a pole together write the same depth, which no thread looks for in this hop: relaxed will do. The
- * next hop is another run. */
+/* Sets the depth of the neighbours of p that have none. Relaxed order suffices: threads that reach a pole in the same
+ * hop write the same depth, no thread looks for that depth in this hop, and the next hop is another run. */
 static void reach_neighbours(const finder *f, uint32_t p, uint8_t depth) {
     const brio_pole_graph *g = f->g;
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
@@ -94,7 +96,8 @@ done:
 
 /* --- along a curve --- */
 
-/* Adds two corners of a cube of twice the size at a drawn place round the points. */
+/* Appends two opposite corners of a cube to the n points. The cube has twice the size of the points and contains them
+ * at a random place. */
 static void draw_cube(double *points, size_t n, uint64_t draw) {
     double low[3], high[3], side = 0;
     for (size_t k = 0; k < 3; k++) {
@@ -157,7 +160,7 @@ static brio_status find_trouble(finder *f) {
     return BRIO_OK;
 }
 
-/* Notes the troubled blocks of lower number that edges join with a block. */
+/* Lists the pairs of a block and the blocks of lower number, with violated edges, that an edge joins to it. */
 static brio_status join(const finder *f, joiner *j, uint32_t block) {
     const brio_pole_graph *g = f->g;
     const brio_pole_blocks *b = f->out;
@@ -210,8 +213,8 @@ done:
     return status;
 }
 
-/* Each block in order gets the first round that none of those before it, that edges join it with, has.
- *  taken  #blocks + 1, all 0: of each round, 1 + the last block that cannot have it. */
+/* Gives each block, in order, the first round that no earlier block joined to it has.
+ *  taken  #blocks + 1, all 0: for each round, 1 + the last block that cannot have it. */
 static void colour_blocks(const finder *f, uint32_t *round, uint32_t *taken) {
     brio_pole_blocks *b = f->out;
     for (size_t block = 0, i = 0; block < b->num_blocks; block++) {

@@ -1,14 +1,14 @@
 /* The graph of poles.
  *
- * An edge of the regular triangulation is noted by the tetrahedra of its ring that come before both of their neighbours
- * in the ring: its first one does, and seldom another. To walk round for the very first one would cost more than to
- * drop the others from the pole's short list, which is sorted anyway, so that the threads leave no trace. Each edge is
- * noted at its pole of higher number; with its weight it is then dealt out to both.
+ * A tetrahedron lists an edge if it comes before both of its neighbours in the ring round the edge. The first
+ * tetrahedron of a ring does so, and seldom another one: removing duplicates from the pole's short list costs less than
+ * walking round the ring for the first tetrahedron. The list is sorted, so the result does not depend on the threads.
+ * Each edge is listed at its end of higher number, weighed, and then stored at both ends.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.3.
- * Differs from the paper, in the balanced graph: where samples are few, its weights mislead. There the surest sign of one
- * label is a very deep intersection, balls that meet a little have different labels more often than not, and the two
- * poles of a badly shaped cell may have the same. */
+ * Differs from the paper, in the balanced graph: where samples are few, the paper's weights mislead. There a very deep
+ * intersection is the surest sign of one label, balls that intersect a little have different labels more often than
+ * not, and the two poles of a badly shaped cell may have the same label. */
 #include "reconstruct/labels/pole_graph.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -16,27 +16,29 @@
 #include <math.h>
 #include <string.h>
 
-/* STEP: tetrahedra between two looks at the caller's wish to stop. */
+/* STEP: tetrahedra between two calls of the progress callback. All chosen. */
 enum { STEP = 1 << 21, TETRAHEDRA_A_THREAD = 1 << 12, CHUNK = 1 << 10 };
 
 /* Workspace of the construction. */
 typedef struct {
     brio_pole_graph *g;
-    int threads;  /* of all loops: poles and samples are fewer than tetrahedra, and take longer each */
+    int threads;  /* of all loops: there are fewer poles and samples than tetrahedra, but each takes longer */
     size_t start; /* the first tetrahedron of the step */
     const uint32_t *representative;
     brio_pole_evidence evidence;
-    float *opposite;   /* of each sample: the weight between its poles, 0 for no edge */
-    size_t *first_low; /* #poles + 1: the neighbours of each pole that have lower numbers */
-    uint64_t *low;     /* such a neighbour, 32 bits of weight; NOTHING after the last one */
-    size_t *place;     /* of each pole, where its next edge goes */
-    uint64_t *edge;    /* the edges, (other end, bits of the weight) */
+    float *opposite;   /* #samples: the weight between the poles of the sample, 0 for no edge */
+    size_t *first_low; /* #poles + 1: the neighbours of lower number of pole p are low[first_low[p]] to
+                          low[first_low[p + 1] - 1] */
+    uint64_t *low;     /* keys of such neighbours (key_of); NOTHING after the last one of each pole */
+    size_t *place;     /* #poles: the index where the pole's next edge is stored; while edges are counted, their
+                          number */
+    uint64_t *edge;    /* the edges as keys (key_of) */
 } builder;
 
 static const uint64_t NOTHING = UINT64_MAX;
 
-/* The weights of balanced evidence. They were chosen on one model, cheese; docs/decisions/008-balanced-weights.md has what
- * they give there and how they were held against sparse random samples of smooth models. */
+/* The weights of balanced evidence, chosen on one model, cheese. docs/decisions/008-balanced-weights.md lists the
+ * results there and on sparse random samples of seven other models. */
 static const double TOUCHING = -0.95, SHALLOW = -0.5, SHALLOW_WEIGHT = 0.1;
 
 static const double *centre_of(const brio_pole_graph *g, uint32_t p) {
@@ -45,22 +47,22 @@ static const double *centre_of(const brio_pole_graph *g, uint32_t p) {
 
 /* --- weights --- */
 
-/* What two balls say of their labels where samples may be few: there, too, deeply intersecting ones nearly always have
- * the same label, at a right angle they tell nothing, and balls that intersect a little mostly have different ones.
- * Balls that all but touch can be anywhere. */
+/* Returns the weight of two neighbours in the balanced graph. Where samples are few, balls that intersect deeply nearly
+ * always have the same label, and balls that intersect a little mostly have different labels. An intersection at a
+ * right angle, or one where the balls all but touch, says nothing. */
 static double balanced_weight(double weight) {
     if (weight > 0) return weight < 1 ? weight * weight : 1;
     return weight > TOUCHING && weight < SHALLOW ? -SHALLOW_WEIGHT : 0;
 }
 
-/* A badly shaped cell does not tell where the surface is: at an edge with too few samples both poles may well be on one
- * side. */
+/* Returns the factor of the weight between the poles of a cell. A badly shaped cell does not show where the surface is:
+ * at an edge with too few samples both poles may be on one side. The sixth power is chosen. */
 static double trust_in(double shape) {
     double share = shape / BRIO_TRUSTED_SHAPE;
     return share < 1 ? share * share * share * share * share * share : 1;
 }
 
-/* The weight of an edge between two neighbours, and whether there is one. */
+/* Computes the weight of the edge between neighbours p and q. Returns whether there is an edge. */
 static bool weigh_neighbours(const builder *b, uint32_t p, uint32_t q, float *weight) {
     double of_balls = brio_ball_weight(b->g->diagram->poles, p, q);
     *weight = (float)(b->evidence.balanced ? balanced_weight(of_balls) : fmax(fmin(of_balls, 1), 0));
@@ -69,7 +71,7 @@ static bool weigh_neighbours(const builder *b, uint32_t p, uint32_t q, float *we
 
 /* --- edges as keys --- */
 
-/* An edge as a key that sorts by the other end. */
+/* Returns an edge as a key, other end << 32 | bits of the weight, so that keys sort by the other end. */
 static uint64_t key_of(uint32_t pole, float weight) {
     uint32_t bits;
     memcpy(&bits, &weight, sizeof bits);
@@ -83,13 +85,13 @@ static brio_pole_edge edge_of(uint64_t key) {
     return e;
 }
 
-/* Adds 1; what it was before. Relaxed: the counts are read after the run, and what is put at a place that a count tells
- * is the thread's alone until then. */
+/* Adds 1 to *count and returns its value before. Relaxed order suffices: other threads read the counts only after the
+ * run, and each thread writes only at the index that it got. */
 static inline size_t count_up(const builder *b, size_t *count) {
     return b->threads > 1 ? __atomic_fetch_add(count, 1, __ATOMIC_RELAXED) : (*count)++;
 }
 
-/* first[p] = sum of the counts before p; counts become places. */
+/* Sets first[p] to the sum of the counts before p, and count[p] to first[p]. */
 static void first_places(size_t *first, size_t *count, size_t n) {
     first[0] = 0;
     for (size_t p = 0; p < n; p++) {
@@ -100,17 +102,19 @@ static void first_places(size_t *first, size_t *count, size_t n) {
 
 /* --- neighbours of lower number --- */
 
-/* Counts an edge, or notes it. */
+/* Counts the edge between p and q at its end of higher number or, if the array `low` exists, stores it there. */
 static inline void note(const builder *b, uint32_t p, uint32_t q) {
     uint32_t lower = p < q ? p : q;
     size_t at = count_up(b, &b->place[p < q ? q : p]);
     if (b->low) b->low[at] = key_of(lower, 0);
 }
 
-/* EDGES[i]: the edges, by bits, each as two slots in PAIR, whose neighbours in the ring are behind facets in the set i. */
+/* EDGES[set]: bit e is set if the two neighbours in the ring round edge e, which joins the slots PAIR[e], are behind
+ * facets in `set`. */
 static const uint8_t PAIR[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 static const uint8_t EDGES[16] = {0, 0, 0, 32, 0, 16, 4, 52, 0, 8, 2, 42, 1, 25, 7, 63};
 
+/* Lists the edges of a tetrahedron for which both neighbours in the ring have higher numbers. */
 static inline void note_tetrahedron(const builder *b, uint32_t tet) {
     const brio_tetrahedron *t = &b->g->diagram->power.tet[tet];
     unsigned later = 0;
@@ -148,7 +152,8 @@ done:
     return status;
 }
 
-/* Keeps each of the pole's edges that say something once, with its weight, and counts it at both ends. */
+/* Keeps each neighbour of lower number of pole p once, with its weight, if there is an edge, and counts the edge at
+ * both ends. */
 static void weigh(const builder *b, uint32_t p) {
     uint64_t *low = b->low + b->first_low[p], last = NOTHING;
     size_t size = b->first_low[p + 1] - b->first_low[p], kept = 0;
@@ -192,7 +197,7 @@ static double dot_from(const double *o, const double *p, const double *q) {
     return (p[0] - o[0]) * (q[0] - o[0]) + (p[1] - o[1]) * (q[1] - o[1]) + (p[2] - o[2]) * (q[2] - o[2]);
 }
 
-/* The weight between the poles of a sample, 0 where there is no edge. */
+/* Returns the weight between the two poles of a sample, or 0 if there is no edge. */
 static float opposite_weight(const builder *b, size_t sample) {
     const brio_pole_graph *g = b->g;
     uint32_t p = g->diagram->poles->of_sample[2 * sample], q = g->diagram->poles->of_sample[2 * sample + 1];
@@ -247,7 +252,7 @@ static void deal_out_opposite(void *user, size_t begin, size_t end, int thread) 
         if (b->opposite[s] < 0) deal(b, of_sample[2 * s], of_sample[2 * s + 1], b->opposite[s]);
 }
 
-/* Sorts the edges of each pole, and turns keys into edges where they are. */
+/* Sorts the edges of each pole, and overwrites each key by the edge that it stands for, in place. */
 static void sort_edges(void *user, size_t begin, size_t end, int thread) {
     const builder *b = user;
     const brio_pole_graph *g = b->g;
@@ -276,7 +281,7 @@ static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative
     brio_for(ctx, threads, n, deal_out_neighbours, &b);
     brio_for(ctx, threads, g->diagram->num_samples, deal_out_opposite, &b);
     brio_for_chunks(ctx, threads, n, CHUNK, sort_edges, &b);
-    g->edge = (brio_pole_edge *)b.edge; /* of the same size, and written as edges */
+    g->edge = (brio_pole_edge *)b.edge; /* sort_edges overwrote the keys by edges, which have the same size */
 done:
     if (status != BRIO_OK) brio_release(ctx, b.edge);
     brio_release(ctx, b.opposite);

@@ -1,4 +1,5 @@
-/* The graph of poles that labels travel along: neighbours in the power diagram, and the two poles of each sample. */
+/* The graph that labels travel along: its vertices are the poles, its edges join neighbours in the power diagram and
+ * the two poles of each sample. */
 #ifndef BRIO_RECONSTRUCT_POLE_GRAPH_H
 #define BRIO_RECONSTRUCT_POLE_GRAPH_H
 
@@ -6,37 +7,40 @@
 #include "reconstruct/labels/label.h"
 #include "triangulation/star.h"
 
-/** An edge as its one end sees it. */
+/** An edge, stored at one of its ends. */
 typedef struct {
     uint32_t pole; /* the other end */
-    float weight;  /* at least 0: the same label is wanted; negative: the other one; at most 1 in magnitude */
+    float weight;  /* in [-1, 1]. At least 0: the ends should have the same label. Negative: they should not. */
 } brio_pole_edge;
 
-/** Two poles are neighbours when their power cells share a face, that is an edge of the regular triangulation of the
- *  polar balls; a hidden pole has one neighbour, its representative. Two poles are opposite when they are the poles of
- *  one sample. */
+/** Neighbours are two poles whose power cells share a face: the ends of an edge of the regular triangulation of the
+ *  polar balls. A hidden pole has one neighbour, its representative. Opposite poles are the two poles of one sample. */
 typedef struct {
     brio_context *ctx;
     const brio_power_diagram *diagram;
-    size_t *first;        /* #poles + 1: the edges of each pole, by the numbers of their other ends */
-    brio_pole_edge *edge; /* between two poles there may be several */
+    size_t *first;        /* #poles + 1: the edges of pole p are edge[first[p]] to edge[first[p + 1] - 1] */
+    brio_pole_edge *edge; /* sorted by the number of the other end; several edges may join two poles */
 } brio_pole_graph;
 
-/** Cells of this shape and better are trusted in the balanced graph. */
+/** In the balanced graph, opposite poles count in full if the shape of their sample's cell is at least this. The value
+ *  was chosen (docs/decisions/008-balanced-weights.md). */
 #define BRIO_TRUSTED_SHAPE 1.3
 
-/** What edges say of labels. */
+/** How the weights of edges are computed. */
 typedef struct {
-    double least;  /* neighbours have an edge when the weight of their balls is over this ... */
-    bool balanced; /* ... or as the surest evidence has it on samples of any density; needs the shapes of cells */
+    double least;  /* not balanced: an edge joins neighbours whose ball weight is over this */
+    bool balanced; /* weights that also hold where samples are few (algorithms.md); needs poles->shape */
 } brio_pole_evidence;
 
-/** Prepares the graph; what it holds is to be freed on failure too. Keeps the pointer to the diagram. The
- *  weight of two balls is -cos of the angle at which they intersect: -1 where they touch, 0 at a right angle, 1 for a
- *  ball inside the other. An edge between neighbours has this weight, or 0 where it is negative; one between opposite
- *  poles the cosine of their angle at the sample, and at less than a right angle there is none. In the balanced graph deep
- *  edges have the square, shallow ones, which want different labels, a small weight, and opposite poles are the less sure
- *  of each other the worse the cell of their sample is shaped. */
+/** Builds the graph. The ball weight of two poles is -cos of the angle at which their balls intersect: -1 if they
+ *  touch, 0 at a right angle, 1 if one ball is inside the other.
+ *  - Neighbours, not balanced: the weight is the ball weight, or 0 if that is negative.
+ *  - Neighbours, balanced: deep intersections weigh the square of the ball weight, shallow ones -0.1.
+ *  - Opposite poles: the weight is the cosine of their angle at the sample. At an angle of less than 90 degrees there
+ *    is no edge. The balanced graph lowers |weight| at badly shaped cells.
+ *  diagram  kept: it must outlive the graph.
+ *  out      to be freed with brio_pole_graph_free, on failure too.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_power_diagram *diagram, brio_pole_evidence evidence,
                                 brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);

@@ -1,12 +1,12 @@
-/* A radix heap: bucket b > 0 holds the entries whose priorities differ from the last one in bit b - 1 and in no higher
- * one.
+/* A radix heap. Bucket b > 0 holds the entries whose priorities differ from `last` in bit b - 1 and in no higher bit.
  *
- * Bucket 0 has the last priority's equals, as a common heap. When it is empty, the first bucket that is not is dealt out
- * anew around its highest priority, each entry to a bucket before it: an entry moves a few times, each time to the end of
- * an array, where a common heap would go down a tree in memory.
+ * Bucket 0 is a binary heap of the entries with priorities equal to `last` or above. When bucket 0 is empty, `last`
+ * becomes the highest priority in the first bucket that is not empty, and the entries of that bucket move to lower
+ * buckets. So an entry moves a few times, always to the end of an array, where a binary heap would move along a path in
+ * memory.
  *
  * Based on: Ahuja, Mehlhorn, Orlin, Tarjan. Faster algorithms for the shortest path problem. JACM 1990.
- * Differs from the paper: priorities may rise; those above the last one wait in bucket 0, too, and are taken first. */
+ * Differs from the paper: priorities may rise. Those above `last` wait in bucket 0, too, and are taken first. */
 #include "reconstruct/labels/pole_queue.h"
 #include "base/memory.h"
 
@@ -96,7 +96,8 @@ done:
 int brio_pole_queue_peek(const brio_pole_queue *q, uint32_t *poles) {
     if (!q->filled) return 0;
     int b = __builtin_ctzll(q->filled), count = q->size[b] < BRIO_POLE_PEEK ? (int)q->size[b] : BRIO_POLE_PEEK;
-    const uint64_t *first = q->bucket[b] + (b ? q->size[b] - (size_t)count : 0); /* a heap has its highest in front */
+    /* a heap has its highest entry in front */
+    const uint64_t *first = q->bucket[b] + (b ? q->size[b] - (size_t)count : 0);
     for (int i = 0; i < count; i++) poles[i] = pole_of(first[i]);
     return count;
 }

@@ -1,12 +1,13 @@
 /* Roof duality for a block of poles.
  *
- * Edges that want different labels make the energy not submodular, so no single cut minimises it. Roof duality does what
- * a cut can: every pole has two nodes, itself and its complement; an edge for equal labels joins pole with pole and
- * complement with complement, an edge for different labels joins either pole with the other's complement. Here the label
- * of a pole is whether it is to be toggled: edges at peace want both ends toggled or none, violated ones want one. In a
- * minimum cut a pole on the side of the source stays and one whose complement is there is toggled, in a labeling of
- * least energy; to do that and to leave the others, the open ones, as they are does not raise the energy either
- * (autarky).
+ * Edges that want different labels make the energy not submodular, so no single cut minimises it. Roof duality uses a
+ * graph with two nodes for every pole, the pole and its complement. The unknown of a pole is whether to flip its label.
+ * An edge that the labels satisfy wants both ends flipped or none: it joins pole with pole, and complement with
+ * complement. A violated edge wants one end flipped: it joins each pole with the complement of the other end.
+ *
+ * In a minimum cut, a pole on the side of the source stays, and a pole whose complement is on the side of the source
+ * flips; some labeling of least energy agrees with both. Doing this, and leaving the undecided poles as they are, does
+ * not raise the energy (autarky).
  *
  * Based on: Hammer, Hansen, Simeone. Roof duality, complementation and persistency in quadratic 0-1 optimization.
  *           Mathematical Programming 1984.
@@ -17,6 +18,8 @@
 #include <math.h>
 #include <string.h>
 
+/* Capacities are integers: weights, which are at most 1, times WEIGHT_SCALE. Chosen; below 2^30, the limit of a
+ * flow. */
 enum { WEIGHT_SCALE = 1 << 20 };
 
 void brio_roof_free(brio_roof *r) {
@@ -31,8 +34,8 @@ static int32_t whole_weight(brio_pole_edge e) {
     return (int32_t)(fabsf(e.weight) * WEIGHT_SCALE + 0.5f);
 }
 
-/* Node i is the i-th pole of the block, node size + i its complement; what labels beyond the block want is a terminal.
- * An edge within the block is taken from the end that comes first. */
+/* Lists the edges of the doubled graph. Node i is the i-th pole of the block, node size + i its complement. The labels
+ * outside the block become terminals. An edge within the block is listed at the end that comes first in the block. */
 static brio_status double_edges(brio_roof *r, const brio_pole_graph *g, const brio_pole_blocks *b, size_t begin,
                                 uint32_t size, const uint8_t *label) {
     brio_status status = BRIO_OK;

@@ -1,24 +1,25 @@
-/* Labels of least energy for a block of poles, as far as roof duality tells. */
+/* Labels of least energy for a block of poles, where roof duality decides them. */
 #ifndef BRIO_RECONSTRUCT_ROOF_DUALITY_H
 #define BRIO_RECONSTRUCT_ROOF_DUALITY_H
 
 #include "reconstruct/labels/max_flow.h"
 #include "reconstruct/labels/pole_blocks.h"
 
-/** Workspace for many blocks, one after another; {.flow = brio_flow_new(ctx)} is an empty one. */
+/** Workspace for many blocks, one after another. {.flow = brio_flow_new(ctx)} is an empty workspace. */
 typedef struct {
     brio_flow flow;
     brio_flow_edge *edge;
     int64_t *terminal;
     uint8_t *side;
     size_t num_edges, edge_capacity, terminal_capacity, side_capacity;
-    size_t undecided, toggled; /* poles so far: not decided, given another label */
+    size_t undecided, toggled; /* poles in all blocks so far that were not decided, and that were flipped */
 } brio_roof;
 
 void brio_roof_free(brio_roof *r);
 
-/** Toggles labels in a block, those beyond it being what they are. The energy does not rise. Reads and writes no labels
- *  but those of the block and of the poles that edges join it with. */
+/** Flips labels of poles in a block; all other labels stay. The energy does not rise. Reads the labels of the block's
+ *  poles and of their neighbours, and writes labels of the block's poles only.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
 brio_status brio_roof_settle(brio_roof *r, const brio_pole_graph *g, const brio_pole_blocks *blocks, size_t block,
                              uint8_t *label);
 

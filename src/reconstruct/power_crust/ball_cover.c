@@ -1,28 +1,30 @@
-/* Fewer balls for nearly the same union, larger ones standing for smaller ones.
+/* Fewer balls for nearly the same union: larger balls stand for smaller ones.
  *
- * A ball that vanishes in a larger one when all are scaled about their centres is what noise makes: a bump as high as
- * (s - 1) times the difference of the radii. Along a sheet of balls of about equal radius nothing vanishes that way; there
- * a ball stands for all that it holds once it is enlarged a little.
+ * Noise makes bumps whose balls vanish in a larger ball when all balls are scaled by s about their centres: bumps up to
+ * (s - 1) times the difference of the radii. Along a sheet of balls of about equal radius nothing vanishes this way.
+ * There, a ball that is enlarged a little covers the balls that it then contains.
  *
- * Balls are taken by descending radius and held against those kept so far. These are in a tree of boxes over all
- * centres, each node with the largest radius kept in it: no ball of a node can hold what the largest one, placed in the
- * box at its nearest to the ball asked for, does not hold.
+ * The balls are taken by descending radius, and each is compared with the balls kept so far. A tree of boxes over all
+ * centres finds these; each node stores the largest radius kept in it. Put a ball of that radius at the point of the
+ * node's box nearest to the query: if this ball does not cover the query, no kept ball of the node does.
  *
  * Based on: Miklos, Giesen, Pauly. Discrete scale axis representations for 3D geometry. SIGGRAPH 2010 (scaling).
  *           Amenta, Choi, Kolluri. The power crust. Solid Modeling 2001 (redundancy: larger balls first).
- * Differs from the papers: one ball has to hold the other, where the scale axis asks for the union of all. */
+ * Differs from the papers: one ball has to contain the other one; the scale axis asks for the union of all balls. */
 #include "reconstruct/power_crust/ball_cover.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include <math.h>
 
+/* LEAF_BALLS: chosen. MOST_LEVELS: a tree of 2^32 balls has fewer levels. */
 enum { LEAF_BALLS = 8, MOST_LEVELS = 64 };
-static const double SAME = 1e-9; /* balls that differ by less, in radii, are one and the same but for rounding */
+static const double SAME = 1e-9; /* chosen: relative slack, so that rounding does not keep two copies of one ball */
 
-/* A node is a range of `balls`; the root is 0, the children of i are 2i + 1 and 2i + 2, the halves of its range. */
+/* A node is a range of `balls`. The root is node 0. The children of node i are nodes 2i + 1 and 2i + 2, the halves of
+ * its range. */
 typedef struct {
     double low[3], high[3];
-    double largest; /* radius kept in it; -1: none */
+    double largest; /* the largest radius kept in the range; -1: none is kept */
 } node;
 
 typedef struct {
@@ -31,7 +33,7 @@ typedef struct {
     size_t count;
     const brio_cover_rule *rule;
     node *nodes;
-    uint8_t *kept; /* of each of `balls` */
+    uint8_t *kept; /* count: whether the ball is kept */
 } cover;
 
 typedef struct {
@@ -60,7 +62,7 @@ static void build_node(const cover *c, range r) {
     build_node(c, (range){2 * r.node + 2, middle, r.high});
 }
 
-/* How far apart the centres may be for a ball of radius `large` to stand for one of radius `small`. */
+/* Returns the greatest distance of the centres at which a ball of radius `large` covers a ball of radius `small`. */
 static double reach(const cover *c, double large, double small) {
     return fmax(c->rule->scale * (large - small), (1 + c->rule->redundancy) * large - small) + SAME * large;
 }
@@ -105,7 +107,7 @@ static bool covered(const cover *c, uint32_t ball) {
     return false;
 }
 
-/* Radii come in descending order: the first that a node gets is its largest. */
+/* Keeps ball `at`. Radii come in descending order, so the first radius that a node gets is its largest. */
 static void keep_ball(cover *c, size_t at) {
     double radius = sqrt(c->square[c->balls[at]]);
     range r = {0, 0, c->count};
@@ -118,7 +120,7 @@ static void keep_ball(cover *c, size_t at) {
     }
 }
 
-/* Places in `balls` by descending radius, equal ones as they stand there. */
+/* Sorts the indices of `balls` by descending radius. Equal radii stay in the order of `balls`. */
 static brio_status sort_by_radius(brio_context *ctx, const cover *c, uint32_t *order) {
     uint64_t *keys = NULL;
     brio_status status = BRIO_OK;

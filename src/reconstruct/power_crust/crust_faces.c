@@ -1,15 +1,16 @@
-/* The crust, read off the dual.
+/* The crust, read off the dual of the power diagram.
  *
- * A tetrahedron of the regular triangulation of the polar balls with both labels is a vertex of the crust (its
- * orthocentre); an edge with both labels is a face, the ring of tetrahedra round it. A triangle with both labels has
- * exactly two such edges, so each edge of the crust has two faces; a tetrahedron split one to three or two to two gives
- * one cycle round its vertex. Hull vertices are outer, so every ring closes: the crust is a closed oriented 2-manifold
- * whatever the coordinates are. It stays combinatorial: no vertices are merged, no faces dropped.
+ * A tetrahedron of the regular triangulation of the polar balls with both labels is a vertex of the crust, at its
+ * orthocentre. An edge with both labels is a face; its corners are the tetrahedra of the ring round the edge. A
+ * triangle with both labels has exactly two such edges, so each edge of the crust has two faces. A tetrahedron has its
+ * labels split one to three or two to two, and either way its faces make one cycle round the vertex. Hull vertices are
+ * outer, so every ring closes. So the crust is a closed oriented 2-manifold whatever the coordinates are: no vertices
+ * are merged, and no faces are dropped.
  *
- * Blocks of tetrahedra list their faces, which are then copied to where the blocks before leave off, so that threads
- * leave no trace. A face belongs to the first tetrahedron of its ring.
+ * A face belongs to the first tetrahedron of its ring. Each block of tetrahedra lists its faces. Then the faces are
+ * copied, each block after the blocks before it, so that the result does not depend on the threads.
  *
- * Cutting a face into triangles by diagonals keeps all this, since two faces share at most one edge.
+ * Diagonals that cut a face into triangles keep all this, because two faces share at most one edge.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3. */
 #include "reconstruct/power_crust/crust_faces.h"
@@ -22,14 +23,15 @@
 #include <math.h>
 #include <string.h>
 
+/* BLOCK: tetrahedra in a block. AHEAD: the neighbours of the tetrahedron this far ahead are prefetched. Both chosen. */
 enum { NO_VERTEX = UINT32_MAX, BLOCK = 1 << 13, AHEAD = 8 };
 
-/* What a block of tetrahedra makes, and then what the blocks before it make. */
+/* Counts of a block of tetrahedra; after sum_blocks, the counts of all blocks before it. */
 typedef struct {
     size_t vertices, faces, corners, rings, left_out;
 } block_counts;
 
-/* The faces of a block: of each, how many corners it has, and these. */
+/* The faces of a block. Each face is its number of corners, then the corners. */
 typedef struct {
     uint32_t *entry;
     size_t count, capacity;
@@ -40,15 +42,15 @@ typedef struct {
     int threads;
     const uint8_t *label;
     const brio_crust_options *options;
-    uint32_t *number; /* of the crust vertex of each finite tetrahedron, or NO_VERTEX */
+    uint32_t *number; /* #finite tetrahedra: the crust vertex of each, or NO_VERTEX */
     brio_mesh *mesh;
     block_counts *blocks; /* num_blocks + 1 */
-    face_list *lists;     /* of each block */
+    face_list *lists;     /* num_blocks */
     size_t num_blocks;
-    brio_status status; /* the first failure of a thread */
+    brio_status status; /* the first failure that a thread reported */
 } builder;
 
-/* Blocks are handed to threads one by one: the functions that a loop over blocks calls do one block each. */
+/* Returns the first tetrahedron of a block. Loops over blocks call their functions with one block at a time. */
 static size_t block_begin(const builder *b, size_t block) {
     return block < b->num_blocks ? block * BLOCK : b->d->num_finite;
 }
@@ -59,7 +61,8 @@ static bool inner(const builder *b, uint32_t pole) {
     return b->label[pole] == BRIO_LABEL_INNER;
 }
 
-/* The orthocentres of poles, four each; where there is none that doubles can hold, the middle of the poles. */
+/* Computes the orthocentres of `count` quadruples of poles. If doubles cannot hold an orthocentre, takes the mean of
+ * the four poles. */
 static void find_positions(const builder *b, const uint32_t (*v)[4], size_t count, double *position) {
     const brio_poles *poles = b->d->poles;
     brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count, position});
@@ -72,7 +75,7 @@ static void find_positions(const builder *b, const uint32_t (*v)[4], size_t coun
     }
 }
 
-/* The least of its poles': a pole that reaches far may have a sample where samples are few. */
+/* Returns the least spacing of four poles. A pole with a large ball may have a sample where samples are few. */
 static double vertex_spacing(const builder *b, const uint32_t *v) {
     double least = INFINITY;
     for (int i = 0; i < 4; i++) least = fmin(least, b->options->spacing[v[i]]);
@@ -117,7 +120,8 @@ static void fill_vertices(void *user, size_t block, size_t end_block, int thread
     find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
 }
 
-/* Turns the counts of the blocks into what is before each of them; the last entry is the total. */
+/* Replaces the counts of each block by the sums over the blocks before it. The entry after the last block is the
+ * total. */
 static void sum_blocks(builder *b) {
     block_counts sum = {0, 0, 0, 0, 0};
     for (size_t i = 0; i <= b->num_blocks; i++) {
@@ -144,8 +148,8 @@ done:
 
 /* --- faces --- */
 
-/* A pair of large balls that intersect deeply: no sample is where they meet. Deep is what well sampled surfaces do not
- * have, an angle over pi / 4 [Choi 2003, lemma 38]. */
+/* Returns whether the face between two poles spans a hole: both balls are large and intersect at more than pi / 4. In
+ * dense samples an inner and an outer ball do not intersect that deeply [Choi 2003, lemma 38]. */
 static bool spans_hole(const builder *b, uint32_t p, uint32_t q) {
     if (!(b->options->open > 0) || !(brio_ball_weight(b->d->poles, p, q) > BRIO_THEORETICAL_WEIGHT)) return false;
     double limit = b->options->open * fmax(b->options->spacing[p], b->options->spacing[q]);
@@ -158,8 +162,8 @@ static brio_status push_corner(const builder *b, face_list *list, size_t n, uint
     return status;
 }
 
-/* Puts the corners round the edge from slot i to j behind the list; *size is 0 when another tetrahedron comes first in
- * the ring. */
+/* Writes the corners round the edge from slot i to slot j behind the end of the list. *size is their number, or 0 if
+ * another tetrahedron is the first in the ring. */
 static brio_status find_corners(const builder *b, uint32_t tet, int i, int j, face_list *list, size_t *size) {
     size_t n = list->count + 1;
     brio_status status = BRIO_OK;
@@ -217,10 +221,10 @@ static void list_block(void *user, size_t block, size_t end_block, int thread) {
     brio_report(&b->status, list_faces(b, block));
 }
 
-/* Where the next face of a block goes. */
+/* The place where the next face of a block goes. */
 typedef struct {
     uint32_t *corner;
-    uint64_t *end; /* of its corners, in the mesh's offsets */
+    uint64_t *end; /* where the face's end goes in face_offsets */
     uint64_t corners;
 } cursor;
 

@@ -1,14 +1,15 @@
 /* From samples to labeled polar balls.
  *
- *   1. Delaunay triangulation of the samples in their canonical order, smoothed where they are noisy, and eight bounding
- *      points.
+ *   1. The Delaunay triangulation of the samples in canonical order, smoothed where they are noisy, and of eight
+ *      bounding points.
  *   2. The poles of each sample: the farthest vertices of its Voronoi cell on either side of the surface.
- *   3. The power diagram of the polar balls, as its dual, the regular triangulation of the poles.
+ *   3. The regular triangulation of the polar balls, which is the dual of their power diagram.
  *   4. A label, inner or outer, for each pole.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7, steps 1 to 4.
- * Differs from the paper: the bounding points are no poles and take no part in the power diagram; poles on the hull of
- * the power diagram's dual are outer, without which the crust of small or clustered inputs would not close. */
+ * Differs from the paper: the bounding points have no poles and are not in the power diagram. Poles on the hull of the
+ *                         regular triangulation are outer; otherwise the crust of small or clustered inputs would not
+ *                         close. */
 #include "reconstruct/power_crust/labeled_poles.h"
 #include "base/memory.h"
 #include "base/scale.h"
@@ -20,6 +21,7 @@
 #include <string.h>
 
 enum { BOUNDING_POINTS = 8 };
+/* The sampling density that `sharp` stands for. Chosen. */
 static const double SHARP_DENSITY = 0.5;
 
 brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *o, uint64_t seed,
@@ -44,7 +46,7 @@ done:
     return status;
 }
 
-/* Each stage owns a part of the progress bar, in proportion to its usual time. */
+/* Gives the next stage a part of the progress bar, in proportion to its usual time. */
 static void stage(brio_context *ctx, const brio_pole_request *request, double from, double to) {
     ctx->progress_from = request->until * from;
     ctx->progress_to = request->until * to;
@@ -52,7 +54,7 @@ static void stage(brio_context *ctx, const brio_pole_request *request, double fr
 
 /* --- 1: samples and bounding points --- */
 
-/* Takes over the samples in their canonical order, scaled: from here on nothing depends on the caller's order. */
+/* Copies the samples in canonical order, scaled by 2^-exponent. From here on nothing depends on the caller's order. */
 static brio_status take_samples(brio_labeled_poles *l, const double *points) {
     brio_status status = BRIO_OK;
     size_t n = l->num_samples;
@@ -65,8 +67,9 @@ done:
     return status;
 }
 
-/* Eight corners of the box scaled five times about its centre; a side shorter than a fifth of the longest is taken as
- * that, so that flat inputs are bounded on both sides. `margin` comes on top. */
+/* Computes the bounding points: the corners of the samples' box, scaled five times about its centre and moved out by
+ * `margin`. A side shorter than a fifth of the longest side counts as a fifth, so that flat inputs are bounded on both
+ * sides. */
 static void bounding_corners(const double *points, size_t n, double margin, double *corner) {
     double low[3], high[3], centre[3], half[3], longest = 0;
     for (int k = 0; k < 3; k++) {
@@ -77,7 +80,7 @@ static void bounding_corners(const double *points, size_t n, double margin, doub
         }
         longest = fmax(longest, high[k] - low[k]);
     }
-    if (longest == 0) longest = 1; /* one position */
+    if (longest == 0) longest = 1; /* all samples are at one position */
     for (int k = 0; k < 3; k++) {
         centre[k] = 0.5 * (low[k] + high[k]);
         half[k] = 2.5 * fmax(high[k] - low[k], longest / 5) + margin;
@@ -86,7 +89,7 @@ static void bounding_corners(const double *points, size_t n, double margin, doub
         for (int k = 0; k < 3; k++) corner[3 * i + k] = centre[k] + (i >> k & 1 ? half[k] : -half[k]);
 }
 
-/* Samples without their noise, where that is wanted. */
+/* Smooths the samples if the request says so, or if it says AUTO and there is noise. */
 static brio_status reduce_noise(brio_labeled_poles *l, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
@@ -111,7 +114,7 @@ static brio_status prepare(brio_labeled_poles *l, const double *points, const br
     for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
     if (isfinite(most)) frexp(most, &l->exponent);
     BRIO_TRY(take_samples(l, points));
-    if (!request->representative) { /* the caller's order is of no more use */
+    if (!request->representative) { /* nothing needs the caller's order any more */
         brio_release(l->ctx, l->order);
         l->order = NULL;
     }

@@ -1,58 +1,60 @@
-/* From samples to labeled polar balls: what the power crust, the power shape and offset surfaces have in common. */
+/* From samples to labeled polar balls: the part that the power crust, the power shape and offset surfaces share. */
 #ifndef BRIO_RECONSTRUCT_LABELED_POLES_H
 #define BRIO_RECONSTRUCT_LABELED_POLES_H
 
 #include "reconstruct/labels/labeling.h"
 
-/** What is to be found. */
+/** What to find. */
 typedef struct {
     uint64_t seed;
     brio_pole_filter filter;
     brio_labeling labeling;
     brio_noise noise;
-    const brio_mesh *solid; /* a closed mesh that gives the labels instead, or NULL */
-    double margin;          /* by which the bounding points are moved out, in the unit of the points */
-    bool spacing;           /* of the poles */
-    bool representative;    /* of the samples */
-    double until;           /* share of the progress bar */
+    const brio_mesh *solid; /* a closed mesh that gives the labels, or NULL; then `labeling` gives them */
+    double margin;          /* moves the bounding points out by this, in the unit of the points */
+    bool spacing;           /* whether to compute the spacing of each pole */
+    bool representative;    /* whether to keep the representatives of the samples */
+    double until;           /* the work ends at this share of the progress bar */
 } brio_pole_request;
 
-/** Polar balls with labels, and the regular triangulation of them. */
+/** Polar balls with labels, and their regular triangulation. All lengths are the caller's lengths
+ *  times 2^-exponent, which makes coordinates of samples at most 1. */
 typedef struct {
     brio_context *ctx;
     size_t num_samples;
-    double *
-        points; /* samples in their canonical order, smoothed or not, and bounding points; all lengths here are scaled by 2^-exponent, which makes the
-                       samples and the margin at most 1 */
+    double *points; /* #samples + 8 by 3: the samples in canonical order, smoothed or not, and the bounding points */
     int exponent;
-    uint32_t *order; /* #samples: the caller's index of each, where representatives are wanted; else NULL */
+    uint32_t *order; /* #samples: the caller's index of each sample; NULL unless representatives were wanted */
     brio_delaunay_options triangulation;
     brio_poles poles;
-    double *spacing;          /* of the poles, or NULL */
-    uint32_t *representative; /* of the samples, or NULL */
+    double *spacing;          /* #poles, or NULL */
+    uint32_t *representative; /* #samples: the sample at the same position that has the poles; or NULL */
     brio_triangulation *power;
-    brio_power_diagram diagram; /* a view of the poles and of `power` */
-    brio_pole_graph graph;      /* without edges where the labels came from elsewhere */
+    brio_power_diagram diagram; /* a view of `poles` and of `power` */
+    brio_pole_graph graph;      /* has no edges if a mesh gave the labels */
     uint8_t *label;
     brio_pole_stats stats;
 } brio_labeled_poles;
 
-/** Checks options and turns them into a request without margin, spacing or representatives, for the whole of the progress
- *  bar. Returns BRIO_OK, or BRIO_ERR_ARGUMENT for numbers out of range. */
+/** Checks options and turns them into a request: margin 0, no spacing, no representatives, the whole progress bar.
+ *  Returns BRIO_OK or BRIO_ERR_ARGUMENT. */
 brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *options, uint64_t seed,
                                  brio_pole_request *request);
 
-/** Finds the poles of points and labels them.   l  to be freed on failure too; it does not move meanwhile.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid), and as brio_delaunay. */
+/** Finds the poles of the points and labels them.
+ *  l  freed with brio_labeled_poles_free, on failure too. It must not move in memory, because it contains pointers to
+ *     its own fields.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the points or the poles span no solid), and what brio_delaunay and the
+ *  labelings return. */
 brio_status brio_labeled_poles_find(brio_context *ctx, const double *points, size_t num_points,
                                     const brio_pole_request *request, brio_labeled_poles *l);
 
-/** Takes away the poles for which keep is 0, and triangulates those that are left with their present radii; the
- *  others' numbers, labels and spacings close up in order. Samples forget their poles, and the graph has no edges.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid), and as brio_delaunay. */
+/** Removes the poles p with keep[p] = 0 and triangulates the others with their present radii. The others keep their
+ *  order, labels and spacings; their numbers close up. Samples lose their poles, and the graph its edges.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid), and what brio_delaunay returns. */
 brio_status brio_labeled_poles_keep(brio_labeled_poles *l, const uint8_t *keep);
 
-/** Makes the poles on the hull of the triangulation outer, as a crust needs it. */
+/** Makes the poles on the hull of the regular triangulation outer, which a closed crust requires. */
 void brio_labeled_poles_close_hull(brio_labeled_poles *l);
 
 void brio_labeled_poles_free(brio_labeled_poles *l);

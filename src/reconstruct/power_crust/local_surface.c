@@ -1,22 +1,25 @@
-/* A piece of surface fitted to the points about one of them.
+/* A piece of surface fitted to the neighbourhood of a point.
  *
- * The plane goes across the direction in which the weighted points spread least, an eigenvector of their covariance. Over
- * it a quadratic polynomial takes their heights, by the normal equations, in coordinates in units of the neighbourhood;
- * where the points do not determine all six coefficients the polynomial is a constant. A weight (1 - (d/h)^2)^2, h the
- * distance of the farthest point, is 0 where it stops: which of several points at that distance count does not matter.
+ * The normal of the plane is the direction in which the weighted points spread least, an eigenvector of their
+ * covariance. A quadratic polynomial fits the heights over the plane, by the normal equations, in units of the
+ * neighbourhood. Where the points do not determine its six coefficients, the polynomial is a constant. The weight of a
+ * point at distance d is (1 - (d/h)^2)^2, where h is the distance of the farthest point. Because the weight is 0 at h,
+ * the fit does not depend on which of several points at distance h are in the neighbourhood.
  *
  * Based on: Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva. Computing and rendering point set surfaces. TVCG 2003.
- * Differs from the paper: one plane and one polynomial for a point, without a search for the plane's best place, and the
- * neighbourhood is a number of points. */
+ * Differs from the paper: each point has one plane and one polynomial, without a search for the best place of the
+ *                         plane. A neighbourhood is a number of points, not a radius. */
 #include "reconstruct/power_crust/local_surface.h"
 #include "base/vector.h"
 #include <math.h>
 
+/* SWEEPS: most sweeps of rotations. Chosen. */
 enum { COEFFICIENTS = BRIO_SURFACE_COEFFICIENTS, SWEEPS = 12 };
 
 /* --- the plane --- */
 
-/* Turns the matrix m in the plane of axes i and j so that m[i][j] is 0, and the columns of v along [Jacobi 1846]. */
+/* Rotates the matrix m in the plane of axes i and j so that m[i][j] becomes 0, and the columns of v with it [Jacobi
+ * 1846]. */
 static void rotate(double m[3][3], double v[3][3], int i, int j) {
     if (m[i][j] == 0) return;
     double theta = (m[j][j] - m[i][i]) / (2 * m[i][j]);
@@ -39,7 +42,8 @@ static bool is_diagonal(double m[3][3]) {
     return fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]) <= 1e-16 * (m[0][0] + m[1][1] + m[2][2]);
 }
 
-/* frame[0] and [1] span the plane, frame[2] is its normal; false where the points are on a line. */
+/* Finds the eigenvectors of m. frame[0] and frame[1] span the plane, frame[2] is its normal. Returns false if the
+ * points are on a line. */
 static bool find_frame(double m[3][3], double frame[3][3]) {
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int sweep = 0; sweep < SWEEPS && !is_diagonal(m); sweep++) {
@@ -79,8 +83,8 @@ static bool fit_plane(const brio_neighbourhood *n, double frame[3][3]) {
 
 /* --- the polynomial --- */
 
-/* Solves a x = b in place, a symmetric and positive, given below its diagonal; false where it is not clearly so
- * [Cholesky]. */
+/* Solves a x = b in place by Cholesky's method; a is symmetric and given below its diagonal. Returns false unless a is
+ * clearly positive definite. */
 static bool solve(double a[COEFFICIENTS][COEFFICIENTS], double *b) {
     for (int i = 0; i < COEFFICIENTS; i++) {
         double diagonal = a[i][i];
@@ -101,14 +105,14 @@ static bool solve(double a[COEFFICIENTS][COEFFICIENTS], double *b) {
     return true;
 }
 
-/* Some points side by side: their monomials, heights and weights, in units of the neighbourhood. */
+/* WIDE points side by side: their monomials, heights and weights, in units of the neighbourhood. */
 enum { WIDE = 4 };
 typedef double lanes __attribute__((vector_size(8 * WIDE)));
 typedef struct {
     lanes monomial[COEFFICIENTS], height, weight;
 } some_points;
 
-/* Those from `first` on; past the last one the weight is 0. */
+/* Loads WIDE points from index `first` on. Lanes past the last point have weight 0. */
 static inline void place(const brio_neighbourhood *n, size_t first, const brio_local_surface *s, some_points *out) {
     lanes d[3] = {{0}, {0}, {0}}, zero = {0}, weight = {0};
     for (size_t i = 0; i < WIDE && first + i < n->count; i++) {

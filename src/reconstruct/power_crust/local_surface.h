@@ -1,32 +1,34 @@
-/* A piece of surface fitted to the points about one of them. */
+/* A piece of surface fitted to the neighbourhood of a point. */
 #ifndef BRIO_RECONSTRUCT_LOCAL_SURFACE_H
 #define BRIO_RECONSTRUCT_LOCAL_SURFACE_H
 
 #include "order/nearest_points.h"
 
-/** Points about a point, in any order; the point itself is among them. */
+/** The neighbours of a point, in any order, the point included. */
 typedef struct {
     size_t count;
-    double offset[BRIO_MOST_NEAR][3]; /* from the point */
-    double square[BRIO_MOST_NEAR];    /* of the distance */
-    double weight[BRIO_MOST_NEAR];    /* set by the fit */
+    double offset[BRIO_MOST_NEAR][3]; /* neighbour minus point */
+    double square[BRIO_MOST_NEAR];    /* squared distance from the point */
+    double weight[BRIO_MOST_NEAR];    /* written by brio_fit_local_surface */
 } brio_neighbourhood;
 
 enum { BRIO_SURFACE_COEFFICIENTS = 6 };
 
-/** A quadratic height over a plane through the point. */
+/** The graph of a quadratic polynomial over a plane through the point. */
 typedef struct {
-    double frame[3][3]; /* two directions of the plane, its normal */
+    double frame[3][3]; /* two orthonormal directions of the plane, and its normal */
+    /* of 1, u, v, u^2, uv, v^2; u, v and the height are in `unit` */
     double coefficient[BRIO_SURFACE_COEFFICIENTS];
-    double unit;   /* of length */
-    double height; /* of the surface above the point, along the normal */
+    double unit;   /* distance of the farthest neighbour */
+    double height; /* of the surface above the point, along the normal, in the unit of the points */
 } brio_local_surface;
 
-/** Fits a quadratic height over the plane that lies best, in the sense of least squares with weights that fall to 0 at
- *  the farthest point.   False where the points say nothing: fewer than 7, on a line, or at one position. */
+/** Fits a plane to the neighbours, and a quadratic height over the plane, both by weighted least squares. The weights
+ *  fall to 0 at the farthest neighbour. Where the neighbours do not determine the polynomial, it is a constant.
+ *  Returns false if the neighbours are fewer than 7, on a line, or at one position. */
 bool brio_fit_local_surface(brio_neighbourhood *n, brio_local_surface *out);
 
-/** Standard deviation of the points from the surface that was fitted to them. */
+/** Returns the weighted standard deviation of the neighbours from the surface that was fitted to them. */
 double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *s);
 
 #endif

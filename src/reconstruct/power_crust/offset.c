@@ -1,24 +1,28 @@
-/* Offset surfaces: the power crust of balls with other radii. Outwards by D, inner balls grow by D and outer ones
- * shrink by it; inwards the other way round. What is left of radius 0 or less is dropped. The labels are those of the
- * surface itself. Whatever the balls, their power crust is the closed boundary of a solid, so that parts of an offset
- * that meet merge, without cracks or self-overlaps to be cut away.
+/* Offset surfaces: the power crust of balls with other radii.
+ *
+ * For the offset by D, the radius of each inner ball grows by D, and that of each outer ball shrinks by D; D may be
+ * negative. Balls without a positive radius are dropped. The labels stay. The power crust of any balls is the closed
+ * boundary of a solid, so parts of an offset that meet are merged, without cracks or overlaps.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.4.
- * Differs from the paper: the bounding points are moved out by 4 |D|, so that no outer ball they hold back vanishes. */
+ * Differs from the paper: the bounding points are moved out by 4 |D|, so that no
+ *                         outer ball through one vanishes. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
 #include "reconstruct/power_crust/power_crust.h"
 #include <math.h>
 
-static const double POLES_SHARE = 0.6, POWER_SHARE = 0.9; /* of the progress bar */
-static const double MARGIN = 4;                           /* of the bounding points, in distances */
+static const double POLES_SHARE = 0.6, POWER_SHARE = 0.9; /* shares of the progress bar, in proportion to the usual
+                                                             times */
+static const double MARGIN = 4;                           /* moves the bounding points out, in units of |distance|;
+                                                             chosen */
 
 static const brio_offset_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
 
 BRIO_OPTIONS_INIT(brio_offset_options)
 
-/* Changes the radii; keep[p] = 0 for the balls that vanish. */
+/* Changes the radii. Sets keep[p] to 0 for balls whose radius is not positive, and to 1 for others. */
 static void change_radii(brio_labeled_poles *l, double distance, uint8_t *keep) {
     double scaled = ldexp(distance, -l->exponent);
     for (size_t p = 0; p < l->poles.count; p++) {
@@ -40,7 +44,7 @@ done:
     return status;
 }
 
-/* What the power crust of the moved balls is made with. */
+/* Returns the options for the power crust of the changed balls. */
 static brio_power_crust_options crust_options(const brio_offset_options *o) {
     brio_power_crust_options crust = brio_power_crust_options_default();
     crust.triangulate = o->triangulate;

@@ -1,5 +1,5 @@
-/* The power crust: the faces of the power diagram of the polar balls between inner and outer cells, where the balls are
- * labeled; then, on request, fewer triangles in their place.
+/* The power crust: the faces of the power diagram of the polar balls between inner and outer cells. On request,
+ * simplified to fewer triangles.
  *
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7. */
@@ -14,14 +14,14 @@
 #include "surface/simplify.h"
 #include <math.h>
 
-static const double POLES_SHARE = 0.9;                                /* of the progress bar */
-static const double LONGEST_COLLAPSE = 1.5, COLLAPSE_TOLERANCE = 0.1; /* in spacings */
+static const double POLES_SHARE = 0.9;                                /* share of the progress bar, by the usual time */
+static const double LONGEST_COLLAPSE = 1.5, COLLAPSE_TOLERANCE = 0.1; /* in spacings; chosen */
 
 static const brio_power_crust_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
 
 BRIO_OPTIONS_INIT(brio_power_crust_options)
 
-/* A quarter of the faces, where that can be had. */
+/* Simplifies the mesh to a quarter of its faces, or to as few as the limits allow. */
 static brio_status simplify(brio_labeled_poles *l, size_t polygons, brio_mesh *mesh, double *seconds) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();

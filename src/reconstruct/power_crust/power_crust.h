@@ -4,11 +4,15 @@
 
 #include "reconstruct/power_crust/labeled_poles.h"
 
-/** Writes the power crust of the poles into an empty mesh, in the unit of the points, as the options want it. Every hull
- *  vertex of l->power must be outer. `open` and `simplify` need l->spacing, normals l->representative, l->order and the
- *  opposite poles of the graph.   from  where on the progress bar it begins.   normals  #P by 3, or NULL.
- *  stats  receives left_out and the seconds.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no pole with a cell is inner), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+/** Writes the power crust of the poles into an empty mesh, in the unit of the points. Every hull vertex of l->power
+ *  must be outer.
+ *  l        `open` and `simplify` need l->spacing; normals need l->representative, l->order and the poles of the
+ *           samples.
+ *  from     the place on the progress bar where this function begins.
+ *  normals  #P by 3, written, or NULL.
+ *  stats    receives left_out and the seconds; other fields stay unchanged.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no pole with a cell is inner, or every face spans a hole), BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. */
 brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, double from, brio_mesh *mesh,
                             double *normals, brio_power_crust_stats *stats);
 

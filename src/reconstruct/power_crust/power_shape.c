@@ -1,13 +1,13 @@
-/* The power shape: the poles on one side of the surface, connected as their cells touch in the power diagram. It
- * approximates the medial axis of that side; with the radii, its medial axis transform.
+/* The power shape: the poles on one side of the surface, connected as their cells touch in the power diagram. The shape
+ * approximates the medial axis of that side; together with the radii, its medial axis transform.
  *
- * The shape is the part of the regular triangulation all of whose vertices are on that side, tetrahedra included. So
- * the shape is the nerve of the cells on that side. These cells are convex: the shape is homotopy equivalent to their
- * union, the solid that the power crust bounds. A hidden pole has no cell and is no vertex.
+ * The shape is the part of the regular triangulation whose vertices are all on that side, tetrahedra included. This is
+ * the nerve of the cells on that side. The cells are convex, so the shape is homotopy equivalent to their union, the
+ * solid that the power crust bounds. A hidden pole has no cell and is no vertex.
  *
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7, step 6.
- * Differs from the paper: outer poles that only the bounding points hold back are no part of the outer shape. */
+ * Differs from the paper: outer poles whose tetrahedron has a bounding point are no part of the outer shape. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
@@ -17,7 +17,8 @@
 #include <string.h>
 
 enum { NO_VERTEX = UINT32_MAX };
-static const double POLES_SHARE = 0.8, SHAPE_SHARE = 0.9; /* of the progress bar */
+static const double POLES_SHARE = 0.8, SHAPE_SHARE = 0.9; /* shares of the progress bar, in proportion to the usual
+                                                             times */
 
 static const brio_power_shape_options STANDARD = {
     .size = sizeof STANDARD, .seed = 1, .sides = BRIO_SIDES_INNER, .scale = 1};
@@ -27,17 +28,17 @@ BRIO_OPTIONS_INIT(brio_power_shape_options)
 typedef struct {
     brio_labeled_poles *poles;
     const brio_power_shape_options *options;
-    uint32_t *number; /* of the vertex of each pole, or NO_VERTEX */
+    uint32_t *number; /* #poles: the vertex of each, or NO_VERTEX */
     brio_mesh *mesh;
     uint32_t *edges, *corners, *tetrahedra;
-    size_t num_edges, edge_capacity; /* numbers, not pairs */
+    size_t num_edges, edge_capacity; /* indices, two for each edge */
     size_t num_corners, corner_capacity;
-    size_t num_tetrahedra, tetrahedron_capacity; /* numbers, not quadruples */
+    size_t num_tetrahedra, tetrahedron_capacity; /* indices, four for each tetrahedron */
 } builder;
 
 /* --- simplification --- */
 
-/* The side of the surface on which poles of a label are asked for. */
+/* Returns whether the options ask for poles of this label. */
 static bool wants(const brio_power_shape_options *o, uint8_t label) {
     return label == BRIO_LABEL_INNER ? o->sides != BRIO_SIDES_OUTER : o->sides != BRIO_SIDES_INNER;
 }
@@ -46,7 +47,8 @@ static bool has_cell(const brio_labeled_poles *l, size_t p) {
     return l->diagram.representative[p] == p;
 }
 
-/* Poles of one label; those without a cell add nothing to the union of the others, and go. */
+/* Simplifies the poles of one label. Removes the poles without a cell, because they add nothing to the union of the
+ * other balls. */
 static brio_status simplify_side(brio_labeled_poles *l, const brio_cover_rule *rule, uint8_t label, uint8_t *keep) {
     brio_status status = BRIO_OK;
     uint32_t *balls = NULL;
@@ -110,13 +112,13 @@ done:
     return status;
 }
 
-/* Whether two poles are in the shape and on the same side. */
+/* Returns whether two poles are in the shape and on one side. */
 static bool joined(const builder *b, uint32_t p, uint32_t q) {
     return p != BRIO_INFINITE && q != BRIO_INFINITE && b->number[p] != NO_VERTEX && b->number[q] != NO_VERTEX &&
            b->poles->label[p] == b->poles->label[q];
 }
 
-/* Whether `tet` is the first in memory of the tetrahedra round its edge from slot i to slot j. */
+/* Returns whether `tet` is the first in memory of the tetrahedra round its edge from slot i to slot j. */
 static bool leads_edge(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
     uint32_t from = tet, leave = t->tet[tet].vertex[BRIO_EDGE[i][j][0]], pivot = t->tet[tet].vertex[BRIO_EDGE[i][j][1]];
     do {
@@ -145,7 +147,7 @@ done:
     return status;
 }
 
-/* Each triangle once, from the tetrahedron that comes first; the infinite ones come last. */
+/* Adds the triangles between this tetrahedron and tetrahedra of higher number, so that each triangle is added once. */
 static brio_status add_triangles(builder *b, uint32_t tet) {
     brio_status status = BRIO_OK;
     const brio_tetrahedron *t = &b->poles->diagram.power.tet[tet];
@@ -162,7 +164,8 @@ done:
     return status;
 }
 
-/* A tetrahedron of the regular triangulation is positive, and so is the shape's. */
+/* Adds the tetrahedron if its poles are in the shape. Tetrahedra of the regular triangulation are positive, so those of
+ * the shape are, too. */
 static brio_status add_tetrahedron(builder *b, uint32_t tet) {
     brio_status status = BRIO_OK;
     const uint32_t *v = b->poles->diagram.power.tet[tet].vertex;
@@ -222,7 +225,7 @@ done:
     return status;
 }
 
-/* Of the poles as they were labeled, before any is left out. */
+/* Counts the poles by label, before any is left out. */
 static void count_poles(const brio_labeled_poles *l, brio_power_shape_stats *s) {
     s->poles = l->stats;
     s->poles.inner = s->poles.outer = 0;

@@ -1,16 +1,16 @@
-/* Noise of samples: how much there is, and samples with less.
+/* The noise of samples: measuring and reducing it.
  *
- * Pieces of surface are fitted to the nearest points of some samples, of few points and of more. Where the points are on
- * a smooth or an edged surface the pieces fit the worse the larger they are, since the surface bends; where the points
- * scatter about it, they scatter as much about large pieces as about small ones. So noise is what does not grow.
+ * Measuring. At some samples, surfaces are fitted to few and to more nearest points. On a smooth or edged surface the
+ * larger fit is the worse one, because the surface bends. Where points scatter about a surface, they scatter as much
+ * about a large piece as about a small one. So a deviation that does not grow with the size of the piece is noise.
  *
- * Then every sample moves along the normal of its piece onto the piece, some times over, with the neighbours that it had at
- * first. Noise shrinks with the root of
- * the number of neighbours; shape is kept up to the second order, and edges come out as round as a piece is wide.
+ * Reducing. Every sample moves along the normal of the surface fitted to its nearest points onto that surface, PASSES
+ * times. The nearest points are found once, before the first pass. Noise shrinks with the square root of the number of
+ * nearest points. The fit preserves shape up to the second order; edges become as round as a piece is wide.
  *
  * Based on: Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva. Computing and rendering point set surfaces. TVCG 2003.
- *           Mederos, Velho, de Figueiredo. Smooth surface reconstruction from noisy clouds. JBCS 2004 (samples are moved
- *           onto local polynomials before the surface is made). */
+ *           Mederos, Velho, de Figueiredo. Smooth surface reconstruction from noisy clouds. JBCS 2004 (samples are
+ *           moved onto local polynomials before the surface is made). */
 #include "reconstruct/power_crust/sample_noise.h"
 #include "base/memory.h"
 #include "base/rng.h"
@@ -21,6 +21,10 @@
 #include <math.h>
 #include <string.h>
 
+/* FEW, MORE: points of the small and the large piece. NEAREST: distances in the mean that is the spacing. LOOKS,
+ * LEAST_LOOKS: about how many samples are measured, and the fewest that count. PASSES: of smoothing. BLOCK: samples
+ * between two calls of the progress callback. All chosen, with the shared models in view
+ * (docs/decisions/007-noise-is-smoothed.md). */
 enum {
     FEW = 24,
     MORE = 48,
@@ -32,17 +36,19 @@ enum {
     RUN = 256,
     LOOKS_A_THREAD = 16
 };
-/* Below the first a crust through the samples is as good; above the second there is no surface to be seen. */
+/* In spacings. Below LEAST_LEVEL a crust through the samples is as good; above MOST_LEVEL no surface is visible. Chosen
+ * on the shared models (docs/decisions/007-noise-is-smoothed.md). */
 static const double LEAST_LEVEL = 0.1, MOST_LEVEL = 0.5;
 
 /* --- how much --- */
 
-/* What was looked at, and what was seen, as the bits of numbers that are not negative, which sort as these do. */
+/* The samples that are measured, and the results as the bits of doubles: bits of doubles that are not negative sort as
+ * the doubles do. */
 typedef struct {
-    uint64_t *hash; /* of a position */
+    uint64_t *hash; /* hash of the sample's position */
     uint32_t *sample;
     size_t count, hash_capacity, capacity;
-    uint64_t *few, *more; /* spreads in spacings */
+    uint64_t *few, *more; /* standard deviations from the small and the large piece, in spacings */
 } looks;
 
 static uint64_t hash_of(const double *p) {
@@ -51,7 +57,8 @@ static uint64_t hash_of(const double *p) {
     return hash;
 }
 
-/* About one sample in n / LOOKS, whatever their order; every position once. */
+/* Chooses about LOOKS positions by their hash, so that the order of the samples does not matter. Each position is
+ * chosen once. */
 static brio_status choose_samples(brio_context *ctx, const double *points, size_t n, looks *l) {
     brio_status status = BRIO_OK;
     for (size_t i = 0; i < n; i++) {
@@ -86,7 +93,7 @@ static uint64_t bits_of(double x) {
     return bits;
 }
 
-/* The first points of a list, as seen from p. */
+/* Copies the first `count` points of a list, relative to p. */
 static void see_from(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
                      brio_neighbourhood *n) {
     n->count = count;
@@ -106,7 +113,8 @@ static bool spread_about(const double *p, const brio_point_tree *tree, const bri
     return true;
 }
 
-/* The spreads about a piece of few points and about one of more; infinite where there is none. */
+/* Computes the standard deviations of the points near p from the small and the large piece; infinite where a fit
+ * fails. */
 static void look(const brio_point_tree *tree, const double *p, uint64_t *few, uint64_t *more) {
     brio_near_point near[BRIO_NEAR_ROOM];
     double small, large;
@@ -168,15 +176,16 @@ done:
 /* The samples in the order of their tree, before and after a pass. */
 typedef struct {
     const brio_point_tree *tree;
-    uint32_t (*near)[MORE]; /* each sample's nearest, of the first pass */
+    uint32_t (*near)[MORE]; /* the nearest points of each sample, found in the first pass */
     double (*from)[3], (*to)[3];
 } smoothing;
 
-/* What is asked for around the last sample bounds what is around the next one, which is near it as a rule. */
+/* Finds the nearest points of samples begin to end - 1. The radius found at one sample bounds the search at the next
+ * sample, which is usually near. */
 static void find_near(const smoothing *s, size_t begin, size_t end) {
     static const double ROUNDING = 1 + 1e-9;
     brio_near_point near[BRIO_NEAR_ROOM];
-    double radius = INFINITY; /* of the ball around the last sample that holds so many */
+    double radius = INFINITY; /* of the ball about the last sample that holds its MORE nearest points */
     for (size_t i = begin; i < end; i++) {
         double most = 0, reach = i > begin ? radius + sqrt(brio_square_distance(s->from[i], s->from[i - 1])) : INFINITY;
         brio_nearest_points(s->tree, s->from[i], MORE, ROUNDING * reach * reach, near);
@@ -198,14 +207,14 @@ static void smooth_sample(const smoothing *s, size_t i) {
     }
     memcpy(to, s->from[i], sizeof s->to[i]);
     if (!brio_fit_local_surface(&n, &surface)) return;
-    if (fabs(surface.height) > surface.unit) return; /* a fit that left its points */
+    if (fabs(surface.height) > surface.unit) return; /* the fit is far from its points */
     for (int k = 0; k < 3; k++) to[k] += surface.height * surface.frame[2][k];
 }
 
 typedef struct {
     const smoothing *smoothing;
-    size_t first; /* sample of the block */
-    bool finds;   /* who is near is still to be found */
+    size_t first; /* first sample of the block */
+    bool finds;   /* whether this pass finds the nearest points */
 } smoothing_run;
 
 static void smooth_run(void *user, size_t begin, size_t end, int thread) {
@@ -215,7 +224,7 @@ static void smooth_run(void *user, size_t begin, size_t end, int thread) {
     for (size_t n = begin; n < end; n++) smooth_sample(r->smoothing, r->first + n);
 }
 
-/* One pass over all samples; the first one also finds who is near. */
+/* Moves all samples once. The first pass also finds the nearest points. */
 static brio_status smooth_all(brio_context *ctx, const smoothing *s, int pass) {
     brio_status status = BRIO_OK;
     size_t count = s->tree->count;

@@ -1,15 +1,18 @@
-/* Noise of samples: how much there is, and samples with less. */
+/* The noise of samples: measuring and reducing it. */
 #ifndef BRIO_RECONSTRUCT_SAMPLE_NOISE_H
 #define BRIO_RECONSTRUCT_SAMPLE_NOISE_H
 
 #include "base/context.h"
 
-/** *level = the standard deviation of the noise in units of the spacing between samples, or 0 where what the samples are
- *  off smooth surfaces is their shape or is little beside the spacing.
+/** Estimates the standard deviation of the noise, in spacings of the samples. *level is 0 if the deviation from smooth
+ *  surfaces is the shape of the surface, is under 0.1 spacings, or is over 0.5 spacings.
+ *  points  count by 3.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_noise_level(brio_context *ctx, const double *points, size_t count, double *level);
 
-/** Moves every point onto a piece of surface through the middle of its neighbours. Duplicates stay duplicates.
+/** Moves every point, twice, onto a quadratic surface through the middle of its 48 nearest points. Equal points stay
+ *  equal. Fewer than 48 points stay as they are.
+ *  points  count by 3, read and written.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_smooth_samples(brio_context *ctx, double *points, size_t count);
 

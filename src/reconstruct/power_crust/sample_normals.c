@@ -1,5 +1,6 @@
-/* Normals of samples from their poles: from the inner pole to the outer one. The farther a pole, the better its
- * direction, and the more it counts. Poles with the same label say less: then the farther pole's direction counts.
+/* Normals of samples from their poles: the direction from the inner pole to the outer pole. The farther a pole, the
+ * more accurate its direction, so the vectors to the poles are added without normalisation. If both poles have one
+ * label, the direction of the farther pole alone counts.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (poles as normals). */
 #include "reconstruct/power_crust/sample_normals.h"
@@ -15,7 +16,7 @@ static bool normalise(double *n) {
     return true;
 }
 
-/* Adds the direction from the sample to a pole, outwards. */
+/* Adds the vector between the sample and a pole, pointing outwards. */
 static void add_pole(const brio_power_diagram *d, const uint8_t *label, size_t s, uint32_t pole, double *n) {
     double sign = label[pole] == BRIO_LABEL_INNER ? -1 : 1;
     for (size_t k = 0; k < 3; k++) n[k] += sign * (d->poles->centre[3 * (size_t)pole + k] - d->samples[3 * s + k]);

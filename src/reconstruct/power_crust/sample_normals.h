@@ -5,10 +5,11 @@
 #include "dual/power_diagram.h"
 #include "reconstruct/labels/label.h"
 
-/** normals[3 order[s] ..], #samples by 3, of length 1 and pointing outwards. Samples without poles get the normal of the
- *  crust where it is nearest; rows at equal positions the same one.
- *  representative  #samples: for each the sample at its position that has the poles.
- *  order           #samples: the row of each.
+/** Computes unit normals of the samples, pointing outwards, from their poles. A sample without poles gets the normal of
+ *  the crust at the nearest point. Samples at one position get one normal.
+ *  representative  #samples: the sample at the same position that has the poles.
+ *  order           #samples: the row of each sample in `normals`.
+ *  normals         #samples by 3, written.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_sample_normals(const brio_power_diagram *d, const uint8_t *label, const uint32_t *representative,
                                 const uint32_t *order, const brio_mesh *crust, double *normals);
