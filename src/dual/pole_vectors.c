@@ -293,7 +293,7 @@ BRIO_TARGET_FMA static void find_sides_wide(const search *s, size_t from, size_t
 static void find_sides(void *user, size_t from, size_t to, int thread) {
     const search *s = user;
     (void)thread;
-    if (dd_have_fma())
+    if (brio_have_fma())
         find_sides_wide(s, from, to, s->sine);
     else
         find_sides_plain(s, from, to, s->sine);

@@ -183,7 +183,8 @@ static bool solve_finely(const double *const p[4], bool weighted, double scale, 
         for (int k = 0; k < 3; k++) r[i][k] = dd_difference(p[i + 1][k] * scale, p[0][k] * scale);
         if (weighted) weight[i] = dd_difference(p[i + 1][3] * scale * scale, p[0][3] * scale * scale);
     }
-    return dd_have_fma() ? solve_dd_fma(r, weight, permanent, goal, s) : solve_dd_plain(r, weight, permanent, goal, s);
+    return brio_have_fma() ? solve_dd_fma(r, weight, permanent, goal, s)
+                           : solve_dd_plain(r, weight, permanent, goal, s);
 }
 
 static bool solve(const double *const p[4], bool weighted, double goal, int exponent, solution *s) {
@@ -226,9 +227,8 @@ bool brio_centre(const double *a, const double *b, const double *c, const double
 
 static uint64_t in_lanes(const brio_centre_batch *b) {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-        return brio_centres_avx512(b);
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return brio_centres_avx2(b);
+    if (brio_instructions() == BRIO_AVX512) return brio_centres_avx512(b);
+    if (brio_instructions() == BRIO_AVX2) return brio_centres_avx2(b);
 #endif
     return b->count < 64 ? (UINT64_C(1) << b->count) - 1 : UINT64_MAX;
 }
@@ -338,7 +338,7 @@ static brio_rough_centre rough_centre(const double *const p[4]) {
 }
 
 void brio_rough_centres(const double *const p[BRIO_CENTRES][4], brio_rough_centre *centre) {
-    if (dd_have_fma())
+    if (brio_have_fma())
         rough_centres_wide(p, centre);
     else
         rough_centres_plain(p, centre);
