@@ -15,6 +15,11 @@ typedef struct {
     size_t size; /* a multiple of BRIO_PAGE */
 } brio_mapping;
 
+/** A part of the progress bar, in fractions of the whole bar. */
+typedef struct {
+    double from, to;
+} brio_bar;
+
 struct brio_context {
     brio_allocator allocator;
     bool custom;                       /* allocator is the caller's: no mappings */
@@ -31,7 +36,7 @@ struct brio_context {
     char *scratch; /* folder of mapped files, or NULL */
     brio_progress_fn progress;
     void *progress_user;
-    double progress_from, progress_to; /* the part of the bar that the running stage owns */
+    brio_bar bar; /* the part that the running stage owns */
     char message[512];
 };
 
@@ -41,6 +46,15 @@ brio_status brio_fail(brio_context *ctx, brio_status status, const char *format,
 
 /** Tells the caller how far a stage is; BRIO_ERR_CANCELLED when the caller wants to stop. */
 brio_status brio_progress(brio_context *ctx, const char *stage, double fraction);
+
+/** The part of the progress bar that the caller owns. A function that divides it among stages asks for it first, and at
+ *  its label `done:` takes all of it back: brio_progress_part(ctx, bar, 0, 1). */
+static inline brio_bar brio_progress_bar(const brio_context *ctx) {
+    return ctx->bar;
+}
+
+/** Gives the stage that follows the fractions `from` to `to` of the caller's bar. */
+void brio_progress_part(brio_context *ctx, brio_bar bar, double from, double to);
 
 /** Seconds of a monotonic clock. */
 double brio_seconds(void);

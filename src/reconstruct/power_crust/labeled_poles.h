@@ -14,7 +14,6 @@ typedef struct {
     double margin;          /* by which the bounding points are moved out, in the unit of the points */
     bool spacing;           /* of the poles */
     bool representative;    /* of the samples */
-    double until;           /* share of the progress bar */
 } brio_pole_request;
 
 /** Polar balls with labels, and the regular triangulation of them. */
@@ -37,8 +36,8 @@ typedef struct {
     brio_pole_stats stats;
 } brio_labeled_poles;
 
-/** Checks options and turns them into a request without margin, spacing or representatives, for the whole of the progress
- *  bar. Returns BRIO_OK, or BRIO_ERR_ARGUMENT for numbers out of range. */
+/** Checks options and turns them into a request without margin, spacing or representatives. Returns BRIO_OK,
+ *  or BRIO_ERR_ARGUMENT for numbers out of range. */
 brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *options, uint64_t seed,
                                  brio_pole_request *request);
 

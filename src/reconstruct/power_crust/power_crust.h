@@ -6,10 +6,10 @@
 
 /** Writes the power crust of the poles into an empty mesh, in the unit of the points, as the options want it. Every hull
  *  vertex of l->power must be outer. `open` and `simplify` need l->spacing, normals l->representative, l->order and the
- *  opposite poles of the graph.   from  where on the progress bar it begins.   normals  #P by 3, or NULL.
+ *  opposite poles of the graph.   normals  #P by 3, or NULL.
  *  stats  receives left_out and the seconds.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no pole with a cell is inner), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
-brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, double from, brio_mesh *mesh,
-                            double *normals, brio_power_crust_stats *stats);
+brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, brio_mesh *mesh, double *normals,
+                            brio_power_crust_stats *stats);
 
 #endif
