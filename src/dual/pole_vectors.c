@@ -13,6 +13,7 @@
 #include "dual/pole_vectors.h"
 #include "base/memory.h"
 #include "base/team.h"
+#include "dual/farthest.h"
 #include "dual/position_order.h"
 #include "predicates/circumcentre.h"
 #include "predicates/double_double.h"
@@ -52,8 +53,7 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
 
 /* --- which of two Voronoi vertices is farther --- */
 
-/* What the search for poles keeps beside its result. A pole on offer is a key: the upper half of the bits of the squared
- * distance over its tetrahedron, so that one look tells for most that they are nearer. */
+/* What the search for poles keeps beside its result: of each sample, the keys of farthest.h. */
 typedef struct {
     brio_pole_vectors *v;
     uint64_t *farther[2]; /* of each sample: the keys of the farther pole, and of that on its other side */
@@ -66,47 +66,19 @@ enum { AHEAD = 8, TETRAHEDRA_A_THREAD = 1 << 11, BATCHES_A_THREAD = TETRAHEDRA_A
 enum { SAMPLES_A_THREAD = 1 << 12 };
 
 static const double ROUGH = 0x1p-30 + 0x1p-50;
-static const uint64_t NO_KEY = BRIO_INFINITE, HULL_KEY = (uint64_t)UINT32_MAX << 32;
 
-static inline uint64_t key_of(double square, uint32_t tet) {
-    uint64_t bits;
-    memcpy(&bits, &square, sizeof bits);
-    return (bits & HULL_KEY) | tet;
-}
-
-/* A quick look, which most keys do not pass. Relaxed: the look reads nothing but the key, and a pole is only ever
- * replaced by a farther one, so what is nearer than an old key is nearer than the present one. */
-static inline bool may_be_farther(uint64_t key, const uint64_t *pole) {
-    return key >> 32 >= __atomic_load_n(pole, __ATOMIC_RELAXED) >> 32;
-}
-
-/* Whether a key is that of a farther Voronoi vertex than another. */
-static inline bool is_farther(const search *s, uint64_t key, uint64_t than) {
-    if (key >> 32 != than >> 32) return key >> 32 > than >> 32;
-    if (than == NO_KEY) return true;
-    const double *a = s->v->centre + 4 * (size_t)(uint32_t)key, *b = s->v->centre + 4 * (size_t)(uint32_t)than;
+static bool is_farther(const void *user, uint32_t tet, uint32_t than, uint32_t sample) {
+    const brio_pole_vectors *v = user;
+    const double *a = v->centre + 4 * (size_t)tet, *b = v->centre + 4 * (size_t)than;
+    (void)sample; /* distances are kept with the centres */
     if (a[3] != b[3]) return a[3] > b[3];
     int sign = brio_lexicographic(a, b);
-    const brio_tetrahedron *tet = s->v->t.tet;
-    if (sign == 0) sign = brio_compare_corners(s->v->points, tet + (uint32_t)key, tet + (uint32_t)than);
+    if (sign == 0) sign = brio_compare_corners(v->points, v->t.tet + tet, v->t.tet + than);
     return sign > 0;
 }
 
-/* Makes a tetrahedron a pole unless there is a farther one. Threads may offer at once: the farthest one wins, whoever
- * comes first.
- *
- * is_farther reads the centre of the present pole, which another thread may have written in the same run: find_poles
- * writes a centre and then offers its key. The release of the exchange that puts a key there pairs with the acquire of
- * the load, and with that of an exchange that fails, here: whoever reads a key sees the centre. */
 static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uint64_t key) {
-    uint64_t now = __atomic_load_n(pole, __ATOMIC_ACQUIRE);
-    while (is_farther(s, key, now)) {
-        if (s->threads == 1) {
-            *pole = key;
-            return;
-        }
-        if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELEASE, __ATOMIC_ACQUIRE)) return;
-    }
+    brio_offer_farthest(pole, key, s->threads == 1, is_farther, s->v, 0);
 }
 
 /* --- the passes --- */
@@ -116,8 +88,8 @@ static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uin
 static void offer_hull_facet(search *s, size_t p, size_t tet) {
     const brio_tetrahedron *t = s->v->t.tet;
     uint64_t now = s->farther[0][p];
-    if (now == NO_KEY || brio_compare_hull_facets(s->v->points, t + tet, t + (uint32_t)now) > 0)
-        s->farther[0][p] = HULL_KEY | tet;
+    if (now == BRIO_NO_FARTHEST || brio_compare_hull_facets(s->v->points, t + tet, t + brio_farthest_tet(now)) > 0)
+        s->farther[0][p] = BRIO_ENDLESS | tet;
 }
 
 /* Normals are added as multiples of 2^-36, which is exact for up to 2^17 of them, so that the order is of no
@@ -163,11 +135,11 @@ static void find_poles(void *user, size_t from, size_t to, int thread) {
         size_t end = first + find_centres(v, first);
         for (size_t tet = first; tet < end; tet++) {
             uint32_t vertex[4];
-            uint64_t key = key_of(v->centre[4 * tet + 3], (uint32_t)tet);
+            uint64_t key = brio_farthest_key(v->centre[4 * tet + 3], (uint32_t)tet);
             if (isnan(v->centre[4 * tet + 3])) continue;
             memcpy(vertex, v->t.tet[tet].vertex, sizeof vertex);
             for (int i = 0; i < 4; i++)
-                if (may_be_farther(key, farther + vertex[i])) offer(s, farther + vertex[i], key);
+                if (brio_may_be_farthest(key, farther + vertex[i])) offer(s, farther + vertex[i], key);
         }
     }
 }
@@ -177,7 +149,7 @@ static void find_planes(void *user, size_t begin, size_t end, int thread) {
     const brio_pole_vectors *v = s->v;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        uint32_t pole = (uint32_t)s->farther[0][p];
+        uint32_t pole = brio_farthest_tet(s->farther[0][p]);
         double *plane = v->plane + 4 * p;
         const double *x = v->points + 3 * p;
         if (pole < v->num_finite) brio_towards_centre(v, pole, p, plane);
@@ -249,14 +221,14 @@ BRIO_INLINE uint32_t look_at_samples(const brio_pole_vectors *v, size_t tet, boo
 
 /* Offers a pole to a sample on whose other side it is. */
 BRIO_INLINE void offer_if(bool behind, const search *s, uint32_t p, uint64_t key) {
-    if (behind & may_be_farther(key, s->farther[1] + p)) offer(s, s->farther[1] + p, key);
+    if (behind & brio_may_be_farthest(key, s->farther[1] + p)) offer(s, s->farther[1] + p, key);
 }
 
 /* What a finite Voronoi vertex is to its samples, and offers it as the pole on their other side. Its distance is the same
  * from all, but for the error. */
 BRIO_INLINE uint16_t sides_of(const search *s, size_t tet, double sine) {
     uint32_t bits = look_at_samples(s->v, tet, true, sine);
-    uint64_t key = key_of(s->v->centre[4 * tet + 3], (uint32_t)tet);
+    uint64_t key = brio_farthest_key(s->v->centre[4 * tet + 3], (uint32_t)tet);
     const uint32_t *vertex = s->v->t.tet[tet].vertex;
     offer_if(bits >> 16 & 1, s, vertex[0], key);
     offer_if(bits >> 17 & 1, s, vertex[1], key);
@@ -305,14 +277,14 @@ static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     search s = {.v = v, .threads = brio_threads(ctx, batches, BATCHES_A_THREAD), .sine = sin(v->theta)};
     for (int side = 0; side < 2; side++) {
         BRIO_TRY(BRIO_ALLOC(ctx, s.farther[side], v->num_points));
-        for (size_t p = 0; p < v->num_points; p++) s.farther[side][p] = NO_KEY;
+        for (size_t p = 0; p < v->num_points; p++) s.farther[side][p] = BRIO_NO_FARTHEST;
     }
     find_hull_vectors(&s);
     brio_for(ctx, s.threads, batches, find_poles, &s);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
     brio_for(ctx, brio_threads(ctx, v->num_points, SAMPLES_A_THREAD), v->num_points, find_planes, &s);
     brio_for(ctx, s.threads, v->t.count, find_sides, &s);
-    for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = (uint32_t)s.farther[i % 2][i / 2];
+    for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = brio_farthest_tet(s.farther[i % 2][i / 2]);
 done:
     for (int side = 0; side < 2; side++) brio_release(ctx, s.farther[side]);
     return status;
