@@ -62,7 +62,7 @@ typedef struct {
 } search;
 
 /* AHEAD: tetrahedra between fetching and using. */
-enum { AHEAD = 8, TETRAHEDRA_A_THREAD = 1 << 11, BATCHES_A_THREAD = TETRAHEDRA_A_THREAD / BRIO_CENTRES };
+enum { AHEAD = 8, TETRAHEDRA_A_THREAD = 1 << 11, BATCHES_A_THREAD = TETRAHEDRA_A_THREAD / BRIO_CENTRE_BATCH };
 enum { SAMPLES_A_THREAD = 1 << 12 };
 
 static const double ROUGH = 0x1p-30 + 0x1p-50;
@@ -109,29 +109,24 @@ static void find_hull_vectors(search *s) {
     }
 }
 
-/* The centres of the tetrahedra from `first` on, up to BRIO_CENTRES of them. */
+/* The centres of the tetrahedra from `first` on, up to BRIO_CENTRE_BATCH of them. */
 static size_t find_centres(const brio_pole_vectors *v, size_t first) {
-    const double *p[BRIO_CENTRES][4];
-    brio_rough_centre centre[BRIO_CENTRES];
-    size_t count = v->num_finite - first < BRIO_CENTRES ? v->num_finite - first : BRIO_CENTRES;
-    for (size_t n = 0; n < BRIO_CENTRES; n++)
-        for (int i = 0; i < 4; i++) p[n][i] = v->points + 3 * (size_t)v->t.tet[first + (n < count ? n : 0)].vertex[i];
-    brio_rough_centres((const double *const(*)[4])p, centre);
-    for (size_t n = 0; n < count; n++) {
-        memcpy(v->centre + 4 * (first + n), centre[n].at, sizeof centre[n].at);
-        v->centre[4 * (first + n) + 3] = centre[n].square;
-    }
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    size_t left = v->num_finite - first, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
+    for (size_t n = 0; n < count; n++) memcpy(vertex[n], v->t.tet[first + n].vertex, sizeof *vertex);
+    brio_rough_centres(&(brio_centre_batch){v->points, NULL, (const uint32_t(*)[4])vertex, count},
+                       v->centre + 4 * first);
     return count;
 }
 
-/* Computes the centres of the batches [from, to) of BRIO_CENTRES tetrahedra and offers them. */
+/* Computes the centres of the batches [from, to) of BRIO_CENTRE_BATCH tetrahedra and offers them. */
 static void find_poles(void *user, size_t from, size_t to, int thread) {
     const search *s = user;
     const brio_pole_vectors *v = s->v;
     uint64_t *farther = s->farther[0];
     (void)thread;
-    for (size_t first = from * BRIO_CENTRES; first < to * BRIO_CENTRES && first < v->num_finite;
-         first += BRIO_CENTRES) {
+    for (size_t first = from * BRIO_CENTRE_BATCH; first < to * BRIO_CENTRE_BATCH && first < v->num_finite;
+         first += BRIO_CENTRE_BATCH) {
         size_t end = first + find_centres(v, first);
         for (size_t tet = first; tet < end; tet++) {
             uint32_t vertex[4];
@@ -273,7 +268,7 @@ static void find_sides(void *user, size_t from, size_t to, int thread) {
 
 static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     brio_status status = BRIO_OK;
-    size_t batches = (v->num_finite + BRIO_CENTRES - 1) / BRIO_CENTRES;
+    size_t batches = (v->num_finite + BRIO_CENTRE_BATCH - 1) / BRIO_CENTRE_BATCH;
     search s = {.v = v, .threads = brio_threads(ctx, batches, BATCHES_A_THREAD), .sine = sin(v->theta)};
     for (int side = 0; side < 2; side++) {
         BRIO_TRY(BRIO_ALLOC(ctx, s.farther[side], v->num_points));

@@ -45,7 +45,8 @@ static void find_centres(void *user, size_t begin, size_t end, int thread) {
         uint32_t vertex[BRIO_CENTRE_BATCH][4];
         size_t left = f->num_tets - tet, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
         for (size_t n = 0; n < count; n++) memcpy(vertex[n], f->tet[tet + n].vertex, sizeof *vertex);
-        brio_centres(&(brio_centre_batch){f->points, NULL, (const uint32_t(*)[4])vertex, count, f->centre + 3 * tet});
+        brio_centres(&(brio_centre_batch){f->points, NULL, (const uint32_t(*)[4])vertex, count}, f->centre + 3 * tet,
+                     NULL);
     }
 }
 

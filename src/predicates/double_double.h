@@ -18,6 +18,13 @@
 
 #define BRIO_INLINE static inline __attribute__((always_inline))
 
+/* Whether the target always multiplies and adds in one rounding. */
+#if defined(__FMA__) || defined(__aarch64__)
+#define DD_TARGET_HAS_FMA true
+#else
+#define DD_TARGET_HAS_FMA false
+#endif
+
 typedef struct {
     double hi, lo;
 } brio_dd;

@@ -69,30 +69,27 @@ static void mixed_batch(uint64_t trial, double *p, double *w) {
     }
 }
 
-static void add_rough_centres(const double *p, digest *d) {
-    const double *row[BRIO_CENTRES][4];
-    brio_rough_centre rough[BRIO_CENTRES];
-    for (size_t n = 0; n < BRIO_CENTRES; n++)
-        for (size_t i = 0; i < 4; i++) row[n][i] = p + 3 * (4 * n + i);
-    brio_rough_centres((const double *const(*)[4])row, rough);
-    for (int n = 0; n < BRIO_CENTRES; n++)
-        if (!isnan(rough[n].at[0])) add_bytes(d, &rough[n], sizeof rough[n]);
-}
-
 static digest digest_of_centres(void) {
-    static double p[12 * BRIO_CENTRE_BATCH], w[4 * BRIO_CENTRE_BATCH], centre[3 * BRIO_CENTRE_BATCH];
-    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    enum { COUNT = BRIO_CENTRE_BATCH };
+    static double p[12 * COUNT], w[4 * COUNT], centre[3 * COUNT], error[COUNT], rough[4 * COUNT];
+    uint32_t vertex[COUNT][4];
     digest d = digest_begin();
-    for (uint32_t i = 0; i < 4 * BRIO_CENTRE_BATCH; i++) vertex[i / 4][i % 4] = i;
+    for (uint32_t i = 0; i < 4 * COUNT; i++) vertex[i / 4][i % 4] = i;
     for (uint64_t trial = 0; trial < BATCHES; trial++) {
-        brio_centre_batch b = {p, trial % 2 ? w : NULL, (const uint32_t(*)[4])vertex, BRIO_CENTRE_BATCH, centre};
+        brio_centre_batch b = {p, trial % 2 ? w : NULL, (const uint32_t(*)[4])vertex, COUNT - trial % 3};
         mixed_batch(trial / 2, p, w);
-        brio_centres(&b);
+        brio_centres(&b, centre, error);
+        for (size_t n = 0; n < b.count; n++) {
+            if (isnan(centre[3 * n])) continue;
+            add_bytes(&d, centre + 3 * n, 3 * sizeof *centre);
+            add_bytes(&d, error + n, sizeof *error);
+        }
+        uniform_points(trial, 4 * COUNT, p);
+        for (size_t i = 0; i < 4 * COUNT; i++) p[3 * i + 2] *= ldexp(1, -(int)(i / 4));
+        b.weights = NULL;
+        brio_rough_centres(&b, rough);
         for (size_t n = 0; n < b.count; n++)
-            if (!isnan(centre[3 * n])) add_bytes(&d, centre + 3 * n, 3 * sizeof *centre);
-        uniform_points(trial, 4 * BRIO_CENTRES, p);
-        p[2] = p[5] = p[8] = 0.5, p[11] = 0.5 + ldexp(1, -(int)(trial % 50));
-        add_rough_centres(p, &d);
+            if (!isnan(rough[4 * n])) add_bytes(&d, rough + 4 * n, 4 * sizeof *rough);
     }
     return d;
 }

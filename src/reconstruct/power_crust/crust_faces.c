@@ -62,7 +62,7 @@ static bool inner(const builder *b, uint32_t pole) {
 /* The orthocentres of poles, four each; where there is none that doubles can hold, the middle of the poles. */
 static void find_positions(const builder *b, const uint32_t (*v)[4], size_t count, double *position) {
     const brio_poles *poles = b->d->poles;
-    brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count, position});
+    brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count}, position, NULL);
     for (size_t n = 0; n < count; n++, position += 3) {
         if (!isnan(position[0])) continue;
         for (int k = 0; k < 3; k++) {
