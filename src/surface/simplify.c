@@ -83,24 +83,22 @@ static bool before(const entry *a, const entry *b) {
     return a->error != b->error ? a->error < b->error : a->half_edge < b->half_edge;
 }
 
+#define HEAP_ITEM              entry
+#define HEAP_ABOVE(a, b, user) before(&(a), &(b))
+#define HEAP_DOWN              entry_down
+#define HEAP_UP                entry_up
+#include "base/heap.h"
+
 static brio_status heap_push(simplifier *s, entry e) {
     brio_status status = BRIO_RESERVE(s->ctx, s->heap, s->heap_capacity, s->heap_size + 1);
     if (status != BRIO_OK) return status;
-    size_t i = s->heap_size++;
-    for (; i > 0 && before(&e, &s->heap[(i - 1) / 2]); i = (i - 1) / 2) s->heap[i] = s->heap[(i - 1) / 2];
-    s->heap[i] = e;
+    entry_up(s->heap, s->heap_size++, e, NULL);
     return BRIO_OK;
 }
 
 static entry heap_pop(simplifier *s) {
     entry top = s->heap[0], last = s->heap[--s->heap_size];
-    size_t i = 0;
-    for (size_t child; (child = 2 * i + 1) < s->heap_size; i = child) {
-        if (child + 1 < s->heap_size && before(&s->heap[child + 1], &s->heap[child])) child++;
-        if (!before(&s->heap[child], &last)) break;
-        s->heap[i] = s->heap[child];
-    }
-    if (s->heap_size) s->heap[i] = last;
+    if (s->heap_size) entry_down(s->heap, 0, s->heap_size, last, NULL);
     return top;
 }
 
