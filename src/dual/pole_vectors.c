@@ -17,6 +17,7 @@
 #include "dual/position_order.h"
 #include "predicates/circumcentre.h"
 #include "predicates/double_double.h"
+#include "triangulation/view.h"
 #include <string.h>
 
 static double square(const double *x) {
@@ -294,10 +295,7 @@ brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *
                                .num_vertices = s->vertices,
                                .points = points,
                                .theta = theta};
-    /* the kernel's structure is shared by those who only read */
-    out->t = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(t),
-                               .count = s->tetrahedra + s->hull_facets,
-                               .infinite = BRIO_INFINITE};
+    out->t = brio_tetrahedra_of(t);
     BRIO_TRY(BRIO_ALLOC(ctx, out->centre, 4 * out->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->plane, 4 * num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, out->pole, 2 * num_points));

@@ -13,6 +13,7 @@
 #include "base/versioned.h"
 #include "reconstruct/power_crust/ball_cover.h"
 #include "reconstruct/power_crust/power_crust.h"
+#include "triangulation/ring.h"
 #include <math.h>
 #include <string.h>
 
@@ -117,26 +118,13 @@ static bool joined(const builder *b, uint32_t p, uint32_t q) {
            b->poles->label[p] == b->poles->label[q];
 }
 
-/* Whether `tet` is the first in memory of the tetrahedra round its edge from slot i to slot j. */
-static bool leads_edge(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
-    uint32_t from = tet, leave = t->tet[tet].vertex[BRIO_EDGE[i][j][0]], pivot = t->tet[tet].vertex[BRIO_EDGE[i][j][1]];
-    do {
-        uint32_t mate = t->tet[from].mate[brio_slot_of_vertex(t->tet[from].vertex, leave)];
-        from = brio_tet_of(mate);
-        if (from < tet) return false;
-        leave = pivot;
-        pivot = brio_apex(t, mate);
-    } while (from != tet);
-    return true;
-}
-
 static brio_status add_edges(builder *b, uint32_t tet) {
     brio_status status = BRIO_OK;
     const brio_tetrahedra *power = &b->poles->diagram.power;
     const uint32_t *v = power->tet[tet].vertex;
     for (int i = 0; i < 4; i++)
         for (int j = i + 1; j < 4; j++) {
-            if (!joined(b, v[i], v[j]) || !leads_edge(power, tet, i, j)) continue;
+            if (!joined(b, v[i], v[j]) || !brio_ring_size(power, tet, i, j)) continue;
             BRIO_TRY(BRIO_RESERVE(b->poles->ctx, b->edges, b->edge_capacity, b->num_edges + 2));
             uint32_t p = b->number[v[i]], q = b->number[v[j]];
             b->edges[b->num_edges++] = p < q ? p : q;
