@@ -4,7 +4,7 @@
  */
 #include "reconstruct/labels/label_solid.h"
 #include "base/team.h"
-#include "surface/solid.h"
+#include "mesh/solid.h"
 #include <math.h>
 
 /* STEP: poles between two looks at the caller's wish to stop. */

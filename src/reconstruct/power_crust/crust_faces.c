@@ -17,7 +17,7 @@
 #include "base/team.h"
 #include "predicates/circumcentre.h"
 #include "reconstruct/labels/labeling.h"
-#include "surface/split_vertices.h"
+#include "mesh/split_vertices.h"
 #include "triangulation/ring.h"
 #include <math.h>
 #include <string.h>

@@ -11,7 +11,7 @@
 #include "base/scale.h"
 #include "reconstruct/power_crust/crust_faces.h"
 #include "reconstruct/power_crust/sample_normals.h"
-#include "surface/simplify.h"
+#include "mesh/simplify.h"
 #include <math.h>
 
 static const double POLES_SHARE = 0.9; /* of the progress bar */
