@@ -41,7 +41,7 @@ brio_status brio_context_new(const brio_allocator *allocator, brio_context **out
     ctx->allocator = *a;
     ctx->custom = allocator != NULL;
     ctx->machine_limit = brio_machine_memory();
-    ctx->progress_to = 1;
+    ctx->bar = (brio_bar){0, 1};
     ctx->processors = processors;
     ctx->most_threads = most;
     ctx->team = brio_team_begin(ctx + 1, most, processors);
@@ -105,10 +105,17 @@ brio_status brio_fail(brio_context *ctx, brio_status status, const char *format,
     return status;
 }
 
+static double place_in(brio_bar bar, double fraction) {
+    return fraction == 1 ? bar.to : bar.from + fraction * (bar.to - bar.from);
+}
+
+void brio_progress_part(brio_context *ctx, brio_bar bar, double from, double to) {
+    ctx->bar = (brio_bar){place_in(bar, from), place_in(bar, to)};
+}
+
 brio_status brio_progress(brio_context *ctx, const char *stage, double fraction) {
     if (!ctx->progress) return BRIO_OK;
-    double whole = ctx->progress_from + fraction * (ctx->progress_to - ctx->progress_from);
-    if (!ctx->progress(stage, whole, ctx->progress_user)) return BRIO_OK;
+    if (!ctx->progress(stage, place_in(ctx->bar, fraction), ctx->progress_user)) return BRIO_OK;
     return brio_fail(ctx, BRIO_ERR_CANCELLED, "cancelled during %s", stage);
 }
 

@@ -17,6 +17,11 @@ typedef struct {
     size_t size; /* a multiple of BRIO_PAGE */
 } brio_mapping;
 
+/** A part of the progress bar, in fractions of the whole bar. */
+typedef struct {
+    double from, to;
+} brio_bar;
+
 struct brio_context {
     brio_allocator allocator;
     bool custom;                       /* the allocator is the caller's: no mappings */
@@ -33,7 +38,7 @@ struct brio_context {
     char *scratch; /* folder of mapped files, or NULL */
     brio_progress_fn progress;
     void *progress_user;
-    double progress_from, progress_to; /* the part of the bar that the running stage owns */
+    brio_bar bar; /* the part that the running stage owns */
     char message[512];
 };
 
@@ -44,6 +49,15 @@ brio_status brio_fail(brio_context *ctx, brio_status status, const char *format,
 /** Reports that a fraction of a stage is done. Returns BRIO_OK, or BRIO_ERR_CANCELLED if the callback asked to stop.
  *  Only the thread that called the library may call this. */
 brio_status brio_progress(brio_context *ctx, const char *stage, double fraction);
+
+/** Returns the part of the progress bar that the running function owns. A function that divides its part among stages
+ *  asks for it first, and at its label `done:` takes all of it back: brio_progress_part(ctx, bar, 0, 1). */
+static inline brio_bar brio_progress_bar(const brio_context *ctx) {
+    return ctx->bar;
+}
+
+/** Gives the stage that follows the fractions `from` to `to` of the caller's bar. */
+void brio_progress_part(brio_context *ctx, brio_bar bar, double from, double to);
 
 /** Returns the seconds of a monotonic clock. */
 double brio_seconds(void);

@@ -3,6 +3,23 @@
  * Based on: Williams. Algorithm 232: Heapsort. Communications of the ACM 1964. */
 #include "base/sort.h"
 
+#define HEAP_ITEM              uint64_t
+#define HEAP_ABOVE(a, b, user) ((a) > (b))
+#define HEAP_DOWN              key_down
+#define HEAP_UP                key_up
+#include "base/heap.h"
+
+typedef struct {
+    brio_compare_fn compare;
+    const void *user;
+} index_order;
+
+#define HEAP_ITEM              uint32_t
+#define HEAP_ABOVE(a, b, user) (((const index_order *)(user))->compare(b, a, ((const index_order *)(user))->user) < 0)
+#define HEAP_DOWN              index_down
+#define HEAP_UP                index_up
+#include "base/heap.h"
+
 /* Chosen. */
 enum { FEW = 24 };
 
@@ -17,27 +34,16 @@ static void insert_keys(uint64_t *keys, size_t n) {
     }
 }
 
-/* Restores the heap below `root` after its key has become smaller. */
-static void sift_key_down(uint64_t *keys, size_t root, size_t n) {
-    uint64_t moved = keys[root];
-    for (size_t child; (child = 2 * root + 1) < n; root = child) {
-        if (child + 1 < n && keys[child + 1] > keys[child]) child++;
-        if (keys[child] <= moved) break;
-        keys[root] = keys[child];
-    }
-    keys[root] = moved;
-}
-
 void brio_sort_keys(uint64_t *keys, size_t n) {
     if (n <= FEW) {
         insert_keys(keys, n);
         return;
     }
-    for (size_t i = n / 2; i-- > 0;) sift_key_down(keys, i, n);
+    for (size_t i = n / 2; i-- > 0;) key_down(keys, i, n, keys[i], NULL);
     for (size_t last = n; last-- > 1;) {
-        uint64_t top = keys[0];
-        keys[0] = keys[last], keys[last] = top;
-        sift_key_down(keys, 0, last);
+        uint64_t moved = keys[last];
+        keys[last] = keys[0];
+        key_down(keys, 0, last, moved, NULL);
     }
 }
 
@@ -52,25 +58,16 @@ static void insert_indices(uint32_t *a, size_t n, brio_compare_fn compare, const
     }
 }
 
-static void sift_index_down(uint32_t *a, size_t root, size_t n, brio_compare_fn compare, const void *user) {
-    uint32_t moved = a[root];
-    for (size_t child; (child = 2 * root + 1) < n; root = child) {
-        if (child + 1 < n && compare(a[child], a[child + 1], user) < 0) child++;
-        if (compare(moved, a[child], user) >= 0) break;
-        a[root] = a[child];
-    }
-    a[root] = moved;
-}
-
 void brio_sort_indices(uint32_t *a, size_t n, brio_compare_fn compare, const void *user) {
     if (n <= FEW) {
         insert_indices(a, n, compare, user);
         return;
     }
-    for (size_t i = n / 2; i-- > 0;) sift_index_down(a, i, n, compare, user);
+    const index_order order = {compare, user};
+    for (size_t i = n / 2; i-- > 0;) index_down(a, i, n, a[i], &order);
     for (size_t last = n; last-- > 1;) {
-        uint32_t top = a[0];
-        a[0] = a[last], a[last] = top;
-        sift_index_down(a, 0, last, compare, user);
+        uint32_t moved = a[last];
+        a[last] = a[0];
+        index_down(a, 0, last, moved, &order);
     }
 }

@@ -1,6 +1,7 @@
 /* Least-significant-digit radix sorts of pairs and of items, and a sort of rows by their first number. */
 #include "base/sort.h"
 #include "base/memory.h"
+#include "base/places.h"
 #include "base/team.h"
 #include <string.h>
 
@@ -15,15 +16,9 @@ typedef struct {
 /* Replaces each thread's counts by the places where the thread writes: all threads for one digit, then all for the next
  * digit. Returns false if all keys have one digit. */
 static bool first_positions(size_t (*count)[BUCKETS], int threads, size_t n) {
-    size_t sum = 0;
-    for (int b = 0; b < BUCKETS; b++) {
-        size_t before = sum;
-        for (int t = 0; t < threads; t++) {
-            size_t c = count[t][b];
-            count[t][b] = sum;
-            sum += c;
-        }
-        if (sum - before == n) return false;
+    for (size_t b = 0, place = 0, next; b < BUCKETS; b++, place = next) {
+        next = brio_counts_to_places(&count[0][b], BUCKETS, (size_t)threads, place);
+        if (next - place == n) return false;
     }
     return true;
 }
@@ -102,13 +97,8 @@ static void insert_items(uint64_t *items, size_t n) {
 /* Replaces each thread's counts by the places where the thread writes: all threads for one digit, then all for the next
  * digit. */
 static void first_places(size_t (*count)[ITEM_BUCKETS], int threads) {
-    size_t sum = 0;
-    for (int b = 0; b < ITEM_BUCKETS; b++)
-        for (int t = 0; t < threads; t++) {
-            size_t c = count[t][b];
-            count[t][b] = sum;
-            sum += c;
-        }
+    for (size_t b = 0, place = 0; b < ITEM_BUCKETS; b++)
+        place = brio_counts_to_places(&count[0][b], ITEM_BUCKETS, (size_t)threads, place);
 }
 
 /* What the threads of a sort of items share. */

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/vector.h"
-#include "order/nearest_points.h"
+#include "query/nearest_points.h"
 #include <string.h>
 
 enum { SAMPLES_A_THREAD = 512, CHUNK = 256 };

@@ -13,9 +13,11 @@
 #include "dual/pole_vectors.h"
 #include "base/memory.h"
 #include "base/team.h"
+#include "dual/farthest.h"
 #include "dual/position_order.h"
 #include "predicates/circumcentre.h"
 #include "predicates/double_double.h"
+#include "triangulation/view.h"
 #include <string.h>
 
 static double square(const double *x) {
@@ -52,8 +54,7 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
 
 /* --- which of two Voronoi vertices is farther --- */
 
-/* What the search for poles keeps beside its result. A pole on offer is a key: the upper half of the bits of the squared
- * distance over its tetrahedron, so that one look tells for most that they are nearer. */
+/* What the search for poles keeps beside its result: of each sample, the keys of farthest.h. */
 typedef struct {
     brio_pole_vectors *v;
     uint64_t *farther[2]; /* of each sample: the keys of the farther pole, and of that on its other side */
@@ -62,51 +63,23 @@ typedef struct {
 } search;
 
 /* AHEAD: tetrahedra between fetching and using. */
-enum { AHEAD = 8, TETRAHEDRA_A_THREAD = 1 << 11, BATCHES_A_THREAD = TETRAHEDRA_A_THREAD / BRIO_CENTRES };
+enum { AHEAD = 8, TETRAHEDRA_A_THREAD = 1 << 11, BATCHES_A_THREAD = TETRAHEDRA_A_THREAD / BRIO_CENTRE_BATCH };
 enum { SAMPLES_A_THREAD = 1 << 12 };
 
 static const double ROUGH = 0x1p-30 + 0x1p-50;
-static const uint64_t NO_KEY = BRIO_INFINITE, HULL_KEY = (uint64_t)UINT32_MAX << 32;
 
-static inline uint64_t key_of(double square, uint32_t tet) {
-    uint64_t bits;
-    memcpy(&bits, &square, sizeof bits);
-    return (bits & HULL_KEY) | tet;
-}
-
-/* A quick look, which most keys do not pass. Relaxed: the look reads nothing but the key, and a pole is only ever
- * replaced by a farther one, so what is nearer than an old key is nearer than the present one. */
-static inline bool may_be_farther(uint64_t key, const uint64_t *pole) {
-    return key >> 32 >= __atomic_load_n(pole, __ATOMIC_RELAXED) >> 32;
-}
-
-/* Whether a key is that of a farther Voronoi vertex than another. */
-static inline bool is_farther(const search *s, uint64_t key, uint64_t than) {
-    if (key >> 32 != than >> 32) return key >> 32 > than >> 32;
-    if (than == NO_KEY) return true;
-    const double *a = s->v->centre + 4 * (size_t)(uint32_t)key, *b = s->v->centre + 4 * (size_t)(uint32_t)than;
+static bool is_farther(const void *user, uint32_t tet, uint32_t than, uint32_t sample) {
+    const brio_pole_vectors *v = user;
+    const double *a = v->centre + 4 * (size_t)tet, *b = v->centre + 4 * (size_t)than;
+    (void)sample; /* distances are kept with the centres */
     if (a[3] != b[3]) return a[3] > b[3];
     int sign = brio_lexicographic(a, b);
-    const brio_tetrahedron *tet = s->v->t.tet;
-    if (sign == 0) sign = brio_compare_corners(s->v->points, tet + (uint32_t)key, tet + (uint32_t)than);
+    if (sign == 0) sign = brio_compare_corners(v->points, v->t.tet + tet, v->t.tet + than);
     return sign > 0;
 }
 
-/* Makes a tetrahedron a pole unless there is a farther one. Threads may offer at once: the farthest one wins, whoever
- * comes first.
- *
- * is_farther reads the centre of the present pole, which another thread may have written in the same run: find_poles
- * writes a centre and then offers its key. The release of the exchange that puts a key there pairs with the acquire of
- * the load, and with that of an exchange that fails, here: whoever reads a key sees the centre. */
 static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uint64_t key) {
-    uint64_t now = __atomic_load_n(pole, __ATOMIC_ACQUIRE);
-    while (is_farther(s, key, now)) {
-        if (s->threads == 1) {
-            *pole = key;
-            return;
-        }
-        if (__atomic_compare_exchange_n(pole, &now, key, true, __ATOMIC_RELEASE, __ATOMIC_ACQUIRE)) return;
-    }
+    brio_offer_farthest(pole, key, s->threads == 1, is_farther, s->v, 0);
 }
 
 /* --- the passes --- */
@@ -116,8 +89,8 @@ static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uin
 static void offer_hull_facet(search *s, size_t p, size_t tet) {
     const brio_tetrahedron *t = s->v->t.tet;
     uint64_t now = s->farther[0][p];
-    if (now == NO_KEY || brio_compare_hull_facets(s->v->points, t + tet, t + (uint32_t)now) > 0)
-        s->farther[0][p] = HULL_KEY | tet;
+    if (now == BRIO_NO_FARTHEST || brio_compare_hull_facets(s->v->points, t + tet, t + brio_farthest_tet(now)) > 0)
+        s->farther[0][p] = BRIO_ENDLESS | tet;
 }
 
 /* Normals are added as multiples of 2^-36, which is exact for up to 2^17 of them, so that the order is of no
@@ -137,37 +110,32 @@ static void find_hull_vectors(search *s) {
     }
 }
 
-/* The centres of the tetrahedra from `first` on, up to BRIO_CENTRES of them. */
+/* The centres of the tetrahedra from `first` on, up to BRIO_CENTRE_BATCH of them. */
 static size_t find_centres(const brio_pole_vectors *v, size_t first) {
-    const double *p[BRIO_CENTRES][4];
-    brio_rough_centre centre[BRIO_CENTRES];
-    size_t count = v->num_finite - first < BRIO_CENTRES ? v->num_finite - first : BRIO_CENTRES;
-    for (size_t n = 0; n < BRIO_CENTRES; n++)
-        for (int i = 0; i < 4; i++) p[n][i] = v->points + 3 * (size_t)v->t.tet[first + (n < count ? n : 0)].vertex[i];
-    brio_rough_centres((const double *const(*)[4])p, centre);
-    for (size_t n = 0; n < count; n++) {
-        memcpy(v->centre + 4 * (first + n), centre[n].at, sizeof centre[n].at);
-        v->centre[4 * (first + n) + 3] = centre[n].square;
-    }
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    size_t left = v->num_finite - first, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
+    for (size_t n = 0; n < count; n++) memcpy(vertex[n], v->t.tet[first + n].vertex, sizeof *vertex);
+    brio_rough_centres(&(brio_centre_batch){v->points, NULL, (const uint32_t(*)[4])vertex, count},
+                       v->centre + 4 * first);
     return count;
 }
 
-/* Computes the centres of the batches [from, to) of BRIO_CENTRES tetrahedra and offers them. */
+/* Computes the centres of the batches [from, to) of BRIO_CENTRE_BATCH tetrahedra and offers them. */
 static void find_poles(void *user, size_t from, size_t to, int thread) {
     const search *s = user;
     const brio_pole_vectors *v = s->v;
     uint64_t *farther = s->farther[0];
     (void)thread;
-    for (size_t first = from * BRIO_CENTRES; first < to * BRIO_CENTRES && first < v->num_finite;
-         first += BRIO_CENTRES) {
+    for (size_t first = from * BRIO_CENTRE_BATCH; first < to * BRIO_CENTRE_BATCH && first < v->num_finite;
+         first += BRIO_CENTRE_BATCH) {
         size_t end = first + find_centres(v, first);
         for (size_t tet = first; tet < end; tet++) {
             uint32_t vertex[4];
-            uint64_t key = key_of(v->centre[4 * tet + 3], (uint32_t)tet);
+            uint64_t key = brio_farthest_key(v->centre[4 * tet + 3], (uint32_t)tet);
             if (isnan(v->centre[4 * tet + 3])) continue;
             memcpy(vertex, v->t.tet[tet].vertex, sizeof vertex);
             for (int i = 0; i < 4; i++)
-                if (may_be_farther(key, farther + vertex[i])) offer(s, farther + vertex[i], key);
+                if (brio_may_be_farthest(key, farther + vertex[i])) offer(s, farther + vertex[i], key);
         }
     }
 }
@@ -177,7 +145,7 @@ static void find_planes(void *user, size_t begin, size_t end, int thread) {
     const brio_pole_vectors *v = s->v;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        uint32_t pole = (uint32_t)s->farther[0][p];
+        uint32_t pole = brio_farthest_tet(s->farther[0][p]);
         double *plane = v->plane + 4 * p;
         const double *x = v->points + 3 * p;
         if (pole < v->num_finite) brio_towards_centre(v, pole, p, plane);
@@ -249,14 +217,14 @@ BRIO_INLINE uint32_t look_at_samples(const brio_pole_vectors *v, size_t tet, boo
 
 /* Offers a pole to a sample on whose other side it is. */
 BRIO_INLINE void offer_if(bool behind, const search *s, uint32_t p, uint64_t key) {
-    if (behind & may_be_farther(key, s->farther[1] + p)) offer(s, s->farther[1] + p, key);
+    if (behind & brio_may_be_farthest(key, s->farther[1] + p)) offer(s, s->farther[1] + p, key);
 }
 
 /* What a finite Voronoi vertex is to its samples, and offers it as the pole on their other side. Its distance is the same
  * from all, but for the error. */
 BRIO_INLINE uint16_t sides_of(const search *s, size_t tet, double sine) {
     uint32_t bits = look_at_samples(s->v, tet, true, sine);
-    uint64_t key = key_of(s->v->centre[4 * tet + 3], (uint32_t)tet);
+    uint64_t key = brio_farthest_key(s->v->centre[4 * tet + 3], (uint32_t)tet);
     const uint32_t *vertex = s->v->t.tet[tet].vertex;
     offer_if(bits >> 16 & 1, s, vertex[0], key);
     offer_if(bits >> 17 & 1, s, vertex[1], key);
@@ -293,7 +261,7 @@ BRIO_TARGET_FMA static void find_sides_wide(const search *s, size_t from, size_t
 static void find_sides(void *user, size_t from, size_t to, int thread) {
     const search *s = user;
     (void)thread;
-    if (dd_have_fma())
+    if (brio_have_fma())
         find_sides_wide(s, from, to, s->sine);
     else
         find_sides_plain(s, from, to, s->sine);
@@ -301,18 +269,18 @@ static void find_sides(void *user, size_t from, size_t to, int thread) {
 
 static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
     brio_status status = BRIO_OK;
-    size_t batches = (v->num_finite + BRIO_CENTRES - 1) / BRIO_CENTRES;
+    size_t batches = (v->num_finite + BRIO_CENTRE_BATCH - 1) / BRIO_CENTRE_BATCH;
     search s = {.v = v, .threads = brio_threads(ctx, batches, BATCHES_A_THREAD), .sine = sin(v->theta)};
     for (int side = 0; side < 2; side++) {
         BRIO_TRY(BRIO_ALLOC(ctx, s.farther[side], v->num_points));
-        for (size_t p = 0; p < v->num_points; p++) s.farther[side][p] = NO_KEY;
+        for (size_t p = 0; p < v->num_points; p++) s.farther[side][p] = BRIO_NO_FARTHEST;
     }
     find_hull_vectors(&s);
     brio_for(ctx, s.threads, batches, find_poles, &s);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
     brio_for(ctx, brio_threads(ctx, v->num_points, SAMPLES_A_THREAD), v->num_points, find_planes, &s);
     brio_for(ctx, s.threads, v->t.count, find_sides, &s);
-    for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = (uint32_t)s.farther[i % 2][i / 2];
+    for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = brio_farthest_tet(s.farther[i % 2][i / 2]);
 done:
     for (int side = 0; side < 2; side++) brio_release(ctx, s.farther[side]);
     return status;
@@ -327,10 +295,7 @@ brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *
                                .num_vertices = s->vertices,
                                .points = points,
                                .theta = theta};
-    /* the structure that insertion writes, for those who only read */
-    out->t = (brio_tetrahedra){.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(t),
-                               .count = s->tetrahedra + s->hull_facets,
-                               .infinite = BRIO_INFINITE};
+    out->t = brio_tetrahedra_of(t);
     BRIO_TRY(BRIO_ALLOC(ctx, out->centre, 4 * out->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->plane, 4 * num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, out->pole, 2 * num_points));

@@ -13,6 +13,7 @@
 #include "base/team.h"
 #include "base/vector.h"
 #include "dual/cell_shape.h"
+#include "dual/farthest.h"
 #include "dual/position_order.h"
 #include "order/hilbert.h"
 #include "predicates/circumcentre.h"
@@ -25,9 +26,10 @@ typedef struct {
     const brio_tetrahedron *tet;
     const double *points;
     size_t num_tets, num_samples;
-    double *centre;   /* of each tetrahedron; NaN where there is none */
-    uint32_t *best;   /* of each sample and side, a tetrahedron */
-    double *farthest; /* of each sample and side: no more than the squared distance of the best tetrahedron's centre */
+    double *centre;     /* of each tetrahedron; NaN where there is none */
+    uint32_t *best;     /* of each sample and side, a tetrahedron */
+    uint64_t *farthest; /* of each sample and side, while they are sought: the key of its best tetrahedron */
+    bool alone;         /* one thread offers */
 } finder;
 
 static const double *centre_of(const finder *f, uint32_t tet) {
@@ -43,7 +45,8 @@ static void find_centres(void *user, size_t begin, size_t end, int thread) {
         uint32_t vertex[BRIO_CENTRE_BATCH][4];
         size_t left = f->num_tets - tet, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
         for (size_t n = 0; n < count; n++) memcpy(vertex[n], f->tet[tet + n].vertex, sizeof *vertex);
-        brio_centres(&(brio_centre_batch){f->points, NULL, (const uint32_t(*)[4])vertex, count, f->centre + 3 * tet});
+        brio_centres(&(brio_centre_batch){f->points, NULL, (const uint32_t(*)[4])vertex, count}, f->centre + 3 * tet,
+                     NULL);
     }
 }
 
@@ -56,29 +59,11 @@ static int compare_tets(const finder *f, uint32_t s, uint32_t t) {
     return brio_compare_by_position(f->points, f->tet, f->centre, s, t);
 }
 
-static bool farther(const finder *f, uint32_t tet, double distance, uint32_t than, const double *sample) {
-    double other = brio_square_distance(centre_of(f, than), sample);
+static bool is_farther(const void *user, uint32_t tet, uint32_t than, uint32_t sample) {
+    const finder *f = user;
+    const double *s = f->points + 3 * (size_t)sample;
+    double distance = brio_square_distance(centre_of(f, tet), s), other = brio_square_distance(centre_of(f, than), s);
     return distance > other || (distance == other && compare_tets(f, tet, than) > 0);
-}
-
-static inline double farthest_so_far(const finder *f, size_t place) {
-    double distance;
-    __atomic_load(&f->farthest[place], &distance, __ATOMIC_RELAXED);
-    return distance;
-}
-
-/* Keeps the farther of the best tetrahedron so far and this one. Threads may leave the distance of a nearer one behind;
- * the best is only ever replaced by a farther one, so that is a bound still.
- *
- * Relaxed: the number of a tetrahedron leads to its centre, which was written in an earlier run. The distance stands for
- * itself: with an older best tetrahedron it is a bound as well. */
-static inline void offer(const finder *f, size_t place, uint32_t tet, double distance, const double *sample) {
-    uint32_t *best = &f->best[place], now = __atomic_load_n(best, __ATOMIC_RELAXED);
-    while (now == NO_TET || farther(f, tet, distance, now, sample))
-        if (__atomic_compare_exchange_n(best, &now, tet, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-            __atomic_store(&f->farthest[place], &distance, __ATOMIC_RELAXED);
-            return;
-        }
 }
 
 static bool opposite(const finder *f, uint32_t first, uint32_t tet, const double *s) {
@@ -103,10 +88,11 @@ static inline void offer_to_samples(const finder *f, size_t tet, size_t side) {
         size_t v = f->tet[tet].vertex[i];
         if (v >= f->num_samples) continue;
         const double *s = f->points + 3 * v;
-        double distance = brio_square_distance(f->centre + 3 * tet, s);
-        if (distance < farthest_so_far(f, 2 * v + side)) continue;
-        if (side == 1 && !opposite(f, f->best[2 * v], (uint32_t)tet, s)) continue;
-        offer(f, 2 * v + side, (uint32_t)tet, distance, s);
+        uint64_t key = brio_farthest_key(brio_square_distance(f->centre + 3 * tet, s), (uint32_t)tet);
+        uint64_t *place = &f->farthest[2 * v + side];
+        if (!brio_may_be_farthest(key, place)) continue;
+        if (side == 1 && !opposite(f, brio_farthest_tet(place[-1]), (uint32_t)tet, s)) continue;
+        brio_offer_farthest(place, key, f->alone, is_farther, f, (uint32_t)v);
     }
 }
 
@@ -260,6 +246,24 @@ done:
     return status;
 }
 
+/* Lets each tetrahedron offer its centre on both sides. */
+static brio_status find_best(brio_context *ctx, finder *f) {
+    brio_status status = BRIO_OK;
+    size_t places = 2 * f->num_samples;
+    int threads = brio_threads(ctx, f->num_tets, TETRAHEDRA_A_THREAD);
+    BRIO_TRY(BRIO_ALLOC(ctx, f->farthest, places));
+    for (size_t i = 0; i < places; i++) f->farthest[i] = BRIO_NO_FARTHEST;
+    f->alone = threads == 1;
+    brio_for(ctx, threads, f->num_tets, offer_as_farther, f);
+    brio_for(ctx, threads, f->num_tets, offer_on_other_side, f);
+    BRIO_TRY(BRIO_ALLOC(ctx, f->best, places));
+    for (size_t i = 0; i < places; i++) f->best[i] = brio_farthest_tet(f->farthest[i]);
+done:
+    brio_release(ctx, f->farthest);
+    f->farthest = NULL;
+    return status;
+}
+
 brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
                             const brio_pole_filter *filter, brio_poles *out) {
     brio_status status = BRIO_OK;
@@ -269,16 +273,9 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
                 .num_samples = num_samples};
     *out = (brio_poles){0};
     BRIO_TRY(BRIO_ALLOC(ctx, f.centre, 3 * f.num_tets));
-    BRIO_TRY(BRIO_ALLOC(ctx, f.best, 2 * num_samples));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f.farthest, 2 * num_samples));
-    for (size_t i = 0; i < 2 * num_samples; i++) f.best[i] = NO_TET;
     find_all_centres(ctx, &f);
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
-    int threads = brio_threads(ctx, f.num_tets, TETRAHEDRA_A_THREAD);
-    brio_for(ctx, threads, f.num_tets, offer_as_farther, &f);
-    brio_for(ctx, threads, f.num_tets, offer_on_other_side, &f);
-    brio_release(ctx, f.farthest);
-    f.farthest = NULL;
+    BRIO_TRY(find_best(ctx, &f));
     BRIO_TRY(look_at_shapes(ctx, &f, filter, out));
     BRIO_TRY(number_poles(ctx, &f, out));
     out->of_sample = f.best;
@@ -286,7 +283,6 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
 done:
     brio_release(ctx, f.centre);
     brio_release(ctx, f.best);
-    brio_release(ctx, f.farthest);
     if (status != BRIO_OK) brio_poles_free(ctx, out);
     return status;
 }

@@ -1,6 +1,7 @@
 /* The power diagram of polar balls: see power_diagram.h. */
 #include "dual/power_diagram.h"
 #include "base/vector.h"
+#include "triangulation/view.h"
 #include <math.h>
 
 double brio_ball_weight(const brio_poles *poles, uint32_t p, uint32_t q) {
@@ -11,16 +12,12 @@ double brio_ball_weight(const brio_poles *poles, uint32_t p, uint32_t q) {
 
 brio_power_diagram brio_power_diagram_of(const brio_poles *poles, const double *samples, size_t num_samples,
                                          const brio_triangulation *power) {
-    const brio_delaunay_stats *stats = brio_triangulation_stats(power);
     return (brio_power_diagram){
         .poles = poles,
         .samples = samples,
         .num_samples = num_samples,
-        /* code that builds triangulations has the same type for them, and changes them */
-        .power = {.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(power),
-                  .count = stats->tetrahedra + stats->hull_facets,
-                  .infinite = BRIO_INFINITE},
-        .num_finite = stats->tetrahedra,
+        .power = brio_tetrahedra_of(power),
+        .num_finite = brio_triangulation_stats(power)->tetrahedra,
         .representative = brio_triangulation_representatives(power),
     };
 }

@@ -164,12 +164,12 @@ brio_status brio_estimate_size(brio_context *ctx, const double *points, const do
     cloud c = {ctx, points, weights, num_points};
     tally far = {0}, near = {0};
     int threads = ctx->threads;
-    double to = ctx->progress_to;
-    ctx->threads = 1;                      /* enough for so few points */
-    ctx->progress_to = ctx->progress_from; /* the bar stands still */
+    const brio_bar bar = brio_progress_bar(ctx);
+    ctx->threads = 1;                   /* enough for so few points */
+    brio_progress_part(ctx, bar, 0, 0); /* the bar stands still */
     brio_status status = num_points <= ALL ? size_of_all(&c, size) : count_surroundings(&c, &far, &near);
     if (status == BRIO_OK && num_points > ALL) extrapolate(&c, &far, &near, size);
     ctx->threads = threads;
-    ctx->progress_to = to;
+    brio_progress_part(ctx, bar, 0, 1);
     return status;
 }

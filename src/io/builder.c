@@ -4,6 +4,7 @@
  * capacity counts against the memory limit. Messages count points, faces and tetrahedra from 0, and show indices of
  * vertices as they are in the file. */
 #include "io/builder.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include <inttypes.h>
 #include <math.h>
@@ -184,26 +185,6 @@ static brio_status check_indices(const brio_builder *b) {
     return BRIO_OK;
 }
 
-static bool finite_row(const double *p) {
-    return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
-}
-
-static brio_status check_finite(const brio_builder *b) {
-    const brio_mesh *m = b->mesh;
-    size_t count = 0, first = 0;
-    for (size_t i = m->num_vertices; i-- > 0;) {
-        if (finite_row(m->vertices + 3 * i)) continue;
-        first = i;
-        count++;
-    }
-    if (!count) return BRIO_OK;
-    const double *p = m->vertices + 3 * first;
-    int axis = !isfinite(p[0]) ? 0 : !isfinite(p[1]) ? 1 : 2;
-    return brio_fail(b->ctx, BRIO_ERR_NOT_FINITE,
-                     "%s: point %zu: %c is %s (%zu such point%s in all); points are counted from 0", b->name, first,
-                     "xyz"[axis], isnan(p[axis]) ? "NaN" : "infinite", count, count == 1 ? "" : "s");
-}
-
 static brio_status trim(brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_mesh *m = b->mesh;
@@ -234,7 +215,7 @@ brio_status brio_builder_finish(brio_builder *b) {
     brio_status status = BRIO_OK;
     BRIO_TRY(trim(b));
     BRIO_TRY(check_indices(b));
-    BRIO_TRY(check_finite(b));
+    BRIO_TRY(brio_refuse_not_finite(b->ctx, b->mesh->vertices, NULL, b->mesh->num_vertices, b->name));
 done:
     return status;
 }

@@ -3,7 +3,7 @@
 #define BRIO_IO_CCP4_H
 
 #include "io/stream.h"
-#include "surface/volume.h"
+#include "iso/volume.h"
 
 /** Reads a map of mode 0 (8-bit), 1 (16-bit), 2 (32-bit float) or 6 (unsigned 16-bit), in either byte order and any
  *  order of axes. The volume has the axes x, y, z and the unit of the cell.

@@ -3,7 +3,7 @@
 #define BRIO_IO_PDB_H
 
 #include "io/stream.h"
-#include "surface/density.h"
+#include "iso/density.h"
 
 /** Reads the atoms of the first model, each with the van der Waals radius of its element. Of alternate locations, reads
  *  those marked blank, A or 1. Leaves out water.

@@ -8,28 +8,18 @@
  * does not tell apart are sorted lexicographically. A cell of the curve is a set of positions, so the ranks are a function
  * of these. */
 #include "order/canonical_points.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "order/curve.h"
-#include <math.h>
 #include <string.h>
 
 enum { POINTS_A_THREAD = 1 << 12 };
 
-static bool is_finite(const double *p) {
-    return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
-}
-
 brio_status brio_refuse_points(brio_context *ctx, const double *points, size_t n) {
-    size_t first = n, bad = 0, k = 0;
     if (n >= UINT32_MAX - 16) return brio_fail(ctx, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
-    for (size_t i = 0; i < n; i++)
-        if (!is_finite(points + 3 * i) && bad++ == 0) first = i;
-    if (bad == 0) return BRIO_OK;
-    while (isfinite(points[3 * first + k])) k++;
-    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %c is %s (%zu such points in all)", first, "xyz"[k],
-                     isnan(points[3 * first + k]) ? "NaN" : "infinite", bad);
+    return brio_refuse_not_finite(ctx, points, NULL, n, NULL);
 }
 
 /* Turns the sorted items into indices, those with equal keys sorted by position. */

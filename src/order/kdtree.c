@@ -13,7 +13,7 @@
 #include "base/rng.h"
 #include "order/blocks.h"
 #include "order/cube.h"
-#include "order/halving.h"
+#include "base/halving.h"
 
 enum { STEP_BITS = 32, FEW_STEPS = 1 << 10, POINTS_A_PIECE = 1 << 13, SAMPLE = 31 };
 

@@ -11,6 +11,7 @@
  * A cell with many points is work for all threads in turns: in one turn the threads take a large cell each, pass over its
  * points once and finish its small cells; the large ones among its cells wait for the next turn. */
 #include "base/memory.h"
+#include "base/places.h"
 #include "base/team.h"
 #include "order/blocks.h"
 #include "order/cube.h"
@@ -142,7 +143,6 @@ static uint32_t most_crowded(const grid *g, const size_t *stop) {
 
 /* Brings the points of each finest cell c together, which then end at stop[c]; false when all are in one. */
 static bool bring_cells_together(const octree *o, grid *g, size_t *stop) {
-    size_t sum = g->begin;
     memcpy(o->spare + g->begin, o->index + g->begin, (g->end - g->begin) * sizeof *o->index);
     brio_cube_new(&g->cube, g->points + 3 * (size_t)index_at(g, g->begin));
     add_to_cube(g, g->begin, g->end, &g->cube);
@@ -150,11 +150,7 @@ static bool bring_cells_together(const octree *o, grid *g, size_t *stop) {
     memset(stop, 0, cells_of(g) * sizeof *stop);
     count_cells(g, g->begin, g->end, stop);
     if (stop[cell_of(g, index_at(g, g->begin))] == g->end - g->begin) return false;
-    for (uint32_t c = 0; c < cells_of(g); c++) {
-        size_t points = stop[c];
-        stop[c] = sum;
-        sum += points;
-    }
+    brio_counts_to_places(stop, 1, cells_of(g), g->begin);
     place_in_cells(g, g->begin, g->end, stop, o->index);
     return true;
 }
@@ -237,14 +233,10 @@ static void visit_octants(void *user, size_t begin, size_t end, int thread) {
 
 /* The same as bring_cells_together for all points, by all threads. */
 static void bring_all_together(brio_context *ctx, root *r, int threads) {
-    size_t cells = cells_of(r->g), n = r->g->end, sum = 0;
+    size_t cells = cells_of(r->g), n = r->g->end;
     brio_for(ctx, threads, n, count_part, r);
-    for (size_t c = 0; c < cells; c++)
-        for (int t = 0; t < threads; t++) {
-            size_t points = r->place[cells * (size_t)t + c];
-            r->place[cells * (size_t)t + c] = sum;
-            sum += points;
-        }
+    for (size_t c = 0, place = 0; c < cells; c++)
+        place = brio_counts_to_places(r->place + c, cells, (size_t)threads, place);
     brio_for(ctx, threads, n, place_part, r);
     r->stop = r->place + cells * (size_t)(threads - 1);
 }

@@ -8,6 +8,7 @@
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 5.3. */
 #include "order/rounds.h"
 #include "base/memory.h"
+#include "base/places.h"
 #include "base/rng.h"
 #include "base/team.h"
 
@@ -32,16 +33,9 @@ static inline int rounds_before_last(uint64_t hash, const uint64_t least[BRIO_MO
 
 /* Turns each thread's counts into where it writes, the first round first. */
 static void first_places(size_t (*place)[BRIO_MOST_ROUNDS], int threads, brio_round_ends *rounds) {
-    size_t sum = 0;
-    for (int r = 0; r < rounds->count; r++) {
-        int back = rounds->count - 1 - r;
-        for (int t = 0; t < threads; t++) {
-            size_t count = place[t][back];
-            place[t][back] = sum;
-            sum += count;
-        }
-        rounds->end[r] = sum;
-    }
+    for (int r = 0; r < rounds->count; r++)
+        rounds->end[r] = brio_counts_to_places(&place[0][rounds->count - 1 - r], BRIO_MOST_ROUNDS, (size_t)threads,
+                                               r > 0 ? rounds->end[r - 1] : 0);
 }
 
 /* A division in the making. */

@@ -1,20 +1,38 @@
 /* Centres side by side in the lanes of vector registers; included by one source file an instruction set, after the
  * operations on its lanes.
  *
- * The operations are those of circumcentre.c one by one, so that the bits are the same: first in doubles, then what
- * these leave uncertain in double-doubles, LANES of a batch together each time. What is still uncertain, or too large
- * or small for this, is left to circumcentre.c. */
-#include "predicates/centre_bounds.h"
+ * With the points sorted lexicographically and taken relative to the first, b, c, d, and with their lifts l = |p|^2
+ * less the difference of weights, the centre is
+ *     a + (l_b c x d + l_c d x b + l_d b x c) / (2 det [b, c, d]).
+ * Numerators and determinant carry an error of a few units in the last place of their permanents. Where that leaves
+ * the quotient less certain than the goal, the same formula is evaluated in pairs of doubles. LANES tetrahedra of a batch
+ * are solved together each time. What is still uncertain, or too large or small, is left to circumcentre.c.
+ *
+ * The operations are the same for every instruction set, one by one, and so are the bits: nothing is fused but the error
+ * of a product, which is exact. */
 #include "predicates/circumcentre.h"
+#include "predicates/lane_pairs.h"
 
-/* Four points a lane, the lexicographically first one in front. Lengths are in a unit, a power of two, in which the
- * differences to the first point are at most 1. */
+/* First-order error of each expression, relative to its permanent: at most 20 roundings along a path; pairs 80 u^2. */
+static const double DOUBLE_BOUND = 20 * 0x1p-53, PAIR_BOUND = 0x1p-99;
+
+/* Above all that underflow can cost, and what covers the rounding of a bound. */
+static const double TINY = 0x1p-900, ROUNDED = 1 + 0x1p-50;
+
+/* Four points a lane, the lexicographically first one in front. */
 typedef struct {
     lanes at[4][3], weight[4];
+} four_points;
+
+/* The same with lengths in a unit, a power of two, in which the differences to the first point are at most 1. */
+typedef struct {
+    four_points p;
     lanes r[3][3], more[3]; /* differences to the first point */
     lanes first[3], unit;   /* in the caller's lengths */
     lane_mask ordinary;     /* the unit is neither too large nor too small */
-} four_points;
+} scaled_points;
+
+/* --- points --- */
 
 /* Swaps the points i and j in the lanes where i is lexicographically greater. */
 static inline void order_two(four_points *p, int i, int j, const bool weighted) {
@@ -32,24 +50,6 @@ static inline void order_two(four_points *p, int i, int j, const bool weighted) 
     p->weight[i] = low;
 }
 
-static inline void scale_points(four_points *p, const bool weighted) {
-    lanes most = all(0);
-    for (int i = 1; i < 4; i++)
-        for (int k = 0; k < 3; k++) most = maximum(most, magnitude(p->at[i][k] * all(0.5) - p->at[0][k] * all(0.5)));
-    p->unit = all(4) * leading_power(most);
-    p->ordinary = both(greater(p->unit, all(0x1p-400)), greater(all(0x1p400), p->unit));
-    lanes scale = all(1) / p->unit;
-    for (int k = 0; k < 3; k++) p->first[k] = p->at[0][k];
-    for (int i = 0; i < 4; i++) {
-        for (int k = 0; k < 3; k++) p->at[i][k] *= scale;
-        if (weighted) p->weight[i] = p->weight[i] * scale * scale;
-    }
-    for (int i = 0; i < 3; i++) {
-        for (int k = 0; k < 3; k++) p->r[i][k] = p->at[i + 1][k] - p->at[0][k];
-        if (weighted) p->more[i] = p->weight[i + 1] - p->weight[0];
-    }
-}
-
 static inline void load_points(const brio_centre_batch *b, const uint8_t index[LANES], four_points *p,
                                const bool weighted) {
     for (int i = 0; i < 4; i++) {
@@ -65,152 +65,213 @@ static inline void load_points(const brio_centre_batch *b, const uint8_t index[L
     order_two(p, 0, 1, weighted), order_two(p, 2, 3, weighted);
     order_two(p, 0, 2, weighted), order_two(p, 1, 3, weighted);
     order_two(p, 1, 2, weighted);
-    scale_points(p, weighted);
 }
 
-/* Magnitudes of the numerators and the determinant with every term positive. */
+static inline void load_scaled(const brio_centre_batch *b, const uint8_t index[LANES], scaled_points *s,
+                               const bool weighted) {
+    four_points *p = &s->p;
+    lanes most = all(0);
+    load_points(b, index, p, weighted);
+    for (int i = 1; i < 4; i++)
+        for (int k = 0; k < 3; k++) most = maximum(most, magnitude(p->at[i][k] * all(0.5) - p->at[0][k] * all(0.5)));
+    s->unit = all(4) * leading_power(most);
+    s->ordinary = both(greater(s->unit, all(0x1p-400)), greater(all(0x1p400), s->unit));
+    lanes scale = all(1) / s->unit;
+    for (int k = 0; k < 3; k++) s->first[k] = p->at[0][k];
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) p->at[i][k] *= scale;
+        if (weighted) p->weight[i] = p->weight[i] * scale * scale;
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) s->r[i][k] = p->at[i + 1][k] - p->at[0][k];
+        if (weighted) s->more[i] = p->weight[i + 1] - p->weight[0];
+    }
+}
+
+/* --- the formula --- */
+
+/* Numerators and determinant; also their magnitudes with every term positive. */
 typedef struct {
     lanes numerator[3], determinant;
-} lane_permanents;
+} fraction;
 
-static inline void find_permanents(const four_points *p, lane_permanents *out, const bool weighted) {
-    const lanes(*r)[3] = (const lanes(*)[3])p->r;
+static inline lanes square_of(const lanes r[3]) {
+    return r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+}
+
+static inline void evaluate(const lanes r[3][3], const lanes lift[3], fraction *f) {
+    f->determinant = all(0);
+    for (int k = 0; k < 3; k++) f->numerator[k] = all(0);
+    for (int i = 0; i < 3; i++) {
+        const lanes *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
+        lanes x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
+        f->numerator[0] += lift[i] * x, f->numerator[1] += lift[i] * y, f->numerator[2] += lift[i] * z;
+        if (i == 0) f->determinant = r[0][0] * x + r[0][1] * y + r[0][2] * z;
+    }
+}
+
+static inline void find_permanents(const scaled_points *s, fraction *out, const bool weighted) {
+    const lanes(*r)[3] = (const lanes(*)[3])s->r;
     out->determinant = all(0);
     for (int k = 0; k < 3; k++) out->numerator[k] = all(0);
     for (int i = 0; i < 3; i++) {
         const lanes *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
         lanes x = magnitude(u[1] * v[2]) + magnitude(u[2] * v[1]), y = magnitude(u[2] * v[0]) + magnitude(u[0] * v[2]),
               z = magnitude(u[0] * v[1]) + magnitude(u[1] * v[0]);
-        lanes lift = r[i][0] * r[i][0] + r[i][1] * r[i][1] + r[i][2] * r[i][2];
-        if (weighted) lift += magnitude(p->more[i]);
+        lanes lift = square_of(r[i]);
+        if (weighted) lift += magnitude(s->more[i]);
         out->numerator[0] += lift * x, out->numerator[1] += lift * y, out->numerator[2] += lift * z;
         if (i == 0) out->determinant = magnitude(r[0][0]) * x + magnitude(r[0][1]) * y + magnitude(r[0][2]) * z;
     }
 }
 
+/* Stores the error bounds of the centres `at`, given those of the offsets in the unit. */
+static inline void store_errors(const scaled_points *s, const lanes at[3], lanes error, unsigned found,
+                                const uint8_t index[LANES], double *out) {
+    double bound[LANES];
+    lanes far = all(0);
+    for (int k = 0; k < 3; k++) far = maximum(far, magnitude(at[k]));
+    store_lanes(bound, error * s->unit + all(0x1p-53) * far);
+    for (int n = 0; n < LANES; n++)
+        if (found >> n & 1) out[index[n]] = bound[n];
+}
+
 /* Stores the centres whose error is within the goal; bits of the others. */
-static inline unsigned divide(const four_points *p, const lanes numerator[3], lanes determinant,
-                              const lane_permanents *permanent, double relative, const uint8_t index[LANES],
-                              double *centre) {
-    lanes bound = all(relative), tiny = all(0x1p-900), round = all(1 + 0x1p-50);
-    lanes slack = magnitude(determinant) - bound * permanent->determinant - tiny, inverse = all(1) / slack;
-    lanes share = bound * permanent->determinant * inverse * round + all(0x1p-52), most = all(0), error[3];
-    lane_mask sure = both(p->ordinary, greater(slack, all(0)));
+static inline unsigned divide(const scaled_points *s, const fraction *f, const fraction *permanent, double relative,
+                              const uint8_t index[LANES], const brio_centre_goal *goal) {
+    lanes bound = all(relative), tiny = all(TINY), round = all(ROUNDED), infinite = all(__builtin_inf());
+    lanes slack = magnitude(f->determinant) - bound * permanent->determinant - tiny, inverse = all(1) / slack;
+    lanes share = bound * permanent->determinant * inverse * round + all(0x1p-52), most = all(0), worst = all(0), at[3];
+    lane_mask finite = equal(slack, slack);
     double out[3][LANES];
     for (int k = 0; k < 3; k++) {
-        lanes offset = all(0.5) * (numerator[k] / determinant), size = magnitude(offset);
-        error[k] = all(0.5) * (bound * permanent->numerator[k] + tiny) * inverse * round + size * share;
+        lanes offset = all(0.5) * (f->numerator[k] / f->determinant), size = magnitude(offset);
+        lanes error = all(0.5) * (bound * permanent->numerator[k] + tiny) * inverse * round + size * share;
+        worst = maximum(worst, error);
         most = maximum(most, size);
-        lanes x = p->first[k] + offset * p->unit;
-        sure = both(sure, greater(all(__builtin_inf()), magnitude(x)));
-        store_lanes(out[k], x);
+        at[k] = s->first[k] + offset * s->unit;
+        finite = both(finite, greater(infinite, magnitude(at[k])));
     }
-    lanes goal = all(BRIO_FINE_GOAL) * most;
-    for (int k = 0; k < 3; k++) sure = both(sure, either(greater(goal, error[k]), equal(goal, error[k])));
-    unsigned found = bits_of(sure);
+    lanes least = all(goal->relative) * most;
+    lane_mask within = both(either(greater(least, worst), equal(least, worst)), greater(infinite, most));
+    unsigned found = bits_of(both(both(s->ordinary, greater(slack, all(0))), within));
+    store_lanes(out[0], choose(finite, at[0], all(__builtin_nan(""))));
+    store_lanes(out[1], at[1]);
+    store_lanes(out[2], at[2]);
     for (int n = 0; n < LANES; n++)
-        for (int k = 0; k < 3 && found >> n & 1; k++) centre[3 * index[n] + k] = out[k][n];
+        for (size_t k = 0; k < 3 && found >> n & 1; k++) goal->centre[goal->stride * index[n] + k] = out[k][n];
+    if (goal->error) store_errors(s, at, worst, found, index, goal->error);
     return ~found & ((1u << LANES) - 1);
 }
 
-static inline unsigned solve_doubles(const brio_centre_batch *b, const uint8_t index[LANES], const bool weighted) {
-    four_points p;
-    lane_permanents permanent;
-    lanes numerator[3] = {all(0), all(0), all(0)}, determinant = all(0);
-    load_points(b, index, &p, weighted);
-    find_permanents(&p, &permanent, weighted);
+static inline unsigned solve_doubles(const brio_centre_batch *b, const uint8_t index[LANES],
+                                     const brio_centre_goal *goal, const bool weighted) {
+    scaled_points s;
+    fraction permanent, f;
+    lanes lift[3];
+    load_scaled(b, index, &s, weighted);
+    find_permanents(&s, &permanent, weighted);
     for (int i = 0; i < 3; i++) {
-        const lanes(*r)[3] = (const lanes(*)[3])p.r;
-        const lanes *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
-        lanes lift = r[i][0] * r[i][0] + r[i][1] * r[i][1] + r[i][2] * r[i][2];
-        if (weighted) lift -= p.more[i];
-        lanes x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2], z = u[0] * v[1] - u[1] * v[0];
-        numerator[0] += lift * x, numerator[1] += lift * y, numerator[2] += lift * z;
-        if (i == 0) determinant = r[0][0] * x + r[0][1] * y + r[0][2] * z;
+        lift[i] = square_of(s.r[i]);
+        if (weighted) lift[i] -= s.more[i];
     }
-    return divide(&p, numerator, determinant, &permanent, BRIO_DOUBLE_BOUND, index, b->centre);
+    evaluate((const lanes(*)[3])s.r, lift, &f);
+    return divide(&s, &f, &permanent, DOUBLE_BOUND, index, goal);
 }
 
-/* --- double-doubles in lanes: double_double.h --- */
-
-typedef struct {
-    lanes hi, lo;
-} wide;
-
-static inline wide wide_difference(lanes a, lanes b) {
-    lanes s = a - b, t = s - a;
-    return (wide){s, (a - (s - t)) + (-b - t)};
-}
-static inline wide wide_fast_sum(lanes a, lanes b) {
-    lanes s = a + b;
-    return (wide){s, b - (s - a)};
-}
-static inline wide wide_multiply(wide x, wide y) {
-    lanes p = x.hi * y.hi;
-    return wide_fast_sum(p, multiply_subtract(x.hi, y.hi, p) + (x.hi * y.lo + x.lo * y.hi));
-}
-static inline wide wide_add(wide x, wide y) {
-    lanes s = x.hi + y.hi, t = s - x.hi;
-    return wide_fast_sum(s, ((x.hi - (s - t)) + (y.hi - t)) + (x.lo + y.lo));
-}
-static inline wide wide_subtract(wide x, wide y) {
-    return wide_add(x, (wide){-y.hi, -y.lo});
-}
-/* x y - z w. */
-static inline wide wide_minor(wide x, wide y, wide z, wide w) {
-    return wide_subtract(wide_multiply(x, y), wide_multiply(z, w));
-}
-
-static inline unsigned solve_wide(const brio_centre_batch *b, const uint8_t index[LANES], const bool weighted) {
-    four_points p;
-    lane_permanents permanent;
-    wide r[3][3], numerator[3], determinant = {all(0), all(0)};
-    load_points(b, index, &p, weighted);
-    find_permanents(&p, &permanent, weighted);
+static inline unsigned solve_pairs(const brio_centre_batch *b, const uint8_t index[LANES], const brio_centre_goal *goal,
+                                   const bool weighted) {
+    scaled_points s;
+    fraction permanent;
+    lane_pair r[3][3], numerator[3], determinant = {all(0), all(0)};
+    load_scaled(b, index, &s, weighted);
+    find_permanents(&s, &permanent, weighted);
     for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) r[i][k] = wide_difference(p.at[i + 1][k], p.at[0][k]);
+        for (int k = 0; k < 3; k++) r[i][k] = pair_difference(s.p.at[i + 1][k], s.p.at[0][k]);
     for (int k = 0; k < 3; k++) numerator[k] = determinant;
     for (int i = 0; i < 3; i++) {
-        const wide *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
-        wide lift = wide_add(wide_add(wide_multiply(r[i][0], r[i][0]), wide_multiply(r[i][1], r[i][1])),
-                             wide_multiply(r[i][2], r[i][2]));
-        if (weighted) lift = wide_subtract(lift, wide_difference(p.weight[i + 1], p.weight[0]));
+        const lane_pair *u = r[(i + 1) % 3], *v = r[(i + 2) % 3];
+        lane_pair lift = pair_add(pair_add(pair_multiply(r[i][0], r[i][0]), pair_multiply(r[i][1], r[i][1])),
+                                  pair_multiply(r[i][2], r[i][2]));
+        if (weighted) lift = pair_subtract(lift, pair_difference(s.p.weight[i + 1], s.p.weight[0]));
         for (int k = 0; k < 3; k++) {
             int m = (k + 1) % 3, n = (k + 2) % 3;
-            wide cross = wide_minor(u[m], v[n], u[n], v[m]);
-            numerator[k] = wide_add(numerator[k], wide_multiply(lift, cross));
-            if (i == 0) determinant = wide_add(determinant, wide_multiply(r[0][k], cross));
+            lane_pair cross = pair_subtract(pair_multiply(u[m], v[n]), pair_multiply(u[n], v[m]));
+            numerator[k] = pair_add(numerator[k], pair_multiply(lift, cross));
+            if (i == 0) determinant = pair_add(determinant, pair_multiply(r[0][k], cross));
         }
     }
-    lanes high[3] = {numerator[0].hi, numerator[1].hi, numerator[2].hi};
-    return divide(&p, high, determinant.hi, &permanent, BRIO_DD_BOUND, index, b->centre);
+    fraction high = {{numerator[0].hi, numerator[1].hi, numerator[2].hi}, determinant.hi};
+    return divide(&s, &high, &permanent, PAIR_BOUND, index, goal);
+}
+
+/* In doubles, unscaled and without weights, with the permanents bounded by the largest difference in each coordinate.
+ * Stores the centre and its squared distance from the points. */
+static inline unsigned solve_roughly(const brio_centre_batch *b, const uint8_t index[LANES],
+                                     const brio_centre_goal *goal, const bool weighted) {
+    four_points p;
+    fraction f;
+    lanes r[3][3], lift[3], size[3] = {all(0), all(0), all(0)}, offset[3], worst = all(0), far = all(0);
+    load_points(b, index, &p, weighted);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            r[i][k] = p.at[i + 1][k] - p.at[0][k];
+            size[k] = maximum(magnitude(r[i][k]), size[k]);
+        }
+        lift[i] = square_of(r[i]);
+    }
+    evaluate((const lanes(*)[3])r, lift, &f);
+    lanes permanent = all(6) * size[0] * size[1] * size[2], bound = all(DOUBLE_BOUND), lifts = lift[0] + lift[1];
+    lanes slack = magnitude(f.determinant) - (bound * permanent + all(TINY)), inverse = all(1) / slack;
+    lanes share = bound * permanent * inverse * all(ROUNDED) + all(0x1p-52);
+    lifts += lift[2];
+    for (int k = 0; k < 3; k++) {
+        lanes most = all(2) * lifts * size[(k + 1) % 3] * size[(k + 2) % 3];
+        offset[k] = all(0.5) * (f.numerator[k] / f.determinant);
+        lanes length = magnitude(offset[k]);
+        lanes error = all(0.5) * (bound * most + all(TINY)) * inverse * all(ROUNDED) + length * share;
+        worst = maximum(error, worst);
+        far = maximum(length, far);
+    }
+    lanes least = all(goal->relative) * far;
+    lane_mask within = both(either(greater(least, worst), equal(least, worst)), greater(all(0x1p900), far));
+    unsigned found = bits_of(both(greater(slack, all(0)), within));
+    double out[4][LANES];
+    for (int k = 0; k < 3; k++) store_lanes(out[k], p.at[0][k] + offset[k]);
+    store_lanes(out[3], square_of(offset));
+    for (int n = 0; n < LANES; n++)
+        for (size_t k = 0; k < 4 && found >> n & 1; k++) goal->centre[goal->stride * index[n] + k] = out[k][n];
+    return ~found & ((1u << LANES) - 1);
 }
 
 /* --- a batch --- */
 
-typedef unsigned (*solve_lanes)(const brio_centre_batch *b, const uint8_t index[LANES], const bool weighted);
+typedef unsigned (*solve_lanes)(const brio_centre_batch *b, const uint8_t index[LANES], const brio_centre_goal *goal,
+                                const bool weighted);
 
 /* Solves those of the batch whose bits are set, LANES at a time; bits of those without an answer. */
 static inline __attribute__((always_inline)) uint64_t solve_some(const brio_centre_batch *b, uint64_t some,
-                                                                 solve_lanes solve, const bool weighted) {
+                                                                 const brio_centre_goal *goal, solve_lanes solve,
+                                                                 const bool weighted) {
     uint64_t left = 0;
     while (some) {
         uint8_t index[LANES];
         int count = 0;
         for (; count < LANES && some; some &= some - 1) index[count++] = (uint8_t)__builtin_ctzll(some);
         for (int n = count; n < LANES; n++) index[n] = index[0];
-        for (unsigned open = solve(b, index, weighted); open; open &= open - 1)
+        for (unsigned open = solve(b, index, goal, weighted); open; open &= open - 1)
             left |= UINT64_C(1) << index[__builtin_ctz(open)];
     }
     return left;
 }
 
-static inline __attribute__((always_inline)) uint64_t find(const brio_centre_batch *b, const bool weighted) {
-    uint64_t every = b->count < 64 ? (UINT64_C(1) << b->count) - 1 : UINT64_MAX;
-    uint64_t left = solve_some(b, every, solve_doubles, weighted);
-    return solve_some(b, left, solve_wide, weighted);
+static uint64_t find(const brio_centre_batch *b, uint64_t some, const brio_centre_goal *goal) {
+    if (b->weights) return solve_some(b, solve_some(b, some, goal, solve_doubles, true), goal, solve_pairs, true);
+    return solve_some(b, solve_some(b, some, goal, solve_doubles, false), goal, solve_pairs, false);
 }
 
-uint64_t FIND_CENTRES(const brio_centre_batch *b) {
-    return b->weights ? find(b, true) : find(b, false);
+static uint64_t find_roughly(const brio_centre_batch *b, uint64_t some, const brio_centre_goal *goal) {
+    return solve_some(b, some, goal, solve_roughly, false);
 }
+
+const brio_centre_engine CENTRES = {find, find_roughly};

@@ -75,13 +75,13 @@ BRIO_TARGET_FMA static int insphere_fma(const double *a, const double *b, const 
 
 int brio_orient3d_double_double(const double *a, const double *b, const double *c, const double *d, double permanent,
                                 double floor) {
-    if (dd_have_fma()) return orient3d_fma(a, b, c, d, permanent, floor);
+    if (brio_have_fma()) return orient3d_fma(a, b, c, d, permanent, floor);
     return orient3d(a, b, c, d, permanent, floor, false);
 }
 
 int brio_insphere_double_double(const double *a, const double *b, const double *c, const double *d, const double *e,
                                 bool weighted, double permanent, double floor) {
-    if (dd_have_fma()) return insphere_fma(a, b, c, d, e, weighted, permanent, floor);
+    if (brio_have_fma()) return insphere_fma(a, b, c, d, e, weighted, permanent, floor);
     return insphere(a, b, c, d, e, weighted, permanent, floor, false);
 }
 
@@ -104,6 +104,6 @@ BRIO_TARGET_FMA static int power_compare_fma(const double *x, const double *p, c
 }
 
 int brio_power_compare_double_double(const double *x, const double *p, const double *q, double magnitude) {
-    if (dd_have_fma()) return power_compare_fma(x, p, q, magnitude);
+    if (brio_have_fma()) return power_compare_fma(x, p, q, magnitude);
     return power_compare(x, p, q, magnitude, false);
 }

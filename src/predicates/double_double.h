@@ -13,9 +13,17 @@
 #ifndef BRIO_PREDICATES_DOUBLE_DOUBLE_H
 #define BRIO_PREDICATES_DOUBLE_DOUBLE_H
 
+#include "base/instruction_set.h"
 #include <stdbool.h>
 
 #define BRIO_INLINE static inline __attribute__((always_inline))
+
+/* Whether the target always multiplies and adds in one rounding. */
+#if defined(__FMA__) || defined(__aarch64__)
+#define DD_TARGET_HAS_FMA true
+#else
+#define DD_TARGET_HAS_FMA false
+#endif
 
 typedef struct {
     double hi, lo;
@@ -66,17 +74,6 @@ BRIO_INLINE brio_dd dd_minor(brio_dd x, brio_dd y, brio_dd z, brio_dd w, const b
 /* x + y + z. */
 BRIO_INLINE brio_dd dd_sum3(brio_dd x, brio_dd y, brio_dd z) {
     return dd_add(dd_add(x, y), z);
-}
-
-/* Whether this processor multiplies and adds in one rounding; a constant where the target always or never does. */
-BRIO_INLINE bool dd_have_fma(void) {
-#if defined(__FMA__) || defined(__aarch64__)
-    return true;
-#elif defined(__x86_64__)
-    return __builtin_cpu_supports("fma");
-#else
-    return false;
-#endif
 }
 
 #if defined(__x86_64__) && !defined(__FMA__)

@@ -5,6 +5,7 @@
  *   insphere   (16 + 224 u) u (his isperrboundA), and 17 with the one more subtraction of the weighted lift,
  * the permanent being the same expression with every term replaced by its magnitude. */
 #include "predicates/predicates.h"
+#include "predicates/span.h"
 
 static const double ORIENT_BOUND = 8 * 0x1p-53, INSPHERE_BOUND = 18 * 0x1p-53;
 
@@ -25,33 +26,20 @@ void brio_filter_set(brio_filter *f, const double extent[3], double weight_exten
     f->insphere_static = 1.001 * INSPHERE_BOUND * 24 * x * y * z * (x * x + y * y + z * z + w) + f->insphere_floor;
 }
 
-/* Exponent of the lowest bit of a number; zero has none. */
-static int lowest_bit(double x) {
-    int e;
-    double m = frexp(x, &e);
-    if (m == 0) return INT32_MAX;
-    return e - 53 + __builtin_ctzll((uint64_t)fabs(ldexp(m, 53)));
-}
-
-/* The powers of two between which differences lie: multiples of 2^low, below 2^high. */
-typedef struct {
-    int low, high;
-} span;
-
 /* Spans of the coordinates' differences and of the weights'. Gives up where coordinates are more than most_bits apart.
  */
 static void find_spans(const double (*record)[4], size_t n, const double extent[4], bool weighted, int most_bits,
-                       span *coordinates, span *weights) {
+                       brio_span *coordinates, brio_span *weights) {
     frexp(fmax(extent[0], fmax(extent[1], extent[2])), &coordinates->high);
     frexp(extent[3], &weights->high);
     coordinates->low = coordinates->high;
     weights->low = weights->high;
     for (size_t i = 0; i < n && coordinates->high - coordinates->low <= most_bits; i++) {
         for (int k = 0; k < 3; k++) {
-            int bit = lowest_bit(record[i][k]);
+            int bit = brio_span_of(record[i][k]).low;
             coordinates->low = bit < coordinates->low ? bit : coordinates->low;
         }
-        int bit = weighted ? lowest_bit(record[i][3]) : INT32_MAX;
+        int bit = weighted ? brio_span_of(record[i][3]).low : INT32_MAX;
         weights->low = bit < weights->low ? bit : weights->low;
     }
 }
@@ -66,16 +54,16 @@ static int least(int a, int b) {
 /* Whether the in-sphere determinant is exact in doubles: a lift is a multiple of the coordinates' unit squared and of
  * the weights', a sum of three squares and a weight; a minor has six products of three; four products of these are
  * summed. */
-static bool exact_in_doubles(span c, span w, bool weighted) {
+static bool exact_in_doubles(brio_span c, brio_span w, bool weighted) {
     int low = weighted ? least(2 * c.low, w.low) : 2 * c.low,
         high = weighted ? most(2 * c.high + 2, w.high) + 1 : 2 * c.high + 2;
     return (high - low) + 3 * (c.high - c.low) + 3 + 2 <= 53;
 }
 
 /* Whether coordinates fit 20 bits in a unit of which the weights are multiples of the square (integer.c). */
-static bool fits_integers(span c, span w, bool weighted) {
+static bool fits_integers(brio_span c, brio_span w, bool weighted) {
     int low = c.low;
-    if (weighted) low = least(low, w.low >= 0 ? w.low / 2 : -((1 - w.low) / 2));
+    if (weighted) low = least(low, brio_half_exponent(w.low));
     return c.high - low <= 20 && (!weighted || w.high - 2 * low <= 42);
 }
 
@@ -92,7 +80,7 @@ void brio_filter_for(brio_filter *f, const double (*record)[4], size_t n, bool w
     for (int c = 0; c < 4; c++) extent[c] = high[c] - low[c];
     brio_filter_set(f, extent, extent[3], weighted);
     if (f->orient_floor == INFINITY) return;
-    span coordinates, weights;
+    brio_span coordinates, weights;
     find_spans(record, n, extent, weighted, COARSE_BITS, &coordinates, &weights);
     bool ordinary = coordinates.low > -FAR && coordinates.high < FAR;
     if (weighted) ordinary &= weights.low > -2 * FAR && weights.high < 2 * FAR;

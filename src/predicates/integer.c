@@ -6,32 +6,12 @@
  * declined. */
 #include "predicates/predicates.h"
 #include "base/scale.h"
-#include <string.h>
+#include "predicates/span.h"
 
 typedef __int128 wide;
 typedef unsigned __int128 unsigned_wide;
 
 enum { NARROW_BITS = 20, WIDE_BITS = 41, DECLINED = 2 };
-
-/* Exponents of the lowest and just above the highest bit over a set of numbers; zeros do not count. */
-typedef struct {
-    int low, high;
-} span;
-
-static void span_add(span *s, double x) {
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    int exponent = (int)(bits >> 52 & 0x7ff);
-    uint64_t mantissa = bits & ((UINT64_C(1) << 52) - 1);
-    if (exponent == 0)
-        exponent = 1; /* subnormal, or zero */
-    else
-        mantissa |= UINT64_C(1) << 52;
-    if (!mantissa) return;
-    int low = exponent - 1075 + __builtin_ctzll(mantissa), high = exponent - 1075 + 64 - __builtin_clzll(mantissa);
-    s->low = low < s->low ? low : s->low;
-    s->high = high > s->high ? high : s->high;
-}
 
 /* a - b when that is exact. */
 static inline bool exact_difference(double a, double b, double *d) {
@@ -44,22 +24,22 @@ static inline bool exact_difference(double a, double b, double *d) {
 static bool grid_rows(const double *const *p, int count, const double *origin, bool weighted, int64_t (*row)[3],
                       wide *weight) {
     double d[4][3], w[4];
-    span s = {INT32_MAX, INT32_MIN};
+    brio_span s = BRIO_NO_SPAN;
     for (int i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
             if (!exact_difference(p[i][k], origin[k], &d[i][k])) return false;
-            span_add(&s, d[i][k]);
+            brio_span_add(&s, d[i][k]);
         }
     if (s.low == INT32_MAX) s.low = s.high = 0; /* all rows zero */
     int grid = s.low;
     if (weighted) { /* weights are in units of the grid's square */
-        span of_weights = {INT32_MAX, INT32_MIN};
+        brio_span of_weights = BRIO_NO_SPAN;
         for (int i = 0; i < count; i++) {
             if (!exact_difference(p[i][3], origin[3], &w[i])) return false;
-            span_add(&of_weights, w[i]);
+            brio_span_add(&of_weights, w[i]);
         }
         if (of_weights.low != INT32_MAX) {
-            int half = of_weights.low >= 0 ? of_weights.low / 2 : -((1 - of_weights.low) / 2);
+            int half = brio_half_exponent(of_weights.low);
             grid = half < grid ? half : grid;
             if (of_weights.high - 2 * grid > 2 * WIDE_BITS) return false;
         }

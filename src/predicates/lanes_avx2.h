@@ -26,6 +26,10 @@ static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {
 static inline lanes multiply_add(lanes x, lanes y, lanes z) {
     return _mm256_fmadd_pd(x, y, z);
 }
+/* x y - p, p the rounded product. */
+static inline lanes product_error(lanes x, lanes y, lanes p) {
+    return multiply_subtract(x, y, p);
+}
 static inline lane_mask greater(lanes x, lanes y) {
     return _mm256_cmp_pd(x, y, _CMP_GT_OQ);
 }

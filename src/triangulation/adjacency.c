@@ -4,6 +4,7 @@
  * sort in each bucket brings the two sides of a facet, or of a hull edge, next to each other. */
 #include "triangulation/adjacency.h"
 #include "base/memory.h"
+#include "base/places.h"
 #include "base/sort.h"
 #include <string.h>
 
@@ -38,17 +39,12 @@ static bool same_vertices(const brio_tetrahedra *t, uint32_t g, uint32_t h) {
 /* Sorts handles by their vertices. */
 static brio_status sort_handles(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, const uint32_t *handles,
                                 size_t n, uint32_t *sorted) {
-    uint64_t *end = NULL;
+    size_t *end = NULL;
     brio_status status = BRIO_ALLOC_ZERO(ctx, end, num_points + 1);
     if (status != BRIO_OK) return status;
     uint32_t v[3];
     for (size_t i = 0; i < n; i++) sorted_vertices(t, handles[i], v), end[v[0]]++;
-    uint64_t sum = 0;
-    for (size_t b = 0; b < num_points; b++) {
-        uint64_t c = end[b];
-        end[b] = sum;
-        sum += c;
-    }
+    brio_counts_to_places(end, 1, num_points, 0);
     for (size_t i = 0; i < n; i++) sorted_vertices(t, handles[i], v), sorted[end[v[0]]++] = handles[i];
     for (size_t b = 0, begin = 0; b < num_points; begin = end[b++])
         brio_sort_indices(sorted + begin, end[b] - begin, compare_handles, t);

@@ -10,6 +10,7 @@
  * The bounds are those of filter.c and of the pairs below: a permanent is at most 24 times (6 times for an orientation)
  * the product of the largest differences and the largest lift. Fused operations round less often than these bounds
  * allow for. */
+#include "predicates/lane_pairs.h"
 #include "triangulation/engine.h"
 
 enum { ALL_LANES = (1 << LANES) - 1 };
@@ -123,62 +124,43 @@ static inline lanes permanent(const corners *c, const rows *r, const bool weight
     return choose(r->infinite, all(6.01) * box, all(24.01) * box * largest(lift));
 }
 
-/* --- pairs of doubles in lanes ---
+/* --- pairs of doubles ---
  *
- * Double-doubles that are never normalised: the low part may grow, which so few operations can afford. Let P be the
- * permanent of an expression and u = 2^-53; every pair here has |lo| <= c u P and an error of at most e u^2 P, where
+ * Loose ones (lane_pairs.h): the low part may grow, which so few operations can afford. Let P be the permanent of an
+ * expression and u = 2^-53; every pair here has |lo| <= c u P and an error of at most e u^2 P, where
  *   difference  c = 1, e = 0;   product  c = c1 + c2 + 1, e = e1 + e2 + c1 c2 + c1 + 2 c2 + 2;
  *   sum         c = max(c1, c2) + 1, e = max(e1, e2) + 2 c,
- * which makes (4, 14) of a minor of two rows, (8, 60) of three, (5, 24) of a lift and (16, 210) of the determinant.
- *
- * Based on: Lange, Rump. Faithfully rounded floating-point computations. TOMS 2020 (pair arithmetic). */
+ * which makes (4, 14) of a minor of two rows, (8, 60) of three, (5, 24) of a lift and (16, 210) of the determinant. */
 
-typedef struct {
-    lanes hi, lo;
-} pair;
-
-static inline pair pair_difference(lanes a, lanes b) {
-    lanes s = a - b, t = s - a;
-    return (pair){s, (a - (s - t)) - (b + t)};
-}
-static inline pair pair_multiply(pair x, pair y) {
-    lanes p = x.hi * y.hi;
-    return (pair){p, multiply_add(x.lo, y.hi, multiply_add(x.hi, y.lo, multiply_subtract(x.hi, y.hi, p)))};
-}
-static inline pair pair_add(pair x, pair y) {
-    lanes s = x.hi + y.hi, t = s - x.hi;
-    return (pair){s, ((x.hi - (s - t)) + (y.hi - t)) + (x.lo + y.lo)};
-}
-static inline pair pair_subtract(pair x, pair y) {
-    pair s = pair_difference(x.hi, y.hi);
-    return (pair){s.hi, s.lo + (x.lo - y.lo)};
-}
 /* x y - z w. */
-static inline pair pair_minor(pair x, pair y, pair z, pair w) {
-    return pair_subtract(pair_multiply(x, y), pair_multiply(z, w));
+static inline lane_pair minor_of_pairs(lane_pair x, lane_pair y, lane_pair z, lane_pair w) {
+    return pair_subtract_loose(pair_multiply_loose(x, y), pair_multiply_loose(z, w));
 }
-static inline pair masked(pair x, lane_mask drop, double value) {
-    return (pair){choose(drop, all(value), x.hi), choose(drop, all(0), x.lo)};
+static inline lane_pair masked(lane_pair x, lane_mask drop, double value) {
+    return (lane_pair){choose(drop, all(value), x.hi), choose(drop, all(0), x.lo)};
 }
 
 static __attribute__((noinline)) lanes determinant_of_pairs(const corners *c, lane_mask infinite, bool weighted) {
-    pair x[4], y[4], z[4], l[4];
+    lane_pair x[4], y[4], z[4], l[4];
     for (int s = 0; s < 4; s++) {
         x[s] = pair_difference(c->v[s][0], c->e[0]), y[s] = pair_difference(c->v[s][1], c->e[1]);
         z[s] = pair_difference(c->v[s][2], c->e[2]);
-        l[s] = pair_add(pair_add(pair_multiply(x[s], x[s]), pair_multiply(y[s], y[s])), pair_multiply(z[s], z[s]));
-        if (weighted) l[s] = pair_subtract(l[s], pair_difference(c->v[s][3], c->e[3]));
+        l[s] = pair_add_loose(pair_add_loose(pair_multiply_loose(x[s], x[s]), pair_multiply_loose(y[s], y[s])),
+                              pair_multiply_loose(z[s], z[s]));
+        if (weighted) l[s] = pair_subtract_loose(l[s], pair_difference(c->v[s][3], c->e[3]));
     }
     x[3] = masked(x[3], infinite, 0), y[3] = masked(y[3], infinite, 0), z[3] = masked(z[3], infinite, 0);
     l[3] = masked(l[3], infinite, 1);
-    pair ab = pair_minor(x[0], y[1], x[1], y[0]), bc = pair_minor(x[1], y[2], x[2], y[1]);
-    pair cd = pair_minor(x[2], y[3], x[3], y[2]), da = pair_minor(x[3], y[0], x[0], y[3]);
-    pair ac = pair_minor(x[0], y[2], x[2], y[0]), bd = pair_minor(x[1], y[3], x[3], y[1]);
-    pair abc = pair_add(pair_minor(z[0], bc, z[1], ac), pair_multiply(z[2], ab));
-    pair bcd = pair_add(pair_minor(z[1], cd, z[2], bd), pair_multiply(z[3], bc));
-    pair cda = pair_add(pair_add(pair_multiply(z[2], da), pair_multiply(z[3], ac)), pair_multiply(z[0], cd));
-    pair dab = pair_add(pair_add(pair_multiply(z[3], ab), pair_multiply(z[0], bd)), pair_multiply(z[1], da));
-    pair det = pair_add(pair_minor(l[2], dab, l[3], abc), pair_minor(l[0], bcd, l[1], cda));
+    lane_pair ab = minor_of_pairs(x[0], y[1], x[1], y[0]), bc = minor_of_pairs(x[1], y[2], x[2], y[1]);
+    lane_pair cd = minor_of_pairs(x[2], y[3], x[3], y[2]), da = minor_of_pairs(x[3], y[0], x[0], y[3]);
+    lane_pair ac = minor_of_pairs(x[0], y[2], x[2], y[0]), bd = minor_of_pairs(x[1], y[3], x[3], y[1]);
+    lane_pair abc = pair_add_loose(minor_of_pairs(z[0], bc, z[1], ac), pair_multiply_loose(z[2], ab));
+    lane_pair bcd = pair_add_loose(minor_of_pairs(z[1], cd, z[2], bd), pair_multiply_loose(z[3], bc));
+    lane_pair cda = pair_add_loose(pair_add_loose(pair_multiply_loose(z[2], da), pair_multiply_loose(z[3], ac)),
+                                   pair_multiply_loose(z[0], cd));
+    lane_pair dab = pair_add_loose(pair_add_loose(pair_multiply_loose(z[3], ab), pair_multiply_loose(z[0], bd)),
+                                   pair_multiply_loose(z[1], da));
+    lane_pair det = pair_add_loose(minor_of_pairs(l[2], dab, l[3], abc), minor_of_pairs(l[0], bcd, l[1], cda));
     return det.hi + det.lo;
 }
 

@@ -1,5 +1,6 @@
-/* The inner loops without vector instructions, and the choice of the instruction set at run time. */
+/* The inner loops without vector instructions, and the versions by instruction set. */
 #include "triangulation/engine.h"
+#include "base/instruction_set.h"
 
 bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted) {
     const uint32_t *v = t->tet[tet].vertex;
@@ -26,10 +27,12 @@ static inline unsigned batch_in_conflict(const brio_tetrahedra *t, brio_filter *
 #include "triangulation/engine_body.h"
 
 const brio_engine *brio_engine_choose(bool weighted) {
+    static const brio_engine *const OF_SET[] = {
+        brio_engine_plain,
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-        return &brio_engine_avx512[weighted];
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return &brio_engine_avx2[weighted];
+        brio_engine_avx2,
+        brio_engine_avx512,
 #endif
-    return &brio_engine_plain[weighted];
+    };
+    return &OF_SET[brio_instructions()][weighted];
 }

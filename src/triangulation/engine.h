@@ -21,7 +21,7 @@ typedef struct {
                      uint64_t most_steps);
 } brio_engine;
 
-/** The fastest version that this processor runs. */
+/** The version for the instruction set in use. */
 const brio_engine *brio_engine_choose(bool weighted);
 
 /** The versions, without and with weights. */

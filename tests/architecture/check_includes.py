@@ -1,16 +1,16 @@
-"""check_includes.py ROOT: the shape of the house. Includes run downwards only, programs see the public header alone,
-and the library neither allocates, prints nor exits, but for the two files of src/base that do so for all."""
+"""check_includes.py ROOT: the shape of the house. Includes run along the arrows of arrows.txt only, which
+docs/architecture.md shows. Programs see the public header alone, and the library neither allocates, prints nor exits, but
+for the two files of src/base that do so for all.
+
+A line of arrows.txt: a room of src, and the rooms that its files may include, besides their own; a header stands for
+itself alone. The rooms that a line names stand above it, so that no arrows run in a circle."""
 
 import pathlib
 import re
 import sys
 
-LAYERS = ["base", "predicates", "order", "triangulation", "dual", "surface", "reconstruct"]
-MAY_SEE = {layer: set(LAYERS[:i + 1]) for i, layer in enumerate(LAYERS)} | {"io": {"base", "surface", "io"},
-                                                                   "estimate": {"base", "order", "estimate"}}
-# the rooms of src/reconstruct
-MAY_SEE_ROOM = {"labels": {"labels"}, "power_crust": {"labels", "power_crust"}, "cocone": {"cocone"}}
-LABEL = ("src", "reconstruct", "labels", "label.h")
+ARROWS = pathlib.Path(__file__).with_name("arrows.txt")
+PICTURE = "docs/architecture.md"
 PROGRAMS = ["cli", "examples", "bench"]
 SYSTEM_FILES = {"src/base/memory.c", "src/base/context.c"}
 FORBIDDEN = re.compile(r"(?<![\w.>])(malloc|calloc|realloc|reallocarray|aligned_alloc|posix_memalign|strn?dup|free"
@@ -28,20 +28,36 @@ def find_included(root, path, included):
     return ()
 
 
-def may_include(path_parts, included_parts):
+def room_of(parts):
+    """The room of a file below src: one folder, below reconstruct two."""
+    return "/".join(parts[1:3] if parts[1] == "reconstruct" else parts[1:2])
+
+
+def read_arrows(text):
+    """The rooms that each room may include; and complaints."""
+    arrows, wrong = {}, []
+    for line in text.splitlines():
+        room, _, seen = line.partition(":")
+        for other in seen.split():
+            if (other.rpartition("/")[0] if other.endswith(".h") else other) not in arrows:
+                wrong.append("arrows.txt: %s includes %s, which is not above it" % (room, other))
+        arrows[room] = {room, *seen.split()}
+    return arrows, wrong
+
+
+def may_include(arrows, path_parts, included_parts):
     if not included_parts or included_parts == ("include", "brio", "brio.h"):
         return True
-    if path_parts[0] == "src":
-        if path_parts[1] == included_parts[1] == "reconstruct":
-            return included_parts == LABEL or included_parts[2] in MAY_SEE_ROOM.get(path_parts[2], ())
-        return included_parts[0] == "src" and included_parts[1] in MAY_SEE.get(path_parts[1], ())
-    return included_parts[0] == path_parts[0]
+    if path_parts[0] != "src" or included_parts[0] != "src":
+        return included_parts[0] == path_parts[0]
+    seen = arrows.get(room_of(path_parts), ())
+    return room_of(included_parts) in seen or "/".join(included_parts[1:]) in seen
 
 
-def complaints(root, path):
+def complaints(root, arrows, path):
     text, name = path.read_text(encoding="utf-8"), path.relative_to(root)
     for match in INCLUDE.finditer(text):
-        if not may_include(name.parts, find_included(root, path, match.group(1))):
+        if not may_include(arrows, name.parts, find_included(root, path, match.group(1))):
             yield "%s:%d: must not include %s" % (name, text.count("\n", 0, match.start(1)) + 1, match.group(1))
     if name.parts[0] != "src" or name.as_posix() in SYSTEM_FILES:
         return
@@ -54,7 +70,11 @@ def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     files = [path for top in ["src", *PROGRAMS] for path in sorted((root / top).rglob("*"))
              if path.suffix in (".c", ".h", ".cpp")]
-    wrong = [line for path in files for line in complaints(root, path)]
+    table = ARROWS.read_text(encoding="utf-8")
+    arrows, wrong = read_arrows(table)
+    if "```\n" + table + "```\n" not in (root / PICTURE).read_text(encoding="utf-8"):
+        wrong.append("%s does not show the arrows of %s" % (PICTURE, ARROWS.name))
+    wrong += [line for path in files for line in complaints(root, arrows, path)]
     print("\n".join([*wrong, "%d files, %d complaints" % (len(files), len(wrong))]))
     return 1 if wrong or not files else 0
 

@@ -4,7 +4,7 @@
 #ifndef BRIO_TESTS_RANDOM_SURFACES_H
 #define BRIO_TESTS_RANDOM_SURFACES_H
 
-#include "surface/twins.h"
+#include "mesh/twins.h"
 #include "surfaces.h"
 #include <string.h>
 

@@ -4,7 +4,7 @@
 
 #include "base/rng.h"
 #include "harness.h"
-#include "surface/iso_surface.h"
+#include "iso/iso_surface.h"
 #include <math.h>
 
 /* A chain of tori, bent at random. */

@@ -1,6 +1,7 @@
 /* Circumcentres and orthocentres: known ones, every order of the points, and the error bound against exact residuals.
  * */
 #include "harness.h"
+#include "instruction_sets.h"
 #include "points.h"
 #include "predicates/circumcentre.h"
 #include <math.h>
@@ -84,41 +85,55 @@ static bool same_centre(const double *x, const double *y) {
     return (isnan(x[0]) && isnan(y[0])) || !memcmp(x, y, 3 * sizeof *x);
 }
 
-/* What a batch says of its first `count` tetrahedra, but for those in `left`. */
-static void check_batch(const brio_centre_batch *b, uint64_t left, const char *name) {
+/* Each centre of a batch against brio_circumcentre. */
+static void check_batch(const brio_centre_batch *b, const double *centre, int set) {
     for (size_t n = 0; n < b->count; n++) {
-        double r[4][4] = {{0}}, x[3] = {0, 0, 0};
+        const double *p[4];
+        double w[4] = {0}, x[3];
         for (int i = 0; i < 4; i++) {
-            size_t v = b->vertex[n][i];
-            memcpy(r[i], b->points + 3 * v, 3 * sizeof **r);
-            r[i][3] = b->weights ? b->weights[v] : 0;
+            p[i] = b->points + 3 * (size_t)b->vertex[n][i];
+            if (b->weights) w[i] = b->weights[b->vertex[n][i]];
         }
-        if (!brio_centre(r[0], r[1], r[2], r[3], b->weights != NULL, x, NULL)) x[0] = NAN;
-        EXPECT(left >> n & 1 || same_centre(x, b->centre + 3 * n), "%s: tetrahedron %zu: %g %g %g", name, n, x[0], x[1],
-               x[2]);
+        brio_status status = brio_circumcentre(p[0], p[1], p[2], p[3], b->weights ? w : NULL, x, NULL);
+        if (status != BRIO_OK) x[0] = NAN;
+        EXPECT(same_centre(x, centre + 3 * n), "%s: tetrahedron %zu: %g %g %g",
+               brio_instruction_set_name((brio_instruction_set)set), n, x[0], x[1], x[2]);
     }
 }
 
+static const brio_centre_engine *engine_of(int set) {
+#if defined(__x86_64__)
+    if (set == BRIO_AVX2) return &brio_centres_avx2;
+    if (set == BRIO_AVX512) return &brio_centres_avx512;
+#endif
+    return set == BRIO_PLAIN ? &brio_centres_plain : NULL;
+}
+
+/* Batches in the lanes of each set against single centres in plain lanes. */
 static void batches_have_the_bits_of_single_centres(void) {
     static double p[3 * ROWS], w[ROWS], centre[3 * BRIO_CENTRE_BATCH];
     uint32_t vertex[BRIO_CENTRE_BATCH][4];
     for (uint32_t i = 0; i < ROWS; i++) vertex[i / 4][i % 4] = i;
-    size_t left_over = 0, in_all = 0;
-    for (uint64_t trial = 0; trial < 1000; trial++) {
-        brio_centre_batch b = {p, trial / 2 % 2 ? w : NULL, (const uint32_t(*)[4])vertex, BRIO_CENTRE_BATCH, centre};
-        mixed_points(trial, p, w);
-        if (trial % 5 == 0) b.count = trial / 5 % BRIO_CENTRE_BATCH;
-        brio_centres(&b);
-        check_batch(&b, 0, "as chosen");
-#if defined(__x86_64__)
-        if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) continue;
-        uint64_t left = brio_centres_avx2(&b);
-        check_batch(&b, left, "AVX2");
-        EXPECT(b.count == BRIO_CENTRE_BATCH || !(left >> b.count));
-        left_over += (size_t)__builtin_popcountll(left), in_all += b.count;
-#endif
+    for (int set = BRIO_PLAIN; set < BRIO_INSTRUCTION_SETS; set++) {
+        size_t left_over = 0, in_all = 0;
+        if (!use_set(set)) continue;
+        for (uint64_t trial = 0; trial < 400; trial++) {
+            brio_centre_batch b = {p, trial / 2 % 2 ? w : NULL, (const uint32_t(*)[4])vertex, BRIO_CENTRE_BATCH};
+            mixed_points(trial, p, w);
+            if (trial % 5 == 0) b.count = trial / 5 % BRIO_CENTRE_BATCH;
+            uint64_t every = b.count < 64 ? (UINT64_C(1) << b.count) - 1 : UINT64_MAX;
+            uint64_t left = engine_of(set)->find(&b, every, &(brio_centre_goal){0x1p-44, centre, 3, NULL});
+            EXPECT(!(left & ~every));
+            left_over += (size_t)__builtin_popcountll(left), in_all += b.count;
+            brio_use_instructions((brio_instruction_set)set);
+            brio_centres(&b, centre, NULL);
+            brio_use_instructions(BRIO_PLAIN);
+            check_batch(&b, centre, set);
+        }
+        EXPECT(2 * left_over <= in_all, "%zu of %zu left over", left_over,
+               in_all); /* flat ones, tiny ones, huge ones */
     }
-    EXPECT(2 * left_over <= in_all, "%zu of %zu left over", left_over, in_all); /* flat ones, tiny ones, huge ones */
+    use_largest_set();
 }
 
 int main(void) {

@@ -1,7 +1,7 @@
 /* Iso-surfaces of Delaunay triangles: closed, manifold, and facets of the triangulation of their vertices, ties and
  * sheets that touch included. */
 #include "failing_allocator.h"
-#include "surface/iso_surface.h"
+#include "iso/iso_surface.h"
 #include "surfaces.h"
 #include <string.h>
 

@@ -2,10 +2,10 @@
  * sphere, torus, and a plate of genus 3. */
 #include "harness.h"
 #include "known_surfaces.h"
-#include "order/nearest_points.h"
+#include "query/nearest_points.h"
 #include "points.h"
 #include "reconstruct/labels/labeling.h"
-#include "surface/closest_point.h"
+#include "mesh/closest_point.h"
 
 enum { BOUNDING_POINTS = 8 };
 /* Inner and outer balls meet at less than a right angle up to r = 0.235 (lemma 38), and labels are right up to there. */

@@ -2,7 +2,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
-#include "surface/closest_point.h"
+#include "mesh/closest_point.h"
 
 /* Small inputs: one thread is faster. */
 static brio_context *new_small_context(void) {

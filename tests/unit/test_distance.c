@@ -1,7 +1,7 @@
 /* Nearest points against brute force, and distances between surfaces that are known. */
 #include "base/rng.h"
 #include "failing_allocator.h"
-#include "surface/closest_point.h"
+#include "mesh/closest_point.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,8 +1,8 @@
 /* Generated points: each kind is what it says, point i follows from seed and i; the scan and its truth. */
 #include "base/rng.h"
 #include "failing_allocator.h"
-#include "surface/iso_surface.h"
-#include "surface/sculpture.h"
+#include "iso/iso_surface.h"
+#include "testdata/sculpture.h"
 #include <math.h>
 #include <string.h>
 

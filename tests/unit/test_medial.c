@@ -6,7 +6,7 @@
 #include "points.h"
 #include "reconstruct/power_crust/ball_cover.h"
 #include "reconstruct/power_crust/labeled_poles.h"
-#include "surface/solid.h"
+#include "mesh/solid.h"
 
 static brio_mesh *shape_of(brio_context *ctx, const double *p, size_t n, const brio_power_shape_options *o) {
     brio_mesh *shape = NULL;

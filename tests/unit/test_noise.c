@@ -1,7 +1,7 @@
 /* Noise of samples: nearest points, how much noise is found, and the power crust of samples that were smoothed. */
 #include "failing_allocator.h"
 #include "harness.h"
-#include "order/nearest_points.h"
+#include "query/nearest_points.h"
 #include "points.h"
 #include "reconstruct/power_crust/sample_noise.h"
 

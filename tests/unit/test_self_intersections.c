@@ -2,7 +2,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
-#include "surface/triangles_cross.h"
+#include "mesh/triangles_cross.h"
 
 static brio_mesh *triangles(brio_context *ctx, const double *p, size_t n, const uint32_t *v, size_t faces) {
     brio_mesh *mesh;

@@ -10,6 +10,7 @@
  * Based on: Dey, Giesen. Detecting undersampling in surface reconstruction. SoCG 2001. */
 #include "reconstruct/cocone/boundary_samples.h"
 #include "base/memory.h"
+#include "base/places.h"
 #include "base/vector.h"
 #include <math.h>
 
@@ -132,11 +133,11 @@ static brio_status spread(detection *d) {
     size_t n = d->dual->num_points, size = 0;
     size_t *first = NULL;
     uint32_t *to = NULL, *queue = NULL;
-    BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, first, n + 2));
+    BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, first, n + 1));
     BRIO_TRY(BRIO_ALLOC(d->ctx, to, d->num_pairs));
     BRIO_TRY(BRIO_ALLOC(d->ctx, queue, n));
-    for (size_t i = 0; i < d->num_pairs; i++) first[d->pair[i].from + 2]++;
-    for (size_t p = 2; p < n + 2; p++) first[p] += first[p - 1];
+    for (size_t i = 0; i < d->num_pairs; i++) first[d->pair[i].from + 1]++;
+    brio_counts_to_places(first + 1, 1, n, 0); /* filling moves each place to the end of its list */
     for (size_t i = 0; i < d->num_pairs; i++) to[first[d->pair[i].from + 1]++] = d->pair[i].to;
     for (size_t p = 0; p < n; p++)
         if (d->interior[p]) queue[size++] = (uint32_t)p;

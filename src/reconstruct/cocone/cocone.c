@@ -143,7 +143,6 @@ brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_poin
     mesh = NULL;
 done:
     BRIO_GIVE(brio_cocone_stats, stats, &surface.stats);
-    ctx->progress_from = 0, ctx->progress_to = 1;
     brio_mesh_free(mesh);
     brio_cocone_surface_free(ctx, &surface);
     return status;

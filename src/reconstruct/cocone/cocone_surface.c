@@ -116,17 +116,18 @@ brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, si
     brio_status status = BRIO_OK;
     reconstruction r = {
         .ctx = ctx, .options = options, .points = points, .num_points = num_points, .out = out, .lap = brio_seconds()};
-    double from = ctx->progress_from, length = ctx->progress_to - from;
+    const brio_bar bar = brio_progress_bar(ctx);
     *out = (brio_cocone_surface){0};
-    ctx->progress_to = from + 0.5 * length;
+    brio_progress_part(ctx, bar, 0, 0.5);
     BRIO_TRY(triangulate(&r));
-    ctx->progress_from = from + 0.5 * length, ctx->progress_to = from + 0.65 * length;
+    brio_progress_part(ctx, bar, 0.5, 0.65);
     BRIO_TRY(find_candidates(&r));
-    ctx->progress_from = from + 0.65 * length, ctx->progress_to = from + 0.8 * length;
+    brio_progress_part(ctx, bar, 0.65, 0.8);
     BRIO_TRY(label(&r));
-    ctx->progress_from = from + 0.8 * length, ctx->progress_to = from + length;
+    brio_progress_part(ctx, bar, 0.8, 1);
     BRIO_TRY(extract(&r));
 done:
+    brio_progress_part(ctx, bar, 0, 1);
     release(&r);
     return status;
 }

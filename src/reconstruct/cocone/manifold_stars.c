@@ -15,7 +15,7 @@
 #include "base/team.h"
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
-#include "surface/edge_rings.h"
+#include "mesh/edge_rings.h"
 #include "triangulation/star.h"
 #include <stdlib.h>
 

@@ -96,13 +96,14 @@ done:
 static brio_status find_pieces(assembly *a) {
     brio_status status = BRIO_OK;
     size_t count = a->pieces.num_pieces;
+    const brio_bar bar = brio_progress_bar(a->ctx);
     for (size_t i = 0; i < count; i++) {
-        a->ctx->progress_from = (double)i / (double)count;
-        a->ctx->progress_to = (double)(i + 1) / (double)count;
+        brio_progress_part(a->ctx, bar, (double)i / (double)count, (double)(i + 1) / (double)count);
         BRIO_TRY(find_piece(a, (uint32_t)i));
     }
     a->out->stats.pieces = count;
 done:
+    brio_progress_part(a->ctx, bar, 0, 1);
     return status;
 }
 

@@ -4,7 +4,7 @@
  * surface). */
 #include "reconstruct/labels/label_solid.h"
 #include "base/team.h"
-#include "surface/solid.h"
+#include "mesh/solid.h"
 #include <math.h>
 
 /* STEP: poles between two calls of the progress callback. All chosen. */

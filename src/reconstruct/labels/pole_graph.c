@@ -11,6 +11,7 @@
  * not, and the two poles of a badly shaped cell may have the same label. */
 #include "reconstruct/labels/pole_graph.h"
 #include "base/memory.h"
+#include "base/places.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include <math.h>
@@ -93,11 +94,8 @@ static inline size_t count_up(const builder *b, size_t *count) {
 
 /* Sets first[p] to the sum of the counts before p, and count[p] to first[p]. */
 static void first_places(size_t *first, size_t *count, size_t n) {
-    first[0] = 0;
-    for (size_t p = 0; p < n; p++) {
-        first[p + 1] = first[p] + count[p];
-        count[p] = first[p];
-    }
+    first[n] = brio_counts_to_places(count, 1, n, 0);
+    memcpy(first, count, n * sizeof *first);
 }
 
 /* --- neighbours of lower number --- */

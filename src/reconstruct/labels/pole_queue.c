@@ -10,6 +10,12 @@
 #include "reconstruct/labels/pole_queue.h"
 #include "base/memory.h"
 
+#define HEAP_ITEM              uint64_t
+#define HEAP_ABOVE(a, b, user) ((a) > (b))
+#define HEAP_DOWN              entry_down
+#define HEAP_UP                entry_up
+#include "base/heap.h"
+
 brio_pole_queue brio_pole_queue_new(brio_context *ctx, uint32_t most) {
     return (brio_pole_queue){.ctx = ctx, .last = most};
 }
@@ -30,26 +36,6 @@ static int bucket_of(const brio_pole_queue *q, uint32_t priority) {
     return priority >= q->last ? 0 : 32 - __builtin_clz(priority ^ q->last);
 }
 
-/* --- the heap in bucket 0 --- */
-
-static void lift_last(uint64_t *heap, size_t size) {
-    uint64_t entry = heap[size - 1];
-    size_t i = size - 1;
-    for (; i > 0 && entry > heap[(i - 1) / 2]; i = (i - 1) / 2) heap[i] = heap[(i - 1) / 2];
-    heap[i] = entry;
-}
-
-static void drop_first(uint64_t *heap, size_t size) {
-    uint64_t last = heap[size - 1];
-    size_t i = 0;
-    for (size_t child; (child = 2 * i + 1) < size - 1; i = child) {
-        if (child + 1 < size - 1 && heap[child + 1] > heap[child]) child++;
-        if (last >= heap[child]) break;
-        heap[i] = heap[child];
-    }
-    heap[i] = last;
-}
-
 /* --- queue --- */
 
 static inline brio_status add(brio_pole_queue *q, uint64_t entry) {
@@ -58,7 +44,7 @@ static inline brio_status add(brio_pole_queue *q, uint64_t entry) {
     if (status != BRIO_OK) return status;
     q->bucket[b][q->size[b]++] = entry;
     q->filled |= UINT64_C(1) << b;
-    if (b == 0) lift_last(q->bucket[0], q->size[0]);
+    if (b == 0) entry_up(q->bucket[0], q->size[0] - 1, entry, NULL);
     return BRIO_OK;
 }
 
@@ -87,8 +73,11 @@ brio_status brio_pole_queue_pop(brio_pole_queue *q, uint32_t *pole, uint32_t *pr
     if (b > 0) BRIO_TRY(deal_out(q, b));
     *pole = pole_of(q->bucket[0][0]);
     *priority = priority_of(q->bucket[0][0]);
-    drop_first(q->bucket[0], q->size[0]--);
-    if (!q->size[0]) q->filled &= ~UINT64_C(1);
+    size_t left = --q->size[0];
+    if (left)
+        entry_down(q->bucket[0], 0, left, q->bucket[0][left], NULL);
+    else
+        q->filled &= ~UINT64_C(1);
 done:
     return status;
 }

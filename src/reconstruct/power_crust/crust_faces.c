@@ -18,7 +18,7 @@
 #include "base/team.h"
 #include "predicates/circumcentre.h"
 #include "reconstruct/labels/labeling.h"
-#include "surface/split_vertices.h"
+#include "mesh/split_vertices.h"
 #include "triangulation/ring.h"
 #include <math.h>
 #include <string.h>
@@ -65,7 +65,7 @@ static bool inner(const builder *b, uint32_t pole) {
  * the four poles. */
 static void find_positions(const builder *b, const uint32_t (*v)[4], size_t count, double *position) {
     const brio_poles *poles = b->d->poles;
-    brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count, position});
+    brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count}, position, NULL);
     for (size_t n = 0; n < count; n++, position += 3) {
         if (!isnan(position[0])) continue;
         for (int k = 0; k < 3; k++) {

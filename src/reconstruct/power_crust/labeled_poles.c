@@ -23,6 +23,7 @@
 enum { BOUNDING_POINTS = 8 };
 /* The sampling density that `sharp` stands for. Chosen. */
 static const double SHARP_DENSITY = 0.5;
+static const double TRIANGULATION_SHARE = 0.75; /* of the bar of the poles */
 
 brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *o, uint64_t seed,
                                  brio_pole_request *request) {
@@ -39,17 +40,10 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *o, 
                                    .filter = {.sampling_density = o->sampling_density, .both = o->sharp},
                                    .labeling = o->labeling,
                                    .noise = o->noise == BRIO_NOISE_AUTO && o->solid ? BRIO_NOISE_KEEP : o->noise,
-                                   .solid = o->solid,
-                                   .until = 1};
+                                   .solid = o->solid};
     if (o->sharp && o->sampling_density == 0) request->filter.sampling_density = SHARP_DENSITY;
 done:
     return status;
-}
-
-/* Gives the next stage a part of the progress bar, in proportion to its usual time. */
-static void stage(brio_context *ctx, const brio_pole_request *request, double from, double to) {
-    ctx->progress_from = request->until * from;
-    ctx->progress_to = request->until * to;
 }
 
 /* --- 1: samples and bounding points --- */
@@ -94,7 +88,6 @@ static brio_status reduce_noise(brio_labeled_poles *l, const brio_pole_request *
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     bool smooth = request->noise == BRIO_NOISE_SMOOTH;
-    stage(l->ctx, request, 0, 0.05);
     if (request->noise == BRIO_NOISE_AUTO) {
         BRIO_TRY(brio_noise_level(l->ctx, l->points, l->num_samples, &l->stats.noise));
         smooth = l->stats.noise > 0;
@@ -149,16 +142,17 @@ static brio_status find_poles(brio_labeled_poles *l, const brio_pole_request *re
     brio_status status = BRIO_OK;
     brio_triangulation *delaunay = NULL;
     brio_pole_filter filter = request->filter;
+    const brio_bar bar = brio_progress_bar(l->ctx);
     double start = brio_seconds();
     if (!request->solid && request->labeling == BRIO_LABELING_GLOBAL) filter.shapes = BRIO_TRUSTED_SHAPE;
-    stage(l->ctx, request, 0.05, 0.39);
+    brio_progress_part(l->ctx, bar, 0, TRIANGULATION_SHARE);
     BRIO_TRY(brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BOUNDING_POINTS, &l->triangulation, &delaunay));
     l->stats.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;
     BRIO_REQUIRE(l->ctx, l->stats.samples >= 4, BRIO_ERR_NO_ANSWER, "%zu distinct points span no solid",
                  l->stats.samples);
     l->stats.delaunay_seconds = brio_seconds() - start;
     start = brio_seconds();
-    stage(l->ctx, request, 0.39, 0.5);
+    brio_progress_part(l->ctx, bar, TRIANGULATION_SHARE, 1);
     BRIO_TRY(brio_poles_find(l->ctx, delaunay, l->points, l->num_samples, &filter, &l->poles));
     if (request->spacing) BRIO_TRY(measure_spacing(l, delaunay));
     if (request->representative) BRIO_TRY(keep_representatives(l, delaunay));
@@ -166,6 +160,7 @@ static brio_status find_poles(brio_labeled_poles *l, const brio_pole_request *re
     l->stats.bad_cells = l->poles.bad_cells;
     l->stats.poles_seconds = brio_seconds() - start;
 done:
+    brio_progress_part(l->ctx, bar, 0, 1);
     brio_triangulation_free(delaunay);
     return status;
 }
@@ -232,16 +227,20 @@ done:
 brio_status brio_labeled_poles_find(brio_context *ctx, const double *points, size_t num_points,
                                     const brio_pole_request *request, brio_labeled_poles *l) {
     brio_status status = BRIO_OK;
+    const brio_bar bar = brio_progress_bar(ctx);
     *l = (brio_labeled_poles){.ctx = ctx, .num_samples = num_points, .triangulation = brio_delaunay_options_default()};
     l->triangulation.seed = request->seed;
     l->graph.ctx = ctx;
+    brio_progress_part(ctx, bar, 0, 0.05);
     BRIO_TRY(prepare(l, points, request));
+    brio_progress_part(ctx, bar, 0.05, 0.5);
     BRIO_TRY(find_poles(l, request));
-    stage(ctx, request, 0.5, 0.89);
+    brio_progress_part(ctx, bar, 0.5, 0.89);
     BRIO_TRY(triangulate_poles(l));
-    stage(ctx, request, 0.89, 1);
+    brio_progress_part(ctx, bar, 0.89, 1);
     BRIO_TRY(label_poles(l, request));
 done:
+    brio_progress_part(ctx, bar, 0, 1);
     return status;
 }
 

@@ -14,7 +14,6 @@ typedef struct {
     double margin;          /* moves the bounding points out by this, in the unit of the points */
     bool spacing;           /* whether to compute the spacing of each pole */
     bool representative;    /* whether to keep the representatives of the samples */
-    double until;           /* the work ends at this share of the progress bar */
 } brio_pole_request;
 
 /** Polar balls with labels, and their regular triangulation. All lengths are the caller's lengths
@@ -36,7 +35,7 @@ typedef struct {
     brio_pole_stats stats;
 } brio_labeled_poles;
 
-/** Checks options and turns them into a request: margin 0, no spacing, no representatives, the whole progress bar.
+/** Checks options and turns them into a request: margin 0, no spacing, no representatives.
  *  Returns BRIO_OK or BRIO_ERR_ARGUMENT. */
 brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *options, uint64_t seed,
                                  brio_pole_request *request);

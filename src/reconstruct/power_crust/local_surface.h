@@ -2,7 +2,7 @@
 #ifndef BRIO_RECONSTRUCT_LOCAL_SURFACE_H
 #define BRIO_RECONSTRUCT_LOCAL_SURFACE_H
 
-#include "order/nearest_points.h"
+#include "query/nearest_points.h"
 
 /** The neighbours of a point, in any order, the point included. */
 typedef struct {

@@ -13,10 +13,9 @@
 #include "reconstruct/power_crust/power_crust.h"
 #include <math.h>
 
-static const double POLES_SHARE = 0.6, POWER_SHARE = 0.9; /* shares of the progress bar, in proportion to the usual
-                                                             times */
-static const double MARGIN = 4;                           /* moves the bounding points out, in units of |distance|;
-                                                             chosen */
+static const double POLES_SHARE = 0.6; /* of the progress bar */
+static const double MOVE_SHARE = 0.75; /* of the bar of what follows */
+static const double MARGIN = 4;        /* of the bounding points, in distances */
 
 static const brio_offset_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
 
@@ -60,7 +59,6 @@ static brio_status find_balls(brio_labeled_poles *l, const double *points, size_
     BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->seed, &request));
     request.spacing = o->simplify;
     request.margin = MARGIN * fabs(distance);
-    request.until = POLES_SHARE;
     BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
     BRIO_REQUIRE(l->ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
 done:
@@ -70,10 +68,12 @@ done:
 static brio_status make_offset(brio_labeled_poles *l, double distance, const brio_offset_options *o, brio_mesh *mesh,
                                brio_power_crust_stats *stats) {
     brio_power_crust_options crust = crust_options(o);
-    l->ctx->progress_from = POLES_SHARE;
-    l->ctx->progress_to = POWER_SHARE;
+    const brio_bar bar = brio_progress_bar(l->ctx);
+    brio_progress_part(l->ctx, bar, 0, MOVE_SHARE);
     brio_status status = move_surface(l, distance);
-    if (status == BRIO_OK) status = brio_make_crust(l, &crust, POWER_SHARE, mesh, NULL, stats);
+    brio_progress_part(l->ctx, bar, MOVE_SHARE, 1);
+    if (status == BRIO_OK) status = brio_make_crust(l, &crust, mesh, NULL, stats);
+    brio_progress_part(l->ctx, bar, 0, 1);
     if (status == BRIO_ERR_NO_ANSWER && distance < 0)
         return brio_fail(l->ctx, status, "the offset by %g swallows the whole object: no inside is left", distance);
     return status;
@@ -87,19 +87,21 @@ brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t 
     brio_power_crust_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
     brio_mesh *mesh = NULL;
+    const brio_bar bar = brio_progress_bar(ctx);
     *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_crust_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_offset_options, options, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
+    brio_progress_part(ctx, bar, 0, POLES_SHARE);
     BRIO_TRY(find_balls(&l, points, num_points, distance, &o));
+    brio_progress_part(ctx, bar, POLES_SHARE, 1);
     BRIO_TRY(make_offset(&l, distance, &o, mesh, &s));
     *out = mesh;
     mesh = NULL;
 done:
     s.poles = l.stats;
     BRIO_GIVE(brio_power_crust_stats, stats, &s);
-    ctx->progress_from = 0;
-    ctx->progress_to = 1;
+    brio_progress_part(ctx, bar, 0, 1);
     brio_mesh_free(mesh);
     brio_labeled_poles_free(&l);
     return status;

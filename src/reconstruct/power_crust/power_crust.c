@@ -11,11 +11,12 @@
 #include "base/scale.h"
 #include "reconstruct/power_crust/crust_faces.h"
 #include "reconstruct/power_crust/sample_normals.h"
-#include "surface/simplify.h"
+#include "mesh/simplify.h"
 #include <math.h>
 
-static const double POLES_SHARE = 0.9;                                /* share of the progress bar, by the usual time */
-static const double LONGEST_COLLAPSE = 1.5, COLLAPSE_TOLERANCE = 0.1; /* in spacings; chosen */
+static const double POLES_SHARE = 0.9; /* of the progress bar */
+static const double FACES_SHARE = 0.3; /* of the bar of the crust, the faces before the simplification */
+static const double LONGEST_COLLAPSE = 1.5, COLLAPSE_TOLERANCE = 0.1; /* in spacings */
 
 static const brio_power_crust_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
 
@@ -39,24 +40,24 @@ static void drop_properties(brio_mesh *mesh) {
     while (mesh->num_properties) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
 }
 
-brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, double from, brio_mesh *mesh,
-                            double *normals, brio_power_crust_stats *stats) {
+brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, brio_mesh *mesh, double *normals,
+                            brio_power_crust_stats *stats) {
     brio_status status = BRIO_OK;
+    const brio_bar bar = brio_progress_bar(l->ctx);
     double start = brio_seconds();
     brio_crust_options options = {o->triangulate || o->simplify, o->open, l->spacing};
     brio_crust_counts counts;
-    l->ctx->progress_from = from;
-    l->ctx->progress_to = o->simplify ? from + 0.3 * (1 - from) : 1;
+    brio_progress_part(l->ctx, bar, 0, o->simplify ? FACES_SHARE : 1);
     BRIO_TRY(brio_crust_faces(&l->diagram, l->label, &options, mesh, &counts));
     stats->left_out = counts.left_out;
     stats->crust_seconds = brio_seconds() - start;
     if (normals) BRIO_TRY(brio_sample_normals(&l->diagram, l->label, l->representative, l->order, mesh, normals));
-    l->ctx->progress_from = l->ctx->progress_to;
-    l->ctx->progress_to = 1;
+    brio_progress_part(l->ctx, bar, FACES_SHARE, 1);
     if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh, &stats->simplify_seconds));
     drop_properties(mesh);
     brio_scale(l->ctx, mesh->vertices, 3 * mesh->num_vertices, l->exponent, mesh->vertices);
 done:
+    brio_progress_part(l->ctx, bar, 0, 1);
     return status;
 }
 
@@ -70,6 +71,7 @@ brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num
     brio_labeled_poles l = {.ctx = ctx};
     brio_pole_request request;
     brio_mesh *mesh = NULL;
+    const brio_bar bar = brio_progress_bar(ctx);
     *out = NULL;
     brio_keep_begin(ctx);
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_crust_stats, stats));
@@ -78,18 +80,18 @@ brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num
     BRIO_REQUIRE(ctx, o.open >= 0, BRIO_ERR_ARGUMENT, "open: %g spacings, expected 0 or a positive number", o.open);
     request.spacing = o.open > 0 || o.simplify;
     request.representative = normals != NULL;
-    request.until = POLES_SHARE;
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
+    brio_progress_part(ctx, bar, 0, POLES_SHARE);
     BRIO_TRY(brio_labeled_poles_find(ctx, points, num_points, &request, &l));
     if (o.poles.solid) brio_labeled_poles_close_hull(&l);
-    BRIO_TRY(brio_make_crust(&l, &o, POLES_SHARE, mesh, normals, &s));
+    brio_progress_part(ctx, bar, POLES_SHARE, 1);
+    BRIO_TRY(brio_make_crust(&l, &o, mesh, normals, &s));
     *out = mesh;
     mesh = NULL;
 done:
     s.poles = l.stats;
     BRIO_GIVE(brio_power_crust_stats, stats, &s);
-    ctx->progress_from = 0;
-    ctx->progress_to = 1;
+    brio_progress_part(ctx, bar, 0, 1);
     brio_mesh_free(mesh);
     brio_labeled_poles_free(&l);
     brio_keep_end(ctx);

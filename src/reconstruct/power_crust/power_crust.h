@@ -8,12 +8,11 @@
  *  must be outer.
  *  l        `open` and `simplify` need l->spacing; normals need l->representative, l->order and the poles of the
  *           samples.
- *  from     the place on the progress bar where this function begins.
  *  normals  #P by 3, written, or NULL.
  *  stats    receives left_out and the seconds; other fields stay unchanged.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no pole with a cell is inner, or every face spans a hole), BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. */
-brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, double from, brio_mesh *mesh,
-                            double *normals, brio_power_crust_stats *stats);
+brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, brio_mesh *mesh, double *normals,
+                            brio_power_crust_stats *stats);
 
 #endif

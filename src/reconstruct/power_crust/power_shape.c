@@ -13,12 +13,13 @@
 #include "base/versioned.h"
 #include "reconstruct/power_crust/ball_cover.h"
 #include "reconstruct/power_crust/power_crust.h"
+#include "triangulation/ring.h"
 #include <math.h>
 #include <string.h>
 
 enum { NO_VERTEX = UINT32_MAX };
-static const double POLES_SHARE = 0.8, SHAPE_SHARE = 0.9; /* shares of the progress bar, in proportion to the usual
-                                                             times */
+static const double POLES_SHARE = 0.8;    /* of the progress bar */
+static const double SIMPLIFY_SHARE = 0.5; /* of the bar of what follows */
 
 static const brio_power_shape_options STANDARD = {
     .size = sizeof STANDARD, .seed = 1, .sides = BRIO_SIDES_INNER, .scale = 1};
@@ -118,26 +119,13 @@ static bool joined(const builder *b, uint32_t p, uint32_t q) {
            b->poles->label[p] == b->poles->label[q];
 }
 
-/* Returns whether `tet` is the first in memory of the tetrahedra round its edge from slot i to slot j. */
-static bool leads_edge(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
-    uint32_t from = tet, leave = t->tet[tet].vertex[BRIO_EDGE[i][j][0]], pivot = t->tet[tet].vertex[BRIO_EDGE[i][j][1]];
-    do {
-        uint32_t mate = t->tet[from].mate[brio_slot_of_vertex(t->tet[from].vertex, leave)];
-        from = brio_tet_of(mate);
-        if (from < tet) return false;
-        leave = pivot;
-        pivot = brio_apex(t, mate);
-    } while (from != tet);
-    return true;
-}
-
 static brio_status add_edges(builder *b, uint32_t tet) {
     brio_status status = BRIO_OK;
     const brio_tetrahedra *power = &b->poles->diagram.power;
     const uint32_t *v = power->tet[tet].vertex;
     for (int i = 0; i < 4; i++)
         for (int j = i + 1; j < 4; j++) {
-            if (!joined(b, v[i], v[j]) || !leads_edge(power, tet, i, j)) continue;
+            if (!joined(b, v[i], v[j]) || !brio_ring_size(power, tet, i, j)) continue;
             BRIO_TRY(BRIO_RESERVE(b->poles->ctx, b->edges, b->edge_capacity, b->num_edges + 2));
             uint32_t p = b->number[v[i]], q = b->number[v[j]];
             b->edges[b->num_edges++] = p < q ? p : q;
@@ -236,18 +224,12 @@ static void count_poles(const brio_labeled_poles *l, brio_power_shape_stats *s) 
     }
 }
 
-static void progress_part(brio_context *ctx, double from, double to) {
-    ctx->progress_from = from;
-    ctx->progress_to = to;
-}
-
 static brio_status find_balls(brio_labeled_poles *l, const double *points, size_t num_points,
                               const brio_power_shape_options *o) {
     brio_status status = BRIO_OK;
     brio_pole_request request;
     BRIO_TRY(check_options(l->ctx, o));
     BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->seed, &request));
-    request.until = POLES_SHARE;
     BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
 done:
     return status;
@@ -258,10 +240,12 @@ static brio_status make_both(brio_labeled_poles *l, const brio_power_shape_optio
     brio_status status = BRIO_OK;
     brio_power_crust_options surface = brio_power_crust_options_default();
     brio_power_crust_stats unused;
+    const brio_bar bar = brio_progress_bar(l->ctx);
+    const double end = crust ? 0.75 : 1;
     count_poles(l, s);
-    progress_part(l->ctx, POLES_SHARE, SHAPE_SHARE);
+    brio_progress_part(l->ctx, bar, 0, SIMPLIFY_SHARE);
     BRIO_TRY(simplify(l, o, s));
-    progress_part(l->ctx, SHAPE_SHARE, crust ? 0.5 * (SHAPE_SHARE + 1) : 1);
+    brio_progress_part(l->ctx, bar, SIMPLIFY_SHARE, end);
     double start = brio_seconds();
     BRIO_TRY(make_shape(l, o, shape));
     s->shape_seconds = brio_seconds() - start;
@@ -270,8 +254,10 @@ static brio_status make_both(brio_labeled_poles *l, const brio_power_shape_optio
     s->tetrahedra = shape->num_tetrahedra;
     if (!crust) goto done;
     brio_labeled_poles_close_hull(l);
-    BRIO_TRY(brio_make_crust(l, &surface, l->ctx->progress_to, crust, NULL, &unused));
+    brio_progress_part(l->ctx, bar, end, 1);
+    BRIO_TRY(brio_make_crust(l, &surface, crust, NULL, &unused));
 done:
+    brio_progress_part(l->ctx, bar, 0, 1);
     return status;
 }
 
@@ -284,20 +270,23 @@ brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num
     brio_power_shape_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
     brio_mesh *shape_mesh = NULL, *crust_mesh = NULL;
+    const brio_bar bar = brio_progress_bar(ctx);
     *shape = NULL;
     if (crust) *crust = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_shape_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_power_shape_options, options, &o));
     BRIO_TRY(brio_mesh_new(ctx, &shape_mesh));
     if (crust) BRIO_TRY(brio_mesh_new(ctx, &crust_mesh));
+    brio_progress_part(ctx, bar, 0, POLES_SHARE);
     BRIO_TRY(find_balls(&l, points, num_points, &o));
+    brio_progress_part(ctx, bar, POLES_SHARE, 1);
     BRIO_TRY(make_both(&l, &o, shape_mesh, crust_mesh, &s));
     *shape = shape_mesh;
     if (crust) *crust = crust_mesh;
     shape_mesh = crust_mesh = NULL;
 done:
     BRIO_GIVE(brio_power_shape_stats, stats, &s);
-    progress_part(ctx, 0, 1);
+    brio_progress_part(ctx, bar, 0, 1);
     brio_mesh_free(shape_mesh);
     brio_mesh_free(crust_mesh);
     brio_labeled_poles_free(&l);

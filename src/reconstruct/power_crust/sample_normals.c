@@ -5,7 +5,7 @@
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (poles as normals). */
 #include "reconstruct/power_crust/sample_normals.h"
 #include "base/memory.h"
-#include "surface/closest_point.h"
+#include "mesh/closest_point.h"
 #include <math.h>
 #include <string.h>
 

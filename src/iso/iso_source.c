@@ -1,0 +1,92 @@
+/* The iso-surface of a density.
+ *
+ * For a wanted number of vertices the resolution is found by trial: the number grows with its square except for what finer
+ * cells bring to light, so that a few rounds do. */
+#include "iso/iso_source.h"
+#include <math.h>
+
+enum { FIRST_RESOLUTION = 100, MOST_RESOLUTION = 1 << 15, MOST_ROUNDS = 5 };
+
+static const double CLOSE_ENOUGH = 0.02; /* share of the wanted number of vertices */
+
+static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_options *o,
+                                size_t resolution, brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    if (from->is_map)
+        BRIO_TRY(brio_volume_surface(ctx, &from->volume, o->level, resolution, o->conforming, out));
+    else
+        BRIO_TRY(brio_density_surface(ctx, from->atoms, from->num_atoms,
+                                      &(brio_density_options){o->level, o->blobbiness, resolution, o->conforming},
+                                      out));
+    if ((*out)->num_faces) return BRIO_OK;
+    brio_mesh_free(*out);
+    *out = NULL;
+    status = brio_fail(ctx, BRIO_ERR_NO_ANSWER, "nothing is above the level %g", o->level);
+done:
+    return status;
+}
+
+/* The resolution to try next, when the number of vertices grows with a power of the resolution: the square, or what the
+ * last two tries say. */
+static size_t next_resolution(double wanted, const double resolution[2], const double vertices[2]) {
+    double power = 2;
+    if (resolution[0] > 0 && resolution[0] != resolution[1])
+        power = log(vertices[1] / vertices[0]) / log(resolution[1] / resolution[0]);
+    double next = resolution[1] * pow(wanted / vertices[1], 1 / fmin(fmax(power, 1), 4));
+    return (size_t)fmin(fmax(rint(next), 2), MOST_RESOLUTION);
+}
+
+/* Tries resolutions until there are about as many vertices as wanted; the last try stands. */
+static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source *from, const brio_iso_options *o,
+                                        brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    double wanted = (double)o->vertices, tried[2] = {0, FIRST_RESOLUTION}, vertices[2] = {0, 0};
+    for (int round = 0; round < MOST_ROUNDS; round++) {
+        brio_mesh_free(*out);
+        *out = NULL;
+        BRIO_TRY(make_surface(ctx, from, o, (size_t)tried[1], out));
+        vertices[1] = (double)(*out)->num_vertices;
+        size_t next = next_resolution(wanted, tried, vertices);
+        if (fabs(vertices[1] / wanted - 1) < CLOSE_ENOUGH || (double)next == tried[1]) break;
+        tried[0] = tried[1];
+        vertices[0] = vertices[1];
+        tried[1] = (double)next;
+    }
+done:
+    return status;
+}
+
+/* Turns a level that counts deviations into one of the map's unit. */
+static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, brio_iso_options *o) {
+    brio_status status = BRIO_OK;
+    double mean, deviation;
+    if (!o->deviations) return BRIO_OK;
+    BRIO_REQUIRE(ctx, from->is_map, BRIO_ERR_ARGUMENT,
+                 "a level in standard deviations is for maps: the density of atoms has no mean");
+    brio_volume_statistics(&from->volume, &mean, &deviation);
+    o->level = mean + o->level * deviation;
+    o->deviations = 0;
+done:
+    return status;
+}
+
+brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_options *options,
+                                    brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    brio_iso_options o = *options;
+    *out = NULL;
+    BRIO_TRY(settle_level(ctx, from, &o));
+    BRIO_TRY(o.vertices ? make_surface_of_size(ctx, from, &o, out) : make_surface(ctx, from, &o, o.resolution, out));
+done:
+    if (status != BRIO_OK) {
+        brio_mesh_free(*out);
+        *out = NULL;
+    }
+    return status;
+}
+
+void brio_iso_source_free(brio_context *ctx, brio_iso_source *source) {
+    brio_volume_free(ctx, &source->volume);
+    brio_release(ctx, source->atoms);
+    *source = (brio_iso_source){0};
+}

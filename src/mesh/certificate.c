@@ -1,0 +1,521 @@
+/* The certificate of a polygon mesh: what connectivity alone says of a surface.
+ *
+ * The half-edges of each edge are linked into rings (edge_rings). Two union-finds run over the rings: of the faces,
+ * joined across edges, whose sets are the components; and of the corners, joined at both ends of every edge of two
+ * faces, whose sets are the fans: a vertex is manifold when its corners form one fan. A component has the vertices and
+ * edges its faces use; a vertex in several components counts once in each.
+ *
+ * Where the surface is not a manifold, these conventions hold. An edge joins all its faces into one component, however
+ * many they are; but only an edge of two faces continues a fan. A boundary loop is a set of boundary edges connected
+ * through fans and across edges of more than two faces: a cycle where the surface is manifold, while two loops that
+ * touch where two fans share a vertex stay two. A face with fewer than three corners, or with a vertex twice, makes
+ * each of its vertices (each it has twice) non-manifold. An odd 2 - chi - loops, as of a Moebius strip, is rounded
+ * down.
+ *
+ * Threads share the work. Nothing depends on its order: a root is the first element of its set, counts are whole
+ * numbers, and areas and volumes are summed in parts of their own. */
+#include "base/float_state.h"
+#include "base/versioned.h"
+#include "base/sort.h"
+#include "base/team.h"
+#include "mesh/edge_rings.h"
+#include "base/union_find.h"
+#include <math.h>
+
+enum { ITEMS_A_THREAD = 1 << 13 }; /* faces, corners or vertices */
+
+typedef struct {
+    brio_context *ctx;
+    const brio_mesh *mesh;
+    size_t corners;
+    uint32_t *ring;    /* #corners: edge rings */
+    uint32_t *face_of; /* #corners; NULL where all faces are triangles, one after the other */
+    uint32_t *fan;     /* #corners: union-find of the corners */
+    uint32_t *patch;   /* #F: union-find of the faces */
+    uint8_t *vertex;   /* #V: bits of vertex_state */
+} topology;
+
+enum vertex_state { VERTEX_SEEN = 1, VERTEX_TWO_FANS = 2, VERTEX_IN_DEGENERATE_FACE = 4 };
+
+typedef struct {
+    int64_t faces, edges, vertices, loops;
+} component;
+
+/* --- connectivity --- */
+
+static inline uint32_t face_at(const topology *t, uint32_t h) {
+    return t->face_of ? t->face_of[h] : h / 3;
+}
+
+static uint32_t next_corner(const topology *t, uint32_t h) {
+    const uint64_t *offsets = t->mesh->face_offsets;
+    uint32_t f = face_at(t, h);
+    return h + 1 < offsets[f + 1] ? h + 1 : (uint32_t)offsets[f];
+}
+
+/* Calls body for parts of n items. */
+static void for_each(const topology *t, size_t n, brio_part_fn body, void *user) {
+    brio_for(t->ctx, brio_threads(t->ctx, n, ITEMS_A_THREAD), n, body, user);
+}
+
+static void topology_free(brio_context *ctx, topology *t) {
+    brio_release(ctx, t->ring);
+    brio_release(ctx, t->face_of);
+    brio_release(ctx, t->fan);
+    brio_release(ctx, t->patch);
+    brio_release(ctx, t->vertex);
+}
+
+static bool is_of_triangles(const brio_mesh *mesh) {
+    bool all = true;
+    for (size_t f = 0; f < mesh->num_faces && all; f++) all = mesh->face_offsets[f + 1] == 3 * (f + 1);
+    return all;
+}
+
+/* Makes a set of each of some faces and of each of their corners. */
+static void make_sets(void *user, size_t begin, size_t end, int thread) {
+    const topology *t = user;
+    const uint64_t *offsets = t->mesh->face_offsets;
+    (void)thread;
+    for (size_t f = begin; f < end; f++) {
+        t->patch[f] = (uint32_t)f;
+        for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++) {
+            if (t->face_of) t->face_of[h] = (uint32_t)f;
+            t->fan[h] = (uint32_t)h;
+        }
+    }
+}
+
+/* On failure the caller frees what there is. */
+static brio_status topology_new(brio_context *ctx, const brio_mesh *mesh, topology *t) {
+    brio_status status = BRIO_OK;
+    *t = (topology){.ctx = ctx, .mesh = mesh, .corners = mesh->num_faces ? mesh->face_offsets[mesh->num_faces] : 0};
+    BRIO_TRY(brio_edge_rings(ctx, mesh, &t->ring));
+    if (!is_of_triangles(mesh)) BRIO_TRY(BRIO_ALLOC(ctx, t->face_of, t->corners));
+    BRIO_TRY(BRIO_ALLOC(ctx, t->fan, t->corners));
+    BRIO_TRY(BRIO_ALLOC(ctx, t->patch, mesh->num_faces));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->vertex, mesh->num_vertices));
+    for_each(t, mesh->num_faces, make_sets, t);
+done:
+    return status;
+}
+
+/* Adds to a count that is read after the run. */
+static void add_relaxed(size_t *count, size_t amount) {
+    __atomic_fetch_add(count, amount, __ATOMIC_RELAXED);
+}
+
+/* Joins the corners at either end of the edge of the half-edges h and g. */
+static void join_corners(const topology *t, uint32_t h, uint32_t g, bool alone) {
+    const uint32_t *v = t->mesh->face_vertices;
+    uint32_t h_end = next_corner(t, h), g_end = next_corner(t, g);
+    bool same_way = v[h] == v[g];
+    brio_unite(t->fan, h, same_way ? g : g_end, alone);
+    brio_unite(t->fan, h_end, same_way ? g_end : g, alone);
+}
+
+/* The edges that a closed oriented manifold does not have. */
+typedef struct {
+    const topology *t;
+    bool alone; /* one thread joins */
+    size_t boundary, nonmanifold, flipped;
+} edge_count;
+
+/* Joins and counts at half-edges. Of each edge's half-edges the last one speaks for it. */
+static void join_at_half_edges(void *user, size_t begin, size_t end, int thread) {
+    edge_count *c = user;
+    const topology *t = c->t;
+    const uint32_t *v = t->mesh->face_vertices;
+    size_t boundary = 0, nonmanifold = 0, flipped = 0;
+    (void)thread;
+    for (uint32_t h = (uint32_t)begin; h < end; h++) {
+        uint32_t g = t->ring[h];
+        bool last = g <= h, two = g != h && t->ring[g] == h;
+        if (g != h && !(two && last)) brio_unite(t->patch, face_at(t, h), face_at(t, g), c->alone);
+        if (!last) continue;
+        boundary += g == h;
+        nonmanifold += g != h && !two;
+        flipped += two && v[g] == v[h];
+        if (two) join_corners(t, g, h, c->alone);
+    }
+    add_relaxed(&c->boundary, boundary);
+    add_relaxed(&c->nonmanifold, nonmanifold);
+    add_relaxed(&c->flipped, flipped);
+}
+
+/* Joins the faces across every edge, and the corners at either end of the edges of two faces. */
+static void join_across_edges(const topology *t, brio_certificate *out) {
+    int threads = brio_threads(t->ctx, t->corners, ITEMS_A_THREAD);
+    edge_count c = {.t = t, .alone = threads == 1};
+    brio_for(t->ctx, threads, t->corners, join_at_half_edges, &c);
+    out->boundary_edges = c.boundary;
+    out->nonmanifold_edges = c.nonmanifold;
+    out->flipped_edges = c.flipped;
+}
+
+/* --- degenerate faces --- */
+
+/* Threads set the states of vertices; the states are read after the run. */
+static void mark(const topology *t, uint32_t v, uint8_t state) {
+    __atomic_fetch_or(&t->vertex[v], state, __ATOMIC_RELAXED);
+}
+
+/* Whether a face has fewer than three corners, or a vertex twice; marks such vertices. Each corner is held against all
+ * before it. */
+static bool mark_small_face(const topology *t, size_t f) {
+    const uint32_t *v = t->mesh->face_vertices + t->mesh->face_offsets[f];
+    size_t count = (size_t)(t->mesh->face_offsets[f + 1] - t->mesh->face_offsets[f]);
+    bool bad = count < 3;
+    for (size_t i = 0; i < count; i++) {
+        bool twice = false;
+        for (size_t j = 0; j < i; j++) twice |= v[i] == v[j];
+        if (twice || count < 3) mark(t, v[i], VERTEX_IN_DEGENERATE_FACE);
+        bad |= twice;
+    }
+    return bad;
+}
+
+/* The same with the last face of each vertex, plus 1. */
+static bool mark_large_face(const topology *t, size_t f, uint32_t *last_face) {
+    const uint64_t *offsets = t->mesh->face_offsets;
+    bool bad = false;
+    for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++) {
+        uint32_t v = t->mesh->face_vertices[h];
+        bool twice = last_face[v] == f + 1;
+        if (twice) mark(t, v, VERTEX_IN_DEGENERATE_FACE);
+        bad |= twice;
+        last_face[v] = (uint32_t)f + 1;
+    }
+    return bad;
+}
+
+enum { SMALL = 32 }; /* corners of a face */
+
+typedef struct {
+    const topology *t;
+    size_t small, bad;
+} face_count;
+
+static void mark_small_faces(void *user, size_t begin, size_t end, int thread) {
+    face_count *c = user;
+    const uint64_t *offsets = c->t->mesh->face_offsets;
+    size_t small = 0, bad = 0;
+    (void)thread;
+    for (size_t f = begin; f < end; f++) {
+        if (offsets[f + 1] - offsets[f] > SMALL) continue;
+        small++;
+        bad += mark_small_face(c->t, f);
+    }
+    add_relaxed(&c->small, small);
+    add_relaxed(&c->bad, bad);
+}
+
+/* Marks the vertices of degenerate faces; counts these faces, those without any corner included. */
+static brio_status mark_degenerate_faces(const topology *t, size_t *degenerate) {
+    brio_status status = BRIO_OK;
+    const uint64_t *offsets = t->mesh->face_offsets;
+    size_t num_faces = t->mesh->num_faces;
+    uint32_t *last_face = NULL;
+    face_count c = {t, 0, 0};
+    for_each(t, num_faces, mark_small_faces, &c);
+    bool large = c.small < num_faces;
+    if (large) BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, last_face, t->mesh->num_vertices));
+    for (size_t f = 0; large && f < num_faces; f++)
+        if (offsets[f + 1] - offsets[f] > SMALL) c.bad += mark_large_face(t, f, last_face);
+    *degenerate = c.bad;
+done:
+    brio_release(t->ctx, last_face);
+    return status;
+}
+
+/* --- components --- */
+
+/* Adds to the counts of components: one run of equals at a time, so that threads seldom meet. The counts are read when
+ * all threads are done. */
+typedef struct {
+    component *components, run;
+    uint32_t number;
+} tally;
+
+static void tally_end(tally *t) {
+    component *c = &t->components[t->number];
+    if (t->run.faces) __atomic_fetch_add(&c->faces, t->run.faces, __ATOMIC_RELAXED);
+    if (t->run.edges) __atomic_fetch_add(&c->edges, t->run.edges, __ATOMIC_RELAXED);
+    if (t->run.vertices) __atomic_fetch_add(&c->vertices, t->run.vertices, __ATOMIC_RELAXED);
+    t->run = (component){0, 0, 0, 0};
+}
+
+static component *tally_of(tally *t, uint32_t number) {
+    if (number != t->number) tally_end(t);
+    t->number = number;
+    return &t->run;
+}
+
+typedef struct {
+    const topology *t;
+    uint32_t *number;      /* of each face its component, in the order of the components' first faces */
+    component *components; /* each with its number of faces, edges, vertices and loops */
+    size_t count;          /* of components */
+    bool pinched;          /* some vertex has two fans */
+} component_count;
+
+/* Finds the roots of faces: number[f] becomes the root of face f. The links of the sets do not serve for that: a thread
+ * that halves a path may put an older link in the place of a link to a root. */
+static void find_roots(void *user, size_t begin, size_t end, int thread) {
+    const component_count *c = user;
+    (void)thread;
+    for (size_t f = begin; f < end; f++) c->number[f] = brio_find(c->t->patch, (uint32_t)f);
+}
+
+/* A root is the first face of its component, so that its number is there when another face asks for it. */
+static void number_components(component_count *c) {
+    size_t num_faces = c->t->mesh->num_faces;
+    for_each(c->t, num_faces, find_roots, c);
+    for (size_t f = 0; f < num_faces; f++)
+        c->number[f] = c->number[f] == f ? (uint32_t)c->count++ : c->number[c->number[f]];
+}
+
+/* Counts faces and their edges, each in its component. */
+static void count_faces(void *user, size_t begin, size_t end, int thread) {
+    const component_count *c = user;
+    const topology *t = c->t;
+    tally own = {c->components, {0, 0, 0, 0}, 0};
+    (void)thread;
+    for (size_t f = begin; f < end; f++) {
+        component *run = tally_of(&own, c->number[f]);
+        run->faces++;
+        for (uint64_t h = t->mesh->face_offsets[f]; h < t->mesh->face_offsets[f + 1]; h++)
+            run->edges += t->ring[h] <= h;
+    }
+    tally_end(&own);
+}
+
+/* Counts one vertex for each fan in the component of the fan, and sees whether some vertex has two. */
+static void count_fans(void *user, size_t begin, size_t end, int thread) {
+    component_count *c = user;
+    const topology *t = c->t;
+    tally own = {c->components, {0, 0, 0, 0}, 0};
+    bool pinched = false;
+    (void)thread;
+    for (uint32_t h = (uint32_t)begin; h < end; h++) {
+        if (t->fan[h] != h) continue;
+        uint8_t *state = &t->vertex[t->mesh->face_vertices[h]];
+        if (__atomic_fetch_or(state, VERTEX_SEEN, __ATOMIC_RELAXED) & VERTEX_SEEN) {
+            __atomic_fetch_or(state, VERTEX_TWO_FANS, __ATOMIC_RELAXED);
+            pinched = true;
+        }
+        tally_of(&own, c->number[face_at(t, h)])->vertices++;
+    }
+    tally_end(&own);
+    if (pinched) __atomic_store_n(&c->pinched, true, __ATOMIC_RELAXED);
+}
+
+/* Takes back what count_fans counted too much: several fans of one vertex in the same component. */
+static brio_status recount_pinched_vertices(const component_count *c) {
+    brio_status status = BRIO_OK;
+    const topology *t = c->t;
+    uint64_t *fans = NULL; /* (vertex, component) */
+    size_t count = 0, capacity = 0;
+    for (uint32_t h = 0; h < t->corners; h++) {
+        uint32_t v = t->mesh->face_vertices[h];
+        if (t->fan[h] != h || !(t->vertex[v] & VERTEX_TWO_FANS)) continue;
+        BRIO_TRY(BRIO_RESERVE(t->ctx, fans, capacity, count + 1));
+        fans[count++] = (uint64_t)v << 32 | c->number[face_at(t, h)];
+    }
+    brio_sort_keys(fans, count);
+    for (size_t i = 1; i < count; i++)
+        if (fans[i] == fans[i - 1]) c->components[(uint32_t)fans[i]].vertices--;
+done:
+    brio_release(t->ctx, fans);
+    return status;
+}
+
+/* Joins fans across edges of more than two faces, and at the two ends of each boundary edge: every set with such an
+ * edge is a boundary loop. This is the end of t->fan as the partition into fans. */
+static brio_status count_loops(const component_count *c) {
+    brio_status status = BRIO_OK;
+    const topology *t = c->t;
+    uint8_t *counted = NULL; /* of each root of a set */
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, counted, t->corners));
+    for (uint32_t h = 0; h < t->corners; h++) {
+        uint32_t g = t->ring[h];
+        if (g == h) brio_unite(t->fan, h, next_corner(t, h), true);
+        if (g > h && t->ring[g] != h) join_corners(t, h, g, true);
+    }
+    for (uint32_t h = 0; h < t->corners; h++) {
+        if (t->ring[h] != h) continue;
+        uint32_t root = brio_find(t->fan, h);
+        if (!counted[root]) c->components[c->number[face_at(t, h)]].loops++;
+        counted[root] = 1;
+    }
+done:
+    brio_release(t->ctx, counted);
+    return status;
+}
+
+static int64_t genus_of(const component *c) {
+    int64_t twice = 2 - (c->vertices - c->edges + c->faces) - c->loops;
+    return twice >= 0 ? twice / 2 : -((1 - twice) / 2);
+}
+
+/* Writes the genera, largest component first. */
+static brio_status list_genera(brio_context *ctx, const component *components, size_t count, brio_certificate *out) {
+    brio_status status = BRIO_OK;
+    uint64_t *order = NULL; /* (complement of the number of faces, component) */
+    BRIO_TRY(BRIO_ALLOC(ctx, order, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->genera, count));
+    for (size_t i = 0; i < count; i++) order[i] = (uint64_t)(UINT32_MAX - components[i].faces) << 32 | i;
+    brio_sort_keys(order, count);
+    for (size_t i = 0; i < count; i++) {
+        const component *c = &components[(uint32_t)order[i]];
+        out->genera[i] = genus_of(c);
+        out->genus += out->genera[i];
+        out->boundary_loops += (size_t)c->loops;
+    }
+    out->components = count;
+done:
+    brio_release(ctx, order);
+    return status;
+}
+
+static brio_status certify_components(const topology *t, brio_certificate *out) {
+    brio_status status = BRIO_OK;
+    component_count c = {.t = t};
+    BRIO_TRY(BRIO_ALLOC(t->ctx, c.number, t->mesh->num_faces));
+    number_components(&c);
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, c.components, c.count));
+    for_each(t, t->mesh->num_faces, count_faces, &c);
+    for_each(t, t->corners, count_fans, &c);
+    if (c.pinched) BRIO_TRY(recount_pinched_vertices(&c));
+    if (out->boundary_edges) BRIO_TRY(count_loops(&c));
+    BRIO_TRY(list_genera(t->ctx, c.components, c.count, out));
+done:
+    brio_release(t->ctx, c.components);
+    brio_release(t->ctx, c.number);
+    return status;
+}
+
+typedef struct {
+    const topology *t;
+    size_t count;
+} vertex_count;
+
+static void count_nonmanifold_vertices(void *user, size_t begin, size_t end, int thread) {
+    vertex_count *c = user;
+    size_t count = 0;
+    (void)thread;
+    for (size_t v = begin; v < end; v++)
+        count += (c->t->vertex[v] & (VERTEX_TWO_FANS | VERTEX_IN_DEGENERATE_FACE)) != 0;
+    add_relaxed(&c->count, count);
+}
+
+static brio_status certify_topology(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
+    brio_status status = BRIO_OK;
+    topology t = {0};
+    vertex_count nonmanifold = {&t, 0};
+    size_t degenerate_faces;
+    BRIO_TRY(topology_new(ctx, mesh, &t));
+    BRIO_TRY(mark_degenerate_faces(&t, &degenerate_faces));
+    join_across_edges(&t, out);
+    BRIO_TRY(certify_components(&t, out));
+    for_each(&t, mesh->num_vertices, count_nonmanifold_vertices, &nonmanifold);
+    out->nonmanifold_vertices = nonmanifold.count;
+    out->closed = t.corners > 0 && !out->boundary_edges && !out->nonmanifold_edges;
+    out->manifold = !out->nonmanifold_edges && !out->nonmanifold_vertices && !degenerate_faces;
+    out->oriented = !out->flipped_edges;
+done:
+    topology_free(ctx, &t);
+    return status;
+}
+
+/* --- measure --- */
+
+enum { PARTS = 256 }; /* of the faces, so that rounding does not depend on the number of threads */
+
+typedef struct {
+    double low[3], high[3], area, volume;
+} measure;
+
+typedef struct {
+    const brio_mesh *mesh;
+    double centre[3];
+    measure part[PARTS];
+} measures;
+
+static void box_of_part(const brio_mesh *mesh, int part, measure *m) {
+    uint64_t corners = mesh->face_offsets[mesh->num_faces], end = brio_part(corners, part + 1, PARTS);
+    for (int k = 0; k < 3; k++) m->low[k] = INFINITY, m->high[k] = -INFINITY;
+    for (uint64_t h = brio_part(corners, part, PARTS); h < end; h++)
+        for (int k = 0; k < 3; k++) {
+            double x = mesh->vertices[3 * (size_t)mesh->face_vertices[h] + (size_t)k];
+            if (x < m->low[k]) m->low[k] = x;
+            if (x > m->high[k]) m->high[k] = x;
+        }
+}
+
+/* Adds a face, cut into a fan of triangles from its first corner. */
+static void measure_face(const brio_mesh *mesh, size_t f, const double *centre, measure *m) {
+    const uint32_t *corners = mesh->face_vertices + mesh->face_offsets[f];
+    uint64_t count = mesh->face_offsets[f + 1] - mesh->face_offsets[f];
+    for (uint64_t i = 2; i < count; i++) {
+        const double *a = mesh->vertices + 3 * (size_t)corners[0];
+        const double *b = mesh->vertices + 3 * (size_t)corners[i - 1];
+        const double *c = mesh->vertices + 3 * (size_t)corners[i];
+        double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+        double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+        m->area += sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
+        m->volume += ((a[0] - centre[0]) * n[0] + (a[1] - centre[1]) * n[1] + (a[2] - centre[2]) * n[2]) / 6;
+    }
+}
+
+static void find_boxes(void *user, size_t begin, size_t end, int thread) {
+    measures *m = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) box_of_part(m->mesh, (int)i, &m->part[i]);
+}
+
+static void measure_parts(void *user, size_t begin, size_t end, int thread) {
+    measures *m = user;
+    size_t num_faces = m->mesh->num_faces;
+    (void)thread;
+    for (size_t i = begin; i < end; i++)
+        for (size_t f = brio_part(num_faces, (int)i, PARTS); f < brio_part(num_faces, (int)i + 1, PARTS); f++)
+            measure_face(m->mesh, f, m->centre, &m->part[i]);
+}
+
+/* Area and volume. Volumes are summed about the centre of the box of the vertices that faces use, so that a surface far
+ * from the origin loses no digits. */
+static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
+    measures m = {.mesh = mesh};
+    if (!mesh->num_faces || !mesh->face_offsets[mesh->num_faces]) return;
+    int threads = brio_threads(ctx, (size_t)mesh->face_offsets[mesh->num_faces], ITEMS_A_THREAD);
+    brio_for_chunks(ctx, threads, PARTS, 1, find_boxes, &m);
+    for (int k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = 0; i < PARTS; i++) low = fmin(low, m.part[i].low[k]), high = fmax(high, m.part[i].high[k]);
+        m.centre[k] = 0.5 * low + 0.5 * high;
+    }
+    brio_for_chunks(ctx, threads, PARTS, 1, measure_parts, &m);
+    for (int i = 0; i < PARTS; i++) out->area += m.part[i].area, out->volume += m.part[i].volume;
+}
+
+brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_certificate c = {.size = sizeof c, .self_intersections = -1, .context = ctx};
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_certificate, out));
+    BRIO_GIVE(brio_certificate, out, &(brio_certificate){0});
+    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_TRY(certify_topology(ctx, mesh, &c));
+    measure_faces(ctx, mesh, &c);
+    BRIO_GIVE(brio_certificate, out, &c);
+done:
+    if (status != BRIO_OK) brio_certificate_free(&c);
+    return status;
+}
+
+void brio_certificate_free(brio_certificate *certificate) {
+    if (!certificate || !certificate->context) return;
+    brio_release(certificate->context, certificate->genera);
+    BRIO_GIVE(brio_certificate, certificate, &(brio_certificate){0});
+}

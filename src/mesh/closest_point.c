@@ -1,0 +1,336 @@
+/* Nearest points on a surface by a bounding-volume hierarchy.
+ *
+ * The triangles are halved again and again by the median of their centroids along the longest side of the centroids'
+ * box, in place (quickselect). The search goes down to the nearer child first and drops every box that is not nearer
+ * than the best point found, so its answer is exact whatever the tree looks like.
+ *
+ * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980 (boxes).
+ * Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). */
+#include "mesh/closest_point.h"
+#include "base/rng.h"
+#include "base/team.h"
+#include "base/vector.h"
+#include <math.h>
+#include <string.h>
+
+enum {
+    MOST_LEVELS = 64,
+    TRIANGLES_A_THREAD = 1 << 12,
+    SUBTREES_A_THREAD = 8 /* so that no thread waits long for the last subtree */
+};
+
+/* A triangle while the tree is built: its centroid, in units of the mesh's box, and its index. */
+typedef struct {
+    float centroid[3];
+    uint32_t triangle;
+} item;
+
+typedef struct {
+    const double *vertices;
+    uint32_t (*triangles)[3]; /* in the order of the faces */
+    item *items;
+    size_t count; /* of triangles */
+    brio_box *boxes;
+    size_t first; /* node of the level in work */
+} builder;
+
+/* A node: items low to high - 1. */
+typedef struct {
+    size_t low, high;
+} range;
+
+/* --- boxes --- */
+
+static brio_box empty_box(void) {
+    return (brio_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+static void box_add_point(brio_box *box, const double *p) {
+    for (int k = 0; k < 3; k++) {
+        if (p[k] < box->low[k]) box->low[k] = p[k];
+        if (p[k] > box->high[k]) box->high[k] = p[k];
+    }
+}
+
+static double box_distance(const brio_box *box, const double *p) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double d = fmax(fmax(box->low[k] - p[k], p[k] - box->high[k]), 0);
+        square += d * d;
+    }
+    return square;
+}
+
+static void box_add_box(brio_box *box, const brio_box *other) {
+    box_add_point(box, other->low);
+    box_add_point(box, other->high);
+}
+
+/* --- building --- */
+
+/* Reorders the items so that none before `middle` has a larger coordinate than any from there on. The pivots are random
+ * places, so that no order of the triangles is a bad one. */
+static void split_at(item *items, ptrdiff_t count, ptrdiff_t middle, int axis) {
+    ptrdiff_t low = 0, high = count - 1;
+    while (low < high) {
+        size_t place = (size_t)(brio_mix((uint64_t)(low ^ high << 32)) % (uint64_t)(high - low + 1));
+        float pivot = items[low + (ptrdiff_t)place].centroid[axis];
+        ptrdiff_t i = low, j = high;
+        while (i <= j) {
+            while (items[i].centroid[axis] < pivot) i++;
+            while (pivot < items[j].centroid[axis]) j--;
+            if (i > j) break;
+            item swap = items[i];
+            items[i++] = items[j];
+            items[j--] = swap;
+        }
+        if (middle > j) low = i;
+        if (middle < i) high = j;
+    }
+}
+
+static int longest_axis(const item *items, size_t count) {
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            low[k] = fminf(low[k], items[i].centroid[k]);
+            high[k] = fmaxf(high[k], items[i].centroid[k]);
+        }
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+    return axis;
+}
+
+static size_t middle_of(range r) {
+    return r.low + (r.high - r.low) / 2;
+}
+
+/* Deals the items of a node to its children. */
+static void split_node(const builder *b, range r) {
+    item *items = b->items + r.low;
+    size_t count = r.high - r.low;
+    split_at(items, (ptrdiff_t)count, (ptrdiff_t)(middle_of(r) - r.low), longest_axis(items, count));
+}
+
+/* The box of a node from those of its children. */
+static void join_children(const builder *b, size_t node) {
+    brio_box box = b->boxes[2 * node + 1];
+    box_add_box(&box, &b->boxes[2 * node + 2]);
+    b->boxes[node] = box;
+}
+
+static void build_leaf(const builder *b, size_t node, range r) {
+    brio_box box = empty_box();
+    for (size_t i = r.low; i < r.high; i++)
+        for (int k = 0; k < 3; k++)
+            box_add_point(&box, b->vertices + 3 * (size_t)b->triangles[b->items[i].triangle][k]);
+    b->boxes[node] = box;
+}
+
+static void build_node(const builder *b, size_t node, range r) {
+    if (r.high - r.low <= BRIO_LEAF_TRIANGLES) {
+        build_leaf(b, node, r);
+        return;
+    }
+    split_node(b, r);
+    build_node(b, 2 * node + 1, (range){r.low, middle_of(r)});
+    build_node(b, 2 * node + 2, (range){middle_of(r), r.high});
+    join_children(b, node);
+}
+
+/* The range of a node. The bits of node + 1 after the highest are the way down from the root: 0 for a lower child. */
+static range range_of(const builder *b, size_t node) {
+    range r = {0, b->count};
+    int bit = 0;
+    while ((node + 1) >> bit > 1) bit++;
+    while (bit-- > 0) {
+        if ((node + 1) >> bit & 1)
+            r.low = middle_of(r);
+        else
+            r.high = middle_of(r);
+    }
+    return r;
+}
+
+/* Splits nodes of the level in work. */
+static void split_nodes(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) split_node(b, range_of(b, b->first + i));
+}
+
+/* Builds what hangs on nodes of the level in work. */
+static void build_subtrees(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) build_node(b, b->first + i, range_of(b, b->first + i));
+}
+
+/* Calls body for each node of a level; a node is a job. */
+static void for_level(brio_context *ctx, builder *b, size_t nodes, brio_part_fn body) {
+    b->first = nodes - 1;
+    brio_for_chunks(ctx, brio_threads(ctx, nodes, 1), nodes, 1, body, b);
+}
+
+/* Splits level after level until there are SUBTREES_A_THREAD nodes for each thread, then builds the subtrees. A node
+ * that is split here has at least TRIANGLES_A_THREAD / SUBTREES_A_THREAD triangles: no leaf is split. What a split does
+ * depends on the items of the node alone, so the tree is the same for every number of threads. */
+static void build_tree(brio_context *ctx, builder *b) {
+    size_t threads = (size_t)brio_threads(ctx, b->count, TRIANGLES_A_THREAD), nodes = 1;
+    for (; threads > 1 && nodes < SUBTREES_A_THREAD * threads; nodes *= 2) for_level(ctx, b, nodes, split_nodes);
+    for_level(ctx, b, nodes, build_subtrees);
+    for (size_t node = nodes - 1; node-- > 0;) join_children(b, node);
+}
+
+/* Cuts the faces into triangles. */
+static brio_status cut_faces(brio_context *ctx, const brio_mesh *mesh, uint32_t (**triangles)[3], size_t *count) {
+    brio_status status = BRIO_OK;
+    const uint64_t *offsets = mesh->face_offsets;
+    size_t n = 0;
+    for (size_t f = 0; f < mesh->num_faces; f++)
+        if (offsets[f + 1] - offsets[f] > 2) n += offsets[f + 1] - offsets[f] - 2;
+    BRIO_REQUIRE(ctx, n > 0, BRIO_ERR_ARGUMENT, "a mesh without faces has no surface");
+    BRIO_TRY(BRIO_ALLOC(ctx, *triangles, n));
+    *count = n;
+    n = 0;
+    for (size_t f = 0; f < mesh->num_faces; f++)
+        for (uint64_t h = offsets[f] + 2; h < offsets[f + 1]; h++, n++) {
+            (*triangles)[n][0] = mesh->face_vertices[offsets[f]];
+            (*triangles)[n][1] = mesh->face_vertices[h - 1];
+            (*triangles)[n][2] = mesh->face_vertices[h];
+        }
+done:
+    return status;
+}
+
+static void fill_items(const builder *b, size_t count) {
+    brio_box box = empty_box();
+    double centre[3], scale = 0;
+    for (size_t t = 0; t < count; t++)
+        for (int k = 0; k < 3; k++) box_add_point(&box, b->vertices + 3 * (size_t)b->triangles[t][k]);
+    for (int k = 0; k < 3; k++) {
+        centre[k] = 0.5 * box.low[k] + 0.5 * box.high[k];
+        scale = fmax(scale, 0.5 * box.high[k] - 0.5 * box.low[k]);
+    }
+    if (scale == 0) scale = 1;
+    for (size_t t = 0; t < count; t++) {
+        b->items[t].triangle = (uint32_t)t;
+        for (int k = 0; k < 3; k++) {
+            double sum = 0;
+            for (int c = 0; c < 3; c++) sum += (b->vertices[3 * (size_t)b->triangles[t][c] + k] - centre[k]) / scale;
+            b->items[t].centroid[k] = (float)(sum / 3);
+        }
+    }
+}
+
+/* Nodes of the tree over that many triangles, those of the levels above its deepest leaves all counted. */
+static size_t count_nodes(size_t triangles) {
+    size_t nodes = 1;
+    for (size_t most = triangles; most > BRIO_LEAF_TRIANGLES; most -= most / 2) nodes = 2 * nodes + 1;
+    return nodes;
+}
+
+brio_status brio_triangle_tree_new(brio_context *ctx, const brio_mesh *mesh, brio_triangle_tree *out) {
+    brio_status status = BRIO_OK;
+    builder b = {.vertices = mesh->vertices};
+    size_t count = 0;
+    *out = (brio_triangle_tree){.vertices = mesh->vertices};
+    BRIO_TRY(cut_faces(ctx, mesh, &b.triangles, &count));
+    BRIO_TRY(BRIO_ALLOC(ctx, b.items, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->triangles, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->boxes, count_nodes(count)));
+    out->num_triangles = b.count = count;
+    b.boxes = out->boxes;
+    fill_items(&b, count);
+    build_tree(ctx, &b);
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) out->triangles[i][k] = b.triangles[b.items[i].triangle][k];
+done:
+    brio_release(ctx, b.triangles);
+    brio_release(ctx, b.items);
+    return status;
+}
+
+void brio_triangle_tree_free(brio_context *ctx, brio_triangle_tree *tree) {
+    brio_release(ctx, tree->triangles);
+    brio_release(ctx, tree->boxes);
+    *tree = (brio_triangle_tree){0};
+}
+
+/* --- one triangle --- */
+
+/* The point of segment ab nearest to p, which may be one point only. */
+static void closest_on_segment(const double *a, const double *b, const double *p, double *closest) {
+    double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    double length = brio_dot(u, u), t = length > 0 ? fmin(fmax(brio_dot(w, u) / length, 0), 1) : 0;
+    for (int k = 0; k < 3; k++) closest[k] = t < 1 ? a[k] + t * u[k] : b[k];
+}
+
+/* Whether p lies over the inside of triangle (a, a+u, a+v); if so, its foot in the plane. */
+static bool closest_inside(const double *a, const double *u, const double *v, const double *p, double *closest) {
+    double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
+    double uu = brio_dot(u, u), uv = brio_dot(u, v), vv = brio_dot(v, v), wu = brio_dot(w, u), wv = brio_dot(w, v);
+    double determinant = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
+    if (!(determinant > 0 && s >= 0 && t >= 0 && s + t <= determinant)) return false;
+    for (int k = 0; k < 3; k++) closest[k] = a[k] + s / determinant * u[k] + t / determinant * v[k];
+    return true;
+}
+
+/* Nearest point of triangle abc, of whatever shape. */
+static void closest_on_triangle(const double *a, const double *b, const double *c, const double *p, double *closest) {
+    double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    if (closest_inside(a, u, v, p, closest)) return;
+    double other[3];
+    closest_on_segment(a, b, p, closest);
+    closest_on_segment(b, c, p, other);
+    if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
+    closest_on_segment(c, a, p, other);
+    if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
+}
+
+/* --- searching --- */
+
+typedef struct {
+    size_t node, low, high; /* the range of triangles */
+    double distance;        /* squared, to the box */
+} visit;
+
+static visit visit_child(const brio_triangle_tree *tree, const visit *parent, int upper, const double *p) {
+    size_t middle = parent->low + (parent->high - parent->low) / 2;
+    visit child = {2 * parent->node + 1 + (size_t)upper, upper ? middle : parent->low, upper ? parent->high : middle,
+                   0};
+    child.distance = box_distance(&tree->boxes[child.node], p);
+    return child;
+}
+
+double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle) {
+    visit stack[MOST_LEVELS];
+    int depth = 0;
+    double best = INFINITY, q[3];
+    stack[depth++] = (visit){0, 0, tree->num_triangles, 0};
+    *triangle = 0;
+    memcpy(closest, tree->vertices + 3 * (size_t)tree->triangles[0][0], 3 * sizeof *closest);
+    while (depth > 0) {
+        visit v = stack[--depth];
+        if (v.distance >= best) continue;
+        if (v.high - v.low > BRIO_LEAF_TRIANGLES) {
+            visit lower = visit_child(tree, &v, 0, p), upper = visit_child(tree, &v, 1, p);
+            bool lower_first = lower.distance <= upper.distance;
+            stack[depth++] = lower_first ? upper : lower;
+            stack[depth++] = lower_first ? lower : upper;
+            continue;
+        }
+        for (size_t t = v.low; t < v.high; t++) {
+            const uint32_t *c = tree->triangles[t];
+            closest_on_triangle(tree->vertices + 3 * (size_t)c[0], tree->vertices + 3 * (size_t)c[1],
+                                tree->vertices + 3 * (size_t)c[2], p, q);
+            double distance = brio_square_distance(p, q);
+            if (distance >= best) continue;
+            best = distance;
+            *triangle = t;
+            memcpy(closest, q, sizeof q);
+        }
+    }
+    return best;
+}

@@ -1,0 +1,65 @@
+/* Quadric errors.
+ *
+ * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
+ * Differs from the paper: planes are weighted by area, and each corner pulls lightly towards where it was. */
+#include "mesh/quadric.h"
+#include <math.h>
+
+static const double PULL = 1e-3; /* of a corner, as a share of its planes */
+
+/* weight (n.x - d)^2, n not necessarily of unit length */
+static void add_plane(brio_quadric *q, const double *n, double d, double weight) {
+    int at = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int j = i; j < 3; j++) q->a[at++] += weight * n[i] * n[j];
+        q->b[i] += weight * d * n[i];
+    }
+    q->c += weight * d * d;
+}
+
+static void add_point(brio_quadric *q, const double *p, double weight) {
+    q->a[0] += weight, q->a[3] += weight, q->a[5] += weight;
+    for (int i = 0; i < 3; i++) {
+        q->b[i] += weight * p[i];
+        q->c += weight * p[i] * p[i];
+    }
+}
+
+void brio_quadric_add_triangle(brio_quadric *q, const double *p, const double *r, const double *s) {
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) u[k] = r[k] - p[k], v[k] = s[k] - p[k];
+    double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(length > 0)) return;
+    for (int k = 0; k < 3; k++) n[k] /= length;
+    add_plane(q, n, n[0] * p[0] + n[1] * p[1] + n[2] * p[2], length);
+    add_point(q, p, PULL * length);
+    q->area += length;
+}
+
+void brio_quadric_add(brio_quadric *q, const brio_quadric *other) {
+    for (int i = 0; i < 6; i++) q->a[i] += other->a[i];
+    for (int i = 0; i < 3; i++) q->b[i] += other->b[i];
+    q->c += other->c;
+    q->area += other->area;
+}
+
+double brio_quadric_at(const brio_quadric *q, const double *x) {
+    const double *a = q->a;
+    double ax = a[0] * x[0] + a[1] * x[1] + a[2] * x[2], ay = a[1] * x[0] + a[3] * x[1] + a[4] * x[2];
+    double az = a[2] * x[0] + a[4] * x[1] + a[5] * x[2];
+    double value = x[0] * (ax - 2 * q->b[0]) + x[1] * (ay - 2 * q->b[1]) + x[2] * (az - 2 * q->b[2]) + q->c;
+    return fmax(value, 0);
+}
+
+int brio_quadric_minimum(const brio_quadric *q, double *x) {
+    const double *a = q->a, *b = q->b;
+    double m[6] = {a[3] * a[5] - a[4] * a[4], a[2] * a[4] - a[1] * a[5], a[1] * a[4] - a[2] * a[3],
+                   a[0] * a[5] - a[2] * a[2], a[1] * a[2] - a[0] * a[4], a[0] * a[3] - a[1] * a[1]};
+    double det = a[0] * m[0] + a[1] * m[1] + a[2] * m[2], trace = a[0] + a[3] + a[5];
+    if (!(det > 1e-8 * trace * trace * trace)) return 0;
+    x[0] = (m[0] * b[0] + m[1] * b[1] + m[2] * b[2]) / det;
+    x[1] = (m[1] * b[0] + m[3] * b[1] + m[4] * b[2]) / det;
+    x[2] = (m[2] * b[0] + m[4] * b[1] + m[5] * b[2]) / det;
+    return 1;
+}

@@ -1,0 +1,258 @@
+/* Spanning subgraph of bounded degree of a triangulated surface.
+ *
+ * The surface is cut into disks, and the vertices of a disk are taken away from its boundary cycle, one at a time: any
+ * without a chord, an edge inside the disk to another vertex of the cycle. What is left is a disk again, so that in the
+ * end there is one triangle, whose edges are the subgraph. Then the vertices come back in reverse. A vertex z, with the
+ * neighbours z1 ... zm round it when it went, takes over from the cycle edges z1 z2 and zm-1 zm by its edges to z1, z2
+ * and zm: no degree grows but its own, to three. Pieces of a vertex that the cut has passed through are the same vertex
+ * in the result, which adds their degrees up.
+ *
+ * Vertices of disks are sectors of disk_cut.h, and an edge is where the disk in work ends when its flag LIVE_END is
+ * set; triangles taken away need no mark of their own.
+ *
+ * Based on: Choi. Practical Delaunay triangulation algorithms for surface reconstruction and related problems. PhD
+ * thesis, The University of Texas at Austin 2003, section 4.3.2.
+ * Differs from the paper: chords are counted, where lemma 14 marks the vertices that have one. A mark cannot be taken
+ * back when a vertex of degree two goes and the chord between its neighbours becomes a cycle edge; a count can. The
+ * loop keeps no stack of calls. */
+#include "mesh/spanning_subgraph.h"
+#include "mesh/disk_cut.h"
+
+enum { LIVE_END = 2, CHOSEN = 4 }; /* flags of half-edges beside BRIO_EDGE_CUT */
+
+enum { ON_CYCLE = 1, LISTED = 2 }; /* states of sectors */
+
+enum { ROUNDS_A_REPORT = 1 << 20 };
+
+/* The first and the last corner of a vertex at the moment when it was taken away. */
+typedef struct {
+    uint32_t first, last;
+} removal;
+
+typedef struct {
+    brio_disk_cut cut;
+    uint32_t *out;     /* of each sector on a cycle its half-edge of the cycle, the disk on its left */
+    uint32_t *chords;  /* of each sector on a cycle */
+    uint8_t *state;    /* of each sector */
+    uint32_t *free;    /* stack of sectors that had no chord when they were listed, each listed once */
+    removal *removals; /* in their order */
+    size_t num_free, num_removals;
+    size_t num_disks; /* of which one triangle is left */
+} peeler;
+
+/* --- the disk in work --- */
+
+static uint32_t end_sector(const peeler *p, uint32_t h) {
+    return p->cut.sector[brio_next_corner(h)];
+}
+
+/* The corner to the left of h at the same vertex, or BRIO_NO_HALF_EDGE at the end of the disk. */
+static uint32_t live_left(peeler *p, uint32_t h) {
+    uint32_t in = brio_previous_corner(h);
+    p->cut.steps++;
+    return p->cut.flags[in] & LIVE_END ? BRIO_NO_HALF_EDGE : p->cut.twin[in];
+}
+
+static void list_if_free(peeler *p, uint32_t sector) {
+    if (p->chords[sector] || (p->state[sector] & LISTED)) return;
+    p->state[sector] |= LISTED;
+    p->free[p->num_free++] = sector;
+}
+
+/* Puts a sector that was inside on the cycle and counts the chords that this makes. */
+static void enter_cycle(peeler *p, uint32_t sector) {
+    p->state[sector] |= ON_CYCLE;
+    uint32_t corner = p->out[sector];
+    for (uint32_t left; (left = live_left(p, corner)) != BRIO_NO_HALF_EDGE; corner = left) {
+        uint32_t other = end_sector(p, left);
+        if (!(p->state[other] & ON_CYCLE)) continue;
+        p->chords[sector]++;
+        p->chords[other]++;
+    }
+    list_if_free(p, sector);
+}
+
+/* --- vertices go --- */
+
+static void start_cycles(peeler *p) {
+    brio_disk_cut *cut = &p->cut;
+    for (uint32_t h = 0; h < cut->num_corners; h++) {
+        cut->steps++;
+        if (!(cut->flags[h] & BRIO_EDGE_CUT)) continue;
+        cut->flags[h] |= LIVE_END;
+        p->out[cut->sector[h]] = h;
+        p->state[cut->sector[h]] |= ON_CYCLE;
+    }
+    for (uint32_t h = 0; h < cut->num_corners; h++) {
+        uint32_t a = cut->sector[h], b = end_sector(p, h);
+        bool inside = !(cut->flags[h] & BRIO_EDGE_CUT) && h < cut->twin[h];
+        if (!inside || !(p->state[a] & ON_CYCLE) || !(p->state[b] & ON_CYCLE)) continue;
+        p->chords[a]++;
+        p->chords[b]++;
+    }
+    for (uint32_t s = 0; s < cut->num_sectors; s++)
+        if (p->state[s] & ON_CYCLE) list_if_free(p, s);
+}
+
+/* Ends work on a disk of which one triangle is left: its edges are the subgraph. */
+static void choose_last_triangle(peeler *p, uint32_t corner) {
+    for (uint32_t h = corner, i = 0; i < 3; i++, h = brio_next_corner(h)) {
+        p->cut.flags[h] |= CHOSEN;
+        p->state[p->cut.sector[h]] &= (uint8_t)~ON_CYCLE;
+    }
+    p->num_disks++;
+}
+
+/* Takes the triangles of sector z away: the half-edges across from z become the cycle. Returns z's last corner. */
+static uint32_t open_fan(peeler *p, uint32_t z) {
+    uint32_t corner = p->out[z], last;
+    do {
+        last = corner;
+        uint32_t twin = p->cut.twin[brio_next_corner(corner)];
+        corner = live_left(p, corner);
+        p->cut.flags[twin] |= LIVE_END;
+        p->out[p->cut.sector[twin]] = twin;
+    } while (corner != BRIO_NO_HALF_EDGE);
+    return last;
+}
+
+static void remove_vertex(peeler *p, uint32_t z) {
+    uint32_t first = p->out[z];
+    if (p->cut.flags[brio_next_corner(first)] & LIVE_END) {
+        choose_last_triangle(p, first);
+        return;
+    }
+    uint32_t last = open_fan(p, z);
+    p->state[z] &= (uint8_t)~ON_CYCLE;
+    p->removals[p->num_removals++] = (removal){first, last};
+    if (first == last) {
+        const uint32_t ends[2] = {end_sector(p, first), p->cut.sector[brio_previous_corner(first)]};
+        for (int i = 0; i < 2; i++) {
+            p->chords[ends[i]]--;
+            list_if_free(p, ends[i]);
+        }
+        return;
+    }
+    for (uint32_t corner = first; corner != last;) {
+        uint32_t left = p->cut.twin[brio_previous_corner(corner)];
+        enter_cycle(p, end_sector(p, left));
+        corner = left;
+    }
+}
+
+static brio_status peel(brio_context *ctx, peeler *p) {
+    brio_status status = BRIO_OK;
+    start_cycles(p);
+    for (size_t round = 1; p->num_free; round++) {
+        uint32_t z = p->free[--p->num_free];
+        p->state[z] &= (uint8_t)~LISTED;
+        p->cut.steps++;
+        if ((p->state[z] & ON_CYCLE) && !p->chords[z]) remove_vertex(p, z);
+        if (round % ROUNDS_A_REPORT == 0) BRIO_TRY(brio_progress(ctx, "subgraph", 0.7));
+    }
+    BRIO_REQUIRE(ctx, p->num_removals + 3 * p->num_disks == p->cut.num_sectors, BRIO_ERR_INTERNAL,
+                 "a disk is left without a vertex free of chords");
+done:
+    return status;
+}
+
+/* --- vertices come back --- */
+
+/* An edge that is not cut is known by its lower half-edge, the two sides of one that is cut are edges for themselves.
+ * */
+static uint8_t *flags_of_edge(const peeler *p, uint32_t h) {
+    uint32_t twin = p->cut.twin[h];
+    return &p->cut.flags[(p->cut.flags[h] & BRIO_EDGE_CUT) || h < twin ? h : twin];
+}
+
+static void restore_vertices(peeler *p) {
+    for (size_t i = 0; i < p->cut.num_corners; i++)
+        if (p->cut.flags[i] & CHOSEN) {
+            p->cut.flags[i] &= (uint8_t)~CHOSEN;
+            *flags_of_edge(p, (uint32_t)i) |= CHOSEN;
+        }
+    for (size_t i = p->num_removals; i-- > 0;) {
+        const removal *z = &p->removals[i];
+        *flags_of_edge(p, brio_next_corner(z->first)) &= (uint8_t)~CHOSEN;
+        *flags_of_edge(p, brio_next_corner(z->last)) &= (uint8_t)~CHOSEN;
+        *flags_of_edge(p, z->first) |= CHOSEN;
+        *flags_of_edge(p, brio_previous_corner(z->first)) |= CHOSEN;
+        *flags_of_edge(p, brio_previous_corner(z->last)) |= CHOSEN;
+        p->cut.steps += 5;
+    }
+}
+
+/* Whether half-edge h stands for its edge in the result. The sides of a cut edge are both in the subgraph of their
+ * disks, which hold their boundary cycles. */
+static bool is_result(const peeler *p, uint32_t h) {
+    return h < p->cut.twin[h] && (p->cut.flags[h] & CHOSEN);
+}
+
+static brio_status collect(brio_context *ctx, const brio_mesh *mesh, const peeler *p, brio_edges *out) {
+    brio_status status = BRIO_OK;
+    size_t count = 0;
+    for (uint32_t h = 0; h < p->cut.num_corners; h++) count += is_result(p, h);
+    BRIO_TRY(BRIO_ALLOC(ctx, out->ends, 2 * count));
+    for (uint32_t h = 0; h < p->cut.num_corners; h++) {
+        if (!is_result(p, h)) continue;
+        out->ends[2 * out->count] = mesh->face_vertices[h];
+        out->ends[2 * out->count++ + 1] = mesh->face_vertices[brio_next_corner(h)];
+    }
+done:
+    return status;
+}
+
+/* --- all of it --- */
+
+static brio_status start_peeler(brio_context *ctx, const brio_mesh *mesh, peeler *p) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_disk_cut_make(ctx, mesh, &p->cut));
+    size_t n = p->cut.num_sectors;
+    BRIO_TRY(BRIO_ALLOC(ctx, p->out, n));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, p->chords, n));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, p->state, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, p->free, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, p->removals, n));
+done:
+    return status;
+}
+
+static brio_status fill_stats(brio_context *ctx, const brio_mesh *mesh, const peeler *p, const brio_edges *edges,
+                              brio_subgraph_stats *stats) {
+    brio_status status = BRIO_OK;
+    uint32_t *degree = NULL;
+    *stats = (brio_subgraph_stats){.copies = p->cut.num_sectors, .steps = p->cut.steps};
+    for (uint32_t h = 0; h < p->cut.num_corners; h++)
+        stats->cut_edges += (p->cut.flags[h] & BRIO_EDGE_CUT) && h < p->cut.twin[h];
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, degree, mesh->num_vertices));
+    for (size_t i = 0; i < 2 * edges->count; i++) {
+        uint32_t d = ++degree[edges->ends[i]];
+        stats->vertices += d == 1;
+        if (d > stats->max_degree) stats->max_degree = d;
+    }
+done:
+    brio_release(ctx, degree);
+    return status;
+}
+
+brio_status brio_spanning_subgraph(brio_context *ctx, const brio_mesh *mesh, brio_edges *out,
+                                   brio_subgraph_stats *stats) {
+    brio_status status = BRIO_OK;
+    peeler p = {0};
+    *out = (brio_edges){.context = ctx};
+    BRIO_TRY(start_peeler(ctx, mesh, &p));
+    BRIO_TRY(peel(ctx, &p));
+    restore_vertices(&p);
+    BRIO_TRY(collect(ctx, mesh, &p, out));
+    if (stats) BRIO_TRY(fill_stats(ctx, mesh, &p, out, stats));
+    BRIO_TRY(brio_progress(ctx, "subgraph", 1));
+done:
+    brio_disk_cut_free(ctx, &p.cut);
+    brio_release(ctx, p.out);
+    brio_release(ctx, p.chords);
+    brio_release(ctx, p.state);
+    brio_release(ctx, p.free);
+    brio_release(ctx, p.removals);
+    if (status != BRIO_OK) brio_edges_free(out);
+    return status;
+}

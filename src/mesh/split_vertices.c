@@ -1,0 +1,172 @@
+/* Splitting of vertices where several fans of faces meet.
+ *
+ * A union-find joins the corners at both ends of every edge of two faces; its sets are the fans. The fans are numbered
+ * in the order of their first corners, and become the vertices.
+ *
+ * Of the boundary of a solid an edge may have more than two faces, with the inside in the wedges between them. Each
+ * face then belongs with the one at the other side of its wedge: the first that is met on the way round the edge from
+ * the face into the inside. */
+#include "mesh/split_vertices.h"
+#include "base/memory.h"
+#include "predicates/predicates.h"
+#include "mesh/edge_rings.h"
+#include "base/union_find.h"
+#include <string.h>
+
+/* A set is known by its least element: a fan by its first corner. */
+static void join_corners(const brio_mesh *m, const uint32_t *ring, const uint32_t *next, uint32_t *fan) {
+    const uint32_t *v = m->face_vertices;
+    for (uint32_t h = 0; h < m->face_offsets[m->num_faces]; h++) {
+        uint32_t g = ring[h];
+        if (g <= h || ring[g] != h) continue;
+        bool same_way = v[h] == v[g];
+        brio_unite(fan, h, same_way ? g : next[g], true);
+        brio_unite(fan, next[h], same_way ? next[g] : g, true);
+    }
+}
+
+/* Rows of `size` bytes, one for each fan, from those of the vertices; *rows is replaced. */
+static brio_status take_rows(brio_context *ctx, char **rows, size_t size, const uint32_t *from, size_t count) {
+    char *taken = NULL;
+    brio_status status = BRIO_ALLOC(ctx, taken, count * size);
+    if (status != BRIO_OK) return status;
+    for (size_t i = 0; i < count; i++) memcpy(taken + i * size, *rows + from[i] * size, size);
+    brio_release(ctx, *rows);
+    *rows = taken;
+    return BRIO_OK;
+}
+
+static brio_status replace_vertices(brio_context *ctx, brio_mesh *m, const uint32_t *from, size_t count) {
+    brio_status status = BRIO_OK;
+    char *rows = (char *)m->vertices;
+    BRIO_TRY(take_rows(ctx, &rows, 3 * sizeof *m->vertices, from, count));
+    m->vertices = (double *)(void *)rows;
+    for (size_t i = 0; i < m->num_properties; i++) {
+        rows = m->properties[i].data;
+        BRIO_TRY(take_rows(ctx, &rows, brio_scalar_size(m->properties[i].type), from, count));
+        m->properties[i].data = rows;
+    }
+    m->num_vertices = count;
+done:
+    return status;
+}
+
+/* --- wedges; the faces are triangles --- */
+
+static uint32_t next_corner(uint32_t h) {
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+/* The sign of the volume over the triangle of half-edge h and the apex of that of g: negative when it is inside. */
+static int side_of_apex(const brio_mesh *m, uint32_t h, uint32_t g) {
+    const uint32_t *v = m->face_vertices;
+    const uint32_t corners[4] = {v[h], v[next_corner(h)], v[next_corner(next_corner(h))],
+                                 v[next_corner(next_corner(g))]};
+    const double *p[4];
+    for (int i = 0; i < 4; i++) p[i] = m->vertices + 3 * (size_t)corners[i];
+    return brio_orient3d(p[0], p[1], p[2], p[3]);
+}
+
+/* Whether g is met before `other` on the way round their edge from h into the inside. */
+static bool is_met_first(const brio_mesh *m, uint32_t h, uint32_t g, uint32_t other) {
+    int side = side_of_apex(m, h, g), other_side = side_of_apex(m, h, other);
+    if (side != other_side) return side < other_side;
+    return side_of_apex(m, g, other) > 0; /* g runs the other way than h */
+}
+
+/* The half-edge of the ring of h at the other side of its wedge, or of the wedge outside. */
+static uint32_t wedge_partner(const brio_mesh *m, const uint32_t *ring, uint32_t h, bool inside) {
+    const uint32_t *v = m->face_vertices;
+    uint32_t partner = h;
+    for (uint32_t g = ring[h]; g != h; g = ring[g])
+        if (v[g] != v[h] && (partner == h || is_met_first(m, h, g, partner) == inside)) partner = g;
+    return partner;
+}
+
+/* Takes rings of more than two half-edges apart into pairs that share a wedge: an inside one or, where `outside` is
+ * given, an outside one, but then for one edge at a vertex only.   partner  #corners of work space;   outside  #V,
+ * zeroed, or NULL.   Returns whether there were such rings. */
+static bool pair_wedges(const brio_mesh *m, uint32_t *ring, uint32_t *partner, uint8_t *outside) {
+    size_t corners = 3 * m->num_faces;
+    bool any = false;
+    for (uint32_t h = 0; h < corners; h++) partner[h] = ring[h];
+    for (uint32_t h = 0; h < corners; h++) {
+        if (ring[ring[h]] == h || ring[h] > h) continue; /* once for a ring, at its end */
+        uint32_t a = m->face_vertices[h], b = m->face_vertices[next_corner(h)];
+        bool inside = !outside || outside[a] || outside[b];
+        if (!inside) outside[a] = outside[b] = 1;
+        uint32_t g = h;
+        do partner[g] = wedge_partner(m, ring, g, inside);
+        while ((g = ring[g]) != h);
+        any = true;
+    }
+    for (uint32_t h = 0; h < corners; h++) ring[h] = partner[partner[h]] == h ? partner[h] : h;
+    return any;
+}
+
+/* --- all of it --- */
+
+/* Splits along the edges that `ring` joins. */
+static brio_status split_fans(brio_context *ctx, brio_mesh *m, uint32_t *ring) {
+    brio_status status = BRIO_OK;
+    uint32_t *next = NULL, *fan = NULL, *from = NULL;
+    size_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0, count = 0;
+    BRIO_TRY(BRIO_ALLOC(ctx, next, corners));
+    BRIO_TRY(BRIO_ALLOC(ctx, fan, corners));
+    BRIO_TRY(BRIO_ALLOC(ctx, from, corners));
+    for (size_t f = 0; f < m->num_faces; f++)
+        for (uint64_t h = m->face_offsets[f]; h < m->face_offsets[f + 1]; h++) {
+            fan[h] = (uint32_t)h;
+            next[h] = (uint32_t)(h + 1 < m->face_offsets[f + 1] ? h + 1 : m->face_offsets[f]);
+        }
+    if (corners) join_corners(m, ring, next, fan);
+    for (uint32_t h = 0; h < corners; h++) {
+        uint32_t first = brio_find(fan, h);
+        if (first == h) from[count] = m->face_vertices[h], next[h] = (uint32_t)count++; /* next: now the fan's number */
+        ring[h] = next[first]; /* ring: now the new vertex of the corner */
+    }
+    BRIO_TRY(replace_vertices(ctx, m, from, count));
+    if (corners) memcpy(m->face_vertices, ring, corners * sizeof *ring);
+done:
+    brio_release(ctx, next);
+    brio_release(ctx, fan);
+    brio_release(ctx, from);
+    return status;
+}
+
+brio_status brio_mesh_split_vertices(brio_context *ctx, brio_mesh *m) {
+    brio_status status = BRIO_OK;
+    uint32_t *ring = NULL;
+    BRIO_TRY(brio_mesh_check_faces(ctx, m));
+    BRIO_TRY(brio_edge_rings(ctx, m, &ring));
+    BRIO_TRY(split_fans(ctx, m, ring));
+done:
+    brio_release(ctx, ring);
+    return status;
+}
+
+/* Joined across inside wedges, two sheets may still hang together round both ends of their edge, which then stays one
+ * edge of four faces. There the fan of either end passes the edge twice, and falls in two when it is joined across the
+ * outside wedges instead. */
+brio_status brio_mesh_split_sheets(brio_context *ctx, brio_mesh *m) {
+    brio_status status = BRIO_OK;
+    uint32_t *ring = NULL, *partner = NULL;
+    uint8_t *outside = NULL;
+    bool touch = true;
+    BRIO_TRY(BRIO_ALLOC(ctx, partner, 3 * m->num_faces));
+    for (size_t vertices = SIZE_MAX; touch && vertices != m->num_vertices;) {
+        vertices = outside ? m->num_vertices : SIZE_MAX;
+        BRIO_TRY(brio_edge_rings(ctx, m, &ring));
+        touch = pair_wedges(m, ring, partner, outside);
+        BRIO_TRY(split_fans(ctx, m, ring));
+        brio_release(ctx, ring);
+        brio_release(ctx, outside);
+        ring = NULL;
+        BRIO_TRY(BRIO_ALLOC_ZERO(ctx, outside, m->num_vertices));
+    }
+done:
+    brio_release(ctx, ring);
+    brio_release(ctx, partner);
+    brio_release(ctx, outside);
+    return status;
+}

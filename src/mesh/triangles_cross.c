@@ -1,0 +1,160 @@
+/* Whether two triangles meet in more than what they share, by exact orientations only.
+ *
+ * Where nothing is shared, they meet when an edge of either meets the other. With one common corner the intersection is
+ * convex and holds the corner; if it holds more, a ray from the corner runs in both and leaves one of them through the
+ * edge opposite to the corner: one of the two opposite edges meets the other triangle. With a common edge they must be
+ * in one plane and on one side of the edge. With three common corners they are the same.
+ *
+ * An edge meets a triangle off its plane when the three orientations of the edge with the triangle's sides do not have
+ * different signs; in one plane the same is asked of the projections along an axis that keeps the triangle's area. */
+#include "mesh/triangles_cross.h"
+#include <math.h>
+
+typedef const double *point;
+
+/* What a determinant of doubles may be off by: this share of the sum of its terms' sizes [Shewchuk 1997, with room to
+ * spare], and what may have underflowed in products of two and of three factors. */
+static const double RELATIVE_ERROR = 0x1p-49, UNDERFLOW_OF_TWO = 0x1p-1060, ABSOLUTE_ERROR = 0x1p-1000;
+
+/* Sign of det [b-a, c-a, d-a]. */
+static int orient3d(point a, point b, point c, point d) {
+    double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2], cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
+    double dx = d[0] - a[0], dy = d[1] - a[1], dz = d[2] - a[2];
+    double bc[6] = {by * cz, bz * cy, bz * cx, bx * cz, bx * cy, by * cx};
+    double det = dx * (bc[0] - bc[1]) + dy * (bc[2] - bc[3]) + dz * (bc[4] - bc[5]);
+    double size = fabs(dx) * (fabs(bc[0]) + fabs(bc[1])) + fabs(dy) * (fabs(bc[2]) + fabs(bc[3])) +
+                  fabs(dz) * (fabs(bc[4]) + fabs(bc[5]));
+    double error = RELATIVE_ERROR * size + UNDERFLOW_OF_TWO * (fabs(dx) + fabs(dy) + fabs(dz)) + ABSOLUTE_ERROR;
+    return det > error ? 1 : det < -error ? -1 : brio_orient3d(a, b, c, d);
+}
+
+/* --- in a plane: coordinates x and y --- */
+
+/* Sign of the area of abc; exactly, an orientation with a fourth point straight above a. */
+static int orient2d(const double *a, const double *b, const double *c) {
+    double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
+    double error = RELATIVE_ERROR * (fabs(left) + fabs(right)) + ABSOLUTE_ERROR;
+    if (left - right > error) return 1;
+    if (left - right < -error) return -1;
+    double p[4][3] = {{a[0], a[1], 0}, {b[0], b[1], 0}, {c[0], c[1], 0}, {a[0], a[1], 1}};
+    return brio_orient3d(p[0], p[1], p[2], p[3]);
+}
+
+static bool in_interval(double a, double b, double x) {
+    return a <= b ? a <= x && x <= b : b <= x && x <= a;
+}
+
+static bool on_segment(const double *a, const double *b, const double *p) {
+    return in_interval(a[0], b[0], p[0]) && in_interval(a[1], b[1], p[1]);
+}
+
+static bool segments_meet(const double *a, const double *b, const double *c, const double *d) {
+    int abc = orient2d(a, b, c), abd = orient2d(a, b, d), cda = orient2d(c, d, a), cdb = orient2d(c, d, b);
+    if (abc * abd < 0 && cda * cdb < 0) return true;
+    return (!abc && on_segment(a, b, c)) || (!abd && on_segment(a, b, d)) || (!cda && on_segment(c, d, a)) ||
+           (!cdb && on_segment(c, d, b));
+}
+
+static bool in_triangle(const double t[3][2], const double *p) {
+    int s[3];
+    for (int i = 0; i < 3; i++) s[i] = orient2d(t[i], t[(i + 1) % 3], p);
+    return (s[0] >= 0 && s[1] >= 0 && s[2] >= 0) || (s[0] <= 0 && s[1] <= 0 && s[2] <= 0);
+}
+
+/* The two coordinates other than `axis`. */
+static void project(point p, int axis, double *out) {
+    out[0] = p[(axis + 1) % 3];
+    out[1] = p[(axis + 2) % 3];
+}
+
+/* An axis along which the triangle is projected to one with area, or 3 when there is none. */
+static int area_axis(const point t[3]) {
+    int axis = 0;
+    for (; axis < 3; axis++) {
+        double q[3][2];
+        for (int i = 0; i < 3; i++) project(t[i], axis, q[i]);
+        if (orient2d(q[0], q[1], q[2])) break;
+    }
+    return axis;
+}
+
+static bool segment_meets_in_plane(point p, point q, const point t[3]) {
+    double flat[3][2], a[2], b[2];
+    int axis = area_axis(t);
+    if (axis == 3) return false;
+    for (int i = 0; i < 3; i++) project(t[i], axis, flat[i]);
+    project(p, axis, a);
+    project(q, axis, b);
+    if (in_triangle((const double(*)[2])flat, a)) return true;
+    for (int i = 0; i < 3; i++)
+        if (segments_meet(a, b, flat[i], flat[(i + 1) % 3])) return true;
+    return false;
+}
+
+/* --- in space --- */
+
+static bool segment_meets(point p, point q, const point t[3]) {
+    int at_p = orient3d(t[0], t[1], t[2], p), at_q = orient3d(t[0], t[1], t[2], q);
+    if (at_p * at_q > 0) return false;
+    if (!at_p && !at_q) return segment_meets_in_plane(p, q, t);
+    int s[3];
+    for (int i = 0; i < 3; i++) s[i] = orient3d(p, q, t[i], t[(i + 1) % 3]);
+    return (s[0] >= 0 && s[1] >= 0 && s[2] >= 0) || (s[0] <= 0 && s[1] <= 0 && s[2] <= 0);
+}
+
+/* Whether the corners of u are all strictly on one side of the plane of t. */
+static bool on_one_side(const point t[3], const point u[3]) {
+    int first = orient3d(t[0], t[1], t[2], u[0]);
+    for (int i = 1; i < 3 && first; i++)
+        if (orient3d(t[0], t[1], t[2], u[i]) != first) first = 0;
+    return first != 0;
+}
+
+static bool cross_apart(const point t[3], const point u[3]) {
+    if (on_one_side(t, u) || on_one_side(u, t)) return false;
+    for (int i = 0; i < 3; i++)
+        if (segment_meets(t[i], t[(i + 1) % 3], u) || segment_meets(u[i], u[(i + 1) % 3], t)) return true;
+    return false;
+}
+
+static bool cross_at_corner(const point t[3], int i, const point u[3], int j) {
+    return segment_meets(t[(i + 1) % 3], t[(i + 2) % 3], u) || segment_meets(u[(j + 1) % 3], u[(j + 2) % 3], t);
+}
+
+/* t and u with the corners i and j beside the common edge. */
+static bool cross_at_edge(const point t[3], int i, const point u[3], int j) {
+    point v = t[(i + 1) % 3], w = t[(i + 2) % 3], a = t[i], b = u[j];
+    double flat[4][2];
+    if (orient3d(v, w, a, b)) return false;
+    int axis = area_axis(t);
+    if (axis == 3) return false;
+    project(v, axis, flat[0]);
+    project(w, axis, flat[1]);
+    project(a, axis, flat[2]);
+    project(b, axis, flat[3]);
+    return orient2d(flat[0], flat[1], flat[2]) == orient2d(flat[0], flat[1], flat[3]);
+}
+
+static bool same(point p, point q) {
+    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+}
+
+static bool has_corner_twice(const point t[3]) {
+    return same(t[0], t[1]) || same(t[1], t[2]) || same(t[2], t[0]);
+}
+
+static bool cross_unless_flat(const point t[3], const point u[3]) {
+    int common = 0, i = 0, j = 0, sum_i = 0, sum_j = 0;
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            if (same(t[a], u[b])) common++, i = a, j = b, sum_i += a, sum_j += b;
+    if (common == 0) return cross_apart(t, u);
+    if (common == 1) return cross_at_corner(t, i, u, j);
+    if (has_corner_twice(t) || has_corner_twice(u)) return false;
+    if (common == 2) return cross_at_edge(t, 3 - sum_i, u, 3 - sum_j);
+    return true;
+}
+
+bool brio_triangles_cross(const double *const t[3], const double *const u[3]) {
+    return cross_unless_flat(t, u) && area_axis(t) < 3 && area_axis(u) < 3;
+}

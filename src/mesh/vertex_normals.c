@@ -1,0 +1,62 @@
+/* Normals of vertices: the sum of the area vectors of the faces round each. An area vector does not depend on how the
+ * polygon would be cut into triangles, and faces that are nearly points or lines, whose directions are noise, hardly
+ * count. Where the sum is no direction the normal is 0. */
+#include "base/memory.h"
+#include "mesh/edge_rings.h"
+#include <math.h>
+
+static const char *const NAMES[3] = {"nx", "ny", "nz"};
+
+/* Twice the area of the face, across it. */
+static void area_vector(const brio_mesh *m, size_t face, double *n) {
+    const double *o = m->vertices + 3 * (size_t)m->face_vertices[m->face_offsets[face]];
+    n[0] = n[1] = n[2] = 0;
+    for (uint64_t h = m->face_offsets[face] + 2; h < m->face_offsets[face + 1]; h++) {
+        const double *p = m->vertices + 3 * (size_t)m->face_vertices[h - 1];
+        const double *q = m->vertices + 3 * (size_t)m->face_vertices[h];
+        double u[3], v[3];
+        for (int k = 0; k < 3; k++) u[k] = p[k] - o[k], v[k] = q[k] - o[k];
+        n[0] += u[1] * v[2] - u[2] * v[1];
+        n[1] += u[2] * v[0] - u[0] * v[2];
+        n[2] += u[0] * v[1] - u[1] * v[0];
+    }
+}
+
+static void normalise(double *n) {
+    double most = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
+    if (!(most > 0) || isinf(most)) {
+        n[0] = n[1] = n[2] = 0;
+        return;
+    }
+    for (int k = 0; k < 3; k++) n[k] /= most; /* so that squares do not underflow */
+    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3; k++) n[k] /= length;
+}
+
+brio_status brio_mesh_add_normals(brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = mesh->context;
+    double *sum = NULL;
+    float *column[3];
+    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, sum, 3 * mesh->num_vertices));
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        double n[3];
+        if (mesh->face_offsets[f + 1] == mesh->face_offsets[f]) continue;
+        area_vector(mesh, f, n);
+        for (uint64_t h = mesh->face_offsets[f]; h < mesh->face_offsets[f + 1]; h++)
+            for (int k = 0; k < 3; k++) sum[3 * (size_t)mesh->face_vertices[h] + k] += n[k];
+    }
+    for (int k = 0; k < 3; k++) {
+        void *data;
+        BRIO_TRY(brio_mesh_add_property(mesh, NAMES[k], BRIO_SCALAR_FLOAT32, &data));
+        column[k] = data;
+    }
+    for (size_t v = 0; v < mesh->num_vertices; v++) {
+        normalise(sum + 3 * v);
+        for (int k = 0; k < 3; k++) column[k][v] = (float)sum[3 * v + (size_t)k];
+    }
+done:
+    brio_release(ctx, sum);
+    return status;
+}

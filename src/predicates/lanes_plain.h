@@ -1,0 +1,75 @@
+/* Two doubles side by side: the vector operations of centre_lanes.h as every processor has them. */
+#ifndef BRIO_PREDICATES_LANES_PLAIN_H
+#define BRIO_PREDICATES_LANES_PLAIN_H
+
+#include "predicates/double_double.h"
+#include <stdint.h>
+#include <string.h>
+
+enum { LANES = 2 };
+
+typedef double lanes __attribute__((vector_size(8 * LANES))); /* + - * / act on each lane */
+typedef int64_t lane_mask __attribute__((vector_size(8 * LANES)));
+
+static inline lanes all(double x) {
+    return (lanes){x, x};
+}
+static inline lanes magnitude(lanes x) {
+    return (lanes)((lane_mask)x & INT64_MAX);
+}
+static inline lane_mask greater(lanes x, lanes y) {
+    return x > y;
+}
+static inline lane_mask equal(lanes x, lanes y) {
+    return x == y;
+}
+static inline lane_mask both(lane_mask a, lane_mask b) {
+    return a & b;
+}
+static inline lane_mask either(lane_mask a, lane_mask b) {
+    return a | b;
+}
+/* x in the lanes of the mask, y in the others. */
+static inline lanes choose(lane_mask m, lanes x, lanes y) {
+    return (lanes)(((lane_mask)x & m) | ((lane_mask)y & ~m));
+}
+/* x where it is greater, else y: y too where one is NaN. */
+static inline lanes maximum(lanes x, lanes y) {
+    return choose(x > y, x, y);
+}
+static inline unsigned bits_of(lane_mask m) {
+    return (unsigned)(m[0] & 1) | (unsigned)(m[1] & 2);
+}
+
+/* x y + z, rounded once or twice. */
+static inline lanes multiply_add(lanes x, lanes y, lanes z) {
+    return x * y + z;
+}
+/* x y - p, p the rounded product. */
+static inline lanes product_error(lanes x, lanes y, lanes p) {
+    lanes error = p;
+    for (int i = 0; i < LANES; i++) error[i] = dd_two_product(x[i], y[i], DD_TARGET_HAS_FMA).lo;
+    return error;
+}
+
+/* The bits of the exponent alone: the largest power of two that is no larger than x, x positive and normal. */
+static inline lanes leading_power(lanes x) {
+    return (lanes)((lane_mask)x & (lane_mask)all(__builtin_inf()));
+}
+
+/* out = the columns of a row of four doubles a lane, or of three and zeros. */
+static inline void load_rows(const double *const row[LANES], const bool four, lanes out[4]) {
+    for (int k = 0; k < 3 + four; k++) out[k] = (lanes){row[0][k], row[1][k]};
+    if (!four) out[3] = all(0);
+}
+
+static inline lanes load_lanes(const double x[LANES]) {
+    lanes out;
+    memcpy(&out, x, sizeof out);
+    return out;
+}
+static inline void store_lanes(double out[LANES], lanes x) {
+    memcpy(out, &x, sizeof x);
+}
+
+#endif

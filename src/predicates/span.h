@@ -1,0 +1,41 @@
+/* The powers of two between which the bits of numbers lie: where points stand on a common grid, and how fine it is. */
+#ifndef BRIO_PREDICATES_SPAN_H
+#define BRIO_PREDICATES_SPAN_H
+
+#include <stdint.h>
+#include <string.h>
+
+/** Numbers that are multiples of 2^low and below 2^high in magnitude. */
+typedef struct {
+    int low, high;
+} brio_span;
+
+/** The span of no numbers: every number widens it. Zeros have no bits and leave a span as it is. */
+static const brio_span BRIO_NO_SPAN = {INT32_MAX, INT32_MIN};
+
+/** The span of a finite number. */
+static inline brio_span brio_span_of(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    int exponent = (int)(bits >> 52 & 0x7ff);
+    uint64_t mantissa = bits & ((UINT64_C(1) << 52) - 1);
+    if (exponent == 0)
+        exponent = 1; /* subnormal, or zero */
+    else
+        mantissa |= UINT64_C(1) << 52;
+    if (!mantissa) return BRIO_NO_SPAN;
+    return (brio_span){exponent - 1075 + __builtin_ctzll(mantissa), exponent - 1075 + 64 - __builtin_clzll(mantissa)};
+}
+
+static inline void brio_span_add(brio_span *s, double x) {
+    brio_span own = brio_span_of(x);
+    s->low = own.low < s->low ? own.low : s->low;
+    s->high = own.high > s->high ? own.high : s->high;
+}
+
+/** The largest exponent whose double is at most `exponent`: weights are in units of the square of the grid's. */
+static inline int brio_half_exponent(int exponent) {
+    return exponent >= 0 ? exponent / 2 : -((1 - exponent) / 2);
+}
+
+#endif

@@ -1,0 +1,11 @@
+/* A simulated laser scanner. */
+#ifndef BRIO_TESTDATA_SCAN_H
+#define BRIO_TESTDATA_SCAN_H
+
+#include "base/memory.h"
+
+/** Scans the sculpture with about n rays that hit. The options are valid. The vertices come view by view and row by
+ *  row; the property "view" (uint16) tells the sensor position. */
+brio_status brio_scan(brio_context *ctx, size_t n, const brio_generate_options *options, brio_mesh **out);
+
+#endif
