@@ -1,0 +1,28 @@
+"""brio compare: distances of two surfaces."""
+
+from brio_cli import CliTest, COMMON_FACTS, CUBE, main, number, OCTAHEDRON, OCTAHEDRON_FACES
+
+
+class Compare(CliTest):
+    def test_facts_of_a_run(self):
+        a = self.off("a.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        b = self.off("b.off", [(2 * x, 2 * y, 2 * z) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
+        facts = self.facts("compare", a, b, "--samples", "1000")
+        keys = "mean rms p95 hausdorff normal_consistency diagonal".split()
+        self.assert_schema(facts, {**COMMON_FACTS, "input": list, **{key: number for key in keys}})
+        self.assertEqual(facts["input"], [a, b])
+        self.assertAlmostEqual(facts["percent_of_diagonal"]["mean"], 100 * facts["mean"] / facts["diagonal"])
+
+    def test_compare_of_a_surface_with_itself(self):
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        facts = self.facts("compare", mesh, mesh, "--samples", "500")
+        self.assertLess(facts["hausdorff"], 1e-12)
+        self.assertAlmostEqual(facts["normal_consistency"], 1)
+
+    def test_compare_with_points_alone(self):
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        self.bad_input("found no faces", "compare", mesh, self.xyz("a.xyz", CUBE))
+
+
+if __name__ == "__main__":
+    main()

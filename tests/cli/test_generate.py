@@ -1,0 +1,58 @@
+"""brio generate: points of each kind."""
+
+from brio_cli import CliTest, COMMON_FACTS, count, main
+
+
+class Usage(CliTest):
+    def test_number_of_points_that_is_none(self):
+        for n in ["many", "-5", "1.5", "1e30", ""]:
+            self.usage("points", "generate", "cube", "-n", n, "-o", "x.xyz")
+
+    def test_generate_without_a_number(self):
+        self.usage("-n N", "generate", "cube", "-o", "x.xyz")
+
+    def test_generate_of_an_unknown_kind(self):
+        self.usage("unknown kind 'sphare'; did you mean 'sphere'", "generate", "sphare", "-n", "5", "-o", "x.xyz")
+
+    def test_generate_with_options_of_another_kind(self):
+        for option in [("--noise", "0.5"), ("--views", "3"), ("--truth", "t.ply")]:
+            self.usage("scan", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
+
+
+class Generate(CliTest):
+    def test_facts_of_a_run(self):
+        facts = self.facts("generate", "ball", "-n", "50", "-o", self.path("b.xyz"))
+        self.assert_schema(facts, {**COMMON_FACTS, "points": count})
+
+    def test_generate_repeats_with_the_seed(self):
+        outputs = [self.expect(0, "generate", "scan", "-n", "500", "-o", "-", "--format", "xyz", *seed).out
+                   for seed in ([], [], ["--seed", "1"], ["--seed", "2"])]
+        self.assertEqual(outputs[0], outputs[1])
+        self.assertEqual(outputs[0], outputs[2])
+        self.assertNotEqual(outputs[0], outputs[3])
+
+    def test_generate_of_every_kind(self):
+        listed = self.expect(0, "generate", "--help").text
+        for kind in ["cube", "ball", "sphere", "torus", "cylinder", "grid", "clusters", "moment"]:
+            self.assertEqual(self.facts("generate", kind, "-n", "77")["points"], 77, kind)
+            self.assertIn(kind, listed)
+
+    def test_generate_of_the_moment_curve_by_either_name(self):
+        outputs = [self.expect(0, "generate", kind, "-n", "50", "-o", "-", "--format", "xyz").out
+                   for kind in ["moment", "moment-curve"]]
+        self.assertEqual(outputs[0], outputs[1])
+        rows = [line.split() for line in outputs[0].decode().splitlines() if not line.startswith("#")]
+        self.assertEqual(len(rows), 50)
+        for t, square, cube in [map(float, row) for row in rows]:
+            self.assertEqual((square, cube), (t * t, t * t * t))
+
+    def test_generate_scan_with_its_truth(self):
+        facts = self.facts("generate", "scan", "-n", "2000", "-o", self.path("s.ply"), "--views", "4", "--noise", "0",
+                           "--truth", self.path("t.ply"), "--truth-resolution", "40")
+        self.assertEqual(facts["points"], self.facts("info", self.path("s.ply"))["points"])
+        self.assertIn("view", self.facts("info", self.path("s.ply"))["properties"])
+        self.assertTrue(self.facts("check", self.path("t.ply"))["certificate"]["closed"])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,42 @@
+"""brio info: what a file holds."""
+
+from brio_cli import (CliTest, COMMON_FACTS, count, CUBE, main, number, OCTAHEDRON, OCTAHEDRON_FACES,
+                      PLY_WITH_PROPERTIES, vector)
+
+
+class Info(CliTest):
+    def test_facts_of_a_run(self):
+        facts = self.facts("info", self.cloud("a.ply", 500))
+        self.assert_schema(facts, {**COMMON_FACTS, "points": count, "faces": count, "tetrahedra": count,
+                                   "box": {"min": vector, "max": vector}, "duplicates": count, "spacing": number,
+                                   "estimate_bytes": {"delaunay": count, "surface": count, "medial": count,
+                                                      "offset": count}, "properties": dict})
+
+    def test_info_of_an_empty_file(self):
+        facts = self.facts("info", self.file("a.xyz", ""))
+        self.assertEqual((facts["points"], facts["box"], facts["spacing"]), (0, None, None))
+
+    def test_info_of_one_place(self):
+        facts = self.facts("info", self.xyz("a.xyz", [(1, 2, 3)] * 5))
+        self.assertEqual((facts["duplicates"], facts["spacing"]), (4, None))
+
+    def test_info_of_a_mesh(self):
+        facts = self.facts("info", self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES))
+        self.assertEqual((facts["points"], facts["faces"], facts["tetrahedra"]), (6, 8, 0))
+
+    def test_info_spacing_of_a_grid(self):
+        facts = self.facts("info", self.cloud("a.xyz", 1000, "grid"))
+        self.assertEqual((facts["spacing"], facts["box"]), (1, {"min": [0, 0, 0], "max": [9, 9, 9]}))
+
+    def test_info_spacing_at_extreme_scales(self):
+        for scale in [1e-200, 1e200]:
+            facts = self.facts("info", self.xyz("a.xyz", [tuple(scale * c for c in p) for p in CUBE]))
+            self.assertAlmostEqual(facts["spacing"] / scale, 1)
+
+    def test_properties_are_named(self):
+        facts = self.facts("info", self.file("a.ply", PLY_WITH_PROPERTIES))
+        self.assertEqual(facts["properties"], {"red": "uint8", "quality": "float64"})
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""brio medial: the power shape, its facts and its files."""
+
+from brio_cli import CERTIFICATE, CliTest, COMMON_FACTS, count, CUBE, main, number, OCTAHEDRON, OCTAHEDRON_FACES
+
+
+class Usage(CliTest):
+    def test_wrong_options(self):
+        points = self.xyz("a.xyz", CUBE)
+        self.usage("no faces", "medial", points, "-o", "x.ply", "--labeling", "mesh")
+        self.usage("less than 1", "medial", points, "-o", "x.ply", "--scale", "0.5")
+        self.usage("negative", "medial", points, "-o", "x.ply", "--redundancy", "-1")
+        self.usage("obj", "medial", points, "-o", "x.obj")
+
+
+class NoAnswer(CliTest):
+    def test_medial_axis_of_a_plane(self):
+        points = self.xyz("a.xyz", [(x, y, 0) for x in range(6) for y in range(6)])
+        self.expect(3, "medial", points, "-o", self.path("out.ply"))
+        self.assert_only(self.folder, "a.xyz")
+
+    def test_medial_axis_of_an_open_mesh(self):
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES[:-1])
+        run = self.expect(3, "medial", mesh, "-o", self.path("out.ply"))
+        self.assertIn("along 3 edges", run.err)
+        self.assertIn("--labeling global", run.err)
+        self.assert_only(self.folder, "m.off")
+
+
+class Facts(CliTest):
+    def test_facts_of_a_run(self):
+        points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
+        counts = "samples poles hidden_poles inner outer unlabelled vertices edges triangles tetrahedra".split()
+        seconds = {key: number for key in "read noise delaunay poles power label shape write total".split()}
+        schema = {**COMMON_FACTS, **{key: count for key in counts}, "labeling": str, "noise": number,
+                  "smoothed": bool, "seconds": seconds}
+        facts = self.facts("medial", points, "-o", out)
+        self.assert_schema(facts, schema)
+        self.assertEqual((facts["samples"], facts["unlabelled"]), (2000, 0))
+        self.assertEqual(facts["labeling"], self.facts("surface", points, "-o", self.path("mesh.ply"))["labeling"])
+        self.assertEqual(facts["poles"], facts["inner"] + facts["outer"])
+        self.assertEqual(set(self.facts("info", out)["properties"]), {"radius", "side"})
+        mesh = self.path("mesh.ply")
+        facts = self.facts("medial", mesh, "-o", out, "--sides", "both")
+        self.assert_schema(facts, schema)
+        self.assertEqual(facts["labeling"], "mesh")
+        self.assertEqual(self.facts("medial", mesh, "-o", out, "--labeling", "global")["labeling"], "global")
+
+    def test_medial_facts_without_an_output(self):
+        facts = self.facts("medial", self.cloud("torus.ply", 500, "torus"))
+        self.assertEqual(facts["vertices"] - facts["edges"] + facts["triangles"] - facts["tetrahedra"], 0)
+
+    def test_medial_simplified_with_its_crust(self):
+        points, crust = self.cloud("a.ply", 2000, "torus"), self.path("crust.ply")
+        whole = self.facts("medial", points, "-o", self.path("out.vtp"))
+        facts = self.facts("medial", points, "-o", self.path("out.vtp"), "--simplify", "--crust", crust)
+        self.assertLess(facts["vertices"], whole["vertices"])
+        self.assertGreater(facts["left_out"], 0)
+        self.assert_schema(facts, {"certificate": CERTIFICATE})
+        self.assertEqual((facts["certificate"]["closed"], facts["certificate"]["genus"]), (True, 1))
+        self.assertTrue(self.facts("check", crust)["certificate"]["manifold"])
+
+
+class Files(CliTest):
+    def test_power_shape_in_files(self):
+        points = self.cloud("a.ply", 300, "torus")
+        facts = self.facts("medial", points, "-o", self.path("out.ply"), "--ascii")
+        n, e, t, k = (facts[key] for key in "vertices edges triangles tetrahedra".split())
+        self.assertEqual(n - e + t - k, 0)  # a solid torus
+        self.assertGreater(k, 0)
+        with open(self.path("out.ply")) as f:
+            lines = f.read().split("end_header\n")[1].splitlines()
+        rows = [tuple(map(float, line.split())) for line in lines[:n]]
+        faces = [tuple(map(int, line.split()))[1:] for line in lines[n:n + t]]
+        solids = [tuple(map(int, line.split()))[1:] for line in lines[n + t:n + t + k]]
+        edges = [tuple(map(int, line.split())) for line in lines[n + t + k:]]
+        self.assertEqual((len(rows), len(faces), len(solids), len(edges)), (n, t, k, e))
+        self.assertTrue(all(0 <= a < b < n for a, b in edges))
+        sides = {tuple(sorted((f[i], f[i - 1]))) for f in faces for i in range(3)}
+        self.assertTrue(sides <= set(edges))
+        facets = {tuple(sorted(q[:i] + q[i + 1:])) for q in solids for i in range(4)}
+        self.assertTrue(facets <= {tuple(sorted(f)) for f in faces})
+        self.expect(0, "medial", points, "-o", self.path("out.vtp"))
+        arrays, piece = self.appended_arrays("out.vtp")
+        self.assertEqual(piece, {"NumberOfPoints": str(n), "NumberOfVerts": "0", "NumberOfLines": str(e),
+                                 "NumberOfStrips": "0", "NumberOfPolys": str(t)})
+        self.assertEqual(arrays["Points", "Points"], tuple(x for row in rows for x in row[:3]))
+        self.assertEqual(arrays["PointData", "radius"], tuple(row[3] for row in rows))
+        self.assertEqual(arrays["PointData", "side"], (-1,) * n)
+        self.assertEqual(arrays["Lines", "connectivity"], tuple(v for edge in edges for v in edge))
+        self.assertEqual(arrays["Lines", "offsets"], tuple(range(2, 2 * e + 1, 2)))
+        self.assertEqual(arrays["Polys", "connectivity"], tuple(v for face in faces for v in face))
+        self.assertEqual(arrays["Polys", "offsets"], tuple(range(3, 3 * t + 1, 3)))
+        self.assertEqual(arrays["Verts", "connectivity"], ())
+        self.expect(0, "medial", points, "-o", self.path("out.vtu"))
+        arrays, _ = self.appended_arrays("out.vtu")
+        self.assertEqual(arrays["Cells", "types"], (10,) * k + (7,) * t + (3,) * e)
+        self.assertEqual(arrays["Cells", "connectivity"][:4 * k], tuple(v for q in solids for v in q))
+        self.assertEqual(arrays["Cells", "connectivity"][4 * k + 3 * t:], tuple(v for edge in edges for v in edge))
+        self.assertEqual(arrays["Cells", "offsets"][-1], 4 * k + 3 * t + 2 * e)
+        for extension in ("ply", "vtu"):  # tetrahedra survive writing and reading
+            self.expect(0, "medial", points, "-o", self.path("out." + extension))
+            info = self.facts("info", self.path("out." + extension))
+            self.assertEqual((info["points"], info["faces"], info["tetrahedra"]), (n, t, k))
+        self.expect(0, "medial", points, "-o", self.path("out.xyz"))
+        self.expect(2, "info", self.path("out.vtp"))
+
+
+if __name__ == "__main__":
+    main()

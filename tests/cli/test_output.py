@@ -1,0 +1,170 @@
+"""Files that are written: whole or not at all, in each format, in the place that was asked for."""
+
+import contextlib
+import os
+import resource
+import shutil
+import struct
+import subprocess
+
+from brio_cli import BRIO, CliTest, CUBE, main
+
+
+class Writing(CliTest):
+    @contextlib.contextmanager
+    def mounted(self, options):
+        """A small file system of its own."""
+        if os.geteuid() != 0 or not shutil.which("mount"):
+            self.skipTest("mounting a file system needs root")
+        folder = self.path("mounted")
+        os.mkdir(folder)
+        mount = subprocess.run(["mount", "-t", "tmpfs", "-o", options, "tmpfs", folder], capture_output=True)
+        if mount.returncode:
+            self.skipTest("no file system can be mounted here: " + mount.stderr.decode().strip())
+        try:
+            yield folder
+        finally:
+            subprocess.run(["umount", folder], check=True)
+
+    def test_full_disk_leaves_nothing(self):
+        points = self.cloud("a.ply", 20000)
+        with self.mounted("size=64k") as folder:
+            for name in ["out.ply", "out.vtu", "out.node"]:
+                self.expect(6, "delaunay", points, "-o", os.path.join(folder, name))
+            self.assert_only(folder)
+
+    def test_full_disk_keeps_the_old_file(self):
+        points = self.cloud("a.ply", 20000)
+        with self.mounted("size=64k") as folder:
+            old = os.path.join(folder, "out.ply")
+            with open(old, "w") as f:
+                f.write("old")
+            self.expect(6, "delaunay", points, "-o", old)
+            self.assert_only(folder, "out.ply")
+            with open(old) as f:
+                self.assertEqual(f.read(), "old")
+
+    def test_read_only_file_system(self):
+        with self.mounted("ro") as folder:
+            self.expect(6, "delaunay", self.xyz("a.xyz", CUBE), "-o", os.path.join(folder, "out.ply"))
+            self.assert_only(folder)
+
+    def test_protected_folder(self):
+        folder = self.path("protected")
+        os.mkdir(folder)
+        os.chmod(folder, 0o555)
+        os.chmod(self.folder, 0o755)
+        points = self.xyz("a.xyz", CUBE)
+        other = (lambda: (os.setgid(65534), os.setuid(65534))) if os.geteuid() == 0 else None
+        run = self.run_brio("--version", preexec_fn=other) if other else None
+        if run and run.code:
+            self.skipTest("another user cannot run the program")
+        self.expect(6, "delaunay", points, "-o", os.path.join(folder, "out.ply"), preexec_fn=other)
+        self.assert_only(folder)
+
+    def test_limit_on_the_file_size_leaves_nothing(self):
+        points = self.cloud("a.ply", 20000)
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (65536, 65536))
+        self.expect(6, "delaunay", points, "-o", self.path("out.ply"), preexec_fn=limit)
+        self.assert_only(self.folder, "a.ply")
+
+    def test_missing_folder_is_told_before_the_work(self):
+        run = self.expect(6, "delaunay", "also-missing.ply", "-o", self.path("missing/out.ply"))
+        self.assertIn("missing", run.err)
+
+    def test_folder_of_the_output_s_name(self):
+        os.mkdir(self.path("out.ply"))
+        self.expect(6, "delaunay", self.xyz("a.xyz", CUBE), "-o", self.path("out.ply"))
+        self.assert_only(self.path("out.ply"))
+
+    def test_standard_output_that_is_full(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("no /dev/full")
+        points = self.cloud("a.ply", 20000)
+        with open("/dev/full", "wb") as full:
+            self.expect(6, "delaunay", points, "-o", "-", "--format", "ply", stdout=full)
+            self.expect(6, "info", points, "--json", stdout=full)
+            self.expect(6, "info", points, stdout=full)
+
+    def test_reader_that_went_away(self):
+        points = self.cloud("a.ply", 50000)
+        process = subprocess.Popen([BRIO, "delaunay", points, "-o", "-", "--format", "ply"], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        process.stdout.close()
+        error = process.stderr.read()
+        process.stderr.close()
+        self.assertEqual(process.wait(), 6, error)
+
+    def test_device_is_written_in_place(self):
+        self.expect(0, "delaunay", self.xyz("a.xyz", CUBE), "-o", "/dev/null", "--format", "ply")
+        self.assertFalse(os.path.isfile("/dev/null"))
+
+    def test_output_onto_the_input(self):
+        points = self.cloud("a.ply", 300)
+        self.expect(0, "delaunay", points, "-o", points)
+        self.assertTrue(self.facts("check", points)["verified"])
+        self.assert_only(self.folder, "a.ply")
+
+    def test_name_of_the_greatest_length(self):
+        points = self.xyz("a.xyz", CUBE)
+        name = "n" * 251 + ".ply"
+        self.expect(0, "delaunay", points, "-o", self.path(name))
+        self.assert_only(self.folder, "a.xyz", name)
+        self.expect(6, "delaunay", points, "-o", self.path("n" + name))
+        self.assert_only(self.folder, "a.xyz", name)
+
+    def test_link_to_no_file_makes_the_file_that_it_names(self):
+        os.mkdir(self.path("sub"))
+        os.symlink("sub/file.ply", self.path("link.ply"))
+        self.expect(0, "delaunay", self.xyz("a.xyz", CUBE), "-o", self.path("link.ply"))
+        self.assertTrue(os.path.islink(self.path("link.ply")))
+        self.assert_only(self.path("sub"), "file.ply")
+
+    def test_link_into_a_missing_folder_is_told_before_the_work(self):
+        os.symlink("missing/file.ply", self.path("link.ply"))
+        run = self.expect(6, "delaunay", "also-missing.ply", "-o", self.path("link.ply"))
+        self.assertIn("missing", run.err)
+        self.assert_only(self.folder, "link.ply")
+
+    def test_loop_of_links(self):
+        for a, b in ["ab", "ba"]:
+            os.symlink(b + ".ply", self.path(a + ".ply"))
+        self.expect(6, "delaunay", "also-missing.ply", "-o", self.path("a.ply"))
+        self.assert_only(self.folder, "a.ply", "b.ply")
+
+    def test_old_file_keeps_its_permissions(self):
+        points = self.xyz("a.xyz", CUBE)
+        for mode in [0o600, 0o640, 0o755]:
+            old = self.file("out.ply", "old")
+            os.chmod(old, mode)
+            self.expect(0, "delaunay", points, "-o", old)
+            self.assertEqual(os.stat(old).st_mode & 0o7777, mode)
+
+
+class Formats(CliTest):
+    def test_text_and_binary_hold_the_same(self):
+        for extension in ["ply", "vtu"]:
+            for flags in [[], ["--ascii"]]:
+                self.expect(0, "generate", "cube", "-n", "100", "-o", self.path("x." + extension), *flags)
+                facts = self.facts("delaunay", self.path("x." + extension))
+                self.assertEqual(facts["checksum"], self.facts("delaunay", self.cloud("a.xyz", 100))["checksum"])
+
+    def test_single_precision_rounds_the_coordinates(self):
+        self.expect(0, "generate", "cube", "-n", "10", "-o", self.path("a.ply"), "--float32", "--ascii")
+        with open(self.path("a.ply")) as f:
+            header, _, body = f.read().partition("end_header\n")
+        self.assertIn("property float x", header)
+        for text in body.split():
+            value = float(text)
+            self.assertAlmostEqual(struct.unpack("f", struct.pack("f", value))[0], value, delta=1e-9)
+
+    def test_points_in_a_vtp_file_are_cells(self):
+        self.expect(0, "generate", "ball", "-n", 20, "-o", self.path("b.vtp"))
+        arrays, piece = self.appended_arrays("b.vtp")
+        self.assertEqual((piece["NumberOfVerts"], piece["NumberOfLines"]), ("20", "0"))
+        self.assertEqual(arrays["Verts", "connectivity"], tuple(range(20)))
+        self.assertEqual(arrays["Verts", "offsets"], tuple(range(1, 21)))
+
+
+if __name__ == "__main__":
+    main()

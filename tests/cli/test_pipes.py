@@ -1,0 +1,30 @@
+"""Standard input and standard output in place of files."""
+
+from brio_cli import CliTest, main
+
+
+class Pipes(CliTest):
+    def test_points_through_standard_input(self):
+        facts = self.facts("delaunay", "-", "--input-format", "xyz", stdin=b"0 0 0\n1 0 0\n0 1 0\n0 0 1\n")
+        self.assertEqual((facts["tetrahedra"], facts["input"]), (1, "-"))
+
+    def test_format_of_standard_input_by_its_content(self):
+        self.expect(0, "generate", "cube", "-n", "20", "-o", self.path("a.ply"))
+        with open(self.path("a.ply"), "rb") as f:
+            self.assertEqual(self.facts("info", "-", stdin=f.read())["points"], 20)
+        self.assertEqual(self.facts("info", "-", stdin=b"0 0 0\n1 0 0\n")["points"], 2)
+
+    def test_chain_of_commands(self):
+        made = self.expect(0, "generate", "sphere", "-n", "300", "-o", "-", "--format", "xyz")
+        self.assertIn("points", made.err)
+        solid = self.expect(0, "delaunay", "-", "--input-format", "xyz", "-o", "-", "--format", "ply", stdin=made.out)
+        self.assertTrue(solid.out.startswith(b"ply\n"))
+        self.assertTrue(self.facts("check", "-", "--input-format", "ply", stdin=solid.out)["verified"])
+
+    def test_quiet_chain_says_nothing(self):
+        made = self.expect(0, "generate", "grid", "-n", "8", "-o", "-", "--format", "xyz", "--quiet")
+        self.assertEqual(made.err, "")
+
+
+if __name__ == "__main__":
+    main()

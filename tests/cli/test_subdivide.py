@@ -1,0 +1,28 @@
+"""brio subdivide: butterfly subdivision."""
+
+from brio_cli import CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
+
+
+class Subdivide(CliTest):
+    def test_subdivide(self):
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        facts = self.facts("subdivide", mesh, "--levels", "3", "-o", self.path("s.off"))
+        self.assertEqual((facts["levels"], facts["vertices"], facts["faces"]), (3, 258, 512))
+        self.assertTrue(facts["certificate"]["closed"] and facts["certificate"]["genus"] == 0)
+        with open(self.path("s.off")) as f:
+            rows = [line.split() for line in f if not line.startswith("#")]
+        self.assertEqual([tuple(map(float, row)) for row in rows[2:8]], OCTAHEDRON)
+
+    def test_subdivide_refusals(self):
+        mesh, out = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES), self.path("s.ply")
+        self.usage("between 1 and 15", "subdivide", mesh, "--levels", "0", "-o", out)
+        self.usage("-o FILE is missing", "subdivide", mesh)
+        self.expect(3, "subdivide", self.xyz("p.xyz", CUBE), "-o", out)
+        square = self.off("q.off", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
+        self.assertIn("face 0 has 4 corners", self.expect(3, "subdivide", square, "-o", out).err)
+        self.expect(4, "subdivide", mesh, "--levels", "15", "-o", out, "--max-memory", "100M")
+        self.assert_only(self.folder, "m.off", "p.xyz", "q.off")
+
+
+if __name__ == "__main__":
+    main()

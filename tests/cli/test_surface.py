@@ -1,0 +1,132 @@
+"""brio surface: the power crust with its labelings and outputs, the co-cones."""
+
+from brio_cli import CERTIFICATE, CliTest, COMMON_FACTS, count, main, number
+
+
+class Usage(CliTest):
+    def test_surface_without_output(self):
+        self.usage("-o", "surface", "a.xyz")
+
+    def test_options_of_another_surface_method(self):
+        for option in [("--theta", "0.3"), ("--boundaries",), ("--density",), ("--pieces", "3")]:
+            self.usage("cocone", "surface", "a.xyz", "-o", "x.ply", *option)
+        for option in [("--triangulate",), ("--simplify",), ("--labeling", "greedy"), ("--noise", "keep"),
+                       ("-R", "0.3"), ("--sharp",),
+                       ("--open", "4"), ("--normals", "n.ply")]:
+            self.usage("power-crust", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", *option)
+        self.usage("pi/2", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", "--theta", "2")
+
+
+class NoAnswer(CliTest):
+    def test_surface_of_three_points(self):
+        points = self.xyz("a.xyz", [(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+        self.expect(3, "surface", points, "-o", self.path("out.ply"))
+        self.assert_only(self.folder, "a.xyz")
+
+    def test_surface_of_an_empty_file(self):
+        self.expect(3, "surface", self.file("a.xyz", ""), "-o", self.path("out.ply"))
+        self.assert_only(self.folder, "a.xyz")
+
+    def test_surface_of_a_plane(self):
+        points = self.xyz("a.xyz", [(x, y, 0) for x in range(6) for y in range(6)])
+        self.expect(3, "surface", points, "-o", self.path("out.ply"))
+
+
+class PowerCrust(CliTest):
+    def test_facts_of_a_run(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        facts = self.facts("surface", points, "-o", self.path("out.ply"))
+        seconds = {key: number for key in "read noise delaunay poles power label crust certify write total".split()}
+        counts = "samples vertices faces poles hidden_poles inner outer confused".split()
+        self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "labeling": str,
+                                   "noise": number, "smoothed": bool, "energy": number, "certificate": CERTIFICATE,
+                                   "seconds": seconds})
+        self.assertEqual((facts["method"], facts["samples"]), ("power-crust", 2000))
+        c = facts["certificate"]
+        self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
+
+    def test_labelings(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        more = {"greedy": [], "naive": ["unreached"], "theoretical": ["unreached"],
+                "global": ["energy_greedy", "undecided", "toggled"]}
+        for labeling, keys in more.items():
+            facts = self.facts("surface", points, "-o", self.path("out.ply"), "--labeling", labeling)
+            self.assertEqual(facts["labeling"], labeling)
+            self.assertTrue(facts["certificate"]["closed"])
+            self.assertTrue({"energy", *keys} <= set(facts))
+        self.usage("unknown name", "surface", points, "-o", self.path("out.ply"), "--labeling", "best")
+
+    def test_noise(self):
+        scan, out = self.path("scan.ply"), self.path("out.ply")
+        self.expect(0, "generate", "scan", "-n", 20000, "--noise", 0.4, "-o", scan, "--quiet")
+        found = self.facts("surface", scan, "-o", out)
+        self.assertGreater(found["noise"], 0.1)
+        self.assertTrue(found["smoothed"] and found["certificate"]["closed"])
+        kept = self.facts("surface", scan, "-o", out, "--noise", "keep")
+        self.assertEqual((kept["noise"], kept["smoothed"]), (0, False))
+        clean = self.cloud("a.ply", 2000, "sphere")
+        self.assertFalse(self.facts("surface", clean, "-o", out)["smoothed"])
+        for command in ("surface", "medial", ("offset", "-D", "0.1")):
+            command = (command,) if isinstance(command, str) else command
+            self.assertTrue(self.facts(command[0], clean, *command[1:], "-o", out, "--noise", "smooth")["smoothed"])
+        self.usage("unknown name", "surface", clean, "-o", out, "--noise", "some")
+
+    def test_surface_outputs(self):
+        points, out, normals = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply"), self.path("n.csv")
+        whole = self.facts("surface", points, "-o", out, "--self-intersections")
+        self.assertIsInstance(whole["certificate"]["self_intersections"], int)
+        simple = self.facts("surface", points, "-o", out, "--simplify", "--vertex-normals", "--normals", normals)
+        self.assertLess(simple["faces"], whole["faces"])
+        self.assertIsNone(simple["certificate"]["self_intersections"])
+        self.assertTrue({"nx", "ny", "nz"} <= set(self.facts("info", out)["properties"]))
+        with open(normals) as f:
+            rows = [line.replace(",", " ").split() for line in f][-2000:]
+        for row in rows:
+            x, y, z, a, b, c = map(float, row)
+            self.assertGreater(x * a + y * b + z * c, 0.98)
+        sharp = self.facts("surface", points, "-o", out, "--sharp", "-R", "0.05", "--open", "50")
+        self.assertGreater(sharp["bad_cells"], 0)
+        self.assertEqual(sharp["left_out"], 0)
+        self.usage("between 0 and 1", "surface", points, "-o", out, "-R", "1")
+        self.usage("a positive number", "surface", points, "-o", out, "--open", "-1")
+        self.expect(6, "surface", points, "-o", out, "--normals", self.path("missing/n.ply"))
+
+    def test_surface_triangulated(self):
+        points = self.cloud("a.ply", 1500, "torus")
+        facts = self.facts("surface", points, "-o", self.path("out.off"), "--triangulate")
+        self.assertEqual(facts["certificate"]["genus"], 1)
+        with open(self.path("out.off")) as f:
+            body = [line.split() for line in f if line.strip() and not line.startswith("#")]
+        faces = [line for line in body[2:] if line[0] == "3" and len(line) == 4]
+        self.assertGreaterEqual(len(faces), facts["faces"])
+
+
+class Cocone(CliTest):
+    def test_cocone(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        seconds = {key: number for key in
+                   "read delaunay poles candidates label manifold density certify write total".split()}
+        counts = "samples vertices faces unused candidates pruned relabeled".split()
+        sampling = {"r_median": number, "r_p95": number, "outside_guarantee": count, "outside_share": number}
+        for method in ("cocone", "tight-cocone"):
+            facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", method)
+            self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str,
+                                       "certificate": CERTIFICATE, "seconds": seconds, "sampling": sampling})
+            self.assertEqual((facts["method"], facts["vertices"], facts["faces"]), (method, 2000, 3996))
+            c = facts["certificate"]
+            self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
+        bounded = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--boundaries")
+        self.assertLess(bounded["boundary_samples"], 100)
+        pieces = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--pieces", "4")
+        self.assertEqual((pieces["faces"], pieces["unmatched"]), (3996, 0))
+        self.assertGreaterEqual(pieces["pieces"], 4)
+
+    def test_theta_without_a_guarantee_warns(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        for theta, warns in (("0.25", True), ("0.26", False)):
+            done = self.expect(0, "surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--theta", theta)
+            self.assertEqual("no guarantee holds" in done.err, warns)
+
+
+if __name__ == "__main__":
+    main()
