@@ -1,0 +1,467 @@
+/* Simplification: what the surface is stays what it is, no collapse goes farther than allowed, the number of faces is
+ * reached or refused, boundaries stay, and what is no manifold is refused. */
+#include "surface/simplify.h"
+#include "failing_allocator.h"
+#include "points.h"
+#include "random_surfaces.h"
+#include "surface/split_vertices.h"
+
+static brio_context *ctx;
+
+/* --- calls --- */
+
+/* Simplifies with the same spacing everywhere; edges up to `longest` may collapse, as far as `tolerance`. */
+static brio_status simplify_within(brio_context *c, brio_mesh *mesh, size_t target, double longest, double tolerance) {
+    double *spacing = malloc((mesh->num_vertices + 1) * sizeof *spacing);
+    for (size_t v = 0; v < mesh->num_vertices; v++) spacing[v] = 1;
+    brio_simplify_options o = {target, spacing, longest, tolerance};
+    brio_status status = brio_mesh_simplify(c, mesh, &o);
+    free(spacing);
+    return status;
+}
+
+static brio_certificate certify(const brio_mesh *mesh) {
+    brio_certificate c = {.size = sizeof c};
+    EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK, "%s", brio_message(ctx));
+    return c;
+}
+
+static brio_mesh *copy_of(const brio_mesh *mesh) {
+    return triangle_mesh(ctx, mesh->vertices, mesh->num_vertices, mesh->face_vertices, mesh->num_faces);
+}
+
+static bool same_mesh(const brio_mesh *a, const brio_mesh *b) {
+    return a->num_vertices == b->num_vertices && a->num_faces == b->num_faces &&
+           !memcmp(a->vertices, b->vertices, 3 * a->num_vertices * sizeof *a->vertices) &&
+           !memcmp(a->face_vertices, b->face_vertices, 3 * a->num_faces * sizeof *a->face_vertices);
+}
+
+/* Whether the mesh is sound: offsets of triangles, and each vertex is used. */
+static bool is_sound(const brio_mesh *mesh) {
+    uint8_t *used = calloc(mesh->num_vertices + 1, 1);
+    bool sound = true;
+    size_t count = 0;
+    for (size_t f = 0; f <= mesh->num_faces && sound; f++)
+        sound = !mesh->face_offsets || mesh->face_offsets[f] == 3 * f;
+    for (size_t h = 0; h < 3 * mesh->num_faces && sound; h++) {
+        sound = mesh->face_vertices[h] < mesh->num_vertices;
+        if (sound) used[mesh->face_vertices[h]] = 1;
+    }
+    for (size_t v = 0; v < mesh->num_vertices; v++) count += used[v];
+    free(used);
+    return sound && count == mesh->num_vertices;
+}
+
+/* --- topology --- */
+
+static brio_mesh *two_surfaces(uint64_t seed) {
+    brio_mesh *a = random_mesh(ctx, seed), *b = random_mesh(ctx, seed + 1);
+    size_t vertices = a->num_vertices + b->num_vertices, faces = a->num_faces + b->num_faces;
+    double *points = malloc(3 * vertices * sizeof *points);
+    uint32_t *corners = malloc(3 * faces * sizeof *corners);
+    memcpy(points, a->vertices, 3 * a->num_vertices * sizeof *points);
+    memcpy(points + 3 * a->num_vertices, b->vertices, 3 * b->num_vertices * sizeof *points);
+    memcpy(corners, a->face_vertices, 3 * a->num_faces * sizeof *corners);
+    for (size_t h = 0; h < 3 * b->num_faces; h++)
+        corners[3 * a->num_faces + h] = b->face_vertices[h] + (uint32_t)a->num_vertices;
+    brio_mesh *both = triangle_mesh(ctx, points, vertices, corners, faces);
+    free(points);
+    free(corners);
+    brio_mesh_free(a);
+    brio_mesh_free(b);
+    return both;
+}
+
+/* Whether the components have the same genera, in some order. */
+static bool same_genera(const brio_certificate *a, const brio_certificate *b) {
+    int more[MOST_GENUS + 1] = {0};
+    for (size_t i = 0; i < a->components; i++) more[a->genera[i]]++;
+    for (size_t i = 0; i < b->components; i++) more[b->genera[i]]--;
+    for (int genus = 0; genus <= MOST_GENUS; genus++)
+        if (more[genus]) return false;
+    return true;
+}
+
+/* Surfaces of every genus, pairs of them, folded and shaken ones, as far as they can be simplified or half the way. */
+static void closed_surfaces_keep_components_and_genus(void) {
+    size_t collapsed = 0, stopped = 0;
+    for (uint64_t seed = 0; seed < 56; seed++) {
+        brio_mesh *mesh = seed % 5 == 4 ? two_surfaces(seed) : random_mesh(ctx, seed);
+        size_t faces = mesh->num_faces, target = seed % 3 == 2 ? faces / 2 : 0;
+        brio_certificate before = certify(mesh);
+        EXPECT(simplify_within(ctx, mesh, target, 100, seed % 3 ? 100 : 0.1) == BRIO_OK, "%s", brio_message(ctx));
+        brio_certificate after = certify(mesh);
+        EXPECT(after.closed && after.manifold && after.oriented, "surface %llu", (unsigned long long)seed);
+        EXPECT(after.components == before.components && after.genus == before.genus, "surface %llu",
+               (unsigned long long)seed);
+        EXPECT(is_sound(mesh) && mesh->num_faces + 1 >= target, "surface %llu", (unsigned long long)seed);
+        EXPECT(same_genera(&before, &after), "surface %llu", (unsigned long long)seed);
+        collapsed += faces - mesh->num_faces;
+        stopped += mesh->num_faces > target;
+        brio_certificate_free(&before);
+        brio_certificate_free(&after);
+        brio_mesh_free(mesh);
+    }
+    EXPECT(collapsed > 10000 && stopped > 5, "%zu faces gone, %zu surfaces stopped", collapsed, stopped);
+}
+
+/* The least surface of its kind has no edge to collapse. */
+static void tetrahedron_is_left_alone(void) {
+    const double points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const uint32_t triangles[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    brio_mesh *mesh = triangle_mesh(ctx, points, 4, triangles, 4), *copy = copy_of(mesh);
+    EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_OK);
+    EXPECT(same_mesh(mesh, copy));
+    brio_mesh_free(mesh);
+    brio_mesh_free(copy);
+}
+
+/* --- the number of faces --- */
+
+static void number_of_faces_is_reached(void) {
+    brio_mesh *whole = random_surface(ctx, 0, 0.2, 1);
+    size_t faces = whole->num_faces;
+    for (size_t target = faces / 4; target <= faces + 2; target += faces / 8 + 1) {
+        brio_mesh *mesh = copy_of(whole);
+        EXPECT(simplify_within(ctx, mesh, target, 100, 100) == BRIO_OK);
+        if (target >= faces)
+            EXPECT(same_mesh(mesh, whole), "nothing to do");
+        else
+            EXPECT(mesh->num_faces == target - target % 2, "%zu faces, %zu wanted", mesh->num_faces, target);
+        brio_mesh_free(mesh);
+    }
+    brio_mesh_free(whole);
+}
+
+static void long_edges_do_not_collapse(void) {
+    brio_mesh *whole = random_surface(ctx, 1, 0.2, 2), *mesh = copy_of(whole);
+    double least = INFINITY;
+    for (uint32_t h = 0; h < 3 * whole->num_faces; h++) {
+        const double *a = whole->vertices + 3 * (size_t)whole->face_vertices[h];
+        const double *b = whole->vertices + 3 * (size_t)whole->face_vertices[brio_next_corner(h)];
+        least = fmin(
+            least, sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2])));
+    }
+    EXPECT(simplify_within(ctx, mesh, 0, 0.999 * least, 1e9) == BRIO_OK && same_mesh(mesh, whole));
+    EXPECT(simplify_within(ctx, mesh, 0, 100, 1e9) == BRIO_OK && mesh->num_faces < whole->num_faces / 2);
+    brio_mesh_free(mesh);
+    brio_mesh_free(whole);
+}
+
+static void unused_vertices_are_dropped(void) {
+    const double points[21] = {9, 9, 9, 0, 0, 0, 1, 0, 0, 8, 8, 8, 0, 1, 0, 0, 0, 1, 7, 7, 7};
+    const uint32_t triangles[12] = {1, 4, 2, 1, 2, 5, 2, 4, 5, 4, 1, 5};
+    brio_mesh *mesh = triangle_mesh(ctx, points, 7, triangles, 4);
+    EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_OK && mesh->num_vertices == 4 && is_sound(mesh));
+    EXPECT(mesh->vertices[0] == 0 && mesh->vertices[3] == 1 && mesh->vertices[7] == 1 && mesh->vertices[11] == 1);
+    brio_mesh_free(mesh);
+}
+
+/* --- distance --- */
+
+/* The plane of a triangle: its unit normal and the offset; returns its area. */
+static double plane_of(const brio_mesh *mesh, size_t f, double plane[4]) {
+    const double *p[3];
+    double u[3], v[3], size = 0;
+    for (size_t i = 0; i < 3; i++) p[i] = mesh->vertices + 3 * (size_t)mesh->face_vertices[3 * f + i];
+    for (int k = 0; k < 3; k++) u[k] = p[1][k] - p[0][k], v[k] = p[2][k] - p[0][k];
+    for (int k = 0; k < 3; k++) plane[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    for (int k = 0; k < 3; k++) size += plane[k] * plane[k];
+    size = sqrt(size);
+    for (int k = 0; k < 3; k++) plane[k] /= size;
+    plane[3] = plane[0] * p[0][0] + plane[1] * p[0][1] + plane[2] * p[0][2];
+    return size / 2;
+}
+
+/* Whether a position is a vertex of the mesh. */
+static bool has_position(const brio_mesh *mesh, const double *p) {
+    for (size_t v = 0; v < mesh->num_vertices; v++)
+        if (mesh->vertices[3 * v] == p[0] && !memcmp(mesh->vertices + 3 * v, p, 3 * sizeof *p)) return true;
+    return false;
+}
+
+/* The root-mean-square distance, weighted by area, of the point that two vertices of `whole` became in `mesh`, from the
+ * planes of the triangles at each of the two; -1 when not just one collapse came between the two meshes. */
+static double distance_of_one_collapse(const brio_mesh *whole, const brio_mesh *mesh) {
+    const double *point = NULL;
+    double sum = 0, area = 0, plane[4];
+    size_t gone = 0;
+    for (size_t v = 0; v < mesh->num_vertices; v++)
+        if (!has_position(whole, mesh->vertices + 3 * v)) point = mesh->vertices + 3 * v;
+    if (!point || whole->num_vertices != mesh->num_vertices + 1) return -1;
+    for (uint32_t v = 0; v < whole->num_vertices; v++) {
+        if (has_position(mesh, whole->vertices + 3 * (size_t)v)) continue;
+        gone++;
+        for (size_t h = 0; h < 3 * whole->num_faces; h++) {
+            if (whole->face_vertices[h] != v) continue;
+            double a = plane_of(whole, h / 3, plane), d = -plane[3];
+            for (int k = 0; k < 3; k++) d += plane[k] * point[k];
+            sum += a * d * d;
+            area += a;
+        }
+    }
+    return gone == 2 ? sqrt(sum / area) : -1;
+}
+
+/* One collapse after the other, each held against the planes of the mesh before it, until none is left: none goes
+ * farther than the tolerance, and some go most of the way. */
+static void no_collapse_is_farther_than_the_tolerance(void) {
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        brio_mesh *mesh = random_surface(ctx, (int)(seed % 2), 0.25, seed);
+        double tolerance = 0.05 * (double)(1 + seed / 2), farthest = 0;
+        size_t collapses = 0;
+        for (double d = 0; d >= 0; collapses++) {
+            brio_mesh *before = copy_of(mesh);
+            EXPECT(simplify_within(ctx, mesh, mesh->num_faces - 2, 100, tolerance) == BRIO_OK);
+            d = distance_of_one_collapse(before, mesh);
+            EXPECT(d <= tolerance * (1 + 1e-9), "surface %llu: %g, allowed %g", (unsigned long long)seed, d, tolerance);
+            EXPECT(d >= 0 || same_mesh(mesh, before), "surface %llu", (unsigned long long)seed);
+            farthest = fmax(farthest, d);
+            brio_mesh_free(before);
+        }
+        EXPECT(collapses > 50 && farthest > 0.8 * tolerance, "surface %llu: %zu collapses, %g of %g",
+               (unsigned long long)seed, collapses, farthest, tolerance);
+        brio_mesh_free(mesh);
+    }
+}
+
+/* Each vertex lies within the tolerance of some plane that it stands for, so that of a convex surface no vertex comes
+ * inside its planes by more. The distance of the surfaces is at most 2.3 tolerances here; where a vertex forgets the
+ * planes that it stands for, it is 5 and more. */
+static void sphere_is_not_cut_deeper_than_the_tolerance(void) {
+    brio_mesh *whole = random_surface(ctx, 0, 0.1, 3);
+    size_t most = SIZE_MAX;
+    for (size_t v = 0; v < whole->num_vertices; v++) { /* a sphere exactly */
+        double *p = whole->vertices + 3 * v, r = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        for (int k = 0; k < 3; k++) p[k] /= r;
+    }
+    for (double tolerance = 1e-4; tolerance < 0.1; tolerance *= 4) {
+        brio_mesh *mesh = copy_of(whole);
+        double nearest = INFINITY;
+        for (size_t f = 0; f < whole->num_faces; f++) {
+            double plane[4];
+            plane_of(whole, f, plane);
+            nearest = fmin(nearest, fabs(plane[3]));
+        }
+        EXPECT(simplify_within(ctx, mesh, 0, 100, tolerance) == BRIO_OK);
+        for (size_t v = 0; v < mesh->num_vertices; v++) {
+            const double *p = mesh->vertices + 3 * v;
+            double r = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+            EXPECT(r >= nearest - tolerance - 1e-12, "%g of %g, tolerance %g", r, nearest, tolerance);
+            EXPECT(r <= 1 + 4 * sqrt(tolerance), "%g, tolerance %g", r, tolerance);
+        }
+        EXPECT(mesh->num_faces < most && is_sound(mesh), "%zu faces, tolerance %g", mesh->num_faces, tolerance);
+        brio_distance d = {.size = sizeof d};
+        EXPECT(brio_mesh_distance(ctx, mesh, whole, 20000, 1, &d) == BRIO_OK);
+        EXPECT(d.hausdorff < 4 * tolerance, "%g, tolerance %g", d.hausdorff, tolerance);
+        most = mesh->num_faces;
+        brio_mesh_free(mesh);
+    }
+    brio_mesh_free(whole);
+}
+
+/* --- boundaries --- */
+
+/* The boundary edges of a mesh as pairs of positions, sorted. */
+typedef struct {
+    double end[6];
+} boundary_edge;
+
+static int compare_edges(const void *a, const void *b) {
+    return memcmp(a, b, sizeof(boundary_edge));
+}
+
+static size_t boundary_of(const brio_mesh *mesh, boundary_edge **out) {
+    size_t count = 0, corners = 3 * mesh->num_faces;
+    boundary_edge *list = malloc((corners + 1) * sizeof *list);
+    const uint32_t *v = mesh->face_vertices;
+    for (uint32_t h = 0; h < corners; h++) {
+        bool inside = false;
+        for (uint32_t g = 0; g < corners && !inside; g++)
+            inside = v[g] == v[brio_next_corner(h)] && v[brio_next_corner(g)] == v[h];
+        if (inside) continue;
+        memcpy(list[count].end, mesh->vertices + 3 * (size_t)v[h], 3 * sizeof(double));
+        memcpy(list[count++].end + 3, mesh->vertices + 3 * (size_t)v[brio_next_corner(h)], 3 * sizeof(double));
+    }
+    qsort(list, count, sizeof *list, compare_edges);
+    *out = list;
+    return count;
+}
+
+/* Whether a triangle has a corner below a plane. */
+static int is_low(const brio_mesh *mesh, size_t f) {
+    for (size_t i = 0; i < 3; i++) {
+        const double *p = mesh->vertices + 3 * (size_t)mesh->face_vertices[3 * f + i];
+        if (p[2] + 0.3 * p[0] < -0.1) return 1;
+    }
+    return 0;
+}
+
+/* The edges of the boundary are the same to the last bit, and so are its loops, the components and the genus. */
+static void boundaries_stay(void) {
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        brio_mesh *closed = random_surface(ctx, (int)(seed % 3), 0.25, seed);
+        brio_mesh *mesh = without_triangles(ctx, closed, is_low);
+        boundary_edge *before, *after;
+        EXPECT(brio_mesh_split_vertices(ctx, mesh) == BRIO_OK); /* where the cut touches itself */
+        size_t faces = mesh->num_faces, count = boundary_of(mesh, &before);
+        brio_certificate a = certify(mesh);
+        EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(count > 0 && mesh->num_faces < faces - faces / 4, "%zu of %zu faces", mesh->num_faces, faces);
+        EXPECT(boundary_of(mesh, &after) == count && !memcmp(before, after, count * sizeof *after));
+        brio_certificate b = certify(mesh);
+        EXPECT(b.manifold && b.oriented && b.components == a.components && b.boundary_loops == a.boundary_loops);
+        EXPECT(b.genus == a.genus && is_sound(mesh));
+        free(before);
+        free(after);
+        brio_certificate_free(&a);
+        brio_certificate_free(&b);
+        brio_mesh_free(mesh);
+        brio_mesh_free(closed);
+    }
+}
+
+/* Whether a triangle is outside of a comb of three teeth. */
+static int is_between_teeth(const brio_mesh *mesh, size_t f) {
+    double x = 0, y = 0;
+    for (size_t i = 0; i < 3; i++) {
+        const double *p = mesh->vertices + 3 * (size_t)mesh->face_vertices[3 * f + i];
+        x += p[0] / 3, y += p[1] / 3;
+    }
+    return y > 3 && (int)x / 4 % 2 == 1;
+}
+
+/* Inner vertices of a plane go; no triangle turns over, so that the areas still add up. The plane is a comb with vertices
+ * close together at one side, so that many collapses would turn a triangle over. */
+static void plane_is_covered_once(void) {
+    for (uint32_t width = 13; width <= 20; width++) {
+        brio_mesh *grid = flat_grid(ctx, width, 12), *mesh = without_triangles(ctx, grid, is_between_teeth);
+        size_t faces = mesh->num_faces;
+        double before = 0, after = 0, plane[4];
+        for (size_t v = 0; v < mesh->num_vertices; v++) {
+            double *p = mesh->vertices + 3 * v;
+            p[1] *= p[1] * p[1] / 100, p[0] += 0.3 * p[1];
+        }
+        for (size_t f = 0; f < faces; f++) before += plane_of(mesh, f, plane);
+        EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_OK);
+        EXPECT(mesh->num_faces < faces * 3 / 4, "%zu of %zu", mesh->num_faces, faces);
+        for (size_t f = 0; f < mesh->num_faces; f++) {
+            after += plane_of(mesh, f, plane);
+            EXPECT(plane[2] > 0.5, "triangle %zu turned over", f);
+        }
+        EXPECT(fabs(after - before) < 1e-9 * before, "%g, %g before", after, before);
+        brio_mesh_free(grid);
+        brio_mesh_free(mesh);
+    }
+}
+
+/* --- refusals --- */
+
+static void expect_refusal(const char *what, size_t num_vertices, const uint32_t *triangles, size_t count) {
+    brio_mesh *mesh = triangle_mesh(ctx, NULL, num_vertices, triangles, count), *copy = copy_of(mesh);
+    EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_ERR_ARGUMENT, "%s", what);
+    EXPECT(same_mesh(mesh, copy), "%s: nothing was changed", what);
+    brio_mesh_free(mesh);
+    brio_mesh_free(copy);
+}
+
+static void what_is_no_manifold_is_refused(void) {
+    const uint32_t three_at_an_edge[] = {0, 1, 2, 1, 0, 3, 0, 1, 4};
+    const uint32_t turned_over[] = {0, 1, 2, 0, 1, 3};
+    expect_refusal("three at an edge", 5, three_at_an_edge, 3);
+    expect_refusal("turned over", 4, turned_over, 2);
+    brio_mesh *mesh = triangle_mesh(ctx, NULL, 3, (const uint32_t[]){0, 1, 2}, 1);
+    mesh->face_vertices[2] = 9;
+    EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_ERR_ARGUMENT, "a vertex that does not exist");
+    brio_mesh_free(mesh);
+}
+
+static void polygons_are_refused(void) {
+    const double points[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    const uint64_t offsets[2] = {0, 4};
+    brio_mesh *mesh = NULL;
+    EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, points, 4) == BRIO_OK);
+    EXPECT(brio_mesh_set_faces(mesh, offsets, (const uint32_t[]){0, 1, 2, 3}, 1) == BRIO_OK);
+    EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_ERR_ARGUMENT);
+    brio_mesh_free(mesh);
+}
+
+static void mesh_of_nothing_stays_nothing(void) {
+    brio_mesh *mesh = NULL;
+    EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK);
+    EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_OK && mesh->num_faces == 0 && mesh->num_vertices == 0);
+    brio_mesh_free(mesh);
+}
+
+/* --- ends in the middle --- */
+
+static int cancel(const char *stage, double fraction, void *user) {
+    int *calls_left = user;
+    (void)fraction;
+    return !strcmp(stage, "simplify") && --*calls_left == 0;
+}
+
+/* At the first report, and at one in the middle of the work. */
+static void cancelled_work_leaves_nothing(void) {
+    for (int calls = 1; calls <= 2; calls++) {
+        brio_context *own = new_context();
+        brio_mesh *mesh = flat_grid(own, 290, 290);
+        size_t memory = brio_context_memory(own);
+        int calls_left = calls;
+        brio_context_set_progress(own, cancel, &calls_left);
+        EXPECT(simplify_within(own, mesh, 0, 100, 100) == BRIO_ERR_CANCELLED && calls_left == 0);
+        EXPECT(brio_context_memory(own) == memory);
+        brio_mesh_free(mesh);
+        EXPECT(brio_context_memory(own) == 0);
+        brio_context_free(own);
+    }
+}
+
+static brio_status simplify_a_grid(brio_context *c) {
+    enum { SIDE = 6, VERTICES = (SIDE + 1) * (SIDE + 1) };
+    double points[3 * VERTICES];
+    uint32_t triangles[6 * SIDE * SIDE];
+    uint64_t offsets[2 * SIDE * SIDE + 1];
+    brio_mesh *mesh = NULL;
+    size_t count = 0;
+    for (uint32_t i = 0; i < VERTICES; i++) {
+        points[3 * i] = i % (SIDE + 1), points[3 * i + 1] = (double)(i / (SIDE + 1));
+        points[3 * i + 2] = 0.1 * (points[3 * i] - 3) * points[3 * i + 1];
+        if (i % (SIDE + 1) == SIDE || i / (SIDE + 1) == SIDE) continue;
+        const uint32_t corners[6] = {i, i + 1, i + SIDE + 2, i, i + SIDE + 2, i + SIDE + 1};
+        for (int k = 0; k < 6; k++) triangles[count++] = corners[k];
+    }
+    for (size_t f = 0; f <= count / 3; f++) offsets[f] = 3 * f;
+    brio_status status = brio_mesh_new(c, &mesh);
+    if (status == BRIO_OK) status = brio_mesh_set_vertices(mesh, points, VERTICES);
+    if (status == BRIO_OK) status = brio_mesh_set_faces(mesh, offsets, triangles, count / 3);
+    if (status == BRIO_OK) status = simplify_within(c, mesh, 0, 100, 100);
+    if (status == BRIO_OK) EXPECT(mesh->num_faces < count / 3);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void refused_memory_is_a_status_and_leaves_nothing(void) {
+    expect_clean_failures(simplify_a_grid);
+}
+
+int main(void) {
+    ctx = new_context();
+    RUN(closed_surfaces_keep_components_and_genus);
+    RUN(tetrahedron_is_left_alone);
+    RUN(number_of_faces_is_reached);
+    RUN(long_edges_do_not_collapse);
+    RUN(unused_vertices_are_dropped);
+    RUN(no_collapse_is_farther_than_the_tolerance);
+    RUN(sphere_is_not_cut_deeper_than_the_tolerance);
+    RUN(boundaries_stay);
+    RUN(plane_is_covered_once);
+    RUN(what_is_no_manifold_is_refused);
+    RUN(polygons_are_refused);
+    RUN(mesh_of_nothing_stays_nothing);
+    RUN(cancelled_work_leaves_nothing);
+    RUN(refused_memory_is_a_status_and_leaves_nothing);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+    return harness_end();
+}
