@@ -337,6 +337,31 @@ done:
     return status;
 }
 
+/* The number of half-edges that start at the same vertex as h, in the one fan of triangles that h belongs to. */
+static uint32_t fan_size(const simplifier *s, uint32_t h) {
+    uint32_t size = 1, g = h, side = before_in_triangle(g);
+    for (; s->mate[side] != side; side = before_in_triangle(g)) {
+        g = s->mate[side];
+        if (g == h) return size;
+        size++;
+    }
+    for (g = h; s->mate[g] != g; size++) g = next_in_triangle(s->mate[g]); /* from h the other way */
+    return size;
+}
+
+/* Refuses vertices of several fans: a collapse moves one fan only. Needs half_edge; `seen` counts, and is 0 again. */
+static brio_status check_fans(simplifier *s) {
+    brio_status status = BRIO_OK;
+    for (uint32_t h = 0; h < s->num_half_edges; h++) s->seen[s->vertex[h]]++;
+    for (size_t v = 0; v < s->mesh->num_vertices; v++) {
+        BRIO_REQUIRE(s->ctx, !s->seen[v] || s->seen[v] == fan_size(s, s->half_edge[v]), BRIO_ERR_ARGUMENT,
+                     "the surface is not manifold at vertex %zu: its triangles are several fans", v);
+        s->seen[v] = 0;
+    }
+done:
+    return status;
+}
+
 static brio_status prepare(simplifier *s) {
     brio_status status = BRIO_OK;
     brio_context *ctx = s->ctx;
@@ -357,6 +382,7 @@ static brio_status prepare(simplifier *s) {
         brio_quadric_add_triangle(&s->quadric[v], at(s, v), at(s, end_of(s, h)),
                                   at(s, s->vertex[before_in_triangle(h)]));
     }
+    BRIO_TRY(check_fans(s));
     for (uint32_t h = 0; h < s->num_half_edges; h++)
         if (s->mate[h] > h) BRIO_TRY(offer(s, h));
 done:

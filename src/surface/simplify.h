@@ -16,7 +16,9 @@ typedef struct {
  *  stays manifold and oriented, with the same components, genus and boundary; triangles do not turn over. Vertices of
  *  the boundary stay. Vertices that no triangle uses are dropped; properties must not be there.
  *  Cost: O(n log n); 500 bytes a vertex.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (not triangles, or not manifold), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK; BRIO_ERR_ARGUMENT when a face is not a triangle or the mesh is not manifold and oriented at an edge
+ *  or a vertex, and leaves the mesh unchanged; BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED, and the mesh is only good to be
+ *  freed. */
 brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_simplify_options *options);
 
 #endif

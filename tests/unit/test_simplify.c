@@ -368,8 +368,14 @@ static void expect_refusal(const char *what, size_t num_vertices, const uint32_t
 static void what_is_no_manifold_is_refused(void) {
     const uint32_t three_at_an_edge[] = {0, 1, 2, 1, 0, 3, 0, 1, 4};
     const uint32_t turned_over[] = {0, 1, 2, 0, 1, 3};
+    const uint32_t closed_at_a_vertex[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 0, 5, 4, 0, 4, 6, 4, 5, 6, 5, 0, 6};
+    const uint32_t open_at_a_vertex[] = {0, 1, 2, 0, 3, 4};
+    const uint32_t open_and_closed_at_a_vertex[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3, 0, 4, 5};
     expect_refusal("three at an edge", 5, three_at_an_edge, 3);
     expect_refusal("turned over", 4, turned_over, 2);
+    expect_refusal("two closed surfaces at a vertex", 7, closed_at_a_vertex, 8);
+    expect_refusal("two open surfaces at a vertex", 5, open_at_a_vertex, 2);
+    expect_refusal("an open and a closed surface at a vertex", 6, open_and_closed_at_a_vertex, 5);
     brio_mesh *mesh = triangle_mesh(ctx, NULL, 3, (const uint32_t[]){0, 1, 2}, 1);
     mesh->face_vertices[2] = 9;
     EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_ERR_ARGUMENT, "a vertex that does not exist");
