@@ -23,7 +23,7 @@ static const double HISTORY_BYTES_A_POINT = 570, LOCATION_BYTES_A_POINT = 8, BYT
 
 /* Measured, the samples not included: models take 1,460 to 1,570 bytes a sample, a raw scan 1,590, offsets 1,240, the
  * co-cone 540 to 640. */
-static const double CRUST_BYTES_A_POINT = 1426, COCONE_BYTES_A_POINT = 616;
+static const double CRUST_BYTES_A_POINT = 1426, OFFSET_BYTES_A_POINT = 1300, COCONE_BYTES_A_POINT = 616;
 static const double TRIANGLE_BYTES_A_POINT = 300;  /* more, triangulated: a scan of 20,000 points 210, bunny 350 */
 static const double SIMPLIFY_BYTES_A_POINT = 2300; /* more, simplified: knot2 2,070, bunny 2,400, fandisk 2,510 */
 static const double SUBDIVIDE_BYTES_A_FACE = 76;   /* of the result, a certificate included */
@@ -73,8 +73,8 @@ done:
     return status;
 }
 
-static uint64_t crust_bytes(size_t num_points, bool triangulate, bool simplify) {
-    double each = CRUST_BYTES_A_POINT;
+/* each  bytes a point of the balls and the faces. */
+static uint64_t crust_bytes(size_t num_points, double each, bool triangulate, bool simplify) {
     if (triangulate) each += TRIANGLE_BYTES_A_POINT;
     if (simplify) each += SIMPLIFY_BYTES_A_POINT;
     return bytes_of(each * (double)num_points);
@@ -85,7 +85,7 @@ brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points, cons
     BRIO_DOOR;
     brio_power_crust_options o = brio_power_crust_options_default();
     brio_status status = BRIO_TAKE(ctx, brio_power_crust_options, options, &o);
-    *bytes = status == BRIO_OK ? crust_bytes(num_points, o.triangulate, o.simplify) : 0;
+    *bytes = status == BRIO_OK ? crust_bytes(num_points, CRUST_BYTES_A_POINT, o.triangulate, o.simplify) : 0;
     return status;
 }
 
@@ -94,7 +94,7 @@ brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points, c
     BRIO_DOOR;
     brio_offset_options o = brio_offset_options_default();
     brio_status status = BRIO_TAKE(ctx, brio_offset_options, options, &o);
-    *bytes = status == BRIO_OK ? crust_bytes(num_points, o.triangulate, o.simplify) : 0;
+    *bytes = status == BRIO_OK ? crust_bytes(num_points, OFFSET_BYTES_A_POINT, o.triangulate, o.simplify) : 0;
     return status;
 }
 
@@ -103,7 +103,7 @@ brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points, cons
     BRIO_DOOR;
     brio_power_shape_options o = brio_power_shape_options_default();
     brio_status status = BRIO_TAKE(ctx, brio_power_shape_options, options, &o);
-    *bytes = status == BRIO_OK ? crust_bytes(num_points, false, false) : 0;
+    *bytes = status == BRIO_OK ? crust_bytes(num_points, CRUST_BYTES_A_POINT, false, false) : 0;
     return status;
 }
 

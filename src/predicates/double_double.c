@@ -8,13 +8,13 @@
 
 static const double BOUND = 0x1p-99;
 
-static inline int sign_of(brio_dd det, double permanent, double floor) {
-    if (!(fabs(det.hi) > BOUND * permanent + floor)) return 2;
+static inline int sign_of(brio_dd det, brio_magnitude m) {
+    if (!(fabs(det.hi) > BOUND * m.permanent + m.floor)) return 2;
     return det.hi > 0 ? 1 : -1;
 }
 
-BRIO_INLINE int orient3d(const double *a, const double *b, const double *c, const double *d, double permanent,
-                         double floor, const bool fma) {
+BRIO_INLINE int orient3d(const double *a, const double *b, const double *c, const double *d, brio_magnitude magnitude,
+                         const bool fma) {
     brio_dd m[3][3];
     for (int k = 0; k < 3; k++) {
         m[0][k] = dd_difference(b[k], a[k]);
@@ -24,7 +24,7 @@ BRIO_INLINE int orient3d(const double *a, const double *b, const double *c, cons
     brio_dd x = dd_multiply(m[2][0], dd_minor(m[0][1], m[1][2], m[0][2], m[1][1], fma), fma);
     brio_dd y = dd_multiply(m[2][1], dd_minor(m[0][2], m[1][0], m[0][0], m[1][2], fma), fma);
     brio_dd z = dd_multiply(m[2][2], dd_minor(m[0][0], m[1][1], m[0][1], m[1][0], fma), fma);
-    return sign_of(dd_sum3(x, y, z), permanent, floor);
+    return sign_of(dd_sum3(x, y, z), magnitude);
 }
 
 BRIO_INLINE brio_dd lift_of(const brio_dd r[3], const double *p, const double *e, const bool weighted, const bool fma) {
@@ -32,18 +32,22 @@ BRIO_INLINE brio_dd lift_of(const brio_dd r[3], const double *p, const double *e
     return weighted ? dd_subtract(lift, dd_difference(p[3], e[3])) : lift;
 }
 
-/* z1 m1 + z2 m2 + z3 m3. */
-BRIO_INLINE brio_dd expand(brio_dd z1, brio_dd m1, brio_dd z2, brio_dd m2, brio_dd z3, brio_dd m3, const bool fma) {
-    return dd_sum3(dd_multiply(z1, m1, fma), dd_multiply(z2, m2, fma), dd_multiply(z3, m3, fma));
+/* A product of two pairs. */
+typedef struct {
+    brio_dd z, m;
+} product;
+
+/* Returns the sum of three products. */
+BRIO_INLINE brio_dd expand(product a, product b, product c, const bool fma) {
+    return dd_sum3(dd_multiply(a.z, a.m, fma), dd_multiply(b.z, b.m, fma), dd_multiply(c.z, c.m, fma));
 }
 
 BRIO_INLINE brio_dd negated(brio_dd x) {
     return (brio_dd){-x.hi, -x.lo};
 }
 
-BRIO_INLINE int insphere(const double *a, const double *b, const double *c, const double *d, const double *e,
-                         const bool weighted, double permanent, double floor, const bool fma) {
-    const double *row[4] = {a, b, c, d};
+BRIO_INLINE int insphere(const double *const row[5], const bool weighted, brio_magnitude magnitude, const bool fma) {
+    const double *e = row[4];
     brio_dd r[4][3], lift[4];
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) r[i][k] = dd_difference(row[i][k], e[k]);
@@ -55,34 +59,32 @@ BRIO_INLINE int insphere(const double *a, const double *b, const double *c, cons
     brio_dd da = dd_minor(r[3][0], r[0][1], r[0][0], r[3][1], fma);
     brio_dd ac = dd_minor(r[0][0], r[2][1], r[2][0], r[0][1], fma);
     brio_dd bd = dd_minor(r[1][0], r[3][1], r[3][0], r[1][1], fma);
-    brio_dd abc = expand(r[0][2], bc, r[1][2], negated(ac), r[2][2], ab, fma);
-    brio_dd bcd = expand(r[1][2], cd, r[2][2], negated(bd), r[3][2], bc, fma);
-    brio_dd cda = expand(r[2][2], da, r[3][2], ac, r[0][2], cd, fma);
-    brio_dd dab = expand(r[3][2], ab, r[0][2], bd, r[1][2], da, fma);
+    brio_dd abc = expand((product){r[0][2], bc}, (product){r[1][2], negated(ac)}, (product){r[2][2], ab}, fma);
+    brio_dd bcd = expand((product){r[1][2], cd}, (product){r[2][2], negated(bd)}, (product){r[3][2], bc}, fma);
+    brio_dd cda = expand((product){r[2][2], da}, (product){r[3][2], ac}, (product){r[0][2], cd}, fma);
+    brio_dd dab = expand((product){r[3][2], ab}, (product){r[0][2], bd}, (product){r[1][2], da}, fma);
     brio_dd first = dd_minor(lift[2], dab, lift[3], abc, fma), second = dd_minor(lift[0], bcd, lift[1], cda, fma);
-    return sign_of(dd_add(first, second), permanent, floor);
+    return sign_of(dd_add(first, second), magnitude);
 }
 
 BRIO_TARGET_FMA static int orient3d_fma(const double *a, const double *b, const double *c, const double *d,
-                                        double permanent, double floor) {
-    return orient3d(a, b, c, d, permanent, floor, true);
+                                        brio_magnitude magnitude) {
+    return orient3d(a, b, c, d, magnitude, true);
 }
 
-BRIO_TARGET_FMA static int insphere_fma(const double *a, const double *b, const double *c, const double *d,
-                                        const double *e, bool weighted, double permanent, double floor) {
-    return insphere(a, b, c, d, e, weighted, permanent, floor, true);
+BRIO_TARGET_FMA static int insphere_fma(const double *const row[5], bool weighted, brio_magnitude magnitude) {
+    return insphere(row, weighted, magnitude, true);
 }
 
-int brio_orient3d_double_double(const double *a, const double *b, const double *c, const double *d, double permanent,
-                                double floor) {
-    if (brio_have_fma()) return orient3d_fma(a, b, c, d, permanent, floor);
-    return orient3d(a, b, c, d, permanent, floor, false);
+int brio_orient3d_double_double(const double *a, const double *b, const double *c, const double *d,
+                                brio_magnitude magnitude) {
+    if (brio_have_fma()) return orient3d_fma(a, b, c, d, magnitude);
+    return orient3d(a, b, c, d, magnitude, false);
 }
 
-int brio_insphere_double_double(const double *a, const double *b, const double *c, const double *d, const double *e,
-                                bool weighted, double permanent, double floor) {
-    if (brio_have_fma()) return insphere_fma(a, b, c, d, e, weighted, permanent, floor);
-    return insphere(a, b, c, d, e, weighted, permanent, floor, false);
+int brio_insphere_double_double(const double *const row[5], bool weighted, brio_magnitude magnitude) {
+    if (brio_have_fma()) return insphere_fma(row, weighted, magnitude);
+    return insphere(row, weighted, magnitude, false);
 }
 
 /* |x - p|^2 - w_p. */
@@ -96,7 +98,7 @@ BRIO_INLINE brio_dd power(const double *x, const double *p, const bool fma) {
 BRIO_INLINE int power_compare(const double *x, const double *p, const double *q, double magnitude, const bool fma) {
     /* at most 20 u^2 of the terms; nothing overflows or underflows by as much as the floor below 2^500 */
     if (!(magnitude < 0x1p500)) return 2;
-    return sign_of(dd_subtract(power(x, p, fma), power(x, q, fma)), magnitude, 0x1p-900);
+    return sign_of(dd_subtract(power(x, p, fma), power(x, q, fma)), (brio_magnitude){magnitude, 0x1p-900});
 }
 
 BRIO_TARGET_FMA static int power_compare_fma(const double *x, const double *p, const double *q, double magnitude) {

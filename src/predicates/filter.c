@@ -26,15 +26,17 @@ void brio_filter_set(brio_filter *f, const double extent[3], double weight_exten
     f->insphere_static = 1.001 * INSPHERE_BOUND * 24 * x * y * z * (x * x + y * y + z * z + w) + f->insphere_floor;
 }
 
-/* Spans of the coordinates' differences and of the weights'. Gives up where coordinates are more than most_bits apart.
- */
-static void find_spans(const double (*record)[4], size_t n, const double extent[4], bool weighted, int most_bits,
+enum { COARSE_BITS = 20 }; /* of coordinates, for integer.c */
+
+/* Finds the spans of the coordinates' differences and of the weights'. Stops where coordinates are more than COARSE_BITS
+ * apart. */
+static void find_spans(const double (*record)[4], size_t n, const double extent[4], bool weighted,
                        brio_span *coordinates, brio_span *weights) {
     frexp(fmax(extent[0], fmax(extent[1], extent[2])), &coordinates->high);
     frexp(extent[3], &weights->high);
     coordinates->low = coordinates->high;
     weights->low = weights->high;
-    for (size_t i = 0; i < n && coordinates->high - coordinates->low <= most_bits; i++) {
+    for (size_t i = 0; i < n && coordinates->high - coordinates->low <= COARSE_BITS; i++) {
         for (int k = 0; k < 3; k++) {
             int bit = brio_span_of(record[i][k]).low;
             coordinates->low = bit < coordinates->low ? bit : coordinates->low;
@@ -68,7 +70,7 @@ static bool fits_integers(brio_span c, brio_span w, bool weighted) {
 }
 
 void brio_filter_for(brio_filter *f, const double (*record)[4], size_t n, bool weighted) {
-    enum { COARSE_BITS = 20, FAR = 150 };
+    enum { FAR = 150 };
     double low[4], high[4], extent[4];
     for (int c = 0; c < 4; c++) low[c] = high[c] = n ? record[0][c] : 0;
     for (size_t i = 1; i < n; i++)
@@ -81,7 +83,7 @@ void brio_filter_for(brio_filter *f, const double (*record)[4], size_t n, bool w
     brio_filter_set(f, extent, extent[3], weighted);
     if (f->orient_floor == INFINITY) return;
     brio_span coordinates, weights;
-    find_spans(record, n, extent, weighted, COARSE_BITS, &coordinates, &weights);
+    find_spans(record, n, extent, weighted, &coordinates, &weights);
     bool ordinary = coordinates.low > -FAR && coordinates.high < FAR;
     if (weighted) ordinary &= weights.low > -2 * FAR && weights.high < 2 * FAR;
     f->coarse = ordinary && fits_integers(coordinates, weights, weighted);
@@ -106,7 +108,7 @@ int brio_orient3d_unsettled(brio_filter *f, const double *a, const double *b, co
     double bound = ORIENT_BOUND * permanent + f->orient_floor;
     if (fabs(det) > bound) return det > 0 ? 1 : -1;
     f->unsettled++;
-    int sign = f->coarse ? 2 : brio_orient3d_double_double(a, b, c, d, permanent, f->orient_floor);
+    int sign = f->coarse ? 2 : brio_orient3d_double_double(a, b, c, d, (brio_magnitude){permanent, f->orient_floor});
     return sign != 2 ? sign : brio_orient3d_exact(a, b, c, d);
 }
 
@@ -134,7 +136,9 @@ int brio_insphere_unsettled(brio_filter *f, const double *a, const double *b, co
     double bound = INSPHERE_BOUND * permanent + f->insphere_floor;
     if (fabs(det) > bound) return det > 0 ? 1 : -1;
     f->unsettled++;
-    int sign = f->coarse ? 2 : brio_insphere_double_double(a, b, c, d, e, f->weighted, permanent, f->insphere_floor);
+    const double *const row[5] = {a, b, c, d, e};
+    brio_magnitude magnitude = {permanent, f->insphere_floor};
+    int sign = f->coarse ? 2 : brio_insphere_double_double(row, f->weighted, magnitude);
     return sign != 2 ? sign : brio_insphere_exact(a, b, c, d, e, f->weighted);
 }
 

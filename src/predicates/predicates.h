@@ -60,11 +60,16 @@ int brio_orient3d_dyadic(const double *a, const double *b, const double *c, cons
 int brio_insphere_dyadic(const double *a, const double *b, const double *c, const double *d, const double *e,
                          bool weighted);
 
-/** Stage 3: the sign, or 2 when it cannot tell. */
-int brio_orient3d_double_double(const double *a, const double *b, const double *c, const double *d, double permanent,
-                                double floor);
-int brio_insphere_double_double(const double *a, const double *b, const double *c, const double *d, const double *e,
-                                bool weighted, double permanent, double floor);
+/** What bounds the rounding error of a determinant. */
+typedef struct {
+    double permanent; /* the determinant with every term positive */
+    double floor;     /* the error by underflow */
+} brio_magnitude;
+
+/** Stage 3. Returns the sign, or 2 if double-doubles do not decide it.   row  a, b, c, d, e. */
+int brio_orient3d_double_double(const double *a, const double *b, const double *c, const double *d,
+                                brio_magnitude magnitude);
+int brio_insphere_double_double(const double *const row[5], bool weighted, brio_magnitude magnitude);
 
 /** What a zero of insphere stands for under the symbolic perturbation; (a, b, c, d) positive, e none of them. */
 int brio_insphere_tie(brio_filter *f, const double *a, const double *b, const double *c, const double *d,

@@ -74,12 +74,12 @@ done:
 }
 
 /* Copies the vertices, each tetrahedron made positive. */
-static brio_status copy_positive(brio_context *ctx, const brio_record *r, size_t num_points, const uint32_t *from,
-                                 size_t stride, size_t n, brio_tetrahedron *to) {
+static brio_status copy_positive(brio_context *ctx, const brio_record *r, size_t num_points,
+                                 const brio_tetrahedron_list *from, brio_tetrahedron *to) {
     brio_status status = BRIO_OK;
-    for (size_t tet = 0; tet < n; tet++) {
+    for (size_t tet = 0; tet < from->count; tet++) {
         uint32_t *v = to[tet].vertex;
-        memcpy(v, from + stride * tet, 4 * sizeof *v);
+        memcpy(v, from->vertices + from->stride * tet, 4 * sizeof *v);
         for (int i = 0; i < 4; i++)
             BRIO_REQUIRE(ctx, v[i] < num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
         int sign = brio_orient3d(r[v[0]], r[v[1]], r[v[2]], r[v[3]]);
@@ -108,14 +108,15 @@ static void close_hull(brio_tetrahedra *t, size_t first, const uint32_t *hull, s
 }
 
 brio_status brio_adjacency_build(brio_context *ctx, const brio_record *record, size_t num_points,
-                                 const uint32_t *tetrahedra, size_t stride, size_t n, brio_tetrahedra *out) {
+                                 const brio_tetrahedron_list *tetrahedra, brio_tetrahedra *out) {
     brio_status status = BRIO_OK;
+    size_t n = tetrahedra->count;
     brio_tetrahedra t = {.infinite = BRIO_INFINITE, .record = record};
     uint32_t *handles = NULL, *sorted = NULL, *edges = NULL;
     size_t num_hull = 0, alone = 0;
     BRIO_REQUIRE(ctx, n < UINT32_C(1) << 29, BRIO_ERR_TOO_LARGE, "%zu tetrahedra; at most 2^29", n);
     BRIO_TRY(BRIO_ALLOC(ctx, t.tet, n));
-    BRIO_TRY(copy_positive(ctx, record, num_points, tetrahedra, stride, n, t.tet));
+    BRIO_TRY(copy_positive(ctx, record, num_points, tetrahedra, t.tet));
     BRIO_TRY(BRIO_ALLOC(ctx, handles, 4 * n));
     BRIO_TRY(BRIO_ALLOC(ctx, sorted, 4 * n));
     for (size_t h = 0; h < 4 * n; h++) handles[h] = (uint32_t)h;

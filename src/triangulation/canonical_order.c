@@ -231,8 +231,11 @@ static void gather(sorter *s, const mover *m, size_t begin, size_t from, size_t 
 
 /* Lists what has to leave the slots from `from` to `to` of the block, and what the places there left vacant elsewhere;
  * with counts only, just counts. */
-static void list_moves(const sorter *s, const mover *m, size_t begin, size_t end, size_t from, size_t to, int thread,
-                       bool counts_only) {
+static void list_moves(const mover *m, size_t begin, size_t end, const brio_member *member, bool counts_only) {
+    const sorter *s = m->sorter;
+    int thread = member->thread;
+    size_t from = brio_part(end - begin, thread, member->threads);
+    size_t to = brio_part(end - begin, thread + 1, member->threads);
     size_t leaving = counts_only ? 0 : m->num_leaving[thread], vacant = counts_only ? 0 : m->num_vacant[thread];
     for (size_t x = begin + from; x < begin + to; x++) {
         uint32_t source = s->order[x];
@@ -292,11 +295,11 @@ static void move_blocks(void *user, const brio_member *member) {
         size_t from = brio_part(end - begin, thread, threads), to = brio_part(end - begin, thread + 1, threads);
         gather(s, m, begin, from, to);
         brio_barrier(member);
-        list_moves(s, m, begin, end, from, to, thread, true);
+        list_moves(m, begin, end, member, true);
         brio_barrier(member);
         if (thread == 0) add_up(m, threads);
         brio_barrier(member);
-        list_moves(s, m, begin, end, from, to, thread, false);
+        list_moves(m, begin, end, member, false);
         brio_barrier(member);
         size_t moves = m->num_leaving[threads];
         leave_block(s, m, brio_part(moves, thread, threads), brio_part(moves, thread + 1, threads));

@@ -232,12 +232,13 @@ brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const
     bool same = true;
     BRIO_REQUIRE(ctx, stride >= 4, BRIO_ERR_ARGUMENT, "a stride of %zu numbers for four vertices", stride);
     BRIO_REQUIRE(ctx, num_points < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", num_points);
-    BRIO_TRY(brio_records_new(ctx, points, weights, num_points, NULL, 1, &record));
+    BRIO_TRY(brio_records_new(ctx, &(brio_input){points, weights, num_points}, NULL, 1, &record));
     if (num_tetrahedra == 0) {
         BRIO_REQUIRE(ctx, brio_dimension(record, num_points) < 3, BRIO_ERR_CHECK,
                      "no tetrahedra, but the points are not in a plane");
     } else {
-        BRIO_TRY(brio_adjacency_build(ctx, record, num_points, tetrahedra, stride, num_tetrahedra, &t));
+        BRIO_TRY(brio_adjacency_build(ctx, record, num_points,
+                                      &(brio_tetrahedron_list){tetrahedra, stride, num_tetrahedra}, &t));
         brio_judge j = brio_judge_of(ctx, &t, num_points, weights != NULL);
         BRIO_TRY(brio_check_tetrahedra(&j));
         BRIO_TRY(brio_check_points(&j, NULL));
@@ -281,7 +282,7 @@ brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation
     brio_record *record = NULL;
     BRIO_REQUIRE(ctx, num_points == t->stats.points, BRIO_ERR_ARGUMENT, "%zu points for a triangulation of %zu",
                  num_points, t->stats.points);
-    BRIO_TRY(brio_records_new(ctx, points, weights, num_points, NULL, 1, &record));
+    BRIO_TRY(brio_records_new(ctx, &(brio_input){points, weights, num_points}, NULL, 1, &record));
     BRIO_REQUIRE(ctx, brio_dimension(record, num_points) == t->stats.dimension, BRIO_ERR_CHECK,
                  "the points' dimension is not %d", t->stats.dimension);
     if (t->stats.dimension < 3)

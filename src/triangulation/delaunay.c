@@ -169,7 +169,7 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     BRIO_TRY(check_options(ctx, num_points, &o));
     recorder.every = o.record_every;
     double start = brio_seconds();
-    BRIO_TRY(brio_store_new(ctx, points, weights, num_points, &o, &recorder.rounds, &store));
+    BRIO_TRY(brio_store_new(ctx, &(brio_input){points, weights, num_points}, &o, &recorder.rounds, &store));
     BRIO_TRY(construct(store, &o, brio_seconds() - start, &recorder, out));
 done:
     brio_store_free(store);

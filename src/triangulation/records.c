@@ -7,9 +7,9 @@
 
 enum { RECORDS_A_THREAD = 1 << 14 };
 
-static brio_status refuse_not_finite(brio_context *ctx, const double *points, const double *weights, size_t n,
-                                     size_t first) {
-    size_t bad = 0;
+static brio_status refuse_not_finite(brio_context *ctx, const brio_input *input, size_t first) {
+    const double *points = input->points, *weights = input->weights;
+    size_t bad = 0, n = input->count;
     for (size_t i = first; i < n; i++)
         bad += !(isfinite(points[3 * i]) && isfinite(points[3 * i + 1]) && isfinite(points[3 * i + 2]) &&
                  (!weights || isfinite(weights[i])));
@@ -51,17 +51,18 @@ static void write_records(void *user, size_t begin, size_t end, int thread) {
            !__atomic_compare_exchange_n(&job->bad, &least, bad, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
 }
 
-brio_status brio_records_new(brio_context *ctx, const double *points, const double *weights, size_t n,
-                             const uint32_t *order, size_t room, brio_record **out) {
+brio_status brio_records_new(brio_context *ctx, const brio_input *input, const uint32_t *order, size_t room,
+                             brio_record **out) {
     brio_record *record = NULL;
+    size_t n = input->count;
     brio_status status = BRIO_ALLOC(ctx, record, n + room);
     if (status != BRIO_OK) return status;
     brio_expect_sequence(record);
-    record_job job = {points, weights, order, record, n};
+    record_job job = {input->points, input->weights, order, record, n};
     brio_for(ctx, brio_threads(ctx, n, RECORDS_A_THREAD), n, write_records, &job);
     if (job.bad < n) {
         brio_release(ctx, record);
-        return refuse_not_finite(ctx, points, weights, n, job.bad);
+        return refuse_not_finite(ctx, input, job.bad);
     }
     memset(record + n, 0, room * sizeof *record);
     *out = record;

@@ -4,9 +4,19 @@
 
 #include "triangulation/tetrahedra.h"
 
-/** A private copy of the caller's points as records, -0 made 0; BRIO_ERR_NOT_FINITE names the first bad one.
- *  order  NULL for the caller's own; `room` further records are left free at the end. */
-brio_status brio_records_new(brio_context *ctx, const double *points, const double *weights, size_t num_points,
-                             const uint32_t *order, size_t room, brio_record **out);
+/** Points that a caller has. */
+typedef struct {
+    const double *points;  /* count by 3 */
+    const double *weights; /* count, or NULL */
+    size_t count;
+} brio_input;
+
+/** Makes a private copy of the input as records; -0 becomes 0.
+ *  order  the input's index of each record; NULL for the input's own order.
+ *  room   further records at the end, which are 0.
+ *  out    owned by the caller (brio_release).
+ *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE (the message names the first bad point), BRIO_ERR_NO_MEMORY. */
+brio_status brio_records_new(brio_context *ctx, const brio_input *input, const uint32_t *order, size_t room,
+                             brio_record **out);
 
 #endif

@@ -33,21 +33,22 @@ done:
     return status;
 }
 
-brio_status brio_store_new(brio_context *ctx, const double *points, const double *weights, size_t n,
-                           const brio_delaunay_options *options, brio_round_ends *rounds, brio_store **out) {
+brio_status brio_store_new(brio_context *ctx, const brio_input *input, const brio_delaunay_options *options,
+                           brio_round_ends *rounds, brio_store **out) {
     brio_store *s = NULL;
+    size_t n = input->count;
     bool parallel = brio_threads(ctx, n, POINTS_A_THREAD) > 1 && options->locate == BRIO_LOCATION_WALK;
     brio_status status = BRIO_OK;
     *out = NULL;
     BRIO_TRY(begin_store(ctx, n, &s));
-    s->weighted = weights != NULL;
+    s->weighted = input->weights != NULL;
     s->follows = options->order != BRIO_ORDER_RANDOM;
     s->max_tetrahedra = options->max_tetrahedra;
     BRIO_TRY(BRIO_ALLOC(ctx, s->caller, n + MORE_RECORDS));
     BRIO_TRY(brio_progress(ctx, "order", 0));
     if (parallel && brio_order_has_ranks(options->order)) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->rank, n + MORE_RECORDS));
-    BRIO_TRY(brio_order_points(ctx, points, n, options, s->caller, s->rank, rounds));
-    BRIO_TRY(brio_records_new(ctx, points, weights, n, s->caller, MORE_RECORDS, &s->record));
+    BRIO_TRY(brio_order_points(ctx, input->points, n, options, s->caller, s->rank, rounds));
+    BRIO_TRY(brio_records_new(ctx, input, s->caller, MORE_RECORDS, &s->record));
     BRIO_TRY(end_store(s));
     *out = s;
     s = NULL;

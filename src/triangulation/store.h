@@ -45,7 +45,7 @@
 #define BRIO_TRIANGULATION_STORE_H
 
 #include "order/rounds.h"
-#include "triangulation/tetrahedra.h"
+#include "triangulation/records.h"
 
 typedef enum {
     TET_PLAIN = 0,  /* a tetrahedron */
@@ -72,10 +72,9 @@ typedef struct {
 } brio_store;
 
 /** Orders the points and makes a store of their records, without tetrahedra.
- *  weights  NULL for none.
- *  rounds   NULL, or receives where the rounds of the order end. */
-brio_status brio_store_new(brio_context *ctx, const double *points, const double *weights, size_t num_points,
-                           const brio_delaunay_options *options, brio_round_ends *rounds, brio_store **out);
+ *  rounds NULL, or receives where the rounds of the order end. */
+brio_status brio_store_new(brio_context *ctx, const brio_input *input, const brio_delaunay_options *options,
+                           brio_round_ends *rounds, brio_store **out);
 
 /** Makes a store for a sample of another store's records: n records, which the caller of this function writes, with
  *  their entries of `caller`. */

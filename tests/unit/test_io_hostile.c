@@ -1,7 +1,7 @@
 /* Damaged files and failing memory: every prefix of a file, every byte changed, every allocation refused, is a status
  * and leaves nothing behind. */
 #include "failing_allocator.h"
-#include "test_io.h"
+#include "io_files.h"
 
 typedef struct {
     const char *name;

@@ -1,6 +1,6 @@
 /* Numbers as text: the same bits as strtod, and back. */
 #include "io/number.h"
-#include "test_io.h"
+#include "io_files.h"
 #include <locale.h>
 
 static void expect_as_strtod(const char *text) {

@@ -1,5 +1,5 @@
 /* PLY files as others write them. */
-#include "test_io.h"
+#include "io_files.h"
 
 #define HEADER(format) "ply\nformat " format " 1.0\n"
 #define XYZ            "property float x\nproperty float y\nproperty float z\n"

@@ -1,5 +1,5 @@
 /* Texts of numbers, OBJ, OFF, NODE and VTU files as others write them. */
-#include "test_io.h"
+#include "io_files.h"
 
 static void format_of_names(void) {
     EXPECT(brio_format_of("a/b.c/d.PLY") == BRIO_FORMAT_PLY && brio_format_of(".ply") == BRIO_FORMAT_PLY);

@@ -1,5 +1,5 @@
 /* Writing: what is written reads back with the same bits in each format; files appear complete or not at all. */
-#include "test_io.h"
+#include "io_files.h"
 #include <fcntl.h>
 
 static brio_mesh *write_and_read(const brio_mesh *mesh, const char *name, brio_write_options options) {

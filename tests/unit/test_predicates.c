@@ -135,7 +135,8 @@ static void stages_agree_near_a_sphere(void) {
         brio_filter_set(&f, (double[]){2, 2, 2}, 1, trial % 2);
         int exact = brio_insphere_exact(p[0], p[1], p[2], p[3], p[4], trial % 2);
         int staged = brio_insphere_sign(&f, p[0], p[1], p[2], p[3], p[4], trial % 2);
-        int dd = brio_insphere_double_double(p[0], p[1], p[2], p[3], p[4], trial % 2, 100, 0);
+        const double *const row[5] = {p[0], p[1], p[2], p[3], p[4]};
+        int dd = brio_insphere_double_double(row, trial % 2, (brio_magnitude){100, 0});
         EXPECT(exact == staged);
         EXPECT(dd == 2 || dd == exact);
         told += dd != 2, close += f.unsettled != 0;

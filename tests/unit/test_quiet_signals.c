@@ -1,7 +1,7 @@
 /* Writes that fail must not end the process that uses the library: no signal of a pipe without a reader or of a limit
  * on the size of files reaches it. The dispositions of the signals are the system's, so that one would end this test. */
 #include "points.h"
-#include "test_io.h"
+#include "io_files.h"
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>

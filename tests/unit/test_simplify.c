@@ -176,7 +176,7 @@ static double plane_of(const brio_mesh *mesh, size_t f, double plane[4]) {
 /* Whether a position is a vertex of the mesh. */
 static bool has_position(const brio_mesh *mesh, const double *p) {
     for (size_t v = 0; v < mesh->num_vertices; v++)
-        if (!memcmp(mesh->vertices + 3 * v, p, 3 * sizeof *p)) return true;
+        if (mesh->vertices[3 * v] == p[0] && !memcmp(mesh->vertices + 3 * v, p, 3 * sizeof *p)) return true;
     return false;
 }
 
@@ -203,34 +203,31 @@ static double distance_of_one_collapse(const brio_mesh *whole, const brio_mesh *
     return gone == 2 ? sqrt(sum / area) : -1;
 }
 
-/* One collapse at a time: its distance is within the tolerance, and with a tolerance just under it another edge
- * collapses, or none. */
+/* One collapse after the other, each held against the planes of the mesh before it, until none is left: none goes
+ * farther than the tolerance, and some go most of the way. */
 static void no_collapse_is_farther_than_the_tolerance(void) {
-    size_t collapses = 0, refused = 0;
-    for (uint64_t seed = 0; seed < 14; seed++) {
-        brio_mesh *whole = random_mesh(ctx, seed), *mesh = copy_of(whole);
-        for (double tolerance = 1; tolerance > 1e-9;) {
-            brio_mesh_free(mesh);
-            mesh = copy_of(whole);
-            EXPECT(simplify_within(ctx, mesh, whole->num_faces - 2, 100, tolerance) == BRIO_OK);
-            double d = distance_of_one_collapse(whole, mesh);
-            if (d < 0) {
-                EXPECT(same_mesh(mesh, whole) || tolerance == 1, "surface %llu", (unsigned long long)seed);
-                refused++;
-                break;
-            }
+    for (uint64_t seed = 0; seed < 6; seed++) {
+        brio_mesh *mesh = random_surface(ctx, (int)(seed % 2), 0.25, seed);
+        double tolerance = 0.05 * (double)(1 + seed / 2), farthest = 0;
+        size_t collapses = 0;
+        for (double d = 0; d >= 0; collapses++) {
+            brio_mesh *before = copy_of(mesh);
+            EXPECT(simplify_within(ctx, mesh, mesh->num_faces - 2, 100, tolerance) == BRIO_OK);
+            d = distance_of_one_collapse(before, mesh);
             EXPECT(d <= tolerance * (1 + 1e-9), "surface %llu: %g, allowed %g", (unsigned long long)seed, d, tolerance);
-            collapses++;
-            tolerance = 0.999 * d;
+            EXPECT(d >= 0 || same_mesh(mesh, before), "surface %llu", (unsigned long long)seed);
+            farthest = fmax(farthest, d);
+            brio_mesh_free(before);
         }
+        EXPECT(collapses > 50 && farthest > 0.8 * tolerance, "surface %llu: %zu collapses, %g of %g",
+               (unsigned long long)seed, collapses, farthest, tolerance);
         brio_mesh_free(mesh);
-        brio_mesh_free(whole);
     }
-    EXPECT(collapses > 10 && refused > 5, "%zu collapses, %zu refused", collapses, refused);
 }
 
 /* Each vertex lies within the tolerance of some plane that it stands for, so that of a convex surface no vertex comes
- * inside its planes by more. */
+ * inside its planes by more. The distance of the surfaces is at most 2.3 tolerances here; where a vertex forgets the
+ * planes that it stands for, it is 5 and more. */
 static void sphere_is_not_cut_deeper_than_the_tolerance(void) {
     brio_mesh *whole = random_surface(ctx, 0, 0.1, 3);
     size_t most = SIZE_MAX;
@@ -254,6 +251,9 @@ static void sphere_is_not_cut_deeper_than_the_tolerance(void) {
             EXPECT(r <= 1 + 4 * sqrt(tolerance), "%g, tolerance %g", r, tolerance);
         }
         EXPECT(mesh->num_faces < most && is_sound(mesh), "%zu faces, tolerance %g", mesh->num_faces, tolerance);
+        brio_distance d = {.size = sizeof d};
+        EXPECT(brio_mesh_distance(ctx, mesh, whole, 20000, 1, &d) == BRIO_OK);
+        EXPECT(d.hausdorff < 4 * tolerance, "%g, tolerance %g", d.hausdorff, tolerance);
         most = mesh->num_faces;
         brio_mesh_free(mesh);
     }
@@ -321,18 +321,38 @@ static void boundaries_stay(void) {
     }
 }
 
-/* Inner vertices of a plane go; no triangle turns over, so that their areas still add up. */
-static void plane_is_covered_once(void) {
-    brio_mesh *mesh = flat_grid(ctx, 12, 9);
-    double area = 0, plane[4];
-    EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_OK);
-    EXPECT(mesh->num_faces < 2 * 12 * 9 / 2, "%zu", mesh->num_faces);
-    for (size_t f = 0; f < mesh->num_faces; f++) {
-        area += plane_of(mesh, f, plane);
-        EXPECT(plane[2] > 0.5, "triangle %zu turned over", f);
+/* Whether a triangle is outside of a comb of three teeth. */
+static int is_between_teeth(const brio_mesh *mesh, size_t f) {
+    double x = 0, y = 0;
+    for (size_t i = 0; i < 3; i++) {
+        const double *p = mesh->vertices + 3 * (size_t)mesh->face_vertices[3 * f + i];
+        x += p[0] / 3, y += p[1] / 3;
     }
-    EXPECT(fabs(area - 12 * 9) < 1e-9, "%g", area);
-    brio_mesh_free(mesh);
+    return y > 3 && (int)x / 4 % 2 == 1;
+}
+
+/* Inner vertices of a plane go; no triangle turns over, so that the areas still add up. The plane is a comb with vertices
+ * close together at one side, so that many collapses would turn a triangle over. */
+static void plane_is_covered_once(void) {
+    for (uint32_t width = 13; width <= 20; width++) {
+        brio_mesh *grid = flat_grid(ctx, width, 12), *mesh = without_triangles(ctx, grid, is_between_teeth);
+        size_t faces = mesh->num_faces;
+        double before = 0, after = 0, plane[4];
+        for (size_t v = 0; v < mesh->num_vertices; v++) {
+            double *p = mesh->vertices + 3 * v;
+            p[1] *= p[1] * p[1] / 100, p[0] += 0.3 * p[1];
+        }
+        for (size_t f = 0; f < faces; f++) before += plane_of(mesh, f, plane);
+        EXPECT(simplify_within(ctx, mesh, 0, 100, 100) == BRIO_OK);
+        EXPECT(mesh->num_faces < faces * 3 / 4, "%zu of %zu", mesh->num_faces, faces);
+        for (size_t f = 0; f < mesh->num_faces; f++) {
+            after += plane_of(mesh, f, plane);
+            EXPECT(plane[2] > 0.5, "triangle %zu turned over", f);
+        }
+        EXPECT(fabs(after - before) < 1e-9 * before, "%g, %g before", after, before);
+        brio_mesh_free(grid);
+        brio_mesh_free(mesh);
+    }
 }
 
 /* --- refusals --- */

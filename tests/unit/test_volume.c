@@ -2,7 +2,7 @@
 #include "io/ccp4.h"
 #include "io/pdb.h"
 #include "failing_allocator.h"
-#include "test_io.h"
+#include "io_files.h"
 
 /* --- maps made by hand --- */
 

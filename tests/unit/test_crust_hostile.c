@@ -1,7 +1,7 @@
 /* The power crust of random, clustered, concentric and lattice inputs, with every labeling and option that leaves
  * nothing open on purpose: closed, manifold and oriented, or no inside, and nothing else.
  *
- * test_hostile_inputs [COUNT] sweeps COUNT inputs of up to 300 points; without it, a few. */
+ * test_crust_hostile [COUNT] sweeps COUNT inputs of up to 300 points; without it, a few. */
 #include "harness.h"
 #include "points.h"
 

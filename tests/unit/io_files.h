@@ -1,6 +1,6 @@
 /* What the tests of files share: a folder of their own, files made of bytes, meshes to write, exact comparison. */
-#ifndef BRIO_TESTS_TEST_IO_H
-#define BRIO_TESTS_TEST_IO_H
+#ifndef BRIO_TESTS_IO_FILES_H
+#define BRIO_TESTS_IO_FILES_H
 
 #include "harness.h"
 #include <dirent.h>
