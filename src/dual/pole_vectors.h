@@ -15,13 +15,13 @@ typedef struct {
     brio_tetrahedra t; /* caller's indices; without records */
     size_t num_finite, num_points, num_vertices;
     const double *points;
-    double theta;   /* half the opening of the co-cones */
-    double *centre; /* #T by 4: the place and its squared distance from its samples, or the unit direction and 1; NaN
+    double theta;    /* half the opening of the co-cones */
+    double *centre;  /* #T by 4: the place and its squared distance from its samples, or the unit direction and 1; NaN
                        where doubles cannot hold it */
-    double *plane;  /* #P by 4: the axis and minus its product with the sample. The axis is a unit vector from the
+    double *plane;   /* #P by 4: the axis and minus its product with the sample. The axis is a unit vector from the
                        sample to the farther pole or, on the hull, the sum of the unit outward normals of its hull
                        facets; zero for points that are no vertices */
-    uint32_t *pole; /* #P by 2: the farther pole (on the hull an infinite tetrahedron) and the farthest Voronoi vertex
+    uint32_t *pole;  /* #P by 2: the farther pole (on the hull an infinite tetrahedron) and the farthest Voronoi vertex
                        on its other side; BRIO_INFINITE where there is none */
     uint16_t *sides; /* #T: what the samples in the slots see of the Voronoi vertex. Bit i: the sample in slot i sees it
                         in its cone to the pole. Bit 4 + i: in its opposite cone. Bits 8 + i, 12 + i: the lower and the
