@@ -22,6 +22,7 @@ typedef struct {
     uintptr_t asked[BRIO_STRETCHES];
 } brio_read_ahead;
 
+/** Prepares *r. brio_expect has no effect if the context has no scratch folder. */
 static inline void brio_read_ahead_start(brio_read_ahead *r, const brio_context *ctx) {
     memset(r, 0, sizeof *r);
     r->active = ctx->scratch != NULL;

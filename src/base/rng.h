@@ -7,6 +7,7 @@
 
 #include <stdint.h>
 
+/** Returns the bits of x mixed by a bijection. */
 static inline uint64_t brio_mix(uint64_t x) {
     x += UINT64_C(0x9e3779b97f4a7c15);
     x = (x ^ (x >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);

@@ -3,6 +3,7 @@
 #include "base/team.h"
 #include <math.h>
 
+/* Chosen. */
 enum { NUMBERS_A_THREAD = 1 << 14 };
 
 typedef struct {

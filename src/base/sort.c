@@ -83,6 +83,7 @@ done:
 
 /* --- items --- */
 
+/* ITEM_DIGIT: bits sorted in a pass. FEW_ITEMS: at most as many are sorted by insertion. All chosen. */
 enum { ITEM_DIGIT = 10, ITEM_BUCKETS = 1 << ITEM_DIGIT, FEW_ITEMS = 48, ITEMS_A_THREAD = 1 << 14 };
 
 static void insert_items(uint64_t *items, size_t n) {

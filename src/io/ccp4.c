@@ -15,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+/* 256 words of four bytes. */
 enum { HEADER_BYTES = 1024 };
 
 /* Byte offsets in the header. */

@@ -20,6 +20,8 @@
 
 typedef unsigned __int128 wide;
 
+/* MAX_DIGITS: 10^19 < 2^64. MAX_POWER: 5^27 < 2^64. EXACT_POWER: 10^22 is a double, 10^23 is not. FAR_EXPONENT: chosen,
+ * so that no int overflows; strtod decides beyond it. */
 enum { MAX_DIGITS = 19, MAX_POWER = 27, EXACT_POWER = 22, FAR_EXPONENT = 100000 };
 
 /* clang-format off */

@@ -17,6 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* Bytes of the buffer. Chosen. */
 enum { BLOCK = 1 << 20 };
 
 static brio_status fail(brio_output *out) {

@@ -12,6 +12,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+/* The words of a line that are stored; no valid line has as many. */
 enum { MAX_WORDS = 6 };
 
 static const char *const type_names[BRIO_SCALAR_END][2] = {

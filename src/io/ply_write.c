@@ -46,6 +46,7 @@ done:
 
 /* --- binary rows --- */
 
+/* CHUNK: rows encoded at a time. Both chosen. */
 enum { CHUNK = 1 << 16, ROWS_A_THREAD = 1 << 12 };
 
 static size_t vertex_size(const brio_write_job *job) {

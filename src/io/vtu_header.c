@@ -8,6 +8,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+/* Most bytes of a tag. Chosen. */
 enum { MAX_TAG = 1 << 20 };
 
 static const char *const type_names[BRIO_VTU_TYPE_END] = {"Int8",   "UInt8",   "Int16",   "UInt16", "Int32",

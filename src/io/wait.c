@@ -4,7 +4,7 @@
 #include <errno.h>
 #include <poll.h>
 
-enum { TURN = 100, MOMENT = 20 /* milliseconds, chosen: too short to notice after Ctrl-C */ };
+enum { TURN = 100, MOMENT = 20 /* milliseconds; chosen: too short to notice after Ctrl-C */ };
 
 static brio_status report(brio_context *ctx, brio_wait what, double fraction) {
     return brio_progress(ctx, what == BRIO_WAIT_READ ? "read" : "write", fraction);

@@ -2,9 +2,9 @@
  *
  * The co-cone of a sample p is the complement of the double cone about the direction v to its pole: the points x with
  * the angle between x - p and v in [pi/2 - theta, pi/2 + theta]. The Voronoi edge dual to a triangle is the segment
- * between the centres of the tetrahedra on its two sides, or a ray for a triangle on the hull. Each cone is convex, so
- * the edge misses the co-cone exactly if both its ends lie in the same cone; the end of a ray is its direction. So the
- * test needs two bits for each tetrahedron and each of its vertices (`sides`).
+ * between the centres of its two tetrahedra, or a ray if the triangle is on the hull. Each cone is convex, so the edge
+ * misses the co-cone exactly if both its ends lie in the same cone; the end of a ray is its direction. So the test
+ * needs two bits for each tetrahedron and each of its vertices (`sides`).
  *
  * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.2. */
@@ -114,7 +114,8 @@ static inline void mark(const brio_cocones *c, uint32_t facet, bool alone) {
         __atomic_fetch_or(candidates, bit, __ATOMIC_RELAXED);
 }
 
-/* Returns the number of candidates among the facets of the tetrahedra [from, to) that are less than their mates. */
+/* Marks the candidates among the facets of tetrahedra from to to - 1 that are lower than their mates. Returns their
+ * number. */
 static size_t select_from(const brio_cocones *c, const side_counts counts, size_t from, size_t to, bool alone) {
     uint32_t open[4 * BLOCK];
     size_t found = 0, count = list_open_facets(c, counts, from, to, open);

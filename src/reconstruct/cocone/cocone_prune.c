@@ -80,7 +80,7 @@ static bool is_wide(const pruning *x, facet_edge from, facet_edge to) {
 }
 
 /* Returns whether an edge of a candidate is sharp. Two candidates at more than a right angle leave no room for a gap of
- * 3 pi / 2, so the first loop ends most calls early. */
+ * 3 pi / 2. So the first loop ends most calls early. */
 static bool is_sharp(const pruning *x, facet_edge first) {
     const uint8_t *boundary = x->cocones->boundary;
     facet_edge e = first;

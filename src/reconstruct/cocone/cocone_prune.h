@@ -4,10 +4,9 @@
 
 #include "reconstruct/cocone/tetrahedron_labels.h"
 
-/** Removes candidates at sharp edges, and then those at edges that have become sharp. An edge is sharp if the angle
- *  between two consecutive candidates round it is more than 3 pi / 2, or if it has one candidate only. The function
- *  keeps candidates between a tetrahedron voted outer and one voted inner. It ignores edges between two boundary
- *  samples.
+/** Removes candidates at sharp edges, and then those at edges that have become sharp. An edge is sharp if it has one
+ *  candidate only, or if two consecutive candidates round it make an angle over 3 pi / 2. The function keeps candidates
+ *  between a tetrahedron voted outer and one voted inner. It ignores edges between two boundary samples.
  *  labels   after brio_tet_labels_vote.
  *  dropped  receives the number of candidates removed.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */

@@ -5,8 +5,8 @@
  * together while they have few enough samples.
  *
  * The surface of a piece is found from its own samples, all samples within a margin of many spacings, and a thin
- * selection of all others. So its Voronoi cells end where they end in the whole set, its poles lie near theirs, and
- * outside and inside are decided as in the whole set.
+ * selection of all others. So its Voronoi cells end where they end in the whole set, and its poles lie near those of
+ * the whole set. Outside and inside are decided as in the whole set.
  *
  * Based on: Dey, Giesen, Hudson. Delaunay based shape reconstruction from large data. PVG 2001.
  * Differs from the paper: the selection from everywhere. */

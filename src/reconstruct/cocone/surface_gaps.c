@@ -16,16 +16,16 @@
  * candidate at its corners. From 1.5 on, the closed models of the tests come out closed. */
 static const double FILLING = 1.5;
 
-/* A gap is a lapse if no edge is over LONG times the mean edge of the faces at its corners, and its area is at most
- * DISC times the square of that mean. Then there is no room for a disc with a radius of one mean edge, in which a
+/* A gap is a lapse under two conditions. No edge is over LONG times the mean edge of the faces at its corners. Its area
+ * is at most DISC times the square of that mean: then it has no room for a disc with a radius of one mean edge, where a
  * surface would have a sample. Measured: the remaining opening of the club has an edge of 3.4 times the mean. Of the
  * 258 gaps of ten raw scans of the bunny 241 are lapses, and none of the four with over ten edges is. */
 static const double LONG = 2.5, DISC = 3.141592653589793;
 
-/* Among boundary samples, a triangle over SUSPECT times as long as the shortest ones around it may span an opening.
- * Connected triangles of this kind are an opening if one of them is over OPENING times as long, and if they have room
- * for MISSING samples. At sharp edges, where samples are too few as well, there is no such room. Measured on the club:
- * 16 samples at the opening, 4 at the largest sharp edge. */
+/* Among boundary samples, a triangle longer than SUSPECT times the shortest ones around it may span an opening.
+ * Connected triangles of this kind are an opening if one of them is longer than OPENING times the shortest ones, and if
+ * they have room for MISSING samples. At sharp edges, where samples are too few as well, there is no such room.
+ * Measured on the club: 16 samples at the opening, 4 at the largest sharp edge. */
 static const double SUSPECT = 1.5, OPENING = 4, MISSING = 8;
 
 /* Adding this to a length of at most 4 and subtracting it rounds the length to a multiple of 2^-40. */
@@ -149,7 +149,7 @@ static double spacing_square(const gaps *g, uint32_t facet) {
     return most;
 }
 
-/* Returns whether a boundary facet is over `times` times as long as the spacing of its samples. */
+/* Returns whether the length of a boundary facet exceeds `times` times the spacing of its samples. */
 static bool is_longer(const gaps *g, uint32_t facet, double times) {
     return length_square(g, facet) > times * times * spacing_square(g, facet);
 }
@@ -165,8 +165,8 @@ static void suspect_long_candidates(const gaps *g) {
     }
 }
 
-/* Appends to g->open all facets of the gap among boundary samples that contains facet `first`, across edges of the
- * boundary, and marks them as faces for now. Returns whether the gap is an opening. */
+/* Finds the gap among boundary samples that contains facet `first`, across edges of the boundary. Appends its facets to
+ * g->open and marks them as faces for now. Returns whether the gap is an opening. */
 static bool collect_opening(gaps *g, uint32_t first) {
     bool is_long = false;
     double missing = 0; /* samples of the local spacing that the gap has room for */
@@ -249,8 +249,8 @@ static bool is_lapse(gaps *g, const uint32_t *facets, size_t count) {
     return longest <= LONG * spacing && room <= DISC * spacing * spacing;
 }
 
-/* Appends to g->open all facets of the gap that contains facet `first`, across edges of the boundary, and marks them as
- * faces for now. */
+/* Finds the gap that contains facet `first`, across edges of the boundary. Appends its facets to g->open and marks them
+ * as faces for now. */
 static void collect_gap(gaps *g, uint32_t first) {
     size_t next = g->num_open;
     g->open[g->num_open++] = first;

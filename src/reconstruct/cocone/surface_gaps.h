@@ -14,6 +14,7 @@ typedef struct {
     uint8_t *face; /* #T: bit i is 1 if facet i is a face */
 } brio_face_choice;
 
+/* Test, set and clear the bit of a facet. */
 static inline bool brio_is_face(const brio_face_choice *c, uint32_t facet) {
     return c->face[brio_tet_of(facet)] >> brio_slot_of(facet) & 1;
 }

@@ -58,6 +58,7 @@ static size_t label_by_votes(const brio_tet_labels *labels, size_t from, size_t 
     return undecided;
 }
 
+/* Chosen. */
 enum { TETS_A_THREAD = 1 << 12 };
 
 typedef struct {

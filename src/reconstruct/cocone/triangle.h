@@ -27,6 +27,7 @@ static inline double brio_circle_square(const double *a, const double *b, const 
     return cross > 0 ? square[0] / cross * square[1] * square[2] / 4 : INFINITY;
 }
 
+/** Returns the area of a triangle. */
 static inline double brio_triangle_area(const double *a, const double *b, const double *c) {
     double square[3];
     return 0.5 * sqrt(brio_cross_square(a, b, c, square));

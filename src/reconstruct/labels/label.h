@@ -6,6 +6,7 @@
 
 typedef enum { BRIO_LABEL_NONE = 0, BRIO_LABEL_OUTER = 1, BRIO_LABEL_INNER = 2 } brio_label;
 
+/** Returns outer for inner, inner for all other labels. */
 static inline uint8_t brio_other_label(uint8_t label) {
     return label == BRIO_LABEL_INNER ? BRIO_LABEL_OUTER : BRIO_LABEL_INNER;
 }

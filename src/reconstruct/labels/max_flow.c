@@ -13,6 +13,7 @@
 #include "base/memory.h"
 #include <string.h>
 
+/* Marks in `parent`: no parent, the terminal is the parent, the node is an orphan. NO_NODE is a mark in next_active. */
 enum { NO_ARC = UINT32_MAX, AT_TERMINAL = UINT32_MAX - 1, ORPHAN = UINT32_MAX - 2, NO_NODE = UINT32_MAX };
 enum { FREE = BRIO_FLOW_FREE, SOURCE = BRIO_FLOW_SOURCE, SINK = BRIO_FLOW_SINK };
 

@@ -49,8 +49,8 @@ static bool is_troubled(const finder *f, uint32_t p) {
     return false;
 }
 
-/* Sets the depth of the neighbours of p that have none. Relaxed order suffices: threads that reach a pole in the same
- * hop write the same depth, no thread looks for that depth in this hop, and the next hop is another run. */
+/* Sets the depth of the neighbours of p that have none. Relaxed order suffices: threads that reach a pole in one hop
+ * write the same depth. No thread looks for that depth in this hop, and the next hop is another run. */
 static void reach_neighbours(const finder *f, uint32_t p, uint8_t depth) {
     const brio_pole_graph *g = f->g;
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {

@@ -7,8 +7,8 @@
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.3.
  * Differs from the paper, in the balanced graph: where samples are few, the paper's weights mislead. There a very deep
- * intersection is the surest sign of one label, balls that intersect a little have different labels more often than
- * not, and the two poles of a badly shaped cell may have the same label. */
+ * intersection is the surest sign of one label. Balls that intersect a little have different labels more often than
+ * not. The two poles of a badly shaped cell may have the same label. */
 #include "reconstruct/labels/pole_graph.h"
 #include "base/memory.h"
 #include "base/places.h"

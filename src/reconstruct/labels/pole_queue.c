@@ -1,7 +1,7 @@
 /* A radix heap. Bucket b > 0 holds the entries whose priorities differ from `last` in bit b - 1 and in no higher bit.
  *
  * Bucket 0 is a binary heap of the entries with priorities equal to `last` or above. When bucket 0 is empty, `last`
- * becomes the highest priority in the first bucket that is not empty, and the entries of that bucket move to lower
+ * becomes the highest priority in the first bucket that has entries. The entries of that bucket then move to lower
  * buckets. So an entry moves a few times, always to the end of an array, where a binary heap would move along a path in
  * memory.
  *

@@ -19,8 +19,8 @@ typedef struct {
 } brio_balls;
 
 /** Keeps the largest ball and then, by descending radius, each ball that no ball kept before covers. So every point of
- *  a ball of radius r that is left out is within max ((s - 1) (R - r), e R) of a kept ball of radius R >= r.
- *  keep  #P: set to 0 for the selected balls that are left out; other entries are not written.
+ *  a dropped ball of radius r is within max ((s - 1) (R - r), e R) of a kept ball of radius R >= r.
+ *  keep  #P: set to 0 for the selected balls that are dropped; other entries are not written.
  *  Cost: one search in a tree of boxes for each ball.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_cover_balls(brio_context *ctx, const brio_balls *balls, const brio_cover_rule *rule, uint8_t *keep);
