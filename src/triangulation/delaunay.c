@@ -108,6 +108,19 @@ static brio_status sort_result(brio_inserter *ins) {
     return status;
 }
 
+/* Whether mates are mates of each other, finite tetrahedra come first, and infinite ones have their vertex last: I2 and
+ * I3 of tetrahedra.h, in the order of the result. */
+static inline bool result_is_valid(const brio_triangulation *t) {
+    size_t finite = t->stats.tetrahedra, count = finite + t->stats.hull_facets;
+    for (size_t tet = 0; tet < count; tet++)
+        for (int i = 0; i < 4; i++) {
+            uint32_t facet = brio_facet_of((uint32_t)tet, i), mate = t->tet[tet].mate[i];
+            if ((t->tet[tet].vertex[i] == BRIO_INFINITE) != (tet >= finite && i == 3)) return false;
+            if (brio_tet_of(mate) >= count || t->tet[brio_tet_of(mate)].mate[brio_slot_of(mate)] != facet) return false;
+        }
+    return true;
+}
+
 static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder, brio_triangulation **out) {
     brio_store *s = ins->store;
     brio_triangulation *t = NULL;
@@ -128,6 +141,7 @@ static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder
     t->round = recorder->list;
     t->num_rounds = recorder->count;
     recorder->list = NULL;
+    assert(result_is_valid(t));
     *out = t;
     t = NULL;
 done:

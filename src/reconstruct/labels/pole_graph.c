@@ -14,6 +14,7 @@
 #include "base/places.h"
 #include "base/sort.h"
 #include "base/team.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -280,6 +281,7 @@ static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative
     brio_for(ctx, threads, g->diagram->num_samples, deal_out_opposite, &b);
     brio_for_chunks(ctx, threads, n, CHUNK, sort_edges, &b);
     g->edge = (brio_pole_edge *)b.edge; /* sort_edges overwrote the keys by edges, which have the same size */
+    assert(runs_are_sorted(g));
 done:
     if (status != BRIO_OK) brio_release(ctx, b.edge);
     brio_release(ctx, b.opposite);
@@ -287,6 +289,20 @@ done:
     brio_release(ctx, b.low);
     brio_release(ctx, b.place);
     return status;
+}
+
+/* Whether the run of each pole's edges leads to other poles, in ascending order. */
+static inline bool runs_are_sorted(const brio_pole_graph *g) {
+    size_t n = g->diagram->poles->count;
+    if (g->first[0] != 0) return false;
+    for (size_t p = 0; p < n; p++) {
+        if (g->first[p + 1] < g->first[p]) return false;
+        for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
+            if (g->edge[e].pole >= n || g->edge[e].pole == p) return false;
+            if (e > g->first[p] && g->edge[e].pole < g->edge[e - 1].pole) return false;
+        }
+    }
+    return true;
 }
 
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_power_diagram *diagram, brio_pole_evidence evidence,

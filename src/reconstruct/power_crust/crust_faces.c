@@ -20,6 +20,7 @@
 #include "reconstruct/labels/labeling.h"
 #include "mesh/split_vertices.h"
 #include "triangulation/ring.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -279,11 +280,23 @@ done:
     return status;
 }
 
+/* Whether every pole has a label and every pole on the hull of the triangulation is outer. Then every face between an
+ * inner and an outer cell is bounded, and the crust closes. */
+static inline bool labels_close(const brio_power_diagram *d, const uint8_t *label) {
+    for (size_t p = 0; p < d->poles->count; p++)
+        if (label[p] != BRIO_LABEL_INNER && label[p] != BRIO_LABEL_OUTER) return false;
+    for (size_t tet = d->num_finite; tet < d->power.count; tet++)
+        for (int i = 0; i < 3; i++)
+            if (label[d->power.tet[tet].vertex[i]] != BRIO_LABEL_OUTER) return false;
+    return true;
+}
+
 brio_status brio_crust_faces(const brio_power_diagram *d, const uint8_t *label, const brio_crust_options *options,
                              brio_mesh *mesh, brio_crust_counts *counts) {
     brio_status status = BRIO_OK;
     brio_context *ctx = mesh->context;
     builder b = {.d = d, .label = label, .options = options, .mesh = mesh};
+    assert(labels_close(d, label));
     b.num_blocks = (d->num_finite + BLOCK - 1) / BLOCK;
     b.threads = brio_threads(ctx, b.num_blocks, 1);
     BRIO_TRY(BRIO_ALLOC(ctx, b.number, d->num_finite));
