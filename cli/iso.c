@@ -42,7 +42,7 @@ static brio_status check_arguments(run *r, const arguments *a) {
 
 static brio_status iso(run *r) {
     const arguments *a = r->arguments;
-    brio_iso_options o = brio_iso_options_default();
+    brio_iso_surface_options o = brio_iso_surface_options_default();
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a));

@@ -50,8 +50,8 @@ static void report_by_mesh(run *r, const brio_power_crust_stats *s) {
 static brio_status offset_surface(run *r, const power_crust_options *crust, const brio_mesh *points, bool by_mesh,
                                   brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_offset_options o = brio_offset_options_default();
-    brio_power_crust_stats s = {.size = sizeof s};
+    brio_offset_surface_options o = brio_offset_surface_options_default();
+    brio_offset_surface_stats found = {.size = sizeof found};
     facts *f = &r->facts;
     o.seed = r->common.seed;
     o.poles = cli_pole_options(crust);
@@ -62,9 +62,11 @@ static brio_status offset_surface(run *r, const power_crust_options *crust, cons
     brio_status status = brio_estimate_offset_surface(r->ctx, points->num_vertices, &o, &work);
     status = cli_require_work(r, status, points, work);
     if (status != BRIO_OK) return status;
-    status = brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &s);
+    status = brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &found);
     cli_suggest_labeling(r, status, a->crust.labeling, by_mesh);
     if (status != BRIO_OK) return status;
+    brio_power_crust_stats s = {
+        .poles = found.poles, .crust_seconds = found.crust_seconds, .simplify_seconds = found.simplify_seconds};
     cli_report_power_crust_stages(r, crust, &s);
     cli_fact_text(f, "method", "power-crust");
     cli_fact_real(f, "distance", a->distance);

@@ -28,20 +28,23 @@
  *     a sentence that explains the failure.
  *   - The caller's floating-point state (rounding mode, subnormal numbers, traps) does not change a result: each
  *     function sets the state that it needs and restores the caller's state before it returns. Callbacks run in the
- *     library's state.
- *   - A stack of 64 KiB suffices in the calling thread.
- */
+ *     library's state. *   - A stack of 64 KiB suffices in the calling thread.
+ * Rules.
+ *   - A pointer is not NULL unless its function says that it may be; arrays of 0 elements may be NULL. An object must not
+ *     be used after it or its context was freed.
+ *   - After an error every out pointer to an object is NULL, and statistics and results hold nothing to be freed.
+ *   - A context serves one call at a time. Functions of a mesh that take no context use the mesh's own, and count as a call
+ *     with it; so do the functions that free. Several threads may read one mesh or triangulation.
+ *   - Callbacks call no function with the context but brio_message and brio_context_memory. They do not leave by longjmp
+ *     or by an exception.
+*/
 #ifndef BRIO_H
 #define BRIO_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
-#define BRIO_API __declspec(dllexport)
-#else
 #define BRIO_API __attribute__((visibility("default")))
-#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -66,9 +69,12 @@ BRIO_API int brio_version_number(void);
 /* Structs that grow. Structs of options, statistics and results begin with `size`, the bytes that the caller was
  * compiled with, so that later versions can append fields: the library touches no byte beyond `size`.
  *   - Options:  brio_cocone_options o = brio_cocone_options_default(); then set fields. A pointer to options may be
- *     NULL, which stands for the defaults. Other languages call brio_cocone_options_init(&o, sizeof o).
- *   - Statistics and results:  brio_cocone_stats stats = {.size = sizeof stats};
- * A `size` that was not set is BRIO_ERR_ARGUMENT. Arrays named `reserved` stay 0. Elements of arrays
+ *     NULL, which stands for the defaults. Other languages call brio_cocone_options_init(&o, sizeof o). *     Options that were only set to 0 are not the defaults.
+ *   - Statistics and results:  brio_cocone_stats stats = {.size = sizeof stats};   in C++:  brio_cocone_stats stats = {};
+ *     stats.size = sizeof stats;
+ *   - Structs that the library made (brio_mesh, brio_delaunay_stats) are as long as their `size`: a program that may run
+ *     with an older library looks at it before it reads a field that the older version did not have.
+ * A `size` that was not set is BRIO_ERR_ARGUMENT. Fields whose names begin with `reserved` stay 0. Elements of arrays
  * (brio_tetrahedron, brio_round, brio_property) and brio_allocator, brio_edges never change. */
 
 /* ------------------------------------------------------------------------------------------------------------------
@@ -100,7 +106,9 @@ typedef enum brio_status {
 /** Returns a static sentence for a status; never NULL. */
 BRIO_API const char *brio_status_string(brio_status status);
 
-/** Memory functions of the caller's choice. alloc and realloc return NULL on failure; sizes are in bytes. */
+/** Memory functions of the caller's choice. alloc and realloc return NULL on failure; sizes are in bytes; blocks are
+ *  aligned as malloc's. Several threads may call them at a time. The context copies the struct; `user` must outlive the
+ *  context. */
 typedef struct brio_allocator {
     void *(*alloc)(size_t size, void *user);
     void *(*realloc)(void *block, size_t size, void *user);
@@ -120,7 +128,7 @@ BRIO_API brio_status brio_context_new(const brio_allocator *allocator, brio_cont
 BRIO_API void brio_context_free(brio_context *ctx);
 
 /** Returns the sentence that explains the last failure in this context, such as "point 1842: y is NaN"; "" when there
- *  was none. Valid until the next call with the context. */
+ *  was none. A call that succeeds leaves the sentence as it was. Valid until the next call with the context. */
 BRIO_API const char *brio_message(const brio_context *ctx);
 
 /** Sets the greatest number of threads that a call uses, the calling thread included. 0 (default) means every processor
@@ -129,7 +137,7 @@ BRIO_API const char *brio_message(const brio_context *ctx);
  *  system refuses a thread, the call goes on with fewer. A child process after fork may use its copy of a context if no
  *  call was running in the parent; the child creates new threads. */
 BRIO_API void brio_context_set_threads(brio_context *ctx, int threads);
-/** Returns the number that was set, or the number of processors: at least 1. */
+/** Returns the greatest number of threads that a call uses: at least 1. A negative number was taken for 0. */
 BRIO_API int brio_context_threads(const brio_context *ctx);
 
 /** A progress callback. Long calls call it from the calling thread, a few times a second or more often, with the name
@@ -186,13 +194,15 @@ typedef enum brio_order {
  *  point and 8 an edge; TRACE 16 a point and 8 an edge; HISTORY and TRACE also 20 for each tetrahedron ever created and 4
  *  for each tetrahedron of the result. */
 typedef enum brio_location {
-    BRIO_LOCATION_WALK = 0,  /* from the point inserted last [Devillers Pion Teillaud 2002] */
-    BRIO_LOCATION_JUMP,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
-    BRIO_LOCATION_HIERARCHY, /* through triangulations of ever larger samples [Devillers 2002] */
-    BRIO_LOCATION_HISTORY,   /* in the history DAG [Guibas Knuth Sharir 1992, Clarkson Mehlhorn Seidel 1993] */
-    BRIO_LOCATION_TRACE, /* traces the given edges now and then and uses the history DAG between; in BRIO_ORDER_RANDOM
+    BRIO_LOCATION_WALK = 0,      /* from the point inserted last [Devillers Pion Teillaud 2002] */
+    BRIO_LOCATION_JUMP = 1,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
+    BRIO_LOCATION_HIERARCHY = 2, /* through triangulations of ever larger samples [Devillers 2002] */
+    BRIO_LOCATION_HISTORY = 3,   /* in the history DAG [Guibas Knuth Sharir 1992, Clarkson Mehlhorn Seidel 1993] */
+    BRIO_LOCATION_TRACE =
+        4, /* traces the given edges now and then and uses the history DAG between; in BRIO_ORDER_RANDOM
                                 O(n log* n) when the edges are Delaunay edges that span the points [Choi 2003, ch. 4] */
-    BRIO_LOCATION_NEIGHBOUR, /* from the nearest of the point's neighbours along the given edges and the last point */
+    BRIO_LOCATION_NEIGHBOUR =
+        5, /* from the nearest of the point's neighbours along the given edges and the last point */
     BRIO_LOCATION_END
 } brio_location;
 
@@ -246,6 +256,7 @@ typedef struct brio_round {
     uint64_t created, destroyed, walk_steps, insphere_calls, history;
     double locate_seconds; /* as in brio_delaunay_stats */
     double seconds;        /* since the insertion began */
+    uint64_t reserved[4];
 } brio_round;
 
 typedef struct brio_triangulation brio_triangulation;
@@ -326,14 +337,14 @@ BRIO_API brio_status brio_triangulation_checksum(brio_context *ctx, const brio_t
 
 /** Scalar types of properties, as in PLY. */
 typedef enum brio_scalar {
-    BRIO_SCALAR_INT8,
-    BRIO_SCALAR_UINT8,
-    BRIO_SCALAR_INT16,
-    BRIO_SCALAR_UINT16,
-    BRIO_SCALAR_INT32,
-    BRIO_SCALAR_UINT32,
-    BRIO_SCALAR_FLOAT32,
-    BRIO_SCALAR_FLOAT64,
+    BRIO_SCALAR_INT8 = 0,
+    BRIO_SCALAR_UINT8 = 1,
+    BRIO_SCALAR_INT16 = 2,
+    BRIO_SCALAR_UINT16 = 3,
+    BRIO_SCALAR_INT32 = 4,
+    BRIO_SCALAR_UINT32 = 5,
+    BRIO_SCALAR_FLOAT32 = 6,
+    BRIO_SCALAR_FLOAT64 = 7,
     BRIO_SCALAR_END
 } brio_scalar;
 
@@ -344,14 +355,17 @@ BRIO_API size_t brio_scalar_size(brio_scalar type);
 typedef struct brio_property {
     char name[64];
     brio_scalar type;
+    int reserved_int;
     void *data; /* #V scalars of `type` */
+    uint64_t reserved[2];
 } brio_property;
 
 /** What a file holds: points, polygons, tetrahedra or edges over them, and properties of the points. Polygons are stored
  *  one after the other: face f has the vertices face_vertices[face_offsets[f]] to face_vertices[face_offsets[f+1] - 1].
- *  Vertices at the same position stay distinct. The mesh owns all arrays; the array of an absent part is NULL. Meshes are
- *  made by the library, and later versions may append fields. */
+ *  Vertices at the same position stay distinct. The mesh owns all arrays; the array of an absent part is NULL. A program
+ *  may change the numbers in the arrays, but neither pointers nor counts. Later versions may append fields. */
 typedef struct brio_mesh {
+    size_t size; /* of the struct in the library that runs */
     brio_context *context;
     size_t num_vertices;
     double *vertices; /* #V by 3 */
@@ -371,9 +385,12 @@ BRIO_API brio_status brio_mesh_new(brio_context *ctx, brio_mesh **out);
 /** Frees a mesh with all its arrays; NULL is accepted. */
 BRIO_API void brio_mesh_free(brio_mesh *mesh);
 
-/** Copies vertices into an empty mesh; vertices NULL sets them to 0. */
+/* The functions that set a part of a mesh return BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has that part already, or as said),
+ * BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. They leave indices unchecked; the functions that use them check. */
+
+/** Copies vertices into a mesh without vertices and properties; vertices NULL sets them to 0. */
 BRIO_API brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size_t num_vertices);
-/** Copies polygons into a mesh.   offsets  #F + 1.   indices  offsets[#F]. */
+/** Copies polygons into a mesh.   offsets  #F + 1, from 0 on, not decreasing.   indices  offsets[#F]. */
 BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices,
                                          size_t num_faces);
 /** Copies tetrahedra into a mesh. Tetrahedron i has four vertices at tetrahedra + stride * i: stride 4 for a packed
@@ -383,7 +400,8 @@ BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *t
 /** Copies edges into a mesh.   edges  #E by 2. */
 BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges, size_t num_edges);
 /** Adds a property of the vertices, filled with 0.   data  receives the array, #V scalars, owned by the mesh.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has a property of that name), BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has a property of that name, the name is empty or has over 63 bytes, or
+ *  there is no such type), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
 /** Returns the property of that name, or NULL. */
 BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);
@@ -410,11 +428,12 @@ typedef struct brio_certificate {
     int64_t *genera; /* of each component, the component with the most faces first; owned by the certificate */
     size_t boundary_edges, boundary_loops;
     size_t nonmanifold_edges, nonmanifold_vertices, flipped_edges;
-    int64_t self_intersections; /* -1: not counted; see brio_mesh_self_intersections */
+    int64_t self_intersections; /* -1: for the caller, who may store here what brio_mesh_self_intersections counts */
     double area, volume;        /* volume is positive when the faces are seen counterclockwise from outside */
 } brio_certificate;
 
-/** Certifies the polygons of a mesh.   out  its `size` set; freed with brio_certificate_free. Cost O(F log F).
+/** Certifies the polygons of a mesh. Cost O(F log F).   out  initialised with = {.size = sizeof c}; freed with
+ *  brio_certificate_free, also before it receives another certificate.
  *  Returns BRIO_OK (whatever the certificate says), BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out);
 
@@ -425,7 +444,7 @@ BRIO_API brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *m
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs);
 
-/** Frees what a certificate owns and sets its fields to 0; NULL is accepted. */
+/** Frees what a certificate owns and sets all fields but `size` to 0; NULL is accepted. */
 BRIO_API void brio_certificate_free(brio_certificate *certificate);
 
 /** Distances between two surfaces, in the unit of the coordinates. */
@@ -576,7 +595,7 @@ static inline brio_power_crust_options brio_power_crust_options_default(void) {
     return options;
 }
 
-/** What the power crust and offset surfaces count. */
+/** What the power crust counts. */
 typedef struct brio_power_crust_stats {
     size_t size;
     brio_pole_stats poles;
@@ -603,33 +622,39 @@ BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, s
                                       const brio_power_crust_options *options, brio_mesh **out, double *normals,
                                       brio_power_crust_stats *stats);
 
-typedef struct brio_offset_options {
+typedef struct brio_offset_surface_options {
     size_t size;
     uint64_t seed;           /* default 1 */
     brio_pole_options poles; /* how the poles are found and labeled */
     int triangulate;         /* as in brio_power_crust_options */
     int simplify;            /* as in brio_power_crust_options */
-} brio_offset_options;
+} brio_offset_surface_options;
 
-BRIO_API void brio_offset_options_init(brio_offset_options *options, size_t size);
-static inline brio_offset_options brio_offset_options_default(void) {
-    brio_offset_options options;
-    brio_offset_options_init(&options, sizeof options);
+BRIO_API void brio_offset_surface_options_init(brio_offset_surface_options *options, size_t size);
+static inline brio_offset_surface_options brio_offset_surface_options_default(void) {
+    brio_offset_surface_options options;
+    brio_offset_surface_options_init(&options, sizeof options);
     return options;
 }
+
+typedef struct brio_offset_surface_stats {
+    size_t size;
+    brio_pole_stats poles; /* of the balls that are left after the offset */
+    double crust_seconds, simplify_seconds;
+} brio_offset_surface_stats;
 
 /** Computes the offset of the power crust of the samples: the surface at `distance` outside it or, for a negative
  *  distance, inside it. Parts of an offset that meet are merged, and parts of the object that are too thin vanish.
  *  Guarantees: as the power crust, closed, manifold and oriented for every distance. The error of the offset is that of the
  *  polar balls as an approximation of the maximal balls.
  *  distance  in the unit of the points.   options  NULL for the defaults.   out  owned by the caller.
- *  stats     NULL, or its `size` set. It counts the balls that are left after the offset.
+ *  stats     NULL, or its `size` set.
  *  Cost: as brio_power_crust, and one more triangulation of the poles.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or an inward offset leaves nothing), and as brio_delaunay.
  *  Based on: [Choi 2003] section 3.3.4. */
 BRIO_API brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
-                                         const brio_offset_options *options, brio_mesh **out,
-                                         brio_power_crust_stats *stats);
+                                         const brio_offset_surface_options *options, brio_mesh **out,
+                                         brio_offset_surface_stats *stats);
 
 /** Sides of a surface. */
 typedef enum brio_sides { BRIO_SIDES_INNER = 0, BRIO_SIDES_OUTER = 1, BRIO_SIDES_BOTH = 2, BRIO_SIDES_END } brio_sides;
@@ -740,7 +765,7 @@ BRIO_API brio_status brio_cocone(brio_context *ctx, const double *points, size_t
  * Iso-surfaces
  */
 
-typedef struct brio_iso_options {
+typedef struct brio_iso_surface_options {
     size_t size;
     double level;   /* of the surface, in the unit of the map or of the density of atoms; default 1 */
     int deviations; /* 1: `level` counts standard deviations above the mean of the map; default 0 */
@@ -749,12 +774,12 @@ typedef struct brio_iso_options {
     double blobbiness; /* atoms: above 0 and at most 100; the larger, the closer the surface is to spheres; default 2 */
     size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
     size_t vertices;   /* not 0: chooses the resolution so that the mesh has about this many vertices; default 0 */
-} brio_iso_options;
+} brio_iso_surface_options;
 
-BRIO_API void brio_iso_options_init(brio_iso_options *options, size_t size);
-static inline brio_iso_options brio_iso_options_default(void) {
-    brio_iso_options options;
-    brio_iso_options_init(&options, sizeof options);
+BRIO_API void brio_iso_surface_options_init(brio_iso_surface_options *options, size_t size);
+static inline brio_iso_surface_options brio_iso_surface_options_default(void) {
+    brio_iso_surface_options options;
+    brio_iso_surface_options_init(&options, sizeof options);
     return options;
 }
 
@@ -764,7 +789,7 @@ static inline brio_iso_options brio_iso_options_default(void) {
  *  Memory: 4 bytes a value of the map or 40 bytes an atom; the mesh; two layers of cells with 36 bytes a cell.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (nothing is above the level, or the map is one value thin),
  *  and as brio_read. */
-BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_options *options,
+BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_surface_options *options,
                                       brio_mesh **out);
 
 /* ------------------------------------------------------------------------------------------------------------------
@@ -774,13 +799,13 @@ BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const
 /** File formats. BRIO_FORMAT_AUTO decides by the extension, and by the content of the file where it tells the format. */
 typedef enum brio_format {
     BRIO_FORMAT_AUTO = 0,
-    BRIO_FORMAT_PLY,
-    BRIO_FORMAT_XYZ, /* .xyz .pts .txt .csv */
-    BRIO_FORMAT_OBJ,
-    BRIO_FORMAT_OFF,
-    BRIO_FORMAT_VTU,  /* read if its arrays are appended raw, as brio_write writes them */
-    BRIO_FORMAT_NODE, /* TetGen's .node, with .ele beside it */
-    BRIO_FORMAT_VTP,  /* written, not read */
+    BRIO_FORMAT_PLY = 1,
+    BRIO_FORMAT_XYZ = 2, /* .xyz .pts .txt .csv */
+    BRIO_FORMAT_OBJ = 3,
+    BRIO_FORMAT_OFF = 4,
+    BRIO_FORMAT_VTU = 5,  /* read if its arrays are appended raw, as brio_write writes them */
+    BRIO_FORMAT_NODE = 6, /* TetGen's .node, with .ele beside it */
+    BRIO_FORMAT_VTP = 7,  /* written, not read */
     BRIO_FORMAT_END
 } brio_format;
 
@@ -813,8 +838,9 @@ static inline brio_write_options brio_write_options_default(void) {
  *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
- *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU and VTP only.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
+ *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU and VTP only. In the names of properties, formats
+ *  that cannot quote have _ for blanks and commas; a comment of several lines becomes several comments.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, or an index is out of range), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);
@@ -824,15 +850,15 @@ BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_
  */
 
 typedef enum brio_kind {
-    BRIO_KIND_CUBE,     /* uniform in the unit cube */
-    BRIO_KIND_BALL,     /* uniform in the unit ball */
-    BRIO_KIND_SPHERE,   /* uniform on the unit sphere */
-    BRIO_KIND_TORUS,    /* uniform by area on the torus of radii 1 and 0.4 */
-    BRIO_KIND_CYLINDER, /* uniform on the side of the cylinder of radius 1 and height 4 */
-    BRIO_KIND_GRID,     /* the first n points of the smallest cubic integer grid that has n */
-    BRIO_KIND_SCAN,     /* a simulated laser scan of a sculpture of genus 3 */
-    BRIO_KIND_CLUSTERS, /* uniform in 256 balls in the unit cube, whose radii are log-uniform from 1e-7 to 0.1 */
-    BRIO_KIND_MOMENT,   /* (t, t^2, t^3), t uniform in [0, 1): about n^2 / 2 tetrahedra */
+    BRIO_KIND_CUBE = 0,     /* uniform in the unit cube */
+    BRIO_KIND_BALL = 1,     /* uniform in the unit ball */
+    BRIO_KIND_SPHERE = 2,   /* uniform on the unit sphere */
+    BRIO_KIND_TORUS = 3,    /* uniform by area on the torus of radii 1 and 0.4 */
+    BRIO_KIND_CYLINDER = 4, /* uniform on the side of the cylinder of radius 1 and height 4 */
+    BRIO_KIND_GRID = 5,     /* the first n points of the smallest cubic integer grid that has n */
+    BRIO_KIND_SCAN = 6,     /* a simulated laser scan of a sculpture of genus 3 */
+    BRIO_KIND_CLUSTERS = 7, /* uniform in 256 balls in the unit cube, whose radii are log-uniform from 1e-7 to 0.1 */
+    BRIO_KIND_MOMENT = 8,   /* (t, t^2, t^3), t uniform in [0, 1): about n^2 / 2 tetrahedra */
     BRIO_KIND_END
 } brio_kind;
 
@@ -841,6 +867,7 @@ typedef struct brio_generate_options {
     uint64_t seed; /* default 1 */
     double noise;  /* scan: standard deviation along the ray, in spacings of the samples; default 0.05 */
     int views;     /* scan: number of sensor positions; default 12 */
+    int reserved_int;
 } brio_generate_options;
 
 BRIO_API void brio_generate_options_init(brio_generate_options *options, size_t size);
@@ -875,12 +902,13 @@ BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, b
 BRIO_API brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights,
                                             size_t num_points, const brio_delaunay_options *options, uint64_t *bytes);
 
-/** Estimates the memory of a reconstruction from num_points samples.   options  NULL for the defaults.
- *  Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
+/** Estimates the memory of a reconstruction from num_points samples.   options  NULL for the defaults. Of the options,
+ *  `triangulate` and `simplify` count; `pieces`, `scale` and `redundancy` do not.
+*  Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
 BRIO_API brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points,
                                                const brio_power_crust_options *options, uint64_t *bytes);
 BRIO_API brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points,
-                                                  const brio_offset_options *options, uint64_t *bytes);
+                                                  const brio_offset_surface_options *options, uint64_t *bytes);
 BRIO_API brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points,
                                                const brio_power_shape_options *options, uint64_t *bytes);
 BRIO_API brio_status brio_estimate_cocone(brio_context *ctx, size_t num_points, const brio_cocone_options *options,

@@ -89,11 +89,11 @@ brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points, cons
     return status;
 }
 
-brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points, const brio_offset_options *options,
+brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points, const brio_offset_surface_options *options,
                                          uint64_t *bytes) {
     BRIO_DOOR;
-    brio_offset_options o = brio_offset_options_default();
-    brio_status status = BRIO_TAKE(ctx, brio_offset_options, options, &o);
+    brio_offset_surface_options o = brio_offset_surface_options_default();
+    brio_status status = BRIO_TAKE(ctx, brio_offset_surface_options, options, &o);
     *bytes = status == BRIO_OK ? crust_bytes(num_points, OFFSET_BYTES_A_POINT, o.triangulate, o.simplify) : 0;
     return status;
 }

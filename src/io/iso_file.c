@@ -10,9 +10,9 @@
 
 enum { MAP_WORD = 208 };
 
-static const brio_iso_options STANDARD = {.size = sizeof STANDARD, .level = 1, .blobbiness = 2};
+static const brio_iso_surface_options STANDARD = {.size = sizeof STANDARD, .level = 1, .blobbiness = 2};
 
-BRIO_OPTIONS_INIT(brio_iso_options)
+BRIO_OPTIONS_INIT(brio_iso_surface_options)
 
 /* --- reading --- */
 
@@ -51,7 +51,7 @@ done:
     return status;
 }
 
-static brio_status check_options(brio_context *ctx, const brio_iso_options *o) {
+static brio_status check_options(brio_context *ctx, const brio_iso_surface_options *o) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, isfinite(o->level), BRIO_ERR_ARGUMENT, "level %g: expected a finite number", o->level);
     BRIO_REQUIRE(ctx, !o->resolution || !o->vertices, BRIO_ERR_ARGUMENT,
@@ -60,13 +60,13 @@ done:
     return status;
 }
 
-brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_options *options, brio_mesh **out) {
+brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_surface_options *options, brio_mesh **out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_iso_options o = STANDARD;
+    brio_iso_surface_options o = STANDARD;
     brio_iso_source from = {0};
     *out = NULL;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_iso_options, options, &o));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_iso_surface_options, options, &o));
     BRIO_TRY(check_options(ctx, &o));
     BRIO_TRY(read_source(ctx, path, &from));
     BRIO_TRY(brio_iso_source_surface(ctx, &from, &o, out));

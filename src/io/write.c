@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/versioned.h"
 #include "io/formats.h"
+#include "mesh/edge_rings.h"
 #include "io/textrow.h"
 #include <math.h>
 #include <string.h>
@@ -156,6 +157,20 @@ done:
     return status;
 }
 
+/* Refuses indices of vertices that there are not. */
+static brio_status check_indices(brio_context *ctx, const brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    for (size_t i = 0; i < 4 * mesh->num_tetrahedra; i++)
+        BRIO_REQUIRE(ctx, mesh->tetrahedra[i] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
+                     "tetrahedron %zu has vertex %u of %zu", i / 4, mesh->tetrahedra[i], mesh->num_vertices);
+    for (size_t i = 0; i < 2 * mesh->num_edges; i++)
+        BRIO_REQUIRE(ctx, mesh->edges[i] < mesh->num_vertices, BRIO_ERR_ARGUMENT, "edge %zu has vertex %u of %zu",
+                     i / 2, mesh->edges[i], mesh->num_vertices);
+done:
+    return status;
+}
+
 brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh, const brio_write_options *options) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
@@ -164,6 +179,7 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, options, &o));
     brio_format format = o.format;
     if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
+    BRIO_TRY(check_indices(ctx, mesh));
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
     if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ) BRIO_TRY(make_names(ctx, path, &job));
     BRIO_TRY(format == BRIO_FORMAT_NODE ? write_node(ctx, path, &job) : write_one(ctx, path, &job, format));

@@ -9,7 +9,7 @@ enum { FIRST_RESOLUTION = 100, MOST_RESOLUTION = 1 << 15, MOST_ROUNDS = 5 };
 
 static const double CLOSE_ENOUGH = 0.02; /* share of the wanted number of vertices */
 
-static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_options *o,
+static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *o,
                                 size_t resolution, brio_mesh **out) {
     brio_status status = BRIO_OK;
     if (from->is_map)
@@ -37,7 +37,7 @@ static size_t next_resolution(double wanted, const double resolution[2], const d
 }
 
 /* Tries resolutions until there are about as many vertices as wanted; the last try stands. */
-static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source *from, const brio_iso_options *o,
+static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *o,
                                         brio_mesh **out) {
     brio_status status = BRIO_OK;
     double wanted = (double)o->vertices, tried[2] = {0, FIRST_RESOLUTION}, vertices[2] = {0, 0};
@@ -57,7 +57,7 @@ done:
 }
 
 /* Turns a level that counts deviations into one of the map's unit. */
-static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, brio_iso_options *o) {
+static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, brio_iso_surface_options *o) {
     brio_status status = BRIO_OK;
     double mean, deviation;
     if (!o->deviations) return BRIO_OK;
@@ -70,10 +70,10 @@ done:
     return status;
 }
 
-brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_options *options,
+brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *options,
                                     brio_mesh **out) {
     brio_status status = BRIO_OK;
-    brio_iso_options o = *options;
+    brio_iso_surface_options o = *options;
     *out = NULL;
     BRIO_TRY(settle_level(ctx, from, &o));
     BRIO_TRY(o.vertices ? make_surface_of_size(ctx, from, &o, out) : make_surface(ctx, from, &o, o.resolution, out));

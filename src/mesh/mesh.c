@@ -3,9 +3,12 @@
 #include "base/memory.h"
 #include <string.h>
 
+/* Counts beyond this are not of this world, and their sizes in bytes could wrap. */
+static const uint64_t MOST = UINT64_C(1) << 48;
+
 brio_status brio_mesh_new(brio_context *ctx, brio_mesh **out) {
     brio_status status = BRIO_ALLOC_ZERO(ctx, *out, 1);
-    if (status == BRIO_OK) (*out)->context = ctx;
+    if (status == BRIO_OK) **out = (brio_mesh){.size = sizeof **out, .context = ctx};
     return status;
 }
 
@@ -27,10 +30,24 @@ brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size
     double *copy = NULL;
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, !mesh->vertices, BRIO_ERR_ARGUMENT, "the mesh has vertices already");
+    BRIO_REQUIRE(ctx, !mesh->num_properties, BRIO_ERR_ARGUMENT, "the mesh has properties already: set vertices first");
+    BRIO_REQUIRE(ctx, num_vertices <= UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu vertices; indices have 32 bits",
+                 num_vertices);
     BRIO_TRY(vertices ? BRIO_ALLOC(ctx, copy, 3 * num_vertices) : BRIO_ALLOC_ZERO(ctx, copy, 3 * num_vertices));
     if (vertices && num_vertices) memcpy(copy, vertices, 3 * num_vertices * sizeof *copy);
     mesh->vertices = copy;
     mesh->num_vertices = num_vertices;
+done:
+    return status;
+}
+
+static brio_status check_offsets(brio_context *ctx, const uint64_t *offsets, size_t num_faces) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, num_faces < MOST, BRIO_ERR_TOO_LARGE, "%zu faces", num_faces);
+    BRIO_REQUIRE(ctx, !num_faces || offsets[0] == 0, BRIO_ERR_ARGUMENT, "the first offset of faces is not 0");
+    for (size_t f = 0; f < num_faces; f++)
+        BRIO_REQUIRE(ctx, offsets[f] <= offsets[f + 1] && offsets[f + 1] < MOST, BRIO_ERR_ARGUMENT,
+                     "face %zu: its offsets decrease or are too large", f);
 done:
     return status;
 }
@@ -41,6 +58,7 @@ brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const 
     uint32_t *v = NULL;
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, !mesh->face_offsets, BRIO_ERR_ARGUMENT, "the mesh has faces already");
+    BRIO_TRY(check_offsets(ctx, offsets, num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, o, num_faces + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, v, num_faces ? offsets[num_faces] : 0));
     o[0] = 0;
@@ -63,6 +81,8 @@ brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra
     uint32_t *copy = NULL;
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, !mesh->tetrahedra, BRIO_ERR_ARGUMENT, "the mesh has tetrahedra already");
+    BRIO_REQUIRE(ctx, stride >= 4, BRIO_ERR_ARGUMENT, "a stride of %zu numbers for four vertices", stride);
+    BRIO_REQUIRE(ctx, num_tetrahedra < MOST, BRIO_ERR_TOO_LARGE, "%zu tetrahedra", num_tetrahedra);
     BRIO_TRY(BRIO_ALLOC(ctx, copy, 4 * num_tetrahedra));
     for (size_t t = 0; t < num_tetrahedra; t++) memcpy(copy + 4 * t, tetrahedra + stride * t, 4 * sizeof *copy);
     mesh->tetrahedra = copy;
@@ -76,6 +96,7 @@ brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges, size_t n
     uint32_t *copy = NULL;
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, !mesh->edges, BRIO_ERR_ARGUMENT, "the mesh has edges already");
+    BRIO_REQUIRE(ctx, num_edges < MOST, BRIO_ERR_TOO_LARGE, "%zu edges", num_edges);
     BRIO_TRY(BRIO_ALLOC(ctx, copy, 2 * num_edges));
     if (num_edges) memcpy(copy, edges, 2 * num_edges * sizeof *copy);
     mesh->edges = copy;

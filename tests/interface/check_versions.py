@@ -28,7 +28,7 @@ def grow(header):
     """One more field for each struct that begins with its size."""
     text = header.read_text(encoding="utf-8")
     names = [match.group(2) for match in SIZED.finditer(text)]
-    header.write_text(SIZED.sub(r"\1\n    double later_field;\3", text), encoding="utf-8")
+    header.write_text(SIZED.sub(r"\1\n    int later_field, reserved_later;\3", text), encoding="utf-8")
     return names
 
 

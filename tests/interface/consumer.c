@@ -52,13 +52,13 @@ int main(void) {
     OPTIONS(brio_generate_options, generate);
     OPTIONS(brio_delaunay_options, delaunay);
     OPTIONS(brio_power_crust_options, power_crust);
-    OPTIONS(brio_offset_options, offset);
+    OPTIONS(brio_offset_surface_options, offset);
     OPTIONS(brio_power_shape_options, power_shape);
     OPTIONS(brio_cocone_options, cocone);
-    OPTIONS(brio_iso_options, iso);
+    OPTIONS(brio_iso_surface_options, iso);
     OPTIONS(brio_write_options, write);
     RESULT(brio_power_crust_stats, crust_stats);
-    RESULT(brio_power_crust_stats, offset_stats);
+    RESULT(brio_offset_surface_stats, offset_stats);
     RESULT(brio_power_shape_stats, shape_stats);
     RESULT(brio_cocone_stats, cocone_stats);
     RESULT(brio_certificate, certificate);
@@ -75,7 +75,7 @@ int main(void) {
     printf("closed %d, genus %d, %d samples\n", certificate.value.closed, (int)certificate.value.genus,
            (int)crust_stats.value.poles.samples);
     TRY(brio_offset_surface(ctx, points->vertices, 1500, 0.05, &offset.value, &mesh, &offset_stats.value));
-    expect_guard("brio_power_crust_stats", offset_stats.before, offset_stats.after);
+    expect_guard("brio_offset_surface_stats", offset_stats.before, offset_stats.after);
     TRY(brio_mesh_distance(ctx, crust, mesh, 1000, 1, &distance.value));
     expect_guard("brio_distance", distance.before, distance.after);
     printf("offset %.1f\n", distance.value.mean);

@@ -478,7 +478,7 @@ static void work_can_be_cancelled_at_any_time(void) {
     cloud c = medial_sample(&medial_box, 0.2, 1);
     brio_mesh *box = box_mesh(ctx, false, false, 6), *shape, *crust, *offset;
     brio_power_shape_options medial = brio_power_shape_options_default();
-    brio_offset_options surface = brio_offset_options_default();
+    brio_offset_surface_options surface = brio_offset_surface_options_default();
     size_t held = brio_context_memory(ctx);
     medial.poles.solid = surface.poles.solid = box;
     medial.redundancy = 0.01;

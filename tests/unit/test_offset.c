@@ -135,7 +135,7 @@ static void known_solid_decides_the_labels(void) {
         EXPECT(brio_power_crust(ctx, c.points, c.count, &o, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
         expect_components(ctx, mesh, known ? 1 : 2, known ? ball : ball * (1 - 0.125));
         brio_mesh_free(mesh);
-        brio_offset_options moved = brio_offset_options_default();
+        brio_offset_surface_options moved = brio_offset_surface_options_default();
         moved.poles = o.poles;
         EXPECT(brio_offset_surface(ctx, c.points, c.count, 0.1, &moved, &mesh, NULL) == BRIO_OK, "%s",
                brio_message(ctx));
@@ -244,7 +244,7 @@ static void wrong_options_are_refused(void) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
     double p[3 * 60];
-    brio_offset_options dense = brio_offset_options_default(), later = dense, unset = {0};
+    brio_offset_surface_options dense = brio_offset_surface_options_default(), later = dense, unset = {0};
     sphere_points(3, 60, p);
     later.poles.reserved[1] = 1;
     dense.poles.sampling_density = 1;
@@ -260,7 +260,7 @@ static void wrong_options_are_refused(void) {
 static brio_status small_offset(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *mesh;
-    brio_offset_options o = brio_offset_options_default();
+    brio_offset_surface_options o = brio_offset_surface_options_default();
     o.simplify = 1;
     sphere_points(3, 60, p);
     brio_status status = brio_offset_surface(ctx, p, 60, 0.2, &o, &mesh, NULL);

@@ -151,17 +151,17 @@ static void run_crust(brio_context *ctx, const input *in, int bits, outcome *out
 
 static void run_offset(brio_context *ctx, const input *in, int bits, outcome *out) {
     brio_power_crust_options crust = surface_options(bits);
-    brio_offset_options o = brio_offset_options_default();
+    brio_offset_surface_options o = brio_offset_surface_options_default();
     o.seed = crust.seed;
     o.poles = crust.poles;
     o.triangulate = crust.triangulate;
     o.simplify = crust.simplify;
-    brio_power_crust_stats stats = {.size = sizeof stats};
+    brio_offset_surface_stats stats = {.size = sizeof stats};
     brio_mesh *mesh = NULL;
     double distance = bits & OPEN ? -0.01 * in->size : 0.03 * in->size; /* there is no other use for the bit here */
     out->status = brio_offset_surface(ctx, in->points, in->n, distance, &o, &mesh, &stats);
     if (mesh) add_mesh(mesh, out);
-    out->stats = hash_crust_stats(stats);
+    out->stats = hash_crust_stats((brio_power_crust_stats){.poles = stats.poles});
     brio_mesh_free(mesh);
 }
 

@@ -97,9 +97,9 @@ static void sizes_that_were_not_set_are_arguments(void) {
                BRIO_ERR_ARGUMENT);
         EXPECT(brio_power_crust(ctx, p, 300, NULL, &out, NULL, &(brio_power_crust_stats){.size = size}) ==
                BRIO_ERR_ARGUMENT);
-        EXPECT(brio_offset_surface(ctx, p, 300, 1, &(brio_offset_options){.size = size}, &out, NULL) ==
+        EXPECT(brio_offset_surface(ctx, p, 300, 1, &(brio_offset_surface_options){.size = size}, &out, NULL) ==
                BRIO_ERR_ARGUMENT);
-        EXPECT(brio_offset_surface(ctx, p, 300, 1, NULL, &out, &(brio_power_crust_stats){.size = size}) ==
+        EXPECT(brio_offset_surface(ctx, p, 300, 1, NULL, &out, &(brio_offset_surface_stats){.size = size}) ==
                BRIO_ERR_ARGUMENT);
         EXPECT(brio_power_shape(ctx, p, 300, &(brio_power_shape_options){.size = size}, &shape, NULL, NULL) ==
                BRIO_ERR_ARGUMENT);
@@ -109,7 +109,7 @@ static void sizes_that_were_not_set_are_arguments(void) {
         EXPECT(brio_cocone(ctx, p, 300, NULL, &out, &(brio_cocone_stats){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_generate(ctx, BRIO_KIND_BALL, 9, &(brio_generate_options){.size = size}, &out) ==
                BRIO_ERR_ARGUMENT);
-        EXPECT(brio_iso_surface(ctx, "no.map", &(brio_iso_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_iso_surface(ctx, "no.map", &(brio_iso_surface_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_write(ctx, "no.ply", mesh, &(brio_write_options){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_certificate(ctx, mesh, &(brio_certificate){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_distance(ctx, mesh, mesh, 9, 1, &(brio_distance){.size = size}) == BRIO_ERR_ARGUMENT);
@@ -118,6 +118,28 @@ static void sizes_that_were_not_set_are_arguments(void) {
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }
+
+/* A field that is appended begins at the old size: no struct ends with padding, which would pass for the new field. */
+#define ENDS_WITH(type, last)                                                                                          \
+    _Static_assert(offsetof(type, last) + sizeof(((type *)0)->last) == sizeof(type), #type " ends with padding")
+ENDS_WITH(brio_delaunay_options, num_edges);
+ENDS_WITH(brio_delaunay_stats, insert_seconds);
+ENDS_WITH(brio_certificate, volume);
+ENDS_WITH(brio_distance, diagonal);
+ENDS_WITH(brio_pole_options, reserved);
+ENDS_WITH(brio_pole_stats, reserved);
+ENDS_WITH(brio_power_crust_options, open);
+ENDS_WITH(brio_power_crust_stats, simplify_seconds);
+ENDS_WITH(brio_offset_surface_options, simplify);
+ENDS_WITH(brio_offset_surface_stats, simplify_seconds);
+ENDS_WITH(brio_power_shape_options, redundancy);
+ENDS_WITH(brio_power_shape_stats, shape_seconds);
+ENDS_WITH(brio_cocone_options, pieces);
+ENDS_WITH(brio_cocone_stats, density_seconds);
+ENDS_WITH(brio_iso_surface_options, vertices);
+ENDS_WITH(brio_write_options, comment);
+ENDS_WITH(brio_generate_options, reserved_int);
+ENDS_WITH(brio_mesh, edges);
 
 int main(void) {
     RUN(older_callers_get_what_they_know);

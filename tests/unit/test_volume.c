@@ -559,7 +559,7 @@ static void write_ball_map(void) {
     io_put("ball.dat", bytes, make_map(&plan, bytes));
 }
 
-static brio_status generate(const char *name, const brio_iso_options *options, brio_mesh **mesh) {
+static brio_status generate(const char *name, const brio_iso_surface_options *options, brio_mesh **mesh) {
     return brio_iso_surface(io_ctx, io_path(name), options, mesh);
 }
 
@@ -567,7 +567,7 @@ static void file_with_a_wanted_number_of_vertices(void) {
     const size_t wanted[] = {1000, 5000, 40000};
     write_ball_map();
     for (int i = 0; i < 3; i++) {
-        brio_iso_options o = brio_iso_options_default();
+        brio_iso_surface_options o = brio_iso_surface_options_default();
         brio_mesh *mesh = NULL;
         o.level = 0;
         o.vertices = wanted[i];
@@ -579,7 +579,7 @@ static void file_with_a_wanted_number_of_vertices(void) {
 }
 
 static void level_in_deviations(void) {
-    brio_iso_options o = brio_iso_options_default();
+    brio_iso_surface_options o = brio_iso_surface_options_default();
     brio_mesh *mesh = NULL, *same = NULL;
     static char bytes[MOST_BYTES];
     map_plan plan = ball_plan();
@@ -598,7 +598,8 @@ static void level_in_deviations(void) {
     brio_volume_free(io_ctx, &v);
 }
 
-static void expect_generate_error(const char *name, const brio_iso_options *o, brio_status expected, const char *part) {
+static void expect_generate_error(const char *name, const brio_iso_surface_options *o, brio_status expected,
+                                  const char *part) {
     brio_mesh *mesh = NULL;
     brio_status status = generate(name, o, &mesh);
     EXPECT(status == expected && !mesh, "%s: status %d", name, (int)status);
@@ -606,7 +607,7 @@ static void expect_generate_error(const char *name, const brio_iso_options *o, b
 }
 
 static void files_that_are_refused(void) {
-    brio_iso_options o = brio_iso_options_default();
+    brio_iso_surface_options o = brio_iso_surface_options_default();
     const char *atom = "ATOM      7  CB  ALA A   1       1.000   2.000   3.000\n";
     write_ball_map();
     io_put("a.pdb", atom, strlen(atom));
@@ -638,7 +639,7 @@ static void atoms_from_a_file(void) {
 }
 
 static brio_status both_kinds(brio_context *failing) {
-    brio_iso_options o = brio_iso_options_default();
+    brio_iso_surface_options o = brio_iso_surface_options_default();
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     o.resolution = 10;
@@ -664,7 +665,7 @@ static int cancel(const char *stage, double fraction, void *user) {
 static void cancelled(void) {
     write_ball_map();
     brio_context_set_progress(io_ctx, cancel, NULL);
-    brio_iso_options o = brio_iso_options_default();
+    brio_iso_surface_options o = brio_iso_surface_options_default();
     brio_mesh *mesh = NULL;
     EXPECT(generate("ball.map", &o, &mesh) == BRIO_ERR_CANCELLED && !mesh);
     brio_context_set_progress(io_ctx, NULL, NULL);

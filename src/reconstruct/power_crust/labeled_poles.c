@@ -34,6 +34,7 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *o, 
                  "sampling density %g, expected 0 or a number between 0 and 1", o->sampling_density);
     BRIO_REQUIRE(ctx, (unsigned)o->noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
                  (int)o->noise);
+    BRIO_REQUIRE(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_pole_options.reserved_int is not 0");
     for (size_t i = 0; i < sizeof o->reserved / sizeof *o->reserved; i++)
         BRIO_REQUIRE(ctx, !o->reserved[i], BRIO_ERR_ARGUMENT, "brio_pole_options.reserved is not 0");
     *request = (brio_pole_request){.seed = seed,

@@ -17,9 +17,9 @@ static const double POLES_SHARE = 0.6; /* of the progress bar */
 static const double MOVE_SHARE = 0.75; /* of the bar of what follows */
 static const double MARGIN = 4;        /* of the bounding points, in distances */
 
-static const brio_offset_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
+static const brio_offset_surface_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
 
-BRIO_OPTIONS_INIT(brio_offset_options)
+BRIO_OPTIONS_INIT(brio_offset_surface_options)
 
 /* Changes the radii. Sets keep[p] to 0 for balls whose radius is not positive, and to 1 for others. */
 static void change_radii(brio_labeled_poles *l, double distance, uint8_t *keep) {
@@ -44,7 +44,7 @@ done:
 }
 
 /* Returns the options for the power crust of the changed balls. */
-static brio_power_crust_options crust_options(const brio_offset_options *o) {
+static brio_power_crust_options crust_options(const brio_offset_surface_options *o) {
     brio_power_crust_options crust = brio_power_crust_options_default();
     crust.triangulate = o->triangulate;
     crust.simplify = o->simplify;
@@ -52,7 +52,7 @@ static brio_power_crust_options crust_options(const brio_offset_options *o) {
 }
 
 static brio_status find_balls(brio_labeled_poles *l, const double *points, size_t num_points, double distance,
-                              const brio_offset_options *o) {
+                              const brio_offset_surface_options *o) {
     brio_status status = BRIO_OK;
     brio_pole_request request;
     BRIO_REQUIRE(l->ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
@@ -65,7 +65,7 @@ done:
     return status;
 }
 
-static brio_status make_offset(brio_labeled_poles *l, double distance, const brio_offset_options *o, brio_mesh *mesh,
+static brio_status make_offset(brio_labeled_poles *l, double distance, const brio_offset_surface_options *o, brio_mesh *mesh,
                                brio_power_crust_stats *stats) {
     brio_power_crust_options crust = crust_options(o);
     const brio_bar bar = brio_progress_bar(l->ctx);
@@ -80,27 +80,30 @@ static brio_status make_offset(brio_labeled_poles *l, double distance, const bri
 }
 
 brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
-                                const brio_offset_options *options, brio_mesh **out, brio_power_crust_stats *stats) {
+                                const brio_offset_surface_options *options, brio_mesh **out, brio_offset_surface_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_offset_options o = STANDARD;
-    brio_power_crust_stats s = {0};
+    brio_offset_surface_options o = STANDARD;
+    brio_power_crust_stats crust = {0};
+    brio_offset_surface_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
     brio_mesh *mesh = NULL;
     const brio_bar bar = brio_progress_bar(ctx);
     *out = NULL;
-    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_crust_stats, stats));
-    BRIO_TRY(BRIO_TAKE(ctx, brio_offset_options, options, &o));
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_offset_surface_stats, stats));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_offset_surface_options, options, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     brio_progress_part(ctx, bar, 0, POLES_SHARE);
     BRIO_TRY(find_balls(&l, points, num_points, distance, &o));
     brio_progress_part(ctx, bar, POLES_SHARE, 1);
-    BRIO_TRY(make_offset(&l, distance, &o, mesh, &s));
+    BRIO_TRY(make_offset(&l, distance, &o, mesh, &crust));
     *out = mesh;
     mesh = NULL;
 done:
     s.poles = l.stats;
-    BRIO_GIVE(brio_power_crust_stats, stats, &s);
+    s.crust_seconds = crust.crust_seconds;
+    s.simplify_seconds = crust.simplify_seconds;
+    BRIO_GIVE(brio_offset_surface_stats, stats, &s);
     brio_progress_part(ctx, bar, 0, 1);
     brio_mesh_free(mesh);
     brio_labeled_poles_free(&l);
