@@ -1,4 +1,4 @@
-/* Double-double arithmetic: an unevaluated sum hi + lo of two doubles, about 106 bits. The second stage of the
+/* Double-double arithmetic: an unevaluated sum hi + lo of two doubles, about 106 bits. The third stage of the
  * predicates. With u = 2^-53, and barring over- and underflow:
  *   |product - x y| <= 7 u^2 |x y|,   |sum - (x + y)| <= 3 u^2 (|x| + |y|) (1 + u).
  * The short addition has no bound relative to the result; the bounds of the predicates are relative to the permanent,

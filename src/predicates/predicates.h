@@ -10,7 +10,8 @@
  * off for point sets where that could fail.
  *
  * Sign conventions: orient3d(a,b,c,d) = sign det [b-a, c-a, d-a]; insphere > 0 for e inside the sphere of a positive
- * tetrahedron. Weighted, a point is inside when its power distance to the orthosphere is less than -weight.
+ * tetrahedron. Weighted, a point is inside when its power distance to the orthosphere is less than its weight: its
+ * lift is below the hyperplane of the tetrahedron.
  *
  * Based on: Shewchuk. Adaptive precision floating-point arithmetic and fast robust geometric predicates. DCG 1997.
  *           Devillers, Pion. Efficient exact geometric predicates for Delaunay triangulations. ALENEX 2003. */
@@ -131,7 +132,8 @@ static inline int brio_insphere_sign(brio_filter *f, const double *a, const doub
     return brio_insphere_unsettled(f, a, b, c, d, e);
 }
 
-/* Whether e conflicts with the positive tetrahedron (a, b, c, d): inside its sphere, ties broken. */
+/* Returns whether e conflicts with the positive tetrahedron (a, b, c, d): whether it is inside the sphere, ties broken. e is
+ * none of the vertices. */
 static inline bool brio_conflict(brio_filter *f, const double *a, const double *b, const double *c, const double *d,
                                  const double *e, const bool weighted) {
     int sign = brio_insphere_sign(f, a, b, c, d, e, weighted);

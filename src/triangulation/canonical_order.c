@@ -17,6 +17,7 @@
 #include "base/team.h"
 #include "triangulation/canonical_files.h"
 #include "triangulation/canonical_turn.h"
+#include <assert.h>
 #include <string.h>
 
 enum { BLOCK = 1 << 13, STEPS = 32, AHEAD = 24 };
@@ -64,6 +65,7 @@ static inline void find_bucket(sorter *s, size_t slot) {
         return;
     }
     s->place[slot] = v[brio_latest_slot(v, infinite)] + (v[3] == infinite ? first_infinite : 0);
+    assert(s->place[slot] < s->buckets);
     __builtin_prefetch(&s->end[s->place[slot]], 1);
 }
 

@@ -25,6 +25,9 @@ BRIO_OPTIONS_INIT(brio_delaunay_options)
 static brio_status check_options(brio_context *ctx, size_t n, const brio_delaunay_options *o) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
+    /* canonical_order.c numbers two buckets a record in 32 bits */
+    BRIO_REQUIRE(ctx, ctx->scratch || n < (UINT32_C(1) << 31) - 16, BRIO_ERR_TOO_LARGE,
+                 "%zu points; at most 2^31 - 17 without a scratch folder", n);
     BRIO_REQUIRE(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
     BRIO_REQUIRE(ctx, o->round_ratio >= 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
                  "round ratio %g is not between 0 and 1", o->round_ratio);

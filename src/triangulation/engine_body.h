@@ -69,6 +69,7 @@ dig_cavity(brio_inserter *ins, uint32_t first, const double *point, bool *deferr
         for (size_t i = count; i < BRIO_BATCH; i++) facet[i] = facet[0];
         unsigned conflicts = batch_in_conflict(t, &ins->filter, facet, count, point, weighted);
         if (!divide(ins, facet, count, conflicts)) {
+            ins->stats.insphere_calls += tested + count;
             brio_cavity_undo(ins);
             *deferred = true;
             return BRIO_OK;

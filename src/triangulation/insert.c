@@ -29,8 +29,7 @@ static brio_insertion judge(brio_inserter *ins, uint32_t p, uint32_t tet) {
     const double *point = s->record[p];
     if (!brio_is_infinite(&s->t, tet)) {
         uint32_t v = vertex_at(s, tet, point);
-        /* v's name may change: no other thread may absorb a point into v meanwhile (P4) */
-        if (v != s->t.infinite && ins->zone && !brio_zone_has(ins->zone, v)) return BRIO_DEFERRED;
+        /* v's name may change. The thread holds v, a vertex of a tetrahedron that it holds, so it alone renames v (P4). */
         if (v != s->t.infinite && absorbed(s, p, v)) return BRIO_ABSORBED;
         if (s->weighted && !brio_in_conflict(&s->t, &ins->filter, tet, point, true)) {
             s->representative[p] = s->t.tet[tet].vertex[0];

@@ -7,10 +7,12 @@
  *   walk -> locator -> tetrahedron in conflict -> engine digs the cavity -> cavity filled with the star -> slots
  *
  * Between insertions:
- * N1  walk.start is a tetrahedron; in a pass, one that the thread holds.
+ * N1  walk.start is a tetrahedron; in a pass, one that the thread holds, if it was placed.
  * N2  cavity.created[0 .. num_created) is the star of the last vertex that was inserted. 0 of them: it may be gone.
  * N3  Slots in [next_slot, end_slot) are fresh. Alone there are none: t.count counts just the slots that were written.
- * N4  unused[0 .. num_unused) are slots with state TET_UNUSED. */
+ * N4  unused[0 .. num_unused) are slots with state TET_UNUSED.
+ * N5  From one insertion to the next only walk.start (N1), cavity.created (N2), the unused slots (N4) and the tables of a
+ *     locator keep numbers of slots. N1 and N2 end when a thread leaves its zone. */
 #ifndef BRIO_TRIANGULATION_INSERTER_H
 #define BRIO_TRIANGULATION_INSERTER_H
 
@@ -62,7 +64,8 @@ brio_status brio_inserter_new(brio_store *store, brio_inserter **out);
 /** Frees the inserter and what its strategy of location keeps, not the zone; NULL is accepted. */
 void brio_inserter_free(brio_inserter *ins);
 
-/** Makes sure of `more` fresh slots. *deferred becomes true, and nothing else happens, when a pass has no more. */
+/** Makes sure of `more` fresh slots. In a pass the rest of the stretch may become unused first, and *deferred becomes true
+ *  when the store has no further stretch. Alone, exactly `more` slots are handed out, and the caller writes all of them. */
 brio_status brio_inserter_reserve(brio_inserter *ins, size_t more, bool *deferred);
 
 /** What is left of the stretch becomes unused slots. */

@@ -76,10 +76,11 @@ static brio_status insert_in_zone(brio_inserter *ins, uint32_t p, brio_insertion
     *outcome = BRIO_DEFERRED;
     if (!brio_zone_has(ins->zone, p)) return BRIO_OK;
     brio_status status = brio_insert(ins, p, outcome);
+    if (status != BRIO_OK) return status; /* the store is good for nothing but to be freed */
     brio_owns(&ins->store->t, ins->zone, ins->walk.start);
     if (brio_zone_tidy(ins->zone) && *outcome != BRIO_INSERTED)
         ins->cavity.num_created = 0; /* the last star is no longer held (N2) */
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status try_point(worker *w, uint32_t p) {
@@ -141,7 +142,6 @@ static brio_status work(worker *w) {
     brio_inserter *ins = w->inserter;
     pass *own = w->pass;
     brio_status status = BRIO_OK;
-    __atomic_add_fetch(&own->running, 1, __ATOMIC_RELAXED);
     for (size_t i = w->begin; i < w->end && !__atomic_load_n(&own->stop, __ATOMIC_RELAXED); i++) {
         BRIO_TRY(try_point(w, record_of(own, i)));
         if (is_report_due(ins)) BRIO_TRY(report(w, i));
@@ -182,8 +182,10 @@ static brio_status worker_new(pass *own, int i, int threads, worker *w) {
     brio_context *ctx = own->store->ctx;
     const brio_inserter *main = own->main;
     brio_status status = BRIO_OK;
-    *w =
-        (worker){.pass = own, .begin = brio_part(own->count, i, threads), .end = brio_part(own->count, i + 1, threads)};
+    *w = (worker){.pass = own,
+                  .begin = brio_part(own->count, i, threads),
+                  .end = brio_part(own->count, i + 1, threads),
+                  .status = BRIO_ERR_INTERNAL /* until it has worked */};
     BRIO_TRY(brio_zone_new(ctx, own->store->rank, own->shift, own->segments, own->taken, &w->zone));
     BRIO_TRY(brio_inserter_new(own->store, &w->inserter));
     w->inserter->zone = &w->zone;
@@ -257,6 +259,7 @@ static brio_status run_pass(pass *own, worker *workers, int threads) {
     uint32_t *left = NULL;
     size_t num_left = 0;
     for (int i = 0; i < threads; i++) BRIO_TRY(worker_new(own, i, threads, &workers[i]));
+    own->running = threads;
     brio_run(ctx, threads, work_as_member, workers);
     for (int i = 0; i < threads; i++) {
         BRIO_TRY(workers[i].status);
@@ -304,6 +307,7 @@ brio_status brio_insert_parallel(brio_inserter *ins, size_t begin, size_t end) {
     pass own = {.main = ins, .store = ins->store, .first = (uint32_t)begin, .count = end - begin};
     int most = brio_threads(ctx, own.count, LEAST);
     worker *workers = NULL;
+    assert(ins->locator == &brio_locator_walk); /* workers walk, and keep no tables of other strategies up to date */
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, workers, (size_t)most));
     for (int n = 0; n < PASSES; n++) {
         size_t count = own.count, inserted = end - count;

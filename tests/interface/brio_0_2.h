@@ -264,7 +264,8 @@ typedef struct brio_triangulation brio_triangulation;
 /** Builds the Delaunay triangulation of a point set or, with weights, the regular triangulation: its power distance is
  *  |x - p|^2 - w. Every finite input has a result; points of dimension 2 or less have vertices, duplicates and hidden
  *  points but no tetrahedra.
- *  points   #P by 3, row after row.   weights  #P, or NULL.   num_points  less than 2^32 - 16.
+ *  points   #P by 3, row after row.   weights  #P, or NULL.
+ *  num_points  less than 2^31 - 16, or less than 2^32 - 16 with a scratch folder.
  *  options  NULL for the defaults.    out      owned by the caller, freed with brio_triangulation_free; NULL on error.
  *  Cost: expected O(n log n) time for points of realistic inputs. Memory while points are inserted: 33 bytes a
  *  tetrahedron and 41 a point (45 with several threads); while the result is sorted: 41 a tetrahedron and 16 a point. Up
