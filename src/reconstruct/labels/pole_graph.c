@@ -265,6 +265,20 @@ static void sort_edges(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
+/* Whether the run of each pole's edges leads to other poles, in ascending order. */
+static inline bool runs_are_sorted(const brio_pole_graph *g) {
+    size_t n = g->diagram->poles->count;
+    if (g->first[0] != 0) return false;
+    for (size_t p = 0; p < n; p++) {
+        if (g->first[p + 1] < g->first[p]) return false;
+        for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
+            if (g->edge[e].pole >= n || g->edge[e].pole == p) return false;
+            if (e > g->first[p] && g->edge[e].pole < g->edge[e - 1].pole) return false;
+        }
+    }
+    return true;
+}
+
 static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative, brio_pole_evidence evidence) {
     brio_status status = BRIO_OK;
     brio_context *ctx = g->ctx;
@@ -289,20 +303,6 @@ done:
     brio_release(ctx, b.low);
     brio_release(ctx, b.place);
     return status;
-}
-
-/* Whether the run of each pole's edges leads to other poles, in ascending order. */
-static inline bool runs_are_sorted(const brio_pole_graph *g) {
-    size_t n = g->diagram->poles->count;
-    if (g->first[0] != 0) return false;
-    for (size_t p = 0; p < n; p++) {
-        if (g->first[p + 1] < g->first[p]) return false;
-        for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
-            if (g->edge[e].pole >= n || g->edge[e].pole == p) return false;
-            if (e > g->first[p] && g->edge[e].pole < g->edge[e - 1].pole) return false;
-        }
-    }
-    return true;
 }
 
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_power_diagram *diagram, brio_pole_evidence evidence,
