@@ -14,7 +14,8 @@
 #include <string.h>
 
 /** BRIO_NO_FARTHEST is the key before any offer; its lower half names no tetrahedron.
- *  BRIO_ENDLESS is the upper half of the key of an infinite distance; it exceeds the upper half of every distance. */
+ *  BRIO_ENDLESS is the upper half of the key of an infinite tetrahedron; it exceeds the upper half of every
+ *  distance. */
 static const uint64_t BRIO_NO_FARTHEST = UINT32_MAX, BRIO_ENDLESS = (uint64_t)UINT32_MAX << 32;
 
 /** Returns whether the Voronoi vertex of tetrahedron `tet` is farther from the sample than the one of tetrahedron

@@ -123,8 +123,7 @@ static brio_status look_at_shapes(brio_context *ctx, finder *f, const brio_pole_
     if (r > 0) most = fmax(most, (1 - r) / (1.3 * r));
     if (!(most > 0)) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, out->shape, f->num_samples));
-    brio_cell_shapes(ctx, &cells, 1.01 * most,
-                     out->shape); /* 1.01 (chosen) keeps the cut above `most` after rounding */
+    brio_cell_shapes(ctx, &cells, 1.01 * most, out->shape); /* 1.01, chosen: the cut exceeds `most` despite rounding */
     if (r > 0) discard_bad(f, filter, out->shape, &out->bad_cells);
 done:
     return status;

@@ -31,7 +31,7 @@ void brio_filter_set(brio_filter *f, const double extent[3], double weight_exten
 enum { COARSE_BITS = 20 }; /* NARROW_BITS of integer.c */
 
 /* Finds the span of the differences of coordinates and the span of the differences of weights. Stops once the span of
- * the coordinates exceeds COARSE_BITS; the spans are then too narrow. */
+ * the coordinates exceeds COARSE_BITS: neither test below can then succeed. */
 static void find_spans(const double (*record)[4], size_t n, const double extent[4], bool weighted,
                        brio_span *coordinates, brio_span *weights) {
     frexp(fmax(extent[0], fmax(extent[1], extent[2])), &coordinates->high);
