@@ -1,13 +1,14 @@
 /* The radius of a Voronoi cell inside the co-cone of its sample.
  *
  * Every facet of the Delaunay triangulation is dual to a Voronoi edge, which belongs to the cells of the facet's three
- * vertices. The edge is cut with the cone about the direction to the farther pole, a quadratic equation in the place on
- * the edge; distance from the sample is convex along the edge, so it is largest where a piece in the co-cone ends.
+ * vertices. A quadratic equation cuts the edge with the cone about the direction to the sample's farther pole. The
+ * distance from the sample is convex along the edge, so an end of a piece in the co-cone is the farthest point of it.
  *
  * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. IJCGA 2002 (the
  *           co-cone).
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, corollary 23: on an r-sample the radius is at
- *           most 1.3 r / (1 - r) times the local feature size, for which the distance to the nearer pole stands here.
+ *           most 1.3 r / (1 - r) times the local feature size.
+ * Differs from the paper: the distance to the nearer pole stands for the local feature size.
  */
 #include "dual/cell_shape.h"
 #include "base/team.h"
@@ -16,30 +17,30 @@
 
 enum { SAMPLES_A_THREAD = 1 << 13, TETRAHEDRA_A_THREAD = 1 << 10 };
 
-static const double SQUARED_SINE = 0.14644660940672624; /* of pi / 8 */
+static const double SQUARED_SINE = 0.14644660940672624; /* derived: sin(pi / 8)^2 */
 
 static void subtract(const double *a, const double *b, double *difference) {
     for (int k = 0; k < 3; k++) difference[k] = a[k] - b[k];
 }
 
-/* A Voronoi edge as its sample sees it: its ends, and the direction to the sample's farther pole. */
+/* A Voronoi edge relative to a sample: the ends a and b, and the vector n from the sample to its farther pole. */
 typedef struct {
     double a[3], b[3], n[3];
 } seen_edge;
 
-/* Whether both ends are in one of the two cones beyond the co-cone, and so, since it is convex, is all of the edge: most
- * are. */
+/* Returns whether both ends are in one of the two cones outside the co-cone. That cone is convex, so it holds the whole
+ * edge. Most edges pass this test. */
 static inline bool is_in_one_cone(const seen_edge *e) {
     double an = brio_dot(e->a, e->n), bn = brio_dot(e->b, e->n), limit = SQUARED_SINE * brio_dot(e->n, e->n);
     return an * bn > 0 && an * an > limit * brio_dot(e->a, e->a) && bn * bn > limit * brio_dot(e->b, e->b);
 }
 
-/* Largest squared length of a point of the edge in the co-cone; 0 when none is. */
+/* Returns the largest squared length of a point of the edge in the co-cone, or 0 when no point is in the co-cone. */
 static double reach_in_cocone(const seen_edge *e) {
     const double *a = e->a, *b = e->b, *n = e->n;
     double d[3], limit = SQUARED_SINE * brio_dot(n, n), most = 0;
     subtract(b, a, d);
-    /* in the co-cone: (x.n)^2 - limit x.x <= 0, for x = a + t d the polynomial (q2 t + 2 q1) t + q0 */
+    /* x is in the co-cone when (x.n)^2 - limit x.x <= 0; for x = a + t d the left side is (q2 t + 2 q1) t + q0 */
     double an = brio_dot(a, n), dn = brio_dot(d, n), aa = brio_dot(a, a), ad = brio_dot(a, d), dd = brio_dot(d, d);
     double q2 = dn * dn - limit * dd, q1 = an * dn - limit * ad, q0 = an * an - limit * aa;
     if (q0 <= 0) most = aa;
@@ -52,15 +53,16 @@ static double reach_in_cocone(const seen_edge *e) {
     return most;
 }
 
-/* Raises a number that other threads may raise, too. Relaxed: the number stands for itself, no other data goes with it,
- * and its last value is read after the run. */
+/* Raises *most to value; other threads may raise *most meanwhile. Relaxed order is enough: no other data depends on
+ * *most, and its final value is read after the parallel loop. */
 static void raise_to(double *most, double value) {
     double now;
     __atomic_load(most, &now, __ATOMIC_RELAXED);
     while (now < value && !__atomic_compare_exchange(most, &now, &value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
 }
 
-/* reach: squared distance of the farther end, or little more. */
+/* Raises square[s] to the largest squared distance from sample s to a point of the edge in the co-cone.
+ * reach  at least the squared distance from s to the farther end of the edge, and barely more. */
 static inline void offer_edge(const brio_cells *c, uint32_t s, const double *from, const double *to, double reach,
                               double *square) {
     double so_far;
@@ -75,9 +77,10 @@ static inline void offer_edge(const brio_cells *c, uint32_t s, const double *fro
     if (!is_in_one_cone(&e)) raise_to(&square[s], reach_in_cocone(&e));
 }
 
-/* Offers the Voronoi edges of a tetrahedron to the samples of its facets. A Voronoi vertex is as far from all of them. */
+/* Offers the Voronoi edges of tetrahedron t to the samples of its facets. Each Voronoi edge is offered once, by the
+ * lower of its two tetrahedra. The three samples of a facet have equal distances to each end of the dual edge. */
 static void offer_edges(const brio_cells *c, size_t t, double *square) {
-    static const double MORE = 1 + 1e-9; /* than rounding takes away */
+    static const double MORE = 1 + 1e-9; /* chosen: exceeds the relative rounding error of a squared distance */
     const double *from = c->centre + 3 * t;
     if (isnan(from[0])) return;
     double own = brio_square_distance(from, c->points + 3 * (size_t)c->tet[t].vertex[0]);
@@ -104,7 +107,7 @@ typedef struct {
     double most, *shape;
 } measurement;
 
-/* A shape is a squared radius at first: the one that the widest shape would have. */
+/* Sets shape[s] to a squared radius for now: the radius at which the shape is `most`. */
 static void set_least_radii(void *user, size_t begin, size_t end, int thread) {
     const measurement *m = user;
     (void)thread;
@@ -126,7 +129,7 @@ static void divide_by_radii(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* Edges that stay where even the widest shape would have them are passed over. */
+/* offer_edge skips the edges within the radius at which the shape is `most`: such edges cannot change the result. */
 void brio_cell_shapes(brio_context *ctx, const brio_cells *c, double most, double *shape) {
     measurement m = {c, most, shape};
     int threads = brio_threads(ctx, c->num_samples, SAMPLES_A_THREAD);

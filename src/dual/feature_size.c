@@ -17,7 +17,7 @@ static inline double least(double a, double b) {
     return b < a ? b : a;
 }
 
-/* Square of the distance from a sample to the nearest pole; its own ones are near to begin with. */
+/* Returns the squared distance from sample p to the nearest pole. The poles of p itself bound the search. */
 static double nearest_of(const brio_point_tree *t, const brio_pole_vectors *v, size_t p) {
     double best = INFINITY;
     for (int side = 0; side < 2; side++) {
@@ -27,7 +27,7 @@ static double nearest_of(const brio_point_tree *t, const brio_pole_vectors *v, s
     return brio_nearest_square(t, v->points + 3 * p, best);
 }
 
-/* The finite poles, each once. */
+/* Allocates *poles and fills it with the centres of the finite poles, each pole once; adds their number to *count. */
 static brio_status collect_poles(brio_context *ctx, const brio_pole_vectors *v, double **poles, size_t *count) {
     brio_status status = BRIO_OK;
     uint8_t *is_pole = NULL;

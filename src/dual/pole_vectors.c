@@ -1,12 +1,14 @@
-/* Voronoi vertices, the direction of each sample's pole, and what lies which way as seen from there.
+/* Voronoi vertices, the direction from each sample to its farther pole, and the side of the sample on which each vertex
+ * lies.
  *
- * One pass over the tetrahedra computes the centres and offers each to its four samples as the farther pole; another
- * one, with the directions known, tells on which side of its samples each centre lies and offers it as the pole on the
- * other side. The distance of a centre is the same from all four, so it is kept with the centre; and what is on offer is
- * one word with the distance in its upper half. A sample is kept as the plane through it across its axis, one load: how
- * far a centre lies along the axis is its height above that plane. Samples on the hull have an unbounded cell: the sum
- * of the unit outward normals of their hull facets stands for the direction to the pole. The error bounds of the centres
- * count in favour of the co-cone, so that rounding loses no triangle.
+ * The first pass over the tetrahedra computes the centres and offers each centre to its four samples as the farther
+ * pole. The second pass knows the directions to the farther poles. It finds on which side of its samples each centre
+ * lies, and offers the centre as the pole on the other side.
+ * A centre is equally far from its four samples, so one squared distance is stored with the centre. Each sample stores
+ * the plane through it normal to its axis, which takes one load. The height of a centre above this plane is its
+ * position along the axis. Samples on the hull have an unbounded cell: the sum of the unit outward normals of their
+ * hull facets replaces the direction to the pole. A centre within its error bound of the co-cone counts as in the
+ * co-cone, so that rounding loses no triangle.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999.
  *           Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000. */
@@ -24,7 +26,8 @@ static double square(const double *x) {
     return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
 }
 
-/* Makes a vector a unit one; a zero or infinite one becomes zero. Scaled first, so that nothing under- or overflows. */
+/* Divides a vector by its length; a zero or infinite vector becomes zero. Scales the vector first, so that its square
+ * neither underflows nor overflows. */
 static void make_unit(double *x) {
     double most = 0;
     for (int k = 0; k < 3; k++) most = fabs(x[k]) > most ? fabs(x[k]) : most;
@@ -35,7 +38,7 @@ static void make_unit(double *x) {
     for (int k = 0; k < 3 && length > 0; k++) x[k] /= length;
 }
 
-/* The unit normal of a hull facet, away from the points. */
+/* Writes the unit normal of a hull facet that points away from the point set. */
 static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, double *normal) {
     const double *a = v->points + 3 * (size_t)corner[0];
     double u[3], w[3];
@@ -54,24 +57,25 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
 
 /* --- which of two Voronoi vertices is farther --- */
 
-/* What the search for poles keeps beside its result: of each sample, the keys of farthest.h. */
+/* The workspace of the search for poles. Keys are those of farthest.h. */
 typedef struct {
     brio_pole_vectors *v;
-    uint64_t *farther[2]; /* of each sample: the keys of the farther pole, and of that on its other side */
-    int threads;          /* of the passes over the tetrahedra */
-    double sine;          /* of theta */
+    uint64_t *farther[2]; /* #P each: the key of the farther pole [0] and of the pole on the other side [1] */
+    int threads;          /* the threads of a pass over the tetrahedra */
+    double sine;          /* sin(theta) */
 } search;
 
-/* AHEAD: tetrahedra between fetching and using. */
+/* AHEAD: the samples of tetrahedron t + AHEAD are prefetched while tetrahedron t is processed. */
 enum { AHEAD = 8, TETRAHEDRA_A_THREAD = 1 << 11, BATCHES_A_THREAD = TETRAHEDRA_A_THREAD / BRIO_CENTRE_BATCH };
 enum { SAMPLES_A_THREAD = 1 << 12 };
 
+/* Derived: the relative error of brio_rough_centres, 2^-30, and a margin for rounding. */
 static const double ROUGH = 0x1p-30 + 0x1p-50;
 
 static bool is_farther(const void *user, uint32_t tet, uint32_t than, uint32_t sample) {
     const brio_pole_vectors *v = user;
     const double *a = v->centre + 4 * (size_t)tet, *b = v->centre + 4 * (size_t)than;
-    (void)sample; /* distances are kept with the centres */
+    (void)sample; /* the squared distance from the samples is stored with the centre */
     if (a[3] != b[3]) return a[3] > b[3];
     int sign = brio_lexicographic(a, b);
     if (sign == 0) sign = brio_compare_corners(v->points, v->t.tet + tet, v->t.tet + than);
@@ -84,8 +88,8 @@ static __attribute__((noinline)) void offer(const search *s, uint64_t *pole, uin
 
 /* --- the passes --- */
 
-/* Makes an infinite tetrahedron the pole of a sample unless that has one whose hull facet is greater by position: all are
- * infinitely far, and the last one in memory would depend on the order of the points. */
+/* Makes infinite tetrahedron `tet` the pole of sample p unless p has an infinite pole whose hull facet is greater by
+ * position. Infinite poles are equally far, and their order in memory depends on the order of the points. */
 static void offer_hull_facet(search *s, size_t p, size_t tet) {
     const brio_tetrahedron *t = s->v->t.tet;
     uint64_t now = s->farther[0][p];
@@ -93,8 +97,8 @@ static void offer_hull_facet(search *s, size_t p, size_t tet) {
         s->farther[0][p] = BRIO_ENDLESS | tet;
 }
 
-/* Normals are added as multiples of 2^-36, which is exact for up to 2^17 of them, so that the order is of no
- * importance. Samples on the hull take no other pole. */
+/* Adds up the normals at each hull sample and gives the sample an infinite pole, which no finite pole replaces. Each
+ * normal is rounded to multiples of 2^-36, so that a sum of up to 2^17 normals is exact in every order. */
 static void find_hull_vectors(search *s) {
     static const double ROUND = 0x1.8p16;
     brio_pole_vectors *v = s->v;
@@ -110,7 +114,7 @@ static void find_hull_vectors(search *s) {
     }
 }
 
-/* The centres of the tetrahedra from `first` on, up to BRIO_CENTRE_BATCH of them. */
+/* Computes the centres of up to BRIO_CENTRE_BATCH tetrahedra from `first` on. Returns the number of centres. */
 static size_t find_centres(const brio_pole_vectors *v, size_t first) {
     uint32_t vertex[BRIO_CENTRE_BATCH][4];
     size_t left = v->num_finite - first, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
@@ -120,7 +124,8 @@ static size_t find_centres(const brio_pole_vectors *v, size_t first) {
     return count;
 }
 
-/* Computes the centres of the batches [from, to) of BRIO_CENTRE_BATCH tetrahedra and offers them. */
+/* Computes the centres of the batches [from, to), each of BRIO_CENTRE_BATCH tetrahedra, and offers them as farther
+ * poles. */
 static void find_poles(void *user, size_t from, size_t to, int thread) {
     const search *s = user;
     const brio_pole_vectors *v = s->v;
@@ -154,7 +159,7 @@ static void find_planes(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* A number for each slot of a tetrahedron. */
+/* One number for each of the four slots of a tetrahedron. */
 typedef double slots __attribute__((vector_size(32)));
 typedef int64_t slot_bits __attribute__((vector_size(32)));
 
@@ -164,21 +169,22 @@ typedef int64_t slot_bits __attribute__((vector_size(32)));
 #define CHOOSE(a, b, i, j, k, l) __builtin_shuffle(a, b, (slot_bits){i, j, k, l})
 #endif
 
-/* The sum of each row. */
+/* Writes the sum of the four entries of row[i] to slot i of *sum. */
 BRIO_INLINE void add_rows(const slots row[4], slots *sum) {
     slots a = CHOOSE(row[0], row[1], 0, 4, 2, 6) + CHOOSE(row[0], row[1], 1, 5, 3, 7);
     slots b = CHOOSE(row[2], row[3], 0, 4, 2, 6) + CHOOSE(row[2], row[3], 1, 5, 3, 7);
     *sum = CHOOSE(a, b, 0, 1, 4, 5) + CHOOSE(a, b, 2, 3, 6, 7);
 }
 
-/* row = the products of a sample's plane with the coordinates of a centre, whose sum is how far the centre lies along the
- * sample's axis. */
+/* Writes to *row the products of the plane of sample p with the coordinates of a centre. The sum of the products is the
+ * position of the centre along the axis of p. */
 BRIO_INLINE void multiply_plane(const brio_pole_vectors *v, uint32_t p, const slots *centre, slots *row) {
     memcpy(row, v->plane + 4 * (size_t)p, sizeof *row);
     *row *= *centre;
 }
 
-/* How far a Voronoi vertex lies along the axis of each of its samples; 0 for the infinite vertex. */
+/* Writes the position of a Voronoi vertex along the axis of each of its samples; 0 in the slot of the infinite
+ * vertex. */
 BRIO_INLINE void measure_along(const brio_pole_vectors *v, size_t tet, bool finite, slots *along) {
     const uint32_t *vertex = v->t.tet[tet].vertex;
     slots centre, row[4];
@@ -192,15 +198,15 @@ BRIO_INLINE void measure_along(const brio_pole_vectors *v, size_t tet, bool fini
     add_rows(row, along);
 }
 
-/* Bounds the error of each coordinate of a centre at a distance from its samples (brio_rough_centres, for coordinates of
- * at most 1), or of a direction, and what rounding adds to its place along an axis: a sum of four products, of which
- * the fourth is rounded as often before. */
+/* Returns a bound for the error of each coordinate of a centre, or of a direction when `finite` is false. Includes the
+ * rounding of the position along an axis, a sum of four products whose fourth factor was rounded before. The centre is
+ * one of brio_rough_centres, at `distance` from its samples, whose coordinates are at most 1. */
 static inline double error_of(double distance, bool finite) {
     return finite ? ROUGH * distance + 0x1p-50 * (1 + distance) : 0x1p-48;
 }
 
-/* The side and the depth of a Voronoi vertex for each of its samples and, above, which of them have it on the other side
- * of their planes. */
+/* Returns the sides of a Voronoi vertex for its samples. Bits 0..15 are those of brio_pole_vectors.sides. Bit 16 + i is
+ * set when the vertex lies behind the plane of the sample in slot i. */
 BRIO_INLINE uint32_t look_at_samples(const brio_pole_vectors *v, size_t tet, bool finite, double sine) {
     static const slot_bits POLE = {1, 2, 4, 8}, ANTIPOLE = {16, 32, 64, 128},
                            BEHIND = {1 << 16, 2 << 16, 4 << 16, 8 << 16};
@@ -215,13 +221,13 @@ BRIO_INLINE uint32_t look_at_samples(const brio_pole_vectors *v, size_t tet, boo
     return (uint32_t)(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
-/* Offers a pole to a sample on whose other side it is. */
+/* Offers a Voronoi vertex to sample p as the pole on the other side, when the vertex is behind the plane of p. */
 BRIO_INLINE void offer_if(bool behind, const search *s, uint32_t p, uint64_t key) {
     if (behind & brio_may_be_farthest(key, s->farther[1] + p)) offer(s, s->farther[1] + p, key);
 }
 
-/* What a finite Voronoi vertex is to its samples, and offers it as the pole on their other side. Its distance is the same
- * from all, but for the error. */
+/* Returns the sides of a finite Voronoi vertex, and offers the vertex as the pole on the other side of its samples. One
+ * distance serves the four samples: their distances are equal except for the error of the centre. */
 BRIO_INLINE uint16_t sides_of(const search *s, size_t tet, double sine) {
     uint32_t bits = look_at_samples(s->v, tet, true, sine);
     uint64_t key = brio_farthest_key(s->v->centre[4 * tet + 3], (uint32_t)tet);
@@ -233,13 +239,13 @@ BRIO_INLINE uint16_t sides_of(const search *s, size_t tet, double sine) {
     return (uint16_t)bits;
 }
 
-/* Fetches what sides_of needs of the samples of a tetrahedron. */
+/* Prefetches the planes that sides_of will read for a tetrahedron. */
 static inline void expect_samples(const brio_pole_vectors *v, size_t tet) {
     for (int i = 0; i < 4 && tet < v->num_finite; i++)
         __builtin_prefetch(v->plane + 4 * (size_t)v->t.tet[tet].vertex[i]);
 }
 
-/* The sides of the tetrahedra [from, to). */
+/* Computes the sides of the tetrahedra [from, to), and offers the finite ones as poles on the other side. */
 BRIO_INLINE void find_sides_of(const search *s, size_t from, size_t to, double sine) {
     size_t finite = s->v->num_finite;
     for (size_t tet = from; tet < to && tet < finite; tet++) {
@@ -257,7 +263,7 @@ BRIO_TARGET_FMA static void find_sides_wide(const search *s, size_t from, size_t
     find_sides_of(s, from, to, sine);
 }
 
-/* The sides, and the poles on the other side. */
+/* Runs find_sides_of with fused multiply-add where the processor has it. */
 static void find_sides(void *user, size_t from, size_t to, int thread) {
     const search *s = user;
     (void)thread;

@@ -1,9 +1,9 @@
 /* The poles of samples.
  *
- * One pass over the tetrahedra offers each circumcentre to the four vertices as the farthest Voronoi vertex; a second
- * one offers it as the farthest on the other side, where the vector to it makes an obtuse angle with the vector to the
- * first. Equal distances are decided by the centre and then by the tetrahedron's own points, never by its place in
- * memory: the best tetrahedron is the greatest in a total order, whichever thread offers it and when.
+ * The first pass over the tetrahedra offers each circumcentre to its four vertices as the farther pole. The second pass
+ * offers it as the pole on the other side, where the vectors to the two poles make an obtuse angle. Among equal
+ * distances the position of the centre decides, then the positions of the tetrahedron's vertices. So the best
+ * tetrahedron is the greatest in a total order, and the order of the offers does not matter.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.8. */
@@ -26,10 +26,10 @@ typedef struct {
     const brio_tetrahedron *tet;
     const double *points;
     size_t num_tets, num_samples;
-    double *centre;     /* of each tetrahedron; NaN where there is none */
-    uint32_t *best;     /* of each sample and side, a tetrahedron */
-    uint64_t *farthest; /* of each sample and side, while they are sought: the key of its best tetrahedron */
-    bool alone;         /* one thread offers */
+    double *centre;     /* #tets by 3: circumcentres; NaN where doubles cannot hold one */
+    uint32_t *best;     /* #samples by 2: the tetrahedron of the pole on each side */
+    uint64_t *farthest; /* #samples by 2: the keys of the best tetrahedra (farthest.h); NULL after find_best */
+    bool alone;         /* only one thread makes offers */
 } finder;
 
 static const double *centre_of(const finder *f, uint32_t tet) {
@@ -71,7 +71,8 @@ static bool opposite(const finder *f, uint32_t first, uint32_t tet, const double
     return (p[0] - s[0]) * (q[0] - s[0]) + (p[1] - s[1]) * (q[1] - s[1]) + (p[2] - s[2]) * (q[2] - s[2]) < 0;
 }
 
-/* Calls for what the offers of a tetrahedron will need: samples come in any order. */
+/* Prefetches the samples that tetrahedron `tet` will offer its centre to: consecutive tetrahedra may read far
+ * samples. */
 static inline void fetch_samples(const finder *f, size_t tet) {
     for (int i = 0; i < 4; i++) {
         size_t v = f->tet[tet].vertex[i];
@@ -122,7 +123,7 @@ static brio_status look_at_shapes(brio_context *ctx, finder *f, const brio_pole_
     if (r > 0) most = fmax(most, (1 - r) / (1.3 * r));
     if (!(most > 0)) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, out->shape, f->num_samples));
-    brio_cell_shapes(ctx, &cells, 1.01 * most, out->shape); /* more than what is asked for, rounded or not */
+    brio_cell_shapes(ctx, &cells, 1.01 * most, out->shape); /* 1.01, chosen: the cut exceeds `most` despite rounding */
     if (r > 0) discard_bad(f, filter, out->shape, &out->bad_cells);
 done:
     return status;
@@ -134,13 +135,13 @@ static int compare_for_sort(uint32_t s, uint32_t t, const void *user) {
     return compare_tets(user, s, t);
 }
 
-/* Poles as tetrahedra, and what is found for each. */
+/* The poles in a list of tetrahedra, and the arrays to fill for the poles. */
 typedef struct {
     const finder *f;
-    const uint32_t *list; /* the tetrahedron of each pole */
-    double *centre;       /* of each pole */
+    const uint32_t *list; /* #poles: tetrahedra */
+    double *centre;       /* #poles by 3 */
     brio_poles *poles;
-    uint32_t *number; /* of each tetrahedron that is a pole */
+    uint32_t *number; /* #tets: the number of the pole; unset for tetrahedra that are not poles */
 } list_of_poles;
 
 static void copy_centres(void *user, size_t begin, size_t end, int thread) {
@@ -149,8 +150,8 @@ static void copy_centres(void *user, size_t begin, size_t end, int thread) {
     for (size_t p = begin; p < end; p++) memcpy(l->centre + 3 * p, centre_of(l->f, l->list[p]), 3 * sizeof *l->centre);
 }
 
-/* Sorts poles along a Hilbert curve, so that neighbours in space are neighbours in memory; equal keys
- * lexicographically. */
+/* Sorts poles along a Hilbert curve, so that neighbours in space are neighbours in memory. Sorts poles with equal keys
+ * by position. */
 static brio_status sort_poles(brio_context *ctx, const finder *f, uint32_t *list, size_t count) {
     enum { BITS = 16 };
     brio_status status = BRIO_OK;
@@ -217,7 +218,7 @@ static void number_part(void *user, size_t begin, size_t end, int thread) {
     for (size_t p = begin; p < end; p++) l->number[l->list[p]] = (uint32_t)p;
 }
 
-/* Replaces tetrahedra by numbers of poles. */
+/* Replaces the tetrahedra in f->best[begin .. end) by the numbers of the poles. */
 static void rename_part(void *user, size_t begin, size_t end, int thread) {
     const list_of_poles *l = user;
     uint32_t *best = l->f->best;
@@ -246,7 +247,7 @@ done:
     return status;
 }
 
-/* Lets each tetrahedron offer its centre on both sides. */
+/* Fills f->best: offers the centre of each tetrahedron to its samples, as the farther pole and on the other side. */
 static brio_status find_best(brio_context *ctx, finder *f) {
     brio_status status = BRIO_OK;
     size_t places = 2 * f->num_samples;

@@ -1,4 +1,4 @@
-/* The poles of samples: the farthest Voronoi vertices of their cells on either side. */
+/* The poles of samples: the farthest Voronoi vertices of a sample's cell on either side of the surface. */
 #ifndef BRIO_DUAL_POLES_H
 #define BRIO_DUAL_POLES_H
 
@@ -6,28 +6,28 @@
 
 enum { BRIO_NO_POLE = UINT32_MAX };
 
-/** Polar balls, numbered canonically: by their centres along a Hilbert curve, then lexicographic, so that the numbers
- *  do not depend on the order of the samples and neighbours in space are neighbours in memory. A pole is a Delaunay
- *  tetrahedron: two of them may have the same centre. */
+/** Polar balls, numbered canonically: by their centres along a Hilbert curve, then lexicographically. So the numbers do
+ *  not depend on the order of the samples, and neighbours in space are neighbours in memory. A pole is a Delaunay
+ *  tetrahedron: two poles may have equal centres. */
 typedef struct {
     size_t count;
     double *centre;      /* #poles by 3 */
-    double *square;      /* squared radii */
-    uint8_t *bounding;   /* 1: the tetrahedron has a bounding point */
-    size_t bad_cells;    /* samples that had poles discarded */
-    double *shape;       /* of the samples' cells, as brio_cell_shapes; NULL when not asked for */
-    uint32_t *of_sample; /* #samples by 2: the farther pole and the one on its other side, or BRIO_NO_POLE */
+    double *square;      /* #poles: squared radii */
+    uint8_t *bounding;   /* #poles: 1 when a vertex of the tetrahedron is a bounding point, not a sample */
+    size_t bad_cells;    /* number of samples with a bad cell, whose poles were discarded */
+    double *shape;       /* #samples: the results of brio_cell_shapes; NULL unless the filter needs shapes */
+    uint32_t *of_sample; /* #samples by 2: the farther pole and the pole on the other side, or BRIO_NO_POLE */
 } brio_poles;
 
-/** Which poles of badly shaped cells are discarded, and whether shapes are wanted all the same. */
+/** Which poles of badly shaped cells are discarded, and whether the caller wants the shapes of cells. */
 typedef struct {
-    double sampling_density; /* r of brio_cell_is_bad, in (0, 1); 0: no cell is bad */
-    bool both;               /* both poles, not the nearer one only */
-    double shapes;           /* > 0: the shapes of cells are wanted, up to this */
+    double sampling_density; /* the density r of brio_cell_is_bad, in (0, 1); 0: no cell is bad */
+    bool both;               /* true: discard both poles of a bad cell; false: only the nearer pole */
+    double shapes;           /* > 0: compute the shapes of cells up to this value; 0: only if the density needs them */
 } brio_pole_filter;
 
-/** Finds the poles of the first num_samples of the points that t triangulates; the points after them only bound the
- *  cells and have no poles, nor do duplicates.
+/** Finds the poles of the first num_samples points of t. The later points only bound the cells: they have no poles.
+ *  Duplicates have no poles either.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_samples,
                             const brio_pole_filter *filter, brio_poles *out);

@@ -1,12 +1,12 @@
-/* An order of tetrahedra that goes by where their points are, not by what they are called: ties between poles are broken
- * by it, so that the poles are the same for every order of the points. */
+/* An order of tetrahedra by the positions of their vertices, not by their indices. It breaks ties between poles, so
+ * that the poles do not depend on the order of the points. */
 #ifndef BRIO_DUAL_POSITION_ORDER_H
 #define BRIO_DUAL_POSITION_ORDER_H
 
 #include "brio/brio.h"
 #include "predicates/predicates.h"
 
-/** Positions of the first `count` vertices of a tetrahedron, ascending. */
+/** Writes the positions of the first `count` vertices of a tetrahedron to p, in ascending order. */
 static inline void brio_sorted_positions(const double *points, const brio_tetrahedron *tet, int count,
                                          const double *p[4]) {
     for (int i = 0; i < count; i++) p[i] = points + 3 * (size_t)tet->vertex[i];
@@ -28,17 +28,17 @@ static inline int brio_compare_vertices(const double *points, const brio_tetrahe
     return sign;
 }
 
-/** Compares finite tetrahedra by their points. */
+/** Compares finite tetrahedra by the positions of their vertices. */
 static inline int brio_compare_corners(const double *points, const brio_tetrahedron *s, const brio_tetrahedron *t) {
     return brio_compare_vertices(points, s, t, 4);
 }
 
-/** Compares infinite tetrahedra by the points of their hull facets. */
+/** Compares infinite tetrahedra by the positions of the vertices of their hull facets. */
 static inline int brio_compare_hull_facets(const double *points, const brio_tetrahedron *s, const brio_tetrahedron *t) {
     return brio_compare_vertices(points, s, t, 3);
 }
 
-/** Compares tetrahedra s and t by their centres, then by their points.   centre  of each of `tet`. */
+/** Compares tetrahedra s and t by their centres, then by their vertices' positions.   centre  #tet by 3. */
 static inline int brio_compare_by_position(const double *points, const brio_tetrahedron *tet, const double *centre,
                                            uint32_t s, uint32_t t) {
     int sign = brio_lexicographic(centre + 3 * (size_t)s, centre + 3 * (size_t)t);

@@ -1,27 +1,27 @@
-/* The power diagram of polar balls, seen through its dual. */
+/* The power diagram of polar balls, represented by its dual. */
 #ifndef BRIO_DUAL_POWER_DIAGRAM_H
 #define BRIO_DUAL_POWER_DIAGRAM_H
 
 #include "dual/poles.h"
 #include "triangulation/tetrahedra.h"
 
-/** The dual of the power diagram is the regular triangulation of the poles: a vertex is a pole with a cell, an edge a face
- *  between two cells, a tetrahedron a vertex of the diagram. A view: it owns nothing, and it is valid as long as what it
- *  points to. Nobody changes the triangulation. */
+/** A view of the power diagram. Its dual is the regular triangulation of the poles: a vertex is a pole with a cell, an
+ *  edge is a face between two cells, a tetrahedron is a vertex of the diagram. The view owns nothing: the poles, the
+ *  samples and the triangulation must outlive the view, and must not change meanwhile. */
 typedef struct {
     const brio_poles *poles;
-    const double *samples; /* #samples by 3, that the poles belong to */
+    const double *samples; /* #samples by 3: the samples of the poles */
     size_t num_samples;
     brio_tetrahedra power; /* the regular triangulation; vertices are numbers of poles; finite tetrahedra come first */
     size_t num_finite;
-    const uint32_t *representative; /* of each pole: itself, or the pole whose cell takes the place of its own */
+    const uint32_t *representative; /* #poles: the pole itself if it has a cell, else the pole whose cell replaces it */
 } brio_power_diagram;
 
-/** Returns -cos of the angle at which two polar balls intersect: -1 where they touch, 0 at a right angle, 1 or more for a
- *  ball inside the other. */
+/** Returns -cos of the angle at which two polar balls intersect: -1 when the balls touch from outside, 0 at a right
+ *  angle, 1 or more when one ball is inside the other ball. */
 double brio_ball_weight(const brio_poles *poles, uint32_t p, uint32_t q);
 
-/** Makes the view.   samples  #samples by 3.   power  the regular triangulation of the poles. */
+/** Returns the view.   samples  #samples by 3.   power  the regular triangulation of the poles. */
 brio_power_diagram brio_power_diagram_of(const brio_poles *poles, const double *samples, size_t num_samples,
                                          const brio_triangulation *power);
 

@@ -1,11 +1,11 @@
-/* The spacing of samples, from the shortest Delaunay edges: the Delaunay triangulation has the edges to the nearest
- * samples in it, and those across a smooth surface are longer. */
+/* The spacing of samples, from the shortest Delaunay edges. The Delaunay triangulation holds the edge from each sample
+ * to its nearest sample, and edges that leave a smooth surface are longer than edges along it. */
 #include "dual/spacing.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include <math.h>
 
-enum { NEAREST = 6 };
+enum { NEAREST = 6 }; /* derived: the mean degree of a triangulated surface */
 
 typedef struct {
     float square[NEAREST]; /* ascending */

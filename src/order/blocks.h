@@ -1,31 +1,31 @@
-/* Blocks of points that are near each other in space: the leaves of an octree or a k-d tree, depth first. */
+/* Blocks of points that are near each other in space: the leaves of an octree or a k-d tree, in depth-first order. */
 #ifndef BRIO_ORDER_BLOCKS_H
 #define BRIO_ORDER_BLOCKS_H
 
 #include "base/context.h"
 
-/** Points at the places [begin, end) of the depth-first order. */
+/** The points at the positions [begin, end) of the depth-first order. */
 typedef struct {
     size_t begin, end;
-    int passes; /* over its points, until they stood together */
+    int passes; /* number of passes over the points that brought the block together */
 } brio_block;
 
-/** Takes note of a block that is finished, or reorders it: index[block->begin .. block->end). Called by several threads
- *  for different blocks, in any order. */
+/** Receives a finished block, and may reorder its points index[block->begin .. block->end). Several threads call this
+ *  function for different blocks, in any order. */
 typedef void (*brio_block_fn)(uint32_t *index, const brio_block *block, const void *user);
 
-/** What is to be divided into blocks, and where the result goes. */
+/** The points to be divided into blocks, and the arrays for the result. */
 typedef struct {
     const double *points; /* n by 3 */
     size_t n;
-    size_t block_size; /* most points in a block */
-    uint32_t *index;   /* receives the indices of the points, block after block, depth first */
+    size_t block_size; /* the largest number of points in a block */
+    uint32_t *index;   /* n: receives the indices of the points, block after block, depth first */
     brio_block_fn visit;
-    const void *user; /* of visit */
+    const void *user; /* passed to visit */
 } brio_blocks;
 
-/** Divides points into the cells of an octree. Points that no cube can tell apart are divided as they come.
- *  spare  room for n indices.   Needs 256 KiB a thread of workspace. */
+/** Divides points into the cells of an octree. Points that no cube can separate are cut into blocks in their present
+ *  order.   spare  room for n indices.   Needs up to 256 KiB of workspace for each thread, and n / 170 bytes. */
 brio_status brio_octree_blocks(brio_context *ctx, const brio_blocks *blocks, uint32_t *spare);
 
 /** Divides points into the cells of a k-d tree: a cell of n points has children of n / 2 and n - n / 2 points.

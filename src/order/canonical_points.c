@@ -1,12 +1,12 @@
-/* An order of points that is the same for every order in which they come.
+/* A canonical order of points, which does not depend on the order of the input.
  *
- * A surface is computed from samples in this order, and their ranks take the place of the caller's indices. So whatever
- * goes by rank on the way depends on positions alone: the order of the tetrahedra and of their vertices, the order in
- * which numbers are added, a tie in a sort or in a queue, the root of a union-find.
+ * Surface reconstruction sorts the samples in this order and uses ranks instead of the caller's indices. So every
+ * choice by rank depends only on positions: the order of the tetrahedra and of their vertices, the order of additions,
+ * ties in sorts and queues, the root of a union-find.
  *
- * The points are sorted along a Hilbert curve, which the insertion needs near each other in memory; points that the curve
- * does not tell apart are sorted lexicographically. A cell of the curve is a set of positions, so the ranks are a function
- * of these. */
+ * The points are sorted along a Hilbert curve, because the insertion is fast when neighbours in space are neighbours in
+ * memory. Points with equal keys are sorted lexicographically. The key of a point depends only on the set of positions,
+ * so the positions determine the ranks. */
 #include "order/canonical_points.h"
 #include "base/finite.h"
 #include "base/memory.h"
@@ -22,7 +22,7 @@ brio_status brio_refuse_points(brio_context *ctx, const double *points, size_t n
     return brio_refuse_not_finite(ctx, points, NULL, n, NULL);
 }
 
-/* Turns the sorted items into indices, those with equal keys sorted by position. */
+/* Writes the indices of the sorted items to `order`, and sorts indices with equal keys by position. */
 static void list_indices(const double *points, const uint64_t *items, size_t n, uint32_t *order) {
     for (size_t i = 0; i < n; i++) order[i] = (uint32_t)items[i];
     for (size_t begin = 0, end; begin < n; begin = end) {
@@ -53,7 +53,7 @@ void brio_copy_points(const double *points, const uint32_t *order, size_t n, dou
     for (size_t i = 0; i < n; i++) memcpy(rows + 3 * i, points + 3 * (size_t)order[i], 3 * sizeof *rows);
 }
 
-/* Coincident points have ranks one after the other, the lowest index first. */
+/* Coincident points have consecutive ranks, and the lowest index comes first. */
 void brio_name_coincident(const double *points, size_t n, uint32_t *order) {
     for (size_t i = 1; i < n; i++)
         if (brio_same_position(points + 3 * (size_t)order[i - 1], points + 3 * (size_t)order[i]))

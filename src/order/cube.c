@@ -1,10 +1,10 @@
-/* The smallest cube round many points, by all threads. */
+/* Finds the smallest cube around many points, with all threads. */
 #include "order/cube.h"
 #include "base/team.h"
 
 enum { PARTS = 64 };
 
-/* The points in equal parts. The cube of each part is kept apart until the end, and no thread waits for another. */
+/* The points, cut into equal parts. Each part has its own cube until the end, so no thread waits for another thread. */
 typedef struct {
     const double *points;
     const uint64_t *items;
@@ -25,7 +25,7 @@ static void add_parts(void *user, size_t begin, size_t end, int thread) {
 }
 
 brio_cube brio_cube_of(brio_context *ctx, const double *points, const uint64_t *items, size_t n, int threads) {
-    finder f; /* without an initializer, which would set every cube: most calls have few points and one part */
+    finder f; /* no initializer, because it would set all PARTS cubes: most calls have few points and one part */
     f.points = points, f.items = items, f.n = n;
     f.parts = threads > 1 ? PARTS : 1;
     brio_cube_new(&f.cube[0], points + 3 * (items ? (size_t)(uint32_t)items[0] : 0));

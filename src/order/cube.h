@@ -1,5 +1,5 @@
-/* The smallest cube round points, cut into a grid of cells. Coordinates are halved first, so that its side cannot
- * overflow; those that are not finite land in some cell. */
+/* The smallest cube around points, cut into a grid of cells. Coordinates are halved first, so that the side of the cube
+ * cannot overflow. */
 #ifndef BRIO_ORDER_CUBE_H
 #define BRIO_ORDER_CUBE_H
 
@@ -31,11 +31,11 @@ static inline void brio_cube_join(brio_cube *c, const brio_cube *other) {
     }
 }
 
-/** The cube of n > 0 points: of the first n, or with `items` of the points that the low halves of items[0 .. n) name.
- *  threads  what brio_threads gave. */
+/** Returns the cube of n > 0 points: the first n points or, unless `items` is NULL, the points whose indices are the
+ *  low halves of items[0 .. n).   threads  a result of brio_threads. */
 brio_cube brio_cube_of(brio_context *ctx, const double *points, const uint64_t *items, size_t n, int threads);
 
-/** Divides the cube into 2^bits cells a side; false when it is a point. */
+/** Divides each side of the cube into 2^bits cells. Returns false when the cube is a single point. */
 static inline bool brio_cube_divide(brio_cube *c, int bits) {
     double side = fmax(c->high[0] - c->low[0], fmax(c->high[1] - c->low[1], c->high[2] - c->low[2]));
     double cells = ldexp(1, bits);
@@ -44,7 +44,7 @@ static inline bool brio_cube_divide(brio_cube *c, int bits) {
     return side > 0;
 }
 
-/** Coordinate k of the cell that holds a point. */
+/** Returns coordinate k of the cell that holds a point of the cube. */
 static inline uint32_t brio_cube_cell(const brio_cube *c, const double *p, int k) {
     double x = (p[k] * 0.5 - c->low[k]) * c->scale;
     return (uint32_t)(int64_t)(x < c->last ? x : c->last);

@@ -1,5 +1,5 @@
-/* Sorting of points along a Hilbert curve: a radix sort of the keys of ten levels; cells with many points are sorted
- * again, along the curve through their own cube, so that clusters of any size are resolved. */
+/* Sorts points along a Hilbert curve: a radix sort by keys of at most ten levels. Cells with more than CELL_MOST points
+ * are sorted again, along the curve through the cube of their own points. So clusters of any size are resolved. */
 #include "order/curve.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -8,7 +8,7 @@
 
 enum { CURVE_BITS = 10, CELL_MOST = 8 };
 
-/* Levels of the curve for n points: enough to tell them apart where they are spread evenly over a surface. */
+/* Returns the number of levels of the curve for n points: enough to separate points spread evenly over a surface. */
 static int curve_bits(size_t n) {
     int bits = 2;
     while (bits < CURVE_BITS && (size_t)1 << 2 * (bits - 1) < n) bits++;
@@ -21,7 +21,7 @@ typedef struct {
     uint64_t *items, *spare;
 } curve;
 
-/* The refinement of the cells of n items: part i of them starts at start[i]. */
+/* The refinement of the cells of n items. Part i of the cells is at the positions [start[i], start[i + 1]). */
 typedef struct {
     const curve *c;
     const size_t *start;
@@ -31,14 +31,14 @@ typedef struct {
 
 static brio_status sort_along_curve(const curve *c, size_t begin, size_t end, int threads);
 
-/* The first place of [from, end) where a cell of [begin, end) starts; `end` for none. */
+/* Returns the first position of [from, end) where a cell of [begin, end) starts, or `end` if there is none. */
 static size_t start_of_cell(const curve *c, size_t begin, size_t end, size_t from) {
     while (from > begin && from < end && c->items[from] >> 32 == c->items[from - 1] >> 32) from++;
     return from;
 }
 
-/* Sorts the cells of [from, to), where cells start, that have many points, but fewer than `all`: else the cube is too
- * small to be divided. */
+/* Sorts the cells of [from, to) that have more than CELL_MOST points. A cell starts at `from`, and one ends at `to`.
+ * Skips a cell with all `all` points: its cube is too small to be divided. */
 static brio_status refine_cells(const curve *c, size_t from, size_t to, size_t all) {
     const uint64_t *items = c->items;
     brio_status status = BRIO_OK;
@@ -55,10 +55,10 @@ static void refine_part(void *user, size_t part, size_t end, int thread) {
     brio_report(&r->status, refine_cells(r->c, r->start[part], r->start[part + 1], r->n));
 }
 
-/* Sorts the items [begin, end) along the curve through their points' cube. */
+/* Sorts the items [begin, end) along the curve through the cube of their points. */
 static brio_status sort_along_curve(const curve *c, size_t begin, size_t end, int threads) {
     brio_status status = BRIO_OK;
-    size_t n = end - begin, *start = NULL; /* of each thread's cells: found before any thread changes a key */
+    size_t n = end - begin, *start = NULL; /* the bounds of each thread's cells, found before a thread changes a key */
     int bits = curve_bits(n);
     if (!brio_hilbert_items(c->ctx, c->points, c->items + begin, n, bits, threads)) return BRIO_OK;
     BRIO_TRY(brio_sort_items(c->ctx, c->items + begin, c->spare + begin, n, 3 * bits, threads));

@@ -1,5 +1,5 @@
-/* Hilbert curve keys by a state table: from the root cell downwards, each state maps an octant to its rank along the
- * curve and to the state of that octant.
+/* Computes Hilbert curve keys with a state table. From the root cell downwards, each state maps an octant to its rank
+ * along the curve and to the state inside the octant.
  *
  * Based on: Hamilton. Compact Hilbert indices. Technical report CS-2006-07, Dalhousie University 2006 (the table is his
  * construction from Gray codes, written out for three dimensions; twelve of the 24 orientations occur). */
@@ -19,7 +19,7 @@ static const uint8_t STATE[12][8] = {
     {0x12, 0x1b, 0x11, 0x40, 0x35, 0x1c, 0x36, 0x2f}, {0x44, 0x43, 0x1d, 0x22, 0x4f, 0x30, 0x1e, 0x21},
 };
 
-/* Two levels at once: STATE composed with itself, 64 * next state + rank of each pair of octants. */
+/* STATE composed with itself: step[s][pair of octants] = 64 * next state + rank of the pair. */
 typedef struct {
     uint16_t step[12][64];
 } two_levels;
@@ -62,10 +62,10 @@ static inline uint64_t cube_key(const brio_cube *c, const two_levels *two, const
     return key_of(two, brio_cube_cell(c, p, 0), brio_cube_cell(c, p, 1), brio_cube_cell(c, p, 2), bits);
 }
 
-/* Keys in the making. */
+/* The data of one call that computes keys. */
 typedef struct {
     const double *points;
-    uint64_t *keys; /* of each point, or the items */
+    uint64_t *keys; /* one key for each point, or the items */
     int bits;
     brio_cube cube;
     two_levels two;

@@ -1,10 +1,10 @@
-/* Blocks of points by a k-d tree: a cell with more points than a block may have is halved at the median across the longest
- * side of its points' box.
+/* Divides points into blocks by a k-d tree. A cell with more than block_size points is halved at the median across the
+ * longest side of the bounding box of its points.
  *
- * Coordinates are kept beside the indices, in 2^32 steps of a cube round the points, and taken anew from the cube of a cell
- * that has become so small that the steps show: clusters of any size are resolved, and memory is read in sequence. The
- * medians are found by selection; where coordinates are equal the index decides, so that duplicates are halved as
- * anything else is. n log n in all.
+ * A node stores an index with its coordinates in 2^32 steps of a cube around the points, so memory is read in sequence.
+ * A cell shorter than FEW_STEPS takes new coordinates from its own cube, so clusters of any size are resolved.
+ * Selection finds the median. The index breaks ties between equal coordinates, so duplicates are halved too. The work
+ * is O(n log n).
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, sections 5.3 and 5.8.
  *           Hoare. Algorithm 65: find. CACM 1961.
@@ -42,7 +42,7 @@ static inline void swap_nodes(node *a, node *b) {
     *a = *b, *b = swap;
 }
 
-/* A node that is likely to have `half` of the n nodes before it. */
+/* Returns a random node that about `half` of the n nodes precede: the quantile of a sample. */
 static size_t choose_pivot(const node *nodes, size_t n, size_t half, int axis) {
     size_t sample[SAMPLE], size = n < 8 * SAMPLE ? 3 : SAMPLE;
     brio_rng rng = brio_rng_new(n);
@@ -55,12 +55,13 @@ static size_t choose_pivot(const node *nodes, size_t n, size_t half, int axis) {
     return sample[half * size / n];
 }
 
-/* Brings the nodes with keys below the pivot's to the front, and the pivot behind them; their number. */
+/* Moves the nodes with keys less than the pivot's key to the front, and the pivot behind these nodes. Returns the
+ * number of these nodes. */
 static size_t divide_by_pivot(node *nodes, size_t n, size_t pivot, int axis) {
     size_t front = 0;
     uint64_t key = key_of(&nodes[pivot], axis);
     swap_nodes(&nodes[pivot], &nodes[n - 1]);
-    for (size_t i = 0; i < n - 1; i++) { /* always moves, so that there is no branch to guess */
+    for (size_t i = 0; i < n - 1; i++) { /* always swaps, so that the processor has no branch to predict */
         bool before = key_of(&nodes[i], axis) < key;
         swap_nodes(&nodes[i], &nodes[front]);
         front += before;
@@ -69,7 +70,7 @@ static size_t divide_by_pivot(node *nodes, size_t n, size_t pivot, int axis) {
     return front;
 }
 
-/* Brings the `half` nodes with the least keys to the front. */
+/* Moves the `half` nodes with the least keys to the front. */
 static void select_least(node *nodes, size_t n, size_t half, int axis) {
     while (half > 0 && half < n) {
         size_t front = divide_by_pivot(nodes, n, choose_pivot(nodes, n, half, axis), axis);
@@ -82,7 +83,7 @@ static void select_least(node *nodes, size_t n, size_t half, int axis) {
 
 /* --- cells --- */
 
-/* The longest side of the nodes' box, in steps. */
+/* Returns the longest side of the nodes' bounding box in steps, and writes its axis. */
 static uint32_t longest_side(const node *nodes, size_t n, int *axis) {
     uint32_t low[3] = {UINT32_MAX, UINT32_MAX, UINT32_MAX}, high[3] = {0, 0, 0};
     for (size_t i = 0; i < n; i++)
@@ -96,7 +97,7 @@ static uint32_t longest_side(const node *nodes, size_t n, int *axis) {
     return high[*axis] - low[*axis];
 }
 
-/* Takes the coordinates in steps of the nodes' own cube. */
+/* Computes the coordinates of the nodes anew, in steps of the nodes' own cube. */
 static void take_steps(const kdtree *k, node *nodes, size_t n) {
     brio_cube cube;
     brio_cube_new(&cube, k->points + 3 * (size_t)nodes[0].index);
@@ -112,7 +113,7 @@ static void visit_block(const kdtree *k, size_t begin, size_t end, int passes) {
     k->visit(k->index, &block, k->user);
 }
 
-/* Halves a cell: the nodes [begin, middle) are before the others across the longest side. */
+/* Halves a cell: moves the nodes with the least coordinates along the longest side to [begin, middle). */
 static void cut(const void *user, size_t begin, size_t middle, size_t end) {
     const kdtree *k = user;
     node *nodes = k->nodes + begin;

@@ -1,15 +1,16 @@
-/* Blocks of points by an octree.
+/* Divides points into blocks by an octree.
  *
- * A cell of the octree with more points than a block may have is divided into its eight halves. Several levels are
- * divided in one pass: the finest cells are numbered depth first, their points are counted and brought together, and
- * every cell of any level is then a range. Work is linear in the number of points as long as the levels are few.
+ * A cell of the octree with more than block_size points is divided into its eight octants. One pass divides several
+ * levels: it numbers the finest cells depth first, counts their points and moves the points of each finest cell
+ * together. Every cell of any level is then a range. The work is linear in the number of points times the number of
+ * passes.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, sections 5.3 and 5.8.
- * Differs from the paper: a cell that is still crowded after a pass starts again from the cube of its own points, so that
- * clusters of any size take few passes.
+ * Differs from the paper: a cell that is still crowded after a pass starts again from the cube of its own points, so
+ * that clusters of any size take few passes.
  *
- * A cell with many points is work for all threads in turns: in one turn the threads take a large cell each, pass over its
- * points once and finish its small cells; the large ones among its cells wait for the next turn. */
+ * All threads divide large cells in turns. In a turn each large cell is one task: a thread passes once over its points
+ * and finishes its small cells. The large cells inside it wait for the next turn. */
 #include "base/memory.h"
 #include "base/places.h"
 #include "base/team.h"
@@ -19,7 +20,7 @@
 
 enum { ROOT_LEVELS = 5, LEVELS = 3, LARGE = 1 << 13, POINTS_A_THREAD = 1 << 13, NO_CELL = UINT32_MAX };
 
-/* A cell with more than LARGE points, which are in no other one; yet to be divided. */
+/* A cell with more than LARGE points, not yet divided. No two large cells of a turn share a point. */
 typedef struct {
     size_t begin, end;
     int passes;
@@ -31,17 +32,17 @@ typedef struct {
     size_t block_size;
     brio_block_fn visit;
     const void *user;
-    large_cell *now, *next; /* of this turn and of the next one; room for n / LARGE cells */
-    size_t num_next;        /* raised by all threads of a turn */
+    large_cell *now, *next; /* the cells of this turn and of the next turn; room for n / LARGE + 1 cells each */
+    size_t num_next;        /* number of cells in `next`; all threads of a turn raise it atomically */
 } octree;
 
 /* The points of a pass and their cube, divided into 8^levels cells. */
 typedef struct {
     const double *points;
-    const uint32_t *from; /* the pass' indices, NULL when each is its own place */
+    const uint32_t *from; /* the indices before the pass; NULL: index i is at position i */
     size_t begin, end;
     brio_cube cube;
-    int levels, passes; /* `passes` with this one */
+    int levels, passes; /* `passes` includes this pass */
 } grid;
 
 /* --- a pass --- */
@@ -54,21 +55,21 @@ static inline uint32_t index_at(const grid *g, size_t i) {
     return g->from ? g->from[i] : (uint32_t)i;
 }
 
-/* Enough levels for blocks of an even distribution. */
+/* Returns enough levels, at most `most`, to reach block_size when the points are evenly distributed. */
 static int levels_for(size_t points, size_t block_size, int most) {
     int levels = 1;
     while (levels < most && points / block_size >> 3 * levels > 0) levels++;
     return levels;
 }
 
-/* Puts two zeros before each of five bits. */
+/* Inserts two zero bits above each of the lowest five bits of x. */
 static inline uint32_t spread(uint32_t x) {
     x = (x | x << 8) & 0x100f;
     x = (x | x << 4) & 0x10c3;
     return (x | x << 2) & 0x1249;
 }
 
-/* Number of the finest cell of a point, depth first. */
+/* Returns the depth-first number of the finest cell of a point. */
 static inline uint32_t cell_of(const grid *g, uint32_t point) {
     const double *p = g->points + 3 * (size_t)point;
     const brio_cube *c = &g->cube;
@@ -100,15 +101,16 @@ static void visit_block(const octree *o, size_t begin, size_t end, int passes) {
     o->visit(o->index, &block, o->user);
 }
 
-/* The place is this thread's alone; what is written there is read after the turn, which orders it. */
+/* Appends a large cell to `next`. Relaxed order is enough: the position belongs to this thread alone, and other threads
+ * read the cell only after the turn, whose end orders the write before the reads. */
 static void leave_for_next_turn(octree *o, size_t begin, size_t end, int passes) {
     size_t place = __atomic_fetch_add(&o->num_next, 1, __ATOMIC_RELAXED);
     o->next[place] = (large_cell){begin, end, passes};
 }
 
-/* Visits the blocks of the cell that the finest cells [first, first + size) make; the points of finest cell c end at
- * stop[c]. Of the crowded finest cells, large ones are left for the next turn; the others, except for all_but, are
- * divided. */
+/* Visits the blocks of the cell that consists of the finest cells [first, first + size). The points of finest cell c
+ * end at stop[c]. Leaves crowded finest cells that are large for the next turn. Divides the other crowded finest cells,
+ * except finest cell all_but. */
 static void visit_cell(octree *o, const grid *g, const size_t *stop, uint32_t first, uint32_t size, uint32_t all_but) {
     size_t begin = first ? stop[first - 1] : g->begin, end = stop[first + size - 1];
     int passes = g->passes;
@@ -124,7 +126,7 @@ static void visit_cell(octree *o, const grid *g, const size_t *stop, uint32_t fi
     }
 }
 
-/* Points that no cube tells apart. */
+/* Cuts points that no cube can separate into blocks, in their present order. */
 static void visit_crowd(const octree *o, size_t begin, size_t end, int passes) {
     for (; end - begin > o->block_size; begin += o->block_size) visit_block(o, begin, begin + o->block_size, passes);
     visit_block(o, begin, end, passes);
@@ -141,7 +143,8 @@ static uint32_t most_crowded(const grid *g, const size_t *stop) {
     return most;
 }
 
-/* Brings the points of each finest cell c together, which then end at stop[c]; false when all are in one. */
+/* Moves the points of each finest cell c together, so that they end at stop[c]. Returns false, and moves nothing, when
+ * one finest cell holds all points. */
 static bool bring_cells_together(const octree *o, grid *g, size_t *stop) {
     memcpy(o->spare + g->begin, o->index + g->begin, (g->end - g->begin) * sizeof *o->index);
     brio_cube_new(&g->cube, g->points + 3 * (size_t)index_at(g, g->begin));
@@ -161,8 +164,8 @@ static grid grid_of(const octree *o, size_t begin, size_t end, int passes) {
         .points = o->points, .from = o->spare, .begin = begin, .end = end, .levels = levels, .passes = passes};
 }
 
-/* Divides [begin, end), which is not large, into blocks. The loop goes on with the most crowded cell, so that the
- * recursion, into the others, is no deeper than log2 LARGE. */
+/* Divides [begin, end), which is not large, into blocks. The loop continues with the most crowded cell. The recursion
+ * enters only other cells, which have at most half the points, so its depth is at most log2 LARGE. */
 static void divide(octree *o, size_t begin, size_t end, int passes) {
     size_t stop[1 << 3 * LEVELS];
     while (end - begin > o->block_size) {
@@ -180,7 +183,7 @@ static void divide(octree *o, size_t begin, size_t end, int passes) {
 
 /* --- turns --- */
 
-/* Passes once over the points of large cells, and finishes what is not large in them. */
+/* Passes once over the points of the large cells [from, to) of this turn, and finishes the small cells inside them. */
 static void divide_large(void *user, size_t from, size_t to, int thread) {
     octree *o = user;
     size_t stop[1 << 3 * LEVELS];
@@ -210,8 +213,8 @@ static void take_turns(brio_context *ctx, octree *o, int threads) {
 typedef struct {
     octree *o;
     const grid *g;
-    size_t *place; /* #threads by #cells: counts of the thread's part, then places; the last thread's become the ends */
-    const size_t *stop;
+    size_t *place;      /* #threads by #cells: the counts of each thread's part, then the positions where it writes */
+    const size_t *stop; /* #cells: the ends of the cells, which are the last thread's positions after writing */
 } root;
 
 static void count_part(void *user, size_t begin, size_t end, int thread) {
@@ -231,7 +234,7 @@ static void visit_octants(void *user, size_t begin, size_t end, int thread) {
     for (size_t i = begin; i < end; i++) visit_cell(r->o, r->g, r->stop, size * (uint32_t)i, size, NO_CELL);
 }
 
-/* The same as bring_cells_together for all points, by all threads. */
+/* Does the work of bring_cells_together for all points, with all threads. */
 static void bring_all_together(brio_context *ctx, root *r, int threads) {
     size_t cells = cells_of(r->g), n = r->g->end;
     brio_for(ctx, threads, n, count_part, r);

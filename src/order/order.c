@@ -1,13 +1,13 @@
-/* Insertion orders: biased randomized ones (BRIO) and their plainer relatives.
+/* Insertion orders: biased randomized insertion orders (BRIO) and simpler orders.
  *
- * A BRIO sorts the points for locality and divides them into random rounds, in which they keep that order: along a Hilbert
- * curve, or by the blocks of an octree or a k-d tree, depth first, shuffled inside a block. One insertion then touches the
- * memory that the one before has touched.
+ * A BRIO sorts the points for locality: along a Hilbert curve, or by the blocks of an octree or a k-d tree, depth first
+ * and shuffled inside a block. It then divides the points into random rounds, and each round keeps the sorted order. So
+ * an insertion touches mostly memory that the insertion before has touched.
  *
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, sections 5.3 and 5.8.
- * Differs from the paper: the tuned order has a Hilbert curve in place of octree blocks, and a ratio of 1/8 in place of
- * 1/2, which inserts fewer points into a coarse triangulation. */
+ * Differs from the paper: the default BRIO uses a Hilbert curve instead of octree blocks, and a ratio of 1/8 instead of
+ * 1/2. The ratio of 1/8 inserts fewer points into a coarse triangulation. */
 #include "order/order.h"
 #include "base/memory.h"
 #include "base/rng.h"
@@ -18,13 +18,13 @@
 
 enum { POINTS_A_THREAD = 1 << 13, BLOCK_SIZE = 2000 };
 
-/* An order in the making. */
+/* The data of one call that computes an order. */
 typedef struct {
     brio_context *ctx;
     const double *points;
     size_t n;
     const brio_delaunay_options *options;
-    uint32_t *index; /* receives the points in the order of the curve or of the blocks; NULL until room is needed */
+    uint32_t *index; /* n: receives the points in the order before rounds; NULL until it is needed */
     uint32_t *spare; /* room for n indices, or NULL */
 } maker;
 

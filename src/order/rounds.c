@@ -1,8 +1,8 @@
 /* Rounds of a biased randomized insertion order (BRIO).
  *
- * Each point draws the round it is inserted in: the last with probability 1 - ratio, the one before with probability
- * (1 - ratio) ratio, and so on. The early rounds are a random sample of everything, which keeps the expected work of the
- * randomized analysis, whatever the order inside a round.
+ * Each point draws the round of its insertion: the last round with probability 1 - ratio, the round before the last
+ * with probability (1 - ratio) ratio, and so on. The early rounds are a random sample of all points. So the bounds of
+ * randomized analysis for the expected work hold for every order inside the rounds.
  *
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 5.3. */
@@ -14,8 +14,8 @@
 
 enum { INDICES_A_THREAD = 1 << 13 };
 
-/* least[r]: a point whose hash is below least[r] is at least r rounds before the last. The number of rounds: until one
- * point is left. */
+/* Sets least[r]: a point whose hash is less than least[r] is at least r rounds before the last round. Returns the
+ * number of rounds: adds rounds until the first round is expected to hold about one point. */
 static int set_rounds(size_t n, double ratio, uint64_t least[BRIO_MOST_ROUNDS + 1]) {
     double share = ratio;
     int rounds = 1;
@@ -31,19 +31,20 @@ static inline int rounds_before_last(uint64_t hash, const uint64_t least[BRIO_MO
     return back;
 }
 
-/* Turns each thread's counts into where it writes, the first round first. */
+/* Replaces each thread's counts by the positions where the thread writes, with the first round in front. Sets the
+ * ends. */
 static void first_places(size_t (*place)[BRIO_MOST_ROUNDS], int threads, brio_round_ends *rounds) {
     for (int r = 0; r < rounds->count; r++)
         rounds->end[r] = brio_counts_to_places(&place[0][rounds->count - 1 - r], BRIO_MOST_ROUNDS, (size_t)threads,
                                                r > 0 ? rounds->end[r - 1] : 0);
 }
 
-/* A division in the making. */
+/* The data of one call that divides indices into rounds. */
 typedef struct {
     const brio_division *of;
     uint64_t least[BRIO_MOST_ROUNDS + 1];
-    uint8_t *back;                     /* of each index: how many rounds before the last */
-    size_t (*place)[BRIO_MOST_ROUNDS]; /* of each thread and round, by rounds before the last: a count, then a place */
+    uint8_t *back;                     /* n: the number of rounds between the index's round and the last round */
+    size_t (*place)[BRIO_MOST_ROUNDS]; /* [thread][rounds before the last]: a count, then a position in `order` */
 } division;
 
 static void count_part(void *user, size_t begin, size_t end, int thread) {

@@ -6,23 +6,23 @@
 
 enum { BRIO_MOST_ROUNDS = 64 };
 
-/** Where the rounds of an order end, the first one first; an order without rounds has one. */
+/** The ends of the rounds of an order, from the first round on. An order without rounds has one round. */
 typedef struct {
     int count;
     size_t end[BRIO_MOST_ROUNDS];
 } brio_round_ends;
 
-/** What is to be divided into rounds, and where the result goes. */
+/** The indices to be divided into rounds, and the arrays for the result. */
 typedef struct {
     const uint32_t *index; /* n indices of points */
     size_t n;
-    double ratio;    /* share of the points left for the rounds before the last */
-    uint64_t seed;   /* the round of a point follows from the seed and the point's index */
-    uint32_t *order; /* receives the indices by rounds, within a round in the order in which they stand in `index` */
-    uint32_t *rank;  /* NULL, or receives for each place in the order the place in `index` */
+    double ratio;    /* the expected share of the points that the rounds before the last hold */
+    uint64_t seed;   /* the seed and the index of a point determine its round */
+    uint32_t *order; /* n: receives the indices by rounds; each round keeps the order of `index` */
+    uint32_t *rank;  /* NULL, or n: receives for each position in `order` the position in `index` */
 } brio_division;
 
-/** Divides indices into rounds.   ends  receives where the rounds end.   Needs n bytes of workspace. */
+/** Divides indices into rounds.   ends  receives the ends of the rounds.   Needs n bytes of workspace. */
 brio_status brio_divide_into_rounds(brio_context *ctx, const brio_division *division, brio_round_ends *ends);
 
 #endif

@@ -1,35 +1,37 @@
-/* Centres side by side in the lanes of vector registers; included by one source file an instruction set, after the
- * operations on its lanes.
+/* Computes one centre in each lane of vector registers. One source file for each instruction set includes this file
+ * after the operations on its lanes.
  *
- * With the points sorted lexicographically and taken relative to the first, b, c, d, and with their lifts l = |p|^2
- * less the difference of weights, the centre is
+ * Sort the four points lexicographically into a, and b, c, d relative to a. The lift l of a relative point p is |p|^2
+ * minus the difference of its weight and that of a. The centre is
  *     a + (l_b c x d + l_c d x b + l_d b x c) / (2 det [b, c, d]).
- * Numerators and determinant carry an error of a few units in the last place of their permanents. Where that leaves
- * the quotient less certain than the goal, the same formula is evaluated in pairs of doubles. LANES tetrahedra of a batch
- * are solved together each time. What is still uncertain, or too large or small, is left to circumcentre.c.
+ * Numerators and determinant carry an error of a few units in the last place of their permanents. Where this error
+ * makes the quotient less accurate than the goal, pairs of doubles evaluate the formula again. Each step solves LANES
+ * tetrahedra of a batch. circumcentre.c solves the tetrahedra that are still uncertain, too large or too small.
  *
- * The operations are the same for every instruction set, one by one, and so are the bits: nothing is fused but the error
- * of a product, which is exact. */
+ * Every instruction set runs the same sequence of operations, and so computes the same bits. Only the error of a
+ * product, which is exact, uses a fused operation. */
 #include "predicates/circumcentre.h"
 #include "predicates/lane_pairs.h"
 
-/* First-order error of each expression, relative to its permanent: at most 20 roundings along a path; pairs 80 u^2. */
+/* Derived: first-order error of each expression relative to its permanent, u = 2^-53. In doubles a path has at most 20
+ * roundings, 20 u; in pairs the error is at most 80 u^2, below 2^-99 = 128 u^2. */
 static const double DOUBLE_BOUND = 20 * 0x1p-53, PAIR_BOUND = 0x1p-99;
 
-/* Above all that underflow can cost, and what covers the rounding of a bound. */
+/* TINY exceeds every error by underflow. ROUNDED, as a factor, covers the rounding of a bound. */
 static const double TINY = 0x1p-900, ROUNDED = 1 + 0x1p-50;
 
-/* Four points a lane, the lexicographically first one in front. */
+/* Four points in each lane, in lexicographic order. */
 typedef struct {
     lanes at[4][3], weight[4];
 } four_points;
 
-/* The same with lengths in a unit, a power of two, in which the differences to the first point are at most 1. */
+/* Four points in each lane, with lengths divided by a unit. The unit is a power of two, chosen so that the differences
+ * to the first point are at most 1. */
 typedef struct {
     four_points p;
-    lanes r[3][3], more[3]; /* differences to the first point */
-    lanes first[3], unit;   /* in the caller's lengths */
-    lane_mask ordinary;     /* the unit is neither too large nor too small */
+    lanes r[3][3], more[3]; /* differences to the first point: of positions, of weights */
+    lanes first[3], unit;   /* the first point and the unit, in the caller's lengths */
+    lane_mask ordinary;     /* the unit is in (2^-400, 2^400) */
 } scaled_points;
 
 /* --- points --- */
@@ -90,7 +92,7 @@ static inline void load_scaled(const brio_centre_batch *b, const uint8_t index[L
 
 /* --- the formula --- */
 
-/* Numerators and determinant; also their magnitudes with every term positive. */
+/* Numerators and determinant; or their permanents, the same expressions with every term positive. */
 typedef struct {
     lanes numerator[3], determinant;
 } fraction;
@@ -125,7 +127,8 @@ static inline void find_permanents(const scaled_points *s, fraction *out, const 
     }
 }
 
-/* Stores the error bounds of the centres `at`, given those of the offsets in the unit. */
+/* Stores the error bounds of the centres `at`.   error  the error bounds of the offsets, in the unit.   found  bit n:
+ * lane n holds a centre. */
 static inline void store_errors(const scaled_points *s, const lanes at[3], lanes error, unsigned found,
                                 const uint8_t index[LANES], double *out) {
     double bound[LANES];
@@ -136,7 +139,7 @@ static inline void store_errors(const scaled_points *s, const lanes at[3], lanes
         if (found >> n & 1) out[index[n]] = bound[n];
 }
 
-/* Stores the centres whose error is within the goal; bits of the others. */
+/* Stores the centres whose error is within the goal, and returns the bits of the other lanes. */
 static inline unsigned divide(const scaled_points *s, const fraction *f, const fraction *permanent, double relative,
                               const uint8_t index[LANES], const brio_centre_goal *goal) {
     lanes bound = all(relative), tiny = all(TINY), round = all(ROUNDED), infinite = all(__builtin_inf());
@@ -205,8 +208,9 @@ static inline unsigned solve_pairs(const brio_centre_batch *b, const uint8_t ind
     return divide(&s, &high, &permanent, PAIR_BOUND, index, goal);
 }
 
-/* In doubles, unscaled and without weights, with the permanents bounded by the largest difference in each coordinate.
- * Stores the centre and its squared distance from the points. */
+/* Solves in doubles, unscaled and without weights. Bounds the permanents by the largest difference in each coordinate.
+ * Stores the centres within the goal and their squared distances from the points; returns the bits of the other
+ * lanes. */
 static inline unsigned solve_roughly(const brio_centre_batch *b, const uint8_t index[LANES],
                                      const brio_centre_goal *goal, const bool weighted) {
     four_points p;
@@ -249,7 +253,8 @@ static inline unsigned solve_roughly(const brio_centre_batch *b, const uint8_t i
 typedef unsigned (*solve_lanes)(const brio_centre_batch *b, const uint8_t index[LANES], const brio_centre_goal *goal,
                                 const bool weighted);
 
-/* Solves those of the batch whose bits are set, LANES at a time; bits of those without an answer. */
+/* Solves the tetrahedra of the batch whose bits are set in `some`, LANES at a time. Returns the bits of the tetrahedra
+ * that `solve` leaves. */
 static inline __attribute__((always_inline)) uint64_t solve_some(const brio_centre_batch *b, uint64_t some,
                                                                  const brio_centre_goal *goal, solve_lanes solve,
                                                                  const bool weighted) {

@@ -1,4 +1,4 @@
-/* Centres in AVX2: four doubles a register. */
+/* Computes centres in AVX2, four doubles in a register. */
 #if defined(__x86_64__)
 #include "predicates/lanes_avx2.h"
 

@@ -1,4 +1,4 @@
-/* Centres in AVX-512: eight doubles a register. */
+/* Computes centres in AVX-512, eight doubles in a register. */
 #if defined(__x86_64__)
 #include "predicates/lanes_avx512.h"
 

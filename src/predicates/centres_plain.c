@@ -1,4 +1,4 @@
-/* Centres without the vector instructions of newer processors. */
+/* Computes centres with the instructions that every processor has. */
 #include "predicates/lanes_plain.h"
 
 #define CENTRES brio_centres_plain

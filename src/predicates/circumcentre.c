@@ -1,5 +1,5 @@
-/* Circumcentres and orthocentres, in as much precision as they need: in doubles and in pairs of doubles side by side in
- * vector lanes (centre_lanes.h), at last in exact dyadic numbers, here. */
+/* Circumcentres and orthocentres, in as much precision as each one needs. centre_lanes.h tries doubles and then pairs
+ * of doubles, in vector lanes. This file solves the remaining tetrahedra in exact dyadic numbers. */
 #include "predicates/circumcentre.h"
 #include "base/float_state.h"
 #include "base/instruction_set.h"
@@ -10,16 +10,16 @@
 #include "predicates/predicates.h"
 #include <string.h>
 
-/* An error of 2^-44 of the centre's distance is what doubles reach for tetrahedra of ordinary shape; 2^-30 is enough for
- * angles, and doubles reach it for nearly flat tetrahedra too. */
+/* Chosen errors, relative to the distance of the centre from the points. Doubles reach 2^-44 for tetrahedra of ordinary
+ * shape. 2^-30 is enough for angles, and doubles reach 2^-30 for nearly flat tetrahedra too. */
 static const double FINE = 0x1p-44, ROUGH = 0x1p-30;
 
 typedef struct {
-    double offset[3]; /* centre - first point, scaled */
-    double error;     /* of each coordinate */
+    double offset[3]; /* (centre - first point) 2^-exponent */
+    double error;     /* bounds the error of each coordinate of offset */
 } solution;
 
-/* x = 1/2 numerator / determinant of exact numbers, scaled by 2^-exponent. */
+/* Returns 2^-exponent 1/2 numerator / determinant, rounded. */
 static double quotient(const brio_dyadic *numerator, const brio_dyadic *determinant, int exponent) {
     int en, ed;
     double n = brio_dyadic_to_double(numerator, &en), d = brio_dyadic_to_double(determinant, &ed);
@@ -75,7 +75,8 @@ static void sort_ascending(const double *p[4]) {
     order_two(&p[1], &p[2]);
 }
 
-/* Exponent of the largest difference to the first point; the differences may not be finite. */
+/* Returns an exponent e such that the differences to the first point are less than 2^e. Halves the coordinates, because
+ * the differences may overflow. */
 static int exponent_of(const double *const p[4]) {
     double most = 0;
     for (int i = 1; i < 4; i++)
@@ -88,7 +89,7 @@ static int exponent_of(const double *const p[4]) {
     return (int)(bits >> 52) - 1021; /* -1021 for subnormal numbers */
 }
 
-/* Finds the centre of one tetrahedron of a batch exactly, and rounds it. */
+/* Computes the centre of tetrahedron n of a batch exactly, and rounds it. */
 static void find_exactly(const brio_centre_batch *b, size_t n, const brio_centre_goal *goal) {
     double r[4][4] = {{0}}, *centre = goal->centre + goal->stride * n, far = 0;
     const double *p[4] = {r[0], r[1], r[2], r[3]};

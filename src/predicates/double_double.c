@@ -1,8 +1,8 @@
 /* Stage 3 of the predicates: the determinants in double-double arithmetic.
  *
- * Along any path through the in-sphere determinant the relative errors of double_double.h add up to less than 60 u^2 of
- * the permanent (7 for each of four products, 3 for each of nine sums), so 2^-99 = 128 u^2 is a safe bound; rows
- * relative to e are exact in a double-double, and so is the difference of two weights. */
+ * BOUND is derived. Along any path through the in-sphere determinant the errors of double_double.h add up to less than
+ * 60 u^2 of the permanent: 7 u^2 for each of four products, 3 u^2 for each of nine sums. So 2^-99 = 128 u^2 is a safe
+ * bound. The rows relative to e and the differences of weights are exact in double-doubles. */
 #include "predicates/double_double.h"
 #include "predicates/predicates.h"
 
@@ -32,7 +32,7 @@ BRIO_INLINE brio_dd lift_of(const brio_dd r[3], const double *p, const double *e
     return weighted ? dd_subtract(lift, dd_difference(p[3], e[3])) : lift;
 }
 
-/* A product of two pairs. */
+/* The two factors of a product. */
 typedef struct {
     brio_dd z, m;
 } product;
@@ -87,7 +87,7 @@ int brio_insphere_double_double(const double *const row[5], bool weighted, brio_
     return insphere(row, weighted, magnitude, false);
 }
 
-/* |x - p|^2 - w_p. */
+/* Returns |x - p|^2 - w_p. */
 BRIO_INLINE brio_dd power(const double *x, const double *p, const bool fma) {
     brio_dd d[3];
     for (int k = 0; k < 3; k++) d[k] = dd_difference(x[k], p[k]);
@@ -96,7 +96,8 @@ BRIO_INLINE brio_dd power(const double *x, const double *p, const bool fma) {
 }
 
 BRIO_INLINE int power_compare(const double *x, const double *p, const double *q, double magnitude, const bool fma) {
-    /* at most 20 u^2 of the terms; nothing overflows or underflows by as much as the floor below 2^500 */
+    /* The error is at most 20 u^2 of the magnitude. Below 2^500 nothing overflows, and underflow costs less than
+     * 2^-900. */
     if (!(magnitude < 0x1p500)) return 2;
     return sign_of(dd_subtract(power(x, p, fma), power(x, q, fma)), (brio_magnitude){magnitude, 0x1p-900});
 }

@@ -1,15 +1,13 @@
-/* Double-double arithmetic: an unevaluated sum hi + lo of two doubles, about 106 bits. The third stage of the
- * predicates. With u = 2^-53, and barring over- and underflow:
+/* Double-double arithmetic, the third stage of the predicates. A number is an unevaluated sum hi + lo of two doubles,
+ * about 106 bits. With u = 2^-53, and without overflow and underflow:
  *   |product - x y| <= 7 u^2 |x y|,   |sum - (x + y)| <= 3 u^2 (|x| + |y|) (1 + u).
- * The short addition has no bound relative to the result; the bounds of the predicates are relative to the permanent,
- * for which this one is enough.
+ * dd_add has no error bound relative to the result. The predicates need only a bound relative to the permanent.
  *
- * `fma` is a compile-time constant: with it a product's error is one instruction, without it Dekker's 17.
+ * `fma` is a compile-time constant. With fma the error of a product takes one instruction, otherwise Dekker's 17.
  *
  * Based on: Dekker. A floating-point technique for extending the available precision. Numer. Math. 1971.
  *           Joldes, Muller, Popescu. Tight and rigorous error bounds for basic building blocks of double-word
- *  arithmetic.
- *           TOMS 2017. */
+ *           arithmetic. TOMS 2017. */
 #ifndef BRIO_PREDICATES_DOUBLE_DOUBLE_H
 #define BRIO_PREDICATES_DOUBLE_DOUBLE_H
 
@@ -18,7 +16,7 @@
 
 #define BRIO_INLINE static inline __attribute__((always_inline))
 
-/* Whether the target always multiplies and adds in one rounding. */
+/* Whether every processor of the compilation target has fused multiply-add. */
 #if defined(__FMA__) || defined(__aarch64__)
 #define DD_TARGET_HAS_FMA true
 #else
@@ -39,7 +37,7 @@ BRIO_INLINE brio_dd dd_fast_two_sum(double a, double b) {
     return (brio_dd){s, b - (s - a)};
 }
 
-/* The exact difference of two doubles. */
+/* Returns a - b, exactly. */
 BRIO_INLINE brio_dd dd_difference(double a, double b) {
     return dd_two_sum(a, -b);
 }
@@ -66,12 +64,12 @@ BRIO_INLINE brio_dd dd_subtract(brio_dd x, brio_dd y) {
     return dd_add(x, (brio_dd){-y.hi, -y.lo});
 }
 
-/* x y - z w, the 2 by 2 minor. */
+/* Returns x y - z w, the 2 by 2 minor. */
 BRIO_INLINE brio_dd dd_minor(brio_dd x, brio_dd y, brio_dd z, brio_dd w, const bool fma) {
     return dd_subtract(dd_multiply(x, y, fma), dd_multiply(z, w, fma));
 }
 
-/* x + y + z. */
+/* Returns x + y + z. */
 BRIO_INLINE brio_dd dd_sum3(brio_dd x, brio_dd y, brio_dd z) {
     return dd_add(dd_add(x, y), z);
 }

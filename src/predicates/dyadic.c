@@ -1,9 +1,9 @@
-/* Exact arithmetic on dyadic numbers: schoolbook sums and products of 64-bit limbs. */
+/* Exact arithmetic on dyadic numbers, by schoolbook sums and products of 64-bit limbs. */
 #include "predicates/dyadic.h"
 #include <math.h>
 #include <string.h>
 
-/* Restores the invariants after an operation that may have left zero limbs at either end. */
+/* Restores I1 and I2 after an operation that may have left zero limbs at either end. */
 static void trim(brio_dyadic *r) {
     while (r->size && r->limb[r->size - 1] == 0) r->size--;
     if (!r->size) {
@@ -39,7 +39,7 @@ void brio_dyadic_difference(brio_dyadic *r, double x, double y) {
     brio_dyadic_add(r, r, &b, -1);
 }
 
-/* Limb k, counted in powers of B, of |x|. */
+/* Returns the factor of B^k in |x|. */
 static inline uint64_t limb_at(const brio_dyadic *x, int32_t k) {
     return k >= x->low && k < x->low + x->size ? x->limb[k - x->low] : 0;
 }

@@ -1,11 +1,12 @@
-/* Exact arithmetic on dyadic numbers (integers times a power of two): sums, differences and products of doubles without
- * any rounding, overflow or underflow. The last stage of every predicate.
+/* Exact arithmetic on dyadic numbers (integers times a power of two), the last stage of every predicate. Sums,
+ * differences and products have no rounding, overflow or underflow.
  *
  * value = sign * (limb[0] + limb[1] B + ... + limb[size-1] B^(size-1)) * B^low,   B = 2^64
- * Invariants: sign is 0 exactly when size is 0; the first and the last limb are not 0.
+ * I1: sign is 0 exactly when size is 0.   I2: the first and the last limb are not 0.
  *
- * CAPACITY covers the largest determinant here: a difference of doubles spans 2098 bits = 34 limbs, a sum of three
- * squares 69, less a weight 70, a minor of three differences 103, their product and the sum of four of them 175. */
+ * BRIO_DYADIC_CAPACITY is derived from the in-sphere determinant. A difference of doubles spans 2098 bits or 34 limbs.
+ * A sum of three squares takes 69 limbs, and 70 with a weight. A 3 by 3 minor of differences takes 103 limbs. The sum
+ * of four products of a lift and a minor takes 175 limbs. */
 #ifndef BRIO_PREDICATES_DYADIC_H
 #define BRIO_PREDICATES_DYADIC_H
 
@@ -18,15 +19,15 @@ typedef struct {
     uint64_t limb[BRIO_DYADIC_CAPACITY];
 } brio_dyadic;
 
-/** r = x, for any finite x. */
+/** Sets r = x, for any finite x. */
 void brio_dyadic_set(brio_dyadic *r, double x);
-/** r = x - y. */
+/** Sets r = x - y, for any finite x and y. */
 void brio_dyadic_difference(brio_dyadic *r, double x, double y);
-/** r = x + s y, s = 1 or -1; r may be x or y. */
+/** Sets r = x + s y, where s is 1 or -1; r may be x or y. */
 void brio_dyadic_add(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y, int s);
-/** r = x y; r is neither. */
+/** Sets r = x y; r is neither x nor y. */
 void brio_dyadic_multiply(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y);
-/** x = m 2^e with 0.5 <= |m| < 1 up to a relative error of 2^-52; 0 gives m = 0. Returns m. */
+/** Returns m and writes e such that x = m 2^e with 0.5 <= |m| < 1, up to a relative error of 2^-52; m = 0 for x = 0. */
 double brio_dyadic_to_double(const brio_dyadic *x, int *e);
 
 #endif

@@ -1,9 +1,9 @@
-/* Stages 4 and 5 of the predicates: integers where the points are on a grid, else exact dyadic numbers, for every
- * finite double. */
+/* Stages 4 and 5 of the predicates: integers where the points are on a grid, otherwise exact dyadic numbers, which hold
+ * every finite double. */
 #include "predicates/dyadic.h"
 #include "predicates/predicates.h"
 
-/* r = x y - z w. */
+/* Sets r = x y - z w. */
 static void minor2(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y, const brio_dyadic *z,
                    const brio_dyadic *w) {
     brio_dyadic p, q;
@@ -12,7 +12,7 @@ static void minor2(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y, c
     brio_dyadic_add(r, &p, &q, -1);
 }
 
-/* r = det of the rows p, q, s. */
+/* Sets r to the determinant of the rows p, q, s. */
 static void minor3(brio_dyadic *r, const brio_dyadic p[3], const brio_dyadic q[3], const brio_dyadic s[3]) {
     brio_dyadic m, t;
     minor2(&m, &p[1], &q[2], &p[2], &q[1]);
@@ -44,7 +44,7 @@ int brio_orient3d_dyadic(const double *a, const double *b, const double *c, cons
     return det.sign;
 }
 
-/* |p|^2 - (weight of p - weight of e) for a row p relative to e. */
+/* Sets lift = |row|^2 - (weight of p - weight of e), where row = p - e. */
 static void lift_of(brio_dyadic *lift, const brio_dyadic row[3], const double *p, const double *e, bool weighted) {
     brio_dyadic_multiply(lift, &row[0], &row[0]);
     add_square(lift, &row[1], 1);
@@ -61,7 +61,7 @@ int brio_insphere_dyadic(const double *a, const double *b, const double *c, cons
     brio_dyadic row[4][3], det = {0}, lift, minor, term;
     for (int i = 0; i < 4; i++) difference3(row[i], p[i], e);
     for (int i = 0; i < 4; i++) {
-        /* the three other rows in their order; the cofactor's sign alternates */
+        /* `other` lists the rows except row i, in order; the sign of the cofactor alternates with i */
         const brio_dyadic *other[3];
         for (int j = 0, k = 0; j < 4; j++)
             if (j != i) other[k++] = row[j];
@@ -73,7 +73,7 @@ int brio_insphere_dyadic(const double *a, const double *b, const double *c, cons
     return det.sign;
 }
 
-/* r += s (|x - p|^2 - w_p). */
+/* Adds s (|x - p|^2 - w_p) to r. */
 static void add_power(brio_dyadic *r, const double *x, const double *p, int s) {
     brio_dyadic t;
     for (int k = 0; k < 3; k++) {

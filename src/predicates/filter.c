@@ -1,15 +1,17 @@
-/* Floating-point stages 1 and 2 of the predicates: bounds, and the permanents they come from.
+/* Floating-point stages 1 and 2 of the predicates: error bounds, and the permanents from which they are derived.
  *
- * With u = 2^-53 and first-order terms rounded up generously, an estimate is off by at most
+ * The permanent of an expression is the expression with every term replaced by its magnitude. With u = 2^-53, the error
+ * of an estimate is at most
  *   orient3d   (7 + 56 u) u   times the permanent (Shewchuk's o3derrboundA),
- *   insphere   (16 + 224 u) u (his isperrboundA), and 17 with the one more subtraction of the weighted lift,
- * the permanent being the same expression with every term replaced by its magnitude. */
+ *   insphere   (16 + 224 u) u times the permanent (Shewchuk's isperrboundA). The additional subtraction of the weighted
+ *              lift raises 16 to 17.
+ * ORIENT_BOUND and INSPHERE_BOUND round these up to 8 u and 18 u. */
 #include "predicates/predicates.h"
 #include "predicates/span.h"
 
 static const double ORIENT_BOUND = 8 * 0x1p-53, INSPHERE_BOUND = 18 * 0x1p-53;
 
-/* Larger extents could overflow in stages 1 to 3 (degree 5, Dekker's splitting). */
+/* Chosen: with larger extents, stages 1 to 3 could overflow (polynomials of degree 5, Dekker's splitting). */
 static const double EXTENT_MOST = 1e55, WEIGHT_MOST = 1e110;
 
 void brio_filter_set(brio_filter *f, const double extent[3], double weight_extent, bool weighted) {
@@ -17,19 +19,19 @@ void brio_filter_set(brio_filter *f, const double extent[3], double weight_exten
     double most = fmax(x, fmax(y, z)), w = weighted ? weight_extent : 0;
     *f = (brio_filter){INFINITY, INFINITY, INFINITY, INFINITY, weighted, false, false, 0};
     if (!(most <= EXTENT_MOST && w <= WEIGHT_MOST)) return;
-    /* each of some hundred products may lose 2^-1074, and is multiplied by at most this */
+    /* about a hundred products may each lose 2^-1074 by underflow; the floors multiply this by the largest cofactors */
     double unit = 0x1p-1060;
     f->orient_floor = unit * (1 + most) * (1 + most);
     f->insphere_floor = unit * (1 + most) * (1 + most) * (1 + most) * (1 + most + w);
-    /* 6 products in a 3 by 3 minor, 4 minors times a lift; 1.001 covers the rounding of the bound */
+    /* a 3 by 3 minor has 6 products, insphere 4 minors times a lift; 1.001 covers the rounding of the bound */
     f->orient_static = 1.001 * ORIENT_BOUND * 6 * x * y * z + f->orient_floor;
     f->insphere_static = 1.001 * INSPHERE_BOUND * 24 * x * y * z * (x * x + y * y + z * z + w) + f->insphere_floor;
 }
 
-enum { COARSE_BITS = 20 }; /* of coordinates, for integer.c */
+enum { COARSE_BITS = 20 }; /* NARROW_BITS of integer.c */
 
-/* Finds the spans of the coordinates' differences and of the weights'. Stops where coordinates are more than COARSE_BITS
- * apart. */
+/* Finds the span of the differences of coordinates and the span of the differences of weights. Stops once the span of
+ * the coordinates exceeds COARSE_BITS: neither test below can then succeed. */
 static void find_spans(const double (*record)[4], size_t n, const double extent[4], bool weighted,
                        brio_span *coordinates, brio_span *weights) {
     frexp(fmax(extent[0], fmax(extent[1], extent[2])), &coordinates->high);
@@ -53,16 +55,16 @@ static int least(int a, int b) {
     return a < b ? a : b;
 }
 
-/* Whether the in-sphere determinant is exact in doubles: a lift is a multiple of the coordinates' unit squared and of
- * the weights', a sum of three squares and a weight; a minor has six products of three; four products of these are
- * summed. */
+/* Returns whether the in-sphere determinant is exact in doubles. A lift is a sum of three squares and a weight; its
+ * unit is the lesser of the squared coordinate unit and the weight unit. A minor is a sum of six products of three
+ * differences. The determinant is a sum of four products of a lift and a minor. */
 static bool exact_in_doubles(brio_span c, brio_span w, bool weighted) {
     int low = weighted ? least(2 * c.low, w.low) : 2 * c.low,
         high = weighted ? most(2 * c.high + 2, w.high) + 1 : 2 * c.high + 2;
     return (high - low) + 3 * (c.high - c.low) + 3 + 2 <= 53;
 }
 
-/* Whether coordinates fit 20 bits in a unit of which the weights are multiples of the square (integer.c). */
+/* Returns whether the differences of coordinates fit 20 bits in a unit whose square divides the weights (integer.c). */
 static bool fits_integers(brio_span c, brio_span w, bool weighted) {
     int low = c.low;
     if (weighted) low = least(low, brio_half_exponent(w.low));
@@ -150,7 +152,8 @@ static double power(const double *x, const double *p, double *magnitude) {
 
 int brio_power_compare(const double *x, const double *p, const double *q) {
     double magnitude = 0, difference = power(x, p, &magnitude) - power(x, q, &magnitude);
-    /* each square is off by at most 5 u, the three further operations by one each; NaN and infinity compare false */
+    /* Each sum of squares has an error of at most 5 u, each of three more operations 1 u. NaN and infinity compare
+     * false. */
     if (fabs(difference) > 10 * 0x1p-53 * magnitude + 0x1p-1000 && magnitude < INFINITY) return difference > 0 ? 1 : -1;
     int sign = brio_power_compare_double_double(x, p, q, magnitude);
     return sign != 2 ? sign : brio_power_compare_exact(x, p, q);

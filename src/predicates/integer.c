@@ -1,9 +1,10 @@
-/* Exact predicates in fixed-width integers, for points on a common grid: lattices, scans in single precision.
+/* Exact predicates in fixed-width integers, for points on a common grid, such as lattices and scans in single
+ * precision.
  *
- * Where the differences of a call are exact doubles, they are integers times one power of two. With at most 20 bits
- * each all but the last products fit 64 bits and the sum 128; with at most 41 bits every 3 by 3 minor fits 128 bits and
- * the sum 256. That decides a zero in tens of nanoseconds, where dyadic numbers take a microsecond. Other calls are
- * declined. */
+ * Where the differences of a call are exact doubles, they are integers times one power of two. With integers of at most
+ * 20 bits, all products except the last fit 64 bits and the sum fits 128 bits. With at most 41 bits, every 3 by 3 minor
+ * fits 128 bits and the sum fits 256 bits. Integers decide a zero in tens of nanoseconds; dyadic numbers take a
+ * microsecond. The functions return DECLINED for other calls. */
 #include "predicates/predicates.h"
 #include "base/scale.h"
 #include "predicates/span.h"
@@ -13,14 +14,15 @@ typedef unsigned __int128 unsigned_wide;
 
 enum { NARROW_BITS = 20, WIDE_BITS = 41, DECLINED = 2 };
 
-/* a - b when that is exact. */
+/* Sets *d = a - b, rounded. Returns whether *d is exact. */
 static inline bool exact_difference(double a, double b, double *d) {
     double s = a - b, t = s - a;
     *d = s;
     return (a - (s - t)) - (b + t) == 0;
 }
 
-/* Rows of integers relative to the last point; false when the points are on no grid of WIDE_BITS. */
+/* Writes the rows p[i] - origin as integers, and the differences of weights in units of the grid's square. Returns
+ * false when the points are on no grid of WIDE_BITS bits. */
 static bool grid_rows(const double *const *p, int count, const double *origin, bool weighted, int64_t (*row)[3],
                       wide *weight) {
     double d[4][3], w[4];
@@ -97,7 +99,7 @@ typedef struct {
     unsigned_wide low, high;
 } sum256;
 
-/* sum += s x y. */
+/* Adds s x y to *sum; s is 1 or -1. */
 static void add_product(sum256 *sum, wide x, wide y, int s) {
     bool negative = (x < 0) != (y < 0);
     unsigned_wide a = x < 0 ? -(unsigned_wide)x : (unsigned_wide)x, b = y < 0 ? -(unsigned_wide)y : (unsigned_wide)y;

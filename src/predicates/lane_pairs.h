@@ -1,7 +1,8 @@
-/* Pairs of doubles in lanes: unevaluated sums hi + lo, as in double_double.h; included after the operations on lanes.
+/* Pairs of doubles in lanes: unevaluated sums hi + lo, as in double_double.h. Include this file after the operations on
+ * lanes.
  *
- * A pair is tight when hi is the rounded sum. The operations called loose leave a pair as it comes, which saves a sum;
- * their lo may grow, and whoever uses them bounds how far (conflict_lanes.h).
+ * A pair is tight when hi is the rounded sum hi + lo. A loose operation saves the addition that makes the result tight.
+ * The lo of a loose result may grow, and the caller bounds its growth (triangulation/conflict_lanes.h).
  *
  * Based on: Dekker. A floating-point technique for extending the available precision. Numer. Math. 1971.
  *           Lange, Rump. Faithfully rounded floating-point computations. TOMS 2020 (loose pairs). */
@@ -12,7 +13,7 @@ typedef struct {
     lanes hi, lo;
 } lane_pair;
 
-/* a - b, exact, and tight. */
+/* Returns a - b, exact and tight. */
 static inline lane_pair pair_difference(lanes a, lanes b) {
     lanes s = a - b, t = s - a;
     return (lane_pair){s, (a - (s - t)) - (b + t)};

@@ -19,14 +19,14 @@ static inline lanes magnitude(lanes x) {
 static inline lanes maximum(lanes x, lanes y) {
     return _mm512_max_pd(x, y);
 }
-/* x y - z and x y + z with one rounding. */
+/* These return x y - z and x y + z with one rounding. */
 static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {
     return _mm512_fmsub_pd(x, y, z);
 }
 static inline lanes multiply_add(lanes x, lanes y, lanes z) {
     return _mm512_fmadd_pd(x, y, z);
 }
-/* x y - p, p the rounded product. */
+/* Returns x y - p, where p is the rounded product of x and y. */
 static inline lanes product_error(lanes x, lanes y, lanes p) {
     return multiply_subtract(x, y, p);
 }
@@ -45,7 +45,7 @@ static inline lane_mask first_only(lane_mask a, lane_mask b) {
 static inline lane_mask either(lane_mask a, lane_mask b) {
     return a | b;
 }
-/* x in the lanes of the mask, y in the others. */
+/* Returns x in the lanes of the mask, and y in the other lanes. */
 static inline lanes choose(lane_mask m, lanes x, lanes y) {
     return _mm512_mask_blend_pd(m, y, x);
 }
@@ -53,14 +53,15 @@ static inline unsigned bits_of(lane_mask m) {
     return m;
 }
 
-/* The bits of the exponent alone: the largest power of two that is no larger than x, x positive and normal. */
+/* Returns the largest power of two that is at most x, by keeping only the exponent bits. x is positive and normal. */
 static inline lanes leading_power(lanes x) {
     return _mm512_and_pd(x, all(__builtin_inf()));
 }
 
-/* out = the columns of a row of four doubles a lane, or of three and zeros. */
+/* Writes to out[k] entry k of each lane's row. A row has four doubles or, when `four` is false, three; then out[3] is
+ * 0. */
 static inline void load_rows(const double *const row[LANES], const bool four, lanes out[4]) {
-    lanes r[4]; /* two rows each, so paired that the lanes come out in order */
+    lanes r[4]; /* two rows each; the pairing puts the lanes in order after the shuffles */
     for (int i = 0; i < 4; i++) {
         int low = i < 2 ? i : i + 2;
         __m256d a = four ? _mm256_loadu_pd(row[low]) : _mm256_maskz_loadu_pd(7, row[low]);

@@ -1,4 +1,4 @@
-/* Two doubles side by side: the vector operations of centre_lanes.h as every processor has them. */
+/* Two doubles side by side: the vector operations of centre_lanes.h with instructions that every processor has. */
 #ifndef BRIO_PREDICATES_LANES_PLAIN_H
 #define BRIO_PREDICATES_LANES_PLAIN_H
 
@@ -29,11 +29,11 @@ static inline lane_mask both(lane_mask a, lane_mask b) {
 static inline lane_mask either(lane_mask a, lane_mask b) {
     return a | b;
 }
-/* x in the lanes of the mask, y in the others. */
+/* Returns x in the lanes of the mask, and y in the other lanes. */
 static inline lanes choose(lane_mask m, lanes x, lanes y) {
     return (lanes)(((lane_mask)x & m) | ((lane_mask)y & ~m));
 }
-/* x where it is greater, else y: y too where one is NaN. */
+/* Returns x in the lanes where x > y, and y in the other lanes, which include the lanes with a NaN. */
 static inline lanes maximum(lanes x, lanes y) {
     return choose(x > y, x, y);
 }
@@ -41,23 +41,24 @@ static inline unsigned bits_of(lane_mask m) {
     return (unsigned)(m[0] & 1) | (unsigned)(m[1] & 2);
 }
 
-/* x y + z, rounded once or twice. */
+/* Returns x y + z, rounded once or twice. */
 static inline lanes multiply_add(lanes x, lanes y, lanes z) {
     return x * y + z;
 }
-/* x y - p, p the rounded product. */
+/* Returns x y - p, where p is the rounded product of x and y. */
 static inline lanes product_error(lanes x, lanes y, lanes p) {
     lanes error = p;
     for (int i = 0; i < LANES; i++) error[i] = dd_two_product(x[i], y[i], DD_TARGET_HAS_FMA).lo;
     return error;
 }
 
-/* The bits of the exponent alone: the largest power of two that is no larger than x, x positive and normal. */
+/* Returns the largest power of two that is at most x, by keeping only the exponent bits. x is positive and normal. */
 static inline lanes leading_power(lanes x) {
     return (lanes)((lane_mask)x & (lane_mask)all(__builtin_inf()));
 }
 
-/* out = the columns of a row of four doubles a lane, or of three and zeros. */
+/* Writes to out[k] entry k of each lane's row. A row has four doubles or, when `four` is false, three; then out[3] is
+ * 0. */
 static inline void load_rows(const double *const row[LANES], const bool four, lanes out[4]) {
     for (int k = 0; k < 3 + four; k++) out[k] = (lanes){row[0][k], row[1][k]};
     if (!four) out[3] = all(0);

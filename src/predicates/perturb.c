@@ -1,10 +1,11 @@
-/* Ties of insphere and of the power test, broken by a symbolic perturbation of the lifted coordinate.
+/* Breaks ties of insphere and of the power test by a symbolic perturbation of the lifted coordinate.
  *
- * Each point's lift |p|^2 - w grows by an infinitesimal of its own, by far the largest for the lexicographically
- * largest point, and so on downwards. The largest point whose cofactor is not zero decides: for the query itself the
- * cofactor is the (positive) tetrahedron, and lifting the query puts it outside; for another vertex it is the
- * tetrahedron with that vertex replaced by the query. Coordinates are never perturbed, so no flat tetrahedron ever
- * appears, and the answer depends on the points alone.
+ * The lift |p|^2 - w of each point grows by an infinitesimal. The infinitesimal of a point is infinitely larger than
+ * those of all lexicographically smaller points. The lexicographically largest point whose cofactor is not zero
+ * decides:
+ *   - The cofactor of the query e is the tetrahedron, which is positive. Lifting e puts e outside.
+ *   - The cofactor of a vertex is the tetrahedron with that vertex replaced by e.
+ * Coordinates are never perturbed. So no flat tetrahedron appears, and the answer depends only on the points.
  *
  * Based on: Devillers, Teillaud. Perturbations for Delaunay and weighted Delaunay 3D triangulations. CGTA 2011. */
 #include "predicates/predicates.h"

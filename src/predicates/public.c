@@ -1,4 +1,5 @@
-/* The predicates of the public header: on rows of three doubles, with bounds made for the points of one call. */
+/* The predicates of the public header. Points are rows of three doubles, and each call sets bounds for its own
+ * points. */
 #include "brio/brio.h"
 #include "base/float_state.h"
 #include "predicates/predicates.h"

@@ -1,19 +1,20 @@
-/* The powers of two between which the bits of numbers lie: where points stand on a common grid, and how fine it is. */
+/* The powers of two between which the bits of numbers lie. They show whether points are on a common grid, and how
+ * fine. */
 #ifndef BRIO_PREDICATES_SPAN_H
 #define BRIO_PREDICATES_SPAN_H
 
 #include <stdint.h>
 #include <string.h>
 
-/** Numbers that are multiples of 2^low and below 2^high in magnitude. */
+/** The span of a set of numbers that are multiples of 2^low and less than 2^high in magnitude. */
 typedef struct {
     int low, high;
 } brio_span;
 
-/** The span of no numbers: every number widens it. Zeros have no bits and leave a span as it is. */
+/** The span of the empty set. Every number except 0 widens it: 0 has no bits and leaves a span unchanged. */
 static const brio_span BRIO_NO_SPAN = {INT32_MAX, INT32_MIN};
 
-/** The span of a finite number. */
+/** Returns the span of a finite number. */
 static inline brio_span brio_span_of(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -33,7 +34,7 @@ static inline void brio_span_add(brio_span *s, double x) {
     s->high = own.high > s->high ? own.high : s->high;
 }
 
-/** The largest exponent whose double is at most `exponent`: weights are in units of the square of the grid's. */
+/** Returns the largest integer h with 2 h <= exponent. Weights are in units of 2^(2 h) on a grid with unit 2^h. */
 static inline int brio_half_exponent(int exponent) {
     return exponent >= 0 ? exponent / 2 : -((1 - exponent) / 2);
 }
