@@ -9,7 +9,7 @@ typedef struct {
     const double *spacing; /* #V: an edge may collapse if it is at most `longest` times the spacing at each end */
     double longest;
     double
-        tolerance; /* a collapse may put its point at most this share of the spacing from the planes it stands for, in root mean square */
+        tolerance; /* most root-mean-square distance of the new point from the planes it stands for, as a share of spacing */
 } brio_simplify_options;
 
 /** Collapses edges of a manifold oriented triangle mesh in place, edges of least error first. The mesh stays manifold
