@@ -14,7 +14,7 @@ typedef struct {
     double level;
     double blobbiness; /* B, at most 100; a larger B brings the surface closer to spheres */
     size_t
-        resolution; /* at most 2^15: cells along the longest side of the surface's box; 0: cells of 0.5 units, but at most 1024 */
+        resolution; /* cells along the longest side of the surface's box, at most 2^15; 0: cells of 0.5, at most 1024 */
     bool conforming; /* Delaunay triangles, by brio_conforming_surface */
 } brio_density_options;
 

@@ -145,7 +145,7 @@ done:
 
 /* --- figures --- */
 
-/* The number that is at place `rank` when all are sorted; reorders them. */
+/* Returns the number that has rank `rank` when all are sorted; reorders x. */
 static double select_rank(double *x, ptrdiff_t count, ptrdiff_t rank) {
     ptrdiff_t low = 0, high = count - 1;
     while (low < high) {

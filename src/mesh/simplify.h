@@ -8,8 +8,7 @@ typedef struct {
     size_t target_faces;   /* stops at this number of faces, or when no allowed collapse is left */
     const double *spacing; /* #V: an edge may collapse if it is at most `longest` times the spacing at each end */
     double longest;
-    double
-        tolerance; /* most root-mean-square distance of the new point from the planes it stands for, as a share of spacing */
+    double tolerance; /* most RMS distance of the new point from the planes it stands for, as a share of spacing */
 } brio_simplify_options;
 
 /** Collapses edges of a manifold oriented triangle mesh in place, edges of least error first. The mesh stays manifold
