@@ -1,27 +1,29 @@
 /* Iso-surfaces whose triangles are Delaunay.
  *
- * Vertices are placed where the edges of the grid cross the surface. The vertices and the corners of the cells they are
- * on, together, have a Delaunay triangulation that the grid cuts into pieces: each cell is a union of tetrahedra, and
- * these depend on the cell's own sites alone. In it no edge joins a corner inside to one outside: along the grid there
- * is a vertex between them, and a ball through two corners that are opposite in a face or in the cell holds the vertices
- * on the edges around it. So each tetrahedron with a corner is inside or outside as its corners are; one without takes
- * the side of its centroid. The surface is the boundary of those inside. It separates the corners, its triangles have no
- * corners, and a triangle with an empty ball among all sites has one among the vertices: it is Delaunay, ties included,
- * for they are broken by the order of the sites.
+ * Vertices are placed where edges of the grid cross the surface. A crossed cell is a cell with such an edge. The sites
+ * are the vertices and the corners of crossed cells. The grid cuts the Delaunay triangulation of the sites into
+ * pieces: each cell is a union of tetrahedra, which depend on the cell's sites only.
  *
- * Why the cells are independent: a ball about a point of a cell that holds none of the cell's corners meets the grid
- * only in the cell's own edges, since of all corners the nearest is one of the cell's, and since lines of the grid that
- * pass the cell are farther from the point than a corner is. The balls on the segments of a cell's edges, and on the
- * triangles of its faces, are centred in them and such; so the segments and triangles are Delaunay, and so are the
- * tetrahedra of the cell, whose balls are centred in it.
+ * No Delaunay edge joins an inside corner to an outside one. Along an edge of the grid a vertex lies between such
+ * corners. A ball through two corners that are opposite in a face or in the cell contains the vertices on the edges
+ * around them. So a tetrahedron with a corner takes the side of its corners; a tetrahedron without a corner takes the
+ * side of its centroid. The surface is the boundary of the inside tetrahedra. It separates the corners, so no corner
+ * is on it. A triangle with an empty ball among all sites has an empty ball among the vertices. So each triangle is
+ * Delaunay, ties included, because the order of the sites breaks ties.
  *
- * The grid is worked off in slabs one cell thick. Triangles in the plane between two slabs are seen from both, and go
- * where both sides are inside. Edges of four triangles, where two sheets touch, are possible; each sheet then gets
- * vertices of its own.
+ * Why cells are independent: take a ball centred in a cell that contains no corner of the cell. The nearest of all
+ * corners is a corner of that cell, and lines of the grid that miss the cell are farther away than that corner. So the
+ * ball meets the grid only in the cell's edges. The smallest balls of the segments on a cell's edges and of the
+ * triangles in its faces are such balls. So segments and triangles are Delaunay, and so are the cell's tetrahedra,
+ * whose balls are centred in the cell.
+ *
+ * The code works in slabs one cell thick. Triangles in the plane between two slabs occur from both sides; they are
+ * dropped where both sides are inside. An edge of four triangles, where two sheets touch, is possible; each sheet then
+ * gets its own vertices.
  *
  * Based on: Attali, Lachaud. Delaunay conforming iso-surface, skeleton extraction and noise removal. Computational
  * Geometry 2001.
- * Differs from the paper: the corners of the grid take part, which makes the construction one of labeling. */
+ * Differs from the paper: the corners of the grid are sites, so the construction only labels tetrahedra. */
 #include "base/sort.h"
 #include "iso/iso_surface.h"
 #include "mesh/split_vertices.h"
@@ -29,18 +31,18 @@
 #include <math.h>
 #include <string.h>
 
-enum { AXES = 3, ROOT_WORK = 12 /* evaluations that a root takes, at most */, CELLS_AN_EVALUATION = 16 };
+enum { AXES = 3, ROOT_WORK = 12 /* most evaluations for one root */, CELLS_AN_EVALUATION = 16 };
 
 static const uint32_t NONE = UINT32_MAX;
 
-/* Smallest distance of a vertex from the ends of its edge, in edges: it must not be a corner. Where doubles are too
- * coarse for that, it is the distance of two doubles. */
+/* Least distance of a vertex from the ends of its edge, as a share of the edge (chosen): a vertex must not be a
+ * corner. Where doubles are too coarse, the distance is that of two neighbouring doubles. */
 static const double LEAST_SHARE = 1.0 / 1024;
 
-/* The facets of a positive tetrahedron, seen counterclockwise from outside it; facet i is opposite to vertex i. */
+/* The facets of a positive tetrahedron, counterclockwise seen from outside; facet i is opposite to vertex i. */
 static const uint8_t FACET[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-typedef enum { OUTSIDE, INSIDE, BEYOND } tet_side; /* beyond the slab */
+typedef enum { OUTSIDE, INSIDE, BEYOND } tet_side; /* BEYOND: outside the slab */
 
 /* A point of a slab: a corner of its cells, or a vertex on one of their edges. */
 typedef struct {
@@ -53,14 +55,14 @@ typedef struct {
     size_t count, capacity;
 } triangle_list;
 
-/* Nodes of two layers, the lower and the upper side of the slab in work. */
+/* The sides are two layers of nodes: 0 the lower, 1 the upper side of the slab in work. */
 typedef struct {
     brio_context *ctx;
     const brio_implicit_grid *grid;
-    double least;      /* distance of a vertex from the ends of its edge */
+    double least;      /* least distance of a vertex from the ends of its edge */
     uint32_t z;        /* number of the slab */
     size_t work;       /* evaluations since the last report of progress */
-    size_t row, layer; /* nodes of a row, of a layer */
+    size_t row, layer; /* number of nodes of a row, of a layer */
     struct {
         double *value;         /* of each node */
         uint32_t *node_site;   /* of each node in this slab */
@@ -69,19 +71,20 @@ typedef struct {
     } side[2];
     site *sites;
     double *points; /* of the sites */
-    uint8_t *label; /* of the slab's tetrahedra: tet_side */
+    uint8_t *label; /* tet_side of each tetrahedron of the slab */
     size_t num_sites, site_capacity, point_capacity, label_capacity;
     double *vertices;
     size_t num_vertices, vertex_capacity;
     triangle_list surface;
-    triangle_list below, above; /* in the plane under the slab, from both its sides; in the plane over the slab */
-    brio_progress_fn progress;  /* the caller's */
+    triangle_list below, above; /* triangles in the plane under the slab, from both sides; in the plane over the slab */
+    brio_progress_fn progress;  /* the caller's callback */
     void *progress_user;
 } slab;
 
 /* --- layers --- */
 
-/* Counts evaluations, and reports progress when there were enough of them.   share  of the slab's work that is done. */
+/* Counts evaluations, and reports progress every BRIO_IMPLICIT_WORK evaluations.   share  of the slab's work that is
+ * done. */
 static brio_status count_work(slab *s, size_t evaluations, double share) {
     s->work += evaluations;
     if (s->work < BRIO_IMPLICIT_WORK) return BRIO_OK;
@@ -115,7 +118,7 @@ done:
     return status;
 }
 
-/* The corner at node (x, y, z) as a site. */
+/* Makes the corner at node (x, y, z) a site. */
 static brio_status add_corner(slab *s, const uint32_t node[3], uint32_t lowest) {
     size_t i = node[1] * s->row + node[0];
     uint32_t side = node[2] - lowest, *slot = &s->side[side].node_site[i];
@@ -146,7 +149,7 @@ done:
     return status;
 }
 
-/* The vertex between a node and the next one along an axis as a site, when the surface passes between them. */
+/* Makes the vertex between a node and the next node along an axis a site, when the surface passes between them. */
 static brio_status add_crossing(slab *s, const uint32_t node[3], uint32_t axis, uint32_t lowest) {
     brio_status status = BRIO_OK;
     const size_t step[3] = {1, s->row, 0};
@@ -175,7 +178,7 @@ done:
     return status;
 }
 
-/* Adds the cells of a slab that the surface passes. */
+/* Adds the sites of the slab's crossed cells. */
 static brio_status add_cells(slab *s, uint32_t z) {
     brio_status status = BRIO_OK;
     for (uint32_t y = 0; y < s->grid->cells[1]; y++)
@@ -193,7 +196,8 @@ done:
 
 /* --- labels --- */
 
-/* Of tetrahedra between cells that the surface does not pass, which have corners only, the side does not matter. */
+/* Returns the side of a tetrahedron. The side of a tetrahedron with corners only, between crossed cells, does not
+ * matter. */
 static tet_side side_of(const slab *s, const uint32_t *v) {
     double centroid[3] = {0};
     if (v[3] == BRIO_INFINITE) return BEYOND;
@@ -215,7 +219,8 @@ done:
     return status;
 }
 
-/* A facet at the border of the slab is in the plane over it or under it. */
+/* Returns whether a facet at the border of the slab is in the plane over the slab; otherwise it is in the plane under
+ * it. */
 static bool is_above(const slab *s, const uint32_t *v, int facet) {
     double node[3];
     brio_implicit_node(s->grid, (const uint32_t[3]){0, 0, s->z}, node);
@@ -259,7 +264,7 @@ done:
 
 /* --- slabs --- */
 
-/* The triangulation's progress as that of the slab: its stages are not the caller's. */
+/* Reports the triangulation's progress as progress of the slab; hides the triangulation's stages from the caller. */
 static int pass_progress_on(const char *stage, double fraction, void *user) {
     const slab *s = user;
     (void)stage;
@@ -315,7 +320,7 @@ static int compare_triangles(uint32_t a, uint32_t b, const void *user) {
     return 0;
 }
 
-/* Adds the triangles of a plane that are seen from one side only, and empties the list. */
+/* Adds the triangles of a plane that occur from one side only, and empties the list. */
 static brio_status settle_plane(slab *s, triangle_list *plane) {
     brio_status status = BRIO_OK;
     uint32_t *order = NULL;
@@ -337,7 +342,8 @@ done:
     return status;
 }
 
-/* The plane under the slab is complete; the plane over it is the one under the next slab. */
+/* Settles the plane under the slab, which is complete. Then the plane over the slab becomes the plane under the next
+ * slab. */
 static brio_status settle_lower_plane(slab *s) {
     brio_status status = settle_plane(s, &s->below);
     triangle_list empty = s->below;
@@ -348,9 +354,9 @@ static brio_status settle_lower_plane(slab *s) {
 
 /* --- the grid --- */
 
-/* Makes all nodes of a grid doubles: multiples of the unit, the distance of neighbouring doubles at the largest
- * coordinate. Rounded nodes could meet, and edges whose ends are close would have no place for a vertex between.
- *  *least  distance of a vertex from the ends of its edge. */
+/* Rounds the grid so that all its nodes are doubles: multiples of the unit, which is the distance of neighbouring
+ * doubles at the largest coordinate. Otherwise rounded nodes could coincide, or leave no double between them for a
+ * vertex.   *least  least distance of a vertex from the ends of its edge. */
 static brio_status settle_grid(brio_context *ctx, brio_implicit_grid *grid, double *least) {
     brio_status status = BRIO_OK;
     double most = 0;

@@ -1,8 +1,8 @@
 /* The surface of a molecule: an iso-surface of a sum of Gaussians.
  *
- * The Gaussian of an atom, less a thousandth of the level, is taken as far as it is positive. Atoms are dealt into
- * cubic buckets as wide as the largest reach, so that the atoms of a place are found in 27 buckets. Where atoms are far
- * apart, buckets are made wider until there are no more of them than a few for each atom.
+ * Each atom contributes its Gaussian less a thousandth of the level, where this is positive. Atoms are sorted into
+ * cubic buckets as wide as the largest reach, so a point needs the atoms of 27 buckets only. Where atoms are far
+ * apart, buckets grow until there are at most BUCKETS_AN_ATOM of them for each atom.
  *
  * Based on: Blinn. A generalization of algebraic surface drawing. ACM Transactions on Graphics 1982. */
 #include "iso/density.h"
@@ -11,18 +11,18 @@
 
 enum { MOST_RESOLUTION = 1 << 15, MOST_DEFAULT_RESOLUTION = 1024, BUCKETS_AN_ATOM = 4 };
 
-static const double NEGLIGIBLE = 1e-3; /* share of the level at which a Gaussian ends */
+static const double NEGLIGIBLE = 1e-3; /* share of the level at which a Gaussian ends; chosen */
 static const double DEFAULT_CELL = 0.5;
-static const double MOST_BLOBBINESS = 100; /* e^100 is a double still, and the atoms are balls */
+static const double MOST_BLOBBINESS = 100; /* chosen: e^100 is still a double, and the atoms already look like balls */
 
 typedef struct {
     brio_atom *atoms; /* bucket by bucket */
-    uint32_t *start;  /* of each bucket, and the end of the last */
-    double low[3];    /* of the box of the atoms' centres */
-    double side;      /* of a bucket */
+    uint32_t *start;  /* first atom of each bucket; then the end of the last bucket */
+    double low[3];    /* low corner of the box of the atoms' centres */
+    double side;      /* side of a bucket */
     size_t size[3];   /* number of buckets along each axis */
     double level, blobbiness;
-    double reach; /* square of the distance, in radii, at which a Gaussian ends */
+    double reach; /* square of the distance at which a Gaussian ends, in radii */
 } density;
 
 /* --- the field --- */
@@ -38,7 +38,7 @@ static double of_bucket(const density *d, size_t bucket, const double *p) {
     return sum;
 }
 
-/* The buckets along an axis that can reach a coordinate: from *first up to *end. */
+/* Finds the buckets along an axis that can reach a coordinate: *first to *end - 1. */
 static void bucket_range(const density *d, int axis, double coordinate, size_t *first, size_t *end) {
     double at = floor((coordinate - d->low[axis]) / d->side), last = (double)d->size[axis];
     *first = (size_t)fmin(fmax(at - 1, 0), last);
@@ -78,7 +78,7 @@ static void choose_buckets(density *d, const double *extent, double reach, size_
     for (int k = 0; k < 3; k++) d->size[k] = (size_t)floor(extent[k] / d->side) + 1;
 }
 
-/* Sorts the atoms by bucket, keeping their order inside each. */
+/* Sorts the atoms by bucket; keeps their order inside each bucket. */
 static brio_status fill_buckets(brio_context *ctx, density *d, const brio_atom *atoms, size_t num_atoms) {
     brio_status status = BRIO_OK;
     size_t buckets = d->size[0] * d->size[1] * d->size[2];
@@ -93,7 +93,7 @@ done:
 
 /* --- all of it --- */
 
-/* A grid round the box of the centres with room for the reach of the largest atom. */
+/* Chooses a grid round the box of the centres, with room for the reach of the largest atom. */
 static brio_status choose_grid(brio_context *ctx, const density *d, const double *extent, double reach,
                                size_t resolution, brio_implicit_grid *grid) {
     brio_status status = BRIO_OK;
@@ -101,7 +101,7 @@ static brio_status choose_grid(brio_context *ctx, const density *d, const double
     for (int k = 0; k < 3; k++) longest = fmax(longest, extent[k] + 2 * room);
     double cells = resolution ? (double)resolution : fmin(ceil(longest / DEFAULT_CELL), MOST_DEFAULT_RESOLUTION);
     grid->cell = longest / cells;
-    for (int k = 0; k < 3; k++) { /* whole cells, and the same excess on both sides */
+    for (int k = 0; k < 3; k++) { /* whole cells, with equal excess on both sides */
         BRIO_TRY(brio_implicit_cells(ctx, ceil((extent[k] + 2 * room) / grid->cell), &grid->cells[k]));
         grid->low[k] = d->low[k] + 0.5 * (extent[k] - grid->cells[k] * grid->cell);
     }
@@ -139,7 +139,7 @@ brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size
         }
     }
     for (int k = 0; k < 3; k++) extent[k] = high[k] - d.low[k];
-    d.reach = 1 - log(NEGLIGIBLE * o->level) / o->blobbiness; /* not positive for a level above all densities */
+    d.reach = 1 - log(NEGLIGIBLE * o->level) / o->blobbiness; /* not positive when the level is above all densities */
     double reach = sqrt(fmax(d.reach, 0.01)) * largest;
     BRIO_REQUIRE(ctx, isfinite(reach) && isfinite(extent[0] + extent[1] + extent[2]), BRIO_ERR_ARGUMENT,
                  "level %g with blobbiness %g: the atoms reach too far for a grid", o->level, o->blobbiness);

@@ -1,13 +1,13 @@
 /* The iso-surface of a density.
  *
- * For a wanted number of vertices the resolution is found by trial: the number grows with its square except for what finer
- * cells bring to light, so that a few rounds do. */
+ * Finds the resolution for a wanted number of vertices by trial. The number of vertices grows about with the square of
+ * the resolution, except for details that finer cells reveal; so a few rounds suffice. */
 #include "iso/iso_source.h"
 #include <math.h>
 
 enum { FIRST_RESOLUTION = 100, MOST_RESOLUTION = 1 << 15, MOST_ROUNDS = 5 };
 
-static const double CLOSE_ENOUGH = 0.02; /* share of the wanted number of vertices */
+static const double CLOSE_ENOUGH = 0.02; /* share of the wanted number of vertices; chosen */
 
 static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *o,
                                 size_t resolution, brio_mesh **out) {
@@ -26,8 +26,8 @@ done:
     return status;
 }
 
-/* The resolution to try next, when the number of vertices grows with a power of the resolution: the square, or what the
- * last two tries say. */
+/* Returns the resolution to try next, if the number of vertices grows with a power of the resolution. The power is 2
+ * at first, then the power that the last two tries give. */
 static size_t next_resolution(double wanted, const double resolution[2], const double vertices[2]) {
     double power = 2;
     if (resolution[0] > 0 && resolution[0] != resolution[1])
@@ -36,9 +36,9 @@ static size_t next_resolution(double wanted, const double resolution[2], const d
     return (size_t)fmin(fmax(rint(next), 2), MOST_RESOLUTION);
 }
 
-/* Tries resolutions until there are about as many vertices as wanted; the last try stands. */
-static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *o,
-                                        brio_mesh **out) {
+/* Tries resolutions until the number of vertices is close to the wanted one; keeps the last try. */
+static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source *from,
+                                        const brio_iso_surface_options *o, brio_mesh **out) {
     brio_status status = BRIO_OK;
     double wanted = (double)o->vertices, tried[2] = {0, FIRST_RESOLUTION}, vertices[2] = {0, 0};
     for (int round = 0; round < MOST_ROUNDS; round++) {
@@ -56,7 +56,7 @@ done:
     return status;
 }
 
-/* Turns a level that counts deviations into one of the map's unit. */
+/* Converts a level in standard deviations to the map's unit. */
 static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, brio_iso_surface_options *o) {
     brio_status status = BRIO_OK;
     double mean, deviation;
@@ -70,8 +70,8 @@ done:
     return status;
 }
 
-brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *options,
-                                    brio_mesh **out) {
+brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *from,
+                                    const brio_iso_surface_options *options, brio_mesh **out) {
     brio_status status = BRIO_OK;
     brio_iso_surface_options o = *options;
     *out = NULL;

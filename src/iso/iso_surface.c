@@ -1,14 +1,14 @@
 /* Iso-surfaces by marching tetrahedra.
  *
  * Every cube of the grid is cut into the six tetrahedra round its diagonal from least to greatest corner (Kuhn's
- * subdivision): all cubes are cut alike, so the cuts agree on shared sides and the tetrahedra form one complex. The
- * zero set of a piecewise linear function on a complex is a manifold when no node is zero, and here a node is inside or
- * outside, never between. A tetrahedron with both kinds of nodes adds one triangle or two; its vertices sit on edges of
- * the complex and are placed by root finding on the function itself.
+ * subdivision). All cubes are cut alike, so the cuts agree on shared faces and the tetrahedra form one complex. The
+ * zero set of a piecewise linear function on a complex is a manifold when no node is zero. Here each node is inside or
+ * outside, so no node counts as zero. A tetrahedron with both kinds of nodes adds one or two triangles. Their vertices
+ * are on edges of the complex, at roots of the function itself.
  *
- * An edge joins a node to one of the seven nodes above it in the order of coordinates; (node, direction) names it. The
- * cubes are visited layer by layer, and the vertices of the edges of two layers of nodes are remembered in a table, so
- * every edge has one vertex and memory is that of two layers.
+ * An edge joins a node to one of the seven nodes above it in the order of coordinates; (node, direction) names the
+ * edge. Cubes are visited layer by layer. A table holds the vertices on the edges of two layers of nodes, so every
+ * edge has one vertex and memory is that of two layers.
  *
  * Based on: Doi, Koide. An efficient method of triangulating equi-valued surfaces by using tetrahedral cells. IEICE
  * Transactions 1991. */
@@ -20,26 +20,28 @@ enum {
     DIRECTIONS = 7,
     ROOT_STEPS = 12,
     NODES_A_THREAD = 1 << 9,
-    ROWS_A_CHUNK = 8 /* that a thread takes at once */
+    ROWS_A_CHUNK = 8 /* rows that a thread takes at once; chosen */
 };
 
 static const uint32_t NO_VERTEX = UINT32_MAX;
 
-/* Corners of a cube are numbers of three bits: 1 for x, 2 for y, 4 for z. All six tetrahedra are positive. */
+/* A corner of a cube is a number of three bits: bit 0 for x, bit 1 for y, bit 2 for z. All six tetrahedra are
+ * positive. */
 static const uint8_t TETRAHEDRA[6][4] = {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7},
                                          {0, 5, 1, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}};
 
-/* For each set of inside vertices of a tetrahedron (bit i for vertex i), an even permutation that puts them first or,
- * where there are three, that puts the outside one first. */
+/* For each set of inside vertices of a tetrahedron (bit i for vertex i): an even permutation that puts the inside
+ * vertices first. With three inside vertices it puts the outside vertex first. */
 static const uint8_t INSIDE_FIRST[16][4] = {
     {0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 3, 1}, {1, 2, 0, 3}, {3, 0, 2, 1},
     {3, 0, 2, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 3, 0, 1}, {1, 0, 3, 2}, {0, 1, 2, 3}, {0, 1, 2, 3}};
 
-/* Layers of nodes are z = constant; `value[0]` and `edge_vertex[0]` belong to the lower layer in work. */
+/* Layers of nodes are z = constant. value[0] and edge_vertex[0] belong to the lower layer of the cubes in work,
+ * value[1] and edge_vertex[1] to the upper one. */
 typedef struct {
     brio_context *ctx;
     const brio_implicit_grid *grid;
-    size_t row, layer;        /* nodes of a row, of a layer */
+    size_t row, layer;        /* number of nodes of a row, of a layer */
     double *value[2];         /* of each node */
     uint32_t *edge_vertex[2]; /* of each node and direction - 1 */
     double *vertices;
@@ -109,10 +111,10 @@ static void fill_rows(void *user, size_t begin, size_t end, int thread) {
     bool closed = true;
     (void)thread;
     for (size_t y = begin; y < end; y++) closed &= fill_row(job, job->from + (uint32_t)y);
-    if (!closed) __atomic_store_n(&job->closed, false, __ATOMIC_RELAXED); /* read after the run */
+    if (!closed) __atomic_store_n(&job->closed, false, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
 
-/* The layer's evaluation is the first half of the work on the cells below it. */
+/* Reports the evaluation of a layer as the first half of the work on the cells below the layer. */
 brio_status brio_implicit_layer(brio_context *ctx, const brio_implicit_grid *grid, uint32_t z, double *values) {
     brio_status status = BRIO_OK;
     uint32_t rows = grid->cells[1] + 1;
@@ -132,7 +134,7 @@ done:
     return status;
 }
 
-/* Evaluates layer z into the upper slot and forgets the edges of the layer that was there. */
+/* Evaluates layer z into slot 1 and clears the edges of the layer that slot 1 held. */
 static brio_status fill_upper_layer(marcher *m, uint32_t z) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_implicit_layer(m->ctx, m->grid, z, m->value[1]));
@@ -152,7 +154,8 @@ static void upper_layer_becomes_lower(marcher *m) {
 
 /* --- vertices --- */
 
-/* Regula falsi in the Illinois variant, which halves the value of an end that stays, so that both ends close in. */
+/* Finds the root by regula falsi in the Illinois variant: it halves the value at an end that stays, so that both ends
+ * converge. */
 void brio_implicit_root(const brio_implicit_grid *grid, const double *a, const double *b, double f_a, double f_b,
                         double *p) {
     double s = 0, t = 1, root = 0.5;
@@ -175,7 +178,7 @@ void brio_implicit_root(const brio_implicit_grid *grid, const double *a, const d
     }
 }
 
-/* The vertex on the edge between two corners of cube (x, y, z), made when the edge has none yet. */
+/* Returns the vertex on the edge between two corners of cube (x, y, z); makes the vertex when the edge has none yet. */
 static brio_status vertex_on_edge(marcher *m, const uint32_t cube[3], uint32_t corner, uint32_t other, uint32_t *out) {
     brio_status status = BRIO_OK;
     uint32_t low = corner < other ? corner : other, high = corner ^ other ^ low;
@@ -214,8 +217,8 @@ done:
     return status;
 }
 
-/* Adds the surface inside one tetrahedron. In a positive tetrahedron (a, b, c, d) with only a inside, the triangle
- * (ab, ac, ad) looks away from a; with a and b inside, the quadrilateral (ac, ad, bd, bc) looks away from both. */
+/* Adds the surface inside one tetrahedron. In a positive tetrahedron (a, b, c, d) with only a inside, triangle (ab,
+ * ac, ad) faces away from a. With a and b inside, quadrilateral (ac, ad, bd, bc) faces away from both. */
 static brio_status march_tetrahedron(marcher *m, const uint32_t cube[3], const uint8_t *tetrahedron, unsigned inside) {
     brio_status status = BRIO_OK;
     unsigned set = 0;
@@ -241,7 +244,7 @@ done:
 
 static brio_status march_layer(marcher *m, uint32_t z) {
     brio_status status = BRIO_OK;
-    const size_t most = BRIO_IMPLICIT_WORK / (ROOT_STEPS * DIRECTIONS); /* cubes */
+    const size_t most = BRIO_IMPLICIT_WORK / (ROOT_STEPS * DIRECTIONS); /* cubes between two reports of progress */
     size_t work = 0;
     for (uint32_t y = 0; y < m->grid->cells[1]; y++)
         for (uint32_t x = 0; x < m->grid->cells[0]; x++) {

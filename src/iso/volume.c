@@ -1,11 +1,11 @@
 /* Numbers on a grid in space, and their iso-surfaces.
  *
- * Between the values the field is the product of Catmull-Rom splines, with the values at the border repeated beyond it.
- * The surface is made in steps of cells, where the grid is straight, and its vertices are then carried to space. So
- * that it closes where the part above the level runs out of the volume, that part is cut by a box half a cell inside
- * the border: the function is the greater of the field's distance below the level and the distance out of the box, the
- * latter in the scale of the values. A surface of Delaunay triangles cannot be carried over, since balls do not stay
- * balls; its grid is one of cubes in space.
+ * Between the values the field is the product of Catmull-Rom splines; beyond the border the border's values are
+ * repeated. The surface is made in coordinates of cells, where the grid is rectangular, and its vertices are then
+ * mapped to space. The part above the level may leave the volume. To close the surface, a box half a cell inside the
+ * border cuts this part: the function is the greater of the field's distance below the level and the distance outside
+ * the box, scaled to the values. Mapping does not keep triangles Delaunay, because balls do not stay balls. So a
+ * surface of Delaunay triangles uses a grid of cubes in space.
  *
  * Based on: Catmull, Rom. A class of local interpolating splines. Computer Aided Geometric Design 1974. */
 #include "iso/volume.h"
@@ -14,8 +14,8 @@
 
 enum { MOST_RESOLUTION = 1 << 15 };
 
-/* Most cubes for each value of the volume where the steps choose their size: as many as cubes of a quarter of a step
- * have. Chosen; volumes whose steps are about as long along all axes stay below 8. */
+/* Most cubes for each value of the volume, where the steps choose the size of cubes: the number for cubes of a quarter
+ * step. Chosen; volumes with nearly equal steps along all axes stay below 8. */
 static const double MOST_CUBES_A_VALUE = 64;
 
 void brio_volume_free(brio_context *ctx, brio_volume *volume) {
@@ -38,7 +38,7 @@ void brio_volume_statistics(const brio_volume *volume, double *mean, double *dev
 
 /* --- the field --- */
 
-/* The four values along an axis that count at a place, as indices, and their weights. */
+/* Finds the indices and weights of the four values along an axis that determine the field at a place. */
 static void spline(double place, uint32_t size, uint32_t index[4], double weight[4]) {
     double low = floor(fmin(fmax(place, 0), size - 1)), t = place - low;
     for (int i = 0; i < 4; i++) index[i] = (uint32_t)fmin(fmax(low + i - 1, 0), size - 1);
@@ -66,13 +66,13 @@ double brio_volume_at(const brio_volume *volume, const double *place) {
 
 typedef struct {
     const brio_volume *volume;
-    double level, scale;  /* of the distance out of the box */
+    double level, scale;  /* scale: factor of the distance outside the box */
     double stretch[3];    /* steps of the volume in a cell, along each axis */
-    double cells[3];      /* number of them */
-    double inverse[3][3]; /* from space, the origin subtracted, to steps of the volume */
+    double cells[3];      /* number of cells along each axis */
+    double inverse[3][3]; /* maps space, minus the origin, to steps of the volume */
 } level_set;
 
-/* p is in cells. */
+/* Returns the function at p, given in cells. */
 static double below_level(const double *p, const void *user) {
     const level_set *s = user;
     double place[3], outside = -INFINITY;
@@ -98,7 +98,7 @@ static double step_length(const brio_volume *volume, int axis) {
     return sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
 }
 
-/* Cells of about the same length along all axes, `resolution` of them along the longest. */
+/* Chooses cells of about equal length along all axes, with `resolution` of them along the longest. */
 static brio_status choose_cells(brio_context *ctx, const brio_volume *volume, size_t resolution, uint32_t cells[3]) {
     brio_status status = BRIO_OK;
     double length[3], longest = 0;
@@ -124,7 +124,7 @@ static void carry_to_space(const level_set *s, brio_mesh *mesh) {
     }
 }
 
-/* The rows of the inverse are the cross products of two steps, over the volume of the three. */
+/* Inverts the matrix of steps. Its rows are cross products of two steps, divided by the volume of the three steps. */
 static void invert_steps(const brio_volume *volume, double inverse[3][3]) {
     for (int k = 0; k < 3; k++) {
         const double *u = volume->step[(k + 1) % 3], *v = volume->step[(k + 2) % 3], *w = volume->step[k];
@@ -137,7 +137,7 @@ static void invert_steps(const brio_volume *volume, double inverse[3][3]) {
     }
 }
 
-/* The box round the volume, and the side of its cubes. */
+/* Finds the box round the volume, and the side of its cubes. */
 static void choose_cube(const level_set *s, size_t resolution, double low[3], double high[3], double *cube) {
     const brio_volume *volume = s->volume;
     double longest = 0, shortest_step = INFINITY;
@@ -154,8 +154,8 @@ static void choose_cube(const level_set *s, size_t resolution, double low[3], do
     *cube = resolution ? longest / (double)resolution : shortest_step;
 }
 
-/* A grid of cubes in space round the volume, with a cell to spare. Steps of very different lengths would make a grid
- * that nobody waits for: then the caller has to choose. */
+/* Chooses a grid of cubes in space round the volume, with one cell to spare. Refuses steps of very different lengths,
+ * which would make a grid far too large: then the caller must choose the resolution. */
 static brio_status choose_cubes(brio_context *ctx, level_set *s, size_t resolution, brio_implicit_grid *grid) {
     brio_status status = BRIO_OK;
     const brio_volume *volume = s->volume;

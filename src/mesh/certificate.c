@@ -1,19 +1,20 @@
-/* The certificate of a polygon mesh: what connectivity alone says of a surface.
+/* The certificate of a polygon mesh: what connectivity alone proves about a surface.
  *
- * The half-edges of each edge are linked into rings (edge_rings). Two union-finds run over the rings: of the faces,
- * joined across edges, whose sets are the components; and of the corners, joined at both ends of every edge of two
- * faces, whose sets are the fans: a vertex is manifold when its corners form one fan. A component has the vertices and
- * edges its faces use; a vertex in several components counts once in each.
+ * edge_rings links the half-edges of each edge into a ring. Two union-finds then run over the rings. The first joins
+ * faces across every edge; its sets are the components. The second joins corners at both ends of every edge of two
+ * faces; its sets are the fans. A vertex is manifold when its corners form one fan. A component has the vertices and
+ * edges that its faces use; a vertex in several components counts once in each.
  *
- * Where the surface is not a manifold, these conventions hold. An edge joins all its faces into one component, however
- * many they are; but only an edge of two faces continues a fan. A boundary loop is a set of boundary edges connected
- * through fans and across edges of more than two faces: a cycle where the surface is manifold, while two loops that
- * touch where two fans share a vertex stay two. A face with fewer than three corners, or with a vertex twice, makes
- * each of its vertices (each it has twice) non-manifold. An odd 2 - chi - loops, as of a Moebius strip, is rounded
- * down.
+ * Conventions where the surface is not a manifold:
+ * - An edge joins all its faces into one component, whatever their number. Only an edge of two faces continues a fan.
+ * - A boundary loop is a set of boundary edges connected through fans and across edges of more than two faces. On a
+ *   manifold a loop is a cycle. Two loops that touch where two fans share a vertex stay two.
+ * - A face with fewer than three corners makes all its vertices non-manifold. A face with a vertex twice makes that
+ *   vertex non-manifold.
+ * - An odd 2 - chi - loops, as of a Moebius strip, is rounded down.
  *
- * Threads share the work. Nothing depends on its order: a root is the first element of its set, counts are whole
- * numbers, and areas and volumes are summed in parts of their own. */
+ * Threads share the work. The result does not depend on their order: a root is the first element of its set, counts
+ * are integers, and areas and volumes are summed in fixed parts. */
 #include "base/float_state.h"
 #include "base/versioned.h"
 #include "base/sort.h"
@@ -28,8 +29,8 @@ typedef struct {
     brio_context *ctx;
     const brio_mesh *mesh;
     size_t corners;
-    uint32_t *ring;    /* #corners: edge rings */
-    uint32_t *face_of; /* #corners; NULL where all faces are triangles, one after the other */
+    uint32_t *ring;    /* #corners: edge rings (edge_rings.h) */
+    uint32_t *face_of; /* #corners; NULL where all faces are triangles */
     uint32_t *fan;     /* #corners: union-find of the corners */
     uint32_t *patch;   /* #F: union-find of the faces */
     uint8_t *vertex;   /* #V: bits of vertex_state */
@@ -53,7 +54,7 @@ static uint32_t next_corner(const topology *t, uint32_t h) {
     return h + 1 < offsets[f + 1] ? h + 1 : (uint32_t)offsets[f];
 }
 
-/* Calls body for parts of n items. */
+/* Calls body on parts of the range 0 to n - 1. */
 static void for_each(const topology *t, size_t n, brio_part_fn body, void *user) {
     brio_for(t->ctx, brio_threads(t->ctx, n, ITEMS_A_THREAD), n, body, user);
 }
@@ -72,7 +73,7 @@ static bool is_of_triangles(const brio_mesh *mesh) {
     return all;
 }
 
-/* Makes a set of each of some faces and of each of their corners. */
+/* Makes one set of each face, and one of each corner of these faces. */
 static void make_sets(void *user, size_t begin, size_t end, int thread) {
     const topology *t = user;
     const uint64_t *offsets = t->mesh->face_offsets;
@@ -86,7 +87,7 @@ static void make_sets(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* On failure the caller frees what there is. */
+/* Allocates and fills a topology. On failure the caller frees it. */
 static brio_status topology_new(brio_context *ctx, const brio_mesh *mesh, topology *t) {
     brio_status status = BRIO_OK;
     *t = (topology){.ctx = ctx, .mesh = mesh, .corners = mesh->num_faces ? mesh->face_offsets[mesh->num_faces] : 0};
@@ -100,12 +101,12 @@ done:
     return status;
 }
 
-/* Adds to a count that is read after the run. */
+/* Adds to a counter. The counter is read only after all threads have ended. */
 static void add_relaxed(size_t *count, size_t amount) {
     __atomic_fetch_add(count, amount, __ATOMIC_RELAXED);
 }
 
-/* Joins the corners at either end of the edge of the half-edges h and g. */
+/* Joins the corners at both ends of the edge that half-edges h and g share. */
 static void join_corners(const topology *t, uint32_t h, uint32_t g, bool alone) {
     const uint32_t *v = t->mesh->face_vertices;
     uint32_t h_end = next_corner(t, h), g_end = next_corner(t, g);
@@ -114,14 +115,14 @@ static void join_corners(const topology *t, uint32_t h, uint32_t g, bool alone) 
     brio_unite(t->fan, h_end, same_way ? g_end : g, alone);
 }
 
-/* The edges that a closed oriented manifold does not have. */
+/* Counts of the edges that a closed oriented manifold does not have. */
 typedef struct {
     const topology *t;
-    bool alone; /* one thread joins */
+    bool alone; /* only one thread joins */
     size_t boundary, nonmanifold, flipped;
 } edge_count;
 
-/* Joins and counts at half-edges. Of each edge's half-edges the last one speaks for it. */
+/* Joins and counts at half-edges. The last half-edge of each edge represents the edge. */
 static void join_at_half_edges(void *user, size_t begin, size_t end, int thread) {
     edge_count *c = user;
     const topology *t = c->t;
@@ -143,7 +144,7 @@ static void join_at_half_edges(void *user, size_t begin, size_t end, int thread)
     add_relaxed(&c->flipped, flipped);
 }
 
-/* Joins the faces across every edge, and the corners at either end of the edges of two faces. */
+/* Joins the faces across every edge, and the corners at both ends of every edge of two faces. */
 static void join_across_edges(const topology *t, brio_certificate *out) {
     int threads = brio_threads(t->ctx, t->corners, ITEMS_A_THREAD);
     edge_count c = {.t = t, .alone = threads == 1};
@@ -155,13 +156,13 @@ static void join_across_edges(const topology *t, brio_certificate *out) {
 
 /* --- degenerate faces --- */
 
-/* Threads set the states of vertices; the states are read after the run. */
+/* Sets a state of a vertex. Several threads may set states; the states are read after all threads have ended. */
 static void mark(const topology *t, uint32_t v, uint8_t state) {
     __atomic_fetch_or(&t->vertex[v], state, __ATOMIC_RELAXED);
 }
 
-/* Whether a face has fewer than three corners, or a vertex twice; marks such vertices. Each corner is held against all
- * before it. */
+/* Returns whether a face has fewer than three corners or a vertex twice, and marks such vertices. Compares each corner
+ * with all corners before it. */
 static bool mark_small_face(const topology *t, size_t f) {
     const uint32_t *v = t->mesh->face_vertices + t->mesh->face_offsets[f];
     size_t count = (size_t)(t->mesh->face_offsets[f + 1] - t->mesh->face_offsets[f]);
@@ -175,7 +176,7 @@ static bool mark_small_face(const topology *t, size_t f) {
     return bad;
 }
 
-/* The same with the last face of each vertex, plus 1. */
+/* Does what mark_small_face does, in linear time: last_face holds the last face of each vertex, plus 1. */
 static bool mark_large_face(const topology *t, size_t f, uint32_t *last_face) {
     const uint64_t *offsets = t->mesh->face_offsets;
     bool bad = false;
@@ -189,7 +190,7 @@ static bool mark_large_face(const topology *t, size_t f, uint32_t *last_face) {
     return bad;
 }
 
-enum { SMALL = 32 }; /* corners of a face */
+enum { SMALL = 32 }; /* most corners of a face that mark_small_face handles; chosen */
 
 typedef struct {
     const topology *t;
@@ -210,7 +211,7 @@ static void mark_small_faces(void *user, size_t begin, size_t end, int thread) {
     add_relaxed(&c->bad, bad);
 }
 
-/* Marks the vertices of degenerate faces; counts these faces, those without any corner included. */
+/* Marks the vertices of degenerate faces. Counts the degenerate faces, including faces without corners. */
 static brio_status mark_degenerate_faces(const topology *t, size_t *degenerate) {
     brio_status status = BRIO_OK;
     const uint64_t *offsets = t->mesh->face_offsets;
@@ -230,8 +231,8 @@ done:
 
 /* --- components --- */
 
-/* Adds to the counts of components: one run of equals at a time, so that threads seldom meet. The counts are read when
- * all threads are done. */
+/* Adds to the counts of components. Collects one run of equal components at a time, so that threads seldom touch the
+ * same counts. The counts are read after all threads have ended. */
 typedef struct {
     component *components, run;
     uint32_t number;
@@ -253,21 +254,22 @@ static component *tally_of(tally *t, uint32_t number) {
 
 typedef struct {
     const topology *t;
-    uint32_t *number;      /* of each face its component, in the order of the components' first faces */
-    component *components; /* each with its number of faces, edges, vertices and loops */
-    size_t count;          /* of components */
+    uint32_t *number;      /* component of each face, numbered in the order of the components' first faces */
+    component *components; /* counts of faces, edges, vertices and loops of each component */
+    size_t count;          /* number of components */
     bool pinched;          /* some vertex has two fans */
 } component_count;
 
-/* Finds the roots of faces: number[f] becomes the root of face f. The links of the sets do not serve for that: a thread
- * that halves a path may put an older link in the place of a link to a root. */
+/* Sets number[f] to the root of face f. The parent links in the union-find are not enough: a thread that halves a path
+ * may replace a link to a root by an older link. */
 static void find_roots(void *user, size_t begin, size_t end, int thread) {
     const component_count *c = user;
     (void)thread;
     for (size_t f = begin; f < end; f++) c->number[f] = brio_find(c->t->patch, (uint32_t)f);
 }
 
-/* A root is the first face of its component, so that its number is there when another face asks for it. */
+/* Turns roots into component numbers. A root is the first face of its component, so it is numbered before any other
+ * face of the component. */
 static void number_components(component_count *c) {
     size_t num_faces = c->t->mesh->num_faces;
     for_each(c->t, num_faces, find_roots, c);
@@ -275,7 +277,7 @@ static void number_components(component_count *c) {
         c->number[f] = c->number[f] == f ? (uint32_t)c->count++ : c->number[c->number[f]];
 }
 
-/* Counts faces and their edges, each in its component. */
+/* Counts faces and edges of each component. */
 static void count_faces(void *user, size_t begin, size_t end, int thread) {
     const component_count *c = user;
     const topology *t = c->t;
@@ -290,7 +292,7 @@ static void count_faces(void *user, size_t begin, size_t end, int thread) {
     tally_end(&own);
 }
 
-/* Counts one vertex for each fan in the component of the fan, and sees whether some vertex has two. */
+/* Counts one vertex for each fan, in the component of the fan. Sets `pinched` when some vertex has two fans. */
 static void count_fans(void *user, size_t begin, size_t end, int thread) {
     component_count *c = user;
     const topology *t = c->t;
@@ -310,11 +312,11 @@ static void count_fans(void *user, size_t begin, size_t end, int thread) {
     if (pinched) __atomic_store_n(&c->pinched, true, __ATOMIC_RELAXED);
 }
 
-/* Takes back what count_fans counted too much: several fans of one vertex in the same component. */
+/* Corrects what count_fans counted twice: several fans of one vertex in one component count as one vertex. */
 static brio_status recount_pinched_vertices(const component_count *c) {
     brio_status status = BRIO_OK;
     const topology *t = c->t;
-    uint64_t *fans = NULL; /* (vertex, component) */
+    uint64_t *fans = NULL; /* pairs (vertex, component) */
     size_t count = 0, capacity = 0;
     for (uint32_t h = 0; h < t->corners; h++) {
         uint32_t v = t->mesh->face_vertices[h];
@@ -330,12 +332,12 @@ done:
     return status;
 }
 
-/* Joins fans across edges of more than two faces, and at the two ends of each boundary edge: every set with such an
- * edge is a boundary loop. This is the end of t->fan as the partition into fans. */
+/* Joins fans across edges of more than two faces, and at the two ends of each boundary edge. Every resulting set with
+ * a boundary edge is a boundary loop. Afterwards t->fan no longer describes the fans. */
 static brio_status count_loops(const component_count *c) {
     brio_status status = BRIO_OK;
     const topology *t = c->t;
-    uint8_t *counted = NULL; /* of each root of a set */
+    uint8_t *counted = NULL; /* 1 at a root whose loop has been counted */
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, counted, t->corners));
     for (uint32_t h = 0; h < t->corners; h++) {
         uint32_t g = t->ring[h];
@@ -358,10 +360,10 @@ static int64_t genus_of(const component *c) {
     return twice >= 0 ? twice / 2 : -((1 - twice) / 2);
 }
 
-/* Writes the genera, largest component first. */
+/* Writes the genera, the component with the most faces first. */
 static brio_status list_genera(brio_context *ctx, const component *components, size_t count, brio_certificate *out) {
     brio_status status = BRIO_OK;
-    uint64_t *order = NULL; /* (complement of the number of faces, component) */
+    uint64_t *order = NULL; /* pairs (UINT32_MAX - number of faces, component) */
     BRIO_TRY(BRIO_ALLOC(ctx, order, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->genera, count));
     for (size_t i = 0; i < count; i++) order[i] = (uint64_t)(UINT32_MAX - components[i].faces) << 32 | i;
@@ -430,7 +432,9 @@ done:
 
 /* --- measure --- */
 
-enum { PARTS = 256 }; /* of the faces, so that rounding does not depend on the number of threads */
+enum {
+    PARTS = 256
+}; /* parts of the faces; a fixed number, so that rounding does not depend on the number of threads */
 
 typedef struct {
     double low[3], high[3], area, volume;
@@ -453,7 +457,7 @@ static void box_of_part(const brio_mesh *mesh, int part, measure *m) {
         }
 }
 
-/* Adds a face, cut into a fan of triangles from its first corner. */
+/* Adds the area and volume of a face, cut into a fan of triangles from its first corner. */
 static void measure_face(const brio_mesh *mesh, size_t f, const double *centre, measure *m) {
     const uint32_t *corners = mesh->face_vertices + mesh->face_offsets[f];
     uint64_t count = mesh->face_offsets[f + 1] - mesh->face_offsets[f];
@@ -483,8 +487,8 @@ static void measure_parts(void *user, size_t begin, size_t end, int thread) {
             measure_face(m->mesh, f, m->centre, &m->part[i]);
 }
 
-/* Area and volume. Volumes are summed about the centre of the box of the vertices that faces use, so that a surface far
- * from the origin loses no digits. */
+/* Sums area and volume. Volumes are relative to the centre of the box of the used vertices, so that a surface far from
+ * the origin loses no digits. */
 static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
     measures m = {.mesh = mesh};
     if (!mesh->num_faces || !mesh->face_offsets[mesh->num_faces]) return;

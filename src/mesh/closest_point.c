@@ -1,11 +1,11 @@
 /* Nearest points on a surface by a bounding-volume hierarchy.
  *
- * The triangles are halved again and again by the median of their centroids along the longest side of the centroids'
- * box, in place (quickselect). The search goes down to the nearer child first and drops every box that is not nearer
- * than the best point found, so its answer is exact whatever the tree looks like.
+ * Building halves the triangles in place (quickselect), again and again, at the median of their centroids along the
+ * longest side of the centroids' box. The search visits the nearer child first and skips every box that is not nearer
+ * than the best point found. So the answer is exact for every tree.
  *
- * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980 (boxes).
- * Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). */
+ * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980
+ * (boxes). Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). */
 #include "mesh/closest_point.h"
 #include "base/rng.h"
 #include "base/team.h"
@@ -16,7 +16,7 @@
 enum {
     MOST_LEVELS = 64,
     TRIANGLES_A_THREAD = 1 << 12,
-    SUBTREES_A_THREAD = 8 /* so that no thread waits long for the last subtree */
+    SUBTREES_A_THREAD = 8 /* chosen: several, so that no thread waits long for the last subtree */
 };
 
 /* A triangle while the tree is built: its centroid, in units of the mesh's box, and its index. */
@@ -27,14 +27,14 @@ typedef struct {
 
 typedef struct {
     const double *vertices;
-    uint32_t (*triangles)[3]; /* in the order of the faces */
+    uint32_t (*triangles)[3]; /* in the order of the mesh's faces */
     item *items;
-    size_t count; /* of triangles */
+    size_t count; /* number of triangles */
     brio_box *boxes;
-    size_t first; /* node of the level in work */
+    size_t first; /* first node of the level in work */
 } builder;
 
-/* A node: items low to high - 1. */
+/* The items of a node: low to high - 1. */
 typedef struct {
     size_t low, high;
 } range;
@@ -68,8 +68,8 @@ static void box_add_box(brio_box *box, const brio_box *other) {
 
 /* --- building --- */
 
-/* Reorders the items so that none before `middle` has a larger coordinate than any from there on. The pivots are random
- * places, so that no order of the triangles is a bad one. */
+/* Reorders the items so that no item before `middle` has a larger coordinate than any item from `middle` on. Pivots
+ * are at pseudorandom places, so that no fixed order of the triangles is slow. */
 static void split_at(item *items, ptrdiff_t count, ptrdiff_t middle, int axis) {
     ptrdiff_t low = 0, high = count - 1;
     while (low < high) {
@@ -106,14 +106,14 @@ static size_t middle_of(range r) {
     return r.low + (r.high - r.low) / 2;
 }
 
-/* Deals the items of a node to its children. */
+/* Splits the items of a node between its two children. */
 static void split_node(const builder *b, range r) {
     item *items = b->items + r.low;
     size_t count = r.high - r.low;
     split_at(items, (ptrdiff_t)count, (ptrdiff_t)(middle_of(r) - r.low), longest_axis(items, count));
 }
 
-/* The box of a node from those of its children. */
+/* Sets the box of a node to the union of its children's boxes. */
 static void join_children(const builder *b, size_t node) {
     brio_box box = b->boxes[2 * node + 1];
     box_add_box(&box, &b->boxes[2 * node + 2]);
@@ -139,7 +139,8 @@ static void build_node(const builder *b, size_t node, range r) {
     join_children(b, node);
 }
 
-/* The range of a node. The bits of node + 1 after the highest are the way down from the root: 0 for a lower child. */
+/* Returns the range of a node. The bits of node + 1 below the highest one are the path from the root: 0 for the lower
+ * child, 1 for the upper child. */
 static range range_of(const builder *b, size_t node) {
     range r = {0, b->count};
     int bit = 0;
@@ -153,29 +154,29 @@ static range range_of(const builder *b, size_t node) {
     return r;
 }
 
-/* Splits nodes of the level in work. */
+/* Splits some nodes of the level in work. */
 static void split_nodes(void *user, size_t begin, size_t end, int thread) {
     const builder *b = user;
     (void)thread;
     for (size_t i = begin; i < end; i++) split_node(b, range_of(b, b->first + i));
 }
 
-/* Builds what hangs on nodes of the level in work. */
+/* Builds the subtrees of some nodes of the level in work. */
 static void build_subtrees(void *user, size_t begin, size_t end, int thread) {
     const builder *b = user;
     (void)thread;
     for (size_t i = begin; i < end; i++) build_node(b, b->first + i, range_of(b, b->first + i));
 }
 
-/* Calls body for each node of a level; a node is a job. */
+/* Calls body on the nodes of a level; one node is one job. */
 static void for_level(brio_context *ctx, builder *b, size_t nodes, brio_part_fn body) {
     b->first = nodes - 1;
     brio_for_chunks(ctx, brio_threads(ctx, nodes, 1), nodes, 1, body, b);
 }
 
-/* Splits level after level until there are SUBTREES_A_THREAD nodes for each thread, then builds the subtrees. A node
- * that is split here has at least TRIANGLES_A_THREAD / SUBTREES_A_THREAD triangles: no leaf is split. What a split does
- * depends on the items of the node alone, so the tree is the same for every number of threads. */
+/* Splits level after level until each thread has SUBTREES_A_THREAD nodes, then builds the subtrees. A node split here
+ * has at least TRIANGLES_A_THREAD / SUBTREES_A_THREAD triangles, so no leaf is split. A split depends only on the
+ * node's items, so the tree does not depend on the number of threads. */
 static void build_tree(brio_context *ctx, builder *b) {
     size_t threads = (size_t)brio_threads(ctx, b->count, TRIANGLES_A_THREAD), nodes = 1;
     for (; threads > 1 && nodes < SUBTREES_A_THREAD * threads; nodes *= 2) for_level(ctx, b, nodes, split_nodes);
@@ -183,7 +184,7 @@ static void build_tree(brio_context *ctx, builder *b) {
     for (size_t node = nodes - 1; node-- > 0;) join_children(b, node);
 }
 
-/* Cuts the faces into triangles. */
+/* Cuts each face into a fan of triangles. */
 static brio_status cut_faces(brio_context *ctx, const brio_mesh *mesh, uint32_t (**triangles)[3], size_t *count) {
     brio_status status = BRIO_OK;
     const uint64_t *offsets = mesh->face_offsets;
@@ -224,7 +225,7 @@ static void fill_items(const builder *b, size_t count) {
     }
 }
 
-/* Nodes of the tree over that many triangles, those of the levels above its deepest leaves all counted. */
+/* Returns the number of nodes of the complete binary tree whose deepest level holds the deepest leaves. */
 static size_t count_nodes(size_t triangles) {
     size_t nodes = 1;
     for (size_t most = triangles; most > BRIO_LEAF_TRIANGLES; most -= most / 2) nodes = 2 * nodes + 1;
@@ -260,14 +261,14 @@ void brio_triangle_tree_free(brio_context *ctx, brio_triangle_tree *tree) {
 
 /* --- one triangle --- */
 
-/* The point of segment ab nearest to p, which may be one point only. */
+/* Writes the point of segment ab nearest to p; a may equal b. */
 static void closest_on_segment(const double *a, const double *b, const double *p, double *closest) {
     double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
     double length = brio_dot(u, u), t = length > 0 ? fmin(fmax(brio_dot(w, u) / length, 0), 1) : 0;
     for (int k = 0; k < 3; k++) closest[k] = t < 1 ? a[k] + t * u[k] : b[k];
 }
 
-/* Whether p lies over the inside of triangle (a, a+u, a+v); if so, its foot in the plane. */
+/* Returns whether the foot of p in the plane of triangle (a, a+u, a+v) lies in the triangle; if so, writes the foot. */
 static bool closest_inside(const double *a, const double *u, const double *v, const double *p, double *closest) {
     double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
     double uu = brio_dot(u, u), uv = brio_dot(u, v), vv = brio_dot(v, v), wu = brio_dot(w, u), wv = brio_dot(w, v);
@@ -277,7 +278,7 @@ static bool closest_inside(const double *a, const double *u, const double *v, co
     return true;
 }
 
-/* Nearest point of triangle abc, of whatever shape. */
+/* Writes the point of triangle abc nearest to p; the triangle may be degenerate. */
 static void closest_on_triangle(const double *a, const double *b, const double *c, const double *p, double *closest) {
     double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
     if (closest_inside(a, u, v, p, closest)) return;
@@ -293,7 +294,7 @@ static void closest_on_triangle(const double *a, const double *b, const double *
 
 typedef struct {
     size_t node, low, high; /* the range of triangles */
-    double distance;        /* squared, to the box */
+    double distance;        /* square of the distance to the box */
 } visit;
 
 static visit visit_child(const brio_triangle_tree *tree, const visit *parent, int upper, const double *p) {

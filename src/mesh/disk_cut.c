@@ -1,23 +1,23 @@
 /* Cuts a triangulated surface into disks.
  *
- * A breadth-first tree of triangles, joined across edges, is a disk; the edges that it does not cross are the cut. They
- * form a connected graph in each component, with 2 g independent cycles on a closed surface of genus g, and as every
- * vertex has an edge that is not crossed they reach all vertices. Loose ends are taken off one edge at a time: what is
- * inside closes up, and the disk stays one. What is left has no vertex of degree 1, and as the sum of (degree - 2) over
- * its vertices is 4 g - 2, none of more than 4 g. On a sphere nothing is left; there one triangle is cut out.
+ * A breadth-first tree of triangles, joined across edges, is a disk. The edges that the tree does not cross are the
+ * cut. In each closed component of genus g the cut is a connected graph with 2 g independent cycles. Every vertex has
+ * an edge that is not crossed, so the cut reaches all vertices. Then the code removes loose ends of the cut one edge
+ * at a time; the disk stays one disk. What remains has no vertex of degree 1. The sum of (degree - 2) over its
+ * vertices is 4 g - 2, so no vertex has degree above 4 g. On a sphere no cut remains; there one triangle is cut out.
  *
- * Where a vertex is pinched, the fans of triangles round it count as vertices of their own.
+ * At a pinched vertex each fan of triangles counts as a vertex.
  *
  * Based on: Lazarus, Pocchiola, Vegter, Verroust. Computing a canonical polygonal schema of an orientable triangulated
  * surface. SoCG 2001.
- * Differs from the paper: the cut is the graph of all cycles at once and not a set of curves that may run side by
- * side, which leaves no vertex on more of them than it must. */
+ * Differs from the paper: the cut is the graph of all cycles at once, not a set of curves that may run side by side.
+ * So no vertex lies on more cut edges than necessary. */
 #include "mesh/disk_cut.h"
 #include "mesh/twins.h"
 
 /* --- sectors --- */
 
-/* The corner to the right of corner h at the same vertex, or BRIO_NO_HALF_EDGE across a cut. */
+/* Returns the corner to the right of corner h at its vertex, or BRIO_NO_HALF_EDGE when a cut lies between. */
 static uint32_t right_of(const brio_disk_cut *cut, uint32_t h) {
     return cut->flags[h] & BRIO_EDGE_CUT ? BRIO_NO_HALF_EDGE : brio_next_corner(cut->twin[h]);
 }
@@ -27,7 +27,7 @@ static uint32_t left_of(const brio_disk_cut *cut, uint32_t h) {
     return cut->flags[in] & BRIO_EDGE_CUT ? BRIO_NO_HALF_EDGE : cut->twin[in];
 }
 
-/* The rightmost corner of the sector of h; h itself when it goes all the way round. */
+/* Returns the rightmost corner of the sector of h, or h when no cut ends the sector. */
 static uint32_t rightmost(brio_disk_cut *cut, uint32_t h) {
     uint32_t at = h;
     for (;;) {
@@ -63,7 +63,7 @@ static void set_cut(brio_disk_cut *cut, uint32_t h, bool is_cut) {
     if (cut->twin[h] != BRIO_NO_HALF_EDGE) cut->flags[cut->twin[h]] = bits;
 }
 
-/* Cuts all edges that breadth-first trees of triangles do not cross.   queue  #F;   seen  #F, zeroed. */
+/* Cuts all edges that the breadth-first trees of triangles do not cross.   queue  #F;   seen  #F, zeroed. */
 static void cut_round_trees(brio_disk_cut *cut, uint32_t *queue, uint8_t *seen) {
     size_t faces = cut->num_corners / 3;
     for (size_t h = 0; h < cut->num_corners; h++) cut->flags[h] = BRIO_EDGE_CUT;
@@ -84,14 +84,14 @@ static void cut_round_trees(brio_disk_cut *cut, uint32_t *queue, uint8_t *seen) 
     }
 }
 
-/* The cut edges at each fan are counted, and their half-edges added up without carries: of a fan of degree 1 the sum is
- * the one half-edge left, named by its lower half. */
+/* For each fan: the number of its cut edges, and the exclusive or of the names of these edges (edge_name). At a fan of
+ * degree 1 the exclusive or is the name of its one cut edge. */
 typedef struct {
     uint32_t *degree, *sum;
 } fan_edges;
 
 static uint32_t edge_name(const brio_disk_cut *cut, uint32_t h) {
-    return h < cut->twin[h] ? h : cut->twin[h]; /* a boundary edge has no twin, the largest number */
+    return h < cut->twin[h] ? h : cut->twin[h]; /* a boundary edge has twin UINT32_MAX, so its name is h */
 }
 
 static void change_edge(const brio_disk_cut *cut, const fan_edges *fans, uint32_t h, uint32_t by) {
@@ -102,7 +102,7 @@ static void change_edge(const brio_disk_cut *cut, const fan_edges *fans, uint32_
     }
 }
 
-/* Takes loose ends off the cut. The sectors are the fans. */
+/* Removes the loose ends of the cut. During this step the sectors are the fans. */
 static void prune(brio_disk_cut *cut, const fan_edges *fans) {
     for (uint32_t h = 0; h < cut->num_corners; h++)
         if ((cut->flags[h] & BRIO_EDGE_CUT) && edge_name(cut, h) == h) change_edge(cut, fans, h, 1);
@@ -148,7 +148,7 @@ static brio_status cut_into_disks(brio_context *ctx, brio_disk_cut *cut) {
     fan_edges fans = {0};
     size_t faces = cut->num_corners / 3;
     for (size_t h = 0; h < cut->num_corners; h++) cut->flags[h] = cut->twin[h] == BRIO_NO_HALF_EDGE ? BRIO_EDGE_CUT : 0;
-    number_sectors(cut); /* the fans */
+    number_sectors(cut); /* without cuts, sectors are fans */
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, fans.degree, cut->num_sectors));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, fans.sum, cut->num_sectors));
     BRIO_TRY(BRIO_ALLOC(ctx, queue, faces));

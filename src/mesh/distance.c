@@ -1,9 +1,9 @@
-/* Distance between two surfaces, by random points on either and their exact nearest points on the other.
+/* Distance between two surfaces: random points on each and their exact nearest points on the other surface.
  *
- * Sample i of a surface follows from the seed and i: a triangle by area (bisection in the running sums) and a point
- * uniform in it. The queries run in parallel and leave one number each; the figures are summed up in order afterwards,
- * so they do not depend on the number of threads. Both directions have the same number of samples: the mean of the two
- * means, and root mean square and 95th percentile (nearest rank) over both, are over all of them alike.
+ * The seed and i determine sample i of a surface: a triangle chosen by area (bisection in the running sums) and a
+ * uniform point in the triangle. The queries run in parallel and store one result each. One thread sums the results in
+ * order afterwards, so the figures do not depend on the number of threads. Both surfaces have the same number of
+ * samples. So the mean, the root mean square and the 95th percentile (nearest rank) give both directions equal weight.
  *
  * Based on: Cignoni, Rocchini, Scopigno. Metro: measuring error on simplified surfaces. Comput. Graph. Forum 1998. */
 #include "base/float_state.h"
@@ -17,25 +17,25 @@
 enum {
     DEFAULT_SAMPLES = 100000,
     BATCH = 1 << 15,     /* samples between two reports of progress */
-    SAMPLES_A_CHUNK = 64 /* that a thread takes at once */
+    SAMPLES_A_CHUNK = 64 /* samples that a thread takes at once; chosen */
 };
 
 /* One of the two surfaces. */
 typedef struct {
     brio_triangle_tree tree;
-    double *area_up_to; /* of triangle t and all before it */
+    double *area_up_to; /* [t]: area of triangles 0 to t */
 } surface;
 
-/* What the samples said. */
+/* The results of the samples. */
 typedef struct {
     size_t samples;   /* on each surface */
-    double *distance; /* 2 * samples: those on a, then those on b */
-    float *cosine;    /* of the angle of the normals; negative where there is none */
+    double *distance; /* 2 * samples: the samples on a, then the samples on b */
+    float *cosine;    /* of the angle between the normals; negative where a normal is 0 */
 } measurement;
 
 /* --- surfaces --- */
 
-/* Twice the area times the normal. */
+/* Writes the normal, of length twice the area. */
 static void triangle_normal(const brio_triangle_tree *tree, size_t t, double *n) {
     const double *a = tree->vertices + 3 * (size_t)tree->triangles[t][0];
     const double *b = tree->vertices + 3 * (size_t)tree->triangles[t][1];
@@ -74,7 +74,7 @@ done:
 
 /* --- samples --- */
 
-/* The first triangle whose running sum exceeds `area`. */
+/* Returns the first triangle whose running sum exceeds `area`. */
 static size_t triangle_at(const surface *s, double area) {
     size_t low = 0, high = s->tree.num_triangles - 1;
     while (low < high) {
@@ -87,7 +87,7 @@ static size_t triangle_at(const surface *s, double area) {
     return low;
 }
 
-/* A uniform point of the surface; returns its triangle. */
+/* Draws a uniform point of the surface; returns its triangle. */
 static size_t sample(const surface *s, brio_rng rng, double *p) {
     size_t t = triangle_at(s, brio_rng_double(&rng) * s->area_up_to[s->tree.num_triangles - 1]);
     double r = sqrt(brio_rng_double(&rng)), q = brio_rng_double(&rng);
@@ -114,11 +114,11 @@ static void measure_sample(const surface *from, const surface *to, brio_rng rng,
     *cosine = normal_cosine(m, n);
 }
 
-/* The samples of one surface; their results go to m from entry `start` on. */
+/* The samples of one surface. Their results go to m, from entry `start` on. */
 typedef struct {
     const surface *from, *to;
     uint64_t seed;
-    size_t start, first; /* sample of the batch in work */
+    size_t start, first; /* first: first sample of the batch in work */
     measurement *m;
 } sampler;
 
@@ -145,7 +145,7 @@ done:
 
 /* --- figures --- */
 
-/* The number that is at place `rank` when all are sorted; reorders them. */
+/* Returns the number that has rank `rank` when all are sorted; reorders x. */
 static double select_rank(double *x, ptrdiff_t count, ptrdiff_t rank) {
     ptrdiff_t low = 0, high = count - 1;
     while (low < high) {

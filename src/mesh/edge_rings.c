@@ -1,15 +1,14 @@
 /* Edges of a polygon mesh, found by sorting.
  *
- * The half-edges are dealt into one bucket for each vertex, by the lower of their two vertices (a counting sort);
- * inside a bucket they are sorted by the higher vertex and then by their own index. Half-edges of one edge are then
- * neighbours, in ascending order. Buckets are short in any surface worth the name, so this is linear in practice;
- * heapsort bounds the buckets of the others. */
+ * A counting sort puts each half-edge into the bucket of the lower of its two vertices. Each bucket is sorted by
+ * higher vertex, then by half-edge index. Then the half-edges of one edge are consecutive and ascending. Buckets are
+ * short in ordinary surfaces, so the time is linear in practice; heapsort bounds the time of long buckets. */
 #include "mesh/edge_rings.h"
 #include "base/sort.h"
 #include "base/team.h"
 
 enum {
-    CORNERS_A_THREAD = 1 << 14, /* that are only checked */
+    CORNERS_A_THREAD = 1 << 14, /* for a pass that only checks; chosen */
     FACES_A_THREAD = 1 << 12,
     BUCKETS_A_CHUNK = 1 << 10
 };
@@ -19,13 +18,13 @@ typedef struct {
     bool sound;
 } check;
 
-/* Whether all the vertices that corners begin to end - 1 name are there. */
+/* Clears c->sound when a corner from begin to end - 1 names a vertex that does not exist. */
 static void check_corners(void *user, size_t begin, size_t end, int thread) {
     check *c = user;
     bool sound = true;
     (void)thread;
     for (size_t h = begin; h < end; h++) sound = sound && c->mesh->face_vertices[h] < c->mesh->num_vertices;
-    if (!sound) __atomic_store_n(&c->sound, false, __ATOMIC_RELAXED); /* read after the run */
+    if (!sound) __atomic_store_n(&c->sound, false, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
 
 brio_status brio_mesh_check_faces(brio_context *ctx, const brio_mesh *mesh) {
@@ -55,23 +54,24 @@ typedef struct {
     uint32_t lower, higher;
 } edge;
 
-/* The edge of half-edge h of the face with corners first to end. */
+/* Returns the edge of half-edge h, in the face whose corners are first to end - 1. */
 static edge edge_of(const uint32_t *corners, uint64_t first, uint64_t end, uint64_t h) {
     uint32_t u = corners[h], v = corners[h + 1 < end ? h + 1 : first];
     return u < v ? (edge){u, v} : (edge){v, u};
 }
 
-/* The half-edges as keys (higher vertex, half-edge), the bucket of each lower vertex after that of the one before. */
+/* The half-edges as keys (higher vertex, half-edge), in buckets by lower vertex; buckets follow each other in the
+ * order of vertices. */
 typedef struct {
     const brio_mesh *mesh;
     uint32_t *bucket_end; /* #V */
     uint64_t *keys;       /* #corners */
     uint32_t *ring;       /* #corners */
-    bool alone;           /* one thread deals */
+    bool alone;           /* only one thread fills the buckets */
 } buckets;
 
-/* Adds 1 to a counter and returns what the counter was. The order is relaxed: threads read no more than the counter,
- * until the run is over. */
+/* Adds 1 to a counter and returns the value before. Relaxed order suffices: until all threads have ended, no thread
+ * reads what the counters guard. */
 static inline uint32_t take_one(uint32_t *counter, bool alone) {
     return alone ? (*counter)++ : __atomic_fetch_add(counter, 1, __ATOMIC_RELAXED);
 }
@@ -86,7 +86,7 @@ static void count_half_edges(void *user, size_t begin, size_t end, int thread) {
             take_one(&b->bucket_end[edge_of(b->mesh->face_vertices, offsets[f], offsets[f + 1], h).lower], b->alone);
 }
 
-/* Puts the half-edges of faces into their buckets. The order inside a bucket is left to the threads. */
+/* Puts the half-edges of faces into their buckets. The order inside a bucket depends on the threads. */
 static void deal_half_edges(void *user, size_t begin, size_t end, int thread) {
     const buckets *b = user;
     const uint64_t *offsets = b->mesh->face_offsets;
@@ -98,7 +98,7 @@ static void deal_half_edges(void *user, size_t begin, size_t end, int thread) {
         }
 }
 
-/* Fills the buckets; bucket_end is zeroed. */
+/* Fills the buckets. The caller has zeroed bucket_end; afterwards bucket_end[v] is the end of the bucket of v. */
 static void deal_into_buckets(brio_context *ctx, buckets *b) {
     int threads = brio_threads(ctx, b->mesh->num_faces, FACES_A_THREAD);
     uint32_t start = 0;
@@ -112,7 +112,7 @@ static void deal_into_buckets(brio_context *ctx, buckets *b) {
     brio_for(ctx, threads, b->mesh->num_faces, deal_half_edges, b);
 }
 
-/* Links each run of equal higher vertices among the sorted keys of one bucket. */
+/* Links each run of equal higher vertices, in the sorted keys of one bucket, into a ring. */
 static void link_bucket(const uint64_t *keys, size_t count, uint32_t *ring) {
     for (size_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count && keys[end] >> 32 == keys[i] >> 32; end++)

@@ -3,7 +3,7 @@
 #include "base/memory.h"
 #include <string.h>
 
-/* Counts beyond this are not of this world, and their sizes in bytes could wrap. */
+/* Larger counts are refused, so that sizes in bytes cannot overflow. */
 static const uint64_t MOST = UINT64_C(1) << 48;
 
 brio_status brio_mesh_new(brio_context *ctx, brio_mesh **out) {

@@ -1,6 +1,5 @@
-/* The subgraphs of a mesh's edges by their kinds.
- *
- * The trees are made from all edges; the subgraph of bounded degree goes by the triangles. */
+/* Dispatches on the kind of subgraph. The trees use the list of all edges; the subgraph of bounded degree uses the
+ * triangles. */
 #include "mesh/spanning_subgraph.h"
 #include "base/float_state.h"
 

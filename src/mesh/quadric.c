@@ -1,13 +1,13 @@
 /* Quadric errors.
  *
  * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
- * Differs from the paper: planes are weighted by area, and each corner pulls lightly towards where it was. */
+ * Differs from the paper: area weights the planes, and a small term draws each corner towards its original position. */
 #include "mesh/quadric.h"
 #include <math.h>
 
-static const double PULL = 1e-3; /* of a corner, as a share of its planes */
+static const double PULL = 1e-3; /* weight of the original position, as a share of the weight of the planes; chosen */
 
-/* weight (n.x - d)^2, n not necessarily of unit length */
+/* Adds weight (n.x - d)^2; n need not have unit length. */
 static void add_plane(brio_quadric *q, const double *n, double d, double weight) {
     int at = 0;
     for (int i = 0; i < 3; i++) {

@@ -1,12 +1,12 @@
-/* The number of pairs of faces that run through each other.
+/* The number of pairs of faces that cross each other.
  *
- * Faces are sorted along a space-filling curve of the centres of their boxes; a binary tree of boxes stands over that
- * sequence, its nodes being ranges, so that nothing but the boxes is stored. Every face is held against the tree, and
- * each pair whose boxes meet is tested once, exactly, triangle by triangle. Near-linear where faces are about as far
- * apart as they are large.
+ * Faces are sorted along a space-filling curve through the centres of their boxes. A binary tree of boxes stands over
+ * this sequence. A node is a range of the sequence, so only the boxes are stored. Each face searches the tree, and
+ * each pair whose boxes meet is tested once, exactly, triangle by triangle. The time is near-linear where faces are
+ * about as far apart as they are large.
  *
- * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980 (boxes).
- *           Morton. A computer oriented geodetic data base. IBM 1966 (the curve). */
+ * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980
+ * (boxes). Morton. A computer oriented geodetic data base. IBM 1966 (the curve). */
 #include "mesh/triangles_cross.h"
 #include "base/float_state.h"
 #include "base/memory.h"
@@ -21,15 +21,15 @@ enum {
     MOST_LEVELS = 64,
     CURVE_BITS = 16,
     BATCH = 1 << 12,   /* faces between two reports of progress */
-    FACES_A_CHUNK = 64 /* that a thread takes at once */
+    FACES_A_CHUNK = 64 /* faces that a thread takes at once; chosen */
 };
 
 typedef struct {
     double low[3], high[3];
 } box;
 
-/* Node i is a range of `order`, the root 0 all of it; its children 2i + 1 and 2i + 2 are the halves of the range, the
- * lower one shorter by at most 1; ranges of at most LEAF_FACES are leaves. */
+/* Node i is a range of `order`; the root, node 0, is the whole of `order`. The children 2i + 1 and 2i + 2 are the
+ * halves of the range, the lower one shorter by at most 1. A range of at most LEAF_FACES is a leaf. */
 typedef struct {
     const brio_mesh *mesh;
     uint32_t *order; /* faces with three corners or more, along the curve */
@@ -67,7 +67,7 @@ static const double *corner(const brio_mesh *m, uint64_t h) {
 
 /* --- the tree --- */
 
-/* Every third bit of the result from the low bits of x. */
+/* Moves bit i of x to bit 3i. */
 static uint64_t spread_bits(uint64_t x) {
     x = (x | x << 32) & UINT64_C(0x1f00000000ffff);
     x = (x | x << 16) & UINT64_C(0x1f0000ff0000ff);
@@ -147,7 +147,7 @@ static void tree_free(brio_context *ctx, tree *t) {
 
 /* --- pairs --- */
 
-/* Triangle i of the fan of a face. */
+/* Writes triangle i of the fan of a face. */
 static void fan_triangle(const brio_mesh *m, size_t face, uint64_t i, const double *t[3]) {
     uint64_t first = m->face_offsets[face];
     t[0] = corner(m, first);
@@ -180,7 +180,7 @@ static bool faces_cross(const tree *tr, size_t f, size_t g) {
     return false;
 }
 
-/* The faces that cross the one at place `at` of the order and come after it there. */
+/* Counts the faces that cross the face at place `at` of the order and come after `at` in the order. */
 static int64_t count_crossing(const tree *t, size_t at) {
     range stack[MOST_LEVELS];
     size_t face = t->order[at];
@@ -202,10 +202,10 @@ static int64_t count_crossing(const tree *t, size_t at) {
     return count;
 }
 
-/* The pairs of a batch of faces. */
+/* The crossing pairs of a batch of faces. */
 typedef struct {
     const tree *tree;
-    size_t first; /* place in the order */
+    size_t first; /* place of the batch's first face in the order */
     int64_t count;
 } batch;
 
@@ -214,7 +214,7 @@ static void count_pairs(void *user, size_t begin, size_t end, int thread) {
     int64_t count = 0;
     (void)thread;
     for (size_t i = begin; i < end; i++) count += count_crossing(b->tree, b->first + i);
-    if (count) __atomic_fetch_add(&b->count, count, __ATOMIC_RELAXED); /* read after the run */
+    if (count) __atomic_fetch_add(&b->count, count, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
 
 brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs) {

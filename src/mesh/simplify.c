@@ -1,18 +1,19 @@
 /* Edge collapses on half-edges.
  *
- * Half-edge h of triangle h / 3 starts at vertex[h]; mate[h] is the same edge in the other triangle. An edge collapses
- * into a point chosen by quadric errors when
- *   - both its ends are inside the surface, and its link condition holds: the ends have two neighbours in common and
- *     not three each, so that the surface stays the one it was;
- *   - no triangle round it turns over or loses its area. (Needles must be let be: the crust is full of them, and each
- *     is on the way to a better shape.)
- * Lists hold the edges by their error, a hundredth of it to a list; the first list that is not empty has become a heap,
- * which also takes what comes back below it. So the order is that of one heap, and the heap stays in the cache. An entry
- * is out of date when one of the ends has changed since.
+ * Half-edge h of triangle h / 3 starts at vertex[h]; mate[h] is the half-edge of the same edge in the neighbouring
+ * triangle. An edge may collapse into a point chosen by quadric errors when
+ * - both its ends are inside the surface;
+ * - the link condition holds, so that the topology of the surface stays: the ends have exactly two common neighbours,
+ *   and not both ends have degree three;
+ * - no triangle round the edge turns over or loses its area. Needles stay allowed: the crust is full of them, and each
+ *   collapse of a needle is a step to better shapes.
+ * The queue sorts edges by error into lists; the errors in one list differ by less than 1%. The first list that is not
+ * empty becomes a heap. The heap also takes later entries with errors below the end of its list. So the queue has the
+ * order of one heap, while the heap fits into the cache. An entry is out of date when one of its edge's ends has
+ * changed since the entry was made.
  *
- * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
- *           Dey, Edelsbrunner, Guha, Nekhayev. Topology preserving edge contraction. Publ. Inst. Math. Beograd 1999 (the
- *           link condition). */
+ * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997. Dey, Edelsbrunner,
+ * Guha, Nekhayev. Topology preserving edge contraction. Publ. Inst. Math. Beograd 1999 (the link condition). */
 #include "mesh/simplify.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -23,15 +24,15 @@
 
 enum { NONE = UINT32_MAX };
 
-/* A triangle may turn by less than acos of this. */
+/* A collapse may turn a triangle by at most the angle with this cosine; chosen. */
 static const double LEAST_COSINE = 0.2;
 
 enum { LISTS = 1 << 15 };
 
 typedef struct {
     float error;
-    uint32_t half_edge, version; /* of both ends, added */
-    uint32_t next;               /* in its list */
+    uint32_t half_edge, version; /* sum of the versions of both ends */
+    uint32_t next;               /* next entry in the list */
 } entry;
 
 typedef struct {
@@ -39,19 +40,19 @@ typedef struct {
     brio_mesh *mesh;
     const brio_simplify_options *options;
     double *position;
-    uint32_t *vertex, *mate; /* #half-edges; vertex NONE in triangles that are gone */
+    uint32_t *vertex, *mate; /* #half-edges; vertex is NONE in triangles that have vanished */
     size_t num_half_edges, num_faces;
-    uint32_t *half_edge; /* #V: one that starts there, or NONE */
+    uint32_t *half_edge; /* #V: a half-edge that starts at the vertex, or NONE */
     uint32_t *version, *seen;
     uint32_t round;
     uint8_t *boundary;
     double *spacing;
     brio_quadric *quadric;
-    uint32_t *list; /* LISTS first entries, or NONE */
-    entry *pool;    /* of all lists */
+    uint32_t *list; /* first entry of each of LISTS lists, or NONE */
+    entry *pool;    /* entries of all lists */
     size_t pool_size, pool_capacity;
-    uint32_t unused; /* entries of the pool that no list has */
-    uint32_t level;  /* the list that has become the heap */
+    uint32_t unused; /* first of the pool's entries that are in no list */
+    uint32_t level;  /* list that has become the heap */
     entry *heap;
     size_t heap_size, heap_capacity;
 } simplifier;
@@ -64,7 +65,7 @@ static uint32_t before_in_triangle(uint32_t h) {
     return h % 3 == 0 ? h + 2 : h - 1;
 }
 
-/* The next half-edge round the vertex where h starts. */
+/* Returns the next half-edge round the start of h. */
 static uint32_t turn(const simplifier *s, uint32_t h) {
     return s->mate[before_in_triangle(h)];
 }
@@ -104,7 +105,7 @@ static entry heap_pop(simplifier *s) {
 
 /* --- lists --- */
 
-/* Grows with the error, from the exponent and seven more bits. */
+/* Returns the list of an error, which grows with the error: the exponent and the highest seven bits of the mantissa. */
 static uint32_t level_of(float error) {
     uint32_t bits;
     memcpy(&bits, &error, sizeof bits);
@@ -132,7 +133,7 @@ static bool up_to_date(const simplifier *s, const entry *e) {
     return s->version[s->vertex[e->half_edge]] + s->version[end_of(s, e->half_edge)] == e->version;
 }
 
-/* Makes the next list the heap. */
+/* Moves the entries of the next list into the heap. */
 static brio_status next_level(simplifier *s) {
     brio_status status = BRIO_OK;
     s->level++;
@@ -147,7 +148,7 @@ done:
     return status;
 }
 
-/* The edge of the least error; *found is false when none is left. */
+/* Takes the edge of least error off the queue. Sets *found to false when no edge is left. */
 static brio_status queue_pop(simplifier *s, entry *e, bool *found) {
     brio_status status = BRIO_OK;
     *found = false;
@@ -163,7 +164,8 @@ done:
 
 /* --- the point of a collapse, and its error --- */
 
-/* The squared distance, weighted by area, of the best point for the edge of h, which goes to `point`. */
+/* Writes the best point for the edge of h to `point`. Returns the squared distance of that point from the planes,
+ * weighted by area. */
 static double best_point(const simplifier *s, uint32_t h, brio_quadric *sum, double *point) {
     const double *a = at(s, s->vertex[h]), *b = at(s, end_of(s, h));
     double candidate[3][3], edge = 0, away = 0, least = INFINITY;
@@ -203,7 +205,8 @@ static brio_status offer(simplifier *s, uint32_t h) {
 
 /* --- what a collapse must not do --- */
 
-/* Whether the ends of h have just the two neighbours in common that their triangles give them. */
+/* Returns whether the ends of h have exactly two common neighbours, the apexes of the edge's two triangles, and not
+ * both ends have degree three. */
 static bool link_condition(simplifier *s, uint32_t h) {
     uint32_t m = s->mate[h], degree[2] = {0, 0}, common = 0, g = h;
     s->round++;
@@ -240,8 +243,8 @@ static void add_normals(const simplifier *s, uint32_t h, double *sum) {
     } while ((g = turn(s, g)) != h);
 }
 
-/* Whether the triangle of g, its first corner moved to `point`, looks the way it did, or, where it was turned over
- * before, the way that all of them do together. */
+/* Returns whether the triangle of g keeps its side when its first corner moves to `point`: its new normal agrees with
+ * its old normal. If the old normal disagrees with `together`, the new normal must agree with `together`. */
 static bool keeps_its_side(const simplifier *s, uint32_t g, const double *point, const double *together) {
     const double *b = at(s, end_of(s, g)), *c = at(s, s->vertex[before_in_triangle(g)]);
     double old[3], new[3];
@@ -253,7 +256,7 @@ static bool keeps_its_side(const simplifier *s, uint32_t g, const double *point,
     return brio_dot(new, side) >= LEAST_COSINE * size * sqrt(brio_dot(side, side));
 }
 
-/* The same for all triangles round the start of h but the two at its edge. */
+/* Returns whether all triangles round the start of h, except the two at the edge of h, keep their sides. */
 static bool keep_their_sides(const simplifier *s, uint32_t h, const double *point, const double *together) {
     for (uint32_t g = turn(s, h), last = next_in_triangle(s->mate[h]); g != h; g = turn(s, g))
         if (g != last && !keeps_its_side(s, g, point, together)) return false;
@@ -277,7 +280,7 @@ static void glue(simplifier *s, uint32_t g, uint32_t h) {
     s->half_edge[s->vertex[h]] = h;
 }
 
-/* The triangle of h vanishes: the other sides of its two other edges become one. */
+/* Removes the triangle of h: its two sides other than h become one edge. */
 static void close_triangle(simplifier *s, uint32_t h) {
     uint32_t first = h - h % 3;
     glue(s, s->mate[next_in_triangle(h)], s->mate[before_in_triangle(h)]);
@@ -296,7 +299,7 @@ static brio_status collapse(simplifier *s, uint32_t h, const brio_quadric *sum, 
     s->quadric[kept] = *sum;
     s->spacing[kept] = fmin(s->spacing[kept], s->spacing[gone]);
     s->half_edge[gone] = NONE;
-    /* above both, so that no old entry of an edge that changed its end is taken for a new one */
+    /* above both versions, so that no old entry of an edge whose end has changed looks up to date */
     s->version[kept] = (s->version[kept] > s->version[gone] ? s->version[kept] : s->version[gone]) + 1;
     g = s->half_edge[kept];
     do BRIO_TRY(offer(s, g));
@@ -335,7 +338,7 @@ done:
     return status;
 }
 
-/* The number of half-edges that start at the same vertex as h, in the one fan of triangles that h belongs to. */
+/* Returns the number of half-edges that start where h starts and belong to the fan of triangles of h. */
 static uint32_t fan_size(const simplifier *s, uint32_t h) {
     uint32_t size = 1, g = h, side = before_in_triangle(g);
     for (; s->mate[side] != side; side = before_in_triangle(g)) {
@@ -343,11 +346,12 @@ static uint32_t fan_size(const simplifier *s, uint32_t h) {
         if (g == h) return size;
         size++;
     }
-    for (g = h; s->mate[g] != g; size++) g = next_in_triangle(s->mate[g]); /* from h the other way */
+    for (g = h; s->mate[g] != g; size++) g = next_in_triangle(s->mate[g]); /* from h in the opposite direction */
     return size;
 }
 
-/* Refuses vertices of several fans: a collapse moves one fan only. Needs half_edge; `seen` counts, and is 0 again. */
+/* Refuses vertices with several fans, because a collapse moves one fan only. Needs half_edge. Uses `seen` for counting
+ * and leaves it 0. */
 static brio_status check_fans(simplifier *s) {
     brio_status status = BRIO_OK;
     for (uint32_t h = 0; h < s->num_half_edges; h++) s->seen[s->vertex[h]]++;
@@ -389,7 +393,7 @@ done:
 
 /* --- end --- */
 
-/* Writes what is left over the arrays of the mesh. */
+/* Writes the remaining surface over the arrays of the mesh. */
 static void write_mesh(simplifier *s) {
     brio_mesh *m = s->mesh;
     size_t faces = 0, vertices = 0;

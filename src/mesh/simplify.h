@@ -1,24 +1,23 @@
-/* Simplification of a triangle mesh by edge collapses that keep it what it is as a combinatorial surface. */
+/* Simplification of a triangle mesh by edge collapses that keep its topology. */
 #ifndef BRIO_MESH_SIMPLIFY_H
 #define BRIO_MESH_SIMPLIFY_H
 
 #include "base/context.h"
 
 typedef struct {
-    size_t target_faces;   /* stops there, or when no collapse is left that is allowed */
-    const double *spacing; /* #V: edges up to `longest` times the spacing at their ends may collapse */
+    size_t target_faces;   /* stops at this number of faces, or when no allowed collapse is left */
+    const double *spacing; /* #V: an edge may collapse if it is at most `longest` times the spacing at each end */
     double longest;
-    double tolerance; /* no collapse whose root-mean-square distance from the planes it stands for is over this share of
-                         the spacing */
+    double tolerance; /* most RMS distance of the new point from the planes it stands for, as a share of spacing */
 } brio_simplify_options;
 
-/** Collapses edges of a manifold oriented triangle mesh in place, the ones that change the shape least first. The mesh
- *  stays manifold and oriented, with the same components, genus and boundary; triangles do not turn over. Vertices of
- *  the boundary stay. Vertices that no triangle uses are dropped; properties must not be there.
+/** Collapses edges of a manifold oriented triangle mesh in place, edges of least error first. The mesh stays manifold
+ *  and oriented, and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary
+ *  stay. Vertices that no triangle uses are dropped. The mesh has no properties.
  *  Cost: O(n log n); 500 bytes a vertex.
- *  Returns BRIO_OK; BRIO_ERR_ARGUMENT when a face is not a triangle or the mesh is not manifold and oriented at an edge
- *  or a vertex, and leaves the mesh unchanged; BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED, and the mesh is only good to be
- *  freed. */
+ *  Returns BRIO_OK; BRIO_ERR_ARGUMENT when a face is not a triangle or the mesh is not manifold and oriented at an
+ *  edge or a vertex, and leaves the mesh unchanged; BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED, after which the mesh can
+ *  only be freed. */
 brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_simplify_options *options);
 
 #endif

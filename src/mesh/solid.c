@@ -1,10 +1,10 @@
-/* The inside of a closed mesh: the winding number of a point, counted by the triangles that the vertical ray from it
- * goes up through, from below plus one and from above minus one. Every sign is exact. A ray through an edge or a corner
- * is decided as if the point were moved by (e, e^2, 0), e positive and as small as need be; so triangles that share an
- * edge are never both hit or both missed.
+/* The inside of a closed mesh, by the winding number of a point. The vertical ray upwards from the point crosses
+ * triangles; a crossing from below counts 1, a crossing from above -1. Every sign is exact. A ray through an edge or a
+ * corner is decided as if the point were moved by (e, e^2, 0), with e > 0 infinitesimal. So the ray hits exactly one
+ * of two triangles that continue each other across such an edge.
  *
- * The count means something when the faces are the boundary of something: every edge is run along as often in one
- * direction as in the other. Pinched edges and vertices, several components, pieces that overlap are no obstacle.
+ * The count has a meaning when the faces bound a solid: each edge has equally many half-edges in both directions.
+ * Pinched edges and vertices, several components and overlapping pieces are allowed.
  *
  * Based on: Edelsbrunner, Muecke. Simulation of simplicity. ACM TOG 1990 (ties). */
 #include "mesh/solid.h"
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-/* --- the boundary of something --- */
+/* --- whether the faces bound a solid --- */
 
 static int compare_positions(uint32_t a, uint32_t b, const void *user) {
     const double *p = (const double *)user + 3 * (size_t)a, *q = (const double *)user + 3 * (size_t)b;
@@ -22,7 +22,7 @@ static int compare_positions(uint32_t a, uint32_t b, const void *user) {
     return 0;
 }
 
-/* number[v]: the same for vertices at the same position. */
+/* Sets number[v] to one value for all vertices at the position of v. */
 static brio_status number_positions(brio_context *ctx, const brio_mesh *mesh, uint32_t *number) {
     brio_status status = BRIO_OK;
     uint32_t *order = NULL;
@@ -39,7 +39,8 @@ done:
     return status;
 }
 
-/* Half-edges as pairs of positions, lower first, and whether they run upwards. */
+/* Lists the half-edges as pairs of positions, the lower one first; upwards is 1 where the half-edge starts at the
+ * lower one. */
 static size_t list_half_edges(const brio_mesh *mesh, const uint32_t *number, uint64_t *keys, uint32_t *upwards) {
     size_t count = 0;
     for (size_t f = 0; f < mesh->num_faces; f++)
@@ -99,8 +100,8 @@ static int sign_of(double x) {
     return (x > 0) - (x < 0);
 }
 
-/* The side of q, moved a little, on which a to b runs, seen from above: 1 when q is on its left. 0 only where a and b
- * are one above the other. */
+/* Returns on which side of the directed line a to b the moved point q lies, seen from above: 1 left, -1 right. Returns
+ * 0 only where a and b are one above the other. */
 static int side_of_edge(const double *a, const double *b, const double *q) {
     double left = (b[0] - a[0]) * (q[1] - a[1]), right = (b[1] - a[1]) * (q[0] - a[0]), sum = fabs(left) + fabs(right);
     if (fabs(left - right) > 0x1p-50 * sum && sum > 0x1p-900) return sign_of(left - right);
@@ -110,7 +111,7 @@ static int side_of_edge(const double *a, const double *b, const double *q) {
     return a[1] != b[1] ? sign_of(a[1] - b[1]) : sign_of(b[0] - a[0]);
 }
 
-/* 1 or -1 when the ray from q goes up through the triangle, from its lower or its upper side; else 0. */
+/* Returns 1 when the ray from q crosses the triangle from below, -1 when from above, else 0. */
 static int crossing(const double *a, const double *b, const double *c, const double *q) {
     int side = side_of_edge(a, b, q);
     if (side == 0 || side_of_edge(b, c, q) != side || side_of_edge(c, a, q) != side) return 0;

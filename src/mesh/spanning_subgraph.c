@@ -1,43 +1,44 @@
 /* Spanning subgraph of bounded degree of a triangulated surface.
  *
- * The surface is cut into disks, and the vertices of a disk are taken away from its boundary cycle, one at a time: any
- * without a chord, an edge inside the disk to another vertex of the cycle. What is left is a disk again, so that in the
- * end there is one triangle, whose edges are the subgraph. Then the vertices come back in reverse. A vertex z, with the
- * neighbours z1 ... zm round it when it went, takes over from the cycle edges z1 z2 and zm-1 zm by its edges to z1, z2
- * and zm: no degree grows but its own, to three. Pieces of a vertex that the cut has passed through are the same vertex
- * in the result, which adds their degrees up.
+ * The surface is cut into disks. The code removes vertices from the boundary cycle of each disk, one at a time. A
+ * vertex may go when it has no chord; a chord is an edge inside the disk to another vertex of the cycle. What remains
+ * is a disk again, and at the end one triangle, whose edges start the subgraph. Then the vertices come back in reverse
+ * order. Let z1 ... zm be the neighbours of z when z went. The edges z z1, z z2 and z zm replace the cycle edges z1 z2
+ * and zm-1 zm. So only the degree of z grows, to three. Several copies of a vertex that the cut has passed through
+ * become one vertex in the result, whose degree is the sum of theirs.
  *
- * Vertices of disks are sectors of disk_cut.h, and an edge is where the disk in work ends when its flag LIVE_END is
- * set; triangles taken away need no mark of their own.
+ * Vertices of disks are the sectors of disk_cut.h. A half-edge bounds the disk in work when its flag LIVE_END is set;
+ * removed triangles have no mark.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms for surface reconstruction and related problems. PhD
  * thesis, The University of Texas at Austin 2003, section 4.3.2.
- * Differs from the paper: chords are counted, where lemma 14 marks the vertices that have one. A mark cannot be taken
- * back when a vertex of degree two goes and the chord between its neighbours becomes a cycle edge; a count can. The
- * loop keeps no stack of calls. */
+ * Differs from the paper: chords are counted, where lemma 14 marks the vertices that have a chord. When a vertex of
+ * degree two goes, the chord between its neighbours becomes a cycle edge; a count can be reduced, a mark cannot. The
+ * loop replaces recursion. */
 #include "mesh/spanning_subgraph.h"
 #include "mesh/disk_cut.h"
 
-enum { LIVE_END = 2, CHOSEN = 4 }; /* flags of half-edges beside BRIO_EDGE_CUT */
+enum { LIVE_END = 2, CHOSEN = 4 }; /* bits 1 and 2 of the flags of half-edges; bit 0 is BRIO_EDGE_CUT */
 
-enum { ON_CYCLE = 1, LISTED = 2 }; /* states of sectors */
+enum { ON_CYCLE = 1, LISTED = 2 }; /* bits of the state of a sector */
 
 enum { ROUNDS_A_REPORT = 1 << 20 };
 
-/* The first and the last corner of a vertex at the moment when it was taken away. */
+/* The first and the last corner of a vertex when the vertex was removed. */
 typedef struct {
     uint32_t first, last;
 } removal;
 
 typedef struct {
     brio_disk_cut cut;
-    uint32_t *out;     /* of each sector on a cycle its half-edge of the cycle, the disk on its left */
-    uint32_t *chords;  /* of each sector on a cycle */
-    uint8_t *state;    /* of each sector */
-    uint32_t *free;    /* stack of sectors that had no chord when they were listed, each listed once */
-    removal *removals; /* in their order */
+    uint32_t *out;    /* of each sector on a cycle, its outgoing half-edge of the cycle; the disk is on the left */
+    uint32_t *chords; /* number of chords of each sector on a cycle */
+    uint8_t *state;   /* of each sector */
+    uint32_t
+        *free; /* stack of sectors that had no chord when they were listed; a sector is on the stack at most once */
+    removal *removals; /* in the order of removal */
     size_t num_free, num_removals;
-    size_t num_disks; /* of which one triangle is left */
+    size_t num_disks; /* disks of which one triangle is left */
 } peeler;
 
 /* --- the disk in work --- */
@@ -46,7 +47,7 @@ static uint32_t end_sector(const peeler *p, uint32_t h) {
     return p->cut.sector[brio_next_corner(h)];
 }
 
-/* The corner to the left of h at the same vertex, or BRIO_NO_HALF_EDGE at the end of the disk. */
+/* Returns the corner to the left of h at its vertex, or BRIO_NO_HALF_EDGE at the end of the disk. */
 static uint32_t live_left(peeler *p, uint32_t h) {
     uint32_t in = brio_previous_corner(h);
     p->cut.steps++;
@@ -59,7 +60,7 @@ static void list_if_free(peeler *p, uint32_t sector) {
     p->free[p->num_free++] = sector;
 }
 
-/* Puts a sector that was inside on the cycle and counts the chords that this makes. */
+/* Puts an inner sector on the cycle and counts the chords that this makes. */
 static void enter_cycle(peeler *p, uint32_t sector) {
     p->state[sector] |= ON_CYCLE;
     uint32_t corner = p->out[sector];
@@ -72,7 +73,7 @@ static void enter_cycle(peeler *p, uint32_t sector) {
     list_if_free(p, sector);
 }
 
-/* --- vertices go --- */
+/* --- removing vertices --- */
 
 static void start_cycles(peeler *p) {
     brio_disk_cut *cut = &p->cut;
@@ -94,7 +95,7 @@ static void start_cycles(peeler *p) {
         if (p->state[s] & ON_CYCLE) list_if_free(p, s);
 }
 
-/* Ends work on a disk of which one triangle is left: its edges are the subgraph. */
+/* Ends work on a disk of which one triangle is left: chooses its three edges. */
 static void choose_last_triangle(peeler *p, uint32_t corner) {
     for (uint32_t h = corner, i = 0; i < 3; i++, h = brio_next_corner(h)) {
         p->cut.flags[h] |= CHOSEN;
@@ -103,7 +104,7 @@ static void choose_last_triangle(peeler *p, uint32_t corner) {
     p->num_disks++;
 }
 
-/* Takes the triangles of sector z away: the half-edges across from z become the cycle. Returns z's last corner. */
+/* Removes the triangles of sector z: the half-edges opposite to z join the cycle. Returns the last corner of z. */
 static uint32_t open_fan(peeler *p, uint32_t z) {
     uint32_t corner = p->out[z], last;
     do {
@@ -156,10 +157,10 @@ done:
     return status;
 }
 
-/* --- vertices come back --- */
+/* --- restoring vertices --- */
 
-/* An edge that is not cut is known by its lower half-edge, the two sides of one that is cut are edges for themselves.
- * */
+/* Returns the flags that represent the edge of h: those of the lower half-edge when the edge is not cut. The two sides
+ * of a cut edge count as two edges. */
 static uint8_t *flags_of_edge(const peeler *p, uint32_t h) {
     uint32_t twin = p->cut.twin[h];
     return &p->cut.flags[(p->cut.flags[h] & BRIO_EDGE_CUT) || h < twin ? h : twin];
@@ -182,8 +183,8 @@ static void restore_vertices(peeler *p) {
     }
 }
 
-/* Whether half-edge h stands for its edge in the result. The sides of a cut edge are both in the subgraph of their
- * disks, which hold their boundary cycles. */
+/* Returns whether half-edge h represents its edge in the result. For a cut edge one side suffices: both sides are in
+ * the subgraphs of their disks, because each contains its disk's boundary cycle. */
 static bool is_result(const peeler *p, uint32_t h) {
     return h < p->cut.twin[h] && (p->cut.flags[h] & CHOSEN);
 }

@@ -1,11 +1,11 @@
 /* Spanning trees of a graph: breadth-first, and minimum by length.
  *
- * The minimum spanning tree takes the edges by length, shortest first, and keeps each that joins two trees; trees are
- * known by a union-find structure. The sort is by digits, so that finding the trees is all that is not linear, and no
- * more than a logarithm above it.
+ * The minimum spanning tree takes the edges by length, shortest first, and keeps each edge that joins two trees. A
+ * union-find holds the trees. A radix sort sorts the edges, so the union-find is the only part above linear time, by
+ * at most a logarithm.
  *
- * Based on: Kruskal. On the shortest spanning subtree of a graph and the traveling salesman problem. Proceedings of the
- * American Mathematical Society 1956. */
+ * Based on: Kruskal. On the shortest spanning subtree of a graph and the traveling salesman problem. Proceedings of
+ * the American Mathematical Society 1956. */
 #include "base/sort.h"
 #include "mesh/edge_rings.h"
 #include "mesh/spanning_subgraph.h"
@@ -27,13 +27,13 @@ brio_status brio_mesh_edges(brio_context *ctx, const brio_mesh *mesh, brio_edges
     *out = (brio_edges){.context = ctx};
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     BRIO_TRY(brio_edge_rings(ctx, mesh, &ring));
-    /* one half-edge of each edge leads back in its ring; it stands for the edge */
+    /* the last half-edge of each edge has ring[h] <= h; it represents the edge */
     for (size_t h = 0, end = mesh->num_faces ? offsets[mesh->num_faces] : 0; h < end; h++) count += ring[h] <= h;
     BRIO_TRY(BRIO_ALLOC(ctx, out->ends, 2 * count));
     for (size_t f = 0; f < mesh->num_faces; f++)
         for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++) {
             uint32_t end = v[h + 1 < offsets[f + 1] ? h + 1 : offsets[f]];
-            if (ring[h] > h || v[h] == end) continue; /* a corner repeated is no edge */
+            if (ring[h] > h || v[h] == end) continue; /* a corner repeated makes no edge */
             out->ends[2 * out->count] = v[h];
             out->ends[2 * out->count++ + 1] = end;
         }
@@ -53,7 +53,7 @@ done:
     return status;
 }
 
-/* Room for a forest: fewer edges than vertices, and no more than the graph has. */
+/* Allocates a forest: fewer edges than vertices, and at most the edges of the graph. */
 static brio_status start_forest(brio_context *ctx, const brio_edges *edges, size_t num_vertices, brio_edges *out) {
     size_t most = edges->count < num_vertices ? edges->count : num_vertices;
     *out = (brio_edges){.context = ctx};
@@ -67,15 +67,16 @@ static void add_edge(brio_edges *edges, uint32_t a, uint32_t b) {
 
 /* --- breadth first --- */
 
-/* The neighbours of all vertices, those of v from start[v] to start[v + 1].   start  #V + 2, zeroed.
- * neighbours  2 #edges. */
+/* Lists the neighbours of all vertices; the neighbours of v are at start[v] to start[v + 1] - 1.   start  #V + 2,
+ * zeroed.   neighbours  2 #edges. */
 static void list_neighbours(const brio_edges *edges, size_t num_vertices, uint32_t *start, uint32_t *neighbours) {
     for (size_t i = 0; i < 2 * edges->count; i++) start[edges->ends[i] + 2]++;
     for (size_t v = 0; v < num_vertices; v++) start[v + 2] += start[v + 1];
     for (size_t i = 0; i < 2 * edges->count; i++) neighbours[start[edges->ends[i] + 1]++] = edges->ends[i ^ 1];
 }
 
-/* The edges found serve as the queue: their children are searched in the order in which they came. */
+/* Adds the breadth-first tree from root. The edges already found are the queue: their children are searched in
+ * order. */
 static void search_from(uint32_t root, const uint32_t *start, const uint32_t *neighbours, uint8_t *seen,
                         brio_edges *out) {
     size_t head = out->count;
@@ -116,7 +117,8 @@ done:
 
 /* --- minimum by length --- */
 
-/* A power of two that brings the longest edge to about 1, so that squares neither overflow nor vanish. */
+/* Returns the exponent of a power of two that scales the longest edge to about 1, so that squares neither overflow nor
+ * underflow. */
 static int scale_of(const brio_edges *edges, const double *points) {
     double longest = 0;
     int exponent = 0;

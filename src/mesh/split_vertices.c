@@ -1,11 +1,11 @@
-/* Splitting of vertices where several fans of faces meet.
+/* Splits vertices where several fans of faces meet.
  *
- * A union-find joins the corners at both ends of every edge of two faces; its sets are the fans. The fans are numbered
- * in the order of their first corners, and become the vertices.
+ * A union-find joins the corners at both ends of every edge of two faces; its sets are the fans. The fans, numbered in
+ * the order of their first corners, become the vertices.
  *
- * Of the boundary of a solid an edge may have more than two faces, with the inside in the wedges between them. Each
- * face then belongs with the one at the other side of its wedge: the first that is met on the way round the edge from
- * the face into the inside. */
+ * On the boundary of a solid an edge may have more than two faces, with the inside in the wedges between them. Then
+ * each face is paired with the face across its inside wedge: the first face met when turning round the edge from the
+ * face into the inside. */
 #include "mesh/split_vertices.h"
 #include "base/memory.h"
 #include "predicates/predicates.h"
@@ -13,7 +13,7 @@
 #include "base/union_find.h"
 #include <string.h>
 
-/* A set is known by its least element: a fan by its first corner. */
+/* Joins the corners of each fan. The least corner of a fan names the fan. */
 static void join_corners(const brio_mesh *m, const uint32_t *ring, const uint32_t *next, uint32_t *fan) {
     const uint32_t *v = m->face_vertices;
     for (uint32_t h = 0; h < m->face_offsets[m->num_faces]; h++) {
@@ -25,7 +25,7 @@ static void join_corners(const brio_mesh *m, const uint32_t *ring, const uint32_
     }
 }
 
-/* Rows of `size` bytes, one for each fan, from those of the vertices; *rows is replaced. */
+/* Replaces *rows by `count` rows of `size` bytes, one for each fan; row i is a copy of old row from[i]. */
 static brio_status take_rows(brio_context *ctx, char **rows, size_t size, const uint32_t *from, size_t count) {
     char *taken = NULL;
     brio_status status = BRIO_ALLOC(ctx, taken, count * size);
@@ -57,7 +57,7 @@ static uint32_t next_corner(uint32_t h) {
     return h % 3 == 2 ? h - 2 : h + 1;
 }
 
-/* The sign of the volume over the triangle of half-edge h and the apex of that of g: negative when it is inside. */
+/* Returns the side of the triangle of half-edge h on which the apex of the triangle of g lies: negative inside. */
 static int side_of_apex(const brio_mesh *m, uint32_t h, uint32_t g) {
     const uint32_t *v = m->face_vertices;
     const uint32_t corners[4] = {v[h], v[next_corner(h)], v[next_corner(next_corner(h))],
@@ -67,14 +67,15 @@ static int side_of_apex(const brio_mesh *m, uint32_t h, uint32_t g) {
     return brio_orient3d(p[0], p[1], p[2], p[3]);
 }
 
-/* Whether g is met before `other` on the way round their edge from h into the inside. */
+/* Returns whether g comes before `other` when turning round their edge from h into the inside. */
 static bool is_met_first(const brio_mesh *m, uint32_t h, uint32_t g, uint32_t other) {
     int side = side_of_apex(m, h, g), other_side = side_of_apex(m, h, other);
     if (side != other_side) return side < other_side;
-    return side_of_apex(m, g, other) > 0; /* g runs the other way than h */
+    return side_of_apex(m, g, other) > 0; /* g and h have opposite directions */
 }
 
-/* The half-edge of the ring of h at the other side of its wedge, or of the wedge outside. */
+/* Returns the half-edge in the ring of h across the inside wedge of h or, with inside false, across its outside
+ * wedge. */
 static uint32_t wedge_partner(const brio_mesh *m, const uint32_t *ring, uint32_t h, bool inside) {
     const uint32_t *v = m->face_vertices;
     uint32_t partner = h;
@@ -83,15 +84,15 @@ static uint32_t wedge_partner(const brio_mesh *m, const uint32_t *ring, uint32_t
     return partner;
 }
 
-/* Takes rings of more than two half-edges apart into pairs that share a wedge: an inside one or, where `outside` is
- * given, an outside one, but then for one edge at a vertex only.   partner  #corners of work space;   outside  #V,
- * zeroed, or NULL.   Returns whether there were such rings. */
+/* Splits rings of more than two half-edges into pairs that share a wedge. Uses inside wedges when `outside` is NULL.
+ * Otherwise uses outside wedges at one edge per vertex, and inside wedges at the other edges.   partner  #corners of
+ * work space;   outside  #V, zeroed, or NULL.   Returns whether such rings exist. */
 static bool pair_wedges(const brio_mesh *m, uint32_t *ring, uint32_t *partner, uint8_t *outside) {
     size_t corners = 3 * m->num_faces;
     bool any = false;
     for (uint32_t h = 0; h < corners; h++) partner[h] = ring[h];
     for (uint32_t h = 0; h < corners; h++) {
-        if (ring[ring[h]] == h || ring[h] > h) continue; /* once for a ring, at its end */
+        if (ring[ring[h]] == h || ring[h] > h) continue; /* once for each ring, at its last half-edge */
         uint32_t a = m->face_vertices[h], b = m->face_vertices[next_corner(h)];
         bool inside = !outside || outside[a] || outside[b];
         if (!inside) outside[a] = outside[b] = 1;
@@ -106,7 +107,7 @@ static bool pair_wedges(const brio_mesh *m, uint32_t *ring, uint32_t *partner, u
 
 /* --- all of it --- */
 
-/* Splits along the edges that `ring` joins. */
+/* Splits vertices into the fans that `ring` makes: corners are joined across its pairs. */
 static brio_status split_fans(brio_context *ctx, brio_mesh *m, uint32_t *ring) {
     brio_status status = BRIO_OK;
     uint32_t *next = NULL, *fan = NULL, *from = NULL;
@@ -122,8 +123,10 @@ static brio_status split_fans(brio_context *ctx, brio_mesh *m, uint32_t *ring) {
     if (corners) join_corners(m, ring, next, fan);
     for (uint32_t h = 0; h < corners; h++) {
         uint32_t first = brio_find(fan, h);
-        if (first == h) from[count] = m->face_vertices[h], next[h] = (uint32_t)count++; /* next: now the fan's number */
-        ring[h] = next[first]; /* ring: now the new vertex of the corner */
+        if (first == h)
+            from[count] = m->face_vertices[h],
+            next[h] = (uint32_t)count++; /* from now on next[first corner] is the number of the fan */
+        ring[h] = next[first];           /* from now on ring[h] is the new vertex of corner h */
     }
     BRIO_TRY(replace_vertices(ctx, m, from, count));
     if (corners) memcpy(m->face_vertices, ring, corners * sizeof *ring);
@@ -145,9 +148,9 @@ done:
     return status;
 }
 
-/* Joined across inside wedges, two sheets may still hang together round both ends of their edge, which then stays one
- * edge of four faces. There the fan of either end passes the edge twice, and falls in two when it is joined across the
- * outside wedges instead. */
+/* After pairing across inside wedges, two sheets may still be connected round both ends of an edge, which then stays
+ * one edge of four faces. There the fan of each end passes the edge twice. Pairing across the outside wedges instead
+ * splits that fan in two. */
 brio_status brio_mesh_split_sheets(brio_context *ctx, brio_mesh *m) {
     brio_status status = BRIO_OK;
     uint32_t *ring = NULL, *partner = NULL;

@@ -1,20 +1,21 @@
 /* Butterfly subdivision of triangle meshes.
  *
- * Every edge gets a vertex and every triangle becomes four; the old vertices stay. The new vertex of an edge whose ends
- * have six neighbours is the butterfly's: halves of the ends, eighths of the two opposite vertices, less sixteenths of
- * the four wings. At an end v with another number K of neighbours e_j, counted from the edge's other end, it is
- * 3/4 v + sum s_j e_j, with s_j = (1/4 + cos(2 pi j / K) + cos(4 pi j / K) / 2) / K for K > 4 and weights of their own
- * for K = 3, 4; the mean of both where both ends are such. A boundary edge has the four-point rule along the boundary,
- * which is a curve of its own. A wing that lies beyond the boundary is made up by completing the parallelogram.
+ * Every edge gets a new vertex and every triangle becomes four; the old vertices stay. Where both ends of an edge have
+ * six neighbours, the new vertex is the butterfly's: 1/2 of each end, plus 1/8 of the two opposite vertices, less 1/16
+ * of the four wings. At an end v with K != 6 neighbours e_j, counted from the far end of the edge, it is 3/4 v + sum
+ * s_j e_j. There s_j = (1/4 + cos(2 pi j / K) + cos(4 pi j / K) / 2) / K for K > 4; a table has the weights for K < 5.
+ * Where both ends have K != 6, the new vertex is the mean of the two ends' points. A boundary edge has the four-point
+ * rule along the boundary, so the boundary curve depends on itself only. A wing beyond the boundary is replaced by the
+ * fourth corner of a parallelogram.
  *
- * The weights s_j are those of three harmonics, so that the sums for all edges of a vertex come from five sums over its
- * neighbours: a vertex of K neighbours takes time O(K), not O(K^2).
+ * The weights s_j consist of three harmonics, so five sums over the neighbours of a vertex give the sums for all its
+ * edges: a vertex of K neighbours takes time O(K), not O(K^2).
  *
  * Based on: Dyn, Levin, Gregory. A butterfly subdivision scheme for surface interpolation with tension control. ACM
  * Transactions on Graphics 1990 (tension 1/16). Zorin, Schroeder, Sweldens. Interpolating subdivision for meshes with
  * arbitrary topology. SIGGRAPH 1996.
- * Differs from the paper: of 1996, next to the boundary, where a wing made up takes the place of special cases; a
- * vertex of two neighbours, which the papers exclude, has midpoints. */
+ * Differs from the paper of 1996: next to the boundary, a wing by parallelogram replaces the special cases. A vertex
+ * of two neighbours, which the papers exclude, has midpoints. */
 #include "base/float_state.h"
 #include "base/team.h"
 #include "mesh/twins.h"
@@ -27,27 +28,27 @@ static const size_t MOST_VERTICES = UINT32_MAX - 16;
 static const size_t BATCH = (size_t)1 << 20; /* half-edges between two reports of progress */
 static const double PI = 3.14159265358979323846;
 
-/* What is round a corner's vertex: six triangles, not all, or another number of them, whose share of the new vertices
- * is then placed. */
+/* The kind of a corner's vertex: with six triangles all round; at the boundary; with another number of triangles all
+ * round; or extraordinary with its share of the new vertices already added. */
 enum { REGULAR, BOUNDARY, EXTRAORDINARY, PLACED };
 
 typedef struct {
     const brio_mesh *mesh;
     brio_mesh *fine;
     uint32_t *twin;
-    uint32_t *edge_vertex; /* of each half-edge the new vertex */
-    uint8_t *kind;         /* of each corner's vertex */
-    size_t from;           /* half-edge at which the batch in work starts */
+    uint32_t *edge_vertex; /* new vertex of each half-edge */
+    uint8_t *kind;         /* kind of each corner's vertex */
+    size_t from;           /* first half-edge of the batch in work */
 } subdivider;
 
 /* --- neighbourhoods --- */
 
-/* The corner to the left at the same vertex, or BRIO_NO_HALF_EDGE. */
+/* Returns the corner to the left at the same vertex, or BRIO_NO_HALF_EDGE. */
 static uint32_t left_of(const subdivider *s, uint32_t corner) {
     return s->twin[brio_previous_corner(corner)];
 }
 
-/* Number of triangles all round the vertex of a corner; 0 at the boundary. */
+/* Returns the number of triangles round the vertex of a corner, or 0 at the boundary. */
 static uint32_t count_round(const subdivider *s, uint32_t corner) {
     uint32_t count = 0, at = corner;
     do {
@@ -57,8 +58,8 @@ static uint32_t count_round(const subdivider *s, uint32_t corner) {
     return at == corner ? count : 0;
 }
 
-/* Tells the kind of each corner's vertex. A corner at the boundary is done for itself, as those to its left may not be
- * all. */
+/* Finds the kind of each corner's vertex. Walks left from every boundary corner first: a walk to the left from another
+ * corner may miss some corners. */
 static void find_kinds(subdivider *s) {
     const uint8_t unknown = UINT8_MAX;
     size_t corners = 3 * s->mesh->num_faces;
@@ -80,7 +81,8 @@ static const double *position(const subdivider *s, uint32_t corner) {
 
 /* --- rules --- */
 
-/* The wing across half-edge h, whose triangle has the vertex `apex` opposite to it. */
+/* Writes the wing across half-edge h: the far vertex of the triangle there, or at the boundary the fourth corner of a
+ * parallelogram. */
 static void find_wing(const subdivider *s, uint32_t h, double *wing) {
     uint32_t twin = s->twin[h];
     const double *a = position(s, h), *b = position(s, brio_next_corner(h)),
@@ -103,7 +105,7 @@ static void butterfly(const subdivider *s, uint32_t h, double *p) {
     for (int k = 0; k < 3; k++) p[k] = (a[k] + b[k]) / 2 + (c[k] + d[k]) / 8 - wings[k] / 16;
 }
 
-/* The four-point rule: the edge's ends and the boundary vertices before and after it. */
+/* Applies the four-point rule to the edge's ends and the boundary vertices before and after the edge. */
 static void along_boundary(const subdivider *s, uint32_t h, double *p) {
     uint32_t before = brio_previous_corner(h), after = brio_next_corner(h);
     while (s->twin[before] != BRIO_NO_HALF_EDGE) before = brio_previous_corner(s->twin[before]);
@@ -113,8 +115,8 @@ static void along_boundary(const subdivider *s, uint32_t h, double *p) {
     for (int k = 0; k < 3; k++) p[k] = 9 * (a[k] + b[k]) / 16 - (o[k] + e[k]) / 16;
 }
 
-/* Sums over the neighbours of an extraordinary vertex, relative to it: plain, and times cosines and sines of one and
- * two turns. */
+/* Sums over the neighbours of an extraordinary vertex, relative to the vertex: plain, and weighted by cosines and
+ * sines of the angle and of twice the angle. */
 typedef struct {
     uint32_t count;
     double plain[3], cosine[2][3], sine[2][3];
@@ -137,7 +139,7 @@ static harmonics sum_round(const subdivider *s, uint32_t corner, uint32_t count)
     return sums;
 }
 
-/* What vertices of more than four neighbours give to their edge number j, relative to the vertex. */
+/* Writes the point of edge j at a vertex of more than four neighbours, relative to the vertex. */
 static void from_harmonics(const harmonics *sums, uint32_t j, double *p) {
     double angle = 2 * PI * j / sums->count;
     double c[2] = {cos(angle), cos(2 * angle)}, sn[2] = {sin(angle), sin(2 * angle)};
@@ -148,7 +150,8 @@ static void from_harmonics(const harmonics *sums, uint32_t j, double *p) {
     }
 }
 
-/* The same for vertices of two to four neighbours, whose weights are in a table. */
+/* Writes the point of the corner's edge at a vertex of two to four neighbours, relative to the vertex; the weights are
+ * in a table. */
 static void from_table(const subdivider *s, uint32_t corner, uint32_t count, double *p) {
     static const double weights[3][4] = {{1. / 2, 0}, {5. / 12, -1. / 12, -1. / 12}, {3. / 8, 0, -1. / 8, 0}};
     const double *v = position(s, corner);
@@ -244,8 +247,8 @@ done:
     return status;
 }
 
-/* Old vertices keep their property; a new one has the mean of its edge's ends where the numbers are not whole, else
- * that of the edge's first end: labels have no mean. */
+/* Copies a property for the old vertices. A new vertex gets the mean of its edge's ends for floating-point types. For
+ * integer types it gets the value of the first end, because labels have no mean. */
 static brio_status make_property(subdivider *s, const brio_property *property) {
     brio_status status = BRIO_OK;
     const uint32_t *v = s->mesh->face_vertices;

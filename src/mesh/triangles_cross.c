@@ -1,22 +1,23 @@
-/* Whether two triangles meet in more than what they share, by exact orientations only.
+/* Decides whether two triangles meet in more than what they share, by exact orientations only.
  *
- * Where nothing is shared, they meet when an edge of either meets the other. With one common corner the intersection is
- * convex and holds the corner; if it holds more, a ray from the corner runs in both and leaves one of them through the
- * edge opposite to the corner: one of the two opposite edges meets the other triangle. With a common edge they must be
- * in one plane and on one side of the edge. With three common corners they are the same.
+ * Triangles that share nothing meet when an edge of one meets the other triangle. With one common corner, the
+ * intersection is convex and contains the corner. If it contains more, a ray from the corner runs in both triangles
+ * and leaves one of them through the edge opposite to the corner. So one of the two opposite edges meets the other
+ * triangle. With a common edge, the triangles overlap when they lie in one plane and on one side of the edge. With
+ * three common corners they are equal.
  *
- * An edge meets a triangle off its plane when the three orientations of the edge with the triangle's sides do not have
- * different signs; in one plane the same is asked of the projections along an axis that keeps the triangle's area. */
+ * An edge off the triangle's plane meets the triangle when its three orientations with the triangle's sides do not
+ * have opposite signs. In one plane the test uses projections along an axis that keeps the triangle's area nonzero. */
 #include "mesh/triangles_cross.h"
 #include <math.h>
 
 typedef const double *point;
 
-/* What a determinant of doubles may be off by: this share of the sum of its terms' sizes [Shewchuk 1997, with room to
- * spare], and what may have underflowed in products of two and of three factors. */
+/* Error bounds of a determinant of doubles. RELATIVE_ERROR is a share of the sum of the terms' sizes (derived
+ * [Shewchuk 1997], rounded up generously). The other two cover underflow in products of two and of three factors. */
 static const double RELATIVE_ERROR = 0x1p-49, UNDERFLOW_OF_TWO = 0x1p-1060, ABSOLUTE_ERROR = 0x1p-1000;
 
-/* Sign of det [b-a, c-a, d-a]. */
+/* Returns the sign of det [b-a, c-a, d-a]. */
 static int orient3d(point a, point b, point c, point d) {
     double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2], cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
     double dx = d[0] - a[0], dy = d[1] - a[1], dz = d[2] - a[2];
@@ -30,7 +31,7 @@ static int orient3d(point a, point b, point c, point d) {
 
 /* --- in a plane: coordinates x and y --- */
 
-/* Sign of the area of abc; exactly, an orientation with a fourth point straight above a. */
+/* Returns the sign of the area of abc. The exact case is an orientation with a fourth point straight above a. */
 static int orient2d(const double *a, const double *b, const double *c) {
     double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
     double error = RELATIVE_ERROR * (fabs(left) + fabs(right)) + ABSOLUTE_ERROR;
@@ -61,13 +62,13 @@ static bool in_triangle(const double t[3][2], const double *p) {
     return (s[0] >= 0 && s[1] >= 0 && s[2] >= 0) || (s[0] <= 0 && s[1] <= 0 && s[2] <= 0);
 }
 
-/* The two coordinates other than `axis`. */
+/* Writes the two coordinates other than `axis`. */
 static void project(point p, int axis, double *out) {
     out[0] = p[(axis + 1) % 3];
     out[1] = p[(axis + 2) % 3];
 }
 
-/* An axis along which the triangle is projected to one with area, or 3 when there is none. */
+/* Returns an axis along which the triangle projects to nonzero area, or 3 when no axis does. */
 static int area_axis(const point t[3]) {
     int axis = 0;
     for (; axis < 3; axis++) {
@@ -102,7 +103,7 @@ static bool segment_meets(point p, point q, const point t[3]) {
     return (s[0] >= 0 && s[1] >= 0 && s[2] >= 0) || (s[0] <= 0 && s[1] <= 0 && s[2] <= 0);
 }
 
-/* Whether the corners of u are all strictly on one side of the plane of t. */
+/* Returns whether the corners of u are all strictly on one side of the plane of t. */
 static bool on_one_side(const point t[3], const point u[3]) {
     int first = orient3d(t[0], t[1], t[2], u[0]);
     for (int i = 1; i < 3 && first; i++)
@@ -121,7 +122,7 @@ static bool cross_at_corner(const point t[3], int i, const point u[3], int j) {
     return segment_meets(t[(i + 1) % 3], t[(i + 2) % 3], u) || segment_meets(u[(j + 1) % 3], u[(j + 2) % 3], t);
 }
 
-/* t and u with the corners i and j beside the common edge. */
+/* Tests t and u that share an edge; corners i and j are the ones off the edge. */
 static bool cross_at_edge(const point t[3], int i, const point u[3], int j) {
     point v = t[(i + 1) % 3], w = t[(i + 2) % 3], a = t[i], b = u[j];
     double flat[4][2];

@@ -1,7 +1,5 @@
-/* The half-edges of a mesh of triangles.
- *
- * The rings of edges hold what is needed; here they are held against the rules of an oriented surface: two half-edges
- * at most to an edge, in opposite directions. */
+/* The half-edges of a mesh of triangles. Takes twins from the rings of edges, and checks the rules of an oriented
+ * surface: at most two half-edges to an edge, in opposite directions. */
 #include "mesh/twins.h"
 #include "mesh/edge_rings.h"
 
@@ -19,7 +17,8 @@ done:
     return status;
 }
 
-/* The twin of half-edge h, from its ring: the other one of two that run in opposite directions. */
+/* Writes the twin of half-edge h: the second half-edge of its ring. Fails unless the ring has at most two half-edges,
+ * in opposite directions. */
 static brio_status twin_of(brio_context *ctx, const brio_mesh *mesh, const uint32_t *ring, uint32_t h, uint32_t *twin) {
     brio_status status = BRIO_OK;
     const uint32_t *v = mesh->face_vertices;

@@ -1,13 +1,13 @@
-/* Normals of vertices: the sum of the area vectors of the faces round each. An area vector does not depend on how the
- * polygon would be cut into triangles, and faces that are nearly points or lines, whose directions are noise, hardly
- * count. Where the sum is no direction the normal is 0. */
+/* Normals of vertices: the sum of the area vectors of the faces round each vertex. The area vector of a polygon does
+ * not depend on how the polygon is cut into triangles. Faces that are nearly points or lines, whose directions are
+ * noise, hardly count. The normal is 0 where the sum has no direction. */
 #include "base/memory.h"
 #include "mesh/edge_rings.h"
 #include <math.h>
 
 static const char *const NAMES[3] = {"nx", "ny", "nz"};
 
-/* Twice the area of the face, across it. */
+/* Writes the normal of the face, of length twice its area. */
 static void area_vector(const brio_mesh *m, size_t face, double *n) {
     const double *o = m->vertices + 3 * (size_t)m->face_vertices[m->face_offsets[face]];
     n[0] = n[1] = n[2] = 0;

@@ -1,14 +1,15 @@
-/* The nearest points of a point, by a k-d tree in place.
+/* Nearest points of a query point, by a k-d tree in place.
  *
- * Of every range the middle point, across the longest side of the range's box, stands in the middle, smaller ones before
- * it, larger ones behind: the tree is the order of the points. Ties are broken by the other coordinates, and short ranges
- * are sorted, so that the tree does not depend on the order in which the points came.
+ * Each range of the array holds its median along the longest side of its box in the middle, smaller points before it
+ * and larger ones behind. So the order of the points is the tree. The other coordinates break ties, and short ranges
+ * are sorted. So the tree does not depend on the order of the input.
  *
- * A query lists what is nearer than the last of the nearest so far, as it is met, and whenever the list is full, strikes out
- * what is farther. It goes into the far half of a range only when the cut is nearer than that last one.
+ * A query lists each point it meets that is not farther than its bound. When the list is full, the query keeps the
+ * `wanted` nearest points and lowers the bound to the distance of the last of them. It enters the far half of a range
+ * only when the cut is within the bound.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
- *           1977. */
+ * 1977. */
 #include "query/nearest_points.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -26,7 +27,7 @@ static bool is_before_in_others(const double *a, const double *b, int axis) {
     return a[k] != b[k] ? a[k] < b[k] : a[l] < b[l];
 }
 
-/* Whether a comes before b across an axis, and among equals there by the other two. */
+/* Returns whether a comes before b along an axis; the other two coordinates break ties. */
 static inline bool is_before(const double *a, const double *b, int axis) {
     return a[axis] != b[axis] ? a[axis] < b[axis] : is_before_in_others(a, b, axis);
 }
@@ -41,7 +42,8 @@ static inline void swap(const brio_point_tree *t, ptrdiff_t i, ptrdiff_t j) {
     t->index[j] = index;
 }
 
-/* Hoare's selection: nothing before the middle is greater, nothing behind it smaller. */
+/* Selects by Hoare's method: afterwards no point before the middle is greater than the middle, and none behind it
+ * smaller. */
 static void select_middle(const brio_point_tree *t, ptrdiff_t first, ptrdiff_t last, int axis) {
     ptrdiff_t middle = first + (last - first + 1) / 2;
     while (first < last) {
@@ -83,14 +85,14 @@ static int longest_axis(const brio_point_tree *t, size_t begin, size_t end) {
     return axis;
 }
 
-/* Brings the middle point of a range to the middle. */
+/* Moves the median of a range to its middle. */
 static void cut(const void *user, size_t begin, size_t middle, size_t end) {
     const brio_point_tree *t = user;
     t->axis[middle] = (uint8_t)longest_axis(t, begin, end);
     select_middle(t, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
 }
 
-/* The recursion is as deep as the logarithm of the number of points. */
+/* Builds the tree of a range. The recursion is as deep as the logarithm of the number of points. */
 static void build(const void *user, size_t begin, size_t end, int depth) {
     const brio_point_tree *t = user;
     if (end - begin <= LEAF) {
@@ -130,12 +132,13 @@ void brio_point_tree_free(brio_context *ctx, brio_point_tree *tree) {
 typedef struct {
     const brio_point_tree *tree;
     double p[3];
-    brio_near_point *near; /* as they were met */
+    brio_near_point *near; /* in the order in which the query met them */
     size_t size, wanted;
-    double bound; /* nothing farther is among the nearest */
+    double bound; /* square of a distance; no farther point is among the nearest */
 } query;
 
-/* The k-th least of so many numbers, k from 0 on; writes over them. Without branches on what they are. */
+/* Returns the k-th least of `count` numbers, k counted from 0. Overwrites x. Has no branches that depend on single
+ * numbers. */
 static double select_least(double *x, size_t count, size_t k) {
     double more[BRIO_NEAR_ROOM];
     for (;;) {
@@ -160,7 +163,8 @@ static double select_least(double *x, size_t count, size_t k) {
     }
 }
 
-/* Whether fewer than `room` of the points at the bound come before one of them; duplicates go by their places. */
+/* Returns whether fewer than `room` listed points at the bound come before the point at `place`. Among duplicates the
+ * lower place comes first. */
 static bool has_place(const query *q, uint32_t place, size_t room) {
     const double *point = q->tree->point[place];
     size_t before = 0;
@@ -172,14 +176,15 @@ static bool has_place(const query *q, uint32_t place, size_t room) {
     return before < room;
 }
 
-/* Keeps the nearest of the list, in its order; the bound is the distance of the last of them. */
+/* Keeps the nearest `wanted` points of the list, in the list's order. Sets the bound to the distance of the last of
+ * them. */
 static void keep_nearest(query *q) {
     double square[BRIO_NEAR_ROOM];
     size_t kept = 0, less = 0, equal = 0;
     for (size_t i = 0; i < q->size; i++) square[i] = q->near[i].square;
     q->bound = select_least(square, q->size, q->wanted - 1);
     for (size_t i = 0; i < q->size; i++) less += q->near[i].square < q->bound, equal += q->near[i].square == q->bound;
-    uint64_t out[(BRIO_NEAR_ROOM + 63) / 64] = {0}; /* of the list */
+    uint64_t out[(BRIO_NEAR_ROOM + 63) / 64] = {0}; /* bits of list entries to drop */
     for (size_t i = 0; i < q->size && less + equal > q->wanted; i++)
         if (q->near[i].square == q->bound && !has_place(q, q->near[i].place, q->wanted - less))
             out[i / 64] |= UINT64_C(1) << i % 64;
@@ -190,7 +195,8 @@ static void keep_nearest(query *q) {
     q->size = kept;
 }
 
-/* Lists the points of a range that are near enough; what is listed for nothing is written over. */
+/* Lists the points of a range that are within the bound. A point beyond the bound is written too, and overwritten
+ * next. */
 static inline void offer(query *q, size_t begin, size_t end) {
     if (q->size >= 2 * q->wanted) keep_nearest(q);
     for (size_t i = begin; i < end; i++) {
@@ -212,7 +218,7 @@ static void look(query *q, size_t begin, size_t end) {
         look(q, begin, middle);
     else
         look(q, middle + 1, end);
-    if (isinf(q->bound) && q->size >= q->wanted) keep_nearest(q); /* what is left is farther, as a rule */
+    if (isinf(q->bound) && q->size >= q->wanted) keep_nearest(q); /* the points that remain are usually farther */
     if (across * across > q->bound) return;
     offer(q, middle, middle + 1);
     if (across < 0)
@@ -251,7 +257,7 @@ double brio_nearest_square(const brio_point_tree *tree, const double *p, double 
     return nearest_in(tree, p, 0, tree->count, best);
 }
 
-/* Whether a is nearer than b, ties lexicographic. */
+/* Returns whether a is nearer than b; ties are lexicographic. */
 static inline bool is_nearer(const brio_point_tree *t, const brio_near_point *a, const brio_near_point *b) {
     if (a->square != b->square) return a->square < b->square;
     return is_before(t->point[a->place], t->point[b->place], 0);

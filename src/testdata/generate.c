@@ -1,8 +1,7 @@
 /* Points of well-known kinds, for tests, examples and measurements.
  *
- * Point i follows from the seed and i alone: it is the same for every n and every number of threads. The round kinds
- * use rejection and square roots, and no other function of the mathematical library, so that they are the same numbers
- * on every machine.
+ * The seed and i alone determine point i, for every n and every number of threads. The round kinds use rejection and
+ * square roots and no other function of the mathematical library, so their numbers are equal on every machine.
  *
  * Based on: Marsaglia. Choosing a point from the surface of a sphere. Annals of Mathematical Statistics 1972. */
 #include "base/float_state.h"
@@ -22,11 +21,12 @@ enum {
     MOST_RESOLUTION = 1 << 15,
     POINTS_A_THREAD = 1 << 10,
     CLUSTERS = 256,
-    EXPONENT_DIGITS = 20 /* binary ones, of the radius of a cluster */
+    EXPONENT_DIGITS = 20 /* binary digits of the exponent of a cluster's radius */
 };
 
 static const double TORUS_MAJOR = 1, TORUS_MINOR = 0.4, CYLINDER_HEIGHT = 4;
-static const double LARGEST_CLUSTER = 0.1, CLUSTER_RANGE = 1e-6; /* radii, and the least as a share of it */
+static const double LARGEST_CLUSTER = 0.1,
+                    CLUSTER_RANGE = 1e-6; /* largest radius, and the least radius as a share of the largest */
 
 static const brio_generate_options STANDARD = {.size = sizeof STANDARD, .seed = 1, .noise = 0.05, .views = 12};
 
@@ -61,7 +61,7 @@ static void point_of_sphere(brio_rng *rng, double *p) {
     p[2] = 1 - 2 * square;
 }
 
-/* A uniform direction in the plane. */
+/* Draws a uniform direction in the plane. */
 static void direction(brio_rng *rng, double *cosine, double *sine) {
     double x, y, square;
     do {
@@ -73,7 +73,8 @@ static void direction(brio_rng *rng, double *cosine, double *sine) {
     *sine = y / sqrt(square);
 }
 
-/* The area of the torus is proportional to the distance from its axis, so nearer points are kept more rarely. */
+/* Draws a point of the torus. Its area element is proportional to the distance from its axis, so points nearer to the
+ * axis are rejected more often. */
 static void point_of_torus(brio_rng *rng, double *p) {
     double c, s, radius;
     do {
@@ -91,8 +92,8 @@ static void point_of_cylinder(brio_rng *rng, double *p) {
     p[2] = CYLINDER_HEIGHT * (brio_rng_double(rng) - 0.5);
 }
 
-/* CLUSTER_RANGE to a power uniform in [0, 1): each digit of the power takes one more square root into the product or
- * leaves it out. pow would do it in one step, but not with the same bits everywhere. */
+/* Returns LARGEST_CLUSTER times CLUSTER_RANGE to a power uniform in [0, 1). Each binary digit of the power decides
+ * whether one more square root is multiplied in. pow would need one step, but its bits differ between machines. */
 static double cluster_radius(brio_rng *rng) {
     double radius = LARGEST_CLUSTER, root = CLUSTER_RANGE;
     for (int digit = 0; digit < EXPONENT_DIGITS; digit++) {
@@ -167,7 +168,7 @@ typedef struct {
     brio_kind kind;
     uint64_t seed;
     size_t side;  /* of the grid */
-    size_t start; /* of the batch */
+    size_t start; /* first point of the batch in work */
     double *points;
 } generator;
 
@@ -240,7 +241,7 @@ brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh 
     brio_sculpture_box(low, high);
     for (int k = 0; k < 3; k++) side = fmax(side, high[k] - low[k]);
     grid.cell = side / (double)(resolution ? resolution : DEFAULT_RESOLUTION);
-    for (int k = 0; k < 3; k++) { /* whole cells, and the same excess on both sides */
+    for (int k = 0; k < 3; k++) { /* whole cells, with equal excess on both sides */
         BRIO_TRY(brio_implicit_cells(ctx, ceil((high[k] - low[k]) / grid.cell), &grid.cells[k]));
         grid.low[k] = 0.5 * (low[k] + high[k] - grid.cells[k] * grid.cell);
     }

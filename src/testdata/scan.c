@@ -1,13 +1,14 @@
 /* A simulated laser scan of the sculpture.
  *
  * The sensors stand on a sphere round the sculpture, evenly spread by the golden-angle spiral, so that parts occlude
- * each other as in a real scan. Each looks at the centre through a square raster of pixels, rolled by a random angle. A
- * ray walks along itself by the value of the function, which never exceeds the distance to the surface, until it
- * touches (sphere tracing). Hits at a grazing angle are dropped, as scanners drop them, and the others move along the
- * ray by Gaussian noise whose standard deviation is a share of the distance between neighbouring rays at that depth.
+ * each other as in a real scan. Each sensor looks at the centre through a square raster of pixels, rolled by a random
+ * angle. Sphere tracing moves along a ray in steps of the function's value, which never exceeds the distance to the
+ * surface, until the ray touches. Hits at a grazing angle are dropped, as scanners drop them. All other hits move
+ * along the ray by Gaussian noise. Its standard deviation is a share of the distance between neighbouring rays at that
+ * depth.
  *
- * How many rays hit is only known afterwards; a coarse pass estimates the share, and the raster follows from that.
- * Every number follows from the seed, the view and the pixel: it is the same for any number of threads.
+ * A coarse pass estimates the share of rays that hit; the size of the raster follows from this share. The seed, the
+ * view and the pixel determine every number, for any number of threads.
  *
  * Based on: Hart. Sphere tracing: a geometric method for the antialiased ray tracing of implicit surfaces. The Visual
  * Computer 1996. Marsaglia, Bray. A convenient method for generating normal variables. SIAM Review 1964. */
@@ -23,12 +24,12 @@ enum {
     LEAST_COARSE_RAYS = 1 << 13,
     MOST_COARSE_RAYS = 1 << 17,
     BLOCK = 1 << 14,   /* pixels between two reports of progress */
-    RAYS_A_CHUNK = 64, /* that a thread takes at once */
+    RAYS_A_CHUNK = 64, /* rays that a thread takes at once; chosen */
     MOST_STEPS = 1000
 };
 
-static const double DISTANCE = 4;           /* of a sensor, in radii of the sphere round the sculpture */
-static const double GRAZING_COSINE = 0.225; /* of 77 degrees between ray and normal */
+static const double DISTANCE = 4;           /* of a sensor from the centre, in radii of the ball round the sculpture */
+static const double GRAZING_COSINE = 0.225; /* cosine of 77 degrees, between ray and normal */
 static const double TOUCH = 1e-7;           /* distance at which a ray has hit */
 
 typedef struct {
@@ -37,20 +38,20 @@ typedef struct {
 
 typedef struct {
     double centre[3], radius; /* of the ball that holds the sculpture */
-    double half_width;        /* of a raster at unit depth: it just covers that ball */
+    double half_width;        /* half width of a raster at unit depth: the raster just covers that ball */
     uint64_t seed;
     int views;
     double noise;
 } scanner;
 
-/* What a scan holds while it runs. */
+/* The state of a running scan. */
 typedef struct {
     brio_context *ctx;
     const scanner *scanner;
     double raster;    /* pixels a side */
-    double *measured; /* of a block of pixels: positions, */
-    bool *seen;       /* and whether there is one */
-    double *points;   /* all so far */
+    double *measured; /* positions of a block of pixels */
+    bool *seen;       /* whether each pixel of the block has a position */
+    double *points;   /* all points so far */
     uint16_t *views;
     size_t count, point_capacity, view_capacity;
 } scan;
@@ -101,8 +102,8 @@ static sensor sensor_of_view(const scanner *s, int view) {
 
 /* --- rays --- */
 
-/* The direction of the ray through a pixel. The raster has `raster` pixels a side, not a whole number so that the
- * number of hits can be chosen, and is rounded up evenly on all sides. */
+/* Returns the direction of the ray through a pixel. The raster has `raster` pixels a side. This number need not be an
+ * integer, so that the number of hits can be chosen; it is rounded up evenly on all sides. */
 static void ray_of_pixel(const scanner *s, const sensor *e, double raster, uint64_t pixel, double *ray) {
     uint64_t side = (uint64_t)ceil(raster), row = pixel / side, column = pixel % side;
     double x = s->half_width * (2 * (double)column + 1 - (double)side) / raster;
@@ -115,7 +116,7 @@ static void walk(const double *from, const double *ray, double t, double *p) {
     for (int k = 0; k < 3; k++) p[k] = from[k] + t * ray[k];
 }
 
-/* Cosine of the angle between the ray and the surface's normal, by central differences. */
+/* Returns the cosine of the angle between the ray and the surface's normal, by central differences. */
 static double incidence(const double *p, const double *ray) {
     const double h = 1e-5;
     double normal[3];
@@ -129,7 +130,7 @@ static double incidence(const double *p, const double *ray) {
     return -brio_dot(normal, ray) / sqrt(brio_dot(normal, normal));
 }
 
-/* Distance along the ray at which the scanner sees the surface; 0 when it does not. */
+/* Returns the distance along the ray at which the scanner sees the surface, or 0 when the ray misses. */
 static double trace(const scanner *s, const sensor *e, const double *ray) {
     double t = (DISTANCE - 1) * s->radius, end = (DISTANCE + 1) * s->radius, p[3];
     for (int step = 0; step < MOST_STEPS && t < end; step++) {
@@ -141,7 +142,7 @@ static double trace(const scanner *s, const sensor *e, const double *ray) {
     return 0;
 }
 
-/* A normal variable, by the polar method. */
+/* Draws a standard normal variable by the polar method. */
 static double gaussian(brio_rng *rng) {
     double x, square;
     do {
@@ -154,14 +155,14 @@ static double gaussian(brio_rng *rng) {
 
 /* --- rasters --- */
 
-/* Coarse rasters of all views. */
+/* The coarse rasters of all views. */
 typedef struct {
     const scanner *scanner;
     uint64_t side;
     int64_t hits;
 } coarse_scan;
 
-/* Counts the rays of views that hit. */
+/* Counts the rays that hit, for some views. */
 static void count_hits(void *user, size_t begin, size_t end, int thread) {
     coarse_scan *c = user;
     int64_t hits = 0;
@@ -174,10 +175,10 @@ static void count_hits(void *user, size_t begin, size_t end, int thread) {
             hits += trace(c->scanner, &e, ray) > 0;
         }
     }
-    __atomic_fetch_add(&c->hits, hits, __ATOMIC_RELAXED); /* read after the run */
+    __atomic_fetch_add(&c->hits, hits, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
 
-/* The size of a raster, in pixels a side, with which all views together hit about n times. */
+/* Returns the size of a raster, in pixels a side, for which all views together hit about n times. */
 static double choose_raster(const scan *c, size_t n) {
     const scanner *s = c->scanner;
     double rays = fmin(fmax(4 * (double)n, LEAST_COARSE_RAYS), MOST_COARSE_RAYS);
@@ -188,7 +189,7 @@ static double choose_raster(const scan *c, size_t n) {
     return sqrt((double)n / fmax((double)coarse.hits, 1) * (double)pixels);
 }
 
-/* Measures one pixel; false when the scanner sees nothing there. */
+/* Measures one pixel. Returns false when the scanner sees nothing there. */
 static bool measure(const scanner *s, const sensor *e, double raster, int view, uint64_t pixel, double *p) {
     double ray[3];
     ray_of_pixel(s, e, raster, pixel, ray);

@@ -1,13 +1,13 @@
 /* The sculpture: three rings, each linked with the other two, grow out of one plinth.
  *
- * The rings are Villarceau circles of a torus that stands upright: circles of one family are linked in pairs, and
- * turned by thirds of a revolution they keep their distance. So each makes one handle, and the plinth that swallows all
- * their feet makes the three one body of genus 3. The rings taper from foot to top, and everything is blended by a
- * smooth minimum, so the surface bends gently.
+ * The rings are Villarceau circles of an upright torus. Circles of one family are linked in pairs; turned by thirds of
+ * a revolution they keep their distance. Each ring makes one handle. The plinth contains the feet of all three rings,
+ * so the whole is one body of genus 3. The rings taper from foot to top. A smooth minimum blends all parts, so the
+ * surface bends gently.
  *
- * Each part is a distance function or a little less: a ring's thickness is linear in height, of slope TAPER, so
- * dividing by 1 + TAPER keeps the sum from growing faster than the distance; the smooth minimum of such functions is
- * one too.
+ * Each part is a lower bound of the distance. The thickness of a ring is linear in height with slope TAPER, so
+ * dividing by 1 + TAPER keeps the function below the distance. The smooth minimum of such functions is such a function
+ * too.
  *
  * Based on: Villarceau. Theoreme sur le tore. Nouvelles annales de mathematiques 1848. */
 #include "testdata/sculpture.h"
@@ -17,17 +17,18 @@ static const double RING = 1.0;       /* radius of the rings */
 static const double SPREAD = 0.5;     /* distance of their centres from the axis of the torus */
 static const double THICKNESS = 0.17; /* of a ring at the height of the origin */
 static const double TAPER = 0.04;     /* thickness lost per unit of height */
-static const double RING_BLEND = 0.3; /* reach of the smooth minimum between rings, */
-static const double BLEND = 0.4;      /* and between all else */
+static const double RING_BLEND = 0.3; /* reach of the smooth minimum between rings */
+static const double BLEND = 0.4;      /* reach of the smooth minimum between all other parts */
 static const double LIFT = 0.4;       /* of the centre of the torus above the origin */
 
-/* The minimum of a and b, rounded where they differ by less than `reach`; C2, and never above the minimum. */
+/* Returns the minimum of a and b, rounded where they differ by less than `reach`. The result is C2 and at most the
+ * minimum. */
 static double smooth_min(double a, double b, double reach) {
     double h = fmax(reach - fabs(a - b), 0) / reach;
     return fmin(a, b) - h * h * h * reach / 6;
 }
 
-/* Distance to a circle with its plane through its centre. */
+/* Returns the distance to the circle of radius RING round a centre, in the plane with the given normal. */
 static double circle_distance(const double *p, const double *centre, const double *normal) {
     double d[3] = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
     double height = d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2];
@@ -36,8 +37,8 @@ static double circle_distance(const double *p, const double *centre, const doubl
     return sqrt(in_plane * in_plane + height * height);
 }
 
-/* Distance to a ring. The torus' axis is y; the circle of angle phi has its centre in the direction u = (cos phi, 0,
- * sin phi), in a plane through u that leans so as to touch the torus twice. */
+/* Returns the distance to a ring. The axis of the torus is y. The circle of angle phi has its centre in direction u =
+ * (cos phi, 0, sin phi). Its plane contains u and leans so that it touches the torus twice. */
 static double ring_distance(const double *p, double cos_phi, double sin_phi) {
     const double lean = SPREAD / RING, upright = sqrt(1 - lean * lean);
     const double centre[3] = {SPREAD * cos_phi, 0, LIFT + SPREAD * sin_phi};
@@ -45,14 +46,14 @@ static double ring_distance(const double *p, double cos_phi, double sin_phi) {
     return (circle_distance(p, centre, normal) - THICKNESS + TAPER * p[2]) / (1 + TAPER);
 }
 
-/* Distance to an upright cylinder with a rounded rim. */
+/* Returns the distance to an upright cylinder with a rounded rim. */
 static double disc_distance(const double *p, double z, double radius, double half_height, double rim) {
     double outside = sqrt(p[0] * p[0] + p[1] * p[1]) - radius + rim, above = fabs(p[2] - z) - half_height + rim;
     double x = fmax(outside, 0), y = fmax(above, 0);
     return sqrt(x * x + y * y) + fmin(fmax(outside, above), 0) - rim;
 }
 
-/* Distance to an upright capsule on the axis. */
+/* Returns the distance to an upright capsule on the axis. */
 static double neck_distance(const double *p, double low, double high, double radius) {
     double d = p[2] - fmin(fmax(p[2], low), high);
     return sqrt(p[0] * p[0] + p[1] * p[1] + d * d) - radius;

@@ -94,14 +94,14 @@ done:
     return status;
 }
 
-/* Slot of vertex v among the slots of a facet: 0 to 2, or 3 when v is no vertex of the facet. */
+/* Returns the slot of vertex v among the slots of a facet: 0 to 2, or 3 when v is no vertex of the facet. */
 static int place_in_facet(const uint32_t *vertex, const uint8_t *facet, uint32_t v) {
     for (int i = 0; i < 3; i++)
         if (vertex[facet[i]] == v) return i;
     return 3;
 }
 
-/* Tests 2 and 3 for one facet whose mate's handle is in range. */
+/* Runs tests 2 and 3 on one facet whose mate's handle is in range. */
 static brio_status check_mate(brio_judge *j, uint32_t f, uint32_t g) {
     brio_status status = BRIO_OK;
     size_t tet = brio_tet_of(f), other = brio_tet_of(g);
@@ -155,7 +155,8 @@ done:
     return status;
 }
 
-/* Tests 5 and 6, each pair of mates once. Between a finite and an infinite tetrahedron there is nothing to test. */
+/* Runs tests 5 and 6 on each pair of mates once. Skips pairs of a finite and an infinite tetrahedron, which need no
+ * test. */
 static brio_status check_facets(brio_judge *j) {
     brio_status status = BRIO_OK;
     for (size_t f = 0; f < 4 * j->t.count; f++) {
@@ -173,8 +174,8 @@ done:
     return status;
 }
 
-/* The side of the plane (a, b, c) on which o lies. An orientation is affine in its last point, so the first of the
- * seed's vertices off the plane decides: o is that much closer to it than to the later ones. */
+/* Returns the side of the plane (a, b, c) on which o lies. An orientation is affine in its last point. So the first of
+ * the seed's vertices off the plane decides: o is infinitely closer to this vertex than to the later ones. */
 static int side_of_seed(brio_judge *j, const uint32_t *seed, uint32_t a, uint32_t b, uint32_t c) {
     const brio_record *r = j->t.record;
     int side = 0;
@@ -190,7 +191,7 @@ static bool holds_seed(brio_judge *j, const uint32_t *seed, const uint32_t *v) {
     return true;
 }
 
-/* Test 4. */
+/* Runs test 4. */
 static brio_status check_cover(brio_judge *j) {
     brio_status status = BRIO_OK;
     size_t first = 0;
@@ -251,7 +252,7 @@ done:
     return status;
 }
 
-/* The finite tetrahedra come first. */
+/* Checks that the finite tetrahedra come first. */
 static brio_status check_sequence(brio_context *ctx, const brio_triangulation *t) {
     brio_status status = BRIO_OK;
     for (size_t tet = 0; tet < t->stats.tetrahedra + t->stats.hull_facets; tet++)

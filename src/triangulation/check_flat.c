@@ -1,19 +1,20 @@
-/* The check of inputs in a plane, on a line, or at one position, which have no tetrahedra: what there is to check are
- * the representatives and the counts.
+/* The check of inputs in a plane, on a line, or at one position. They have no tetrahedra, so only the representatives
+ * and the counts are checked.
  *
- * One apex off the plane (two off a line) makes the input three-dimensional. The plane (line) then carries a facet (an
- * edge) of the convex hull, and the regular triangulation restricted to a face of the hull is the regular triangulation
- * of the points in that face, so the same points own a cell. The solid triangulation is made and checked exactly.
+ * One apex off the plane (two off a line) makes the input three-dimensional. The plane (line) then contains a facet
+ * (an edge) of the convex hull. The regular triangulation restricted to a face of the hull is the regular
+ * triangulation of the points in that face, so the same points own a cell. The solid triangulation is computed and
+ * checked exactly.
  *
- * Its representatives are those of the flat input, because the apexes represent no point: they are as light as the
- * lightest point x can be. At x, its own power distance is -w(x), that of a vertex that hides x is at most -w(x), and
- * that of an apex is more, being away from x. */
+ * The solid triangulation has the representatives of the flat input, because the apexes represent no point. The weight
+ * of an apex is the least weight of all points. At a point x, the power distance of x is -w(x). The power distance of
+ * a vertex that hides x is at most -w(x). That of an apex is more, because the apex is not at x. */
 #include "base/memory.h"
 #include "triangulation/check.h"
 #include "triangulation/triangulation.h"
 #include <string.h>
 
-/* Extends `count` records in general position by the first one off their hull. */
+/* Returns whether p is off the affine hull of `count` records in general position. */
 static bool extends(const brio_record *r, const size_t corner[4], int count, const double *p) {
     switch (count) {
     case 1:
@@ -33,7 +34,8 @@ int brio_dimension(const brio_record *r, size_t n) {
     return count - 1;
 }
 
-/* Appends to `points` (room for three more) until they are three-dimensional; their number. */
+/* Appends apexes to `points` (which has room for three more) until the points are three-dimensional. Returns the
+ * number of all points. */
 static size_t add_apexes(double *points, size_t n, double reach) {
     brio_record r[4];
     size_t corner[4] = {0, 1, 2, 3};
@@ -59,7 +61,8 @@ static double reach_of(const double *points, size_t n) {
     return fmin(fmax(most, 1e-300), 8e307);
 }
 
-/* All points at one position, or none: the heaviest, then the lowest index, represents the others. */
+/* Checks an input without points or at one position. The heaviest point represents the others; among equal weights,
+ * the one with the lowest index. */
 static brio_status check_one_position(brio_context *ctx, const brio_triangulation *t, const double *weights) {
     brio_status status = BRIO_OK;
     size_t n = t->stats.points, best = 0;
@@ -75,7 +78,7 @@ done:
     return status;
 }
 
-/* Holds a result against the checked triangulation of the same points and some apexes behind them. */
+/* Compares a result with the checked triangulation of its points and the apexes after them. */
 static brio_status compare_with_solid(brio_context *ctx, const brio_triangulation *t, const brio_triangulation *solid) {
     brio_status status = BRIO_OK;
     size_t n = t->stats.points, vertices = solid->stats.vertices - (solid->stats.points - n);
@@ -92,7 +95,7 @@ done:
     return status;
 }
 
-/* The weights, and those of the apexes: the least of all. */
+/* Copies the weights, and gives each apex the least weight of all. */
 static brio_status copy_weights(brio_context *ctx, const double *weights, size_t n, size_t total, double **out) {
     double *w = NULL, least = weights[0];
     brio_status status = BRIO_ALLOC(ctx, w, total);

@@ -1,10 +1,10 @@
-/* The check of the points that are no vertex: test 7 of check.c, and for a result of brio_delaunay also which vertex
- * stands for each point, and how many points there are of each kind.
+/* The check of the points that are no vertex: test 7 of check.c. For a result of brio_delaunay it also checks which
+ * vertex represents each point, and the numbers of vertices, duplicates and hidden points.
  *
  * Each point is located exactly. A walk that draws its next facet at random ends with probability one in every
- * triangulation [Devillers Pion Teillaud 2002], also where ties are broken otherwise than by the perturbation.
- * Coincident points that are equally heavy may stand for each other in tetrahedra from anywhere; in a result the one
- * with the lowest index must be the vertex. */
+ * triangulation [Devillers Pion Teillaud 2002], however ties are broken. Among coincident points of equal weight,
+ * tetrahedra from another program may use any as the vertex. In a result of brio_delaunay the vertex must be the one
+ * with the lowest index. */
 #include "base/memory.h"
 #include "base/sort.h"
 #include "triangulation/check.h"
@@ -14,12 +14,12 @@
 
 typedef struct {
     brio_judge *j;
-    const brio_triangulation *result; /* or NULL */
-    uint32_t *vertex_tet;             /* a tetrahedron of each vertex, BRIO_NO_TET of other points */
+    const brio_triangulation *result; /* may be NULL */
+    uint32_t *vertex_tet;             /* a tetrahedron of each vertex; BRIO_NO_TET for other points */
     brio_walk walk;
     brio_nearest nearest; /* for the representatives of hidden points */
     uint32_t *hidden;
-    size_t num_hidden; /* points, coincident ones counted each */
+    size_t num_hidden; /* number of hidden points; coincident points count each */
     size_t num_vertices;
 } workspace;
 
@@ -38,7 +38,7 @@ done:
     return status;
 }
 
-/* The points that a result names as vertices are the vertices. */
+/* Checks that every representative is a vertex and that every vertex represents itself. */
 static brio_status check_vertices(workspace *w) {
     brio_status status = BRIO_OK;
     const brio_judge *j = w->j;
@@ -53,7 +53,7 @@ done:
     return status;
 }
 
-/* The vertex of a tetrahedron at the position x, or BRIO_INFINITE. */
+/* Returns the vertex of a tetrahedron at position x, or BRIO_INFINITE. */
 static uint32_t vertex_at(const brio_judge *j, uint32_t tet, const double *x) {
     const uint32_t *v = j->t.tet[tet].vertex;
     for (int i = 0; i < 4; i++)
@@ -61,7 +61,7 @@ static uint32_t vertex_at(const brio_judge *j, uint32_t tet, const double *x) {
     return BRIO_INFINITE;
 }
 
-/* Point p is at the position of vertex v. */
+/* Checks point p, which is at the position of vertex v. */
 static brio_status check_duplicate(workspace *w, uint32_t p, uint32_t v) {
     brio_status status = BRIO_OK;
     const brio_judge *j = w->j;
@@ -76,8 +76,8 @@ done:
     return status;
 }
 
-/* Point p is in tetrahedron tet, and at the position of no vertex. Without weights it is inside the sphere, and refused.
- */
+/* Checks point p, which is in tetrahedron tet and at the position of no vertex. Without weights p is inside the
+ * sphere, so the check fails. */
 static brio_status check_hidden(workspace *w, uint32_t p, uint32_t tet) {
     brio_status status = BRIO_OK;
     brio_judge *j = w->j;
@@ -110,7 +110,7 @@ static int compare_positions(uint32_t p, uint32_t q, const void *record) {
     return brio_lexicographic(((const brio_record *)record)[p], ((const brio_record *)record)[q]);
 }
 
-/* Coincident hidden points count once. */
+/* Checks the counts. Coincident hidden points count once. */
 static brio_status check_counts(workspace *w) {
     brio_status status = BRIO_OK;
     const brio_record *r = w->j->t.record;

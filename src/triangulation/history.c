@@ -32,7 +32,8 @@ static inline uint32_t live_slot(const brio_history_node *node) {
     return node->next & ~BRIO_HISTORY_LIVE;
 }
 
-/* Room for `count` more nodes. Doubling would set aside too much of the largest array there is. */
+/* Reserves room for `count` more nodes. Grows by an eighth, because doubling the largest array would waste too much
+ * memory. */
 static brio_status reserve_nodes(brio_inserter *ins, brio_history *h, size_t count) {
     const brio_store *s = ins->store;
     brio_status status = BRIO_OK;
@@ -51,7 +52,7 @@ done:
     return status;
 }
 
-/* Nodes of `count` new tetrahedra in those slots (NULL: slots 0, 1, ...). */
+/* Adds nodes for `count` new tetrahedra in the given slots (NULL: slots 0, 1, ...). */
 static brio_status add_nodes(brio_inserter *ins, brio_history *h, const uint32_t *slots, size_t count) {
     brio_status status = reserve_nodes(ins, h, count);
     if (status != BRIO_OK) return status;
@@ -82,8 +83,8 @@ brio_status brio_history_add(brio_inserter *ins, brio_history *h) {
 
 /* --- one path --- */
 
-/* Whether p is in the closure of a finite tetrahedron, or strictly outside the facet of an infinite one. The facet
- * opposite to the latest vertex, which seldom tells, is tried last. */
+/* Returns whether p is in the closure of a finite tetrahedron, or strictly outside the facet of an infinite one. Tests
+ * the facet opposite to the latest vertex last, because it seldom decides. */
 static bool holds(brio_inserter *ins, const uint32_t v[4], const double *p) {
     const brio_store *s = ins->store;
     const brio_record *r = s->t.record;
@@ -122,7 +123,7 @@ static bool conflicts(brio_inserter *ins, const brio_history_node *node, const d
     return brio_conflict(&ins->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]], p, s->weighted);
 }
 
-/* Lists an insertion to be searched, once. */
+/* Puts an insertion on the list to be searched, at most once. */
 static brio_status come_to(brio_context *ctx, brio_history *h, uint32_t insertion, size_t *count) {
     if (h->seen[insertion] == h->searches) return BRIO_OK;
     brio_status status = BRIO_RESERVE(ctx, h->insertion, h->insertion_capacity, *count + 1);
@@ -138,7 +139,7 @@ static brio_status list_conflict(brio_context *ctx, brio_history *h, uint32_t te
     return status;
 }
 
-/* Makes ready for one more search: no insertion was seen by it. */
+/* Begins a search: it has seen no insertion yet. */
 static brio_status begin_search(brio_context *ctx, brio_history *h) {
     size_t old = h->seen_capacity;
     brio_status status = BRIO_RESERVE(ctx, h->seen, h->seen_capacity, h->num_insertions);

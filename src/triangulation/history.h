@@ -1,7 +1,8 @@
-/* The history DAG: every tetrahedron that ever was, and the insertion that destroyed it.
+/* The history DAG: every tetrahedron that ever existed, and the insertion that destroyed it.
  *
- * A destroyed tetrahedron links to all that its insertion created. Those are nodes one after the other, so a node needs
- * its vertices and the number of that insertion, and an insertion the first of its nodes. Insertion 0 is the start. */
+ * A destroyed tetrahedron links to all tetrahedra that the destroying insertion created. The nodes of one insertion
+ * are consecutive. So a node stores its vertices and the number of the destroying insertion, and an insertion stores
+ * its first node. Insertion 0 is the start. */
 #ifndef BRIO_TRIANGULATION_HISTORY_H
 #define BRIO_TRIANGULATION_HISTORY_H
 
@@ -9,45 +10,45 @@
 
 typedef struct {
     uint32_t vertex[4];
-    uint32_t next; /* the insertion that destroyed it, or BRIO_HISTORY_LIVE + its slot */
+    uint32_t next; /* number of the insertion that destroyed it, or BRIO_HISTORY_LIVE + its slot */
 } brio_history_node;
 
 #define BRIO_HISTORY_LIVE (UINT32_C(1) << 31)
 
-/** In place of a node: search from the first tetrahedra on. */
+/** Stands for a node: search from the first tetrahedra on. */
 #define BRIO_HISTORY_ROOT UINT32_MAX
 
 typedef struct {
     brio_history_node *node;
     size_t num_nodes, node_capacity;
-    uint32_t *first; /* node of each insertion, and one more at the end */
+    uint32_t *first; /* first node of each insertion; then the end of the last */
     size_t num_insertions, first_capacity;
-    uint32_t *node_of; /* of each slot */
+    uint32_t *node_of; /* node of each slot */
     size_t slot_capacity;
     bool all_conflicts;
-    /* of the search for all conflicts */
-    uint32_t *seen;                 /* of each insertion, the last search that came to it */
-    uint32_t *insertion, *conflict; /* those that this search came to; the live tetrahedra in conflict that it met */
+    /* state of the search for all conflicts */
+    uint32_t *seen;                 /* of each insertion, the last search that reached it */
+    uint32_t *insertion, *conflict; /* insertions still to search; live tetrahedra found in conflict */
     size_t seen_capacity, insertion_capacity, conflict_capacity, num_conflicts;
     uint32_t searches;
 } brio_history;
 
-/** A history of the first tetrahedra. After a failure the history is to be freed, too. */
+/** Makes a history of the first tetrahedra. The caller frees the history, also after a failure. */
 brio_status brio_history_new(brio_inserter *ins, const brio_delaunay_options *options, brio_history *out);
 void brio_history_free(brio_context *ctx, brio_history *h);
 
-/** Adds the insertion whose cavity was filled last. BRIO_ERR_TOO_LARGE beyond 2^32 - 2 nodes. */
+/** Adds the insertion whose cavity was filled last. Returns BRIO_ERR_TOO_LARGE beyond 2^32 - 2 nodes. */
 brio_status brio_history_add(brio_inserter *ins, brio_history *h);
 
-/** The live tetrahedron whose closure holds p, or, for p strictly outside the hull, an infinite one whose facet p is
- *  strictly outside of.   from  a node of which the same is true, or BRIO_HISTORY_ROOT. */
+/** Returns the live tetrahedron whose closure holds p. For p strictly outside the hull, returns an infinite
+ *  tetrahedron whose facet has p strictly outside.   from  a node with this property, or BRIO_HISTORY_ROOT. */
 uint32_t brio_history_path(brio_inserter *ins, brio_history *h, uint32_t from, const double *p);
 
-/** h->conflict = the live tetrahedra in conflict with p that can be reached from that node through nodes in conflict
- *  with p; or those of the vertex at p's position. None when p is hidden. */
+/** Lists in h->conflict the live tetrahedra in conflict with p that can be reached from node `from` through nodes in
+ *  conflict with p. A tetrahedron with a vertex at p's position counts as in conflict. Lists none when p is hidden. */
 brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p);
 
-/** What a strategy's `locate` gives, by the search of the options. */
+/** Does what a strategy's `locate` does, by the search that the options choose. */
 brio_status brio_history_locate(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, uint32_t *tet);
 
 #endif

@@ -1,17 +1,17 @@
 /* Point location by descent along edges to the nearest vertex.
  *
- * Samples of a smooth surface make stacks of thin tetrahedra between its sheets; a walk to a near point crosses them by
- * the hundred. But the nearest vertex is a Delaunay neighbour of the new point, so some tetrahedron round it is in
- * conflict. From the star of the last inserted vertex go to the vertex nearest to the point, test its star, and while
- * nothing there conflicts go on to a nearer one. Where that ends without a conflict (hidden points) the walk takes over
- * from the nearest vertex.
+ * Samples of a smooth surface have stacks of thin tetrahedra between sheets, and a walk to a near point crosses
+ * hundreds of them. But the nearest vertex is a Delaunay neighbour of the new point, so some tetrahedron round that
+ * vertex is in conflict. The search starts at the star of the last inserted vertex. It goes to the vertex nearest to
+ * the point, tests that vertex's star, and goes on to a nearer vertex while no tetrahedron conflicts. If the descent
+ * ends without a conflict (hidden points), a walk starts from the nearest vertex.
  *
  * Based on: the nearest-neighbour graph is a part of the Delaunay triangulation; Birn, Holtgrewe, Sanders, Singler.
  * Simple and fast nearest neighbor search. ALENEX 2010, for the descent. */
 #include "triangulation/locate_descent.h"
 #include "base/memory.h"
 
-enum { MOST_OF_STAR = 512 }; /* tetrahedra to look at round one vertex, so that the apex of a cone costs no more */
+enum { MOST_OF_STAR = 512 }; /* tetrahedra to test round one vertex; chosen, bounds the cost at the apex of a cone */
 
 typedef struct {
     uint32_t vertex, tet; /* a vertex and a tetrahedron that has it */
@@ -28,7 +28,7 @@ static inline void offer(const brio_tetrahedra *t, candidate *best, uint32_t tet
     }
 }
 
-/* The first of some tetrahedra in conflict with p, or BRIO_NO_TET. */
+/* Returns the first of some tetrahedra that is in conflict with p, or BRIO_NO_TET. */
 static uint32_t first_conflict(brio_inserter *ins, const uint32_t *tets, size_t count, const double *p) {
     for (size_t n = 0; n < count; n += BRIO_BATCH) {
         size_t size = count - n < BRIO_BATCH ? count - n : BRIO_BATCH;
@@ -41,7 +41,8 @@ static uint32_t first_conflict(brio_inserter *ins, const uint32_t *tets, size_t 
     return BRIO_NO_TET;
 }
 
-/* Of the star of the last inserted vertex, which is still in the caches, the tetrahedra that also have vertex v. */
+/* Collects the tetrahedra of the last inserted vertex's star that also have vertex v; this star is still in the
+ * caches. */
 static brio_status collect_last(brio_inserter *ins, uint32_t v) {
     const brio_store *s = ins->store;
     brio_star *star = &ins->star;

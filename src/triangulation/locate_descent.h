@@ -4,8 +4,8 @@
 
 #include "triangulation/inserter.h"
 
-/** *tet = a tetrahedron in conflict with p near the last insertion, or what a walk gives; BRIO_NO_TET where the walk
- *  leads out of the zone. */
+/** Sets *tet to a tetrahedron in conflict with p near the last insertion, or to the result of a walk. The result is
+ *  BRIO_NO_TET when the walk leaves the zone. */
 brio_status brio_locate_descent(brio_inserter *ins, const double *p, uint32_t *tet);
 
 #endif

@@ -1,8 +1,8 @@
-/* Point location from a neighbour: the walk starts from the nearest of the point's neighbours along the caller's edges
- * that are in already, and of the last inserted vertex.
+/* Point location from a neighbour: the walk starts from the nearest of the last inserted vertex and the point's
+ * inserted neighbours along the caller's edges.
  *
- * Where the edges are those of a surface that the points were taken from, most of them are in the final triangulation,
- * and a walk has few tetrahedra to cross.
+ * If the edges belong to a surface from which the points were taken, most of the edges are in the final triangulation.
+ * Then a walk crosses few tetrahedra.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 4.5. */
 #include "base/memory.h"

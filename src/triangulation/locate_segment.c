@@ -1,17 +1,17 @@
-/* Point location by a walk along a segment, of whose start the tetrahedron is known.
+/* Point location by a walk along a segment whose start has a known tetrahedron.
  *
- * A visibility walk: from a tetrahedron step across a facet that has the end strictly on its other side. Of such facets
- * the one is taken that the line through the segment meets, borders included; a tetrahedron that touches the segment
- * has one, at the last point that they share, and the next tetrahedron touches the segment there, too. So the walk
- * visits tetrahedra that touch the segment alone, whatever it runs through, vertices and edges included, and ends as
- * every visibility walk among the tetrahedra of a regular triangulation does. A segment that starts outside of the
- * hull has no tetrahedra there: the walk begins next to the hull facet that its start sees, and is an ordinary
- * visibility walk until it meets the line.
+ * A visibility walk steps across a facet that has the segment's end strictly on its far side. Among such facets this
+ * walk takes one that the line of the segment meets, borders included. A tetrahedron that touches the segment has such
+ * a facet, at the last point of their intersection, and the next tetrahedron touches the segment at that point. So the
+ * walk visits only tetrahedra that touch the segment, even where the segment runs through vertices and edges. The walk
+ * ends, as every visibility walk in a regular triangulation does. A segment that starts outside the hull has no
+ * tetrahedra there. Then the walk begins next to the hull facet that the start sees, and is an ordinary visibility
+ * walk until it meets the line.
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "triangulation/locate_segment.h"
 
-/* Whether the line through u and w meets the closed triangle of a facet; w is off its plane. */
+/* Returns whether the line through u and w meets the closed triangle of a facet; w is off the facet's plane. */
 static bool line_meets(brio_inserter *ins, const uint32_t *v, int slot, const double *u, const double *w) {
     const brio_store *s = ins->store;
     unsigned sides = 0;
@@ -23,7 +23,7 @@ static bool line_meets(brio_inserter *ins, const uint32_t *v, int slot, const do
     return sides != 3;
 }
 
-/* The slots of the facets that have w strictly on their other side, as bits. */
+/* Returns, as bits, the slots of the facets that have w strictly on their far side. */
 static unsigned facets_before(brio_inserter *ins, const uint32_t *v, int came_through, const double *w) {
     const brio_record *r = ins->store->t.record;
     unsigned before = 0;
@@ -36,7 +36,7 @@ static unsigned facets_before(brio_inserter *ins, const uint32_t *v, int came_th
     return before;
 }
 
-/* Of those facets the one to cross. */
+/* Returns the slot of the facet to cross, out of `before`. */
 static int facet_ahead(brio_inserter *ins, const uint32_t *v, unsigned before, const double *u, const double *w) {
     int any = __builtin_ctz(before);
     if ((before & (before - 1)) == 0) return any;

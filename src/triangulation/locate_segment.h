@@ -4,8 +4,9 @@
 
 #include "triangulation/inserter.h"
 
-/** The tetrahedron whose closure holds w, or, for w strictly outside the hull, an infinite one whose facet w is strictly
- *  outside of. From u, of whose tetrahedron `tet` the same is true; *entered grows by the tetrahedra entered. */
+/** Returns the tetrahedron whose closure holds w. For w strictly outside the hull, returns an infinite tetrahedron
+ *  whose facet has w strictly outside. Tetrahedron `tet` has this property for u. Adds the number of tetrahedra
+ *  entered to *entered. */
 uint32_t brio_locate_segment(brio_inserter *ins, uint32_t tet, const double *u, const double *w, uint64_t *entered);
 
 #endif

@@ -20,16 +20,16 @@
 typedef struct {
     brio_history history;
     brio_point_graph graph;
-    uint32_t *node;   /* of the history DAG, where each record was last traced */
-    double logarithm; /* of the number of points, so many times as the next tracing tells */
+    uint32_t *node;   /* node of the history DAG where each record was last traced */
+    double logarithm; /* ln applied h times to the number of points, h being the next tracing's index */
 } trace;
 
 /* One tracing. */
 typedef struct {
     brio_inserter *ins;
     trace *own;
-    uint32_t *tet;   /* of each record that was found, else BRIO_NO_TET */
-    uint32_t *queue; /* the records that were found, of which [0, head) were traced from */
+    uint32_t *tet;   /* tetrahedron of each record found, else BRIO_NO_TET */
+    uint32_t *queue; /* the records found; those in [0, head) have been traced from */
     size_t head, tail;
 } tracing;
 
@@ -53,7 +53,7 @@ static void found(tracing *t, uint32_t p, uint32_t tet) {
     t->queue[t->tail++] = p;
 }
 
-/* From the records in the queue to all that their edges reach. */
+/* Traces from the records in the queue to all records that their edges reach. */
 static void trace_edges(tracing *t) {
     brio_inserter *ins = t->ins;
     const brio_store *s = ins->store;
@@ -69,7 +69,7 @@ static void trace_edges(tracing *t) {
     }
 }
 
-/* The vertices first, then what they are not connected to. */
+/* Traces from the vertices first, then from components of the graph without a vertex. */
 static void trace_all(tracing *t) {
     brio_inserter *ins = t->ins;
     const brio_store *s = ins->store;

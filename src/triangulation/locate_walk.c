@@ -1,8 +1,8 @@
 /* Point location by a visibility walk from the last inserted tetrahedron.
  *
- * From a tetrahedron step across any facet that has the point strictly on its other side. In the regular triangulation
- * of exact predicates no tetrahedron comes twice, so the walk ends. The facet to try first is drawn at random, which
- * avoids the long detours of a fixed order.
+ * The walk steps from a tetrahedron across any facet that has the point strictly on its far side. With exact
+ * predicates no tetrahedron of a regular triangulation is visited twice, so the walk ends. A random number chooses the
+ * facet to test first, which avoids the long detours of a fixed order.
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "triangulation/locate_walk.h"

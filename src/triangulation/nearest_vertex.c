@@ -1,10 +1,10 @@
-/* The vertex of least power distance, by descent along edges: in a regular triangulation a vertex with no nearer
+/* The vertex of least power distance, by descent along edges: in a regular triangulation a vertex without a nearer
  * neighbour is the nearest of all.
  *
- * Samples of a sphere hide thousands of poles behind a few vertices with as many neighbours each. Looking at the whole
- * star for every hidden point would be quadratic. So a look at a large star leaves a memory: the difference of the
- * power distances to vertex v and to a neighbour u changes by at most 2 |u - v| a unit of length, so within some radius
- * of the point only those neighbours matter (the rivals) whose distance hardly differed. */
+ * Samples of a sphere hide thousands of poles behind a few vertices with thousands of neighbours each. Searching the
+ * whole star for every hidden point would be quadratic. So the search of a large star leaves a memory. The difference
+ * of the power distances to vertex v and to a neighbour u changes by at most 2 |u - v| per unit of length. So within
+ * some radius of the point only the rivals matter: neighbours whose power distance hardly differed. */
 #include "triangulation/nearest_vertex.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -12,9 +12,9 @@
 
 enum { LARGE_STAR = 256 };
 
-/* Differences below this share of their terms are not trusted to tell more than rounding errors do. */
+/* Differences below this share of their terms may be rounding errors; chosen. */
 static const double TRUSTED = 1e-9;
-/* Far more than squares of subnormal differences may lose. */
+/* Far more than squares of subnormal differences can lose; chosen. */
 static const double UNDERFLOW = 0x1p-900;
 
 brio_status brio_nearest_new(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, const uint32_t *vertex_tet,
@@ -36,7 +36,7 @@ static bool is_point(const brio_nearest *n, uint32_t v) {
     return v < n->num_points;
 }
 
-/* The nearer of two vertices to x by power distance, ties lexicographic. */
+/* Returns the vertex nearer to x by power distance; ties are lexicographic. */
 static uint32_t nearer(const brio_nearest *n, const double *x, uint32_t u, uint32_t v) {
     const brio_record *r = n->t->record;
     if (u == v || !is_point(n, u)) return v;
@@ -46,7 +46,7 @@ static uint32_t nearer(const brio_nearest *n, const double *x, uint32_t u, uint3
     return sign < 0 ? u : v;
 }
 
-/* Holds neighbour u against vertex m->vertex as seen from m->centre: a rival, or a bound of the radius. */
+/* Compares neighbour u with vertex m->vertex as seen from m->centre: u becomes a rival, or bounds the radius. */
 static brio_status remember(brio_nearest *n, brio_nearest_memory *m, uint32_t u) {
     const double *a = n->t->record[m->vertex], *b = n->t->record[u];
     double to_a = brio_square_distance(m->centre, a), to_b = brio_square_distance(m->centre, b);
@@ -81,7 +81,7 @@ static const brio_nearest_memory *recall(const brio_nearest *n, uint32_t v, cons
     return m->vertex == v && sqrt(brio_square_distance(x, m->centre)) < m->radius ? m : NULL;
 }
 
-/* The nearest of a vertex and its neighbours. */
+/* Finds the nearest of a vertex and its neighbours. */
 static brio_status look_around(brio_nearest *n, const double *x, uint32_t v, uint32_t *best) {
     const brio_nearest_memory *m = recall(n, v, x);
     *best = v;
@@ -92,7 +92,7 @@ static brio_status look_around(brio_nearest *n, const double *x, uint32_t v, uin
     brio_status status = brio_star_collect(n->ctx, n->t, v, n->vertex_tet[v], SIZE_MAX, &n->star);
     if (status != BRIO_OK) return status;
     n->look++;
-    for (size_t i = 0; i < 4 * n->star.size; i++) { /* each neighbour is in some five of these tetrahedra */
+    for (size_t i = 0; i < 4 * n->star.size; i++) { /* each neighbour is in about five of these tetrahedra */
         uint32_t u = n->t->tet[n->star.tet[i / 4]].vertex[i % 4];
         if (!is_point(n, u) || n->seen[u] == n->look) continue;
         n->seen[u] = n->look;

@@ -1,4 +1,4 @@
-/* Lists of neighbours from pairs of points: counted, summed, filled. */
+/* Builds lists of neighbours from pairs of points: counts, sums, fills. */
 #include "triangulation/point_graph.h"
 #include "base/memory.h"
 #include <string.h>
@@ -21,7 +21,8 @@ brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_op
     BRIO_TRY(BRIO_ALLOC(store->ctx, out->neighbour, ends));
     first = out->first;
     for (size_t i = 0; i < ends; i++) first[record[options->edges[i]]]++;
-    for (size_t p = 0; p < n; p++) first[p] = sum += first[p]; /* the end of its list, and filling moves it back */
+    for (size_t p = 0; p < n; p++)
+        first[p] = sum += first[p]; /* the end of the list of p; filling moves first[p] back to the list's start */
     first[n] = sum;
     for (size_t i = 0; i < ends; i++)
         out->neighbour[--first[record[options->edges[i]]]] = record[options->edges[i ^ 1]];

@@ -1,5 +1,5 @@
-/* The counters in the course of the insertion: at the end of each round, at each doubling, or after every so many points.
- * When nothing is recorded, nothing is asked of an insertion: the entries that are due only cut the runs of insertions. */
+/* Records the counters during insertion: at the end of each round, at each doubling, or after every `every` points.
+ * Insertion itself does no recording: runs of insertions end where an entry is due. */
 #include "triangulation/recorder.h"
 #include "base/memory.h"
 

@@ -1,11 +1,10 @@
-/* Points that own no cell, each with the vertex that represents it.
+/* Gives each point that owns no cell the vertex that represents it.
  *
- * Without weights a point that is no vertex is a duplicate, and insertion has named its vertex. With weights a point
- * may have been hidden by another that was hidden later itself, and may coincide with a vertex that came after it: so
- * each one is located in the finished triangulation. At the position of a vertex it is a duplicate; else it is hidden,
- * and its vertex of least power distance is found by descent along edges: in a regular triangulation a vertex with no
- * nearer neighbour is the nearest of all. Apexes of flat inputs are passed over: the edges of the flat triangulation
- * suffice. */
+ * Without weights such a point is a duplicate, and insertion has named its vertex. With weights the point that hid it
+ * may have been hidden later, and a vertex at its position may have come after it. So each such point is located in
+ * the finished triangulation. A point at the position of a vertex is a duplicate. Any other point is hidden, and
+ * descent along edges finds its vertex of least power distance: in a regular triangulation a vertex without a nearer
+ * neighbour is the nearest of all. Apexes of flat inputs are skipped: the edges of the flat triangulation suffice. */
 #include "triangulation/represent.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -40,7 +39,7 @@ static brio_status represent_one(workspace *w, uint32_t p) {
     return brio_nearest_vertex(&w->nearest, tet, x, &s->representative[p]);
 }
 
-/* By position; at one position the heaviest first, then the lowest index. */
+/* Orders by position, then by descending weight, then by index. */
 static int compare_hidden(uint32_t p, uint32_t q, const void *user) {
     const brio_store *s = user;
     int sign = brio_lexicographic(s->record[p], s->record[q]);
@@ -86,7 +85,8 @@ done:
     return status;
 }
 
-/* All points at one position: the heaviest, then the lowest index, represents the others. */
+/* Represents points that are all at one position. The heaviest represents the others; among equal weights, the one
+ * with the lowest index. */
 static void represent_coincident(brio_inserter *ins) {
     const brio_store *s = ins->store;
     uint32_t best = 0;
@@ -98,7 +98,7 @@ static void represent_coincident(brio_inserter *ins) {
     ins->stats.duplicates = s->num_points - 1;
 }
 
-/* Whether record p stands before the vertex that represents it, at its position and as heavy. */
+/* Returns whether record p precedes the vertex that represents it, at the vertex's position and with its weight. */
 static bool is_earlier_twin(const brio_store *s, uint32_t p) {
     uint32_t v = s->representative[p];
     return p < v && s->representative[v] == v && brio_same_position(s->record[p], s->record[v]) &&
@@ -113,21 +113,21 @@ static bool has_earlier_twin(const brio_store *s) {
 
 typedef struct {
     const brio_store *store;
-    const uint32_t *first; /* of each vertex: the record that takes its place */
+    const uint32_t *first; /* of each vertex, the record that replaces it */
 } renaming;
 
 static void rename_vertices(void *user, size_t begin, size_t end, int thread) {
     const renaming *r = user;
     (void)thread;
     for (size_t t = begin; t < end; t++) {
-        if (r->store->state[t] != TET_PLAIN) continue; /* nobody need have written an unused slot */
+        if (r->store->state[t] != TET_PLAIN) continue; /* an unused slot may never have been written */
         uint32_t *v = r->store->t.tet[t].vertex;
         for (int i = 0; i < 4; i++) v[i] = r->first[v[i]];
     }
 }
 
-/* In a parallel pass a later one of coincident points may come first and become the vertex. The first in the order
- * takes its place back, so that the order of the tetrahedra does not tell. */
+/* Makes the first of coincident points of equal weight their vertex again. A parallel pass may have inserted a later
+ * one first; without this step the order of the tetrahedra would depend on that. */
 static brio_status restore_first(brio_store *s) {
     uint32_t *first = NULL;
     brio_status status = BRIO_ALLOC(s->ctx, first, s->num_points + 3);

@@ -4,8 +4,8 @@
 
 #include "triangulation/inserter.h"
 
-/** Gives every point that is no vertex the vertex that represents it, once all are inserted; counts duplicates and
- *  hidden points. */
+/** Gives every point that is no vertex the vertex that represents it. Counts duplicates and hidden points. Call it
+ *  after all insertions. */
 brio_status brio_represent(brio_inserter *ins);
 
 #endif

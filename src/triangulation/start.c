@@ -1,10 +1,10 @@
 /* The first tetrahedron, and inputs of fewer than three dimensions.
  *
- * The first point, the first one elsewhere, the first one off their line and the first one off their plane come first
- * in the insertion order. When the points run out before that, an apex off the plane (two off the line) is added: every
- * tetrahedron then has all apexes, its orthosphere meets the points' plane (line) in the orthocircle of its other
- * vertices, and the symbolic perturbation skips the apexes, so the link of the apexes is the perturbed regular
- * triangulation of the points in their own dimension, with the same hidden points. */
+ * Four points come first in the insertion order: the first point, the first point at another position, the first point
+ * off their line and the first point off their plane. If there are fewer, an apex off the plane (two off the line) is
+ * added. Then every tetrahedron has all apexes, and its orthosphere meets the points' plane (line) in the orthocircle
+ * of its other vertices. The symbolic perturbation skips the apexes. So the link of the apexes is the perturbed
+ * regular triangulation of the points in their own dimension, with the same hidden points. */
 #include "triangulation/start.h"
 #include "base/memory.h"
 #include <string.h>
@@ -24,7 +24,7 @@ static void swap_records(brio_store *s, size_t i, size_t j) {
     s->rank[i] = s->rank[j], s->rank[j] = c;
 }
 
-/* Whether record i is off the affine hull of the first `count` records, which are in general position. */
+/* Returns whether record i is off the affine hull of the first `count` records, which are in general position. */
 static bool off_hull(brio_store *s, size_t i, int count) {
     const brio_record *r = s->record;
     switch (count) {
@@ -37,7 +37,7 @@ static bool off_hull(brio_store *s, size_t i, int count) {
     }
 }
 
-/* Brings records in general position to the front; their number. */
+/* Moves records in general position to the front. Returns their number. */
 static int general_position(brio_store *s) {
     int count = s->num_points > 0;
     for (size_t i = 1; i < s->num_points && count < 4; i++) {
@@ -48,14 +48,14 @@ static int general_position(brio_store *s) {
     return count;
 }
 
-/* Another number than x, about `step` away, and finite. */
+/* Returns a finite number different from x, about `step` away. */
 static double moved(double x, double step) {
     double y = x > 0 ? x - step : x + step;
     if (y != x) return y;
     return x != 0 ? x * 0.5 : 1;
 }
 
-/* corner[0 .. count) are records in general position; writes record `apex` off their affine hull. */
+/* Writes record `apex` off the affine hull of corner[0 .. count), which are records in general position. */
 static void place_apex(brio_store *s, uint32_t corner[4], int count, uint32_t apex, double step) {
     const brio_record *r = s->record;
     for (int axis = 0; axis < 3; axis++) {
@@ -76,7 +76,7 @@ static double largest_difference(const brio_store *s) {
     return fmin(most, 1e300);
 }
 
-/* Brings the latest of the first three vertices to the front, keeping the orientation. */
+/* Rotates the latest of the first three vertices to the front; the orientation stays. */
 static void latest_first(uint32_t *v) {
     while (v[0] < v[1] || v[0] < v[2]) {
         uint32_t first = v[0];
@@ -84,8 +84,8 @@ static void latest_first(uint32_t *v) {
     }
 }
 
-/* The tetrahedron of four records and the four infinite ones around it; the latest vertex in slot 0, as after any
- * insertion. */
+/* Makes the tetrahedron of four records and the four infinite tetrahedra around it. The latest vertex is in slot 0, as
+ * after any insertion. */
 static void first_tetrahedron(brio_store *s, uint32_t corner[4]) {
     const brio_record *r = s->record;
     brio_tetrahedra *t = &s->t;
@@ -102,7 +102,8 @@ static void first_tetrahedron(brio_store *s, uint32_t corner[4]) {
         t->tet[i + 1].mate[3] = i;
     }
     for (uint32_t i = 0; i < 4; i++)
-        for (uint32_t e = 0; e < 3; e++) { /* across the edge opposite to vertex e lies the facet opposite to it */
+        for (uint32_t e = 0; e < 3;
+             e++) { /* across the edge opposite to vertex e lies the facet opposite to that vertex */
             uint32_t j = (uint32_t)brio_slot_of_vertex(own, t->tet[i + 1].vertex[e]);
             int other = brio_slot_of_vertex(t->tet[j + 1].vertex, own[i]);
             t->tet[i + 1].mate[e] = brio_facet_of(j + 1, other);
@@ -110,7 +111,7 @@ static void first_tetrahedron(brio_store *s, uint32_t corner[4]) {
     memset(s->state, TET_PLAIN, t->count);
 }
 
-/* Reads all records once, in their order. */
+/* Chooses the filter. Reads all records once, in order. */
 static void choose_filter(brio_store *s, size_t records) {
     brio_expect_sequence(s->record);
     brio_filter_for(&s->filter, (const brio_record *)s->record, records, s->weighted);
