@@ -89,8 +89,8 @@ brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points, cons
     return status;
 }
 
-brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points, const brio_offset_surface_options *options,
-                                         uint64_t *bytes) {
+brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points,
+                                         const brio_offset_surface_options *options, uint64_t *bytes) {
     BRIO_DOOR;
     brio_offset_surface_options o = brio_offset_surface_options_default();
     brio_status status = BRIO_TAKE(ctx, brio_offset_surface_options, options, &o);

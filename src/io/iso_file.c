@@ -60,7 +60,8 @@ done:
     return status;
 }
 
-brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_surface_options *options, brio_mesh **out) {
+brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_surface_options *options,
+                             brio_mesh **out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_iso_surface_options o = STANDARD;

@@ -65,8 +65,8 @@ done:
     return status;
 }
 
-static brio_status make_offset(brio_labeled_poles *l, double distance, const brio_offset_surface_options *o, brio_mesh *mesh,
-                               brio_power_crust_stats *stats) {
+static brio_status make_offset(brio_labeled_poles *l, double distance, const brio_offset_surface_options *o,
+                               brio_mesh *mesh, brio_power_crust_stats *stats) {
     brio_power_crust_options crust = crust_options(o);
     const brio_bar bar = brio_progress_bar(l->ctx);
     brio_progress_part(l->ctx, bar, 0, MOVE_SHARE);
@@ -80,7 +80,8 @@ static brio_status make_offset(brio_labeled_poles *l, double distance, const bri
 }
 
 brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
-                                const brio_offset_surface_options *options, brio_mesh **out, brio_offset_surface_stats *stats) {
+                                const brio_offset_surface_options *options, brio_mesh **out,
+                                brio_offset_surface_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_offset_surface_options o = STANDARD;
