@@ -1,5 +1,5 @@
 /* The smallest cube around points, cut into a grid of cells. Coordinates are halved first, so that the side of the cube
- * cannot overflow. */
+ * cannot overflow. A coordinate that is not finite falls in some cell. */
 #ifndef BRIO_ORDER_CUBE_H
 #define BRIO_ORDER_CUBE_H
 

@@ -31,7 +31,7 @@ typedef struct {
     bool weighted;
     bool lattice;       /* stage 1 has no rounding errors: an estimate of 0 is exact */
     bool coarse;        /* stage 4 decides every call, faster than stage 3 */
-    uint64_t unsettled; /* number of calls that stages 1 and 2 did not settle */
+    uint64_t unsettled; /* number of calls that went beyond stage 2 */
 } brio_filter;
 
 /** Sets the bounds for points whose coordinates differ by at most extent[0..2] in x, y, z. The weights of the points
