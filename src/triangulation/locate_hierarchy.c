@@ -23,7 +23,7 @@ typedef struct {
     brio_inserter *inserter;
     uint32_t *vertex_tet;
     uint32_t *below;  /* number of each record in the level below */
-    uint32_t next;    /* the records before this one have all been inserted */
+    uint32_t next;    /* no record before this one still waits for insertion */
     uint32_t located; /* tetrahedron that locates the point being inserted */
 } level;
 
