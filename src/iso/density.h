@@ -13,9 +13,8 @@ typedef struct brio_atom {
 typedef struct {
     double level;
     double blobbiness; /* B, at most 100; a larger B brings the surface closer to spheres */
-    size_t
-        resolution; /* cells along the longest side of the surface's box, at most 2^15; 0: cells of 0.5, at most 1024 */
-    bool conforming; /* Delaunay triangles, by brio_conforming_surface */
+    size_t resolution; /* cells along the longest side of the box, at most 2^15; 0: cells of 0.5, at most 1024 */
+    bool conforming;   /* Delaunay triangles, by brio_conforming_surface */
 } brio_density_options;
 
 /** Meshes the surface where the sum over all atoms of exp(B - B r^2 / R^2) is `level`; r is the distance to the atom

@@ -23,8 +23,8 @@ typedef struct {
     uint32_t place; /* in the order of the tree */
 } brio_near_point;
 
-/** Most points that a query may ask for, and the entries of room that a query needs (derived: two full lists and a
- *  leaf). */
+/** Most points that a query may ask for, and the entries of room that a query needs (derived: at least two full
+ *  lists and a leaf). */
 enum { BRIO_MOST_NEAR = 64, BRIO_NEAR_ROOM = 2 * BRIO_MOST_NEAR + 32 };
 
 /** Finds the `wanted` points nearest to p, or all points within the bound when there are fewer; returns their number.

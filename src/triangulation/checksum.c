@@ -1,7 +1,7 @@
-/* A hash of a triangulation that depends on the points alone.
+/* A hash of a triangulation that depends on the points only.
  *
- * Each vertex is known by its rank among the vertices in lexicographic order of positions; each tetrahedron by the
- * ascending ranks of its vertices, mixed to 64 bits; the hash is the sum of these, so that no order of anything
+ * The name of a vertex is its rank among the vertices, in lexicographic order of positions. The hash of a tetrahedron
+ * mixes the ascending ranks of its vertices to 64 bits. The hash of the triangulation is the sum of these, so no order
  * matters. */
 #include "base/float_state.h"
 #include "base/memory.h"
@@ -13,7 +13,7 @@ static int compare_points(uint32_t p, uint32_t q, const void *points) {
     return brio_lexicographic((const double *)points + 3 * (size_t)p, (const double *)points + 3 * (size_t)q);
 }
 
-/* rank[p] of each vertex p among the vertices. */
+/* Sets rank[p] of each vertex p to its rank among the vertices. */
 static brio_status lexicographic_ranks(brio_context *ctx, const brio_triangulation *t, const double *points,
                                        uint32_t *rank) {
     brio_status status = BRIO_OK;
@@ -41,7 +41,7 @@ static uint64_t hash_of(uint32_t r[4]) {
 brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulation *t, const double *points,
                                         uint64_t *checksum) {
     BRIO_DOOR;
-    enum { EXPECTED = 1 << 14 }; /* so many tetrahedra are read ahead */
+    enum { EXPECTED = 1 << 14 }; /* tetrahedra whose ranks are read ahead */
     brio_status status = BRIO_OK;
     uint32_t *rank = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, rank, t->stats.points));

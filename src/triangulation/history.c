@@ -1,18 +1,19 @@
 /* The history DAG and its two searches.
  *
- * One path: the union of what an insertion destroys is the union of what it creates, so a point in the closure of a
- * destroyed tetrahedron is in the closure of one of those created then. A point strictly outside the facet of a
- * destroyed infinite tetrahedron is in the closure of a finite one created then, or strictly outside the facet of an
- * infinite one: a ray from the new vertex through the old hull only goes down from the plane of a facet that it sees.
- * All conflicts: from the first tetrahedra on, through all that were in conflict with the point. Those that held it
- * are among them unless it is hidden. A hull facet in whose plane the point lies does not count as in conflict; a
- * tetrahedron with a vertex at its position does, so that duplicates are found.
+ * One path: an insertion creates the union of what it destroys. So a point in the closure of a destroyed tetrahedron
+ * is in the closure of a tetrahedron created by the same insertion. A point strictly outside the facet of a destroyed
+ * infinite tetrahedron is in the closure of a finite tetrahedron created then, or strictly outside the facet of a
+ * created infinite one. For along a ray from the new vertex through the old hull, the height over the plane of a facet
+ * that the new vertex sees only falls.
+ * All conflicts: the search goes from the first tetrahedra through all tetrahedra that were in conflict with the
+ * point. These include the tetrahedra that held the point, unless the point is hidden. A hull facet in whose plane the
+ * point lies does not count as in conflict. A tetrahedron with a vertex at the point's position does, so that
+ * duplicates are found.
  *
- * Based on: Guibas, Knuth, Sharir. Randomized incremental construction of Delaunay and Voronoi diagrams.
- *           Algorithmica 1992, for the path.
- *           Clarkson, Mehlhorn, Seidel. Four results on randomized incremental constructions. CGTA 1993.
- * Differs from the paper: a created tetrahedron is linked to all that were destroyed with it, as in Choi 2003, not to
- * the two at its facet; so a conflict that descends only from the tetrahedron outside of the cavity is not met. */
+ * Based on: Guibas, Knuth, Sharir. Randomized incremental construction of Delaunay and Voronoi diagrams. Algorithmica
+ * 1992, for the path. Clarkson, Mehlhorn, Seidel. Four results on randomized incremental constructions. CGTA 1993.
+ * Differs from the paper: a created tetrahedron is linked to all tetrahedra destroyed with it, as in Choi 2003, not to
+ * the two at its facet. So a conflict that descends only from the tetrahedron outside the cavity is not met. */
 #include "triangulation/history.h"
 #include "base/memory.h"
 

@@ -1,14 +1,14 @@
 /* Point location by the Delaunay hierarchy.
  *
- * Above the triangulation of the points stands one of a random sample of them, above that one of a sample of the sample,
- * and so on; each has a store and an inserter. A point is located in the smallest triangulation by a walk; from the nearest
- * vertex of the tetrahedron found there the next walk starts in the triangulation below. A point that became a vertex is
- * then inserted into the triangulations above that drew it, where its tetrahedra are known by now. With weights a vertex
- * above may have been hidden below: then the vertex that took its place is where the walk starts.
+ * Level 0 is the triangulation of all points. Level l + 1 is the triangulation of a random sample of the points of
+ * level l. Each level has a store and an inserter. A walk locates the point in the highest level. The next walk, one
+ * level below, starts from the nearest vertex of the tetrahedron found, and so on down to level 0. A point that became
+ * a vertex is then inserted into the higher levels that drew it, where its tetrahedra are already known. With weights
+ * a vertex of a level may have been hidden in the level below; then the walk starts from the vertex that replaced it.
  *
  * Based on: Devillers. The Delaunay hierarchy. IJFCS 2002.
- * Differs from the paper: the nearest vertex of the tetrahedron, not of the sample, leads downwards; the sample is
- * drawn beforehand, so that the records of a triangulation lie side by side. */
+ * Differs from the paper: the nearest vertex of the tetrahedron, not of the sample, leads downwards. The sample is
+ * drawn beforehand, so that the records of a level are contiguous. */
 #include "base/memory.h"
 #include "base/rng.h"
 #include "triangulation/insert.h"
@@ -22,18 +22,19 @@ typedef struct {
     brio_store *store;
     brio_inserter *inserter;
     uint32_t *vertex_tet;
-    uint32_t *below;  /* each record's number in the triangulation below */
-    uint32_t next;    /* no record before this one is waiting to be inserted */
-    uint32_t located; /* tetrahedron of the point that is being inserted */
+    uint32_t *below;  /* number of each record in the level below */
+    uint32_t next;    /* no record before this one still waits for insertion */
+    uint32_t located; /* tetrahedron that locates the point being inserted */
 } level;
 
 typedef struct {
-    level level[MOST_LEVELS]; /* the first is that of all points */
+    level level[MOST_LEVELS]; /* level 0 has all points */
     int num_levels;
     uint64_t seed;
 } hierarchy;
 
-/* The highest level that a record is drawn for. The first ones make the first tetrahedron in each level. */
+/* Returns the highest level for which a record is drawn. The first dimension + 1 records are in every level, because
+ * they make its first tetrahedron. */
 static int height_of(const brio_store *s, const hierarchy *own, uint32_t p) {
     brio_rng rng = brio_rng_new(own->seed ^ brio_mix(p));
     int height = 0, first = s->dimension + 1;
@@ -49,7 +50,7 @@ static brio_status filled_level(brio_inserter *ins, uint32_t p) {
     return BRIO_OK;
 }
 
-/* In a triangulation above, the point has been located before it is inserted. */
+/* Returns the tetrahedron found earlier: above level 0 a point is located before its insertion. */
 static brio_status locate_level(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     const level *own = ins->location;
     (void)p;
@@ -59,7 +60,7 @@ static brio_status locate_level(brio_inserter *ins, uint32_t p, uint32_t *tet) {
 
 static const brio_locator locator_level = {.locate = locate_level, .filled = filled_level};
 
-/* A level with room for n of the records of all points. */
+/* Allocates a level for n of all records. */
 static brio_status level_new(const brio_store *all, level *own, size_t n) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_store_sample(all, n, &own->store));
@@ -69,7 +70,7 @@ done:
     return status;
 }
 
-/* Divides the records among the levels, those of each in the order of insertion. */
+/* Distributes the records among the levels; each level keeps the order of insertion. */
 static void deal_records(const brio_store *all, hierarchy *own) {
     uint32_t count[MOST_LEVELS] = {0};
     for (uint32_t p = 0; p < all->num_points; p++) {
@@ -86,12 +87,13 @@ static void deal_records(const brio_store *all, hierarchy *own) {
     }
 }
 
-/* The first tetrahedron of a level has the same vertices as that of the level below, apexes included. */
+/* Starts a level. Its first tetrahedron has the vertices of the first tetrahedron of the level below, apexes
+ * included. */
 static brio_status start_level(const brio_store *all, level *own, const brio_store *below) {
     brio_store *s = own->store;
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_start(s));
-    s->filter = all->filter; /* whose bounds hold for all points that will be located */
+    s->filter = all->filter; /* its bounds hold for all points that will be located */
     BRIO_TRY(brio_inserter_new(s, &own->inserter));
     own->inserter->locator = &locator_level;
     own->inserter->location = own;

@@ -1,10 +1,10 @@
 /* Point location by jump-and-walk, as in the program pyramid.
  *
- * The walk starts from the nearest of the last inserted vertex and i^(1/4) vertices drawn at random from the i points
- * inserted so far, which leaves an expected walk of O(i^(1/4)) steps among uniform points.
+ * With i points inserted, the walk starts from the nearest of the last inserted vertex and i^(1/4) random vertices
+ * among these points. The expected walk has O(i^(1/4)) steps among uniform points.
  *
  * Based on: Muecke, Saias, Zhu. Fast randomized point location without preprocessing in two- and three-dimensional
- *           Delaunay triangulations. CGTA 1999. */
+ * Delaunay triangulations. CGTA 1999. */
 #include "base/memory.h"
 #include "base/rng.h"
 #include "triangulation/inserter.h"

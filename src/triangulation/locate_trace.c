@@ -1,16 +1,17 @@
 /* Point location by tracing edges: Tracing DT.
  *
- * When N(h) points are in, h = 1, 2, ..., a graph over all points is traced through the triangulation: from its vertices
- * along the edges to all other points, whose tetrahedra are remembered. Later a point is located from the tetrahedron
- * where it was last traced, by the history DAG. N(h) = n / ln ln ... ln n, with h logarithms, so that there are log* n
- * tracings, and between two of them locations cost O(n) together, when points come in random order. A tracing crosses
- * O(n) triangles when the edges are Delaunay edges of all points and their degrees are bounded.
+ * When N(h) points are in, h = 1, 2, ..., a graph over all points is traced through the triangulation. The tracing
+ * follows edges from the inserted vertices to all other points and remembers the tetrahedron of each point. Later the
+ * history DAG locates a point from the tetrahedron where the point was last traced. N(h) = n / ln ln ... ln n, with h
+ * logarithms, so there are log* n tracings. Between two tracings, locations cost O(n) together when points come in
+ * random order. A tracing crosses O(n) triangles when the edges are Delaunay edges of all points and their degrees are
+ * bounded.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms for surface reconstruction and related problems. 2003,
- *           chapter 4.
- * Differs from the paper: the graph is traversed breadth first from all vertices at once, so that each point that is
- * not in yet is the end of one walk, and edges between others are not walked; a component of the graph without a
- * vertex is entered through one location in the history DAG. Points without edges are never traced. */
+ * chapter 4.
+ * Differs from the paper: the graph is traversed breadth first from all vertices at once. So each point that is not in
+ * yet is the end of one walk, and no other edge is walked. A component of the graph without a vertex is entered by one
+ * location in the history DAG. Points without edges are never traced. */
 #include "base/memory.h"
 #include "triangulation/history.h"
 #include "triangulation/locate_segment.h"
