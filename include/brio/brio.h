@@ -566,8 +566,9 @@ typedef struct brio_pole_stats {
     size_t unreached;    /* NAIVE, THEORETICAL: poles that were left to the greedy labeling */
     size_t undecided;    /* GLOBAL: poles that the last roof duality did not decide */
     size_t toggled;      /* GLOBAL: poles whose label differs from the greedy one */
-    double energy; /* sum of the weights of the pairs of poles whose labels contradict the evidence. GLOBAL uses edge
-                             weights of its own: compare its energies with each other only (docs/algorithms.md). */
+    double energy;       /* sum of the weights of the pairs of poles whose labels contradict the evidence. GLOBAL weighs
+                             pairs differently from the other labelings: compare its energies with each other only
+                             (docs/algorithms.md). */
     double energy_greedy; /* GLOBAL: the energy of the greedy labels that it started from */
     double noise;         /* AUTO: the standard deviation of the noise found, in spacings of the samples; 0: none */
     size_t smoothed;      /* 1: the samples were smoothed */
@@ -716,9 +717,8 @@ typedef struct brio_cocone_options {
     int boundaries; /* 1: finds samples at boundaries and where the sampling is too sparse by the shape of their Voronoi
                        cells, and rejects triangles all of whose vertices are such samples; default 0 */
     int density;    /* 1: estimates the sampling density and adds it as vertex properties; default 0 */
-    size_t
-        pieces; /* 2 or more: the super co-cone, which triangulates the samples in about so many pieces, one after the
-                       other, and matches the surfaces at the seams; not with `tight`; default 0: one piece */
+    size_t pieces;  /* N > 1: the super co-cone, which triangulates the samples in about N pieces, one after the other,
+                       and matches the surfaces at the seams; not with `tight`; default 0: one piece */
 } brio_cocone_options;
 
 BRIO_API void brio_cocone_options_init(brio_cocone_options *options, size_t size);

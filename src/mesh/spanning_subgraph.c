@@ -4,8 +4,8 @@
  * vertex may go when it has no chord; a chord is an edge inside the disk to another vertex of the cycle. What remains
  * is a disk again, and at the end one triangle, whose edges start the subgraph. Then the vertices come back in reverse
  * order. Let z1 ... zm be the neighbours of z when z went. The edges z z1, z z2 and z zm replace the cycle edges z1 z2
- * and zm-1 zm. So only the degree of z grows, to three. Several copies of a vertex that the cut has passed through
- * become one vertex in the result, whose degree is the sum of theirs.
+ * and zm-1 zm. So only the degree of z grows, to three. The copies of a vertex that the cut passed through
+ * become one vertex in the result. The degree of that vertex is the sum of the degrees of its copies.
  *
  * Vertices of disks are the sectors of disk_cut.h. A half-edge bounds the disk in work when its flag LIVE_END is set;
  * removed triangles have no mark.

@@ -6,8 +6,8 @@
  * passes.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, sections 5.3 and 5.8.
- * Differs from the paper: a cell that is still crowded after a pass starts again from the cube of its own points, so
- * that clusters of any size take few passes.
+ * Differs from the paper: a cell that is still crowded after a pass starts again from the bounding cube of the cell's
+ * points, so that clusters of any size take few passes.
  *
  * All threads divide large cells in turns. In a turn each large cell is one task: a thread passes once over its points
  * and finishes its small cells. The large cells inside it wait for the next turn. */

@@ -34,7 +34,7 @@ struct brio_inserter {
     const brio_locator *locator; /* the strategy of point location */
     void *location;              /* what the strategy keeps; locator->release frees it */
     unsigned long_walks;         /* how often of late a walk was given up, see locator.c */
-    brio_star star;              /* workspace of locate_descent.c, without marks of its own */
+    brio_star star;              /* workspace of locate_descent.c; its marks are the store's states */
 
     brio_cavity cavity;
     size_t next_slot, end_slot; /* the stretch */

@@ -1,4 +1,4 @@
-/* Strategies of point location: an inserter uses one for every point; each has a file of its own. */
+/* Strategies of point location. An inserter uses one strategy for all points. Each strategy has a file locate_*.c. */
 #ifndef BRIO_TRIANGULATION_LOCATOR_H
 #define BRIO_TRIANGULATION_LOCATOR_H
 

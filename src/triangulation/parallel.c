@@ -177,7 +177,7 @@ static bool place_worker(worker *w) {
     return false;
 }
 
-/* The worker of thread i of so many, placed in its zone. */
+/* Makes the worker of thread i and places it in its zone. */
 static brio_status worker_new(pass *own, int i, int threads, worker *w) {
     brio_context *ctx = own->store->ctx;
     const brio_inserter *main = own->main;
