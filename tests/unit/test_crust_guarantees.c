@@ -69,8 +69,8 @@ static void check_intersections(const theory *x, const brio_pole_graph *g) {
     double limit = 2 * asin(3 * x->r), widest = 0;
     for (uint32_t p = 0; p < x->poles.count; p++)
         for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
-            if (g->edge[e].weight >= 0 && x->truth[p] != x->truth[g->edge[e].pole])
-                widest = fmax(widest, angle_between(g, p, g->edge[e].pole));
+            if (g->edge[e].weight >= 0 && x->truth[p] != x->truth[g->edge[e].node])
+                widest = fmax(widest, angle_between(g, p, g->edge[e].node));
     for (size_t s = 0; s < x->n; s++) {
         uint32_t p = x->poles.of_sample[2 * s], q = x->poles.of_sample[2 * s + 1];
         EXPECT(p != BRIO_NO_POLE && q != BRIO_NO_POLE && x->truth[p] != x->truth[q], "the poles of sample %zu", s);

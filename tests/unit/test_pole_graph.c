@@ -14,14 +14,14 @@ enum { SAMPLES = 300 };
 
 static bool has_edge(const brio_pole_graph *g, uint32_t p, uint32_t q, double weight) {
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
-        if (g->edge[e].pole == q && fabs((double)g->edge[e].weight - weight) < 1e-6) return true;
+        if (g->edge[e].node == q && fabs((double)g->edge[e].weight - weight) < 1e-6) return true;
     return false;
 }
 
 static size_t count_edges(const brio_pole_graph *g, uint32_t p, uint32_t q, bool opposite) {
     size_t count = 0;
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
-        count += g->edge[e].pole == q && (g->edge[e].weight < 0) == opposite;
+        count += g->edge[e].node == q && (g->edge[e].weight < 0) == opposite;
     return count;
 }
 
@@ -133,17 +133,15 @@ static void highest_priority_and_lowest_pole_come_first(void) {
 
 /* --- blocks --- */
 
-enum { POLES = 60, EDGES = 150 };
+enum { NODES = 60, EDGES = 150 };
 
-/* Poles at random places, and random edges between near numbers, so that there are rounds of several blocks. */
+/* Nodes at random places, and random edges between near numbers, so that there are rounds of several blocks. */
 typedef struct {
-    brio_poles poles;
-    brio_power_diagram diagram;
-    brio_pole_graph g;
-    double centre[3 * POLES];
-    size_t first[POLES + 1];
-    brio_pole_edge edge[2 * EDGES];
-    uint8_t label[POLES], fixed[POLES];
+    brio_signed_graph g;
+    double centre[3 * NODES];
+    size_t first[NODES + 1];
+    brio_signed_edge edge[2 * EDGES];
+    uint8_t label[NODES], fixed[NODES];
 } random_graph;
 
 static void make_graph(random_graph *r, brio_context *ctx, uint64_t seed) {
@@ -152,39 +150,37 @@ static void make_graph(random_graph *r, brio_context *ctx, uint64_t seed) {
     float w[EDGES];
     size_t count = 0;
     for (int e = 0; e < EDGES; e++) {
-        a[e] = brio_rng_below(&rng, POLES), b[e] = (a[e] + 1 + brio_rng_below(&rng, 6)) % POLES;
+        a[e] = brio_rng_below(&rng, NODES), b[e] = (a[e] + 1 + brio_rng_below(&rng, 6)) % NODES;
         w[e] = (float)brio_rng_below(&rng, 9) / 4 - 1; /* 0, too; sums are exact */
     }
-    for (uint32_t p = 0; p < POLES; p++) {
+    for (uint32_t p = 0; p < NODES; p++) {
         r->first[p] = count;
         for (int e = 0; e < EDGES; e++)
-            if (a[e] == p || b[e] == p) r->edge[count++] = (brio_pole_edge){a[e] == p ? b[e] : a[e], w[e]};
+            if (a[e] == p || b[e] == p) r->edge[count++] = (brio_signed_edge){a[e] == p ? b[e] : a[e], w[e]};
         for (int k = 0; k < 3; k++) r->centre[3 * p + (uint32_t)k] = p + brio_rng_double(&rng);
         r->label[p] = brio_rng_below(&rng, 2) ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
         r->fixed[p] = brio_rng_below(&rng, 5) == 0;
     }
-    r->first[POLES] = count;
-    r->poles = (brio_poles){.count = POLES, .centre = r->centre};
-    r->diagram = (brio_power_diagram){.poles = &r->poles};
-    r->g = (brio_pole_graph){.ctx = ctx, .diagram = &r->diagram, .first = r->first, .edge = r->edge};
+    r->first[NODES] = count;
+    r->g = (brio_signed_graph){.ctx = ctx, .count = NODES, .position = r->centre, .first = r->first, .edge = r->edge};
 }
 
-static void check_blocks(const random_graph *r, const brio_pole_blocks *b) {
-    size_t round[POLES], places = 0;
+static void check_blocks(const random_graph *r, const brio_node_blocks *b) {
+    size_t round[NODES], places = 0;
     for (size_t i = 0; i < b->num_blocks; i++) round[i] = SIZE_MAX;
     for (size_t k = 0; k < b->num_rounds; k++) {
         EXPECT(b->first_round[k] < b->first_round[k + 1]);
         for (size_t i = b->first_round[k]; i < b->first_round[k + 1]; i++) round[b->block[i]] = k;
     }
-    for (uint32_t p = 0; p < POLES; p++) {
+    for (uint32_t p = 0; p < NODES; p++) {
         if (b->place[p] == BRIO_NO_PLACE) continue;
-        EXPECT(b->pole[b->place[p]] == p && !r->fixed[p]);
+        EXPECT(b->node[b->place[p]] == p && !r->fixed[p]);
         places++;
     }
     EXPECT(places == b->count);
-    for (uint32_t p = 0; p < POLES; p++)
+    for (uint32_t p = 0; p < NODES; p++)
         for (size_t e = r->first[p]; e < r->first[p + 1] && !r->fixed[p]; e++) {
-            uint32_t q = r->edge[e].pole, here = b->place[p], there = b->place[q];
+            uint32_t q = r->edge[e].node, here = b->place[p], there = b->place[q];
             if (r->edge[e].weight != 0 && brio_label_violates(r->label, p, r->edge[e]))
                 EXPECT(here != BRIO_NO_PLACE && round[here >> b->bits] != SIZE_MAX, "violated edge of pole %u", p);
             if (here == BRIO_NO_PLACE || there == BRIO_NO_PLACE || here >> b->bits == there >> b->bits) continue;
@@ -198,18 +194,18 @@ static void blocks_of_a_round_are_apart(void) {
     brio_context *ctx = new_context();
     size_t shared = 0;
     for (uint64_t trial = 0; trial < 300; trial++) {
-        brio_pole_blocks b, again;
+        brio_node_blocks b, again;
         make_graph(&r, ctx, trial);
         brio_context_set_threads(ctx, 1);
-        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &b) == BRIO_OK);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &b) == BRIO_OK);
         check_blocks(&r, &b);
         brio_context_set_threads(ctx, 3);
-        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &again) == BRIO_OK);
-        EXPECT(again.num_rounds == b.num_rounds && !memcmp(again.place, b.place, sizeof *b.place * POLES) &&
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &again) == BRIO_OK);
+        EXPECT(again.num_rounds == b.num_rounds && !memcmp(again.place, b.place, sizeof *b.place * NODES) &&
                !memcmp(again.block, b.block, sizeof *b.block * b.first_round[b.num_rounds]));
         shared += b.first_round[b.num_rounds] > b.num_rounds;
-        brio_pole_blocks_free(&b);
-        brio_pole_blocks_free(&again);
+        brio_node_blocks_free(&b);
+        brio_node_blocks_free(&again);
     }
     EXPECT(shared > 100, "rounds of several blocks: %zu", shared);
     EXPECT(brio_context_memory(ctx) == 0);
@@ -218,7 +214,7 @@ static void blocks_of_a_round_are_apart(void) {
 
 /* The least energy over all labels of the poles of a block. */
 static double least_energy(random_graph *r, const uint32_t *pole, size_t size) {
-    uint8_t kept[POLES];
+    uint8_t kept[NODES];
     double least = INFINITY;
     memcpy(kept, r->label, sizeof kept);
     for (unsigned set = 0; set < 1u << size; set++) {
@@ -238,12 +234,12 @@ static void settled_blocks_have_least_energy(void) {
     brio_roof roof = {.flow = brio_flow_new(ctx)};
     size_t closed = 0, improved = 0;
     for (uint64_t trial = 0; trial < 60; trial++) {
-        brio_pole_blocks b;
+        brio_node_blocks b;
         make_graph(&r, ctx, trial);
-        EXPECT(brio_pole_blocks_find(&r.g, r.label, r.fixed, BITS, trial, &b) == BRIO_OK);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, BITS, trial, &b) == BRIO_OK);
         for (size_t block = 0; block < b.num_blocks; block++) {
-            size_t begin = brio_pole_block_begin(&b, block), size = brio_pole_block_begin(&b, block + 1) - begin;
-            double before = brio_label_energy(&r.g, r.label), least = least_energy(&r, b.pole + begin, size);
+            size_t begin = brio_node_block_begin(&b, block), size = brio_node_block_begin(&b, block + 1) - begin;
+            double before = brio_label_energy(&r.g, r.label), least = least_energy(&r, b.node + begin, size);
             roof.undecided = 0;
             EXPECT(brio_roof_settle(&roof, &r.g, &b, block, r.label) == BRIO_OK);
             double after = brio_label_energy(&r.g, r.label);
@@ -251,7 +247,7 @@ static void settled_blocks_have_least_energy(void) {
             if (roof.undecided == 0) EXPECT(after == least, "%g, least %g", after, least);
             closed += roof.undecided == 0, improved += after < before;
         }
-        brio_pole_blocks_free(&b);
+        brio_node_blocks_free(&b);
     }
     EXPECT(closed > 60 && improved > 60, "%zu, %zu", closed, improved);
     brio_roof_free(&roof);
@@ -261,14 +257,14 @@ static void settled_blocks_have_least_energy(void) {
 
 static brio_status settle_random_blocks(brio_context *ctx) {
     static random_graph r;
-    brio_pole_blocks b;
+    brio_node_blocks b;
     brio_roof roof = {.flow = brio_flow_new(ctx)};
     make_graph(&r, ctx, 5);
     brio_context_set_threads(ctx, 2);
-    brio_status status = brio_pole_blocks_find(&r.g, r.label, r.fixed, 3, 5, &b);
+    brio_status status = brio_node_blocks_find(&r.g, r.label, r.fixed, 3, 5, &b);
     for (size_t block = 0; status == BRIO_OK && block < b.num_blocks; block++)
         status = brio_roof_settle(&roof, &r.g, &b, block, r.label);
-    brio_pole_blocks_free(&b);
+    brio_node_blocks_free(&b);
     brio_roof_free(&roof);
     return status;
 }

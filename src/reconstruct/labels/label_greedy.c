@@ -81,11 +81,11 @@ static inline brio_status offer(labeller *l, uint32_t p, int side, double streng
 }
 
 static brio_status pass_on(labeller *l, uint32_t p, int side, double strength) {
-    const brio_pole_edge *edge = l->g->edge, *from = edge + l->nodes[p].first, *end = edge + l->nodes[p + 1].first;
+    const brio_signed_edge *edge = l->g->edge, *from = edge + l->nodes[p].first, *end = edge + l->nodes[p + 1].first;
     brio_status status = BRIO_OK;
-    for (const brio_pole_edge *e = from; e < end; e++) __builtin_prefetch(&l->nodes[e->pole]);
-    for (const brio_pole_edge *e = from; e < end; e++)
-        BRIO_TRY(offer(l, e->pole, e->weight < 0 ? !side : side, strength * fabs((double)e->weight)));
+    for (const brio_signed_edge *e = from; e < end; e++) __builtin_prefetch(&l->nodes[e->node]);
+    for (const brio_signed_edge *e = from; e < end; e++)
+        BRIO_TRY(offer(l, e->node, e->weight < 0 ? !side : side, strength * fabs((double)e->weight)));
 done:
     return status;
 }
@@ -128,7 +128,7 @@ done:
  * the poles that come after. */
 static inline void look_ahead(labeller *l) {
     for (int i = 0; i < l->num_ahead; i++) {
-        const brio_pole_edge *edge = l->g->edge + l->nodes[l->ahead[i]].first;
+        const brio_signed_edge *edge = l->g->edge + l->nodes[l->ahead[i]].first;
         __builtin_prefetch(edge);
         __builtin_prefetch(edge + 8);
     }

@@ -43,16 +43,6 @@ brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_lab
 /** Sets certain[p] to 1 for the certain poles and to 0 for all others.   certain  #poles, written. */
 void brio_label_certain(const brio_pole_graph *g, uint8_t *certain);
 
-/** Returns whether the labels of pole p and of the other end of its edge contradict the edge: labels that differ
- *  although the weight is at least 0, or labels that are equal although it is negative. */
-static inline bool brio_label_violates(const uint8_t *label, uint32_t p, brio_pole_edge edge) {
-    return (label[p] == label[edge.pole]) == (edge.weight < 0);
-}
-
-/** Returns the energy of labels: the sum of |weight| over the edges that the labels contradict, each edge counted
- *  once. */
-double brio_label_energy(const brio_pole_graph *g, const uint8_t *label);
-
 /** Spreads labels breadth first along the edges to poles without a label. A certain pole becomes outer. Any other pole
  *  takes the label of the pole that reaches it, or the opposite label if the weight of the edge is negative.
  *  queue  #poles, workspace: the first `size` entries are the labeled poles to start from. */

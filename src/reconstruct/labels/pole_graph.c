@@ -80,8 +80,8 @@ static uint64_t key_of(uint32_t pole, float weight) {
     return (uint64_t)pole << 32 | bits;
 }
 
-static brio_pole_edge edge_of(uint64_t key) {
-    brio_pole_edge e = {.pole = (uint32_t)(key >> 32)};
+static brio_signed_edge edge_of(uint64_t key) {
+    brio_signed_edge e = {.node = (uint32_t)(key >> 32)};
     uint32_t bits = (uint32_t)key;
     memcpy(&e.weight, &bits, sizeof bits);
     return e;
@@ -238,8 +238,8 @@ static void deal_out_neighbours(void *user, size_t begin, size_t end, int thread
     (void)thread;
     for (size_t p = begin; p < end; p++)
         for (size_t i = b->first_low[p]; i < b->first_low[p + 1] && b->low[i] != NOTHING; i++) {
-            brio_pole_edge e = edge_of(b->low[i]);
-            deal(b, (uint32_t)p, e.pole, e.weight);
+            brio_signed_edge e = edge_of(b->low[i]);
+            deal(b, (uint32_t)p, e.node, e.weight);
         }
 }
 
@@ -259,7 +259,7 @@ static void sort_edges(void *user, size_t begin, size_t end, int thread) {
     for (size_t p = begin; p < end; p++) {
         brio_sort_keys(b->edge + g->first[p], g->first[p + 1] - g->first[p]);
         for (size_t i = g->first[p]; i < g->first[p + 1]; i++) {
-            brio_pole_edge e = edge_of(b->edge[i]);
+            brio_signed_edge e = edge_of(b->edge[i]);
             memcpy(&b->edge[i], &e, sizeof e);
         }
     }
@@ -272,8 +272,8 @@ static inline bool runs_are_sorted(const brio_pole_graph *g) {
     for (size_t p = 0; p < n; p++) {
         if (g->first[p + 1] < g->first[p]) return false;
         for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
-            if (g->edge[e].pole >= n || g->edge[e].pole == p) return false;
-            if (e > g->first[p] && g->edge[e].pole < g->edge[e - 1].pole) return false;
+            if (g->edge[e].node >= n || g->edge[e].node == p) return false;
+            if (e > g->first[p] && g->edge[e].node < g->edge[e - 1].node) return false;
         }
     }
     return true;
@@ -294,7 +294,7 @@ static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative
     brio_for(ctx, threads, n, deal_out_neighbours, &b);
     brio_for(ctx, threads, g->diagram->num_samples, deal_out_opposite, &b);
     brio_for_chunks(ctx, threads, n, CHUNK, sort_edges, &b);
-    g->edge = (brio_pole_edge *)b.edge; /* sort_edges overwrote the keys by edges, which have the same size */
+    g->edge = (brio_signed_edge *)b.edge; /* sort_edges overwrote the keys by edges, which have the same size */
     assert(runs_are_sorted(g));
 done:
     if (status != BRIO_OK) brio_release(ctx, b.edge);

@@ -4,22 +4,16 @@
 #define BRIO_RECONSTRUCT_POLE_GRAPH_H
 
 #include "dual/power_diagram.h"
-#include "reconstruct/labels/label.h"
+#include "reconstruct/labels/signed_graph.h"
 #include "triangulation/star.h"
-
-/** An edge, stored at one of its ends. */
-typedef struct {
-    uint32_t pole; /* the other end */
-    float weight;  /* in [-1, 1]. At least 0: the ends should have the same label. Negative: they should not. */
-} brio_pole_edge;
 
 /** Neighbours are two poles whose power cells share a face: the ends of an edge of the regular triangulation of the
  *  polar balls. A hidden pole has one neighbour, its representative. Opposite poles are the two poles of one sample. */
 typedef struct {
     brio_context *ctx;
     const brio_power_diagram *diagram;
-    size_t *first;        /* #poles + 1: the edges of pole p are edge[first[p]] to edge[first[p + 1] - 1] */
-    brio_pole_edge *edge; /* sorted by the number of the other end; several edges may join two poles */
+    size_t *first;          /* #poles + 1: the edges of pole p are edge[first[p]] to edge[first[p + 1] - 1] */
+    brio_signed_edge *edge; /* sorted by the number of the other end; several edges may join two poles */
 } brio_pole_graph;
 
 /** In the balanced graph, opposite poles count in full if the shape of their sample's cell is at least this. The value
@@ -44,5 +38,14 @@ typedef struct {
 brio_status brio_pole_graph_new(brio_context *ctx, const brio_power_diagram *diagram, brio_pole_evidence evidence,
                                 brio_pole_graph *out);
 void brio_pole_graph_free(brio_pole_graph *g);
+
+/** Returns the graph without the diagram, which must outlive the result. */
+static inline brio_signed_graph brio_pole_signs(const brio_pole_graph *g) {
+    return (brio_signed_graph){.ctx = g->ctx,
+                               .count = g->diagram->poles->count,
+                               .position = g->diagram->poles->centre,
+                               .first = g->first,
+                               .edge = g->edge};
+}
 
 #endif

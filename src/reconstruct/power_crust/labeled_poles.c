@@ -205,7 +205,8 @@ static brio_status label_along_graph(brio_labeled_poles *l, brio_labeling labeli
     l->stats.undecided = s.undecided;
     l->stats.toggled = s.toggled;
     l->stats.energy_greedy = s.energy_greedy;
-    l->stats.energy = brio_label_energy(&l->graph, l->label);
+    brio_signed_graph signs = brio_pole_signs(&l->graph);
+    l->stats.energy = brio_label_energy(&signs, l->label);
 done:
     return status;
 }

@@ -1,22 +1,21 @@
-/* Blocks of poles for the improvement of labels.
+/* Blocks of nodes for the improvement of labels.
  *
- * Only poles near violated edges take part, because a set of poles whose flip lowers the energy has a violated edge on
- * its border. The poles are sorted along a Hilbert curve through a cube at a random place, and the sorted list is cut
+ * Only nodes near violated edges take part, because a set of nodes whose flip lowers the energy has a violated edge on
+ * its border. The nodes are sorted along a Hilbert curve through a cube at a random place, and the sorted list is cut
  * into runs. Poles that one cube separates, another cube keeps together. Two blocks that an edge joins must not change
  * at the same time, so the blocks are coloured, and a colour is a round. */
-#include "reconstruct/labels/pole_blocks.h"
+#include "reconstruct/labels/node_blocks.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "order/hilbert.h"
-#include "reconstruct/labels/labeling.h"
 #include <math.h>
 #include <string.h>
 
-/* HOPS: a pole of a block is at most this many edges from a pole with a violated edge. CURVE_BITS: the curve has
+/* HOPS: a node of a block is at most this many edges from a node with a violated edge. CURVE_BITS: the curve has
  * 2^CURVE_BITS cells on each side of the cube. All are chosen, except OUTSIDE. */
-enum { HOPS = 3, OUTSIDE = 255, CURVE_BITS = 11, POLES_A_THREAD = 1024, POLES_A_CHUNK = 1024 };
+enum { HOPS = 3, OUTSIDE = 255, CURVE_BITS = 11, NODES_A_THREAD = 1024, NODES_A_CHUNK = 1024 };
 
 /* What one thread finds: the pairs of blocks that an edge joins, as higher number << 32 | lower number. */
 typedef struct {
@@ -26,36 +25,36 @@ typedef struct {
 } joiner;
 
 typedef struct {
-    const brio_pole_graph *g;
+    const brio_signed_graph *g;
     const uint8_t *label, *fixed;
     int threads;     /* of all loops here */
-    uint8_t hop;     /* the depth of the poles whose neighbours are reached now */
+    uint8_t hop;     /* the depth of the nodes whose neighbours are reached now */
     joiner *joiners; /* one for each thread */
     brio_status joined;
-    double *points;   /* positions of the poles of the region, and two corners of the cube */
-    uint8_t *depth;   /* #poles: edges from the nearest pole with a violated edge, or OUTSIDE */
-    uint8_t *trouble; /* #blocks: 1 if one of the block's poles has a violated edge */
+    double *points;   /* positions of the nodes of the region, and two corners of the cube */
+    uint8_t *depth;   /* #nodes: edges from the nearest node with a violated edge, or OUTSIDE */
+    uint8_t *trouble; /* #blocks: 1 if one of the block's nodes has a violated edge */
     uint64_t *pair;   /* the pairs of all threads, sorted */
     size_t num_pairs;
-    brio_pole_blocks *out;
+    brio_node_blocks *out;
 } finder;
 
 /* --- the region --- */
 
 static bool is_troubled(const finder *f, uint32_t p) {
-    const brio_pole_graph *g = f->g;
+    const brio_signed_graph *g = f->g;
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
         if (g->edge[e].weight != 0 && brio_label_violates(f->label, p, g->edge[e])) return true;
     return false;
 }
 
-/* Sets the depth of the neighbours of p that have none. Relaxed order suffices: threads that reach a pole in one hop
+/* Sets the depth of the neighbours of p that have none. Relaxed order suffices: threads that reach a node in one hop
  * write the same depth. No thread looks for that depth in this hop, and the next hop is another run. */
 static void reach_neighbours(const finder *f, uint32_t p, uint8_t depth) {
-    const brio_pole_graph *g = f->g;
+    const brio_signed_graph *g = f->g;
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++) {
-        uint8_t *there = &f->depth[g->edge[e].pole];
-        if (__atomic_load_n(there, __ATOMIC_RELAXED) == OUTSIDE && !f->fixed[g->edge[e].pole])
+        uint8_t *there = &f->depth[g->edge[e].node];
+        if (__atomic_load_n(there, __ATOMIC_RELAXED) == OUTSIDE && !f->fixed[g->edge[e].node])
             __atomic_store_n(there, depth, __ATOMIC_RELAXED);
     }
 }
@@ -75,21 +74,21 @@ static void hop_from(void *user, size_t begin, size_t end, int thread) {
 
 static void mark_region(finder *f) {
     brio_context *ctx = f->g->ctx;
-    size_t n = f->g->diagram->poles->count;
-    brio_for_chunks(ctx, f->threads, n, POLES_A_CHUNK, mark_troubled, f);
-    for (f->hop = 0; f->hop < HOPS; f->hop++) brio_for_chunks(ctx, f->threads, n, POLES_A_CHUNK, hop_from, f);
+    size_t n = f->g->count;
+    brio_for_chunks(ctx, f->threads, n, NODES_A_CHUNK, mark_troubled, f);
+    for (f->hop = 0; f->hop < HOPS; f->hop++) brio_for_chunks(ctx, f->threads, n, NODES_A_CHUNK, hop_from, f);
 }
 
 static brio_status list_region(finder *f) {
     brio_status status = BRIO_OK;
-    brio_pole_blocks *b = f->out;
-    size_t n = f->g->diagram->poles->count, count = 0;
+    brio_node_blocks *b = f->out;
+    size_t n = f->g->count, count = 0;
     BRIO_TRY(BRIO_ALLOC(b->ctx, f->depth, n));
     mark_region(f);
     for (size_t p = 0; p < n; p++) b->count += f->depth[p] != OUTSIDE;
-    BRIO_TRY(BRIO_ALLOC(b->ctx, b->pole, b->count));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, b->node, b->count));
     for (size_t p = 0; p < n; p++)
-        if (f->depth[p] != OUTSIDE) b->pole[count++] = (uint32_t)p;
+        if (f->depth[p] != OUTSIDE) b->node[count++] = (uint32_t)p;
 done:
     return status;
 }
@@ -119,12 +118,12 @@ static void copy_positions(void *user, size_t begin, size_t end, int thread) {
     const finder *f = user;
     (void)thread;
     for (size_t i = begin; i < end; i++)
-        memcpy(f->points + 3 * i, f->g->diagram->poles->centre + 3 * (size_t)f->out->pole[i], 3 * sizeof *f->points);
+        memcpy(f->points + 3 * i, f->g->position + 3 * (size_t)f->out->node[i], 3 * sizeof *f->points);
 }
 
 static brio_status sort_along_curve(finder *f, uint64_t draw) {
     brio_status status = BRIO_OK;
-    brio_pole_blocks *b = f->out;
+    brio_node_blocks *b = f->out;
     uint64_t *keys = NULL;
     size_t n = b->count;
     BRIO_TRY(BRIO_ALLOC(b->ctx, f->points, 3 * (n + 2)));
@@ -132,7 +131,7 @@ static brio_status sort_along_curve(finder *f, uint64_t draw) {
     brio_for(b->ctx, f->threads, n, copy_positions, f);
     draw_cube(f->points, n, draw);
     brio_hilbert_keys(b->ctx, f->points, n + 2, CURVE_BITS, keys);
-    BRIO_TRY(brio_radix_sort(b->ctx, keys, b->pole, n, 3 * CURVE_BITS));
+    BRIO_TRY(brio_radix_sort(b->ctx, keys, b->node, n, 3 * CURVE_BITS));
 done:
     brio_release(b->ctx, f->points);
     f->points = NULL;
@@ -141,33 +140,33 @@ done:
 }
 
 static brio_status set_places(const finder *f) {
-    brio_pole_blocks *b = f->out;
-    brio_status status = BRIO_ALLOC(b->ctx, b->place, f->g->diagram->poles->count);
+    brio_node_blocks *b = f->out;
+    brio_status status = BRIO_ALLOC(b->ctx, b->place, f->g->count);
     if (status != BRIO_OK) return status;
-    memset(b->place, 255, f->g->diagram->poles->count * sizeof *b->place);
-    for (size_t i = 0; i < b->count; i++) b->place[b->pole[i]] = (uint32_t)i;
+    memset(b->place, 255, f->g->count * sizeof *b->place);
+    for (size_t i = 0; i < b->count; i++) b->place[b->node[i]] = (uint32_t)i;
     return BRIO_OK;
 }
 
 /* --- rounds --- */
 
 static brio_status find_trouble(finder *f) {
-    brio_pole_blocks *b = f->out;
+    brio_node_blocks *b = f->out;
     b->num_blocks = (b->count + ((size_t)1 << b->bits) - 1) >> b->bits;
     brio_status status = BRIO_ALLOC_ZERO(b->ctx, f->trouble, b->num_blocks);
     if (status != BRIO_OK) return status;
-    for (size_t i = 0; i < b->count; i++) f->trouble[i >> b->bits] |= f->depth[b->pole[i]] == 0;
+    for (size_t i = 0; i < b->count; i++) f->trouble[i >> b->bits] |= f->depth[b->node[i]] == 0;
     return BRIO_OK;
 }
 
 /* Lists the pairs of a block and the blocks of lower number, with violated edges, that an edge joins to it. */
 static brio_status join(const finder *f, joiner *j, uint32_t block) {
-    const brio_pole_graph *g = f->g;
-    const brio_pole_blocks *b = f->out;
+    const brio_signed_graph *g = f->g;
+    const brio_node_blocks *b = f->out;
     brio_status status = BRIO_OK;
-    for (size_t i = brio_pole_block_begin(b, block); i < brio_pole_block_begin(b, block + 1); i++)
-        for (size_t e = g->first[b->pole[i]]; e < g->first[b->pole[i] + 1]; e++) {
-            uint32_t place = b->place[g->edge[e].pole], other = place >> b->bits;
+    for (size_t i = brio_node_block_begin(b, block); i < brio_node_block_begin(b, block + 1); i++)
+        for (size_t e = g->first[b->node[i]]; e < g->first[b->node[i] + 1]; e++) {
+            uint32_t place = b->place[g->edge[e].node], other = place >> b->bits;
             if (place == BRIO_NO_PLACE || other >= block || j->seen[other] == block + 1 || !f->trouble[other]) continue;
             j->seen[other] = block + 1;
             BRIO_TRY(BRIO_RESERVE(b->ctx, j->pair, j->capacity, j->count + 1));
@@ -216,7 +215,7 @@ done:
 /* Gives each block, in order, the first round that no earlier block joined to it has.
  *  taken  #blocks + 1, all 0: for each round, 1 + the last block that cannot have it. */
 static void colour_blocks(const finder *f, uint32_t *round, uint32_t *taken) {
-    brio_pole_blocks *b = f->out;
+    brio_node_blocks *b = f->out;
     for (size_t block = 0, i = 0; block < b->num_blocks; block++) {
         if (!f->trouble[block]) continue;
         for (; i < f->num_pairs && f->pair[i] >> 32 == block; i++)
@@ -230,7 +229,7 @@ static void colour_blocks(const finder *f, uint32_t *round, uint32_t *taken) {
 
 static brio_status list_rounds(const finder *f, const uint32_t *round) {
     brio_status status = BRIO_OK;
-    brio_pole_blocks *b = f->out;
+    brio_node_blocks *b = f->out;
     BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, b->first_round, b->num_rounds + 1));
     BRIO_TRY(BRIO_ALLOC(b->ctx, b->block, b->num_blocks));
     for (size_t i = 0; i < b->num_blocks; i++)
@@ -260,12 +259,12 @@ done:
 
 /* --- the blocks --- */
 
-brio_status brio_pole_blocks_find(const brio_pole_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
-                                  uint64_t draw, brio_pole_blocks *out) {
+brio_status brio_node_blocks_find(const brio_signed_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
+                                  uint64_t draw, brio_node_blocks *out) {
     brio_status status = BRIO_OK;
-    int threads = brio_threads(g->ctx, g->diagram->poles->count, POLES_A_THREAD);
+    int threads = brio_threads(g->ctx, g->count, NODES_A_THREAD);
     finder f = {.g = g, .label = label, .fixed = fixed, .threads = threads, .out = out};
-    *out = (brio_pole_blocks){.ctx = g->ctx, .bits = bits};
+    *out = (brio_node_blocks){.ctx = g->ctx, .bits = bits};
     BRIO_TRY(list_region(&f));
     if (out->count > (size_t)1 << bits) BRIO_TRY(sort_along_curve(&f, draw));
     BRIO_TRY(set_places(&f));
@@ -277,8 +276,8 @@ done:
     return status;
 }
 
-void brio_pole_blocks_free(brio_pole_blocks *b) {
-    brio_release(b->ctx, b->pole);
+void brio_node_blocks_free(brio_node_blocks *b) {
+    brio_release(b->ctx, b->node);
     brio_release(b->ctx, b->place);
     brio_release(b->ctx, b->first_round);
     brio_release(b->ctx, b->block);

@@ -1,0 +1,147 @@
+/* Labels of low energy.
+ *
+ * Finding the least energy is as hard as a maximum cut, because edges that want different labels make the energy not
+ * submodular. Roof duality finds part of an optimal labeling by one flow. On all nodes of a large graph the flow is slow
+ * and may decide almost none of them. On a block of nodes, with the labels around it fixed, it is fast and decides
+ * nearly all. So the method improves one block after the other, then blocks with other borders and of twice the size.
+ * No step raises the energy.
+ *
+ * Based on: Rother, Kolmogorov, Lempitsky, Szummer. Optimizing binary MRFs via extended roof duality. CVPR 2007 (to
+ *           improve labels by roof duality with the labels of some nodes kept).
+ * Differs from the paper: the nodes that are free are blocks of nodes near each other in space. Threads work on many
+ *                         blocks at a time. */
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/team.h"
+#include "reconstruct/labels/roof_duality.h"
+#include <math.h>
+
+/* FEW: the passes end with one that flips at most 1/FEW of all nodes flipped so far. PARTS: sums of the energy that are
+ * added up in order. All chosen. */
+enum { FEW = 100, NODES_A_THREAD = 512, PARTS = 256, NODES_A_SUM = 2048 };
+
+typedef struct {
+    const brio_signed_graph *g;
+    const uint8_t *fixed;
+    uint8_t *label;
+    brio_energy_descent *descent;
+    int threads;
+    brio_roof *roof;           /* one for each thread */
+    size_t undecided, toggled; /* in the last pass */
+} problem;
+
+/* --- passes --- */
+
+typedef struct {
+    const problem *pr;
+    const brio_node_blocks *b;
+    const uint32_t *block; /* the blocks of the round */
+    brio_status status;
+} round_of_blocks;
+
+/* By I1 of brio_node_blocks no thread reads a label that another thread writes. */
+static void settle_part(void *user, size_t begin, size_t end, int thread) {
+    round_of_blocks *r = user;
+    const problem *pr = r->pr;
+    for (size_t i = begin; i < end; i++)
+        brio_report(&r->status, brio_roof_settle(&pr->roof[thread], pr->g, r->b, r->block[i], pr->label));
+}
+
+static brio_status settle_round(const problem *pr, const brio_node_blocks *b, size_t round) {
+    round_of_blocks r = {pr, b, b->block + b->first_round[round], BRIO_OK};
+    size_t blocks = b->first_round[round + 1] - b->first_round[round];
+    int threads = blocks < (size_t)pr->threads ? (int)blocks : pr->threads;
+    brio_for_chunks(pr->g->ctx, threads, blocks, 1, settle_part, &r);
+    return r.status;
+}
+
+static void sum_up(problem *pr) {
+    pr->undecided = pr->toggled = 0;
+    for (int t = 0; t < pr->threads; t++) {
+        pr->undecided += pr->roof[t].undecided, pr->toggled += pr->roof[t].toggled;
+        pr->roof[t].undecided = pr->roof[t].toggled = 0;
+    }
+}
+
+/* Improves every block that has a violated edge once. Each pass doubles the size of the blocks. */
+static brio_status settle_blocks(problem *pr, int pass) {
+    brio_status status = BRIO_OK;
+    brio_node_blocks b;
+    BRIO_TRY(brio_node_blocks_find(pr->g, pr->label, pr->fixed, pr->descent->first_bits + pass,
+                                   brio_hash(1, (uint64_t)pass), &b));
+    for (size_t round = 0; round < b.num_rounds; round++) {
+        double part = (pass + (double)round / (double)b.num_rounds) / pr->descent->passes;
+        BRIO_TRY(brio_progress(pr->g->ctx, "label", pr->descent->from + (1 - pr->descent->from) * part));
+        BRIO_TRY(settle_round(pr, &b, round));
+    }
+    sum_up(pr);
+done:
+    brio_node_blocks_free(&b);
+    return status;
+}
+
+static brio_status improve(problem *pr) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = pr->g->ctx;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, pr->roof, (size_t)pr->threads));
+    for (int t = 0; t < pr->threads; t++) pr->roof[t].flow = brio_flow_new(ctx);
+    size_t toggled = 0; /* in all passes */
+    for (int pass = 0; pass < pr->descent->passes; pass++) {
+        BRIO_TRY(settle_blocks(pr, pass));
+        toggled += pr->toggled;
+        if (pr->toggled <= toggled / FEW) break;
+    }
+done:
+    for (int t = 0; pr->roof && t < pr->threads; t++) brio_roof_free(&pr->roof[t]);
+    brio_release(ctx, pr->roof);
+    return status;
+}
+
+brio_status brio_lower_energy(const brio_signed_graph *g, const uint8_t *fixed, brio_energy_descent *descent,
+                              uint8_t *label) {
+    problem pr = {.g = g,
+                  .fixed = fixed,
+                  .label = label,
+                  .descent = descent,
+                  .threads = brio_threads(g->ctx, g->count, NODES_A_THREAD)};
+    brio_status status = improve(&pr);
+    descent->undecided = pr.undecided;
+    return status;
+}
+
+/* --- energy --- */
+
+/* Sums |weight| over the violated edges from node p to nodes of higher number, so that each edge counts once. */
+static double violated_at(const brio_signed_graph *g, const uint8_t *label, size_t p) {
+    double sum = 0;
+    for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
+        if (g->edge[e].node > p && brio_label_violates(label, (uint32_t)p, g->edge[e]))
+            sum += fabs((double)g->edge[e].weight);
+    return sum;
+}
+
+typedef struct {
+    const brio_signed_graph *g;
+    const uint8_t *label;
+    double part[PARTS];
+} energy;
+
+static void sum_parts(void *user, size_t begin, size_t end, int thread) {
+    energy *e = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        size_t to = brio_part(e->g->count, (int)i + 1, PARTS);
+        double sum = 0;
+        for (size_t p = brio_part(e->g->count, (int)i, PARTS); p < to; p++) sum += violated_at(e->g, e->label, p);
+        e->part[i] = sum;
+    }
+}
+
+/* Sums in PARTS parts for every number of threads, so that the rounding does not depend on the threads. */
+double brio_label_energy(const brio_signed_graph *g, const uint8_t *label) {
+    energy e = {.g = g, .label = label};
+    double sum = 0;
+    brio_for_chunks(g->ctx, brio_threads(g->ctx, g->count, NODES_A_SUM), PARTS, 1, sum_parts, &e);
+    for (int i = 0; i < PARTS; i++) sum += e.part[i];
+    return sum;
+}
