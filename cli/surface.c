@@ -5,7 +5,7 @@
 #include "power_crust.h"
 #include <string.h>
 
-enum { POWER_CRUST, COCONE, TIGHT_COCONE };
+enum { POWER_CRUST, COCONE, TIGHT_COCONE, LABELED_DELAUNAY };
 
 typedef struct arguments {
     int method;
@@ -15,8 +15,11 @@ typedef struct arguments {
     uint64_t pieces;
 } arguments;
 
-static const option_choice methods[] = {
-    {"power-crust", POWER_CRUST}, {"cocone", COCONE}, {"tight-cocone", TIGHT_COCONE}, {NULL, 0}};
+static const option_choice methods[] = {{"power-crust", POWER_CRUST},
+                                        {"cocone", COCONE},
+                                        {"tight-cocone", TIGHT_COCONE},
+                                        {"labeled-delaunay", LABELED_DELAUNAY},
+                                        {NULL, 0}};
 
 static const option options[] = {
     {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME", "how to reconstruct", methods},
@@ -121,6 +124,28 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     return BRIO_OK;
 }
 
+/* --- the labeled Delaunay triangulation --- */
+
+static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh **surface) {
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    o.seed = r->common.seed;
+    brio_status status = brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, NULL, &s);
+    if (status != BRIO_OK) return status;
+    cli_stage(r, "delaunay", s.delaunay_seconds);
+    cli_stage(r, "poles", s.poles_seconds);
+    cli_stage(r, "label", s.labels_seconds);
+    cli_stage(r, "manifold", s.manifold_seconds);
+    report_mesh(r, s.samples, *surface);
+    cli_fact_real(&r->facts, "noise", s.noise);
+    cli_fact_count(&r->facts, "unused", s.unused);
+    cli_fact_count(&r->facts, "undecided", s.undecided);
+    cli_fact_count(&r->facts, "specks", s.specks);
+    cli_fact_count(&r->facts, "relabeled", s.relabeled);
+    cli_fact_real(&r->facts, "energy", s.energy);
+    return BRIO_OK;
+}
+
 /* What the points of the file had beside their coordinates: the vertices of a co-cone are the same points. */
 static brio_status copy_properties(const brio_mesh *points, brio_mesh *surface) {
     for (size_t i = 0; i < points->num_properties; i++) {
@@ -141,7 +166,7 @@ static brio_status check_arguments(run *r) {
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--theta, --boundaries and --density are for --method cocone|tight-cocone");
     if (a->pieces > 0 && a->method != COCONE) return cli_fail(r, BRIO_ERR_ARGUMENT, "--pieces is for --method cocone");
-    if (a->method != POWER_CRUST && cli_has_power_crust_options(&a->crust))
+    if (a->method != POWER_CRUST && a->method != LABELED_DELAUNAY && cli_has_power_crust_options(&a->crust))
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--triangulate, --simplify, --labeling, --sampling-density, --sharp, --open and --normals are "
                         "for --method power-crust");
@@ -159,10 +184,12 @@ static brio_status surface(run *r) {
     TRY(check_arguments(r));
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read_points(r, r->operands[0], &points));
-    TRY(a->method == POWER_CRUST ? power_crust(r, points, &result) : cocone(r, points, &result));
+    TRY(a->method == POWER_CRUST        ? power_crust(r, points, &result)
+        : a->method == LABELED_DELAUNAY ? labeled_delaunay(r, points, &result)
+                                        : cocone(r, points, &result));
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
-    if (a->method != POWER_CRUST) TRY(copy_properties(points, result));
+    if (a->method != POWER_CRUST && a->method != LABELED_DELAUNAY) TRY(copy_properties(points, result));
     brio_mesh_free(points);
     points = NULL;
     if (a->vertex_normals) TRY(brio_mesh_add_normals(result));

@@ -55,12 +55,14 @@ int main(void) {
     OPTIONS(brio_offset_surface_options, offset);
     OPTIONS(brio_power_shape_options, power_shape);
     OPTIONS(brio_cocone_options, cocone);
+    OPTIONS(brio_labeled_delaunay_options, labeled);
     OPTIONS(brio_iso_surface_options, iso);
     OPTIONS(brio_write_options, write);
     RESULT(brio_power_crust_stats, crust_stats);
     RESULT(brio_offset_surface_stats, offset_stats);
     RESULT(brio_power_shape_stats, shape_stats);
     RESULT(brio_cocone_stats, cocone_stats);
+    RESULT(brio_labeled_delaunay_stats, labeled_stats);
     RESULT(brio_certificate, certificate);
     RESULT(brio_distance, distance);
 
@@ -87,6 +89,10 @@ int main(void) {
     TRY(brio_cocone(ctx, points->vertices, 1500, &cocone.value, &mesh, &cocone_stats.value));
     expect_guard("brio_cocone_stats", cocone_stats.before, cocone_stats.after);
     printf("cocone %d\n", cocone_stats.value.candidates > 1000);
+    brio_mesh_free(mesh);
+    TRY(brio_labeled_delaunay(ctx, points->vertices, 1500, &labeled.value, &mesh, NULL, &labeled_stats.value));
+    expect_guard("brio_labeled_delaunay_stats", labeled_stats.before, labeled_stats.after);
+    printf("labeled %d\n", (int)labeled_stats.value.samples);
     brio_mesh_free(mesh);
     if (brio_iso_surface(ctx, "there is no such file.map", &iso.value, &mesh) != BRIO_ERR_OPEN) broken = 1;
     if (brio_write(ctx, "no such folder/x.ply", points, &write.value) != BRIO_ERR_WRITE) broken = 1;

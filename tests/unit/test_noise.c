@@ -3,7 +3,7 @@
 #include "harness.h"
 #include "query/nearest_points.h"
 #include "points.h"
-#include "reconstruct/power_crust/sample_noise.h"
+#include "reconstruct/noise/sample_noise.h"
 
 enum { N = 3000 };
 static const double SPHERE_AREA = 12.566370614359172, TORUS_AREA = 15.791367041742973;

@@ -16,7 +16,7 @@
 #include "dual/spacing.h"
 #include "order/canonical_points.h"
 #include "reconstruct/labels/label_solid.h"
-#include "reconstruct/power_crust/sample_noise.h"
+#include "reconstruct/noise/sample_noise.h"
 #include <math.h>
 #include <string.h>
 

@@ -31,4 +31,8 @@ bool brio_fit_local_surface(brio_neighbourhood *n, brio_local_surface *out);
 /** Returns the weighted standard deviation of the neighbours from the surface that was fitted to them. */
 double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *s);
 
+/** Returns the standard deviation of the neighbours from the best plane through their mean, INFINITY if they are on a
+ *  line.   n  the weights are overwritten. */
+double brio_plane_spread(brio_neighbourhood *n);
+
 #endif

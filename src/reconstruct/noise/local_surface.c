@@ -9,7 +9,7 @@
  * Based on: Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva. Computing and rendering point set surfaces. TVCG 2003.
  * Differs from the paper: each point has one plane and one polynomial, without a search for the best place of the
  *                         plane. A neighbourhood is a number of points, not a radius. */
-#include "reconstruct/power_crust/local_surface.h"
+#include "reconstruct/noise/local_surface.h"
 #include "base/vector.h"
 #include <math.h>
 
@@ -181,4 +181,16 @@ double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *
     }
     double all = sum_of(&sum), freedom = all - COEFFICIENTS * sum_of(&sum_squares) / all;
     return s->unit * sqrt(sum_of(&squares) / fmax(freedom, 0.1 * all));
+}
+
+double brio_plane_spread(brio_neighbourhood *n) {
+    double frame[3][3], sum = 0, squares = 0;
+    for (size_t i = 0; i < n->count; i++) n->weight[i] = 1;
+    if (!fit_plane(n, frame)) return INFINITY;
+    for (size_t i = 0; i < n->count; i++) {
+        double height = brio_dot(n->offset[i], frame[2]);
+        sum += height, squares += height * height;
+    }
+    double mean = sum / (double)n->count;
+    return sqrt(fmax(squares / (double)n->count - mean * mean, 0));
 }

@@ -11,21 +11,22 @@
  * Based on: Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva. Computing and rendering point set surfaces. TVCG 2003.
  *           Mederos, Velho, de Figueiredo. Smooth surface reconstruction from noisy clouds. JBCS 2004 (samples are
  *           moved onto local polynomials before the surface is made). */
-#include "reconstruct/power_crust/sample_noise.h"
+#include "reconstruct/noise/sample_noise.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "base/vector.h"
-#include "reconstruct/power_crust/local_surface.h"
+#include "reconstruct/noise/local_surface.h"
 #include <math.h>
 #include <string.h>
 
-/* FEW, MORE: points of the small and the large piece. NEAREST: distances in the mean that is the spacing. LOOKS,
+/* FLAT: points that a plane is fitted to. FEW, MORE: points of the small and the large piece. NEAREST: distances in the mean that is the spacing. LOOKS,
  * LEAST_LOOKS: about how many samples are measured, and the fewest that count. PASSES: of smoothing. BLOCK: samples
  * between two calls of the progress callback. All chosen, with the shared models in view
  * (docs/decisions/007-noise-is-smoothed.md). */
 enum {
+    FLAT = 9,
     FEW = 24,
     MORE = 48,
     NEAREST = 6,
@@ -49,6 +50,7 @@ typedef struct {
     uint32_t *sample;
     size_t count, hash_capacity, capacity;
     uint64_t *few, *more; /* standard deviations from the small and the large piece, in spacings */
+    uint64_t *flat;       /* standard deviations of FLAT points from a plane, in spacings */
 } looks;
 
 static uint64_t hash_of(const double *p) {
@@ -113,26 +115,23 @@ static bool spread_about(const double *p, const brio_point_tree *tree, const bri
     return true;
 }
 
-/* Computes the standard deviations of the points near p from the small and the large piece; infinite where a fit
+/* Computes the standard deviations of the points near p, the i-th sample that is measured; infinite where a fit
  * fails. */
-static void look(const brio_point_tree *tree, const double *p, uint64_t *few, uint64_t *more) {
+static void look(const brio_point_tree *tree, const double *p, const looks *l, size_t i) {
     brio_near_point near[BRIO_NEAR_ROOM];
+    brio_neighbourhood n;
+    uint64_t *few = l->few + i, *more = l->more + i;
     double small, large;
     size_t count = brio_nearest_points(tree, p, MORE, INFINITY, near);
     brio_sort_near_points(tree, near, count);
     double spacing = mean_spacing(near, count);
-    *few = *more = bits_of(INFINITY);
+    *few = *more = l->flat[i] = bits_of(INFINITY);
     if (count < MORE || !(spacing > 0)) return;
+    see_from(p, tree, near, FLAT, &n);
+    l->flat[i] = bits_of(brio_plane_spread(&n) / spacing);
     if (!spread_about(p, tree, near, FEW, &small) || !spread_about(p, tree, near, MORE, &large)) return;
     *few = bits_of(small / spacing);
     *more = bits_of(large / spacing);
-}
-
-static double median(uint64_t *bits, size_t count) {
-    double x;
-    brio_sort_keys(bits, count);
-    memcpy(&x, bits + count / 2, sizeof x);
-    return x;
 }
 
 typedef struct {
@@ -145,29 +144,64 @@ static void look_at_some(void *user, size_t begin, size_t end, int thread) {
     const looking *a = user;
     const looks *l = a->looks;
     (void)thread;
-    for (size_t i = begin; i < end; i++) look(a->tree, a->points + 3 * (size_t)l->sample[i], l->few + i, l->more + i);
+    for (size_t i = begin; i < end; i++) look(a->tree, a->points + 3 * (size_t)l->sample[i], l, i);
+}
+
+/* Measures about LOOKS samples. l->count is 0 if there are too few.   l  freed with free_looks, on failure too. */
+static brio_status look_around(brio_context *ctx, const double *points, size_t count, looks *l) {
+    brio_status status = BRIO_OK;
+    brio_point_tree tree = {0};
+    BRIO_TRY(choose_samples(ctx, points, count, l));
+    if (l->count < LEAST_LOOKS) l->count = 0;
+    if (l->count == 0) goto done;
+    BRIO_TRY(BRIO_ALLOC(ctx, l->few, l->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, l->more, l->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, l->flat, l->count));
+    BRIO_TRY(brio_point_tree_new(ctx, points, count, &tree));
+    looking all = {&tree, points, l};
+    brio_for_chunks(ctx, brio_threads(ctx, l->count, LOOKS_A_THREAD), l->count, LOOKS_A_THREAD, look_at_some, &all);
+done:
+    brio_point_tree_free(ctx, &tree);
+    return status;
+}
+
+static void free_looks(brio_context *ctx, looks *l) {
+    brio_release(ctx, l->hash);
+    brio_release(ctx, l->sample);
+    brio_release(ctx, l->few);
+    brio_release(ctx, l->more);
+    brio_release(ctx, l->flat);
+}
+
+/* Returns the value that a share of all values are below. */
+static double quantile(uint64_t *bits, size_t count, double share) {
+    double x;
+    brio_sort_keys(bits, count);
+    memcpy(&x, bits + (size_t)((double)count * share), sizeof x);
+    return x;
 }
 
 brio_status brio_noise_level(brio_context *ctx, const double *points, size_t count, double *level) {
     brio_status status = BRIO_OK;
-    brio_point_tree tree = {0};
     looks l = {0};
     *level = 0;
-    BRIO_TRY(choose_samples(ctx, points, count, &l));
-    if (l.count < LEAST_LOOKS) goto done;
-    BRIO_TRY(BRIO_ALLOC(ctx, l.few, l.count));
-    BRIO_TRY(BRIO_ALLOC(ctx, l.more, l.count));
-    BRIO_TRY(brio_point_tree_new(ctx, points, count, &tree));
-    looking all = {&tree, points, &l};
-    brio_for_chunks(ctx, brio_threads(ctx, l.count, LOOKS_A_THREAD), l.count, LOOKS_A_THREAD, look_at_some, &all);
-    double small = median(l.few, l.count), large = median(l.more, l.count);
+    BRIO_TRY(look_around(ctx, points, count, &l));
+    if (l.count == 0) goto done;
+    double small = quantile(l.few, l.count, 0.5), large = quantile(l.more, l.count, 0.5);
     if (large >= LEAST_LEVEL && large <= MOST_LEVEL && large <= small) *level = large;
 done:
-    brio_point_tree_free(ctx, &tree);
-    brio_release(ctx, l.hash);
-    brio_release(ctx, l.sample);
-    brio_release(ctx, l.few);
-    brio_release(ctx, l.more);
+    free_looks(ctx, &l);
+    return status;
+}
+
+brio_status brio_least_noise(brio_context *ctx, const double *points, size_t count, double *level) {
+    brio_status status = BRIO_OK;
+    looks l = {0};
+    *level = 0;
+    BRIO_TRY(look_around(ctx, points, count, &l));
+    if (l.count > 0) *level = quantile(l.flat, l.count, 0.1);
+done:
+    free_looks(ctx, &l);
     return status;
 }
 

@@ -1,0 +1,274 @@
+/* The labeled Delaunay triangulation: the surface between its inner and its outer tetrahedra.
+ *
+ *   1. The samples in canonical order, scaled by a power of two to coordinates of at most 1.
+ *   2. Their Delaunay triangulation, the axis of each sample, the spacing of the samples.
+ *   3. A first orientation of the samples: whether their axes point outwards.
+ *   4. Labels of samples and tetrahedra of low energy: each sample votes on the side of its tetrahedra, and the area of the
+ *      surface is weighed against the votes (vote_graph.c).
+ *   5. Labels are changed at samples where the boundary is not one fan, so that the surface is a manifold.
+ *   6. The vertices of noisy samples are smoothed along the surface.
+ *
+ * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009.
+ *           Dey, Goswami. Tight cocone: a water-tight surface reconstructor. JCISE 2003.
+ * Differs from the papers: no lines of sight; samples are unknowns, too, and their votes are weighed by log-odds that were
+ *                          measured on generated solids (vote_weight.c). */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/scale.h"
+#include "base/versioned.h"
+#include "dual/spacing.h"
+#include "order/canonical_points.h"
+#include "reconstruct/cocone/manifold_extraction.h"
+#include "reconstruct/cocone/sample_orientation.h"
+#include "reconstruct/labeled_delaunay/small_regions.h"
+#include "reconstruct/labeled_delaunay/vote_labels.h"
+#include "reconstruct/noise/sample_noise.h"
+#include "reconstruct/noise/smooth_surface.h"
+#include <math.h>
+
+static const brio_labeled_delaunay_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
+
+BRIO_OPTIONS_INIT(brio_labeled_delaunay_options)
+
+/* As brio_least_noise finds it: samples with more noise are smoothed. Between what generated solids show without noise and
+ * with a noise of 0.3 spacings in each coordinate. */
+static const double LEAST_NOISE = 0.085;
+
+/* A region with fewer triangles has under a dozen samples: a guess. Chosen. */
+enum { SPECK = 20 };
+
+/* Half the opening of the co-cones, for the first orientation: pi / 8 as in [Amenta Choi Dey Leekha 2000]. */
+static const double THETA = 0.39269908169872414;
+
+typedef struct {
+    brio_context *ctx;
+    const brio_labeled_delaunay_options *options;
+    size_t num_points;
+    uint32_t *order; /* #P: the caller's index of each sample */
+    int exponent;    /* coordinates are scaled by 2^-exponent */
+    double *points;  /* #P by 3: the samples, in order and scaled; at the end smoothed */
+    double *spacing; /* #P */
+    brio_triangulation *delaunay;
+    brio_pole_vectors dual;
+    uint8_t *turned; /* #P */
+    uint8_t *label;  /* #T and #P */
+    uint32_t *faces; /* #F by 3 */
+    size_t num_faces;
+    brio_labeled_delaunay_stats stats;
+    double lap;
+} reconstruction;
+
+/* Adds the seconds since the last call to *seconds. */
+static void lap(reconstruction *r, double *seconds) {
+    double now = brio_seconds();
+    *seconds += now - r->lap;
+    r->lap = now;
+}
+
+static brio_status take_samples(reconstruction *r, const double *points) {
+    brio_status status = BRIO_OK;
+    size_t n = r->num_points;
+    double most = 0;
+    for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
+    frexp(most, &r->exponent);
+    BRIO_TRY(BRIO_ALLOC(r->ctx, r->points, 3 * n));
+    BRIO_TRY(brio_canonical_points(r->ctx, points, n, &r->order));
+    brio_copy_points(points, r->order, n, r->points);
+    brio_scale(r->ctx, r->points, 3 * n, -r->exponent, r->points);
+done:
+    return status;
+}
+
+static brio_status triangulate(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_delaunay_options o = brio_delaunay_options_default();
+    o.seed = r->options->seed;
+    BRIO_TRY(brio_delaunay(r->ctx, r->points, NULL, r->num_points, &o, &r->delaunay));
+    const brio_delaunay_stats *s = brio_triangulation_stats(r->delaunay);
+    r->stats.samples = s->vertices;
+    BRIO_REQUIRE(r->ctx, s->dimension == 3, BRIO_ERR_NO_ANSWER, "%zu distinct points of dimension %d bound no solid",
+                 s->vertices, s->dimension);
+    lap(r, &r->stats.delaunay_seconds);
+done:
+    return status;
+}
+
+/* Finds the axes of the samples, and whether they point outwards as far as the co-cones tell. */
+static brio_status orient(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_cocones cocones = {0};
+    size_t candidates;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, r->spacing, r->num_points));
+    BRIO_TRY(brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing));
+    BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
+    BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
+    brio_cocones_select(r->ctx, &cocones, &candidates);
+    BRIO_TRY(brio_orient_samples(r->ctx, &cocones, &r->turned));
+    lap(r, &r->stats.poles_seconds);
+done:
+    brio_cocones_free(r->ctx, &cocones);
+    return status;
+}
+
+static brio_status label(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_vote_graph graph = {.ctx = r->ctx};
+    size_t num_tets = r->dual.t.count;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, num_tets + r->num_points));
+    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->stats.noise, &graph));
+    BRIO_TRY(brio_vote_labels(&graph, r->turned, r->label, &r->stats.undecided));
+    brio_signed_graph signs = brio_vote_signs(&graph);
+    r->stats.energy = brio_label_energy(&signs, r->label);
+    for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
+    lap(r, &r->stats.labels_seconds);
+done:
+    brio_vote_graph_free(&graph);
+    return status;
+}
+
+/* Lists the boundary facets counterclockwise as seen from their outer tetrahedra. */
+static brio_status list_faces(reconstruction *r, const brio_facets *boundary) {
+    brio_status status = BRIO_ALLOC(r->ctx, r->faces, 3 * boundary->count);
+    if (status != BRIO_OK) return status;
+    for (size_t n = 0; n < boundary->count; n++) {
+        uint32_t facet = boundary->facet[n];
+        for (int k = 0; k < 3; k++)
+            r->faces[3 * n + (size_t)k] = r->dual.t.tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
+    }
+    r->num_faces = boundary->count;
+    return BRIO_OK;
+}
+
+/* Drops specks and bubbles: regions with a surface of under SPECK triangles, if that is under a hundredth of all. */
+static brio_status drop_specks(reconstruction *r) {
+    size_t hundredth = brio_count_boundary(&r->dual.t, r->label) / 100, dropped = 0;
+    brio_status status =
+        brio_drop_small_regions(r->ctx, &r->dual.t, hundredth < SPECK ? hundredth : SPECK, r->label, &dropped);
+    r->stats.specks += dropped;
+    return status;
+}
+
+static brio_status extract(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_facets boundary = {0};
+    brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = true, .label = r->label};
+    BRIO_TRY(drop_specks(r));
+    BRIO_TRY(brio_make_manifold(r->ctx, &labels, &boundary, &r->stats.relabeled));
+    BRIO_REQUIRE(r->ctx, boundary.count > 0, BRIO_ERR_NO_ANSWER, "no inside found");
+    BRIO_TRY(list_faces(r, &boundary));
+    lap(r, &r->stats.manifold_seconds);
+done:
+    brio_release(r->ctx, boundary.facet);
+    return status;
+}
+
+/* Numbers the points that faces use in the caller's order.
+ * vertex  #P, written: of each point of the caller, 1 + its number, or 0.
+ * rank    #P, written: of each point of the caller, its place in r->points. */
+static size_t number_vertices(const reconstruction *r, uint32_t *vertex, uint32_t *rank) {
+    uint32_t used = 0;
+    for (uint32_t i = 0; i < r->num_points; i++) rank[r->order[i]] = i;
+    for (size_t c = 0; c < 3 * r->num_faces; c++) vertex[r->order[r->faces[c]]] = 1;
+    for (size_t p = 0; p < r->num_points; p++)
+        if (vertex[p]) vertex[p] = ++used;
+    return used;
+}
+
+/* Fills the vertices: the caller's points to the last bit, unless they were smoothed. */
+static void place_vertices(const reconstruction *r, const double *points, const uint32_t *vertex, const uint32_t *rank,
+                           brio_mesh *mesh, uint32_t *samples) {
+    for (size_t p = 0; p < r->num_points; p++) {
+        if (!vertex[p]) continue;
+        size_t v = vertex[p] - 1;
+        for (size_t k = 0; k < 3; k++)
+            mesh->vertices[3 * v + k] =
+                r->stats.smoothed ? ldexp(r->points[3 * (size_t)rank[p] + k], r->exponent) : points[3 * p + k];
+        if (samples) samples[v] = (uint32_t)p;
+    }
+}
+
+static brio_status make_mesh(reconstruction *r, const double *points, brio_mesh *mesh, uint32_t *samples) {
+    brio_status status = BRIO_OK;
+    uint32_t *vertex = NULL, *rank = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, vertex, r->num_points));
+    BRIO_TRY(BRIO_ALLOC(r->ctx, rank, r->num_points));
+    size_t used = number_vertices(r, vertex, rank);
+    BRIO_TRY(brio_mesh_set_vertices(mesh, NULL, used));
+    place_vertices(r, points, vertex, rank, mesh, samples);
+    BRIO_TRY(BRIO_ALLOC(r->ctx, mesh->face_offsets, r->num_faces + 1));
+    for (size_t f = 0; f <= r->num_faces; f++) mesh->face_offsets[f] = 3 * f;
+    for (size_t c = 0; c < 3 * r->num_faces; c++) r->faces[c] = vertex[r->order[r->faces[c]]] - 1;
+    mesh->face_vertices = r->faces;
+    mesh->num_faces = r->num_faces;
+    r->faces = NULL;
+    r->stats.unused = r->stats.samples - used;
+done:
+    brio_release(r->ctx, vertex);
+    brio_release(r->ctx, rank);
+    return status;
+}
+
+static brio_status measure_noise(reconstruction *r) {
+    brio_status status = brio_least_noise(r->ctx, r->points, r->num_points, &r->stats.noise);
+    r->stats.smoothed = r->options->noise == BRIO_NOISE_SMOOTH ||
+                        (r->options->noise == BRIO_NOISE_AUTO && r->stats.noise > LEAST_NOISE);
+    lap(r, &r->stats.noise_seconds);
+    return status;
+}
+
+static brio_status find_surface(reconstruction *r, const double *points) {
+    brio_status status = BRIO_OK;
+    const brio_bar bar = brio_progress_bar(r->ctx);
+    BRIO_TRY(take_samples(r, points));
+    BRIO_TRY(measure_noise(r));
+    brio_progress_part(r->ctx, bar, 0, 0.4);
+    BRIO_TRY(triangulate(r));
+    brio_progress_part(r->ctx, bar, 0.4, 0.55);
+    BRIO_TRY(orient(r));
+    brio_progress_part(r->ctx, bar, 0.55, 0.85);
+    BRIO_TRY(label(r));
+    brio_progress_part(r->ctx, bar, 0.85, 1);
+    BRIO_TRY(extract(r));
+    if (r->stats.smoothed) BRIO_TRY(brio_smooth_surface(r->ctx, r->points, r->num_points, r->faces, r->num_faces));
+    lap(r, &r->stats.noise_seconds);
+done:
+    brio_progress_part(r->ctx, bar, 0, 1);
+    return status;
+}
+
+static void release(reconstruction *r) {
+    brio_pole_vectors_free(r->ctx, &r->dual);
+    brio_triangulation_free(r->delaunay);
+    brio_release(r->ctx, r->order);
+    brio_release(r->ctx, r->points);
+    brio_release(r->ctx, r->spacing);
+    brio_release(r->ctx, r->turned);
+    brio_release(r->ctx, r->label);
+    brio_release(r->ctx, r->faces);
+}
+
+brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
+                                  const brio_labeled_delaunay_options *options, brio_mesh **out, uint32_t *samples,
+                                  brio_labeled_delaunay_stats *stats) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_labeled_delaunay_options o = STANDARD;
+    reconstruction r = {.ctx = ctx, .options = &o, .num_points = num_points, .lap = brio_seconds()};
+    brio_mesh *mesh = NULL;
+    *out = NULL;
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_labeled_delaunay_stats, stats));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_labeled_delaunay_options, options, &o));
+    BRIO_REQUIRE(ctx, (unsigned)o.noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
+                 (int)o.noise);
+    BRIO_TRY(brio_refuse_points(ctx, points, num_points));
+    BRIO_TRY(find_surface(&r, points));
+    BRIO_TRY(brio_mesh_new(ctx, &mesh));
+    BRIO_TRY(make_mesh(&r, points, mesh, samples));
+    *out = mesh;
+    mesh = NULL;
+done:
+    BRIO_GIVE(brio_labeled_delaunay_stats, stats, &r.stats);
+    brio_mesh_free(mesh);
+    release(&r);
+    return status;
+}
