@@ -30,9 +30,10 @@ static const brio_labeled_delaunay_options STANDARD = {.size = sizeof STANDARD, 
 
 BRIO_OPTIONS_INIT(brio_labeled_delaunay_options)
 
-/* As brio_least_noise finds it: samples with more noise are smoothed. Between what generated solids show without noise and
- * with a noise of 0.3 spacings in each coordinate. */
-static const double LEAST_NOISE = 0.085;
+/* As brio_least_noise finds it. Surfaces of samples with more than LEAST_NOISE are smoothed: between what generated solids
+ * show without noise and with a noise of 0.3 spacings in each coordinate. Samples with more than MOST_NOISE are smoothed
+ * before: above all that these showed with that noise, for which the log-odds were measured. */
+static const double LEAST_NOISE = 0.085, MOST_NOISE = 0.13;
 
 /* A region with fewer triangles has under a dozen samples: a guess. Chosen. */
 enum { SPECK = 20 };
@@ -48,6 +49,7 @@ typedef struct {
     int exponent;    /* coordinates are scaled by 2^-exponent */
     double *points;  /* #P by 3: the samples, in order and scaled; at the end smoothed */
     double *spacing; /* #P */
+    double left;     /* the noise that the triangulated samples have */
     brio_triangulation *delaunay;
     brio_pole_vectors dual;
     uint8_t *turned; /* #P */
@@ -115,7 +117,7 @@ static brio_status label(reconstruction *r) {
     brio_vote_graph graph = {.ctx = r->ctx};
     size_t num_tets = r->dual.t.count;
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, num_tets + r->num_points));
-    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->stats.noise, &graph));
+    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, &graph));
     BRIO_TRY(brio_vote_labels(&graph, r->turned, r->label, &r->stats.undecided));
     brio_signed_graph signs = brio_vote_signs(&graph);
     r->stats.energy = brio_label_energy(&signs, r->label);
@@ -208,11 +210,20 @@ done:
     return status;
 }
 
-static brio_status measure_noise(reconstruction *r) {
-    brio_status status = brio_least_noise(r->ctx, r->points, r->num_points, &r->stats.noise);
-    r->stats.smoothed = r->options->noise == BRIO_NOISE_SMOOTH ||
-                        (r->options->noise == BRIO_NOISE_AUTO && r->stats.noise > LEAST_NOISE);
+/* Measures the noise. Where it is beyond what the log-odds were measured for, such as where scans do not fit together,
+ * smooths the samples before they are triangulated. */
+static brio_status treat_noise(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_noise how = r->options->noise;
+    BRIO_TRY(brio_least_noise(r->ctx, r->points, r->num_points, &r->stats.noise));
+    r->left = r->stats.noise;
+    r->stats.smoothed = how == BRIO_NOISE_SMOOTH || (how == BRIO_NOISE_AUTO && r->stats.noise > LEAST_NOISE);
+    if (r->stats.smoothed && r->stats.noise > MOST_NOISE) {
+        BRIO_TRY(brio_smooth_samples(r->ctx, r->points, r->num_points));
+        BRIO_TRY(brio_least_noise(r->ctx, r->points, r->num_points, &r->left));
+    }
     lap(r, &r->stats.noise_seconds);
+done:
     return status;
 }
 
@@ -220,7 +231,7 @@ static brio_status find_surface(reconstruction *r, const double *points) {
     brio_status status = BRIO_OK;
     const brio_bar bar = brio_progress_bar(r->ctx);
     BRIO_TRY(take_samples(r, points));
-    BRIO_TRY(measure_noise(r));
+    BRIO_TRY(treat_noise(r));
     brio_progress_part(r->ctx, bar, 0, 0.4);
     BRIO_TRY(triangulate(r));
     brio_progress_part(r->ctx, bar, 0.4, 0.55);

@@ -14,11 +14,11 @@
 #include "reconstruct/labels/max_flow.h"
 #include <math.h>
 
-/* TURNS: most cuts. FIRST_BITS, PASSES: of the descent. All chosen on generated solids. */
-enum { TURNS = 4, FIRST_BITS = 11, PASSES = 3, NODES_A_THREAD = 1 << 12, CAPACITY = 1 << 20 };
+/* TURNS: most cuts; they end with one after which at most 1/FEW of the samples change. FIRST_BITS, PASSES: of the descent. All chosen on generated solids. */
+enum { TURNS = 4, FEW = 10000, FIRST_BITS = 9, PASSES = 3, NODES_A_THREAD = 1 << 12, CAPACITY = 1 << 20 };
 
 /* A sample is contested if its violated votes are over this share of its votes. Chosen on generated solids. */
-static const double CONTESTED = 0.1;
+static const double CONTESTED = 0.4;
 
 typedef struct {
     const brio_vote_graph *g;
@@ -114,7 +114,7 @@ static brio_status take_turns(voting *v) {
         BRIO_TRY(cut(v));
         v->turned = 0;
         brio_for(v->ctx, brio_threads(v->ctx, v->num_samples, NODES_A_THREAD), v->num_samples, turn_part, v);
-        if (v->turned == 0) break;
+        if (v->turned <= v->num_samples / FEW) break;
     }
 done:
     brio_flow_free(&v->flow);
