@@ -5,25 +5,29 @@
 #include "power_crust.h"
 #include <string.h>
 
-enum { POWER_CRUST, COCONE, TIGHT_COCONE, LABELED_DELAUNAY };
+/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone is
+ * given. */
+enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE };
 
 typedef struct arguments {
     int method;
     power_crust_options crust;
-    bool boundaries, density, vertex_normals, self_intersections;
+    bool polygons, boundaries, density, vertex_normals, self_intersections;
     double theta; /* 0: not given */
     uint64_t pieces;
 } arguments;
 
-static const option_choice methods[] = {{"power-crust", POWER_CRUST},
+static const option_choice methods[] = {{"labeled-delaunay", LABELED_DELAUNAY},
+                                        {"power-crust", POWER_CRUST},
                                         {"cocone", COCONE},
                                         {"tight-cocone", TIGHT_COCONE},
-                                        {"labeled-delaunay", LABELED_DELAUNAY},
                                         {NULL, 0}};
 
 static const option options[] = {
-    {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME", "how to reconstruct", methods},
+    {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME", "how to reconstruct (labeled-delaunay)", methods},
     POWER_CRUST_ROWS(arguments, crust),
+    {"polygons", 0, OPTION_FLAG, offsetof(arguments, polygons), NULL,
+     "power crust: its polygons, not cut into triangles", 0},
     {"theta", 0, OPTION_NUMBER, offsetof(arguments, theta), "ANGLE", "co-cones: half their opening, radians (pi/8)", 0},
     {"boundaries", 0, OPTION_FLAG, offsetof(arguments, boundaries), NULL,
      "co-cones: find the samples at boundaries and leave the surface open there", 0},
@@ -44,10 +48,20 @@ static const double LEAST_THETA = 0.2542;
 static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_VTU,
                                       BRIO_FORMAT_AUTO};
 
+static bool has_power_crust_options(const arguments *a) {
+    power_crust_options own = a->crust;
+    own.triangulate = false, own.noise = 0; /* what the labeled Delaunay triangulation has, too */
+    return a->polygons || cli_has_power_crust_options(&own);
+}
+
+static int method_of(const arguments *a) {
+    return a->method != NO_METHOD ? a->method : has_power_crust_options(a) ? POWER_CRUST : LABELED_DELAUNAY;
+}
+
 static void report_mesh(run *r, size_t samples, const brio_mesh *surface) {
     const arguments *a = r->arguments;
     facts *f = &r->facts;
-    cli_fact_text(f, "method", methods[a->method].name);
+    cli_fact_text(f, "method", methods[method_of(a) - 1].name);
     cli_fact_count(f, "samples", samples);
     cli_fact_count(f, "vertices", surface->num_vertices);
     cli_fact_count(f, "faces", surface->num_faces);
@@ -58,10 +72,12 @@ static void report_mesh(run *r, size_t samples, const brio_mesh *surface) {
 static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surface) {
     const arguments *a = r->arguments;
     brio_power_crust_stats s = {.size = sizeof s};
-    brio_status status = cli_power_crust(r, &a->crust, points, surface, &s);
+    power_crust_options o = a->crust;
+    o.triangulate = !a->polygons;
+    brio_status status = cli_power_crust(r, &o, points, surface, &s);
     if (status != BRIO_OK) return status;
     report_mesh(r, s.poles.samples, *surface);
-    cli_report_power_crust(r, &a->crust, &s);
+    cli_report_power_crust(r, &o, &s);
     return BRIO_OK;
 }
 
@@ -129,15 +145,22 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
 static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh **surface) {
     brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
     brio_labeled_delaunay_stats s = {.size = sizeof s};
+    const arguments *a = r->arguments;
+    uint64_t work;
     o.seed = r->common.seed;
-    brio_status status = brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, NULL, &s);
+    o.noise = (brio_noise)a->crust.noise;
+    brio_status status = brio_estimate_labeled_delaunay(r->ctx, points->num_vertices, &o, &work);
+    status = cli_require_work(r, status, points, work);
     if (status != BRIO_OK) return status;
+    status = brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, NULL, &s);
+    if (status != BRIO_OK) return status;
+    cli_stage(r, "noise", s.noise_seconds);
     cli_stage(r, "delaunay", s.delaunay_seconds);
     cli_stage(r, "poles", s.poles_seconds);
     cli_stage(r, "label", s.labels_seconds);
     cli_stage(r, "manifold", s.manifold_seconds);
     report_mesh(r, s.samples, *surface);
-    cli_fact_real(&r->facts, "noise", s.noise);
+    cli_report_noise(r, s.noise, s.smoothed);
     cli_fact_count(&r->facts, "unused", s.unused);
     cli_fact_count(&r->facts, "undecided", s.undecided);
     cli_fact_count(&r->facts, "specks", s.specks);
@@ -159,22 +182,37 @@ static brio_status copy_properties(const brio_mesh *points, brio_mesh *surface) 
     return BRIO_OK;
 }
 
-/* Options of the other method are a mistake; a theta that voids the guarantee is worth a word. */
+/* Options of another method are a mistake; a theta that voids the guarantee is worth a word. */
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
-    if (a->method == POWER_CRUST && (a->theta != 0 || a->boundaries || a->density))
+    int method = method_of(a);
+    bool cocones = method == COCONE || method == TIGHT_COCONE;
+    if (!cocones && (a->theta != 0 || a->boundaries || a->density))
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--theta, --boundaries and --density are for --method cocone|tight-cocone");
-    if (a->pieces > 0 && a->method != COCONE) return cli_fail(r, BRIO_ERR_ARGUMENT, "--pieces is for --method cocone");
-    if (a->method != POWER_CRUST && a->method != LABELED_DELAUNAY && cli_has_power_crust_options(&a->crust))
+    if (a->pieces > 0 && method != COCONE) return cli_fail(r, BRIO_ERR_ARGUMENT, "--pieces is for --method cocone");
+    if ((cocones && (a->crust.noise || a->crust.triangulate)) || (method != POWER_CRUST && has_power_crust_options(a)))
         return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--triangulate, --simplify, --labeling, --sampling-density, --sharp, --open and --normals are "
-                        "for --method power-crust");
+                        "--polygons, --simplify, --labeling, --sampling-density, --sharp, --open and --normals are for "
+                        "--method power-crust, --triangulate and --noise for it and for labeled-delaunay");
+    if (a->polygons && a->crust.triangulate)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
     if (a->theta < 0 || a->theta >= 1.57)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
     if (a->theta > 0 && a->theta < LEAST_THETA && !r->common.quiet)
         fprintf(stderr, "brio: theta under %g: no guarantee holds\n", LEAST_THETA);
     return BRIO_OK;
+}
+
+static brio_status reconstruct(run *r, const brio_mesh *points, brio_mesh **result) {
+    switch (method_of(r->arguments)) {
+    case POWER_CRUST:
+        return power_crust(r, points, result);
+    case LABELED_DELAUNAY:
+        return labeled_delaunay(r, points, result);
+    default:
+        return cocone(r, points, result);
+    }
 }
 
 static brio_status surface(run *r) {
@@ -184,15 +222,13 @@ static brio_status surface(run *r) {
     TRY(check_arguments(r));
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read_points(r, r->operands[0], &points));
-    TRY(a->method == POWER_CRUST        ? power_crust(r, points, &result)
-        : a->method == LABELED_DELAUNAY ? labeled_delaunay(r, points, &result)
-                                        : cocone(r, points, &result));
+    TRY(reconstruct(r, points, &result));
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
-    if (a->method != POWER_CRUST && a->method != LABELED_DELAUNAY) TRY(copy_properties(points, result));
+    if (a->method == COCONE || a->method == TIGHT_COCONE) TRY(copy_properties(points, result));
     brio_mesh_free(points);
     points = NULL;
-    if (a->vertex_normals) TRY(brio_mesh_add_normals(result));
+    if (a->vertex_normals || method_of(a) == LABELED_DELAUNAY) TRY(brio_mesh_add_normals(result));
     unsigned how = a->method == COCONE || a->crust.open > 0 ? CERTIFY_OPEN : 0u;
     TRY(cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u)));
     TRY(cli_write(r, result));

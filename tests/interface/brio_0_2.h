@@ -748,7 +748,7 @@ typedef struct brio_labeled_delaunay_stats {
  *  out      owned by the caller: triangles, about two a sample, counterclockwise seen from outside. The vertices are the
  *           samples that the surface uses; with smoothing, where smoothing moved them.
  *  samples  NULL, or room for #P: receives for each vertex the index of its sample, ascending.
- *  Cost: one triangulation, and the labels, about as long; about 1,200 bytes a sample at the peak.
+ *  Cost: one triangulation, and the labels, about as long; 2,000 to 2,400 bytes a sample at the peak.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found), and as brio_delaunay.
  *  Based on: [Labatut Pons Keriven 2009], [Dey Goswami 2003], [Amenta Bern 1999]. */
 BRIO_API brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
@@ -948,6 +948,11 @@ BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, b
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights,
                                             size_t num_points, const brio_delaunay_options *options, uint64_t *bytes);
+
+/** Estimates the memory of a reconstruction from num_points samples, as the functions below for other methods.
+ *  options  NULL for the defaults.   Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
+BRIO_API brio_status brio_estimate_labeled_delaunay(brio_context *ctx, size_t num_points,
+                                                    const brio_labeled_delaunay_options *options, uint64_t *bytes);
 
 /** Estimates the memory of a reconstruction from num_points samples.   options  NULL for the defaults. Of the options,
  *  `triangulate` and `simplify` count; `pieces`, `scale` and `redundancy` do not.
