@@ -90,7 +90,7 @@ def main():
         if arguments.half not in (None, half):
             continue
         kind = arguments.kinds[seed // 2 % len(arguments.kinds)]
-        name = '%s_%s_%04d' % (half, kind, seed)
+        name = '%s_%04d_%s' % (kind, seed, half)
         path = os.path.join(arguments.out, name + '.ply')
         start = time.time()
         components, genus = counted(arguments, path) if os.path.exists(path) else make_model(arguments, kind, seed, path)

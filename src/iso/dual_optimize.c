@@ -21,7 +21,7 @@
 
 enum {
     NEWTON_STEPS = 4,
-    JACOBI_SWEEPS = 8,
+    JACOBI_SWEEPS = 5 /* to all digits */,
     MOST_REPAIRS = 12,
     MOST_SWEEPS = 4,
     ITEMS_A_THREAD = 1 << 8,

@@ -20,7 +20,7 @@ typedef enum {
     BRIO_CSG_CYLINDER,  /* radius v[0], half height v[1] */
     BRIO_CSG_PRISM,     /* polygon extruded to |z| <= v[0] */
     BRIO_CSG_LATHE,     /* polygon of (radius, z) turned round the z axis */
-    BRIO_CSG_STRAND,    /* polyline of balls */
+    BRIO_CSG_STRAND,    /* polyline of balls, in the ball round v[0] to v[2] with radius v[3] */
     BRIO_CSG_VESSEL,    /* see brio_vessel_distance */
     BRIO_CSG_THREAD,    /* radius v[0], depth v[1], pitch v[2], half height v[3] */
     BRIO_CSG_GYROID,    /* frequency v[0] */

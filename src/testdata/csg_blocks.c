@@ -45,11 +45,9 @@ static void mark_blocks(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-static uint32_t number_near_blocks(brio_csg_blocks *b) {
-    uint32_t count = 0;
+static void number_near_blocks(brio_csg_blocks *b) {
     double near = NEAR * HALF_DIAGONAL * b->side;
-    for (size_t i = 0; i < num_blocks(b); i++) b->slot[i] = fabs(b->centre[i]) <= near ? count++ : BRIO_CSG_FAR;
-    return count;
+    for (size_t i = 0; i < num_blocks(b); i++) b->slot[i] = fabs(b->centre[i]) <= near ? b->num_near++ : BRIO_CSG_FAR;
 }
 
 /* Calls body for all blocks, batch by batch, and reports progress. */
@@ -65,7 +63,7 @@ done:
     return status;
 }
 
-brio_status brio_csg_blocks_make(brio_context *ctx, const brio_csg *tree, const brio_implicit_grid *grid,
+brio_status brio_csg_blocks_find(brio_context *ctx, const brio_csg *tree, const brio_implicit_grid *grid,
                                  brio_csg_blocks *out) {
     brio_status status = BRIO_OK;
     *out = (brio_csg_blocks){.tree = tree, .side = CELLS_A_BLOCK * grid->cell, .words = (tree->num_nodes + 63) / 64};
@@ -75,11 +73,19 @@ brio_status brio_csg_blocks_make(brio_context *ctx, const brio_csg *tree, const 
         out->inner[1][k] = grid->low[k] + (grid->cells[k] - 0.5) * grid->cell;
         out->count[k] = grid->cells[k] / CELLS_A_BLOCK + 1;
     }
-    size_t n = num_blocks(out);
-    BRIO_TRY(BRIO_ALLOC(ctx, out->centre, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->slot, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->centre, num_blocks(out)));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->slot, num_blocks(out)));
     BRIO_TRY(in_batches(ctx, out, fill_centres, 0));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->need, (size_t)number_near_blocks(out) * out->words));
+    number_near_blocks(out);
+done:
+    return status;
+}
+
+brio_status brio_csg_blocks_make(brio_context *ctx, const brio_csg *tree, const brio_implicit_grid *grid,
+                                 brio_csg_blocks *out) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_csg_blocks_find(ctx, tree, grid, out));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->need, (size_t)out->num_near * out->words));
     BRIO_TRY(in_batches(ctx, out, mark_blocks, 0.5));
 done:
     return status;

@@ -12,6 +12,7 @@ typedef struct {
     double inner[2][3];  /* corners of a box just within the grid: beyond it all is outside */
     uint32_t count[3];   /* blocks along each axis */
     uint32_t words;      /* of 64 bits, for the nodes of a block */
+    uint32_t num_near;   /* blocks that are near the surface */
     double *centre;      /* value at each block's centre */
     uint32_t *slot;      /* of each block: its row of `need`, or BRIO_CSG_FAR */
     uint64_t *need;      /* rows of `words` words */
@@ -19,6 +20,11 @@ typedef struct {
 } brio_csg_blocks;
 
 #define BRIO_CSG_FAR UINT32_MAX
+
+/** Divides the grid into blocks and finds which are near the surface: all but `need`, so that there are no values. Free
+ *  and returns as below. */
+brio_status brio_csg_blocks_find(brio_context *ctx, const brio_csg *tree, const brio_implicit_grid *grid,
+                                 brio_csg_blocks *out);
 
 /** Divides the grid into blocks. Free with brio_csg_blocks_free, also after a failure.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */

@@ -69,11 +69,20 @@ static void mark_children(const visit *w, const brio_csg_node *n, const double *
     }
 }
 
+/* Whether the bounding ball of a strand shows that its value is not below `least`, so that the minimum is known without
+ * the value. */
+static bool is_beyond(const brio_csg_node *n, const brio_csg_node *child, const double *p, double least) {
+    if (child->kind != BRIO_CSG_STRAND || n->kind != BRIO_CSG_UNION || n->blend != BRIO_BLEND_SHARP) return false;
+    double reach = fmax(least, 0) + child->v[3];
+    return brio_square_distance(p, child->v) * 0.999999 > reach * reach;
+}
+
 static double combine(const visit *w, const brio_csg_node *n, const double *p) {
     double least = INFINITY;
     if (w->mark) mark_children(w, n, p);
     for (uint32_t c = n->first; c; c = w->tree->nodes[c].next) {
         if (w->need && !(w->need[c / 64] >> c % 64 & 1)) continue;
+        if (is_beyond(n, &w->tree->nodes[c], p, least)) continue;
         const visit plain = {w->tree, w->need, NULL, 0};
         double v = value(&plain, c, p);
         least = blend_min(n->blend, least, counts_negated(n, c) ? -v : v, n->v[0]);

@@ -128,7 +128,7 @@ static brio_status find_box(solid *s) {
         s->high[k] = -SPACE;
     }
     next_step(s);
-    BRIO_TRY(brio_csg_blocks_make(s->ctx, s->tree, &grid, &b));
+    BRIO_TRY(brio_csg_blocks_find(s->ctx, s->tree, &grid, &b));
     for (size_t i = 0; i < (size_t)b.count[0] * b.count[1] * b.count[2]; i++) {
         size_t index[3] = {i % b.count[0], i / b.count[0] % b.count[1], i / b.count[0] / b.count[1]};
         if (b.slot[i] == BRIO_CSG_FAR && b.centre[i] > 0) continue;

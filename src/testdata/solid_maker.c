@@ -70,6 +70,14 @@ uint32_t brio_solid_capsule(brio_solid_maker *m, const double *a, const double *
     return brio_solid_aim(m, brio_csg_add(m->tree, BRIO_CSG_CAPSULE, (const double[3]){height, r, s}, 3), d, a);
 }
 
+/* Sets the ball that contains a strand: round the middle of its ends. */
+static void bound_strand(brio_csg *tree, brio_csg_node *strand) {
+    const double(*points)[4] = (const double(*)[4])tree->points + strand->point;
+    for (int k = 0; k < 3; k++) strand->v[k] = 0.5 * (points[0][k] + points[strand->points - 1][k]);
+    for (uint32_t i = 0; i < strand->points; i++)
+        strand->v[3] = fmax(strand->v[3], sqrt(brio_square_distance(strand->v, points[i])) + points[i][3]);
+}
+
 uint32_t brio_solid_tube(brio_solid_maker *m, const double (*points)[4], int count, bool closed) {
     uint32_t tube = brio_solid_combine(m, BRIO_CSG_UNION, BRIO_BLEND_SHARP, 0);
     int last = closed ? count : count - 1;
@@ -79,6 +87,7 @@ uint32_t brio_solid_tube(brio_solid_maker *m, const double (*points)[4], int cou
             const double *p = points[i % count];
             brio_csg_point(m->tree, strand, p[0], p[1], p[2], p[3]);
         }
+        if (!m->tree->full) bound_strand(m->tree, &m->tree->nodes[strand]);
         brio_solid_join(m, tube, strand);
     }
     return tube;

@@ -6,7 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-enum { PROBES = 8 /* points of a line that are looked at */, VERTICES_A_THREAD = 1 << 8 };
+enum {
+    PROBES = 8,            /* points of a line that are looked at */
+    MOST_PROBED = 1 << 15, /* vertices with such lines: of more, every second, every third, ... */
+    VERTICES_A_THREAD = 1 << 8
+};
 
 static const double FIRST_PROBE = 0.15; /* of the line's length: nearer, rounding decides the side */
 static const double OPPOSITE = -0.5;    /* cosine of normals of about parallel sides of a wall */
@@ -126,7 +130,7 @@ typedef struct {
     const brio_implicit_grid *grid;
     const brio_mesh *mesh;
     double thickness;
-    size_t thin;
+    size_t stride, thin;
 } probe;
 
 static void normal_at(const brio_implicit_grid *grid, const double *p, double *n) {
@@ -158,8 +162,8 @@ static void count_thin(void *user, size_t begin, size_t end, int thread) {
     probe *w = user;
     size_t thin = 0;
     (void)thread;
-    for (size_t v = begin; v < end; v++) {
-        const double *p = w->mesh->vertices + 3 * v;
+    for (size_t i = begin; i < end; i++) {
+        const double *p = w->mesh->vertices + 3 * i * w->stride;
         double n[3];
         normal_at(w->grid, p, n);
         thin += is_thin(w, p, n, -1) || is_thin(w, p, n, 1);
@@ -169,8 +173,8 @@ static void count_thin(void *user, size_t begin, size_t end, int thread) {
 
 double brio_solid_thin_share(brio_context *ctx, const brio_implicit_grid *grid, const brio_mesh *mesh,
                              double thickness) {
-    probe w = {grid, mesh, thickness, 0};
-    size_t n = mesh->num_vertices;
+    size_t stride = mesh->num_vertices / MOST_PROBED + 1, n = mesh->num_vertices / stride;
+    probe w = {grid, mesh, thickness, stride, 0};
     brio_for_chunks(ctx, brio_threads(ctx, n, VERTICES_A_THREAD), n, VERTICES_A_THREAD, count_thin, &w);
     return n ? (double)w.thin / (double)n : 0;
 }
