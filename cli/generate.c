@@ -1,4 +1,5 @@
 /* brio generate: test data, the same for the same seed. */
+#include "certificate.h"
 #include "commands.h"
 #include "estimate.h"
 #include "files.h"
@@ -13,10 +14,15 @@ typedef struct arguments {
     int views;       /* NO_VIEWS: not given */
     const char *truth;
     uint64_t truth_resolution;
+    int solid; /* NO_SOLID: not given */
+    uint64_t resolution;
 } arguments;
 
 #define NO_COUNT UINT64_MAX
 #define NO_VIEWS INT_MIN
+#define NO_SOLID (-1)
+
+static const option_choice solids[] = {{"implicit", BRIO_SOLID_IMPLICIT}, {"machined", BRIO_SOLID_MACHINED}, {NULL, 0}};
 
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
@@ -26,13 +32,16 @@ static const option options[] = {
     {"truth", 0, OPTION_TEXT, FIELD(truth), "FILE", "scan: also write the surface that is scanned", 0},
     {"truth-resolution", 0, OPTION_NATURAL, FIELD(truth_resolution), "R", "cells along its longest side (default 160)",
      0},
+    {"kind", 0, OPTION_CHOICE, FIELD(solid), "KIND", "solid: family (default implicit)", solids},
+    {"resolution", 0, OPTION_NATURAL, FIELD(resolution), "R", "solid: cells along its longest side (default 144)", 0},
     {0},
 };
 #undef FIELD
 
-static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .views = NO_VIEWS};
+static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .views = NO_VIEWS, .solid = NO_SOLID};
 
-#define KINDS "cube ball sphere torus cylinder grid scan clusters moment"
+#define KINDS "cube ball sphere torus cylinder grid scan clusters moment solid"
+#define SOLID BRIO_KIND_END /* no kind of points */
 
 static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"ball", BRIO_KIND_BALL},
@@ -44,7 +53,11 @@ static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"clusters", BRIO_KIND_CLUSTERS},
                                       {"moment", BRIO_KIND_MOMENT},
                                       {"moment-curve", BRIO_KIND_MOMENT},
+                                      {"solid", SOLID},
                                       {NULL, 0}};
+
+static const brio_format mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+                                           BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
 static const char *kind_name(const void *list, size_t i) {
     return ((const option_choice *)list)[i].name;
@@ -68,6 +81,8 @@ static bool has_scan_options(const arguments *a) {
 static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
     brio_format format;
     brio_status status = BRIO_OK;
+    if (a->solid != NO_SOLID || a->resolution)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--kind and --resolution go with solid only");
     if (a->points == NO_COUNT) return cli_fail(r, BRIO_ERR_ARGUMENT, "the number of points is missing: -n N");
     if (kind != BRIO_KIND_SCAN && has_scan_options(a))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
@@ -118,12 +133,30 @@ done:
     return status;
 }
 
+static brio_status generate_solid(run *r, const arguments *a) {
+    brio_solid_kind kind = a->solid == NO_SOLID ? BRIO_SOLID_IMPLICIT : (brio_solid_kind)a->solid;
+    brio_mesh *mesh = NULL;
+    brio_status status = BRIO_OK;
+    if (a->points != NO_COUNT || has_scan_options(a))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "a solid takes --kind, --seed and --resolution, and no number of points");
+    TRY(cli_require_output(r, mesh_formats, false));
+    TRY(brio_generate_solid(r->ctx, kind, r->common.seed, (size_t)a->resolution, &mesh));
+    cli_lap(r, "generate");
+    cli_fact_count(&r->facts, "vertices", mesh->num_vertices);
+    cli_fact_count(&r->facts, "faces", mesh->num_faces);
+    TRY(cli_certify(r, mesh, 0));
+    TRY(cli_write(r, mesh));
+done:
+    brio_mesh_free(mesh);
+    return status;
+}
+
 static brio_status generate(run *r) {
     const arguments *a = r->arguments;
     int kind;
     brio_status status = BRIO_OK;
     TRY(find_kind(r, &kind));
-    TRY(generate_points(r, a, (brio_kind)kind));
+    TRY(kind == SOLID ? generate_solid(r, a) : generate_points(r, a, (brio_kind)kind));
 done:
     return status;
 }
@@ -131,7 +164,7 @@ done:
 const command cli_generate = {
     .name = "generate",
     .operands = "KIND",
-    .summary = "test data: " KINDS "; -n N points to -o FILE",
+    .summary = "test data: -n N points of a kind, or a solid, to -o FILE: " KINDS,
     .min_operands = 1,
     .max_operands = 1,
     .first_input = 1,

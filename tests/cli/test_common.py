@@ -27,7 +27,7 @@ OWN_OPTIONS = {
     "info": [],
     "iso": ["--level", "--sigma", "--resolution", "--points", "--blobbiness", "--delaunay-conforming",
             "--vertex-normals", "--self-intersections"],
-    "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution"],
+    "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--kind", "--resolution"],
     "subdivide": ["--levels"],
 }
 

@@ -19,6 +19,15 @@ class Usage(CliTest):
             self.usage("scan", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
 
 
+    def test_generate_of_a_solid_with_a_number_of_points_or_as_points(self):
+        self.usage("no number of points", "generate", "solid", "-n", "5", "-o", "x.ply")
+        self.usage("cannot", "generate", "solid", "-o", "x.xyz")
+        self.usage("did you mean 'machined'", "generate", "solid", "--kind", "machines", "-o", "x.ply")
+        self.usage("resolution 3", "generate", "solid", "--resolution", "3", "-o", "x.ply")
+        for option in [("--kind", "machined"), ("--resolution", "40")]:
+            self.usage("solid", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
+
+
 class Generate(CliTest):
     def test_facts_of_a_run(self):
         facts = self.facts("generate", "ball", "-n", "50", "-o", self.path("b.xyz"))
@@ -52,6 +61,21 @@ class Generate(CliTest):
         self.assertEqual(facts["points"], self.facts("info", self.path("s.ply"))["points"])
         self.assertIn("view", self.facts("info", self.path("s.ply"))["properties"])
         self.assertTrue(self.facts("check", self.path("t.ply"))["certificate"]["closed"])
+
+    def test_generate_solid_repeats_and_is_certified(self):
+        outputs = []
+        for name, kind in [("a", "implicit"), ("b", "machined")]:
+            for threads in "1", "2":
+                facts = self.facts("generate", "solid", "--kind", kind, "--seed", "7", "--resolution", "32", "--threads",
+                                   threads, "-o", self.path(name + threads + ".ply"))
+                self.assertTrue(facts["certificate"]["closed"] and facts["certificate"]["manifold"])
+                self.assertLessEqual(facts["certificate"]["components"], 3)
+                with open(self.path(name + threads + ".ply"), "rb") as f:
+                    outputs.append(f.read())
+            self.assertEqual(facts["faces"], self.facts("check", self.path(name + "1.ply"))["faces"])
+        self.assertEqual(outputs[0], outputs[1])
+        self.assertEqual(outputs[2], outputs[3])
+        self.assertNotEqual(outputs[0], outputs[2])
 
 
 if __name__ == "__main__":
