@@ -39,16 +39,18 @@ static brio_status report_estimates(run *r, const brio_mesh *mesh) {
     static const weights_options standard = {.exponent = NO_EXPONENT};
     facts *f = &r->facts;
     double *weights = NULL, delaunay, beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh);
-    uint64_t crust, cocone;
+    uint64_t surface, crust, cocone;
     brio_status status = BRIO_OK;
     TRY(cli_weights(r, &standard, mesh, &weights));
     TRY(cli_delaunay_bytes(r, mesh, weights, NULL, &delaunay));
+    TRY(brio_estimate_labeled_delaunay(r->ctx, mesh->num_vertices, NULL, &surface));
     TRY(brio_estimate_power_crust(r->ctx, mesh->num_vertices, NULL, &crust));
     TRY(brio_estimate_cocone(r->ctx, mesh->num_vertices, NULL, &cocone));
     cli_fact_open(f, "estimate_bytes", FACT_OBJECT);
     cli_fact_bytes(f, "delaunay", (uint64_t)delaunay);
-    static const char *const of_poles[] = {"surface", "medial", "offset"};
-    for (int i = 0; i < 3; i++) cli_fact_bytes(f, of_poles[i], (uint64_t)(beside + (double)crust));
+    static const char *const of_poles[] = {"medial", "offset"};
+    cli_fact_bytes(f, "surface", (uint64_t)(beside + (double)surface));
+    for (int i = 0; i < 2; i++) cli_fact_bytes(f, of_poles[i], (uint64_t)(beside + (double)crust));
     cli_fact_bytes(f, "cocone", (uint64_t)(beside + (double)cocone));
     if (mesh->num_faces) {
         double subdivide = (double)brio_estimate_mesh_subdivide(mesh->num_faces, 1);

@@ -7,7 +7,7 @@
 
 /* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone is
  * given. */
-enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE };
+enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, NO_LABELING = -1 };
 
 typedef struct arguments {
     int method;
@@ -42,7 +42,7 @@ static const option options[] = {
     {0},
 };
 
-static const arguments defaults = {0};
+static const arguments defaults = {.crust.labeling = NO_LABELING};
 /* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
 static const double LEAST_THETA = 0.2542;
 static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_VTU,
@@ -51,7 +51,8 @@ static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FOR
 static bool has_power_crust_options(const arguments *a) {
     power_crust_options own = a->crust;
     own.triangulate = false, own.noise = 0; /* what the labeled Delaunay triangulation has, too */
-    return a->polygons || cli_has_power_crust_options(&own);
+    own.labeling = 0;
+    return a->polygons || a->crust.labeling != NO_LABELING || cli_has_power_crust_options(&own);
 }
 
 static int method_of(const arguments *a) {
@@ -74,6 +75,7 @@ static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surf
     brio_power_crust_stats s = {.size = sizeof s};
     power_crust_options o = a->crust;
     o.triangulate = !a->polygons;
+    if (o.labeling == NO_LABELING) o.labeling = (int)brio_power_crust_options_default().poles.labeling;
     brio_status status = cli_power_crust(r, &o, points, surface, &s);
     if (status != BRIO_OK) return status;
     report_mesh(r, s.poles.samples, *surface);

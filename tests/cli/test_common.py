@@ -17,7 +17,7 @@ OWN_OPTIONS = {
                  "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals",
-                "--self-intersections"],
+                "--self-intersections", "--polygons"],
     "medial": ["--sides", "--labeling", "--noise", "--simplify", "--scale", "--redundancy", "--crust",
                "--sampling-density", "--sharp"],
     "offset": ["--distance", "--triangulate", "--simplify", "--labeling", "--noise", "--sampling-density", "--sharp",

@@ -36,7 +36,7 @@ class Facts(CliTest):
         facts = self.facts("medial", points, "-o", out)
         self.assert_schema(facts, schema)
         self.assertEqual((facts["samples"], facts["unlabelled"]), (2000, 0))
-        self.assertEqual(facts["labeling"], self.facts("surface", points, "-o", self.path("mesh.ply"))["labeling"])
+        self.assertEqual(facts["labeling"], self.facts("surface", points, "-o", self.path("mesh.ply"), "--method", "power-crust")["labeling"])
         self.assertEqual(facts["poles"], facts["inner"] + facts["outer"])
         self.assertEqual(set(self.facts("info", out)["properties"]), {"radius", "side"})
         mesh = self.path("mesh.ply")

@@ -32,10 +32,38 @@ class NoAnswer(CliTest):
         self.expect(3, "surface", points, "-o", self.path("out.ply"))
 
 
-class PowerCrust(CliTest):
+class LabeledDelaunay(CliTest):
     def test_facts_of_a_run(self):
         points = self.cloud("a.ply", 2000, "sphere")
         facts = self.facts("surface", points, "-o", self.path("out.ply"))
+        seconds = {key: number for key in "read noise delaunay poles label manifold certify write total".split()}
+        counts = "samples vertices faces unused undecided specks relabeled".split()
+        self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "noise": number,
+                                   "smoothed": bool, "energy": number, "certificate": CERTIFICATE, "seconds": seconds})
+        self.assertEqual((facts["method"], facts["samples"], facts["unused"]), ("labeled-delaunay", 2000, 0))
+        c = facts["certificate"]
+        self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
+
+    def test_triangles_with_normals(self):
+        points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
+        facts = self.facts("surface", points, "-o", out, "--triangulate")
+        self.assertEqual(facts["faces"], 2 * facts["vertices"] - 4)
+        self.assertTrue({"nx", "ny", "nz"} <= set(self.facts("info", out)["properties"]))
+
+    def test_an_option_of_the_power_crust_alone_chooses_it(self):
+        points, out = self.cloud("a.ply", 500, "sphere"), self.path("out.ply")
+        for option in [("--labeling", "global"), ("--polygons",), ("--open", "9"), ("--simplify",)]:
+            self.assertEqual(self.facts("surface", points, "-o", out, *option)["method"], "power-crust")
+            self.usage("power-crust", "surface", points, "-o", out, "--method", "labeled-delaunay", *option)
+        triangles = self.facts("surface", points, "-o", out, "--method", "power-crust")["faces"]
+        self.assertLess(self.facts("surface", points, "-o", out, "--polygons")["faces"], triangles)
+        self.usage("exclude", "surface", points, "-o", out, "--polygons", "--triangulate")
+
+
+class PowerCrust(CliTest):
+    def test_facts_of_a_run(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "power-crust")
         seconds = {key: number for key in "read noise delaunay poles power label crust certify write total".split()}
         counts = "samples vertices faces poles hidden_poles inner outer confused".split()
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "labeling": str,
@@ -63,6 +91,8 @@ class PowerCrust(CliTest):
         self.assertGreater(found["noise"], 0.1)
         self.assertTrue(found["smoothed"] and found["certificate"]["closed"])
         kept = self.facts("surface", scan, "-o", out, "--noise", "keep")
+        self.assertFalse(kept["smoothed"])
+        kept = self.facts("surface", scan, "-o", out, "--noise", "keep", "--method", "power-crust")
         self.assertEqual((kept["noise"], kept["smoothed"]), (0, False))
         clean = self.cloud("a.ply", 2000, "sphere")
         self.assertFalse(self.facts("surface", clean, "-o", out)["smoothed"])
