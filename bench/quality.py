@@ -27,7 +27,8 @@ NO_ANSWER = 3
 COLUMNS = ['set', 'method', 'judge', 'answer', 'closed', 'manifold', 'flipped_edges', 'components', 'genus', 'faces',
            'chamfer', 'mean_to_truth', 'mean_from_truth', 'p95_to_truth', 'p95_from_truth', 'hausdorff',
            'normal_consistency']
-METHODS = {'power crust': [], 'power crust, sharp': ['--sharp'], 'co-cone': ['--method', 'cocone'],
+METHODS = {'power crust': ['--method', 'power-crust', '--polygons'],
+           'power crust, sharp': ['--method', 'power-crust', '--polygons', '--sharp'], 'co-cone': ['--method', 'cocone'],
            'tight co-cone': ['--method', 'tight-cocone']}
 SHARP = ['fandisk', 'mechpart']
 WITH_TRUTH = ['bunny', 'rocker_arm', 'knot2', 'mechpart', 'fandisk', 'bracket', 'cheese', 'armadillo', 'club']

@@ -70,6 +70,7 @@ def examine(model, data, judge, method):
         mesh = os.path.join(folder, "surface.ply")
         try:
             facts = json_of([BRIO, "surface", os.path.join(data, model["file"]), "-o", mesh, "--method", method,
+                             *(["--polygons"] if method == "power-crust" else []),
                              "--json", "--quiet"])
             truth = [] if model["truth"] == "-" else [os.path.join(data, model["truth"])]
             judged = json_of([sys.executable, judge, mesh, *truth])
