@@ -13,6 +13,7 @@
  * Differs from the paper: Newton steps find the zero set; a vertex starts from the mean of its dual vertices in place
  * of a separate resampling; moves that turn triangles over are taken back. */
 #include "iso/dual_optimize.h"
+#include "base/rotate.h"
 #include "base/team.h"
 #include "base/vector.h"
 #include "mesh/twins.h"
@@ -95,33 +96,15 @@ static void project(const optimizer *o, double *p, double *normal) {
 
 static const int AT[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}; /* of a symmetric matrix (xx, xy, xz, yy, yz, zz) */
 
-static void rotate(double a[3][3], double v[3][3], int i, int j) {
-    if (a[i][j] == 0) return;
-    double theta = (a[j][j] - a[i][i]) / (2 * a[i][j]);
-    double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)), c = 1 / sqrt(t * t + 1), s = t * c;
-    for (int k = 0; k < 3; k++) {
-        double x = a[k][i], y = a[k][j];
-        a[k][i] = c * x - s * y;
-        a[k][j] = s * x + c * y;
-    }
-    for (int k = 0; k < 3; k++) {
-        double x = a[i][k], y = a[j][k], u = v[k][i], w = v[k][j];
-        a[i][k] = c * x - s * y;
-        a[j][k] = s * x + c * y;
-        v[k][i] = c * u - s * w;
-        v[k][j] = s * u + c * w;
-    }
-}
-
 /* Solves A x = b in the directions of A's large eigenvalues; x is 0 in the others. */
 static void solve_determined(const double *m, const double *b, double *x) {
     double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, most = 0;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) a[i][j] = m[AT[i][j]];
     for (int sweep = 0; sweep < JACOBI_SWEEPS; sweep++) {
-        rotate(a, v, 0, 1);
-        rotate(a, v, 0, 2);
-        rotate(a, v, 1, 2);
+        brio_rotate(a, v, 0, 1);
+        brio_rotate(a, v, 0, 2);
+        brio_rotate(a, v, 1, 2);
     }
     for (int i = 0; i < 3; i++) most = fmax(most, a[i][i]);
     x[0] = x[1] = x[2] = 0;

@@ -186,7 +186,7 @@ done:
     return status;
 }
 
-/* Builds the solid of an attempt, with features in units of its own spacing; finds out whether it is good. */
+/* Builds the solid of one attempt. Its sizes are in spacings of its own samples. *good tells whether to keep it. */
 static brio_status try_solid(solid *s, bool *good) {
     brio_status status = BRIO_OK;
     double spacing = FIRST_SPACING, thin = 0;

@@ -38,7 +38,7 @@
  * P3  A thread reads vertices, states and mates of the tetrahedra that it holds and of their neighbours. It reads the
  *     vertices behind a neighbour's facet, too: the conflict test of an infinite tetrahedron may need them.
  * P4  The thread that holds the segment of record v writes and reads representative[v], caller[v] and local[v].
- *     Every inserter keeps a number of its own for the infinite vertex.
+ *     For the infinite vertex there is no local: each inserter stores that number itself.
  *
  * Not stored: a tetrahedron of each vertex (vertex_tets.h), what was inserted so far. */
 #ifndef BRIO_TRIANGULATION_STORE_H

@@ -1,7 +1,7 @@
 /* The graph of votes.
  *
  * A sample sees the Voronoi vertices of its cell: those towards its pole are on one side of the surface, those in the
- * opposite direction are on the other side. Which of the two sides is outside is a label of its own. So a wrong guess
+ * opposite direction are on the other side. Which of the two sides is outside is unknown, too. So a wrong guess
  * about one sample does not spread: its tetrahedra have three other samples each.
  *
  * A flat tetrahedron within the surface tells next to nothing, whatever the direction of its Voronoi vertex. A thick one

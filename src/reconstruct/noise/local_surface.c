@@ -10,6 +10,7 @@
  * Differs from the paper: each point has one plane and one polynomial, without a search for the best place of the
  *                         plane. A neighbourhood is a number of points, not a radius. */
 #include "reconstruct/noise/local_surface.h"
+#include "base/rotate.h"
 #include "base/vector.h"
 #include <math.h>
 
@@ -17,26 +18,6 @@
 enum { COEFFICIENTS = BRIO_SURFACE_COEFFICIENTS, SWEEPS = 12 };
 
 /* --- the plane --- */
-
-/* Rotates the matrix m in the plane of axes i and j so that m[i][j] becomes 0, and the columns of v with it [Jacobi
- * 1846]. */
-static void rotate(double m[3][3], double v[3][3], int i, int j) {
-    if (m[i][j] == 0) return;
-    double theta = (m[j][j] - m[i][i]) / (2 * m[i][j]);
-    double t = copysign(1, theta) / (fabs(theta) + sqrt(1 + theta * theta)), c = 1 / sqrt(1 + t * t), s = t * c;
-    for (int k = 0; k < 3; k++) {
-        double a = m[k][i], b = m[k][j];
-        m[k][i] = c * a - s * b;
-        m[k][j] = s * a + c * b;
-    }
-    for (int k = 0; k < 3; k++) {
-        double a = m[i][k], b = m[j][k], p = v[k][i], q = v[k][j];
-        m[i][k] = c * a - s * b;
-        m[j][k] = s * a + c * b;
-        v[k][i] = c * p - s * q;
-        v[k][j] = s * p + c * q;
-    }
-}
 
 static bool is_diagonal(double m[3][3]) {
     return fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]) <= 1e-16 * (m[0][0] + m[1][1] + m[2][2]);
@@ -47,9 +28,9 @@ static bool is_diagonal(double m[3][3]) {
 static bool find_frame(double m[3][3], double frame[3][3]) {
     double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int sweep = 0; sweep < SWEEPS && !is_diagonal(m); sweep++) {
-        rotate(m, v, 0, 1);
-        rotate(m, v, 0, 2);
-        rotate(m, v, 1, 2);
+        brio_rotate(m, v, 0, 1);
+        brio_rotate(m, v, 0, 2);
+        brio_rotate(m, v, 1, 2);
     }
     int least = 0;
     for (int k = 1; k < 3; k++)
