@@ -90,8 +90,8 @@ static void expect_genus(const double *p, size_t n, int64_t genus, int smoothed)
     EXPECT(brio_labeled_delaunay(ctx, p, n, NULL, &mesh, NULL, &s) == BRIO_OK, "%s", brio_message(ctx));
     if (mesh) {
         EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
-        EXPECT(c.closed && c.components == 1 && c.genus == genus, "%zu components, genus %lld", c.components,
-               (long long)c.genus);
+        EXPECT(c.closed && c.components == 1 && c.genus == genus && c.volume > 0, "%zu components, genus %lld",
+               c.components, (long long)c.genus);
         EXPECT((int)s.smoothed == smoothed, "noise %g", s.noise);
         EXPECT(s.samples == n && (smoothed || s.unused == 0), "%zu unused", s.unused);
         brio_certificate_free(&c);
@@ -222,6 +222,7 @@ static void log_odds_rise_with_the_cosine(void) {
             EXPECT(last > 1 && brio_vote_log_odds(-1, thick, noise) < -0.5);
         }
     EXPECT(brio_vote_log_odds(1, INFINITY, 0) == BRIO_MOST_LOG_ODDS);
+    EXPECT(brio_vote_log_odds(-1, 0.12, 0) < brio_vote_log_odds(-1, 0.12, 0.2) - 2, "noise makes votes less sure");
 }
 
 static brio_status make_surface(brio_context *ctx) {
