@@ -167,6 +167,7 @@ static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh *
     cli_fact_count(&r->facts, "undecided", s.undecided);
     cli_fact_count(&r->facts, "specks", s.specks);
     cli_fact_count(&r->facts, "relabeled", s.relabeled);
+    cli_fact_count(&r->facts, "handles", s.handles);
     cli_fact_real(&r->facts, "energy", s.energy);
     return BRIO_OK;
 }

@@ -730,8 +730,10 @@ typedef struct brio_labeled_delaunay_stats {
     size_t unused;    /* samples on no triangle of the surface */
     size_t undecided; /* samples and tetrahedra that the last roof duality did not decide */
     size_t specks;    /* regions, inner or outer, that were dropped: of under 20 triangles and a hundredth of all */
-    size_t relabeled; /* tetrahedra whose side was changed to keep the surface a manifold */
-    double energy;    /* of the labels: a tenth of the log-odds of the votes that they contradict, and of the area */
+    size_t relabeled; /* tetrahedra whose side was changed to make the surface a manifold or simpler */
+    size_t handles;   /* handles, tunnels, crumbs, bubbles that were removed: little evidence held them */
+    double energy;    /* of the labels, before these changes: a twenty-first of the log-odds of the votes that they
+                         contradict, and of the area */
     double noise;     /* AUTO: the standard deviation of the noise found, in spacings of the samples; 0: none */
     size_t smoothed;  /* 1: the samples were smoothed */
     double noise_seconds, delaunay_seconds, poles_seconds, labels_seconds, manifold_seconds;

@@ -37,7 +37,7 @@ class LabeledDelaunay(CliTest):
         points = self.cloud("a.ply", 2000, "sphere")
         facts = self.facts("surface", points, "-o", self.path("out.ply"))
         seconds = {key: number for key in "read noise delaunay poles label manifold certify write total".split()}
-        counts = "samples vertices faces unused undecided specks relabeled".split()
+        counts = "samples vertices faces unused undecided specks relabeled handles".split()
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "noise": number,
                                    "smoothed": bool, "energy": number, "certificate": CERTIFICATE, "seconds": seconds})
         self.assertEqual((facts["method"], facts["samples"], facts["unused"]), ("labeled-delaunay", 2000, 0))

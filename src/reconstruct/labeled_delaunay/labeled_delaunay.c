@@ -5,7 +5,8 @@
  *   3. A first orientation of the samples: whether their axes point outwards.
  *   4. Labels of samples and tetrahedra of low energy: each sample votes on the side of its tetrahedra, and the area of the
  *      surface is weighed against the votes (vote_graph.c).
- *   5. Labels are changed at samples where the boundary is not one fan, so that the surface is a manifold.
+ *   5. Regions of a few tetrahedra are dropped. Labels change where the boundary is not one fan, at the least cost in
+ *      energy (mending.c), and where little evidence holds a handle (weak_handles.c).
  *   6. The vertices of noisy samples are smoothed along the surface.
  *
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009.
@@ -18,10 +19,12 @@
 #include "base/versioned.h"
 #include "dual/spacing.h"
 #include "order/canonical_points.h"
+#include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "reconstruct/cocone/sample_orientation.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/vote_labels.h"
+#include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "reconstruct/noise/sample_noise.h"
 #include "reconstruct/noise/smooth_surface.h"
 #include <math.h>
@@ -112,6 +115,32 @@ done:
     return status;
 }
 
+/* Drops specks and bubbles: regions with a surface of under SPECK triangles, if that is under a hundredth of all. */
+static brio_status drop_specks(reconstruction *r) {
+    size_t hundredth = brio_count_boundary(&r->dual.t, r->label) / 100, dropped = 0;
+    brio_status status =
+        brio_drop_small_regions(r->ctx, &r->dual.t, hundredth < SPECK ? hundredth : SPECK, r->label, &dropped);
+    r->stats.specks += dropped;
+    return status;
+}
+
+/* Makes the boundary a manifold, as cheaply as possible in energy, and removes what little evidence holds. */
+static brio_status mend(reconstruction *r, const brio_vote_graph *graph) {
+    brio_status status = BRIO_OK;
+    brio_label_flips flips = {.ctx = r->ctx};
+    brio_mending mending = {.flips = &flips};
+    BRIO_TRY(brio_label_flips_new(graph, r->label, &flips));
+    BRIO_TRY(brio_mending_new(&flips, &mending));
+    BRIO_TRY(brio_mend(&mending));
+    BRIO_TRY(brio_remove_weak_handles(&mending, &r->stats.handles));
+    brio_label_samples(&flips);
+    r->stats.relabeled = flips.size;
+done:
+    brio_mending_free(&mending);
+    brio_label_flips_free(&flips);
+    return status;
+}
+
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_vote_graph graph = {.ctx = r->ctx};
@@ -121,8 +150,11 @@ static brio_status label(reconstruction *r) {
     BRIO_TRY(brio_vote_labels(&graph, r->turned, r->label, &r->stats.undecided));
     brio_signed_graph signs = brio_vote_signs(&graph);
     r->stats.energy = brio_label_energy(&signs, r->label);
-    for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
     lap(r, &r->stats.labels_seconds);
+    BRIO_TRY(drop_specks(r));
+    BRIO_TRY(mend(r, &graph));
+    for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
+    lap(r, &r->stats.manifold_seconds);
 done:
     brio_vote_graph_free(&graph);
     return status;
@@ -141,21 +173,16 @@ static brio_status list_faces(reconstruction *r, const brio_facets *boundary) {
     return BRIO_OK;
 }
 
-/* Drops specks and bubbles: regions with a surface of under SPECK triangles, if that is under a hundredth of all. */
-static brio_status drop_specks(reconstruction *r) {
-    size_t hundredth = brio_count_boundary(&r->dual.t, r->label) / 100, dropped = 0;
-    brio_status status =
-        brio_drop_small_regions(r->ctx, &r->dual.t, hundredth < SPECK ? hundredth : SPECK, r->label, &dropped);
-    r->stats.specks += dropped;
-    return status;
-}
-
 static brio_status extract(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_facets boundary = {0};
+    size_t changed = 0;
     brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = true, .label = r->label};
+    BRIO_TRY(brio_make_manifold(r->ctx, &labels, &boundary, &changed));
+    r->stats.relabeled += changed;
     BRIO_TRY(drop_specks(r));
-    BRIO_TRY(brio_make_manifold(r->ctx, &labels, &boundary, &r->stats.relabeled));
+    brio_release(r->ctx, boundary.facet);
+    BRIO_TRY(brio_boundary_facets(r->ctx, &labels, &boundary));
     BRIO_REQUIRE(r->ctx, boundary.count > 0, BRIO_ERR_NO_ANSWER, "no inside found");
     BRIO_TRY(list_faces(r, &boundary));
     lap(r, &r->stats.manifold_seconds);

@@ -11,11 +11,11 @@
 #include "reconstruct/labeled_delaunay/vote_labels.h"
 #include "base/memory.h"
 #include "base/team.h"
-#include "reconstruct/labels/max_flow.h"
+#include "reconstruct/labeled_delaunay/vote_cut.h"
 #include <math.h>
 
 /* TURNS: most cuts; they end with one after which at most 1/FEW of the samples change. FIRST_BITS, PASSES: of the descent. All chosen on generated solids. */
-enum { TURNS = 4, FEW = 10000, FIRST_BITS = 9, PASSES = 3, NODES_A_THREAD = 1 << 12, CAPACITY = 1 << 20 };
+enum { TURNS = 4, FEW = 10000, FIRST_BITS = 9, PASSES = 3, NODES_A_THREAD = 1 << 12 };
 
 /* A sample is contested if its violated votes are over this share of its votes. Chosen on generated solids. */
 static const double CONTESTED = 0.4;
@@ -25,11 +25,7 @@ typedef struct {
     brio_context *ctx;
     size_t num_tets, num_finite, num_samples;
     uint8_t *label, *fixed;
-    brio_flow flow;
-    brio_flow_edge *edge;
-    int64_t *terminal;
-    uint8_t *side;
-    size_t num_edges, turned; /* turned: samples that changed their label in the last turn */
+    size_t turned; /* turned: samples that changed their label in the last turn */
 } voting;
 
 static bool is_outer(const voting *v, uint32_t node) {
@@ -37,43 +33,6 @@ static bool is_outer(const voting *v, uint32_t node) {
 }
 
 /* --- one turn --- */
-
-/* Sets the terminals of a tetrahedron: the votes of its samples, and facets of the hull. Positive is outer. */
-static void add_votes(const voting *v, size_t tet) {
-    v->terminal[tet] = 0;
-    for (size_t e = v->g->first[tet]; e < v->g->first[tet + 1]; e++) {
-        brio_signed_edge edge = v->g->edge[e];
-        int64_t weight = (int64_t)(edge.weight * CAPACITY);
-        if (edge.node >= v->num_finite) v->terminal[tet] += is_outer(v, edge.node) ? weight : -weight;
-    }
-}
-
-static void add_all_votes(void *user, size_t begin, size_t end, int thread) {
-    (void)thread;
-    for (size_t tet = begin; tet < end; tet++) add_votes(user, tet);
-}
-
-/* Lists the facets between finite tetrahedra, each once. */
-static void list_facets(voting *v) {
-    v->num_edges = 0;
-    for (uint32_t tet = 0; tet < v->num_finite; tet++)
-        for (size_t e = v->g->first[tet]; e < v->g->first[tet + 1]; e++) {
-            brio_signed_edge edge = v->g->edge[e];
-            if (edge.node > tet && edge.node < v->num_finite)
-                v->edge[v->num_edges++] = (brio_flow_edge){tet, edge.node, (int32_t)(edge.weight * CAPACITY)};
-        }
-}
-
-static brio_status cut(voting *v) {
-    brio_status status = BRIO_OK;
-    int threads = brio_threads(v->ctx, v->num_finite, NODES_A_THREAD);
-    brio_for(v->ctx, threads, v->num_finite, add_all_votes, v);
-    BRIO_TRY(brio_flow_maximum(&v->flow, v->num_finite, v->edge, v->num_edges, v->terminal, v->side));
-    for (size_t tet = 0; tet < v->num_finite; tet++)
-        v->label[tet] = v->side[tet] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-done:
-    return status;
-}
 
 /* Returns the sum of the weights of a sample's votes for outer, less those for inner.   all  receives the sum of their
  * magnitudes. */
@@ -104,23 +63,17 @@ static void turn_part(void *user, size_t begin, size_t end, int thread) {
 
 static brio_status take_turns(voting *v) {
     brio_status status = BRIO_OK;
-    v->flow = brio_flow_new(v->ctx);
-    BRIO_TRY(BRIO_ALLOC(v->ctx, v->edge, 2 * v->num_finite));
-    BRIO_TRY(BRIO_ALLOC(v->ctx, v->terminal, v->num_finite));
-    BRIO_TRY(BRIO_ALLOC(v->ctx, v->side, v->num_finite));
-    list_facets(v);
+    brio_vote_cut cut;
+    BRIO_TRY(brio_vote_cut_new(v->g, &cut));
     for (int turn = 0; turn < TURNS; turn++) {
         BRIO_TRY(brio_progress(v->ctx, "label", 0.6 * turn / TURNS));
-        BRIO_TRY(cut(v));
+        BRIO_TRY(brio_vote_cut_find(&cut, NULL, 0, v->label, v->label));
         v->turned = 0;
         brio_for(v->ctx, brio_threads(v->ctx, v->num_samples, NODES_A_THREAD), v->num_samples, turn_part, v);
         if (v->turned <= v->num_samples / FEW) break;
     }
 done:
-    brio_flow_free(&v->flow);
-    brio_release(v->ctx, v->edge);
-    brio_release(v->ctx, v->terminal);
-    brio_release(v->ctx, v->side);
+    brio_vote_cut_free(&cut);
     return status;
 }
 

@@ -1,0 +1,151 @@
+/* Labels of tetrahedra that change one at a time. A flip changes the energy at the four facets of the tetrahedron and at
+ * its samples: a sample with the votes a for outer and b for inner costs min(a, b). */
+#include "reconstruct/labeled_delaunay/label_flips.h"
+#include "base/memory.h"
+#include "base/team.h"
+#include <stdlib.h>
+
+enum { SAMPLES_A_THREAD = 1 << 12 };
+
+static void sum_votes(void *user, size_t begin, size_t end, int thread) {
+    brio_label_flips *f = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
+        int64_t outer = 0;
+        for (size_t e = f->g->first[f->num_tets + p]; e < f->g->first[f->num_tets + p + 1]; e++) {
+            int64_t weight = brio_vote_of(f->g->edge[e]);
+            outer += f->label[f->g->edge[e].node] == BRIO_LABEL_OUTER ? weight : -weight;
+        }
+        f->outer[p] = outer;
+    }
+}
+
+brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_label_flips *out) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = g->ctx;
+    const brio_pole_vectors *v = g->dual;
+    *out = (brio_label_flips){.ctx = ctx,
+                              .g = g,
+                              .num_tets = v->t.count,
+                              .num_finite = v->num_finite,
+                              .num_samples = v->num_points,
+                              .label = label};
+    BRIO_TRY(BRIO_ALLOC(ctx, out->outer, out->num_samples));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->place, out->num_tets));
+    for (size_t t = 0; t < out->num_tets; t++) out->place[t] = BRIO_NO_PLACE;
+    brio_for(ctx, brio_threads(ctx, out->num_samples, SAMPLES_A_THREAD), out->num_samples, sum_votes, out);
+done:
+    return status;
+}
+
+void brio_label_flips_free(brio_label_flips *f) {
+    brio_release(f->ctx, f->outer);
+    brio_release(f->ctx, f->place);
+    brio_release(f->ctx, f->flipped);
+    *f = (brio_label_flips){.ctx = f->ctx};
+}
+
+/* Flips a tetrahedron and returns what it costs. */
+static int64_t turn(brio_label_flips *f, uint32_t tet) {
+    bool to_outer = f->label[tet] != BRIO_LABEL_OUTER;
+    int64_t cost = 0;
+    for (size_t e = f->g->first[tet]; e < f->g->first[tet + 1]; e++) {
+        brio_signed_edge edge = f->g->edge[e];
+        int64_t weight = brio_vote_of(edge);
+        if (edge.node < f->num_tets) {
+            bool alike = f->label[edge.node] == f->label[tet];
+            cost += alike ? weight : -weight;
+            f->faces += alike ? 1 : -1;
+        } else {
+            int64_t *outer = &f->outer[edge.node - f->num_tets], before = llabs(*outer);
+            *outer += to_outer ? 2 * weight : -2 * weight;
+            cost -= (llabs(*outer) - before) / 2;
+        }
+    }
+    f->label[tet] = brio_other_label(f->label[tet]);
+    return cost;
+}
+
+brio_status brio_flip(brio_label_flips *f, uint32_t tet) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(f->ctx, f->flipped, f->capacity, f->size + 1));
+    f->energy += turn(f, tet);
+    f->flipped[f->size++] = tet;
+done:
+    return status;
+}
+
+void brio_take_back(brio_label_flips *f, size_t size) {
+    while (f->size > size) f->energy += turn(f, f->flipped[--f->size]);
+}
+
+int64_t brio_flip_cost(const brio_label_flips *f, uint32_t tet) {
+    bool to_outer = f->label[tet] != BRIO_LABEL_OUTER;
+    int64_t cost = 0;
+    for (size_t e = f->g->first[tet]; e < f->g->first[tet + 1]; e++) {
+        brio_signed_edge edge = f->g->edge[e];
+        int64_t weight = brio_vote_of(edge);
+        if (edge.node < f->num_tets) {
+            cost += f->label[edge.node] == f->label[tet] ? weight : -weight;
+        } else {
+            int64_t outer = f->outer[edge.node - f->num_tets];
+            cost -= (llabs(outer + (to_outer ? 2 * weight : -2 * weight)) - llabs(outer)) / 2;
+        }
+    }
+    return cost;
+}
+
+void brio_label_samples(const brio_label_flips *f) {
+    for (size_t p = 0; p < f->num_samples; p++)
+        if (f->outer[p] != 0) f->label[f->num_tets + p] = f->outer[p] > 0 ? BRIO_LABEL_OUTER : BRIO_LABEL_INNER;
+}
+
+size_t brio_list_samples(const brio_label_flips *f, size_t from, size_t to, uint32_t *sample) {
+    size_t count = 0;
+    for (size_t i = from; i < to; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t p = f->g->dual->t.tet[f->flipped[i]].vertex[k];
+            size_t n = 0;
+            while (n < count && sample[n] != p) n++;
+            if (n == count) sample[count++] = p;
+        }
+    return count;
+}
+
+/* --- stars --- */
+
+static void flood(const brio_label_flips *f, uint32_t sample, brio_star_parts *s, int first) {
+    int16_t stack[BRIO_STAR_ROOM];
+    int size = 1;
+    stack[0] = (int16_t)first;
+    s->part[first] = (int16_t)s->count;
+    while (size > 0) {
+        uint32_t tet = s->at[stack[--size]].node;
+        const brio_tetrahedron *t = &f->g->dual->t.tet[tet];
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = t->mate[i] >> 2, place = f->place[other];
+            if (t->vertex[i] == sample || place == BRIO_NO_PLACE || s->part[place] >= 0) continue;
+            if (f->label[other] != f->label[tet]) continue;
+            s->part[place] = (int16_t)s->count;
+            stack[size++] = (int16_t)place;
+        }
+    }
+    s->of[f->label[s->at[first].node] == BRIO_LABEL_INNER]++;
+    s->count++;
+}
+
+bool brio_find_parts(brio_label_flips *f, uint32_t sample, brio_star_parts *out) {
+    const size_t *first = f->g->first + f->num_tets + sample;
+    out->size = first[1] - first[0];
+    out->at = f->g->edge + first[0];
+    out->count = out->of[0] = out->of[1] = 0;
+    if (out->size > BRIO_STAR_ROOM) return false;
+    for (size_t i = 0; i < out->size; i++) {
+        f->place[out->at[i].node] = (uint32_t)i;
+        out->part[i] = -1;
+    }
+    for (size_t i = 0; i < out->size; i++)
+        if (out->part[i] < 0) flood(f, sample, out, (int)i);
+    for (size_t i = 0; i < out->size; i++) f->place[out->at[i].node] = BRIO_NO_PLACE;
+    return true;
+}

@@ -1,0 +1,256 @@
+/* Flips that make the boundary of labels a manifold at little cost.
+ *
+ * The boundary is one fan at a sample exactly if the star of the sample has at most one outer and one inner part,
+ * connected across facets (cocone/manifold_stars.c). A part too many can be flipped, or joined to another part by flips
+ * along a path through the star; or a single flip helps. Of all these the one is taken that lowers
+ *     energy + price * surplus - HANDLE / 2 * Euler characteristic of the boundary
+ * most. The surplus is the number of parts too many, at all samples that the flips touch; for the Euler characteristic, a
+ * sample counts once for each fan. The price of a part rises from next to nothing, so that what the votes decide clearly is
+ * decided first.
+ *
+ * Every flip lowers the sum, so the work ends. Stars that no price mends are left to cocone/manifold_stars.c. */
+#include "reconstruct/labeled_delaunay/mending.h"
+#include "base/memory.h"
+#include "base/sort.h"
+#include "base/team.h"
+
+/* MOST: tetrahedra that are flipped together. PRICES: the price is a quarter of a log-odds at first and doubles. SMALL: in
+ * stars of more tetrahedra, single flips are not tried. All chosen. */
+enum { MOST = 64, PRICES = 9, SMALL = 96 };
+
+/* What joining two sheets that touch costs, which makes a handle if they belong to one component. Chosen on generated
+ * solids. */
+static const int64_t HANDLE = 64 * BRIO_FLIP_UNIT;
+
+typedef struct {
+    uint32_t tet[MOST];
+    int size;
+    int64_t gain;
+} move;
+
+/* --- which samples to look at --- */
+
+typedef struct {
+    int surplus, fans;
+} tally;
+
+static tally count(brio_mending *m, uint32_t sample, brio_star_parts *s) {
+    if (!brio_find_parts(m->flips, sample, s) || s->count == 0) return (tally){0, 0};
+    int surplus = brio_surplus(s), fans = s->count - 1;
+    return (tally){surplus < 255 ? surplus : 255, fans < 255 ? fans : 255};
+}
+
+static brio_status enqueue(brio_mending *m, uint32_t sample) {
+    brio_status status = BRIO_OK;
+    if (m->queued[sample]) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(m->flips->ctx, m->queue, m->capacity, m->size + 1));
+    m->queue[m->size++] = sample;
+    m->queued[sample] = 1;
+done:
+    return status;
+}
+
+static brio_status look_at(brio_mending *m, uint32_t sample) {
+    brio_star_parts s;
+    tally now = count(m, sample, &s);
+    m->singular += (size_t)(now.surplus > 0) - (size_t)(m->surplus[sample] > 0);
+    m->all_fans += now.fans - m->fans[sample];
+    m->surplus[sample] = (uint8_t)now.surplus;
+    m->fans[sample] = (uint8_t)now.fans;
+    return now.surplus > 0 ? enqueue(m, sample) : BRIO_OK;
+}
+
+brio_status brio_mending_look(brio_mending *m, size_t from, size_t to) {
+    brio_status status = BRIO_OK;
+    const brio_tetrahedra *t = &m->flips->g->dual->t;
+    for (size_t i = from; i < to; i++)
+        for (int k = 0; k < 4; k++) BRIO_TRY(look_at(m, t->tet[m->flips->flipped[i]].vertex[k]));
+done:
+    return status;
+}
+
+brio_status brio_mending_new(brio_label_flips *flips, brio_mending *out) {
+    brio_status status = BRIO_OK;
+    *out = (brio_mending){.flips = flips};
+    BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->surplus, flips->num_samples));
+    BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->fans, flips->num_samples));
+    BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->queued, flips->num_samples));
+    for (uint32_t p = 0; p < flips->num_samples; p++) BRIO_TRY(look_at(out, p));
+done:
+    return status;
+}
+
+void brio_mending_free(brio_mending *m) {
+    brio_release(m->flips->ctx, m->surplus);
+    brio_release(m->flips->ctx, m->fans);
+    brio_release(m->flips->ctx, m->queued);
+    brio_release(m->flips->ctx, m->queue);
+}
+
+void brio_mending_forget(brio_mending *m) {
+    while (m->size > 0) m->queued[m->queue[--m->size]] = 0;
+}
+
+/* --- one star --- */
+
+/* Keeps a move if it is better than the best one so far. */
+static brio_status consider(brio_mending *m, move *x, int64_t price, move *best) {
+    brio_status status = BRIO_OK;
+    brio_label_flips *f = m->flips;
+    uint32_t sample[4 * MOST];
+    brio_star_parts s;
+    size_t from = f->size, num_samples;
+    int64_t energy = f->energy, faces = f->faces;
+    for (int i = 0; i < x->size; i++) BRIO_TRY(brio_flip(f, x->tet[i]));
+    num_samples = brio_list_samples(f, from, f->size, sample);
+    int fewer = 0;
+    int64_t cost = f->energy - energy, twice = faces - f->faces;
+    for (size_t i = 0; i < num_samples; i++) {
+        tally after = count(m, sample[i], &s);
+        fewer += m->surplus[sample[i]] - after.surplus;
+        twice += 2 * (after.fans - m->fans[sample[i]]);
+    }
+    x->gain = price * fewer - cost + HANDLE / 4 * twice;
+    if (fewer > 0 && x->gain > best->gain) *best = *x;
+done:
+    brio_take_back(f, from);
+    return status;
+}
+
+/* Fills a move with the tetrahedra of a part. Returns false if that is impossible. */
+static bool take_part(const brio_mending *m, const brio_star_parts *s, int part, move *x) {
+    x->size = 0;
+    for (size_t i = 0; i < s->size; i++) {
+        if (s->part[i] != part) continue;
+        if (s->at[i].node >= m->flips->num_finite || x->size == MOST) return false;
+        x->tet[x->size++] = s->at[i].node;
+    }
+    return true;
+}
+
+typedef struct {
+    int64_t cost[BRIO_STAR_ROOM];
+    int16_t from[BRIO_STAR_ROOM];
+    bool done[BRIO_STAR_ROOM];
+} paths;
+
+static int nearest_open(const brio_star_parts *s, const paths *w) {
+    int best = -1;
+    for (int i = 0; i < (int)s->size; i++)
+        if (!w->done[i] && w->cost[i] < INT64_MAX && (best < 0 || w->cost[i] < w->cost[best])) best = i;
+    return best;
+}
+
+static void step_from(brio_mending *m, uint32_t sample, const brio_star_parts *s, uint8_t label, int i, paths *w) {
+    const brio_tetrahedron *t = &m->flips->g->dual->t.tet[s->at[i].node];
+    for (int k = 0; k < 4; k++) {
+        uint32_t other = t->mate[k] >> 2, j = m->flips->place[other];
+        if (t->vertex[k] == sample || j == BRIO_NO_PLACE || w->done[j]) continue;
+        bool there = m->flips->label[other] == label;
+        if (!there && other >= m->flips->num_finite) continue;
+        int64_t cost = there ? 0 : brio_flip_cost(m->flips, other);
+        cost = w->cost[i] + 1 + (cost > 0 ? cost : 0);
+        if (cost < w->cost[j]) w->cost[j] = cost, w->from[j] = (int16_t)i;
+    }
+}
+
+/* Fills a move with the tetrahedra of a path of low cost from a part to another part of the same label. */
+static bool take_path(brio_mending *m, uint32_t sample, const brio_star_parts *s, int part, uint8_t label, move *x) {
+    paths w;
+    int at, end = -1;
+    x->size = 0;
+    for (size_t i = 0; i < s->size; i++) {
+        w.cost[i] = s->part[i] == part ? 0 : INT64_MAX;
+        w.from[i] = -1;
+        w.done[i] = false;
+        m->flips->place[s->at[i].node] = (uint32_t)i;
+    }
+    while (end < 0 && (at = nearest_open(s, &w)) >= 0) {
+        w.done[at] = true;
+        if (m->flips->label[s->at[at].node] == label && s->part[at] != part)
+            end = at;
+        else
+            step_from(m, sample, s, label, at, &w);
+    }
+    for (size_t i = 0; i < s->size; i++) m->flips->place[s->at[i].node] = BRIO_NO_PLACE;
+    for (int i = end < 0 ? -1 : w.from[end]; i >= 0; i = w.from[i])
+        if (m->flips->label[s->at[i].node] != label) {
+            if (x->size == MOST) return false;
+            x->tet[x->size++] = s->at[i].node;
+        }
+    return x->size > 0;
+}
+
+static brio_status consider_all(brio_mending *m, uint32_t sample, const brio_star_parts *s, int64_t price, move *best) {
+    brio_status status = BRIO_OK;
+    move x;
+    for (int part = 0; part < s->count; part++) {
+        size_t i = 0;
+        while (s->part[i] != part) i++;
+        uint8_t label = m->flips->label[s->at[i].node];
+        if (s->of[label == BRIO_LABEL_INNER] < 2) continue;
+        if (take_part(m, s, part, &x)) BRIO_TRY(consider(m, &x, price, best));
+        if (take_path(m, sample, s, part, label, &x)) BRIO_TRY(consider(m, &x, price, best));
+    }
+    for (size_t i = 0; i < s->size && s->size <= SMALL; i++) {
+        x.size = 1;
+        x.tet[0] = s->at[i].node;
+        if (x.tet[0] < m->flips->num_finite) BRIO_TRY(consider(m, &x, price, best));
+    }
+done:
+    return status;
+}
+
+/* Makes the best move at a sample, again and again. */
+static brio_status mend_star(brio_mending *m, uint32_t sample, int64_t price) {
+    brio_status status = BRIO_OK;
+    brio_star_parts s;
+    for (;;) {
+        move best = {.gain = 0};
+        if (count(m, sample, &s).surplus == 0) break;
+        BRIO_TRY(consider_all(m, sample, &s, price, &best));
+        if (best.gain <= 0) break;
+        size_t from = m->flips->size;
+        for (int i = 0; i < best.size; i++) BRIO_TRY(brio_flip(m->flips, best.tet[i]));
+        BRIO_TRY(brio_mending_look(m, from, m->flips->size));
+    }
+done:
+    return status;
+}
+
+/* Looks at the queued samples and at those that are queued meanwhile, at one price. Those that stay singular are in the
+ * queue at the end. */
+static brio_status mend_at(brio_mending *m, int64_t price) {
+    brio_status status = BRIO_OK;
+    size_t left = 0;
+    for (size_t i = 0; i < m->size; i++) {
+        uint32_t p = m->queue[i];
+        m->queued[p] = 0;
+        BRIO_TRY(mend_star(m, p, price));
+    }
+    for (size_t i = 0; i < m->size; i++) {
+        uint32_t p = m->queue[i];
+        if (m->surplus[p] == 0 || m->queued[p]) continue;
+        m->queued[p] = 1;
+        m->queue[left++] = p;
+    }
+    m->size = left;
+done:
+    return status;
+}
+
+static int compare_numbers(uint32_t a, uint32_t b, const void *user) {
+    (void)user;
+    return a < b ? -1 : a > b;
+}
+
+brio_status brio_mend(brio_mending *m) {
+    brio_status status = BRIO_OK;
+    int64_t price = BRIO_FLIP_UNIT / 4;
+    for (int i = 0; i < PRICES && m->size > 0; i++, price *= 2) {
+        brio_sort_indices(m->queue, m->size, compare_numbers, NULL);
+        BRIO_TRY(mend_at(m, price));
+    }
+done:
+    return status;
+}

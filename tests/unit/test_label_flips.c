@@ -1,0 +1,226 @@
+/* Flips of labels against the energy of the whole graph; mending of random labels; handles that are made by hand. */
+#include "base/memory.h"
+#include "base/rng.h"
+#include "dual/spacing.h"
+#include "failing_allocator.h"
+#include "harness.h"
+#include "points.h"
+#include "reconstruct/labeled_delaunay/weak_handles.h"
+#include <math.h>
+#include <string.h>
+
+enum { SAMPLES = 3000 };
+
+/* A point set with its graph of votes. */
+typedef struct {
+    brio_context *ctx;
+    double points[3 * SAMPLES], spacing[SAMPLES];
+    brio_triangulation *delaunay;
+    brio_pole_vectors dual;
+    brio_vote_graph graph;
+    uint8_t *label;
+} scene;
+
+static brio_status set_up(scene *s, brio_context *ctx, void (*make)(uint64_t, size_t, double *)) {
+    brio_status status = BRIO_OK;
+    s->ctx = ctx;
+    s->graph.ctx = ctx;
+    make(1, SAMPLES, s->points);
+    BRIO_TRY(brio_delaunay(ctx, s->points, NULL, SAMPLES, NULL, &s->delaunay));
+    BRIO_TRY(brio_sample_spacing(ctx, s->delaunay, s->points, SAMPLES, s->spacing));
+    BRIO_TRY(brio_pole_vectors_find(ctx, s->delaunay, s->points, SAMPLES, 0.39, &s->dual));
+    BRIO_TRY(brio_vote_graph_new(ctx, &s->dual, s->spacing, 0, &s->graph));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->label, s->dual.t.count + SAMPLES));
+done:
+    return status;
+}
+
+static void tear_down(scene *s) {
+    brio_vote_graph_free(&s->graph);
+    brio_pole_vectors_free(s->ctx, &s->dual);
+    brio_triangulation_free(s->delaunay);
+    brio_release(s->ctx, s->label);
+}
+
+static scene *scene_of(void (*make)(uint64_t, size_t, double *)) {
+    scene *s = calloc(1, sizeof *s);
+    EXPECT(set_up(s, new_context(), make) == BRIO_OK);
+    return s;
+}
+
+static void free_scene(scene *s) {
+    brio_context *ctx = s->ctx;
+    tear_down(s);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+    free(s);
+}
+
+/* A tetrahedron is inner if `inside` says so of its centroid; infinite ones are outer. */
+static void label_by(scene *s, bool (*inside)(const double *)) {
+    for (size_t t = 0; t < s->dual.t.count; t++)
+        s->label[t] = t < s->dual.num_finite && inside(s->graph.position + 3 * t) ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+}
+
+static bool in_torus(const double *p) {
+    double ring = sqrt(p[0] * p[0] + p[1] * p[1]) - 1;
+    return ring * ring + p[2] * p[2] < 0.16;
+}
+
+static bool in_ball(const double *p) {
+    return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] < 1;
+}
+
+/* Half the tetrahedra, at random. */
+static bool is_lucky(const double *p) {
+    uint64_t bits;
+    memcpy(&bits, p, sizeof bits);
+    return brio_hash(bits, 3) & 1;
+}
+
+/* --- energy --- */
+
+/* Each sample has the better one of its two labels. */
+static double energy_of(scene *s, const brio_label_flips *f) {
+    brio_signed_graph signs = brio_vote_signs(&s->graph);
+    for (size_t p = 0; p < SAMPLES; p++) s->label[s->dual.t.count + p] = BRIO_LABEL_OUTER;
+    brio_label_samples(f);
+    return brio_label_energy(&signs, s->label) / BRIO_VOTE_UNIT;
+}
+
+static size_t count_faces(const scene *s) {
+    size_t faces = 0;
+    for (size_t t = 0; t < s->dual.t.count; t++)
+        for (int i = 0; i < 4; i++) faces += s->label[t] < s->label[s->dual.t.tet[t].mate[i] >> 2];
+    return faces;
+}
+
+static void flips_know_the_energy(void) {
+    scene *s = scene_of(torus_points);
+    brio_label_flips f;
+    brio_rng rng = brio_rng_new(1);
+    label_by(s, in_torus);
+    EXPECT(brio_label_flips_new(&s->graph, s->label, &f) == BRIO_OK);
+    double before = energy_of(s, &f);
+    size_t faces = count_faces(s);
+    for (int i = 0; i < 500; i++) {
+        uint32_t tet = (uint32_t)brio_rng_below(&rng, s->dual.num_finite);
+        int64_t cost = brio_flip_cost(&f, tet), energy = f.energy;
+        EXPECT(brio_flip(&f, tet) == BRIO_OK && f.energy == energy + cost);
+        if (i % 100 == 0) {
+            double found = energy_of(s, &f) - before;
+            EXPECT(fabs((double)f.energy / BRIO_FLIP_UNIT - found) < 0.05, "%g, not %g",
+                   (double)f.energy / BRIO_FLIP_UNIT, found);
+            EXPECT(f.faces == (int64_t)count_faces(s) - (int64_t)faces);
+        }
+    }
+    brio_take_back(&f, 0);
+    EXPECT(f.energy == 0 && f.faces == 0 && energy_of(s, &f) == before);
+    brio_label_flips_free(&f);
+    free_scene(s);
+}
+
+/* --- mending --- */
+
+static size_t count_singular(brio_label_flips *f) {
+    size_t singular = 0;
+    brio_star_parts parts;
+    for (uint32_t p = 0; p < SAMPLES; p++) singular += brio_find_parts(f, p, &parts) && brio_surplus(&parts) > 0;
+    return singular;
+}
+
+static void mending_leaves_hardly_any_singular_sample(void) {
+    scene *s = scene_of(uniform_points);
+    brio_label_flips f;
+    brio_mending m;
+    label_by(s, is_lucky);
+    EXPECT(brio_label_flips_new(&s->graph, s->label, &f) == BRIO_OK);
+    EXPECT(brio_mending_new(&f, &m) == BRIO_OK);
+    size_t before = count_singular(&f);
+    EXPECT(m.singular == before && before > SAMPLES / 2, "%zu, %zu", m.singular, before);
+    EXPECT(brio_mend(&m) == BRIO_OK);
+    EXPECT(m.singular == count_singular(&f) && m.singular < before / 50, "%zu of %zu are left", m.singular, before);
+    for (size_t t = s->dual.num_finite; t < s->dual.t.count; t++) EXPECT(s->label[t] == BRIO_LABEL_OUTER);
+    brio_mending_free(&m);
+    brio_label_flips_free(&f);
+    free_scene(s);
+}
+
+/* --- handles --- */
+
+/* Returns twice the Euler characteristic of the boundary, of which every sample is one fan. */
+static int64_t twice_euler(scene *s, brio_label_flips *f) {
+    int64_t twice = -(int64_t)count_faces(s);
+    brio_star_parts parts;
+    for (uint32_t p = 0; p < SAMPLES; p++)
+        if (brio_find_parts(f, p, &parts) && parts.count > 0) twice += 2 * (parts.count - 1);
+    return twice;
+}
+
+/* One tetrahedron of eight on the wrong side. */
+static bool in_spoiled_torus(const double *p) {
+    uint64_t bits;
+    memcpy(&bits, p, sizeof bits);
+    return in_torus(p) != (brio_hash(bits, 3) % 8 == 0);
+}
+
+/* Labels, mends, removes weak handles, and returns twice the Euler characteristic before and after. */
+static void remove_from(scene *s, bool (*inside)(const double *), int64_t *before, int64_t *after) {
+    brio_label_flips f;
+    brio_mending m;
+    size_t removed;
+    label_by(s, inside);
+    EXPECT(brio_label_flips_new(&s->graph, s->label, &f) == BRIO_OK);
+    EXPECT(brio_mending_new(&f, &m) == BRIO_OK && brio_mend(&m) == BRIO_OK && m.singular == 0);
+    *before = twice_euler(s, &f);
+    EXPECT(brio_remove_weak_handles(&m, &removed) == BRIO_OK && m.singular == 0);
+    EXPECT((removed > 0) == (*before != twice_euler(s, &f)), "%zu", removed);
+    *after = twice_euler(s, &f);
+    brio_mending_free(&m);
+    brio_label_flips_free(&f);
+}
+
+static void true_handles_stay_and_none_appears(void) {
+    int64_t before, after;
+    scene *torus = scene_of(torus_points), *sphere = scene_of(sphere_points);
+    remove_from(torus, in_torus, &before, &after);
+    EXPECT(before == 0 && after == 0, "torus: %lld, %lld", (long long)before, (long long)after);
+    remove_from(sphere, in_ball, &before, &after);
+    EXPECT(before == 4 && after == 4, "sphere: %lld, %lld", (long long)before, (long long)after);
+    remove_from(torus, in_spoiled_torus, &before, &after);
+    EXPECT(after >= before, "spoiled torus: %lld, %lld", (long long)before, (long long)after);
+    free_scene(torus);
+    free_scene(sphere);
+}
+
+static brio_status flip_and_mend(brio_context *ctx) {
+    brio_status status = BRIO_OK;
+    scene *s = calloc(1, sizeof *s);
+    brio_label_flips f = {.ctx = ctx};
+    brio_mending m = {.flips = &f};
+    size_t removed;
+    BRIO_TRY(set_up(s, ctx, torus_points));
+    label_by(s, in_spoiled_torus);
+    BRIO_TRY(brio_label_flips_new(&s->graph, s->label, &f));
+    BRIO_TRY(brio_mending_new(&f, &m));
+    BRIO_TRY(brio_mend(&m));
+    BRIO_TRY(brio_remove_weak_handles(&m, &removed));
+done:
+    brio_mending_free(&m);
+    brio_label_flips_free(&f);
+    tear_down(s);
+    free(s);
+    return status;
+}
+
+static void every_failed_allocation_is_a_status(void) {
+    expect_clean_failures(flip_and_mend);
+}
+
+int main(void) {
+    RUN(flips_know_the_energy);
+    RUN(mending_leaves_hardly_any_singular_sample);
+    RUN(true_handles_stay_and_none_appears);
+    RUN(every_failed_allocation_is_a_status);
+    return harness_end();
+}
