@@ -3,7 +3,7 @@
 #include "base/rng.h"
 #include "reconstruct/power_crust/fan_start.h"
 #include <math.h>
-#include <string.h>
+#include <stdbool.h>
 
 static const double UP[3] = {0, 0, 1};
 
