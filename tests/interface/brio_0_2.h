@@ -410,8 +410,9 @@ BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const ch
 BRIO_API double brio_property_value(const brio_property *property, size_t i);
 
 /** Adds the properties nx, ny, nz (float32) to the vertices: the unit mean of the normals of the faces at a vertex,
- *  weighted by area. A normal points to the side from which the faces are seen counterclockwise. A vertex without faces
- *  has the normal 0.
+ *  weighted by area. A normal points to the side from which the faces are seen counterclockwise. A vertex whose
+ *  faces have no area has the normal of the vertices at its position that edges join to it. A vertex without faces has the
+ *  normal 0.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or the mesh has such properties), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_add_normals(brio_mesh *mesh);
 
