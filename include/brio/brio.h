@@ -410,8 +410,9 @@ BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const ch
 BRIO_API double brio_property_value(const brio_property *property, size_t i);
 
 /** Adds the properties nx, ny, nz (float32) to the vertices: the unit mean of the normals of the faces at a vertex,
- *  weighted by area. A normal points to the side from which the faces are seen counterclockwise. A vertex without faces
- *  has the normal 0.
+ *  weighted by area. A normal points to the side from which the faces are seen counterclockwise. A vertex whose
+ *  faces have no area has the normal of the vertices at its position that edges join to it. A vertex without faces has the
+ *  normal 0.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or the mesh has such properties), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_add_normals(brio_mesh *mesh);
 
@@ -610,9 +611,9 @@ typedef struct brio_power_crust_stats {
  *  Guarantees: for every input that has an inside, the mesh is closed, manifold and oriented as a combinatorial object
  *  (with the option `open`: manifold and oriented). On a dense sample of a smooth closed surface the power crust is
  *  homeomorphic and close to the surface (appendix B of [Choi 2003]).
+ *  Vertices that only rounding keeps apart from a sample are at the sample, and the faces between them have no area.
  *  Does not guarantee: triangular faces, faces above a least size, freedom from self-intersections. Faces cross each other
- *  where samples are too few; on dense samples, where the vertices of tiny faces are so close together that rounding
- *  their coordinates turns the faces over: an r-sample of a torus, r = 0.08, has 13 such pairs of 1.4 million faces.
+ *  where samples are too few; on dense samples crossing faces are a rare accident of rounding.
  *  brio_mesh_self_intersections counts the pairs.
  *  points   #P by 3.   options  NULL for the defaults.   out  owned by the caller.
  *  normals  NULL, or receives #P by 3: the oriented unit normal of the surface at each point.

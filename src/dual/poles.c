@@ -208,6 +208,7 @@ static void fill_poles(void *user, size_t begin, size_t end, int thread) {
             poles->bounding[p] |= v[i] >= f->num_samples;
         }
         memcpy(poles->centre + 3 * p, centre_of(f, list[p]), 3 * sizeof *poles->centre);
+        memcpy(poles->touched + 4 * p, v, 4 * sizeof *v);
         poles->square[p] = brio_square_distance(poles->centre + 3 * p, first);
     }
 }
@@ -234,6 +235,7 @@ static brio_status number_poles(brio_context *ctx, finder *f, brio_poles *poles)
     BRIO_TRY(list_poles(ctx, f, &list, &poles->count));
     BRIO_TRY(BRIO_ALLOC(ctx, poles->centre, 3 * poles->count));
     BRIO_TRY(BRIO_ALLOC(ctx, poles->square, poles->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, poles->touched, 4 * poles->count));
     BRIO_TRY(BRIO_ALLOC(ctx, poles->bounding, poles->count));
     l.list = list;
     int threads = brio_threads(ctx, poles->count, POLES_A_THREAD);
@@ -291,6 +293,7 @@ done:
 void brio_poles_free(brio_context *ctx, brio_poles *poles) {
     brio_release(ctx, poles->centre);
     brio_release(ctx, poles->square);
+    brio_release(ctx, poles->touched);
     brio_release(ctx, poles->bounding);
     brio_release(ctx, poles->shape);
     brio_release(ctx, poles->of_sample);

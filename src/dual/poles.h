@@ -11,8 +11,11 @@ enum { BRIO_NO_POLE = UINT32_MAX };
  *  tetrahedron: two poles may have equal centres. */
 typedef struct {
     size_t count;
-    double *centre;      /* #poles by 3 */
-    double *square;      /* #poles: squared radii */
+    double *centre; /* #poles by 3 */
+    double *square; /* #poles: squared radii */
+    uint32_t
+        *touched; /* #poles by 4: the points on the ball, the corners of its tetrahedron; those from #samples on are
+                            bounding points */
     uint8_t *bounding;   /* #poles: 1 when a vertex of the tetrahedron is a bounding point, not a sample */
     size_t bad_cells;    /* number of samples with a bad cell, whose poles were discarded */
     double *shape;       /* #samples: the results of brio_cell_shapes; NULL unless the filter needs shapes */

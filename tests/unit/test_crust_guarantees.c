@@ -264,6 +264,21 @@ static void check_samples_are_on(const theory *x, const brio_mesh *mesh) {
     brio_triangle_tree_free(x->ctx, &tree);
 }
 
+/* Faces of a dense sample meet in common corners and edges only, as polygons, as triangles and simplified. */
+static void check_no_faces_cross(const theory *x) {
+    for (int form = 0; form < 3; form++) {
+        brio_power_crust_options o = brio_power_crust_options_default();
+        brio_mesh *mesh;
+        int64_t pairs = -1;
+        o.triangulate = form == 1;
+        o.simplify = form == 2;
+        EXPECT(brio_power_crust(x->ctx, x->points, x->n, &o, &mesh, NULL, NULL) == BRIO_OK);
+        EXPECT(brio_mesh_self_intersections(x->ctx, mesh, &pairs) == BRIO_OK);
+        EXPECT(pairs == 0, "r = %g, form %d: %lld pairs of faces cross", x->r, form, (long long)pairs);
+        brio_mesh_free(mesh);
+    }
+}
+
 /* Theorem 54 and corollary 48. Returns the largest distance from the surface over r LFS. */
 static double check_crust(const theory *x) {
     brio_mesh *mesh;
@@ -283,6 +298,7 @@ static double check_theory(const known_surface *surface, double r) {
     theory x = theory_new(surface, r);
     check_poles(&x);
     double far = check_crust(&x);
+    if (r == SPARSE) check_no_faces_cross(&x);
     theory_free(&x);
     return far;
 }

@@ -344,6 +344,7 @@ static void poles_that_are_kept_keep_what_is_theirs(void) {
                l.poles.square[n] == all.poles.square[p]);
         EXPECT(l.label[n] == all.label[p] && l.spacing[n] == all.spacing[p]);
         EXPECT(l.poles.bounding[n] == all.poles.bounding[p]);
+        EXPECT(!memcmp(l.poles.touched + 4 * n, all.poles.touched + 4 * p, 4 * sizeof *l.poles.touched));
     }
     free(keep);
     brio_labeled_poles_free(&l);

@@ -13,6 +13,12 @@ static void expect_closed(brio_context *ctx, const brio_mesh *mesh, const char *
     brio_certificate_free(&c);
 }
 
+static void expect_no_crossings(brio_context *ctx, const brio_mesh *mesh, const char *what) {
+    int64_t pairs = -1;
+    EXPECT(brio_mesh_self_intersections(ctx, mesh, &pairs) == BRIO_OK);
+    EXPECT(pairs == 0, "%s: %lld pairs of faces cross", what, (long long)pairs);
+}
+
 /* The largest distance of a vertex from the exact offset. */
 static double error_of(const medial_shape *shape, double h, double distance) {
     brio_context *ctx = new_context();
@@ -22,6 +28,7 @@ static double error_of(const medial_shape *shape, double h, double distance) {
     EXPECT(brio_offset_surface(ctx, c.points, c.count, distance, NULL, &mesh, NULL) == BRIO_OK, "%s by %g: %s",
            shape->name, distance, brio_message(ctx));
     expect_closed(ctx, mesh, shape->name);
+    expect_no_crossings(ctx, mesh, shape->name);
     for (size_t v = 0; v < mesh->num_vertices; v++)
         most = fmax(most, fabs(shape->signed_distance(mesh->vertices + 3 * v) - distance));
     if (getenv("BRIO_TEST_VERBOSE"))
@@ -105,6 +112,7 @@ static void offset_by_nothing_is_the_power_crust(void) {
     EXPECT(brio_offset_surface(ctx, c.points, c.count, 0, NULL, &offset, NULL) == BRIO_OK);
     EXPECT(brio_power_crust(ctx, c.points, c.count, NULL, &crust, NULL, NULL) == BRIO_OK);
     EXPECT(brio_mesh_distance(ctx, offset, crust, 2000, 1, &d) == BRIO_OK && d.hausdorff < 1e-9, "%g", d.hausdorff);
+    expect_no_crossings(ctx, offset, "torus by 0");
     brio_mesh_free(offset);
     brio_mesh_free(crust);
     brio_context_free(ctx);

@@ -16,9 +16,11 @@
 #include "reconstruct/power_crust/crust_faces.h"
 #include "base/memory.h"
 #include "base/team.h"
+#include "mesh/split_vertices.h"
 #include "predicates/circumcentre.h"
 #include "reconstruct/labels/labeling.h"
-#include "mesh/split_vertices.h"
+#include "reconstruct/power_crust/crust_positions.h"
+#include "reconstruct/power_crust/fan_start.h"
 #include "triangulation/ring.h"
 #include <assert.h>
 #include <math.h>
@@ -62,20 +64,6 @@ static bool inner(const builder *b, uint32_t pole) {
     return b->label[pole] == BRIO_LABEL_INNER;
 }
 
-/* Computes the orthocentres of `count` quadruples of poles. If doubles cannot hold an orthocentre, takes the mean of
- * the four poles. */
-static void find_positions(const builder *b, const uint32_t (*v)[4], size_t count, double *position) {
-    const brio_poles *poles = b->d->poles;
-    brio_centres(&(brio_centre_batch){poles->centre, poles->square, v, count}, position, NULL);
-    for (size_t n = 0; n < count; n++, position += 3) {
-        if (!isnan(position[0])) continue;
-        for (int k = 0; k < 3; k++) {
-            position[k] = 0;
-            for (int i = 0; i < 4; i++) position[k] += 0.25 * poles->centre[3 * (size_t)v[n][i] + (size_t)k];
-        }
-    }
-}
-
 /* Returns the least spacing of four poles. A pole with a large ball may have a sample where samples are few. */
 static double vertex_spacing(const builder *b, const uint32_t *v) {
     double least = INFINITY;
@@ -115,10 +103,10 @@ static void fill_vertices(void *user, size_t block, size_t end_block, int thread
         b->number[tet] = (uint32_t)next++;
         memcpy(vertex[waiting++], b->d->power.tet[tet].vertex, sizeof *vertex);
         if (waiting < BRIO_CENTRE_BATCH) continue;
-        find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
+        brio_crust_positions(b->d, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
         waiting = 0;
     }
-    find_positions(b, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
+    brio_crust_positions(b->d, (const uint32_t(*)[4])vertex, waiting, b->mesh->vertices + 3 * (next - waiting));
 }
 
 /* Replaces the counts of each block by the sums over the blocks before it. The entry after the last block is the
@@ -180,6 +168,14 @@ done:
     return status;
 }
 
+/* Turns the corners of the face between the inner pole p and the outer pole q to where its fan of triangles starts. */
+static void turn_to_fan_start(const builder *b, uint32_t p, uint32_t q, uint32_t *corner, size_t size) {
+    const double *inside = b->d->poles->centre + 3 * (size_t)p, *outside = b->d->poles->centre + 3 * (size_t)q;
+    double normal[3];
+    for (int k = 0; k < 3; k++) normal[k] = outside[k] - inside[k];
+    brio_turn_to_fan_start(b->mesh->vertices, corner, size, normal);
+}
+
 static brio_status list_face(const builder *b, uint32_t tet, int i, int j, face_list *list, block_counts *counts) {
     const uint32_t *v = b->d->power.tet[tet].vertex;
     size_t size;
@@ -190,6 +186,7 @@ static brio_status list_face(const builder *b, uint32_t tet, int i, int j, face_
         counts->left_out++;
         return BRIO_OK;
     }
+    turn_to_fan_start(b, v[i], v[j], list->entry + list->count + 1, size);
     list->entry[list->count] = (uint32_t)size;
     list->count += size + 1;
     counts->rings++;

@@ -254,6 +254,7 @@ static void close_up(brio_labeled_poles *l, const uint8_t *keep) {
     for (size_t p = 0; p < poles->count; p++) {
         if (!keep[p]) continue;
         for (size_t k = 0; k < 3; k++) poles->centre[3 * n + k] = poles->centre[3 * p + k];
+        for (size_t i = 0; i < 4; i++) poles->touched[4 * n + i] = poles->touched[4 * p + i];
         poles->square[n] = poles->square[p];
         poles->bounding[n] = poles->bounding[p];
         l->label[n] = l->label[p];
