@@ -1,7 +1,7 @@
 /* Normals of vertices: the sum of the area vectors of the faces round each vertex. The area vector of a polygon does
  * not depend on how the polygon is cut into triangles. Faces that are nearly points or lines, whose directions are
  * noise, hardly count. The normal is 0 where the sum has no direction. */
-#include "base/memory.h"
+#include "mesh/vertex_normals.h"
 #include "mesh/edge_rings.h"
 #include <math.h>
 
@@ -33,13 +33,12 @@ static void normalise(double *n) {
     for (int k = 0; k < 3; k++) n[k] /= length;
 }
 
-brio_status brio_mesh_add_normals(brio_mesh *mesh) {
+brio_status brio_vertex_normals(const brio_mesh *mesh, double **normals) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = mesh->context;
     double *sum = NULL;
-    float *column[3];
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, sum, 3 * mesh->num_vertices));
+    *normals = NULL;
+    BRIO_TRY(brio_mesh_check_faces(mesh->context, mesh));
+    BRIO_TRY(BRIO_ALLOC_ZERO(mesh->context, sum, 3 * mesh->num_vertices));
     for (size_t f = 0; f < mesh->num_faces; f++) {
         double n[3];
         if (mesh->face_offsets[f + 1] == mesh->face_offsets[f]) continue;
@@ -47,16 +46,25 @@ brio_status brio_mesh_add_normals(brio_mesh *mesh) {
         for (uint64_t h = mesh->face_offsets[f]; h < mesh->face_offsets[f + 1]; h++)
             for (int k = 0; k < 3; k++) sum[3 * (size_t)mesh->face_vertices[h] + k] += n[k];
     }
+    for (size_t v = 0; v < mesh->num_vertices; v++) normalise(sum + 3 * v);
+    *normals = sum;
+done:
+    return status;
+}
+
+brio_status brio_mesh_add_normals(brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    double *normals = NULL;
+    float *column[3];
+    BRIO_TRY(brio_vertex_normals(mesh, &normals));
     for (int k = 0; k < 3; k++) {
         void *data;
         BRIO_TRY(brio_mesh_add_property(mesh, NAMES[k], BRIO_SCALAR_FLOAT32, &data));
         column[k] = data;
     }
-    for (size_t v = 0; v < mesh->num_vertices; v++) {
-        normalise(sum + 3 * v);
-        for (int k = 0; k < 3; k++) column[k][v] = (float)sum[3 * v + (size_t)k];
-    }
+    for (size_t v = 0; v < mesh->num_vertices; v++)
+        for (int k = 0; k < 3; k++) column[k][v] = (float)normals[3 * v + (size_t)k];
 done:
-    brio_release(ctx, sum);
+    brio_release(mesh->context, normals);
     return status;
 }

@@ -27,8 +27,8 @@ enum { TETS_A_THREAD = 1 << 11, VOTES = 4, EDGES = 8, HULL_VOTES = 3, HULL_EDGES
 
 /* In log-odds, of a facet of the area of an equilateral triangle whose sides are one spacing: AREA is its weight in any
  * case, DOUBT is added if its samples see both of its tetrahedra in one direction. Larger facets weigh more, up to
- * MOST_AREA times as much. All chosen on generated solids. UNIT: of the weights, so that none is over 1. */
-static const double AREA = 1, DOUBT = 6, MOST_AREA = 3, UNIT = 1 / 21.0;
+ * MOST_AREA times as much. All chosen on generated solids. */
+static const double AREA = 1, DOUBT = 6, MOST_AREA = 3;
 
 typedef struct {
     brio_vote_graph *g;
@@ -83,7 +83,7 @@ static void weigh_votes(const builder *b, size_t tet) {
     for (int i = 0; i < (finite ? VOTES : HULL_VOTES); i++) {
         uint32_t p = v->t.tet[tet].vertex[i];
         double log_odds = brio_vote_log_odds((double)b->cosine[4 * tet + (size_t)i], thick / b->spacing[p], b->noise);
-        edge[i] = (brio_signed_edge){(uint32_t)v->t.count + p, (float)(UNIT * log_odds)};
+        edge[i] = (brio_signed_edge){(uint32_t)v->t.count + p, (float)(BRIO_VOTE_UNIT * log_odds)};
     }
 }
 
@@ -108,7 +108,7 @@ static double facet_log_odds(const builder *b, uint32_t facet) {
 static void weigh_facet(const builder *b, uint32_t facet) {
     const brio_pole_vectors *v = b->dual;
     uint32_t tet = brio_tet_of(facet), mate = *brio_mate(&v->t, facet), other = brio_tet_of(mate);
-    float weight = (float)(UNIT * facet_log_odds(b, facet));
+    float weight = (float)(BRIO_VOTE_UNIT * facet_log_odds(b, facet));
     b->g->edge[place_of_facet(v, tet, brio_slot_of(facet))] = (brio_signed_edge){other, weight};
     b->g->edge[place_of_facet(v, other, brio_slot_of(mate))] = (brio_signed_edge){tet, weight};
 }
