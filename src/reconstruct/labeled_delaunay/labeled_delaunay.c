@@ -177,8 +177,8 @@ done:
 static brio_status leave_holes_open(reconstruction *r) {
     brio_status status = BRIO_OK;
     size_t before = r->num_faces;
-    BRIO_TRY(
-        brio_leave_holes_open(r->ctx, r->points, r->spacing, r->num_points, r->options->open, r->faces, &r->num_faces));
+    brio_hole_rule rule = {r->points, r->spacing, r->num_points, r->options->open};
+    BRIO_TRY(brio_leave_holes_open(r->ctx, &rule, r->faces, &r->num_faces));
     r->stats.left_out = before - r->num_faces;
     BRIO_REQUIRE(r->ctx, r->num_faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all triangles span holes");
     lap(r, &r->stats.manifold_seconds);

@@ -22,8 +22,7 @@ enum triangle_state { KEPT = 0, WIDE, GONE };
 
 typedef struct {
     brio_context *ctx;
-    const double *points, *spacing;
-    double most;
+    const brio_hole_rule *rule;
     const uint32_t *faces;
     size_t num_faces;
     uint32_t *twin;  /* 3 #F: half-edges, as mesh/twins.h has them */
@@ -38,12 +37,12 @@ typedef struct {
 /* Returns the largest spacing of the samples of a triangle, times K, squared. */
 static double bound_of(const opening *o, size_t face) {
     double most = 0;
-    for (size_t k = 0; k < 3; k++) most = fmax(most, o->spacing[o->faces[3 * face + k]]);
-    return o->most * most * o->most * most;
+    for (size_t k = 0; k < 3; k++) most = fmax(most, o->rule->spacing[o->faces[3 * face + k]]);
+    return o->rule->most * most * o->rule->most * most;
 }
 
 static const double *corner(const opening *o, size_t face, size_t k) {
-    return o->points + 3 * (size_t)o->faces[3 * face + k];
+    return o->rule->points + 3 * (size_t)o->faces[3 * face + k];
 }
 
 static bool is_wide(const opening *o, size_t face) {
@@ -187,13 +186,11 @@ done:
     return status;
 }
 
-brio_status brio_leave_holes_open(brio_context *ctx, const double *points, const double *spacing, size_t num_points,
-                                  double most, uint32_t *faces, size_t *num_faces) {
+brio_status brio_leave_holes_open(brio_context *ctx, const brio_hole_rule *rule, uint32_t *faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
-    opening o = {
-        .ctx = ctx, .points = points, .spacing = spacing, .most = most, .faces = faces, .num_faces = *num_faces};
+    opening o = {.ctx = ctx, .rule = rule, .faces = faces, .num_faces = *num_faces};
     size_t kept = 0;
-    BRIO_TRY(link_faces(&o, num_points));
+    BRIO_TRY(link_faces(&o, rule->num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, o.state, o.num_faces));
     BRIO_TRY(BRIO_RESERVE(ctx, o.queue, o.capacity, o.num_faces));
     find_holes(&o);

@@ -1,6 +1,6 @@
 /* What a reconstructed surface gets before it is reported: normals, the properties of its points, fewer components. */
-#ifndef BRIO_CLI_SURFACE_MESH_H
-#define BRIO_CLI_SURFACE_MESH_H
+#ifndef BRIO_CLI_SURFACE_EXTRAS_H
+#define BRIO_CLI_SURFACE_EXTRAS_H
 
 #include "run.h"
 

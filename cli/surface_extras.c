@@ -1,5 +1,5 @@
 /* What a reconstructed surface gets before it is reported. */
-#include "surface_mesh.h"
+#include "surface_extras.h"
 #include <string.h>
 
 /* The name for a property of the points. Returns whether there is one. */
