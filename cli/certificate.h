@@ -5,9 +5,10 @@
 #include "run.h"
 
 enum certify_how {
-    CERTIFY_OPEN = 1,    /* a boundary is no fault */
-    CERTIFY_COUNTED = 2, /* self-intersections are counted */
-    CERTIFY_EMBEDDED = 4 /* they are counted, and a fault */
+    CERTIFY_OPEN = 1,     /* a boundary is no fault */
+    CERTIFY_COUNTED = 2,  /* self-intersections are counted */
+    CERTIFY_EMBEDDED = 4, /* they are counted, and a fault */
+    CERTIFY_ANYTHING = 8  /* nothing is a fault */
 };
 
 /** Reports the certificate of the faces; BRIO_ERR_CHECK when it finds a fault.   how  bits of certify_how. */

@@ -30,13 +30,13 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
         fputs("brio: --labeling global goes by the points of a mesh alone\n", stderr);
 }
 
-bool cli_has_power_crust_options(const power_crust_options *a) {
-    return a->labeling || a->noise || a->sampling_density != 0 || a->open != 0 || a->sharp || a->triangulate ||
-           a->simplify || a->normals;
+brio_status cli_check_normals(run *r, const char *path) {
+    brio_format format;
+    brio_status status = cli_output_format(r, path, NULL, &format);
+    return status == BRIO_OK ? cli_check_target(r, path) : status;
 }
 
-/* The points with their normals, to the file of --normals. */
-static brio_status write_normals(run *r, const char *path, const brio_mesh *points, const double *normals) {
+brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points, const double *normals) {
     static const char *const names[3] = {"nx", "ny", "nz"};
     brio_mesh *out = NULL;
     brio_status status = BRIO_OK;
@@ -86,12 +86,10 @@ static brio_power_crust_options library_options(const run *r, const power_crust_
 brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mesh *points, brio_mesh **surface,
                             brio_power_crust_stats *stats) {
     brio_power_crust_options o = library_options(r, a);
-    brio_format format;
     brio_status status = BRIO_OK;
     double *normals = NULL;
     if (a->normals) {
-        TRY(cli_output_format(r, a->normals, NULL, &format));
-        TRY(cli_check_target(r, a->normals));
+        TRY(cli_check_normals(r, a->normals));
         normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
         if (!normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
     }
@@ -100,7 +98,7 @@ brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mes
     TRY(cli_require_work(r, status, points, work));
     TRY(brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, normals, stats));
     cli_report_power_crust_stages(r, a, stats);
-    if (a->normals) TRY(write_normals(r, a->normals, points, normals));
+    if (a->normals) TRY(cli_write_normals(r, a->normals, points, normals));
 done:
     free(normals);
     return status;

@@ -30,26 +30,28 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
     {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
      "power crust: cut the polygons into triangles", 0},                                                               \
     {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
-     "power crust: a quarter as many faces, triangles", 0},                                                            \
+     "a quarter as many faces, as far as the shape allows; triangles", 0},                                                            \
     {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
      "power crust: how poles are labeled inner or outer", cli_labelings},                                             \
     {"noise", 0, OPTION_CHOICE, offsetof(type, field.noise), "NAME",                                                   \
-     "power crust: what to do about noisy samples (auto)", cli_noise},                                                            \
+     "what to do about noisy samples (auto)", cli_noise},                                                            \
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(type, field.sampling_density), "R",                              \
      "power crust: discard the nearer pole of cells too wide for an R-sample", 0},                                     \
     {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \
      "power crust: discard both, for sharp edges without samples (R 0.5)", 0},                                         \
     {"open", 0, OPTION_NUMBER, offsetof(type, field.open), "K",                                                        \
-     "power crust: leave holes open whose balls are over K sample spacings", 0},                                       \
+     "leave holes open whose radii are over K sample spacings", 0},                                       \
     {"normals", 0, OPTION_TEXT, offsetof(type, field.normals), "FILE",                                                 \
-     "power crust: also write the points with oriented normals", 0}
+     "also write the points with oriented normals", 0}
 /* clang-format on */
-
-/** Whether any of them was given. */
-bool cli_has_power_crust_options(const power_crust_options *options);
 
 /** The options of the poles as the library has them, without a solid. */
 brio_pole_options cli_pole_options(const power_crust_options *options);
+
+/** Finds what is wrong with the file for normals before the work: its format, its folder. */
+brio_status cli_check_normals(run *r, const char *path);
+/** Writes the points with their normals, #P by 3. */
+brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points, const double *normals);
 
 /** Reconstructs the surface of the points; writes the normals where they are asked for. */
 brio_status cli_power_crust(run *r, const power_crust_options *options, const brio_mesh *points, brio_mesh **surface,

@@ -3,7 +3,8 @@
 #include "commands.h"
 #include "estimate.h"
 #include "power_crust.h"
-#include <string.h>
+#include "surface_extras.h"
+#include <stdlib.h>
 
 /* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone is
  * given. */
@@ -15,6 +16,8 @@ typedef struct arguments {
     bool polygons, boundaries, density, vertex_normals, self_intersections;
     double theta; /* 0: not given */
     uint64_t pieces;
+    int extraction;
+    component_options components;
 } arguments;
 
 static const option_choice methods[] = {{"labeled-delaunay", LABELED_DELAUNAY},
@@ -22,6 +25,12 @@ static const option_choice methods[] = {{"labeled-delaunay", LABELED_DELAUNAY},
                                         {"cocone", COCONE},
                                         {"tight-cocone", TIGHT_COCONE},
                                         {NULL, 0}};
+
+static const option_choice extractions[] = {{"labels", BRIO_EXTRACTION_LABELS},
+                                            {"candidates", BRIO_EXTRACTION_CANDIDATES},
+                                            {"pruned", BRIO_EXTRACTION_PRUNED},
+                                            {"walk", BRIO_EXTRACTION_WALK},
+                                            {NULL, 0}};
 
 static const option options[] = {
     {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME", "how to reconstruct (labeled-delaunay)", methods},
@@ -35,6 +44,9 @@ static const option options[] = {
      "co-cones: estimate the sampling density r, also in properties of the vertices", 0},
     {"pieces", 0, OPTION_NATURAL, offsetof(arguments, pieces), "N",
      "co-cone: triangulate about N pieces one after the other, with 1/N of the memory", 0},
+    {"extraction", 0, OPTION_CHOICE, offsetof(arguments, extraction), "NAME",
+     "co-cone: which candidate triangles make the surface (labels)", extractions},
+    COMPONENT_ROWS(arguments, components),
     {"vertex-normals", 0, OPTION_FLAG, offsetof(arguments, vertex_normals), NULL,
      "give the vertices normals, as properties nx ny nz", 0},
     {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
@@ -48,24 +60,38 @@ static const double LEAST_THETA = 0.2542;
 static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_VTU,
                                       BRIO_FORMAT_AUTO};
 
+/* Options of the power crust alone. */
 static bool has_power_crust_options(const arguments *a) {
-    power_crust_options own = a->crust;
-    own.triangulate = false, own.noise = 0; /* what the labeled Delaunay triangulation has, too */
-    own.labeling = 0;
-    return a->polygons || a->crust.labeling != NO_LABELING || cli_has_power_crust_options(&own);
+    return a->polygons || a->crust.labeling != NO_LABELING || a->crust.sampling_density != 0 || a->crust.sharp;
+}
+
+/* Options that the power crust and the labeled Delaunay triangulation have. */
+static bool has_solid_options(const arguments *a) {
+    return a->crust.triangulate || a->crust.noise || a->crust.simplify || a->crust.open != 0 || a->crust.normals;
 }
 
 static int method_of(const arguments *a) {
     return a->method != NO_METHOD ? a->method : has_power_crust_options(a) ? POWER_CRUST : LABELED_DELAUNAY;
 }
 
-static void report_mesh(run *r, size_t samples, const brio_mesh *surface) {
+/* Completes the surface: normals, the properties of its points, fewer components. Reports what it then has.
+ * samples  the point of each vertex, NULL if vertex v is point v.   num_samples  distinct positions. */
+static brio_status complete(run *r, const brio_mesh *points, const uint32_t *samples, size_t num_samples,
+                            brio_mesh *surface) {
     const arguments *a = r->arguments;
-    facts *f = &r->facts;
-    cli_fact_text(f, "method", methods[method_of(a) - 1].name);
-    cli_fact_count(f, "samples", samples);
-    cli_fact_count(f, "vertices", surface->num_vertices);
-    cli_fact_count(f, "faces", surface->num_faces);
+    int method = method_of(a);
+    brio_status status = BRIO_OK;
+    size_t dropped[2];
+    if (a->vertex_normals || method == LABELED_DELAUNAY) TRY(brio_mesh_add_normals(surface));
+    if (method != POWER_CRUST) TRY(cli_copy_properties(r, points, samples, surface));
+    TRY(cli_keep_components(r, &a->components, surface, dropped));
+    cli_fact_text(&r->facts, "method", methods[method - 1].name);
+    cli_fact_count(&r->facts, "samples", num_samples);
+    cli_fact_count(&r->facts, "vertices", surface->num_vertices);
+    cli_fact_count(&r->facts, "faces", surface->num_faces);
+    cli_report_dropped(r, &a->components, dropped);
+done:
+    return status;
 }
 
 /* --- the power crust --- */
@@ -78,9 +104,9 @@ static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surf
     if (o.labeling == NO_LABELING) o.labeling = (int)brio_power_crust_options_default().poles.labeling;
     brio_status status = cli_power_crust(r, &o, points, surface, &s);
     if (status != BRIO_OK) return status;
-    report_mesh(r, s.poles.samples, *surface);
-    cli_report_power_crust(r, &o, &s);
-    return BRIO_OK;
+    status = complete(r, points, NULL, s.poles.samples, *surface);
+    if (status == BRIO_OK) cli_report_power_crust(r, &o, &s);
+    return status;
 }
 
 /* --- the co-cones --- */
@@ -91,6 +117,7 @@ static void report_cocone(run *r, const brio_cocone_stats *s) {
     cli_fact_count(f, "unused", s->unused);
     cli_fact_count(f, "candidates", s->candidates);
     cli_fact_count(f, "pruned", s->pruned);
+    cli_fact_text(f, "extraction", extractions[a->extraction].name);
     if (a->boundaries) cli_fact_count(f, "boundary_samples", s->boundary_samples);
     cli_fact_count(f, "relabeled", s->relabeled);
     if (a->pieces > 1) {
@@ -123,7 +150,8 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     o.tight = a->method == TIGHT_COCONE;
     o.boundaries = a->boundaries;
     o.pieces = a->pieces;
-    o.density = a->density || r->common.json;
+    o.density = a->density || (r->common.json && a->extraction == BRIO_EXTRACTION_LABELS);
+    o.extraction = (brio_extraction)a->extraction;
     uint64_t work;
     brio_status status = brio_estimate_cocone(r->ctx, points->num_vertices, &o, &work);
     status = cli_require_work(r, status, points, work);
@@ -136,7 +164,8 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     cli_stage(r, "label", s.labels_seconds);
     cli_stage(r, "manifold", s.manifold_seconds);
     cli_stage(r, "density", s.density_seconds);
-    report_mesh(r, s.samples, *surface);
+    status = complete(r, points, NULL, s.samples, *surface);
+    if (status != BRIO_OK) return status;
     report_cocone(r, &s);
     if (o.density) report_density(r, &s);
     return BRIO_OK;
@@ -144,45 +173,84 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
 
 /* --- the labeled Delaunay triangulation --- */
 
-static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh **surface) {
+/* Over this share of guesses the user is told. Chosen. */
+static const double MANY_GUESSES = 0.02;
+
+static void report_confidence(run *r, double share) {
+    cli_fact_real(&r->facts, "uncertain_share", share);
+    if (share > MANY_GUESSES && !r->common.quiet)
+        fprintf(stderr,
+                "brio: %.1f %% of the surface is a guess: the vertices whose property confidence is under 0.7\n",
+                100 * share);
+}
+
+static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
+    const arguments *a = r->arguments;
+    facts *f = &r->facts;
+    cli_report_noise(r, s->noise, s->smoothed);
+    cli_fact_count(f, "unused", s->unused);
+    cli_fact_count(f, "undecided", s->undecided);
+    cli_fact_count(f, "specks", s->specks);
+    cli_fact_count(f, "relabeled", s->relabeled);
+    cli_fact_count(f, "handles", s->handles);
+    if (a->crust.open > 0) cli_fact_count(f, "left_out", s->left_out);
+    cli_fact_real(f, "energy", s->energy);
+    report_confidence(r, s->uncertain_share);
+}
+
+static void report_labeled_delaunay_stages(run *r, const brio_labeled_delaunay_stats *s) {
+    const arguments *a = r->arguments;
+    cli_stage(r, "noise", s->noise_seconds);
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "poles", s->poles_seconds);
+    cli_stage(r, "label", s->labels_seconds);
+    cli_stage(r, "manifold", s->manifold_seconds);
+    if (a->crust.simplify) cli_stage(r, "simplify", s->simplify_seconds);
+}
+
+static brio_status normals_of_points(run *r, const char *path, const brio_mesh *points, const brio_mesh *surface,
+                                     const uint32_t *samples) {
+    double *normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
+    brio_status status = BRIO_OK;
+    if (!normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
+    TRY(brio_point_normals(r->ctx, points->vertices, points->num_vertices, surface, samples, normals));
+    TRY(cli_write_normals(r, path, points, normals));
+done:
+    free(normals);
+    return status;
+}
+
+static brio_labeled_delaunay_options labeled_delaunay_options(const run *r) {
+    const arguments *a = r->arguments;
     brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    o.seed = r->common.seed;
+    o.noise = (brio_noise)a->crust.noise;
+    o.confidence = 1;
+    o.open = a->crust.open;
+    o.simplify = a->crust.simplify;
+    return o;
+}
+
+static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh **surface) {
+    brio_labeled_delaunay_options o = labeled_delaunay_options(r);
     brio_labeled_delaunay_stats s = {.size = sizeof s};
     const arguments *a = r->arguments;
     uint64_t work;
-    o.seed = r->common.seed;
-    o.noise = (brio_noise)a->crust.noise;
-    brio_status status = brio_estimate_labeled_delaunay(r->ctx, points->num_vertices, &o, &work);
-    status = cli_require_work(r, status, points, work);
-    if (status != BRIO_OK) return status;
-    status = brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, NULL, &s);
-    if (status != BRIO_OK) return status;
-    cli_stage(r, "noise", s.noise_seconds);
-    cli_stage(r, "delaunay", s.delaunay_seconds);
-    cli_stage(r, "poles", s.poles_seconds);
-    cli_stage(r, "label", s.labels_seconds);
-    cli_stage(r, "manifold", s.manifold_seconds);
-    report_mesh(r, s.samples, *surface);
-    cli_report_noise(r, s.noise, s.smoothed);
-    cli_fact_count(&r->facts, "unused", s.unused);
-    cli_fact_count(&r->facts, "undecided", s.undecided);
-    cli_fact_count(&r->facts, "specks", s.specks);
-    cli_fact_count(&r->facts, "relabeled", s.relabeled);
-    cli_fact_count(&r->facts, "handles", s.handles);
-    cli_fact_real(&r->facts, "energy", s.energy);
-    return BRIO_OK;
-}
-
-/* What the points of the file had beside their coordinates: the vertices of a co-cone are the same points. */
-static brio_status copy_properties(const brio_mesh *points, brio_mesh *surface) {
-    for (size_t i = 0; i < points->num_properties; i++) {
-        const brio_property *p = &points->properties[i];
-        void *data;
-        if (brio_mesh_property(surface, p->name)) continue; /* estimated anew */
-        brio_status status = brio_mesh_add_property(surface, p->name, p->type, &data);
-        if (status != BRIO_OK) return status;
-        memcpy(data, p->data, points->num_vertices * brio_scalar_size(p->type));
-    }
-    return BRIO_OK;
+    uint32_t *samples = NULL;
+    brio_status status = BRIO_OK;
+    if (a->crust.normals) TRY(cli_check_normals(r, a->crust.normals));
+    status = brio_estimate_labeled_delaunay(r->ctx, points->num_vertices, &o, &work);
+    TRY(cli_require_work(r, status, points, work));
+    samples = malloc((points->num_vertices + 1) * sizeof *samples);
+    if (!samples) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices));
+    TRY(brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, samples, &s));
+    report_labeled_delaunay_stages(r, &s);
+    if (a->crust.normals) TRY(normals_of_points(r, a->crust.normals, points, *surface, samples));
+    TRY(complete(r, points, samples, s.samples, *surface));
+    report_labeled_delaunay(r, &s);
+done:
+    free(samples);
+    return status;
 }
 
 /* Options of another method are a mistake; a theta that voids the guarantee is worth a word. */
@@ -194,10 +262,12 @@ static brio_status check_arguments(run *r) {
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--theta, --boundaries and --density are for --method cocone|tight-cocone");
     if (a->pieces > 0 && method != COCONE) return cli_fail(r, BRIO_ERR_ARGUMENT, "--pieces is for --method cocone");
-    if ((cocones && (a->crust.noise || a->crust.triangulate)) || (method != POWER_CRUST && has_power_crust_options(a)))
+    if (a->extraction != BRIO_EXTRACTION_LABELS && (method != COCONE || a->pieces > 1))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--extraction is for --method cocone, without --pieces");
+    if ((cocones && has_solid_options(a)) || (method != POWER_CRUST && has_power_crust_options(a)))
         return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--polygons, --simplify, --labeling, --sampling-density, --sharp, --open and --normals are for "
-                        "--method power-crust, --triangulate and --noise for it and for labeled-delaunay");
+                        "--polygons, --labeling, --sampling-density and --sharp are for --method power-crust, "
+                        "--triangulate, --noise, --simplify, --open and --normals for it and for labeled-delaunay");
     if (a->polygons && a->crust.triangulate)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
     if (a->theta < 0 || a->theta >= 1.57)
@@ -228,11 +298,10 @@ static brio_status surface(run *r) {
     TRY(reconstruct(r, points, &result));
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
-    if (a->method == COCONE || a->method == TIGHT_COCONE) TRY(copy_properties(points, result));
     brio_mesh_free(points);
     points = NULL;
-    if (a->vertex_normals || method_of(a) == LABELED_DELAUNAY) TRY(brio_mesh_add_normals(result));
     unsigned how = a->method == COCONE || a->crust.open > 0 ? CERTIFY_OPEN : 0u;
+    if (a->extraction != BRIO_EXTRACTION_LABELS) how |= CERTIFY_ANYTHING;
     TRY(cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u)));
     TRY(cli_write(r, result));
 done:

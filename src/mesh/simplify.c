@@ -393,6 +393,14 @@ done:
 
 /* --- end --- */
 
+static void move_properties(const brio_mesh *m, size_t from, size_t to) {
+    for (size_t i = 0; i < m->num_properties; i++) {
+        size_t size = brio_scalar_size(m->properties[i].type);
+        char *row = m->properties[i].data;
+        memmove(row + to * size, row + from * size, size);
+    }
+}
+
 /* Writes the remaining surface over the arrays of the mesh. */
 static void write_mesh(simplifier *s) {
     brio_mesh *m = s->mesh;
@@ -401,6 +409,7 @@ static void write_mesh(simplifier *s) {
     for (size_t v = 0; v < m->num_vertices; v++) {
         if (s->half_edge[v] == NONE) continue;
         memmove(m->vertices + 3 * vertices, m->vertices + 3 * v, 3 * sizeof *m->vertices);
+        move_properties(m, v, vertices);
         number[v] = (uint32_t)vertices++;
     }
     for (size_t f = 0; f < m->num_faces; f++) {

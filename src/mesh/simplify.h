@@ -13,7 +13,7 @@ typedef struct {
 
 /** Collapses edges of a manifold oriented triangle mesh in place, edges of least error first. The mesh stays manifold
  *  and oriented, and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary
- *  stay. Vertices that no triangle uses are dropped. The mesh has no properties.
+ *  stay. Vertices that no triangle uses are dropped. A vertex has the properties that it had before its edges collapsed.
  *  Cost: O(n log n); 500 bytes a vertex.
  *  Returns BRIO_OK; BRIO_ERR_ARGUMENT when a face is not a triangle or the mesh is not manifold and oriented at an
  *  edge or a vertex, and leaves the mesh unchanged; BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED, after which the mesh can

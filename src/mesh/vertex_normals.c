@@ -2,6 +2,7 @@
  * not depend on how the polygon is cut into triangles. Faces that are nearly points or lines, whose directions are
  * noise, hardly count. Where the sum has no direction, because the faces have no area, the vertices at the same position
  * that edges of length 0 join to the vertex count as one vertex. The normal is 0 where their sum has no direction. */
+#include "mesh/vertex_normals.h"
 #include "base/memory.h"
 #include "base/union_find.h"
 #include "mesh/edge_rings.h"
@@ -72,13 +73,12 @@ done:
     return status;
 }
 
-brio_status brio_mesh_add_normals(brio_mesh *mesh) {
+brio_status brio_vertex_normals(const brio_mesh *mesh, double **normals) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = mesh->context;
     double *sum = NULL;
-    float *column[3];
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, sum, 3 * mesh->num_vertices));
+    *normals = NULL;
+    BRIO_TRY(brio_mesh_check_faces(mesh->context, mesh));
+    BRIO_TRY(BRIO_ALLOC_ZERO(mesh->context, sum, 3 * mesh->num_vertices));
     for (size_t f = 0; f < mesh->num_faces; f++) {
         double n[3];
         if (mesh->face_offsets[f + 1] == mesh->face_offsets[f]) continue;
@@ -86,17 +86,28 @@ brio_status brio_mesh_add_normals(brio_mesh *mesh) {
         for (uint64_t h = mesh->face_offsets[f]; h < mesh->face_offsets[f + 1]; h++)
             for (int k = 0; k < 3; k++) sum[3 * (size_t)mesh->face_vertices[h] + k] += n[k];
     }
-    BRIO_TRY(share_sums(ctx, mesh, sum));
+    BRIO_TRY(share_sums(mesh->context, mesh, sum));
+    for (size_t v = 0; v < mesh->num_vertices; v++) normalise(sum + 3 * v);
+    *normals = sum;
+    sum = NULL;
+done:
+    brio_release(mesh->context, sum);
+    return status;
+}
+
+brio_status brio_mesh_add_normals(brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    double *normals = NULL;
+    float *column[3];
+    BRIO_TRY(brio_vertex_normals(mesh, &normals));
     for (int k = 0; k < 3; k++) {
         void *data;
         BRIO_TRY(brio_mesh_add_property(mesh, NAMES[k], BRIO_SCALAR_FLOAT32, &data));
         column[k] = data;
     }
-    for (size_t v = 0; v < mesh->num_vertices; v++) {
-        normalise(sum + 3 * v);
-        for (int k = 0; k < 3; k++) column[k][v] = (float)sum[3 * v + (size_t)k];
-    }
+    for (size_t v = 0; v < mesh->num_vertices; v++)
+        for (int k = 0; k < 3; k++) column[k][v] = (float)normals[3 * v + (size_t)k];
 done:
-    brio_release(ctx, sum);
+    brio_release(mesh->context, normals);
     return status;
 }

@@ -14,6 +14,9 @@ class Usage(CliTest):
                        ("-R", "0.3"), ("--sharp",),
                        ("--open", "4"), ("--normals", "n.ply")]:
             self.usage("power-crust", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", *option)
+        for option in [("--extraction", "walk"), ("--extraction", "walk", "--method", "tight-cocone"),
+                       ("--extraction", "walk", "--method", "cocone", "--pieces", "3")]:
+            self.usage("--extraction is for", "surface", "a.xyz", "-o", "x.ply", *option)
         self.usage("pi/2", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", "--theta", "2")
 
 
@@ -39,8 +42,10 @@ class LabeledDelaunay(CliTest):
         seconds = {key: number for key in "read noise delaunay poles label manifold certify write total".split()}
         counts = "samples vertices faces unused undecided specks relabeled handles".split()
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "noise": number,
-                                   "smoothed": bool, "energy": number, "certificate": CERTIFICATE, "seconds": seconds})
+                                   "smoothed": bool, "energy": number, "uncertain_share": number,
+                                   "certificate": CERTIFICATE, "seconds": seconds})
         self.assertEqual((facts["method"], facts["samples"], facts["unused"]), ("labeled-delaunay", 2000, 0))
+        self.assertEqual(facts["uncertain_share"], 0)
         c = facts["certificate"]
         self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
 
@@ -52,7 +57,7 @@ class LabeledDelaunay(CliTest):
 
     def test_an_option_of_the_power_crust_alone_chooses_it(self):
         points, out = self.cloud("a.ply", 500, "sphere"), self.path("out.ply")
-        for option in [("--labeling", "global"), ("--polygons",), ("--open", "9"), ("--simplify",)]:
+        for option in [("--labeling", "global"), ("--polygons",), ("-R", "0.3"), ("--sharp",)]:
             self.assertEqual(self.facts("surface", points, "-o", out, *option)["method"], "power-crust")
             self.usage("power-crust", "surface", points, "-o", out, "--method", "labeled-delaunay", *option)
         triangles = self.facts("surface", points, "-o", out, "--method", "power-crust")["faces"]
@@ -60,7 +65,98 @@ class LabeledDelaunay(CliTest):
         self.usage("exclude", "surface", points, "-o", out, "--polygons", "--triangulate")
 
 
+    def points_with_properties(self, name):
+        """A sphere's points with a colour, and normals and a confidence of their own."""
+        self.cloud("bare.xyz", 2000, "sphere")
+        with open(self.path("bare.xyz")) as f:
+            rows = [line.split() for line in f if not line.startswith("#")]
+        names = "x y z red nx ny nz confidence".split()
+        header = "ply\nformat ascii 1.0\nelement vertex %d\n" % len(rows)
+        header += "".join("property %s %s\n" % ("uchar" if n == "red" else "double", n) for n in names) + "end_header\n"
+        return self.file(name, header + "".join("%s %d 1 2 3 %d\n" % (" ".join(row[:3]), i % 256, i)
+                                                for i, row in enumerate(rows))), rows
+
+    def vertices(self, out):
+        """The vertices of an ASCII PLY file, each a dictionary."""
+        with open(out) as f:
+            lines = f.read().split("\n")
+        names = [line.split()[2] for line in lines if line.startswith("property") and "list" not in line]
+        number_of = next(int(line.split()[2]) for line in lines if line.startswith("element vertex"))
+        body = lines[lines.index("end_header") + 1:][:number_of]
+        return [dict(zip(names, map(float, line.split()))) for line in body]
+
+    def test_properties_of_points_go_to_the_vertices(self):
+        points, rows = self.points_with_properties("a.ply")
+        out = self.path("out.ply")
+        at = {tuple(map(float, row[:3])): i for i, row in enumerate(rows)}
+        for more in ([], ["--noise", "smooth"], ["--simplify"]):
+            facts = self.facts("surface", points, "-o", out, "--ascii", *more)
+            vertices = self.vertices(out)
+            self.assertEqual(len(vertices), facts["vertices"])
+            for v in vertices:
+                i = int(v["input_confidence"])
+                self.assertEqual((v["red"], v["input_nx"], v["input_ny"], v["input_nz"]), (i % 256, 1, 2, 3))
+                self.assertAlmostEqual(v["nx"] ** 2 + v["ny"] ** 2 + v["nz"] ** 2, 1, places=4)
+                self.assertTrue(0.5 < v["confidence"] < 1)
+                if not more:
+                    self.assertEqual(at[v["x"], v["y"], v["z"]], i)
+                self.assertLess(sum((v[c] - float(x)) ** 2 for c, x in zip("xyz", rows[i])), 0.1)
+
+    def test_normals_of_a_co_cones_points_come_beside_its_own(self):
+        points, out = self.points_with_properties("a.ply")[0], self.path("out.ply")
+        self.facts("surface", points, "-o", out, "--method", "cocone", "--ascii")
+        self.assertEqual(self.vertices(out)[7]["nx"], 1)
+        self.facts("surface", points, "-o", out, "--method", "cocone", "--ascii", "--vertex-normals")
+        self.assertEqual(self.vertices(out)[7]["input_nx"], 1)
+
+    def test_a_guess_is_reported(self):
+        points = self.cloud("a.ply", 3000, "cube")
+        facts = self.facts("surface", points, "-o", self.path("out.ply"))
+        self.assertGreater(facts["uncertain_share"], 0.2)
+        self.assertIn("is a guess", self.expect(0, "surface", points, "-o", self.path("out.ply")).err)
+
+    def test_holes_left_open(self):
+        self.cloud("b.xyz", 4000, "sphere")
+        with open(self.path("b.xyz")) as f:
+            rows = [line for line in f if not line.startswith("#") and float(line.split()[2]) < 0.9]
+        points, out = self.file("a.xyz", "".join(rows)), self.path("out.ply")
+        facts = self.facts("surface", points, "-o", out, "--open", "4")
+        c = facts["certificate"]
+        self.assertEqual((facts["method"], c["closed"], c["manifold"], c["boundary_loops"]),
+                         ("labeled-delaunay", False, True, 1))
+        self.assertGreater(facts["left_out"], 0)
+        self.assertTrue(self.facts("surface", points, "-o", out)["certificate"]["closed"])
+        self.expect(3, "surface", points, "-o", out, "--open", "0.001")
+
+    def test_components(self):
+        points = self.cloud("a.xyz", 2000, "sphere")
+        with open(points) as f:
+            rows = [list(map(float, line.split()[:3])) for line in f if not line.startswith("#")]
+        rows += [[0.2 * x + 5, 0.2 * y, 0.2 * z] for x, y, z in rows[:600]]
+        points, out = self.xyz("b.xyz", rows), self.path("out.ply")
+        for method in ("labeled-delaunay", "power-crust", "cocone", "tight-cocone"):
+            of = ("surface", points, "-o", out, "--method", method)
+            whole = self.facts(*of)
+            self.assertEqual(whole["certificate"]["components"], 2)
+            self.assertNotIn("dropped_components", whole)
+            largest = self.facts(*of, "--keep-largest")
+            self.assertEqual((largest["certificate"]["components"], largest["dropped_components"]), (1, 1))
+            self.assertEqual(largest["faces"] + largest["dropped_faces"], whole["faces"])
+            if method != "power-crust":
+                least = self.facts(*of, "--min-component", "2000")
+                self.assertEqual((least["faces"], least["dropped_components"]), (largest["faces"], 1))
+            self.assertEqual(self.facts(*of, "--min-component", "3")["dropped_faces"], 0)
+        self.expect(3, *of, "--min-component", "1e6")
+
+
 class PowerCrust(CliTest):
+    def test_as_in_the_dissertation(self):
+        points = self.cloud("a.ply", 2000, "sphere")
+        facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "power-crust", "--labeling",
+                           "greedy", "--noise", "keep", "--polygons")
+        self.assertEqual((facts["method"], facts["labeling"], facts["smoothed"]), ("power-crust", "greedy", False))
+        self.assertTrue(facts["certificate"]["closed"])
+
     def test_facts_of_a_run(self):
         points = self.cloud("a.ply", 2000, "sphere")
         facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "power-crust")
@@ -150,6 +246,15 @@ class Cocone(CliTest):
         pieces = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--pieces", "4")
         self.assertEqual((pieces["faces"], pieces["unmatched"]), (3996, 0))
         self.assertGreaterEqual(pieces["pieces"], 4)
+
+    def test_extractions(self):
+        points, out = self.cloud("a.ply", 4000, "sphere"), self.path("out.ply")
+        for name in ("candidates", "pruned", "walk"):
+            facts = self.facts("surface", points, "-o", out, "--method", "cocone", "--extraction", name)
+            self.assertEqual(facts["extraction"], name)
+            if name != "walk":
+                self.assertEqual(facts["faces"], facts["candidates"] - facts["pruned"])
+        self.assertIn("closed", facts["certificate"])
 
     def test_theta_without_a_guarantee_warns(self):
         points = self.cloud("a.ply", 2000, "sphere")

@@ -416,6 +416,18 @@ BRIO_API double brio_property_value(const brio_property *property, size_t i);
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or the mesh has such properties), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_add_normals(brio_mesh *mesh);
 
+/** Drops components of a mesh: sets of faces joined across edges. Also drops the vertices, with their properties, that
+ *  only dropped faces used; the rest keeps its order.
+ *  largest      1: keeps one component, that of the largest area (among equal areas, the one of more faces, then the
+ *               first one); 0: keeps all.
+ *  least_faces  drops the components of fewer faces, before the largest one is looked for.
+ *  dropped_components, dropped_faces  NULL, or receive what was dropped.
+ *  Cost: near-linear; about 30 bytes a corner.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or the mesh has edges or tetrahedra), BRIO_ERR_NO_ANSWER (no
+ *  component has so many faces), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. After a failure the mesh is as it was. */
+BRIO_API brio_status brio_mesh_keep_components(brio_mesh *mesh, int largest, size_t least_faces,
+                                               size_t *dropped_components, size_t *dropped_faces);
+
 /** What the connectivity of a mesh's polygons says about the surface. Vertices at the same position count as distinct.
  *  Components are sets of faces joined across edges. The genus is the sum over the components of
  *  (2 - chi - boundary loops) / 2. */
@@ -714,6 +726,13 @@ typedef struct brio_labeled_delaunay_options {
     size_t size;
     uint64_t seed;    /* default 1 */
     brio_noise noise; /* what to do about noisy samples; default BRIO_NOISE_AUTO */
+    int confidence;   /* 1: adds the vertex property "confidence"; default 0 */
+    double open;      /* K > 0: leaves out the triangles that span holes of the samples: their circles have radii over K
+                         spacings of their samples, and they are joined to a triangle with a side over K spacings. The
+                         surface is then manifold and oriented, with boundary; default 0: it is closed */
+    int simplify;     /* 1: collapses edges of up to four spacings while the vertices stay within a tenth of a spacing
+                         of the planes of their triangles, until a quarter of the triangles is left; the surface stays
+                         the same as a manifold; default 0 */
     int reserved_int;
 } brio_labeled_delaunay_options;
 
@@ -739,24 +758,54 @@ typedef struct brio_labeled_delaunay_stats {
     size_t smoothed;  /* 1: the samples were smoothed */
     double noise_seconds, delaunay_seconds, poles_seconds, labels_seconds, manifold_seconds;
     uint64_t reserved[4];
+    size_t left_out;         /* triangles that the option `open` left out */
+    double uncertain_share;  /* with options.confidence: the share of the vertices whose confidence is under 0.7 */
+    double simplify_seconds; /* for the mesh, and for its simplification */
 } brio_labeled_delaunay_stats;
 
 /** Reconstructs a closed surface from samples: the boundary of the Delaunay tetrahedra that are labeled inner. A sample
  *  votes on the sides of the tetrahedra in its Voronoi cell, with log-odds that were measured on generated solids; the
  *  labels are those of low energy, votes and area together.
- *  Guarantees: for every input that has an inside, the mesh is closed, manifold and oriented as a combinatorial object.
+ *  Guarantees: for every input that has an inside, the mesh is closed, manifold and oriented as a combinatorial object
+ *  (with the option `open`: manifold and oriented).
  *  Does not guarantee: the right topology where walls or gaps are under two spacings of the samples, freedom from
  *  self-intersections, that every sample is used.
  *  points   #P by 3.   options  NULL for the defaults.   stats  NULL, or its `size` set.
  *  out      owned by the caller: triangles, about two a sample, counterclockwise seen from outside. The vertices are the
- *           samples that the surface uses; with smoothing, where smoothing moved them.
- *  samples  NULL, or room for #P: receives for each vertex the index of its sample, ascending.
+ *           samples that the surface uses; with smoothing, where smoothing moved them. With options.confidence, their
+ *           property "confidence" (float32) is the probability that the surface is right there, between 0 and 1: a
+ *           logistic regression on the share of the votes round the vertex that the labels contradict and on the
+ *           log-odds of the labels beside its triangles, measured on generated solids. Vertices under 0.7 are
+ *           guesses (docs/algorithms.md tells how often those of real models were wrong).
+ *  samples  NULL, or room for #P: receives for each vertex the index of its sample, ascending; with options.simplify, of
+ *           the sample whose vertex it was before edges collapsed.
  *  Cost: one triangulation, and the labels, about as long; 2,000 to 2,400 bytes a sample at the peak.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found), and as brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or options.open leaves nothing), and as brio_delaunay.
  *  Based on: [Labatut Pons Keriven 2009], [Dey Goswami 2003], [Amenta Bern 1999]. */
 BRIO_API brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
                                            const brio_labeled_delaunay_options *options, brio_mesh **out,
                                            uint32_t *samples, brio_labeled_delaunay_stats *stats);
+
+/** Finds the oriented unit normals of the points that a surface was made from. A point that is a vertex has the vertex's
+ *  normal, as brio_mesh_add_normals finds it, and so have its duplicates. Every other point has the normal of the surface
+ *  where the surface is nearest to it, interpolated between vertices.
+ *  surface  its vertices are points, maybe moved.
+ *  samples  #V: the point of each vertex; NULL: vertex v is point v, as in the co-cone.
+ *  normals  #P by 3, written.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_ANSWER (no vertex has a
+ *  normal), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_point_normals(brio_context *ctx, const double *points, size_t num_points,
+                                        const brio_mesh *surface, const uint32_t *samples, double *normals);
+
+/** How the co-cone makes a surface of its candidate triangles. */
+typedef enum brio_extraction {
+    BRIO_EXTRACTION_LABELS = 0, /* the candidates between tetrahedra labeled outer and inner, and small gaps filled */
+    BRIO_EXTRACTION_CANDIDATES = 1, /* all candidates, as [Choi 2003] has implemented it; not oriented, no manifold */
+    BRIO_EXTRACTION_PRUNED = 2,     /* those left when triangles at sharp edges are removed, recursively; likewise */
+    BRIO_EXTRACTION_WALK = 3,       /* of these, each component's outside, by a walk from edge to edge
+                                       [Amenta Choi Dey Leekha 2000]: a manifold on dense samples */
+    BRIO_EXTRACTION_END
+} brio_extraction;
 
 typedef struct brio_cocone_options {
     size_t size;
@@ -768,6 +817,8 @@ typedef struct brio_cocone_options {
     int density;    /* 1: estimates the sampling density and adds it as vertex properties; default 0 */
     size_t pieces;  /* N > 1: the super co-cone, which triangulates the samples in about N pieces, one after the other,
                        and matches the surfaces at the seams; not with `tight`; default 0: one piece */
+    brio_extraction extraction; /* default BRIO_EXTRACTION_LABELS; the others not with `tight` or `pieces` */
+    int reserved_int;
 } brio_cocone_options;
 
 BRIO_API void brio_cocone_options_init(brio_cocone_options *options, size_t size);
@@ -795,7 +846,8 @@ typedef struct brio_cocone_stats {
 
 /** Reconstructs a surface from Delaunay triangles of the samples: the co-cone or the tight co-cone.
  *  Guarantees: for every input, the mesh is manifold and oriented as a combinatorial object, and the tight co-cone is
- *  closed. On an r-sample of a smooth closed surface with r <= 0.08, the co-cone is homeomorphic to the surface and within
+ *  closed; not so with another extraction than BRIO_EXTRACTION_LABELS. On an r-sample of a smooth closed surface with
+ *  r <= 0.08, the co-cone is homeomorphic to the surface and within
  *  1.3 r / (1 - r) times the local feature size of it (theorem 19 of [Choi 2003]).
  *  Does not guarantee: a closed mesh on sparser samples, freedom from self-intersections, that every sample is used.
  *  points  #P by 3.   options  NULL for the defaults.   stats  NULL, or its `size` set.

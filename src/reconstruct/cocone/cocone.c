@@ -114,6 +114,10 @@ static brio_status check_options(brio_context *ctx, const brio_cocone_options *o
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, o->theta > 0 && o->theta < 1.57, BRIO_ERR_ARGUMENT, "theta is %g, expected a number in (0, pi/2)",
                  o->theta);
+    BRIO_REQUIRE(ctx, (unsigned)o->extraction < BRIO_EXTRACTION_END, BRIO_ERR_ARGUMENT, "no such extraction: %d",
+                 (int)o->extraction);
+    BRIO_REQUIRE(ctx, o->extraction == BRIO_EXTRACTION_LABELS || (!o->tight && o->pieces <= 1), BRIO_ERR_ARGUMENT,
+                 "candidates, pruned and walk are extractions of the co-cone in one piece");
     BRIO_REQUIRE(ctx, !o->tight || o->pieces <= 1, BRIO_ERR_ARGUMENT,
                  "the tight co-cone cannot be found in pieces: what is outside only the whole tells");
 done:

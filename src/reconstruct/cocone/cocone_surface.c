@@ -16,6 +16,7 @@
 #include "reconstruct/cocone/boundary_samples.h"
 #include "reconstruct/cocone/cocone_prune.h"
 #include "reconstruct/cocone/flat_tetrahedra.h"
+#include "reconstruct/cocone/literal_extraction.h"
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "reconstruct/cocone/sample_orientation.h"
 
@@ -88,6 +89,18 @@ done:
     return status;
 }
 
+static brio_status extract_literally(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_cocone_surface *out = r->out;
+    BRIO_TRY(brio_extract_literally(r->ctx, &r->cocones, r->options->extraction, &out->stats.pruned, &out->faces,
+                                    &out->num_faces));
+    BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_ERR_NO_ANSWER, "no triangle is left of %zu candidates",
+                 out->stats.candidates);
+    lap(r, &out->stats.manifold_seconds);
+done:
+    return status;
+}
+
 static brio_status extract(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_cocone_surface *out = r->out;
@@ -96,10 +109,16 @@ static brio_status extract(reconstruction *r) {
     BRIO_TRY(brio_extract_faces(r->ctx, &r->labels, !r->options->tight, &boundary, &out->faces, &out->num_faces));
     BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_ERR_NO_ANSWER, "no inside found");
     lap(r, &out->stats.manifold_seconds);
-    if (r->options->density) BRIO_TRY(brio_feature_sizes(r->ctx, &r->dual, &out->size));
-    lap(r, &out->stats.density_seconds);
 done:
     brio_release(r->ctx, boundary.facet);
+    return status;
+}
+
+static brio_status find_density(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    if (r->options->density) BRIO_TRY(brio_feature_sizes(r->ctx, &r->dual, &r->out->size));
+    lap(r, &r->out->stats.density_seconds);
+done:
     return status;
 }
 
@@ -123,9 +142,10 @@ brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, si
     brio_progress_part(ctx, bar, 0.5, 0.65);
     BRIO_TRY(find_candidates(&r));
     brio_progress_part(ctx, bar, 0.65, 0.8);
-    BRIO_TRY(label(&r));
+    if (options->extraction == BRIO_EXTRACTION_LABELS) BRIO_TRY(label(&r));
     brio_progress_part(ctx, bar, 0.8, 1);
-    BRIO_TRY(extract(&r));
+    BRIO_TRY(options->extraction == BRIO_EXTRACTION_LABELS ? extract(&r) : extract_literally(&r));
+    BRIO_TRY(find_density(&r));
 done:
     brio_progress_part(ctx, bar, 0, 1);
     release(&r);

@@ -27,7 +27,7 @@ enum { TETS_A_THREAD = 1 << 11, VOTES = 4, EDGES = 8, HULL_VOTES = 3, HULL_EDGES
 
 /* In log-odds, of a facet of the area of an equilateral triangle whose sides are one spacing: AREA is its weight in any
  * case, DOUBT is added if its samples see both of its tetrahedra in one direction. Larger facets weigh more, up to
- * MOST_AREA times as much. All chosen on generated solids. BRIO_VOTE_UNIT keeps weights from going over 1. */
+ * MOST_AREA times as much. All chosen on generated solids. */
 static const double AREA = 1, DOUBT = 6, MOST_AREA = 3;
 
 typedef struct {

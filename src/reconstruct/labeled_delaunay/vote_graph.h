@@ -5,7 +5,7 @@
 #include "dual/pole_vectors.h"
 #include "reconstruct/labels/signed_graph.h"
 
-/** The weight of an edge that holds log-odds of 1. */
+/** The weight of an edge of one log-odds: so no weight is over 1. */
 #define BRIO_VOTE_UNIT (1 / 21.0)
 
 /** Node t < #T is tetrahedron t. Node #T + p is sample p: its label is that of the side to which its axis points. */

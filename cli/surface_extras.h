@@ -1,0 +1,38 @@
+/* What a reconstructed surface gets before it is reported: normals, the properties of its points, fewer components. */
+#ifndef BRIO_CLI_SURFACE_EXTRAS_H
+#define BRIO_CLI_SURFACE_EXTRAS_H
+
+#include "run.h"
+
+typedef struct component_options {
+    bool largest;
+    uint64_t least; /* faces */
+} component_options;
+
+/** Rows of a command's option table whose struct has component_options as its member `field`. */
+#define COMPONENT_ROWS(type, field)                                                                                    \
+    {                                                                                                                  \
+        "keep-largest",                                                                                                \
+        0,                                                                                                             \
+        OPTION_FLAG,                                                                                                   \
+        offsetof(type, field.largest),                                                                                 \
+        NULL,                                                                                                          \
+        "keep only the component of largest area",                                                                     \
+        0},                                                                                                            \
+    {                                                                                                                  \
+        "min-component", 0, OPTION_NATURAL, offsetof(type, field.least), "N", "drop components of fewer than N faces", \
+            0                                                                                                          \
+    }
+
+/** Copies the properties of points to the vertices of their surface. Where the surface has a property of that name, the
+ *  one of the points is called input_NAME; it is left out where that name is taken or too long, too.
+ *  samples  the point of each vertex; NULL: vertex v is point v. */
+brio_status cli_copy_properties(run *r, const brio_mesh *points, const uint32_t *samples, brio_mesh *surface);
+
+/** Drops components as the options say; nothing without options.   dropped  components and faces. */
+brio_status cli_keep_components(run *r, const component_options *options, brio_mesh *surface, size_t dropped[2]);
+
+/** Reports what was dropped, if the options ask for it. */
+void cli_report_dropped(run *r, const component_options *options, const size_t dropped[2]);
+
+#endif
