@@ -30,7 +30,6 @@ DIRECTIONS, THICKNESS, MOST = 20, np.array([0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5
 NEAREST = 6      # shortest edges whose mean is the spacing of a sample: src/dual/spacing.c
 PROBES = 4       # random points in a tetrahedron
 PRIOR = 0.5      # tetrahedra of each side in a cell that none was seen in, so that the log-odds stay finite
-SAMPLINGS = ('even', 'random')
 FACETS = np.array([[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]])  # opposite each vertex
 
 
@@ -152,17 +151,16 @@ def count_votes(points, outwards, tets, inside_share):
 
 
 def measure_model(brio, path, noise, seed):
-    """The counts of both samplings of a model."""
+    """The counts of both samplings of a model. Noise is in radii of the disks of the even samples (sampling.py)."""
     name = os.path.basename(path)
     rng = np.random.default_rng([seed, *name.encode()])
-    points, triangles = ply.read_mesh(path)
-    inside, counts = Inside(points, triangles), 0
-    for way in SAMPLINGS:
-        samples = sampling.sample(name, way, points, triangles)
-        spacing = np.sqrt(sampling.areas_and_normals(points, triangles)[0].sum() / len(samples.exact))
-        noisy = samples.exact + rng.normal(0, noise * spacing, samples.exact.shape) if noise else samples.exact
-        tets = triangulate(brio, noisy)
-        counts = counts + count_votes(noisy, samples.normals, tets, share_inside(noisy, tets, inside, rng))
+    mesh = ply.read_mesh(path)
+    even, normals, radius = sampling.even_points(*mesh, sampling.MANY, rng)
+    inside, counts = Inside(*mesh), 0
+    for exact, outwards in [(even, normals), sampling.random_points(*mesh, sampling.MANY, rng)]:
+        points = exact + rng.normal(0, noise * radius, exact.shape) if noise else exact
+        tets = triangulate(brio, points)
+        counts = counts + count_votes(points, outwards, tets, share_inside(points, tets, inside, rng))
     return counts / counts.sum()
 
 
@@ -215,7 +213,8 @@ def main():
                 print(key, file=sys.stderr, flush=True)
                 if arguments.counts:
                     np.savez(arguments.counts, **counts)
-        print(as_c('CLEAN' if noise == 0 else 'NOISY_%g' % noise, log_odds(sum(counts['%s %g' % (n, noise)] for n in names))))
+        table = log_odds(sum(counts['%s %g' % (name, noise)] for name in names))
+        print(as_c('CLEAN' if noise == 0 else 'NOISY_%g' % noise, table), flush=True)
     return 0
 
 

@@ -4,7 +4,7 @@
     even      20,000 points, evenly spread, seldom on the edges
     random    20,000 points, uniformly random by area
     sparse    4,000 points, evenly spread
-    noisy     as even, with Gaussian noise of 0.3 spacings in each coordinate
+    noisy     as even, with Gaussian noise of 0.3 spacings (radii of the disks) in each coordinate
 
 The same name of a model gives the same samples. Evenly spread points are those of a random order that are no closer than a
 radius to any before them, until no more fit (Poisson disks)."""
@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 SAMPLINGS = ('vertices', 'even', 'random', 'sparse', 'noisy')
 LEAST_VERTICES, MANY, FEW = 1500, 20000, 4000
 NOISE = 0.3           # of the samples `noisy`, in radii of their disks
-CANDIDATES = 8        # random points for each evenly spread one: more change the radius by under 2 %
+CANDIDATES = 8        # random points for each evenly spread one
 TRIES, NEAR = 5, 0.01 # to find the radius: how often, and the error of the number of points that is near enough
 
 # points: what a program is given. exact: the same without noise. normals: of the mesh there, outwards.
@@ -57,7 +57,7 @@ def first_come(points, radius):
 def even_points(points, triangles, count, rng):
     """About `count` points, evenly spread, their normals, and the radius of their disks."""
     candidates, normals = random_points(points, triangles, CANDIDATES * count, rng)
-    radius = 0.9 * np.sqrt(areas_and_normals(points, triangles)[0].sum() / count)
+    radius = 0.75 * np.sqrt(areas_and_normals(points, triangles)[0].sum() / count)
     for _ in range(TRIES):
         kept = first_come(candidates, radius)
         share = kept.sum() / count

@@ -3,10 +3,10 @@
 Thickness at a point of the surface: the distance to the nearest sheet in front of the point or behind it, along the normal,
 that faces the other way (the angle between the normals is over 143 degrees). Behind the point it is that of a wall or a
 bar, in front that of a gap or a hole. Found by marching along the normal: the distance to the nearest of many random
-points of the surface is a step that passes no sheet.
+points of the surface is a step that passes no sheet, but at the rim of one.
 
-Spacing: the side of a square that has as much of the surface as one sample has, by the 12 nearest samples on the same
-sheet, noise left aside. The thinnest places of a model are those that one sample in a hundred is thinner than.
+Spacing: the side of a square that has as much of the surface as one sample has: a sample has the surface that is nearest to
+it, on its own sheet, and the mean is taken over it and the 12 nearest samples. Noise is left aside. The thinnest places of a model are those that one sample in a hundred is thinner than.
 """
 import numpy as np
 from scipy.spatial import cKDTree
@@ -16,7 +16,7 @@ import sampling
 SURFACE, PLACES = 120000, 6000  # random points that stand for the surface; those whose thickness is measured
 OPPOSITE = -0.8                 # most cosine between normals of sheets that face each other; chosen: creases do not count
 REACH = 20                      # how far to look, in spacings of 20,000 samples
-NEAREST = 12                    # samples for the spacing
+NEIGHBOURS = 13                 # samples in the mean of the spacing
 SHEET = 3                       # spacings between sheets for each unit between normals, to tell sheets apart
 SHARE = 0.01                    # of the samples, in the thinnest places
 
@@ -41,19 +41,23 @@ class Thickness:
         while len(left):
             distance, nearest = self.tree.query(place[left] + gone[left, None] * normal[left])
             facing = way * np.einsum('ij,ij->i', self.normals[nearest], normal[left]) < OPPOSITE
-            hit = facing & (distance < 1.5 * grain)
+            hit = facing & (distance < 2 * grain)
             there = self.points[nearest[hit]] - place[left[hit]]
             found[left[hit]] = np.abs(np.einsum('ij,ij->i', there, normal[left[hit]]))
             gone[left] += np.maximum(distance - grain, grain)
             left = left[~hit & (gone[left] < reach)]
         return found
 
+    def spacing(self, tree, scale):
+        """Of each sample.   tree  the samples and, times scale, their normals."""
+        nearest = tree.query(np.hstack([self.points, scale * self.normals]))[1]
+        area = np.bincount(nearest, minlength=tree.n) * self.area / SURFACE
+        return np.sqrt(area[tree.query(tree.data, NEIGHBOURS)[1]].mean(1))
+
     def thinnest(self, samples):
         """The thickness of the thinnest places in spacings of the samples; inf if it is beyond reach."""
         scale = SHEET * np.sqrt(self.area / len(samples.exact))
         tree = cKDTree(np.hstack([samples.exact, scale * samples.normals]))
-        farthest = tree.query(tree.data, [NEAREST + 1])[1][:, 0]
-        spacing = np.sqrt(np.pi / NEAREST) * np.linalg.norm(samples.exact[farthest] - samples.exact, axis=1)
         places = cKDTree(np.hstack([self.points[:PLACES], scale * self.normals[:PLACES]]))
-        thickness = self.at[places.query(tree.data)[1]] / np.maximum(spacing, 1e-300)
+        thickness = self.at[places.query(tree.data)[1]] / np.maximum(self.spacing(tree, scale), 1e-300)
         return float(np.quantile(thickness, SHARE, method='lower'))
