@@ -83,7 +83,8 @@ def reconstruct(programs, method, points, mesh):
 def judge(brio, model, mesh):
     """The columns that tell what a surface is worth."""
     checked, _ = run([brio, 'check', mesh, '--json', '--quiet'])
-    compared, _ = run([brio, 'compare', mesh, model.path, '--json', '--quiet', '--threads', '1', '--samples', str(POINTS_COMPARED)])
+    compared, _ = run([brio, 'compare', mesh, model.path, '--json', '--quiet', '--threads', '1',
+                       '--samples', str(POINTS_COMPARED)])
     found = {}
     if checked:
         c = checked['certificate']
@@ -91,7 +92,8 @@ def judge(brio, model, mesh):
         found.update(sound=int(sound), components=c['components'], genus=c['genus'] if sound else '-',
                      right=int(sound and (c['components'], c['genus']) == (model.components, model.genus)))
     if compared:
-        found.update(chamfer='%.4f' % compared['percent_of_diagonal']['mean'], normals='%.4f' % compared['normal_consistency'])
+        found.update(chamfer='%.4f' % compared['percent_of_diagonal']['mean'],
+                     normals='%.4f' % compared['normal_consistency'])
     return found
 
 
@@ -119,7 +121,8 @@ def examine(programs, model, samplings, methods):
             path = os.path.join(folder, way + '.ply')
             ply.write_points(path, samples.points, samples.normals)
             common = dict(corpus=model.corpus, model=model.name, sampling=way, points=len(samples.points),
-                          thinnest='%.2f' % thickness.thinnest(samples), true_components=model.components, true_genus=model.genus,
+                          thinnest='%.2f' % thickness.thinnest(samples),
+                          true_components=model.components, true_genus=model.genus,
                           crossings=crossings['certificate']['self_intersections'] if crossings else '-')
             rows += rows_of_samples(programs, model, methods, common, path)
     return rows
@@ -132,6 +135,6 @@ def run_all(programs, models, samplings, methods, processes):
         for count, job in enumerate(concurrent.futures.as_completed(jobs), 1):
             rows = job.result()
             right = sum(row['right'] == '1' for row in rows)
-            print('%d of %d models: %s, right %d of %d' % (count, len(jobs), rows[0]['model'] if rows else 'no samples', right, len(rows)),
-                  file=sys.stderr, flush=True)
+            name = rows[0]['model'] if rows else 'no samples'
+            print('%d of %d models: %s, right %d of %d' % (count, len(jobs), name, right, len(rows)), file=sys.stderr, flush=True)
             yield rows

@@ -103,12 +103,14 @@ def section(title, rows, intro):
     if thin:
         parts += [IMPOSSIBLE % (HOPELESS, names(thin)), '\n'.join(hopeless_table(rows))]
     if any(row['crossings'] not in ('-', '0') for row in rows):
-        parts += ['Models that cross themselves: no surface without crossings has their shape everywhere.', '\n'.join(crossing_table(rows))]
+        parts += [CROSSING, '\n'.join(crossing_table(rows))]
     return '\n\n'.join(parts) + '\n\n'
 
 
 THICKNESS = '''Right runs against the thickness of the thinnest walls, gaps and bars, in spacings of the samples
 (bench/quality/thickness.py: what one sample in a hundred is thinner than).'''
+
+CROSSING = 'Models that cross themselves: no surface without crossings has their shape everywhere.'
 
 IMPOSSIBLE = '''Under %g spacings the samples of both sides of a wall or a gap are about as near as those of one side. Points alone
 do not tell how they are joined: these runs count as hopeless, and those that are right as luck. They are: %s.'''

@@ -9,8 +9,8 @@ the inradius in spacings of the sample. Random points in the tetrahedron tell it
 outwards where its product with the model's normal at the sample is positive.
 
 A cell of the table is the log-odds of the share of tetrahedra on the side to which the axis points. In each row both sides
-weigh equally: four votes of one tetrahedron must not count four times what its thickness alone tells. A tetrahedron counts once for each of its samples,
-and every model the same. Infinite tetrahedra are outside, and are in the last row.
+weigh equally: four votes of one tetrahedron must not count four times what its thickness alone tells. A tetrahedron
+counts once for each of its samples, and every model the same. Infinite tetrahedra are outside, and are in the last row.
 
 Prints the tables as C, for each noise one. --counts adds up in a file, so that models can be measured in several runs."""
 import argparse
@@ -209,7 +209,8 @@ def main():
         for name in names:
             key = '%s %g' % (name, noise)
             if key not in counts:
-                counts[key] = measure_model(arguments.brio, os.path.join(arguments.folder, name + '.ply'), noise, arguments.seed)
+                path = os.path.join(arguments.folder, name + '.ply')
+                counts[key] = measure_model(arguments.brio, path, noise, arguments.seed)
                 print(key, file=sys.stderr, flush=True)
                 if arguments.counts:
                     np.savez(arguments.counts, **counts)

@@ -127,11 +127,13 @@ every change as a difference; do not edit. Nothing but the seconds depends on th
 JUDGED = '''Each was sampled in several ways (bench/quality/sampling.py), points alone but for Poisson
 reconstruction, which gets the true normals or estimates them. Right: closed, manifold, oriented, with as many components as
 the model, and as many handles in all. Unsound: not closed, not manifold or not oriented, or no surface at all. Handles off,
-of sound surfaces: the mean difference of the numbers of handles. Normals: mean |cos| between the normals at nearest points. Chamfer: mean distance
-both ways, in per cent of the diagonal; distances are to the triangles of the other surface, so that a surface is at distance 0 from itself and
-no floor has to be taken off. Seconds of one processor, mean.'''
+of sound surfaces: the mean difference of the numbers of handles. Normals: mean |cos| between the normals at nearest
+points. Chamfer: mean distance both ways, in per cent of the diagonal; distances are to the triangles of the other surface,
+so that a surface is at distance 0 from itself and no floor has to be taken off. Seconds of one processor, mean.'''
 
-CORPORA = [('corpus', 'Models of known topology', '%d closed models beside the project, organic and mechanical. The log-odds of the default method were measured on generated solids, a few of its constants compared on these models too (decisions/011). ' + JUDGED),
+CORPORA = [('corpus', 'Models of known topology', '''%d closed models beside the project, organic and mechanical. The log-odds of the
+default method were measured on generated solids, a few of its constants were compared on these models, too
+([decisions/011](decisions/011-samples-vote.md)). ''' + JUDGED),
            ('solids', 'Generated solids', '%d solids of `brio generate solid`, even seeds: none was used to choose a constant. ' + JUDGED)]
 
 

@@ -5,8 +5,9 @@ that faces the other way (the angle between the normals is over 143 degrees). Be
 bar, in front that of a gap or a hole. Found by marching along the normal: the distance to the nearest of many random
 points of the surface is a step that passes no sheet, but at the rim of one.
 
-Spacing: the side of a square that has as much of the surface as one sample has: a sample has the surface that is nearest to
-it, on its own sheet, and the mean is taken over it and the 12 nearest samples. Noise is left aside. The thinnest places of a model are those that one sample in a hundred is thinner than.
+Spacing: the side of a square that has as much of the surface as one sample has. A sample
+has the surface that is nearest to it, on its own sheet, and the mean is taken over it and the 12 nearest samples. Noise is
+left aside. The thinnest places of a model: one sample in a hundred is thinner.
 """
 import numpy as np
 from scipy.spatial import cKDTree
