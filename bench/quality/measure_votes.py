@@ -11,6 +11,8 @@ outwards where its product with the model's normal at the sample is positive.
 A cell of the table is the log-odds of the share of tetrahedra on the side to which the axis points. In each row both sides
 weigh equally: four votes of one tetrahedron must not count four times what its thickness alone tells. A tetrahedron
 counts once for each of its samples, and every model the same. Infinite tetrahedra are outside, and are in the last row.
+They are nearly all of it and nearly all ahead, so that to weigh both sides equally there says little: look at the counts
+before that row is used.
 
 Prints the tables as C, for each noise one. --counts adds up in a file, so that models can be measured in several runs."""
 import argparse
