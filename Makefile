@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check bench quality thesis clean
+.PHONY: all demo check bench quality votes thesis clean
 
 all:
 	@sh scripts/setup.sh build
@@ -26,9 +26,17 @@ bench: all
 	/usr/bin/python3 bench/bench.py $(BRIO) build-bench out/bench.csv $(BENCH)
 	/usr/bin/python3 bench/plot.py out/bench.csv out
 
-# Judges the surfaces of every shared set: docs/quality.md, about half an hour. The same figures on every machine.
+# Judges surfaces of models of known topology, of generated solids, and of every shared set: docs/quality.md.
+# QUALITY="--parts corpus --samplings even" measures less: docs/benchmarks.md.
 quality: all
-	/usr/bin/python3 bench/quality.py $(BRIO) docs/quality.csv docs/quality.md
+	@sh scripts/setup.sh quality
+	/usr/bin/python3 bench/quality/quality.py $(BRIO) docs $(QUALITY)
+
+# The tables of src/reconstruct/labeled_delaunay/vote_weight.c, from generated solids with odd seeds: out/votes.txt.
+votes: all
+	@sh scripts/setup.sh quality
+	/usr/bin/python3 bench/quality/make_corpus.py out/solids-choose --seeds 1-120 --half choose --brio $(BRIO)
+	/usr/bin/python3 bench/quality/measure_votes.py out/solids-choose --brio $(BRIO) --counts out/votes.npz >out/votes.txt
 
 # The thesis' experiments at a fourth of their size; THESIS="--full --report docs/thesis-experiments.md" for all of it.
 # Root, for the limits of memory: docs/benchmarks.md.

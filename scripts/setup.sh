@@ -1,5 +1,5 @@
 #!/bin/sh
-# setup.sh build|check|bench|thesis: sees to the tools that building, testing or measuring needs.
+# setup.sh build|check|bench|quality|thesis: sees to the tools that building, testing or measuring needs.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
 set -eu
 
@@ -36,6 +36,11 @@ missing() {
     if [ "$1" = bench ]; then
         has g++ || echo g++
         has_python_with numpy || echo python3-numpy
+    fi
+    if [ "$1" = quality ]; then
+        has_python_with numpy || echo python3-numpy
+        has_python_with scipy || echo python3-scipy
+        has_python_with ensurepip || echo python3-venv
     fi
     if [ "$1" = thesis ]; then
         has_python_with numpy || echo python3-numpy
@@ -87,24 +92,37 @@ install_peers() {
     [ -z "$wanted" ] || echo "setup: the bench leaves out what needs these Debian packages:" $wanted >&2
 }
 
+# Poisson reconstruction, which make quality compares with: PyMeshLab from PyPI, in an environment of its own. Says so
+# if it stays missing: make quality leaves it out.
+install_poisson() {
+    environment=out/quality-env
+    has_pymeshlab() { "$environment/bin/python" -c 'import pymeshlab' >/dev/null 2>&1; }
+    has_pymeshlab && return 0
+    echo "setup: installing PyMeshLab in $environment"
+    $python -m venv "$environment" >/dev/null 2>&1 && "$environment/bin/pip" install -q pymeshlab >/dev/null 2>&1 || true
+    has_pymeshlab || echo "setup: PyMeshLab could not be installed from PyPI: no Poisson reconstruction" >&2
+}
+
 purpose=${1:-build}
 case $purpose in
-build | check | bench | thesis) ;;
+build | check | bench | quality | thesis) ;;
 *)
-    echo "usage: setup.sh build|check|bench|thesis" >&2
+    echo "usage: setup.sh build|check|bench|quality|thesis" >&2
     exit 1
     ;;
 esac
 
 [ "$purpose" != bench ] || install_peers
 packages=$(missing "$purpose" | xargs)
-[ -n "$packages" ] || exit 0
-if [ "$(id -u)" = 0 ] && has apt-get; then
+if [ -n "$packages" ] && [ "$(id -u)" = 0 ] && has apt-get; then
     echo "setup: installing $packages"
     # shellcheck disable=SC2086
     install $packages
     packages=$(missing "$purpose" | xargs)
-    [ -n "$packages" ] || exit 0
+fi
+if [ -z "$packages" ]; then
+    [ "$purpose" != quality ] || install_poisson
+    exit 0
 fi
 echo "setup: these are needed and missing: $packages" >&2
 echo "setup: on Debian or Ubuntu: sudo apt-get install $packages" >&2

@@ -14,40 +14,7 @@ import subprocess
 import sys
 import time
 
-import numpy as np
-
-HEADER = ('ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\n'
-          'property float z\nelement face %d\nproperty list uchar int vertex_indices\nend_header\n')
-SCALARS = {'float': '<f4', 'double': '<f8', 'float32': '<f4', 'float64': '<f8', 'uchar': 'u1', 'uint8': 'u1',
-           'int': '<i4', 'uint': '<u4', 'int32': '<i4', 'uint32': '<u4'}
-
-
-def read_mesh(path):
-    """Vertices and triangles of a PLY that brio wrote."""
-    with open(path, 'rb') as f:
-        elements = []
-        for line in iter(f.readline, b'end_header\n'):
-            words = line.decode().split()
-            if words[0] == 'element':
-                elements.append((int(words[2]), []))
-            elif words[0] == 'property':
-                elements[-1][1].append(words[1:])
-        (vertices, coordinates), (faces, lists) = elements
-        row = np.dtype([(name, SCALARS[scalar]) for scalar, name in coordinates])
-        points = np.fromfile(f, row, vertices)
-        row = np.dtype([('count', SCALARS[lists[0][1]]), ('corners', SCALARS[lists[0][2]], 3)])
-        triangles = np.fromfile(f, row, faces)['corners']
-    return np.stack([points[axis] for axis in 'xyz'], 1), triangles
-
-
-def write_mesh(path, points, triangles):
-    faces = np.zeros(len(triangles), np.dtype([('count', 'u1'), ('corners', '<i4', 3)]))
-    faces['count'], faces['corners'] = 3, triangles
-    with open(path + '.part', 'wb') as f:
-        f.write((HEADER % (len(points), len(triangles))).encode())
-        f.write(np.ascontiguousarray(points, '<f4').tobytes())
-        f.write(faces.tobytes())
-    os.replace(path + '.part', path)
+from ply import read_mesh, write_mesh
 
 
 def make_model(arguments, kind, seed, path):

@@ -1,17 +1,10 @@
-#!/usr/bin/python3
-"""quality.py BRIO OUT.csv OUT.md [--only NAME ...] [--methods NAME ...]: what brio's surfaces of the shared data are worth.
+"""What brio's surfaces of the shared data are worth, beside other programs' figures.
 
 Every set is reconstructed by `brio surface`: the power crust with its defaults throughout, with --sharp where edges are
-sharp, the co-cones on models and scans. Surfaces of models are judged by meshq.py, an independent program beside the data, the
-others by the certificate that brio prints. OUT.csv has one line a surface, no times, and is the same on every machine;
-OUT.md shows it beside other programs' figures. With --only and --methods all other lines stay as they are in OUT.csv.
-
-Needs the system's Python with numpy and scipy (the judge does). Where the shared data are not there, says so and leaves
-the files as they are."""
-import argparse
+sharp; the default method, the labeled Delaunay triangulation, on models; the co-cones on models and scans. Surfaces of models
+are judged by meshq.py, an independent program beside the data, the others by the certificate that brio prints."""
 import collections
 import concurrent.futures
-import csv
 import importlib.util
 import json
 import os
@@ -20,14 +13,15 @@ import sys
 import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-SHARED = os.environ.get('BRIO_SHARED', os.path.join(HERE, '..', '..', 'shared'))
+SHARED = os.environ.get('BRIO_SHARED', os.path.join(HERE, '..', '..', '..', 'shared'))
 JUDGE = os.path.join(SHARED, 'tools', 'meshq.py')
 PROCESSES = 2
 NO_ANSWER = 3
 COLUMNS = ['set', 'method', 'judge', 'answer', 'closed', 'manifold', 'flipped_edges', 'components', 'genus', 'faces',
            'chamfer', 'mean_to_truth', 'mean_from_truth', 'p95_to_truth', 'p95_from_truth', 'hausdorff',
            'normal_consistency']
-METHODS = {'power crust': ['--method', 'power-crust', '--polygons'],
+METHODS = {'labeled Delaunay': ['--method', 'labeled-delaunay'],
+           'power crust': ['--method', 'power-crust', '--polygons'],
            'power crust, sharp': ['--method', 'power-crust', '--polygons', '--sharp'], 'co-cone': ['--method', 'cocone'],
            'tight co-cone': ['--method', 'tight-cocone']}
 SHARP = ['fandisk', 'mechpart']
@@ -73,11 +67,6 @@ def tasks_of(only, wanted):
             tasks += [Task(f'{folder}/{name}', os.path.join(where, file), m) for m in methods
                       if (m != 'power crust, sharp' or name in SHARP) and (not wanted or m in wanted)]
     return tasks
-
-
-def rows_of(path):
-    if not os.path.exists(path): return {}
-    with open(path, newline='') as f: return {(row['set'], row['method']): row for row in csv.DictReader(f)}
 
 
 def reason_to_skip():
@@ -168,25 +157,33 @@ def others_table(rows):
     return lines
 
 
-def write_page(path, rows):
+def sections(rows):
+    """The sections of the page, as text."""
     with_truth = [r for r in rows if r['set'].partition('/')[2] in TRUTH]
     hostile = [r for r in rows if r['set'].startswith('hostile/')]
     others = [r for r in rows if r not in with_truth and r not in hostile]
     surfaces = [r for r in hostile if r['answer'] == 'surface']
     sound = [r for r in surfaces if (str(r['closed']), str(r['manifold']), str(r['flipped_edges'])) == ('1', '1', '0')]
-    page = f'''# Quality of surfaces
+    return SECTIONS.format(models='\n'.join(models_table(with_truth)), others='\n'.join(others_table(others)),
+                           hostile=len(hostile), surfaces=len(surfaces), sound=len(sound), none=len(hostile) - len(surfaces))
 
-Made by `make quality` together with [quality.csv](quality.csv), which shows every change as a difference; do not edit.
-Nothing here depends on the machine or the number of threads.
+
+def run_all(brio, only, wanted):
+    """Yields the row of each surface, in the order of the tasks."""
+    with concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool:
+        for row in pool.map(lambda task: examine(brio, task), tasks_of(only, wanted)):
+            print(f"{row['set']:36} {row['method']:20} {topology_of(row):32} chamfer {row['chamfer']}", flush=True)
+            yield row
+
+
+SECTIONS = '''## Models with a truth
 
 Distances are in per cent of the diagonal of the truth's box, measured both ways: chamfer is the mean of both means, p95
 the 95th percentile to and from the truth. Normals: mean |cos| between the normals at nearest points. Figures below the
 distance of the samples that the judge spreads (800,000 on each surface) mean nothing. The other programs' figures are
 those of the README beside the shared data: the same samples, the same judge.
 
-## Models with a truth
-
-''' + '\n'.join(models_table(with_truth)) + '''
+{models}
 
 ## Sharp edges
 
@@ -204,43 +201,11 @@ and 2.9 % with `--sharp -R 0.4` have a normal more than 20 degrees off those of 
 Scans of open surfaces: the power crust and the tight co-cone close them, the co-cone leaves them open; what matters here
 is that the result is sound.
 
-''' + '\n'.join(others_table(others)) + f'''
+{others}
 
 ## Hostile sets
 
-{len(hostile)} small point sets from bug trackers and test suites: duplicates, collinear, coplanar and cospherical points,
-lattices, pairs 1e-13 apart, huge coordinates. {len(surfaces)} have a surface, {len(sound)} of them closed, manifold and
-oriented; of {len(hostile) - len(surfaces)} brio says that they have no inside (exit status 3).
+{hostile} small point sets from bug trackers and test suites: duplicates, collinear, coplanar and cospherical points,
+lattices, pairs 1e-13 apart, huge coordinates. {surfaces} have a surface, {sound} of them closed, manifold and
+oriented; of {none} brio says that they have no inside (exit status 3).
 '''
-    with open(path, 'w') as f: f.write(page)
-
-
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument('brio')
-    parser.add_argument('csv')
-    parser.add_argument('page')
-    parser.add_argument('--only', nargs='+')
-    parser.add_argument('--methods', nargs='+', choices=METHODS)
-    options = parser.parse_args()
-    reason = reason_to_skip()
-    if reason:
-        print('skipped: quality: ' + reason)
-        return 0
-    done = {}
-    with concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool:
-        for row in pool.map(lambda task: examine(options.brio, task), tasks_of(options.only, options.methods)):
-            print(f"{row['set']:36} {row['method']:20} {topology_of(row):32} chamfer {row['chamfer']}", flush=True)
-            done[row['set'], row['method']] = row
-    if options.only or options.methods: done = {**rows_of(options.csv), **done}
-    rows = [done[task.name, task.method] for task in tasks_of(None, None) if (task.name, task.method) in done]
-    with open(options.csv, 'w', newline='') as f:
-        writer = csv.DictWriter(f, COLUMNS, lineterminator='\n')
-        writer.writeheader()
-        writer.writerows(rows)
-    write_page(options.page, rows)
-    return 0
-
-
-if __name__ == '__main__':
-    sys.exit(main())
