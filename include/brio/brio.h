@@ -333,6 +333,59 @@ BRIO_API brio_status brio_triangulation_checksum(brio_context *ctx, const brio_t
                                                  uint64_t *checksum);
 
 /* ------------------------------------------------------------------------------------------------------------------
+ * Queries of a triangulation: location, nearest vertices, interpolation, neighbourhoods
+ *
+ * A triangulation keeps no points. A locator is made of a triangulation and its points, and keeps copies of both in a
+ * form that queries read fast. Queries are arrays of positions; answers stand in the order of the queries. Answers are
+ * exact, and the same for every number of threads and every order of the queries.
+ */
+
+typedef struct brio_locator brio_locator;
+
+/** Makes a locator. It needs neither the triangulation nor the points afterwards.
+ *  points, weights, num_points  as they were given to brio_delaunay.
+ *  out  owned by the caller, freed with brio_locator_free; NULL on error. Several threads, each with a context of its
+ *       own, may query one locator.
+ *  Memory: 32 bytes a tetrahedron, 41 a vertex, 8 more a vertex with weights: about 260 bytes a vertex for evenly spread
+ *  points. While it is made, 28 bytes a vertex and 4 a point more.
+ *  Cost: O(n log n).
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the triangulation has another number of points), BRIO_ERR_NOT_FINITE,
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_locator_new(brio_context *ctx, const brio_triangulation *t, const double *points,
+                                      const double *weights, size_t num_points, brio_locator **out);
+
+/** Frees a locator; NULL is accepted. */
+BRIO_API void brio_locator_free(brio_locator *locator);
+
+/* The functions that answer queries take `queries`, #Q by 3, finite. From 32 queries on they are sorted along a space-filling
+ * curve first, with 16 bytes of workspace a query, for 2^20 queries at most. They return BRIO_OK, BRIO_ERR_NOT_FINITE (the
+ * message names the first such query), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, and what their descriptions say. */
+
+/** Finds the tetrahedron that holds each query: the finite one of lowest index whose closure holds it. So a query on a
+ *  facet, on an edge or at a vertex belongs to the first of the tetrahedra that share it.
+ *  tetrahedra  #Q: indices of brio_triangulation_tetrahedra; BRIO_INFINITE for a query strictly outside the convex hull,
+ *              and for every query if the points have dimension 2 or less. Queries on the hull's boundary are inside.
+ *  Cost: one walk; for a query on an edge, O(tetrahedra at that edge).
+ *  Based on: [Devillers Pion Teillaud 2002]. */
+BRIO_API brio_status brio_locator_tetrahedra(brio_context *ctx, const brio_locator *locator, const double *queries,
+                                             size_t num_queries, uint32_t *tetrahedra);
+
+/** Finds the `count` vertices nearest to each query, in ascending order of their distance; weights do not count. Among
+ *  vertices at equal distances the lexicographically first ones are taken, and come first. Works in every dimension.
+ *  count     at least 1.
+ *  vertices  #Q by count: indices of points that are vertices, BRIO_INFINITE where there are fewer vertices.
+ *  Returns also BRIO_ERR_ARGUMENT (count is 0).
+ *  Based on: [Friedman Bentley Finkel 1977]. */
+BRIO_API brio_status brio_locator_nearest(brio_context *ctx, const brio_locator *locator, const double *queries,
+                                          size_t num_queries, size_t count, uint32_t *vertices);
+
+/** Finds the vertex of least power distance |x - p|^2 - w from each query x: the vertex in whose power cell the query
+ *  lies. Ties are lexicographic. Without weights it is the nearest vertex. Works in every dimension.
+ *  vertices  #Q: indices of points that are vertices; BRIO_INFINITE if there are no points. */
+BRIO_API brio_status brio_locator_least_power(brio_context *ctx, const brio_locator *locator, const double *queries,
+                                              size_t num_queries, uint32_t *vertices);
+
+/* ------------------------------------------------------------------------------------------------------------------
  * Meshes and their certificates
  */
 
