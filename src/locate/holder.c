@@ -12,7 +12,8 @@ static unsigned zero_sides(brio_querent *q, uint32_t tet, const double *x) {
     const brio_locator *l = q->l;
     const uint32_t *v = l->t.tet[tet].vertex;
     unsigned zeros = 0;
-    for (int i = 0; i < 4; i++) {
+    for (unsigned left = q->walk.unsure; left; left &= left - 1) {
+        int i = __builtin_ctz(left);
         const uint8_t *f = BRIO_FACET[i];
         const brio_record *r = l->t.record;
         zeros |= (unsigned)(brio_orient3d_sign(&q->filter, r[v[f[0]]], r[v[f[1]]], r[v[f[2]]], x) == 0) << i;
