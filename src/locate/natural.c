@@ -165,7 +165,7 @@ static brio_status add_segment(brio_natural *n, uint32_t a, uint32_t b, const br
     double u[3], v[3], w[3];
     for (int k = 0; k < 3; k++) u[k] = from[k] - origin[k], v[k] = to[k] - origin[k];
     brio_cross(u, v, w);
-    for (int k = 0; k < 3; k++) f->area[k] += forward ? w[k] : -w[k];
+    for (int k = 0; k < 3; k++) f->area[k] += forward ? -w[k] : w[k];
 done:
     return status;
 }
