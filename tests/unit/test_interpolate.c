@@ -127,7 +127,7 @@ static void count_shares(const double *p, size_t n, const double *x, size_t tria
 }
 
 static void coordinates_are_shares_of_the_cell(void) {
-    enum { POINTS = 40, TRIALS = 20000 };
+    enum { POINTS = 40, TRIALS = 5000 };
     static double p[3 * POINTS], unit[POINTS * POINTS], share[POINTS], results[POINTS];
     const double queries[][3] = {{0.5, 0.5, 0.5}, {0.45, 0.55, 0.6}, {0.6, 0.4, 0.5}};
     uniform_points(12, POINTS, p);
