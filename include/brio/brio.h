@@ -470,8 +470,8 @@ static inline brio_edge_walk brio_edge_walk_begin(const brio_tetrahedron *tetrah
 /** Goes on to the next tetrahedron. Returns 0, and is where it began, after the last one. */
 static inline int brio_edge_walk_next(brio_edge_walk *walk) {
     const brio_tetrahedron *tet = &walk->tetrahedra[walk->tetrahedron];
-    int slot = (tet->vertex[1] == walk->pivot) + 2 * (tet->vertex[2] == walk->pivot) +
-               3 * (tet->vertex[3] == walk->pivot);
+    int slot =
+        (tet->vertex[1] == walk->pivot) + 2 * (tet->vertex[2] == walk->pivot) + 3 * (tet->vertex[3] == walk->pivot);
     uint32_t mate = tet->mate[slot];
     walk->pivot = walk->apex;
     walk->tetrahedron = mate >> 2;
