@@ -1,5 +1,5 @@
 /* bench_locate [N [Q [THREADS]]]: queries a second of a locator of N uniform points (default 1,000,000), with Q uniform
- * queries (default 1,000,000) in random order, one at a time in random order, and along a curve.
+ * queries (default 1,000,000) in random order, one at a time in random order, and in order.
  *
  * In order: the queries in the order of the boxes of a grid; the library sorts them again. Each line is the median of
  * three runs, in CPU time of all threads. */
