@@ -34,7 +34,7 @@
  *     be used after it or its context was freed.
  *   - After an error every out pointer to an object is NULL, and statistics and results hold nothing to be freed.
  *   - A context serves one call at a time. Functions of a mesh that take no context use the mesh's own, and count as a call
- *     with it; so do the functions that free. Several threads may read one mesh or triangulation.
+ *     with it; so do the functions that free. Several threads may read one mesh, triangulation or locator.
  *   - Callbacks call no function with the context but brio_message and brio_context_memory. They do not leave by longjmp
  *     or by an exception.
 */
@@ -411,8 +411,7 @@ static inline brio_interpolation brio_interpolation_default(void) {
 /** Interpolates values at the vertices, at each query. Both methods reproduce the values at the vertices exactly, and
  *  linear functions up to rounding. NATURAL weighs the natural neighbours of the query x by the volumes that the Voronoi
  *  cell of x would take from their cells. On the hull's boundary, and where rounding drowns these volumes very near it,
- *  NATURAL takes the values of LINEAR. LINEAR takes the tetrahedron that brio_locator_tetrahedra names, or one that has the
- *  same values there.
+ *  NATURAL takes the values of LINEAR. LINEAR takes the tetrahedron that brio_locator_tetrahedra names.
  *  options  NULL is an error, because there would be no values.
  *  results  #Q by components: NaN for queries outside the hull, and for every query if the points have dimension 2 or less.
  *  Cost: LINEAR as brio_locator_tetrahedra; NATURAL some microseconds a query, as the insertion of a point.

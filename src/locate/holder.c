@@ -67,6 +67,14 @@ uint32_t brio_lowest_holder(const brio_locator *l, const brio_holder *h) {
     }
 }
 
+brio_holder brio_find_lowest_holder(brio_querent *q, const double *x) {
+    brio_holder h = brio_find_holder(q, x);
+    uint32_t lowest = brio_lowest_holder(q->l, &h);
+    if (lowest == h.tet) return h;
+    q->walk.unsure = 15;
+    return (brio_holder){lowest, zero_sides(q, lowest, x)};
+}
+
 bool brio_holder_on_hull(const brio_locator *l, const brio_holder *h) {
     const brio_tetrahedron *tet = &l->t.tet[h->tet];
     int i, j;

@@ -18,6 +18,9 @@ brio_holder brio_find_holder(brio_querent *q, const double *x);
 /** Returns the tetrahedron of lowest index that holds the query; BRIO_INFINITE for a query outside the hull. */
 uint32_t brio_lowest_holder(const brio_locator *l, const brio_holder *h);
 
+/** Locates x in the tetrahedron of lowest index that holds it. So the result does not depend on the querent. */
+brio_holder brio_find_lowest_holder(brio_querent *q, const double *x);
+
 /** Returns whether the query is on the boundary of the hull.   h  not outside, and not at a vertex. */
 bool brio_holder_on_hull(const brio_locator *l, const brio_holder *h);
 

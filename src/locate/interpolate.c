@@ -33,7 +33,7 @@ static brio_status answer_value(void *user, brio_querent *q, size_t i, const dou
     const interpolation_job *job = user;
     brio_natural *n = &job->natural[q->thread];
     double *row = job->results + job->o->components * i;
-    brio_holder h = brio_find_holder(q, x);
+    brio_holder h = brio_find_lowest_holder(q, x); /* rounding depends on the tetrahedron */
     bool natural = false;
     for (size_t c = 0; c < job->o->components; c++) row[c] = h.tet == BRIO_INFINITE ? NAN : 0;
     if (h.tet == BRIO_INFINITE) return BRIO_OK;

@@ -233,17 +233,16 @@ static void solve_correction(const double r[3], double m[3][3], double g[3]) {
 /* Makes the shares reproduce x. Returns false if that takes a change that is no rounding error. */
 static bool correct(brio_natural *n) {
     static const double MOST = 1e-4; /* chosen: errors of volumes near the hull are up to here */
-    double r[3], m[3][3], g[3], largest = 0;
+    double r[3], m[3][3], g[3];
     find_moments(n, r, m);
     if (r[0] == 0 && r[1] == 0 && r[2] == 0) return true;
     solve_correction(r, m, g);
     for (size_t v = 1; v < n->num_vertices; v++) {
         double change = brio_dot(g, n->offset[v]) - brio_dot(g, r);
         if (!(fabs(change) <= MOST)) return false;
-        largest = fmax(largest, fabs(change));
         n->share[v] *= 1 + change;
     }
-    return largest <= MOST;
+    return true;
 }
 
 static bool divide_by_sum(brio_natural *n, double sum) {

@@ -206,6 +206,35 @@ static void neither_threads_nor_order_change_an_answer(void) {
     free(p), free(x), free(shuffled), free(one), free(four), free(near), free(to);
 }
 
+static void values_have_the_same_bits_in_every_order(void) {
+    enum { N = 400, Q = 1500 };
+    static double p[3 * N], shuffled[3 * Q], one[Q], four[Q];
+    static size_t to[Q];
+    brio_context *ctx = new_context();
+    brio_triangulation *t;
+    brio_locator *l;
+    integer_points(6, N, 8, p);
+    double *x = make_queries(2, p, N, Q);
+    shuffle_points(3, Q, x, shuffled, to);
+    EXPECT(brio_delaunay(ctx, p, NULL, N, NULL, &t) == BRIO_OK);
+    EXPECT(brio_locator_new(ctx, t, p, NULL, N, &l) == BRIO_OK);
+    for (int method = 0; method < 2; method++) {
+        brio_interpolation o = brio_interpolation_default();
+        o.method = (brio_interpolation_method)method;
+        o.values = p + N; /* any numbers */
+        brio_context_set_threads(ctx, 1);
+        EXPECT(brio_locator_interpolate(ctx, l, x, Q, &o, one) == BRIO_OK);
+        brio_context_set_threads(ctx, 4);
+        EXPECT(brio_locator_interpolate(ctx, l, shuffled, Q, &o, four) == BRIO_OK);
+        for (size_t i = 0; i < Q; i++)
+            EXPECT(!memcmp(&one[i], &four[to[i]], sizeof *one), "%zu: %.17g, %.17g", i, one[i], four[to[i]]);
+    }
+    brio_locator_free(l);
+    brio_triangulation_free(t);
+    brio_context_free(ctx);
+    free(x);
+}
+
 /* --- refusals --- */
 
 static void bad_input_is_refused(void) {
@@ -276,6 +305,7 @@ int main(int argc, char **argv) {
     RUN(points_in_space);
     RUN(flat_points);
     RUN(neither_threads_nor_order_change_an_answer);
+    RUN(values_have_the_same_bits_in_every_order);
     RUN(bad_input_is_refused);
     RUN(memory_may_run_out_anywhere);
     return harness_end();
