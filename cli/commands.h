@@ -14,7 +14,9 @@
     X(iso)                                                                                                             \
     X(info)                                                                                                            \
     X(generate)                                                                                                        \
-    X(subdivide)
+    X(subdivide)                                                                                                       \
+    X(locate)                                                                                                          \
+    X(interpolate)
 
 #define COMMAND_DECLARE(name) extern const command cli_##name;
 COMMANDS(COMMAND_DECLARE)

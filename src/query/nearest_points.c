@@ -17,7 +17,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LEAF = 24, POINTS_A_PIECE = 4096 };
+enum { LEAF = BRIO_TREE_LEAF, POINTS_A_PIECE = 4096 };
 _Static_assert(BRIO_NEAR_ROOM >= 2 * BRIO_MOST_NEAR + LEAF, "a full list has room for one range more");
 
 /* --- building --- */

@@ -4,6 +4,9 @@
 
 #include "base/context.h"
 
+/** Ranges of at most this many points are leaves of the tree: sorted, and not cut. */
+enum { BRIO_TREE_LEAF = 24 };
+
 /** A balanced k-d tree: the middle point of every range cuts the range at its coordinate along `axis`. The tree
  *  depends on the set of points only, not on their order, except for the indices of duplicates. */
 typedef struct {

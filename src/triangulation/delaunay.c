@@ -75,7 +75,7 @@ static brio_status insert_all(brio_inserter *ins, const brio_delaunay_options *o
     brio_status status = BRIO_OK;
     size_t n = s->num_points, p = (size_t)s->dimension + 1, end;
     if (s->dimension <= 0) return brio_recorder_note(recorder, ins, n);
-    BRIO_TRY(brio_locator_start(ins, options));
+    BRIO_TRY(brio_strategy_start(ins, options));
     bool parallel = s->rank && s->dimension == 3;
     BRIO_TRY(brio_recorder_note(recorder, ins, p));
     for (; p < n; p = end) {

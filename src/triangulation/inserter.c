@@ -13,7 +13,7 @@ brio_status brio_inserter_new(brio_store *store, brio_inserter **out) {
     ins->filter = store->filter;
     ins->filter.unsettled = 0;
     ins->engine = brio_engine_choose(store->weighted);
-    ins->locator = &brio_locator_walk;
+    ins->locator = &brio_strategy_walk;
     brio_read_ahead_start(&ins->read_ahead, store->ctx);
     ins->goes_on = ins->read_ahead.active && store->follows;
     BRIO_TRY(brio_cavity_new(store->ctx, &ins->cavity));

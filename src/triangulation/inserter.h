@@ -31,7 +31,7 @@ struct brio_inserter {
     const brio_engine *engine;
     brio_walk walk;
 
-    const brio_locator *locator; /* the strategy of point location */
+    const brio_strategy *locator; /* the strategy of point location */
     void *location;              /* what the strategy keeps; locator->release frees it */
     unsigned long_walks;         /* how often of late a walk was given up, see locator.c */
     brio_star star;              /* workspace of locate_descent.c; its marks are the store's states */
@@ -58,7 +58,7 @@ enum { BRIO_INSERT_WORK = 1 << 18 };
 enum { BRIO_SLOT_STRETCH = 4096 };
 
 /** Makes an inserter for a store that brio_start has begun. It walks from the first tetrahedron, locates by walks
- *  (brio_locator_start for other strategies), has no zone, and has counted nothing. */
+ *  (brio_strategy_start for other strategies), has no zone, and has counted nothing. */
 brio_status brio_inserter_new(brio_store *store, brio_inserter **out);
 
 /** Frees the inserter and what its strategy of location keeps, not the zone; NULL is accepted. */

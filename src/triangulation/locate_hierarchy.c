@@ -58,7 +58,7 @@ static brio_status locate_level(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     return BRIO_OK;
 }
 
-static const brio_locator locator_level = {.locate = locate_level, .filled = filled_level};
+static const brio_strategy locator_level = {.locate = locate_level, .filled = filled_level};
 
 /* Allocates a level for n of all records. */
 static brio_status level_new(const brio_store *all, level *own, size_t n) {
@@ -186,4 +186,4 @@ static void free_hierarchy(brio_inserter *ins) {
     ins->location = NULL;
 }
 
-const brio_locator brio_locator_hierarchy = {start_hierarchy, locate, filled, free_hierarchy};
+const brio_strategy brio_strategy_hierarchy = {start_hierarchy, locate, filled, free_hierarchy};

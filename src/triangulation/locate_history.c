@@ -26,4 +26,4 @@ static void free_history(brio_inserter *ins) {
     ins->location = NULL;
 }
 
-const brio_locator brio_locator_history = {start_history, locate, filled, free_history};
+const brio_strategy brio_strategy_history = {start_history, locate, filled, free_history};

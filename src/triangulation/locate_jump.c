@@ -59,4 +59,4 @@ static void free_jump(brio_inserter *ins) {
     ins->location = NULL;
 }
 
-const brio_locator brio_locator_jump = {start_jump, locate, filled, free_jump};
+const brio_strategy brio_strategy_jump = {start_jump, locate, filled, free_jump};

@@ -63,4 +63,4 @@ static void free_neighbours(brio_inserter *ins) {
     ins->location = NULL;
 }
 
-const brio_locator brio_locator_neighbour = {start_neighbours, locate, filled, free_neighbours};
+const brio_strategy brio_strategy_neighbour = {start_neighbours, locate, filled, free_neighbours};

@@ -130,4 +130,4 @@ static void free_trace(brio_inserter *ins) {
     ins->location = NULL;
 }
 
-const brio_locator brio_locator_trace = {start_trace, locate, filled, free_trace};
+const brio_strategy brio_strategy_trace = {start_trace, locate, filled, free_trace};

@@ -11,6 +11,7 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter
                           uint64_t most_steps) {
     uint32_t tet = brio_walk_begin(t, walk);
     int came_through = 4;
+    walk->unsure = 15;
     if ((walk->blocked = !brio_owns(t, zone, tet))) return BRIO_NO_TET;
     for (uint64_t steps = 0;; steps++, walk->steps++) {
         if (steps > most_steps) return BRIO_NO_TET;

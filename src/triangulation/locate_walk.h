@@ -9,7 +9,8 @@ typedef struct {
     uint32_t start;
     uint32_t random;
     uint64_t steps;
-    bool blocked; /* the last walk left the thread's zone */
+    bool blocked;    /* the last walk left the thread's zone */
+    unsigned unsure; /* bit i is 0: the last walk found the point strictly inside facet i of the finite tetrahedron */
 } brio_walk;
 
 enum { BRIO_NO_TET = UINT32_MAX };

@@ -22,13 +22,13 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     return brio_locate_descent(ins, point, tet);
 }
 
-const brio_locator brio_locator_walk = {.locate = locate};
+const brio_strategy brio_strategy_walk = {.locate = locate};
 
-brio_status brio_locator_start(brio_inserter *ins, const brio_delaunay_options *options) {
-    static const brio_locator *const locators[BRIO_LOCATION_END] = {
-        [BRIO_LOCATION_WALK] = &brio_locator_walk,           [BRIO_LOCATION_JUMP] = &brio_locator_jump,
-        [BRIO_LOCATION_HIERARCHY] = &brio_locator_hierarchy, [BRIO_LOCATION_HISTORY] = &brio_locator_history,
-        [BRIO_LOCATION_TRACE] = &brio_locator_trace,         [BRIO_LOCATION_NEIGHBOUR] = &brio_locator_neighbour,
+brio_status brio_strategy_start(brio_inserter *ins, const brio_delaunay_options *options) {
+    static const brio_strategy *const locators[BRIO_LOCATION_END] = {
+        [BRIO_LOCATION_WALK] = &brio_strategy_walk,           [BRIO_LOCATION_JUMP] = &brio_strategy_jump,
+        [BRIO_LOCATION_HIERARCHY] = &brio_strategy_hierarchy, [BRIO_LOCATION_HISTORY] = &brio_strategy_history,
+        [BRIO_LOCATION_TRACE] = &brio_strategy_trace,         [BRIO_LOCATION_NEIGHBOUR] = &brio_strategy_neighbour,
     };
     ins->locator = locators[options->locate];
     return ins->locator->start ? ins->locator->start(ins, options) : BRIO_OK;

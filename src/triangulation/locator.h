@@ -16,12 +16,12 @@ typedef struct {
     brio_status (*filled)(brio_inserter *ins, uint32_t p);
     /** Frees ins->location and makes it NULL; accepts NULL. */
     void (*release)(brio_inserter *ins);
-} brio_locator;
+} brio_strategy;
 
-extern const brio_locator brio_locator_walk, brio_locator_jump, brio_locator_hierarchy, brio_locator_history,
-    brio_locator_trace, brio_locator_neighbour;
+extern const brio_strategy brio_strategy_walk, brio_strategy_jump, brio_strategy_hierarchy, brio_strategy_history,
+    brio_strategy_trace, brio_strategy_neighbour;
 
 /** Chooses the strategy of the options and starts it. The inserter keeps it from then on, also after a failure. */
-brio_status brio_locator_start(brio_inserter *ins, const brio_delaunay_options *options);
+brio_status brio_strategy_start(brio_inserter *ins, const brio_delaunay_options *options);
 
 #endif

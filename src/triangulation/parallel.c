@@ -307,7 +307,7 @@ brio_status brio_insert_parallel(brio_inserter *ins, size_t begin, size_t end) {
     pass own = {.main = ins, .store = ins->store, .first = (uint32_t)begin, .count = end - begin};
     int most = brio_threads(ctx, own.count, LEAST);
     worker *workers = NULL;
-    assert(ins->locator == &brio_locator_walk); /* workers walk, and keep no tables of other strategies up to date */
+    assert(ins->locator == &brio_strategy_walk); /* workers walk, and keep no tables of other strategies up to date */
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, workers, (size_t)most));
     for (int n = 0; n < PASSES; n++) {
         size_t count = own.count, inserted = end - count;

@@ -52,7 +52,10 @@ static uint32_t walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, 
             int i = __builtin_ctz(unsure);
             beyond |= (unsigned)(sign_of_side(t, f, v, i, p) < 0) << i;
         }
-        if (!beyond) return tet;
+        if (!beyond) {
+            w->unsure = 15u & ~above;
+            return tet;
+        }
         w->random = brio_walk_random(w->random);
         unsigned first = w->random >> 30;
         unsigned slot = (first + (unsigned)__builtin_ctz((beyond | beyond << 4) >> first)) & 3;

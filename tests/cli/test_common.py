@@ -9,7 +9,8 @@ import subprocess
 
 from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
-COMMANDS = ["delaunay", "surface", "medial", "offset", "check", "compare", "iso", "info", "generate", "subdivide"]
+COMMANDS = ["delaunay", "surface", "medial", "offset", "check", "compare", "iso", "info", "generate", "subdivide",
+            "locate", "interpolate"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
@@ -29,6 +30,8 @@ OWN_OPTIONS = {
             "--vertex-normals", "--self-intersections"],
     "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--kind", "--resolution"],
     "subdivide": ["--levels"],
+    "locate": ["--at", "--weights", "--weights-mod", "--unweighted"],
+    "interpolate": ["--at", "--property", "--method"],
 }
 
 

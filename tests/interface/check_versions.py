@@ -72,7 +72,7 @@ def main():
         shutil.copy(here / "brio_0_2.h", folder / "frozen/brio/brio.h")
         run(compiler, "-O1", "-o", folder / "consumer", here / "consumer.c", "-I", folder / "frozen", library)
         output = run(folder / "consumer", env=dict(os.environ, LD_LIBRARY_PATH=str(library.parent)), cwd=folder)
-    wanted = "dimension 3, 1500 vertices\nclosed 1, genus 1, 1500 samples\noffset 0.1\nshape 1\ncocone 1\nlabeled 1500\nwhole\n"
+    wanted = "dimension 3, 1500 vertices\ninterpolated 1\nclosed 1, genus 1, 1500 samples\noffset 0.1\nshape 1\ncocone 1\nlabeled 1500\nwhole\n"
     if output != wanted:
         sys.exit("the consumer printed\n%sexpected\n%s" % (output, wanted))
     print("%d functions exported by %s; %d structs grown: %s" % (len(found), soname, len(grown), " ".join(grown)))

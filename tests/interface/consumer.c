@@ -51,6 +51,7 @@ int main(void) {
     if (brio_context_new(NULL, &ctx)) return 1;
     OPTIONS(brio_generate_options, generate);
     OPTIONS(brio_delaunay_options, delaunay);
+    OPTIONS(brio_interpolation, interpolation);
     OPTIONS(brio_power_crust_options, power_crust);
     OPTIONS(brio_offset_surface_options, offset);
     OPTIONS(brio_power_shape_options, power_shape);
@@ -70,6 +71,13 @@ int main(void) {
     TRY(brio_delaunay(ctx, points->vertices, NULL, 1500, &delaunay.value, &t));
     printf("dimension %d, %d vertices\n", brio_triangulation_stats(t)->dimension,
            (int)brio_triangulation_stats(t)->vertices);
+    brio_locator *locator = NULL;
+    double value = 0;
+    TRY(brio_locator_new(ctx, t, points->vertices, NULL, 1500, &locator));
+    interpolation.value.values = points->vertices; /* any 1500 numbers */
+    TRY(brio_locator_interpolate(ctx, locator, points->vertices, 1, &interpolation.value, &value));
+    printf("interpolated %d\n", value == points->vertices[0]);
+    brio_locator_free(locator);
     TRY(brio_power_crust(ctx, points->vertices, 1500, &power_crust.value, &crust, NULL, &crust_stats.value));
     expect_guard("brio_power_crust_stats", crust_stats.before, crust_stats.after);
     TRY(brio_mesh_certificate(ctx, crust, &certificate.value));

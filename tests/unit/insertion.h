@@ -17,7 +17,7 @@ static inline brio_inserter *insertion_begin(brio_context *ctx, const double *po
     EXPECT(brio_store_new(ctx, &(brio_input){points, weights, n}, &o, NULL, &store) == BRIO_OK);
     EXPECT(brio_start(store) == BRIO_OK && store->dimension > 0);
     EXPECT(brio_inserter_new(store, &ins) == BRIO_OK);
-    EXPECT(brio_locator_start(ins, &o) == BRIO_OK);
+    EXPECT(brio_strategy_start(ins, &o) == BRIO_OK);
     return ins;
 }
 

@@ -1,0 +1,109 @@
+/* brio interpolate: values of a property of the points of a file, at the points of another file. */
+#include "commands.h"
+#include "located.h"
+#include "table.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct arguments {
+    const char *at, *property;
+    int method;
+} arguments;
+
+static const option_choice methods[] = {
+    {"natural", BRIO_INTERPOLATION_NATURAL}, {"linear", BRIO_INTERPOLATION_LINEAR}, {NULL, 0}};
+
+static const option options[] = {
+    AT_ROW(arguments, at),
+    {"property", 0, OPTION_TEXT, offsetof(arguments, property), "NAME", "the property of IN whose values are wanted",
+     0},
+    {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME",
+     "by natural neighbours (default), or linear in each tetrahedron", methods},
+    {0},
+};
+
+static const arguments defaults = {0};
+
+static bool wants_table(const run *r) {
+    return cli_is_table(r, "csv") || cli_is_table(r, "npy");
+}
+
+static brio_status check_arguments(run *r, const arguments *a) {
+    if (!a->property) return cli_fail(r, BRIO_ERR_ARGUMENT, "no property: --property NAME is missing");
+    return wants_table(r) ? cli_require_table(r) : cli_require_output(r, NULL, false);
+}
+
+static brio_status values_of(run *r, const brio_mesh *points, const char *name, double **values) {
+    const brio_property *property = brio_mesh_property(points, name);
+    if (!property) return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have no property '%s'", r->operands[0], name);
+    *values = malloc((points->num_vertices + 1) * sizeof **values);
+    if (!*values) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu values", points->num_vertices);
+    for (size_t i = 0; i < points->num_vertices; i++) (*values)[i] = brio_property_value(property, i);
+    return BRIO_OK;
+}
+
+/* Adds the property to the places. */
+static brio_status add_results(run *r, brio_mesh *at, const arguments *a, double **results) {
+    void *data;
+    if (brio_mesh_property(at, a->property))
+        return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have a property '%s' already", a->at, a->property);
+    brio_status status = brio_mesh_add_property(at, a->property, BRIO_SCALAR_FLOAT64, &data);
+    if (status == BRIO_OK) *results = data;
+    return status;
+}
+
+static brio_status write_results(run *r, const located *l, const arguments *a, const double *results) {
+    size_t count = l->at->num_vertices;
+    if (!wants_table(r)) return cli_write(r, l->at);
+    return cli_write_table(r, &(table){a->property, count, 1, NULL, results});
+}
+
+static brio_status answer(run *r, const located *l, const arguments *a, const double *values) {
+    brio_status status = BRIO_OK;
+    brio_interpolation o = brio_interpolation_default();
+    double *results = NULL;
+    size_t inside = 0, count = l->at->num_vertices;
+    uint32_t *tetrahedra = malloc((count + 1) * sizeof *tetrahedra);
+    if (!tetrahedra) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu places", count));
+    o.method = (brio_interpolation_method)a->method;
+    o.values = values;
+    TRY(add_results(r, l->at, a, &results));
+    TRY(brio_locator_interpolate(r->ctx, l->locator, l->at->vertices, count, &o, results));
+    TRY(brio_locator_tetrahedra(r->ctx, l->locator, l->at->vertices, count, tetrahedra));
+    cli_lap(r, "interpolate");
+    for (size_t i = 0; i < count; i++) inside += tetrahedra[i] != BRIO_INFINITE;
+    cli_report_inside(r, inside, count);
+    TRY(write_results(r, l, a, results));
+done:
+    free(tetrahedra);
+    return status;
+}
+
+static brio_status interpolate(run *r) {
+    const arguments *a = r->arguments;
+    located l = {0};
+    double *values = NULL;
+    brio_status status = BRIO_OK;
+    TRY(check_arguments(r, a));
+    TRY(cli_read_located(r, a->at, NULL, &l));
+    TRY(values_of(r, l.points, a->property, &values));
+    TRY(cli_make_locator(r, &l));
+    TRY(answer(r, &l, a, values));
+done:
+    free(values);
+    cli_located_free(&l);
+    return status;
+}
+
+const command cli_interpolate = {
+    .name = "interpolate",
+    .operands = "IN",
+    .summary = "values of a property of points, at the points of another file (.ply .xyz .vtu .csv .npy ...)",
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = interpolate,
+};

@@ -1,0 +1,79 @@
+/* Interpolation of values at the vertices, at many places. */
+#include "base/float_state.h"
+#include "base/versioned.h"
+#include "locate/natural.h"
+
+typedef struct {
+    const brio_interpolation *o;
+    const brio_locator *l;
+    double *results;
+    brio_natural *natural; /* of each thread */
+} interpolation_job;
+
+static const brio_interpolation STANDARD = {.size = sizeof STANDARD, .components = 1};
+
+BRIO_OPTIONS_INIT(brio_interpolation)
+
+/* Adds a share of the values at a vertex to a row. */
+static void add_share(const interpolation_job *job, uint32_t place, double share, double *row) {
+    size_t m = job->o->components;
+    const double *values = job->o->values + m * job->l->name[place];
+    for (size_t c = 0; c < m; c++) row[c] += share * values[c];
+}
+
+static void add_linear(const interpolation_job *job, const brio_holder *h, const double *x, double *row) {
+    const uint32_t *v = job->l->t.tet[h->tet].vertex;
+    double share[4];
+    brio_barycentric(job->l, h, x, share);
+    for (int i = 0; i < 4; i++)
+        if (share[i] != 0) add_share(job, v[i], share[i], row);
+}
+
+static brio_status answer_value(void *user, brio_querent *q, size_t i, const double *x) {
+    const interpolation_job *job = user;
+    brio_natural *n = &job->natural[q->thread];
+    double *row = job->results + job->o->components * i;
+    brio_holder h = brio_find_lowest_holder(q, x); /* rounding depends on the tetrahedron */
+    bool natural = false;
+    for (size_t c = 0; c < job->o->components; c++) row[c] = h.tet == BRIO_INFINITE ? NAN : 0;
+    if (h.tet == BRIO_INFINITE) return BRIO_OK;
+    if (job->o->method == BRIO_INTERPOLATION_NATURAL && __builtin_popcount(h.zeros) < 3 &&
+        !brio_holder_on_hull(job->l, &h)) {
+        brio_status status = brio_natural_coordinates(n, q, &h, x, &natural);
+        if (status != BRIO_OK) return status;
+    }
+    if (!natural) add_linear(job, &h, x, row);
+    for (size_t v = 1; natural && v < n->num_vertices; v++) add_share(job, n->place[v], n->share[v], row);
+    return BRIO_OK;
+}
+
+static brio_status check_options(brio_context *ctx, const brio_locator *l, const brio_interpolation *o) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, o->method >= 0 && o->method < BRIO_INTERPOLATION_END, BRIO_ERR_ARGUMENT,
+                 "there is no interpolation method %d", (int)o->method);
+    BRIO_REQUIRE(ctx, o->components > 0, BRIO_ERR_ARGUMENT, "0 components of each value; at least 1");
+    BRIO_REQUIRE(ctx, o->values || !l->num_points, BRIO_ERR_ARGUMENT, "there are no values to interpolate");
+    BRIO_REQUIRE(ctx, o->method != BRIO_INTERPOLATION_NATURAL || !l->weighted, BRIO_ERR_ARGUMENT,
+                 "natural neighbour interpolation is for triangulations without weights");
+done:
+    return status;
+}
+
+brio_status brio_locator_interpolate(brio_context *ctx, const brio_locator *l, const double *queries,
+                                     size_t num_queries, const brio_interpolation *options, double *results) {
+    BRIO_DOOR;
+    brio_interpolation o = STANDARD;
+    brio_status status = BRIO_OK;
+    int threads = brio_query_threads(ctx, num_queries);
+    interpolation_job job = {.o = &o, .l = l, .results = results};
+    BRIO_TRY(BRIO_TAKE(ctx, brio_interpolation, options, &o));
+    BRIO_TRY(check_options(ctx, l, &o));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, job.natural, (size_t)threads));
+    for (int i = 0; i < threads; i++) job.natural[i].ctx = ctx;
+    BRIO_TRY(
+        brio_answer_all(ctx, threads, &(brio_query_batch){l, queries, num_queries, "interpolate", answer_value, &job}));
+done:
+    for (int i = 0; job.natural && i < threads; i++) brio_natural_free(&job.natural[i]);
+    brio_release(ctx, job.natural);
+    return status;
+}

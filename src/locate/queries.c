@@ -1,0 +1,94 @@
+/* Many queries at once: sorted along a Hilbert curve, so that each walk is short and the memory that it reads is in the
+ * cache, and divided among threads. The queries are taken in blocks, which bounds the workspace. */
+#include "locate/queries.h"
+#include "base/memory.h"
+#include "base/team.h"
+#include "order/curve.h"
+#include <math.h>
+
+/* FEWEST_SORTED, QUERIES_A_CHUNK, QUERIES_A_THREAD, BLOCK: chosen. SPARSE: chosen; where the locator has this many times
+ * more vertices than there are queries, a query starts from the tree and not from the query before it. */
+enum { FEWEST_SORTED = 32, QUERIES_A_CHUNK = 512, QUERIES_A_THREAD = 1024, BLOCK = 1 << 20, SPARSE = 16 };
+
+int brio_query_threads(brio_context *ctx, size_t count) {
+    return brio_threads(ctx, count < BLOCK ? count : BLOCK, QUERIES_A_THREAD);
+}
+
+static brio_status refuse_not_finite(brio_context *ctx, const double *queries, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const double *x = queries + 3 * i;
+        if (isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2])) continue;
+        int k = 0;
+        while (isfinite(x[k])) k++;
+        return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "query %zu: %c is %s", i, "xyz"[k],
+                         isnan(x[k]) ? "NaN" : "infinite");
+    }
+    return BRIO_OK;
+}
+
+typedef struct {
+    brio_context *ctx;
+    const brio_query_batch *batch;
+    size_t begin;          /* the first query of the block */
+    const uint64_t *items; /* low halves: the queries of the block in the order of the curve; NULL: as they are */
+    bool near;
+    brio_status status; /* the first failure; atomic */
+} block_job;
+
+static brio_status answer_one(const block_job *job, brio_querent *q, size_t i) {
+    const brio_query_batch *b = job->batch;
+    size_t query = job->begin + (job->items ? (size_t)(uint32_t)job->items[i] : i);
+    const double *from = b->queries + 3 * query;
+    const double x[4] = {from[0] + 0.0, from[1] + 0.0, from[2] + 0.0, 0}; /* -0 becomes 0 */
+    return b->answer(b->user, q, query, x);
+}
+
+static void answer_chunk(void *user, size_t begin, size_t end, int thread) {
+    block_job *job = user;
+    const brio_query_batch *b = job->batch;
+    brio_querent q = {.l = b->l, .thread = thread, .filter = b->l->filter, .near = job->near};
+    q.walk.start = BRIO_NO_TET;
+    q.nearest = BRIO_INFINITE;
+    if (__atomic_load_n(&job->status, __ATOMIC_RELAXED) != BRIO_OK) return;
+    if (thread == 0)
+        brio_report(&job->status, brio_progress(job->ctx, b->stage, (double)(job->begin + begin) / (double)b->count));
+    for (size_t i = begin; i < end; i++) {
+        brio_status status = answer_one(job, &q, i);
+        if (status == BRIO_OK) continue;
+        brio_report(&job->status, status);
+        return;
+    }
+}
+
+static brio_status answer_block(block_job *job, int threads, size_t count, uint64_t *items, uint64_t *spare) {
+    const double *queries = job->batch->queries + 3 * job->begin;
+    if (items) {
+        for (size_t i = 0; i < count; i++) items[i] = i;
+        brio_status status = brio_sort_along_curve(job->ctx, queries, items, spare, count, threads);
+        if (status != BRIO_OK) return status;
+    }
+    job->items = items;
+    job->near = items && count >= job->batch->l->num_vertices / SPARSE;
+    brio_for_chunks(job->ctx, threads, count, QUERIES_A_CHUNK, answer_chunk, job);
+    return job->status;
+}
+
+brio_status brio_answer_all(brio_context *ctx, int threads, const brio_query_batch *b) {
+    brio_status status = BRIO_OK;
+    uint64_t *items = NULL, *spare = NULL;
+    size_t most = b->count < BLOCK ? b->count : BLOCK;
+    BRIO_TRY(refuse_not_finite(ctx, b->queries, b->count));
+    if (most >= FEWEST_SORTED) {
+        BRIO_TRY(BRIO_ALLOC(ctx, items, most));
+        BRIO_TRY(BRIO_ALLOC(ctx, spare, most));
+    }
+    for (size_t begin = 0; begin < b->count; begin += BLOCK) {
+        block_job job = {.ctx = ctx, .batch = b, .begin = begin};
+        size_t count = b->count - begin < BLOCK ? b->count - begin : BLOCK;
+        BRIO_TRY(answer_block(&job, threads, count, items, spare));
+    }
+done:
+    brio_release(ctx, items);
+    brio_release(ctx, spare);
+    return status;
+}

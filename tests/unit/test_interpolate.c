@@ -1,0 +1,192 @@
+/* Interpolation: what Sibson's coordinates must satisfy, and their volumes against counted random points. */
+#include "harness.h"
+#include "points.h"
+
+enum { N = 500, Q = 2000 };
+
+typedef struct {
+    brio_context *ctx;
+    brio_triangulation *t;
+    brio_locator *l;
+} fixture;
+
+static fixture fixture_new(const double *p, const double *w, size_t n) {
+    fixture f = {.ctx = new_context()};
+    EXPECT(brio_delaunay(f.ctx, p, w, n, NULL, &f.t) == BRIO_OK);
+    EXPECT(brio_locator_new(f.ctx, f.t, p, w, n, &f.l) == BRIO_OK);
+    return f;
+}
+
+static void fixture_free(fixture *f) {
+    brio_locator_free(f->l);
+    brio_triangulation_free(f->t);
+    EXPECT(brio_context_memory(f->ctx) == 0);
+    brio_context_free(f->ctx);
+}
+
+static brio_status interpolate(const fixture *f, int method, const double *values, size_t components, const double *x,
+                               size_t count, double *results) {
+    brio_interpolation o = brio_interpolation_default();
+    o.method = (brio_interpolation_method)method;
+    o.values = values;
+    o.components = components;
+    return brio_locator_interpolate(f->ctx, f->l, x, count, &o, results);
+}
+
+static double extent_of(const double *p, size_t n) {
+    double most = 0;
+    for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(p[i]));
+    return most;
+}
+
+/* A constant, and the three coordinates. */
+static void expect_linear_functions(const char *name, const double *p, size_t n, const double *x, size_t count) {
+    fixture f = fixture_new(p, NULL, n);
+    double *values = malloc(4 * n * sizeof *values), *results = malloc(4 * count * sizeof *results);
+    uint32_t *tets = malloc(count * sizeof *tets);
+    double extent = extent_of(p, n);
+    size_t inside = 0;
+    for (size_t i = 0; i < n; i++) values[4 * i] = 1, memcpy(values + 4 * i + 1, p + 3 * i, 3 * sizeof *p);
+    EXPECT(brio_locator_tetrahedra(f.ctx, f.l, x, count, tets) == BRIO_OK);
+    for (int method = 0; method < 2; method++) {
+        EXPECT(interpolate(&f, method, values, 4, x, count, results) == BRIO_OK, "%s", brio_message(f.ctx));
+        for (size_t i = 0; i < count; i++) {
+            EXPECT(isnan(results[4 * i]) == (tets[i] == BRIO_INFINITE), "%s: query %zu", name, i);
+            if (tets[i] == BRIO_INFINITE) continue;
+            inside++;
+            EXPECT(fabs(results[4 * i] - 1) <= 1e-12, "%s, method %d: %.17g", name, method, results[4 * i]);
+            for (size_t k = 0; k < 3; k++)
+                EXPECT(fabs(results[4 * i + 1 + k] - x[3 * i + k]) <= 1e-9 * extent,
+                       "%s, method %d, query %zu: %.17g, not %.17g", name, method, i, results[4 * i + 1 + k],
+                       x[3 * i + k]);
+        }
+    }
+    EXPECT(inside > 0, "%s", name);
+    fixture_free(&f);
+    free(values), free(results), free(tets);
+}
+
+static void linear_functions_are_reproduced(void) {
+    static double p[3 * N], x[3 * Q];
+    uniform_points(1, N, p);
+    uniform_points(2, Q, x);
+    expect_linear_functions("uniform", p, N, x, Q);
+    clustered_points(3, N, p);
+    expect_linear_functions("clusters", p, N, x, Q);
+    sphere_points(4, N, p);
+    for (size_t i = 0; i < 3 * Q; i++) x[i] = 2 * x[i] - 1;
+    expect_linear_functions("sphere", p, N, x, Q);
+    integer_points(5, N, 7, p);
+    for (size_t i = 0; i < 3 * Q; i++) x[i] = floor(12 * fabs(x[i])) / 2;
+    expect_linear_functions("grid, ties", p, N, x, Q);
+}
+
+static void queries_near_vertices(void) {
+    static double p[3 * N], x[3 * Q];
+    brio_rng rng = brio_rng_new(8);
+    uniform_points(1, N, p);
+    for (size_t i = 0; i < Q; i++) {
+        double far = pow(10, -16 * brio_rng_double(&rng));
+        for (size_t k = 0; k < 3; k++) x[3 * i + k] = p[3 * (i % N) + k] + far * (brio_rng_double(&rng) - 0.5);
+    }
+    expect_linear_functions("near vertices", p, N, x, Q);
+}
+
+static void values_at_vertices_are_exact(void) {
+    static double p[3 * N], w[N], values[N], results[N];
+    uniform_points(6, N, p);
+    for (size_t i = 0; i < N; i++) values[i] = sin(100 * p[3 * i]), w[i] = 0;
+    for (int method = 0; method < 2; method++) {
+        fixture f = fixture_new(p, method ? w : NULL, N);
+        EXPECT(interpolate(&f, method, values, 1, p, N, results) == BRIO_OK);
+        for (size_t i = 0; i < N; i++) EXPECT(results[i] == values[i], "%zu: %.17g", i, results[i]);
+        fixture_free(&f);
+    }
+}
+
+/* The share of each point in the cell of x: random points that are nearer to x than to any point, by nearest point. */
+static void count_shares(const double *p, size_t n, const double *x, size_t trials, double *share) {
+    brio_rng rng = brio_rng_new(3);
+    size_t hits = 0;
+    for (size_t i = 0; i < n; i++) share[i] = 0;
+    while (hits < trials) {
+        double y[3], best = INFINITY, own = 0;
+        size_t nearest = 0;
+        for (size_t k = 0; k < 3; k++)
+            y[k] = x[k] + 1.6 * (brio_rng_double(&rng) - 0.5), own += (y[k] - x[k]) * (y[k] - x[k]);
+        for (size_t i = 0; i < n; i++) {
+            double square = 0;
+            for (size_t k = 0; k < 3; k++) square += (y[k] - p[3 * i + k]) * (y[k] - p[3 * i + k]);
+            if (square < best) best = square, nearest = i;
+        }
+        if (own >= best) continue;
+        share[nearest]++;
+        hits++;
+    }
+    for (size_t i = 0; i < n; i++) share[i] /= (double)trials;
+}
+
+static void coordinates_are_shares_of_the_cell(void) {
+    enum { POINTS = 40, TRIALS = 5000 };
+    static double p[3 * POINTS], unit[POINTS * POINTS], share[POINTS], results[POINTS];
+    const double queries[][3] = {{0.5, 0.5, 0.5}, {0.45, 0.55, 0.6}, {0.6, 0.4, 0.5}};
+    uniform_points(12, POINTS, p);
+    for (size_t i = 0; i < POINTS; i++) unit[POINTS * i + i] = 1;
+    fixture f = fixture_new(p, NULL, POINTS);
+    for (int q = 0; q < 3; q++) {
+        count_shares(p, POINTS, queries[q], TRIALS, share);
+        EXPECT(interpolate(&f, BRIO_INTERPOLATION_NATURAL, unit, POINTS, queries[q], 1, results) == BRIO_OK);
+        for (size_t i = 0; i < POINTS; i++)
+            EXPECT(fabs(results[i] - share[i]) < 5 * sqrt((share[i] + 1e-4) / TRIALS), "query %d, point %zu: %g, %g", q,
+                   i, results[i], share[i]);
+    }
+    fixture_free(&f);
+}
+
+static void the_centre_of_a_cube_has_eight_equal_neighbours(void) {
+    double p[27], unit[64] = {0}, results[8];
+    for (size_t i = 0; i < 24; i++) p[i] = (double)(i / 3 >> i % 3 & 1);
+    for (size_t i = 0; i < 8; i++) unit[8 * i + i] = 1;
+    fixture f = fixture_new(p, NULL, 8);
+    EXPECT(interpolate(&f, BRIO_INTERPOLATION_NATURAL, unit, 8, (const double[3]){0.5, 0.5, 0.5}, 1, results) ==
+           BRIO_OK);
+    for (int i = 0; i < 8; i++) EXPECT(fabs(results[i] - 0.125) < 1e-15, "%d: %.17g", i, results[i]);
+    fixture_free(&f);
+}
+
+/* Where rounding drowns the volumes, the values are linear ones: that must be rare inside. */
+static void natural_values_are_seldom_linear(void) {
+    static double p[3 * N], x[3 * Q], values[N], natural[Q], linear[Q];
+    size_t inside = 0, same = 0;
+    uniform_points(1, N, p);
+    uniform_points(2, Q, x);
+    for (size_t i = 0; i < N; i++) values[i] = p[3 * i] * p[3 * i] + p[3 * i + 1] * p[3 * i + 2];
+    fixture f = fixture_new(p, NULL, N);
+    EXPECT(interpolate(&f, BRIO_INTERPOLATION_NATURAL, values, 1, x, Q, natural) == BRIO_OK);
+    EXPECT(interpolate(&f, BRIO_INTERPOLATION_LINEAR, values, 1, x, Q, linear) == BRIO_OK);
+    for (size_t i = 0; i < Q; i++) inside += !isnan(linear[i]), same += natural[i] == linear[i];
+    EXPECT(inside > Q / 2 && same <= inside / 500, "%zu of %zu", same, inside);
+    fixture_free(&f);
+}
+
+static void refusals(void) {
+    static double p[3 * 100], w[100] = {0}, result;
+    uniform_points(7, 100, p);
+    fixture f = fixture_new(p, w, 100);
+    EXPECT(interpolate(&f, BRIO_INTERPOLATION_NATURAL, p, 1, p, 1, &result) == BRIO_ERR_ARGUMENT);
+    EXPECT(interpolate(&f, BRIO_INTERPOLATION_END, p, 1, p, 1, &result) == BRIO_ERR_ARGUMENT);
+    EXPECT(interpolate(&f, BRIO_INTERPOLATION_LINEAR, p, 0, p, 1, &result) == BRIO_ERR_ARGUMENT);
+    EXPECT(interpolate(&f, BRIO_INTERPOLATION_LINEAR, NULL, 1, p, 1, &result) == BRIO_ERR_ARGUMENT);
+    fixture_free(&f);
+}
+
+int main(void) {
+    RUN(linear_functions_are_reproduced);
+    RUN(queries_near_vertices);
+    RUN(values_at_vertices_are_exact);
+    RUN(coordinates_are_shares_of_the_cell);
+    RUN(the_centre_of_a_cube_has_eight_equal_neighbours);
+    RUN(natural_values_are_seldom_linear);
+    RUN(refusals);
+    return harness_end();
+}
