@@ -932,7 +932,6 @@ typedef struct brio_labeled_delaunay_stats {
     double noise;     /* AUTO: the standard deviation of the noise found, in spacings of the samples; 0: none */
     size_t smoothed;  /* 1: the samples were smoothed */
     double noise_seconds, delaunay_seconds, poles_seconds, labels_seconds, manifold_seconds;
-    uint64_t reserved[4];
     size_t left_out;         /* triangles that the option `open` left out */
     double uncertain_share;  /* with options.confidence: the share of the vertices whose confidence is under 0.7 */
     double simplify_seconds; /* for the mesh, and for its simplification */
