@@ -132,6 +132,13 @@ done:
     return status;
 }
 
+/* Whether the corner after corner c is at the same position, as where a plane passes through a vertex. */
+static bool is_repeated(const brio_polyhedron *p, const brio_face *face, size_t c) {
+    const uint32_t *corner = p->faces.corner;
+    const double *x = p->x[corner[c]], *next = p->x[corner[c + 1 < face->end ? c + 1 : face->begin]];
+    return x[0] == next[0] && x[1] == next[1] && x[2] == next[2];
+}
+
 static brio_status record_face(const brio_cell_job *job, brio_cell_recorder *r, const brio_face *face, double area,
                                uint32_t *num_own) {
     brio_status status = BRIO_OK;
@@ -143,6 +150,7 @@ static brio_status record_face(const brio_cell_job *job, brio_cell_recorder *r, 
         memcpy(normal, job->region->plane[-1 - face->neighbour], sizeof normal);
     BRIO_TRY(begin_face(r, face->neighbour, in_lengths(job->d, area, 2), normal));
     for (size_t c = face->begin; c < face->end && job->vertices; c++) {
+        if (is_repeated(&r->shape, face, c)) continue;
         BRIO_TRY(corner_of(job, r, r->shape.faces.corner[c], num_own, &corner));
         BRIO_TRY(add_corner(r, corner));
     }

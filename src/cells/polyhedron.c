@@ -1,9 +1,10 @@
 /* Convex polyhedra that planes cut.
  *
- * A cut gives every vertex one height over the plane, so that all faces agree on which side it is. Each face keeps its
- * corners under or on the plane; where an edge passes the plane, the two faces of the edge share one new vertex. Edges
- * on the plane with a kept face on one side only bound the cut; turned round and joined they are the new face.
- * Rounding can move a vertex from one side of a plane to the other, but never opens the polyhedron.
+ * A cut gives every vertex one height over the plane, so that all faces agree on which side it is. Vertices on the plane
+ * count as under it. Each face keeps its corners under the plane; where an edge passes the plane, the two faces of the
+ * edge share one new vertex. Every new vertex ends the cut of one of its faces and begins that of the other, so the cuts
+ * join to cycles, which are the new face. Rounding can move a vertex from one side of a plane to the other, but never
+ * opens the polyhedron; it can make faces without area.
  *
  * Based on: Sutherland, Hodgman. Reentrant polygon clipping. CACM 1974. */
 #include "cells/polyhedron.h"
@@ -104,16 +105,17 @@ done:
 
 /* --- cutting --- */
 
-/* Computes the heights of all vertices over a plane. Returns whether a vertex is over it. The height of a vertex that was
- * cut off before is NaN. */
-static bool find_heights(brio_polyhedron *p, const double plane[4]) {
-    bool over = false;
+/* Computes the heights of all vertices over a plane. The height of a vertex that was cut off before is NaN. Returns 1
+ * if a vertex is over the plane and one under it, 0 if none is over it, -1 if none is under it. */
+static int find_heights(brio_polyhedron *p, const double plane[4]) {
+    bool over = false, under = false;
     for (size_t v = 0; v < p->num_vertices; v++) {
         p->height[v] = brio_dot(plane, p->x[v]) - plane[3];
         over |= p->height[v] > 0;
+        under |= p->height[v] < 0;
         p->after[v] = NONE;
     }
-    return over;
+    return !over ? 0 : under ? 1 : -1;
 }
 
 /* Finds or makes the vertex where the edge between `in` and `out` passes the plane. */
@@ -135,47 +137,31 @@ done:
     return status;
 }
 
-/* Adds to `kept` what a face has under the plane, or nothing. */
+/* Adds to `kept` what a face has under the plane, or nothing. The new face runs along the cut of this face the other way:
+ * from where the cycle of corners comes back under the plane to where it left. */
 static brio_status keep_face(brio_polyhedron *p, const brio_face *face) {
     const uint32_t *corner = p->faces.corner;
     brio_status status = BRIO_OK;
-    bool under = false;
-    for (size_t c = face->begin; c < face->end; c++) under |= p->height[corner[c]] < 0;
-    if (!under) return BRIO_OK;
+    uint32_t left = NONE, back = NONE, between;
     BRIO_TRY(begin_face(p->ctx, &p->kept, face->neighbour));
     for (size_t c = face->begin; c < face->end; c++) {
-        uint32_t u = corner[c], v = corner[c + 1 < face->end ? c + 1 : face->begin], between;
-        double hu = p->height[u], hv = p->height[v];
-        if (hu <= 0) BRIO_TRY(add_corner(p->ctx, &p->kept, u));
-        if (!(hu < 0 && hv > 0) && !(hu > 0 && hv < 0)) continue;
-        BRIO_TRY(hu < 0 ? cut_edge(p, u, v, &between) : cut_edge(p, v, u, &between));
+        uint32_t u = corner[c], v = corner[c + 1 < face->end ? c + 1 : face->begin];
+        bool over = p->height[u] > 0, next_over = p->height[v] > 0;
+        if (!over) BRIO_TRY(add_corner(p->ctx, &p->kept, u));
+        if (over == next_over) continue;
+        BRIO_TRY(over ? cut_edge(p, v, u, &between) : cut_edge(p, u, v, &between));
         BRIO_TRY(add_corner(p->ctx, &p->kept, between));
+        if (!over)
+            left = between;
+        else if (left == NONE)
+            back = between;
+        else
+            p->after[between] = left;
     }
-    brio_face *last = &p->kept.list[p->kept.count - 1];
-    if (last->end - last->begin < 3) {
-        p->kept.num_corners = last->begin;
-        p->kept.count--;
-    }
+    if (back != NONE) p->after[back] = left;
+    if (p->kept.list[p->kept.count - 1].begin == p->kept.num_corners) p->kept.count--;
 done:
     return status;
-}
-
-/* Notes that the new face runs from v to u, unless it runs from u to v: then both faces of the edge are kept. */
-static void bound_cut(brio_polyhedron *p, uint32_t u, uint32_t v) {
-    if (p->after[u] == v)
-        p->after[u] = NONE;
-    else
-        p->after[v] = u;
-}
-
-/* Notes the edges of the kept faces on the plane. */
-static void find_boundary(brio_polyhedron *p) {
-    const brio_faces *f = &p->kept;
-    for (const brio_face *face = f->list; face < f->list + f->count; face++)
-        for (size_t c = face->begin; c < face->end; c++) {
-            uint32_t u = f->corner[c], v = f->corner[c + 1 < face->end ? c + 1 : face->begin];
-            if (p->height[u] == 0 && p->height[v] == 0) bound_cut(p, u, v);
-        }
 }
 
 /* Marks the vertices that are cut off, so that later cuts do not look at them. */
@@ -184,16 +170,17 @@ static void drop_vertices(brio_polyhedron *p) {
         if (p->height[v] > 0) p->x[v][0] = NAN;
 }
 
-/* Adds the cycles of the boundary of the cut as faces. There is one, unless rounding made a corner not convex. */
+/* Adds the cycles of cut vertices as faces. There is one, unless rounding made a corner not convex. */
 static brio_status close_cut(brio_polyhedron *p, int64_t neighbour) {
     brio_status status = BRIO_OK;
-    for (uint32_t first = 0; first < p->num_vertices; first++) {
-        if (p->after[first] == NONE) continue;
+    for (size_t i = 0; i < p->num_cut; i++) {
+        uint32_t v = p->cut[i].vertex;
+        if (p->after[v] == NONE) continue;
         BRIO_TRY(begin_face(p->ctx, &p->kept, neighbour));
-        for (uint32_t v = first, next; v != NONE; v = next) {
+        for (uint32_t next; p->after[v] != NONE; v = next) {
             next = p->after[v];
             p->after[v] = NONE;
-            if (next != NONE) BRIO_TRY(add_corner(p->ctx, &p->kept, v));
+            BRIO_TRY(add_corner(p->ctx, &p->kept, v));
         }
     }
 done:
@@ -204,10 +191,11 @@ brio_status brio_polyhedron_cut(brio_polyhedron *p, const double plane[4], int64
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
-    if (!find_heights(p, plane)) return BRIO_OK;
+    int side = find_heights(p, plane);
+    if (side < 0) p->faces.count = p->faces.num_corners = 0;
+    if (side <= 0) return BRIO_OK;
     p->kept.count = p->kept.num_corners = p->num_cut = 0;
     for (size_t f = 0; f < p->faces.count; f++) BRIO_TRY(keep_face(p, &p->faces.list[f]));
-    find_boundary(p);
     BRIO_TRY(close_cut(p, neighbour));
     drop_vertices(p);
     brio_faces old = p->faces;

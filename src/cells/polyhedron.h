@@ -3,7 +3,7 @@
  * A polyhedron is a list of faces, each a cycle of corners seen counterclockwise from outside. Corners are indices of
  * vertices, so that faces share vertices. Coordinates are relative to an origin of the owner's choice.
  *
- * I1  Every directed edge of a face is, reversed, an edge of exactly one other face.
+ * I1  Every directed edge of a face is, reversed, an edge of exactly one other face. Vertices may coincide.
  *
  * A polyhedron keeps its memory when it is filled again. One thread owns it. */
 #ifndef BRIO_CELLS_POLYHEDRON_H
