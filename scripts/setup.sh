@@ -47,6 +47,8 @@ missing() {
     has_python_with scipy || echo python3-scipy
     has clang-format || echo clang-format
     has pkg-config || echo pkg-config
+    has g++ || echo g++
+    [ -d /usr/include/voro++ ] || echo voro++-dev
 }
 
 # The Debian packages of other libraries, and of the plots, that are missing: the bench does without them.
@@ -55,6 +57,7 @@ missing_peers() {
     [ -d /usr/include/tbb ] || echo libtbb-dev
     [ -f /usr/include/tetgen.h ] || echo libtet1.5-dev
     [ -d /usr/include/libqhull_r ] || echo libqhull-dev
+    [ -d /usr/include/voro++ ] || echo voro++-dev
     has gnuplot || echo gnuplot-nox
 }
 

@@ -590,6 +590,7 @@ typedef enum brio_cells_format {
     BRIO_CELLS_FORMAT_VTU = 1, /* polyhedra of VTK; cells have `vertices`. Unbounded and empty cells are left out. */
     BRIO_CELLS_FORMAT_NPY = 2, /* a table of NumPy, a structured array of one dimension */
     BRIO_CELLS_FORMAT_CSV = 3, /* a text with a header */
+    BRIO_CELLS_FORMAT_FACES_CSV = 4, /* the faces as a text with a header; never chosen by the extension */
     BRIO_CELLS_FORMAT_END
 } brio_cells_format;
 
@@ -598,7 +599,8 @@ typedef enum brio_cells_format {
 BRIO_API brio_cells_format brio_cells_format_of(const char *path);
 
 /** Writes cells to a file, with the care of brio_write. CSV and NPY have a row for each cell: site, volume, area, faces
- *  (their number), bounded, cx, cy, cz (the centroid). VTU has site, volume, area and faces as data of the cells. The cells
+ *  (their number), bounded, cx, cy, cz (the centroid). FACES_CSV has a row for each face of each cell: site, neighbour, area,
+ *  nx, ny, nz. VTU has site, volume, area and faces as data of the cells. The cells
  *  have areas, centroids and faces; for VTU also vertices.
  *  comment  a line for the header of a VTU file; NULL: none.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an unknown format, or an array is missing), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
