@@ -47,12 +47,15 @@ missing() {
     has_python_with scipy || echo python3-scipy
     has clang-format || echo clang-format
     has pkg-config || echo pkg-config
-    has g++ || echo g++
-    [ -d /usr/include/voro++ ] || echo voro++-dev
 }
 
-# The Debian packages of other libraries, and of the plots, that are missing: the bench does without them.
+# The Debian packages of other libraries, and of the plots, that are missing: the bench, and tests, do without them.
 missing_peers() {
+    if [ "$1" = check ]; then
+        has g++ || echo g++
+        [ -d /usr/include/voro++ ] || echo voro++-dev
+        return 0
+    fi
     [ -d /usr/include/CGAL ] || echo libcgal-dev
     [ -d /usr/include/tbb ] || echo libtbb-dev
     [ -f /usr/include/tetgen.h ] || echo libtet1.5-dev
@@ -74,7 +77,7 @@ install() {
 
 # Installs of them what this Debian has, and says what stays missing.
 install_peers() {
-    wanted=$(missing_peers)
+    wanted=$(missing_peers "$1")
     [ -n "$wanted" ] || return 0
     if [ "$(id -u)" = 0 ] && has apt-get; then
         apt-get update >/dev/null 2>&1 || true
@@ -84,10 +87,10 @@ install_peers() {
             # shellcheck disable=SC2086
             install $there
         fi
-        wanted=$(missing_peers)
+        wanted=$(missing_peers "$1")
     fi
     # shellcheck disable=SC2086
-    [ -z "$wanted" ] || echo "setup: the bench leaves out what needs these Debian packages:" $wanted >&2
+    [ -z "$wanted" ] || echo "setup: left out is what needs these Debian packages:" $wanted >&2
 }
 
 purpose=${1:-build}
@@ -99,7 +102,7 @@ build | check | bench | thesis) ;;
     ;;
 esac
 
-[ "$purpose" != bench ] || install_peers
+case $purpose in bench | check) install_peers "$purpose" ;; esac
 packages=$(missing "$purpose" | xargs)
 [ -n "$packages" ] || exit 0
 if [ "$(id -u)" = 0 ] && has apt-get; then
