@@ -184,6 +184,10 @@ done:
 brio_status brio_cell_record(const brio_cell_job *job, brio_cell_recorder *r, uint32_t site) {
     brio_status status = BRIO_OK;
     size_t faces = r->num_faces, corners = r->num_corners, vertices = r->num_vertices;
+    if (!job->areas && !job->centroids && !job->faces) {
+        cell_numbers n = {.volume = brio_star_volume(job->d, site), .bounded = true};
+        if (!isnan(n.volume)) return store_numbers(job, site, &n), BRIO_OK;
+    }
     BRIO_TRY(brio_star_cell_fill(&r->star, site, job->centroids));
     if (job->region->num_planes && r->star.place != BRIO_PLACE_INSIDE) {
         BRIO_TRY(brio_clip_cell(&r->star, job->region, &r->shape));
