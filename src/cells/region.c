@@ -121,7 +121,7 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
         r->middle[k] = low[k] / 2 + high[k] / 2;
         r->reach = fmax(r->reach, high[k] - low[k]);
     }
-    r->volume = volume_of(r);
+    r->volume = is_box(r) ? (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) : volume_of(r);
     BRIO_REQUIRE(ctx, r->volume > 0, BRIO_ERR_ARGUMENT, "the region is empty");
 done:
     return status;
