@@ -204,6 +204,7 @@ static void area_of_corners(const brio_cells *cells, uint64_t f, double area[3])
 }
 
 static void expect_corners(const brio_cells *cells) {
+    for (size_t i = 0; i < 3 * cells->num_vertices; i++) EXPECT(isfinite(cells->vertices[i]), "vertex %zu", i / 3);
     for (size_t c = 0; c < cells->num_cells; c++)
         for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
             double area[3];
