@@ -2,7 +2,8 @@
  * reconstruction with guarantees on top of them.   MIT licence.
  *
  * This header is the manual. Its sections follow a user's work: versions, status and context, triangulation, meshes and
- * their certificates, Voronoi and power cells, surface reconstruction, iso-surfaces, files, test data, memory estimates, predicates.
+ * their certificates, Voronoi and power cells, surface reconstruction, iso-surfaces, files, test data, memory estimates,
+ * predicates.
  *
  * Words, used in one meaning throughout:
  *   points      the rows of the input
