@@ -567,7 +567,8 @@ typedef struct brio_cells {
  *  end of the other; unbounded cells of points of dimension 2 or less list none.
  *  Accuracy: vertices are rounded to doubles, after an error of 2^-44 of their distance from their sites. Errors of
  *  vertices cancel in the sum of the volumes: in a region it is region_volume up to about 1e-13 relative, if all cells are
- *  there. compare volume_sum with region_volume to see.
+ *  there, and up to about 2^-50 times the distance from 0 to the region, divided by its side, where that is more. Compare
+ *  volume_sum with region_volume to see.
  *  Points of dimension 2 or less have cells too: prisms, slabs, or all of space, bounded in a region alone.
  *  t  the result of brio_delaunay for these points and weights, or NULL to compute it.
  *  points, weights, num_points, and limits as brio_delaunay.   options  NULL for the defaults.
