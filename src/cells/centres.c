@@ -53,6 +53,9 @@ typedef struct {
 
 static brio_place place_of(const brio_diagram *d, const brio_region *r, const double *centre) {
     if (d->flat || isnan(centre[0])) return BRIO_PLACE_FAR;
+    if (r->box && r->low[0] < centre[0] && centre[0] < r->high[0] && r->low[1] < centre[1] && centre[1] < r->high[1] &&
+        r->low[2] < centre[2] && centre[2] < r->high[2])
+        return BRIO_PLACE_INSIDE; /* settles most centres */
     for (int k = 0; k < 3 && r->num_planes; k++)
         if (!(fabs(centre[k] - r->middle[k]) < FAR_REACHES * r->reach)) return BRIO_PLACE_FAR;
     for (size_t i = 0; i < r->num_planes; i++)

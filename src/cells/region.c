@@ -108,6 +108,9 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
         BRIO_REQUIRE(ctx, low[0] < high[0] && low[1] < high[1] && low[2] < high[2], BRIO_ERR_ARGUMENT,
                      "the region is empty");
         BRIO_TRY(brio_polyhedron_set_box(&r->shape, low, high));
+        r->box = true;
+        memcpy(r->low, low, sizeof low);
+        memcpy(r->high, high, sizeof high);
     } else {
         BRIO_TRY(search(ctx, r, low, high));
         double outer[2][3];
@@ -121,7 +124,7 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
         r->middle[k] = low[k] / 2 + high[k] / 2;
         r->reach = fmax(r->reach, high[k] - low[k]);
     }
-    r->volume = is_box(r) ? (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) : volume_of(r);
+    r->volume = r->box ? (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) : volume_of(r);
     BRIO_REQUIRE(ctx, r->volume > 0, BRIO_ERR_ARGUMENT, "the region is empty");
 done:
     return status;

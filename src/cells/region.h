@@ -8,8 +8,10 @@ typedef struct brio_region {
     size_t num_planes;     /* 0: no region, nothing is clipped */
     double (*plane)[4];    /* unit outward normal n and offset d: inside is n . x <= d. Wall i is neighbour -1 - i. */
     brio_polyhedron shape; /* the polytope, relative to 0 */
-    double middle[3];      /* of the polytope's bounding box */
-    double reach;          /* the longest side of that box */
+    bool box;              /* whether the region is a box: then low and high are its corners */
+    double low[3], high[3];
+    double middle[3]; /* of the polytope's bounding box */
+    double reach;     /* the longest side of that box */
     double volume;
 } brio_region;
 
