@@ -256,8 +256,10 @@ static void cells_of_the_hull_are_unbounded(void) {
         EXPECT(cells->bounded[c] == !hull[cells->site[c]] && isfinite(cells->volume[c]) == !hull[cells->site[c]]);
         EXPECT(isnan(cells->centroid[3 * c]) == hull[cells->site[c]]);
     }
+    brio_cells_free(cells);
     EXPECT(brio_voronoi_cells(ctx, t, points, NULL, N - 1, NULL, &cells) == BRIO_ERR_ARGUMENT && !cells);
     brio_triangulation_free(t);
+    EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }
 
