@@ -9,6 +9,7 @@
     X(surface)                                                                                                         \
     X(medial)                                                                                                          \
     X(offset)                                                                                                          \
+    X(voronoi)                                                                                                         \
     X(check)                                                                                                           \
     X(compare)                                                                                                         \
     X(iso)                                                                                                             \

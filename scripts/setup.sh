@@ -54,12 +54,18 @@ missing() {
     has pkg-config || echo pkg-config
 }
 
-# The Debian packages of other libraries, and of the plots, that are missing: the bench does without them.
+# The Debian packages of other libraries, and of the plots, that are missing: the bench, and tests, do without them.
 missing_peers() {
+    if [ "$1" = check ]; then
+        has g++ || echo g++
+        [ -d /usr/include/voro++ ] || echo voro++-dev
+        return 0
+    fi
     [ -d /usr/include/CGAL ] || echo libcgal-dev
     [ -d /usr/include/tbb ] || echo libtbb-dev
     [ -f /usr/include/tetgen.h ] || echo libtet1.5-dev
     [ -d /usr/include/libqhull_r ] || echo libqhull-dev
+    [ -d /usr/include/voro++ ] || echo voro++-dev
     has gnuplot || echo gnuplot-nox
 }
 
@@ -76,7 +82,7 @@ install() {
 
 # Installs of them what this Debian has, and says what stays missing.
 install_peers() {
-    wanted=$(missing_peers)
+    wanted=$(missing_peers "$1")
     [ -n "$wanted" ] || return 0
     if [ "$(id -u)" = 0 ] && has apt-get; then
         apt-get update >/dev/null 2>&1 || true
@@ -86,10 +92,10 @@ install_peers() {
             # shellcheck disable=SC2086
             install $there
         fi
-        wanted=$(missing_peers)
+        wanted=$(missing_peers "$1")
     fi
     # shellcheck disable=SC2086
-    [ -z "$wanted" ] || echo "setup: the bench leaves out what needs these Debian packages:" $wanted >&2
+    [ -z "$wanted" ] || echo "setup: left out is what needs these Debian packages:" $wanted >&2
 }
 
 # Poisson reconstruction, which make quality compares with: PyMeshLab from PyPI, in an environment of its own. Says so
@@ -112,7 +118,7 @@ build | check | bench | quality | thesis) ;;
     ;;
 esac
 
-[ "$purpose" != bench ] || install_peers
+case $purpose in bench | check) install_peers "$purpose" ;; esac
 packages=$(missing "$purpose" | xargs)
 if [ -n "$packages" ] && [ "$(id -u)" = 0 ] && has apt-get; then
     echo "setup: installing $packages"

@@ -63,8 +63,8 @@ static void raise_to(double *most, double value) {
 
 /* Raises square[s] to the largest squared distance from sample s to a point of the edge in the co-cone.
  * reach  at least the squared distance from s to the farther end of the edge, and barely more. */
-static inline void offer_edge(const brio_cells *c, uint32_t s, const double *from, const double *to, double reach,
-                              double *square) {
+static inline void offer_edge(const brio_shaped_cells *c, uint32_t s, const double *from, const double *to,
+                              double reach, double *square) {
     double so_far;
     if (s >= c->num_samples || c->pole_of[2 * (size_t)s] == UINT32_MAX) return;
     __atomic_load(&square[s], &so_far, __ATOMIC_RELAXED);
@@ -79,7 +79,7 @@ static inline void offer_edge(const brio_cells *c, uint32_t s, const double *fro
 
 /* Offers the Voronoi edges of tetrahedron t to the samples of its facets. Each Voronoi edge is offered once, by the
  * lower of its two tetrahedra. The three samples of a facet have equal distances to each end of the dual edge. */
-static void offer_edges(const brio_cells *c, size_t t, double *square) {
+static void offer_edges(const brio_shaped_cells *c, size_t t, double *square) {
     static const double MORE = 1 + 1e-9; /* chosen: exceeds the relative rounding error of a squared distance */
     const double *from = c->centre + 3 * t;
     if (isnan(from[0])) return;
@@ -94,7 +94,7 @@ static void offer_edges(const brio_cells *c, size_t t, double *square) {
     }
 }
 
-static double nearer_pole_square(const brio_cells *c, size_t s) {
+static double nearer_pole_square(const brio_shaped_cells *c, size_t s) {
     uint32_t nearer = c->pole_of[2 * s + 1];
     if (nearer == UINT32_MAX) return INFINITY;
     return brio_square_distance(c->centre + 3 * (size_t)nearer, c->points + 3 * s);
@@ -103,7 +103,7 @@ static double nearer_pole_square(const brio_cells *c, size_t s) {
 /* --- the loops --- */
 
 typedef struct {
-    const brio_cells *c;
+    const brio_shaped_cells *c;
     double most, *shape;
 } measurement;
 
@@ -130,7 +130,7 @@ static void divide_by_radii(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* offer_edge skips the edges within the radius at which the shape is `most`: such edges cannot change the result. */
-void brio_cell_shapes(brio_context *ctx, const brio_cells *c, double most, double *shape) {
+void brio_cell_shapes(brio_context *ctx, const brio_shaped_cells *c, double most, double *shape) {
     measurement m = {c, most, shape};
     int threads = brio_threads(ctx, c->num_samples, SAMPLES_A_THREAD);
     brio_for(ctx, threads, c->num_samples, set_least_radii, &m);

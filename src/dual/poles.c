@@ -118,7 +118,7 @@ static void discard_bad(finder *f, const brio_pole_filter *filter, const double 
 
 static brio_status look_at_shapes(brio_context *ctx, finder *f, const brio_pole_filter *filter, brio_poles *out) {
     brio_status status = BRIO_OK;
-    brio_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
+    brio_shaped_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
     double r = filter->sampling_density, most = filter->shapes;
     if (r > 0) most = fmax(most, (1 - r) / (1.3 * r));
     if (!(most > 0)) return BRIO_OK;

@@ -148,7 +148,7 @@ class CliTest(unittest.TestCase):
         """The arrays of a VTK file by section and name, and the attributes of its piece."""
         with open(self.path(name), "rb") as f:
             xml, data = f.read().split(b"\n_", 1)
-        codes = {"Int32": "i", "Int64": "q", "UInt8": "B", "Int8": "b", "Float64": "d"}
+        codes = {"Int32": "i", "UInt32": "I", "Int64": "q", "UInt8": "B", "Int8": "b", "Float64": "d"}
         arrays, section = {}, None
         for tag in re.findall(r"<(\w+)([^>]*)>", xml.decode()):
             if tag[0] != "DataArray":

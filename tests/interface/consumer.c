@@ -59,6 +59,8 @@ int main(void) {
     OPTIONS(brio_labeled_delaunay_options, labeled);
     OPTIONS(brio_iso_surface_options, iso);
     OPTIONS(brio_write_options, write);
+    OPTIONS(brio_cells_options, cells_options);
+    brio_cells *cells;
     RESULT(brio_power_crust_stats, crust_stats);
     RESULT(brio_offset_surface_stats, offset_stats);
     RESULT(brio_power_shape_stats, shape_stats);
@@ -106,6 +108,10 @@ int main(void) {
     if (brio_write(ctx, "no such folder/x.ply", points, &write.value) != BRIO_ERR_WRITE) broken = 1;
     brio_certificate_free(&certificate.value);
     expect_guard("brio_certificate", certificate.before, certificate.after);
+    if (brio_voronoi_cells(ctx, t, points->vertices, NULL, 1500, &cells_options.value, &cells) != BRIO_OK ||
+        cells->num_cells != 1500)
+        broken = 1;
+    brio_cells_free(cells);
     brio_triangulation_free(t);
     brio_mesh_free(points);
     brio_mesh_free(crust);

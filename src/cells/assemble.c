@@ -1,0 +1,158 @@
+/* The faces and vertices of all cells, in the order of the cells.
+ *
+ * Voronoi vertices come first, in the order of their tetrahedra, each once; then the vertices that clipping made, in the
+ * order of the cells. */
+#include "base/memory.h"
+#include "base/team.h"
+#include "cells/cell_record.h"
+#include <string.h>
+
+enum { CELLS_A_THREAD = 1 << 12 };
+
+typedef struct {
+    brio_cell_job *job;
+    uint32_t *vertex_of;    /* of each tetrahedron: one more than the vertex at its centre; 0 if it is no corner */
+    uint64_t *first_corner; /* of each cell */
+    uint64_t *first_vertex; /* of each cell: its first own vertex */
+    size_t num_voronoi;     /* vertices at centres */
+} assembly;
+
+static brio_status offset_cells(assembly *a) {
+    const brio_cell_job *job = a->job;
+    brio_cells *out = job->out;
+    brio_context *ctx = job->d->ctx;
+    size_t n = out->num_cells;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_offsets, n + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, a->first_corner, n + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, a->first_vertex, n + 1));
+    out->face_offsets[0] = a->first_corner[0] = a->first_vertex[0] = 0;
+    for (size_t c = 0; c < n; c++) {
+        out->face_offsets[c + 1] = out->face_offsets[c] + job->place[c].num_faces;
+        a->first_corner[c + 1] = a->first_corner[c] + job->place[c].num_corners;
+        a->first_vertex[c + 1] = a->first_vertex[c] + job->place[c].num_vertices;
+    }
+done:
+    return status;
+}
+
+/* --- faces --- */
+
+static void copy_faces(void *user, size_t from, size_t to, int thread) {
+    const assembly *a = user;
+    brio_cells *out = a->job->out;
+    (void)thread;
+    for (size_t c = from; c < to; c++) {
+        const brio_cell_place *place = &a->job->place[c];
+        const brio_cell_recorder *r = &a->job->recorder[place->thread];
+        const brio_cell_face *face = r->face + place->face;
+        uint64_t corner = a->first_corner[c];
+        for (size_t i = 0; i < place->num_faces; i++) {
+            size_t f = (size_t)out->face_offsets[c] + i;
+            out->face_neighbours[f] = face[i].neighbour;
+            out->face_areas[f] = face[i].area;
+            memcpy(out->face_normals + 3 * f, face[i].normal, sizeof face[i].normal);
+            if (!out->corner_offsets) continue;
+            out->corner_offsets[f] = corner;
+            corner += face[i].corners;
+        }
+    }
+}
+
+static brio_status make_faces(assembly *a) {
+    brio_cells *out = a->job->out;
+    brio_context *ctx = a->job->d->ctx;
+    size_t cells = out->num_cells, faces = (size_t)out->face_offsets[cells];
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_neighbours, faces));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_areas, faces));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_normals, 3 * faces));
+    if (a->job->vertices) {
+        BRIO_TRY(BRIO_ALLOC(ctx, out->corner_offsets, faces + 1));
+        out->corner_offsets[faces] = a->first_corner[cells];
+    }
+    brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_faces, a);
+done:
+    return status;
+}
+
+/* --- vertices --- */
+
+/* Numbers the centres that are corners, in the order of their tetrahedra. */
+static brio_status number_centres(assembly *a) {
+    const brio_cell_job *job = a->job;
+    const brio_diagram *d = job->d;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, a->vertex_of, d->t.count));
+    for (int i = 0; i < job->threads; i++)
+        for (size_t c = 0; c < job->recorder[i].num_corners; c++) {
+            uint32_t corner = job->recorder[i].corner[c];
+            if (!(corner & BRIO_OWN_VERTEX)) a->vertex_of[corner] = 1;
+        }
+    for (size_t t = 0; t < d->t.count; t++)
+        if (a->vertex_of[t]) a->vertex_of[t] = (uint32_t)++a->num_voronoi;
+done:
+    return status;
+}
+
+static void copy_corners(void *user, size_t from, size_t to, int thread) {
+    const assembly *a = user;
+    const brio_cell_job *job = a->job;
+    double inverse = 1 / job->d->scale;
+    (void)thread;
+    for (size_t c = from; c < to; c++) {
+        const brio_cell_place *place = &job->place[c];
+        const brio_cell_recorder *r = &job->recorder[place->thread];
+        size_t first = a->num_voronoi + (size_t)a->first_vertex[c];
+        uint32_t *to_corner = job->out->face_vertices + a->first_corner[c];
+        for (size_t i = 0; i < place->num_corners; i++) {
+            uint32_t corner = r->corner[place->corner + i];
+            bool own = corner & BRIO_OWN_VERTEX;
+            to_corner[i] = own ? (uint32_t)(first + (corner & ~BRIO_OWN_VERTEX)) : a->vertex_of[corner] - 1;
+        }
+        for (size_t i = 0; i < place->num_vertices; i++)
+            for (size_t k = 0; k < 3; k++)
+                job->out->vertices[3 * (first + i) + k] = r->vertex[place->vertex + i][k] * inverse;
+    }
+}
+
+static void copy_centres(const assembly *a) {
+    const brio_diagram *d = a->job->d;
+    double inverse = 1 / d->scale;
+    for (size_t t = 0; t < d->t.count; t++) {
+        if (!a->vertex_of[t]) continue;
+        double *x = a->job->out->vertices + 3 * (size_t)(a->vertex_of[t] - 1);
+        for (int k = 0; k < 3; k++) x[k] = d->centre[t][k] * inverse;
+    }
+}
+
+static brio_status make_vertices(assembly *a) {
+    const brio_cell_job *job = a->job;
+    brio_cells *out = job->out;
+    brio_context *ctx = job->d->ctx;
+    brio_status status = BRIO_OK;
+    size_t cells = out->num_cells;
+    BRIO_TRY(number_centres(a));
+    out->num_vertices = a->num_voronoi + (size_t)a->first_vertex[cells];
+    BRIO_REQUIRE(ctx, out->num_vertices < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu vertices of cells; at most 2^32 - 2",
+                 out->num_vertices);
+    BRIO_TRY(BRIO_ALLOC(ctx, out->vertices, 3 * out->num_vertices));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_vertices, (size_t)a->first_corner[cells]));
+    copy_centres(a);
+    brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_corners, a);
+done:
+    return status;
+}
+
+brio_status brio_cells_assemble(brio_cell_job *job) {
+    brio_status status = BRIO_OK;
+    assembly a = {.job = job};
+    BRIO_TRY(offset_cells(&a));
+    BRIO_TRY(make_faces(&a));
+    if (job->vertices) BRIO_TRY(make_vertices(&a));
+done:
+    brio_release(job->d->ctx, a.vertex_of);
+    brio_release(job->d->ctx, a.first_corner);
+    brio_release(job->d->ctx, a.first_vertex);
+    return status;
+}

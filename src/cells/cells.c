@@ -1,0 +1,295 @@
+/* Voronoi and power cells.
+ *
+ * The diagram is computed once: the centres of the tetrahedra, exact ties among them, the tetrahedra of each vertex. Then
+ * threads compute the cells, each from the star of its site, along the array of tetrahedra. A cell is computed the same
+ * way whichever thread takes it. Cells that reach outside the region are clipped.
+ *
+ * Based on: Aurenhammer. Power diagrams: properties, algorithms and applications. SIAM J. Computing 1987.
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, sections 2.1 and 2.2. */
+#include "base/finite.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/scale.h"
+#include "base/team.h"
+#include "base/versioned.h"
+#include "cells/cell_record.h"
+#include "cells/flat_points.h"
+#include "triangulation/view.h"
+#include <math.h>
+#include <string.h>
+
+/* CHUNK: cells that a thread takes at a time. SLICES: progress is reported between slices of the cells. All chosen. */
+enum { CHUNK = 128, CELLS_A_THREAD = 512, SLICES = 64 };
+
+static const brio_cells_options STANDARD = {.size = sizeof STANDARD, .areas = 1, .centroids = 1, .faces = 1};
+
+BRIO_OPTIONS_INIT(brio_cells_options)
+
+void brio_cells_free(brio_cells *cells) {
+    if (!cells) return;
+    brio_context *ctx = cells->context;
+    brio_release(ctx, cells->site);
+    brio_release(ctx, cells->volume);
+    brio_release(ctx, cells->bounded);
+    brio_release(ctx, cells->area);
+    brio_release(ctx, cells->centroid);
+    brio_release(ctx, cells->face_offsets);
+    brio_release(ctx, cells->face_neighbours);
+    brio_release(ctx, cells->face_areas);
+    brio_release(ctx, cells->face_normals);
+    brio_release(ctx, cells->corner_offsets);
+    brio_release(ctx, cells->face_vertices);
+    brio_release(ctx, cells->vertices);
+    brio_release(ctx, cells);
+}
+
+/* What a call works with, beside the job. */
+typedef struct {
+    brio_context *ctx;
+    const double *points, *weights;
+    size_t num_points;
+    brio_cells_options options;
+    brio_triangulation *own;          /* made by the call, or NULL */
+    double *all_points, *all_weights; /* of flat_points.h, or NULL */
+    double *scaled, *scaled_weights;  /* or NULL */
+    brio_diagram diagram;
+    brio_region region;
+} cell_call;
+
+/* --- what the diagram is made of --- */
+
+/* Completes points of dimension 0 to 2 and triangulates them again. */
+static brio_status triangulate_flat(cell_call *c) {
+    brio_status status = BRIO_OK;
+    size_t added;
+    BRIO_TRY(brio_complete_flat_points(c->ctx, c->points, c->weights, c->num_points, &c->all_points, &c->all_weights,
+                                       &added));
+    brio_triangulation_free(c->own);
+    c->own = NULL;
+    BRIO_TRY(brio_delaunay(c->ctx, c->all_points, c->all_weights, c->num_points + added, NULL, &c->own));
+    c->points = c->all_points;
+    c->weights = c->all_weights;
+    c->diagram.flat = true;
+done:
+    return status;
+}
+
+/* Finds the triangulation to work with. */
+static brio_status triangulate(cell_call *c, const brio_triangulation *t) {
+    brio_status status = BRIO_OK;
+    brio_bar bar = brio_progress_bar(c->ctx);
+    if (!t) {
+        brio_progress_part(c->ctx, bar, 0, 0.6);
+        BRIO_TRY(brio_delaunay(c->ctx, c->points, c->weights, c->num_points, NULL, &c->own));
+        t = c->own;
+        brio_progress_part(c->ctx, bar, 0.6, 1);
+    }
+    if (brio_triangulation_stats(t)->dimension < 3 && c->num_points) {
+        BRIO_TRY(triangulate_flat(c));
+        t = c->own;
+    }
+    c->diagram.t = brio_tetrahedra_of(t);
+    c->diagram.num_finite = brio_triangulation_stats(t)->tetrahedra;
+done:
+    return status;
+}
+
+/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. */
+static double choose_scale(const cell_call *c) {
+    enum { ORDINARY = 100, MOST = 1000 };
+    double most = 0;
+    int exponent;
+    for (size_t i = 0; i < 3 * c->num_points; i++) {
+        double way = fabs(c->points[i] * 0.5 - c->points[i % 3] * 0.5);
+        most = way > most ? way : most;
+    }
+    frexp(most, &exponent);
+    if (most == 0 || (exponent > -ORDINARY && exponent < ORDINARY)) return 1;
+    return brio_power_of_two(exponent < -MOST ? MOST : exponent > MOST ? -MOST : -exponent);
+}
+
+static brio_status scale_points(cell_call *c) {
+    brio_status status = BRIO_OK;
+    brio_diagram *d = &c->diagram;
+    size_t rows = c->num_points + (d->flat ? BRIO_MOST_ADDED : 0);
+    d->points = d->at = c->points;
+    d->weights = d->square = c->weights;
+    d->scale = choose_scale(c);
+    if (d->scale == 1) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, c->scaled, 3 * rows));
+    for (size_t i = 0; i < 3 * rows; i++) c->scaled[i] = c->points[i] * d->scale;
+    d->at = c->scaled;
+    if (!c->weights) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, c->scaled_weights, rows));
+    for (size_t i = 0; i < rows; i++) c->scaled_weights[i] = c->weights[i] * d->scale * d->scale;
+    d->square = c->scaled_weights;
+done:
+    return status;
+}
+
+/* Makes the region of the walls of the box and of the planes. */
+static brio_status make_region(cell_call *c) {
+    const brio_cells_options *o = &c->options;
+    brio_status status = BRIO_OK;
+    size_t walls = o->box ? 6 : 0;
+    double *planes = NULL;
+    BRIO_REQUIRE(c->ctx, o->planes || !o->num_planes, BRIO_ERR_ARGUMENT, "%zu planes, but no array of them",
+                 o->num_planes);
+    BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, planes, 4 * (walls + o->num_planes)));
+    for (size_t i = 0; i < walls; i++) {
+        double at = o->box[i / 2 + 3 * (i % 2)];
+        BRIO_REQUIRE(c->ctx, isfinite(at), BRIO_ERR_ARGUMENT, "number %zu of the box is not finite",
+                     i / 2 + 3 * (i % 2));
+        planes[4 * i + i / 2] = i % 2 ? 1 : -1;
+        planes[4 * i + 3] = i % 2 ? at : -at;
+    }
+    if (o->num_planes) memcpy(planes + 4 * walls, o->planes, 4 * o->num_planes * sizeof *planes);
+    BRIO_TRY(brio_region_new(c->ctx, planes, walls + o->num_planes, c->diagram.scale, &c->region));
+done:
+    brio_release(c->ctx, planes);
+    return status;
+}
+
+/* --- the cells --- */
+
+/* Makes the arrays of numbers of cells, and lists the sites in ascending order. */
+static brio_status make_cells(brio_cell_job *job) {
+    const brio_diagram *d = job->d;
+    brio_cells *out = job->out;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(d->ctx, job->cell_of, d->num_points));
+    for (size_t p = 0; p < d->num_points; p++)
+        if (d->size[p]) job->cell_of[p] = (uint32_t)out->num_cells++;
+    size_t n = out->num_cells;
+    BRIO_TRY(BRIO_ALLOC(d->ctx, out->site, n));
+    BRIO_TRY(BRIO_ALLOC(d->ctx, out->volume, n));
+    BRIO_TRY(BRIO_ALLOC(d->ctx, out->bounded, n));
+    if (job->areas) BRIO_TRY(BRIO_ALLOC(d->ctx, out->area, n));
+    if (job->centroids) BRIO_TRY(BRIO_ALLOC(d->ctx, out->centroid, 3 * n));
+    if (job->faces) BRIO_TRY(BRIO_ALLOC(d->ctx, job->place, n));
+    for (size_t p = 0; p < d->num_points; p++)
+        if (d->size[p]) out->site[job->cell_of[p]] = (uint32_t)p;
+done:
+    return status;
+}
+
+typedef struct {
+    const brio_cell_job *job;
+    size_t first; /* of the slice, in the order of the vertices */
+} cell_slice;
+
+static void record_some(void *user, size_t from, size_t to, int thread) {
+    const cell_slice *s = user;
+    brio_cell_recorder *r = &s->job->recorder[thread];
+    for (size_t i = from; i < to && r->status == BRIO_OK; i++) {
+        uint32_t site = s->job->d->order[s->first + i];
+        if (site < s->job->d->num_points) r->status = brio_cell_record(s->job, r, site);
+    }
+}
+
+static brio_status record_all(brio_cell_job *job) {
+    const brio_diagram *d = job->d;
+    brio_status status = BRIO_OK;
+    size_t n = d->num_vertices, size = n / SLICES + 1;
+    for (size_t first = 0; first < n; first += size) {
+        cell_slice slice = {job, first};
+        size_t count = n - first < size ? n - first : size;
+        brio_for_chunks(d->ctx, job->threads, count, CHUNK, record_some, &slice);
+        for (int i = 0; i < job->threads; i++) BRIO_TRY(job->recorder[i].status);
+        BRIO_TRY(brio_progress(d->ctx, "cells", 0.4 + 0.5 * ((double)first / (double)n)));
+    }
+done:
+    return status;
+}
+
+/* Adds up the volumes of the bounded cells, in the order of their sites, with the rounding errors [Neumaier 1974]. */
+static double sum_of_volumes(const brio_cells *cells) {
+    double sum = 0, lost = 0;
+    for (size_t c = 0; c < cells->num_cells; c++) {
+        double x = cells->volume[c], next = sum + x;
+        if (!cells->bounded[c]) continue;
+        if (isfinite(next)) lost += fabs(sum) >= fabs(x) ? (sum - next) + x : (x - next) + sum;
+        sum = next;
+    }
+    return sum + lost;
+}
+
+static brio_status compute(brio_cell_job *job) {
+    const brio_diagram *d = job->d;
+    brio_status status = BRIO_OK;
+    job->threads = brio_threads(d->ctx, d->num_vertices, CELLS_A_THREAD);
+    BRIO_TRY(make_cells(job));
+    BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, job->recorder, (size_t)job->threads));
+    for (int i = 0; i < job->threads; i++) {
+        job->recorder[i].ctx = job->recorder[i].shape.ctx = d->ctx;
+        job->recorder[i].star.d = d;
+    }
+    BRIO_TRY(record_all(job));
+    if (job->faces) BRIO_TRY(brio_cells_assemble(job));
+    job->out->volume_sum = sum_of_volumes(job->out);
+done:
+    for (int i = 0; job->recorder && i < job->threads; i++) brio_cell_recorder_free(&job->recorder[i]);
+    brio_release(d->ctx, job->recorder);
+    brio_release(d->ctx, job->cell_of);
+    brio_release(d->ctx, job->place);
+    return status;
+}
+
+/* --- the call --- */
+
+static void end_call(cell_call *c) {
+    brio_diagram_free(&c->diagram);
+    brio_region_free(&c->region);
+    brio_triangulation_free(c->own);
+    brio_release(c->ctx, c->all_points);
+    brio_release(c->ctx, c->all_weights);
+    brio_release(c->ctx, c->scaled);
+    brio_release(c->ctx, c->scaled_weights);
+}
+
+static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *out) {
+    const brio_cells_options *o = &c->options;
+    brio_status status = BRIO_OK;
+    brio_cell_job job = {.d = &c->diagram, .region = &c->region, .out = out};
+    job.areas = o->areas, job.centroids = o->centroids, job.vertices = o->vertices;
+    job.faces = o->faces || o->vertices;
+    c->diagram.ctx = c->ctx;
+    c->diagram.num_points = c->num_points;
+    BRIO_TRY(triangulate(c, t));
+    BRIO_TRY(scale_points(c));
+    BRIO_TRY(make_region(c));
+    out->region_volume = c->region.num_planes ? c->region.volume : INFINITY;
+    for (int k = 0; k < 3; k++) out->region_volume /= c->diagram.scale;
+    BRIO_TRY(brio_diagram_fill(&c->diagram, &c->region));
+    BRIO_TRY(compute(&job));
+    BRIO_TRY(brio_progress(c->ctx, "cells", 1));
+done:
+    return status;
+}
+
+brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, const double *points,
+                               const double *weights, size_t num_points, const brio_cells_options *options,
+                               brio_cells **out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_cells *cells = NULL;
+    cell_call c = {.ctx = ctx, .points = points, .weights = weights, .num_points = num_points, .options = STANDARD};
+    brio_bar bar = brio_progress_bar(ctx);
+    *out = NULL;
+    c.diagram.ctx = ctx;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_cells_options, options, &c.options));
+    BRIO_REQUIRE(ctx, !t || brio_triangulation_stats(t)->points == num_points, BRIO_ERR_ARGUMENT,
+                 "the triangulation has %zu points, not %zu", brio_triangulation_stats(t)->points, num_points);
+    if (t) BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, cells, 1));
+    cells->size = sizeof *cells;
+    cells->context = ctx;
+    BRIO_TRY(run(&c, t, cells));
+    *out = cells;
+    cells = NULL;
+done:
+    end_call(&c);
+    brio_cells_free(cells);
+    brio_progress_part(ctx, bar, 0, 1);
+    return status;
+}

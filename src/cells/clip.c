@@ -1,0 +1,74 @@
+/* Cells clipped to the region.
+ *
+ * A cell whose vertices are all near the region is taken as it is and cut by the walls. A cell with vertices far away or
+ * at infinity starts from the region instead, and is cut by the planes of its faces: then nothing far away is computed.
+ * Both ways cut by the same planes; faces without area were dropped before, exactly. */
+#include "cells/clip.h"
+#include "base/vector.h"
+#include <string.h>
+
+/* Cuts the region by the planes of all faces of the cell. */
+static brio_status cut_from_region(const brio_star_cell *c, const brio_region *region, brio_polyhedron *p) {
+    const brio_diagram *d = c->d;
+    const double *site = d->at + 3 * (size_t)c->site;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_polyhedron_copy(p, &region->shape, site));
+    for (const brio_side *s = c->side; s < c->side + c->num_sides && p->faces.count; s++) {
+        double plane[4];
+        if (s->site >= d->num_points || s->vertices < 3) continue;
+        for (size_t k = 0; k < 3; k++) plane[k] = d->at[3 * (size_t)s->site + k] - site[k];
+        plane[3] = brio_dot(plane, s->foot);
+        BRIO_TRY(brio_polyhedron_cut(p, plane, (int64_t)s->site));
+    }
+done:
+    return status;
+}
+
+/* Finds the vertex of the polyhedron with a name, or adds it. The hash table of the star cell now holds names: its sides
+ * are complete. */
+static brio_status vertex_of(brio_star_cell *c, brio_polyhedron *p, uint32_t name, uint32_t *vertex) {
+    size_t mask = c->num_slots - 1, at = (name * UINT32_C(0x9E3779B1) >> 7) & mask;
+    while (c->slot[at][1] && c->slot[at][0] != name) at = (at + 1) & mask;
+    if (c->slot[at][1]) return *vertex = c->slot[at][1] - 1, BRIO_OK;
+    const double *x = c->d->centre[name], *site = c->d->at + 3 * (size_t)c->site;
+    double from[3] = {x[0] - site[0], x[1] - site[1], x[2] - site[2]};
+    *vertex = (uint32_t)p->num_vertices;
+    c->slot[at][0] = name;
+    c->slot[at][1] = *vertex + 1;
+    return brio_polyhedron_add_vertex(p, from, name);
+}
+
+/* Fills the polyhedron with the bounded cell as it is. */
+static brio_status take_cell(brio_star_cell *c, brio_polyhedron *p) {
+    brio_status status = BRIO_OK;
+    brio_polyhedron_clear(p);
+    memset(c->slot, 0, c->num_slots * sizeof *c->slot);
+    for (const brio_side *s = c->side; s < c->side + c->num_sides; s++) {
+        size_t count;
+        uint32_t vertex;
+        if (s->vertices < 3) continue;
+        BRIO_TRY(brio_star_cell_polygon(c, s, &count));
+        BRIO_TRY(brio_polyhedron_add_face(p, (int64_t)s->site));
+        for (size_t i = 0; i < count; i++) {
+            BRIO_TRY(vertex_of(c, p, c->polygon[i], &vertex));
+            BRIO_TRY(brio_polyhedron_add_corner(p, vertex));
+        }
+    }
+done:
+    return status;
+}
+
+brio_status brio_clip_cell(brio_star_cell *c, const brio_region *region, brio_polyhedron *p) {
+    const double *site = c->d->at + 3 * (size_t)c->site;
+    brio_status status = BRIO_OK;
+    if (c->place == BRIO_PLACE_FAR) return cut_from_region(c, region, p);
+    BRIO_TRY(take_cell(c, p));
+    for (size_t i = 0; i < region->num_planes && p->faces.count; i++) {
+        double plane[4];
+        memcpy(plane, region->plane[i], sizeof plane);
+        plane[3] -= brio_dot(plane, site);
+        BRIO_TRY(brio_polyhedron_cut(p, plane, -1 - (int64_t)i));
+    }
+done:
+    return status;
+}

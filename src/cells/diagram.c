@@ -1,0 +1,25 @@
+/* The Voronoi (power) diagram as the cells are read from it: see diagram.h. */
+#include "cells/diagram.h"
+#include "base/memory.h"
+
+brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_diagram_find_centres(d));
+    BRIO_TRY(brio_progress(d->ctx, "cells", 0.2));
+    BRIO_TRY(brio_diagram_unite_ties(d));
+    brio_diagram_find_places(d, region);
+    BRIO_TRY(brio_progress(d->ctx, "cells", 0.3));
+    BRIO_TRY(brio_diagram_gather_stars(d));
+    BRIO_TRY(brio_progress(d->ctx, "cells", 0.4));
+done:
+    return status;
+}
+
+void brio_diagram_free(brio_diagram *d) {
+    brio_release(d->ctx, d->centre);
+    brio_release(d->ctx, d->same);
+    brio_release(d->ctx, d->order);
+    brio_release(d->ctx, d->begin);
+    brio_release(d->ctx, d->size);
+    brio_release(d->ctx, d->star);
+}

@@ -1,0 +1,62 @@
+/* The Voronoi (power) diagram as the cells are read from it: the tetrahedra with their centres, the tetrahedra that
+ * share a centre exactly, and the tetrahedra of each vertex.
+ *
+ * I1  Row t of `centre` is the centre of tetrahedron t and its place, a brio_place. It is NaN for infinite tetrahedra and
+ *     for centres that doubles cannot hold, and then the place is BRIO_PLACE_FAR.
+ * I2  Where `same` is not NULL, same[t] is the least of the tetrahedra that share the centre of t and are joined with t
+ *     across facets. Rows of such tetrahedra are equal. For infinite tetrahedra the outward normal of the hull facet
+ *     takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
+ * I3  The tetrahedra of a vertex ascend. */
+#ifndef BRIO_CELLS_DIAGRAM_H
+#define BRIO_CELLS_DIAGRAM_H
+
+#include "cells/region.h"
+#include "triangulation/tetrahedra.h"
+
+/** Where a centre is. */
+typedef enum brio_place {
+    BRIO_PLACE_INSIDE = 0,  /* in the region, or there is no region */
+    BRIO_PLACE_OUTSIDE = 1, /* outside the region */
+    BRIO_PLACE_FAR = 2,     /* so far outside that rounding would show, or at infinity */
+} brio_place;
+
+typedef struct brio_diagram {
+    brio_context *ctx;
+    /* given; lengths are scaled by a power of two, see scale */
+    const double *points, *weights; /* as the caller gave them */
+    const double *at;               /* #P by 3: the points, scaled */
+    const double *square;           /* #P: the weights, scaled; NULL without weights */
+    size_t num_points;              /* the caller's; the triangulation can have up to three more (flat_points.h) */
+    double scale;                   /* a power of two: at = scale * points */
+    bool flat;                      /* the points have dimension 2 or less: centres say nothing */
+    brio_tetrahedra t;
+    size_t num_finite;
+    /* made by brio_diagram_fill */
+    double (*centre)[4]; /* of each tetrahedron, infinite ones included: I1 */
+    uint32_t *same;      /* I2 */
+    size_t num_vertices;
+    uint32_t *order; /* the vertices, along the array of tetrahedra: neighbours are near each other */
+    uint64_t *begin; /* #P + 4 and one: tetrahedra star[begin[v]] to star[begin[v] + size[v] - 1] */
+    uint32_t *size;  /* the number of tetrahedra of each point; 0 for points that are no vertices */
+    uint32_t *star;
+} brio_diagram;
+
+/** Computes what the struct lists as made.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region);
+void brio_diagram_free(brio_diagram *d);
+
+/* The steps of brio_diagram_fill, in their order: centres.c, ties.c, centres.c, stars.c. */
+/** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. */
+brio_status brio_diagram_find_centres(brio_diagram *d);
+/** Finds the tetrahedra that share a centre, and makes their rows equal. */
+brio_status brio_diagram_unite_ties(brio_diagram *d);
+/** Replaces the fourth number of each row by its place. */
+void brio_diagram_find_places(brio_diagram *d, const brio_region *region);
+brio_status brio_diagram_gather_stars(brio_diagram *d);
+
+/** Returns the tetrahedron that speaks for all that share the centre of t. */
+static inline uint32_t brio_same_centre(const brio_diagram *d, uint32_t t) {
+    return d->same ? d->same[t] : t;
+}
+
+#endif

@@ -1,0 +1,18 @@
+/* Points in a plane, on a line, or at one position, completed to a set of dimension 3. */
+#ifndef BRIO_CELLS_FLAT_POINTS_H
+#define BRIO_CELLS_FLAT_POINTS_H
+
+#include "base/context.h"
+
+enum { BRIO_MOST_ADDED = 3 };
+
+/** Copies the points, and adds points off their affine hull until the dimension is 3.
+ *  points, weights  #P by 3; #P, or NULL.   num_points  at least 1.
+ *  all_points, all_weights  receive num_points + 3 rows, owned by the caller (brio_release); weights NULL without
+ *                           weights. Rows beyond the added points repeat the first point.
+ *  added  receives the number of points added.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_complete_flat_points(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                      double **all_points, double **all_weights, size_t *added);
+
+#endif

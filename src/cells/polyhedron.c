@@ -1,0 +1,246 @@
+/* Convex polyhedra that planes cut.
+ *
+ * A cut gives every vertex one height over the plane, so that all faces agree on which side it is. Vertices on the plane
+ * count as under it. Each face keeps its corners under the plane; where an edge passes the plane, the two faces of the
+ * edge share one new vertex. Every new vertex ends the cut of one of its faces and begins that of the other, so the cuts
+ * join to cycles, which are the new face. Rounding can move a vertex from one side of a plane to the other, but never
+ * opens the polyhedron; it can make faces without area.
+ *
+ * Based on: Sutherland, Hodgman. Reentrant polygon clipping. CACM 1974. */
+#include "cells/polyhedron.h"
+#include "base/memory.h"
+#include "base/vector.h"
+#include <math.h>
+#include <string.h>
+
+static const uint32_t NONE = UINT32_MAX;
+
+void brio_polyhedron_clear(brio_polyhedron *p) {
+    p->num_vertices = p->faces.count = p->faces.num_corners = 0;
+}
+
+static void free_faces(brio_context *ctx, brio_faces *f) {
+    brio_release(ctx, f->list);
+    brio_release(ctx, f->corner);
+}
+
+void brio_polyhedron_free(brio_polyhedron *p) {
+    free_faces(p->ctx, &p->faces);
+    free_faces(p->ctx, &p->kept);
+    brio_release(p->ctx, p->x);
+    brio_release(p->ctx, p->name);
+    brio_release(p->ctx, p->height);
+    brio_release(p->ctx, p->after);
+    brio_release(p->ctx, p->cut);
+    *p = (brio_polyhedron){.ctx = p->ctx};
+}
+
+/* --- filling --- */
+
+brio_status brio_polyhedron_add_vertex(brio_polyhedron *p, const double x[3], uint32_t name) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(p->ctx, p->x, p->x_capacity, p->num_vertices + 1));
+    BRIO_TRY(BRIO_RESERVE(p->ctx, p->name, p->name_capacity, p->num_vertices + 1));
+    memcpy(p->x[p->num_vertices], x, sizeof *p->x);
+    p->name[p->num_vertices++] = name;
+done:
+    return status;
+}
+
+static brio_status begin_face(brio_context *ctx, brio_faces *f, int64_t neighbour) {
+    brio_status status = BRIO_RESERVE(ctx, f->list, f->capacity, f->count + 1);
+    if (status == BRIO_OK) f->list[f->count++] = (brio_face){neighbour, f->num_corners, f->num_corners};
+    return status;
+}
+
+static brio_status add_corner(brio_context *ctx, brio_faces *f, uint32_t vertex) {
+    brio_status status = BRIO_RESERVE(ctx, f->corner, f->corner_capacity, f->num_corners + 1);
+    if (status != BRIO_OK) return status;
+    f->corner[f->num_corners++] = vertex;
+    f->list[f->count - 1].end = f->num_corners;
+    return BRIO_OK;
+}
+
+brio_status brio_polyhedron_add_face(brio_polyhedron *p, int64_t neighbour) {
+    return begin_face(p->ctx, &p->faces, neighbour);
+}
+
+brio_status brio_polyhedron_add_corner(brio_polyhedron *p, uint32_t vertex) {
+    return add_corner(p->ctx, &p->faces, vertex);
+}
+
+brio_status brio_polyhedron_set_box(brio_polyhedron *p, const double low[3], const double high[3]) {
+    /* bit k of a corner: the high side in coordinate k */
+    static const uint8_t CORNER[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    brio_status status = BRIO_OK;
+    brio_polyhedron_clear(p);
+    for (int v = 0; v < 8; v++) {
+        double x[3] = {v & 1 ? high[0] : low[0], v & 2 ? high[1] : low[1], v & 4 ? high[2] : low[2]};
+        BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME));
+    }
+    for (int f = 0; f < 6; f++) {
+        BRIO_TRY(brio_polyhedron_add_face(p, -1 - f));
+        for (int i = 0; i < 4; i++) BRIO_TRY(brio_polyhedron_add_corner(p, CORNER[f][i]));
+    }
+done:
+    return status;
+}
+
+brio_status brio_polyhedron_copy(brio_polyhedron *p, const brio_polyhedron *from, const double origin[3]) {
+    const brio_faces *f = &from->faces;
+    brio_status status = BRIO_OK;
+    brio_polyhedron_clear(p);
+    for (size_t v = 0; v < from->num_vertices; v++) {
+        double x[3] = {from->x[v][0] - origin[0], from->x[v][1] - origin[1], from->x[v][2] - origin[2]};
+        BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME));
+    }
+    for (const brio_face *face = f->list; face < f->list + f->count; face++) {
+        BRIO_TRY(brio_polyhedron_add_face(p, face->neighbour));
+        for (size_t c = face->begin; c < face->end; c++) BRIO_TRY(brio_polyhedron_add_corner(p, f->corner[c]));
+    }
+done:
+    return status;
+}
+
+/* --- cutting --- */
+
+/* Computes the heights of all vertices over a plane. The height of a vertex that was cut off before is NaN. Returns 1
+ * if a vertex is over the plane and one under it, 0 if none is over it, -1 if none is under it. */
+static int find_heights(brio_polyhedron *p, const double plane[4]) {
+    bool over = false, under = false;
+    for (size_t v = 0; v < p->num_vertices; v++) {
+        p->height[v] = brio_dot(plane, p->x[v]) - plane[3];
+        over |= p->height[v] > 0;
+        under |= p->height[v] < 0;
+        p->after[v] = NONE;
+    }
+    return !over ? 0 : under ? 1 : -1;
+}
+
+/* Finds or makes the vertex where the edge between `in` and `out` passes the plane. */
+static brio_status cut_edge(brio_polyhedron *p, uint32_t in, uint32_t out, uint32_t *vertex) {
+    brio_status status = BRIO_OK;
+    for (size_t i = p->num_cut; i-- > 0;)
+        if (p->cut[i].in == in && p->cut[i].out == out) return *vertex = p->cut[i].vertex, BRIO_OK;
+    double x[3], share = p->height[in] / (p->height[in] - p->height[out]);
+    for (int k = 0; k < 3; k++) x[k] = p->x[in][k] + share * (p->x[out][k] - p->x[in][k]);
+    *vertex = (uint32_t)p->num_vertices;
+    BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME));
+    BRIO_TRY(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
+    BRIO_TRY(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
+    BRIO_TRY(BRIO_RESERVE(p->ctx, p->cut, p->cut_capacity, p->num_cut + 1));
+    p->height[*vertex] = 0;
+    p->after[*vertex] = NONE;
+    p->cut[p->num_cut++] = (brio_cut_vertex){in, out, *vertex};
+done:
+    return status;
+}
+
+/* Adds to `kept` what a face has under the plane, or nothing. The new face runs along the cut of this face the other way:
+ * from where the cycle of corners comes back under the plane to where it left. */
+static brio_status keep_face(brio_polyhedron *p, const brio_face *face) {
+    const uint32_t *corner = p->faces.corner;
+    brio_status status = BRIO_OK;
+    uint32_t left = NONE, back = NONE, between;
+    BRIO_TRY(begin_face(p->ctx, &p->kept, face->neighbour));
+    for (size_t c = face->begin; c < face->end; c++) {
+        uint32_t u = corner[c], v = corner[c + 1 < face->end ? c + 1 : face->begin];
+        bool over = p->height[u] > 0, next_over = p->height[v] > 0;
+        if (!over) BRIO_TRY(add_corner(p->ctx, &p->kept, u));
+        if (over == next_over) continue;
+        BRIO_TRY(over ? cut_edge(p, v, u, &between) : cut_edge(p, u, v, &between));
+        BRIO_TRY(add_corner(p->ctx, &p->kept, between));
+        if (!over)
+            left = between;
+        else if (left == NONE)
+            back = between;
+        else
+            p->after[between] = left;
+    }
+    if (back != NONE) p->after[back] = left;
+    if (p->kept.list[p->kept.count - 1].begin == p->kept.num_corners) p->kept.count--;
+done:
+    return status;
+}
+
+/* Marks the vertices that are cut off, so that later cuts do not look at them. */
+static void drop_vertices(brio_polyhedron *p) {
+    for (size_t v = 0; v < p->num_vertices; v++)
+        if (p->height[v] > 0) p->x[v][0] = NAN;
+}
+
+/* Adds the cycles of cut vertices as faces. There is one, unless rounding made a corner not convex. */
+static brio_status close_cut(brio_polyhedron *p, int64_t neighbour) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < p->num_cut; i++) {
+        uint32_t v = p->cut[i].vertex;
+        if (p->after[v] == NONE) continue;
+        BRIO_TRY(begin_face(p->ctx, &p->kept, neighbour));
+        for (uint32_t next; p->after[v] != NONE; v = next) {
+            next = p->after[v];
+            p->after[v] = NONE;
+            BRIO_TRY(add_corner(p->ctx, &p->kept, v));
+        }
+    }
+done:
+    return status;
+}
+
+brio_status brio_polyhedron_cut(brio_polyhedron *p, const double plane[4], int64_t neighbour) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
+    BRIO_TRY(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
+    int side = find_heights(p, plane);
+    if (side < 0) p->faces.count = p->faces.num_corners = 0;
+    if (side <= 0) return BRIO_OK;
+    p->kept.count = p->kept.num_corners = p->num_cut = 0;
+    for (size_t f = 0; f < p->faces.count; f++) BRIO_TRY(keep_face(p, &p->faces.list[f]));
+    BRIO_TRY(close_cut(p, neighbour));
+    drop_vertices(p);
+    brio_faces old = p->faces;
+    p->faces = p->kept;
+    p->kept = old;
+done:
+    return status;
+}
+
+/* --- measures --- */
+
+void brio_polyhedron_area(const brio_polyhedron *p, const brio_face *face, double area[3]) {
+    const uint32_t *corner = p->faces.corner;
+    double u[3], v[3], cross[3];
+    area[0] = area[1] = area[2] = 0;
+    if (face->begin == face->end) return;
+    const double *first = p->x[corner[face->begin]];
+    for (size_t c = face->begin + 1; c + 1 < face->end; c++) {
+        for (int k = 0; k < 3; k++) u[k] = p->x[corner[c]][k] - first[k], v[k] = p->x[corner[c + 1]][k] - first[k];
+        brio_cross(u, v, cross);
+        for (int k = 0; k < 3; k++) area[k] += 0.5 * cross[k];
+    }
+}
+
+/* Adds the moments of the pyramids from the origin over the triangles of a face. */
+static void add_moment(const brio_polyhedron *p, const brio_face *face, double *moment) {
+    const uint32_t *corner = p->faces.corner;
+    const double *a = p->x[corner[face->begin]];
+    for (size_t c = face->begin + 1; c + 1 < face->end; c++) {
+        const double *b = p->x[corner[c]], *d = p->x[corner[c + 1]];
+        double cross[3];
+        brio_cross(b, d, cross);
+        double volume = brio_dot(a, cross) / 6;
+        for (int k = 0; k < 3; k++) moment[k] += volume * (a[k] + b[k] + d[k]) / 4;
+    }
+}
+
+double brio_polyhedron_volume(const brio_polyhedron *p, double *moment) {
+    const brio_faces *f = &p->faces;
+    double volume = 0, area[3];
+    for (const brio_face *face = f->list; face < f->list + f->count; face++) {
+        if (face->begin == face->end) continue;
+        brio_polyhedron_area(p, face, area);
+        volume += brio_dot(area, p->x[f->corner[face->begin]]) / 3;
+        if (moment) add_moment(p, face, moment);
+    }
+    return volume;
+}

@@ -1,0 +1,142 @@
+/* The region that cells are clipped to.
+ *
+ * A cube is cut by the planes of the region. The cube grows until the result stays clear of its walls; a last cut starts
+ * from a box that fits the result, so that its vertices are accurate. Six planes of a box are taken as they are. */
+#include "cells/region.h"
+#include "base/memory.h"
+#include "base/vector.h"
+#include <math.h>
+#include <string.h>
+
+/* Chosen: a polytope that reaches beyond 2^MOST_DOUBLINGS times the largest distance of a plane from 0 counts as
+ * unbounded. */
+enum { MOST_DOUBLINGS = 40 };
+
+static brio_status take_planes(brio_context *ctx, const double *planes, double scale, brio_region *r) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, r->plane, r->num_planes));
+    for (size_t i = 0; i < r->num_planes; i++) {
+        const double *from = planes + 4 * i;
+        double most = fmax(fabs(from[0]), fmax(fabs(from[1]), fabs(from[2]))), n[3];
+        BRIO_REQUIRE(ctx, isfinite(from[3]) && isfinite(from[0] + from[1] + from[2]), BRIO_ERR_ARGUMENT,
+                     "plane %zu of the region is not finite", i);
+        BRIO_REQUIRE(ctx, most > 0, BRIO_ERR_ARGUMENT, "plane %zu of the region has the normal 0", i);
+        for (int k = 0; k < 3; k++) n[k] = from[k] / most;
+        double length = sqrt(brio_dot(n, n));
+        for (int k = 0; k < 3; k++) r->plane[i][k] = n[k] / length;
+        r->plane[i][3] = from[3] / most / length * scale;
+        BRIO_REQUIRE(ctx, isfinite(r->plane[i][3]), BRIO_ERR_ARGUMENT, "plane %zu of the region is too far", i);
+    }
+done:
+    return status;
+}
+
+/* Writes the bounding box of the corners of a polyhedron. Returns whether a face is a wall of the box it came from,
+ * which is no plane of the region. */
+static bool find_bounds(const brio_polyhedron *p, int64_t walls, double low[3], double high[3]) {
+    const brio_faces *f = &p->faces;
+    bool open = false;
+    for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+    for (size_t i = 0; i < f->count; i++) {
+        open |= f->list[i].neighbour < walls;
+        for (size_t c = f->list[i].begin; c < f->list[i].end; c++)
+            for (int k = 0; k < 3; k++) {
+                low[k] = fmin(low[k], p->x[f->corner[c]][k]);
+                high[k] = fmax(high[k], p->x[f->corner[c]][k]);
+            }
+    }
+    return open;
+}
+
+/* Cuts the region out of a box. The box' own walls become neighbours below -num_planes. */
+static brio_status cut_out(brio_region *r, const double low[3], const double high[3]) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_polyhedron_set_box(&r->shape, low, high));
+    for (int f = 0; f < 6; f++) r->shape.faces.list[f].neighbour -= (int64_t)r->num_planes;
+    for (size_t i = 0; i < r->num_planes; i++) BRIO_TRY(brio_polyhedron_cut(&r->shape, r->plane[i], -1 - (int64_t)i));
+done:
+    return status;
+}
+
+/* Cuts the region out of ever larger cubes; writes its bounds. */
+static brio_status search(brio_context *ctx, brio_region *r, double low[3], double high[3]) {
+    brio_status status = BRIO_OK;
+    int64_t walls = -(int64_t)r->num_planes;
+    double half = 0;
+    bool open = true;
+    for (size_t i = 0; i < r->num_planes; i++) half = fmax(half, fabs(r->plane[i][3]));
+    half = half > 0 ? 2 * half : 1;
+    for (int n = 0; open && n < MOST_DOUBLINGS; n++, half *= 4) {
+        const double least[3] = {-half, -half, -half}, most[3] = {half, half, half};
+        BRIO_TRY(cut_out(r, least, most));
+        BRIO_REQUIRE(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT, "the region is empty");
+        open = find_bounds(&r->shape, walls, low, high);
+    }
+    BRIO_REQUIRE(ctx, !open, BRIO_ERR_ARGUMENT, "the planes of the region bound no polytope");
+done:
+    return status;
+}
+
+/* Whether plane i is the wall of a box, for i from 0 to 5 in the order of the neighbours of brio_polyhedron_set_box. */
+static bool is_box(const brio_region *r) {
+    for (size_t i = 0; i < r->num_planes; i++)
+        for (size_t k = 0; k < 3; k++)
+            if (i > 5 || r->plane[i][k] != (k != i / 2 ? 0 : i % 2 ? 1 : -1)) return false;
+    return r->num_planes == 6;
+}
+
+/* Returns the volume of the polytope, from pyramids with their apex in its middle. */
+static double volume_of(const brio_region *r) {
+    const brio_faces *f = &r->shape.faces;
+    double volume = 0, area[3], to[3];
+    for (const brio_face *face = f->list; face < f->list + f->count; face++) {
+        brio_polyhedron_area(&r->shape, face, area);
+        for (int k = 0; k < 3; k++) to[k] = r->shape.x[f->corner[face->begin]][k] - r->middle[k];
+        volume += brio_dot(area, to) / 3;
+    }
+    return volume;
+}
+
+brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_planes, double scale, brio_region *r) {
+    brio_status status = BRIO_OK;
+    double low[3], high[3];
+    *r = (brio_region){.num_planes = num_planes, .shape.ctx = ctx};
+    if (!num_planes) return BRIO_OK;
+    BRIO_TRY(take_planes(ctx, planes, scale, r));
+    if (is_box(r)) {
+        for (int k = 0; k < 3; k++) low[k] = -r->plane[2 * k][3], high[k] = r->plane[2 * k + 1][3];
+        BRIO_REQUIRE(ctx, low[0] < high[0] && low[1] < high[1] && low[2] < high[2], BRIO_ERR_ARGUMENT,
+                     "the region is empty");
+        BRIO_TRY(brio_polyhedron_set_box(&r->shape, low, high));
+        r->box = true;
+        memcpy(r->low, low, sizeof low);
+        memcpy(r->high, high, sizeof high);
+    } else {
+        BRIO_TRY(search(ctx, r, low, high));
+        double outer[2][3];
+        for (int k = 0; k < 3; k++) {
+            double more = (high[k] - low[k]) / 8;
+            outer[0][k] = low[k] - more, outer[1][k] = high[k] + more;
+        }
+        BRIO_TRY(cut_out(r, outer[0], outer[1]));
+    }
+    for (int k = 0; k < 3; k++) {
+        r->middle[k] = low[k] / 2 + high[k] / 2;
+        r->reach = fmax(r->reach, high[k] - low[k]);
+    }
+    r->volume = r->box ? (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) : volume_of(r);
+    BRIO_REQUIRE(ctx, r->volume > 0, BRIO_ERR_ARGUMENT, "the region is empty");
+done:
+    return status;
+}
+
+void brio_region_free(brio_region *r) {
+    if (!r->num_planes) return;
+    brio_release(r->shape.ctx, r->plane);
+    brio_polyhedron_free(&r->shape);
+    r->num_planes = 0;
+}
+
+bool brio_region_is_over(const brio_region *r, size_t i, const double *x) {
+    return brio_dot(r->plane[i], x) > r->plane[i][3];
+}

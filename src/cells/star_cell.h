@@ -1,0 +1,50 @@
+/* A cell as the star of its site gives it, before it is clipped. One thread owns a star_cell and fills it again for each
+ * site. Positions are relative to the site. */
+#ifndef BRIO_CELLS_STAR_CELL_H
+#define BRIO_CELLS_STAR_CELL_H
+
+#include "cells/diagram.h"
+
+/** What a cell shares with one neighbour. */
+typedef struct brio_side {
+    uint32_t site;     /* the neighbour */
+    uint32_t tet;      /* a tetrahedron of the edge to the neighbour */
+    uint32_t vertices; /* distinct centres round the edge: fewer than 3 have no area */
+    bool open;         /* an infinite tetrahedron is round the edge: a face of infinite area */
+    double foot[3];    /* the point of the line through both sites on the plane of the face */
+    double area[3];    /* twice the area times the unit normal, which points to the neighbour */
+} brio_side;
+
+typedef struct brio_star_cell {
+    const brio_diagram *d;
+    uint32_t site;
+    brio_side *side;
+    size_t num_sides, side_capacity;
+    uint32_t (*slot)[2]; /* hash table from a site to one more than its side; 0 is an empty slot */
+    size_t num_slots, slot_capacity;
+    bool open;         /* the cell is unbounded */
+    brio_place place;  /* the greatest place of its vertices */
+    double moment[3];  /* if asked for: the integral of the position over the cell */
+    uint32_t *polygon; /* the vertices of a face, as tetrahedra: brio_star_cell_polygon */
+    size_t polygon_capacity;
+} brio_star_cell;
+
+void brio_star_cell_free(brio_star_cell *c);
+
+/** Finds the sides of the cell of a vertex.   moments  whether to compute `moment`.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_star_cell_fill(brio_star_cell *c, uint32_t site, bool moments);
+
+/** Returns the volume of a bounded cell of a diagram without weights, all of whose centres are in place
+ *  BRIO_PLACE_INSIDE; NaN for other cells. Needs no star_cell and is faster. */
+double brio_star_volume(const brio_diagram *d, uint32_t site);
+
+/** Returns the volume of a bounded cell. */
+double brio_star_cell_volume(const brio_star_cell *c);
+
+/** Writes to c->polygon the distinct finite vertices of a face, counterclockwise seen from the neighbour; an open face
+ *  begins at the end of one of its rays. Vertices are the tetrahedra that speak for their centres.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_star_cell_polygon(brio_star_cell *c, const brio_side *side, size_t *count);
+
+#endif

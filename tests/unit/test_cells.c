@@ -1,0 +1,401 @@
+/* Voronoi and power cells: against a brute force that cuts by every bisector, sums of volumes, lattices, flat inputs,
+ * vertices, threads, scales, memory that runs out. */
+#include "cells/polyhedron.h"
+#include "failing_allocator.h"
+#include "points.h"
+
+static const double UNIT_BOX[6] = {0, 0, 0, 1, 1, 1}, WIDE_BOX[6] = {-2, -2, -2, 3, 3, 3};
+
+static brio_cells *cells_of(brio_context *ctx, const double *points, const double *weights, size_t n, const double *box,
+                            int vertices) {
+    brio_cells_options o = brio_cells_options_default();
+    brio_cells *cells;
+    o.box = box;
+    o.vertices = vertices;
+    brio_status status = brio_voronoi_cells(ctx, NULL, points, weights, n, &o, &cells);
+    EXPECT(status == BRIO_OK, "%s", brio_message(ctx));
+    return cells;
+}
+
+static size_t faces_of(const brio_cells *cells, size_t c) {
+    return (size_t)(cells->face_offsets[c + 1] - cells->face_offsets[c]);
+}
+
+static int near_to(double a, double b, double tolerance) {
+    return fabs(a - b) <= tolerance * fmax(1, fmax(fabs(a), fabs(b)));
+}
+
+/* --- brute force --- */
+
+/* Cuts the box by the bisectors of p and all other points. */
+static void brute_cell(brio_polyhedron *shape, const double *points, const double *weights, size_t n, size_t p,
+                       const double *box) {
+    double low[3], high[3];
+    for (size_t k = 0; k < 3; k++) low[k] = box[k] - points[3 * p + k], high[k] = box[3 + k] - points[3 * p + k];
+    brio_polyhedron_set_box(shape, low, high);
+    for (size_t q = 0; q < n; q++) {
+        double plane[4], square = 0;
+        if (q == p) continue;
+        for (size_t k = 0; k < 3; k++) plane[k] = points[3 * q + k] - points[3 * p + k], square += plane[k] * plane[k];
+        plane[3] = (square + (weights ? weights[p] - weights[q] : 0)) / 2;
+        brio_polyhedron_cut(shape, plane, (int64_t)q);
+    }
+}
+
+static void expect_brute(brio_context *ctx, const double *points, const double *weights, size_t n, const double *box) {
+    brio_cells *cells = cells_of(ctx, points, weights, n, box, 0);
+    brio_polyhedron shape = {.ctx = ctx};
+    size_t c = 0;
+    for (size_t p = 0; p < n; p++) {
+        double moment[3] = {0, 0, 0}, volume = 0, area = 0, vector[3];
+        brute_cell(&shape, points, weights, n, p, box);
+        volume = brio_polyhedron_volume(&shape, moment);
+        for (size_t f = 0; f < shape.faces.count; f++) {
+            brio_polyhedron_area(&shape, &shape.faces.list[f], vector);
+            area += sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
+        }
+        if (c == cells->num_cells || cells->site[c] != p) {
+            EXPECT(volume < 1e-9, "point %zu has no cell, but the volume %g", p, volume);
+            continue;
+        }
+        EXPECT(near_to(cells->volume[c], volume, 1e-9), "point %zu: %.17g %.17g", p, cells->volume[c], volume);
+        EXPECT(near_to(cells->area[c], area, 1e-7), "point %zu: %.17g %.17g", p, cells->area[c], area);
+        for (size_t k = 0; k < 3 && volume > 1e-3; k++)
+            EXPECT(near_to(cells->centroid[3 * c + k], points[3 * p + k] + moment[k] / volume, 1e-7), "point %zu", p);
+        c++;
+    }
+    EXPECT(c == cells->num_cells);
+    EXPECT(near_to(cells->volume_sum, cells->region_volume, 1e-12), "%.17g", cells->volume_sum);
+    brio_polyhedron_free(&shape);
+    brio_cells_free(cells);
+}
+
+static void cells_equal_those_of_brute_force(void) {
+    enum { N = 40 };
+    brio_context *ctx = new_context();
+    double points[3 * N], weights[N];
+    for (uint64_t seed = 1; seed <= 30; seed++) {
+        size_t n = 1 + seed % N;
+        brio_rng rng = brio_rng_new(seed);
+        uniform_points(seed, n, points);
+        for (size_t i = 0; i < n; i++) weights[i] = 0.2 * brio_rng_double(&rng);
+        expect_brute(ctx, points, NULL, n, UNIT_BOX);
+        expect_brute(ctx, points, NULL, n, WIDE_BOX);
+        expect_brute(ctx, points, weights, n, UNIT_BOX);
+        integer_points(seed, n, 1 + (uint32_t)seed % 3, points);
+        const double box[6] = {-0.7, -0.5, -1, 2.5, 3, 2.25};
+        for (size_t i = 0; i < n; i++) /* distinct positions, or the brute force has no bisector */
+            for (size_t j = 0; j < i; j++)
+                if (!memcmp(points + 3 * i, points + 3 * j, 3 * sizeof *points))
+                    n--, memcpy(points + 3 * i, points + 3 * n, 3 * sizeof *points), j = i, i--;
+        expect_brute(ctx, points, NULL, n, box);
+    }
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* --- lattices --- */
+
+static void cells_of_a_lattice_have_six_faces(void) {
+    enum { SIDE = 50, N = SIDE * SIDE * SIDE };
+    brio_context *ctx = new_context();
+    double *points = malloc(3 * N * sizeof *points), box[6] = {-0.5, -0.5, -0.5, SIDE - 0.5, SIDE - 0.5, SIDE - 0.5};
+    for (size_t i = 0; i < N; i++) {
+        points[3 * i] = (double)(i % SIDE), points[3 * i + 1] = (double)(i / SIDE % SIDE);
+        points[3 * i + 2] = (double)(i / SIDE / SIDE);
+    }
+    for (int clip = 0; clip < 2; clip++) {
+        brio_cells *cells = cells_of(ctx, points, NULL, N, clip ? box : NULL, 0);
+        size_t inside = 0;
+        for (size_t c = 0; c < cells->num_cells; c++) {
+            size_t faces = faces_of(cells, c);
+            EXPECT(cells->bounded[c] && clip ? faces == 6 : faces >= 3 && faces <= 6, "cell %zu: %zu", c, faces);
+            if (cells->bounded[c]) EXPECT(faces == 6 && near_to(cells->volume[c], 1, 1e-12));
+            inside += cells->bounded[c];
+        }
+        EXPECT(inside == (clip ? N : (SIDE - 2) * (SIDE - 2) * (SIDE - 2)), "%zu", inside);
+        if (clip) EXPECT(near_to(cells->volume_sum, N, 1e-13));
+        brio_cells_free(cells);
+    }
+    free(points);
+    brio_context_free(ctx);
+}
+
+/* --- sums --- */
+
+static void volumes_add_up_to_the_box(void) {
+    brio_context *ctx = new_context();
+    for (int kind = 0; kind < BRIO_KIND_END; kind++)
+        for (int weighted = 0; weighted < 2; weighted++) {
+            brio_mesh *m;
+            EXPECT(brio_generate(ctx, (brio_kind)kind, kind == BRIO_KIND_MOMENT ? 200 : 3000, NULL, &m) == BRIO_OK);
+            double box[6], *weights = malloc(m->num_vertices * sizeof *weights);
+            for (int k = 0; k < 3; k++) {
+                double low = INFINITY, high = -INFINITY;
+                for (size_t i = 0; i < m->num_vertices; i++) {
+                    low = fmin(low, m->vertices[3 * i + (size_t)k]);
+                    high = fmax(high, m->vertices[3 * i + (size_t)k]);
+                }
+                box[k] = low - 0.01 * (high - low), box[3 + k] = high + 0.02 * (high - low);
+            }
+            for (size_t i = 0; i < m->num_vertices; i++) weights[i] = (double)(i * 7919 % 1000) * 1e-7;
+            brio_cells *cells = cells_of(ctx, m->vertices, weighted ? weights : NULL, m->num_vertices, box, 0);
+            EXPECT(fabs(cells->volume_sum / cells->region_volume - 1) < 1e-12, "kind %d: %.3g", kind,
+                   cells->volume_sum / cells->region_volume - 1);
+            brio_cells_free(cells);
+            brio_mesh_free(m);
+            free(weights);
+        }
+    brio_context_free(ctx);
+}
+
+static void a_polytope_clips(void) {
+    enum { N = 500 };
+    brio_context *ctx = new_context();
+    double points[3 * N], box[6] = {0.125, 0.25, 0, 1, 1, 1};
+    const double corner[] = {-1, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, 0, 3, 3, 3, 2.7}; /* x, y, z >= 0, x + y + z <= 0.9 */
+    uniform_points(5, N, points);
+    brio_cells_options o = brio_cells_options_default();
+    brio_cells *cells;
+    o.planes = corner, o.num_planes = 4;
+    EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(near_to(cells->region_volume, 0.9 * 0.9 * 0.9 / 6, 1e-13) && near_to(cells->volume_sum, 0.1215, 1e-13));
+    brio_cells_free(cells);
+    o.box = box;
+    EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(near_to(cells->region_volume, 0.525 * 0.525 * 0.525 / 6, 1e-13));
+    EXPECT(near_to(cells->volume_sum, cells->region_volume, 1e-13));
+    brio_cells_free(cells);
+    brio_context_free(ctx);
+}
+
+/* --- faces and vertices --- */
+
+/* Each face of a cell and a neighbour is a face of the neighbour, with the opposite normal and the same area. */
+static void expect_symmetric(const brio_cells *cells) {
+    for (size_t c = 0; c < cells->num_cells; c++)
+        for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
+            size_t d = 0, found = 0;
+            if (cells->face_neighbours[f] < 0) continue;
+            while (d < cells->num_cells && cells->site[d] != cells->face_neighbours[f]) d++;
+            for (uint64_t g = cells->face_offsets[d]; g < cells->face_offsets[d + 1]; g++) {
+                if (cells->face_neighbours[g] != cells->site[c]) continue;
+                found++;
+                EXPECT(cells->face_areas[f] == cells->face_areas[g] ||
+                       near_to(cells->face_areas[f], cells->face_areas[g], 1e-12));
+                for (int k = 0; k < 3; k++) EXPECT(cells->face_normals[3 * f + k] == -cells->face_normals[3 * g + k]);
+            }
+            EXPECT(found == 1, "cell %zu, face %zu: %zu", c, (size_t)f, found);
+        }
+}
+
+static void area_of_corners(const brio_cells *cells, uint64_t f, double area[3]) {
+    uint64_t first = cells->corner_offsets[f];
+    const double *a = cells->vertices + 3 * (size_t)cells->face_vertices[first];
+    area[0] = area[1] = area[2] = 0;
+    for (uint64_t i = first + 1; i + 1 < cells->corner_offsets[f + 1]; i++) {
+        const double *b = cells->vertices + 3 * (size_t)cells->face_vertices[i];
+        const double *c = cells->vertices + 3 * (size_t)cells->face_vertices[i + 1];
+        for (int k = 0; k < 3; k++) {
+            int m = (k + 1) % 3, n = (k + 2) % 3;
+            area[k] += ((b[m] - a[m]) * (c[n] - a[n]) - (b[n] - a[n]) * (c[m] - a[m])) / 2;
+        }
+    }
+}
+
+static void expect_corners(const brio_cells *cells) {
+    for (size_t i = 0; i < 3 * cells->num_vertices; i++) EXPECT(isfinite(cells->vertices[i]), "vertex %zu", i / 3);
+    for (size_t c = 0; c < cells->num_cells; c++)
+        for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
+            double area[3];
+            if (!isfinite(cells->face_areas[f])) continue;
+            EXPECT(cells->corner_offsets[f + 1] - cells->corner_offsets[f] >= 3);
+            area_of_corners(cells, f, area);
+            for (int k = 0; k < 3; k++)
+                EXPECT(near_to(area[k], cells->face_areas[f] * cells->face_normals[3 * f + k], 1e-10), "cell %zu", c);
+        }
+}
+
+static void faces_are_symmetric_and_have_their_corners(void) {
+    enum { N = 300 };
+    brio_context *ctx = new_context();
+    double points[3 * N], weights[N];
+    const double box[6] = {0.1, 0.05, 0.1, 0.95, 1.2, 0.9};
+    for (int kind = 0; kind < 4; kind++) {
+        if (kind % 2)
+            integer_points(3, N, 5, points);
+        else
+            uniform_points(4, N, points);
+        integer_weights(3, N, 2, weights);
+        for (int clip = 0; clip < (kind % 2 ? 1 : 2); clip++) {
+            brio_cells *cells = cells_of(ctx, points, kind > 1 ? weights : NULL, N, clip ? box : NULL, 1);
+            expect_symmetric(cells);
+            expect_corners(cells);
+            brio_cells_free(cells);
+        }
+    }
+    brio_context_free(ctx);
+}
+
+static void cells_of_the_hull_are_unbounded(void) {
+    enum { N = 400 };
+    brio_context *ctx = new_context();
+    double points[3 * N];
+    uint8_t hull[N] = {0};
+    brio_triangulation *t;
+    integer_points(8, N, 7, points);
+    EXPECT(brio_delaunay(ctx, points, NULL, N, NULL, &t) == BRIO_OK);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t) + s->tetrahedra;
+    for (size_t i = 0; i < s->hull_facets; i++)
+        for (int k = 0; k < 3; k++) hull[tet[i].vertex[k]] = 1;
+    brio_cells *cells;
+    EXPECT(brio_voronoi_cells(ctx, t, points, NULL, N, NULL, &cells) == BRIO_OK);
+    EXPECT(cells->num_cells == s->vertices && s->duplicates > 0);
+    for (size_t c = 0; c < cells->num_cells; c++) {
+        EXPECT(cells->bounded[c] == !hull[cells->site[c]] && isfinite(cells->volume[c]) == !hull[cells->site[c]]);
+        EXPECT(isnan(cells->centroid[3 * c]) == hull[cells->site[c]]);
+    }
+    brio_cells_free(cells);
+    EXPECT(brio_voronoi_cells(ctx, t, points, NULL, N - 1, NULL, &cells) == BRIO_ERR_ARGUMENT && !cells);
+    brio_triangulation_free(t);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* --- points of dimension 2 or less --- */
+
+static void flat_points_have_cells(void) {
+    brio_context *ctx = new_context();
+    const double box[6] = {-0.5, -0.5, -1, 3.5, 3.5, 1};
+    double points[48], none[3] = {0};
+    for (size_t i = 0; i < 16; i++)
+        points[3 * i] = (double)(i % 4), points[3 * i + 1] = (double)(i / 4), points[3 * i + 2] = 0;
+    for (size_t n = 16; n > 0; n = n == 16 ? 4 : n == 4 ? 1 : 0) { /* a plane, a line, a point */
+        brio_cells *cells = cells_of(ctx, points, NULL, n, box, 1);
+        EXPECT(cells->num_cells == n && near_to(cells->volume_sum, 32, 1e-13));
+        for (size_t c = 0; c < n; c++)
+            EXPECT(near_to(cells->volume[c], 32 / (double)n, 1e-13) && faces_of(cells, c) == 6);
+        brio_cells_free(cells);
+        cells = cells_of(ctx, points, NULL, n, NULL, 1);
+        size_t faces = (size_t)cells->face_offsets[cells->num_cells];
+        EXPECT(faces == (n == 16 ? 48 : n == 4 ? 6 : 0), "%zu", faces);
+        for (size_t c = 0; c < n; c++) EXPECT(!cells->bounded[c] && cells->volume[c] == INFINITY);
+        brio_cells_free(cells);
+    }
+    brio_cells *cells = cells_of(ctx, none, NULL, 0, box, 1);
+    EXPECT(cells->num_cells == 0 && cells->volume_sum == 0);
+    brio_cells_free(cells);
+    brio_context_free(ctx);
+}
+
+/* --- determinism, scale, errors --- */
+
+static void threads_give_the_same_bits(void) {
+    enum { N = 20000 };
+    brio_context *ctx = new_context();
+    double *points = malloc(3 * N * sizeof *points);
+    clustered_points(7, N, points);
+    brio_context_set_threads(ctx, 1);
+    brio_cells *one = cells_of(ctx, points, NULL, N, UNIT_BOX, 1);
+    brio_context_set_threads(ctx, 4);
+    brio_cells *four = cells_of(ctx, points, NULL, N, UNIT_BOX, 1);
+    size_t n = one->num_cells, faces = (size_t)one->face_offsets[n], corners = (size_t)one->corner_offsets[faces];
+    EXPECT(four->num_cells == n && four->num_vertices == one->num_vertices);
+    EXPECT(!memcmp(one->volume, four->volume, n * sizeof *one->volume));
+    EXPECT(!memcmp(one->centroid, four->centroid, 3 * n * sizeof *one->centroid));
+    EXPECT(!memcmp(one->face_offsets, four->face_offsets, (n + 1) * sizeof *one->face_offsets));
+    EXPECT(!memcmp(one->face_neighbours, four->face_neighbours, faces * sizeof *one->face_neighbours));
+    EXPECT(!memcmp(one->face_vertices, four->face_vertices, corners * sizeof *one->face_vertices));
+    EXPECT(!memcmp(one->vertices, four->vertices, 3 * one->num_vertices * sizeof *one->vertices));
+    brio_cells_free(one);
+    brio_cells_free(four);
+    free(points);
+    brio_context_free(ctx);
+}
+
+static void powers_of_two_scale_the_cells(void) {
+    enum { N = 200 };
+    static const int EXPONENT[] = {-320, -150, 3, 150, 320};
+    brio_context *ctx = new_context();
+    double points[3 * N], scaled[3 * N], box[6];
+    uniform_points(11, N, points);
+    brio_cells *cells = cells_of(ctx, points, NULL, N, UNIT_BOX, 1);
+    for (size_t e = 0; e < sizeof EXPONENT / sizeof *EXPONENT; e++) {
+        for (size_t i = 0; i < 3 * N; i++) scaled[i] = ldexp(points[i], EXPONENT[e]);
+        for (size_t i = 0; i < 6; i++) box[i] = ldexp(UNIT_BOX[i], EXPONENT[e]);
+        brio_cells *other = cells_of(ctx, scaled, NULL, N, box, 1);
+        for (size_t c = 0; c < N; c++) {
+            EXPECT(other->volume[c] == ldexp(cells->volume[c], 3 * EXPONENT[e]), "2^%d", EXPONENT[e]);
+            EXPECT(other->area[c] == ldexp(cells->area[c], 2 * EXPONENT[e]), "2^%d", EXPONENT[e]);
+            EXPECT(other->centroid[3 * c] == ldexp(cells->centroid[3 * c], EXPONENT[e]), "2^%d", EXPONENT[e]);
+        }
+        brio_cells_free(other);
+    }
+    brio_cells_free(cells);
+    brio_context_free(ctx);
+}
+
+static void wrong_regions_are_refused(void) {
+    brio_context *ctx = new_context();
+    const double points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, nan_point[3] = {0, NAN, 0};
+    const double empty[6] = {0, 0, 0, 1, 0, 1}, endless[6] = {0, 0, 0, 1, INFINITY, 1};
+    const double half[4] = {1, 0, 0, 1}, no_normal[4] = {0, 0, 0, 1};
+    const double apart[8] = {1, 0, 0, 1, -1, 0, 0, -2};
+    brio_cells_options o = brio_cells_options_default();
+    brio_cells *cells;
+#define EXPECT_REFUSED(status) EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, 4, &o, &cells) == (status) && !cells)
+    o.box = empty;
+    EXPECT_REFUSED(BRIO_ERR_ARGUMENT);
+    o.box = endless;
+    EXPECT_REFUSED(BRIO_ERR_ARGUMENT);
+    o.box = NULL, o.num_planes = 1;
+    EXPECT_REFUSED(BRIO_ERR_ARGUMENT);
+    o.planes = half;
+    EXPECT_REFUSED(BRIO_ERR_ARGUMENT);
+    o.planes = no_normal;
+    EXPECT_REFUSED(BRIO_ERR_ARGUMENT);
+    o.planes = apart, o.num_planes = 2;
+    EXPECT_REFUSED(BRIO_ERR_ARGUMENT);
+    o.size = 0;
+    EXPECT_REFUSED(BRIO_ERR_ARGUMENT);
+    EXPECT(brio_voronoi_cells(ctx, NULL, nan_point, NULL, 1, NULL, &cells) == BRIO_ERR_NOT_FINITE && !cells);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static brio_status compute_some(brio_context *ctx) {
+    enum { N = 60 };
+    double points[3 * N];
+    brio_cells_options o = brio_cells_options_default();
+    brio_cells *cells;
+    integer_points(2, N, 4, points);
+    o.box = WIDE_BOX;
+    o.vertices = 1;
+    brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
+    brio_cells_free(cells);
+    if (status != BRIO_OK) return status;
+    for (size_t i = 0; i < N; i++) points[3 * i + 2] = 0;
+    status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
+    brio_cells_free(cells);
+    return status;
+}
+
+static void memory_may_run_out(void) {
+    expect_clean_failures(compute_some);
+}
+
+int main(void) {
+    RUN(cells_equal_those_of_brute_force);
+    RUN(cells_of_a_lattice_have_six_faces);
+    RUN(volumes_add_up_to_the_box);
+    RUN(a_polytope_clips);
+    RUN(faces_are_symmetric_and_have_their_corners);
+    RUN(cells_of_the_hull_are_unbounded);
+    RUN(flat_points_have_cells);
+    RUN(threads_give_the_same_bits);
+    RUN(powers_of_two_scale_the_cells);
+    RUN(wrong_regions_are_refused);
+    RUN(memory_may_run_out);
+    return harness_end();
+}
