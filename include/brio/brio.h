@@ -2,7 +2,7 @@
  * reconstruction with guarantees on top of them.   MIT licence.
  *
  * This header is the manual. Its sections follow a user's work: versions, status and context, triangulation, meshes and
- * their certificates, surface reconstruction, iso-surfaces, files, test data, memory estimates, predicates.
+ * their certificates, convex hull, surface reconstruction, iso-surfaces, files, test data, memory estimates, predicates.
  *
  * Words, used in one meaning throughout:
  *   points      the rows of the input
@@ -505,6 +505,56 @@ typedef enum brio_subgraph {
  *  BRIO_ERR_CANCELLED.
  *  Based on: [Choi 2003] section 4.3, [Lazarus Pocchiola Vegter Verroust 2001], [Kruskal 1956]. */
 BRIO_API brio_status brio_mesh_subgraph(brio_context *ctx, const brio_mesh *mesh, brio_subgraph kind, brio_edges *out);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Convex hull
+ */
+
+typedef struct brio_convex_hull_options {
+    size_t size;
+    int polygons; /* 1: a facet is one polygon; default 0: a facet is a fan of triangles from its first corner */
+    int reserved_int;
+} brio_convex_hull_options;
+
+BRIO_API void brio_convex_hull_options_init(brio_convex_hull_options *options, size_t size);
+static inline brio_convex_hull_options brio_convex_hull_options_default(void) {
+    brio_convex_hull_options options;
+    brio_convex_hull_options_init(&options, sizeof options);
+    return options;
+}
+
+typedef struct brio_convex_hull_stats {
+    size_t size;
+    size_t points;
+    size_t candidates; /* points that were not skipped as certainly inside; the others cost nothing more */
+    size_t vertices;   /* strictly extreme positions */
+    size_t facets;     /* convex polygons of which the hull consists; at most one lies in a plane */
+    int dimension;     /* of the affine hull of the points: -1 (no points) to 3 */
+    int reserved_int;
+    double skip_seconds, hull_seconds, mesh_seconds;
+} brio_convex_hull_stats;
+
+/** Computes the convex hull of a point set, exactly. Vertices are the strictly extreme points, in ascending order of their
+ *  indices; points inside a facet or an edge of the hull are none, and of coincident points the one with the lowest index
+ *  is the vertex. Facets are convex polygons, counterclockwise as seen from outside; the lexicographically least vertex
+ *  of a facet comes first, and the facets are sorted by their first two vertices. So the hull depends on the points only,
+ *  not on their order or the number of threads.
+ *  Points of dimension 2 have one facet. It is seen counterclockwise from the end of the first of the axes z, x, y that is
+ *  not parallel to its plane. Its boundary is open: the hull has area and no inside. Points of dimension 1 have two
+ *  vertices and one edge (brio_mesh.edges), points of dimension 0 one vertex, no points none.
+ *  points   #P by 3.   num_points  less than 2^32 - 16.   options  NULL for the defaults.
+ *  out      owned by the caller.
+ *  samples  NULL, or room for #P indices: receives for each vertex of the mesh the index of its point.
+ *  stats    NULL, or its `size` set.
+ *  Cost: three passes over the points, in which those inside a polytope of 26 extreme points are skipped, with all
+ *  threads; expected O(c log c) time for the c candidates that are left, with one thread. Memory: 4 bytes a point, and
+ *  about 80 a candidate and 90 a vertex.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE (2^30 triangles or more),
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Akl Toussaint 1978] for the points inside, [Clarkson Shor 1989], [Amenta Choi Rote 2003]. */
+BRIO_API brio_status brio_convex_hull(brio_context *ctx, const double *points, size_t num_points,
+                                      const brio_convex_hull_options *options, brio_mesh **out, uint32_t *samples,
+                                      brio_convex_hull_stats *stats);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Surface reconstruction
