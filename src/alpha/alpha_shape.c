@@ -111,7 +111,7 @@ brio_status brio_alpha_shape(brio_context *ctx, const brio_triangulation *t, con
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     const brio_delaunay_stats *d = brio_triangulation_stats(t);
-    shape s = {ctx, brio_tetrahedra_of(t), complex, alpha, d->points};
+    shape s = {.ctx = ctx, .t = brio_tetrahedra_of(t), .complex = complex, .alpha = alpha, .num_points = d->points};
     *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_alpha_shape_stats, stats));
     BRIO_REQUIRE(ctx, complex->counts[3] == d->tetrahedra, BRIO_ERR_ARGUMENT,

@@ -299,7 +299,8 @@ brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, co
     brio_status status = BRIO_OK;
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
     brio_alpha_complex mine = {.size = sizeof mine, .context = ctx};
-    evaluation e = {ctx, brio_tetrahedra_of(t), s->tetrahedra, num_points, weights != NULL};
+    evaluation e = {.ctx = ctx, .num_finite = s->tetrahedra, .num_points = num_points, .weighted = weights != NULL};
+    e.t = brio_tetrahedra_of(t);
     e.out = &mine;
     brio_status size = BRIO_CHECK_RESULT(ctx, brio_alpha_complex, out);
     if (size != BRIO_OK) return size;

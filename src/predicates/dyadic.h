@@ -7,13 +7,14 @@
  * BRIO_DYADIC_CAPACITY is derived from the longest of two polynomials. The in-sphere determinant: A difference of doubles spans 2098 bits or 34 limbs.
  * A sum of three squares takes 69 limbs, and 70 with a weight. A 3 by 3 minor of differences takes 103 limbs. The sum
  * of four products of a lift and a minor takes 175 limbs. The test of brio_attached for a facet: a scalar product of
- * differences takes 69 limbs, and 70 with a weight; a sum of products of three of these takes 212 limbs. */
+ * differences, also less a weight, is a multiple of 2^-2148 below 2^2053 and so takes 67 limbs once its leading zeros are
+ * dropped; products of three of these take 201 limbs, their sum two more. */
 #ifndef BRIO_PREDICATES_DYADIC_H
 #define BRIO_PREDICATES_DYADIC_H
 
 #include <stdint.h>
 
-enum { BRIO_DYADIC_CAPACITY = 216 };
+enum { BRIO_DYADIC_CAPACITY = 206 };
 
 typedef struct {
     int32_t sign, low, size;
