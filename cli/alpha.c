@@ -112,7 +112,7 @@ done:
 static brio_status alpha(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *input = NULL;
-    double *weights = NULL, value;
+    double *weights = NULL, value = NAN;
     brio_triangulation *t = NULL;
     brio_alpha_complex complex = {.size = sizeof complex};
     brio_status status = BRIO_OK;
