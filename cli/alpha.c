@@ -92,13 +92,12 @@ done:
     return status;
 }
 
-static brio_status make_shape(run *r, const brio_mesh *input, const brio_triangulation *t,
-                              const brio_alpha_complex *complex, double alpha) {
+static brio_status make_shape(run *r, const brio_mesh *input, const brio_alpha_complex *complex, double alpha) {
     brio_status status = BRIO_OK;
     brio_mesh *surface = NULL;
     brio_alpha_shape_stats s = {.size = sizeof s};
-    if (isnan(alpha)) TRY(brio_alpha_auto(r->ctx, t, complex, &alpha));
-    TRY(brio_alpha_shape(r->ctx, t, input->vertices, complex, alpha, &surface, &s));
+    if (isnan(alpha)) TRY(brio_alpha_auto(r->ctx, complex, &alpha));
+    TRY(brio_alpha_shape(r->ctx, input->vertices, complex, alpha, &surface, &s));
     cli_lap(r, "shape");
     report(r, complex, surface, &s);
     TRY(cli_check_interrupt(r));
@@ -126,7 +125,7 @@ static brio_status alpha(run *r) {
     cli_lap(r, "read");
     TRY(triangulate(r, input, weights, &t, &complex));
     if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));
-    TRY(make_shape(r, input, t, &complex, value));
+    TRY(make_shape(r, input, &complex, value));
 done:
     brio_alpha_complex_free(&complex);
     brio_triangulation_free(t);

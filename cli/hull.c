@@ -44,7 +44,7 @@ static brio_status hull(run *r) {
     TRY(cli_require_output(r, formats, false));
     TRY(cli_read_points(r, r->operands[0], &input));
     TRY(cli_require_work(r, BRIO_OK, input, (uint64_t)(BYTES_A_POINT * (double)input->num_vertices)));
-    TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, NULL, &s));
+    TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, &s));
     if (s.dimension < 0) TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "no points, so no convex hull"));
     report(r, surface, &s);
     TRY(cli_check_interrupt(r));

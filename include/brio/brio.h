@@ -514,6 +514,8 @@ typedef struct brio_convex_hull_options {
     size_t size;
     int polygons; /* 1: a facet is one polygon; default 0: a facet is a fan of triangles from its first corner */
     int reserved_int;
+    uint32_t
+        *samples; /* room for #P indices: receives for each vertex of the mesh the index of its point; default NULL */
 } brio_convex_hull_options;
 
 BRIO_API void brio_convex_hull_options_init(brio_convex_hull_options *options, size_t size);
@@ -544,7 +546,6 @@ typedef struct brio_convex_hull_stats {
  *  vertices and one edge (brio_mesh.edges), points of dimension 0 one vertex, no points none.
  *  points   #P by 3.   num_points  less than 2^32 - 16.   options  NULL for the defaults.
  *  out      owned by the caller.
- *  samples  NULL, or room for #P indices: receives for each vertex of the mesh the index of its point.
  *  stats    NULL, or its `size` set.
  *  Cost: three passes over the points, in which those inside a polytope of 26 extreme points are skipped, with all
  *  threads; expected O(c log c) time for the c candidates that are left, with one thread. Memory: 4 bytes a point, and
@@ -553,7 +554,7 @@ typedef struct brio_convex_hull_stats {
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Akl Toussaint 1978] for the points inside, [Clarkson Shor 1989], [Amenta Choi Rote 2003]. */
 BRIO_API brio_status brio_convex_hull(brio_context *ctx, const double *points, size_t num_points,
-                                      const brio_convex_hull_options *options, brio_mesh **out, uint32_t *samples,
+                                      const brio_convex_hull_options *options, brio_mesh **out,
                                       brio_convex_hull_stats *stats);
 
 /* ------------------------------------------------------------------------------------------------------------------
@@ -570,12 +571,17 @@ BRIO_API brio_status brio_convex_hull(brio_context *ctx, const double *points, s
 typedef struct brio_alpha_complex {
     size_t size;
     brio_context *context;
+    const brio_triangulation *triangulation; /* not owned; must outlive the complex */
     size_t counts[4];
-    uint32_t *simplices[4]; /* counts[k] by k + 1: indices of points, ascending; tetrahedra in the triangulation's order */
-    double *values[4];      /* counts[k]: the least alpha at which the simplex is in the complex */
-    double *solid[4];       /* counts[k]: the least value of a tetrahedron that contains the simplex. From values to solid
-                               the simplex is singular: in the complex, and bounding no tetrahedron of it */
-    uint8_t *gabriel[4];    /* counts[k]: 1 if no vertex is strictly inside the smallest orthosphere of the simplex */
+    /** counts[k] by k + 1: indices of points, ascending in each simplex; tetrahedra in the triangulation's order. */
+    uint32_t *simplices[4];
+    /** counts[k]: the least alpha at which the simplex is in the complex. */
+    double *values[4];
+    /** counts[k]: the least value of a tetrahedron that contains the simplex. From its own value to this one the simplex is
+     *  singular: in the complex, and a face of no tetrahedron there. */
+    double *solid[4];
+    /** counts[k]: 1 if no vertex is strictly inside the smallest orthosphere of the simplex. */
+    uint8_t *gabriel[4];
 } brio_alpha_complex;
 
 /** Computes the alpha filtration. A simplex that is Gabriel, which is decided exactly, has the squared radius of its
@@ -605,9 +611,8 @@ BRIO_API brio_status brio_alpha_order(brio_context *ctx, const brio_alpha_comple
 
 /** Finds the least alpha at which the tetrahedra of the complex are one solid, joined across facets, that has all
  *  vertices of the triangulation. There is one: the greatest value of a tetrahedron at the latest.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the complex of another triangulation), BRIO_ERR_NO_MEMORY. */
-BRIO_API brio_status brio_alpha_auto(brio_context *ctx, const brio_triangulation *t, const brio_alpha_complex *complex,
-                                     double *alpha);
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha);
 
 typedef struct brio_alpha_shape_stats {
     size_t size;
@@ -622,13 +627,12 @@ typedef struct brio_alpha_shape_stats {
 /** Makes the boundary of an alpha shape: of the union of the tetrahedra with values of at most alpha. Its triangles are
  *  seen counterclockwise from outside. The mesh is closed and manifold: where parts of the solid touch in a vertex or an
  *  edge only, vertices are doubled. Singular simplices are counted, and are not in the mesh.
- *  t, points, complex  as for brio_alpha_values.   out  owned by the caller.   stats  NULL, or its `size` set.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the complex of another triangulation, alpha is NaN), BRIO_ERR_NO_ANSWER (no
- *  tetrahedron has a value of at most alpha), BRIO_ERR_NO_MEMORY.
+ *  points  as they were given to brio_alpha_values.   out  owned by the caller.   stats  NULL, or its `size` set.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN), BRIO_ERR_NO_ANSWER (no tetrahedron has a value of at most alpha),
+ *  BRIO_ERR_NO_MEMORY.
  *  Based on: [Edelsbrunner Muecke 1994]. */
-BRIO_API brio_status brio_alpha_shape(brio_context *ctx, const brio_triangulation *t, const double *points,
-                                      const brio_alpha_complex *complex, double alpha, brio_mesh **out,
-                                      brio_alpha_shape_stats *stats);
+BRIO_API brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex,
+                                      double alpha, brio_mesh **out, brio_alpha_shape_stats *stats);
 
 /** Text formats of filtrations. */
 typedef enum brio_filtration_format {

@@ -40,16 +40,13 @@ static int by_index(uint32_t a, uint32_t b, const void *user) {
     return (a > b) - (a < b);
 }
 
-brio_status brio_alpha_auto(brio_context *ctx, const brio_triangulation *t, const brio_alpha_complex *complex,
-                            double *alpha) {
+brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    const brio_tetrahedra tets = brio_tetrahedra_of(t);
-    size_t n = complex->counts[3], points = brio_triangulation_stats(t)->points;
+    const brio_tetrahedra tets = brio_tetrahedra_of(complex->triangulation);
+    size_t n = complex->counts[3], points = brio_triangulation_stats(complex->triangulation)->points;
     growth g = {&tets, complex->values[3], n, NULL, NULL, 0, 0};
     uint32_t *order = NULL;
-    BRIO_REQUIRE(ctx, n == brio_triangulation_stats(t)->tetrahedra, BRIO_ERR_ARGUMENT,
-                 "the complex is not that of the triangulation");
     BRIO_TRY(BRIO_ALLOC(ctx, order, n));
     BRIO_TRY(BRIO_ALLOC(ctx, g.set, n));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, g.added, n + points));

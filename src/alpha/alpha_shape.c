@@ -105,17 +105,15 @@ done:
     return status;
 }
 
-brio_status brio_alpha_shape(brio_context *ctx, const brio_triangulation *t, const double *points,
-                             const brio_alpha_complex *complex, double alpha, brio_mesh **out,
-                             brio_alpha_shape_stats *stats) {
+brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex, double alpha,
+                             brio_mesh **out, brio_alpha_shape_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    const brio_delaunay_stats *d = brio_triangulation_stats(t);
-    shape s = {.ctx = ctx, .t = brio_tetrahedra_of(t), .complex = complex, .alpha = alpha, .num_points = d->points};
+    shape s = {.ctx = ctx, .complex = complex, .alpha = alpha};
+    s.t = brio_tetrahedra_of(complex->triangulation);
+    s.num_points = brio_triangulation_stats(complex->triangulation)->points;
     *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_alpha_shape_stats, stats));
-    BRIO_REQUIRE(ctx, complex->counts[3] == d->tetrahedra, BRIO_ERR_ARGUMENT,
-                 "the complex is not that of the triangulation");
     BRIO_REQUIRE(ctx, !isnan(alpha), BRIO_ERR_ARGUMENT, "alpha is NaN");
     BRIO_TRY(brio_mesh_new(ctx, &s.mesh));
     BRIO_TRY(make_surface(&s, points));

@@ -298,7 +298,7 @@ brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, co
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
-    brio_alpha_complex mine = {.size = sizeof mine, .context = ctx};
+    brio_alpha_complex mine = {.size = sizeof mine, .context = ctx, .triangulation = t};
     evaluation e = {.ctx = ctx, .num_finite = s->tetrahedra, .num_points = num_points, .weighted = weights != NULL};
     e.t = brio_tetrahedra_of(t);
     e.out = &mine;

@@ -181,12 +181,12 @@ done:
     return status;
 }
 
-static brio_status make_mesh(hull *h, bool whole, brio_mesh *mesh, uint32_t *samples) {
+static brio_status make_mesh(hull *h, const brio_convex_hull_options *o, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     if (h->stats.dimension < 0) return BRIO_OK;
-    BRIO_TRY(place_vertices(h, mesh, samples));
+    BRIO_TRY(place_vertices(h, mesh, o->samples));
     if (h->stats.dimension >= 2)
-        BRIO_TRY(put_faces(h, whole, mesh));
+        BRIO_TRY(put_faces(h, o->polygons, mesh));
     else if (h->stats.dimension == 1)
         BRIO_TRY(brio_mesh_set_edges(mesh, h->faces.corner, 1));
     lap(h, &h->stats.mesh_seconds);
@@ -195,8 +195,7 @@ done:
 }
 
 brio_status brio_convex_hull(brio_context *ctx, const double *points, size_t num_points,
-                             const brio_convex_hull_options *options, brio_mesh **out, uint32_t *samples,
-                             brio_convex_hull_stats *stats) {
+                             const brio_convex_hull_options *options, brio_mesh **out, brio_convex_hull_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_convex_hull_options o = STANDARD;
@@ -209,7 +208,7 @@ brio_status brio_convex_hull(brio_context *ctx, const double *points, size_t num
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
     BRIO_TRY(find_faces(&h));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
-    BRIO_TRY(make_mesh(&h, o.polygons, mesh, samples));
+    BRIO_TRY(make_mesh(&h, &o, mesh));
     *out = mesh;
     mesh = NULL;
 done:

@@ -174,13 +174,13 @@ static void shapes_bound_their_tetrahedra(void) {
         make(&s, kind, 4);
         EXPECT(build(&s));
         double least;
-        EXPECT(brio_alpha_auto(s.ctx, s.t, &s.c, &least) == BRIO_OK);
+        EXPECT(brio_alpha_auto(s.ctx, &s.c, &least) == BRIO_OK);
         for (size_t n = 0; n < s.c.counts[3]; n += 7) {
             double alpha = n ? s.c.values[3][n] : least, volume = 0;
             brio_certificate c = {.size = sizeof c};
             brio_alpha_shape_stats stats = {.size = sizeof stats};
             brio_mesh *m;
-            EXPECT(brio_alpha_shape(s.ctx, s.t, s.p, &s.c, alpha, &m, &stats) == BRIO_OK);
+            EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, alpha, &m, &stats) == BRIO_OK);
             EXPECT(brio_mesh_certificate(s.ctx, m, &c) == BRIO_OK);
             for (size_t t = 0; t < s.c.counts[3]; t++) {
                 if (s.c.values[3][t] > alpha) continue;
@@ -209,8 +209,8 @@ static void hostile_inputs(void) {
     brio_mesh *m;
     make(&s, 0, 1);
     EXPECT(build(&s));
-    EXPECT(brio_alpha_shape(s.ctx, s.t, s.p, &s.c, NAN, &m, NULL) == BRIO_ERR_ARGUMENT && !m);
-    EXPECT(brio_alpha_shape(s.ctx, s.t, s.p, &s.c, -1, &m, NULL) == BRIO_ERR_NO_ANSWER && !m);
+    EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, NAN, &m, NULL) == BRIO_ERR_ARGUMENT && !m);
+    EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, -1, &m, NULL) == BRIO_ERR_NO_ANSWER && !m);
     brio_alpha_complex other = {.size = sizeof other};
     EXPECT(brio_alpha_values(s.ctx, s.t, s.p, NULL, N - 1, &other) == BRIO_ERR_ARGUMENT && !other.values[0]);
     drop(&s);
@@ -232,8 +232,8 @@ static brio_status run_alpha(brio_context *ctx) {
     brio_status status = brio_delaunay(ctx, p, NULL, 60, NULL, &t);
     if (status == BRIO_OK) status = brio_alpha_values(ctx, t, p, NULL, 60, &c);
     if (status == BRIO_OK) status = brio_alpha_order(ctx, &c, order);
-    if (status == BRIO_OK) status = brio_alpha_auto(ctx, t, &c, &alpha);
-    if (status == BRIO_OK) status = brio_alpha_shape(ctx, t, p, &c, alpha, &m, NULL);
+    if (status == BRIO_OK) status = brio_alpha_auto(ctx, &c, &alpha);
+    if (status == BRIO_OK) status = brio_alpha_shape(ctx, p, &c, alpha, &m, NULL);
     brio_mesh_free(m);
     brio_alpha_complex_free(&c);
     brio_triangulation_free(t);
