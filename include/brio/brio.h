@@ -2,7 +2,8 @@
  * reconstruction with guarantees on top of them.   MIT licence.
  *
  * This header is the manual. Its sections follow a user's work: versions, status and context, triangulation, meshes and
- * their certificates, convex hull, alpha shapes, surface reconstruction, iso-surfaces, files, test data, memory estimates, predicates.
+ * their certificates, convex hull, alpha shapes, surface reconstruction, iso-surfaces, files, test data, memory
+ * estimates, predicates.
  *
  * Words, used in one meaning throughout:
  *   points      the rows of the input
@@ -592,8 +593,8 @@ typedef struct brio_alpha_complex {
  *  most that of the simplices that contain the simplex. Duplicates and hidden points are in no simplex.
  *  t        the triangulation of these points and weights, of dimension 3.   weights  #P, or NULL.
  *  out      its `size` set; freed with brio_alpha_complex_free.
- *  Cost: about the time of the triangulation; 48 bytes a tetrahedron, 45 a facet, 37 an edge and 24 a vertex for the
- *  result and the work; several threads for the values.
+ *  Cost: a few times that of the triangulation, most of it with all threads. For the result and the work 48 bytes a
+ *  tetrahedron, 45 a facet, 37 an edge and 24 a vertex.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (another number of points), BRIO_ERR_NO_ANSWER (the points have dimension 2 or
  *  less), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE (2^32 - 1 simplices or more), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Edelsbrunner Muecke 1994], [Edelsbrunner 1995] for weights. */

@@ -4,6 +4,7 @@
  * the others and b_i = |U_i|^2 - (w_i - w_a). The centre is a + y with y in the span of U, V, W and 2 U_i y = b_i; the
  * squared radius is |y|^2 - w_a. */
 #include "alpha/squared_radius.h"
+#include "base/scale.h"
 #include "predicates/double_double.h"
 #include <math.h>
 
@@ -20,7 +21,12 @@ static double largest_difference(const double *const *p, int count) {
     return fmin(most, 0x1p1023);
 }
 
+/* Returns x 2^exponent. */
 BRIO_INLINE brio_dd scaled(brio_dd x, int exponent) {
+    if (exponent >= -1022 && exponent <= 1023) { /* ldexp is a call */
+        double factor = brio_power_of_two(exponent);
+        return (brio_dd){x.hi * factor, x.lo * factor};
+    }
     return (brio_dd){ldexp(x.hi, exponent), ldexp(x.lo, exponent)};
 }
 
