@@ -204,6 +204,37 @@ static void shapes_bound_their_tetrahedra(void) {
     }
 }
 
+/* One and four threads: the same bits. */
+static void threads_change_nothing(void) {
+    enum { MANY = 4000 };
+    double *p = malloc(3 * MANY * sizeof *p), *w = malloc(MANY * sizeof *w);
+    brio_context *ctx = new_context();
+    brio_triangulation *t[2];
+    brio_alpha_complex c[2] = {{.size = sizeof *c}, {.size = sizeof *c}};
+    uniform_points(9, MANY, p);
+    integer_weights(9, MANY, 100, w);
+    for (size_t i = 0; i < MANY; i++) w[i] *= 1e-5;
+    for (int n = 0; n < 2; n++) {
+        brio_context_set_threads(ctx, n ? 4 : 1);
+        EXPECT(brio_delaunay(ctx, p, w, MANY, NULL, &t[n]) == BRIO_OK);
+        EXPECT(brio_alpha_values(ctx, t[n], p, w, MANY, &c[n]) == BRIO_OK);
+    }
+    size_t total = 0;
+    for (int k = 0; k < 4; k++) {
+        EXPECT(c[0].counts[k] == c[1].counts[k]);
+        total += c[0].counts[k];
+        EXPECT(!memcmp(c[0].simplices[k], c[1].simplices[k], c[0].counts[k] * (size_t)(k + 1) * sizeof(uint32_t)));
+    }
+    EXPECT(!memcmp(c[0].values[0], c[1].values[0], total * sizeof(double)));
+    EXPECT(!memcmp(c[0].gabriel[0], c[1].gabriel[0], total));
+    for (int n = 0; n < 2; n++) {
+        brio_alpha_complex_free(&c[n]);
+        brio_triangulation_free(t[n]);
+    }
+    brio_context_free(ctx);
+    free(p), free(w);
+}
+
 static void hostile_inputs(void) {
     static set s;
     brio_mesh *m;
@@ -248,6 +279,7 @@ int main(void) {
     RUN(values_against_brute_force);
     RUN(order_is_strict);
     RUN(shapes_bound_their_tetrahedra);
+    RUN(threads_change_nothing);
     RUN(hostile_inputs);
     RUN(memory_that_runs_out);
     return harness_end();
