@@ -8,6 +8,8 @@
     X(delaunay)                                                                                                        \
     X(surface)                                                                                                         \
     X(medial)                                                                                                          \
+    X(hull)                                                                                                            \
+    X(alpha)                                                                                                           \
     X(offset)                                                                                                          \
     X(voronoi)                                                                                                         \
     X(check)                                                                                                           \

@@ -7,12 +7,13 @@
  * microsecond. The functions return DECLINED for other calls. */
 #include "predicates/predicates.h"
 #include "base/scale.h"
+#include "predicates/grid.h"
 #include "predicates/span.h"
 
-typedef __int128 wide;
+typedef brio_wide wide;
 typedef unsigned __int128 unsigned_wide;
 
-enum { NARROW_BITS = 20, WIDE_BITS = 41, DECLINED = 2 };
+enum { NARROW_BITS = 20, WIDE_BITS = BRIO_GRID_BITS, DECLINED = 2 };
 
 /* Sets *d = a - b, rounded. Returns whether *d is exact. */
 static inline bool exact_difference(double a, double b, double *d) {
@@ -21,10 +22,8 @@ static inline bool exact_difference(double a, double b, double *d) {
     return (a - (s - t)) - (b + t) == 0;
 }
 
-/* Writes the rows p[i] - origin as integers, and the differences of weights in units of the grid's square. Returns
- * false when the points are on no grid of WIDE_BITS bits. */
-static bool grid_rows(const double *const *p, int count, const double *origin, bool weighted, int64_t (*row)[3],
-                      wide *weight) {
+bool brio_grid_rows(const double *const *p, int count, const double *origin, bool weighted, int64_t (*row)[3],
+                    wide *weight) {
     double d[4][3], w[4];
     brio_span s = BRIO_NO_SPAN;
     for (int i = 0; i < count; i++)
@@ -55,7 +54,7 @@ static bool grid_rows(const double *const *p, int count, const double *origin, b
     return true;
 }
 
-static int bits_of(const int64_t (*row)[3], int count) {
+int brio_grid_bits(const int64_t (*row)[3], int count) {
     uint64_t all = 0;
     for (int i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) all |= (uint64_t)(row[i][k] < 0 ? -row[i][k] : row[i][k]);
@@ -74,7 +73,7 @@ static wide minor3(const int64_t p[3], const int64_t q[3], const int64_t s[3]) {
 int brio_orient3d_integer(const double *a, const double *b, const double *c, const double *d) {
     const double *p[3] = {b, c, d};
     int64_t row[3][3];
-    if (!grid_rows(p, 3, a, false, row, NULL)) return DECLINED;
+    if (!brio_grid_rows(p, 3, a, false, row, NULL)) return DECLINED;
     return sign_of(minor3(row[0], row[1], row[2]));
 }
 
@@ -134,8 +133,8 @@ int brio_insphere_integer(const double *a, const double *b, const double *c, con
     const double *p[4] = {a, b, c, d};
     int64_t row[4][3];
     wide weight[4] = {0, 0, 0, 0};
-    if (!grid_rows(p, 4, e, weighted, row, weight)) return DECLINED;
-    bool narrow = bits_of((const int64_t(*)[3])row, 4) <= NARROW_BITS;
+    if (!brio_grid_rows(p, 4, e, weighted, row, weight)) return DECLINED;
+    bool narrow = brio_grid_bits((const int64_t(*)[3])row, 4) <= NARROW_BITS;
     for (int i = 0; i < 4; i++) narrow &= weight[i] < (wide)1 << 42 && weight[i] > -((wide)1 << 42);
     return narrow ? insphere_narrow((const int64_t(*)[3])row, weight) : insphere_wide((const int64_t(*)[3])row, weight);
 }

@@ -9,8 +9,8 @@ import subprocess
 
 from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
-COMMANDS = ["delaunay", "surface", "medial", "offset", "check", "compare", "iso", "info", "generate", "subdivide",
-            "locate", "interpolate"]
+COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide",
+            "locate", "interpolate", "voronoi"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
@@ -23,6 +23,8 @@ OWN_OPTIONS = {
                "--sampling-density", "--sharp"],
     "offset": ["--distance", "--triangulate", "--simplify", "--labeling", "--noise", "--sampling-density", "--sharp",
                "--vertex-normals", "--self-intersections"],
+    "hull": ["--polygons"],
+    "alpha": ["--alpha", "--filtration", "--weights", "--weights-mod", "--unweighted"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
     "compare": ["--samples"],
     "info": [],

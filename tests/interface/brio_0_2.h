@@ -799,6 +799,150 @@ BRIO_API brio_status brio_cells_write(brio_context *ctx, const char *path, const
                                       brio_cells_format format, const char *comment);
 
 /* ------------------------------------------------------------------------------------------------------------------
+ * Convex hull
+ */
+
+typedef struct brio_convex_hull_options {
+    size_t size;
+    int polygons; /* 1: a facet is one polygon; default 0: a facet is a fan of triangles from its first corner */
+    int reserved_int;
+    uint32_t
+        *samples; /* room for #P indices: receives for each vertex of the mesh the index of its point; default NULL */
+} brio_convex_hull_options;
+
+BRIO_API void brio_convex_hull_options_init(brio_convex_hull_options *options, size_t size);
+static inline brio_convex_hull_options brio_convex_hull_options_default(void) {
+    brio_convex_hull_options options;
+    brio_convex_hull_options_init(&options, sizeof options);
+    return options;
+}
+
+typedef struct brio_convex_hull_stats {
+    size_t size;
+    size_t points;
+    size_t candidates; /* points that were not skipped as certainly inside; the others cost nothing more */
+    size_t vertices;   /* strictly extreme positions */
+    size_t facets;     /* convex polygons of which the hull consists; at most one lies in a plane */
+    int dimension;     /* of the affine hull of the points: -1 (no points) to 3 */
+    int reserved_int;
+    double skip_seconds, hull_seconds, mesh_seconds;
+} brio_convex_hull_stats;
+
+/** Computes the convex hull of a point set, exactly. Vertices are the strictly extreme points, in ascending order of their
+ *  indices; points inside a facet or an edge of the hull are none, and of coincident points the one with the lowest index
+ *  is the vertex. Facets are convex polygons, counterclockwise as seen from outside; the lexicographically least vertex
+ *  of a facet comes first, and the facets are sorted by their first two vertices. So the hull depends on the points only,
+ *  not on their order or the number of threads.
+ *  Points of dimension 2 have one facet. It is seen counterclockwise from the end of the first of the axes z, x, y that is
+ *  not parallel to its plane. Its boundary is open: the hull has area and no inside. Points of dimension 1 have two
+ *  vertices and one edge (brio_mesh.edges), points of dimension 0 one vertex, no points none.
+ *  points   #P by 3.   num_points  less than 2^32 - 16.   options  NULL for the defaults.
+ *  out      owned by the caller.
+ *  stats    NULL, or its `size` set.
+ *  Cost: three passes over the points, in which those inside a polytope of 26 extreme points are skipped, with all
+ *  threads; expected O(c log c) time for the c candidates that are left, with one thread. Memory: 4 bytes a point, and
+ *  about 80 a candidate and 90 a vertex.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE (2^30 triangles or more),
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Akl Toussaint 1978] for the points inside, [Clarkson Shor 1989], [Amenta Choi Rote 2003]. */
+BRIO_API brio_status brio_convex_hull(brio_context *ctx, const double *points, size_t num_points,
+                                      const brio_convex_hull_options *options, brio_mesh **out,
+                                      brio_convex_hull_stats *stats);
+
+/* ------------------------------------------------------------------------------------------------------------------
+ * Alpha complexes and alpha shapes
+ *
+ * Alpha is a squared radius, as in the papers, GUDHI and CGAL. Programs that take a radius (PyVista's delaunay_3d, Open3D,
+ * MeshLab) mean its square root: their alpha 0.1 is 0.01 here. Values carry the squared unit of the coordinates.
+ */
+
+/** The simplices of a Delaunay or regular triangulation with their values in the alpha filtration. The alpha complex of
+ *  alpha is the simplices with values of at most alpha. Index k of an array is the dimension: 0 vertices, 1 edges, 2
+ *  facets, 3 tetrahedra. The arrays of the four dimensions lie one after the other in one block, so that values[0] has
+ *  all values; the number of a simplex is its place there. */
+typedef struct brio_alpha_complex {
+    size_t size;
+    brio_context *context;
+    const brio_triangulation *triangulation; /* not owned; must outlive the complex */
+    size_t counts[4];
+    /** counts[k] by k + 1: indices of points, ascending in each simplex; tetrahedra in the triangulation's order. */
+    uint32_t *simplices[4];
+    /** counts[k]: the least alpha at which the simplex is in the complex. */
+    double *values[4];
+    /** counts[k]: the least value of a tetrahedron that contains the simplex. From its own value to this one the simplex is
+     *  singular: in the complex, and a face of no tetrahedron there. */
+    double *solid[4];
+    /** counts[k]: 1 if no vertex is strictly inside the smallest orthosphere of the simplex. */
+    uint8_t *gabriel[4];
+} brio_alpha_complex;
+
+/** Computes the alpha filtration. A simplex that is Gabriel, which is decided exactly, has the squared radius of its
+ *  smallest circumscribed sphere or, with weights, of its smallest orthosphere: the sphere of a vertex of weight w has the
+ *  squared radius -w, and values may be negative. Any other simplex has the least value of the simplices that contain it.
+ *  Vertices have the value 0 without weights. Values are rounded from double-doubles, to a few units in the last place
+ *  except in tetrahedra too flat for those; a value that doubles cannot hold is INFINITY. Rounding leaves every value at
+ *  most that of the simplices that contain the simplex. Duplicates and hidden points are in no simplex.
+ *  t        the triangulation of these points and weights, of dimension 3.   weights  #P, or NULL.
+ *  out      its `size` set; freed with brio_alpha_complex_free.
+ *  Cost: a few times that of the triangulation, most of it with all threads. For the result and the work 48 bytes a
+ *  tetrahedron, 45 a facet, 37 an edge and 24 a vertex.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (another number of points), BRIO_ERR_NO_ANSWER (the points have dimension 2 or
+ *  less), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE (2^32 - 1 simplices or more), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Edelsbrunner Muecke 1994], [Edelsbrunner 1995] for weights. */
+BRIO_API brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, const double *points,
+                                       const double *weights, size_t num_points, brio_alpha_complex *out);
+
+/** Frees what a complex owns and sets its fields but `size` to 0; NULL is accepted. */
+BRIO_API void brio_alpha_complex_free(brio_alpha_complex *complex);
+
+/** Sorts the simplices as they enter the complex: by value, then dimension, then lexicographically by vertices. So a
+ *  simplex comes after all its faces, and the order is the same for every number of threads.
+ *  order  receives the numbers of all simplices, room for the sum of the counts.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_alpha_order(brio_context *ctx, const brio_alpha_complex *complex, uint32_t *order);
+
+/** Finds the least alpha at which the tetrahedra of the complex are one solid, joined across facets, that has all
+ *  vertices of the triangulation. There is one: the greatest value of a tetrahedron at the latest.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha);
+
+typedef struct brio_alpha_shape_stats {
+    size_t size;
+    double alpha;
+    size_t tetrahedra; /* in the complex */
+    size_t vertices;   /* points on the surface */
+    size_t split;      /* vertices of the mesh beyond these: where parts of the solid touch, each sheet has its own */
+    size_t uncovered;  /* vertices of the triangulation that are in no tetrahedron of the complex */
+    size_t singular_vertices, singular_edges, singular_facets; /* in the complex, bounding no tetrahedron of it */
+} brio_alpha_shape_stats;
+
+/** Makes the boundary of an alpha shape: of the union of the tetrahedra with values of at most alpha. Its triangles are
+ *  seen counterclockwise from outside. The mesh is closed and manifold: where parts of the solid touch in a vertex or an
+ *  edge only, vertices are doubled. Singular simplices are counted, and are not in the mesh.
+ *  points  as they were given to brio_alpha_values.   out  owned by the caller.   stats  NULL, or its `size` set.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN), BRIO_ERR_NO_ANSWER (no tetrahedron has a value of at most alpha),
+ *  BRIO_ERR_NO_MEMORY.
+ *  Based on: [Edelsbrunner Muecke 1994]. */
+BRIO_API brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex,
+                                      double alpha, brio_mesh **out, brio_alpha_shape_stats *stats);
+
+/** Text formats of filtrations. */
+typedef enum brio_filtration_format {
+    BRIO_FILTRATION_GUDHI = 0, /* a line a simplex, "dimension vertices value", as GUDHI's simplex tree reads it */
+    BRIO_FILTRATION_RIPSER =
+        1, /* a line an edge, "i j value", a sparse distance matrix as ripser --format sparse reads it. Ripser enters every
+              vertex at 0, and every clique with its last edge: dimension 0 is that of the alpha complex without weights,
+              and higher dimensions are those of the flag complex of its edges. */
+    BRIO_FILTRATION_END
+} brio_filtration_format;
+
+/** Writes the simplices of a complex with their values, in an order from brio_alpha_order. Vertices are indices of points,
+ *  from 0 on. Replaces the file when it is complete, as brio_write does; "-" writes to standard output.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_write_filtration(brio_context *ctx, const char *path, const brio_alpha_complex *complex,
+                                           const uint32_t *order, brio_filtration_format format);
+
+/* ------------------------------------------------------------------------------------------------------------------
  * Surface reconstruction
  *
  * The power crust, offset surfaces and the power shape begin alike: with the Delaunay triangulation of the samples, the

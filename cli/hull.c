@@ -1,0 +1,69 @@
+/* brio hull: the convex hull of the points of a file, with its certificate. */
+#include "certificate.h"
+#include "commands.h"
+#include "estimate.h"
+
+typedef struct arguments {
+    bool polygons;
+} arguments;
+
+static const option options[] = {
+    {"polygons", 0, OPTION_FLAG, offsetof(arguments, polygons), NULL,
+     "one polygon for each facet, not cut into triangles", 0},
+    {0},
+};
+
+static const arguments defaults = {.polygons = false};
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+                                      BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
+
+/* Bytes a point, if all are vertices of the hull: measured on points on a sphere. */
+static const double BYTES_A_POINT = 260;
+
+static void report(run *r, const brio_mesh *hull, const brio_convex_hull_stats *s) {
+    facts *f = &r->facts;
+    cli_stage(r, "skip", s->skip_seconds);
+    cli_stage(r, "hull", s->hull_seconds + s->mesh_seconds);
+    r->lap = cli_clock();
+    cli_fact_text(f, "method", "convex-hull");
+    cli_fact_count(f, "samples", s->points);
+    cli_fact_count(f, "candidates", s->candidates);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_count(f, "vertices", s->vertices);
+    cli_fact_count(f, "faces", hull->num_faces);
+    cli_fact_count(f, "facets", s->facets);
+}
+
+static brio_status hull(run *r) {
+    const arguments *a = r->arguments;
+    brio_convex_hull_options o = brio_convex_hull_options_default();
+    brio_convex_hull_stats s = {.size = sizeof s};
+    brio_mesh *input = NULL, *surface = NULL;
+    brio_status status = BRIO_OK;
+    o.polygons = a->polygons;
+    TRY(cli_require_output(r, formats, false));
+    TRY(cli_read_points(r, r->operands[0], &input));
+    TRY(cli_require_work(r, BRIO_OK, input, (uint64_t)(BYTES_A_POINT * (double)input->num_vertices)));
+    TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, &s));
+    if (s.dimension < 0) TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "no points, so no convex hull"));
+    report(r, surface, &s);
+    TRY(cli_check_interrupt(r));
+    TRY(cli_certify(r, surface, s.dimension < 3 ? CERTIFY_OPEN : 0u)); /* flat hulls bound nothing */
+    TRY(cli_write(r, surface));
+done:
+    brio_mesh_free(surface);
+    brio_mesh_free(input);
+    return status;
+}
+
+const command cli_hull = {
+    .name = "hull",
+    .operands = "IN",
+    .summary = "convex hull of the points of a file; flat ones are a polygon or an edge (.ply .obj .off .vtu .vtp)",
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = hull,
+};

@@ -1,0 +1,127 @@
+/* The boundary of an alpha shape as a mesh.
+ *
+ * A tetrahedron is inside when its value is at most alpha. The boundary is the facets between inside and outside, seen
+ * counterclockwise from outside. Where parts of the solid touch in an edge or a vertex only, the boundary is no manifold:
+ * there the mesh gets one vertex for each sheet (mesh/split_vertices.c), so that the mesh is a manifold and the solid
+ * stays the same. Facets, edges and vertices of the complex that bound no inside tetrahedron are singular: they are
+ * counted, and are no part of the mesh.
+ *
+ * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
+#include "alpha/alpha_complex.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/versioned.h"
+#include "mesh/split_vertices.h"
+#include "triangulation/view.h"
+#include <math.h>
+#include <string.h>
+
+typedef struct {
+    brio_context *ctx;
+    brio_tetrahedra t;
+    const brio_alpha_complex *complex;
+    double alpha;
+    size_t num_points;
+    uint32_t *vertex; /* #P: 1 + the number in the mesh, or 0 */
+    brio_mesh *mesh;
+    brio_alpha_shape_stats stats;
+} shape;
+
+static bool is_inside(const shape *s, uint32_t tet) {
+    return tet < s->complex->counts[3] && s->complex->values[3][tet] <= s->alpha;
+}
+
+static bool is_boundary(const shape *s, uint32_t facet) {
+    return is_inside(s, brio_tet_of(facet)) && !is_inside(s, brio_tet_of(*brio_mate(&s->t, facet)));
+}
+
+/* A facet seen from inside is FACET[i]; from outside its order is reversed. */
+static brio_status list_faces(shape *s) {
+    brio_status status = BRIO_OK;
+    static const uint8_t FROM_OUTSIDE[3] = {0, 2, 1};
+    brio_mesh *m = s->mesh;
+    size_t handles = 4 * s->complex->counts[3], at = 0;
+    for (uint32_t h = 0; h < handles; h++) m->num_faces += is_boundary(s, h);
+    BRIO_TRY(BRIO_ALLOC(s->ctx, m->face_offsets, m->num_faces + 1));
+    BRIO_TRY(BRIO_ALLOC(s->ctx, m->face_vertices, 3 * m->num_faces));
+    for (size_t f = 0; f <= m->num_faces; f++) m->face_offsets[f] = 3 * f;
+    for (uint32_t h = 0; h < handles; h++) {
+        if (!is_boundary(s, h)) continue;
+        const uint32_t *v = s->t.tet[brio_tet_of(h)].vertex;
+        for (int k = 0; k < 3; k++) m->face_vertices[at++] = v[BRIO_FACET[brio_slot_of(h)][FROM_OUTSIDE[k]]];
+    }
+done:
+    return status;
+}
+
+/* Numbers the vertices of the faces in the order of the points. */
+static brio_status place_vertices(shape *s, const double *points) {
+    brio_status status = BRIO_OK;
+    brio_mesh *m = s->mesh;
+    uint32_t used = 0;
+    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, s->vertex, s->num_points));
+    for (size_t c = 0; c < 3 * m->num_faces; c++) s->vertex[m->face_vertices[c]] = 1;
+    for (size_t p = 0; p < s->num_points; p++)
+        if (s->vertex[p]) s->vertex[p] = ++used;
+    BRIO_TRY(brio_mesh_set_vertices(m, NULL, used));
+    for (size_t p = 0; p < s->num_points; p++)
+        if (s->vertex[p]) memcpy(m->vertices + 3 * (size_t)(s->vertex[p] - 1), points + 3 * p, 3 * sizeof *points);
+    for (size_t c = 0; c < 3 * m->num_faces; c++) m->face_vertices[c] = s->vertex[m->face_vertices[c]] - 1;
+    s->stats.vertices = used;
+done:
+    return status;
+}
+
+/* --- all of it --- */
+
+/* A simplex in the complex is singular when all tetrahedra that contain it are outside. */
+static size_t count_singular(const shape *s, int dimension) {
+    const double *value = s->complex->values[dimension], *solid = s->complex->solid[dimension];
+    size_t count = 0;
+    for (size_t i = 0; i < s->complex->counts[dimension]; i++) count += value[i] <= s->alpha && solid[i] > s->alpha;
+    return count;
+}
+
+static void count_all(shape *s) {
+    const brio_alpha_complex *c = s->complex;
+    for (size_t t = 0; t < c->counts[3]; t++) s->stats.tetrahedra += c->values[3][t] <= s->alpha;
+    for (size_t v = 0; v < c->counts[0]; v++) s->stats.uncovered += c->solid[0][v] > s->alpha;
+    s->stats.alpha = s->alpha;
+    s->stats.singular_vertices = count_singular(s, 0);
+    s->stats.singular_edges = count_singular(s, 1);
+    s->stats.singular_facets = count_singular(s, 2);
+}
+
+static brio_status make_surface(shape *s, const double *points) {
+    brio_status status = BRIO_OK;
+    count_all(s);
+    BRIO_REQUIRE(s->ctx, s->stats.tetrahedra > 0, BRIO_ERR_NO_ANSWER,
+                 "no tetrahedron has a value of at most alpha = %g", s->alpha);
+    BRIO_TRY(list_faces(s));
+    BRIO_TRY(place_vertices(s, points));
+    BRIO_TRY(brio_mesh_split_sheets(s->ctx, s->mesh));
+    s->stats.split = s->mesh->num_vertices - s->stats.vertices;
+done:
+    return status;
+}
+
+brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex, double alpha,
+                             brio_mesh **out, brio_alpha_shape_stats *stats) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    shape s = {.ctx = ctx, .complex = complex, .alpha = alpha};
+    s.t = brio_tetrahedra_of(complex->triangulation);
+    s.num_points = brio_triangulation_stats(complex->triangulation)->points;
+    *out = NULL;
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_alpha_shape_stats, stats));
+    BRIO_REQUIRE(ctx, !isnan(alpha), BRIO_ERR_ARGUMENT, "alpha is NaN");
+    BRIO_TRY(brio_mesh_new(ctx, &s.mesh));
+    BRIO_TRY(make_surface(&s, points));
+    *out = s.mesh;
+    s.mesh = NULL;
+done:
+    BRIO_GIVE(brio_alpha_shape_stats, stats, &s.stats);
+    brio_mesh_free(s.mesh);
+    brio_release(ctx, s.vertex);
+    return status;
+}

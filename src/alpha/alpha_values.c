@@ -1,0 +1,329 @@
+/* The filtration values of the alpha complex: of every tetrahedron, facet, edge and vertex of a triangulation.
+ *
+ *   1. A tetrahedron has the squared radius of its orthosphere.
+ *   2. A facet or an edge is Gabriel when no vertex is strictly inside its smallest orthosphere, decided exactly. Its value
+ *      is then the squared radius of that sphere, and otherwise the least value of the simplices that it is a facet of.
+ *      It suffices to test the vertices of its link: the smallest orthosphere's centre is in the dual of the simplex when
+ *      it is on the right side of each face of the dual, and each face belongs to a vertex of the link.
+ *   3. A vertex of weight w has the value -w or, with weights, the least value of its edges if a neighbour hides it at -w.
+ * A value is never greater than one of the simplices that the simplex is a facet of: where rounding would make it so, it
+ * becomes equal.
+ *
+ * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994.
+ *           Edelsbrunner. The union of balls and its dual shape. DCG 1995. */
+#include "alpha/alpha_complex.h"
+#include "alpha/squared_radius.h"
+#include "base/finite.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/team.h"
+#include "base/versioned.h"
+#include "triangulation/ring.h"
+#include "triangulation/view.h"
+#include <math.h>
+#include <string.h>
+
+enum { CHUNK = 1 << 11, TETS_A_THREAD = 1 << 12 };
+
+/* Where a simplex was found: the tetrahedron and the slots of an edge, or a facet handle. */
+typedef struct {
+    uint32_t tet;
+    uint8_t i, j;
+} edge_place;
+
+typedef struct {
+    brio_context *ctx;
+    brio_tetrahedra t; /* without records */
+    size_t num_finite, num_points;
+    bool weighted;
+    double (*record)[4];    /* #P */
+    double *of_facet;       /* 4 #T: the value of each facet, at the handles of its finite tetrahedra */
+    const uint32_t *facet;  /* #facets: one handle each */
+    const edge_place *edge; /* #edges */
+    brio_alpha_complex *out;
+} evaluation;
+
+static bool is_finite(const evaluation *e, uint32_t handle) {
+    return brio_tet_of(handle) < e->num_finite;
+}
+
+static const double *point(const evaluation *e, uint32_t vertex) {
+    return e->record[vertex];
+}
+
+/* Copies vertices in ascending order. */
+static void put_simplex(const uint32_t *from, int count, uint32_t *to) {
+    for (int n = 0; n < count; n++) {
+        int at = n;
+        for (; at > 0 && to[at - 1] > from[n]; at--) to[at] = to[at - 1];
+        to[at] = from[n];
+    }
+}
+
+/* Returns the squared radius of a simplex whose vertices are in ascending order, so that it has the same bits wherever the
+ * simplex was found. */
+static double own_value(const evaluation *e, const uint32_t *vertex, int count) {
+    const double *p[4];
+    for (int i = 0; i < count; i++) p[i] = point(e, vertex[i]);
+    return brio_squared_radius(p, count);
+}
+
+/* Returns whether a vertex is strictly inside the smallest orthosphere of an edge or a facet. */
+static bool is_inside(const evaluation *e, const uint32_t *vertex, int count, uint32_t other) {
+    const double *p[4];
+    for (int i = 0; i < count; i++) p[i] = point(e, vertex[i]);
+    p[count] = point(e, other);
+    return brio_attached(p, count, e->weighted);
+}
+
+/* --- tetrahedra --- */
+
+static void find_tetrahedra(void *user, size_t begin, size_t end, int thread) {
+    const evaluation *e = user;
+    (void)thread;
+    for (size_t t = begin; t < end; t++) {
+        uint32_t *vertex = e->out->simplices[3] + 4 * t;
+        put_simplex(e->t.tet[t].vertex, 4, vertex);
+        e->out->values[3][t] = own_value(e, vertex, 4);
+        e->out->solid[3][t] = e->out->values[3][t];
+        e->out->gabriel[3][t] = 1;
+    }
+}
+
+/* --- facets --- */
+
+static void find_facet(const evaluation *e, size_t f) {
+    const uint32_t h = e->facet[f], side[2] = {h, *brio_mate(&e->t, h)};
+    uint32_t *vertex = e->out->simplices[2] + 3 * f, seen[3];
+    for (int k = 0; k < 3; k++) seen[k] = e->t.tet[brio_tet_of(h)].vertex[BRIO_FACET[brio_slot_of(h)][k]];
+    put_simplex(seen, 3, vertex);
+    double value = INFINITY;
+    bool gabriel = true;
+    for (int s = 0; s < 2; s++) {
+        if (!is_finite(e, side[s])) continue;
+        value = fmin(value, e->out->values[3][brio_tet_of(side[s])]);
+        gabriel = gabriel && !is_inside(e, vertex, 3, brio_apex(&e->t, side[s]));
+    }
+    e->out->solid[2][f] = value;
+    if (gabriel) value = fmin(value, own_value(e, vertex, 3));
+    for (int s = 0; s < 2; s++)
+        if (is_finite(e, side[s])) e->of_facet[side[s]] = value;
+    e->out->values[2][f] = value;
+    e->out->gabriel[2][f] = gabriel;
+}
+
+static void find_facets(void *user, size_t begin, size_t end, int thread) {
+    (void)thread;
+    for (size_t f = begin; f < end; f++) find_facet(user, f);
+}
+
+/* --- edges --- */
+
+/* What is known of an edge after some of its tetrahedra. */
+typedef struct {
+    const uint32_t *vertex;
+    double value, solid;
+    bool gabriel;
+} edge_star;
+
+/* Takes the two facets of tetrahedron `tet` at an edge, and their apexes, into account. */
+static void meet_tetrahedron(const evaluation *e, uint32_t tet, edge_star *star) {
+    const uint32_t *v = e->t.tet[tet].vertex;
+    if (tet >= e->num_finite) return;
+    star->solid = fmin(star->solid, e->out->values[3][tet]);
+    for (int i = 0; i < 4; i++) {
+        if (v[i] == star->vertex[0] || v[i] == star->vertex[1]) continue;
+        star->value = fmin(star->value, e->of_facet[brio_facet_of(tet, i)]);
+        star->gabriel = star->gabriel && !is_inside(e, star->vertex, 2, v[i]);
+    }
+}
+
+static void find_edge(const evaluation *e, size_t n) {
+    const edge_place *at = &e->edge[n];
+    const uint32_t *v = e->t.tet[at->tet].vertex, seen[2] = {v[at->i], v[at->j]};
+    uint32_t *vertex = e->out->simplices[1] + 2 * n;
+    put_simplex(seen, 2, vertex);
+    edge_star star = {vertex, INFINITY, INFINITY, true};
+    meet_tetrahedron(e, at->tet, &star);
+    brio_ring ring = brio_ring_second(&e->t, at->tet, at->i, at->j);
+    do meet_tetrahedron(e, ring.tet, &star);
+    while (brio_ring_next(&ring));
+    if (star.gabriel) star.value = fmin(star.value, own_value(e, vertex, 2));
+    e->out->values[1][n] = star.value;
+    e->out->solid[1][n] = star.solid;
+    e->out->gabriel[1][n] = star.gabriel;
+}
+
+static void find_edges(void *user, size_t begin, size_t end, int thread) {
+    (void)thread;
+    for (size_t n = begin; n < end; n++) find_edge(user, n);
+}
+
+/* --- vertices --- */
+
+/* Vertex a is attached when a neighbour b has power distance |a - b|^2 - wb below -wa from a. */
+static void find_vertices(const evaluation *e, const uint32_t *place) {
+    brio_alpha_complex *c = e->out;
+    double *least = c->values[0], *solid = c->solid[0];
+    for (size_t v = 0; v < c->counts[0]; v++) {
+        least[v] = solid[v] = INFINITY;
+        c->gabriel[0][v] = 1;
+    }
+    for (size_t n = 0; n < c->counts[1]; n++)
+        for (int i = 0; i < 2; i++) {
+            uint32_t own = c->simplices[1][2 * n + (size_t)i], other = c->simplices[1][2 * n + (size_t)!i];
+            const double *a = point(e, own), *b = point(e, other);
+            least[place[own]] = fmin(least[place[own]], c->values[1][n]);
+            solid[place[own]] = fmin(solid[place[own]], c->solid[1][n]);
+            if (e->weighted && brio_power_compare(a, b, a) < 0) c->gabriel[0][place[own]] = 0;
+        }
+    for (size_t v = 0; v < c->counts[0]; v++)
+        if (c->gabriel[0][v]) least[v] = fmin(least[v], 0 - point(e, c->simplices[0][v])[3]);
+}
+
+/* --- which simplices there are --- */
+
+/* Lists one handle of each finite facet: the lower one, or the one in the finite tetrahedron. */
+static brio_status list_facets(const evaluation *e, uint32_t **out, size_t *count) {
+    *count = 0;
+    brio_status status = BRIO_ALLOC(e->ctx, *out, 2 * e->num_finite + 2 * (e->t.count - e->num_finite));
+    if (status != BRIO_OK) return status;
+    for (uint32_t h = 0; h < 4 * e->num_finite; h++) {
+        uint32_t mate = *brio_mate(&e->t, h);
+        if (h < mate) (*out)[(*count)++] = h; /* finite tetrahedra come first */
+    }
+    return BRIO_OK;
+}
+
+/* Lists each finite edge once, in its first tetrahedron. */
+static brio_status list_edges(const evaluation *e, edge_place **out, size_t *count) {
+    brio_status status = BRIO_OK;
+    size_t capacity = 0;
+    *count = 0;
+    for (uint32_t tet = 0; tet < e->num_finite; tet++) {
+        BRIO_TRY(BRIO_RESERVE(e->ctx, *out, capacity, *count + 6));
+        for (uint8_t i = 0; i < 4; i++)
+            for (uint8_t j = (uint8_t)(i + 1); j < 4; j++)
+                if (brio_ring_size(&e->t, tet, i, j) > 0) (*out)[(*count)++] = (edge_place){tet, i, j};
+    }
+done:
+    return status;
+}
+
+/* Numbers the vertices in ascending order.   place  #P, zeroed; receives the number of each vertex. */
+static size_t number_vertices(const evaluation *e, uint32_t *place) {
+    size_t count = 0;
+    for (size_t t = 0; t < e->num_finite; t++)
+        for (int i = 0; i < 4; i++) place[e->t.tet[t].vertex[i]] = 1;
+    for (size_t p = 0; p < e->num_points; p++)
+        if (place[p]) place[p] = (uint32_t)count++;
+    return count;
+}
+
+static brio_status make_room(brio_context *ctx, brio_alpha_complex *c) {
+    brio_status status = BRIO_OK;
+    size_t total = 0, corners = 0;
+    for (size_t k = 0; k < 4; k++) {
+        total += c->counts[k];
+        corners += c->counts[k] * (k + 1);
+    }
+    BRIO_REQUIRE(ctx, total < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu simplices; at most 2^32 - 2", total);
+    BRIO_TRY(BRIO_ALLOC(ctx, c->simplices[0], corners));
+    BRIO_TRY(BRIO_ALLOC(ctx, c->values[0], total));
+    BRIO_TRY(BRIO_ALLOC(ctx, c->solid[0], total));
+    BRIO_TRY(BRIO_ALLOC(ctx, c->gabriel[0], total));
+    for (size_t k = 1; k < 4; k++) {
+        c->simplices[k] = c->simplices[k - 1] + c->counts[k - 1] * k;
+        c->values[k] = c->values[k - 1] + c->counts[k - 1];
+        c->solid[k] = c->solid[k - 1] + c->counts[k - 1];
+        c->gabriel[k] = c->gabriel[k - 1] + c->counts[k - 1];
+    }
+done:
+    return status;
+}
+
+/* --- all of it --- */
+
+static void take_records(evaluation *e, const double *points, const double *weights) {
+    for (size_t i = 0; i < e->num_points; i++) {
+        for (size_t k = 0; k < 3; k++) e->record[i][k] = points[3 * i + k];
+        e->record[i][3] = weights ? weights[i] : 0;
+    }
+}
+
+static brio_status evaluate(evaluation *e, const uint32_t *place) {
+    brio_status status = BRIO_OK;
+    brio_alpha_complex *c = e->out;
+    int threads = brio_threads(e->ctx, e->num_finite, TETS_A_THREAD);
+    brio_for_chunks(e->ctx, threads, c->counts[3], CHUNK, find_tetrahedra, e);
+    BRIO_TRY(brio_progress(e->ctx, "values", 0.4));
+    brio_for_chunks(e->ctx, threads, c->counts[2], CHUNK, find_facets, e);
+    BRIO_TRY(brio_progress(e->ctx, "values", 0.7));
+    brio_for_chunks(e->ctx, threads, c->counts[1], CHUNK, find_edges, e);
+    for (size_t n = 0; n < 2 * c->counts[1]; n++) /* every vertex has edges */
+        c->simplices[0][place[c->simplices[1][n]]] = c->simplices[1][n];
+    find_vertices(e, place);
+done:
+    return status;
+}
+
+static brio_status find_values(evaluation *e, const double *points, const double *weights) {
+    brio_status status = BRIO_OK;
+    uint32_t *facet = NULL, *place = NULL;
+    edge_place *edge = NULL;
+    size_t *counts = e->out->counts;
+    BRIO_TRY(BRIO_ALLOC(e->ctx, e->record, e->num_points));
+    BRIO_TRY(BRIO_ALLOC(e->ctx, e->of_facet, 4 * e->num_finite));
+    BRIO_TRY(BRIO_ALLOC_ZERO(e->ctx, place, e->num_points));
+    take_records(e, points, weights);
+    BRIO_TRY(list_facets(e, &facet, &counts[2]));
+    BRIO_TRY(list_edges(e, &edge, &counts[1]));
+    BRIO_TRY(brio_progress(e->ctx, "values", 0.2));
+    counts[0] = number_vertices(e, place);
+    counts[3] = e->num_finite;
+    e->facet = facet, e->edge = edge;
+    BRIO_TRY(make_room(e->ctx, e->out));
+    BRIO_TRY(evaluate(e, place));
+done:
+    brio_release(e->ctx, facet);
+    brio_release(e->ctx, edge);
+    brio_release(e->ctx, place);
+    brio_release(e->ctx, e->record);
+    brio_release(e->ctx, e->of_facet);
+    return status;
+}
+
+brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, const double *points,
+                              const double *weights, size_t num_points, brio_alpha_complex *out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    brio_alpha_complex mine = {.size = sizeof mine, .context = ctx, .triangulation = t};
+    evaluation e = {.ctx = ctx, .num_finite = s->tetrahedra, .num_points = num_points, .weighted = weights != NULL};
+    e.t = brio_tetrahedra_of(t);
+    e.out = &mine;
+    brio_status size = BRIO_CHECK_RESULT(ctx, brio_alpha_complex, out);
+    if (size != BRIO_OK) return size;
+    BRIO_REQUIRE(ctx, num_points == s->points, BRIO_ERR_ARGUMENT, "the triangulation has %zu points, not %zu",
+                 s->points, num_points);
+    BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
+    BRIO_REQUIRE(ctx, s->dimension == 3, BRIO_ERR_NO_ANSWER,
+                 "%zu distinct points of dimension %d have no tetrahedra, so no alpha complex", s->vertices,
+                 s->dimension);
+    BRIO_TRY(find_values(&e, points, weights));
+done:
+    if (status != BRIO_OK) brio_alpha_complex_free(&mine);
+    if (status != BRIO_OK) mine = (brio_alpha_complex){.size = sizeof mine};
+    BRIO_GIVE(brio_alpha_complex, out, &mine);
+    return status;
+}
+
+void brio_alpha_complex_free(brio_alpha_complex *c) {
+    if (!c || !c->context) return;
+    brio_release(c->context, c->simplices[0]);
+    brio_release(c->context, c->values[0]);
+    brio_release(c->context, c->solid[0]);
+    brio_release(c->context, c->gabriel[0]);
+    brio_alpha_complex empty = {.size = c->size};
+    brio_versioned_give(c, &empty, sizeof empty);
+}
