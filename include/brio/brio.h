@@ -379,8 +379,8 @@ typedef struct brio_triangulation2 brio_triangulation2;
  *  dimensions. One thread works.
  *  points   #P by 2, row after row.   weights  #P, or NULL.   num_points  less than 2^29 - 16.
  *  options  NULL for the defaults.    out      owned by the caller, freed with brio_triangulation2_free; NULL on error.
- *  Cost: expected O(n log n) time for points of realistic inputs. Memory: 88 bytes a point while points are inserted,
- *  two more with weights; of the result 52 a point.
+ *  Cost: expected O(n log n) time for points of realistic inputs. Memory: 88 bytes a point, with weights at most
+ *  98; of the result 52 a point.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_CANCELLED.
  *  Based on: [Bowyer 1981], [Watson 1981]; [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties. */

@@ -112,9 +112,11 @@ static brio_status triangulation_new(brio_plane_store *s, brio_triangulation2 **
     BRIO_TRY(BRIO_RESIZE(s->ctx, s->triangle, s->count));
     BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, t, 1));
     t->ctx = s->ctx;
+    if (s->dimension == 1) BRIO_TRY(list_line(s, t));
+    brio_release(s->ctx, s->record); /* the room for the representatives */
+    s->record = NULL;
     BRIO_TRY(BRIO_ALLOC(s->ctx, t->representative, s->num_points));
     for (size_t p = 0; p < s->num_points; p++) t->representative[s->caller[p]] = s->caller[s->representative[p]];
-    if (s->dimension == 1) BRIO_TRY(list_line(s, t));
     t->triangle = s->triangle;
     t->stats = s->stats;
     s->triangle = NULL;

@@ -37,16 +37,13 @@ static double moved(double x, double step) {
     return x != 0 ? x * 0.5 : 1;
 }
 
-/* Writes the apex off the line through the first two records. */
-static void place_apex(brio_plane_store *s) {
-    double *p = s->record[s->num_points];
-    const double *a = s->record[0], *b = s->record[1];
+void brio_plane_place_apex(const double *a, const double *b, double *apex) {
     double step = fmin(fmax(fabs(b[0] - a[0]), fabs(b[1] - a[1])), 1e300);
     for (int axis = 0; axis < 2; axis++) {
-        memcpy(p, a, sizeof(brio_plane_record));
-        p[3] = 0;
-        p[axis] = moved(p[axis], step);
-        if (brio_orient2d_exact(a, b, p)) break;
+        memcpy(apex, a, sizeof(brio_plane_record));
+        apex[3] = 0;
+        apex[axis] = moved(apex[axis], step);
+        if (brio_orient2d_exact(a, b, apex)) break;
     }
 }
 
@@ -74,7 +71,7 @@ void brio_plane_start(brio_plane_store *s) {
     s->dimension = (int)count - 1;
     if (s->dimension <= 0) return;
     if (s->dimension == 1) {
-        place_apex(s);
+        brio_plane_place_apex(s->record[0], s->record[1], s->record[s->num_points]);
         brio_plane_filter_for(&s->filter, records, s->num_points + 1, general);
     }
     first_triangle(s, s->dimension == 1 ? (uint32_t)s->num_points : 2);

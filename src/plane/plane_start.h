@@ -9,4 +9,7 @@
  *  0. */
 void brio_plane_start(brio_plane_store *store);
 
+/** Writes a record off the line through a and b. */
+void brio_plane_place_apex(const double *a, const double *b, double *apex);
+
 #endif
