@@ -348,7 +348,7 @@ typedef struct {
 
 typedef struct brio_delaunay2_options {
     size_t size;
-    double round_ratio; /* share of the points that is left for the rounds before the last one, below 1; default 0: 1/8 */
+    double round_ratio; /* share of the points left for the rounds before the last one, below 1; default 0: 1/8 */
     uint64_t seed;      /* every random choice follows from it; default 1 */
 } brio_delaunay2_options;
 
