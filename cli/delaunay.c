@@ -1,7 +1,8 @@
-/* brio delaunay: tetrahedra of the points of a file, weighted or not. */
+/* brio delaunay: tetrahedra, or with --plane triangles, of the points of a file, weighted or not. */
 #include "commands.h"
 #include "estimate.h"
 #include "mesh_edges.h"
+#include "plane.h"
 #include "weights.h"
 #include <inttypes.h>
 #include <math.h>
@@ -10,7 +11,7 @@
 
 typedef struct arguments {
     weights_options weights;
-    int order, locate, subgraph;
+    int order, locate, subgraph, plane;
     double round_ratio;                /* NaN: not given */
     uint64_t block_size, record_every; /* 0: not given */
     bool all_conflicts, rounds, verify;
@@ -38,6 +39,7 @@ static const option_choice locations[] = {{"walk", BRIO_LOCATION_WALK},
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
+    {"plane", 0, OPTION_CHOICE, FIELD(plane), "NAME", "triangles of two coordinates instead of tetrahedra", cli_planes},
     {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order; the result is the same", orders},
     {"block-size", 0, OPTION_NATURAL, FIELD(block_size), "N",
      "most points of an octree or k-d tree block (default 2000)", 0},
@@ -55,8 +57,11 @@ static const option options[] = {
 };
 #undef FIELD
 
-static const arguments defaults = {
-    .weights.exponent = NO_EXPONENT, .order = FITTING_ORDER, .subgraph = SUBGRAPH_FITTING, .round_ratio = NAN};
+static const arguments defaults = {.weights.exponent = NO_EXPONENT,
+                                   .order = FITTING_ORDER,
+                                   .subgraph = SUBGRAPH_FITTING,
+                                   .plane = NO_PLANE,
+                                   .round_ratio = NAN};
 static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE, BRIO_FORMAT_AUTO};
 
 static bool is_standard_output(const run *r) {
@@ -81,10 +86,22 @@ static brio_status check_order(run *r, const arguments *a) {
     return BRIO_OK;
 }
 
+/* Refuses options of tetrahedra. */
+static brio_status check_plane(run *r, const arguments *a) {
+    bool three = a->order != FITTING_ORDER || a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds ||
+                 a->record_every || a->subgraph != SUBGRAPH_FITTING;
+    if (three)
+        return cli_fail(
+            r, BRIO_ERR_ARGUMENT,
+            "--plane goes with --round-ratio, --verify and weights, not with other orders, locations or records");
+    return cli_require_output(r, cli_plane_formats, true);
+}
+
 static brio_status check_arguments(run *r, const arguments *a) {
     brio_status status = BRIO_OK;
     TRY(check_order(r, a));
     TRY(cli_check_weights_options(r, &a->weights));
+    if (a->plane != NO_PLANE) return check_plane(r, a);
     TRY(cli_require_output(r, formats, true));
     if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
@@ -220,6 +237,11 @@ static brio_status delaunay(run *r) {
                                                   : cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
     TRY(cli_weights(r, &a->weights, mesh, &weights));
+    if (a->plane != NO_PLANE) {
+        cli_lap(r, "read");
+        status = cli_plane(r, a->plane, mesh, weights, a->round_ratio, a->verify);
+        goto done;
+    }
     if (cli_limits_memory(r)) TRY(require_memory(r, a, mesh, weights));
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));

@@ -5,21 +5,25 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <string>
 #include <vector>
 
 namespace peer {
 
-// x y z of each point, one point after the other.
-inline std::vector<double> read_points(const char *path) {
+// The numbers of a file, `columns` to a point.
+inline std::vector<double> read_numbers(const char *path, size_t columns) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) std::fprintf(stderr, "%s cannot be read\n", path), std::exit(2);
-    std::vector<double> points(static_cast<size_t>(file.tellg()) / sizeof(double) / 3 * 3);
+    std::vector<double> points(static_cast<size_t>(file.tellg()) / sizeof(double) / columns * columns);
     file.seekg(0);
     file.read(reinterpret_cast<char *>(points.data()), static_cast<std::streamsize>(points.size() * sizeof(double)));
     return points;
 }
+
+// x y z of each point, one point after the other.
+inline std::vector<double> read_points(const char *path) { return read_numbers(path, 3); }
 
 // Seconds since it was made.
 class Stopwatch {
@@ -28,6 +32,15 @@ class Stopwatch {
 
   private:
     const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+};
+
+// Processor seconds of this process since it was made: comparable where other work shares the machine.
+class Processor_clock {
+  public:
+    double seconds() const { return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC; }
+
+  private:
+    const std::clock_t start = std::clock();
 };
 
 // Peak resident bytes of this process. getrusage would count what its parent held before the start.

@@ -503,6 +503,110 @@ static inline size_t brio_vertex_star(const brio_tetrahedron *tetrahedra, uint32
 }
 
 /* ------------------------------------------------------------------------------------------------------------------
+ * Triangulations of the plane
+ *
+ * The words and promises above hold here, with triangles instead of tetrahedra, edges instead of facets and circles
+ * instead of spheres. Constrained edges and refinement are not offered.
+ */
+
+/** A triangle: its three vertices as indices of points, and three mates. The handle 4*t + i names the edge of triangle t
+ *  opposite to vertex i: triangle handle / 4, slot handle % 4 (0 to 2). mate[i] is the handle of the edge opposite to
+ *  vertex[i], seen from the triangle on its other side. As an array of numbers: six to a triangle. */
+typedef struct {
+    uint32_t vertex[3], mate[3];
+} brio_triangle;
+
+typedef struct brio_delaunay2_options {
+    size_t size;
+    double round_ratio; /* share of the points left for the rounds before the last one, below 1; default 0: 1/8 */
+    uint64_t seed;      /* every random choice follows from it; default 1 */
+} brio_delaunay2_options;
+
+BRIO_API void brio_delaunay2_options_init(brio_delaunay2_options *options, size_t size);
+static inline brio_delaunay2_options brio_delaunay2_options_default(void) {
+    brio_delaunay2_options options;
+    brio_delaunay2_options_init(&options, sizeof options);
+    return options;
+}
+
+/** Facts of a triangulation of the plane. Counters are totals over the construction and include infinite triangles. */
+typedef struct brio_delaunay2_stats {
+    size_t size;
+    size_t points, vertices, duplicates, hidden;
+    int dimension;     /* of the affine hull of the points: -1 (no points) to 2 */
+    int coordinates;   /* of a point: 2 from brio_delaunay2, 3 from brio_delaunay2_flat */
+    size_t triangles;  /* finite ones of the result */
+    size_t hull_edges; /* = infinite triangles of the result */
+    uint64_t created, destroyed, walk_steps, incircle_calls;
+    uint64_t exact_calls; /* calls of predicates that the floating-point filter did not settle */
+    double order_seconds, insert_seconds;
+} brio_delaunay2_stats;
+
+typedef struct brio_triangulation2 brio_triangulation2;
+
+/** Builds the Delaunay triangulation of points in the plane or, with weights, the regular triangulation. Every finite
+ *  input has a result. Points on a line have no triangles, but brio_triangulation2_line; ties are broken as in three
+ *  dimensions. One thread works.
+ *  points   #P by 2, row after row.   weights  #P, or NULL.   num_points  less than 2^29 - 16.
+ *  options  NULL for the defaults.    out      owned by the caller, freed with brio_triangulation2_free; NULL on error.
+ *  Cost: expected O(n log n) time for points of realistic inputs. Memory: 88 bytes a point, with weights at most
+ *  98; of the result 52 a point.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_CANCELLED.
+ *  Based on: [Bowyer 1981], [Watson 1981]; [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties. */
+BRIO_API brio_status brio_delaunay2(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                    const brio_delaunay2_options *options, brio_triangulation2 **out);
+
+/** Builds the same for points in space that lie in one plane, exactly: inputs for which brio_delaunay returns dimension 2
+ *  or less and no tetrahedra. Circles and weights are those of the plane in space, and representatives are those of
+ *  brio_delaunay. Triangles are counterclockwise as seen from the side to which the plane's normal points; of the two
+ *  normals the one whose last coordinate that is not 0 is positive. So a plane of constant z is seen as its x and y are
+ *  by brio_delaunay2.
+ *  points   #P by 3.
+ *  Returns what brio_delaunay2 returns, and BRIO_ERR_NO_ANSWER when the points are not in one plane (the message names
+ *  one that is off it). */
+BRIO_API brio_status brio_delaunay2_flat(brio_context *ctx, const double *points, const double *weights,
+                                         size_t num_points, const brio_delaunay2_options *options,
+                                         brio_triangulation2 **out);
+
+/** Frees a triangulation of the plane; NULL is accepted. */
+BRIO_API void brio_triangulation2_free(brio_triangulation2 *t);
+
+/** Returns the facts of a triangulation. The view is valid until the triangulation is freed. */
+BRIO_API const brio_delaunay2_stats *brio_triangulation2_stats(const brio_triangulation2 *t);
+
+/** Returns the triangles + hull_edges triangles, finite ones first. A finite triangle is counterclockwise. An infinite
+ *  triangle (a, b, BRIO_INFINITE) has the hull edge ab, and (a, b, x) is counterclockwise for x outside the hull. The view
+ *  is valid until the triangulation is freed. */
+BRIO_API const brio_triangle *brio_triangulation2_triangles(const brio_triangulation2 *t);
+
+/** Returns #P indices: for each point the vertex that represents it, which is the point itself if it is a vertex. The
+ *  view is valid until the triangulation is freed. */
+BRIO_API const uint32_t *brio_triangulation2_representatives(const brio_triangulation2 *t);
+
+/** Returns the vertices of points on a line, in lexicographic order, each joined to the next by an edge of the
+ *  triangulation; NULL and 0 for other dimensions than 1. The view is valid until the triangulation is freed. */
+BRIO_API const uint32_t *brio_triangulation2_line(const brio_triangulation2 *t, size_t *count);
+
+/** Checks a triangulation of the plane exactly and completely against its points. It passes if and only if it is the
+ *  result of brio_delaunay2 (brio_delaunay2_flat), up to the order of the finite triangles, the order of the infinite
+ *  ones, and rotations of the vertices of a triangle. What is checked is what brio_triangulation_check checks, one
+ *  dimension lower.
+ *  points, weights, num_points  as they were given.
+ *  Cost: O(t) for t triangles, and one walk for each point that is no vertex; points on a line are triangulated again.
+ *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_ARGUMENT (the triangulation has
+ *  another number of points), BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_triangulation2_check(brio_context *ctx, const brio_triangulation2 *t, const double *points,
+                                               const double *weights, size_t num_points);
+
+/** Computes a hash of the set of triangles in terms of the lexicographic ranks of their vertices; of points on a line, a
+ *  hash of their number of vertices. It does not depend on the order of points or triangles, and stays the same when all
+ *  points are scaled by a power of two.
+ *  points  as they were given.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_triangulation2_checksum(brio_context *ctx, const brio_triangulation2 *t, const double *points,
+                                                  uint64_t *checksum);
+
+/* ------------------------------------------------------------------------------------------------------------------
  * Meshes and their certificates
  */
 
@@ -1446,6 +1550,9 @@ BRIO_API brio_status brio_generate_solid(brio_context *ctx, brio_solid_kind kind
 BRIO_API brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights,
                                             size_t num_points, const brio_delaunay_options *options, uint64_t *bytes);
 
+/** Returns the estimate for brio_delaunay2 and brio_delaunay2_flat of points without duplicates. */
+BRIO_API uint64_t brio_estimate_delaunay2(size_t num_points, int weighted);
+
 /** Estimates the memory of a reconstruction from num_points samples, as the functions below for other methods.
  *  options  NULL for the defaults.   Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
 BRIO_API brio_status brio_estimate_labeled_delaunay(brio_context *ctx, size_t num_points,
@@ -1496,6 +1603,21 @@ BRIO_API int brio_insphere_perturbed(const double *a, const double *b, const dou
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT for a flat tetrahedron or a centre that doubles cannot hold. */
 BRIO_API brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d,
                                        const double *weights, double *centre, double *error);
+
+/* In the plane; points are 2 doubles each. */
+
+/** Returns the sign of det [b-a, c-a]: 1 when the triangle (a, b, c) is counterclockwise, 0 when it is flat. */
+BRIO_API int brio_orient2d(const double *a, const double *b, const double *c);
+
+/** Returns the sign of the in-circle determinant: for a counterclockwise triangle (a, b, c) it is 1 if d is inside the
+ *  circle through a, b, c, -1 if d is outside, 0 if d is on it; for a clockwise triangle the opposite.
+ *  weights  NULL, or the weights of a, b, c, d: then the orthocircle takes the circle's place (power test). */
+BRIO_API int brio_incircle(const double *a, const double *b, const double *c, const double *d, const double *weights);
+
+/** Returns what brio_incircle returns, with ties broken by the symbolic perturbation: never 0. The triangle must be
+ *  counterclockwise and d must be none of its vertices. */
+BRIO_API int brio_incircle_perturbed(const double *a, const double *b, const double *c, const double *d,
+                                     const double *weights);
 
 #ifdef __cplusplus
 }

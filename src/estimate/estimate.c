@@ -21,6 +21,10 @@ static const double THREADS_BYTES_A_POINT = 4, THREADS_BYTES_A_TETRAHEDRON = 1.2
  * the walk. An edge takes 8 bytes as a pair and 8 in the graph. */
 static const double HISTORY_BYTES_A_POINT = 570, LOCATION_BYTES_A_POINT = 8, BYTES_AN_EDGE = 16;
 
+/* In the plane: record, index in the input, representative, two triangles; with weights two marks, a triangle of each
+ * vertex and a list of the points that may be hidden. */
+static const double PLANE_BYTES_A_POINT = 88, PLANE_BYTES_A_WEIGHT = 10;
+
 /* Measured, the samples not included: models take 1,460 to 1,570 bytes a sample, a raw scan 1,590, offsets 1,240, the
  * co-cone 540 to 640. */
 static const double CRUST_BYTES_A_POINT = 1426, OFFSET_BYTES_A_POINT = 1300, COCONE_BYTES_A_POINT = 616;
@@ -135,6 +139,11 @@ uint64_t brio_estimate_mesh_subdivide(size_t num_faces, int levels) {
 uint64_t brio_estimate_iso_surface(size_t num_vertices) {
     BRIO_DOOR;
     return bytes_of((double)num_vertices * ISO_BYTES_A_VERTEX);
+}
+
+uint64_t brio_estimate_delaunay2(size_t num_points, int weighted) {
+    BRIO_DOOR;
+    return bytes_of((double)num_points * (PLANE_BYTES_A_POINT + (weighted ? PLANE_BYTES_A_WEIGHT : 0)));
 }
 
 uint64_t brio_estimate_generate(size_t num_points) {

@@ -14,7 +14,7 @@
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
 #include "predicates/dyadic.h"
-#include "predicates/grid.h"
+#include "predicates/grid_rows.h"
 #include "predicates/predicates.h"
 
 static const double BOUND = 64 * 0x1p-53;
@@ -82,8 +82,7 @@ static brio_wide dot_integer(const int64_t *p, const int64_t *q) {
 static int attached_integer(const double *const *p, int count, bool weighted) {
     int64_t row[3][3];
     brio_wide w[3] = {0, 0, 0};
-    if (!brio_grid_rows(p + 1, count, p[0], weighted, row, w)) return UNDECIDED;
-    if (brio_grid_bits((const int64_t(*)[3])row, count) > NARROW_BITS) return UNDECIDED;
+    if (!brio_grid_rows(p + 1, count, p[0], NARROW_BITS, row, weighted ? w : NULL)) return UNDECIDED;
     for (int i = 0; i < count; i++)
         if (w[i] >> NARROW_WEIGHT != 0 && w[i] >> NARROW_WEIGHT != -1) return UNDECIDED;
     const int64_t *u = row[0], *v = row[1], *d = row[count - 1];

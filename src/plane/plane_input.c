@@ -1,0 +1,158 @@
+/* Reads the caller's points: refuses numbers that are not finite, and finds the plane of points in space.
+ *
+ * The plane is projected along the coordinate axis closest to its normal. The projection keeps which triples of points
+ * are collinear and, up to one sign for all, which are counterclockwise. The order of the two axes sets that sign. */
+#include "plane/plane_input.h"
+#include "base/memory.h"
+#include "predicates/predicates.h"
+#include <math.h>
+#include <string.h>
+
+static bool is_finite_point(const brio_plane_input *in, size_t i) {
+    const double *p = in->points + (size_t)in->coordinates * i;
+    double sum = in->weights ? 0 * in->weights[i] : 0;
+    for (int k = 0; k < in->coordinates; k++) sum += 0 * p[k];
+    return sum == 0; /* else NaN */
+}
+
+static brio_status refuse_not_finite(brio_context *ctx, const brio_plane_input *in, size_t first) {
+    static const char *const name[] = {"x", "y", "z"};
+    const double *p = in->points + (size_t)in->coordinates * first;
+    size_t bad = 0;
+    for (size_t i = first; i < in->count; i++) bad += !is_finite_point(in, i);
+    int k = 0;
+    while (k < in->coordinates && isfinite(p[k])) k++;
+    double x = k < in->coordinates ? p[k] : in->weights[first];
+    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %s is %s (%zu such points in all)", first,
+                     k < in->coordinates ? name[k] : "weight", isnan(x) ? "NaN" : "infinite", bad);
+}
+
+/* --- points of a plane in space --- */
+
+/* A search for points that are not in one plane. */
+typedef struct {
+    const brio_plane_input *in;
+    size_t corner[3]; /* points in general position */
+    int count;
+    brio_filter filter;
+} search;
+
+static void load(const brio_plane_input *in, size_t i, double *record) {
+    for (int k = 0; k < 3; k++) record[k] = in->points[3 * i + (size_t)k] + 0.0;
+    record[3] = 0;
+}
+
+static void find_filter(search *s) {
+    double low[3], high[3], extent[3];
+    for (size_t i = 0; i < s->in->count; i++)
+        for (int k = 0; k < 3; k++) {
+            double x = s->in->points[3 * i + (size_t)k];
+            low[k] = i && low[k] < x ? low[k] : x;
+            high[k] = i && high[k] > x ? high[k] : x;
+        }
+    for (int k = 0; k < 3; k++) extent[k] = high[k] - low[k];
+    brio_filter_set(&s->filter, extent, 0, false);
+}
+
+/* Returns whether point i is off the affine hull of the corners. */
+static bool off_hull(search *s, const double (*corner)[4], size_t i) {
+    double p[4];
+    load(s->in, i, p);
+    switch (s->count) {
+    case 1:
+        return !brio_same_position(corner[0], p);
+    case 2:
+        return !brio_collinear(corner[0], corner[1], p);
+    default:
+        return brio_orient3d_sign(&s->filter, corner[0], corner[1], corner[2], p) != 0;
+    }
+}
+
+/* Finds up to three points in general position. */
+static brio_status find_corners(brio_context *ctx, search *s, double (*corner)[4]) {
+    brio_status status = BRIO_OK;
+    const size_t *c = s->corner;
+    find_filter(s);
+    for (size_t i = 0; i < s->in->count; i++) {
+        if (i > 0 && !off_hull(s, (const double(*)[4])corner, i)) continue;
+        BRIO_REQUIRE(ctx, s->count < 3, BRIO_ERR_NO_ANSWER, "point %zu is off the plane of points %zu, %zu and %zu", i,
+                     c[0], c[1], c[2]);
+        load(s->in, i, corner[s->count]);
+        s->corner[s->count++] = i;
+    }
+done:
+    return status;
+}
+
+/* Returns the sign of component k of the normal of three points. */
+static int normal_sign(const double (*corner)[4], int k) {
+    double p[3][4] = {{0}};
+    for (int i = 0; i < 3; i++) p[i][0] = corner[i][(k + 1) % 3], p[i][1] = corner[i][(k + 2) % 3];
+    return brio_orient2d_exact(p[0], p[1], p[2]);
+}
+
+/* Returns the magnitude of component k of the normal, roughly. */
+static double normal_size(const double (*corner)[4], int k) {
+    const double *a = corner[0], *b = corner[1], *c = corner[2];
+    int x = (k + 1) % 3, y = (k + 2) % 3;
+    double size = fabs((b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]));
+    return size < INFINITY ? size : 0;
+}
+
+static void set_axes(brio_plane_input *in, int u, int v) {
+    in->axis[0] = u, in->axis[1] = v, in->axis[2] = 3 - u - v;
+}
+
+/* Sets the axes for three points in general position. */
+static void choose_axes(brio_plane_input *in, const double (*corner)[4]) {
+    int sign[3], along = -1, facing = 0;
+    double most = -1;
+    for (int k = 0; k < 3; k++) {
+        sign[k] = normal_sign(corner, k);
+        if (sign[k]) facing = sign[k];
+        if (sign[k] && normal_size(corner, k) > most) most = normal_size(corner, k), along = k;
+    }
+    if (sign[along] == facing)
+        set_axes(in, (along + 1) % 3, (along + 2) % 3);
+    else
+        set_axes(in, (along + 2) % 3, (along + 1) % 3);
+}
+
+/* Sets the axes for points on a line: u is the axis along which the line is longest. */
+static void choose_line_axes(brio_plane_input *in, const double (*corner)[4]) {
+    int u = 0;
+    for (int k = 1; k < 3; k++)
+        if (fabs(corner[1][k] * 0.5 - corner[0][k] * 0.5) > fabs(corner[1][u] * 0.5 - corner[0][u] * 0.5)) u = k;
+    set_axes(in, u, (u + 1) % 3);
+}
+
+static brio_status find_plane(brio_context *ctx, brio_plane_input *in) {
+    search s = {.in = in};
+    double corner[3][4];
+    brio_status status = find_corners(ctx, &s, corner);
+    if (status != BRIO_OK) return status;
+    if (s.count == 3)
+        choose_axes(in, (const double(*)[4])corner);
+    else if (s.count == 2)
+        choose_line_axes(in, (const double(*)[4])corner);
+    return BRIO_OK;
+}
+
+brio_status brio_plane_input_set(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                 int coordinates, brio_plane_input *input) {
+    *input = (brio_plane_input){points, weights, num_points, coordinates, {0, 1, 2}};
+    for (size_t i = 0; i < num_points; i++)
+        if (!is_finite_point(input, i)) return refuse_not_finite(ctx, input, i);
+    return coordinates == 3 ? find_plane(ctx, input) : BRIO_OK;
+}
+
+void brio_plane_input_key(const brio_plane_input *input, brio_plane_filter *filter) {
+    for (int i = 0; i < 3; i++) filter->key[input->axis[i]] = (uint8_t)i;
+}
+
+brio_status brio_plane_records_new(brio_context *ctx, const brio_plane_input *input, size_t room,
+                                   brio_plane_record **out) {
+    brio_status status = BRIO_ALLOC(ctx, *out, input->count + room);
+    for (size_t i = 0; status == BRIO_OK && i < input->count; i++) brio_plane_input_record(input, i, (*out)[i]);
+    return status;
+}
