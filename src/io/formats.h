@@ -19,6 +19,7 @@ brio_status brio_obj_read(brio_stream *s, brio_builder *b);
 brio_status brio_off_read(brio_stream *s, brio_builder *b);
 brio_status brio_vtu_read(brio_stream *s, brio_builder *b);
 brio_status brio_node_read(brio_stream *s, brio_builder *b);
+brio_status brio_las_read(brio_stream *s, brio_builder *b); /* LAZ, too */
 brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
 
 brio_status brio_ply_write(brio_output *out, const brio_write_job *job);
@@ -30,10 +31,11 @@ brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
 brio_status brio_node_write(brio_output *out, const brio_write_job *job);
 brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
 
-/** Return whether the first bytes of a file are those of a PLY, OFF or VTU file. */
+/** Return whether the first bytes of a file are those of a format. */
 bool brio_ply_starts(const char *bytes, size_t size);
 bool brio_off_starts(const char *bytes, size_t size);
 bool brio_vtu_starts(const char *bytes, size_t size);
+bool brio_las_starts(const char *bytes, size_t size);
 
 /** Returns whether a path names an .ele file, which stands for the pair of .node and .ele. */
 bool brio_is_ele(const char *path);

@@ -14,7 +14,8 @@ static const struct {
 } extensions[] = {{"ply", BRIO_FORMAT_PLY},  {"xyz", BRIO_FORMAT_XYZ}, {"pts", BRIO_FORMAT_XYZ},
                   {"txt", BRIO_FORMAT_XYZ},  {"csv", BRIO_FORMAT_XYZ}, {"obj", BRIO_FORMAT_OBJ},
                   {"off", BRIO_FORMAT_OFF},  {"vtu", BRIO_FORMAT_VTU}, {"node", BRIO_FORMAT_NODE},
-                  {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}};
+                  {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}, {"las", BRIO_FORMAT_LAS},
+                  {"laz", BRIO_FORMAT_LAZ}};
 
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
@@ -58,6 +59,8 @@ static brio_status find_format(brio_stream *s, const char *path, brio_format *fo
         *format = BRIO_FORMAT_OFF;
     else if (brio_vtu_starts(bytes, size))
         *format = BRIO_FORMAT_VTU;
+    else if (brio_las_starts(bytes, size))
+        *format = BRIO_FORMAT_LAS;
     else
         *format = strcmp(path, "-") ? brio_format_of(path) : BRIO_FORMAT_XYZ;
     BRIO_REQUIRE(s->ctx, *format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
@@ -80,6 +83,9 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
         return brio_vtu_read(s, b);
     case BRIO_FORMAT_NODE:
         return brio_node_read(s, b);
+    case BRIO_FORMAT_LAS:
+    case BRIO_FORMAT_LAZ:
+        return brio_las_read(s, b);
     case BRIO_FORMAT_VTP:
         return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: VTP files are written, not read", s->name);
     case BRIO_FORMAT_AUTO:

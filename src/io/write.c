@@ -98,6 +98,8 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
         return brio_node_write(out, job);
     case BRIO_FORMAT_VTP:
         return brio_vtp_write(out, job);
+    case BRIO_FORMAT_LAS:
+    case BRIO_FORMAT_LAZ:
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;
