@@ -857,6 +857,10 @@ typedef enum brio_format {
     BRIO_FORMAT_VTP = 7,  /* written, not read */
     BRIO_FORMAT_LAS = 8,  /* versions 1.0 to 1.4, point formats 0 to 10 without waveforms */
     BRIO_FORMAT_LAZ = 9,  /* read, not written */
+    BRIO_FORMAT_PCD = 10, /* read, not written */
+    BRIO_FORMAT_PTX = 11, /* read, not written */
+    BRIO_FORMAT_STL = 12, /* corners at the same position become one vertex */
+    BRIO_FORMAT_NPY = 13, /* NumPy: an array of rows of coordinates, or of records with names */
     BRIO_FORMAT_END
 } brio_format;
 

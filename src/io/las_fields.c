@@ -17,9 +17,9 @@
 
 /* Formats 0 to 5, and 6 to 10. */
 static const brio_las_field early[] = {
-    {"intensity", U16, 12, 0, 0},          {"return_number", U8, 14, 0, 3},       {"number_of_returns", U8, 14, 3, 3},
-    {"scan_direction_flag", U8, 14, 6, 1}, {"edge_of_flight_line", U8, 14, 7, 1}, {"classification", U8, 15, 0, 5},
-    {"classification_flags", U8, 15, 5, 3}, {"scan_angle_rank", I8, 16, 0, 0},    {"user_data", U8, 17, 0, 0},
+    {"intensity", U16, 12, 0, 0},           {"return_number", U8, 14, 0, 3},       {"number_of_returns", U8, 14, 3, 3},
+    {"scan_direction_flag", U8, 14, 6, 1},  {"edge_of_flight_line", U8, 14, 7, 1}, {"classification", U8, 15, 0, 5},
+    {"classification_flags", U8, 15, 5, 3}, {"scan_angle_rank", I8, 16, 0, 0},     {"user_data", U8, 17, 0, 0},
     {"point_source_id", U16, 18, 0, 0}};
 static const brio_las_field late[] = {
     {"intensity", U16, 12, 0, 0},           {"return_number", U8, 14, 0, 4},   {"number_of_returns", U8, 14, 4, 4},
@@ -30,8 +30,8 @@ static const brio_las_field late[] = {
 /* Where time, colour and near infrared begin in each format; 0: the format has none. */
 static const struct {
     uint8_t time, colour, infrared;
-} places[BRIO_LAS_FORMATS] = {{0, 0, 0},   {20, 0, 0},  {0, 20, 0},  {20, 28, 0}, {20, 0, 0},  {20, 28, 0},
-                              {22, 0, 0},  {22, 30, 0}, {22, 30, 36}, {22, 0, 0}, {22, 30, 36}};
+} places[BRIO_LAS_FORMATS] = {{0, 0, 0},  {20, 0, 0},  {0, 20, 0},   {20, 28, 0}, {20, 0, 0},  {20, 28, 0},
+                              {22, 0, 0}, {22, 30, 0}, {22, 30, 36}, {22, 0, 0},  {22, 30, 36}};
 
 size_t brio_las_fields_of(unsigned format, brio_las_field *fields) {
     static const char *const colours[] = {"red", "green", "blue"};
@@ -63,8 +63,8 @@ done:
 /* Plans an extra number. A name that the format has already, or another extra number, gets "_2", "_3", ... behind
  * it. Numbers that are scaled, or have 64 bits, become doubles. */
 static brio_status plan_extra(brio_las_plan *plan, brio_builder *b, const brio_las_header *h, const brio_las_extra *e) {
-    static const brio_scalar types[] = {F64, U8, I8, U16, I16, BRIO_SCALAR_UINT32, BRIO_SCALAR_INT32,
-                                        F64, F64, BRIO_SCALAR_FLOAT32, F64};
+    static const brio_scalar types[] = {
+        F64, U8, I8, U16, I16, BRIO_SCALAR_UINT32, BRIO_SCALAR_INT32, F64, F64, BRIO_SCALAR_FLOAT32, F64};
     brio_status status = BRIO_OK;
     bool wide = e->scaled || e->type == 7 || e->type == 8;
     brio_las_column c = {.property = b->mesh->num_properties,
@@ -116,16 +116,21 @@ static void store_bits(uint8_t *target, const char *bytes, size_t count, size_t 
 }
 
 static double extra_value(const char *bytes, unsigned type) {
-    static const brio_scalar types[] = {[1] = U8, [2] = I8, [3] = U16, [4] = I16, [5] = BRIO_SCALAR_UINT32,
-                                        [6] = BRIO_SCALAR_INT32, [9] = BRIO_SCALAR_FLOAT32, [10] = F64};
+    static const brio_scalar types[] = {[1] = U8,
+                                        [2] = I8,
+                                        [3] = U16,
+                                        [4] = I16,
+                                        [5] = BRIO_SCALAR_UINT32,
+                                        [6] = BRIO_SCALAR_INT32,
+                                        [9] = BRIO_SCALAR_FLOAT32,
+                                        [10] = F64};
     if (type == 7) return (double)brio_le64(bytes);
     if (type == 8) return (double)(int64_t)brio_le64(bytes);
     return brio_scalar_load(bytes, types[type], !brio_host_is_little());
 }
 
 static void store_extra(double *target, const char *bytes, size_t count, size_t record, const brio_las_column *c) {
-    for (size_t i = 0; i < count; i++, bytes += record)
-        target[i] = extra_value(bytes, c->extra) * c->scale + c->offset;
+    for (size_t i = 0; i < count; i++, bytes += record) target[i] = extra_value(bytes, c->extra) * c->scale + c->offset;
 }
 
 void brio_las_store(const brio_las_plan *plan, const brio_mesh *mesh, const char *records, size_t first, size_t count) {

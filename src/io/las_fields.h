@@ -8,9 +8,9 @@
 /** A field of a format. */
 typedef struct brio_las_field {
     const char *name;
-    brio_scalar type;     /* of its property */
-    uint8_t at;           /* its first byte in a record */
-    uint8_t shift, bits;  /* bits > 0: these bits of one byte */
+    brio_scalar type;    /* of its property */
+    uint8_t at;          /* its first byte in a record */
+    uint8_t shift, bits; /* bits > 0: these bits of one byte */
 } brio_las_field;
 
 enum { BRIO_LAS_FIELDS = 20 };

@@ -36,8 +36,8 @@ static brio_status check_header(brio_stream *s, const brio_las_header *h) {
                  record_bytes[h->format]);
     for (int k = 0; k < 3; k++)
         BRIO_REQUIRE(s->ctx, isfinite(h->scale[k]) && isfinite(h->offset[k]) && h->scale[k] != 0, BRIO_ERR_FORMAT,
-                     "%s: byte %d: %c has scale %g and offset %g", s->name, 131 + 8 * k, "xyz"[k], h->scale[k],
-                     h->offset[k]);
+                     "%s: byte %d: %c has scale %g and offset %g", s->name, 131 + 8 * k, "xyz"[k], h -> scale[k],
+                     h -> offset[k]);
 done:
     return status;
 }
@@ -61,7 +61,7 @@ static void take_fields(brio_las_header *h, const char *bytes, size_t size) {
 /* Reads the fixed part.   num_records  receives the number of records of variable length. */
 static brio_status read_fixed(brio_stream *s, brio_las_header *h, uint32_t *num_records) {
     brio_status status = BRIO_OK;
-    const char *bytes;
+    const char *bytes = NULL;
     brio_stream_element(s, "header", 1);
     BRIO_TRY(brio_stream_fill(s, LEAST_HEADER));
     if (brio_stream_left(s) < LEAST_HEADER) return brio_stream_truncated(s);
@@ -132,12 +132,11 @@ enum { ITEM_BYTES = 0, POINT10 = 6, TIME11, RGB12, WAVE13, POINT14, RGB14, RGBNI
 
 /* Lists the items of a format; returns their number. */
 static size_t items_of(const brio_las_header *h, laz_item *items) {
-    static const uint8_t types[BRIO_LAS_FORMATS][3] = {{POINT10},         {POINT10, TIME11},          {POINT10, RGB12},
-                                                       {POINT10, TIME11, RGB12}, {0},                 {0},
-                                                       {POINT14},         {POINT14, RGB14},           {POINT14, RGBNIR14},
-                                                       {POINT14, WAVE14}, {POINT14, RGBNIR14, WAVE14}};
-    static const uint8_t sizes[] = {[POINT10] = 20, [TIME11] = 8,   [RGB12] = 6, [POINT14] = 30,
-                                    [RGB14] = 6,    [RGBNIR14] = 8, [WAVE14] = 29};
+    static const uint8_t types[BRIO_LAS_FORMATS][3] = {
+        {POINT10},        {POINT10, TIME11},   {POINT10, RGB12},  {POINT10, TIME11, RGB12},   {0}, {0}, {POINT14},
+        {POINT14, RGB14}, {POINT14, RGBNIR14}, {POINT14, WAVE14}, {POINT14, RGBNIR14, WAVE14}};
+    static const uint8_t sizes[] = {
+        [POINT10] = 20, [TIME11] = 8, [RGB12] = 6, [POINT14] = 30, [RGB14] = 6, [RGBNIR14] = 8, [WAVE14] = 29};
     size_t count = 0;
     for (int i = 0; i < 3 && types[h->format][i]; i++) {
         uint16_t type = types[h->format][i];
@@ -181,9 +180,12 @@ static brio_status take_laszip(brio_stream *s, brio_las_header *h, const char *b
                  size);
     unsigned compressor = brio_le16(bytes), coder = brio_le16(bytes + 2);
     size_t count = brio_le16(bytes + 32);
-    BRIO_REQUIRE(s->ctx, coder == 0 && compressor == (h->format >= 6 ? 3 : compressor == 1 ? 1 : 2), BRIO_ERR_FORMAT,
-                 "%s: LASzip's record: compressor %u with coder %u for point format %u is not known", s->name,
-                 compressor, coder, h->format);
+    BRIO_REQUIRE(s->ctx,
+                 coder == 0 && compressor == (h->format >= 6    ? 3
+                                              : compressor == 1 ? 1
+                                                                : 2),
+                 BRIO_ERR_FORMAT, "%s: LASzip's record: compressor %u with coder %u for point format %u is not known",
+                 s->name, compressor, coder, h->format);
     BRIO_REQUIRE(s->ctx, size >= 34 + 6 * count, BRIO_ERR_FORMAT,
                  "%s: LASzip's record has %zu bytes, %zu items need %zu", s->name, size, count, 34 + 6 * count);
     h->chunked = compressor != 1;
@@ -204,7 +206,7 @@ static bool is_record(const char *header, const char *user, unsigned id) {
 static brio_status read_record(brio_stream *s, brio_las_header *h, bool *found) {
     brio_status status = BRIO_OK;
     char header[RECORD_HEADER];
-    const char *bytes;
+    const char *bytes = NULL;
     BRIO_TRY(brio_stream_take(s, RECORD_HEADER, &bytes));
     memcpy(header, bytes, RECORD_HEADER);
     size_t size = brio_le16(header + 20);

@@ -10,8 +10,8 @@ enum { BRIO_LAS_FORMATS = 11 };
 /** A number behind the fields of the format, described by the file. */
 typedef struct brio_las_extra {
     char name[40];
-    unsigned type;   /* as in the file, of one number: 1 uint8, 2 int8, ... 10 double */
-    size_t at;       /* its first byte, counted from the first extra byte of a record */
+    unsigned type; /* as in the file, of one number: 1 uint8, 2 int8, ... 10 double */
+    size_t at;     /* its first byte, counted from the first extra byte of a record */
     bool scaled;
     double scale, offset;
 } brio_las_extra;
@@ -19,14 +19,14 @@ typedef struct brio_las_extra {
 typedef struct brio_las_header {
     int minor; /* of the version 1.0 to 1.4 */
     unsigned format;
-    size_t record;        /* bytes of a record */
+    size_t record; /* bytes of a record */
     uint64_t num_points;
-    uint64_t data;        /* the byte at which the points begin */
+    uint64_t data; /* the byte at which the points begin */
     double scale[3], offset[3];
     bool compressed;
-    bool chunked;         /* compressed: in chunks */
-    uint32_t chunk;       /* points of a chunk, or UINT32_MAX if their numbers differ */
-    brio_laz_form form;   /* compressed */
+    bool chunked;       /* compressed: in chunks */
+    uint32_t chunk;     /* points of a chunk, or UINT32_MAX if their numbers differ */
+    brio_laz_form form; /* compressed */
     brio_las_extra *extras;
     size_t num_extras, extra_capacity;
 } brio_las_header;

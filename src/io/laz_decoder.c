@@ -23,7 +23,7 @@ typedef struct {
 struct brio_laz_decoder {
     brio_laz_form form;
     const uint8_t *bytes;
-    bool first; /* whether the next record is the first one of its chunk */
+    bool first;                                         /* whether the next record is the first one of its chunk */
     brio_laz_coder coders[BRIO_LAZ_POINT14_LAYERS + 2]; /* without layers: one */
     brio_laz_coder *extra_coders;
     brio_laz_model *extra_models; /* num_extra for each channel */
@@ -67,8 +67,7 @@ static size_t num_layers(const brio_laz_form *form) {
 static size_t arena_bytes(const brio_laz_form *form) {
     size_t byte = brio_laz_model_bytes(256), items = brio_laz_integer_bytes(32), colours = 10 * byte;
     size_t time = 2 * brio_laz_model_bytes(520) + items;
-    if (!form->layered)
-        return 771 * byte + 5 * items + time + colours + form->num_extra * byte;
+    if (!form->layered) return 771 * byte + 5 * items + time + colours + form->num_extra * byte;
     size_t channel = 128 * byte + 64 * brio_laz_model_bytes(64) + 8 * brio_laz_model_bytes(128) +
                      34 * brio_laz_model_bytes(16) + 6 * items + time + colours + form->num_extra * byte;
     return CHANNELS * channel;
@@ -147,8 +146,7 @@ static void begin_items(brio_laz_decoder *d) {
     d->channel = form->layered ? d->point14.channel : 0;
     channel_items *items = &d->items[d->channel];
     items->used = true;
-    for (size_t i = 0; i < 3 && has_colour(form); i++)
-        items->colour[i] = brio_le16(d->bytes + colour_at(form) + 2 * i);
+    for (size_t i = 0; i < 3 && has_colour(form); i++) items->colour[i] = brio_le16(d->bytes + colour_at(form) + 2 * i);
     if (has_infrared(form)) items->colour[3] = brio_le16(d->bytes + colour_at(form) + 6);
     if (form->num_extra)
         memcpy(d->extra_last + d->channel * form->num_extra, d->bytes + form->record - form->num_extra,

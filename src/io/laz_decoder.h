@@ -8,11 +8,11 @@
 
 /** How the records of a file are compressed. */
 typedef struct brio_laz_form {
-    unsigned format;   /* of LAS points: 0 to 3, 6 to 10 */
-    size_t record;     /* bytes of a record */
-    size_t num_extra;  /* of these, the bytes at the end that the format does not know */
-    bool layered;      /* formats 6 to 10: layers, each with its own bytes */
-    bool own_colours;  /* layers of version 4: at a change of the channel colours and extra bytes change, too */
+    unsigned format;  /* of LAS points: 0 to 3, 6 to 10 */
+    size_t record;    /* bytes of a record */
+    size_t num_extra; /* of these, the bytes at the end that the format does not know */
+    bool layered;     /* formats 6 to 10: layers, each with its own bytes */
+    bool own_colours; /* layers of version 4: at a change of the channel colours and extra bytes change, too */
 } brio_laz_form;
 
 typedef struct brio_laz_decoder brio_laz_decoder;

@@ -33,7 +33,7 @@ typedef struct brio_laz_arena {
 typedef struct brio_laz_model {
     uint16_t *cumulative; /* for each symbol, 2^15 times the probability of a smaller one; NULL: not made yet */
     uint16_t *counts;     /* for each symbol */
-    uint16_t *table;      /* the symbol to begin the search with, by the probability's upper bits; NULL for few symbols */
+    uint16_t *table; /* the symbol to begin the search with, by the probability's upper bits; NULL for few symbols */
     uint32_t symbols, total;
     uint32_t cycle, until; /* symbols between two updates, and until the next one */
     uint32_t shift;        /* from a probability to its place in the table */

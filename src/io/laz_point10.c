@@ -10,10 +10,10 @@ enum { POINT_SOURCE = 1, USER_DATA = 2, SCAN_ANGLE = 4, CLASSIFICATION = 8, INTE
 
 /* The context of a return: by the number of returns and the number of this one. Pairs that no scanner makes, which are
  * in files all the same, have contexts, too. */
-static const uint8_t return_context[8][8] = {
-    {15, 14, 13, 12, 11, 10, 9, 8},   {14, 0, 1, 3, 6, 10, 10, 9},      {13, 1, 2, 4, 7, 11, 11, 10},
-    {12, 3, 4, 5, 8, 12, 12, 11},     {11, 6, 7, 8, 9, 13, 13, 12},     {10, 10, 11, 12, 13, 14, 14, 13},
-    {9, 10, 11, 12, 13, 14, 15, 14},  {8, 9, 10, 11, 12, 13, 14, 15}};
+static const uint8_t return_context[8][8] = {{15, 14, 13, 12, 11, 10, 9, 8},  {14, 0, 1, 3, 6, 10, 10, 9},
+                                             {13, 1, 2, 4, 7, 11, 11, 10},    {12, 3, 4, 5, 8, 12, 12, 11},
+                                             {11, 6, 7, 8, 9, 13, 13, 12},    {10, 10, 11, 12, 13, 14, 14, 13},
+                                             {9, 10, 11, 12, 13, 14, 15, 14}, {8, 9, 10, 11, 12, 13, 14, 15}};
 
 void brio_laz_point10_begin(brio_laz_point10 *p, const uint8_t *first) {
     memcpy(p->last, first, sizeof p->last);
@@ -30,8 +30,8 @@ static void next_attributes(brio_laz_point10 *p, brio_laz_coder *c, brio_laz_are
                             uint32_t returns) {
     uint8_t *last = p->last;
     if (changed & INTENSITY)
-        p->intensities[returns] = brio_laz_int16(c, arena, &p->intensity, p->intensities[returns],
-                                                 returns < 3 ? returns : 3);
+        p->intensities[returns] =
+            brio_laz_int16(c, arena, &p->intensity, p->intensities[returns], returns < 3 ? returns : 3);
     brio_put_le16(last + 12, p->intensities[returns]);
     if (changed & CLASSIFICATION) next_byte(c, arena, p->classification, last + 15);
     if (changed & SCAN_ANGLE) {
@@ -39,8 +39,7 @@ static void next_attributes(brio_laz_point10 *p, brio_laz_coder *c, brio_laz_are
         last[16] = (uint8_t)(last[16] + brio_laz_symbol(c, arena, &p->scan_angle[direction], 256));
     }
     if (changed & USER_DATA) next_byte(c, arena, p->user_data, last + 17);
-    if (changed & POINT_SOURCE)
-        brio_put_le16(last + 18, brio_laz_int16(c, arena, &p->source, brio_le16(last + 18), 0));
+    if (changed & POINT_SOURCE) brio_put_le16(last + 18, brio_laz_int16(c, arena, &p->source, brio_le16(last + 18), 0));
 }
 
 static uint32_t at_most(uint32_t bits, uint32_t most) {

@@ -8,8 +8,16 @@
 enum { RETURN = 3, RETURNS = 1 << 2, SCAN_ANGLE = 1 << 3, TIME = 1 << 4, SOURCE = 1 << 5, CHANNEL = 1 << 6 };
 
 /* Where the bytes of the attributes are. */
-enum { AT_INTENSITY = 12, AT_RETURNS = 14, AT_FLAGS = 15, AT_CLASSIFICATION = 16, AT_USER_DATA = 17,
-       AT_SCAN_ANGLE = 18, AT_SOURCE = 20, AT_TIME = 22 };
+enum {
+    AT_INTENSITY = 12,
+    AT_RETURNS = 14,
+    AT_FLAGS = 15,
+    AT_CLASSIFICATION = 16,
+    AT_USER_DATA = 17,
+    AT_SCAN_ANGLE = 18,
+    AT_SOURCE = 20,
+    AT_TIME = 22
+};
 
 /* The context of a return: by the number of returns and the number of this one. */
 static const uint8_t return_context[16][16] = {

@@ -32,7 +32,7 @@ typedef struct {
     size_t size;
     size_t first, points; /* its points in the mesh */
     bool damaged;
-    size_t at;            /* damaged: the first point of the block that is */
+    size_t at; /* damaged: the first point of the block that is */
 } loaded_chunk;
 
 typedef struct {
@@ -95,8 +95,10 @@ static void decode_chunk(const laz_reader *r, const worker *w, loaded_chunk *c) 
 
 static brio_status damaged(const laz_reader *r, const loaded_chunk *c, uint64_t offset) {
     return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT,
-                     "%s: the compressed chunk at byte %" PRIu64 " is damaged or cut off: at point %zu (counted from 0) "
-                     "of the file or soon behind it", r->stream->name, offset, c->first + c->at);
+                     "%s: the compressed chunk at byte %" PRIu64
+                     " is damaged or cut off: at point %zu (counted from 0) "
+                     "of the file or soon behind it",
+                     r->stream->name, offset, c->first + c->at);
 }
 
 /* --- with a table --- */
@@ -112,9 +114,10 @@ static brio_status read_batch(laz_reader *r, const brio_laz_chunk *chunks, size_
     brio_stream *s = r->stream;
     size_t bytes = 0, points = 0, n = 0, most = r->threads > 1 ? CHUNKS_A_THREAD * (size_t)r->threads : 1;
     uint64_t offset = brio_stream_offset(s);
-    const char *data;
+    const char *data = NULL;
     for (; n < count && n < most && (n == 0 || bytes + chunks[n].bytes <= BATCH); n++) {
-        r->batch[n] = (loaded_chunk){.size = chunks[n].bytes, .first = (size_t)s->row + points, .points = chunks[n].points};
+        r->batch[n] =
+            (loaded_chunk){.size = chunks[n].bytes, .first = (size_t)s->row + points, .points = chunks[n].points};
         bytes += chunks[n].bytes;
         points += chunks[n].points;
     }
@@ -136,7 +139,7 @@ static brio_status read_with_table(laz_reader *r, const brio_laz_chunk *chunks, 
     BRIO_TRY(make_workers(r, count));
     if (r->header->num_points / DENSE <= s->size)
         BRIO_TRY(brio_builder_expect_vertices(r->builder, r->header->num_points));
-    for (size_t i = 0, used; i < count; i += used) BRIO_TRY(read_batch(r, chunks + i, count - i, &used));
+    for (size_t i = 0, used = 0; i < count; i += used) BRIO_TRY(read_batch(r, chunks + i, count - i, &used));
 done:
     return status;
 }
@@ -165,9 +168,8 @@ static brio_status next_layers(laz_reader *r, loaded_chunk *c) {
     uint64_t size = brio_laz_layers_bytes(form, (uint8_t *)s->buffer + s->begin, brio_stream_left(s), &points);
     if (!size) return brio_stream_truncated(s);
     bool fits = r->header->chunk == UINT32_MAX ? points && points <= c->points : points == c->points;
-    BRIO_REQUIRE(s->ctx, fits, BRIO_ERR_FORMAT,
-                 "%s: byte %" PRIu64 ": a chunk of %" PRIu32 " points, expected %s%zu", s->name, brio_stream_offset(s),
-                 points, r->header->chunk == UINT32_MAX ? "1 to " : "", c->points);
+    BRIO_REQUIRE(s->ctx, fits, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": a chunk of %" PRIu32 " points, expected %s%zu",
+                 s->name, brio_stream_offset(s), points, r->header->chunk == UINT32_MAX ? "1 to " : "", c->points);
     c->points = points;
     BRIO_TRY(gather(s, size));
     if (brio_stream_left(s) < size) return brio_stream_truncated(s);
@@ -203,7 +205,8 @@ static brio_status read_without_table(laz_reader *r) {
     bool fixed = h->chunked && h->chunk != UINT32_MAX;
     BRIO_REQUIRE(s->ctx, fixed || !h->chunked || h->form.layered, BRIO_ERR_FORMAT,
                  "%s: chunks of different numbers of points need their table, which is missing or, in a pipe, not "
-                 "there yet", s->name);
+                 "there yet",
+                 s->name);
     BRIO_TRY(make_workers(r, 1));
     while (s->row < h->num_points) {
         loaded_chunk c = {.first = (size_t)s->row, .points = (size_t)(h->num_points - s->row)};
@@ -222,7 +225,7 @@ brio_status brio_laz_read(brio_stream *s, brio_builder *b, const brio_las_header
     laz_reader r = {.stream = s, .builder = b, .header = h, .plan = plan};
     brio_laz_chunk *chunks = NULL;
     size_t count = 0;
-    const char *bytes;
+    const char *bytes = NULL;
     if (h->chunked && h->num_points) {
         BRIO_TRY(brio_stream_take(s, 8, &bytes));
         BRIO_TRY(brio_laz_table_read(s, h, brio_le64(bytes), &chunks, &count));

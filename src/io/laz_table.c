@@ -59,8 +59,8 @@ static brio_status check(brio_stream *s, const brio_las_header *h, uint64_t at, 
                  "%s: byte %" PRIu64 ": the table of chunks lists %" PRIu64 " bytes, there are %" PRIu64, s->name, at,
                  bytes, room);
     BRIO_REQUIRE(s->ctx, points == h->num_points, BRIO_ERR_FORMAT,
-                 "%s: byte %" PRIu64 ": the table of chunks lists %" PRIu64 " points, the header %" PRIu64, s->name,
-                 at, points, h->num_points);
+                 "%s: byte %" PRIu64 ": the table of chunks lists %" PRIu64 " points, the header %" PRIu64, s->name, at,
+                 points, h->num_points);
 done:
     return status;
 }

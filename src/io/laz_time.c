@@ -34,9 +34,8 @@ static void next_multiple(brio_laz_time *t, brio_laz_coder *c, brio_laz_arena *a
     static const struct {
         int32_t last;
         uint32_t context;
-    } kinds[] = {{0, FROM_NOTHING},     {1, FROM_STEP},
-                 {SMALL - 1, FROM_SMALL}, {MOST - 1, FROM_LARGE},
-                 {MOST, FROM_MOST},     {MOST - LEAST - 1, FROM_NEGATIVE},
+    } kinds[] = {{0, FROM_NOTHING},         {1, FROM_STEP},    {SMALL - 1, FROM_SMALL},
+                 {MOST - 1, FROM_LARGE},    {MOST, FROM_MOST}, {MOST - LEAST - 1, FROM_NEGATIVE},
                  {MOST - LEAST, FROM_LEAST}};
     int kind = 0;
     while (kinds[kind].last < (int32_t)symbol) kind++;
