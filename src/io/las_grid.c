@@ -5,8 +5,9 @@
 #include "io/las_grid.h"
 #include <math.h>
 
-/* Powers of 1/10 and of 1/2 that are tried. Chosen: a nanometre, and the last bits of singles near 1. */
-enum { DECIMALS = 9, HALVES = 24 };
+/* Powers of 1/10 and of 1/2 that are tried: a nanometre, and the last bits of singles near 1. ORIGINS: whole numbers
+ * within the range that are tried as origins of the first COARSE decimals. All chosen. */
+enum { DECIMALS = 9, HALVES = 24, ORIGINS = 1024, COARSE = 4 };
 
 static const double tenths[] = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
 
@@ -38,6 +39,18 @@ static void find_range(const brio_mesh *m, int axis, double *low, double *high) 
     }
 }
 
+/* Tries whole numbers within the range as origins. Near an origin products with the step are small, so their sums with
+ * the origin round to the double nearest to the decimal number. The doubles of most texts are such. */
+static bool try_origins(const brio_mesh *m, int axis, double low, double high, brio_las_grid *grid) {
+    double first = floor(low), count = ceil(high) - first;
+    if (!(count > 0 && fabs(low) + fabs(high) < 0x1p53)) return false;
+    double step = count > ORIGINS ? ceil(count / ORIGINS) : 1;
+    for (int i = 0; i <= COARSE; i++)
+        for (double origin = first; origin <= high; origin += step)
+            if (try_grid(m, axis, tenths[i], origin, grid)) return true;
+    return false;
+}
+
 static void find_axis(const brio_mesh *m, int axis, brio_las_grid *grid) {
     double low, high;
     if (try_grid(m, axis, m->coordinate_step[axis], m->coordinate_origin[axis], grid)) return;
@@ -49,6 +62,7 @@ static void find_axis(const brio_mesh *m, int axis, brio_las_grid *grid) {
     for (int o = 0; o < 2; o++)
         for (int i = 1; i <= HALVES; i++)
             if (try_grid(m, axis, ldexp(1, -i), origins[o], grid)) return;
+    if (try_origins(m, axis, low, high, grid)) return;
     /* halves, because the difference of two doubles may overflow */
     double half = high / 2 - low / 2;
     grid->origin[axis] = low / 2 + high / 2;

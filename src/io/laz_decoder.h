@@ -15,6 +15,10 @@ typedef struct brio_laz_form {
     bool own_colours; /* layers of version 4: at a change of the channel colours and extra bytes change, too */
 } brio_laz_form;
 
+/** The most points that a byte stands for: the probabilities of the three models that every point uses make a point
+ *  cost 0.008 bits or more, a byte at most 1000 points. Chosen, with a margin. */
+enum { BRIO_LAZ_MOST_DENSE = 4096 };
+
 typedef struct brio_laz_decoder brio_laz_decoder;
 
 /** Returns the bytes of a decoder. Those that a chunk does not need are not touched. */

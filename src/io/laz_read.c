@@ -17,8 +17,8 @@
 
 /* All chosen. BLOCK: bytes of the records that are decoded before they are stored. BATCH: bytes of chunks that are read
  * together, at most, if these are more than one. DENSE: a point that takes less than 1/DENSE byte makes no promise that
- * memory is made for. */
-enum { BLOCK = 1 << 15, BATCH = 1 << 26, CHUNKS_A_THREAD = 2, WINDOW = 1 << 20, DENSE = 64 };
+ * memory is made for. MOST_IN_PIPE: points of a chunk whose end is not known. */
+enum { BLOCK = 1 << 15, BATCH = 1 << 26, CHUNKS_A_THREAD = 2, WINDOW = 1 << 20, DENSE = 64, MOST_IN_PIPE = 1 << 24 };
 
 /* A thread's decoder. */
 typedef struct {
@@ -158,6 +158,17 @@ done:
     return status;
 }
 
+/* Refuses a chunk of more points than its bytes can stand for, before memory is made for them.
+ *  bytes  at most as many as the chunk has; BRIO_SIZE_UNKNOWN in a pipe. */
+static brio_status check_points(const laz_reader *r, size_t points, uint64_t bytes) {
+    brio_stream *s = r->stream;
+    if (bytes == BRIO_SIZE_UNKNOWN ? points <= MOST_IN_PIPE : points / BRIO_LAZ_MOST_DENSE <= bytes) return BRIO_OK;
+    return brio_fail(s->ctx, BRIO_ERR_FORMAT,
+                     "%s: byte %" PRIu64 ": a compressed chunk cannot have %zu points in its bytes, or in a pipe more "
+                     "than %d",
+                     s->name, brio_stream_offset(s), points, (int)MOST_IN_PIPE);
+}
+
 /* Decodes the chunk of layers that follows. It says how many bytes it has. */
 static brio_status next_layers(laz_reader *r, loaded_chunk *c) {
     brio_status status = BRIO_OK;
@@ -173,6 +184,7 @@ static brio_status next_layers(laz_reader *r, loaded_chunk *c) {
     c->points = points;
     BRIO_TRY(gather(s, size));
     if (brio_stream_left(s) < size) return brio_stream_truncated(s);
+    BRIO_TRY(check_points(r, points, size));
     BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
     c->bytes = (uint8_t *)s->buffer + s->begin;
     c->size = (size_t)size;
@@ -185,6 +197,7 @@ done:
 static brio_status next_stream(laz_reader *r, loaded_chunk *c) {
     brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
+    BRIO_TRY(check_points(r, c->points, s->size == BRIO_SIZE_UNKNOWN ? s->size : s->size - brio_stream_offset(s)));
     BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
     for (uint64_t window = WINDOW;; window *= 2) {
         BRIO_TRY(gather(s, window));

@@ -52,6 +52,10 @@ static brio_status check(brio_stream *s, const brio_las_header *h, uint64_t at, 
     for (size_t i = 0; i < count; i++) {
         if (h->chunk != UINT32_MAX)
             chunks[i].points = h->num_points - points < h->chunk ? (uint32_t)(h->num_points - points) : h->chunk;
+        BRIO_REQUIRE(s->ctx, chunks[i].points / BRIO_LAZ_MOST_DENSE <= chunks[i].bytes, BRIO_ERR_FORMAT,
+                     "%s: byte %" PRIu64 ": chunk %zu (counted from 0) cannot have %" PRIu32 " points in %" PRIu32
+                     " bytes",
+                     s->name, at, i, chunks[i].points, chunks[i].bytes);
         points += chunks[i].points;
         bytes += chunks[i].bytes;
     }
