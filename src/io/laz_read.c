@@ -83,7 +83,8 @@ static void free_workers(laz_reader *r) {
 static void decode_chunk(const laz_reader *r, const worker *w, loaded_chunk *c) {
     size_t most = block_rows(r->header);
     c->at = 0;
-    c->damaged = !brio_laz_begin(w->decoder, c->bytes, c->size);
+    /* some encoders end with a chunk of no points */
+    c->damaged = c->points && !brio_laz_begin(w->decoder, c->bytes, c->size);
     while (!c->damaged && c->at < c->points) {
         size_t rows = c->points - c->at < most ? c->points - c->at : most;
         c->damaged = !brio_laz_next(w->decoder, w->rows, rows);
