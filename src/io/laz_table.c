@@ -22,23 +22,19 @@ done:
     return status;
 }
 
-/* Decodes the table.   bytes  what is behind its head. */
-static brio_status decode(brio_context *ctx, const uint8_t *bytes, size_t size, bool has_points, brio_laz_chunk *chunks,
-                          size_t count, bool *past) {
+/* Decodes the table.   has_points  whether each entry has its number of points, too. */
+static brio_status decode(brio_context *ctx, brio_laz_coder *c, bool has_points, brio_laz_chunk *chunks, size_t count) {
     brio_status status = BRIO_OK;
     brio_laz_arena arena = {.size = brio_laz_integer_bytes(32)};
     brio_laz_integer *integer = NULL;
-    brio_laz_coder c;
+    brio_laz_chunk last = {0, 0};
     BRIO_TRY(BRIO_ALLOC(ctx, arena.memory, arena.size));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, integer, 1));
-    brio_laz_coder_begin(&c, bytes, bytes + size);
-    brio_laz_chunk last = {0, 0};
     for (size_t i = 0; i < count; i++) {
-        if (has_points) last.points = (uint32_t)brio_laz_int32(&c, &arena, integer, (int32_t)last.points, POINTS);
-        last.bytes = (uint32_t)brio_laz_int32(&c, &arena, integer, (int32_t)last.bytes, BYTES);
+        if (has_points) last.points = (uint32_t)brio_laz_int32(c, &arena, integer, (int32_t)last.points, POINTS);
+        last.bytes = (uint32_t)brio_laz_int32(c, &arena, integer, (int32_t)last.bytes, BYTES);
         chunks[i] = last;
     }
-    *past = c.past;
 done:
     brio_release(ctx, integer);
     brio_release(ctx, arena.memory);
@@ -75,7 +71,7 @@ brio_status brio_laz_table_read(brio_stream *s, const brio_las_header *h, uint64
     char head[HEAD];
     uint8_t *bytes = NULL;
     brio_laz_chunk *table = NULL;
-    bool past = false;
+    brio_laz_coder c = {.past = false};
     *chunks = NULL;
     *count = 0;
     if (s->size == BRIO_SIZE_UNKNOWN) return BRIO_OK;
@@ -90,8 +86,11 @@ brio_status brio_laz_table_read(brio_stream *s, const brio_las_header *h, uint64
     BRIO_TRY(BRIO_ALLOC(s->ctx, bytes, size + 1));
     BRIO_TRY(BRIO_ALLOC(s->ctx, table, n + 1));
     BRIO_TRY(brio_stream_peek(s, at + HEAD, bytes, size));
-    if (n) BRIO_TRY(decode(s->ctx, bytes, size, h->chunk == UINT32_MAX, table, n, &past));
-    BRIO_REQUIRE(s->ctx, !past, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": the table of chunks is damaged", s->name, at);
+    if (n) {
+        brio_laz_coder_begin(&c, bytes, bytes + size);
+        BRIO_TRY(decode(s->ctx, &c, h->chunk == UINT32_MAX, table, n));
+    }
+    BRIO_REQUIRE(s->ctx, !c.past, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": the table of chunks is damaged", s->name, at);
     BRIO_TRY(check(s, h, at, table, n));
     *chunks = table;
     *count = n;
