@@ -4,7 +4,7 @@
  * An item whose bytes are all 0, except for what its _begin function sets, is at the beginning of a chunk.
  *
  * Based on: Isenburg. LASzip: lossless compression of LiDAR data. Photogrammetric Engineering and Remote Sensing 79,
- * 2013; and the LAZ specification, version 1.4 R1, of OGC's and rapidlasso's publication, for the numbers. */
+ * 2013. */
 #ifndef BRIO_IO_LAZ_ITEMS_H
 #define BRIO_IO_LAZ_ITEMS_H
 

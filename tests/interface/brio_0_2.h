@@ -868,6 +868,7 @@ typedef enum brio_format {
 BRIO_API brio_format brio_format_of(const char *path);
 
 /** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of the vertices; skips other elements.
+ *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads.
  *  "-" reads standard input.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was
  *  expected), BRIO_ERR_NOT_FINITE (the message names the first such point and their number), BRIO_ERR_TOO_LARGE,
