@@ -64,10 +64,12 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
     *format = brio_format_of(extension ? extension : path);
     if (*format != BRIO_FORMAT_AUTO) return BRIO_OK;
     if (extension)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--format %s: this version writes .ply .xyz .obj .off .vtu .vtp .node",
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--format %s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy",
                         extension);
     if (!strcmp(path, "-")) return cli_fail(r, BRIO_ERR_ARGUMENT, "-o - needs --format");
-    return cli_fail(r, BRIO_ERR_ARGUMENT,
-                    "%s: this version writes .ply .xyz .obj .off .vtu .vtp .node; name one of these with --format",
-                    path);
+    return cli_fail(
+        r, BRIO_ERR_ARGUMENT,
+        "%s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy; name one of these with --format",
+        path);
 }

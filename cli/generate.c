@@ -56,7 +56,7 @@ static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"solid", SOLID},
                                       {NULL, 0}};
 
-static const brio_format mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+static const brio_format mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
                                            BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
 static const char *kind_name(const void *list, size_t i) {

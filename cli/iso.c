@@ -29,7 +29,7 @@ static const option options[] = {
 
 static const uint64_t NO_COUNT = UINT64_MAX;
 static const arguments defaults = {.level = NAN, .blobbiness = NAN, .vertices = UINT64_MAX};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
                                       BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
 static brio_status check_arguments(run *r, const arguments *a) {

@@ -33,7 +33,7 @@ static const option options[] = {
 };
 
 static const arguments defaults = {.distance = NAN, .crust.labeling = LABELS_OF_INPUT};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
                                       BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
 /* What there is to count when the labels are known. */
@@ -107,7 +107,7 @@ const command cli_offset = {
     .name = "offset",
     .operands = "IN",
     .summary =
-        "surface at a distance from that of the points, or the closed mesh, of a file (.ply .obj .off .vtu .vtp)",
+        "surface at a distance from that of the points, or the closed mesh, of a file (.ply .obj .off .stl .vtu .vtp)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

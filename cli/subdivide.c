@@ -14,8 +14,8 @@ static const option options[] = {
 };
 
 static const arguments defaults = {.levels = 1};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_VTU,
-                                      BRIO_FORMAT_AUTO};
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+                                      BRIO_FORMAT_STL, BRIO_FORMAT_VTU, BRIO_FORMAT_AUTO};
 
 enum { MOST_LEVELS = 15 };
 
@@ -51,7 +51,7 @@ done:
 const command cli_subdivide = {
     .name = "subdivide",
     .operands = "IN",
-    .summary = "smooth, denser mesh through the vertices of a triangle mesh (.ply .obj .off .vtu)",
+    .summary = "smooth, denser mesh through the vertices of a triangle mesh (.ply .obj .off .stl .vtu)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -57,8 +57,8 @@ static const option options[] = {
 static const arguments defaults = {.crust.labeling = NO_LABELING};
 /* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
 static const double LEAST_THETA = 0.2542;
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_VTU,
-                                      BRIO_FORMAT_AUTO};
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+                                      BRIO_FORMAT_STL, BRIO_FORMAT_VTU, BRIO_FORMAT_AUTO};
 
 /* Options of the power crust alone. */
 static bool has_power_crust_options(const arguments *a) {
@@ -313,7 +313,7 @@ done:
 const command cli_surface = {
     .name = "surface",
     .operands = "IN",
-    .summary = "surface through the points of a file, certified (.ply .obj .off .vtu)",
+    .summary = "surface through the points of a file, certified (.ply .obj .off .stl .vtu)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -653,6 +653,8 @@ typedef struct brio_mesh {
     brio_property *properties;
     size_t num_edges; /* edges of their own, such as those of a medial axis; edges of polygons are not listed */
     uint32_t *edges;  /* #E by 2 */
+    double coordinate_step[3];   /* of a LAS file: every coordinate is a whole number times the step, */
+    double coordinate_origin[3]; /* plus the origin. brio_write keeps both. Steps are 0 if they are not known. */
 } brio_mesh;
 
 /** Makes an empty mesh. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
@@ -1434,6 +1436,12 @@ typedef enum brio_format {
     BRIO_FORMAT_VTU = 5,  /* read if its arrays are appended raw, as brio_write writes them */
     BRIO_FORMAT_NODE = 6, /* TetGen's .node, with .ele beside it */
     BRIO_FORMAT_VTP = 7,  /* written, not read */
+    BRIO_FORMAT_LAS = 8,  /* versions 1.0 to 1.4, point formats 0 to 10 without waveforms */
+    BRIO_FORMAT_LAZ = 9,  /* read, not written */
+    BRIO_FORMAT_PCD = 10, /* read, not written */
+    BRIO_FORMAT_PTX = 11, /* read, not written */
+    BRIO_FORMAT_STL = 12, /* corners at the same position become one vertex */
+    BRIO_FORMAT_NPY = 13, /* NumPy: an array of rows of coordinates, or of records with names */
     BRIO_FORMAT_END
 } brio_format;
 
@@ -1441,6 +1449,7 @@ typedef enum brio_format {
 BRIO_API brio_format brio_format_of(const char *path);
 
 /** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of the vertices; skips other elements.
+ *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads.
  *  "-" reads standard input.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was
  *  expected), BRIO_ERR_NOT_FINITE (the message names the first such point and their number), BRIO_ERR_TOO_LARGE,

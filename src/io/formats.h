@@ -10,7 +10,7 @@
 typedef struct brio_write_job {
     const brio_mesh *mesh;
     const brio_write_options *options;
-    char (*names)[64]; /* PLY and XYZ: the names of the properties, each as one word */
+    char (*names)[64]; /* PLY, XYZ and NPY: the names of the properties, each as one word */
 } brio_write_job;
 
 brio_status brio_ply_read(brio_stream *s, brio_builder *b);
@@ -19,6 +19,11 @@ brio_status brio_obj_read(brio_stream *s, brio_builder *b);
 brio_status brio_off_read(brio_stream *s, brio_builder *b);
 brio_status brio_vtu_read(brio_stream *s, brio_builder *b);
 brio_status brio_node_read(brio_stream *s, brio_builder *b);
+brio_status brio_las_read(brio_stream *s, brio_builder *b); /* LAZ, too */
+brio_status brio_pcd_read(brio_stream *s, brio_builder *b);
+brio_status brio_ptx_read(brio_stream *s, brio_builder *b);
+brio_status brio_stl_read(brio_stream *s, brio_builder *b);
+brio_status brio_npy_read(brio_stream *s, brio_builder *b);
 brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
 
 brio_status brio_ply_write(brio_output *out, const brio_write_job *job);
@@ -28,12 +33,18 @@ brio_status brio_off_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtu_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
 brio_status brio_node_write(brio_output *out, const brio_write_job *job);
+brio_status brio_las_write(brio_output *out, const brio_write_job *job);
+brio_status brio_stl_write(brio_output *out, const brio_write_job *job);
+brio_status brio_npy_write(brio_output *out, const brio_write_job *job);
 brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
 
-/** Return whether the first bytes of a file are those of a PLY, OFF or VTU file. */
+/** Return whether the first bytes of a file are those of a format. */
 bool brio_ply_starts(const char *bytes, size_t size);
 bool brio_off_starts(const char *bytes, size_t size);
 bool brio_vtu_starts(const char *bytes, size_t size);
+bool brio_las_starts(const char *bytes, size_t size);
+bool brio_pcd_starts(const char *bytes, size_t size);
+bool brio_npy_starts(const char *bytes, size_t size);
 
 /** Returns whether a path names an .ele file, which stands for the pair of .node and .ele. */
 bool brio_is_ele(const char *path);

@@ -14,7 +14,9 @@ static const struct {
 } extensions[] = {{"ply", BRIO_FORMAT_PLY},  {"xyz", BRIO_FORMAT_XYZ}, {"pts", BRIO_FORMAT_XYZ},
                   {"txt", BRIO_FORMAT_XYZ},  {"csv", BRIO_FORMAT_XYZ}, {"obj", BRIO_FORMAT_OBJ},
                   {"off", BRIO_FORMAT_OFF},  {"vtu", BRIO_FORMAT_VTU}, {"node", BRIO_FORMAT_NODE},
-                  {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}};
+                  {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}, {"las", BRIO_FORMAT_LAS},
+                  {"laz", BRIO_FORMAT_LAZ},  {"pcd", BRIO_FORMAT_PCD}, {"ptx", BRIO_FORMAT_PTX},
+                  {"stl", BRIO_FORMAT_STL},  {"npy", BRIO_FORMAT_NPY}};
 
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
@@ -58,10 +60,18 @@ static brio_status find_format(brio_stream *s, const char *path, brio_format *fo
         *format = BRIO_FORMAT_OFF;
     else if (brio_vtu_starts(bytes, size))
         *format = BRIO_FORMAT_VTU;
+    else if (brio_las_starts(bytes, size))
+        *format = BRIO_FORMAT_LAS;
+    else if (brio_pcd_starts(bytes, size))
+        *format = BRIO_FORMAT_PCD;
+    else if (brio_npy_starts(bytes, size))
+        *format = BRIO_FORMAT_NPY;
     else
         *format = strcmp(path, "-") ? brio_format_of(path) : BRIO_FORMAT_XYZ;
     BRIO_REQUIRE(s->ctx, *format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
-                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .node or .ele", s->name);
+                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .node .ele .las .laz .pcd "
+                 ".ptx .stl or .npy",
+                 s->name);
 done:
     return status;
 }
@@ -80,6 +90,17 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
         return brio_vtu_read(s, b);
     case BRIO_FORMAT_NODE:
         return brio_node_read(s, b);
+    case BRIO_FORMAT_LAS:
+    case BRIO_FORMAT_LAZ:
+        return brio_las_read(s, b);
+    case BRIO_FORMAT_PCD:
+        return brio_pcd_read(s, b);
+    case BRIO_FORMAT_PTX:
+        return brio_ptx_read(s, b);
+    case BRIO_FORMAT_STL:
+        return brio_stl_read(s, b);
+    case BRIO_FORMAT_NPY:
+        return brio_npy_read(s, b);
     case BRIO_FORMAT_VTP:
         return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: VTP files are written, not read", s->name);
     case BRIO_FORMAT_AUTO:

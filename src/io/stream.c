@@ -108,6 +108,25 @@ done:
     return status;
 }
 
+brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_t size) {
+    brio_status status = BRIO_OK;
+    off_t here = lseek(s->file, 0, SEEK_CUR);
+    BRIO_REQUIRE(s->ctx, here >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+    uint64_t start = (uint64_t)here - s->base - s->end;
+    char *to = bytes;
+    while (size) {
+        ssize_t got = pread(s->file, to, size, (off_t)(start + offset));
+        if (got < 0 && errno == EINTR) continue;
+        BRIO_REQUIRE(s->ctx, got >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+        BRIO_REQUIRE(s->ctx, got > 0, BRIO_ERR_FORMAT, "%s: ends at byte %" PRIu64, s->name, offset);
+        to += got;
+        size -= (size_t)got;
+        offset += (uint64_t)got;
+    }
+done:
+    return status;
+}
+
 /* Finds the length of the next line without its end, or brio_stream_left if the file ends without one. */
 static brio_status line_length(brio_stream *s, size_t *length) {
     brio_status status = BRIO_OK;

@@ -51,6 +51,9 @@ brio_status brio_stream_skip(brio_stream *s, uint64_t count);
 /** Returns the next line in *line, with a 0 in place of its end (LF or CR LF), or NULL at the end of the file. */
 brio_status brio_stream_line(brio_stream *s, char **line);
 
+/** Copies bytes of a regular file from any place, without moving the stream. Fails if the file ends before. */
+brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_t size);
+
 /** Names the element that is read from now on, and its number of rows, for messages; row becomes 0. */
 void brio_stream_element(brio_stream *s, const char *element, uint64_t rows);
 

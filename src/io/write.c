@@ -57,18 +57,19 @@ done:
 
 static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
                                const brio_write_options *options) {
-    static const char *const without_tetrahedra[BRIO_FORMAT_END] = {[BRIO_FORMAT_XYZ] = "a text of points",
-                                                                    [BRIO_FORMAT_OBJ] = "an OBJ file",
-                                                                    [BRIO_FORMAT_OFF] = "an OFF file",
-                                                                    [BRIO_FORMAT_VTP] = "a VTP file"};
+    static const char *const without_tetrahedra[BRIO_FORMAT_END] = {
+        [BRIO_FORMAT_XYZ] = "a text of points", [BRIO_FORMAT_OBJ] = "an OBJ file", [BRIO_FORMAT_OFF] = "an OFF file",
+        [BRIO_FORMAT_VTP] = "a VTP file",       [BRIO_FORMAT_LAS] = "a LAS file",  [BRIO_FORMAT_STL] = "an STL file",
+        [BRIO_FORMAT_NPY] = "an NPY file"};
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, format > BRIO_FORMAT_AUTO && format < BRIO_FORMAT_END, BRIO_ERR_ARGUMENT,
-                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp or .node", path);
+                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .las .stl or .npy",
+                 path);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || !without_tetrahedra[format], BRIO_ERR_ARGUMENT,
                  "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, without_tetrahedra[format]);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0, BRIO_ERR_ARGUMENT,
                  "standard output cannot hold the two files .node and .ele");
-    if (options->float32) BRIO_TRY(check_single(ctx, path, m));
+    if (options->float32 || format == BRIO_FORMAT_STL) BRIO_TRY(check_single(ctx, path, m));
 done:
     return status;
 }
@@ -98,6 +99,16 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
         return brio_node_write(out, job);
     case BRIO_FORMAT_VTP:
         return brio_vtp_write(out, job);
+    case BRIO_FORMAT_LAS:
+        return brio_las_write(out, job);
+    case BRIO_FORMAT_STL:
+        return brio_stl_write(out, job);
+    case BRIO_FORMAT_NPY:
+        return brio_npy_write(out, job);
+    case BRIO_FORMAT_LAZ:
+    case BRIO_FORMAT_PCD:
+    case BRIO_FORMAT_PTX:
+        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD and PTX files are read, not written", out->name);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;
@@ -108,8 +119,8 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
 static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
     brio_status status = BRIO_OK;
     brio_output out;
-    bool text =
-        job->options->ascii || (format != BRIO_FORMAT_PLY && format != BRIO_FORMAT_VTU && format != BRIO_FORMAT_VTP);
+    bool text = job->options->ascii || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_OBJ ||
+                format == BRIO_FORMAT_OFF || format == BRIO_FORMAT_NODE;
     BRIO_TRY(brio_output_open(&out, ctx, path, expected_bytes(job->mesh, text)));
     BRIO_TRY(write_output(&out, job, format));
     BRIO_TRY(brio_output_finish(&out));
@@ -181,7 +192,8 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
     BRIO_TRY(check_indices(ctx, mesh));
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
-    if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ) BRIO_TRY(make_names(ctx, path, &job));
+    if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_NPY)
+        BRIO_TRY(make_names(ctx, path, &job));
     BRIO_TRY(format == BRIO_FORMAT_NODE ? write_node(ctx, path, &job) : write_one(ctx, path, &job, format));
 done:
     brio_release(ctx, job.names);

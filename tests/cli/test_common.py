@@ -99,7 +99,7 @@ class Usage(CliTest):
             self.usage(".", "delaunay", "a.xyz", *arguments)
 
     def test_output_without_a_known_extension(self):
-        self.usage("--format", "delaunay", "a.xyz", "-o", "out.npy")
+        self.usage("--format", "delaunay", "a.xyz", "-o", "out.what")
 
     def test_standard_output_without_format(self):
         self.usage("--format", "delaunay", "a.xyz", "-o", "-")

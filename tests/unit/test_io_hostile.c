@@ -16,7 +16,11 @@ static const file_case files[] = {{"b.ply", IO_FACES | IO_TETRAHEDRA | IO_PROPER
                                   {"a.obj", IO_FACES, 0},
                                   {"a.off", IO_FACES, 0},
                                   {"a.vtu", IO_FACES | IO_TETRAHEDRA | IO_PROPERTIES, 0},
-                                  {"a.node", IO_TETRAHEDRA | IO_PROPERTIES, 0}};
+                                  {"a.node", IO_TETRAHEDRA | IO_PROPERTIES, 0},
+                                  {"a.las", IO_PROPERTIES, 0},
+                                  {"b.stl", IO_FACES | IO_SINGLE, 0},
+                                  {"a.stl", IO_FACES | IO_SINGLE, 1},
+                                  {"a.npy", IO_PROPERTIES, 0}};
 enum { NUM_FILES = sizeof files / sizeof *files };
 
 static brio_write_options options_of(const file_case *file) {

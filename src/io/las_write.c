@@ -1,0 +1,269 @@
+/* Writes LAS files: version 1.2 with formats 0 to 3, version 1.4 with formats 6 to 8.
+ *
+ * The format is the first one whose fields take the most properties. A field takes the property of its name if all
+ * values fit; every other property is written as an extra number, with its name and type. Polygons are left out.
+ *
+ * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
+#include "base/memory.h"
+#include "base/team.h"
+#include "io/formats.h"
+#include "io/las_fields.h"
+#include "io/las_grid.h"
+#include "io/little_endian.h"
+#include <math.h>
+#include <string.h>
+
+/* CHUNK: rows encoded at a time. Both chosen. */
+enum { CHUNK = 1 << 15, ROWS_A_THREAD = 1 << 12 };
+enum { HEADER = 227, HEADER_1_4 = 375, RECORD_HEADER = 54, EXTRA_RECORD = 192, MOST_EXTRAS = 340, EXTRA_NAME = 32 };
+enum { RETURNS = 15, WKT = 16 /* the flag of formats 6 to 10: coordinate systems as text */ };
+
+/* Where a property goes. */
+typedef struct {
+    size_t at;
+    brio_scalar type;
+    uint8_t shift, bits;
+    bool extra;
+} place;
+
+/* What the values of a property are. */
+typedef struct {
+    bool whole;
+    double low, high;
+} range;
+
+typedef struct {
+    const brio_write_job *job;
+    brio_las_grid grid;
+    unsigned format;
+    size_t record, num_extras;
+    place *places;
+    range *ranges;
+    uint64_t returns[RETURNS + 1]; /* points by the number of their return */
+    char *rows;
+    size_t first; /* the vertex of the first row */
+} las_writer;
+
+/* --- the format --- */
+
+static range range_of(const brio_property *p, size_t count) {
+    range r = {true, 0, 0};
+    for (size_t i = 0; i < count; i++) {
+        double x = brio_property_value(p, i);
+        r.whole &= x == floor(x) && fabs(x) <= UINT32_MAX;
+        if (i == 0 || x < r.low) r.low = x;
+        if (i == 0 || x > r.high) r.high = x;
+    }
+    return r;
+}
+
+static bool fits(const brio_las_field *f, const range *r) {
+    if (f->type == BRIO_SCALAR_FLOAT64) return true;
+    bool is_signed = f->type == BRIO_SCALAR_INT8 || f->type == BRIO_SCALAR_INT16;
+    int bits = f->bits ? f->bits : 8 * (int)brio_scalar_size(f->type);
+    double most = ldexp(1, bits - is_signed) - 1;
+    return r->whole && r->low >= (is_signed ? -most - 1 : 0) && r->high <= most;
+}
+
+/* Finds the field of a format that takes a property, or NULL. */
+static const brio_las_field *field_of(const brio_las_field *fields, size_t count, const brio_property *p,
+                                      const range *r) {
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(fields[i].name, p->name)) return fits(&fields[i], r) ? &fields[i] : NULL;
+    return NULL;
+}
+
+static unsigned choose_format(const las_writer *w) {
+    static const unsigned formats[] = {0, 1, 2, 3, 6, 7, 8};
+    const brio_mesh *m = w->job->mesh;
+    brio_las_field fields[BRIO_LAS_FIELDS];
+    size_t most = 0;
+    unsigned best = 0;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        size_t taken = 0, count = brio_las_fields_of(formats[i], fields);
+        for (size_t j = 0; j < m->num_properties; j++)
+            taken += field_of(fields, count, &m->properties[j], &w->ranges[j]) != NULL;
+        if (taken <= most) continue;
+        most = taken;
+        best = formats[i];
+    }
+    return best;
+}
+
+static brio_status check_extra(brio_output *out, const las_writer *w, const char *name) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(out->ctx, strlen(name) <= EXTRA_NAME, BRIO_ERR_ARGUMENT,
+                 "%s: the property %s: a LAS file has names of at most %d bytes", out->name, name, EXTRA_NAME);
+    BRIO_REQUIRE(out->ctx, w->num_extras < MOST_EXTRAS, BRIO_ERR_ARGUMENT,
+                 "%s: a LAS file holds at most %d properties that its format does not know", out->name, MOST_EXTRAS);
+done:
+    return status;
+}
+
+static brio_status plan(brio_output *out, las_writer *w) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = w->job->mesh;
+    brio_las_field fields[BRIO_LAS_FIELDS];
+    BRIO_TRY(BRIO_ALLOC_ZERO(out->ctx, w->places, m->num_properties + 1));
+    BRIO_TRY(BRIO_ALLOC(out->ctx, w->ranges, m->num_properties + 1));
+    for (size_t i = 0; i < m->num_properties; i++) w->ranges[i] = range_of(&m->properties[i], m->num_vertices);
+    w->format = choose_format(w);
+    w->record = brio_las_record_bytes(w->format);
+    size_t count = brio_las_fields_of(w->format, fields);
+    for (size_t i = 0; i < m->num_properties; i++) {
+        const brio_property *p = &m->properties[i];
+        const brio_las_field *f = field_of(fields, count, p, &w->ranges[i]);
+        if (f) {
+            w->places[i] = (place){f->at, f->type, f->shift, f->bits, false};
+            continue;
+        }
+        BRIO_TRY(check_extra(out, w, p->name));
+        w->places[i] = (place){w->record, p->type, 0, 0, true};
+        w->record += brio_scalar_size(p->type);
+        w->num_extras++;
+    }
+    brio_las_grid_find(m, &w->grid);
+done:
+    return status;
+}
+
+/* --- the header --- */
+
+static void put_limits(const las_writer *w, char *header) {
+    const brio_mesh *m = w->job->mesh;
+    for (int k = 0; k < 3; k++) {
+        int32_t low = m->num_vertices ? INT32_MAX : 0, high = m->num_vertices ? INT32_MIN : 0;
+        for (size_t v = 0; v < m->num_vertices; v++) {
+            int32_t n = brio_las_grid_number(&w->grid, k, m->vertices[3 * v + (size_t)k]);
+            if (n < low) low = n;
+            if (n > high) high = n;
+        }
+        brio_put_le_double(header + 131 + 8 * k, w->grid.step[k]);
+        brio_put_le_double(header + 155 + 8 * k, w->grid.origin[k]);
+        brio_put_le_double(header + 179 + 16 * k, high * w->grid.step[k] + w->grid.origin[k]);
+        brio_put_le_double(header + 187 + 16 * k, low * w->grid.step[k] + w->grid.origin[k]);
+    }
+}
+
+static void count_returns(las_writer *w) {
+    const brio_mesh *m = w->job->mesh;
+    const brio_property *p = brio_mesh_property(m, "return_number");
+    if (!p || w->places[p - m->properties].extra) return;
+    for (size_t v = 0; v < m->num_vertices; v++) w->returns[(int)brio_property_value(p, v) & RETURNS]++;
+}
+
+static brio_status write_header(brio_output *out, las_writer *w) {
+    char header[HEADER_1_4] = "LASF";
+    uint64_t n = w->job->mesh->num_vertices;
+    bool late = w->format >= 6;
+    size_t size = late ? HEADER_1_4 : HEADER, extras = w->num_extras ? RECORD_HEADER + EXTRA_RECORD * w->num_extras : 0;
+    const char *comment = w->job->options->comment ? w->job->options->comment : "brio " BRIO_VERSION;
+    count_returns(w);
+    brio_put_le16(header + 6, late ? WKT : 0);
+    header[24] = 1;
+    header[25] = late ? 4 : 2;
+    memcpy(header + 26, "OTHER", 5);
+    memcpy(header + 58, comment, strlen(comment) < 32 ? strlen(comment) : 31);
+    brio_put_le16(header + 94, (uint16_t)size);
+    brio_put_le32(header + 96, (uint32_t)(size + extras));
+    brio_put_le32(header + 100, w->num_extras != 0);
+    header[104] = (char)w->format;
+    brio_put_le16(header + 105, (uint16_t)w->record);
+    if (!late) brio_put_le32(header + 107, (uint32_t)n);
+    for (int i = 0; i < 5 && !late; i++) brio_put_le32(header + 111 + 4 * i, (uint32_t)w->returns[i + 1]);
+    put_limits(w, header);
+    if (late) brio_put_le64(header + 247, n);
+    for (int i = 0; i < RETURNS && late; i++) brio_put_le64(header + 255 + 8 * i, w->returns[i + 1]);
+    return brio_output_bytes(out, header, size);
+}
+
+static brio_status write_extras(brio_output *out, const las_writer *w) {
+    static const uint8_t types[BRIO_SCALAR_END] = {2, 1, 4, 3, 6, 5, 9, 10};
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = w->job->mesh;
+    char header[RECORD_HEADER] = {0};
+    if (!w->num_extras) return BRIO_OK;
+    memcpy(header + 2, "LASF_Spec", 9);
+    brio_put_le16(header + 18, 4);
+    brio_put_le16(header + 20, (uint16_t)(EXTRA_RECORD * w->num_extras));
+    BRIO_TRY(brio_output_bytes(out, header, sizeof header));
+    for (size_t i = 0; i < m->num_properties; i++) {
+        char extra[EXTRA_RECORD] = {0};
+        if (!w->places[i].extra) continue;
+        extra[2] = (char)types[m->properties[i].type];
+        memcpy(extra + 4, m->properties[i].name, strlen(m->properties[i].name));
+        BRIO_TRY(brio_output_bytes(out, extra, sizeof extra));
+    }
+done:
+    return status;
+}
+
+/* --- records --- */
+
+static void put_number(char *bytes, brio_scalar type, double x) {
+    float single = (float)x;
+    uint32_t bits;
+    switch (type) {
+    case BRIO_SCALAR_FLOAT64:
+        brio_put_le_double(bytes, x);
+        return;
+    case BRIO_SCALAR_FLOAT32:
+        memcpy(&bits, &single, sizeof bits);
+        brio_put_le32(bytes, bits);
+        return;
+    default:
+        bits = (uint32_t)(int64_t)x;
+        if (brio_scalar_size(type) == 4) brio_put_le32(bytes, bits);
+        if (brio_scalar_size(type) == 2) brio_put_le16(bytes, (uint16_t)bits);
+        if (brio_scalar_size(type) == 1) *bytes = (char)bits;
+    }
+}
+
+static void encode(void *user, size_t begin, size_t end, int thread) {
+    const las_writer *w = user;
+    const brio_mesh *m = w->job->mesh;
+    (void)thread;
+    memset(w->rows + begin * w->record, 0, (end - begin) * w->record);
+    for (size_t i = begin; i < end; i++)
+        for (int k = 0; k < 3; k++)
+            brio_put_le32(w->rows + i * w->record + 4 * k,
+                          (uint32_t)brio_las_grid_number(&w->grid, k, m->vertices[3 * (w->first + i) + (size_t)k]));
+    for (size_t j = 0; j < m->num_properties; j++) {
+        const place *p = &w->places[j];
+        for (size_t i = begin; i < end; i++) {
+            double x = brio_property_value(&m->properties[j], w->first + i);
+            char *bytes = w->rows + i * w->record + p->at;
+            if (p->bits)
+                *bytes = (char)((uint8_t)*bytes | (unsigned)x << p->shift);
+            else
+                put_number(bytes, p->type, x);
+        }
+    }
+}
+
+static brio_status write_records(brio_output *out, las_writer *w) {
+    brio_status status = BRIO_OK;
+    size_t n = w->job->mesh->num_vertices;
+    BRIO_TRY(BRIO_ALLOC(out->ctx, w->rows, CHUNK * w->record));
+    for (w->first = 0; w->first < n; w->first += CHUNK) {
+        size_t count = n - w->first < CHUNK ? n - w->first : CHUNK;
+        brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode, w);
+        BRIO_TRY(brio_output_bytes(out, w->rows, count * w->record));
+    }
+done:
+    return status;
+}
+
+brio_status brio_las_write(brio_output *out, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    las_writer w = {.job = job};
+    BRIO_TRY(plan(out, &w));
+    BRIO_TRY(write_header(out, &w));
+    BRIO_TRY(write_extras(out, &w));
+    BRIO_TRY(write_records(out, &w));
+done:
+    brio_release(out->ctx, w.places);
+    brio_release(out->ctx, w.ranges);
+    brio_release(out->ctx, w.rows);
+    return status;
+}

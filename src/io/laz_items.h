@@ -1,0 +1,127 @@
+/* The items of a compressed LAS record and their predictors. An item keeps what it decoded last; the next value is
+ * coded as a difference to it. The bytes of an item are those of a LAS record.
+ *
+ * An item whose bytes are all 0, except for what its _begin function sets, is at the beginning of a chunk.
+ *
+ * Based on: Isenburg. LASzip: lossless compression of LiDAR data. Photogrammetric Engineering and Remote Sensing 79,
+ * 2013. */
+#ifndef BRIO_IO_LAZ_ITEMS_H
+#define BRIO_IO_LAZ_ITEMS_H
+
+#include "io/laz_model.h"
+
+/* --- the median of the last values --- */
+
+/** Five values in ascending order. A new one replaces the largest or the smallest in turn, so that the middle one
+ *  follows the median of a changing sequence. */
+typedef struct brio_laz_median {
+    int32_t values[5];
+    bool drops_smallest;
+} brio_laz_median;
+
+static inline int32_t brio_laz_median_of(const brio_laz_median *m) {
+    return m->values[2];
+}
+
+static inline void brio_laz_median_add(brio_laz_median *m, int32_t x) {
+    int32_t old[4], middle = m->values[2];
+    bool drops_smallest = m->drops_smallest;
+    for (int i = 0; i < 4; i++) old[i] = m->values[i + drops_smallest];
+    m->drops_smallest = drops_smallest ? middle < x : x >= middle;
+    for (int i = 0; i < 4; i++) {
+        int32_t low = old[i] < x ? old[i] : x;
+        x = old[i] < x ? x : old[i];
+        m->values[i] = low;
+    }
+    m->values[4] = x;
+}
+
+/* --- points of formats 0 to 5 --- */
+
+enum { BRIO_LAZ_POINT10 = 20, BRIO_LAZ_POINT14 = 30 /* bytes */ };
+
+typedef struct brio_laz_point10 {
+    uint8_t last[BRIO_LAZ_POINT10];
+    int32_t position[3];
+    brio_laz_median x[16], y[16];
+    uint16_t intensities[16];
+    int32_t heights[8];
+    brio_laz_model changed, scan_angle[2], flags[256], classification[256], user_data[256];
+    brio_laz_integer intensity, source, dx, dy, z;
+} brio_laz_point10;
+
+void brio_laz_point10_begin(brio_laz_point10 *p, const uint8_t *first);
+void brio_laz_point10_next(brio_laz_point10 *p, brio_laz_coder *c, brio_laz_arena *arena, uint8_t *row);
+
+/* --- times --- */
+
+/** Four sequences of times, of which one is the current one. */
+typedef struct brio_laz_time {
+    uint64_t times[4]; /* the bits of doubles */
+    int32_t steps[4];
+    int extremes[4]; /* steps one after the other that were far from a multiple of the step */
+    uint32_t last, next;
+    brio_laz_model multiple, first;
+    brio_laz_integer difference;
+} brio_laz_time;
+
+void brio_laz_time_begin(brio_laz_time *t, uint64_t first);
+
+/** Decodes the next time.   may_stay  1 in formats 0 to 5, where a symbol says that the time stays; 0 in the layers. */
+uint64_t brio_laz_time_next(brio_laz_time *t, brio_laz_coder *c, brio_laz_arena *arena, uint32_t may_stay);
+
+/* --- colours --- */
+
+typedef struct brio_laz_colour_models {
+    brio_laz_model used, differences[6];
+} brio_laz_colour_models;
+
+/** Decodes red, green and blue.   last  the last colour, which the new one replaces. */
+void brio_laz_colour_next(brio_laz_colour_models *m, brio_laz_coder *c, brio_laz_arena *arena, uint16_t last[3]);
+
+typedef struct brio_laz_infrared_models {
+    brio_laz_model used, differences[2];
+} brio_laz_infrared_models;
+void brio_laz_infrared_next(brio_laz_infrared_models *m, brio_laz_coder *c, brio_laz_arena *arena, uint16_t *last);
+
+/* --- points of formats 6 to 10, in layers --- */
+
+/** The layers of a point, in the file's order. A layer without bytes has values that stay. */
+typedef enum {
+    BRIO_LAZ_RETURNS_XY,
+    BRIO_LAZ_Z,
+    BRIO_LAZ_CLASSIFICATION,
+    BRIO_LAZ_FLAGS,
+    BRIO_LAZ_INTENSITY,
+    BRIO_LAZ_SCAN_ANGLE,
+    BRIO_LAZ_USER_DATA,
+    BRIO_LAZ_SOURCE,
+    BRIO_LAZ_TIME,
+    BRIO_LAZ_POINT14_LAYERS
+} brio_laz_layer;
+
+/** What is kept for each channel of the scanner. */
+typedef struct brio_laz_channel {
+    bool used, time_changed;
+    uint8_t last[BRIO_LAZ_POINT14];
+    brio_laz_median x[12], y[12];
+    int32_t heights[8];
+    uint16_t intensities[8];
+    brio_laz_model changed[8], channel, num_returns[16], return_number[16], return_same_time;
+    brio_laz_model classification[64], flags[64], user_data[64];
+    brio_laz_integer dx, dy, z, intensity, scan_angle, source;
+    brio_laz_time time;
+} brio_laz_channel;
+
+typedef struct brio_laz_point14 {
+    brio_laz_channel channels[4];
+    uint32_t channel; /* the current one */
+} brio_laz_point14;
+
+void brio_laz_point14_begin(brio_laz_point14 *p, const uint8_t *first);
+
+/** Decodes the next point.   layers  the decoders of the layers; the one of an empty layer has no bytes.
+ *  Returns whether the channel changed. */
+bool brio_laz_point14_next(brio_laz_point14 *p, brio_laz_coder *layers, brio_laz_arena *arena, uint8_t *row);
+
+#endif

@@ -1,0 +1,252 @@
+/* Reads the chunks of a LAZ file.
+ *
+ * With a table of chunks, as many chunks as there are threads are read, and each thread decodes chunks: the points of a
+ * chunk go to their places in the mesh, so the order of the threads does not matter. Without a table (a pipe, or a file
+ * whose writer was interrupted) one chunk is read after the other: layers say their sizes, and a chunk without layers
+ * ends where its decoder stops. Then the decoder begins with a window of the bytes that follow, and again with a
+ * larger one if these did not suffice.
+ *
+ * Based on: Isenburg. LASzip: lossless compression of LiDAR data. Photogrammetric Engineering and Remote Sensing 79,
+ * 2013. */
+#include "base/memory.h"
+#include "base/team.h"
+#include "io/las_read.h"
+#include "io/laz_table.h"
+#include "io/little_endian.h"
+#include <inttypes.h>
+
+/* All chosen. BLOCK: bytes of the records that are decoded before they are stored. BATCH: bytes of chunks that are read
+ * together, at most, if these are more than one. DENSE: a point that takes less than 1/DENSE byte makes no promise that
+ * memory is made for. MOST_IN_PIPE: points of a chunk whose end is not known. */
+enum { BLOCK = 1 << 15, BATCH = 1 << 26, CHUNKS_A_THREAD = 2, WINDOW = 1 << 20, DENSE = 64, MOST_IN_PIPE = 1 << 24 };
+
+/* A thread's decoder. */
+typedef struct {
+    brio_laz_decoder *decoder;
+    uint8_t *rows;
+} worker;
+
+/* A chunk that is in memory. */
+typedef struct {
+    const uint8_t *bytes;
+    size_t size;
+    size_t first, points; /* its points in the mesh */
+    bool damaged;
+    size_t at; /* damaged: the first point of the block that is */
+} loaded_chunk;
+
+typedef struct {
+    brio_stream *stream;
+    brio_builder *builder;
+    const brio_las_header *header;
+    const brio_las_plan *plan;
+    int threads;
+    worker *workers;
+    loaded_chunk *batch;
+    size_t num_batch;
+} laz_reader;
+
+/* --- workers --- */
+
+static size_t block_rows(const brio_las_header *h) {
+    return BLOCK / h->record + 1;
+}
+
+static brio_status make_workers(laz_reader *r, size_t chunks) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = r->stream->ctx;
+    const brio_las_header *h = r->header;
+    r->threads = brio_threads(ctx, chunks, 1);
+    size_t count = (size_t)r->threads, bytes = brio_laz_decoder_bytes(&h->form);
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r->workers, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, r->batch, CHUNKS_A_THREAD * count));
+    for (size_t i = 0; i < count; i++) {
+        char *memory;
+        BRIO_TRY(BRIO_ALLOC(ctx, memory, bytes));
+        r->workers[i].decoder = brio_laz_decoder_make(memory, &h->form);
+        BRIO_TRY(BRIO_ALLOC(ctx, r->workers[i].rows, block_rows(h) * h->record));
+    }
+done:
+    return status;
+}
+
+static void free_workers(laz_reader *r) {
+    for (int i = 0; i < r->threads && r->workers; i++) {
+        brio_release(r->stream->ctx, r->workers[i].decoder);
+        brio_release(r->stream->ctx, r->workers[i].rows);
+    }
+    brio_release(r->stream->ctx, r->workers);
+    brio_release(r->stream->ctx, r->batch);
+}
+
+/* Decodes a chunk and stores its points. */
+static void decode_chunk(const laz_reader *r, const worker *w, loaded_chunk *c) {
+    size_t most = block_rows(r->header);
+    c->at = 0;
+    /* some encoders end with a chunk of no points */
+    c->damaged = c->points && !brio_laz_begin(w->decoder, c->bytes, c->size);
+    while (!c->damaged && c->at < c->points) {
+        size_t rows = c->points - c->at < most ? c->points - c->at : most;
+        c->damaged = !brio_laz_next(w->decoder, w->rows, rows);
+        if (c->damaged) return;
+        brio_las_store(r->plan, r->builder->mesh, (char *)w->rows, c->first + c->at, rows);
+        c->at += rows;
+    }
+}
+
+static brio_status damaged(const laz_reader *r, const loaded_chunk *c, uint64_t offset) {
+    return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT,
+                     "%s: the compressed chunk at byte %" PRIu64
+                     " is damaged or cut off: at point %zu (counted from 0) "
+                     "of the file or soon behind it",
+                     r->stream->name, offset, c->first + c->at);
+}
+
+/* --- with a table --- */
+
+static void decode_part(void *user, size_t begin, size_t end, int thread) {
+    const laz_reader *r = user;
+    for (size_t i = begin; i < end; i++) decode_chunk(r, &r->workers[thread], &r->batch[i]);
+}
+
+/* Reads and decodes as many of the chunks as fit in a batch, and returns their number in *used. */
+static brio_status read_batch(laz_reader *r, const brio_laz_chunk *chunks, size_t count, size_t *used) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    size_t bytes = 0, points = 0, n = 0, most = r->threads > 1 ? CHUNKS_A_THREAD * (size_t)r->threads : 1;
+    uint64_t offset = brio_stream_offset(s);
+    const char *data = NULL;
+    for (; n < count && n < most && (n == 0 || bytes + chunks[n].bytes <= BATCH); n++) {
+        r->batch[n] =
+            (loaded_chunk){.size = chunks[n].bytes, .first = (size_t)s->row + points, .points = chunks[n].points};
+        bytes += chunks[n].bytes;
+        points += chunks[n].points;
+    }
+    BRIO_TRY(brio_stream_take(s, bytes, &data));
+    BRIO_TRY(brio_builder_add_vertices(r->builder, points));
+    for (size_t i = 0; i < n; data += r->batch[i++].size) r->batch[i].bytes = (const uint8_t *)data;
+    brio_for_chunks(s->ctx, r->threads, n, 1, decode_part, r);
+    for (size_t i = 0; i < n; offset += r->batch[i++].size)
+        if (r->batch[i].damaged) return damaged(r, &r->batch[i], offset);
+    s->row += points;
+    *used = n;
+done:
+    return status;
+}
+
+static brio_status read_with_table(laz_reader *r, const brio_laz_chunk *chunks, size_t count) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    BRIO_TRY(make_workers(r, count));
+    if (r->header->num_points / DENSE <= s->size)
+        BRIO_TRY(brio_builder_expect_vertices(r->builder, r->header->num_points));
+    for (size_t i = 0, used = 0; i < count; i += used) BRIO_TRY(read_batch(r, chunks + i, count - i, &used));
+done:
+    return status;
+}
+
+/* --- one chunk after the other --- */
+
+/* Reads until the buffer has `need` bytes or the file ends. The buffer never grows to more than twice what it has. */
+static brio_status gather(brio_stream *s, uint64_t need) {
+    brio_status status = BRIO_OK;
+    while (brio_stream_left(s) < need && !s->ended) {
+        uint64_t step = 2 * (uint64_t)brio_stream_left(s);
+        if (step < WINDOW) step = WINDOW;
+        BRIO_TRY(brio_stream_fill(s, (size_t)(step < need ? step : need)));
+    }
+done:
+    return status;
+}
+
+/* Refuses a chunk of more points than its bytes can stand for, before memory is made for them.
+ *  bytes  at most as many as the chunk has; BRIO_SIZE_UNKNOWN in a pipe. */
+static brio_status check_points(const laz_reader *r, size_t points, uint64_t bytes) {
+    brio_stream *s = r->stream;
+    if (bytes == BRIO_SIZE_UNKNOWN ? points <= MOST_IN_PIPE : points / BRIO_LAZ_MOST_DENSE <= bytes) return BRIO_OK;
+    return brio_fail(s->ctx, BRIO_ERR_FORMAT,
+                     "%s: byte %" PRIu64 ": a compressed chunk cannot have %zu points in its bytes, or in a pipe more "
+                     "than %d",
+                     s->name, brio_stream_offset(s), points, (int)MOST_IN_PIPE);
+}
+
+/* Decodes the chunk of layers that follows. It says how many bytes it has. */
+static brio_status next_layers(laz_reader *r, loaded_chunk *c) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    const brio_laz_form *form = &r->header->form;
+    uint32_t points = 0;
+    BRIO_TRY(gather(s, brio_laz_layers_head(form)));
+    uint64_t size = brio_laz_layers_bytes(form, (uint8_t *)s->buffer + s->begin, brio_stream_left(s), &points);
+    if (!size) return brio_stream_truncated(s);
+    bool fits = r->header->chunk == UINT32_MAX ? points && points <= c->points : points == c->points;
+    BRIO_REQUIRE(s->ctx, fits, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": a chunk of %" PRIu32 " points, expected %s%zu",
+                 s->name, brio_stream_offset(s), points, r->header->chunk == UINT32_MAX ? "1 to " : "", c->points);
+    c->points = points;
+    BRIO_TRY(gather(s, size));
+    if (brio_stream_left(s) < size) return brio_stream_truncated(s);
+    BRIO_TRY(check_points(r, points, size));
+    BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
+    c->bytes = (uint8_t *)s->buffer + s->begin;
+    c->size = (size_t)size;
+    decode_chunk(r, r->workers, c);
+done:
+    return status;
+}
+
+/* Decodes the chunk that follows, whose end only its decoder finds. */
+static brio_status next_stream(laz_reader *r, loaded_chunk *c) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    BRIO_TRY(check_points(r, c->points, s->size == BRIO_SIZE_UNKNOWN ? s->size : s->size - brio_stream_offset(s)));
+    BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
+    for (uint64_t window = WINDOW;; window *= 2) {
+        BRIO_TRY(gather(s, window));
+        c->bytes = (uint8_t *)s->buffer + s->begin;
+        c->size = brio_stream_left(s);
+        decode_chunk(r, r->workers, c);
+        if (!c->damaged || s->ended) break;
+    }
+    if (!c->damaged) c->size = brio_laz_used(r->workers->decoder);
+done:
+    return status;
+}
+
+static brio_status read_without_table(laz_reader *r) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    const brio_las_header *h = r->header;
+    bool fixed = h->chunked && h->chunk != UINT32_MAX;
+    BRIO_REQUIRE(s->ctx, fixed || !h->chunked || h->form.layered, BRIO_ERR_FORMAT,
+                 "%s: chunks of different numbers of points need their table, which is missing or, in a pipe, not "
+                 "there yet",
+                 s->name);
+    BRIO_TRY(make_workers(r, 1));
+    while (s->row < h->num_points) {
+        loaded_chunk c = {.first = (size_t)s->row, .points = (size_t)(h->num_points - s->row)};
+        if (fixed && c.points > h->chunk) c.points = h->chunk;
+        BRIO_TRY(h->form.layered ? next_layers(r, &c) : next_stream(r, &c));
+        if (c.damaged) return damaged(r, &c, brio_stream_offset(s));
+        s->begin += c.size;
+        s->row += c.points;
+    }
+done:
+    return status;
+}
+
+brio_status brio_laz_read(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan) {
+    brio_status status = BRIO_OK;
+    laz_reader r = {.stream = s, .builder = b, .header = h, .plan = plan};
+    brio_laz_chunk *chunks = NULL;
+    size_t count = 0;
+    const char *bytes = NULL;
+    if (h->chunked && h->num_points) {
+        BRIO_TRY(brio_stream_take(s, 8, &bytes));
+        BRIO_TRY(brio_laz_table_read(s, h, brio_le64(bytes), &chunks, &count));
+    }
+    BRIO_TRY(chunks ? read_with_table(&r, chunks, count) : read_without_table(&r));
+done:
+    free_workers(&r);
+    brio_release(s->ctx, chunks);
+    return status;
+}

@@ -1,0 +1,14 @@
+/* LZF, the compression of PCD files. */
+#ifndef BRIO_IO_LZF_H
+#define BRIO_IO_LZF_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { BRIO_LZF_MOST_RATIO = 88 /* bytes that one byte stands for, at most: 264 for 3 */ };
+
+/** Decompresses bytes. Returns whether they are sound and give exactly `size` bytes. */
+bool brio_lzf_decompress(const uint8_t *bytes, size_t count, uint8_t *out, size_t size);
+
+#endif

@@ -1,0 +1,141 @@
+/* Reads the header of a PCD file: lines of a key and its words, up to DATA.
+ *
+ * Based on: Rusu Cousins. 3D is here: Point Cloud Library. ICRA 2011; PCL's description of the format, version 0.7. */
+#include "io/pcd_header.h"
+#include "base/memory.h"
+#include "io/number.h"
+#include "io/textrow.h"
+#include <inttypes.h>
+#include <string.h>
+
+static brio_status bad_line(brio_stream *s, const char *expected) {
+    return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: expected %s", s->name, s->line, expected);
+}
+
+/* Returns the next word of a line, which ends with a 0 then, or NULL. */
+static char *next_word(char **line) {
+    char *word = brio_skip_blanks(*line), *end = word;
+    while (*end && !brio_is_blank(*end)) end++;
+    *line = *end ? end + 1 : end;
+    *end = 0;
+    return *word ? word : NULL;
+}
+
+static bool next_count(char **line, uint64_t *value) {
+    const char *word = next_word(line);
+    return word && brio_parse_count(&word, value) && !*word;
+}
+
+static brio_status read_fields(brio_stream *s, brio_pcd_header *h, char *line) {
+    brio_status status = BRIO_OK;
+    if (h->num_fields) return bad_line(s, "FIELDS once");
+    for (char *word = next_word(&line); word; word = next_word(&line)) {
+        if (strlen(word) > 63 || h->num_fields == BRIO_PCD_MOST_NUMBERS)
+            return bad_line(s, "at most 4096 fields with names of at most 63 characters");
+        BRIO_TRY(BRIO_RESERVE(s->ctx, h->fields, h->capacity, h->num_fields + 1));
+        brio_pcd_field *f = &h->fields[h->num_fields++];
+        *f = (brio_pcd_field){.type = 'F', .size = 4, .count = 1};
+        strcpy(f->name, word);
+    }
+done:
+    return status;
+}
+
+/* Reads SIZE or COUNT: a number for each field. */
+static brio_status read_counts(brio_stream *s, brio_pcd_header *h, char *line, bool sizes) {
+    for (size_t i = 0; i < h->num_fields; i++) {
+        uint64_t value;
+        if (!next_count(&line, &value) || !value || value > (sizes ? 8 : BRIO_PCD_MOST_NUMBERS) ||
+            (sizes && (value & (value - 1))))
+            return bad_line(s, sizes ? "a size 1, 2, 4 or 8 for each field" : "a count 1 to 4096 for each field");
+        *(sizes ? &h->fields[i].size : &h->fields[i].count) = (unsigned)value;
+    }
+    return BRIO_OK;
+}
+
+static brio_status read_types(brio_stream *s, brio_pcd_header *h, char *line) {
+    for (size_t i = 0; i < h->num_fields; i++) {
+        const char *word = next_word(&line);
+        if (!word || strlen(word) != 1 || !strchr("IUF", *word)) return bad_line(s, "a type I, U or F for each field");
+        h->fields[i].type = *word;
+    }
+    return BRIO_OK;
+}
+
+static brio_status read_data(brio_stream *s, brio_pcd_header *h, char *line) {
+    static const char *const names[] = {"ascii", "binary", "binary_compressed"};
+    const char *word = next_word(&line);
+    for (int i = 0; i < 3 && word; i++) {
+        if (strcmp(word, names[i]) != 0) continue;
+        h->data = (brio_pcd_data)i;
+        return BRIO_OK;
+    }
+    return bad_line(s, "DATA ascii, binary or binary_compressed");
+}
+
+typedef struct {
+    uint64_t width, height, points;
+    bool has_points;
+} pcd_size;
+
+static brio_status read_line(brio_stream *s, brio_pcd_header *h, char *line, pcd_size *size, bool *end) {
+    const char *key = next_word(&line);
+    if (!key || *key == '#' || !strcmp(key, "VERSION") || !strcmp(key, "VIEWPOINT")) return BRIO_OK;
+    if (!strcmp(key, "FIELDS") || !strcmp(key, "COLUMNS")) return read_fields(s, h, line);
+    if (!strcmp(key, "SIZE")) return read_counts(s, h, line, true);
+    if (!strcmp(key, "COUNT")) return read_counts(s, h, line, false);
+    if (!strcmp(key, "TYPE")) return read_types(s, h, line);
+    if (!strcmp(key, "DATA")) {
+        *end = true;
+        return read_data(s, h, line);
+    }
+    uint64_t *target = !strcmp(key, "WIDTH") ? &size->width : !strcmp(key, "HEIGHT") ? &size->height : NULL;
+    if (!strcmp(key, "POINTS")) {
+        target = &size->points;
+        size->has_points = true;
+    }
+    if (!target) return bad_line(s, "VERSION, FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, POINTS or DATA");
+    return next_count(&line, target) ? BRIO_OK : bad_line(s, "a whole number");
+}
+
+/* Sums up the fields, and checks them. */
+static brio_status finish(brio_stream *s, brio_pcd_header *h, const pcd_size *size) {
+    brio_status status = BRIO_OK;
+    if (__builtin_mul_overflow(size->width, size->height, &h->points)) h->points = UINT64_MAX;
+    BRIO_REQUIRE(s->ctx, !size->has_points || !h->points || size->points == h->points, BRIO_ERR_FORMAT,
+                 "%s: %" PRIu64 " points, WIDTH times HEIGHT is %" PRIu64, s->name, size->points, h->points);
+    if (size->has_points) h->points = size->points;
+    for (size_t i = 0; i < h->num_fields; i++) {
+        brio_pcd_field *f = &h->fields[i];
+        f->at = h->record;
+        h->record += (size_t)f->size * f->count;
+        h->numbers += f->count;
+        BRIO_REQUIRE(s->ctx, f->type != 'F' || f->size >= 4, BRIO_ERR_FORMAT,
+                     "%s: field %s is a floating-point number of %u bytes, expected 4 or 8", s->name, f->name, f->size);
+    }
+    BRIO_REQUIRE(s->ctx, h->numbers && h->numbers <= BRIO_PCD_MOST_NUMBERS, BRIO_ERR_FORMAT,
+                 "%s: %zu numbers for each point, expected 1 to %d", s->name, h->numbers, BRIO_PCD_MOST_NUMBERS);
+done:
+    return status;
+}
+
+brio_status brio_pcd_header_read(brio_stream *s, brio_pcd_header *h) {
+    brio_status status = BRIO_OK;
+    pcd_size size = {.height = 1};
+    bool end = false;
+    char *line;
+    *h = (brio_pcd_header){.num_fields = 0};
+    while (!end) {
+        BRIO_TRY(brio_stream_line(s, &line));
+        if (!line) return bad_line(s, "DATA behind this line");
+        BRIO_TRY(read_line(s, h, line, &size, &end));
+    }
+    BRIO_TRY(finish(s, h, &size));
+done:
+    return status;
+}
+
+void brio_pcd_header_free(brio_context *ctx, brio_pcd_header *h) {
+    brio_release(ctx, h->fields);
+    h->fields = NULL;
+}

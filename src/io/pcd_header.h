@@ -1,0 +1,32 @@
+/* The header of a PCD file. */
+#ifndef BRIO_IO_PCD_HEADER_H
+#define BRIO_IO_PCD_HEADER_H
+
+#include "io/stream.h"
+
+enum { BRIO_PCD_MOST_NUMBERS = 4096 /* of a point; chosen: limits what a false header can request */ };
+
+typedef enum { BRIO_PCD_ASCII, BRIO_PCD_BINARY, BRIO_PCD_COMPRESSED } brio_pcd_data;
+
+typedef struct brio_pcd_field {
+    char name[64];
+    char type;      /* I, U or F */
+    unsigned size;  /* bytes of a number */
+    unsigned count; /* numbers */
+    size_t at;      /* byte of the first number in a record */
+} brio_pcd_field;
+
+typedef struct brio_pcd_header {
+    brio_pcd_field *fields;
+    size_t num_fields, capacity;
+    uint64_t points;
+    size_t record, numbers; /* bytes and numbers of a point */
+    brio_pcd_data data;
+} brio_pcd_header;
+
+/** Reads the header up to the line DATA. Call brio_pcd_header_free even if this fails.
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+brio_status brio_pcd_header_read(brio_stream *s, brio_pcd_header *h);
+void brio_pcd_header_free(brio_context *ctx, brio_pcd_header *h);
+
+#endif

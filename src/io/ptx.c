@@ -1,0 +1,102 @@
+/* Reads PTX files: scans as grids of rows, each scan with its own position.
+ *
+ * A scan begins with the numbers of columns and rows, the scanner's position and axes, and a matrix of 4 by 4 by which a
+ * row (x, y, z, 1) is multiplied. A point at the origin is a place without a return and is left out.
+ *
+ * Based on: Leica Geosystems. Description of the PTX format. */
+#include "io/formats.h"
+#include "io/textrow.h"
+#include <inttypes.h>
+#include <math.h>
+
+enum { SCANNER = 12 /* numbers of position and axes */, MATRIX = 16, LEAST = 3, INTENSITY = 4, COLOURS = 7 };
+
+typedef struct {
+    brio_text text;
+    brio_builder *builder;
+    double matrix[MATRIX];
+    int columns; /* numbers of a point: 3, 4 or 7; 0 before the first point */
+} ptx_reader;
+
+static brio_status read_scan_header(ptx_reader *r, uint64_t *points) {
+    brio_status status = BRIO_OK;
+    uint64_t columns, rows;
+    double ignored;
+    BRIO_TRY(brio_text_count(&r->text, "the number of columns", UINT32_MAX, &columns));
+    BRIO_TRY(brio_text_count(&r->text, "the number of rows", UINT32_MAX, &rows));
+    for (int i = 0; i < SCANNER; i++) BRIO_TRY(brio_text_number(&r->text, &ignored));
+    for (int i = 0; i < MATRIX; i++) BRIO_TRY(brio_text_number(&r->text, &r->matrix[i]));
+    BRIO_TRY(brio_text_row_end(&r->text));
+    *points = columns * rows;
+done:
+    return status;
+}
+
+/* Adds the properties that the first point of the file has. */
+static brio_status plan(ptx_reader *r, int columns) {
+    static const char *const colours[] = {"red", "green", "blue"};
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->text.stream;
+    BRIO_REQUIRE(s->ctx, columns == LEAST || columns == INTENSITY || columns == COLOURS, BRIO_ERR_FORMAT,
+                 "%s: line %zu: %d numbers, expected 3, 4 or 7", s->name, s->line, columns);
+    BRIO_REQUIRE(s->ctx, !r->columns || columns == r->columns, BRIO_ERR_FORMAT,
+                 "%s: line %zu: %d numbers, the first point has %d", s->name, s->line, columns, r->columns);
+    if (r->columns) return BRIO_OK;
+    r->columns = columns;
+    if (columns >= INTENSITY) BRIO_TRY(brio_builder_property(r->builder, "intensity", BRIO_SCALAR_FLOAT32));
+    for (int i = 0; i < 3 && columns == COLOURS; i++)
+        BRIO_TRY(brio_builder_property(r->builder, colours[i], BRIO_SCALAR_UINT8));
+done:
+    return status;
+}
+
+static brio_status add_point(ptx_reader *r, const double *values) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->text.stream;
+    double point[3];
+    if (values[0] == 0 && values[1] == 0 && values[2] == 0) return BRIO_OK;
+    for (int k = 0; k < 3; k++)
+        point[k] =
+            values[0] * r->matrix[k] + values[1] * r->matrix[4 + k] + values[2] * r->matrix[8 + k] + r->matrix[12 + k];
+    BRIO_TRY(brio_builder_vertex(r->builder, point));
+    brio_mesh *m = r->builder->mesh;
+    size_t v = m->num_vertices - 1;
+    if (r->columns >= INTENSITY) ((float *)m->properties[0].data)[v] = (float)values[3];
+    for (int i = 0; i < 3 && r->columns == COLOURS; i++) {
+        double colour = values[4 + i];
+        BRIO_REQUIRE(s->ctx, colour >= 0 && colour <= 255 && colour == floor(colour), BRIO_ERR_FORMAT,
+                     "%s: line %zu: the colour %g, expected a whole number from 0 to 255", s->name, s->line, colour);
+        ((uint8_t *)m->properties[1 + i].data)[v] = (uint8_t)colour;
+    }
+done:
+    return status;
+}
+
+static brio_status read_point(ptx_reader *r) {
+    brio_status status = BRIO_OK;
+    double values[COLOURS];
+    int columns = 0;
+    BRIO_TRY(brio_text_number(&r->text, &values[columns++]));
+    while (columns < COLOURS && brio_text_more(&r->text)) BRIO_TRY(brio_text_number(&r->text, &values[columns++]));
+    BRIO_TRY(brio_text_row_end(&r->text));
+    BRIO_TRY(plan(r, columns));
+    BRIO_TRY(add_point(r, values));
+done:
+    return status;
+}
+
+brio_status brio_ptx_read(brio_stream *s, brio_builder *b) {
+    brio_status status = BRIO_OK;
+    ptx_reader r = {.text = {s, 0, NULL}, .builder = b};
+    uint64_t points;
+    do {
+        brio_stream_element(s, "scan's header", 1);
+        BRIO_TRY(read_scan_header(&r, &points));
+        BRIO_TRY(brio_stream_expect(s, points, 2 * LEAST - 1, "the scan's header"));
+        brio_stream_element(s, "point", points);
+        for (; s->row < points; s->row++) BRIO_TRY(read_point(&r));
+        BRIO_TRY(brio_text_next_line(&r.text));
+    } while (r.text.at);
+done:
+    return status;
+}

@@ -1,0 +1,284 @@
+"""test_foreign.py: files that other programs write are read, and files that brio writes are read by them.
+
+BRIO_FILES names the example program 03_files, which reads one file and writes another. Each class of tests is skipped
+with its reason where the other program's package is missing; to run them all, use a Python that has numpy, laspy, lazrs,
+laszip, meshio, trimesh and pypcd4.
+"""
+
+import importlib
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+FILES = os.environ.get("BRIO_FILES", "03_files")
+SHARED = os.environ.get("BRIO_SHARED", "")
+PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4",
+             "double": "f8"}
+
+
+def missing(*names):
+    """The reason to skip a test that needs packages, or an empty text."""
+    for name in names:
+        try:
+            importlib.import_module(name)
+        except ImportError:
+            return f"the Python package {name} is missing"
+    return ""
+
+
+try:
+    import numpy
+except ImportError:
+    print("skipped: the Python package numpy is missing")
+    sys.exit(77)
+
+
+class ForeignTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.random = numpy.random.default_rng(1)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def convert(self, source, target):
+        run = subprocess.run([FILES, source, target], capture_output=True, check=False)
+        self.assertEqual(run.returncode, 0, run.stderr.decode())
+
+    def read(self, path):
+        """The points of a file as an array of records, through a PLY file."""
+        ply = self.path("read.ply")
+        self.convert(path, ply)
+        with open(ply, "rb") as file:
+            data = file.read()
+        start = data.index(b"end_header\n") + len("end_header\n")
+        types, count = [], 0
+        for line in data[:start].decode().splitlines():
+            words = line.split()
+            if words[:2] == ["element", "vertex"]:
+                count = int(words[2])
+            elif words[0] == "property" and words[1] != "list":
+                types.append((words[2], "<" + PLY_TYPES[words[1]]))
+        return numpy.frombuffer(data, dtype=types, count=count, offset=start)
+
+    def expect_equal(self, a, b, what):
+        self.assertTrue(numpy.array_equal(numpy.array(a), numpy.array(b)), what)
+
+
+FLAGS = ["synthetic", "key_point", "withheld", "overlap"]
+
+
+@unittest.skipIf(missing("laspy", "lazrs"), missing("laspy", "lazrs"))
+class LasTest(ForeignTest):
+    """All fields of all formats, plain and compressed by two encoders, one point of four channels of the scanner."""
+
+    def make(self, form, n=60000):
+        import laspy
+        random = self.random
+        header = laspy.LasHeader(point_format=form, version="1.4" if form >= 6 else "1.2")
+        header.scales, header.offsets = [0.01, 0.01, 0.00025], [638982.55, 4000000, -7.3]
+        header.add_extra_dim(laspy.ExtraBytesParams("amplitude", "f4"))
+        header.add_extra_dim(laspy.ExtraBytesParams("deviation", "u2", scales=numpy.array([0.01]),
+                                                    offsets=numpy.array([1.5])))
+        las = laspy.LasData(header)
+        las.points = laspy.ScaleAwarePointRecord.zeros(n, header=header)
+        t = numpy.arange(n)
+        las.X = (numpy.sin(t * 0.01) * 2e4 + random.integers(-200, 200, n)).astype(numpy.int32)
+        las.Y = numpy.where(t % 997 == 0, 2**31 - 1, t * 3 % 60000)
+        las.Z = random.integers(-2**31, 2**31, n) // (1 + t % 3 * 100000)
+        for name in las.point_format.dimension_names:
+            size = las.point_format.dimension_by_name(name).num_bits
+            if name in "XYZ" or name in ("amplitude", "deviation", "gps_time"):
+                continue
+            low, high = (-2**(size - 1), 2**(size - 1)) if name in ("scan_angle", "scan_angle_rank") else (0, 2**size)
+            if name == "scan_angle_rank":
+                low, high = -90, 90
+            las[name] = numpy.where(random.random(n) < 0.3, random.integers(low, high, n), (t // 50) % high)
+        if "gps_time" in las.point_format.dimension_names:
+            las.gps_time = 3e5 + numpy.cumsum(random.random(n) < 0.7) * 1e-5 + (t % 5000 == 0) * random.random(n) * 1e9
+        las.amplitude = random.standard_normal(n)
+        las.deviation = random.integers(0, 65536, n) * 0.01 + 1.5
+        return las
+
+    def expect_points(self, las, points, what):
+        for axis in "xyz":
+            self.expect_equal(las[axis], points[axis], f"{what}: {axis}")
+        for name in las.point_format.dimension_names:
+            if name in FLAGS:
+                self.expect_equal(las[name], points["classification_flags"] >> FLAGS.index(name) & 1, f"{what}: {name}")
+            elif name not in "XYZ":
+                self.expect_equal(las[name], points[name], f"{what}: {name}")
+
+    def test_read(self):
+        import laspy
+        backends = [laspy.LazBackend.Lazrs]
+        if not missing("laszip"):
+            backends.append(laspy.LazBackend.Laszip)
+        for form in (0, 1, 2, 3, 6, 7, 8):
+            las = self.make(form)
+            las.write(self.path("a.las"))
+            self.expect_points(las, self.read(self.path("a.las")), f"format {form}")
+            for backend in backends:
+                las.write(self.path("a.laz"), laz_backend=backend)
+                self.expect_points(las, self.read(self.path("a.laz")), f"format {form}, {backend}")
+
+    def test_pipe(self):
+        for form in (3, 8):
+            las = self.make(form)
+            las.write(self.path("a.laz"))
+            with open(self.path("a.laz"), "rb") as file:
+                data = file.read()
+            run = subprocess.run(["sh", "-c", f"cat | '{FILES}' - {self.path('pipe.ply')}"], input=data,
+                                 capture_output=True, check=False)
+            self.assertEqual(run.returncode, 0, run.stderr.decode())
+            self.expect_points(las, self.read(self.path("pipe.ply")), f"pipe, format {form}")
+
+    def test_chunks_of_different_sizes(self):
+        import io
+        import lazrs
+        for form in (3, 7):
+            las = self.make(form, 1000)
+            buffer = io.BytesIO()
+            las.write(buffer)
+            plain = bytearray(buffer.getvalue())
+            record = las.point_format.size
+            start = int.from_bytes(plain[96:100], "little")
+            vlr = lazrs.LazVlr.new_for_compression(form, las.point_format.num_extra_bytes,
+                                                   use_variable_size_chunks=True)
+            chunks = io.BytesIO()
+            chunks.write(bytes(start))
+            compressor = lazrs.LasZipCompressor(chunks, vlr)
+            for begin, end in ((0, 1), (1, 400), (400, 1000)):
+                compressor.compress_many(numpy.frombuffer(plain, numpy.uint8)[start + begin * record:
+                                                                             start + end * record])
+                compressor.finish_current_chunk()
+            compressor.done()
+            size = int.from_bytes(plain[94:96], "little")
+            data = bytes(vlr.record_data())
+            head = bytes(2) + b"laszip encoded".ljust(16, b"\0") + (22204).to_bytes(2, "little") + \
+                len(data).to_bytes(2, "little") + bytes(32)
+            shift = len(head) + len(data)
+            body = bytearray(chunks.getvalue()[start:])
+            body[:8] = (int.from_bytes(body[:8], "little") + shift).to_bytes(8, "little")
+            plain[96:100] = (start + shift).to_bytes(4, "little")
+            plain[100:104] = (int.from_bytes(plain[100:104], "little") + 1).to_bytes(4, "little")
+            plain[104] |= 128
+            with open(self.path("v.laz"), "wb") as file:
+                file.write(bytes(plain[:size]) + head + data + bytes(plain[size:start]) + bytes(body))
+            self.expect_points(las, self.read(self.path("v.laz")), f"chunks, format {form}")
+
+    def test_write(self):
+        """What brio writes of a file is that file, to the last bit of every field."""
+        import laspy
+        for form in (0, 1, 2, 3, 6, 7, 8):
+            las = self.make(form, 5000)
+            las.write(self.path("a.laz"))
+            self.convert(self.path("a.laz"), self.path("b.las"))
+            again = laspy.read(self.path("b.las"))
+            self.assertEqual(again.header.point_format.id, form)
+            self.expect_equal(las.header.scales, again.header.scales, "scales")
+            self.expect_equal(las.header.offsets, again.header.offsets, "offsets")
+            for name in las.point_format.dimension_names:
+                self.expect_equal(las[name], again[name], f"format {form}: {name}")
+
+    def test_lidar(self):
+        """Real points through LAS, LAZ and back. Those on a grid keep their last bit."""
+        import laspy
+        folder = os.path.join(SHARED, "data", "lidar")
+        if not os.path.isdir(folder):
+            self.skipTest("there is no folder of shared data")
+        for name, exact in (("csite4", True), ("room_scan1", False)):
+            points = self.read(os.path.join(folder, name + ".ply"))
+            self.convert(os.path.join(folder, name + ".ply"), self.path("a.las"))
+            laspy.read(self.path("a.las")).write(self.path("a.laz"))
+            plain, compressed = self.read(self.path("a.las")), self.read(self.path("a.laz"))
+            for axis in "xyz":
+                self.expect_equal(plain[axis], compressed[axis], f"{name}: {axis}")
+                if exact:
+                    self.expect_equal(points[axis].astype(float), plain[axis], f"{name}: {axis}")
+                self.assertLess(numpy.abs(points[axis].astype(float) - plain[axis]).max(), 1e-7)
+
+
+class NpyTest(ForeignTest):
+    def test_rows(self):
+        for kind in ("<f8", ">f8", "<f4", "<i4", "<u2", "<i8"):
+            for order in "CF":
+                rows = numpy.array(self.random.integers(0, 60000, (100, 5)), dtype=kind, order=order)
+                numpy.save(self.path("a.npy"), rows)
+                points = self.read(self.path("a.npy"))
+                for i, name in enumerate(("x", "y", "z", "column4", "column5")):
+                    self.expect_equal(rows[:, i].astype(float), points[name].astype(float), f"{kind} {order} {name}")
+
+    def test_records(self):
+        records = numpy.zeros(50, dtype=[("red", "u1"), ("z", "<f4"), ("x", "<f8"), ("y", ">i2"), ("time", "<f8")])
+        for name in records.dtype.names:
+            records[name] = self.random.integers(0, 200, 50)
+        numpy.save(self.path("a.npy"), records)
+        points = self.read(self.path("a.npy"))
+        self.convert(self.path("a.npy"), self.path("b.npy"))
+        again = numpy.load(self.path("b.npy"))
+        for name in records.dtype.names:
+            self.expect_equal(records[name].astype(float), points[name].astype(float), name)
+            self.expect_equal(records[name].astype(float), again[name].astype(float), name)
+
+    def test_write_rows(self):
+        rows = self.random.standard_normal((30, 3))
+        numpy.save(self.path("a.npy"), rows)
+        self.convert(self.path("a.npy"), self.path("b.npy"))
+        self.expect_equal(rows, numpy.load(self.path("b.npy")), "rows")
+
+
+@unittest.skipIf(missing("trimesh"), missing("trimesh"))
+class TrimeshStlTest(ForeignTest):
+    def test_both_ways(self):
+        import trimesh
+        sphere = trimesh.creation.icosphere(subdivisions=2)
+        for kind in ("stl", "stl_ascii"):
+            with open(self.path("a.stl"), "wb") as file:
+                data = sphere.export(file_type=kind)
+                file.write(data.encode() if isinstance(data, str) else data)
+            self.convert(self.path("a.stl"), self.path("b.stl"))
+            self.convert(self.path("a.stl"), self.path("b.ply"))
+            for name in ("b.stl", "b.ply"):
+                again = trimesh.load(self.path(name))
+                self.assertTrue(again.is_watertight)
+                self.assertEqual((len(again.vertices), len(again.faces)), (len(sphere.vertices), len(sphere.faces)))
+                self.assertAlmostEqual(again.volume, sphere.volume, places=5)
+
+
+@unittest.skipIf(missing("meshio"), missing("meshio"))
+class MeshioStlTest(ForeignTest):
+    def test_both_ways(self):
+        import meshio
+        points = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+        faces = numpy.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+        for binary in (False, True):
+            meshio.Mesh(points, [("triangle", faces)]).write(self.path("a.stl"), binary=binary)
+            self.convert(self.path("a.stl"), self.path("b.stl"))
+            again = meshio.read(self.path("b.stl"))
+            self.assertEqual((len(again.points), len(again.cells_dict["triangle"])), (4, 4))
+
+
+@unittest.skipIf(missing("pypcd4"), missing("pypcd4"))
+class PcdTest(ForeignTest):
+    def test_read(self):
+        from pypcd4 import Encoding, PointCloud
+        n = 5000
+        names, types = ("x", "y", "z", "intensity", "ring"), (numpy.float32,) * 4 + (numpy.uint16,)
+        columns = [self.random.standard_normal(n).astype(numpy.float32).round(2) for _ in range(4)]
+        columns.append(self.random.integers(0, 64, n).astype(numpy.uint16))
+        cloud = PointCloud.from_points(columns, names, types)
+        for encoding in (Encoding.ASCII, Encoding.BINARY, Encoding.BINARY_COMPRESSED):
+            cloud.save(self.path("a.pcd"), encoding)
+            points = self.read(self.path("a.pcd"))
+            for name, column in zip(names, columns):
+                found = points[name].astype(column.dtype) if encoding is Encoding.ASCII else points[name]
+                self.expect_equal(column, found, f"{encoding}: {name}")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)

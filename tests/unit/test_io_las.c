@@ -1,0 +1,193 @@
+/* LAS and LAZ: the compressed file is the plain one, for every number of threads and without its table; damaged files
+ * are a status; what is written reads back bit for bit; other people's grids are kept. */
+#include "failing_allocator.h"
+#include "io_files.h"
+#include "laz_samples.h"
+
+typedef struct {
+    const char *name;
+    const uint8_t *plain, *compressed;
+    size_t plain_size, compressed_size;
+} sample;
+
+static const sample samples[] = {{"format 3", las_format_3, laz_format_3, sizeof las_format_3, sizeof laz_format_3},
+                                 {"format 8", las_format_8, laz_format_8, sizeof las_format_8, sizeof laz_format_8}};
+enum { SAMPLES = sizeof samples / sizeof *samples };
+
+static void expect_same(const brio_mesh *a, const brio_mesh *b, const char *what) {
+    if (!a || !b) return;
+    EXPECT(io_same_points(a, b), "%s", what);
+    EXPECT(io_same_bytes(a->coordinate_step, b->coordinate_step, sizeof a->coordinate_step), "%s", what);
+    EXPECT(io_same_bytes(a->coordinate_origin, b->coordinate_origin, sizeof a->coordinate_origin), "%s", what);
+    EXPECT(a->num_properties == b->num_properties, "%s", what);
+    for (size_t i = 0; i < a->num_properties && i < b->num_properties; i++) {
+        const brio_property *p = &a->properties[i], *q = brio_mesh_property(b, p->name);
+        EXPECT(q && q->type == p->type && io_same_bytes(p->data, q->data, a->num_vertices * brio_scalar_size(p->type)),
+               "%s: %s", what, p->name);
+    }
+}
+
+static brio_mesh *read_right(const char *name, const uint8_t *bytes, size_t size) {
+    brio_status status;
+    brio_mesh *mesh = io_read_bytes(name, bytes, size, &status);
+    EXPECT(status == BRIO_OK, "%s: %s", name, brio_message(io_ctx));
+    return mesh;
+}
+
+static void fields_have_their_values(void) {
+    brio_mesh *m = read_right("a.las", las_format_8, sizeof las_format_8);
+    EXPECT(m && m->num_vertices == 60 && m->num_properties == 17, "%zu", m ? m->num_properties : 0);
+    const brio_property *amp = m ? brio_mesh_property(m, "amp") : NULL;
+    for (size_t i = 0; amp && i < 60; i++)
+        EXPECT(brio_property_value(amp, i) == (double)i * 0.5 + 1, "%g", brio_property_value(amp, i));
+    EXPECT(m && m->coordinate_step[0] == 0.01 && m->coordinate_origin[0] == 500000);
+    brio_mesh_free(m);
+}
+
+static void compressed_is_plain(void) {
+    for (int k = 0; k < SAMPLES; k++)
+        for (int threads = 1; threads <= 3; threads += 2) {
+            brio_context_set_threads(io_ctx, threads);
+            brio_mesh *a = read_right("a.las", samples[k].plain, samples[k].plain_size);
+            brio_mesh *b = read_right("a.laz", samples[k].compressed, samples[k].compressed_size);
+            expect_same(a, b, samples[k].name);
+            brio_mesh_free(a);
+            brio_mesh_free(b);
+        }
+    brio_context_set_threads(io_ctx, 0);
+}
+
+static uint32_t number_at(const uint8_t *bytes) {
+    return bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
+}
+
+/* A writer that was interrupted leaves no table, and 0 for its place. */
+static void table_may_be_missing(void) {
+    for (int k = 0; k < SAMPLES; k++) {
+        const sample *s = &samples[k];
+        uint8_t *bytes = malloc(s->compressed_size);
+        memcpy(bytes, s->compressed, s->compressed_size);
+        uint8_t *place = bytes + number_at(bytes + 96);
+        size_t table = number_at(place);
+        memset(place, 0, 8);
+        memset(bytes + table, 0, s->compressed_size - table);
+        brio_mesh *a = read_right("a.las", s->plain, s->plain_size);
+        brio_mesh *b = read_right("b.laz", bytes, table);
+        brio_mesh *c = read_right("c.laz", bytes, s->compressed_size);
+        expect_same(a, b, s->name);
+        expect_same(a, c, s->name);
+        brio_mesh_free(a);
+        brio_mesh_free(b);
+        brio_mesh_free(c);
+        free(bytes);
+    }
+}
+
+static void written_reads_back(void) {
+    for (int k = 0; k < SAMPLES; k++) {
+        brio_mesh *a = read_right("a.laz", samples[k].compressed, samples[k].compressed_size), *b = NULL;
+        EXPECT(brio_write(io_ctx, io_path("b.las"), a, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("b.las"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+        expect_same(a, b, samples[k].name);
+        brio_mesh_free(a);
+        brio_mesh_free(b);
+    }
+}
+
+/* Coordinates that came from no LAS file: decimals, singles, and such that no grid holds. */
+static void grids_are_found(void) {
+    const double cases[][3] = {{0.01, 123456.78, 0}, {0.001, -0.07, 1e-3}, {0.0625, 500000.0625, 0}, {0, 0, 0}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        brio_mesh *a = NULL, *b = NULL;
+        EXPECT(brio_mesh_new(io_ctx, &a) == BRIO_OK && brio_mesh_set_vertices(a, NULL, 500) == BRIO_OK);
+        for (size_t i = 0; i < 1500; i++) {
+            double n = (double)(int)(i * 7919 % 10007);
+            a->vertices[i] = k == 2 ? (double)(float)(500000 + n * 0.0625) : n * cases[k][0] + (k == 1 ? -3 : 0);
+        }
+        EXPECT(brio_write(io_ctx, io_path("g.las"), a, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("g.las"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(b && io_same_points(a, b), "case %zu", k);
+        brio_mesh_free(a);
+        brio_mesh_free(b);
+    }
+    brio_mesh *a = io_make(9, 0), *b = NULL;
+    for (size_t i = 0; i < 27; i++) a->vertices[i] = (double)i / 7;
+    EXPECT(brio_write(io_ctx, io_path("h.las"), a, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, io_path("h.las"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+    for (size_t i = 0; b && i < 27; i++)
+        EXPECT(fabs(a->vertices[i] - b->vertices[i]) <= 0.51 * b->coordinate_step[i % 3], "%zu", i);
+    brio_mesh_free(a);
+    brio_mesh_free(b);
+}
+
+static void expect_status(const char *name, const uint8_t *bytes, size_t size, const char *how, size_t at) {
+    brio_mesh *mesh = NULL;
+    io_put(name, bytes, size);
+    brio_status status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &mesh);
+    EXPECT(status == BRIO_OK || status == BRIO_ERR_FORMAT || status == BRIO_ERR_NOT_FINITE ||
+               status == BRIO_ERR_TOO_LARGE,
+           "%s %zu: status %d: %s", how, at, (int)status, brio_message(io_ctx));
+    EXPECT((status == BRIO_OK) == (mesh != NULL) && (mesh || brio_message(io_ctx)[0]), "%s %zu", how, at);
+    brio_mesh_free(mesh);
+    EXPECT(brio_context_memory(io_ctx) == 0, "%s %zu", how, at);
+}
+
+static void damaged_files_are_a_status(void) {
+    uint64_t state = 3;
+    for (int k = 0; k < SAMPLES; k++) {
+        size_t size = samples[k].compressed_size;
+        uint8_t *bytes = malloc(size);
+        for (size_t n = 0; n < size; n += 3) expect_status("a.laz", samples[k].compressed, n, "prefix", n);
+        for (size_t n = 0; n < 3000; n++) {
+            memcpy(bytes, samples[k].compressed, size);
+            for (uint64_t i = 1 + io_random(&state) % 4; i > 0; i--)
+                bytes[io_random(&state) % size] ^= (uint8_t)(1 << io_random(&state) % 8);
+            expect_status("a.laz", bytes, size, "change", n);
+        }
+        free(bytes);
+    }
+}
+
+/* A chunk that is cut off names the file and the byte. */
+static void errors_name_the_place(void) {
+    brio_status status;
+    uint8_t *bytes = malloc(sizeof laz_format_3);
+    memcpy(bytes, laz_format_3, sizeof laz_format_3);
+    size_t data = number_at(bytes + 96);
+    memset(bytes + data, 0, 8);
+    brio_mesh *m = io_read_bytes("cut.laz", bytes, data + 8 + 300, &status);
+    EXPECT(status == BRIO_ERR_FORMAT && !m, "%d", (int)status);
+    char place[64];
+    snprintf(place, sizeof place, "at byte %zu", data + 8);
+    EXPECT(strstr(brio_message(io_ctx), place), "%s", brio_message(io_ctx));
+    free(bytes);
+}
+
+static const sample *current;
+
+static brio_status read_current(brio_context *ctx) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_read(ctx, io_path("a.laz"), BRIO_FORMAT_AUTO, &mesh);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void each_allocation_fails(void) {
+    for (current = samples; current < samples + SAMPLES; current++) {
+        io_put("a.laz", current->compressed, current->compressed_size);
+        expect_clean_failures(read_current);
+    }
+}
+
+int main(void) {
+    io_begin();
+    RUN(fields_have_their_values);
+    RUN(compressed_is_plain);
+    RUN(table_may_be_missing);
+    RUN(written_reads_back);
+    RUN(grids_are_found);
+    RUN(damaged_files_are_a_status);
+    RUN(errors_name_the_place);
+    RUN(each_allocation_fails);
+    return io_end();
+}
