@@ -141,7 +141,7 @@ ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
 ENDS_WITH(brio_write_options, comment);
 ENDS_WITH(brio_generate_options, reserved_int);
-ENDS_WITH(brio_mesh, edges);
+ENDS_WITH(brio_mesh, coordinate_origin);
 
 int main(void) {
     RUN(older_callers_get_what_they_know);
