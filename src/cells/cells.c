@@ -49,9 +49,9 @@ typedef struct {
     const double *points, *weights;
     size_t num_points;
     brio_cells_options options;
-    brio_triangulation *own;          /* made by the call, or NULL */
-    double *all_points, *all_weights; /* of flat_points.h, or NULL */
-    double *scaled, *scaled_weights;  /* or NULL */
+    brio_triangulation *own;         /* made by the call, or NULL */
+    brio_completed_points all;       /* of flat points */
+    double *scaled, *scaled_weights; /* or NULL */
     brio_diagram diagram;
     brio_region region;
 } cell_call;
@@ -61,14 +61,13 @@ typedef struct {
 /* Completes points of dimension 0 to 2 and triangulates them again. */
 static brio_status triangulate_flat(cell_call *c) {
     brio_status status = BRIO_OK;
-    size_t added;
-    BRIO_TRY(brio_complete_flat_points(c->ctx, c->points, c->weights, c->num_points, &c->all_points, &c->all_weights,
-                                       &added));
+    brio_completed_points *all = &c->all;
+    BRIO_TRY(brio_complete_flat_points(c->ctx, c->points, c->weights, c->num_points, all));
     brio_triangulation_free(c->own);
     c->own = NULL;
-    BRIO_TRY(brio_delaunay(c->ctx, c->all_points, c->all_weights, c->num_points + added, NULL, &c->own));
-    c->points = c->all_points;
-    c->weights = c->all_weights;
+    BRIO_TRY(brio_delaunay(c->ctx, all->points, all->weights, c->num_points + all->added, NULL, &c->own));
+    c->points = all->points;
+    c->weights = all->weights;
     c->diagram.flat = true;
 done:
     return status;
@@ -241,8 +240,8 @@ static void end_call(cell_call *c) {
     brio_diagram_free(&c->diagram);
     brio_region_free(&c->region);
     brio_triangulation_free(c->own);
-    brio_release(c->ctx, c->all_points);
-    brio_release(c->ctx, c->all_weights);
+    brio_release(c->ctx, c->all.points);
+    brio_release(c->ctx, c->all.weights);
     brio_release(c->ctx, c->scaled);
     brio_release(c->ctx, c->scaled_weights);
 }

@@ -49,12 +49,11 @@ static void move_first(const double *points, size_t n, int k, double *x) {
 }
 
 brio_status brio_complete_flat_points(brio_context *ctx, const double *points, const double *weights, size_t n,
-                                      double **all_points, double **all_weights, size_t *added) {
+                                      brio_completed_points *out) {
     brio_status status = BRIO_OK;
     double *x = NULL, *w = NULL;
     basis b = {{0}, 0};
-    *all_points = *all_weights = NULL;
-    *added = 0;
+    *out = (brio_completed_points){0};
     BRIO_TRY(BRIO_ALLOC(ctx, x, 3 * (n + BRIO_MOST_ADDED)));
     if (weights) BRIO_TRY(BRIO_ALLOC(ctx, w, n + BRIO_MOST_ADDED));
     memcpy(x, points, 3 * n * sizeof *x);
@@ -62,15 +61,15 @@ brio_status brio_complete_flat_points(brio_context *ctx, const double *points, c
     for (size_t i = 0; w && i < n + BRIO_MOST_ADDED; i++) w[i] = weights[i < n ? i : 0];
     for (size_t i = 0; i < n && b.count < 4; i++) extend(&b, x + 3 * i);
     for (int k = 0; k < 3 && b.count < 4; k++) {
-        double *next = x + 3 * (n + *added);
+        double *next = x + 3 * (n + out->added);
         move_first(points, n, k, next);
         if (extend(&b, next))
-            ++*added;
+            out->added++;
         else
             memcpy(next, points, 3 * sizeof *x);
     }
-    *all_points = x;
-    *all_weights = w;
+    out->points = x;
+    out->weights = w;
     x = w = NULL;
 done:
     brio_release(ctx, x);

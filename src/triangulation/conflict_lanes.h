@@ -166,14 +166,13 @@ static __attribute__((noinline)) lanes determinant_of_pairs(const corners *c, la
 
 static const double DOUBLE_UNIT = 18 * 0x1p-53, PAIR_UNIT = 0x1p-97;
 
-/* Lanes whose determinant is exactly 0, on a lattice: a hull facet's plane is decided by its finite neighbour, else
- * ties are broken. */
-static inline unsigned settle_lattice(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
-                                      const double *p, const corners *c, const rows *r, unsigned known) {
-    unsigned zero = ~known & ALL_LANES, infinite = zero & bits_of(r->infinite);
-    unsigned mask = ties(c, r) & zero & ~infinite;
+/* Lanes of hull facets whose planes hold the point: the finite neighbours decide. */
+static inline unsigned settle_in_planes(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
+                                        const double *p, unsigned lanes_to_settle) {
+    unsigned mask = 0;
     for (int i = 0; i < LANES; i++)
-        if (infinite >> i & 1) mask |= (unsigned)brio_in_conflict(t, f, brio_tet_of(facets[i]), p, f->weighted) << i;
+        if (lanes_to_settle >> i & 1)
+            mask |= (unsigned)brio_in_conflict(t, f, brio_tet_of(facets[i]), p, f->weighted) << i;
     return mask;
 }
 
@@ -207,7 +206,10 @@ static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_
     rows r;
     load_corners(t, facets, p, &c);
     rows_set(&c, &r, weighted);
-    if (f->lattice) return settle_lattice(t, f, facets, p, &c, &r, known);
+    if (f->lattice) { /* the determinants that are not known are 0: ties */
+        unsigned zero = ~known & ALL_LANES, infinite = zero & bits_of(r.infinite);
+        return (ties(&c, &r) & zero & ~infinite) | settle_in_planes(t, f, facets, p, infinite);
+    }
     unsigned mask = weighted ? 0 : decide_by_permanent(f, &c, &r, determinant(&r), &known, false);
     if (known == ALL_LANES) return mask;
     f->unsettled += (uint64_t)__builtin_popcount(~known & ALL_LANES);

@@ -32,9 +32,9 @@ struct brio_inserter {
     brio_walk walk;
 
     const brio_strategy *locator; /* the strategy of point location */
-    void *location;              /* what the strategy keeps; locator->release frees it */
-    unsigned long_walks;         /* how often of late a walk was given up, see locator.c */
-    brio_star star;              /* workspace of locate_descent.c; its marks are the store's states */
+    void *location;               /* what the strategy keeps; locator->release frees it */
+    unsigned long_walks;          /* how often of late a walk was given up, see locator.c */
+    brio_star star;               /* workspace of locate_descent.c; its marks are the store's states */
 
     brio_cavity cavity;
     size_t next_slot, end_slot; /* the stretch */

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SAMPLES = 3000 };
+enum { SAMPLES = 800 };
 
 /* A point set with its graph of votes. */
 typedef struct {
