@@ -1278,7 +1278,8 @@ typedef struct brio_labeled_delaunay_stats {
     size_t samples;   /* distinct positions */
     size_t unused;    /* samples on no triangle of the surface */
     size_t undecided; /* samples and tetrahedra that the last roof duality did not decide */
-    size_t specks;    /* regions, inner or outer, that were dropped: of under 20 triangles and a hundredth of all */
+    size_t specks;    /* regions, inner or outer, that were dropped: of under 30 triangles of 40,000, of under 42 of
+                         2 million, and of under a hundredth of all */
     size_t relabeled; /* tetrahedra whose side was changed to make the surface a manifold or simpler */
     size_t handles;   /* handles, tunnels, crumbs, bubbles that were removed: little evidence held them */
     double energy;    /* of the labels, before these changes: a twenty-first of the log-odds of the votes that they

@@ -127,7 +127,23 @@ static int64_t cut_value(unsigned sources, const brio_flow_edge *e, size_t n, co
     return value;
 }
 
-/* All 256 cuts of random graphs: both sides that come back are least minimum cuts. */
+/* Tries all 256 cuts: both sides are least minimum cuts. */
+static void check_cut(const brio_flow_edge *e, size_t n, const int64_t *terminal, const uint8_t *side, uint64_t trial) {
+    int64_t best = INT64_MAX;
+    unsigned from_source = 0, to_sink = 0, all_sources = 255, all_sinks = 255;
+    for (unsigned s = 0; s < 256; s++) {
+        int64_t value = cut_value(s, e, n, terminal);
+        if (value < best) best = value, all_sources = 255, all_sinks = 255;
+        if (value == best) all_sources &= s, all_sinks &= ~s & 255;
+    }
+    for (int v = 0; v < NODES; v++) {
+        if (side[v] == BRIO_FLOW_SOURCE) from_source |= 1u << v;
+        if (side[v] == BRIO_FLOW_SINK) to_sink |= 1u << v;
+    }
+    EXPECT(from_source == all_sources && to_sink == all_sinks, "trial %llu", (unsigned long long)trial);
+}
+
+/* Random graphs; then the same graph with other terminals, three times. */
 static void cuts_are_minimal_and_least(void) {
     brio_context *ctx = new_context();
     brio_flow flow = brio_flow_new(ctx); /* used again and again */
@@ -135,24 +151,23 @@ static void cuts_are_minimal_and_least(void) {
         brio_rng rng = brio_rng_new(trial);
         brio_flow_edge e[20];
         size_t n = brio_rng_below(&rng, 21);
-        int64_t terminal[NODES], used[NODES], best = INT64_MAX;
+        int64_t terminal[NODES], used[NODES];
         uint8_t side[NODES];
-        unsigned from_source = 0, to_sink = 0, all_sources = 255, all_sinks = 255;
         for (size_t i = 0; i < n; i++)
             e[i] = (brio_flow_edge){brio_rng_below(&rng, NODES), brio_rng_below(&rng, NODES),
                                     (int32_t)brio_rng_below(&rng, 6)};
         for (int v = 0; v < NODES; v++) used[v] = terminal[v] = (int64_t)brio_rng_below(&rng, 9) - 4;
         EXPECT(brio_flow_maximum(&flow, NODES, e, n, used, side) == BRIO_OK);
-        for (unsigned s = 0; s < 256; s++) {
-            int64_t value = cut_value(s, e, n, terminal);
-            if (value < best) best = value, all_sources = 255, all_sinks = 255;
-            if (value == best) all_sources &= s, all_sinks &= ~s & 255;
+        check_cut(e, n, terminal, side, trial);
+        for (int again = 0; again < 3; again++) {
+            for (int v = 0; v < NODES; v++) {
+                int64_t other = (int64_t)brio_rng_below(&rng, 9) - 4;
+                used[v] += other - terminal[v];
+                terminal[v] = other;
+            }
+            brio_flow_again(&flow, used, side);
+            check_cut(e, n, terminal, side, trial);
         }
-        for (int v = 0; v < NODES; v++) {
-            if (side[v] == BRIO_FLOW_SOURCE) from_source |= 1u << v;
-            if (side[v] == BRIO_FLOW_SINK) to_sink |= 1u << v;
-        }
-        EXPECT(from_source == all_sources && to_sink == all_sinks, "trial %llu", (unsigned long long)trial);
     }
     brio_flow_free(&flow);
     brio_context_free(ctx);

@@ -42,8 +42,9 @@ BRIO_OPTIONS_INIT(brio_labeled_delaunay_options)
  * before: above all that these showed with that noise, for which the log-odds were measured. */
 static const double LEAST_NOISE = 0.085, MOST_NOISE = 0.13;
 
-/* A region with fewer triangles has under a dozen samples: a guess. Chosen. */
-enum { SPECK = 20 };
+/* A region with fewer triangles than SPECK for each doubling of their number in all is a guess: crumbs of k triangles get
+ * rarer the larger k is, but the more there are in all, the larger is the largest. Chosen. */
+enum { SPECK = 2 };
 
 /* Half the opening of the co-cones, for the first orientation: pi / 8 as in [Amenta Choi Dey Leekha 2000]. */
 static const double THETA = 0.39269908169872414;
@@ -121,11 +122,12 @@ done:
     return status;
 }
 
-/* Drops specks and bubbles: regions with a surface of under SPECK triangles, if that is under a hundredth of all. */
+/* Drops specks and bubbles: regions whose surface is smaller than SPECK says, and under a hundredth of all. */
 static brio_status drop_specks(reconstruction *r) {
-    size_t hundredth = brio_count_boundary(&r->dual.t, r->label) / 100, dropped = 0;
+    size_t all = brio_count_boundary(&r->dual.t, r->label), least = 0, dropped = 0;
+    for (size_t n = all; n > 1; n /= 2) least += SPECK;
     brio_status status =
-        brio_drop_small_regions(r->ctx, &r->dual.t, hundredth < SPECK ? hundredth : SPECK, r->label, &dropped);
+        brio_drop_small_regions(r->ctx, &r->dual.t, least < all / 100 ? least : all / 100, r->label, &dropped);
     r->stats.specks += dropped;
     return status;
 }

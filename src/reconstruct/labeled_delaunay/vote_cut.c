@@ -8,16 +8,12 @@
 
 enum { TETS_A_THREAD = 1 << 12, CAPACITY = 1 << 20, NO_NODE = UINT32_MAX };
 
-brio_status brio_vote_cut_new(const brio_vote_graph *g, brio_vote_cut *out) {
-    *out = (brio_vote_cut){.g = g, .flow = brio_flow_new(g->ctx)};
-    return BRIO_ALLOC(g->ctx, out->node, g->dual->num_finite);
-}
-
 void brio_vote_cut_free(brio_vote_cut *c) {
     brio_context *ctx = c->g->ctx;
     brio_flow_free(&c->flow);
     brio_release(ctx, c->edge);
     brio_release(ctx, c->terminal);
+    brio_release(ctx, c->wanted);
     brio_release(ctx, c->node);
     brio_release(ctx, c->tet);
     brio_release(ctx, c->side);
@@ -25,18 +21,19 @@ void brio_vote_cut_free(brio_vote_cut *c) {
 }
 
 /* Makes nodes of the open tetrahedra. */
-static brio_status make_nodes(brio_vote_cut *c, const uint8_t *open) {
+static brio_status make_nodes(brio_vote_cut *c) {
     brio_status status = BRIO_OK;
     brio_context *ctx = c->g->ctx;
     size_t finite = c->g->dual->num_finite, count = 0;
-    for (size_t tet = 0; tet < finite; tet++) count += !open || open[tet];
-    BRIO_TRY(BRIO_RESERVE(ctx, c->tet, c->tet_capacity, count));
-    BRIO_TRY(BRIO_RESERVE(ctx, c->terminal, c->node_capacity, count));
-    BRIO_TRY(BRIO_RESERVE(ctx, c->side, c->side_capacity, count));
-    BRIO_TRY(BRIO_RESERVE(ctx, c->edge, c->edge_capacity, 2 * count));
-    c->num_nodes = 0;
+    for (size_t tet = 0; tet < finite; tet++) count += !c->open || c->open[tet];
+    BRIO_TRY(BRIO_ALLOC(ctx, c->node, finite));
+    BRIO_TRY(BRIO_ALLOC(ctx, c->tet, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, c->terminal, count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, c->wanted, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, c->side, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, c->edge, 2 * count));
     for (uint32_t tet = 0; tet < finite; tet++) {
-        bool in = !open || open[tet];
+        bool in = !c->open || c->open[tet];
         c->node[tet] = in ? (uint32_t)c->num_nodes : NO_NODE;
         if (in) c->tet[c->num_nodes++] = tet;
     }
@@ -64,14 +61,14 @@ static void sum_votes(void *user, size_t begin, size_t end, int thread) {
             if (other < g->dual->num_finite && t->c->node[other] != NO_NODE) continue;
             outer += t->label[other] == BRIO_LABEL_OUTER ? weight : -weight;
         }
-        t->c->terminal[v] = outer;
+        t->c->terminal[v] += outer - t->c->wanted[v];
+        t->c->wanted[v] = outer;
     }
 }
 
 /* Lists the facets between nodes, each once. */
 static void list_facets(brio_vote_cut *c) {
     const brio_vote_graph *g = c->g;
-    c->num_edges = 0;
     for (uint32_t v = 0; v < c->num_nodes; v++) {
         uint32_t tet = c->tet[v];
         for (size_t e = g->first[tet]; e < g->first[tet + 1]; e++) {
@@ -82,13 +79,25 @@ static void list_facets(brio_vote_cut *c) {
     }
 }
 
-brio_status brio_vote_cut_find(brio_vote_cut *c, const uint8_t *open, double bias, const uint8_t *label, uint8_t *out) {
+brio_status brio_vote_cut_new(const brio_vote_graph *g, const uint8_t *open, brio_vote_cut *out) {
+    brio_status status = BRIO_OK;
+    *out = (brio_vote_cut){.g = g, .open = open, .flow = brio_flow_new(g->ctx)};
+    BRIO_TRY(make_nodes(out));
+    list_facets(out);
+    for (size_t v = 0; v < out->num_nodes; v++) out->terminal[v] = 0;
+done:
+    return status;
+}
+
+brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out) {
     brio_status status = BRIO_OK;
     terminals t = {c, label, (int64_t)(bias * BRIO_VOTE_UNIT * CAPACITY)};
-    BRIO_TRY(make_nodes(c, open));
     brio_for(c->g->ctx, brio_threads(c->g->ctx, c->num_nodes, TETS_A_THREAD), c->num_nodes, sum_votes, &t);
-    list_facets(c);
-    BRIO_TRY(brio_flow_maximum(&c->flow, c->num_nodes, c->edge, c->num_edges, c->terminal, c->side));
+    if (c->begun)
+        brio_flow_again(&c->flow, c->terminal, c->side);
+    else
+        BRIO_TRY(brio_flow_maximum(&c->flow, c->num_nodes, c->edge, c->num_edges, c->terminal, c->side));
+    c->begun = true;
     for (size_t tet = 0; tet < c->g->dual->num_finite; tet++) out[tet] = label[tet];
     for (size_t v = 0; v < c->num_nodes; v++)
         out[c->tet[v]] = c->side[v] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;

@@ -64,10 +64,10 @@ static void turn_part(void *user, size_t begin, size_t end, int thread) {
 static brio_status take_turns(voting *v) {
     brio_status status = BRIO_OK;
     brio_vote_cut cut;
-    BRIO_TRY(brio_vote_cut_new(v->g, &cut));
+    BRIO_TRY(brio_vote_cut_new(v->g, NULL, &cut));
     for (int turn = 0; turn < TURNS; turn++) {
         BRIO_TRY(brio_progress(v->ctx, "label", 0.6 * turn / TURNS));
-        BRIO_TRY(brio_vote_cut_find(&cut, NULL, 0, v->label, v->label));
+        BRIO_TRY(brio_vote_cut_find(&cut, 0, v->label, v->label));
         v->turned = 0;
         brio_for(v->ctx, brio_threads(v->ctx, v->num_samples, NODES_A_THREAD), v->num_samples, turn_part, v);
         if (v->turned <= v->num_samples / FEW) break;

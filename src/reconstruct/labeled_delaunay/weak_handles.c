@@ -155,7 +155,7 @@ done:
 static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_progress(s->f->ctx, "handles", 1));
-    BRIO_TRY(brio_vote_cut_find(&s->cut, s->open, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning));
+    BRIO_TRY(brio_vote_cut_find(&s->cut, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning));
     for (uint32_t tet = 0; tet < s->f->num_finite; tet++)
         if (leans(s, tet, label) && collect_patch(s, tet, label)) BRIO_TRY(weigh_patch(s, label));
 done:
@@ -169,10 +169,10 @@ brio_status brio_remove_weak_handles(brio_mending *m, size_t *removed) {
     *removed = 0;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s, 1));
     s->m = m, s->f = m->flips, s->t = &m->flips->g->dual->t;
-    BRIO_TRY(brio_vote_cut_new(s->f->g, &s->cut));
     BRIO_TRY(BRIO_ALLOC(ctx, s->leaning, s->f->num_tets));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->open, s->f->num_tets));
     open_doubtful(s);
+    BRIO_TRY(brio_vote_cut_new(s->f->g, s->open, &s->cut));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->seen, s->f->num_tets));
     for (int i = 0; i < BIASES; i++) {
         brio_label_samples(s->f);

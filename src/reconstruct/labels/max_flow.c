@@ -86,6 +86,7 @@ static void plant(brio_flow *f) {
     for (uint32_t v = 0; v < f->num_nodes; v++) {
         f->node[v].next_active = NO_NODE;
         f->node[v].parent = NO_ARC;
+        f->node[v].checked = 0;
         f->side[v] = f->terminal[v] > 0 ? SOURCE : f->terminal[v] < 0 ? SINK : FREE;
     }
     f->active_head = NO_NODE;
@@ -235,14 +236,9 @@ void brio_flow_free(brio_flow *f) {
     brio_release(f->ctx, f->arc);
 }
 
-brio_status brio_flow_maximum(brio_flow *f, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
-                              int64_t *terminal, uint8_t *side) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(f->ctx, num_nodes < ORPHAN && num_edges < ORPHAN / 2, BRIO_ERR_TOO_LARGE,
-                 "%zu edges of a flow are more than 32-bit indices can name", num_edges);
-    f->num_nodes = num_nodes, f->terminal = terminal, f->side = side;
+void brio_flow_again(brio_flow *f, int64_t *terminal, uint8_t *side) {
+    f->terminal = terminal, f->side = side;
     f->time = 0, f->orphan_first = f->num_orphans = 0;
-    BRIO_TRY(make_arcs(f, edges, num_edges));
     plant(f);
     while (f->active_head != NO_NODE) {
         uint32_t v = f->active_head, arc = f->side[v] == FREE ? NO_ARC : grow(f, v);
@@ -254,6 +250,16 @@ brio_status brio_flow_maximum(brio_flow *f, size_t num_nodes, const brio_flow_ed
         augment(f, arc);
         while (f->num_orphans) adopt(f, pop_orphan(f));
     }
+}
+
+brio_status brio_flow_maximum(brio_flow *f, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
+                              int64_t *terminal, uint8_t *side) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(f->ctx, num_nodes < ORPHAN && num_edges < ORPHAN / 2, BRIO_ERR_TOO_LARGE,
+                 "%zu edges of a flow are more than 32-bit indices can name", num_edges);
+    f->num_nodes = num_nodes;
+    BRIO_TRY(make_arcs(f, edges, num_edges));
+    brio_flow_again(f, terminal, side);
 done:
     return status;
 }

@@ -56,4 +56,11 @@ void brio_flow_free(brio_flow *flow);
 brio_status brio_flow_maximum(brio_flow *flow, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
                               int64_t *terminal, uint8_t *side);
 
+/** Finds a maximum flow of the graph of the last call with other terminals, beginning from the flow of that call: quick if
+ *  few terminals changed.
+ *  terminal  the array of the last call, as that call left it, plus the changes: with t the capacities of the last call
+ *            and u the new ones, terminal[v] += u[v] - t[v] before the call.
+ *  Based on: Kohli, Torr. Dynamic graph cuts for efficient inference in Markov random fields. IEEE PAMI 2007. */
+void brio_flow_again(brio_flow *flow, int64_t *terminal, uint8_t *side);
+
 #endif
