@@ -26,11 +26,6 @@ static const option options[] = {
 };
 
 static const arguments defaults = {.weights.exponent = NO_EXPONENT};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
-                                      BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
-
-/* Bytes of the complex and its work for each point, with 6.8 tetrahedra a point. */
-static const double BYTES_A_POINT = 1400;
 
 /* Sets *alpha to the number that was given; NaN for auto. */
 static brio_status read_alpha(run *r, const arguments *a, double *alpha) {
@@ -117,11 +112,11 @@ static brio_status alpha(run *r) {
     brio_status status = BRIO_OK;
     TRY(read_alpha(r, a, &value));
     TRY(cli_check_weights_options(r, &a->weights));
-    TRY(cli_require_output(r, formats, a->filtration != NULL));
-    if (a->filtration) TRY(cli_check_target(r, a->filtration));
+    TRY(cli_require_output(r, cli_mesh_formats, a->filtration != NULL));
+    if (a->filtration) TRY(cli_check_beside(r, "filtration", a->filtration, NULL));
     TRY(cli_read_points(r, r->operands[0], &input));
     TRY(cli_weights(r, &a->weights, input, &weights));
-    TRY(cli_require_work(r, BRIO_OK, input, (uint64_t)(BYTES_A_POINT * (double)input->num_vertices)));
+    TRY(cli_require_memory(r, cli_alpha_bytes(input)));
     cli_lap(r, "read");
     TRY(triangulate(r, input, weights, &t, &complex));
     if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));
@@ -138,7 +133,7 @@ const command cli_alpha = {
     .name = "alpha",
     .operands = "IN",
     .summary =
-        "boundary of an alpha shape of the points of a file, and the alpha filtration (.ply .obj .off .vtu .vtp)",
+        "boundary of an alpha shape of the points of a file, and the alpha filtration (.ply .obj .off .stl .vtu .vtp)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -94,7 +94,7 @@ static brio_status check_plane(run *r, const arguments *a) {
         return cli_fail(
             r, BRIO_ERR_ARGUMENT,
             "--plane goes with --round-ratio, --verify and weights, not with other orders, locations or records");
-    return cli_require_output(r, cli_plane_formats, true);
+    return cli_require_output(r, cli_mesh_formats, true);
 }
 
 static brio_status check_arguments(run *r, const arguments *a) {

@@ -14,6 +14,14 @@ double cli_mesh_bytes(const brio_mesh *mesh);
 brio_status cli_delaunay_bytes(run *r, const brio_mesh *mesh, const double *weights, const brio_delaunay_options *o,
                                double *bytes);
 
+/** Estimate the commands that go beyond one triangulation; weights may be NULL.
+ *  vertices  whether the cells get vertices.   places  the points that are located, or NULL. */
+double cli_hull_bytes(const brio_mesh *mesh);
+double cli_alpha_bytes(const brio_mesh *mesh);
+brio_status cli_voronoi_bytes(run *r, const brio_mesh *mesh, const double *weights, bool vertices, double *bytes);
+brio_status cli_locate_bytes(run *r, const brio_mesh *mesh, const double *weights, const brio_mesh *places,
+                             double *bytes);
+
 /** Returns the estimate for `brio info`. */
 double cli_info_bytes(const brio_mesh *mesh);
 

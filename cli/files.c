@@ -62,6 +62,8 @@ brio_status cli_check_target(run *r, const char *path) {
 
 brio_status cli_output_format(run *r, const char *path, const char *extension, brio_format *format) {
     *format = brio_format_of(extension ? extension : path);
+    if (*format == BRIO_FORMAT_LAZ || *format == BRIO_FORMAT_PCD || *format == BRIO_FORMAT_PTX)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD and PTX files are read, not written", path);
     if (*format != BRIO_FORMAT_AUTO) return BRIO_OK;
     if (extension)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
@@ -72,4 +74,27 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
         r, BRIO_ERR_ARGUMENT,
         "%s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy; name one of these with --format",
         path);
+}
+
+/* Whether two names are those of one file; devices may be named twice. */
+static bool is_same_file(const char *a, const char *b) {
+    struct stat of_a, of_b;
+    if (stat(a, &of_a) != 0 || stat(b, &of_b) != 0) return !strcmp(a, b);
+    return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+}
+
+brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats) {
+    const char *output = r->common.output;
+    brio_format format;
+    brio_status status = BRIO_OK;
+    if (!strcmp(path, "-")) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name));
+    if (output && is_same_file(path, output))
+        TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "%s: --%s and -o name the same file", path, name));
+    if (formats) TRY(cli_output_format(r, path, NULL, &format));
+    for (; formats && *formats != format; formats++)
+        if (*formats == BRIO_FORMAT_AUTO)
+            TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold what --%s writes", path, name));
+    TRY(cli_check_target(r, path));
+done:
+    return status;
 }

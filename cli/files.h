@@ -8,6 +8,10 @@
  *  is protected, or it is a folder. */
 brio_status cli_check_target(run *r, const char *path);
 
+/** Finds everything wrong with a file that an option wants beside -o: standard output, the file of -o itself, a format
+ *  not among those of the list, a file that cannot be written.   formats  ended by BRIO_FORMAT_AUTO; NULL: any name. */
+brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats);
+
 /** The format that --format or the extension asks for; BRIO_FORMAT_AUTO with the reason stored when there is none. */
 brio_status cli_output_format(run *r, const char *path, const char *extension, brio_format *format);
 

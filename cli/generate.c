@@ -56,9 +56,6 @@ static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"solid", SOLID},
                                       {NULL, 0}};
 
-static const brio_format mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
-                                           BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
-
 static const char *kind_name(const void *list, size_t i) {
     return ((const option_choice *)list)[i].name;
 }
@@ -79,7 +76,6 @@ static bool has_scan_options(const arguments *a) {
 }
 
 static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
-    brio_format format;
     brio_status status = BRIO_OK;
     if (a->solid != NO_SOLID || a->resolution)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--kind and --resolution go with solid only");
@@ -92,11 +88,7 @@ static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
     if (a->truth_resolution && !a->truth) return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth-resolution goes with --truth");
     TRY(cli_require_output(r, NULL, false));
     if (!a->truth) return BRIO_OK;
-    if (!strcmp(a->truth, "-")) return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth needs a file");
-    if (r->common.output && !strcmp(a->truth, r->common.output))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth and -o name the same file");
-    TRY(cli_output_format(r, a->truth, NULL, &format));
-    TRY(cli_check_target(r, a->truth));
+    TRY(cli_check_beside(r, "truth", a->truth, cli_mesh_formats));
 done:
     return status;
 }
@@ -139,7 +131,7 @@ static brio_status generate_solid(run *r, const arguments *a) {
     brio_status status = BRIO_OK;
     if (a->points != NO_COUNT || has_scan_options(a))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "a solid takes --kind, --seed and --resolution, and no number of points");
-    TRY(cli_require_output(r, mesh_formats, false));
+    TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(brio_generate_solid(r->ctx, kind, r->common.seed, (size_t)a->resolution, &mesh));
     cli_lap(r, "generate");
     cli_fact_count(&r->facts, "vertices", mesh->num_vertices);

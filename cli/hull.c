@@ -14,11 +14,6 @@ static const option options[] = {
 };
 
 static const arguments defaults = {.polygons = false};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
-                                      BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
-
-/* Bytes a point, if all are vertices of the hull: measured on points on a sphere. */
-static const double BYTES_A_POINT = 260;
 
 static void report(run *r, const brio_mesh *hull, const brio_convex_hull_stats *s) {
     facts *f = &r->facts;
@@ -41,9 +36,9 @@ static brio_status hull(run *r) {
     brio_mesh *input = NULL, *surface = NULL;
     brio_status status = BRIO_OK;
     o.polygons = a->polygons;
-    TRY(cli_require_output(r, formats, false));
+    TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read_points(r, r->operands[0], &input));
-    TRY(cli_require_work(r, BRIO_OK, input, (uint64_t)(BYTES_A_POINT * (double)input->num_vertices)));
+    TRY(cli_require_memory(r, cli_hull_bytes(input)));
     TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, &s));
     if (s.dimension < 0) TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "no points, so no convex hull"));
     report(r, surface, &s);
@@ -59,7 +54,8 @@ done:
 const command cli_hull = {
     .name = "hull",
     .operands = "IN",
-    .summary = "convex hull of the points of a file; flat ones are a polygon or an edge (.ply .obj .off .vtu .vtp)",
+    .summary =
+        "convex hull of the points of a file; flat ones are a polygon or an edge (.ply .obj .off .stl .vtu .vtp)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -35,19 +35,38 @@ static void report_properties(facts *f, const brio_mesh *mesh) {
     cli_fact_close(f);
 }
 
-static brio_status report_estimates(run *r, const brio_mesh *mesh) {
+/* Estimates of the commands that go by the triangulation. */
+static brio_status report_triangulations(run *r, const brio_mesh *mesh) {
     static const weights_options standard = {.exponent = NO_EXPONENT};
     facts *f = &r->facts;
-    double *weights = NULL, delaunay, beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh);
-    uint64_t surface, crust, cocone;
+    double *weights = NULL, beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh), delaunay, cells, places;
+    size_t n = mesh->num_vertices;
     brio_status status = BRIO_OK;
     TRY(cli_weights(r, &standard, mesh, &weights));
     TRY(cli_delaunay_bytes(r, mesh, weights, NULL, &delaunay));
+    TRY(cli_voronoi_bytes(r, mesh, weights, true, &cells));
+    TRY(cli_locate_bytes(r, mesh, weights, NULL, &places));
+    cli_fact_bytes(f, "delaunay", (uint64_t)delaunay);
+    cli_fact_bytes(f, "plane", (uint64_t)(beside + (double)brio_estimate_delaunay2(n, weights != NULL)));
+    cli_fact_bytes(f, "voronoi", (uint64_t)cells);
+    cli_fact_bytes(f, "hull", (uint64_t)cli_hull_bytes(mesh));
+    cli_fact_bytes(f, "alpha", (uint64_t)cli_alpha_bytes(mesh));
+    cli_fact_bytes(f, "locate", (uint64_t)places);
+    cli_fact_bytes(f, "interpolate", (uint64_t)places);
+done:
+    free(weights);
+    return status;
+}
+
+/* Estimates of surfaces and axes. */
+static brio_status report_surfaces(run *r, const brio_mesh *mesh) {
+    facts *f = &r->facts;
+    double beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh);
+    uint64_t surface, crust, cocone;
+    brio_status status = BRIO_OK;
     TRY(brio_estimate_labeled_delaunay(r->ctx, mesh->num_vertices, NULL, &surface));
     TRY(brio_estimate_power_crust(r->ctx, mesh->num_vertices, NULL, &crust));
     TRY(brio_estimate_cocone(r->ctx, mesh->num_vertices, NULL, &cocone));
-    cli_fact_open(f, "estimate_bytes", FACT_OBJECT);
-    cli_fact_bytes(f, "delaunay", (uint64_t)delaunay);
     static const char *const of_poles[] = {"medial", "offset"};
     cli_fact_bytes(f, "surface", (uint64_t)(beside + (double)surface));
     for (int i = 0; i < 2; i++) cli_fact_bytes(f, of_poles[i], (uint64_t)(beside + (double)crust));
@@ -56,9 +75,15 @@ static brio_status report_estimates(run *r, const brio_mesh *mesh) {
         double subdivide = (double)brio_estimate_mesh_subdivide(mesh->num_faces, 1);
         cli_fact_bytes(f, "subdivide", (uint64_t)(CLI_PROGRAM_BYTES + subdivide));
     }
-    cli_fact_close(f);
 done:
-    free(weights);
+    return status;
+}
+
+static brio_status report_estimates(run *r, const brio_mesh *mesh) {
+    cli_fact_open(&r->facts, "estimate_bytes", FACT_OBJECT);
+    brio_status status = report_triangulations(r, mesh);
+    if (status == BRIO_OK) status = report_surfaces(r, mesh);
+    cli_fact_close(&r->facts);
     return status;
 }
 

@@ -31,7 +31,7 @@ static bool wants_table(const run *r) {
 
 static brio_status check_arguments(run *r, const arguments *a) {
     if (!a->property) return cli_fail(r, BRIO_ERR_ARGUMENT, "no property: --property NAME is missing");
-    return wants_table(r) ? cli_require_table(r) : cli_require_output(r, NULL, false);
+    return wants_table(r) ? cli_require_table(r) : cli_require_output(r, cli_point_formats, false);
 }
 
 static brio_status values_of(run *r, const brio_mesh *points, const char *name, double **values) {
@@ -43,7 +43,7 @@ static brio_status values_of(run *r, const brio_mesh *points, const char *name, 
     return BRIO_OK;
 }
 
-/* Adds the property to the places. */
+/* Adds the property to the places, which a table leaves out. */
 static brio_status add_results(run *r, brio_mesh *at, const arguments *a, double **results) {
     void *data;
     if (brio_mesh_property(at, a->property))
@@ -99,7 +99,8 @@ done:
 const command cli_interpolate = {
     .name = "interpolate",
     .operands = "IN",
-    .summary = "values of a property of points, at the points of another file (.ply .xyz .vtu .csv .npy ...)",
+    .summary =
+        "values of a property of points, at the points of another file (.ply .xyz .vtu .vtp .node .las .csv .npy)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -29,15 +29,13 @@ static const option options[] = {
 
 static const uint64_t NO_COUNT = UINT64_MAX;
 static const arguments defaults = {.level = NAN, .blobbiness = NAN, .vertices = UINT64_MAX};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
-                                      BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
 static brio_status check_arguments(run *r, const arguments *a) {
     if (isnan(a->level)) return cli_fail(r, BRIO_ERR_ARGUMENT, "the level of the surface is missing: --level L");
     if (a->vertices == 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "-n: a surface of no points");
     if (a->vertices != NO_COUNT && a->resolution)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "-n chooses the resolution: give one of -n and --resolution");
-    return cli_require_output(r, formats, false);
+    return cli_require_output(r, cli_mesh_formats, false);
 }
 
 static brio_status iso(run *r) {

@@ -4,10 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a locator for evenly spread points (brio.h, brio_locator_new), of which the triangulation's estimate covers the
- * part that is sorted; and of a query with its answers. */
-static const double LOCATOR_BYTES_A_POINT = 290, BYTES_A_PLACE = 48;
-
 brio_status cli_read_located(run *r, const char *at, const weights_options *weights, located *l) {
     brio_status status = BRIO_OK;
     double bytes;
@@ -18,10 +14,8 @@ brio_status cli_read_located(run *r, const char *at, const weights_options *weig
     TRY(cli_read_points(r, at, &l->at));
     if (weights) TRY(cli_weights(r, weights, l->points, &l->weights));
     if (cli_limits_memory(r)) {
-        brio_delaunay_options o = brio_delaunay_options_default();
-        TRY(cli_delaunay_bytes(r, l->points, l->weights, &o, &bytes));
-        bytes += cli_mesh_bytes(l->at) + BYTES_A_PLACE * (double)l->at->num_vertices;
-        TRY(cli_require_memory(r, bytes + LOCATOR_BYTES_A_POINT * (double)l->points->num_vertices));
+        TRY(cli_locate_bytes(r, l->points, l->weights, l->at, &bytes));
+        TRY(cli_require_memory(r, bytes));
     }
 done:
     return status;

@@ -33,8 +33,6 @@ static const option options[] = {
 };
 
 static const arguments defaults = {.distance = NAN, .crust.labeling = LABELS_OF_INPUT};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
-                                      BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
 /* What there is to count when the labels are known. */
 static void report_by_mesh(run *r, const brio_power_crust_stats *s) {
@@ -87,7 +85,7 @@ static brio_status offset(run *r) {
     brio_status status = BRIO_OK;
     bool by_mesh;
     if (isnan(a->distance)) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "offset needs --distance"));
-    TRY(cli_require_output(r, formats, false));
+    TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read(r, r->operands[0], &points));
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));
     TRY(offset_surface(r, &crust, points, by_mesh, &surface));

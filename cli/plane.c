@@ -7,8 +7,6 @@
 #include <stdlib.h>
 
 const option_choice cli_planes[] = {{"xy", PLANE_XY}, {"yz", PLANE_YZ}, {"zx", PLANE_ZX}, {NULL, 0}};
-const brio_format cli_plane_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
-                                         BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
 
 static const double COORDINATES = 16; /* bytes of a point in the plane */
 

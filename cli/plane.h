@@ -9,9 +9,6 @@ enum { PLANE_XY = 0, PLANE_YZ = 1, PLANE_ZX = 2, NO_PLANE = 3 };
 
 extern const option_choice cli_planes[];
 
-/** The formats that can hold the triangles, ended by BRIO_FORMAT_AUTO. */
-extern const brio_format cli_plane_formats[];
-
 /** Triangulates, reports the facts, and writes the triangles over the points of the mesh to -o.
  *  plane  one of the planes.   weights  may be NULL.   verify  checks the result. */
 brio_status cli_plane(run *r, int plane, brio_mesh *mesh, const double *weights, double round_ratio, bool verify);

@@ -30,12 +30,6 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
         fputs("brio: --labeling global goes by the points of a mesh alone\n", stderr);
 }
 
-brio_status cli_check_normals(run *r, const char *path) {
-    brio_format format;
-    brio_status status = cli_output_format(r, path, NULL, &format);
-    return status == BRIO_OK ? cli_check_target(r, path) : status;
-}
-
 brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points, const double *normals) {
     static const char *const names[3] = {"nx", "ny", "nz"};
     brio_mesh *out = NULL;
@@ -89,7 +83,6 @@ brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mes
     brio_status status = BRIO_OK;
     double *normals = NULL;
     if (a->normals) {
-        TRY(cli_check_normals(r, a->normals));
         normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
         if (!normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
     }

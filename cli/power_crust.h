@@ -48,8 +48,6 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
 /** The options of the poles as the library has them, without a solid. */
 brio_pole_options cli_pole_options(const power_crust_options *options);
 
-/** Finds what is wrong with the file for normals before the work: its format, its folder. */
-brio_status cli_check_normals(run *r, const char *path);
 /** Writes the points with their normals, #P by 3. */
 brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points, const double *normals);
 

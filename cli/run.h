@@ -89,6 +89,11 @@ brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);
 /** Reads for a command that goes by the points alone: faces and tetrahedra of the file are dropped. */
 brio_status cli_read_points(run *r, const char *path, brio_mesh **out);
 
+/** The formats of surfaces; BRIO_FORMAT_AUTO ends the list. */
+extern const brio_format cli_mesh_formats[];
+/** Those of points with properties. */
+extern const brio_format cli_point_formats[];
+
 /** Finds everything wrong with -o that can be found before the work: no output, no format, a format not among those of
  *  `formats` (ended by BRIO_FORMAT_AUTO; NULL: any), a folder that cannot be written.   optional  the command has a use
  *  without -o also when it does not report as JSON. */

@@ -14,8 +14,6 @@ static const option options[] = {
 };
 
 static const arguments defaults = {.levels = 1};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
-                                      BRIO_FORMAT_STL, BRIO_FORMAT_VTU, BRIO_FORMAT_AUTO};
 
 enum { MOST_LEVELS = 15 };
 
@@ -30,7 +28,7 @@ static brio_status subdivide(run *r) {
     brio_status status = BRIO_OK;
     if (a->levels < 1 || a->levels > MOST_LEVELS)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--levels: %d is not between 1 and %d", a->levels, MOST_LEVELS);
-    TRY(cli_require_output(r, formats, false));
+    TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read(r, r->operands[0], &mesh));
     TRY(check_mesh(r, a, mesh));
     TRY(brio_mesh_subdivide(r->ctx, mesh, a->levels, &fine));
@@ -51,7 +49,7 @@ done:
 const command cli_subdivide = {
     .name = "subdivide",
     .operands = "IN",
-    .summary = "smooth, denser mesh through the vertices of a triangle mesh (.ply .obj .off .stl .vtu)",
+    .summary = "smooth, denser mesh through the vertices of a triangle mesh (.ply .obj .off .stl .vtu .vtp)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

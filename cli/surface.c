@@ -2,6 +2,7 @@
 #include "certificate.h"
 #include "commands.h"
 #include "estimate.h"
+#include "files.h"
 #include "power_crust.h"
 #include "surface_extras.h"
 #include <stdlib.h>
@@ -57,8 +58,6 @@ static const option options[] = {
 static const arguments defaults = {.crust.labeling = NO_LABELING};
 /* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
 static const double LEAST_THETA = 0.2542;
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
-                                      BRIO_FORMAT_STL, BRIO_FORMAT_VTU, BRIO_FORMAT_AUTO};
 
 /* Options of the power crust alone. */
 static bool has_power_crust_options(const arguments *a) {
@@ -238,7 +237,6 @@ static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh *
     uint64_t work;
     uint32_t *samples = NULL;
     brio_status status = BRIO_OK;
-    if (a->crust.normals) TRY(cli_check_normals(r, a->crust.normals));
     status = brio_estimate_labeled_delaunay(r->ctx, points->num_vertices, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     samples = malloc((points->num_vertices + 1) * sizeof *samples);
@@ -293,7 +291,8 @@ static brio_status surface(run *r) {
     brio_mesh *points = NULL, *result = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r));
-    TRY(cli_require_output(r, formats, false));
+    TRY(cli_require_output(r, cli_mesh_formats, false));
+    if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
     TRY(cli_read_points(r, r->operands[0], &points));
     TRY(reconstruct(r, points, &result));
     r->lap = cli_clock();
@@ -313,7 +312,7 @@ done:
 const command cli_surface = {
     .name = "surface",
     .operands = "IN",
-    .summary = "surface through the points of a file, certified (.ply .obj .off .stl .vtu)",
+    .summary = "surface through the points of a file, certified (.ply .obj .off .stl .vtu .vtp)",
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -8,6 +8,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -23,7 +24,7 @@ static const char *extension_of(const run *r) {
 }
 
 bool cli_is_table(const run *r, const char *extension) {
-    return !strcmp(extension_of(r), extension);
+    return !strcasecmp(extension_of(r), extension);
 }
 
 brio_status cli_require_table(run *r) {
@@ -110,10 +111,12 @@ static brio_status write_file(run *r, const char *path, const table *t) {
     const char *target = real ? real : path;
     char *part = malloc(strlen(target) + sizeof ".XXXXXX");
     brio_status status = BRIO_OK;
-    if (!part) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory"));
-    sprintf(part, "%s.XXXXXX", target);
-    status = write_beside(r, target, part, t);
-done:
+    if (part) {
+        sprintf(part, "%s.XXXXXX", target);
+        status = write_beside(r, target, part, t);
+    } else {
+        status = cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory");
+    }
     free(part);
     free(real);
     return status;

@@ -14,7 +14,6 @@ COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check",
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float32", "--json", "--threads", "--seed",
                   "--max-memory", "--scratch", "--quiet", "--progress", "--help"]
 OWN_OPTIONS = {
-    "voronoi": ["--box", "--faces", "--unweighted", "--weights", "--weights-mod"],
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
                  "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
@@ -34,6 +33,7 @@ OWN_OPTIONS = {
     "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--kind", "--resolution"],
     "subdivide": ["--levels"],
     "locate": ["--at", "--weights", "--weights-mod", "--unweighted"],
+    "voronoi": ["--weights", "--weights-mod", "--unweighted", "--box", "--faces"],
     "interpolate": ["--at", "--property", "--method"],
 }
 
@@ -115,6 +115,40 @@ class Usage(CliTest):
 
     def test_usage_is_found_before_the_input_is_read(self):
         self.usage("cannot hold", "delaunay", "missing.xyz", "-o", "out.off")
+
+    def test_formats_that_are_only_read_are_refused_before_the_input_is_read(self):
+        for name in ["out.laz", "out.pcd", "out.ptx"]:
+            self.usage("read, not written", "interpolate", "missing.xyz", "--at", "b", "--property", "p", "-o", name)
+            self.usage("read, not written", "generate", "cube", "-n", "9", "-o", name)
+
+    def test_surfaces_of_every_command_are_written_in_the_same_formats(self):
+        points, mesh = self.cloud("a.ply", 300, "ball"), self.path("mesh.ply")
+        for how in [("hull",), ("alpha", "--alpha", "auto"), ("surface",), ("delaunay", "--plane", "xy")]:
+            for extension in ["ply", "obj", "off", "stl", "vtu", "vtp"]:
+                self.expect(0, how[0], points, *how[1:], "-o", self.path("out." + extension))
+        self.expect(0, "hull", points, "-o", mesh)
+        self.expect(0, "subdivide", mesh, "-o", self.path("out.vtp"))
+
+    def test_two_outputs_with_one_name(self):
+        points, out = self.cloud("a.xyz", 50), self.file("out.csv", "old")
+        ply = self.file("out.ply", "old")
+        beside = os.path.join(self.folder, ".", "out.ply")
+        for arguments in [("alpha", points, "--alpha", "auto", "--filtration", beside, "-o", ply),
+                          ("voronoi", points, "--faces", out, "-o", out),
+                          ("surface", points, "--normals", beside, "-o", ply),
+                          ("medial", points, "--crust", beside, "-o", ply),
+                          ("generate", "scan", "-n", "90", "--truth", beside, "-o", ply)]:
+            self.usage("name the same file", *arguments)
+        with open(out) as f:
+            self.assertEqual(f.read(), "old")
+
+    def test_standard_output_for_a_second_file(self):
+        points = self.cloud("a.xyz", 50)
+        for arguments in [("alpha", points, "--alpha", "auto", "--filtration", "-"),
+                          ("voronoi", points, "--faces", "-"),
+                          ("surface", points, "-o", self.path("x.ply"), "--normals", "-"),
+                          ("medial", points, "-o", self.path("x.ply"), "--crust", "-")]:
+            self.usage("a file, not standard output", *arguments)
 
     def test_values_in_each_spelling(self):
         points = self.xyz("a.xyz", CUBE)

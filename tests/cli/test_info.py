@@ -10,7 +10,9 @@ class Info(CliTest):
         self.assert_schema(facts, {**COMMON_FACTS, "points": count, "faces": count, "tetrahedra": count,
                                    "box": {"min": vector, "max": vector}, "duplicates": count, "spacing": number,
                                    "estimate_bytes": {"delaunay": count, "surface": count, "medial": count,
-                                                      "offset": count}, "properties": dict})
+                                                      "offset": count, "plane": count, "voronoi": count,
+                                                      "hull": count, "alpha": count, "locate": count,
+                                                      "interpolate": count, "cocone": count}, "properties": dict})
 
     def test_info_of_an_empty_file(self):
         facts = self.facts("info", self.file("a.xyz", ""))

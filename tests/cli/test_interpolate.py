@@ -52,6 +52,10 @@ class Interpolate(CliTest):
         self.bad_input("have no property 'r'", "interpolate", self.points(), "--at", places, "--property", "r", "-o",
                        self.path("a.ply"))
 
+    def test_formats_without_properties_are_refused(self):
+        for name in ["out.obj", "out.off", "out.stl"]:
+            self.usage("cannot hold", "interpolate", "missing.csv", "--at", "b.xyz", "--property", "p", "-o", name)
+
 
 if __name__ == "__main__":
     main()

@@ -50,6 +50,11 @@ class Locate(CliTest):
         self.usage("writes .csv and .npy", "locate", points, "--at", points, "-o", self.path("a.ply"))
         self.usage("-o FILE is missing", "locate", points, "--at", points)
 
+    def test_extensions_in_capitals(self):
+        points = self.xyz("p.xyz", CUBE)
+        for name in ["A.CSV", "A.Npy"]:
+            self.expect(0, "locate", points, "--at", points, "-o", self.path(name))
+
 
 if __name__ == "__main__":
     main()

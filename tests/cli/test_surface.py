@@ -263,5 +263,12 @@ class Cocone(CliTest):
             self.assertEqual("no guarantee holds" in done.err, warns)
 
 
+class NormalsFile(CliTest):
+    def test_formats_without_properties_are_refused_before_the_input_is_read(self):
+        for name in ["n.obj", "n.off", "n.stl", "n.pcd"]:
+            self.usage("cannot hold|not written", "surface", "missing.xyz", "-o", self.path("out.ply"), "--normals",
+                       self.path(name))
+
+
 if __name__ == "__main__":
     main()
