@@ -7,12 +7,13 @@
 #include "locate/place_search.h"
 #include "triangulation/ring.h"
 
-/* Returns the sides of the query: bit i if it is in the plane of facet i. The query is beyond no facet. */
-static unsigned zero_sides(brio_querent *q, uint32_t tet, const double *x) {
+/* Returns the sides of the query: bit i if it is in the plane of facet i. The query is beyond no facet.
+ * unsure  the facets whose planes may hold it */
+static unsigned zero_sides(brio_querent *q, uint32_t tet, unsigned unsure, const double *x) {
     const brio_locator *l = q->l;
     const uint32_t *v = l->t.tet[tet].vertex;
     unsigned zeros = 0;
-    for (unsigned left = q->walk.unsure; left; left &= left - 1) {
+    for (unsigned left = unsure; left; left &= left - 1) {
         int i = __builtin_ctz(left);
         const uint8_t *f = BRIO_FACET[i];
         const brio_record *r = l->t.record;
@@ -21,14 +22,31 @@ static unsigned zero_sides(brio_querent *q, uint32_t tet, const double *x) {
     return zeros;
 }
 
-brio_holder brio_find_holder(brio_querent *q, const double *x) {
+/* Returns the columns whose queries can be inside, with starts for their walks. */
+static unsigned start_walks(brio_querent *q, const brio_query_row *row) {
     const brio_locator *l = q->l;
-    if (!l->num_finite || !brio_locator_boxes(l, x)) return (brio_holder){BRIO_INFINITE, 0};
-    if (!q->near || q->walk.start == BRIO_NO_TET) q->walk.start = l->vertex_tet[brio_place_near(l, x)];
-    uint32_t tet = l->engine->walk(&l->t, NULL, &q->filter, &q->walk, x, UINT64_MAX);
-    q->walk.start = tet;
-    if (brio_is_infinite(&l->t, tet)) return (brio_holder){BRIO_INFINITE, 0};
-    return (brio_holder){tet, zero_sides(q, tet, x)};
+    unsigned which = 0;
+    for (size_t c = 0; c < row->count && l->num_finite; c++) {
+        if (!brio_locator_boxes(l, row->x[c])) continue;
+        which |= 1u << c;
+        if (!q->near || q->walk[c].start == BRIO_NO_TET)
+            q->walk[c].start = l->vertex_tet[brio_place_near(l, row->x[c])];
+    }
+    return which;
+}
+
+void brio_find_holders(brio_querent *q, const brio_query_row *row, brio_holder holders[BRIO_ABREAST]) {
+    const brio_locator *l = q->l;
+    uint32_t found[BRIO_ABREAST];
+    unsigned which = start_walks(q, row);
+    l->engine->walk_abreast(&l->t, &q->filter, q->walk, row->x, which, found);
+    for (size_t c = 0; c < row->count; c++) {
+        holders[c] = (brio_holder){BRIO_INFINITE, 0};
+        if (!(which >> c & 1)) continue;
+        q->walk[c].start = found[c];
+        if (!brio_is_infinite(&l->t, found[c]))
+            holders[c] = (brio_holder){found[c], zero_sides(q, found[c], q->walk[c].unsure, row->x[c])};
+    }
 }
 
 /* --- the tetrahedra that share a facet, an edge or a vertex with the query on it --- */
@@ -67,12 +85,12 @@ uint32_t brio_lowest_holder(const brio_locator *l, const brio_holder *h) {
     }
 }
 
-brio_holder brio_find_lowest_holder(brio_querent *q, const double *x) {
-    brio_holder h = brio_find_holder(q, x);
-    uint32_t lowest = brio_lowest_holder(q->l, &h);
-    if (lowest == h.tet) return h;
-    q->walk.unsure = 15;
-    return (brio_holder){lowest, zero_sides(q, lowest, x)};
+void brio_find_lowest_holders(brio_querent *q, const brio_query_row *row, brio_holder holders[BRIO_ABREAST]) {
+    brio_find_holders(q, row, holders);
+    for (size_t c = 0; c < row->count; c++) {
+        uint32_t lowest = brio_lowest_holder(q->l, &holders[c]);
+        if (lowest != holders[c].tet) holders[c] = (brio_holder){lowest, zero_sides(q, lowest, 15, row->x[c])};
+    }
 }
 
 bool brio_holder_on_hull(const brio_locator *l, const brio_holder *h) {

@@ -12,14 +12,14 @@ typedef struct {
                        the edge that these facets share. Three: at a vertex. */
 } brio_holder;
 
-/** Locates x (three finite coordinates and a 0), exactly. Which of several holders is found depends on the querent. */
-brio_holder brio_find_holder(brio_querent *q, const double *x);
+/** Locates the queries of a row, exactly. Which of several holders is found depends on the querent. */
+void brio_find_holders(brio_querent *q, const brio_query_row *row, brio_holder holders[BRIO_ABREAST]);
 
 /** Returns the tetrahedron of lowest index that holds the query; BRIO_INFINITE for a query outside the hull. */
 uint32_t brio_lowest_holder(const brio_locator *l, const brio_holder *h);
 
-/** Locates x in the tetrahedron of lowest index that holds it. So the result does not depend on the querent. */
-brio_holder brio_find_lowest_holder(brio_querent *q, const double *x);
+/** Locates queries in the tetrahedra of lowest index that hold them. So the result does not depend on the querent. */
+void brio_find_lowest_holders(brio_querent *q, const brio_query_row *row, brio_holder holders[BRIO_ABREAST]);
 
 /** Returns whether the query is on the boundary of the hull.   h  not outside, and not at a vertex. */
 bool brio_holder_on_hull(const brio_locator *l, const brio_holder *h);

@@ -29,22 +29,31 @@ static void add_linear(const interpolation_job *job, const brio_holder *h, const
         if (share[i] != 0) add_share(job, v[i], share[i], row);
 }
 
-static brio_status answer_value(void *user, brio_querent *q, size_t i, const double *x) {
-    const interpolation_job *job = user;
+/* Writes the values of a query to a row of the results. */
+static brio_status find_values(const interpolation_job *job, brio_querent *q, const brio_holder *h, const double *x,
+                               double *row) {
     brio_natural *n = &job->natural[q->thread];
-    double *row = job->results + job->o->components * i;
-    brio_holder h = brio_find_lowest_holder(q, x); /* rounding depends on the tetrahedron */
     bool natural = false;
-    for (size_t c = 0; c < job->o->components; c++) row[c] = h.tet == BRIO_INFINITE ? NAN : 0;
-    if (h.tet == BRIO_INFINITE) return BRIO_OK;
-    if (job->o->method == BRIO_INTERPOLATION_NATURAL && __builtin_popcount(h.zeros) < 3 &&
-        !brio_holder_on_hull(job->l, &h)) {
-        brio_status status = brio_natural_coordinates(n, q, &h, x, &natural);
+    for (size_t c = 0; c < job->o->components; c++) row[c] = h->tet == BRIO_INFINITE ? NAN : 0;
+    if (h->tet == BRIO_INFINITE) return BRIO_OK;
+    if (job->o->method == BRIO_INTERPOLATION_NATURAL && __builtin_popcount(h->zeros) < 3 &&
+        !brio_holder_on_hull(job->l, h)) {
+        brio_status status = brio_natural_coordinates(n, q, h, x, &natural);
         if (status != BRIO_OK) return status;
     }
-    if (!natural) add_linear(job, &h, x, row);
+    if (!natural) add_linear(job, h, x, row);
     for (size_t v = 1; natural && v < n->num_vertices; v++) add_share(job, n->place[v], n->share[v], row);
     return BRIO_OK;
+}
+
+static brio_status answer_values(void *user, brio_querent *q, const brio_query_row *row) {
+    const interpolation_job *job = user;
+    brio_holder holders[BRIO_ABREAST];
+    brio_status status = BRIO_OK;
+    brio_find_lowest_holders(q, row, holders); /* rounding depends on the tetrahedron */
+    for (size_t c = 0; c < row->count && status == BRIO_OK; c++)
+        status = find_values(job, q, &holders[c], row->x[c], job->results + job->o->components * row->index[c]);
+    return status;
 }
 
 static brio_status check_options(brio_context *ctx, const brio_locator *l, const brio_interpolation *o) {
@@ -70,8 +79,8 @@ brio_status brio_locator_interpolate(brio_context *ctx, const brio_locator *l, c
     BRIO_TRY(check_options(ctx, l, &o));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, job.natural, (size_t)threads));
     for (int i = 0; i < threads; i++) job.natural[i].ctx = ctx;
-    BRIO_TRY(
-        brio_answer_all(ctx, threads, &(brio_query_batch){l, queries, num_queries, "interpolate", answer_value, &job}));
+    BRIO_TRY(brio_answer_all(ctx, threads,
+                             &(brio_query_batch){l, queries, num_queries, "interpolate", answer_values, &job}));
 done:
     for (int i = 0; job.natural && i < threads; i++) brio_natural_free(&job.natural[i]);
     brio_release(ctx, job.natural);

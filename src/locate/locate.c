@@ -6,17 +6,18 @@
 
 /* --- tetrahedra --- */
 
-static brio_status answer_tetrahedron(void *user, brio_querent *q, size_t i, const double *x) {
+static brio_status answer_tetrahedra(void *user, brio_querent *q, const brio_query_row *row) {
     uint32_t *tetrahedra = user;
-    brio_holder h = brio_find_holder(q, x);
-    tetrahedra[i] = brio_lowest_holder(q->l, &h);
+    brio_holder holders[BRIO_ABREAST];
+    brio_find_holders(q, row, holders);
+    for (size_t c = 0; c < row->count; c++) tetrahedra[row->index[c]] = brio_lowest_holder(q->l, &holders[c]);
     return BRIO_OK;
 }
 
 brio_status brio_locator_tetrahedra(brio_context *ctx, const brio_locator *l, const double *queries, size_t num_queries,
                                     uint32_t *tetrahedra) {
     BRIO_DOOR;
-    const brio_query_batch b = {l, queries, num_queries, "locate", answer_tetrahedron, tetrahedra};
+    const brio_query_batch b = {l, queries, num_queries, "locate", answer_tetrahedra, tetrahedra};
     return brio_answer_all(ctx, brio_query_threads(ctx, num_queries), &b);
 }
 
@@ -29,13 +30,15 @@ typedef struct {
     brio_found *found; /* of each thread, `wanted` entries */
 } vertex_job;
 
-static brio_status answer_vertices(void *user, brio_querent *q, size_t i, const double *x) {
+static brio_status answer_vertices(void *user, brio_querent *q, const brio_query_row *row) {
     const vertex_job *job = user;
     brio_found *found = job->found + job->wanted * (size_t)q->thread;
-    uint32_t *out = job->vertices + job->wanted * i;
-    size_t count = brio_search_places(q->l, x, job->power, job->wanted, q->nearest, found);
-    for (size_t n = 0; n < job->wanted; n++) out[n] = n < count ? q->l->name[found[n].place] : BRIO_INFINITE;
-    if (count) q->nearest = found[0].place;
+    for (size_t c = 0; c < row->count; c++) {
+        uint32_t *out = job->vertices + job->wanted * row->index[c];
+        size_t count = brio_search_places(q->l, row->x[c], job->power, job->wanted, q->nearest[c], found);
+        for (size_t n = 0; n < job->wanted; n++) out[n] = n < count ? q->l->name[found[n].place] : BRIO_INFINITE;
+        if (count) q->nearest[c] = found[0].place;
+    }
     return BRIO_OK;
 }
 

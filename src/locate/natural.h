@@ -40,7 +40,7 @@ void brio_natural_free(brio_natural *n);
 
 /** Computes the coordinates of x: share[1 .. num_vertices) of the vertices place[1 .. num_vertices). They are at least 0
  *  and sum to 1. Sets *found to false where doubles do not suffice, very near the hull.
- *  h  what brio_find_holder found: inside, not on the hull, not at a vertex. The locator has no weights.
+ *  h  what brio_find_holders found: inside, not on the hull, not at a vertex. The locator has no weights.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_natural_coordinates(brio_natural *n, brio_querent *q, const brio_holder *h, const double *x,
                                      bool *found);

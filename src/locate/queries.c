@@ -35,25 +35,41 @@ typedef struct {
     brio_status status; /* the first failure; atomic */
 } block_job;
 
-static brio_status answer_one(const block_job *job, brio_querent *q, size_t i) {
-    const brio_query_batch *b = job->batch;
-    size_t query = job->begin + (job->items ? (size_t)(uint32_t)job->items[i] : i);
-    const double *from = b->queries + 3 * query;
-    const double x[4] = {from[0] + 0.0, from[1] + 0.0, from[2] + 0.0, 0}; /* -0 becomes 0 */
-    return b->answer(b->user, q, query, x);
+static inline size_t query_at(const block_job *job, size_t i) {
+    return job->begin + (job->items ? (size_t)(uint32_t)job->items[i] : i);
+}
+
+/* Takes the queries i, i + stride, ... before `end` in the order of the block. */
+static void take_row(const block_job *job, size_t i, size_t stride, size_t end, brio_query_row *row) {
+    const double *queries = job->batch->queries;
+    for (row->count = 0; i < end && row->count < BRIO_ABREAST; i += stride) {
+        size_t query = query_at(job, i), c = row->count++;
+        for (size_t k = 0; k < 3; k++) row->x[c][k] = queries[3 * query + k] + 0.0; /* -0 becomes 0 */
+        row->x[c][3] = 0;
+        row->index[c] = query;
+        if (i + 2 < end) __builtin_prefetch(queries + 3 * query_at(job, i + 2));
+    }
+}
+
+static void begin_querent(const block_job *job, int thread, brio_querent *q) {
+    const brio_locator *l = job->batch->l;
+    *q = (brio_querent){.l = l, .thread = thread, .filter = l->filter, .near = job->near};
+    for (int c = 0; c < BRIO_ABREAST; c++) q->walk[c].start = BRIO_NO_TET, q->nearest[c] = BRIO_INFINITE;
 }
 
 static void answer_chunk(void *user, size_t begin, size_t end, int thread) {
     block_job *job = user;
     const brio_query_batch *b = job->batch;
-    brio_querent q = {.l = b->l, .thread = thread, .filter = b->l->filter, .near = job->near};
-    q.walk.start = BRIO_NO_TET;
-    q.nearest = BRIO_INFINITE;
+    size_t rows = (end - begin + BRIO_ABREAST - 1) / BRIO_ABREAST;
+    brio_querent q;
+    begin_querent(job, thread, &q);
     if (__atomic_load_n(&job->status, __ATOMIC_RELAXED) != BRIO_OK) return;
     if (thread == 0)
         brio_report(&job->status, brio_progress(job->ctx, b->stage, (double)(job->begin + begin) / (double)b->count));
-    for (size_t i = begin; i < end; i++) {
-        brio_status status = answer_one(job, &q, i);
+    for (size_t r = 0; r < rows; r++) {
+        brio_query_row row;
+        take_row(job, begin + r, rows, end, &row);
+        brio_status status = b->answer(b->user, &q, &row);
         if (status == BRIO_OK) continue;
         brio_report(&job->status, status);
         return;

@@ -1,21 +1,31 @@
-/* Many queries at once: sorted along a Hilbert curve, divided among threads. */
+/* Many queries at once: sorted along a Hilbert curve, divided among threads.
+ *
+ * A thread answers a row of queries at a time. The queries of a row are far from each other, and each is near the one in
+ * its column in the row before. So the walks of a row do not wait for each other's memory. */
 #ifndef BRIO_LOCATE_QUERIES_H
 #define BRIO_LOCATE_QUERIES_H
 
 #include "locate/locator.h"
 
-/** What one thread carries from a query to the next, which is usually near. Answers do not depend on it. */
+/** A row of queries. */
+typedef struct {
+    size_t count;               /* at most BRIO_ABREAST */
+    size_t index[BRIO_ABREAST]; /* the caller's */
+    double x[BRIO_ABREAST][4];  /* three coordinates and a 0 */
+} brio_query_row;
+
+/** What one thread carries from a row of queries to the next. Answers do not depend on it. */
 typedef struct {
     const brio_locator *l;
     int thread;
     brio_filter filter;
-    brio_walk walk;   /* walk.start: where the next walk starts; BRIO_NO_TET: at a vertex near the query */
-    bool near;        /* the next query is usually near the last one */
-    uint32_t nearest; /* the last place found, or BRIO_INFINITE */
+    brio_walk walk[BRIO_ABREAST];   /* of a column: start: of the next walk; BRIO_NO_TET: at a vertex near the query */
+    uint32_t nearest[BRIO_ABREAST]; /* of a column: the last place found, or BRIO_INFINITE */
+    bool near;                      /* the next query of a column is usually near the last one */
 } brio_querent;
 
-/** Answers query i, at x (three coordinates and a 0).   user  of the batch.   Returns BRIO_OK or an error. */
-typedef brio_status (*brio_answer_fn)(void *user, brio_querent *q, size_t i, const double *x);
+/** Answers a row of queries.   user  of the batch.   Returns BRIO_OK or an error. */
+typedef brio_status (*brio_answer_fn)(void *user, brio_querent *q, const brio_query_row *row);
 
 typedef struct {
     const brio_locator *l;
@@ -29,7 +39,7 @@ typedef struct {
 /** Returns the number of threads for this many queries: brio_answer_all uses thread numbers below it. */
 int brio_query_threads(brio_context *ctx, size_t count);
 
-/** Calls `answer` for every query, once, in any order and from several threads.
+/** Calls `answer` for rows that have every query once, in any order and from several threads.
  *  threads  what brio_query_threads returned.   Needs 16 bytes of workspace a query, for 2^20 queries at most.
  *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE (before any call), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, and what `answer`
  *  returns. */

@@ -22,8 +22,9 @@ static inline unsigned batch_in_conflict(const brio_tetrahedra *t, brio_filter *
     return mask;
 }
 
-#define WALK   brio_locate_walk
-#define ENGINE brio_engine_plain
+#define WALK    brio_locate_walk
+#define ABREAST brio_locate_abreast
+#define ENGINE  brio_engine_plain
 #include "triangulation/engine_body.h"
 
 const brio_engine *brio_engine_choose(bool weighted) {

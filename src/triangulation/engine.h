@@ -19,6 +19,9 @@ typedef struct {
     /** brio_locate_walk. */
     uint32_t (*walk)(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, brio_walk *walk, const double *p,
                      uint64_t most_steps);
+    /** brio_locate_abreast. */
+    void (*walk_abreast)(const brio_tetrahedra *t, brio_filter *f, brio_walk walks[BRIO_ABREAST],
+                         const double (*points)[4], unsigned which, uint32_t *found);
 } brio_engine;
 
 /** The version for the instruction set in use. */

@@ -5,8 +5,9 @@
 #include "triangulation/conflict_lanes.h"
 #include "triangulation/walk_lanes.h"
 
-#define WALK   walk
-#define ENGINE brio_engine_avx512
+#define WALK    walk
+#define ABREAST walk_abreast
+#define ENGINE  brio_engine_avx512
 #include "triangulation/engine_body.h"
 #else
 typedef int brio_no_avx512;

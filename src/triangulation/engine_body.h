@@ -1,5 +1,5 @@
 /* The inner loops around the conflict test; included by one source file an instruction set, after its
- * batch_in_conflict, with ENGINE, the name of its table, and WALK. See cavity.c for the method.
+ * batch_in_conflict, with ENGINE, the name of its table, WALK and ABREAST. See cavity.c for the method.
  *
  * Lists are written always and their length is advanced by a bit, since no branch could be foreseen. */
 #include "base/memory.h"
@@ -101,4 +101,4 @@ static brio_status dig_weighted(brio_inserter *ins, uint32_t first, uint32_t p, 
     return dig_cavity(ins, first, ins->store->record[p], deferred, true);
 }
 
-const brio_engine ENGINE[2] = {{test_batch, dig, WALK}, {test_batch_weighted, dig_weighted, WALK}};
+const brio_engine ENGINE[2] = {{test_batch, dig, WALK, ABREAST}, {test_batch_weighted, dig_weighted, WALK, ABREAST}};

@@ -34,3 +34,11 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter
         if (i == 4) return tet;
     }
 }
+
+void brio_locate_abreast(const brio_tetrahedra *t, brio_filter *f, brio_walk walks[BRIO_ABREAST],
+                         const double (*points)[4], unsigned which, uint32_t *found) {
+    for (; which; which &= which - 1) {
+        int i = __builtin_ctz(which);
+        found[i] = brio_locate_walk(t, NULL, f, &walks[i], points[i], UINT64_MAX);
+    }
+}

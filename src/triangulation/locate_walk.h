@@ -15,12 +15,20 @@ typedef struct {
 
 enum { BRIO_NO_TET = UINT32_MAX };
 
+/** Walks that may be abreast: their steps take turns, so that each one's memory is fetched during the others' steps. */
+enum { BRIO_ABREAST = 8 };
+
 /** Returns the tetrahedron whose closure holds p. For p strictly outside the hull, returns an infinite tetrahedron
  *  whose facet has p strictly outside. Exact. Returns BRIO_NO_TET when the walk takes more than most_steps or leaves
  *  the zone.
  *  zone  the thread's zone; the thread then owns the tetrahedra that it walks through. NULL: no bound. */
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps);
+
+/** Sets found[i] to what brio_locate_walk finds for points[i], without zone and bound, from walks[i].start, for the bits
+ *  i of `which`. */
+void brio_locate_abreast(const brio_tetrahedra *t, brio_filter *f, brio_walk walks[BRIO_ABREAST],
+                         const double (*points)[4], unsigned which, uint32_t *found);
 
 /** Returns the tetrahedron where a walk starts: walk->start, or the finite tetrahedron next to it. */
 static inline uint32_t brio_walk_begin(const brio_tetrahedra *t, const brio_walk *walk) {
