@@ -105,7 +105,7 @@ static void choose_origin(const cell_call *c, double origin[3]) {
             high = c->points[i] > high ? c->points[i] : high;
         }
         bool far = (low > 0 && high * 0.5 <= low) || (high < 0 && low * 0.5 >= high);
-        origin[k] = far ? low + (high - low) * 0.5 : 0;
+        origin[k] = far && c->num_points ? low + (high - low) * 0.5 : 0;
     }
 }
 
