@@ -307,7 +307,9 @@ static void expect_volumes(brio_context *ctx, const double *points, const double
                    near_to(alone->volume[c] * (double)n, whole->volume[c] * (double)n, 1e-11),
                "cell %zu of %zu: %.17g %.17g", c, whole->num_cells, alone->volume[c], whole->volume[c]);
     }
-    if (box) EXPECT(fabs(alone->volume_sum / alone->region_volume - 1) < 1e-12, "%.3g of %.3g", alone->volume_sum, alone->region_volume);
+    if (box)
+        EXPECT(fabs(alone->volume_sum / alone->region_volume - 1) < 1e-12, "%.3g of %.3g", alone->volume_sum,
+               alone->region_volume);
     brio_cells_free(whole);
     brio_cells_free(alone);
 }
