@@ -38,16 +38,16 @@ static inline double shift(const brio_diagram *d, uint32_t p, uint32_t y, const 
     return (d->ranked_square[p] - d->ranked_square[y]) / brio_dot(way, way);
 }
 
-/* Adds the terms of the facet opposite to slot i of a tetrahedron. */
-static inline void add_facet(const brio_diagram *d, const uint32_t id[4], int i, const double *from, const double *to,
-                             double term[4], const bool weighted) {
+/* Adds the terms of the facet opposite to slot i of tetrahedron t, whose mate is in u. */
+static inline void add_facet(const brio_diagram *d, size_t t, int i, uint32_t u, double term[4], const bool weighted) {
     const uint8_t *slot = BRIO_FACET[i];
+    const uint32_t *id = d->id[t];
     const double *a = d->ranked + 3 * (size_t)id[slot[0]];
     double e[3], g[3], c[3], x[3], cross[3], way[3], area[3];
     subtract(d->ranked + 3 * (size_t)id[slot[1]], a, e);
     subtract(d->ranked + 3 * (size_t)id[slot[2]], a, g);
-    subtract(from, a, c);
-    subtract(to, a, x);
+    subtract(d->centre[t], a, c);
+    subtract(d->centre[u], a, x);
     subtract(x, c, way);
     brio_cross(c, x, cross);
     brio_cross(e, g, area);
@@ -72,7 +72,7 @@ static inline void find_terms(const volume_pass *v, size_t from, size_t to, cons
         double term[4] = {0, 0, 0, 0};
         for (int i = 0; i < 4; i++) {
             uint32_t u = brio_tet_of(d->t.tet[t].mate[i]);
-            if (u > t) add_facet(d, d->id[t], i, d->centre[t], d->centre[u], term, weighted);
+            if (u > t) add_facet(d, t, i, u, term, weighted);
         }
         memcpy(v->term[n], term, sizeof term);
     }
