@@ -112,7 +112,7 @@ static void copy_corners(void *user, size_t from, size_t to, int thread) {
         }
         for (size_t i = 0; i < place->num_vertices; i++)
             for (size_t k = 0; k < 3; k++)
-                job->out->vertices[3 * (first + i) + k] = r->vertex[place->vertex + i][k] * inverse;
+                job->out->vertices[3 * (first + i) + k] = r->vertex[place->vertex + i][k] * inverse + job->d->origin[k];
     }
 }
 
@@ -122,7 +122,7 @@ static void copy_centres(const assembly *a) {
     for (size_t t = 0; t < d->t.count; t++) {
         if (!a->vertex_of[t]) continue;
         double *x = a->job->out->vertices + 3 * (size_t)(a->vertex_of[t] - 1);
-        for (int k = 0; k < 3; k++) x[k] = d->centre[t][k] * inverse;
+        for (int k = 0; k < 3; k++) x[k] = d->centre[t][k] * inverse + d->origin[k];
     }
 }
 

@@ -36,7 +36,8 @@ static void store_numbers(const brio_cell_job *job, uint32_t site, const cell_nu
     job->out->bounded[cell] = n->bounded;
     if (job->areas) job->out->area[cell] = in_lengths(d, n->area, 2);
     for (size_t k = 0; k < 3 && job->centroids; k++)
-        job->out->centroid[3 * cell + k] = in_lengths(d, d->at[3 * (size_t)site + k] + n->centroid[k], 1);
+        job->out->centroid[3 * cell + k] =
+            in_lengths(d, d->at[3 * (size_t)site + k] + n->centroid[k], 1) + d->origin[k];
 }
 
 /* Sets the centroid from the first moments; a cell without a volume that can divide has none. */
@@ -184,10 +185,6 @@ done:
 brio_status brio_cell_record(const brio_cell_job *job, brio_cell_recorder *r, uint32_t site) {
     brio_status status = BRIO_OK;
     size_t faces = r->num_faces, corners = r->num_corners, vertices = r->num_vertices;
-    if (!job->areas && !job->centroids && !job->faces) {
-        cell_numbers n = {.volume = brio_star_volume(job->d, site), .bounded = true};
-        if (!isnan(n.volume)) return store_numbers(job, site, &n), BRIO_OK;
-    }
     BRIO_TRY(brio_star_cell_fill(&r->star, site, job->centroids));
     if (job->region->num_planes && r->star.place != BRIO_PLACE_INSIDE) {
         BRIO_TRY(brio_clip_cell(&r->star, job->region, &r->shape));

@@ -2,7 +2,8 @@
  *
  * The diagram is computed once: the centres of the tetrahedra, exact ties among them, the tetrahedra of each vertex. Then
  * threads compute the cells, each from the star of its site, along the array of tetrahedra. A cell is computed the same
- * way whichever thread takes it. Cells that reach outside the region are clipped.
+ * way whichever thread takes it. Cells that reach outside the region are clipped. Where nothing but volumes is asked for,
+ * one pass over the tetrahedra gives those of the other cells (volumes.c), and only clipped cells need their stars.
  *
  * Based on: Aurenhammer. Power diagrams: properties, algorithms and applications. SIAM J. Computing 1987.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, sections 2.1 and 2.2. */
@@ -93,6 +94,20 @@ done:
     return status;
 }
 
+/* Chooses the origin: 0, unless all points are far from 0 in a coordinate. A difference of two numbers of one sign of
+ * which neither is more than twice the other is exact [Sterbenz 1974]. */
+static void choose_origin(const cell_call *c, double origin[3]) {
+    for (size_t k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = k; i < 3 * c->num_points; i += 3) {
+            low = c->points[i] < low ? c->points[i] : low;
+            high = c->points[i] > high ? c->points[i] : high;
+        }
+        bool far = (low > 0 && high * 0.5 <= low) || (high < 0 && low * 0.5 >= high);
+        origin[k] = far && c->num_points ? low + (high - low) * 0.5 : 0;
+    }
+}
+
 /* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. */
 static double choose_scale(const cell_call *c) {
     enum { ORDINARY = 100, MOST = 1000 };
@@ -114,11 +129,13 @@ static brio_status scale_points(cell_call *c) {
     d->points = d->at = c->points;
     d->weights = d->square = c->weights;
     d->scale = choose_scale(c);
-    if (d->scale == 1) return BRIO_OK;
+    choose_origin(c, d->origin);
+    bool moved = d->origin[0] != 0 || d->origin[1] != 0 || d->origin[2] != 0;
+    if (d->scale == 1 && !moved) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(c->ctx, c->scaled, 3 * rows));
-    for (size_t i = 0; i < 3 * rows; i++) c->scaled[i] = c->points[i] * d->scale;
+    for (size_t i = 0; i < 3 * rows; i++) c->scaled[i] = (c->points[i] - d->origin[i % 3]) * d->scale;
     d->at = c->scaled;
-    if (!c->weights) return BRIO_OK;
+    if (!c->weights || d->scale == 1) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(c->ctx, c->scaled_weights, rows));
     for (size_t i = 0; i < rows; i++) c->scaled_weights[i] = c->weights[i] * d->scale * d->scale;
     d->square = c->scaled_weights;
@@ -143,7 +160,7 @@ static brio_status make_region(cell_call *c) {
         planes[4 * i + 3] = i % 2 ? at : -at;
     }
     if (o->num_planes) memcpy(planes + 4 * walls, o->planes, 4 * o->num_planes * sizeof *planes);
-    BRIO_TRY(brio_region_new(c->ctx, planes, walls + o->num_planes, c->diagram.scale, &c->region));
+    BRIO_TRY(brio_region_new(c->ctx, planes, walls + o->num_planes, c->diagram.origin, c->diagram.scale, &c->region));
 done:
     brio_release(c->ctx, planes);
     return status;
@@ -158,7 +175,7 @@ static brio_status make_cells(brio_cell_job *job) {
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(d->ctx, job->cell_of, d->num_points));
     for (size_t p = 0; p < d->num_points; p++)
-        if (d->size[p]) job->cell_of[p] = (uint32_t)out->num_cells++;
+        if (d->rank[p] != UINT32_MAX) job->cell_of[p] = (uint32_t)out->num_cells++;
     size_t n = out->num_cells;
     BRIO_TRY(BRIO_ALLOC(d->ctx, out->site, n));
     BRIO_TRY(BRIO_ALLOC(d->ctx, out->volume, n));
@@ -167,7 +184,7 @@ static brio_status make_cells(brio_cell_job *job) {
     if (job->centroids) BRIO_TRY(BRIO_ALLOC(d->ctx, out->centroid, 3 * n));
     if (job->faces) BRIO_TRY(BRIO_ALLOC(d->ctx, job->place, n));
     for (size_t p = 0; p < d->num_points; p++)
-        if (d->size[p]) out->site[job->cell_of[p]] = (uint32_t)p;
+        if (d->rank[p] != UINT32_MAX) out->site[job->cell_of[p]] = (uint32_t)p;
 done:
     return status;
 }
@@ -182,6 +199,7 @@ static void record_some(void *user, size_t from, size_t to, int thread) {
     brio_cell_recorder *r = &s->job->recorder[thread];
     for (size_t i = from; i < to && r->status == BRIO_OK; i++) {
         uint32_t site = s->job->d->order[s->first + i];
+        if (s->job->d->marked && !s->job->d->marked[s->first + i]) continue; /* its volume is known */
         if (site < s->job->d->num_points) r->status = brio_cell_record(s->job, r, site);
     }
 }
@@ -198,6 +216,23 @@ static brio_status record_all(brio_cell_job *job) {
         BRIO_TRY(brio_progress(d->ctx, "cells", 0.4 + 0.5 * ((double)first / (double)n)));
     }
 done:
+    return status;
+}
+
+/* Computes the volumes of the cells that neither are clipped nor unbounded. */
+static brio_status compute_volumes(brio_cell_job *job) {
+    const brio_diagram *d = job->d;
+    brio_cells *out = job->out;
+    brio_status status = BRIO_OK;
+    double *volume = NULL, inverse = 1 / d->scale;
+    BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, volume, d->num_vertices));
+    BRIO_TRY(brio_diagram_add_volumes(d, volume));
+    for (size_t c = 0; c < out->num_cells; c++) {
+        out->volume[c] = volume[d->rank[out->site[c]]] * inverse * inverse * inverse;
+        out->bounded[c] = 1;
+    }
+done:
+    brio_release(d->ctx, volume);
     return status;
 }
 
@@ -218,6 +253,7 @@ static brio_status compute(brio_cell_job *job) {
     brio_status status = BRIO_OK;
     job->threads = brio_threads(d->ctx, d->num_vertices, CELLS_A_THREAD);
     BRIO_TRY(make_cells(job));
+    if (d->volumes_only) BRIO_TRY(compute_volumes(job));
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, job->recorder, (size_t)job->threads));
     for (int i = 0; i < job->threads; i++) {
         job->recorder[i].ctx = job->recorder[i].shape.ctx = d->ctx;
@@ -259,6 +295,7 @@ static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *ou
     BRIO_TRY(make_region(c));
     out->region_volume = c->region.num_planes ? c->region.volume : INFINITY;
     for (int k = 0; k < 3; k++) out->region_volume /= c->diagram.scale;
+    c->diagram.volumes_only = !job.areas && !job.centroids && !job.faces && !c->diagram.flat;
     BRIO_TRY(brio_diagram_fill(&c->diagram, &c->region));
     BRIO_TRY(compute(&job));
     BRIO_TRY(brio_progress(c->ctx, "cells", 1));

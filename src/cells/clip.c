@@ -7,19 +7,25 @@
 #include "base/vector.h"
 #include <string.h>
 
-/* Cuts the region by the planes of all faces of the cell. */
+/* Cuts the region by the planes of all faces of the cell. A cell that has neighbours but no face with an area is an edge
+ * or a point, as weights can make it: nothing is left. */
 static brio_status cut_from_region(const brio_star_cell *c, const brio_region *region, brio_polyhedron *p) {
     const brio_diagram *d = c->d;
     const double *site = d->at + 3 * (size_t)c->site;
     brio_status status = BRIO_OK;
+    bool neighbours = false, faces = false;
     BRIO_TRY(brio_polyhedron_copy(p, &region->shape, site));
     for (const brio_side *s = c->side; s < c->side + c->num_sides && p->faces.count; s++) {
         double plane[4];
-        if (s->site >= d->num_points || s->vertices < 3) continue;
+        if (s->site >= d->num_points) continue;
+        neighbours = true;
+        if (s->vertices < 3) continue;
+        faces = true;
         for (size_t k = 0; k < 3; k++) plane[k] = d->at[3 * (size_t)s->site + k] - site[k];
         plane[3] = brio_dot(plane, s->foot);
         BRIO_TRY(brio_polyhedron_cut(p, plane, (int64_t)s->site));
     }
+    if (neighbours && !faces) brio_polyhedron_clear(p);
 done:
     return status;
 }

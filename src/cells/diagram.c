@@ -4,7 +4,8 @@
 
 brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(brio_diagram_find_centres(d));
+    BRIO_TRY(brio_diagram_order_vertices(d));
+    BRIO_TRY(brio_diagram_find_centres(d, region));
     BRIO_TRY(brio_progress(d->ctx, "cells", 0.2));
     BRIO_TRY(brio_diagram_unite_ties(d));
     brio_diagram_find_places(d, region);
@@ -19,6 +20,12 @@ void brio_diagram_free(brio_diagram *d) {
     brio_release(d->ctx, d->centre);
     brio_release(d->ctx, d->same);
     brio_release(d->ctx, d->order);
+    brio_release(d->ctx, d->rank);
+    brio_release(d->ctx, d->ranked);
+    brio_release(d->ctx, d->ranked_square);
+    brio_release(d->ctx, d->id);
+    brio_release(d->ctx, d->marked);
+    brio_release(d->ctx, d->listed);
     brio_release(d->ctx, d->begin);
     brio_release(d->ctx, d->size);
     brio_release(d->ctx, d->star);

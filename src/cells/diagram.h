@@ -6,7 +6,11 @@
  * I2  Where `same` is not NULL, same[t] is the least of the tetrahedra that share the centre of t and are joined with t
  *     across facets. Rows of such tetrahedra are equal. For infinite tetrahedra the outward normal of the hull facet
  *     takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
- * I3  The tetrahedra of a vertex ascend. */
+ * I3  The tetrahedra of a vertex ascend.
+ * I4  Row r of `ranked` is the point order[r], and rank[order[r]] = r. The order follows the array of tetrahedra: what is
+ *     near in space is near in memory.
+ * I5  With `volumes_only` a vertex is marked if one of its tetrahedra is infinite or has its centre outside the region.
+ *     Then ties, places and stars are only found for the listed tetrahedra, those with a marked vertex. */
 #ifndef BRIO_CELLS_DIAGRAM_H
 #define BRIO_CELLS_DIAGRAM_H
 
@@ -24,18 +28,25 @@ typedef struct brio_diagram {
     brio_context *ctx;
     /* given; lengths are scaled by a power of two, see scale */
     const double *points, *weights; /* as the caller gave them */
-    const double *at;               /* #P by 3: the points, scaled */
+    const double *at;               /* #P by 3: the points, relative to the origin and scaled */
     const double *square;           /* #P: the weights, scaled; NULL without weights */
     size_t num_points;              /* the caller's; the triangulation can have up to three more (flat_points.h) */
-    double scale;                   /* a power of two: at = scale * points */
+    double origin[3];               /* each difference points - origin is exact */
+    double scale;                   /* a power of two: at = scale * (points - origin) */
     bool flat;                      /* the points have dimension 2 or less: centres say nothing */
+    bool volumes_only;              /* nothing but volumes is asked for, and the points are not flat */
     brio_tetrahedra t;
     size_t num_finite;
     /* made by brio_diagram_fill */
     double (*centre)[4]; /* of each tetrahedron, infinite ones included: I1 */
     uint32_t *same;      /* I2 */
     size_t num_vertices;
-    uint32_t *order; /* the vertices, along the array of tetrahedra: neighbours are near each other */
+    uint32_t *order, *rank;         /* #vertices: points; #P: I4, UINT32_MAX for points that are no vertices */
+    double *ranked, *ranked_square; /* #vertices by 3; #vertices, NULL without weights: I4 */
+    uint32_t (*id)[4];              /* the ranks of the vertices of each finite tetrahedron; NULL unless volumes_only */
+    uint8_t *marked;                /* of each rank; NULL unless volumes_only: I5 */
+    uint32_t *listed;               /* I5; NULL unless volumes_only: all tetrahedra are listed */
+    size_t num_listed;
     uint64_t *begin; /* #P + 4 and one: tetrahedra star[begin[v]] to star[begin[v] + size[v] - 1] */
     uint32_t *size;  /* the number of tetrahedra of each point; 0 for points that are no vertices */
     uint32_t *star;
@@ -45,14 +56,26 @@ typedef struct brio_diagram {
 brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region);
 void brio_diagram_free(brio_diagram *d);
 
-/* The steps of brio_diagram_fill, in their order: centres.c, ties.c, centres.c, stars.c. */
-/** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. */
-brio_status brio_diagram_find_centres(brio_diagram *d);
+/* The steps of brio_diagram_fill, in their order: vertex_order.c, centres.c, ties.c, centres.c, stars.c. */
+/** Orders the vertices: I4. */
+brio_status brio_diagram_order_vertices(brio_diagram *d);
+/** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. Marks vertices and lists
+ *  tetrahedra: I5. */
+brio_status brio_diagram_find_centres(brio_diagram *d, const brio_region *region);
 /** Finds the tetrahedra that share a centre, and makes their rows equal. */
 brio_status brio_diagram_unite_ties(brio_diagram *d);
 /** Replaces the fourth number of each row by its place. */
 void brio_diagram_find_places(brio_diagram *d, const brio_region *region);
 brio_status brio_diagram_gather_stars(brio_diagram *d);
+
+/** Computes the volumes of the cells of all vertices that are not marked, scaled.   volume  #vertices, zero; what is
+ *  written for marked vertices says nothing.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+brio_status brio_diagram_add_volumes(const brio_diagram *d, double *volume);
+
+/** Returns number i of the listed tetrahedra. */
+static inline uint32_t brio_listed(const brio_diagram *d, size_t i) {
+    return d->listed ? d->listed[i] : (uint32_t)i;
+}
 
 /** Returns the tetrahedron that speaks for all that share the centre of t. */
 static inline uint32_t brio_same_centre(const brio_diagram *d, uint32_t t) {

@@ -12,7 +12,8 @@
  * unbounded. */
 enum { MOST_DOUBLINGS = 40 };
 
-static brio_status take_planes(brio_context *ctx, const double *planes, double scale, brio_region *r) {
+static brio_status take_planes(brio_context *ctx, const double *planes, const double origin[3], double scale,
+                               brio_region *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, r->plane, r->num_planes));
     for (size_t i = 0; i < r->num_planes; i++) {
@@ -24,7 +25,7 @@ static brio_status take_planes(brio_context *ctx, const double *planes, double s
         for (int k = 0; k < 3; k++) n[k] = from[k] / most;
         double length = sqrt(brio_dot(n, n));
         for (int k = 0; k < 3; k++) r->plane[i][k] = n[k] / length;
-        r->plane[i][3] = from[3] / most / length * scale;
+        r->plane[i][3] = (from[3] - brio_dot(from, origin)) / most / length * scale;
         BRIO_REQUIRE(ctx, isfinite(r->plane[i][3]), BRIO_ERR_ARGUMENT, "plane %zu of the region is too far", i);
     }
 done:
@@ -97,12 +98,13 @@ static double volume_of(const brio_region *r) {
     return volume;
 }
 
-brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_planes, double scale, brio_region *r) {
+brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_planes, const double origin[3],
+                            double scale, brio_region *r) {
     brio_status status = BRIO_OK;
     double low[3], high[3];
     *r = (brio_region){.num_planes = num_planes, .shape.ctx = ctx};
     if (!num_planes) return BRIO_OK;
-    BRIO_TRY(take_planes(ctx, planes, scale, r));
+    BRIO_TRY(take_planes(ctx, planes, origin, scale, r));
     if (is_box(r)) {
         for (int k = 0; k < 3; k++) low[k] = -r->plane[2 * k][3], high[k] = r->plane[2 * k + 1][3];
         BRIO_REQUIRE(ctx, low[0] < high[0] && low[1] < high[1] && low[2] < high[2], BRIO_ERR_ARGUMENT,

@@ -16,12 +16,12 @@ typedef struct brio_region {
 } brio_region;
 
 /** Makes the region.
- *  planes  num_planes by 4: normal and offset; normals need not be unit vectors.
- *  scale   lengths are multiplied by this.
+ *  planes         num_planes by 4: normal and offset; normals need not be unit vectors.
+ *  origin, scale  positions are taken relative to the origin, then multiplied by the scale.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a plane without a normal, the half-spaces bound no polytope, or an empty one),
  *  BRIO_ERR_NO_MEMORY. The region is freed with brio_region_free in any case. */
-brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_planes, double scale,
-                            brio_region *region);
+brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_planes, const double origin[3],
+                            double scale, brio_region *region);
 void brio_region_free(brio_region *region);
 
 /** Returns whether a point is over plane i. */

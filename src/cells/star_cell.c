@@ -120,38 +120,6 @@ brio_status brio_star_cell_fill(brio_star_cell *c, uint32_t site, bool moments) 
     return BRIO_OK;
 }
 
-/* Returns 12 times what the edges at the centre of tetrahedron t add to the volume of the cell of `site`: for each edge
- * from c to d, between the faces of the neighbours a and b, (a - b) . (c - p) x (d - p). Halved, a - p and b - p are the
- * feet of the faces. */
-static inline double volume_at(const brio_diagram *d, uint32_t site, uint32_t t) {
-    const brio_tetrahedron *tet = &d->t.tet[t];
-    const double *p = d->at + 3 * (size_t)site, *x = d->centre[t];
-    int own = brio_slot_of_vertex(tet->vertex, site);
-    double from[3] = {x[0] - p[0], x[1] - p[1], x[2] - p[2]}, cross[3], volume = 0;
-    for (int e = 0; e < 3; e++) {
-        const uint8_t *slot = BRIO_FACET[own];
-        uint32_t u = brio_tet_of(tet->mate[slot[e]]);
-        if (u < t) continue;
-        const double *y = d->centre[u], to[3] = {y[0] - p[0], y[1] - p[1], y[2] - p[2]};
-        const double *a = d->at + 3 * (size_t)tet->vertex[slot[(e + 1) % 3]];
-        const double *b = d->at + 3 * (size_t)tet->vertex[slot[(e + 2) % 3]];
-        brio_cross(from, to, cross);
-        volume += (a[0] - b[0]) * cross[0] + (a[1] - b[1]) * cross[1] + (a[2] - b[2]) * cross[2];
-    }
-    return volume;
-}
-
-double brio_star_volume(const brio_diagram *d, uint32_t site) {
-    const uint32_t *star = d->star + d->begin[site];
-    size_t size = d->size[site];
-    double place = 0, volume = 0;
-    if (d->square || star[size - 1] >= d->num_finite) return NAN;
-    for (size_t i = 0; i < size; i++) place += d->centre[star[i]][3];
-    if (place != BRIO_PLACE_INSIDE) return NAN;
-    for (size_t i = 0; i < size; i++) volume += volume_at(d, site, star[i]);
-    return volume / 12;
-}
-
 double brio_star_cell_volume(const brio_star_cell *c) {
     double volume = 0;
     for (const brio_side *s = c->side; s < c->side + c->num_sides; s++)

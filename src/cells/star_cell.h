@@ -35,10 +35,6 @@ void brio_star_cell_free(brio_star_cell *c);
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_star_cell_fill(brio_star_cell *c, uint32_t site, bool moments);
 
-/** Returns the volume of a bounded cell of a diagram without weights, all of whose centres are in place
- *  BRIO_PLACE_INSIDE; NaN for other cells. Needs no star_cell and is faster. */
-double brio_star_volume(const brio_diagram *d, uint32_t site);
-
 /** Returns the volume of a bounded cell. */
 double brio_star_cell_volume(const brio_star_cell *c);
 

@@ -46,7 +46,8 @@ static void look_at_some(void *user, size_t from, size_t to, int thread) {
     (void)thread;
     const brio_tetrahedron *tet = d->t.tet;
     const double(*centre)[4] = (const double(*)[4])d->centre;
-    for (uint32_t t = (uint32_t)from; t < to; t++)
+    for (size_t n = from; n < to; n++) {
+        uint32_t t = brio_listed(d, n);
         for (int i = 0; i < (t < finite ? 4 : 3); i++) {
             uint32_t u = brio_tet_of(tet[t].mate[i]);
             if (u < t || (u >= finite) != (t >= finite)) continue;
@@ -54,6 +55,7 @@ static void look_at_some(void *user, size_t from, size_t to, int thread) {
             candidates++;
             if (s->search && shares(s, &filter, t, i)) brio_unite(d->same, t, u, s->threads == 1);
         }
+    }
     __atomic_add_fetch(&s->candidates, candidates, __ATOMIC_RELAXED);
 }
 
@@ -77,9 +79,9 @@ static void fill_records(tie_search *s, size_t num_points) {
 
 brio_status brio_diagram_unite_ties(brio_diagram *d) {
     brio_status status = BRIO_OK;
-    tie_search s = {.d = d, .threads = brio_threads(d->ctx, d->t.count, TETRAHEDRA_A_THREAD)};
+    tie_search s = {.d = d, .threads = brio_threads(d->ctx, d->num_listed, TETRAHEDRA_A_THREAD)};
     size_t rows = d->num_points + (d->flat ? 3 : 0);
-    brio_for_chunks(d->ctx, s.threads, d->t.count, CHUNK, look_at_some, &s);
+    brio_for_chunks(d->ctx, s.threads, d->num_listed, CHUNK, look_at_some, &s);
     if (!s.candidates) goto done;
     BRIO_TRY(BRIO_ALLOC(d->ctx, s.record, rows));
     BRIO_TRY(BRIO_ALLOC(d->ctx, d->same, d->t.count));
@@ -87,7 +89,7 @@ brio_status brio_diagram_unite_ties(brio_diagram *d) {
     fill_records(&s, rows);
     brio_filter_for(&s.filter, (const brio_record *)s.record, rows, d->weights != NULL);
     s.search = true;
-    brio_for_chunks(d->ctx, s.threads, d->t.count, CHUNK, look_at_some, &s);
+    brio_for_chunks(d->ctx, s.threads, d->num_listed, CHUNK, look_at_some, &s);
     brio_for(d->ctx, s.threads, d->t.count, settle_some, &s);
     for (size_t t = 0; t < d->t.count; t++) d->same[t] = brio_find(d->same, (uint32_t)t);
 done:

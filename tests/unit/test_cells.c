@@ -289,6 +289,109 @@ static void flat_points_have_cells(void) {
     brio_context_free(ctx);
 }
 
+/* --- volumes alone --- */
+
+/* Only volumes, in another pass than the cells with faces. */
+static void expect_volumes(brio_context *ctx, const double *points, const double *weights, size_t n,
+                           const double *box) {
+    brio_cells_options o = brio_cells_options_default();
+    brio_cells *whole = cells_of(ctx, points, weights, n, box, 0), *alone;
+    o.areas = o.centroids = o.faces = 0;
+    o.box = box;
+    EXPECT(brio_voronoi_cells(ctx, NULL, points, weights, n, &o, &alone) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(alone->num_cells == whole->num_cells && !alone->area && !alone->centroid && !alone->face_offsets);
+    EXPECT(!memcmp(alone->bounded, whole->bounded, n < whole->num_cells ? n : whole->num_cells));
+    for (size_t c = 0; c < whole->num_cells; c++) {
+        EXPECT(alone->site[c] == whole->site[c]);
+        EXPECT(alone->volume[c] == whole->volume[c] ||
+                   near_to(alone->volume[c] * (double)n, whole->volume[c] * (double)n, 1e-11),
+               "cell %zu of %zu: %.17g %.17g", c, whole->num_cells, alone->volume[c], whole->volume[c]);
+    }
+    if (box)
+        EXPECT(fabs(alone->volume_sum / alone->region_volume - 1) < 1e-12, "%.3g of %.3g", alone->volume_sum,
+               alone->region_volume);
+    brio_cells_free(whole);
+    brio_cells_free(alone);
+}
+
+static void volumes_alone_equal_those_with_faces(void) {
+    enum { N = 3000 };
+    brio_context *ctx = new_context();
+    double *points = malloc(3 * N * sizeof *points), *weights = malloc(N * sizeof *weights);
+    const double box[6] = {-0.5, -0.5, -0.5, 7.5, 7.5, 7.5}, inner[6] = {0.25, 0.25, 0.25, 0.75, 0.75, 0.75};
+    for (int threads = 1; threads < 4; threads += 2) {
+        brio_context_set_threads(ctx, threads);
+        uniform_points(21, N, points);
+        uniform_points(22, N / 3, weights);
+        for (size_t i = 0; i < N; i++) weights[i] *= 0.01;
+        expect_volumes(ctx, points, NULL, N, UNIT_BOX);
+        expect_volumes(ctx, points, NULL, N, inner);
+        expect_volumes(ctx, points, NULL, N, NULL);
+        expect_volumes(ctx, points, weights, N, UNIT_BOX);
+        expect_volumes(ctx, points, weights, N, NULL);
+        integer_points(23, N, 8, points);
+        expect_volumes(ctx, points, NULL, N, box);
+        integer_weights(23, N, 2, weights);
+        expect_volumes(ctx, points, weights, N, box);
+        for (size_t i = 0; i < N; i++) points[3 * i + 2] = 1;
+        expect_volumes(ctx, points, NULL, N, box);
+    }
+    EXPECT(brio_context_memory(ctx) == 0);
+    free(points);
+    free(weights);
+    brio_context_free(ctx);
+}
+
+static void volumes_alone_have_the_same_bits_with_threads(void) {
+    enum { N = 30000 };
+    brio_context *ctx = new_context();
+    double *points = malloc(3 * N * sizeof *points);
+    brio_cells_options o = brio_cells_options_default();
+    brio_cells *one, *more;
+    clustered_points(9, N, points);
+    o.areas = o.centroids = o.faces = 0;
+    o.box = WIDE_BOX;
+    brio_context_set_threads(ctx, 1);
+    EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &one) == BRIO_OK);
+    for (int threads = 2; threads < 6; threads++) {
+        brio_context_set_threads(ctx, threads);
+        EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &more) == BRIO_OK);
+        EXPECT(more->num_cells == one->num_cells && more->volume_sum == one->volume_sum);
+        EXPECT(!memcmp(one->volume, more->volume, one->num_cells * sizeof *one->volume), "%d threads", threads);
+        brio_cells_free(more);
+    }
+    brio_cells_free(one);
+    free(points);
+    brio_context_free(ctx);
+}
+
+/* The same points and box far from 0: the numbers are those near 0, where the coordinates are on a grid. */
+static void an_offset_moves_the_cells(void) {
+    enum { N = 2000 };
+    static const double OFFSET[3] = {1e6, -0x1p23, 0};
+    brio_context *ctx = new_context();
+    double points[3 * N], moved[3 * N], box[6];
+    uniform_points(31, N, points);
+    for (size_t i = 0; i < 3 * N; i++) {
+        points[i] = rint(points[i] * 0x1p25) * 0x1p-25;
+        moved[i] = points[i] + OFFSET[i % 3];
+    }
+    for (size_t i = 0; i < 6; i++) box[i] = UNIT_BOX[i] + OFFSET[i % 3];
+    brio_cells *here = cells_of(ctx, points, NULL, N, UNIT_BOX, 1), *there = cells_of(ctx, moved, NULL, N, box, 1);
+    EXPECT(here->num_cells == N && there->num_cells == N && fabs(there->region_volume - 1) < 1e-15);
+    EXPECT(fabs(there->volume_sum - 1) < 1e-14, "%.3g", there->volume_sum - 1);
+    for (size_t c = 0; c < N; c++) {
+        EXPECT(near_to(here->volume[c] * N, there->volume[c] * N, 1e-12) && faces_of(here, c) == faces_of(there, c));
+        for (size_t k = 0; k < 3; k++)
+            EXPECT(fabs(here->centroid[3 * c + k] + OFFSET[k] - there->centroid[3 * c + k]) <= 0x1p-28, "cell %zu", c);
+    }
+    EXPECT(here->num_vertices == there->num_vertices);
+    expect_volumes(ctx, moved, NULL, N, box);
+    brio_cells_free(here);
+    brio_cells_free(there);
+    brio_context_free(ctx);
+}
+
 /* --- determinism, scale, errors --- */
 
 static void threads_give_the_same_bits(void) {
@@ -375,7 +478,12 @@ static brio_status compute_some(brio_context *ctx) {
     brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
     brio_cells_free(cells);
     if (status != BRIO_OK) return status;
+    o.vertices = o.faces = o.areas = o.centroids = 0;
+    status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
+    brio_cells_free(cells);
+    if (status != BRIO_OK) return status;
     for (size_t i = 0; i < N; i++) points[3 * i + 2] = 0;
+    o.vertices = 1;
     status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
     brio_cells_free(cells);
     return status;
@@ -393,6 +501,9 @@ int main(void) {
     RUN(faces_are_symmetric_and_have_their_corners);
     RUN(cells_of_the_hull_are_unbounded);
     RUN(flat_points_have_cells);
+    RUN(volumes_alone_equal_those_with_faces);
+    RUN(volumes_alone_have_the_same_bits_with_threads);
+    RUN(an_offset_moves_the_cells);
     RUN(threads_give_the_same_bits);
     RUN(powers_of_two_scale_the_cells);
     RUN(wrong_regions_are_refused);

@@ -1,0 +1,47 @@
+/* The vertices in an order that follows the array of tetrahedra, and their points in this order.
+ *
+ * The tetrahedra of a triangulation are sorted by their latest vertex along the insertion order, which follows a curve
+ * through space. The vertices are taken in the order in which they appear in a tetrahedron. So the points of a
+ * tetrahedron, and the tetrahedra of successive vertices, are near each other in memory, in whatever order the caller
+ * gave the points. */
+#include "base/memory.h"
+#include "base/team.h"
+#include "cells/diagram.h"
+#include <string.h>
+
+enum { VERTICES_A_THREAD = 1 << 14 };
+
+static void copy_points(void *user, size_t from, size_t to, int thread) {
+    const brio_diagram *d = user;
+    (void)thread;
+    for (size_t r = from; r < to; r++) {
+        memcpy(d->ranked + 3 * r, d->at + 3 * (size_t)d->order[r], 3 * sizeof *d->ranked);
+        if (d->square) d->ranked_square[r] = d->square[d->order[r]];
+    }
+}
+
+static void rank_vertices(brio_diagram *d, size_t rows) {
+    uint32_t n = 0;
+    for (size_t p = 0; p < rows; p++) d->rank[p] = UINT32_MAX;
+    for (size_t t = 0; t < d->num_finite; t++)
+        for (int i = 0; i < 4; i++) {
+            uint32_t p = d->t.tet[t].vertex[i];
+            if (d->rank[p] != UINT32_MAX) continue;
+            d->order[n] = p;
+            d->rank[p] = n++;
+        }
+    d->num_vertices = n;
+}
+
+brio_status brio_diagram_order_vertices(brio_diagram *d) {
+    brio_status status = BRIO_OK;
+    size_t rows = d->num_points + (d->flat ? 3 : 0);
+    BRIO_TRY(BRIO_ALLOC(d->ctx, d->order, rows));
+    BRIO_TRY(BRIO_ALLOC(d->ctx, d->rank, rows));
+    rank_vertices(d, rows);
+    BRIO_TRY(BRIO_ALLOC(d->ctx, d->ranked, 3 * d->num_vertices));
+    if (d->square) BRIO_TRY(BRIO_ALLOC(d->ctx, d->ranked_square, d->num_vertices));
+    brio_for(d->ctx, brio_threads(d->ctx, d->num_vertices, VERTICES_A_THREAD), d->num_vertices, copy_points, d);
+done:
+    return status;
+}
