@@ -52,6 +52,7 @@ missing() {
     has_python_with scipy || echo python3-scipy
     has clang-format || echo clang-format
     has pkg-config || echo pkg-config
+    has_python_with ensurepip || echo python3-venv
 }
 
 # The Debian packages of other libraries, and of the plots, that are missing: the bench, and tests, do without them.
@@ -109,6 +110,19 @@ install_poisson() {
     has_pymeshlab || echo "setup: PyMeshLab could not be installed from PyPI: no Poisson reconstruction" >&2
 }
 
+# The Python packages of tests/requirements.txt, in an environment of the tests' own. Says so if they stay missing: the tests
+# that need them are skipped.
+install_tests_packages() {
+    environment=out/tests-env
+    if ! cmp -s tests/requirements.txt "$environment/requirements.txt"; then
+        echo "setup: installing tests/requirements.txt in $environment"
+        $python -m venv "$environment" >/dev/null 2>&1 &&
+            "$environment/bin/pip" install -q -r tests/requirements.txt >/dev/null 2>&1 &&
+            cp tests/requirements.txt "$environment/requirements.txt" ||
+            echo "setup: tests/requirements.txt could not be installed from PyPI: tests will be skipped" >&2
+    fi
+}
+
 purpose=${1:-build}
 case $purpose in
 build | check | bench | quality | thesis) ;;
@@ -128,6 +142,7 @@ if [ -n "$packages" ] && [ "$(id -u)" = 0 ] && has apt-get; then
 fi
 if [ -z "$packages" ]; then
     [ "$purpose" != quality ] || install_poisson
+    [ "$purpose" != check ] || install_tests_packages
     exit 0
 fi
 echo "setup: these are needed and missing: $packages" >&2

@@ -4,8 +4,7 @@ hull    the vertices are Qhull's, the volume within 1e-11 of it
 alpha   simplices and values are GUDHI's, with and without weights, to 1e-13 of each value; persistence read back from the
         exported file is GUDHI's
 
-BRIO names the program. Skips itself (77) without the packages. They may be in a Python environment of their own, which
-BRIO_PEERS_PYTHON names: python3 -m venv DIR && DIR/bin/pip install scipy gudhi
+BRIO names the program. Skips itself (77) without the packages, which scripts/setup.sh check installs.
 """
 
 import json
@@ -90,14 +89,11 @@ def check_alpha(np, folder, points):
 
 
 def main():
-    peer, python = PEER[sys.argv[1]], os.environ.get("BRIO_PEERS_PYTHON")
-    if python and os.path.abspath(python) != os.path.abspath(sys.executable):
-        return subprocess.call([python, *sys.argv])
     try:
         import numpy as np
-        __import__(peer)
+        __import__(PEER[sys.argv[1]])
     except ImportError as missing:
-        print("skipped: peers.%s: %s; BRIO_PEERS_PYTHON may name a Python that has it" % (sys.argv[1], missing))
+        print("skipped: peers.%s: %s" % (sys.argv[1], missing))
         return 77
     wrong = 0
     for number, points in enumerate(point_sets(np)):
