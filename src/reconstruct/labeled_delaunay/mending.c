@@ -18,8 +18,8 @@
  * stars of more tetrahedra, single flips are not tried. All chosen. */
 enum { MOST = 64, PRICES = 9, SMALL = 96 };
 
-/* What joining two sheets that touch costs, which makes a handle if they belong to one component. Chosen on generated
- * solids. */
+/* What joining two sheets that touch costs, which makes a handle if they belong to one component. Chosen on seven models
+ * beside the project, where 64 and 256 agree and 16 makes a handle more on two. */
 static const int64_t HANDLE = 64 * BRIO_FLIP_UNIT;
 
 typedef struct {

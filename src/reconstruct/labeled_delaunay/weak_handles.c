@@ -18,7 +18,8 @@
 enum { BIASES = 3, MOST_PATCH = 256, NEARBY = 4096 };
 
 /* In log-odds. BIAS: what all votes lean by. HANDLE: how much more likely a surface is without a small handle than with it,
- * before samples are looked at. Chosen on generated solids and raw scans. */
+ * before samples are looked at. Chosen: on generated solids, raw scans and the models beside the project 8, 16 and 32 differ by
+ * a run of 321 or two. */
 static const double BIAS[BIASES] = {1, 2, 4};
 static const int64_t HANDLE = 16 * BRIO_FLIP_UNIT;
 
