@@ -29,8 +29,8 @@ def find_included(root, path, included):
 
 
 def room_of(parts):
-    """The room of a file below src: one folder, below reconstruct two."""
-    return "/".join(parts[1:3] if parts[1] == "reconstruct" else parts[1:2])
+    """The room of a file below src: its folder."""
+    return "/".join(parts[1:-1])
 
 
 def read_arrows(text):

@@ -3,7 +3,7 @@
 #define BRIO_IO_LAS_FIELDS_H
 
 #include "io/builder.h"
-#include "io/las_header.h"
+#include "io/las/las_header.h"
 
 /** A field of a format. */
 typedef struct brio_las_field {

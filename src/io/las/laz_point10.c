@@ -3,7 +3,7 @@
  * The first symbol says which of six attributes changed. Steps in x and y are predicted by the median of the last steps
  * of points with the same return, heights by the last height of the same return, each with models that depend on how
  * large the other steps were. */
-#include "io/laz_items.h"
+#include "io/las/laz_items.h"
 #include "io/little_endian.h"
 
 enum { POINT_SOURCE = 1, USER_DATA = 2, SCAN_ANGLE = 4, CLASSIFICATION = 8, INTENSITY = 16, FLAGS = 32 };

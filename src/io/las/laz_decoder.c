@@ -6,8 +6,8 @@
  * Layers of version 3 keep two mistakes of the first encoder. Colours and extra bytes of a point are those of channel 0
  * unless the channel changes at that point. Where it changes to a channel that was used before, the last colours and
  * extra bytes are those of the channel that was left, with the models of the new one. */
-#include "io/laz_decoder.h"
-#include "io/laz_items.h"
+#include "io/las/laz_decoder.h"
+#include "io/las/laz_items.h"
 #include "io/little_endian.h"
 
 enum { CHANNELS = 4 };

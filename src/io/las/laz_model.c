@@ -2,7 +2,7 @@
  *
  * Counts are kept below 2^15 by halving. The decoder must update at the same symbols as the encoder did, and round in
  * the same way: cycles, limits and divisions are those of the format. */
-#include "io/laz_model.h"
+#include "io/las/laz_model.h"
 #include <assert.h>
 #include <string.h>
 

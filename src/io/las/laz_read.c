@@ -10,8 +10,8 @@
  * 2013. */
 #include "base/memory.h"
 #include "base/team.h"
-#include "io/las_read.h"
-#include "io/laz_table.h"
+#include "io/las/las_read.h"
+#include "io/las/laz_table.h"
 #include "io/little_endian.h"
 #include <inttypes.h>
 

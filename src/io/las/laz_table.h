@@ -3,7 +3,7 @@
 #ifndef BRIO_IO_LAZ_TABLE_H
 #define BRIO_IO_LAZ_TABLE_H
 
-#include "io/las_header.h"
+#include "io/las/las_header.h"
 
 typedef struct brio_laz_chunk {
     uint32_t points, bytes;

@@ -2,7 +2,7 @@
 #ifndef BRIO_IO_LAS_READ_H
 #define BRIO_IO_LAS_READ_H
 
-#include "io/las_fields.h"
+#include "io/las/las_fields.h"
 
 /** Reads the compressed points behind a header; the stream is where the points begin.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */

@@ -2,7 +2,7 @@
  * XML.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
-#include "io/vtk_xml.h"
+#include "io/vtk/vtk_xml.h"
 #include "io/scalar.h"
 
 static const char *type_name(brio_scalar type) {

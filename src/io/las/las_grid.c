@@ -2,7 +2,7 @@
  *
  * A grid is accepted if for every coordinate x the nearest whole number n gives x = n * step + origin in doubles, the
  * way a reader computes it. Most grids that do not fit fail at one of the first points. */
-#include "io/las_grid.h"
+#include "io/las/las_grid.h"
 #include <math.h>
 
 /* Powers of 1/10 and of 1/2 that are tried: a nanometre, and the last bits of singles near 1. ORIGINS: whole numbers

@@ -1,7 +1,7 @@
 /* Reads the table of chunks: compressed integers, each predicted by the last one. */
-#include "io/laz_table.h"
+#include "io/las/laz_table.h"
 #include "base/memory.h"
-#include "io/laz_model.h"
+#include "io/las/laz_model.h"
 #include "io/little_endian.h"
 #include <inttypes.h>
 #include <string.h>

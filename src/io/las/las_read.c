@@ -4,7 +4,7 @@
  * in blocks that stay in the cache while one column after the other is taken.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
-#include "io/las_read.h"
+#include "io/las/las_read.h"
 #include "base/team.h"
 #include "io/formats.h"
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 /* The XML of a VTU file, read tag by tag. Text between tags is skipped, because arrays are read only from appended
  * data. */
-#include "io/vtu_header.h"
+#include "io/vtk/vtu_header.h"
 #include "base/memory.h"
 #include "io/number.h"
 #include "io/scalar.h"

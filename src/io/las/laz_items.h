@@ -8,7 +8,7 @@
 #ifndef BRIO_IO_LAZ_ITEMS_H
 #define BRIO_IO_LAZ_ITEMS_H
 
-#include "io/laz_model.h"
+#include "io/las/laz_model.h"
 
 /* --- the median of the last values --- */
 

@@ -1,5 +1,5 @@
 /* Compressed colours: bytes that changed, green and blue predicted by the change of red. */
-#include "io/laz_items.h"
+#include "io/las/laz_items.h"
 
 enum { ALL_EQUAL_NOT = 1 << 6 /* green or blue differ from red */ };
 

@@ -2,7 +2,7 @@
 #ifndef BRIO_IO_LAS_HEADER_H
 #define BRIO_IO_LAS_HEADER_H
 
-#include "io/laz_decoder.h"
+#include "io/las/laz_decoder.h"
 #include "io/stream.h"
 
 enum { BRIO_LAS_FORMATS = 11 };

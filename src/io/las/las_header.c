@@ -4,7 +4,7 @@
  * names the extra bytes. All others are passed over.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. Isenburg. LASzip. 2013. */
-#include "io/las_header.h"
+#include "io/las/las_header.h"
 #include "base/memory.h"
 #include "io/little_endian.h"
 #include <inttypes.h>

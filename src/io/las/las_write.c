@@ -7,8 +7,8 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "io/formats.h"
-#include "io/las_fields.h"
-#include "io/las_grid.h"
+#include "io/las/las_fields.h"
+#include "io/las/las_grid.h"
 #include "io/little_endian.h"
 #include <math.h>
 #include <string.h>

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "io/formats.h"
 #include "io/scalar.h"
-#include "io/vtu_header.h"
+#include "io/vtk/vtu_header.h"
 #include <inttypes.h>
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "io/cells_write.h"
-#include "io/vtk_xml.h"
+#include "io/vtk/vtk_xml.h"
 
 enum { VTK_POLYHEDRON = 42 };
 

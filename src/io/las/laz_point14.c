@@ -2,7 +2,7 @@
  *
  * The first layer says what changed, and has the returns and steps in x and y. All predictors exist once for each
  * channel of the scanner. A channel that is new in its chunk begins with the last point of the channel before it. */
-#include "io/laz_items.h"
+#include "io/las/laz_items.h"
 #include "io/little_endian.h"
 
 enum { RETURN = 3, RETURNS = 1 << 2, SCAN_ANGLE = 1 << 3, TIME = 1 << 4, SOURCE = 1 << 5, CHANNEL = 1 << 6 };

@@ -2,7 +2,7 @@
  * vertex cell for each point.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
-#include "io/vtk_xml.h"
+#include "io/vtk/vtk_xml.h"
 
 enum { VTK_VERTEX = 1, VTK_LINE = 3, VTK_POLYGON = 7, VTK_TETRAHEDRON = 10 };
 

@@ -2,7 +2,7 @@
  * LAS does, so that the doubles are the same.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
-#include "io/las_fields.h"
+#include "io/las/las_fields.h"
 #include "base/memory.h"
 #include "io/little_endian.h"
 #include "io/scalar.h"

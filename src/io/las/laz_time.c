@@ -2,7 +2,7 @@
  *
  * Points of several flight lines alternate: four sequences are kept. Within a sequence times grow by multiples of a
  * step, and most symbols are such a multiple. The step is replaced after four extreme multiples one after the other. */
-#include "io/laz_items.h"
+#include "io/las/laz_items.h"
 
 /* Symbols of a multiple: 0 something else than a multiple, 1 to MOST the multiple, above MOST negative ones down to
  * LEAST. Behind these come the symbols of a new time and of the other sequences. */

@@ -2,7 +2,7 @@
  * for each point.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
-#include "io/vtk_xml.h"
+#include "io/vtk/vtk_xml.h"
 
 typedef struct {
     brio_vtk_writer xml;
