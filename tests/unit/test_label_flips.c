@@ -164,7 +164,28 @@ static bool in_spoiled_torus(const double *p) {
     return in_torus(p) != (brio_hash(bits, 3) % 8 == 0);
 }
 
-/* Labels, mends, removes weak handles, and returns twice the Euler characteristic before and after. */
+/* Returns the number of sets of tetrahedra with a label that hang together across facets. */
+static size_t count_parts(const scene *s, uint8_t label) {
+    size_t parts = 0;
+    uint32_t *front = calloc(s->dual.t.count, sizeof *front);
+    bool *seen = calloc(s->dual.t.count, sizeof *seen);
+    for (uint32_t t = 0; t < s->dual.t.count; t++) {
+        if (seen[t] || s->label[t] != label) continue;
+        size_t size = 0;
+        parts++;
+        seen[front[size++] = t] = true;
+        while (size > 0) {
+            const uint32_t *mate = s->dual.t.tet[front[--size]].mate;
+            for (int i = 0; i < 4; i++)
+                if (s->label[mate[i] >> 2] == label && !seen[mate[i] >> 2]) seen[front[size++] = mate[i] >> 2] = true;
+        }
+    }
+    free(front);
+    free(seen);
+    return parts;
+}
+
+/* Labels, mends, removes weak handles, none of which was all that joined two parts, and returns twice the Euler characteristic before and after. */
 static void remove_from(scene *s, bool (*inside)(const double *), int64_t *before, int64_t *after) {
     brio_label_flips f;
     brio_mending m;
@@ -173,9 +194,11 @@ static void remove_from(scene *s, bool (*inside)(const double *), int64_t *befor
     EXPECT(brio_label_flips_new(&s->graph, s->label, &f) == BRIO_OK);
     EXPECT(brio_mending_new(&f, &m) == BRIO_OK && brio_mend(&m) == BRIO_OK && m.singular == 0);
     *before = twice_euler(s, &f);
+    size_t inner = count_parts(s, BRIO_LABEL_INNER), outer = count_parts(s, BRIO_LABEL_OUTER);
     EXPECT(brio_remove_weak_handles(&m, &removed) == BRIO_OK && m.singular == 0);
     EXPECT((removed > 0) == (*before != twice_euler(s, &f)), "%zu", removed);
     *after = twice_euler(s, &f);
+    EXPECT(count_parts(s, BRIO_LABEL_INNER) <= inner && count_parts(s, BRIO_LABEL_OUTER) <= outer);
     brio_mending_free(&m);
     brio_label_flips_free(&f);
 }
@@ -191,6 +214,90 @@ static void true_handles_stay_and_none_appears(void) {
     EXPECT(after >= before, "spoiled torus: %lld, %lld", (long long)before, (long long)after);
     free_scene(torus);
     free_scene(sphere);
+}
+
+/* Samples off by up to 0.08: where they are exact no sample is in doubt, and nothing is looked at. */
+static void noisy(uint64_t seed, size_t count, double *points) {
+    brio_rng rng = brio_rng_new(seed);
+    for (size_t i = 0; i < 3 * count; i++) points[i] += 0.08 * (2 * brio_rng_double(&rng) - 1);
+}
+
+static void noisy_sphere_points(uint64_t seed, size_t count, double *points) {
+    sphere_points(seed, count, points);
+    noisy(seed, count, points);
+}
+
+static void noisy_torus_points(uint64_t seed, size_t count, double *points) {
+    torus_points(seed, count, points);
+    noisy(seed, count, points);
+}
+
+static bool in_spoiled_ball(const double *p) {
+    uint64_t bits;
+    memcpy(&bits, p, sizeof bits);
+    return in_ball(p) != (brio_hash(bits, 3) % 8 == 0);
+}
+
+static void nothing_falls_apart_in_a_chaos(void) {
+    int64_t before, after;
+    scene *s = scene_of(uniform_points);
+    remove_from(s, is_lucky, &before, &after);
+    EXPECT(after != before, "%lld, %lld", (long long)before, (long long)after);
+    free_scene(s);
+}
+
+static void crumbs_and_bubbles_are_removed(void) {
+    int64_t before, after;
+    scene *s = scene_of(noisy_sphere_points);
+    remove_from(s, in_spoiled_ball, &before, &after);
+    EXPECT(before > 4 && after == 4, "%lld, %lld", (long long)before, (long long)after);
+    free_scene(s);
+}
+
+/* Returns an outer finite neighbour of a tetrahedron, or the tetrahedron itself if it has none. */
+static uint32_t outer_neighbour(const scene *s, uint32_t tet) {
+    for (int i = 0; i < 4; i++) {
+        uint32_t other = s->dual.t.tet[tet].mate[i] >> 2;
+        if (other < s->dual.num_finite && s->label[other] == BRIO_LABEL_OUTER) return other;
+    }
+    return tet;
+}
+
+/* Flips an outer tetrahedron and neighbours, until they are a handle: at most 12. Returns whether they are. */
+static bool add_handle(scene *s, brio_label_flips *f, brio_mending *m, uint32_t tet) {
+    int64_t before = 2 * m->all_fans - f->faces;
+    while (f->size < 12 && s->label[tet] == BRIO_LABEL_OUTER) {
+        EXPECT(brio_flip(f, tet) == BRIO_OK && brio_mending_look(m, f->size - 1, f->size) == BRIO_OK);
+        if (m->singular == 0 && 2 * m->all_fans - f->faces == before - 4) return true;
+        tet = outer_neighbour(s, tet);
+    }
+    size_t size = f->size;
+    brio_take_back(f, 0);
+    EXPECT(brio_mending_look(m, 0, size) == BRIO_OK);
+    return false;
+}
+
+static void a_false_handle_is_removed(void) {
+    scene *s = scene_of(noisy_torus_points);
+    brio_label_flips f;
+    brio_mending m;
+    size_t removed = 0;
+    bool added = false;
+    label_by(s, in_torus);
+    EXPECT(brio_label_flips_new(&s->graph, s->label, &f) == BRIO_OK);
+    EXPECT(brio_mending_new(&f, &m) == BRIO_OK && brio_mend(&m) == BRIO_OK && m.singular == 0);
+    EXPECT(twice_euler(s, &f) == 0);
+    brio_mending_forget(&m);
+    f.size = 0;
+    for (uint32_t t = 0; t < s->dual.num_finite && !added; t++)
+        if (s->label[t] == BRIO_LABEL_OUTER) added = add_handle(s, &f, &m, t);
+    EXPECT(added && twice_euler(s, &f) == -4);
+    EXPECT(brio_remove_weak_handles(&m, &removed) == BRIO_OK);
+    EXPECT(removed > 0 && m.singular == 0 && twice_euler(s, &f) == 0, "%zu, %lld", removed,
+           (long long)twice_euler(s, &f));
+    brio_mending_free(&m);
+    brio_label_flips_free(&f);
+    free_scene(s);
 }
 
 static brio_status flip_and_mend(brio_context *ctx) {
@@ -221,6 +328,9 @@ int main(void) {
     RUN(flips_know_the_energy);
     RUN(mending_leaves_hardly_any_singular_sample);
     RUN(true_handles_stay_and_none_appears);
+    RUN(nothing_falls_apart_in_a_chaos);
+    RUN(crumbs_and_bubbles_are_removed);
+    RUN(a_false_handle_is_removed);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
 }
