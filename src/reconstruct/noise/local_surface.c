@@ -10,12 +10,21 @@
  * Differs from the paper: each point has one plane and one polynomial, without a search for the best place of the
  *                         plane. A neighbourhood is a number of points, not a radius. */
 #include "reconstruct/noise/local_surface.h"
+#include "base/instruction_set.h"
 #include "base/rotate.h"
 #include "base/vector.h"
+#include "reconstruct/noise/local_sums.h"
 #include <math.h>
 
-/* SWEEPS: most sweeps of rotations. Chosen. */
-enum { COEFFICIENTS = BRIO_SURFACE_COEFFICIENTS, SWEEPS = 12 };
+/* SWEEPS: most sweeps of rotations. Chosen. LANES_MOST: neighbours that an instruction set takes side by side. */
+enum { COEFFICIENTS = BRIO_SURFACE_COEFFICIENTS, SWEEPS = 12, LANES_MOST = 4 };
+
+static const brio_local_sums *sums(void) {
+#if defined(__x86_64__)
+    if (brio_instructions() >= BRIO_AVX2) return &brio_local_sums_avx2;
+#endif
+    return &brio_local_sums_plain;
+}
 
 /* --- the plane --- */
 
@@ -45,20 +54,8 @@ static bool find_frame(double m[3][3], double frame[3][3]) {
 }
 
 static bool fit_plane(const brio_neighbourhood *n, double frame[3][3]) {
-    double mean[3] = {0, 0, 0}, sum = 0, m[3][3] = {{0}};
-    for (size_t i = 0; i < n->count; i++) {
-        sum += n->weight[i];
-        for (int k = 0; k < 3; k++) mean[k] += n->weight[i] * n->offset[i][k];
-    }
-    for (int k = 0; k < 3; k++) mean[k] /= sum;
-    for (size_t i = 0; i < n->count; i++) {
-        double d[3];
-        for (int k = 0; k < 3; k++) d[k] = n->offset[i][k] - mean[k];
-        for (int k = 0; k < 3; k++)
-            for (int l = 0; l <= k; l++) m[k][l] += n->weight[i] * d[k] * d[l];
-    }
-    for (int k = 0; k < 3; k++)
-        for (int l = k + 1; l < 3; l++) m[k][l] = m[l][k];
+    double m[3][3];
+    sums()->covariance(n, m);
     return find_frame(m, frame);
 }
 
@@ -86,53 +83,23 @@ static bool solve(double a[COEFFICIENTS][COEFFICIENTS], double *b) {
     return true;
 }
 
-/* WIDE points side by side: their monomials, heights and weights, in units of the neighbourhood. */
-enum { WIDE = 4 };
-typedef double lanes __attribute__((vector_size(8 * WIDE)));
-typedef struct {
-    lanes monomial[COEFFICIENTS], height, weight;
-} some_points;
-
-/* Loads WIDE points from index `first` on. Lanes past the last point have weight 0. */
-static inline void place(const brio_neighbourhood *n, size_t first, const brio_local_surface *s, some_points *out) {
-    lanes d[3] = {{0}, {0}, {0}}, zero = {0}, weight = {0};
-    for (size_t i = 0; i < WIDE && first + i < n->count; i++) {
-        for (int k = 0; k < 3; k++) d[k][i] = n->offset[first + i][k];
-        weight[i] = n->weight[first + i];
-    }
-    lanes along[3];
-    for (int k = 0; k < 3; k++)
-        along[k] = (d[0] * s->frame[k][0] + d[1] * s->frame[k][1] + d[2] * s->frame[k][2]) * (1 / s->unit);
-    lanes u = along[0], v = along[1], all[COEFFICIENTS] = {zero + 1, u, v, u * u, u * v, v * v};
-    for (int c = 0; c < COEFFICIENTS; c++) out->monomial[c] = all[c];
-    out->height = along[2];
-    out->weight = weight;
-}
-
-static inline double sum_of(const lanes *x) {
-    return ((*x)[0] + (*x)[1]) + ((*x)[2] + (*x)[3]);
-}
-
 static void fit_polynomial(const brio_neighbourhood *n, brio_local_surface *s) {
-    lanes sums[COEFFICIENTS][COEFFICIENTS + 1] = {{{0}}};
-    double a[COEFFICIENTS][COEFFICIENTS] = {{0}}, b[COEFFICIENTS];
-    for (size_t i = 0; i < n->count; i += WIDE) {
-        some_points p;
-        place(n, i, s, &p);
-        for (int c = 0; c < COEFFICIENTS; c++) {
-            lanes weighted = p.weight * p.monomial[c];
-            for (int d = 0; d <= c; d++) sums[c][d] += weighted * p.monomial[d];
-            sums[c][COEFFICIENTS] += weighted * p.height;
-        }
-    }
-    for (int c = 0; c < COEFFICIENTS; c++) {
-        for (int d = 0; d <= c; d++) a[c][d] = sum_of(&sums[c][d]);
-        b[c] = sum_of(&sums[c][COEFFICIENTS]);
-    }
-    double mean = b[0] / a[0][0];
-    bool solved = solve(a, b);
-    for (int c = 0; c < COEFFICIENTS; c++) s->coefficient[c] = solved ? b[c] : 0;
+    brio_normal_equations e;
+    sums()->equations(n, s, &e);
+    double mean = e.b[0] / e.a[0][0];
+    bool solved = solve(e.a, e.b);
+    for (int c = 0; c < COEFFICIENTS; c++) s->coefficient[c] = solved ? e.b[c] : 0;
     if (!solved) s->coefficient[0] = mean;
+}
+
+/* --- the surface --- */
+
+/* Sets what follows the last neighbour, which sums run over as well, to a neighbour without weight. */
+static void pad(brio_neighbourhood *n) {
+    for (size_t i = n->count; i < BRIO_MOST_NEAR && i % LANES_MOST; i++) {
+        n->offset[0][i] = n->offset[1][i] = n->offset[2][i] = 0;
+        n->weight[i] = 0;
+    }
 }
 
 bool brio_fit_local_surface(brio_neighbourhood *n, brio_local_surface *s) {
@@ -144,32 +111,40 @@ bool brio_fit_local_surface(brio_neighbourhood *n, brio_local_surface *s) {
         double rest = 1 - n->square[i] / square;
         n->weight[i] = rest * rest;
     }
+    pad(n);
     if (!fit_plane(n, s->frame)) return false;
     fit_polynomial(n, s);
     s->height = s->unit * s->coefficient[0];
     return true;
 }
 
+/* Returns the height of neighbour i over the surface, in its unit. */
+static double height_over(const brio_neighbourhood *n, const brio_local_surface *s, size_t i) {
+    double d[3] = {n->offset[0][i], n->offset[1][i], n->offset[2][i]};
+    double u = brio_dot(d, s->frame[0]) / s->unit, v = brio_dot(d, s->frame[1]) / s->unit;
+    const double *c = s->coefficient;
+    return brio_dot(d, s->frame[2]) / s->unit - (c[0] + u * (c[1] + u * c[3] + v * c[4]) + v * (c[2] + v * c[5]));
+}
+
 double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *s) {
-    lanes squares = {0}, sum = {0}, sum_squares = {0};
-    for (size_t i = 0; i < n->count; i += WIDE) {
-        some_points p;
-        place(n, i, s, &p);
-        for (int c = 0; c < COEFFICIENTS; c++) p.height -= s->coefficient[c] * p.monomial[c];
-        squares += p.weight * p.height * p.height;
-        sum += p.weight;
-        sum_squares += p.weight * p.weight;
+    double squares = 0, all = 0, sum_squares = 0;
+    for (size_t i = 0; i < n->count; i++) {
+        double weight = n->weight[i], height = height_over(n, s, i);
+        squares += weight * height * height;
+        all += weight;
+        sum_squares += weight * weight;
     }
-    double all = sum_of(&sum), freedom = all - COEFFICIENTS * sum_of(&sum_squares) / all;
-    return s->unit * sqrt(sum_of(&squares) / fmax(freedom, 0.1 * all));
+    double freedom = all - COEFFICIENTS * sum_squares / all;
+    return s->unit * sqrt(squares / fmax(freedom, 0.1 * all));
 }
 
 double brio_plane_spread(brio_neighbourhood *n) {
     double frame[3][3], sum = 0, squares = 0;
     for (size_t i = 0; i < n->count; i++) n->weight[i] = 1;
+    pad(n);
     if (!fit_plane(n, frame)) return INFINITY;
     for (size_t i = 0; i < n->count; i++) {
-        double height = brio_dot(n->offset[i], frame[2]);
+        double d[3] = {n->offset[0][i], n->offset[1][i], n->offset[2][i]}, height = brio_dot(d, frame[2]);
         sum += height, squares += height * height;
     }
     double mean = sum / (double)n->count;

@@ -7,10 +7,17 @@
 /** The neighbours of a point, in any order, the point included. */
 typedef struct {
     size_t count;
-    double offset[BRIO_MOST_NEAR][3]; /* neighbour minus point */
+    double offset[3][BRIO_MOST_NEAR]; /* neighbour minus point */
     double square[BRIO_MOST_NEAR];    /* squared distance from the point */
     double weight[BRIO_MOST_NEAR];    /* written by brio_fit_local_surface */
 } brio_neighbourhood;
+
+/** Adds the neighbour at q to the neighbourhood of p. */
+static inline void brio_add_neighbour(brio_neighbourhood *n, const double *p, const double *q) {
+    double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
+    n->offset[0][n->count] = x, n->offset[1][n->count] = y, n->offset[2][n->count] = z;
+    n->square[n->count++] = x * x + y * y + z * z;
+}
 
 enum { BRIO_SURFACE_COEFFICIENTS = 6 };
 

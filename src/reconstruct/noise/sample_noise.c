@@ -98,11 +98,8 @@ static uint64_t bits_of(double x) {
 /* Copies the first `count` points of a list, relative to p. */
 static void see_from(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
                      brio_neighbourhood *n) {
-    n->count = count;
-    for (size_t i = 0; i < count; i++) {
-        n->square[i] = near[i].square;
-        for (int k = 0; k < 3; k++) n->offset[i][k] = tree->point[near[i].place][k] - p[k];
-    }
+    n->count = 0;
+    for (size_t i = 0; i < count; i++) brio_add_neighbour(n, p, tree->point[near[i].place]);
 }
 
 static bool spread_about(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
@@ -232,13 +229,11 @@ static void find_near(const smoothing *s, size_t begin, size_t end) {
 }
 
 static void smooth_sample(const smoothing *s, size_t i) {
-    brio_neighbourhood n = {.count = MORE};
+    brio_neighbourhood n;
     brio_local_surface surface;
     double *to = s->to[i];
-    for (int j = 0; j < MORE; j++) {
-        for (int k = 0; k < 3; k++) n.offset[j][k] = s->from[s->near[i][j]][k] - s->from[i][k];
-        n.square[j] = brio_dot(n.offset[j], n.offset[j]);
-    }
+    n.count = 0;
+    for (int j = 0; j < MORE; j++) brio_add_neighbour(&n, s->from[i], s->from[s->near[i][j]]);
     memcpy(to, s->from[i], sizeof s->to[i]);
     if (!brio_fit_local_surface(&n, &surface)) return;
     if (fabs(surface.height) > surface.unit) return; /* the fit is far from its points */

@@ -16,6 +16,8 @@
 /* As for samples (sample_noise.c). VERTICES_A_THREAD is chosen, too. */
 enum { MORE = 36, PASSES = 2, VERTICES_A_THREAD = 256 };
 
+enum { SLOT_BITS = 8, SLOTS = 1 << SLOT_BITS }; /* four times BRIO_MOST_NEAR */
+
 typedef struct {
     size_t *first;  /* #P + 1: the vertices that faces join to p are next[first[p]] to next[first[p + 1] - 1] */
     uint32_t *next; /* 3 #F: the corner after p of each face at p */
@@ -40,33 +42,45 @@ done:
     return status;
 }
 
-static bool is_listed(const uint32_t *list, size_t count, uint32_t p) {
-    for (size_t i = 0; i < count; i++)
-        if (list[i] == p) return true;
-    return false;
+/* Distinct vertices in the order in which they came, and a hash table of their places. */
+typedef struct {
+    uint32_t vertex[BRIO_MOST_NEAR];
+    size_t count;
+    uint8_t
+        slot[SLOTS]; /* the place of a vertex + 1, or 0; vertices that fall into the same slot take the next free one */
+} vertex_list;
+
+static void list(vertex_list *l, uint32_t p) {
+    size_t i = p * 0x9E3779B1u >> (32 - SLOT_BITS);
+    for (; l->slot[i]; i = (i + 1) % SLOTS)
+        if (l->vertex[l->slot[i] - 1] == p) return;
+    l->vertex[l->count++] = p;
+    l->slot[i] = (uint8_t)l->count;
 }
 
 /* Lists p and the vertices nearest to it along edges: whole rings, until they are MORE, at most BRIO_MOST_NEAR. */
-static size_t list_rings(const smoothing *s, uint32_t p, uint32_t *list) {
-    size_t count = 1, ring = 0;
-    list[0] = p;
-    while (count < MORE && ring < count) {
-        size_t end = count;
+static void list_rings(const smoothing *s, uint32_t p, vertex_list *l) {
+    size_t ring = 0;
+    memset(l->slot, 0, sizeof l->slot);
+    l->count = 0;
+    list(l, p);
+    while (l->count < MORE && ring < l->count) {
+        size_t end = l->count;
         for (; ring < end; ring++)
-            for (size_t e = s->first[list[ring]]; e < s->first[list[ring] + 1] && count < BRIO_MOST_NEAR; e++)
-                if (!is_listed(list, count, s->next[e])) list[count++] = s->next[e];
+            for (size_t e = s->first[l->vertex[ring]]; e < s->first[l->vertex[ring] + 1] && l->count < BRIO_MOST_NEAR;
+                 e++)
+                list(l, s->next[e]);
     }
-    return count;
 }
 
 static void smooth_vertex(const smoothing *s, uint32_t p) {
-    uint32_t list[BRIO_MOST_NEAR];
-    brio_neighbourhood n = {.count = list_rings(s, p, list)};
+    vertex_list l;
+    list_rings(s, p, &l);
+    brio_neighbourhood n;
     brio_local_surface surface;
-    for (size_t j = 0; j < n.count; j++) {
-        for (size_t k = 0; k < 3; k++) n.offset[j][k] = s->from[3 * (size_t)list[j] + k] - s->from[3 * (size_t)p + k];
-        n.square[j] = brio_dot(n.offset[j], n.offset[j]);
-    }
+    n.count = 0;
+    for (size_t j = 0; j < l.count; j++)
+        brio_add_neighbour(&n, s->from + 3 * (size_t)p, s->from + 3 * (size_t)l.vertex[j]);
     if (!brio_fit_local_surface(&n, &surface) || fabs(surface.height) > surface.unit) return;
     for (size_t k = 0; k < 3; k++) s->to[3 * (size_t)p + k] += surface.height * surface.frame[2][k];
 }
