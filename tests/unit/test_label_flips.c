@@ -56,10 +56,17 @@ static void free_scene(scene *s) {
     free(s);
 }
 
+static bool centroid_is(const scene *s, size_t t, bool (*inside)(const double *)) {
+    double centroid[3] = {0, 0, 0};
+    for (int i = 0; i < 4; i++)
+        for (size_t k = 0; k < 3; k++) centroid[k] += s->points[3 * s->dual.t.tet[t].vertex[i] + k] / 4;
+    return inside(centroid);
+}
+
 /* A tetrahedron is inner if `inside` says so of its centroid; infinite ones are outer. */
 static void label_by(scene *s, bool (*inside)(const double *)) {
     for (size_t t = 0; t < s->dual.t.count; t++)
-        s->label[t] = t < s->dual.num_finite && inside(s->graph.position + 3 * t) ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+        s->label[t] = t < s->dual.num_finite && centroid_is(s, t, inside) ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
 }
 
 static bool in_torus(const double *p) {
@@ -82,10 +89,9 @@ static bool is_lucky(const double *p) {
 
 /* Each sample has the better one of its two labels. */
 static double energy_of(scene *s, const brio_label_flips *f) {
-    brio_signed_graph signs = brio_vote_signs(&s->graph);
     for (size_t p = 0; p < SAMPLES; p++) s->label[s->dual.t.count + p] = BRIO_LABEL_OUTER;
     brio_label_samples(f);
-    return brio_label_energy(&signs, s->label) / BRIO_VOTE_UNIT;
+    return brio_vote_energy(&s->graph, s->label) / BRIO_VOTE_UNIT;
 }
 
 static size_t count_faces(const scene *s) {

@@ -12,9 +12,10 @@ static void sum_votes(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t p = begin; p < end; p++) {
         int64_t outer = 0;
-        for (size_t e = f->g->first[f->num_tets + p]; e < f->g->first[f->num_tets + p + 1]; e++) {
-            int64_t weight = brio_vote_of(f->g->edge[e]);
-            outer += f->label[f->g->edge[e].node] == BRIO_LABEL_OUTER ? weight : -weight;
+        for (size_t i = f->g->first[p]; i < f->g->first[p + 1]; i++) {
+            uint32_t entry = f->g->star[i];
+            int64_t weight = brio_vote_of(brio_star_vote(f->g, entry));
+            outer += f->label[brio_star_tet(entry)] == BRIO_LABEL_OUTER ? weight : -weight;
         }
         f->outer[p] = outer;
     }
@@ -45,22 +46,16 @@ void brio_label_flips_free(brio_label_flips *f) {
     *f = (brio_label_flips){.ctx = f->ctx};
 }
 
-/* Flips a tetrahedron and returns what it costs. */
+/* Flips a finite tetrahedron and returns what it costs. */
 static int64_t turn(brio_label_flips *f, uint32_t tet) {
-    bool to_outer = f->label[tet] != BRIO_LABEL_OUTER;
-    int64_t cost = 0;
-    for (size_t e = f->g->first[tet]; e < f->g->first[tet + 1]; e++) {
-        brio_signed_edge edge = f->g->edge[e];
-        int64_t weight = brio_vote_of(edge);
-        if (edge.node < f->num_tets) {
-            bool alike = f->label[edge.node] == f->label[tet];
-            cost += alike ? weight : -weight;
-            f->faces += alike ? 1 : -1;
-        } else {
-            int64_t *outer = &f->outer[edge.node - f->num_tets], before = llabs(*outer);
-            *outer += to_outer ? 2 * weight : -2 * weight;
-            cost -= (llabs(*outer) - before) / 2;
-        }
+    const brio_tetrahedron *t = &f->g->dual->t.tet[tet];
+    int64_t cost = 0, sign = f->label[tet] != BRIO_LABEL_OUTER ? 2 : -2;
+    for (int i = 0; i < 4; i++) {
+        int64_t *outer = &f->outer[t->vertex[i]], before = llabs(*outer), facet = brio_vote_of(f->g->facet[tet][i]);
+        bool alike = f->label[brio_tet_of(t->mate[i])] == f->label[tet];
+        *outer += sign * brio_vote_of(f->g->vote[tet][i]);
+        cost += (alike ? facet : -facet) - (llabs(*outer) - before) / 2;
+        f->faces += alike ? 1 : -1;
     }
     f->label[tet] = brio_other_label(f->label[tet]);
     return cost;
@@ -80,17 +75,12 @@ void brio_take_back(brio_label_flips *f, size_t size) {
 }
 
 int64_t brio_flip_cost(const brio_label_flips *f, uint32_t tet) {
-    bool to_outer = f->label[tet] != BRIO_LABEL_OUTER;
-    int64_t cost = 0;
-    for (size_t e = f->g->first[tet]; e < f->g->first[tet + 1]; e++) {
-        brio_signed_edge edge = f->g->edge[e];
-        int64_t weight = brio_vote_of(edge);
-        if (edge.node < f->num_tets) {
-            cost += f->label[edge.node] == f->label[tet] ? weight : -weight;
-        } else {
-            int64_t outer = f->outer[edge.node - f->num_tets];
-            cost -= (llabs(outer + (to_outer ? 2 * weight : -2 * weight)) - llabs(outer)) / 2;
-        }
+    const brio_tetrahedron *t = &f->g->dual->t.tet[tet];
+    int64_t cost = 0, sign = f->label[tet] != BRIO_LABEL_OUTER ? 2 : -2;
+    for (int i = 0; i < 4; i++) {
+        int64_t outer = f->outer[t->vertex[i]], facet = brio_vote_of(f->g->facet[tet][i]);
+        cost += f->label[brio_tet_of(t->mate[i])] == f->label[tet] ? facet : -facet;
+        cost -= (llabs(outer + sign * brio_vote_of(f->g->vote[tet][i])) - llabs(outer)) / 2;
     }
     return cost;
 }
@@ -120,7 +110,7 @@ static void flood(const brio_label_flips *f, uint32_t sample, brio_star_parts *s
     stack[0] = (int16_t)first;
     s->part[first] = (int16_t)s->count;
     while (size > 0) {
-        uint32_t tet = s->at[stack[--size]].node;
+        uint32_t tet = brio_star_tet(s->at[stack[--size]]);
         const brio_tetrahedron *t = &f->g->dual->t.tet[tet];
         for (int i = 0; i < 4; i++) {
             uint32_t other = t->mate[i] >> 2, place = f->place[other];
@@ -130,22 +120,22 @@ static void flood(const brio_label_flips *f, uint32_t sample, brio_star_parts *s
             stack[size++] = (int16_t)place;
         }
     }
-    s->of[f->label[s->at[first].node] == BRIO_LABEL_INNER]++;
+    s->of[f->label[brio_star_tet(s->at[first])] == BRIO_LABEL_INNER]++;
     s->count++;
 }
 
 bool brio_find_parts(brio_label_flips *f, uint32_t sample, brio_star_parts *out) {
-    const size_t *first = f->g->first + f->num_tets + sample;
+    const size_t *first = f->g->first + sample;
     out->size = first[1] - first[0];
-    out->at = f->g->edge + first[0];
+    out->at = f->g->star + first[0];
     out->count = out->of[0] = out->of[1] = 0;
     if (out->size > BRIO_STAR_ROOM) return false;
     for (size_t i = 0; i < out->size; i++) {
-        f->place[out->at[i].node] = (uint32_t)i;
+        f->place[brio_star_tet(out->at[i])] = (uint32_t)i;
         out->part[i] = -1;
     }
     for (size_t i = 0; i < out->size; i++)
         if (out->part[i] < 0) flood(f, sample, out, (int)i);
-    for (size_t i = 0; i < out->size; i++) f->place[out->at[i].node] = BRIO_NO_PLACE;
+    for (size_t i = 0; i < out->size; i++) f->place[brio_star_tet(out->at[i])] = BRIO_NO_PLACE;
     return true;
 }

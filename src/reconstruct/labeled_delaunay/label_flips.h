@@ -8,9 +8,9 @@
  *  trace, and sums do not depend on their order. */
 #define BRIO_FLIP_UNIT ((int64_t)1 << 16)
 
-/** Returns the weight of an edge in that unit. */
-static inline int64_t brio_vote_of(brio_signed_edge edge) {
-    return (int64_t)((double)edge.weight / BRIO_VOTE_UNIT * (double)BRIO_FLIP_UNIT);
+/** Returns a weight in that unit. */
+static inline int64_t brio_vote_of(float weight) {
+    return (int64_t)((double)weight / BRIO_VOTE_UNIT * (double)BRIO_FLIP_UNIT);
 }
 
 #define BRIO_NO_PLACE UINT32_MAX
@@ -32,10 +32,10 @@ typedef struct {
 /** The parts of a star that are connected across facets. */
 enum { BRIO_STAR_ROOM = 512 };
 typedef struct {
-    size_t size;                /* of the star */
-    const brio_signed_edge *at; /* its tetrahedra: at[i].node */
-    int count;                  /* of parts */
-    int of[2];                  /* outer ones, inner ones */
+    size_t size;        /* of the star */
+    const uint32_t *at; /* its entries in the graph of votes: tetrahedron brio_star_tet(at[i]) */
+    int count;          /* of parts */
+    int of[2];          /* outer ones, inner ones */
     int16_t part[BRIO_STAR_ROOM];
 } brio_star_parts;
 

@@ -155,8 +155,7 @@ static brio_status label(reconstruction *r) {
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, num_tets + r->num_points));
     BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, &r->graph));
     BRIO_TRY(brio_vote_labels(&r->graph, r->turned, r->label, &r->stats.undecided));
-    brio_signed_graph signs = brio_vote_signs(&r->graph);
-    r->stats.energy = brio_label_energy(&signs, r->label);
+    r->stats.energy = brio_vote_energy(&r->graph, r->label);
     lap(r, &r->stats.labels_seconds);
     BRIO_TRY(drop_specks(r));
     BRIO_TRY(mend(r));

@@ -122,8 +122,8 @@ static bool take_part(const brio_mending *m, const brio_star_parts *s, int part,
     x->size = 0;
     for (size_t i = 0; i < s->size; i++) {
         if (s->part[i] != part) continue;
-        if (s->at[i].node >= m->flips->num_finite || x->size == MOST) return false;
-        x->tet[x->size++] = s->at[i].node;
+        if (brio_star_tet(s->at[i]) >= m->flips->num_finite || x->size == MOST) return false;
+        x->tet[x->size++] = brio_star_tet(s->at[i]);
     }
     return true;
 }
@@ -142,7 +142,7 @@ static int nearest_open(const brio_star_parts *s, const paths *w) {
 }
 
 static void step_from(brio_mending *m, uint32_t sample, const brio_star_parts *s, uint8_t label, int i, paths *w) {
-    const brio_tetrahedron *t = &m->flips->g->dual->t.tet[s->at[i].node];
+    const brio_tetrahedron *t = &m->flips->g->dual->t.tet[brio_star_tet(s->at[i])];
     for (int k = 0; k < 4; k++) {
         uint32_t other = t->mate[k] >> 2, j = m->flips->place[other];
         if (t->vertex[k] == sample || j == BRIO_NO_PLACE || w->done[j]) continue;
@@ -163,20 +163,20 @@ static bool take_path(brio_mending *m, uint32_t sample, const brio_star_parts *s
         w.cost[i] = s->part[i] == part ? 0 : INT64_MAX;
         w.from[i] = -1;
         w.done[i] = false;
-        m->flips->place[s->at[i].node] = (uint32_t)i;
+        m->flips->place[brio_star_tet(s->at[i])] = (uint32_t)i;
     }
     while (end < 0 && (at = nearest_open(s, &w)) >= 0) {
         w.done[at] = true;
-        if (m->flips->label[s->at[at].node] == label && s->part[at] != part)
+        if (m->flips->label[brio_star_tet(s->at[at])] == label && s->part[at] != part)
             end = at;
         else
             step_from(m, sample, s, label, at, &w);
     }
-    for (size_t i = 0; i < s->size; i++) m->flips->place[s->at[i].node] = BRIO_NO_PLACE;
+    for (size_t i = 0; i < s->size; i++) m->flips->place[brio_star_tet(s->at[i])] = BRIO_NO_PLACE;
     for (int i = end < 0 ? -1 : w.from[end]; i >= 0; i = w.from[i])
-        if (m->flips->label[s->at[i].node] != label) {
+        if (m->flips->label[brio_star_tet(s->at[i])] != label) {
             if (x->size == MOST) return false;
-            x->tet[x->size++] = s->at[i].node;
+            x->tet[x->size++] = brio_star_tet(s->at[i]);
         }
     return x->size > 0;
 }
@@ -187,14 +187,14 @@ static brio_status consider_all(brio_mending *m, uint32_t sample, const brio_sta
     for (int part = 0; part < s->count; part++) {
         size_t i = 0;
         while (s->part[i] != part) i++;
-        uint8_t label = m->flips->label[s->at[i].node];
+        uint8_t label = m->flips->label[brio_star_tet(s->at[i])];
         if (s->of[label == BRIO_LABEL_INNER] < 2) continue;
         if (take_part(m, s, part, &x)) BRIO_TRY(consider(m, &x, price, best));
         if (take_path(m, sample, s, part, label, &x)) BRIO_TRY(consider(m, &x, price, best));
     }
     for (size_t i = 0; i < s->size && s->size <= SMALL; i++) {
         x.size = 1;
-        x.tet[0] = s->at[i].node;
+        x.tet[0] = brio_star_tet(s->at[i]);
         if (x.tet[0] < m->flips->num_finite) BRIO_TRY(consider(m, &x, price, best));
     }
 done:

@@ -39,24 +39,23 @@ typedef struct {
     float *confidence;
 } judgement;
 
-/* Adds the votes of a node, those along edges between a sample and a tetrahedron. */
-static void add_votes(const judgement *j, size_t node, bool is_sample, double *kept, double *all) {
-    size_t num_tets = j->g->dual->t.count;
-    for (size_t e = j->g->first[node]; e < j->g->first[node + 1]; e++) {
-        brio_signed_edge edge = j->g->edge[e];
-        double weight = fabs((double)edge.weight) / BRIO_VOTE_UNIT;
-        if (!is_sample && edge.node < num_tets) continue;
-        *kept += brio_label_violates(j->label, (uint32_t)node, edge) ? -weight : weight;
-        *all += weight;
-    }
+/* Adds the vote of a sample on a tetrahedron. */
+static void add_vote(const judgement *j, uint32_t tet, int slot, double *kept, double *all) {
+    const brio_pole_vectors *v = j->g->dual;
+    double vote = (double)j->g->vote[tet][slot], weight = fabs(vote) / BRIO_VOTE_UNIT;
+    bool alike = j->label[tet] == j->label[v->t.count + v->t.tet[tet].vertex[slot]];
+    *kept += alike == (vote < 0) ? -weight : weight;
+    *all += weight;
 }
 
 static void count_own_votes(void *user, size_t begin, size_t end, int thread) {
     const judgement *j = user;
+    const brio_vote_graph *g = j->g;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
         double kept = 0, all = 0;
-        add_votes(j, j->g->dual->t.count + p, true, &kept, &all);
+        for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
+            add_vote(j, brio_star_tet(g->star[i]), brio_slot_of(g->star[i]), &kept, &all);
         j->own[p] = (evidence){(float)kept, (float)all, 0, 0};
     }
 }
@@ -67,9 +66,11 @@ static uint32_t corner_of(const judgement *j, uint32_t facet, int k) {
 
 /* Adds the margin of a facet to its samples. */
 static void add_margin(const judgement *j, uint32_t facet) {
+    uint32_t sides[2] = {brio_tet_of(facet), brio_tet_of(*brio_mate(&j->g->dual->t, facet))};
     double kept = 0, all = 0;
-    add_votes(j, brio_tet_of(facet), false, &kept, &all);
-    add_votes(j, brio_tet_of(*brio_mate(&j->g->dual->t, facet)), false, &kept, &all);
+    for (int i = 0; i < 8; i++)
+        if (j->g->dual->t.tet[sides[i / 4]].vertex[i % 4] != j->g->dual->t.infinite)
+            add_vote(j, sides[i / 4], i % 4, &kept, &all);
     for (int k = 0; k < 3; k++) {
         evidence *e = &j->own[corner_of(j, facet, k)];
         e->margin += (float)kept;

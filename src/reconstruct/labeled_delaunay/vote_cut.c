@@ -6,37 +6,66 @@
 #include "base/memory.h"
 #include "base/team.h"
 
-enum { TETS_A_THREAD = 1 << 12, CAPACITY = 1 << 20, NO_NODE = UINT32_MAX };
+enum { TETS_A_THREAD = 1 << 12, CAPACITY = 1 << 20 };
 
 void brio_vote_cut_free(brio_vote_cut *c) {
-    brio_context *ctx = c->g->ctx;
-    brio_flow_free(&c->flow);
-    brio_release(ctx, c->edge);
-    brio_release(ctx, c->terminal);
-    brio_release(ctx, c->wanted);
-    brio_release(ctx, c->node);
-    brio_release(ctx, c->tet);
-    brio_release(ctx, c->side);
+    if (!c->g) return;
+    brio_tet_flow_free(&c->flow);
+    brio_release(c->g->ctx, c->list);
+    brio_release(c->g->ctx, c->wanted);
     *c = (brio_vote_cut){.g = c->g};
 }
 
-/* Makes nodes of the open tetrahedra. */
-static brio_status make_nodes(brio_vote_cut *c) {
+/* Returns whether a tetrahedron takes part. */
+static bool is_in(const brio_vote_cut *c, uint32_t tet) {
+    return tet < c->g->dual->num_finite && (!c->open || c->open[tet]);
+}
+
+static uint32_t tet_at(const brio_vote_cut *c, size_t i) {
+    return c->list ? c->list[i] : (uint32_t)i;
+}
+
+static brio_status list_open(brio_vote_cut *c, size_t *count) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = c->g->ctx;
-    size_t finite = c->g->dual->num_finite, count = 0;
-    for (size_t tet = 0; tet < finite; tet++) count += !c->open || c->open[tet];
-    BRIO_TRY(BRIO_ALLOC(ctx, c->node, finite));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->tet, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->terminal, count));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, c->wanted, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->side, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->edge, 2 * count));
-    for (uint32_t tet = 0; tet < finite; tet++) {
-        bool in = !c->open || c->open[tet];
-        c->node[tet] = in ? (uint32_t)c->num_nodes : NO_NODE;
-        if (in) c->tet[c->num_nodes++] = tet;
+    size_t finite = c->g->dual->num_finite;
+    *count = finite;
+    if (!c->open) return BRIO_OK;
+    *count = 0;
+    for (size_t tet = 0; tet < finite; tet++) *count += c->open[tet] != 0;
+    BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->list, *count));
+    for (size_t tet = 0, i = 0; tet < finite; tet++)
+        if (c->open[tet]) c->list[i++] = (uint32_t)tet;
+done:
+    return status;
+}
+
+static int32_t whole(float weight) {
+    return (int32_t)(weight * CAPACITY);
+}
+
+static void set_capacities(void *user, size_t begin, size_t end, int thread) {
+    const brio_vote_cut *c = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        uint32_t tet = tet_at(c, i);
+        c->flow.terminal[tet] = c->wanted[tet] = 0;
+        for (int k = 0; k < 4; k++) {
+            uint32_t mate = c->g->dual->t.tet[tet].mate[k];
+            bool in = is_in(c, brio_tet_of(mate));
+            c->flow.residual[tet][k] = in ? whole(c->g->facet[tet][k]) : 0;
+            if (!in) c->flow.residual[brio_tet_of(mate)][brio_slot_of(mate)] = 0;
+        }
     }
+}
+
+brio_status brio_vote_cut_new(const brio_vote_graph *g, const uint8_t *open, brio_vote_cut *out) {
+    brio_status status = BRIO_OK;
+    size_t count;
+    *out = (brio_vote_cut){.g = g, .open = open, .flow.ctx = g->ctx};
+    BRIO_TRY(list_open(out, &count));
+    BRIO_TRY(BRIO_ALLOC(g->ctx, out->wanted, g->dual->t.count));
+    BRIO_TRY(brio_tet_flow_new(g->ctx, &g->dual->t, out->list, count, &out->flow));
+    brio_for(g->ctx, brio_threads(g->ctx, count, TETS_A_THREAD), count, set_capacities, out);
 done:
     return status;
 }
@@ -44,63 +73,40 @@ done:
 typedef struct {
     brio_vote_cut *c;
     const uint8_t *label;
-    int64_t bias;
+    int32_t bias;
 } terminals;
 
-/* Sums the weights of each node's edges to what has a label, for outer less for inner. */
+/* Sums the weights of each tetrahedron's edges to what has a label, for outer less for inner. */
 static void sum_votes(void *user, size_t begin, size_t end, int thread) {
     const terminals *t = user;
     const brio_vote_graph *g = t->c->g;
+    const uint8_t *sample = t->label + g->dual->t.count;
     (void)thread;
-    for (size_t v = begin; v < end; v++) {
-        uint32_t tet = t->c->tet[v];
-        int64_t outer = t->bias;
-        for (size_t e = g->first[tet]; e < g->first[tet + 1]; e++) {
-            uint32_t other = g->edge[e].node;
-            int64_t weight = (int64_t)(g->edge[e].weight * CAPACITY);
-            if (other < g->dual->num_finite && t->c->node[other] != NO_NODE) continue;
-            outer += t->label[other] == BRIO_LABEL_OUTER ? weight : -weight;
+    for (size_t i = begin; i < end; i++) {
+        uint32_t v = tet_at(t->c, i);
+        const brio_tetrahedron *tet = &g->dual->t.tet[v];
+        int32_t outer = t->bias;
+        for (int k = 0; k < 4; k++) {
+            uint32_t other = brio_tet_of(tet->mate[k]);
+            int32_t vote = whole(g->vote[v][k]);
+            outer += sample[tet->vertex[k]] == BRIO_LABEL_OUTER ? vote : -vote;
+            if (is_in(t->c, other)) continue;
+            outer += t->label[other] == BRIO_LABEL_OUTER ? whole(g->facet[v][k]) : -whole(g->facet[v][k]);
         }
-        t->c->terminal[v] += outer - t->c->wanted[v];
+        t->c->flow.terminal[v] += outer - t->c->wanted[v];
         t->c->wanted[v] = outer;
     }
 }
 
-/* Lists the facets between nodes, each once. */
-static void list_facets(brio_vote_cut *c) {
-    const brio_vote_graph *g = c->g;
-    for (uint32_t v = 0; v < c->num_nodes; v++) {
-        uint32_t tet = c->tet[v];
-        for (size_t e = g->first[tet]; e < g->first[tet + 1]; e++) {
-            uint32_t other = g->edge[e].node;
-            if (other > tet && other < g->dual->num_finite && c->node[other] != NO_NODE)
-                c->edge[c->num_edges++] = (brio_flow_edge){v, c->node[other], (int32_t)(g->edge[e].weight * CAPACITY)};
-        }
+void brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out) {
+    brio_context *ctx = c->g->ctx;
+    terminals t = {c, label, (int32_t)(bias * BRIO_VOTE_UNIT * CAPACITY)};
+    brio_for(ctx, brio_threads(ctx, c->flow.num_open, TETS_A_THREAD), c->flow.num_open, sum_votes, &t);
+    brio_tet_flow_run(&c->flow);
+    if (out != label)
+        for (size_t tet = 0; tet < c->g->dual->num_finite; tet++) out[tet] = label[tet];
+    for (size_t i = 0; i < c->flow.num_open; i++) {
+        uint32_t tet = tet_at(c, i);
+        out[tet] = c->flow.side[tet] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
     }
-}
-
-brio_status brio_vote_cut_new(const brio_vote_graph *g, const uint8_t *open, brio_vote_cut *out) {
-    brio_status status = BRIO_OK;
-    *out = (brio_vote_cut){.g = g, .open = open, .flow = brio_flow_new(g->ctx)};
-    BRIO_TRY(make_nodes(out));
-    list_facets(out);
-    for (size_t v = 0; v < out->num_nodes; v++) out->terminal[v] = 0;
-done:
-    return status;
-}
-
-brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out) {
-    brio_status status = BRIO_OK;
-    terminals t = {c, label, (int64_t)(bias * BRIO_VOTE_UNIT * CAPACITY)};
-    brio_for(c->g->ctx, brio_threads(c->g->ctx, c->num_nodes, TETS_A_THREAD), c->num_nodes, sum_votes, &t);
-    if (c->begun)
-        brio_flow_again(&c->flow, c->terminal, c->side);
-    else
-        BRIO_TRY(brio_flow_maximum(&c->flow, c->num_nodes, c->edge, c->num_edges, c->terminal, c->side));
-    c->begun = true;
-    for (size_t tet = 0; tet < c->g->dual->num_finite; tet++) out[tet] = label[tet];
-    for (size_t v = 0; v < c->num_nodes; v++)
-        out[c->tet[v]] = c->side[v] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-done:
-    return status;
 }

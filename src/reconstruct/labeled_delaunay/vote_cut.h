@@ -3,21 +3,16 @@
 #define BRIO_RECONSTRUCT_VOTE_CUT_H
 
 #include "reconstruct/labeled_delaunay/vote_graph.h"
-#include "reconstruct/labels/max_flow.h"
+#include "reconstruct/labels/tetrahedra_flow.h"
 
 /** Workspace for many cuts of one graph, one after another. */
 typedef struct {
     const brio_vote_graph *g;
     const uint8_t *open; /* #T, or NULL */
-    brio_flow flow;
-    brio_flow_edge *edge;
-    int64_t *terminal;
-    int64_t *wanted; /* of each node in the last cut: the weight of what wants it outer, less of what wants it inner */
-    uint32_t *node;  /* #T: of the flow, or none */
-    uint32_t *tet;   /* of each node */
-    uint8_t *side;
-    size_t num_nodes, num_edges;
-    bool begun; /* there was a cut: its flow is where the next one begins */
+    uint32_t *list;      /* the open finite tetrahedra, or NULL */
+    brio_tet_flow flow;
+    int32_t *wanted; /* #T: the weight of what wants an open tetrahedron outer, less of what wants it inner, in the last
+                        cut */
 } brio_vote_cut;
 
 /** g     kept.
@@ -27,10 +22,9 @@ brio_status brio_vote_cut_new(const brio_vote_graph *g, const uint8_t *open, bri
 void brio_vote_cut_free(brio_vote_cut *c);
 
 /** Finds the labels of least energy of open finite tetrahedra; of all such labels those with the fewest inner ones.
- *  bias   log-odds that are added to the votes of every open tetrahedron for outer.
+ *  bias   log-odds that are added to the votes of every open tetrahedron for outer; not over 100.
  *  label  #nodes of the graph.
- *  out    #T, written for finite tetrahedra; may be `label`.
- *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
-brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out);
+ *  out    #T, written for finite tetrahedra; may be `label`. */
+void brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out);
 
 #endif

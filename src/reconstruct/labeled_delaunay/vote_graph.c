@@ -23,7 +23,8 @@
 #include "reconstruct/labeled_delaunay/vote_weight.h"
 #include <math.h>
 
-enum { TETS_A_THREAD = 1 << 11, VOTES = 4, EDGES = 8, HULL_VOTES = 3, HULL_EDGES = 4 };
+/* PARTS: sums of the energy that are added up in order. All chosen. */
+enum { TETS_A_THREAD = 1 << 11, PARTS = 256 };
 
 /* In log-odds, of a facet of the area of an equilateral triangle whose sides are one spacing: AREA is its weight in any
  * case, DOUBT is added if its samples see both of its tetrahedra in one direction. Larger facets weigh more, up to
@@ -35,16 +36,11 @@ typedef struct {
     const brio_pole_vectors *dual;
     const double *spacing;
     double noise;
-    float *cosine; /* #T by 4: between the axis of the sample in each slot and the direction to the Voronoi vertex */
 } builder;
 
-static size_t edges_before(const brio_pole_vectors *v, size_t tet) {
-    return tet < v->num_finite ? EDGES * tet : EDGES * v->num_finite + HULL_EDGES * (tet - v->num_finite);
-}
-
-/* Returns the place of the edge across facet i of a tetrahedron. */
-static size_t place_of_facet(const brio_pole_vectors *v, size_t tet, int i) {
-    return edges_before(v, tet) + (tet < v->num_finite ? VOTES + (size_t)i : HULL_VOTES);
+/* Returns the number of samples of a tetrahedron: an infinite one has the infinite vertex in slot 3. */
+static int num_samples(const brio_pole_vectors *v, size_t tet) {
+    return tet < v->num_finite ? 4 : 3;
 }
 
 static const double *corner_of(const brio_pole_vectors *v, size_t tet, int slot) {
@@ -74,20 +70,7 @@ static double cosine_at(const brio_pole_vectors *v, size_t tet, uint32_t p) {
     return square > 0 && square < INFINITY ? brio_dot(to, v->plane + 4 * (size_t)p) / sqrt(square) : 0;
 }
 
-/* Writes the edges from a tetrahedron to its samples. */
-static void weigh_votes(const builder *b, size_t tet) {
-    const brio_pole_vectors *v = b->dual;
-    brio_signed_edge *edge = b->g->edge + edges_before(v, tet);
-    bool finite = tet < v->num_finite;
-    double thick = finite ? inradius(v, tet) : INFINITY;
-    for (int i = 0; i < (finite ? VOTES : HULL_VOTES); i++) {
-        uint32_t p = v->t.tet[tet].vertex[i];
-        double log_odds = brio_vote_log_odds((double)b->cosine[4 * tet + (size_t)i], thick / b->spacing[p], b->noise);
-        edge[i] = (brio_signed_edge){(uint32_t)v->t.count + p, (float)(BRIO_VOTE_UNIT * log_odds)};
-    }
-}
-
-/* Returns the log-odds that the two tetrahedra of a facet have one label. */
+/* Returns the log-odds that the two tetrahedra of a facet have one label. The votes are still cosines. */
 static double facet_log_odds(const builder *b, uint32_t facet) {
     const brio_pole_vectors *v = b->dual;
     uint32_t tet = brio_tet_of(facet), other = brio_tet_of(*brio_mate(&v->t, facet));
@@ -97,104 +80,146 @@ static double facet_log_odds(const builder *b, uint32_t facet) {
         uint32_t p = v->t.tet[tet].vertex[f[k]];
         size_t there = (size_t)brio_slot_of_vertex(v->t.tet[other].vertex, p);
         spacing += b->spacing[p] / 3;
-        alike += (double)b->cosine[4 * (size_t)tet + f[k]] * (double)b->cosine[4 * (size_t)other + there] / 3;
+        alike += (double)b->g->vote[tet][f[k]] * (double)b->g->vote[other][there] / 3;
     }
     double unit = sqrt(3) / 4 * spacing * spacing;
     double area = brio_triangle_area(corner_of(v, tet, f[0]), corner_of(v, tet, f[1]), corner_of(v, tet, f[2]));
     return (AREA + DOUBT * (1 + alike) / 2) * (area < MOST_AREA * unit ? area / unit : MOST_AREA);
 }
 
-/* Writes the edge across a facet, at both ends. */
+/* Writes the weight of a facet, at both ends. */
 static void weigh_facet(const builder *b, uint32_t facet) {
-    const brio_pole_vectors *v = b->dual;
-    uint32_t tet = brio_tet_of(facet), mate = *brio_mate(&v->t, facet), other = brio_tet_of(mate);
+    uint32_t mate = *brio_mate(&b->dual->t, facet);
     float weight = (float)(BRIO_VOTE_UNIT * facet_log_odds(b, facet));
-    b->g->edge[place_of_facet(v, tet, brio_slot_of(facet))] = (brio_signed_edge){other, weight};
-    b->g->edge[place_of_facet(v, other, brio_slot_of(mate))] = (brio_signed_edge){tet, weight};
+    b->g->facet[brio_tet_of(facet)][brio_slot_of(facet)] = weight;
+    b->g->facet[brio_tet_of(mate)][brio_slot_of(mate)] = weight;
 }
 
-static void place_node(const builder *b, size_t tet) {
-    const brio_pole_vectors *v = b->dual;
-    int count = tet < v->num_finite ? 4 : 3;
-    double *at = b->g->position + 3 * tet;
-    for (int k = 0; k < 3; k++) {
-        at[k] = 0;
-        for (int i = 0; i < count; i++) at[k] += corner_of(v, tet, i)[k] / count;
-    }
-}
+/* The three steps of building, for parts of the tetrahedra. Votes are cosines at first, between the axis of the sample in
+ * a slot and the direction to the Voronoi vertex. */
 
 static void find_cosines(void *user, size_t begin, size_t end, int thread) {
     const builder *b = user;
     (void)thread;
     for (size_t tet = begin; tet < end; tet++)
-        for (int i = 0; i < (tet < b->dual->num_finite ? VOTES : HULL_VOTES); i++)
-            b->cosine[4 * tet + (size_t)i] = (float)cosine_at(b->dual, tet, b->dual->t.tet[tet].vertex[i]);
+        for (int i = 0; i < 4; i++) {
+            bool there = i < num_samples(b->dual, tet);
+            b->g->vote[tet][i] = there ? (float)cosine_at(b->dual, tet, b->dual->t.tet[tet].vertex[i]) : 0;
+        }
 }
 
-static void weigh_tetrahedra(void *user, size_t begin, size_t end, int thread) {
+static void weigh_facets(void *user, size_t begin, size_t end, int thread) {
+    const builder *b = user;
+    const brio_pole_vectors *v = b->dual;
+    (void)thread;
+    for (size_t tet = begin; tet < end; tet++)
+        for (int i = 0; i < 4; i++) {
+            uint32_t facet = brio_facet_of((uint32_t)tet, i);
+            if (tet >= v->num_finite && i < 3)
+                b->g->facet[tet][i] = 0;
+            else if (facet < *brio_mate(&v->t, facet))
+                weigh_facet(b, facet);
+        }
+}
+
+static void weigh_votes(void *user, size_t begin, size_t end, int thread) {
     const builder *b = user;
     const brio_pole_vectors *v = b->dual;
     (void)thread;
     for (size_t tet = begin; tet < end; tet++) {
-        b->g->first[tet] = edges_before(v, tet);
-        place_node(b, tet);
-        weigh_votes(b, tet);
-        for (int i = tet < v->num_finite ? 0 : 3; i < 4; i++) {
-            uint32_t facet = brio_facet_of((uint32_t)tet, i);
-            if (facet < *brio_mate(&v->t, facet)) weigh_facet(b, facet);
+        double thick = tet < v->num_finite ? inradius(v, tet) : INFINITY;
+        for (int i = 0; i < num_samples(v, tet); i++) {
+            float *vote = &b->g->vote[tet][i];
+            double ratio = thick / b->spacing[v->t.tet[tet].vertex[i]];
+            *vote = (float)(BRIO_VOTE_UNIT * brio_vote_log_odds((double)*vote, ratio, b->noise));
         }
     }
 }
 
-/* Copies the edges between tetrahedra and samples to the samples, in the order of the tetrahedra. */
-static void deal_out_votes(const builder *b, size_t *next) {
-    const brio_pole_vectors *v = b->dual;
-    for (size_t tet = 0; tet < v->t.count; tet++) {
-        const brio_signed_edge *vote = b->g->edge + edges_before(v, tet);
-        for (int i = 0; i < (tet < v->num_finite ? VOTES : HULL_VOTES); i++)
-            b->g->edge[next[v->t.tet[tet].vertex[i]]++] = (brio_signed_edge){(uint32_t)tet, vote[i].weight};
-    }
-}
-
-static brio_status list_votes(const builder *b) {
+/* Lists the stars of the samples. */
+static brio_status list_stars(const builder *b) {
     brio_status status = BRIO_OK;
     const brio_pole_vectors *v = b->dual;
-    brio_context *ctx = b->g->ctx;
-    size_t *next = NULL, *first = b->g->first + v->t.count, n = v->num_points;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, next, n));
+    brio_vote_graph *g = b->g;
+    size_t *next = NULL, n = v->num_points;
+    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, next, n));
     for (size_t tet = 0; tet < v->t.count; tet++)
-        for (int i = 0; i < (tet < v->num_finite ? VOTES : HULL_VOTES); i++) next[v->t.tet[tet].vertex[i]]++;
-    first[n] = brio_counts_to_places(next, 1, n, edges_before(v, v->t.count));
-    for (size_t p = 0; p < n; p++) first[p] = next[p];
-    deal_out_votes(b, next);
+        for (int i = 0; i < num_samples(v, tet); i++) next[v->t.tet[tet].vertex[i]]++;
+    g->first[n] = brio_counts_to_places(next, 1, n, 0);
+    for (size_t p = 0; p < n; p++) g->first[p] = next[p];
+    for (size_t tet = 0; tet < v->t.count; tet++)
+        for (int i = 0; i < num_samples(v, tet); i++)
+            g->star[next[v->t.tet[tet].vertex[i]]++] = brio_facet_of((uint32_t)tet, i);
 done:
-    brio_release(ctx, next);
+    brio_release(g->ctx, next);
     return status;
 }
 
 brio_status brio_vote_graph_new(brio_context *ctx, const brio_pole_vectors *dual, const double *spacing, double noise,
                                 brio_vote_graph *out) {
     brio_status status = BRIO_OK;
-    size_t size = dual->t.count, n = dual->num_points, hull = size - dual->num_finite;
+    size_t size = dual->t.count, hull = size - dual->num_finite;
     builder b = {.g = out, .dual = dual, .spacing = spacing, .noise = noise};
     int threads = brio_threads(ctx, size, TETS_A_THREAD);
     *out = (brio_vote_graph){.ctx = ctx, .dual = dual};
-    BRIO_TRY(BRIO_ALLOC(ctx, out->first, size + n + 1));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->edge, edges_before(dual, size) + VOTES * dual->num_finite + HULL_VOTES * hull));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->position, 3 * (size + n)));
-    BRIO_TRY(BRIO_ALLOC(ctx, b.cosine, 4 * size));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->vote, size));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->facet, size));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->first, dual->num_points + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->star, 4 * dual->num_finite + 3 * hull));
     brio_for(ctx, threads, size, find_cosines, &b);
-    brio_for(ctx, threads, size, weigh_tetrahedra, &b);
-    for (size_t i = 0; i < 3 * n; i++) out->position[3 * size + i] = dual->points[i];
-    BRIO_TRY(list_votes(&b));
+    brio_for(ctx, threads, size, weigh_facets, &b);
+    brio_for(ctx, threads, size, weigh_votes, &b);
+    BRIO_TRY(list_stars(&b));
 done:
-    brio_release(ctx, b.cosine);
     return status;
 }
 
 void brio_vote_graph_free(brio_vote_graph *g) {
+    brio_release(g->ctx, g->vote);
+    brio_release(g->ctx, g->facet);
     brio_release(g->ctx, g->first);
-    brio_release(g->ctx, g->edge);
-    brio_release(g->ctx, g->position);
+    brio_release(g->ctx, g->star);
     *g = (brio_vote_graph){.ctx = g->ctx};
+}
+
+/* --- energy --- */
+
+/* Sums |weight| over the violated edges of a tetrahedron, those across a facet only to tetrahedra of higher number. */
+static double violated_at(const brio_vote_graph *g, const uint8_t *label, uint32_t tet) {
+    const brio_tetrahedron *t = &g->dual->t.tet[tet];
+    double sum = 0;
+    for (int i = 0; i < 4; i++) {
+        uint32_t other = brio_tet_of(t->mate[i]);
+        float vote = g->vote[tet][i];
+        if (vote != 0 && (label[tet] == label[g->dual->t.count + t->vertex[i]]) == (vote < 0))
+            sum += fabs((double)vote);
+        if (other > tet && label[tet] != label[other]) sum += (double)g->facet[tet][i];
+    }
+    return sum;
+}
+
+typedef struct {
+    const brio_vote_graph *g;
+    const uint8_t *label;
+    double part[PARTS];
+} energy;
+
+static void sum_parts(void *user, size_t begin, size_t end, int thread) {
+    energy *e = user;
+    size_t size = e->g->dual->t.count;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        e->part[i] = 0;
+        for (size_t tet = brio_part(size, (int)i, PARTS); tet < brio_part(size, (int)i + 1, PARTS); tet++)
+            e->part[i] += violated_at(e->g, e->label, (uint32_t)tet);
+    }
+}
+
+/* Sums in PARTS parts for every number of threads, so that the rounding does not depend on the threads. */
+double brio_vote_energy(const brio_vote_graph *g, const uint8_t *label) {
+    energy e = {.g = g, .label = label};
+    double sum = 0;
+    brio_for_chunks(g->ctx, brio_threads(g->ctx, g->dual->t.count, TETS_A_THREAD), PARTS, 1, sum_parts, &e);
+    for (int i = 0; i < PARTS; i++) sum += e.part[i];
+    return sum;
 }

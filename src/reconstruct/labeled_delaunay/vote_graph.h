@@ -1,20 +1,24 @@
-/* The graph of votes: tetrahedra and samples, joined where the place of one tells about the side of the other. */
+/* The graph of votes: tetrahedra and samples, joined where the place of one tells about the side of the other. The
+ * triangulation has the edges; here are their weights. */
 #ifndef BRIO_RECONSTRUCT_VOTE_GRAPH_H
 #define BRIO_RECONSTRUCT_VOTE_GRAPH_H
 
 #include "dual/pole_vectors.h"
-#include "reconstruct/labels/signed_graph.h"
+#include "reconstruct/labels/label.h"
 
 /** The weight of an edge of one log-odds: so no weight is over 1. */
 #define BRIO_VOTE_UNIT (1 / 21.0)
 
-/** Node t < #T is tetrahedron t. Node #T + p is sample p: its label is that of the side to which its axis points. */
+/** Labels are those of the nodes: node t < #T is tetrahedron t. Node #T + p is sample p: its label is that of the side to
+ *  which its axis points. */
 typedef struct {
     brio_context *ctx;
     const brio_pole_vectors *dual;
-    size_t *first;
-    brio_signed_edge *edge;
-    double *position; /* #nodes by 3: centroids and samples */
+    float (*vote)[4];  /* #T by 4: of the edge from a tetrahedron to the sample in slot i; 0 for the infinite vertex */
+    float (*facet)[4]; /* #T by 4: of the edge across facet i, at both ends; 0 between infinite tetrahedra */
+    size_t *first;     /* #P + 1 */
+    uint32_t *star;    /* star[first[p]] to star[first[p + 1] - 1]: 4 t + i for each tetrahedron t that has p in slot i,
+                          in ascending order */
 } brio_vote_graph;
 
 /** Builds the graph. A tetrahedron and a sample of it share an edge: its weight is the log-odds that the tetrahedron is
@@ -29,13 +33,16 @@ brio_status brio_vote_graph_new(brio_context *ctx, const brio_pole_vectors *dual
                                 brio_vote_graph *out);
 void brio_vote_graph_free(brio_vote_graph *g);
 
-/** Returns the graph without the triangulation, which must outlive the result. */
-static inline brio_signed_graph brio_vote_signs(const brio_vote_graph *g) {
-    return (brio_signed_graph){.ctx = g->ctx,
-                               .count = g->dual->t.count + g->dual->num_points,
-                               .position = g->position,
-                               .first = g->first,
-                               .edge = g->edge};
+/** Return what the sample of an entry of `star` votes for, and its tetrahedron. */
+static inline float brio_star_vote(const brio_vote_graph *g, uint32_t entry) {
+    return g->vote[entry >> 2][entry & 3];
 }
+static inline uint32_t brio_star_tet(uint32_t entry) {
+    return entry >> 2;
+}
+
+/** Returns the energy of labels, in the unit of the weights: the sum of |weight| over the edges that the labels
+ *  contradict. Does not depend on the number of threads. */
+double brio_vote_energy(const brio_vote_graph *g, const uint8_t *label);
 
 #endif

@@ -12,7 +12,9 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "reconstruct/labeled_delaunay/vote_cut.h"
+#include "reconstruct/labeled_delaunay/vote_region.h"
 #include <math.h>
+#include <string.h>
 
 /* TURNS: most cuts; they end with one after which at most 1/FEW of the samples change. FIRST_BITS, PASSES: of the descent. All chosen on generated solids. */
 enum { TURNS = 4, FEW = 10000, FIRST_BITS = 9, PASSES = 3, NODES_A_THREAD = 1 << 12 };
@@ -28,20 +30,16 @@ typedef struct {
     size_t turned; /* turned: samples that changed their label in the last turn */
 } voting;
 
-static bool is_outer(const voting *v, uint32_t node) {
-    return v->label[node] == BRIO_LABEL_OUTER;
-}
-
 /* --- one turn --- */
 
 /* Returns the sum of the weights of a sample's votes for outer, less those for inner.   all  receives the sum of their
  * magnitudes. */
-static double tally(const voting *v, size_t node, double *all) {
+static double tally(const voting *v, size_t sample, double *all) {
     double outer = 0;
     *all = 0;
-    for (size_t e = v->g->first[node]; e < v->g->first[node + 1]; e++) {
-        double weight = (double)v->g->edge[e].weight;
-        outer += is_outer(v, v->g->edge[e].node) ? weight : -weight;
+    for (size_t i = v->g->first[sample]; i < v->g->first[sample + 1]; i++) {
+        double weight = (double)brio_star_vote(v->g, v->g->star[i]);
+        outer += v->label[brio_star_tet(v->g->star[i])] == BRIO_LABEL_OUTER ? weight : -weight;
         *all += fabs(weight);
     }
     return outer;
@@ -53,7 +51,7 @@ static void turn_part(void *user, size_t begin, size_t end, int thread) {
     double all;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        double outer = tally(v, v->num_tets + p, &all);
+        double outer = tally(v, p, &all);
         uint8_t label = outer > 0 ? BRIO_LABEL_OUTER : outer < 0 ? BRIO_LABEL_INNER : v->label[v->num_tets + p];
         turned += label != v->label[v->num_tets + p];
         v->label[v->num_tets + p] = label;
@@ -67,7 +65,7 @@ static brio_status take_turns(voting *v) {
     BRIO_TRY(brio_vote_cut_new(v->g, NULL, &cut));
     for (int turn = 0; turn < TURNS; turn++) {
         BRIO_TRY(brio_progress(v->ctx, "label", 0.6 * turn / TURNS));
-        BRIO_TRY(brio_vote_cut_find(&cut, 0, v->label, v->label));
+        brio_vote_cut_find(&cut, 0, v->label, v->label);
         v->turned = 0;
         brio_for(v->ctx, brio_threads(v->ctx, v->num_samples, NODES_A_THREAD), v->num_samples, turn_part, v);
         if (v->turned <= v->num_samples / FEW) break;
@@ -79,41 +77,45 @@ done:
 
 /* --- contested places --- */
 
-/* Frees a node and the nodes that edges join to it, infinite tetrahedra excepted. */
-static void free_round(const voting *v, size_t node) {
-    v->fixed[node] = 0;
-    for (size_t e = v->g->first[node]; e < v->g->first[node + 1]; e++) {
-        uint32_t other = v->g->edge[e].node;
-        if (other < v->num_finite || other >= v->num_tets) v->fixed[other] = 0;
+/* Frees a sample and its finite tetrahedra. */
+static void free_star(const voting *v, uint32_t sample) {
+    v->fixed[v->num_tets + sample] = 0;
+    for (size_t i = v->g->first[sample]; i < v->g->first[sample + 1]; i++) {
+        uint32_t tet = brio_star_tet(v->g->star[i]);
+        if (tet < v->num_finite) v->fixed[tet] = 0;
     }
 }
 
 /* Frees contested samples, their tetrahedra, the samples of these, and the tetrahedra of these. */
-static brio_status free_contested(const voting *v) {
-    brio_status status = BRIO_OK;
-    uint32_t *contested = NULL;
-    size_t count = 0;
-    BRIO_TRY(BRIO_ALLOC(v->ctx, contested, v->num_samples));
+static void free_contested(const voting *v) {
     for (size_t p = 0; p < v->num_samples; p++) {
-        double all, outer = tally(v, v->num_tets + p, &all);
-        if (all - fabs(outer) > 2 * CONTESTED * all) contested[count++] = (uint32_t)(v->num_tets + p);
-    }
-    for (size_t i = 0; i < count; i++)
-        for (size_t e = v->g->first[contested[i]]; e < v->g->first[contested[i] + 1]; e++) {
-            uint32_t tet = v->g->edge[e].node;
-            for (size_t n = v->g->first[tet]; n < v->g->first[tet + 1] && tet < v->num_finite; n++)
-                if (v->g->edge[n].node >= v->num_tets) free_round(v, v->g->edge[n].node);
+        double all, outer = tally(v, p, &all);
+        if (!(all - fabs(outer) > 2 * CONTESTED * all)) continue;
+        for (size_t i = v->g->first[p]; i < v->g->first[p + 1]; i++) {
+            uint32_t tet = brio_star_tet(v->g->star[i]);
+            for (int k = 0; k < 4 && tet < v->num_finite; k++) free_star(v, v->g->dual->t.tet[tet].vertex[k]);
         }
+    }
+}
+
+/* Lowers the energy of the labels of free nodes. */
+static brio_status settle_contested(const voting *v, size_t *undecided) {
+    brio_status status = BRIO_OK;
+    brio_vote_region r;
+    brio_energy_descent descent = {.first_bits = FIRST_BITS, .passes = PASSES, .from = 0.6};
+    BRIO_TRY(brio_vote_region_new(v->g, v->fixed, v->label, &r));
+    brio_signed_graph signs = brio_vote_region_signs(&r);
+    BRIO_TRY(brio_lower_energy(&signs, r.fixed, &descent, r.label));
+    for (size_t i = 0; i < r.count; i++) v->label[r.node[i]] = r.label[i];
+    *undecided = descent.undecided;
 done:
-    brio_release(v->ctx, contested);
+    brio_vote_region_free(&r);
     return status;
 }
 
 brio_status brio_vote_labels(const brio_vote_graph *g, const uint8_t *turned, uint8_t *label, size_t *undecided) {
     brio_status status = BRIO_OK;
     const brio_pole_vectors *dual = g->dual;
-    brio_signed_graph signs = brio_vote_signs(g);
-    brio_energy_descent descent = {.first_bits = FIRST_BITS, .passes = PASSES, .from = 0.6};
     voting v = {.g = g,
                 .ctx = g->ctx,
                 .num_tets = dual->t.count,
@@ -123,11 +125,10 @@ brio_status brio_vote_labels(const brio_vote_graph *g, const uint8_t *turned, ui
     for (size_t tet = 0; tet < v.num_tets; tet++) label[tet] = BRIO_LABEL_OUTER;
     for (size_t p = 0; p < v.num_samples; p++) label[v.num_tets + p] = turned[p] ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
     BRIO_TRY(take_turns(&v));
-    BRIO_TRY(BRIO_ALLOC(v.ctx, v.fixed, signs.count));
-    for (size_t i = 0; i < signs.count; i++) v.fixed[i] = 1;
-    BRIO_TRY(free_contested(&v));
-    BRIO_TRY(brio_lower_energy(&signs, v.fixed, &descent, label));
-    *undecided = descent.undecided;
+    BRIO_TRY(BRIO_ALLOC(v.ctx, v.fixed, v.num_tets + v.num_samples));
+    memset(v.fixed, 1, v.num_tets + v.num_samples);
+    free_contested(&v);
+    BRIO_TRY(settle_contested(&v, undecided));
 done:
     brio_release(v.ctx, v.fixed);
     return status;

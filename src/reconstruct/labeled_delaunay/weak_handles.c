@@ -46,10 +46,10 @@ static void open_doubtful(search *s) {
     const brio_vote_graph *g = s->f->g;
     for (size_t p = 0; p < s->f->num_samples; p++) {
         int64_t all = 0, outer = llabs(s->f->outer[p]);
-        const size_t *first = g->first + s->f->num_tets + p;
-        for (size_t e = first[0]; e < first[1]; e++) all += llabs(brio_vote_of(g->edge[e]));
+        for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
+            all += llabs(brio_vote_of(brio_star_vote(g, g->star[i])));
         if ((double)(all - outer) <= 2 * DOUBT * (double)all) continue;
-        for (size_t e = first[0]; e < first[1]; e++) s->open[g->edge[e].node] = 1;
+        for (size_t i = g->first[p]; i < g->first[p + 1]; i++) s->open[brio_star_tet(g->star[i])] = 1;
     }
 }
 
@@ -156,7 +156,7 @@ done:
 static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_progress(s->f->ctx, "handles", 1));
-    BRIO_TRY(brio_vote_cut_find(&s->cut, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning));
+    brio_vote_cut_find(&s->cut, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning);
     for (uint32_t tet = 0; tet < s->f->num_finite; tet++)
         if (leans(s, tet, label) && collect_patch(s, tet, label)) BRIO_TRY(weigh_patch(s, label));
 done:
@@ -183,7 +183,7 @@ brio_status brio_remove_weak_handles(brio_mending *m, size_t *removed) {
     *removed = s->removed;
 done:
     if (s) {
-        if (s->cut.g) brio_vote_cut_free(&s->cut);
+        brio_vote_cut_free(&s->cut);
         brio_release(ctx, s->leaning);
         brio_release(ctx, s->open);
         brio_release(ctx, s->seen);

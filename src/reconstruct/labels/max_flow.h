@@ -14,15 +14,15 @@ typedef struct {
  *  from the node to the sink. FREE: neither. The sides are the same for every maximum flow. */
 typedef enum { BRIO_FLOW_FREE = 0, BRIO_FLOW_SOURCE = 1, BRIO_FLOW_SINK = 2 } brio_flow_side;
 
-/** An arc of the residual graph. The arcs that leave node v are node[v].first to node[v + 1].first - 1. */
+/** An arc of the residual graph. The arcs that leave node v are arc[first[v]] to arc[first[v + 1] - 1]. */
 typedef struct {
     /* The arc ends at `head`; arc `mate` is the same edge in the other direction. */
     uint32_t head, mate;
     int32_t residual;
 } brio_flow_arc;
 
+/** The place of a node in the search trees (flow_body.h). */
 typedef struct {
-    uint32_t first;
     uint32_t parent;   /* the arc from the node to its parent, or a mark */
     uint32_t distance; /* of the node from its terminal, right at the time `checked` */
     uint32_t checked;
@@ -30,16 +30,22 @@ typedef struct {
     uint32_t orphan;      /* an entry of the ring of orphans, unrelated to this node */
 } brio_flow_node;
 
+typedef struct {
+    size_t room; /* entries of the ring of orphans: at least the nodes */
+    uint32_t time, active_head, active_tail;
+    size_t orphan_first, num_orphans;
+} brio_flow_trees;
+
 /** Workspace for many flows, one after another. */
 typedef struct {
     brio_context *ctx;
+    uint32_t *first;
     brio_flow_node *node;
     brio_flow_arc *arc;
-    size_t num_nodes, node_capacity, arc_capacity;
+    size_t num_nodes, first_capacity, node_capacity, arc_capacity;
     int64_t *terminal;
     uint8_t *side;
-    uint32_t time, active_head, active_tail;
-    size_t orphan_first, num_orphans;
+    brio_flow_trees trees;
 } brio_flow;
 
 brio_flow brio_flow_new(brio_context *ctx);
@@ -55,12 +61,5 @@ void brio_flow_free(brio_flow *flow);
  *  Based on: [Boykov Kolmogorov 2004]. */
 brio_status brio_flow_maximum(brio_flow *flow, size_t num_nodes, const brio_flow_edge *edges, size_t num_edges,
                               int64_t *terminal, uint8_t *side);
-
-/** Finds a maximum flow of the graph of the last call with other terminals, beginning from the flow of that call: quick if
- *  few terminals changed.
- *  terminal  the array of the last call, as that call left it, plus the changes: with t the capacities of the last call
- *            and u the new ones, terminal[v] += u[v] - t[v] before the call.
- *  Based on: Kohli, Torr. Dynamic graph cuts for efficient inference in Markov random fields. IEEE PAMI 2007. */
-void brio_flow_again(brio_flow *flow, int64_t *terminal, uint8_t *side);
 
 #endif

@@ -1,0 +1,119 @@
+/* Part of the graph of votes as a signed graph of its own: small, and with its edges in lists, which the graph of votes
+ * leaves to the triangulation. */
+#include "reconstruct/labeled_delaunay/vote_region.h"
+#include "base/memory.h"
+
+enum { EDGES = 8 /* of a finite tetrahedron */ };
+
+typedef struct {
+    const brio_vote_graph *g;
+    const uint8_t *fixed;
+    uint32_t *number; /* #nodes of the graph: 1 + the number in the region, or 0 */
+    brio_vote_region *out;
+} copier;
+
+/* Writes the edges of a free node of the graph of votes. Returns their number.   edges  room for num_edges. */
+static size_t list_edges(const brio_vote_graph *g, uint32_t node, brio_signed_edge *edges) {
+    uint32_t num_tets = (uint32_t)g->dual->t.count;
+    size_t count = 0;
+    if (node >= num_tets) {
+        uint32_t p = node - num_tets;
+        for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
+            edges[count++] = (brio_signed_edge){brio_star_tet(g->star[i]), brio_star_vote(g, g->star[i])};
+        return count;
+    }
+    const brio_tetrahedron *t = &g->dual->t.tet[node];
+    for (int i = 0; i < 4; i++) edges[count++] = (brio_signed_edge){num_tets + t->vertex[i], g->vote[node][i]};
+    for (int i = 0; i < 4; i++) edges[count++] = (brio_signed_edge){brio_tet_of(t->mate[i]), g->facet[node][i]};
+    return count;
+}
+
+/* Returns the number of edges of a free node: tetrahedra are free only if they are finite. */
+static size_t num_edges(const brio_vote_graph *g, uint32_t node) {
+    size_t num_tets = g->dual->t.count;
+    return node < num_tets ? EDGES : g->first[node - num_tets + 1] - g->first[node - num_tets];
+}
+
+/* Marks the nodes of the region, and returns a bound of their edges. */
+static size_t mark(const copier *c) {
+    const brio_vote_graph *g = c->g;
+    uint32_t num_tets = (uint32_t)g->dual->t.count;
+    size_t nodes = num_tets + g->dual->num_points, bound = 0;
+    for (uint32_t node = 0; node < nodes; node++) {
+        if (c->fixed[node]) continue;
+        bound += num_edges(g, node);
+        c->number[node] = 1;
+        if (node < num_tets) {
+            const brio_tetrahedron *t = &g->dual->t.tet[node];
+            for (int i = 0; i < 4; i++) c->number[num_tets + t->vertex[i]] = c->number[brio_tet_of(t->mate[i])] = 1;
+        } else {
+            for (size_t i = g->first[node - num_tets]; i < g->first[node - num_tets + 1]; i++)
+                c->number[brio_star_tet(g->star[i])] = 1;
+        }
+    }
+    return bound;
+}
+
+static void number_nodes(const copier *c) {
+    size_t nodes = c->g->dual->t.count + c->g->dual->num_points;
+    for (size_t node = 0; node < nodes; node++)
+        if (c->number[node]) c->number[node] = (uint32_t)++c->out->count;
+}
+
+static void place(const brio_vote_graph *g, uint32_t node, double at[3]) {
+    const brio_pole_vectors *v = g->dual;
+    bool sample = node >= v->t.count;
+    for (int k = 0; k < 3; k++) {
+        at[k] = sample ? v->points[3 * (node - v->t.count) + (size_t)k] : 0;
+        for (int i = 0; i < 4 && !sample; i++) at[k] += v->points[3 * (size_t)v->t.tet[node].vertex[i] + (size_t)k] / 4;
+    }
+}
+
+static void copy_nodes(const copier *c, const uint8_t *label) {
+    brio_vote_region *r = c->out;
+    size_t nodes = c->g->dual->t.count + c->g->dual->num_points, count = 0, edges = 0;
+    for (uint32_t node = 0; node < nodes; node++) {
+        if (!c->number[node]) continue;
+        r->node[count] = node;
+        r->fixed[count] = c->fixed[node];
+        r->label[count] = label[node];
+        r->first[count] = edges;
+        if (!c->fixed[node]) place(c->g, node, r->position + 3 * count);
+        count++;
+        if (c->fixed[node]) continue;
+        size_t more = list_edges(c->g, node, r->edge + edges);
+        for (size_t e = edges; e < edges + more; e++) r->edge[e].node = c->number[r->edge[e].node] - 1;
+        edges += more;
+    }
+    r->first[count] = edges;
+}
+
+brio_status brio_vote_region_new(const brio_vote_graph *g, const uint8_t *fixed, const uint8_t *label,
+                                 brio_vote_region *out) {
+    brio_status status = BRIO_OK;
+    copier c = {.g = g, .fixed = fixed, .out = out};
+    *out = (brio_vote_region){.ctx = g->ctx};
+    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, c.number, g->dual->t.count + g->dual->num_points));
+    size_t bound = mark(&c);
+    number_nodes(&c);
+    BRIO_TRY(BRIO_ALLOC(g->ctx, out->node, out->count));
+    BRIO_TRY(BRIO_ALLOC(g->ctx, out->fixed, out->count));
+    BRIO_TRY(BRIO_ALLOC(g->ctx, out->label, out->count));
+    BRIO_TRY(BRIO_ALLOC(g->ctx, out->position, 3 * out->count));
+    BRIO_TRY(BRIO_ALLOC(g->ctx, out->first, out->count + 1));
+    BRIO_TRY(BRIO_ALLOC(g->ctx, out->edge, bound));
+    copy_nodes(&c, label);
+done:
+    brio_release(g->ctx, c.number);
+    return status;
+}
+
+void brio_vote_region_free(brio_vote_region *r) {
+    brio_release(r->ctx, r->node);
+    brio_release(r->ctx, r->fixed);
+    brio_release(r->ctx, r->label);
+    brio_release(r->ctx, r->position);
+    brio_release(r->ctx, r->first);
+    brio_release(r->ctx, r->edge);
+    *r = (brio_vote_region){.ctx = r->ctx};
+}
