@@ -104,23 +104,24 @@ size_t brio_list_samples(const brio_label_flips *f, size_t from, size_t to, uint
 
 /* --- stars --- */
 
-static void flood(const brio_label_flips *f, uint32_t sample, brio_star_parts *s, int first) {
+/* Gives the part of an entry of a star its number. */
+static void flood(const brio_label_flips *f, brio_star_parts *s, int first) {
     int16_t stack[BRIO_STAR_ROOM];
     int size = 1;
+    uint8_t label = f->label[brio_star_tet(s->at[first])];
     stack[0] = (int16_t)first;
     s->part[first] = (int16_t)s->count;
     while (size > 0) {
-        uint32_t tet = brio_star_tet(s->at[stack[--size]]);
-        const brio_tetrahedron *t = &f->g->dual->t.tet[tet];
+        uint32_t entry = s->at[stack[--size]];
+        const uint32_t *mate = f->g->dual->t.tet[brio_star_tet(entry)].mate;
         for (int i = 0; i < 4; i++) {
-            uint32_t other = t->mate[i] >> 2, place = f->place[other];
-            if (t->vertex[i] == sample || place == BRIO_NO_PLACE || s->part[place] >= 0) continue;
-            if (f->label[other] != f->label[tet]) continue;
+            uint32_t other = brio_tet_of(mate[i]), place = f->place[other];
+            if (i == brio_slot_of(entry) || f->label[other] != label || s->part[place] >= 0) continue;
             s->part[place] = (int16_t)s->count;
             stack[size++] = (int16_t)place;
         }
     }
-    s->of[f->label[brio_star_tet(s->at[first])] == BRIO_LABEL_INNER]++;
+    s->of[label == BRIO_LABEL_INNER]++;
     s->count++;
 }
 
@@ -135,7 +136,7 @@ bool brio_find_parts(brio_label_flips *f, uint32_t sample, brio_star_parts *out)
         out->part[i] = -1;
     }
     for (size_t i = 0; i < out->size; i++)
-        if (out->part[i] < 0) flood(f, sample, out, (int)i);
+        if (out->part[i] < 0) flood(f, out, (int)i);
     for (size_t i = 0; i < out->size; i++) f->place[brio_star_tet(out->at[i])] = BRIO_NO_PLACE;
     return true;
 }

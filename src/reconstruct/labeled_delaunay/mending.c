@@ -63,8 +63,13 @@ static brio_status look_at(brio_mending *m, uint32_t sample) {
 brio_status brio_mending_look(brio_mending *m, size_t from, size_t to) {
     brio_status status = BRIO_OK;
     const brio_tetrahedra *t = &m->flips->g->dual->t;
+    m->looks++;
     for (size_t i = from; i < to; i++)
-        for (int k = 0; k < 4; k++) BRIO_TRY(look_at(m, t->tet[m->flips->flipped[i]].vertex[k]));
+        for (int k = 0; k < 4; k++) {
+            uint32_t sample = t->tet[m->flips->flipped[i]].vertex[k];
+            if (m->looked[sample] != m->looks) BRIO_TRY(look_at(m, sample));
+            m->looked[sample] = m->looks;
+        }
 done:
     return status;
 }
@@ -75,6 +80,7 @@ brio_status brio_mending_new(brio_label_flips *flips, brio_mending *out) {
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->surplus, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->fans, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->queued, flips->num_samples));
+    BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->looked, flips->num_samples));
     for (uint32_t p = 0; p < flips->num_samples; p++) BRIO_TRY(look_at(out, p));
 done:
     return status;
@@ -84,6 +90,7 @@ void brio_mending_free(brio_mending *m) {
     brio_release(m->flips->ctx, m->surplus);
     brio_release(m->flips->ctx, m->fans);
     brio_release(m->flips->ctx, m->queued);
+    brio_release(m->flips->ctx, m->looked);
     brio_release(m->flips->ctx, m->queue);
 }
 
@@ -181,6 +188,16 @@ static bool take_path(brio_mending *m, uint32_t sample, const brio_star_parts *s
     return x->size > 0;
 }
 
+/* Returns whether flipping one tetrahedron may leave fewer parts at one of its samples: a part of the tetrahedron's label
+ * that is nothing else at the sample vanishes, or two facets to the other label join parts. Either way at most one of the
+ * three facets at the sample leads to a tetrahedron of the same label. */
+static bool may_join(const brio_mending *m, uint32_t tet) {
+    const brio_label_flips *f = m->flips;
+    int alike = 0;
+    for (int i = 0; i < 4; i++) alike += f->label[brio_tet_of(f->g->dual->t.tet[tet].mate[i])] == f->label[tet];
+    return alike <= 2;
+}
+
 static brio_status consider_all(brio_mending *m, uint32_t sample, const brio_star_parts *s, int64_t price, move *best) {
     brio_status status = BRIO_OK;
     move x;
@@ -195,7 +212,7 @@ static brio_status consider_all(brio_mending *m, uint32_t sample, const brio_sta
     for (size_t i = 0; i < s->size && s->size <= SMALL; i++) {
         x.size = 1;
         x.tet[0] = brio_star_tet(s->at[i]);
-        if (x.tet[0] < m->flips->num_finite) BRIO_TRY(consider(m, &x, price, best));
+        if (x.tet[0] < m->flips->num_finite && may_join(m, x.tet[0])) BRIO_TRY(consider(m, &x, price, best));
     }
 done:
     return status;

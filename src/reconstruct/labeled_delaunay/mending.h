@@ -10,6 +10,8 @@ typedef struct {
     uint8_t *surplus; /* #P: brio_surplus of each star, at most 255; 0 of stars with over BRIO_STAR_ROOM tetrahedra */
     uint8_t *fans;    /* #P: parts of each star less one, at most 255 */
     uint8_t *queued;  /* #P: 1 if the sample is in the queue */
+    uint32_t *looked; /* #P: the last call of brio_mending_look that came by, counted by `looks` */
+    uint32_t looks;
     uint32_t *queue;  /* singular samples, and samples that were singular when they were queued */
     size_t size, capacity;
     size_t singular;  /* samples */
