@@ -33,27 +33,42 @@ static const option_choice extractions[] = {{"labels", BRIO_EXTRACTION_LABELS},
                                             {"walk", BRIO_EXTRACTION_WALK},
                                             {NULL, 0}};
 
+#define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
-    {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME", "how to reconstruct (labeled-delaunay)", methods},
-    POWER_CRUST_ROWS(arguments, crust),
-    {"polygons", 0, OPTION_FLAG, offsetof(arguments, polygons), NULL,
-     "power crust: its polygons, not cut into triangles", 0},
-    {"theta", 0, OPTION_NUMBER, offsetof(arguments, theta), "ANGLE", "co-cones: half their opening, radians (pi/8)", 0},
-    {"boundaries", 0, OPTION_FLAG, offsetof(arguments, boundaries), NULL,
-     "co-cones: find the samples at boundaries and leave the surface open there", 0},
-    {"density", 0, OPTION_FLAG, offsetof(arguments, density), NULL,
-     "co-cones: estimate the sampling density r, also in properties of the vertices", 0},
-    {"pieces", 0, OPTION_NATURAL, offsetof(arguments, pieces), "N",
-     "co-cone: triangulate about N pieces one after the other, with 1/N of the memory", 0},
-    {"extraction", 0, OPTION_CHOICE, offsetof(arguments, extraction), "NAME",
-     "co-cone: which candidate triangles make the surface (labels)", extractions},
+    {"method", 0, OPTION_CHOICE, FIELD(method), "NAME", "how to reconstruct (default labeled-delaunay)", methods},
+    {"labeled-delaunay", 0, OPTION_NOTE, 0, NULL, "closed, also from noisy points; the one that is right most often",
+     0},
+    {"power-crust", 0, OPTION_NOTE, 0, NULL, "closed; sharp edges without points on them (--sharp)", 0},
+    {"cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; open where they end", 0},
+    {"tight-cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; closed", 0},
     COMPONENT_ROWS(arguments, components),
-    {"vertex-normals", 0, OPTION_FLAG, offsetof(arguments, vertex_normals), NULL,
-     "give the vertices normals, as properties nx ny nz", 0},
-    {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
+    {"vertex-normals", 0, OPTION_FLAG, FIELD(vertex_normals), NULL, "give the vertices normals, as properties nx ny nz",
+     0},
+    {"self-intersections", 0, OPTION_FLAG, FIELD(self_intersections), NULL,
      "count the pairs of faces that run through each other", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay and power-crust", 0},
+    SOLID_ROWS(arguments, crust),
+    {"", 0, OPTION_TITLE, 0, NULL, "options of power-crust (each of them chooses it)", 0},
+    POWER_CRUST_ROWS(arguments, crust),
+    {"polygons", 0, OPTION_FLAG, FIELD(polygons), NULL, "write its polygons, not cut into triangles", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of cocone and tight-cocone", 0},
+    {"theta", 0, OPTION_NUMBER, FIELD(theta), "ANGLE", "half the opening of the co-cones, radians (default pi/8)", 0},
+    {"boundaries", 0, OPTION_FLAG, FIELD(boundaries), NULL,
+     "find the points at boundaries and leave the surface open there", 0},
+    {"density", 0, OPTION_FLAG, FIELD(density), NULL,
+     "estimate how densely the points sample the surface, also in properties of the vertices", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of cocone", 0},
+    {"pieces", 0, OPTION_NATURAL, FIELD(pieces), "N", "work through about N parts one after the other, in less memory",
+     0},
+    {"extraction", 0, OPTION_CHOICE, FIELD(extraction), "NAME",
+     "which candidate triangles make the surface (default labels)", extractions},
+    {"labels", 0, OPTION_NOTE, 0, NULL, "those between inside and outside: a manifold", 0},
+    {"candidates", 0, OPTION_NOTE, 0, NULL, "all of them", 0},
+    {"pruned", 0, OPTION_NOTE, 0, NULL, "all but those at sharp edges", 0},
+    {"walk", 0, OPTION_NOTE, 0, NULL, "the outer ones of these, found by a walk, as in the dissertation", 0},
     {0},
 };
+#undef FIELD
 
 static const arguments defaults = {.crust.labeling = NO_LABELING};
 /* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
@@ -136,8 +151,8 @@ static void report_density(run *r, const brio_cocone_stats *s) {
     cli_fact_count(f, "outside_guarantee", s->outside_guarantee);
     cli_fact_real(f, "outside_share", share);
     cli_fact_close(f);
-    if (share > 0 && !r->common.quiet)
-        fprintf(stderr, "brio: %.1f %% of the samples are outside the guarantee (r over 0.08)\n", 100 * share);
+    if (share > 0)
+        cli_warn(r, "%.1f %% of the points are too far apart for the co-cone's guarantee (r over 0.08)", 100 * share);
 }
 
 static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) {
@@ -177,10 +192,9 @@ static const double MANY_GUESSES = 0.02;
 
 static void report_confidence(run *r, double share) {
     cli_fact_real(&r->facts, "uncertain_share", share);
-    if (share > MANY_GUESSES && !r->common.quiet)
-        fprintf(stderr,
-                "brio: %.1f %% of the surface is a guess: the vertices whose property confidence is under 0.7\n",
-                100 * share);
+    if (share > MANY_GUESSES)
+        cli_warn(r, "%.1f %% of the surface is a guess: the vertices whose property confidence is under 0.7",
+                 100 * share);
 }
 
 static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
@@ -270,8 +284,7 @@ static brio_status check_arguments(run *r) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
     if (a->theta < 0 || a->theta >= 1.57)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
-    if (a->theta > 0 && a->theta < LEAST_THETA && !r->common.quiet)
-        fprintf(stderr, "brio: theta under %g: no guarantee holds\n", LEAST_THETA);
+    if (a->theta > 0 && a->theta < LEAST_THETA) cli_warn(r, "--theta: no guarantee holds under %g", LEAST_THETA);
     return BRIO_OK;
 }
 
@@ -312,7 +325,16 @@ done:
 const command cli_surface = {
     .name = "surface",
     .operands = "IN",
-    .summary = "surface through the points of a file, certified (.ply .obj .off .stl .vtu .vtp)",
+    .summary = "surface through points, with a certificate of what it is",
+    .description =
+        "The default method needs no parameters and no normals: points all over a closed object give a closed surface. "
+        "Other points: brio help methods. The certificate in the report says what the surface is, whatever the method.",
+    .examples = "brio surface scan.ply -o surface.ply\nthe usual way\n"
+                "brio surface part.xyz --method cocone -o shell.ply\nan open surface\n"
+                "brio surface scan.las --open 5 --keep-largest -o surface.ply\nleaves holes over 5 point spacings "
+                "open, drops crumbs\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,
