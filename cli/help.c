@@ -52,6 +52,13 @@ static void print_entries(FILE *out, const char *title, const manual_entry *entr
 
 /* --- options --- */
 
+static void print_title(FILE *out, const char *title) {
+    char line[128];
+    snprintf(line, sizeof line, "%s:", title);
+    fputc('\n', out);
+    cli_print_wrapped(out, line, 0, 0, cli_columns(out));
+}
+
 static void print_option(FILE *out, const option *row) {
     char left[128], meaning[1024], choices[512] = "";
     const char letter[] = {'-', row->letter, ',', ' ', 0};
@@ -65,10 +72,10 @@ static void print_option(FILE *out, const option *row) {
 
 static void print_options(FILE *out, const char *title, const option *rows) {
     if (!rows->kind) return;
-    if (rows->kind != OPTION_TITLE) fprintf(out, "\n%s:\n", title);
+    if (rows->kind != OPTION_TITLE) print_title(out, title);
     for (const option *row = rows; row->kind; row++) {
         if (row->kind == OPTION_TITLE)
-            fprintf(out, "\n%s:\n", row->meaning);
+            print_title(out, row->meaning);
         else if (row->kind == OPTION_NOTE)
             print_entry(out, row->name, row->meaning, 6, COLUMN);
         else
@@ -110,7 +117,10 @@ static void print_glossary(FILE *out, const char *name, const char *parent, int 
 }
 
 void cli_print_command_help(FILE *out, const command *c, bool verbose) {
-    fprintf(out, "usage: brio %s %s%s [options]\n\n", c->name, c->operands, c->outputs ? " -o FILE" : "");
+    char usage[128];
+    snprintf(usage, sizeof usage, "usage: brio %s %s%s [options]", c->name, c->operands, c->outputs ? " -o FILE" : "");
+    cli_print_wrapped(out, usage, 0, 4, cli_columns(out));
+    fputc('\n', out);
     cli_print_wrapped(out, c->summary, 0, 0, cli_columns(out));
     if (c->description) {
         fputc('\n', out);

@@ -193,8 +193,11 @@ static const double MANY_GUESSES = 0.02;
 static void report_confidence(run *r, double share) {
     cli_fact_real(&r->facts, "uncertain_share", share);
     if (share > MANY_GUESSES)
-        cli_warn(r, "%.1f %% of the surface is a guess: the vertices whose property confidence is under 0.7",
-                 100 * share);
+        cli_warn(
+            r,
+            "%.1f %% of the surface is a guess (vertices whose property confidence is under 0.7): points of an open "
+            "or flat thing, too few of them, or walls too thin for them; see 'brio help methods'",
+            100 * share);
 }
 
 static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
@@ -288,6 +291,15 @@ static brio_status check_arguments(run *r) {
     return BRIO_OK;
 }
 
+static void suggest(run *r, brio_status status) {
+    const arguments *a = r->arguments;
+    if (status != BRIO_ERR_NO_ANSWER) return;
+    if (a->crust.open > 0) cli_hint(r, "a larger --open K takes fewer gaps between points for holes");
+    if (a->components.least > 0) cli_hint(r, "a smaller --min-component N keeps more pieces");
+    if (a->method != COCONE) cli_hint(r, "--method cocone makes an open surface, where there is no inside");
+    cli_hint(r, "points in a plane, and terrain: 'brio delaunay IN --plane xy -o OUT'");
+}
+
 static brio_status reconstruct(run *r, const brio_mesh *points, brio_mesh **result) {
     switch (method_of(r->arguments)) {
     case POWER_CRUST:
@@ -307,7 +319,10 @@ static brio_status surface(run *r) {
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
     TRY(cli_read_points(r, r->operands[0], &points));
-    TRY(reconstruct(r, points, &result));
+    if (!points->num_vertices) TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]));
+    status = reconstruct(r, points, &result);
+    suggest(r, status);
+    if (status != BRIO_OK) goto done;
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
     brio_mesh_free(points);
