@@ -83,8 +83,8 @@ static int finish(run *r, brio_status status) {
 static brio_status check_operands(run *r) {
     const command *c = r->command;
     if (r->num_operands < c->min_operands)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: expected %s, got %d argument%s", c->name, c->operands,
-                        r->num_operands, r->num_operands == 1 ? "" : "s");
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: expected %s, got %s", c->name, c->operands,
+                        r->num_operands ? "one argument" : "no argument");
     if (r->num_operands > c->max_operands)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: one argument too many: '%s'", c->name, r->operands[c->max_operands]);
     return BRIO_OK;

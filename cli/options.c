@@ -248,7 +248,7 @@ static size_t edit_distance(const char *a, const char *b) {
 
 const char *cli_nearest(const char *word, const char *(*next)(const void *list, size_t i), const void *list) {
     const char *best = NULL, *name;
-    size_t least = strlen(word) / 3 + 1;
+    size_t least = (strlen(word) + 2) / 3;
     for (size_t i = 0; (name = next(list, i)) != NULL; i++) {
         size_t distance = edit_distance(word, name);
         if (distance > least || distance >= strlen(name) || (best && distance == least)) continue;

@@ -79,11 +79,6 @@ static bool has_power_crust_options(const arguments *a) {
     return a->polygons || a->crust.labeling != NO_LABELING || a->crust.sampling_density != 0 || a->crust.sharp;
 }
 
-/* Options that the power crust and the labeled Delaunay triangulation have. */
-static bool has_solid_options(const arguments *a) {
-    return a->crust.triangulate || a->crust.noise || a->crust.simplify || a->crust.open != 0 || a->crust.normals;
-}
-
 static int method_of(const arguments *a) {
     return a->method != NO_METHOD ? a->method : has_power_crust_options(a) ? POWER_CRUST : LABELED_DELAUNAY;
 }
@@ -268,21 +263,61 @@ done:
     return status;
 }
 
-/* Options of another method are a mistake; a theta that voids the guarantee is worth a word. */
+/* An option that some methods have, and whether it was given. */
+typedef struct method_option {
+    const char *name;
+    bool given;
+    unsigned methods; /* bits 1 << method */
+} method_option;
+
+/* Writes "a, b or c", the names of the methods in the set. */
+static void list_methods(unsigned set, char text[128]) {
+    option_choice chosen[TIGHT_COCONE + 1] = {0};
+    size_t count = 0;
+    for (const option_choice *m = methods; m->name; m++)
+        if (set >> m->value & 1) chosen[count++] = *m;
+    cli_list_choices(chosen, text, 128);
+}
+
+/* Options of another method are a mistake. */
+static brio_status check_method(run *r) {
+    const arguments *a = r->arguments;
+    enum {
+        SOLIDS = 1 << LABELED_DELAUNAY | 1 << POWER_CRUST,
+        CRUST = 1 << POWER_CRUST,
+        COCONES = 1 << COCONE | 1 << TIGHT_COCONE
+    };
+    const method_option given[] = {{"theta", a->theta != 0, COCONES},
+                                   {"boundaries", a->boundaries, COCONES},
+                                   {"density", a->density, COCONES},
+                                   {"pieces", a->pieces > 0, 1 << COCONE},
+                                   {"extraction", a->extraction != BRIO_EXTRACTION_LABELS, 1 << COCONE},
+                                   {"polygons", a->polygons, CRUST},
+                                   {"labeling", a->crust.labeling != NO_LABELING, CRUST},
+                                   {"sampling-density", a->crust.sampling_density != 0, CRUST},
+                                   {"sharp", a->crust.sharp, CRUST},
+                                   {"triangulate", a->crust.triangulate, SOLIDS},
+                                   {"noise", a->crust.noise != 0, SOLIDS},
+                                   {"simplify", a->crust.simplify, SOLIDS},
+                                   {"open", a->crust.open != 0, SOLIDS},
+                                   {"normals", a->crust.normals != NULL, SOLIDS}};
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        char names[128] = "";
+        if (!given[i].given || given[i].methods >> method_of(a) & 1) continue;
+        list_methods(given[i].methods, names);
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method %s, and the method is %s", given[i].name, names,
+                        methods[method_of(a) - 1].name);
+    }
+    return BRIO_OK;
+}
+
+/* A theta that voids the guarantee is worth a word. */
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
-    int method = method_of(a);
-    bool cocones = method == COCONE || method == TIGHT_COCONE;
-    if (!cocones && (a->theta != 0 || a->boundaries || a->density))
-        return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--theta, --boundaries and --density are for --method cocone|tight-cocone");
-    if (a->pieces > 0 && method != COCONE) return cli_fail(r, BRIO_ERR_ARGUMENT, "--pieces is for --method cocone");
-    if (a->extraction != BRIO_EXTRACTION_LABELS && (method != COCONE || a->pieces > 1))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--extraction is for --method cocone, without --pieces");
-    if ((cocones && has_solid_options(a)) || (method != POWER_CRUST && has_power_crust_options(a)))
-        return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--polygons, --labeling, --sampling-density and --sharp are for --method power-crust, "
-                        "--triangulate, --noise, --simplify, --open and --normals for it and for labeled-delaunay");
+    brio_status status = check_method(r);
+    if (status != BRIO_OK) return status;
+    if (a->extraction != BRIO_EXTRACTION_LABELS && a->pieces > 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--extraction is for --method cocone without --pieces");
     if (a->polygons && a->crust.triangulate)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
     if (a->theta < 0 || a->theta >= 1.57)

@@ -141,7 +141,7 @@ class Messages(CliTest):
 
     def test_open_with_too_small_holes(self):
         err = self.expect(3, "surface", self.cloud("a.ply", 2000, "sphere"), "-o", self.path("o.ply"), "--open", "0.001").err
-        self.assertRegex(err, "hint: a larger --open")
+        self.assertRegex(err, "hint: a larger --open K")
 
     def test_empty_input_is_named(self):
         self.assertRegex(self.expect(3, "surface", self.file("a.xyz", ""), "-o", self.path("o.ply")).err, r"a\.xyz: no points")
@@ -159,6 +159,36 @@ class Messages(CliTest):
 
     def test_unknown_format_hint(self):
         self.assertIn("hint: --input-format", self.expect(2, "info", self.file("a.doc", "hello")).err)
+
+    def test_each_failure_has_its_hint(self):
+        points, text = self.cloud("a.ply", 500, "sphere"), self.file("a.doc", "hello")
+        out = self.path("o.ply")
+        mesh = self.path("mesh.ply")
+        self.expect(0, "hull", points, "-o", mesh, "--quiet")
+        for code, hint, arguments in [
+                (1, "for example: brio surface ", ["surface"]), (1, "for example: brio compare ", ["compare", points]),
+                (1, "writes files with the extensions ply obj", ["surface", points]),
+                (1, "writes files with the extensions ply obj", ["surface", points, "-o", "o.xyz"]),
+                (1, "writes files with the extensions ply obj", ["surface", points, "-o", "o.doc"]),
+                (2, "'brio surface' makes a surface", ["check", points]),
+                (2, "'brio surface' makes a surface", ["compare", points, points]),
+                (2, "'brio surface' makes surfaces", ["iso", text, "--level", "1", "-o", out]),
+                (2, "'brio info FILE' lists", ["interpolate", points, "--at", points, "--property", "t", "-o", "o.csv"]),
+                (3, "'brio surface' makes one", ["subdivide", points, "-o", out]),
+                (3, "a larger --alpha", ["alpha", points, "--alpha", "1e-30", "-o", out]),
+                (3, "a smaller --distance", ["offset", points, "-D", "-50", "-o", out]),
+                (3, "must surround a solid", ["medial", self.file("e.xyz", ""), "-o", out]),
+                (3, "try another --level", ["iso", self.ball_map("b.map"), "--level", "9", "-o", out]),
+                (3, "a smaller --min-component", ["surface", points, "--min-component", "1e6", "-o", out]),
+                (3, "--method cocone makes an open", ["surface", self.xyz("l.xyz", CUBE[:4]), "-o", out]),
+                (5, "--open accepts", ["check", self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES[:-1])])]:
+            with self.subTest(arguments=arguments):
+                self.assertRegex(self.expect(code, *arguments).err, "\nbrio: hint: .*" + re.escape(hint))
+        self.assertNotIn("hint", self.expect(1, "surface", "--metod", "x").err)
+
+    def test_an_option_of_another_method_is_named(self):
+        self.usage(r"brio: --noise is for --method labeled-delaunay or power-crust, and the method is cocone", "surface",
+                   "a", "-o", "b.ply", "--method", "cocone", "--noise", "keep")
 
     def test_warnings_have_one_form(self):
         points = self.cloud("a.ply", 2000, "sphere")
