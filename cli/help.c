@@ -66,18 +66,21 @@ static void print_option(FILE *out, const option *row) {
     snprintf(left, sizeof left, "%s--%s%s%s", row->letter ? letter : "", row->name, row->value ? " " : "",
              row->value ? row->value : "");
     if (row->choices && !explained) cli_list_choices(row->choices, choices, sizeof choices);
-    snprintf(meaning, sizeof meaning, "%s%s%s%s", row->meaning, *choices ? ": " : "", choices, explained ? ":" : "");
+    snprintf(meaning, sizeof meaning, "%s%s%s%s", row->meaning, *choices ? "; one of " : "", choices,
+             explained ? ":" : "");
     print_entry(out, left, meaning, 2, COLUMN);
 }
 
 static void print_options(FILE *out, const char *title, const option *rows) {
     if (!rows->kind) return;
     if (rows->kind != OPTION_TITLE) print_title(out, title);
+    int indent = 2; /* of notes: below an option they stand farther in */
     for (const option *row = rows; row->kind; row++) {
+        indent = row->kind == OPTION_TITLE ? 2 : row->kind == OPTION_NOTE ? indent : 6;
         if (row->kind == OPTION_TITLE)
             print_title(out, row->meaning);
         else if (row->kind == OPTION_NOTE)
-            print_entry(out, row->name, row->meaning, 6, COLUMN);
+            print_entry(out, row->name, row->meaning, indent, COLUMN);
         else
             print_option(out, row);
     }
@@ -118,7 +121,8 @@ static void print_glossary(FILE *out, const char *name, const char *parent, int 
 
 void cli_print_command_help(FILE *out, const command *c, bool verbose) {
     char usage[128];
-    snprintf(usage, sizeof usage, "usage: brio %s %s%s [options]", c->name, c->operands, c->outputs ? " -o FILE" : "");
+    const char *output = !c->outputs ? "" : c->output_optional ? " [-o FILE]" : " -o FILE";
+    snprintf(usage, sizeof usage, "usage: brio %s %s%s [options]", c->name, c->operands, output);
     cli_print_wrapped(out, usage, 0, 4, cli_columns(out));
     fputc('\n', out);
     cli_print_wrapped(out, c->summary, 0, 0, cli_columns(out));

@@ -68,6 +68,9 @@ const command cli_iso = {
     .name = "iso",
     .operands = "IN",
     .summary = "iso-surface of a map, or of atoms",
+    .description =
+        "The surface on which the values of a map, or the density of atoms, have a given level. In version 0.1 it "
+        "was called brio generate iso, which still works.",
     .examples =
         "brio iso emd_1234.map --level 2 --sigma -o surface.ply\ntwo standard deviations above the mean of the map\n"
         "brio iso 1abc.pdb --level 1 -n 50000 -o molecule.ply\natoms at their own radii, about 50000 vertices\n",

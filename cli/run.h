@@ -63,6 +63,7 @@ typedef struct command {
     const char *examples;                  /* command lines, each followed by a line that says what it does */
     const char *inputs;                    /* extensions of the files that it reads; NULL: CLI_INPUTS */
     const char *outputs;                   /* of the files that -o can name; NULL: it has no output */
+    bool output_optional;                  /* it has a use without -o, and without --json */
     const option_choice *choices;          /* the words that the first operand can be; NULL: it is a file */
     command_group group;
     int min_operands, max_operands;

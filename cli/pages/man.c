@@ -82,7 +82,7 @@ static void put_option(FILE *out, const option *row) {
     if (row->choices && row[1].kind != OPTION_NOTE) {
         char meaning[1024];
         cli_list_choices(row->choices, choices, sizeof choices);
-        snprintf(meaning, sizeof meaning, "%s: %s", row->meaning, choices);
+        snprintf(meaning, sizeof meaning, "%s; one of %s", row->meaning, choices);
         put_line(out, meaning);
     } else {
         put_line(out, row->meaning);
@@ -183,7 +183,7 @@ void pages_write_command_manual(FILE *out, const command *c, const char *date) {
     snprintf(name, sizeof name, "brio-%s", c->name);
     put_header(out, name, date, c->summary);
     fprintf(out, ".SH SYNOPSIS\n.B brio %s\n.I %s\n", c->name, c->operands);
-    if (c->outputs) fputs(".B \\-o\n.I FILE\n", out);
+    if (c->outputs) fputs(c->output_optional ? "[\\fB\\-o\\fR \\fIFILE\\fR]\n" : ".B \\-o\n.I FILE\n", out);
     fputs("[options]\n.SH DESCRIPTION\n", out);
     put_line(out, c->description ? c->description : c->summary);
     if (!c->choices) put_extensions(out, "Reads", pages_inputs(c));

@@ -95,13 +95,16 @@ class People(CliTest):
             for run in (self.expect(0, *arguments, "--verbose"), self.expect(0, "help", arguments[0], "--verbose")):
                 self.assertTrue((run.out + run.err.encode()).isascii(), arguments[0])
 
-    def test_the_readme_shows_the_report(self):
-        block = re.search(r"The second line reports\n\n```\n(.*?)```", README.read_text(encoding="utf-8"), re.S).group(1)
-        self.expect(0, "generate", "scan", "-n", 60000, "-o", "scan.ply", "--quiet")
-        text = self.expect(0, "surface", "scan.ply", "-o", "surface.ply").text
+    def test_the_readme_shows_the_reports(self):
+        shown = README.read_text(encoding="utf-8")
+        commands = re.findall(r"(?m)^    \$ brio (.*)$", shown)
         kept = lambda lines: [line for line in lines.splitlines() if not line.startswith(COSTS)]
-        self.assertEqual(kept(block), kept(text))
-        self.assertEqual(lines_of(block), lines_of(text))
+        self.expect(0, *commands[0].split(), "--quiet")
+        for command, words in ((commands[1], "The second line reports"), (commands[2], "and the third")):
+            block = re.search(words + r"\n\n```\n(.*?)```", shown, re.S).group(1)
+            text = self.expect(0, *command.split()).text
+            self.assertEqual(kept(block), kept(text))
+            self.assertEqual(lines_of(block), lines_of(text))
 
 
 class Json(CliTest):
@@ -218,6 +221,28 @@ class Help(CliTest):
     def test_every_command_has_an_example_that_names_it(self):
         for name in re.findall(r"(?m)^  ([a-z]+)  +\w.*", self.expect(0, "--help").text.split("\nhelp:")[0]):
             self.assertRegex(self.expect(0, "help", name).text, r"\nexamples:\n  brio %s " % name)
+
+    def extensions(self, command, title):
+        text = " ".join(self.expect(0, "help", command).text.split())
+        found = re.search(title + r": ((?:\.[a-z0-9]+ ?)+)", text)
+        return found.group(1).replace(".", "").split() if found else []
+
+    def test_files_that_are_read_are_those_of_the_error(self):
+        error = self.expect(2, "info", self.file("a.doc", "hello")).err
+        self.assertEqual(sorted(self.extensions("info", "reads")), sorted(re.findall(r" \.([a-z0-9]+)", error)))
+
+    def test_files_that_are_written(self):
+        needs = {"alpha": ["--alpha", "auto"], "offset": ["-D", "1"], "iso": ["--level", "1"], "locate": ["--at", "b.xyz"],
+                 "interpolate": ["--at", "b.xyz", "--property", "p"]}
+        for command in ["delaunay", "surface", "medial", "hull", "alpha", "offset", "voronoi", "iso", "subdivide", "locate",
+                        "interpolate"]:
+            names = self.extensions(command, "writes")
+            self.assertTrue(names, command)
+            for name in names:  # found before the input is
+                self.expect(2, command, "missing.ply", "-o", "out." + name, *needs.get(command, []))
+        for name in self.extensions("generate", "writes"):
+            how = ["solid", "--resolution", "16"] if name == "stl" else ["cube", "-n", "9"]
+            self.expect(0, "generate", *how, "-o", "out." + name)
 
     def test_narrow_terminal(self):
         for columns in (34, 50, 80, 200):
