@@ -16,7 +16,7 @@ typedef enum line_level {
 typedef enum line_style {
     STYLE_PLAIN,
     STYLE_PER_CENT,    /* a share, shown in per cent */
-    STYLE_ROUGH,       /* an estimate, shown with three digits */
+    STYLE_SPACINGS,    /* a length in spacings of the points */
     STYLE_UNLESS_ZERO, /* shown when it is not 0, or with --verbose */
     STYLE_COUNTED      /* null is shown as "not counted" */
 } line_style;

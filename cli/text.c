@@ -140,8 +140,8 @@ static void write_single(const writer *w, const glossary_line *line, size_t i) {
         write_list(w->out, w->facts, i);
     else if (line && line->style == STYLE_PER_CENT && item->kind == FACT_REAL)
         fprintf(w->out, "%.3g %%", 100 * item->real);
-    else if (line && line->style == STYLE_ROUGH && item->kind == FACT_REAL)
-        fprintf(w->out, "%.3g", item->real);
+    else if (line && line->style == STYLE_SPACINGS && item->kind == FACT_REAL)
+        fprintf(w->out, "%.3g spacings", item->real);
     else if (line && line->style == STYLE_COUNTED && item->kind == FACT_NULL)
         fputs("not counted", w->out);
     else

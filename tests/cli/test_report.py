@@ -28,7 +28,7 @@ class People(CliTest):
         points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
         for method in ("labeled-delaunay", "power-crust"):
             labels = lines_of(self.expect(0, "surface", points, "-o", out, "--method", method).text)
-            self.assertEqual(labels[:7], ["input", "output", "method", "points used", "vertices", "faces", "certificate"])
+            self.assertEqual(labels[:7], ["input", "output", "method", "distinct points", "vertices", "faces", "certificate"])
             self.assertEqual(labels[-2:], ["seconds", "memory"])
             self.assertFalse(set(INTERNAL) & set(labels))
             whole = self.expect(0, "surface", points, "-o", out, "--method", method, "--verbose").text
