@@ -30,7 +30,7 @@ static const arguments defaults = {.weights.exponent = NO_EXPONENT};
 /* Sets *alpha to the number that was given; NaN for auto. */
 static brio_status read_alpha(run *r, const arguments *a, double *alpha) {
     char *end = NULL;
-    if (!a->alpha) return cli_fail(r, BRIO_ERR_ARGUMENT, "alpha needs --alpha A or --alpha auto");
+    if (!a->alpha) return cli_fail(r, BRIO_ERR_ARGUMENT, "no alpha: --alpha A or --alpha auto is missing");
     *alpha = NAN;
     if (!strcmp(a->alpha, "auto")) return BRIO_OK;
     *alpha = strtod(a->alpha, &end);
@@ -132,8 +132,14 @@ done:
 const command cli_alpha = {
     .name = "alpha",
     .operands = "IN",
-    .summary =
-        "boundary of an alpha shape of the points of a file, and the alpha filtration (.ply .obj .off .stl .vtu .vtp)",
+    .summary = "boundary of an alpha shape of points, and the alpha filtration",
+    .description =
+        "For points throughout a volume rather than on a surface. Alpha is a squared radius, as in the literature.",
+    .examples = "brio alpha points.ply --alpha auto -o shape.ply\nthe least alpha with all points in one solid\n"
+                "brio alpha points.ply --alpha 0.01 --filtration values.txt -o shape.ply\nall simplices and their "
+                "values as well\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

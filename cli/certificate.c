@@ -1,6 +1,12 @@
 /* The certificate of a surface as facts. */
 #include "certificate.h"
 
+static void report_genera(facts *f, const char *name, const brio_certificate *c) {
+    cli_fact_open(f, name, FACT_LIST);
+    for (size_t i = 0; i < c->components; i++) cli_fact_integer(f, NULL, c->genera[i]);
+    cli_fact_close(f);
+}
+
 static void report_certificate(facts *f, const brio_certificate *c) {
     cli_fact_open(f, "certificate", FACT_OBJECT);
     cli_fact_bool(f, "closed", c->closed);
@@ -8,9 +14,8 @@ static void report_certificate(facts *f, const brio_certificate *c) {
     cli_fact_bool(f, "oriented", c->oriented);
     cli_fact_count(f, "components", c->components);
     cli_fact_integer(f, "genus", c->genus);
-    cli_fact_open(f, "genera", FACT_LIST);
-    for (size_t i = 0; i < c->components; i++) cli_fact_integer(f, NULL, c->genera[i]);
-    cli_fact_close(f);
+    report_genera(f, "genera", c); /* the name of version 0.1, which scripts read */
+    report_genera(f, "genus_by_component", c);
     cli_fact_count(f, "boundary_edges", c->boundary_edges);
     cli_fact_count(f, "boundary_loops", c->boundary_loops);
     cli_fact_count(f, "nonmanifold_edges", c->nonmanifold_edges);
@@ -34,8 +39,9 @@ static brio_status judge(run *r, const brio_certificate *c, unsigned how) {
         return cli_fail(r, BRIO_ERR_CHECK, "the surface is not oriented: across %zu edges the faces disagree",
                         c->flipped_edges);
     if (!c->closed && !(how & CERTIFY_OPEN))
-        return cli_fail(r, BRIO_ERR_CHECK, "the surface is not closed: %zu boundary edges in %zu loops",
-                        c->boundary_edges, c->boundary_loops);
+        return cli_fail(r, BRIO_ERR_CHECK, "the surface is not closed: %zu boundary edge%s in %zu loop%s",
+                        c->boundary_edges, c->boundary_edges == 1 ? "" : "s", c->boundary_loops,
+                        c->boundary_loops == 1 ? "" : "s");
     if (c->self_intersections > 0 && how & CERTIFY_EMBEDDED)
         return cli_fail(r, BRIO_ERR_CHECK, "the surface intersects itself: %lld pairs of faces",
                         (long long)c->self_intersections);

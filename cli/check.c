@@ -70,6 +70,11 @@ const command cli_check = {
     .name = "check",
     .operands = "FILE",
     .summary = "certificate of a surface, or exact Delaunay check of tetrahedra",
+    .description = "Exit code 5 says that the file does not pass, the report and the message why.",
+    .examples = "brio check surface.ply\nclosed, manifold, oriented?\n"
+                "brio check surface.ply --self-intersections\ndo faces run through each other, too?\n"
+                "brio check tetrahedra.vtu\nare the tetrahedra Delaunay?\n",
+    .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -25,4 +25,10 @@
 COMMANDS(COMMAND_DECLARE)
 #undef COMMAND_DECLARE
 
+/** The commands, closed by NULL. */
+extern const command *const cli_commands[];
+
+/** NULL when there is none of that name. */
+const command *cli_find_command(const char *name);
+
 #endif

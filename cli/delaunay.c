@@ -40,17 +40,19 @@ static const option_choice locations[] = {{"walk", BRIO_LOCATION_WALK},
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
     {"plane", 0, OPTION_CHOICE, FIELD(plane), "NAME", "triangles of two coordinates instead of tetrahedra", cli_planes},
-    {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order; the result is the same", orders},
+    {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "how points are inserted (the result is the same)", 0},
+    {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order (default brio; for trace random)", orders},
     {"block-size", 0, OPTION_NATURAL, FIELD(block_size), "N",
      "most points of an octree or k-d tree block (default 2000)", 0},
     {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R",
      "share of the points before the last round (default 1/8 for brio, else 1/2)", 0},
-    {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron", locations},
+    {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron (default walk)", locations},
     {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history, trace: follow all conflicts, not one path",
      0},
     {"subgraph", 0, OPTION_CHOICE, FIELD(subgraph), "NAME",
-     "trace, neighbour: edges of IN, a surface mesh, to go along (default bounded, all)", cli_subgraphs},
-    {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
+     "trace, neighbour: edges of IN, a surface mesh, to go along (default bounded for trace, all for neighbour)",
+     cli_subgraphs},
     {"rounds", 0, OPTION_FLAG, FIELD(rounds), NULL, "report the counters at the end of each round", 0},
     {"record-every", 0, OPTION_NATURAL, FIELD(record_every), "N", "report the counters after every N insertions", 0},
     {0},
@@ -259,7 +261,19 @@ done:
 const command cli_delaunay = {
     .name = "delaunay",
     .operands = "IN",
-    .summary = "Delaunay triangulation of the points of a file; regular with weights (.vtu .ply .node)",
+    .summary = "Delaunay triangulation of points, in space or in a plane; regular with weights",
+    .description =
+        "Exact for every input: duplicates, grids, points in a plane. The result is the same for every order of the "
+        "points and every number of threads. Without -o the result is reported and not written. "
+        "With --plane the output is .ply .obj .off .stl .vtu or .vtp.",
+    .examples =
+        "brio delaunay points.ply -o tetrahedra.vtu\ntetrahedra for ParaView\n"
+        "brio delaunay points.xyz --verify\nchecks the result exactly; writes nothing\n"
+        "brio delaunay lidar.las --plane xy -o terrain.ply\ntriangles over the ground: terrain\n"
+        "brio delaunay atoms.xyz --weights radii2.txt -o regular.vtu\nregular triangulation, one weight a line\n",
+    .outputs = "vtu ply node",
+    .output_optional = true,
+    .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -71,3 +71,12 @@ void cli_facts_free(facts *f) {
     free(f->list);
     memset(f, 0, sizeof *f);
 }
+
+size_t cli_fact_after(const facts *f, size_t i) {
+    int depth = 0;
+    do {
+        fact_kind kind = f->list[i++].kind;
+        depth += (kind == FACT_OBJECT || kind == FACT_LIST) - (kind == FACT_CLOSE);
+    } while (depth > 0 && i < f->count);
+    return i;
+}

@@ -56,13 +56,17 @@ void cli_fact_open(facts *f, const char *name, fact_kind object_or_list);
 void cli_fact_close(facts *f);
 void cli_facts_free(facts *f);
 
+/** The index behind fact i with all that is in it. */
+size_t cli_fact_after(const facts *f, size_t i);
+
 /** Shortest decimal form that reads back as the same double. */
 void cli_format_real(double real, char text[32]);
 
-/** One JSON object and a newline; facts->failed is left to the caller. */
-void cli_json_write(FILE *out, const facts *f);
+/** One JSON object and a newline; facts->failed is left to the caller. What the glossary calls internal is in an object
+ *  `internals`, at the end.   command  the name of the command that found the facts. */
+void cli_json_write(FILE *out, const facts *f, const char *command);
 
-/** Aligned lines for people. */
-void cli_text_write(FILE *out, const facts *f);
+/** Aligned lines for people.   verbose  shows every fact. */
+void cli_text_write(FILE *out, const facts *f, const char *command, bool verbose);
 
 #endif

@@ -26,6 +26,15 @@ static const option_choice solids[] = {{"implicit", BRIO_SOLID_IMPLICIT}, {"mach
 
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
+    {"", 0, OPTION_TITLE, 0, NULL, "kinds", 0},
+    {"cube ball", 0, OPTION_NOTE, 0, NULL, "points inside, uniform", 0},
+    {"sphere torus cylinder", 0, OPTION_NOTE, 0, NULL, "points exactly on the surface, a hard case", 0},
+    {"grid", 0, OPTION_NOTE, 0, NULL, "an integer grid, where everything is a tie", 0},
+    {"moment", 0, OPTION_NOTE, 0, NULL, "points of the moment curve: quadratically many tetrahedra", 0},
+    {"clusters", 0, OPTION_NOTE, 0, NULL, "points in clusters", 0},
+    {"scan", 0, OPTION_NOTE, 0, NULL, "a simulated laser scan of a sculpture", 0},
+    {"solid", 0, OPTION_NOTE, 0, NULL, "a random closed surface, as a mesh; see also brio iso", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options", 0},
     {"points", 'n', OPTION_NATURAL, FIELD(points), "N", "number of points", 0},
     {"noise", 0, OPTION_NUMBER, FIELD(noise), "S", "scan: noise, in units of the spacing (default 0.05)", 0},
     {"views", 0, OPTION_INT, FIELD(views), "V", "scan: number of sensor positions (default 12)", 0},
@@ -156,7 +165,13 @@ done:
 const command cli_generate = {
     .name = "generate",
     .operands = "KIND",
-    .summary = "test data: -n N points of a kind, or a solid, to -o FILE: " KINDS,
+    .summary = "test data, the same for the same seed",
+    .examples = "brio generate scan -n 60000 -o scan.ply\na simulated laser scan of a sculpture of genus 3\n"
+                "brio generate cube -n 1e6 -o cube.ply\nuniform in a cube\n"
+                "brio generate solid --kind machined --seed 7 -o part.ply\na random machine part, as a mesh\n",
+    .outputs = CLI_POINT_OUTPUTS " obj off stl",
+    .choices = kinds,
+    .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 1,
     .first_input = 1,

@@ -54,8 +54,11 @@ done:
 const command cli_hull = {
     .name = "hull",
     .operands = "IN",
-    .summary =
-        "convex hull of the points of a file; flat ones are a polygon or an edge (.ply .obj .off .stl .vtu .vtp)",
+    .summary = "convex hull of points; flat ones are a polygon or an edge",
+    .examples = "brio hull points.ply -o hull.ply\ntriangles\n"
+                "brio hull points.ply --polygons -o hull.off\none polygon for each facet\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -118,7 +118,9 @@ done:
 const command cli_info = {
     .name = "info",
     .operands = "FILE",
-    .summary = "what is in a file: counts, box, duplicates, spacing, memory for each command",
+    .summary = "what is in a file: counts, box, spacing, memory for each command",
+    .examples = "brio info scan.ply\nbefore anything else\n",
+    .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -19,7 +19,7 @@ static const option options[] = {
     {"property", 0, OPTION_TEXT, offsetof(arguments, property), "NAME", "the property of IN whose values are wanted",
      0},
     {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME",
-     "by natural neighbours (default), or linear in each tetrahedron", methods},
+     "by natural neighbours (default natural), or linear in each tetrahedron", methods},
     {0},
 };
 
@@ -99,8 +99,11 @@ done:
 const command cli_interpolate = {
     .name = "interpolate",
     .operands = "IN",
-    .summary =
-        "values of a property of points, at the points of another file (.ply .xyz .vtu .vtp .node .las .csv .npy)",
+    .summary = "values of a property of points, at other places",
+    .examples =
+        "brio interpolate stations.csv --at places.xyz --property temperature -o values.csv\nby natural neighbours\n",
+    .outputs = CLI_POINT_OUTPUTS,
+    .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

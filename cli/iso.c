@@ -12,7 +12,7 @@ typedef struct arguments {
 
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
-    {"level", 0, OPTION_NUMBER, FIELD(level), "L", "of the surface; 1 is an atom's own radius", 0},
+    {"level", 0, OPTION_NUMBER, FIELD(level), "L", "the value on the surface; for atoms 1 is their own radius", 0},
     {"sigma", 0, OPTION_FLAG, FIELD(sigma), NULL, "the level is in standard deviations above the map's mean", 0},
     {"resolution", 0, OPTION_NATURAL, FIELD(resolution), "R",
      "cells along the longest side (default the map's own, or 0.5 A for atoms)", 0},
@@ -67,7 +67,16 @@ done:
 const command cli_iso = {
     .name = "iso",
     .operands = "IN",
-    .summary = "iso-surface of a map (.map .mrc .ccp4) or of atoms (.pdb .ent), certified",
+    .summary = "iso-surface of a map, or of atoms",
+    .description =
+        "The surface on which the values of a map, or the density of atoms, have a given level. In version 0.1 it "
+        "was called brio generate iso, which still works.",
+    .examples =
+        "brio iso emd_1234.map --level 2 --sigma -o surface.ply\ntwo standard deviations above the mean of the map\n"
+        "brio iso 1abc.pdb --level 1 -n 50000 -o molecule.ply\natoms at their own radii, about 50000 vertices\n",
+    .inputs = "map mrc ccp4 pdb ent",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

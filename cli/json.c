@@ -1,6 +1,7 @@
 /* Facts as one JSON object (RFC 8259): names in the order of the facts, numbers in their shortest exact form, text
  * always valid UTF-8, whatever bytes a file's name is made of. */
 #include "facts.h"
+#include "glossary.h"
 #include <stdlib.h>
 
 void cli_format_real(double real, char text[32]) {
@@ -74,12 +75,10 @@ static void write_value(FILE *out, const fact *f) {
     }
 }
 
-/* Objects and lists nest; a bit for each open one tells which bracket closes it. */
-void cli_json_write(FILE *out, const facts *f) {
+/* One fact with all that is in it. Objects and lists nest; a bit for each open one tells which bracket closes it. */
+static void write_fact(FILE *out, const facts *f, size_t i, bool first) {
     uint64_t lists = 0;
-    bool first = true;
-    fputc('{', out);
-    for (size_t i = 0; i < f->count; i++) {
+    for (size_t end = cli_fact_after(f, i); i < end; i++) {
         const fact *item = &f->list[i];
         if (item->kind == FACT_CLOSE) {
             fputc(lists & 1 ? ']' : '}', out);
@@ -96,5 +95,22 @@ void cli_json_write(FILE *out, const facts *f) {
         first = item->kind == FACT_OBJECT || item->kind == FACT_LIST;
         if (first) lists = lists << 1 | (item->kind == FACT_LIST);
     }
+}
+
+/* Returns how many facts there were. */
+static size_t write_those(FILE *out, const facts *f, const char *command, bool internal) {
+    size_t count = 0;
+    for (size_t i = 0; i < f->count; i = cli_fact_after(f, i))
+        if (cli_is_internal(command, f->list[i].name) == internal) {
+            if (internal && count == 0) fputs(", \"internals\": {", out);
+            write_fact(out, f, i, count++ == 0);
+        }
+    return count;
+}
+
+void cli_json_write(FILE *out, const facts *f, const char *command) {
+    fputc('{', out);
+    write_those(out, f, command, false);
+    if (write_those(out, f, command, true)) fputc('}', out);
     fputs("}\n", out);
 }

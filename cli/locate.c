@@ -63,7 +63,10 @@ done:
 const command cli_locate = {
     .name = "locate",
     .operands = "IN",
-    .summary = "the tetrahedron that holds each point of a file (-1 outside), and the nearest vertex (.csv .npy)",
+    .summary = "the tetrahedron that holds each place (-1 outside), and the nearest vertex",
+    .examples = "brio locate points.ply --at places.xyz -o tetrahedra.csv\na row for each place\n",
+    .outputs = "csv npy",
+    .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

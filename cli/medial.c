@@ -16,24 +16,24 @@ static const option_choice sides[] = {
     {"inner", BRIO_SIDES_INNER}, {"outer", BRIO_SIDES_OUTER}, {"both", BRIO_SIDES_BOTH}, {NULL, 0}};
 
 static const option options[] = {
-    {"sides", 0, OPTION_CHOICE, offsetof(arguments, sides), "NAME", "of the surface whose axis is wanted (inner)",
-     sides},
+    {"sides", 0, OPTION_CHOICE, offsetof(arguments, sides), "NAME",
+     "the side of the surface whose axis is wanted (default inner)", sides},
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, labeling), "NAME",
-     "what tells inner poles from outer ones: faces, where there are (mesh), or the points as for surface",
-     cli_labelings_or_mesh},
+     "what tells inside from outside (default: mesh if the input has faces, else global)", cli_labelings_or_mesh},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, simplify), NULL,
-     "leave out what noise and close sampling add: --scale 1.1 --redundancy 0.01", 0},
+     "leave out what noise and close sampling add: the same as --scale 1.1 --redundancy 0.01", 0},
     {"scale", 0, OPTION_NUMBER, offsetof(arguments, scale), "S",
      "leave out balls that lie in another when both are scaled by S", 0},
     {"redundancy", 0, OPTION_NUMBER, offsetof(arguments, redundancy), "E",
      "leave out balls that lie in another enlarged by E of its radius", 0},
     {"crust", 0, OPTION_TEXT, offsetof(arguments, crust), "FILE",
      "also write the surface of the balls: their power crust", 0},
-    {"noise", 0, OPTION_CHOICE, offsetof(arguments, noise), "NAME", "smooth noisy samples first", cli_noise},
+    {"noise", 0, OPTION_CHOICE, offsetof(arguments, noise), "NAME",
+     "what to do about noisy points (default auto: smooth if noise is found)", cli_noise},
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, sampling_density), "R",
-     "discard the nearer pole of cells too wide for an R-sample", 0},
+     "discard the nearer pole of cells too wide for an R-sample, 0 < R < 1", 0},
     {"sharp", 'B', OPTION_FLAG, offsetof(arguments, sharp), NULL,
-     "discard both, for sharp edges without samples (R 0.5)", 0},
+     "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0},
     {0},
 };
 
@@ -151,8 +151,13 @@ done:
 const command cli_medial = {
     .name = "medial",
     .operands = "IN",
-    .summary =
-        "medial axis of the points, or the closed mesh, of a file: balls and how they are joined (.ply .vtu .vtp)",
+    .summary = "medial axis of the solid that points, or a closed mesh, bound",
+    .description = "The balls of the power shape, each a vertex with the property radius, and how they are joined. A "
+                   "mesh with faces says itself what is inside; of points the labeling finds it.",
+    .examples = "brio medial scan.ply -o axis.vtp --simplify\nthe axis without what noise adds\n"
+                "brio medial mesh.off -o axis.ply --sides both\nof a closed mesh, inside and outside\n",
+    .outputs = "ply vtp vtu xyz",
+    .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -14,17 +14,17 @@ typedef struct arguments {
 
 static const option options[] = {
     {"distance", 'D', OPTION_NUMBER, offsetof(arguments, distance), "D",
-     "of the surface, in the unit of the points: outwards when positive", 0},
+     "how far, in the unit of the points: outwards when positive", 0},
     {"triangulate", 0, OPTION_FLAG, offsetof(arguments, crust.triangulate), NULL, "cut the polygons into triangles", 0},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, crust.simplify), NULL, "a quarter as many faces, triangles", 0},
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, crust.labeling), "NAME",
-     "what tells inner poles from outer ones: faces, where there are (mesh), or the points as for surface",
-     cli_labelings_or_mesh},
-    {"noise", 0, OPTION_CHOICE, offsetof(arguments, crust.noise), "NAME", "smooth noisy samples first", cli_noise},
+     "what tells inside from outside (default: mesh if the input has faces, else global)", cli_labelings_or_mesh},
+    {"noise", 0, OPTION_CHOICE, offsetof(arguments, crust.noise), "NAME",
+     "what to do about noisy points (default auto: smooth if noise is found)", cli_noise},
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, crust.sampling_density), "R",
-     "discard the nearer pole of cells too wide for an R-sample", 0},
+     "discard the nearer pole of cells too wide for an R-sample, 0 < R < 1", 0},
     {"sharp", 'B', OPTION_FLAG, offsetof(arguments, crust.sharp), NULL,
-     "discard both, for sharp edges without samples (R 0.5)", 0},
+     "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0},
     {"vertex-normals", 0, OPTION_FLAG, offsetof(arguments, vertex_normals), NULL,
      "give the vertices normals, as properties nx ny nz", 0},
     {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
@@ -84,7 +84,7 @@ static brio_status offset(run *r) {
     brio_mesh *points = NULL, *surface = NULL;
     brio_status status = BRIO_OK;
     bool by_mesh;
-    if (isnan(a->distance)) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "offset needs --distance"));
+    if (isnan(a->distance)) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "no distance: --distance D is missing"));
     TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read(r, r->operands[0], &points));
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));
@@ -104,8 +104,11 @@ done:
 const command cli_offset = {
     .name = "offset",
     .operands = "IN",
-    .summary =
-        "surface at a distance from that of the points, or the closed mesh, of a file (.ply .obj .off .stl .vtu .vtp)",
+    .summary = "surface at a distance from that of points, or from a closed mesh",
+    .examples = "brio offset scan.ply --distance 0.1 -o thicker.ply\n0.1 farther out\n"
+                "brio offset mesh.ply --distance -0.1 -o thinner.ply\n0.1 farther in\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

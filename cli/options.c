@@ -79,15 +79,27 @@ static const char *choice_name(const void *choices, size_t i) {
     return ((const option_choice *)choices)[i].name;
 }
 
+void cli_list_choices(const option_choice *choices, char *text, size_t size) {
+    size_t used = 0;
+    for (const option_choice *c = choices; c->name && used < size; c++) {
+        const char *between = c == choices ? "" : c[1].name ? ", " : " or ";
+        int length = snprintf(text + used, size - used, "%s%s", between, c->name);
+        used += length > 0 ? (size_t)length : 0;
+    }
+}
+
 static bool parse_choice(option_parse *parse, const option *row, const char *text, int *value) {
     for (const option_choice *c = row->choices; c->name; c++) {
         if (strcmp(c->name, text)) continue;
         *value = c->value;
         return true;
     }
+    char names[256] = "";
+    cli_list_choices(row->choices, names, sizeof names);
     const char *near = cli_nearest(text, choice_name, row->choices);
-    if (near) return wrong(parse, "--%s: unknown name '%s'; did you mean '%s'?", row->name, text, near);
-    return wrong(parse, "--%s: unknown name '%s'", row->name, text);
+    if (near)
+        return wrong(parse, "--%s: unknown name '%s', expected %s; did you mean '%s'?", row->name, text, names, near);
+    return wrong(parse, "--%s: unknown name '%s', expected %s", row->name, text, names);
 }
 
 static bool store(option_parse *parse, const option *row, void *field, const char *text) {
@@ -111,6 +123,8 @@ static bool store(option_parse *parse, const option *row, void *field, const cha
     case OPTION_CHOICE:
         return parse_choice(parse, row, text, field);
     case OPTION_FLAG:
+    case OPTION_TITLE:
+    case OPTION_NOTE:
     case OPTION_END:
         break;
     }
@@ -120,6 +134,10 @@ static bool store(option_parse *parse, const option *row, void *field, const cha
 
 /* --- names --- */
 
+bool cli_is_option(const option *row) {
+    return row->kind != OPTION_TITLE && row->kind != OPTION_NOTE;
+}
+
 typedef struct found {
     const option *row;
     void *field;
@@ -128,6 +146,7 @@ typedef struct found {
 static found find(const option_parse *parse, const char *name, size_t length, char letter) {
     for (size_t g = 0; g < parse->num_groups; g++)
         for (const option *row = parse->groups[g].rows; row->kind; row++) {
+            if (!cli_is_option(row)) continue;
             bool is_long = name && strlen(row->name) == length && !memcmp(row->name, name, length);
             if (is_long || (letter && row->letter == letter))
                 return (found){row, (char *)parse->groups[g].values + row->offset};
@@ -139,7 +158,7 @@ static const char *option_name(const void *list, size_t i) {
     const option_parse *parse = list;
     for (size_t g = 0; g < parse->num_groups; g++)
         for (const option *row = parse->groups[g].rows; row->kind; row++)
-            if (i-- == 0) return row->name;
+            if (cli_is_option(row) && i-- == 0) return row->name;
     return i == 0 ? "help" : NULL;
 }
 
@@ -207,25 +226,6 @@ bool cli_parse(option_parse *parse, int argc, char **argv) {
     return true;
 }
 
-/* --- help --- */
-
-static void print_choices(FILE *out, const option_choice *choices) {
-    for (const option_choice *c = choices; c->name; c++) fprintf(out, "%s%s", c == choices ? "" : "|", c->name);
-}
-
-void cli_print_options(FILE *out, const option_group *group) {
-    enum { COLUMN = 28 };
-    fprintf(out, "\n%s:\n", group->title);
-    for (const option *row = group->rows; row->kind; row++) {
-        char left[128];
-        const char letter[] = {'-', row->letter, ',', ' ', 0};
-        snprintf(left, sizeof left, "%s--%s %s", row->letter ? letter : "", row->name, row->value ? row->value : "");
-        fprintf(out, "  %-*s%s", COLUMN, left, strlen(left) >= COLUMN ? " " : "");
-        if (row->choices) print_choices(out, row->choices);
-        fprintf(out, "%s%s\n", row->choices ? ": " : "", row->meaning);
-    }
-}
-
 /* --- the nearest name --- */
 
 /* Levenshtein distance, row by row; words over 63 letters are far from everything. */
@@ -248,7 +248,7 @@ static size_t edit_distance(const char *a, const char *b) {
 
 const char *cli_nearest(const char *word, const char *(*next)(const void *list, size_t i), const void *list) {
     const char *best = NULL, *name;
-    size_t least = strlen(word) / 3 + 1;
+    size_t least = (strlen(word) + 2) / 3;
     for (size_t i = 0; (name = next(list, i)) != NULL; i++) {
         size_t distance = edit_distance(word, name);
         if (distance > least || distance >= strlen(name) || (best && distance == least)) continue;

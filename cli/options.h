@@ -15,7 +15,9 @@ typedef enum option_kind {
     OPTION_NATURAL, /* uint64_t: 1000000, also 1e6 */
     OPTION_NUMBER,  /* double, finite */
     OPTION_SIZE,    /* size_t bytes: 500M, 8G, 1.5GiB */
-    OPTION_CHOICE   /* int: a name from a list */
+    OPTION_CHOICE,  /* int: a name from a list */
+    OPTION_TITLE,   /* no option: the title, in `meaning`, of the rows up to the next one */
+    OPTION_NOTE     /* no option: what `name`, a choice of the row above, means */
 } option_kind;
 
 /** A name and what it stands for. A list ends with NULL. */
@@ -35,7 +37,6 @@ typedef struct option {
 
 /** A table and the struct that its rows fill. */
 typedef struct option_group {
-    const char *title;
     const option *rows;
     void *values;
 } option_group;
@@ -54,8 +55,11 @@ typedef struct option_parse {
  *  follows `--` is operands. */
 bool cli_parse(option_parse *parse, int argc, char **argv);
 
-/** Prints the rows of a group. */
-void cli_print_options(FILE *out, const option_group *group);
+/** Whether a row is an option, and no title or note. */
+bool cli_is_option(const option *row);
+
+/** Writes "a, b or c", cut to the size of the array. */
+void cli_list_choices(const option_choice *choices, char *text, size_t size);
 
 /** Reads "500M", "8G", "1.5GiB": K M G T are powers of 1024, as KiB ...; KB MB GB TB are powers of 1000. */
 bool cli_parse_size(const char *text, size_t *bytes);

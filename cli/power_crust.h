@@ -21,28 +21,34 @@ extern const option_choice cli_labelings_or_mesh[];
  *  asked for that are not there. */
 brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, bool *by_mesh);
 
-/** Tells on standard error what can be done where a mesh that the user did not ask to go by has no inside. */
-void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool by_mesh);
+/** Hints what can be done where a mesh that the user did not ask to go by has no inside. */
+void cli_suggest_labeling(run *r, brio_status status, int labeling, bool by_mesh);
 
-/** Rows of a command's option table whose struct has power_crust_options as its member `field`. */
+/** Rows of a command's option table whose struct has power_crust_options as its member `field`: those that the labeled
+ *  Delaunay triangulation has, too, and those of the power crust alone. */
 /* clang-format off */
-#define POWER_CRUST_ROWS(type, field)                                                                                  \
-    {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
-     "power crust: cut the polygons into triangles", 0},                                                               \
-    {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
-     "a quarter as many faces, as far as the shape allows; triangles", 0},                                                            \
-    {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
-     "power crust: how poles are labeled inner or outer", cli_labelings},                                             \
+#define SOLID_ROWS(type, field)                                                                                        \
     {"noise", 0, OPTION_CHOICE, offsetof(type, field.noise), "NAME",                                                   \
-     "what to do about noisy samples (auto)", cli_noise},                                                            \
-    {"sampling-density", 'R', OPTION_NUMBER, offsetof(type, field.sampling_density), "R",                              \
-     "power crust: discard the nearer pole of cells too wide for an R-sample", 0},                                     \
-    {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \
-     "power crust: discard both, for sharp edges without samples (R 0.5)", 0},                                         \
+     "what to do about noisy points (default auto)", cli_noise},                                                       \
+    {"auto", 0, OPTION_NOTE, 0, NULL, "smooth if noise is found", 0},                                                  \
+    {"keep", 0, OPTION_NOTE, 0, NULL, "leave the vertices on the points", 0},                                          \
+    {"smooth", 0, OPTION_NOTE, 0, NULL, "smooth whatever is found", 0},                                                \
     {"open", 0, OPTION_NUMBER, offsetof(type, field.open), "K",                                                        \
-     "leave holes open whose radii are over K sample spacings", 0},                                       \
+     "leave holes open whose radii are over K point spacings (default: close all)", 0},                                \
+    {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
+     "a quarter as many faces, as far as the shape allows; triangles", 0},                                             \
+    {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
+     "write triangles; the default, kept for old scripts", 0},                                                         \
     {"normals", 0, OPTION_TEXT, offsetof(type, field.normals), "FILE",                                                 \
      "also write the points with oriented normals", 0}
+
+#define POWER_CRUST_ROWS(type, field)                                                                                  \
+    {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
+     "what tells inside from outside (default global); the others are those of the papers", cli_labelings},            \
+    {"sampling-density", 'R', OPTION_NUMBER, offsetof(type, field.sampling_density), "R",                              \
+     "discard the nearer pole of cells too wide for an R-sample, 0 < R < 1", 0},                                       \
+    {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \
+     "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0}
 /* clang-format on */
 
 /** The options of the poles as the library has them, without a solid. */

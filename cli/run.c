@@ -12,19 +12,23 @@ enum { MAX_THREADS = 1024 };
 
 #define FIELD(name) offsetof(common_options, name)
 const option cli_common_options[] = {
-    {"output", 'o', OPTION_TEXT, FIELD(output), "FILE", "output; the extension tells the format; - is standard output",
-     0},
-    {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output (needed with -o -)", 0},
-    {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT", "format of the input", 0},
+    {"output", 'o', OPTION_TEXT, FIELD(output), "FILE",
+     "the file to write; its extension names the format; - is standard output", 0},
+    {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output, such as ply (needed with -o -)", 0},
+    {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT",
+     "format of the input, where its name and content do not tell", 0},
     {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
     {"float32", 0, OPTION_FLAG, FIELD(float32), NULL, "write coordinates in single precision", 0},
-    {"json", 0, OPTION_FLAG, FIELD(json), NULL, "print one JSON object with the facts of the run", 0},
-    {"threads", 0, OPTION_INT, FIELD(threads), "N", "threads to use; 0 (default) means all cores", 0},
+    {"json", 0, OPTION_FLAG, FIELD(json), NULL, "print the report as one JSON object on standard output", 0},
+    {"threads", 0, OPTION_INT, FIELD(threads), "N", "threads to use (default 0: all cores)", 0},
     {"seed", 0, OPTION_NATURAL, FIELD(seed), "N", "every random choice follows from it (default 1)", 0},
-    {"max-memory", 0, OPTION_SIZE, FIELD(max_memory), "SIZE", "refuse work estimated over SIZE (500M, 8G)", 0},
-    {"scratch", 0, OPTION_TEXT, FIELD(scratch), "DIR", "keep big arrays in mapped files in DIR", 0},
-    {"quiet", 0, OPTION_FLAG, FIELD(quiet), NULL, "no progress bar and no report", 0},
-    {"progress", 0, OPTION_FLAG, FIELD(progress), NULL, "progress bar even where standard error is no terminal", 0},
+    {"max-memory", 0, OPTION_SIZE, FIELD(max_memory), "SIZE", "refuse work estimated over SIZE, such as 500M or 8G", 0},
+    {"scratch", 0, OPTION_TEXT, FIELD(scratch), "DIR", "keep the big arrays in files in DIR instead of memory", 0},
+    {"verbose", 0, OPTION_FLAG, FIELD(verbose), NULL,
+     "report also how it was done: seconds by stage, internal counts; with --help what each line means", 0},
+    {"quiet", 0, OPTION_FLAG, FIELD(quiet), NULL, "no progress bar, no report, no warnings or hints", 0},
+    {"progress", 0, OPTION_FLAG, FIELD(progress), NULL,
+     "show the progress bar even where standard error is no terminal", 0},
     {0},
 };
 #undef FIELD
@@ -257,6 +261,7 @@ void cli_opening_facts(run *r) {
         for (int i = first; i < r->num_operands; i++) cli_fact_text(f, NULL, r->operands[i]);
         cli_fact_close(f);
     }
+    if (r->common.output) cli_fact_text(f, "output", r->common.output);
     cli_fact_count(f, "threads", (uint64_t)brio_context_threads(r->ctx));
 }
 

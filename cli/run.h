@@ -6,6 +6,7 @@
 
 #include "brio/brio.h"
 #include "facts.h"
+#include "notes.h"
 #include "options.h"
 #include "progress.h"
 
@@ -18,7 +19,7 @@
 
 typedef struct common_options {
     const char *output, *format, *input_format, *scratch;
-    bool json, quiet, progress, ascii, float32;
+    bool json, quiet, verbose, progress, ascii, float32;
     int threads;
     uint64_t seed;
     size_t max_memory; /* 0: no limit */
@@ -26,6 +27,11 @@ typedef struct common_options {
 
 extern const option cli_common_options[];
 extern const common_options cli_common_defaults;
+
+/** Extensions of the files that hold points, meshes, or both. */
+#define CLI_INPUTS        "ply xyz pts txt csv obj off stl vtu node ele las laz pcd ptx npy"
+#define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp"
+#define CLI_POINT_OUTPUTS "ply xyz pts txt csv vtu vtp node las npy"
 
 enum { MAX_STAGES = 16 };
 
@@ -45,10 +51,21 @@ typedef struct run {
     int num_stages;
     double started, lap; /* clock at the beginning, and at the end of the last stage */
     char message[1024];  /* of a failure found here; the library's is in the context */
+    notes warnings, hints;
 } run;
 
+/** Where the help lists a command. */
+typedef enum command_group { GROUP_FILES, GROUP_SURFACES, GROUP_TRIANGULATIONS } command_group;
+
 typedef struct command {
-    const char *name, *operands, *summary;
+    const char *name, *operands, *summary; /* the summary: what it does, on a line */
+    const char *description;               /* more of it, for the help and the manual; NULL: nothing */
+    const char *examples;                  /* command lines, each followed by a line that says what it does */
+    const char *inputs;                    /* extensions of the files that it reads; NULL: CLI_INPUTS */
+    const char *outputs;                   /* of the files that -o can name; NULL: it has no output */
+    bool output_optional;                  /* it has a use without -o, and without --json */
+    const option_choice *choices;          /* the words that the first operand can be; NULL: it is a file */
+    command_group group;
     int min_operands, max_operands;
     int first_input; /* operands before it say what to do; without inputs the report names the first */
     const option *options;

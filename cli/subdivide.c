@@ -49,7 +49,10 @@ done:
 const command cli_subdivide = {
     .name = "subdivide",
     .operands = "IN",
-    .summary = "smooth, denser mesh through the vertices of a triangle mesh (.ply .obj .off .stl .vtu .vtp)",
+    .summary = "smooth, denser mesh through the vertices of a triangle mesh",
+    .examples = "brio subdivide mesh.ply --levels 2 -o fine.ply\neach triangle becomes sixteen\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

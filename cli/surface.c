@@ -33,27 +33,42 @@ static const option_choice extractions[] = {{"labels", BRIO_EXTRACTION_LABELS},
                                             {"walk", BRIO_EXTRACTION_WALK},
                                             {NULL, 0}};
 
+#define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
-    {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME", "how to reconstruct (labeled-delaunay)", methods},
-    POWER_CRUST_ROWS(arguments, crust),
-    {"polygons", 0, OPTION_FLAG, offsetof(arguments, polygons), NULL,
-     "power crust: its polygons, not cut into triangles", 0},
-    {"theta", 0, OPTION_NUMBER, offsetof(arguments, theta), "ANGLE", "co-cones: half their opening, radians (pi/8)", 0},
-    {"boundaries", 0, OPTION_FLAG, offsetof(arguments, boundaries), NULL,
-     "co-cones: find the samples at boundaries and leave the surface open there", 0},
-    {"density", 0, OPTION_FLAG, offsetof(arguments, density), NULL,
-     "co-cones: estimate the sampling density r, also in properties of the vertices", 0},
-    {"pieces", 0, OPTION_NATURAL, offsetof(arguments, pieces), "N",
-     "co-cone: triangulate about N pieces one after the other, with 1/N of the memory", 0},
-    {"extraction", 0, OPTION_CHOICE, offsetof(arguments, extraction), "NAME",
-     "co-cone: which candidate triangles make the surface (labels)", extractions},
+    {"method", 0, OPTION_CHOICE, FIELD(method), "NAME", "how to reconstruct (default labeled-delaunay)", methods},
+    {"labeled-delaunay", 0, OPTION_NOTE, 0, NULL, "closed, also from noisy points; the one that is right most often",
+     0},
+    {"power-crust", 0, OPTION_NOTE, 0, NULL, "closed; sharp edges without points on them (--sharp)", 0},
+    {"cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; open where they end", 0},
+    {"tight-cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; closed", 0},
     COMPONENT_ROWS(arguments, components),
-    {"vertex-normals", 0, OPTION_FLAG, offsetof(arguments, vertex_normals), NULL,
-     "give the vertices normals, as properties nx ny nz", 0},
-    {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
+    {"vertex-normals", 0, OPTION_FLAG, FIELD(vertex_normals), NULL, "give the vertices normals, as properties nx ny nz",
+     0},
+    {"self-intersections", 0, OPTION_FLAG, FIELD(self_intersections), NULL,
      "count the pairs of faces that run through each other", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay and power-crust", 0},
+    SOLID_ROWS(arguments, crust),
+    {"", 0, OPTION_TITLE, 0, NULL, "options of power-crust (each of them chooses it)", 0},
+    POWER_CRUST_ROWS(arguments, crust),
+    {"polygons", 0, OPTION_FLAG, FIELD(polygons), NULL, "write its polygons, not cut into triangles", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of cocone and tight-cocone", 0},
+    {"theta", 0, OPTION_NUMBER, FIELD(theta), "ANGLE", "half the opening of the co-cones, radians (default pi/8)", 0},
+    {"boundaries", 0, OPTION_FLAG, FIELD(boundaries), NULL,
+     "find the points at boundaries and leave the surface open there", 0},
+    {"density", 0, OPTION_FLAG, FIELD(density), NULL,
+     "estimate how densely the points sample the surface, also in properties of the vertices", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of cocone", 0},
+    {"pieces", 0, OPTION_NATURAL, FIELD(pieces), "N", "work through about N parts one after the other, in less memory",
+     0},
+    {"extraction", 0, OPTION_CHOICE, FIELD(extraction), "NAME",
+     "which candidate triangles make the surface (default labels)", extractions},
+    {"labels", 0, OPTION_NOTE, 0, NULL, "those between inside and outside: a manifold", 0},
+    {"candidates", 0, OPTION_NOTE, 0, NULL, "all of them", 0},
+    {"pruned", 0, OPTION_NOTE, 0, NULL, "all but those at sharp edges", 0},
+    {"walk", 0, OPTION_NOTE, 0, NULL, "the outer ones of these, found by a walk, as in the dissertation", 0},
     {0},
 };
+#undef FIELD
 
 static const arguments defaults = {.crust.labeling = NO_LABELING};
 /* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
@@ -62,11 +77,6 @@ static const double LEAST_THETA = 0.2542;
 /* Options of the power crust alone. */
 static bool has_power_crust_options(const arguments *a) {
     return a->polygons || a->crust.labeling != NO_LABELING || a->crust.sampling_density != 0 || a->crust.sharp;
-}
-
-/* Options that the power crust and the labeled Delaunay triangulation have. */
-static bool has_solid_options(const arguments *a) {
-    return a->crust.triangulate || a->crust.noise || a->crust.simplify || a->crust.open != 0 || a->crust.normals;
 }
 
 static int method_of(const arguments *a) {
@@ -136,8 +146,8 @@ static void report_density(run *r, const brio_cocone_stats *s) {
     cli_fact_count(f, "outside_guarantee", s->outside_guarantee);
     cli_fact_real(f, "outside_share", share);
     cli_fact_close(f);
-    if (share > 0 && !r->common.quiet)
-        fprintf(stderr, "brio: %.1f %% of the samples are outside the guarantee (r over 0.08)\n", 100 * share);
+    if (share > 0)
+        cli_warn(r, "%.1f %% of the points are too far apart for the co-cone's guarantee (r over 0.08)", 100 * share);
 }
 
 static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) {
@@ -177,10 +187,12 @@ static const double MANY_GUESSES = 0.02;
 
 static void report_confidence(run *r, double share) {
     cli_fact_real(&r->facts, "uncertain_share", share);
-    if (share > MANY_GUESSES && !r->common.quiet)
-        fprintf(stderr,
-                "brio: %.1f %% of the surface is a guess: the vertices whose property confidence is under 0.7\n",
-                100 * share);
+    if (share > MANY_GUESSES)
+        cli_warn(
+            r,
+            "%.1f %% of the surface is a guess (vertices whose property confidence is under 0.7): points of an open "
+            "or flat thing, too few of them, or walls too thin for them; see 'brio help methods'",
+            100 * share);
 }
 
 static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
@@ -251,28 +263,76 @@ done:
     return status;
 }
 
-/* Options of another method are a mistake; a theta that voids the guarantee is worth a word. */
+/* An option that some methods have, and whether it was given. */
+typedef struct method_option {
+    const char *name;
+    bool given;
+    unsigned methods; /* bits 1 << method */
+} method_option;
+
+/* Writes "a, b or c", the names of the methods in the set. */
+static void list_methods(unsigned set, char text[128]) {
+    option_choice chosen[TIGHT_COCONE + 1] = {0};
+    size_t count = 0;
+    for (const option_choice *m = methods; m->name; m++)
+        if (set >> m->value & 1) chosen[count++] = *m;
+    cli_list_choices(chosen, text, 128);
+}
+
+/* Options of another method are a mistake. */
+static brio_status check_method(run *r) {
+    const arguments *a = r->arguments;
+    enum {
+        SOLIDS = 1 << LABELED_DELAUNAY | 1 << POWER_CRUST,
+        CRUST = 1 << POWER_CRUST,
+        COCONES = 1 << COCONE | 1 << TIGHT_COCONE
+    };
+    const method_option given[] = {{"theta", a->theta != 0, COCONES},
+                                   {"boundaries", a->boundaries, COCONES},
+                                   {"density", a->density, COCONES},
+                                   {"pieces", a->pieces > 0, 1 << COCONE},
+                                   {"extraction", a->extraction != BRIO_EXTRACTION_LABELS, 1 << COCONE},
+                                   {"polygons", a->polygons, CRUST},
+                                   {"labeling", a->crust.labeling != NO_LABELING, CRUST},
+                                   {"sampling-density", a->crust.sampling_density != 0, CRUST},
+                                   {"sharp", a->crust.sharp, CRUST},
+                                   {"triangulate", a->crust.triangulate, SOLIDS},
+                                   {"noise", a->crust.noise != 0, SOLIDS},
+                                   {"simplify", a->crust.simplify, SOLIDS},
+                                   {"open", a->crust.open != 0, SOLIDS},
+                                   {"normals", a->crust.normals != NULL, SOLIDS}};
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        char names[128] = "";
+        if (!given[i].given || given[i].methods >> method_of(a) & 1) continue;
+        list_methods(given[i].methods, names);
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method %s, and the method is %s", given[i].name, names,
+                        methods[method_of(a) - 1].name);
+    }
+    return BRIO_OK;
+}
+
+/* A theta that voids the guarantee is worth a word. */
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
-    int method = method_of(a);
-    bool cocones = method == COCONE || method == TIGHT_COCONE;
-    if (!cocones && (a->theta != 0 || a->boundaries || a->density))
-        return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--theta, --boundaries and --density are for --method cocone|tight-cocone");
-    if (a->pieces > 0 && method != COCONE) return cli_fail(r, BRIO_ERR_ARGUMENT, "--pieces is for --method cocone");
-    if (a->extraction != BRIO_EXTRACTION_LABELS && (method != COCONE || a->pieces > 1))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--extraction is for --method cocone, without --pieces");
-    if ((cocones && has_solid_options(a)) || (method != POWER_CRUST && has_power_crust_options(a)))
-        return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--polygons, --labeling, --sampling-density and --sharp are for --method power-crust, "
-                        "--triangulate, --noise, --simplify, --open and --normals for it and for labeled-delaunay");
+    brio_status status = check_method(r);
+    if (status != BRIO_OK) return status;
+    if (a->extraction != BRIO_EXTRACTION_LABELS && a->pieces > 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--extraction is for --method cocone without --pieces");
     if (a->polygons && a->crust.triangulate)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
     if (a->theta < 0 || a->theta >= 1.57)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
-    if (a->theta > 0 && a->theta < LEAST_THETA && !r->common.quiet)
-        fprintf(stderr, "brio: theta under %g: no guarantee holds\n", LEAST_THETA);
+    if (a->theta > 0 && a->theta < LEAST_THETA) cli_warn(r, "--theta: no guarantee holds under %g", LEAST_THETA);
     return BRIO_OK;
+}
+
+static void suggest(run *r, brio_status status) {
+    const arguments *a = r->arguments;
+    if (status != BRIO_ERR_NO_ANSWER) return;
+    if (a->crust.open > 0) cli_hint(r, "a larger --open K takes fewer gaps between points for holes");
+    if (a->components.least > 0) cli_hint(r, "a smaller --min-component N keeps more pieces");
+    if (a->method != COCONE) cli_hint(r, "--method cocone makes an open surface, where there is no inside");
+    cli_hint(r, "points in a plane, and terrain: 'brio delaunay IN --plane xy -o OUT'");
 }
 
 static brio_status reconstruct(run *r, const brio_mesh *points, brio_mesh **result) {
@@ -294,7 +354,10 @@ static brio_status surface(run *r) {
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
     TRY(cli_read_points(r, r->operands[0], &points));
-    TRY(reconstruct(r, points, &result));
+    if (!points->num_vertices) TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]));
+    status = reconstruct(r, points, &result);
+    suggest(r, status);
+    if (status != BRIO_OK) goto done;
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
     brio_mesh_free(points);
@@ -312,7 +375,16 @@ done:
 const command cli_surface = {
     .name = "surface",
     .operands = "IN",
-    .summary = "surface through the points of a file, certified (.ply .obj .off .stl .vtu .vtp)",
+    .summary = "surface through points, with a certificate of what it is",
+    .description =
+        "The default method needs no parameters and no normals: points all over a closed object give a closed surface. "
+        "Other points: brio help methods. The certificate in the report says what the surface is, whatever the method.",
+    .examples = "brio surface scan.ply -o surface.ply\nthe usual way\n"
+                "brio surface part.xyz --method cocone -o shell.ply\nan open surface\n"
+                "brio surface scan.las --open 5 --keep-largest -o surface.ply\nleaves holes over 5 point spacings "
+                "open, drops crumbs\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

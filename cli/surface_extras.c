@@ -16,7 +16,7 @@ brio_status cli_copy_properties(run *r, const brio_mesh *points, const uint32_t 
         char name[80];
         void *data;
         if (!name_for(surface, p->name, name)) {
-            if (!r->common.quiet) fprintf(stderr, "brio: the property %s of the points is left out\n", p->name);
+            cli_warn(r, "the property %s of the points is left out: its name is taken or too long", p->name);
             continue;
         }
         brio_status status = brio_mesh_add_property(surface, name, p->type, &data);

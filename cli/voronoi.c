@@ -146,7 +146,11 @@ done:
 const command cli_voronoi = {
     .name = "voronoi",
     .operands = "IN",
-    .summary = "Voronoi cells of the points of a file, power cells with weights (.vtu .npy .csv)",
+    .summary = "Voronoi cells of points, power cells with weights",
+    .examples = "brio voronoi atoms.xyz --box 0,0,0,1,1,1 -o cells.vtu\ncells clipped to a box, for ParaView\n"
+                "brio voronoi atoms.xyz -o cells.csv\nvolume, area and centroid of each cell\n",
+    .outputs = "vtu npy csv",
+    .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,
     .options = options,

@@ -4,6 +4,7 @@ include(CMakePackageConfigHelpers)
 install(TARGETS brio EXPORT brioTargets)
 install(TARGETS brio-cli)
 install(FILES ${CMAKE_SOURCE_DIR}/include/brio/brio.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/brio)
+install(FILES docs/which-method.md DESTINATION ${CMAKE_INSTALL_DOCDIR}) # errors refer to it by name
 
 # CMake: find_package(brio), then link with brio::brio.
 set(BRIO_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/brio)

@@ -60,6 +60,9 @@ missing_peers() {
     if [ "$1" = check ]; then
         has g++ || echo g++
         [ -d /usr/include/voro++ ] || echo voro++-dev
+        has groff || echo groff-base # the manual pages
+        has mandoc || echo mandoc
+        has zsh || echo zsh # the completion
         return 0
     fi
     [ -d /usr/include/CGAL ] || echo libcgal-dev

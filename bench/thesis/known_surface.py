@@ -102,7 +102,7 @@ class Bench:
 
 
 def per_point(facts, key):
-    return facts[key] / facts['points']
+    return {**facts, **facts['internals']}[key] / facts['points']
 
 
 # --- growth

@@ -116,7 +116,8 @@ class Bench:
         result['status'] = 'done' if done.code == 0 else 'stopped' if done.stopped else f'failed ({done.code})'
         if done.code == 0:
             facts = json.loads(done.out)
-            result.update({k: facts[k] for k in COLUMNS if k in facts}, rounds=facts.get('rounds', []))
+            counts = {**facts, **facts['internals']}
+            result.update({k: counts[k] for k in COLUMNS if k in counts}, rounds=facts.get('rounds', []))
             result.update(order=facts['seconds']['order'], insert=facts['seconds']['insert'], reached=100,
                           wall=facts['seconds']['read'] + facts['seconds']['order'] + facts['seconds']['insert'])
             if not memory and r.order.startswith('brio'): self.free[r.set, r.locate] = result

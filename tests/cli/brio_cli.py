@@ -53,6 +53,7 @@ def vector(value):
 
 
 CERTIFICATE = {"closed": bool, "manifold": bool, "oriented": bool, "components": count, "genus": int, "genera": list,
+               "genus_by_component": list,
                "boundary_edges": count, "boundary_loops": count, "self_intersections": type(None)}
 COMMON_FACTS = {"command": str, "input": str, "threads": count, "seconds": {"total": number}, "peak_bytes": count}
 

@@ -7,17 +7,18 @@ class Alpha(CliTest):
     def test_facts_of_a_run(self):
         points, out = self.cloud("a.ply", 1000, "ball"), self.path("out.ply")
         seconds = {key: number for key in "read delaunay values filtration shape certify write total".split()}
-        counts = "samples simplices tetrahedra vertices faces split uncovered singular_vertices singular_edges " \
-                 "singular_facets".split()
+        counts = "samples tetrahedra vertices faces uncovered".split()
+        internals = "simplices split singular_vertices singular_edges singular_facets".split()
         facts = self.facts("alpha", points, "--alpha", "auto", "--filtration", self.path("f.txt"), "-o", out)
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "alpha": number,
-                                   "radius": number, "certificate": CERTIFICATE, "seconds": seconds})
+                                   "radius": number, "certificate": CERTIFICATE, "seconds": seconds,
+                                   "internals": {key: count for key in internals}})
         self.assertTrue(facts["certificate"]["closed"] and facts["certificate"]["manifold"])
         self.assertEqual(facts["uncovered"], 0)
         self.assertAlmostEqual(facts["radius"] ** 2, facts["alpha"])
         with open(self.path("f.txt")) as lines:
             rows = [line.split() for line in lines]
-        self.assertEqual(len(rows), facts["simplices"])
+        self.assertEqual(len(rows), facts["internals"]["simplices"])
         values = [float(row[-1]) for row in rows]
         self.assertEqual(values, sorted(values))
         seen = set()

@@ -42,7 +42,7 @@ class Surfaces(CliTest):
     def test_failed_check_reports_to_people_too(self):
         run = self.expect(5, "check", self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES[:-1]))
         self.assertRegex(run.text, r"closed +no")
-        self.assertRegex(run.err, "brio: the surface is not closed")
+        self.assertRegex(run.err, r"\Abrio: \S+m\.off: the surface is not closed: 3 boundary edges in 1 loop\nbrio: hint: --open")
 
     def test_check_of_self_intersections(self):
         mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)

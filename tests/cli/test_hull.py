@@ -7,13 +7,13 @@ class Hull(CliTest):
     def test_facts_of_a_run(self):
         points, out = self.cloud("a.ply", 2000), self.path("out.ply")
         seconds = {key: number for key in "read skip hull certify write total".split()}
-        counts = "samples candidates vertices faces facets dimension".split()
+        counts = "samples vertices faces facets dimension".split()
         facts = self.facts("hull", points, "-o", out)
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str,
                                    "certificate": CERTIFICATE, "seconds": seconds})
         self.assertTrue(facts["certificate"]["closed"])
         self.assertEqual(facts["faces"], 2 * facts["vertices"] - 4)
-        self.assertLess(facts["candidates"], 2000)
+        self.assertLess(facts["internals"]["candidates"], 2000)
         self.assertTrue(self.facts("check", out)["certificate"]["manifold"])
 
     def test_polygons_of_a_cube_with_points_on_its_faces(self):

@@ -29,7 +29,7 @@ class NoAnswer(CliTest):
 class Facts(CliTest):
     def test_facts_of_a_run(self):
         points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
-        counts = "samples poles hidden_poles inner outer unlabelled vertices edges triangles tetrahedra".split()
+        counts = "samples poles inner outer unlabelled vertices edges triangles tetrahedra".split()
         seconds = {key: number for key in "read noise delaunay poles power label shape write total".split()}
         schema = {**COMMON_FACTS, **{key: count for key in counts}, "labeling": str, "noise": number,
                   "smoothed": bool, "seconds": seconds}

@@ -40,11 +40,13 @@ class LabeledDelaunay(CliTest):
         points = self.cloud("a.ply", 2000, "sphere")
         facts = self.facts("surface", points, "-o", self.path("out.ply"))
         seconds = {key: number for key in "read noise delaunay poles label manifold certify write total".split()}
-        counts = "samples vertices faces unused undecided specks relabeled handles".split()
+        counts = "samples vertices faces".split()
+        internals = {key: count for key in "unused undecided specks relabeled handles".split()}
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "noise": number,
-                                   "smoothed": bool, "energy": number, "uncertain_share": number,
+                                   "smoothed": bool, "uncertain_share": number,
+                                   "internals": {**internals, "energy": number},
                                    "certificate": CERTIFICATE, "seconds": seconds})
-        self.assertEqual((facts["method"], facts["samples"], facts["unused"]), ("labeled-delaunay", 2000, 0))
+        self.assertEqual((facts["method"], facts["samples"], facts["internals"]["unused"]), ("labeled-delaunay", 2000, 0))
         self.assertEqual(facts["uncertain_share"], 0)
         c = facts["certificate"]
         self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
@@ -161,9 +163,11 @@ class PowerCrust(CliTest):
         points = self.cloud("a.ply", 2000, "sphere")
         facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "power-crust")
         seconds = {key: number for key in "read noise delaunay poles power label crust certify write total".split()}
-        counts = "samples vertices faces poles hidden_poles inner outer confused".split()
+        counts = "samples vertices faces".split()
+        internals = {key: count for key in "poles hidden_poles inner outer confused".split()}
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "labeling": str,
-                                   "noise": number, "smoothed": bool, "energy": number, "certificate": CERTIFICATE,
+                                   "noise": number, "smoothed": bool, "certificate": CERTIFICATE,
+                                   "internals": {**internals, "energy": number},
                                    "seconds": seconds})
         self.assertEqual((facts["method"], facts["samples"]), ("power-crust", 2000))
         c = facts["certificate"]
@@ -177,7 +181,7 @@ class PowerCrust(CliTest):
             facts = self.facts("surface", points, "-o", self.path("out.ply"), "--labeling", labeling)
             self.assertEqual(facts["labeling"], labeling)
             self.assertTrue(facts["certificate"]["closed"])
-            self.assertTrue({"energy", *keys} <= set(facts))
+            self.assertTrue({"energy", *keys} <= set(facts["internals"]))
         self.usage("unknown name", "surface", points, "-o", self.path("out.ply"), "--labeling", "best")
 
     def test_noise(self):
@@ -211,7 +215,7 @@ class PowerCrust(CliTest):
             x, y, z, a, b, c = map(float, row)
             self.assertGreater(x * a + y * b + z * c, 0.98)
         sharp = self.facts("surface", points, "-o", out, "--sharp", "-R", "0.05", "--open", "50")
-        self.assertGreater(sharp["bad_cells"], 0)
+        self.assertGreater(sharp["internals"]["bad_cells"], 0)
         self.assertEqual(sharp["left_out"], 0)
         self.usage("between 0 and 1", "surface", points, "-o", out, "-R", "1")
         self.usage("a positive number", "surface", points, "-o", out, "--open", "-1")
@@ -232,19 +236,21 @@ class Cocone(CliTest):
         points = self.cloud("a.ply", 2000, "sphere")
         seconds = {key: number for key in
                    "read delaunay poles candidates label manifold density certify write total".split()}
-        counts = "samples vertices faces unused candidates pruned relabeled".split()
+        counts = "samples vertices faces".split()
+        internals = {key: count for key in "unused candidates pruned relabeled".split()}
         sampling = {"r_median": number, "r_p95": number, "outside_guarantee": count, "outside_share": number}
         for method in ("cocone", "tight-cocone"):
             facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", method)
             self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str,
-                                       "certificate": CERTIFICATE, "seconds": seconds, "sampling": sampling})
+                                       "certificate": CERTIFICATE, "seconds": seconds, "sampling": sampling,
+                                       "internals": internals})
             self.assertEqual((facts["method"], facts["vertices"], facts["faces"]), (method, 2000, 3996))
             c = facts["certificate"]
             self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
         bounded = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--boundaries")
         self.assertLess(bounded["boundary_samples"], 100)
         pieces = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--pieces", "4")
-        self.assertEqual((pieces["faces"], pieces["unmatched"]), (3996, 0))
+        self.assertEqual((pieces["faces"], pieces["internals"]["unmatched"]), (3996, 0))
         self.assertGreaterEqual(pieces["pieces"], 4)
 
     def test_extractions(self):
@@ -253,7 +259,7 @@ class Cocone(CliTest):
             facts = self.facts("surface", points, "-o", out, "--method", "cocone", "--extraction", name)
             self.assertEqual(facts["extraction"], name)
             if name != "walk":
-                self.assertEqual(facts["faces"], facts["candidates"] - facts["pruned"])
+                self.assertEqual(facts["faces"], facts["internals"]["candidates"] - facts["internals"]["pruned"])
         self.assertIn("closed", facts["certificate"])
 
     def test_theta_without_a_guarantee_warns(self):

@@ -41,6 +41,13 @@ step "build and install ($kind)"
 "$cmake" --install "$folder/build" >>"$folder/log" 2>&1
 mv "$folder/installed" "$prefix"
 "$prefix/bin/brio" --version
+for page in man/man1/brio.1 man/man1/brio-surface.1 bash-completion/completions/brio zsh/site-functions/_brio \
+    doc/brio/which-method.md; do
+    [ -s "$prefix/share/$page" ] || {
+        echo "share/$page is not installed" >&2
+        exit 1
+    }
+done
 
 step "find_package"
 "$cmake" -S "$consumer" -B "$folder/found" -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$prefix" >>"$folder/log" 2>&1

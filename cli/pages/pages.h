@@ -1,0 +1,26 @@
+/* The manual pages and the completions of shells, written from the tables of the command line when brio is built. */
+#ifndef BRIO_CLI_PAGES_H
+#define BRIO_CLI_PAGES_H
+
+#include "../commands.h"
+
+/** brio(1): the commands, options of every command, which method fits which points, exit codes.
+ *  date  of the page, YYYY-MM-DD. */
+void pages_write_manual(FILE *out, const char *date);
+
+/** brio-COMMAND(1). */
+void pages_write_command_manual(FILE *out, const command *c, const char *date);
+
+/** The completion of bash. */
+void pages_write_bash(FILE *out);
+
+/** The completion of zsh. */
+void pages_write_zsh(FILE *out);
+
+/** Extensions of the files that a command reads, with blanks between; empty when its operand is no file. */
+const char *pages_inputs(const command *c);
+
+/** Extensions of the files that an option of a command names; NULL when it names no file or any file. */
+const char *pages_extensions(const command *c, const option *row);
+
+#endif

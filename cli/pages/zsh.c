@@ -1,0 +1,94 @@
+/* The completion of zsh: a table of _arguments for each command. */
+#include "pages.h"
+#include <string.h>
+
+/* Within single quotes and brackets; a colon would end the text. */
+static void put_text(FILE *out, const char *text) {
+    for (; *text; text++) {
+        if (strchr("[]:\\", *text)) fputc('\\', out);
+        if (*text == '\'')
+            fputs("'\\''", out);
+        else
+            fputc(*text, out);
+    }
+}
+
+/* ply|xyz, of "ply xyz". */
+static void put_files(FILE *out, const char *extensions) {
+    if (!extensions || !*extensions) {
+        fputs("_files", out);
+        return;
+    }
+    fputs("_files -g \"*.(#i)(", out);
+    for (const char *e = extensions; *e; e++) fputc(*e == ' ' ? '|' : *e, out);
+    fputs(")(-.)\"", out);
+}
+
+static void put_choices(FILE *out, const option_choice *choices) {
+    fputc('(', out);
+    for (const option_choice *c = choices; c->name; c++) fprintf(out, "%s%s", c == choices ? "" : " ", c->name);
+    fputc(')', out);
+}
+
+static void put_value(FILE *out, const command *c, const option *row) {
+    if (!row->value) return;
+    const char *extensions = pages_extensions(c, row);
+    fputc(':', out);
+    put_text(out, row->value);
+    fputc(':', out);
+    if (row->choices)
+        put_choices(out, row->choices);
+    else if (!strcmp(row->value, "FILE"))
+        put_files(out, extensions);
+    else if (!strcmp(row->value, "DIR"))
+        fputs("_files -/", out);
+    else if (!strcmp(row->value, "EXT"))
+        fprintf(out, "(%s)", extensions ? extensions : "");
+    else
+        fputc(' ', out);
+}
+
+static void put_options(FILE *out, const command *c, const option *rows) {
+    for (const option *row = rows; row->kind; row++) {
+        if (!cli_is_option(row)) continue;
+        if (row->letter) fprintf(out, "            '-%c+[", row->letter), put_text(out, row->meaning), fputc(']', out);
+        if (row->letter) put_value(out, c, row), fputs("' \\\n", out);
+        fprintf(out, "            '--%s%s[", row->name, row->value ? "=" : "");
+        put_text(out, row->meaning);
+        fputc(']', out);
+        put_value(out, c, row);
+        fputs("' \\\n", out);
+    }
+}
+
+static void put_command(FILE *out, const command *c) {
+    fprintf(out, "    %s)\n        _arguments \\\n", c->name);
+    put_options(out, c, c->options);
+    put_options(out, c, cli_common_options);
+    fputs("            '--help[print the help]' \\\n            '*:", out);
+    put_text(out, c->operands);
+    fputc(':', out);
+    if (c->choices)
+        put_choices(out, c->choices);
+    else
+        put_files(out, pages_inputs(c));
+    fputs("'\n        ;;\n", out);
+}
+
+void pages_write_zsh(FILE *out) {
+    fputs("#compdef brio\n# Made by the build of brio from the tables of the command line.\n\n"
+          "_brio() {\n    local -a commands\n    commands=(\n",
+          out);
+    for (size_t i = 0; cli_commands[i]; i++) {
+        fprintf(out, "        '%s:", cli_commands[i]->name);
+        put_text(out, cli_commands[i]->summary);
+        fputs("'\n", out);
+    }
+    fputs("        'help:the help of a command, or of methods'\n    )\n"
+          "    if ((CURRENT == 2)); then\n        _describe command commands\n        return\n    fi\n"
+          "    local name=$words[2]\n    shift words\n    ((CURRENT--))\n    case $name in\n"
+          "    help) _describe command commands ;;\n",
+          out);
+    for (size_t i = 0; cli_commands[i]; i++) put_command(out, cli_commands[i]);
+    fputs("    esac\n}\n\n_brio \"$@\"\n", out);
+}
