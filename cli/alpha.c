@@ -19,7 +19,7 @@ static const option options[] = {
      "squared radius, as in the literature, GUDHI and CGAL; PyVista and Open3D take its root. auto: the least with all "
      "points in one solid",
      0},
-    {"filtration", 0, OPTION_TEXT, offsetof(arguments, filtration), "FILE",
+    {"filtration", 0, OPTION_OUTPUT, offsetof(arguments, filtration), "FILE",
      "write all simplices with their values, sorted: lines for GUDHI; .sparse: the edges for ripser", 0},
     WEIGHTS_ROWS(arguments, weights),
     {0},

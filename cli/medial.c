@@ -27,7 +27,7 @@ static const option options[] = {
      "leave out balls that lie in another when both are scaled by S", 0},
     {"redundancy", 0, OPTION_NUMBER, offsetof(arguments, redundancy), "E",
      "leave out balls that lie in another enlarged by E of its radius", 0},
-    {"crust", 0, OPTION_TEXT, offsetof(arguments, crust), "FILE",
+    {"crust", 0, OPTION_OUTPUT, offsetof(arguments, crust), "FILE",
      "also write the surface of the balls: their power crust", 0},
     {"noise", 0, OPTION_CHOICE, offsetof(arguments, noise), "NAME", "smooth noisy samples first", cli_noise},
     {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, sampling_density), "R",

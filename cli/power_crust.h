@@ -41,7 +41,7 @@ void cli_suggest_labeling(const run *r, brio_status status, int labeling, bool b
      "power crust: discard both, for sharp edges without samples (R 0.5)", 0},                                         \
     {"open", 0, OPTION_NUMBER, offsetof(type, field.open), "K",                                                        \
      "leave holes open whose radii are over K sample spacings", 0},                                       \
-    {"normals", 0, OPTION_TEXT, offsetof(type, field.normals), "FILE",                                                 \
+    {"normals", 0, OPTION_OUTPUT, offsetof(type, field.normals), "FILE",                                                 \
      "also write the points with oriented normals", 0}
 /* clang-format on */
 

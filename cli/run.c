@@ -12,7 +12,7 @@ enum { MAX_THREADS = 1024 };
 
 #define FIELD(name) offsetof(common_options, name)
 const option cli_common_options[] = {
-    {"output", 'o', OPTION_TEXT, FIELD(output), "FILE", "output; the extension tells the format; - is standard output",
+    {"output", 'o', OPTION_OUTPUT, FIELD(output), "FILE", "output; the extension tells the format; - is standard output",
      0},
     {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output (needed with -o -)", 0},
     {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT", "format of the input", 0},
@@ -98,6 +98,7 @@ brio_status cli_begin(run *r) {
     const common_options *c = &r->common;
     brio_status status = BRIO_OK;
     TRY(check_common(r));
+    TRY(cli_check_named_twice(r));
     TRY(brio_context_new(NULL, &r->ctx));
     brio_context_set_threads(r->ctx, c->threads);
     brio_context_set_memory_limit(r->ctx, c->max_memory);

@@ -17,7 +17,7 @@ typedef struct arguments {
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
     {"box", 0, OPTION_TEXT, FIELD(box), "B", "clip the cells to x0,y0,z0,x1,y1,z1", 0},
-    {"faces", 0, OPTION_TEXT, FIELD(faces), "FILE",
+    {"faces", 0, OPTION_OUTPUT, FIELD(faces), "FILE",
      "write a row for each face of each cell (.csv): site,neighbour,area,nx,ny,nz; walls are -1 to -6", 0},
     {0},
 };

@@ -16,7 +16,7 @@ enum { NO_EXPONENT = INT_MIN };
 /** Rows of a command's option table whose struct has weights_options as its member `field`. */
 /* clang-format off */
 #define WEIGHTS_ROWS(type, field)                                                                                      \
-    {"weights", 0, OPTION_TEXT, offsetof(type, field.file), "FILE", "weights of the points, one number a line", 0},    \
+    {"weights", 0, OPTION_INPUT, offsetof(type, field.file), "FILE", "weights of the points, one number a line", 0},    \
     {"weights-mod", 0, OPTION_INT, offsetof(type, field.exponent), "E", "weight i is ((i*7919) mod 1000) * 2^E", 0},   \
     {"unweighted", 0, OPTION_FLAG, offsetof(type, field.unweighted), NULL, "ignore a property named weight", 0}
 /* clang-format on */
