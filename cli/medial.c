@@ -4,6 +4,7 @@
 #include "estimate.h"
 #include "files.h"
 #include "power_crust.h"
+#include "properties.h"
 
 typedef struct arguments {
     int labeling, sides, noise;
@@ -136,6 +137,8 @@ static brio_status medial(run *r) {
     cli_suggest_labeling(r, status, a->labeling, by_mesh);
     if (status != BRIO_OK) goto done;
     report(r, &o, &s, shape);
+    TRY(cli_carry_properties(r, input, NULL, shape));
+    if (crust) TRY(cli_carry_properties(r, input, NULL, crust));
     brio_mesh_free(input);
     input = NULL;
     TRY(cli_check_interrupt(r));

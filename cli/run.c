@@ -12,8 +12,8 @@ enum { MAX_THREADS = 1024 };
 
 #define FIELD(name) offsetof(common_options, name)
 const option cli_common_options[] = {
-    {"output", 'o', OPTION_OUTPUT, FIELD(output), "FILE", "output; the extension tells the format; - is standard output",
-     0},
+    {"output", 'o', OPTION_OUTPUT, FIELD(output), "FILE",
+     "output; the extension tells the format; - is standard output", 0},
     {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output (needed with -o -)", 0},
     {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT", "format of the input", 0},
     {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
