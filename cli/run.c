@@ -2,6 +2,7 @@
 #include "run.h"
 #include "files.h"
 #include "interrupt.h"
+#include "precision.h"
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -169,6 +170,7 @@ brio_status cli_read(run *r, const char *path, brio_mesh **out) {
     brio_status status = BRIO_OK;
     TRY(brio_read(r->ctx, path, extension ? brio_format_of(extension) : BRIO_FORMAT_AUTO, out));
     TRY(cli_check_interrupt(r));
+    TRY(cli_check_precision(r, path, *out));
     cli_lap(r, "read");
 done:
     return status;
@@ -224,15 +226,20 @@ done:
 static brio_status write_file(run *r, const char *path, const char *extension, const brio_mesh *mesh) {
     brio_write_options options = brio_write_options_default();
     brio_status status = BRIO_OK;
+    double moved = 0;
+    size_t merged = 0;
     TRY(cli_output_format(r, path, extension, &options.format));
     options.ascii = r->common.ascii;
     options.float32 = r->common.float32;
+    options.moved = &moved;
+    TRY(cli_settle_precision(r, path, mesh, &options, &merged));
     options.comment = "brio " BRIO_VERSION;
     TRY(cli_check_interrupt(r));
     cli_interrupt_writing(strcmp(path, "-") != 0);
     status = brio_write(r->ctx, path, mesh, &options);
     cli_interrupt_writing(false);
     cli_lap(r, "write");
+    if (status == BRIO_OK) cli_tell_moved(r, path, moved, merged);
 done:
     return status;
 }
