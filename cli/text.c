@@ -49,7 +49,7 @@ static void write_value(FILE *out, const fact *f) {
         write_bytes(out, f->count);
         break;
     case FACT_NULL:
-        fputc('-', out);
+        fputs(f->text ? f->text : "-", out);
         break;
     default:
         break;

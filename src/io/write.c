@@ -6,6 +6,7 @@
 #include "mesh/edge_rings.h"
 #include "io/textrow.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -29,18 +30,28 @@ static bool is_axis(const char *name) {
     return strlen(name) == 1 && strchr("xyzXYZ", name[0]);
 }
 
+/* Returns whether a coordinate or one of the first `count` properties has the name. */
+static bool is_taken(const brio_write_job *job, size_t count, const char *name) {
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(job->names[i], name)) return true;
+    return is_axis(name);
+}
+
+/* A name that is taken gets _2, _3 and so on behind it, and is cut so that the whole fits: no result of long work is
+ * refused for a name. */
 static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job) {
     brio_status status = BRIO_OK;
     size_t count = job->mesh->num_properties;
     BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
     for (size_t i = 0; i < count; i++) {
-        const char *name = job->mesh->properties[i].name;
-        make_word(job->names[i], name);
-        BRIO_REQUIRE(ctx, name[0] && !is_axis(name), BRIO_ERR_ARGUMENT,
-                     "%s: a property cannot be named \"%s\" beside the coordinates", path, name);
-        for (size_t j = 0; j < i; j++)
-            BRIO_REQUIRE(ctx, strcmp(job->names[i], job->names[j]) != 0, BRIO_ERR_ARGUMENT,
-                         "%s: two properties named %s", path, job->names[i]);
+        char word[64], end[24];
+        BRIO_REQUIRE(ctx, job->mesh->properties[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
+        make_word(word, job->mesh->properties[i].name);
+        memcpy(job->names[i], word, sizeof word);
+        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) {
+            snprintf(end, sizeof end, "_%zu", n);
+            snprintf(job->names[i], 64, "%.*s%s", (int)(63 - strlen(end)), word, end);
+        }
     }
 done:
     return status;
