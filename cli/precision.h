@@ -4,10 +4,10 @@
 
 #include "run.h"
 
-/** Refuses points for which the output is a STL file that would merge them: the file holds single precision alone. */
+/** Refuses points that a STL file as output would ruin: the file has single precision alone. */
 brio_status cli_check_precision(run *r, const char *path, const brio_mesh *mesh);
 
-/** Takes back --float32 where it would merge points, or where a coordinate does not fit, and says so.
+/** Takes back --float32 where it would merge points or move them far, or cannot hold a coordinate, and says so.
  *  merged  receives the number of points that the file will merge with others. */
 brio_status cli_settle_precision(run *r, const char *path, const brio_mesh *mesh, brio_write_options *options,
                                  size_t *merged);
