@@ -224,10 +224,9 @@ class Properties(LossTest):
         own = [renamed.get(name, name) for _, name in self.COLUMNS]
         for (kind, _), name in zip(self.COLUMNS, own):
             self.assertEqual(kinds[name], kind)
-        samples = {int(-row[7]): row for row in rows}
         for v, at in enumerate(self.positions(columns)):
             values = tuple(columns[name][v] for name in own)
-            row = samples[-values[4]] if False else rows[-values[4]]
+            row = rows[-values[4]]
             self.assertEqual(values, row[3:])
             if v % 97 == 0:
                 least = min(math.dist(at, other[:3]) for other in rows)
@@ -402,31 +401,22 @@ class Radii(LossTest):
 class SelfIntersections(LossTest):
     """The report said - of self-intersections, as if there were none."""
 
-    def crossing(self):
-        points = ball(40) + ball(40, (1, 0.1, 0.2))
-        self.expect(0, "hull", self.xyz("a.xyz", points[:40]), "-o", self.path("a.off"))
-        self.expect(0, "hull", self.xyz("b.xyz", points[40:]), "-o", self.path("b.off"))
-        rows, faces = [], []
-        for name in "a.off", "b.off":
-            with open(self.path(name)) as f:
-                lines = [line.split() for line in f.read().splitlines() if line[:1] != "#"]
-            n, m = int(lines[1][0]), int(lines[1][1])
-            faces += [[int(v) + len(rows) for v in line[1:]] for line in lines[2 + n:2 + n + m]]
-            rows += [tuple(map(float, line)) for line in lines[2:2 + n]]
-        return self.off("both.off", rows, faces)
-
     def test_what_was_not_counted_is_called_so(self):
-        mesh = self.crossing()
-        self.assertRegex(self.expect(0, "check", mesh).text, r"self_intersections +not counted\n")
+        mesh = self.path("hull.ply")
+        run = self.expect(0, "hull", self.xyz("a.xyz", ball(40)), "-o", mesh)
+        self.assertRegex(run.text, r"self_intersections +not counted\n")
         self.assertIsNone(self.facts("check", mesh)["certificate"]["self_intersections"])
+        self.assertRegex(self.expect(0, "check", mesh, "--self-intersections").text, r"self_intersections +0\n")
 
     def test_a_surface_that_intersects_itself_is_said_to(self):
-        self.crossing()
-        run = self.expect(0, "offset", self.path("both.off"), "-D", "0.01", "-o", self.path("out.ply"), "--labeling",
-                          "global", "--self-intersections", "--json")
-        points = self.xyz("c.xyz", ball(30))
-        run = self.expect(0, "surface", points, "-o", self.path("out.ply"), "--self-intersections")
-        self.assertNotIn("intersects", run.err)
+        points = self.cloud("a.ply", 300, "clusters")
+        how = ["surface", points, "--method", "power-crust", "-o", self.path("out.ply"), "--self-intersections"]
+        run = self.expect(0, *how)
+        pairs = self.facts(*how)["certificate"]["self_intersections"]
+        self.assertGreater(pairs, 0)
+        self.assertIn("brio: the surface intersects itself: %d pairs of faces\n" % pairs, run.err)
+        run = self.expect(0, "surface", points, "--method", "tight-cocone", "-o", self.path("out.ply"), "--self-intersections")
+        self.assertEqual(run.err, "")
 
 
 if __name__ == "__main__":
