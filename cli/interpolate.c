@@ -1,6 +1,7 @@
 /* brio interpolate: values of a property of the points of a file, at the points of another file. */
 #include "commands.h"
 #include "located.h"
+#include "properties.h"
 #include "table.h"
 #include <math.h>
 #include <stdlib.h>
@@ -46,8 +47,7 @@ static brio_status values_of(run *r, const brio_mesh *points, const char *name, 
 /* Adds the property to the places, which a table leaves out. */
 static brio_status add_results(run *r, brio_mesh *at, const arguments *a, double **results) {
     void *data;
-    if (brio_mesh_property(at, a->property))
-        return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have a property '%s' already", a->at, a->property);
+    cli_set_aside(r, at, a->property);
     brio_status status = brio_mesh_add_property(at, a->property, BRIO_SCALAR_FLOAT64, &data);
     if (status == BRIO_OK) *results = data;
     return status;

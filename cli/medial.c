@@ -102,7 +102,11 @@ static brio_status write_shape(run *r, brio_mesh *shape) {
     brio_status status = BRIO_OK;
     if (!r->common.output) return BRIO_OK; /* --json alone asks for the facts */
     TRY(cli_output_format(r, r->common.output, r->common.format, &format));
-    if (format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) shape->num_tetrahedra = 0;
+    if ((format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) && shape->num_tetrahedra) {
+        shape->num_tetrahedra = 0;
+        if (!r->common.quiet)
+            fprintf(stderr, "brio: %s: without the tetrahedra, which the format cannot hold\n", r->common.output);
+    }
     TRY(cli_write(r, shape));
 done:
     return status;

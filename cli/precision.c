@@ -6,6 +6,7 @@
  * written in any case. Single pairs of points that are almost coincident are merged, and counted. */
 #include "precision.h"
 #include "cloud.h"
+#include "lost.h"
 #include <math.h>
 
 /* The share of the points that may merge. Chosen: above the pairs of almost coincident points that scans have and that
@@ -75,8 +76,8 @@ brio_status cli_settle_precision(run *r, const char *path, const brio_mesh *mesh
     loss l = {.merged = 0};
     brio_status status = BRIO_OK;
     bool always = o->format == BRIO_FORMAT_STL, chosen = o->float32 && has_both(o->format);
-    if (o->float32 && !always && !chosen && !r->common.quiet)
-        fprintf(stderr, "brio: %s: --float32 changes nothing in this format\n", path);
+    bool binary = o->format == BRIO_FORMAT_LAS || (has_both(o->format) && o->format != BRIO_FORMAT_PLY);
+    cli_tell_idle(r, path, !binary, always || has_both(o->format));
     if (always || chosen) TRY(measure_loss(r, mesh, &l));
     if (chosen && l.is_harmful) {
         fprintf(stderr, "brio: warning: %s: in double precision: %s\n", path, l.reason);

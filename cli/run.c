@@ -2,6 +2,7 @@
 #include "run.h"
 #include "files.h"
 #include "interrupt.h"
+#include "lost.h"
 #include "precision.h"
 #include <stdarg.h>
 #include <stdlib.h>
@@ -171,6 +172,7 @@ brio_status cli_read(run *r, const char *path, brio_mesh **out) {
     TRY(brio_read(r->ctx, path, extension ? brio_format_of(extension) : BRIO_FORMAT_AUTO, out));
     TRY(cli_check_interrupt(r));
     TRY(cli_check_precision(r, path, *out));
+    r->has_properties |= (*out)->num_properties > 0;
     cli_lap(r, "read");
 done:
     return status;
@@ -239,7 +241,9 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     status = brio_write(r->ctx, path, mesh, &options);
     cli_interrupt_writing(false);
     cli_lap(r, "write");
-    if (status == BRIO_OK) cli_tell_moved(r, path, moved, merged);
+    if (status != BRIO_OK) goto done;
+    cli_tell_moved(r, path, moved, merged);
+    cli_tell_lost(r, path, mesh, options.format);
 done:
     return status;
 }

@@ -6,6 +6,7 @@ import struct
 
 from brio_cli import CliTest, main
 
+CUBES = [(x, y, z) for x in range(4) for y in range(4) for z in range(4)]
 TYPES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I", "float": "f", "double": "d"}
 
 
@@ -201,9 +202,57 @@ class SinglePrecision(LossTest):
         self.assertNotIn("moved", self.facts("interpolate", points, "--at", grid, "--property", "a", "-o",
                                              self.path("out.las")))
 
-    def test_an_option_without_a_meaning_in_the_format(self):
-        run = self.expect(0, "hull", self.xyz("a.xyz", ball(50)), "-o", self.path("out.obj"), "--float32")
-        self.assertRegex(run.err, "--float32 changes nothing")
+
+class Formats(LossTest):
+    """What a format cannot hold went without a word."""
+
+    def test_properties_that_a_format_cannot_hold(self):
+        points = self.ply("a.ply", [p + (i,) for i, p in enumerate(ball(60))], [("uchar", "red")])
+        for extension in ["obj", "off", "stl"]:
+            for how in [("hull",), ("surface", "--method", "cocone")]:
+                run = self.expect(0, how[0], points, *how[1:], "-o", self.path("out." + extension))
+                self.assertRegex(run.err, r"without the properties, which the format cannot hold: red\b")
+                run = self.expect(0, how[0], points, *how[1:], "-o", self.path("out." + extension), "--quiet")
+                self.assertEqual(run.err, "")
+        run = self.expect(0, "delaunay", points, "-o", self.path("out.node"))
+        self.assertRegex(run.err, "without the names of the properties: red")
+
+    def test_nothing_is_said_of_properties_that_no_input_had(self):
+        run = self.expect(0, "surface", self.xyz("a.xyz", CUBES), "-o", self.path("out.off"))
+        self.assertEqual(run.err, "")
+
+    def test_parts_of_the_medial_axis(self):
+        points = self.xyz("a.xyz", [tuple(c * s for c, s in zip(p, (3, 2, 1))) for p in ball(900)])
+        run = self.expect(0, "medial", points, "-o", self.path("out.xyz"))
+        for part in ["tetrahedra", "faces", "edges"]:
+            self.assertIn("out.xyz: without the %s, which the format cannot hold\n" % part, run.err)
+        self.assertEqual(self.expect(0, "medial", points, "-o", self.path("out.ply")).err, "")
+
+    def test_edges_of_a_hull(self):
+        points = self.xyz("a.xyz", [(i, i, i) for i in range(5)])
+        run = self.run_brio("hull", points, "-o", self.path("out.obj"))
+        self.assertIn("without the edges", run.err)
+
+    def test_options_that_change_nothing_in_the_format(self):
+        points = self.xyz("a.xyz", ball(50))
+        for name, option in [("out.obj", "float32"), ("out.vtu", "ascii"), ("out.vtp", "ascii")]:
+            run = self.expect(0, "hull", points, "-o", self.path(name), "--" + option)
+            self.assertIn("%s: --%s changes nothing in this format\n" % (name, option), run.err)
+        run = self.expect(0, "voronoi", points, "-o", self.path("out.vtu"), "--float32", "--ascii")
+        self.assertRegex(run.err, "--ascii changes nothing.*\n.*--float32 changes nothing")
+        run = self.expect(0, "locate", points, "--at", points, "-o", self.path("out.csv"), "--float32")
+        self.assertIn("--float32 changes nothing", run.err)
+        for name in ["out.ply", "out.obj", "out.stl"]:
+            self.assertNotIn("changes nothing", self.expect(0, "hull", points, "-o", self.path(name), "--ascii").err)
+
+    def test_places_that_have_the_property_keep_it(self):
+        """The interpolation was refused when it was finished."""
+        points = self.ply("a.ply", [p + (float(i),) for i, p in enumerate(ball(60))], [("double", "heat")])
+        places = self.ply("at.ply", [(0.1 * i, 0, 0, -1.0 - i) for i in range(5)], [("double", "heat")])
+        self.expect(0, "interpolate", points, "--at", places, "--property", "heat", "-o", self.path("out.ply"))
+        columns, _ = self.vertices("out.ply")
+        self.assertEqual(columns["input_heat"], (-1, -2, -3, -4, -5))
+        self.assertTrue(all(value >= 0 for value in columns["heat"]))
 
 
 class Properties(LossTest):
