@@ -1479,7 +1479,7 @@ typedef struct brio_write_options {
     int ascii;           /* 1: text, in formats with a text and a binary form; default 0 */
     int float32;         /* 1: coordinates in single precision, in formats with both; default 0 */
     const char *comment; /* a line for the header; default NULL: none */
-    double *moved;       /* receives the greatest distance between a vertex and the point that a reader of the file gets:
+    double *moved; /* receives the greatest distance between a vertex and the point that a reader of the file gets:
                             not 0 where a format or `float32` rounds coordinates; default NULL */
 } brio_write_options;
 
@@ -1495,7 +1495,8 @@ static inline brio_write_options brio_write_options_default(void) {
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
  *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU and VTP only. In the names of properties, formats
- *  that cannot quote have _ for blanks and commas; a comment of several lines becomes several comments.
+ *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
+ *  several lines becomes several comments.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, or an index is out of range), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
