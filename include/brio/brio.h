@@ -1479,8 +1479,8 @@ typedef struct brio_write_options {
     int ascii;           /* 1: text, in formats with a text and a binary form; default 0 */
     int float32;         /* 1: coordinates in single precision, in formats with both; default 0 */
     const char *comment; /* a line for the header; default NULL: none */
-    double *moved; /* receives the greatest distance between a vertex and the point that a reader of the file gets:
-                            not 0 where a format or `float32` rounds coordinates; default NULL */
+    double *moved;       /* receives the greatest distance between a vertex and the point that a reader gets: not 0
+                            where the format or `float32` rounds coordinates; default NULL */
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);
