@@ -40,7 +40,13 @@ static brio_status values_of(run *r, const brio_mesh *points, const char *name, 
     if (!property) return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have no property '%s'", r->operands[0], name);
     *values = malloc((points->num_vertices + 1) * sizeof **values);
     if (!*values) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu values", points->num_vertices);
-    for (size_t i = 0; i < points->num_vertices; i++) (*values)[i] = brio_property_value(property, i);
+    size_t none = 0;
+    for (size_t i = 0; i < points->num_vertices; i++) {
+        (*values)[i] = brio_property_value(property, i);
+        none += !isfinite((*values)[i]);
+    }
+    if (none && !r->common.quiet)
+        fprintf(stderr, "brio: %zu values of '%s' are not finite: neither are the results beside them\n", none, name);
     return BRIO_OK;
 }
 
@@ -89,6 +95,9 @@ static brio_status interpolate(run *r) {
     TRY(cli_read_located(r, a->at, NULL, &l));
     TRY(values_of(r, l.points, a->property, &values));
     TRY(cli_make_locator(r, &l));
+    if (l.duplicates && !r->common.quiet)
+        fprintf(stderr, "brio: %zu points are at the positions of others: the value of the first one there counts\n",
+                l.duplicates);
     TRY(answer(r, &l, a, values));
 done:
     free(values);

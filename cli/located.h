@@ -7,7 +7,8 @@
 
 typedef struct located {
     brio_mesh *points, *at;
-    double *weights; /* NULL: none */
+    double *weights;   /* NULL: none */
+    size_t duplicates; /* points at the positions of others */
     brio_locator *locator;
 } located;
 

@@ -16,7 +16,7 @@
 #include <string.h>
 
 /* BLOCK: vertices between two looks at the progress. Both chosen. */
-enum { BLOCK = 1 << 18, VERTICES_A_THREAD = 1 << 10 };
+enum { BLOCK = 1 << 18, VERTICES_A_THREAD = 1 << 8 };
 
 /* --- nearest points --- */
 

@@ -255,6 +255,23 @@ class Formats(LossTest):
         self.assertTrue(all(value >= 0 for value in columns["heat"]))
 
 
+class Values(LossTest):
+    """Values that interpolation leaves out, or that spoil those beside them."""
+
+    def test_values_of_coincident_points(self):
+        points = self.ply("a.ply", [p + (float(i),) for i, p in enumerate(CUBES + CUBES[:5])], [("double", "heat")])
+        how = ["interpolate", points, "--at", points, "--property", "heat", "-o", self.path("out.csv")]
+        self.assertRegex(self.expect(0, *how).err, "5 points are at the positions of others: the value of the first")
+        self.assertEqual(self.facts(*how)["duplicates"], 5)
+        with open(self.path("out.csv")) as f:
+            self.assertEqual([float(line) for line in f.read().split()[1:]], list(range(64)) + list(range(5)))
+
+    def test_values_that_are_not_finite(self):
+        points = self.ply("a.ply", [p + (math.nan if i == 3 else 1.0,) for i, p in enumerate(CUBES)], [("double", "heat")])
+        run = self.expect(0, "interpolate", points, "--at", points, "--property", "heat", "-o", self.path("out.csv"))
+        self.assertRegex(run.err, "1 values of 'heat' are not finite")
+
+
 class Properties(LossTest):
     """Colours and intensities vanished, in surfaces whose vertices are no samples most of all."""
 
