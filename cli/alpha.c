@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "estimate.h"
 #include "files.h"
+#include "properties.h"
 #include "weights.h"
 #include <errno.h>
 #include <math.h>
@@ -19,7 +20,7 @@ static const option options[] = {
      "squared radius, as in the literature, GUDHI and CGAL; PyVista and Open3D take its root. auto: the least with all "
      "points in one solid",
      0},
-    {"filtration", 0, OPTION_TEXT, offsetof(arguments, filtration), "FILE",
+    {"filtration", 0, OPTION_OUTPUT, offsetof(arguments, filtration), "FILE",
      "write all simplices with their values, sorted: lines for GUDHI; .sparse: the edges for ripser", 0},
     WEIGHTS_ROWS(arguments, weights),
     {0},
@@ -95,6 +96,7 @@ static brio_status make_shape(run *r, const brio_mesh *input, const brio_alpha_c
     TRY(brio_alpha_shape(r->ctx, input->vertices, complex, alpha, &surface, &s));
     cli_lap(r, "shape");
     report(r, complex, surface, &s);
+    TRY(cli_carry_properties(r, input, NULL, surface));
     TRY(cli_check_interrupt(r));
     TRY(cli_certify(r, surface, 0));
     TRY(cli_write(r, surface));

@@ -22,7 +22,7 @@ static void report_certificate(facts *f, const brio_certificate *c) {
     cli_fact_count(f, "nonmanifold_vertices", c->nonmanifold_vertices);
     cli_fact_count(f, "flipped_edges", c->flipped_edges);
     if (c->self_intersections < 0)
-        cli_fact_null(f, "self_intersections");
+        cli_fact_missing(f, "self_intersections", "not counted");
     else
         cli_fact_integer(f, "self_intersections", c->self_intersections);
     cli_fact_real(f, "area", c->area);
@@ -61,6 +61,8 @@ brio_status cli_certify(run *r, const brio_mesh *mesh, unsigned how) {
     cli_lap(r, "certify");
     if (how & (CERTIFY_COUNTED | CERTIFY_EMBEDDED)) TRY(count_self_intersections(r, mesh, &c));
     report_certificate(&r->facts, &c);
+    if (c.self_intersections > 0 && !(how & CERTIFY_EMBEDDED))
+        cli_warn(r, "the surface intersects itself: %lld pairs of faces", (long long)c.self_intersections);
     if (!(how & CERTIFY_ANYTHING)) status = judge(r, &c, how);
 done:
     brio_certificate_free(&c);

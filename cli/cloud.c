@@ -34,7 +34,7 @@ static uint64_t mix(uint64_t x) {
 }
 
 /* Adding 0.0 turns -0.0 into 0.0, which it equals. */
-static uint64_t position_hash(const double *p, uint64_t seed) {
+static uint64_t position_hash(const double p[3], uint64_t seed) {
     uint64_t hash = seed;
     for (int k = 0; k < 3; k++) {
         double x = p[k] + 0.0;
@@ -45,11 +45,19 @@ static uint64_t position_hash(const double *p, uint64_t seed) {
     return hash;
 }
 
-static bool same_position(const double *p, const double *q) {
-    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+/* A position in double or in single precision. */
+static void get_position(const double *p, bool single, double out[3]) {
+    for (int k = 0; k < 3; k++) out[k] = single ? (double)(float)p[k] : p[k];
 }
 
-brio_status cli_cloud_duplicates(run *r, const double *points, size_t count, size_t *duplicates) {
+static bool same_position(const double *p, const double *q, bool single) {
+    double a[3], b[3];
+    get_position(p, single, a);
+    get_position(q, single, b);
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+static brio_status count_duplicates(run *r, const double *points, size_t count, bool single, size_t *duplicates) {
     size_t slots = count + count / 2 + 1;
     uint32_t *table = calloc(slots, sizeof *table); /* index + 1; 0 is free */
     brio_status status = BRIO_OK;
@@ -57,9 +65,11 @@ brio_status cli_cloud_duplicates(run *r, const double *points, size_t count, siz
     if (!table) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: a table of %zu points", count);
     for (size_t i = 0; i < count; i++) {
         const double *p = points + 3 * i;
-        size_t slot = (size_t)(position_hash(p, r->common.seed) % slots);
+        double at[3];
+        get_position(p, single, at);
+        size_t slot = (size_t)(position_hash(at, r->common.seed) % slots);
         if (i % INTERRUPT_EVERY == 0) TRY(cli_check_interrupt(r));
-        while (table[slot] && !same_position(p, points + 3 * (size_t)(table[slot] - 1)))
+        while (table[slot] && !same_position(p, points + 3 * (size_t)(table[slot] - 1), single))
             slot = slot + 1 < slots ? slot + 1 : 0;
         if (table[slot])
             ++*duplicates;
@@ -68,6 +78,20 @@ brio_status cli_cloud_duplicates(run *r, const double *points, size_t count, siz
     }
 done:
     free(table);
+    return status;
+}
+
+brio_status cli_cloud_duplicates(run *r, const double *points, size_t count, size_t *duplicates) {
+    return count_duplicates(r, points, count, false, duplicates);
+}
+
+brio_status cli_cloud_merged(run *r, const double *points, size_t count, size_t *merged) {
+    brio_status status = BRIO_OK;
+    size_t before, after;
+    TRY(count_duplicates(r, points, count, false, &before));
+    TRY(count_duplicates(r, points, count, true, &after));
+    *merged = after - before;
+done:
     return status;
 }
 

@@ -3,6 +3,7 @@
 #include "estimate.h"
 #include "mesh_edges.h"
 #include "plane.h"
+#include "properties.h"
 #include "weights.h"
 #include <inttypes.h>
 #include <math.h>
@@ -217,8 +218,10 @@ static brio_status verify(run *r, const brio_mesh *mesh, const double *weights, 
 
 /* Fills the mesh with the result and frees the triangulation before the file is written. */
 static brio_status write_output(run *r, brio_mesh *mesh, const double *weights, brio_triangulation **t) {
+    const arguments *a = r->arguments;
     brio_status status = BRIO_OK;
-    TRY(cli_keep_weights(mesh, weights));
+    TRY(cli_keep_weights(r, &a->weights, mesh, weights));
+    TRY(cli_add_representatives(r, mesh, brio_triangulation_representatives(*t)));
     const brio_tetrahedron *tets = brio_triangulation_tetrahedra(*t);
     TRY(brio_mesh_set_tetrahedra(mesh, (const uint32_t *)tets, 8, brio_triangulation_stats(*t)->tetrahedra));
     brio_triangulation_free(*t);
@@ -241,6 +244,7 @@ static brio_status delaunay(run *r) {
     TRY(cli_weights(r, &a->weights, mesh, &weights));
     if (a->plane != NO_PLANE) {
         cli_lap(r, "read");
+        TRY(cli_keep_weights(r, &a->weights, mesh, weights));
         status = cli_plane(r, a->plane, mesh, weights, a->round_ratio, a->verify);
         goto done;
     }

@@ -52,8 +52,16 @@ void cli_fact_null(facts *f, const char *name) {
     add(f, name, FACT_NULL);
 }
 
+void cli_fact_missing(facts *f, const char *name, const char *reason) {
+    fact *new = add(f, name, FACT_NULL);
+    if (!f->failed) new->text = copy_text(f, reason);
+}
+
 void cli_fact_real(facts *f, const char *name, double real) {
-    add(f, name, isfinite(real) ? FACT_REAL : FACT_NULL)->real = real;
+    if (isfinite(real))
+        add(f, name, FACT_REAL)->real = real;
+    else
+        cli_fact_null(f, name);
 }
 
 void cli_fact_open(facts *f, const char *name, fact_kind object_or_list) {
@@ -66,7 +74,7 @@ void cli_fact_close(facts *f) {
 void cli_facts_free(facts *f) {
     for (size_t i = 0; i < f->count; i++) {
         free(f->list[i].name);
-        if (f->list[i].kind == FACT_TEXT) free(f->list[i].text);
+        if (f->list[i].kind == FACT_TEXT || f->list[i].kind == FACT_NULL) free(f->list[i].text);
     }
     free(f->list);
     memset(f, 0, sizeof *f);

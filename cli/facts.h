@@ -52,6 +52,8 @@ void cli_fact_bytes(facts *f, const char *name, uint64_t bytes);
 void cli_fact_real(facts *f, const char *name, double real);
 void cli_fact_seconds(facts *f, const char *name, double seconds);
 void cli_fact_null(facts *f, const char *name);
+/** null for programs; people read the reason. */
+void cli_fact_missing(facts *f, const char *name, const char *reason);
 void cli_fact_open(facts *f, const char *name, fact_kind object_or_list);
 void cli_fact_close(facts *f);
 void cli_facts_free(facts *f);

@@ -5,6 +5,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -45,6 +46,18 @@ static char *follow_links(const char *path) {
     return NULL;
 }
 
+/* Whether two files that are not there yet would be one: the same name in the same folder. */
+static bool is_one_new_file(const char *a, const char *b) {
+    const char *slash_a = strrchr(a, '/'), *slash_b = strrchr(b, '/');
+    char folder_a[PATH_MAX], folder_b[PATH_MAX];
+    struct stat of_a, of_b;
+    if (strcmp(slash_a ? slash_a + 1 : a, slash_b ? slash_b + 1 : b) != 0) return false;
+    snprintf(folder_a, sizeof folder_a, "%.*s", slash_a ? (int)(slash_a - a) + 1 : 1, slash_a ? a : ".");
+    snprintf(folder_b, sizeof folder_b, "%.*s", slash_b ? (int)(slash_b - b) + 1 : 1, slash_b ? b : ".");
+    if (stat(folder_a, &of_a) != 0 || stat(folder_b, &of_b) != 0) return !strcmp(a, b);
+    return of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+}
+
 /* A new file is written beside an old one and renamed over it: that takes a writable folder, the one that symbolic links lead
  * to. Pipes and devices are written directly. */
 brio_status cli_check_target(run *r, const char *path) {
@@ -76,20 +89,92 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
         path);
 }
 
-/* Whether two names are those of one file; devices may be named twice. */
-static bool is_same_file(const char *a, const char *b) {
+/* --- files named twice --- */
+
+/* Whether two paths lead to one regular file, through links and folders by any name; devices may be named twice. */
+static bool leads_to_one(const char *a, const char *b) {
     struct stat of_a, of_b;
-    if (stat(a, &of_a) != 0 || stat(b, &of_b) != 0) return !strcmp(a, b);
-    return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+    bool has_a = stat(a, &of_a) == 0, has_b = stat(b, &of_b) == 0;
+    if (has_a && has_b) return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+    if (has_a || has_b) return false;
+    char *end_a = follow_links(a), *end_b = follow_links(b);
+    bool same = end_a && end_b && is_one_new_file(end_a, end_b);
+    free(end_a);
+    free(end_b);
+    return same;
+}
+
+/* The .node file of a TetGen pair, to be freed; NULL for other names, and without memory. */
+static char *node_of(const char *path) {
+    const char *dot = strrchr(path, '.');
+    if (!dot || (strcasecmp(dot, ".node") != 0 && strcasecmp(dot, ".ele") != 0)) return NULL;
+    char *name = malloc((size_t)(dot - path) + sizeof ".node");
+    if (name) sprintf(name, "%.*s.node", (int)(dot - path), path);
+    return name;
+}
+
+bool cli_same_file(const char *a, const char *b) {
+    if (!strcmp(a, "-") || !strcmp(b, "-")) return false;
+    if (leads_to_one(a, b)) return true;
+    char *node_a = node_of(a), *node_b = node_of(b);
+    bool same = node_a && node_b && leads_to_one(node_a, node_b);
+    free(node_a);
+    free(node_b);
+    return same;
+}
+
+/* A file that the command line names, and how. */
+typedef struct {
+    const char *path;
+    const option *option; /* NULL: an operand */
+    bool written;
+} named_file;
+
+enum { MOST_NAMED = 16 };
+
+static size_t name_options(const option *rows, const void *values, named_file *files, size_t count) {
+    for (const option *row = rows; row->kind; row++) {
+        if (row->kind != OPTION_INPUT && row->kind != OPTION_OUTPUT) continue;
+        const char *path;
+        memcpy(&path, (const char *)values + row->offset, sizeof path);
+        if (path && count < MOST_NAMED) files[count++] = (named_file){path, row, row->kind == OPTION_OUTPUT};
+    }
+    return count;
+}
+
+static void describe(const option *row, char text[40]) {
+    if (!row)
+        snprintf(text, 40, "the input");
+    else if (row->letter)
+        snprintf(text, 40, "-%c", row->letter);
+    else
+        snprintf(text, 40, "--%s", row->name);
+}
+
+static brio_status refuse_pair(run *r, const named_file *a, const named_file *b) {
+    char first[40], second[40];
+    describe(a->option, first);
+    describe(b->option, second);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s and %s name the same file", a->path, first, second);
+}
+
+brio_status cli_check_named_twice(run *r) {
+    named_file files[MOST_NAMED];
+    size_t count = name_options(cli_common_options, &r->common, files, 0);
+    count = name_options(r->command->options, r->arguments, files, count);
+    for (int i = r->command->first_input; i < r->num_operands && count < MOST_NAMED; i++)
+        files[count++] = (named_file){r->operands[i], NULL, false};
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = 0; j < i; j++)
+            if ((files[i].written || files[j].written) && cli_same_file(files[i].path, files[j].path))
+                return refuse_pair(r, &files[i], &files[j]);
+    return BRIO_OK;
 }
 
 brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats) {
-    const char *output = r->common.output;
     brio_format format;
     brio_status status = BRIO_OK;
     if (!strcmp(path, "-")) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name));
-    if (output && is_same_file(path, output))
-        TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "%s: --%s and -o name the same file", path, name));
     if (formats) TRY(cli_output_format(r, path, NULL, &format));
     for (; formats && *formats != format; formats++)
         if (*formats == BRIO_FORMAT_AUTO)

@@ -8,8 +8,16 @@
  *  is protected, or it is a folder. */
 brio_status cli_check_target(run *r, const char *path);
 
-/** Finds everything wrong with a file that an option wants beside -o: standard output, the file of -o itself, a format
- *  not among those of the list, a file that cannot be written.   formats  ended by BRIO_FORMAT_AUTO; NULL: any name. */
+/** Whether two paths name one regular file, or one that would be made: through links, and by other names of its folder.
+ *  The .node and the .ele file of TetGen are one. */
+bool cli_same_file(const char *a, const char *b);
+
+/** BRIO_ERR_ARGUMENT when an output of the command line is an input, or another output. Inputs are the operands and the
+ *  options of kind OPTION_INPUT, outputs those of kind OPTION_OUTPUT. */
+brio_status cli_check_named_twice(run *r);
+
+/** Finds everything wrong with a file that an option wants beside -o: standard output, a format not among those of the
+ *  list, a file that cannot be written.   formats  ended by BRIO_FORMAT_AUTO; NULL: any name. */
 brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats);
 
 /** The format that --format or the extension asks for; BRIO_FORMAT_AUTO with the reason stored when there is none. */

@@ -38,7 +38,7 @@ static const option options[] = {
     {"points", 'n', OPTION_NATURAL, FIELD(points), "N", "number of points", 0},
     {"noise", 0, OPTION_NUMBER, FIELD(noise), "S", "scan: noise, in units of the spacing (default 0.05)", 0},
     {"views", 0, OPTION_INT, FIELD(views), "V", "scan: number of sensor positions (default 12)", 0},
-    {"truth", 0, OPTION_TEXT, FIELD(truth), "FILE", "scan: also write the surface that is scanned", 0},
+    {"truth", 0, OPTION_OUTPUT, FIELD(truth), "FILE", "scan: also write the surface that is scanned", 0},
     {"truth-resolution", 0, OPTION_NATURAL, FIELD(truth_resolution), "R", "cells along its longest side (default 160)",
      0},
     {"kind", 0, OPTION_CHOICE, FIELD(solid), "KIND", "solid: family (default implicit)", solids},

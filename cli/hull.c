@@ -2,6 +2,8 @@
 #include "certificate.h"
 #include "commands.h"
 #include "estimate.h"
+#include "properties.h"
+#include <stdlib.h>
 
 typedef struct arguments {
     bool polygons;
@@ -34,18 +36,23 @@ static brio_status hull(run *r) {
     brio_convex_hull_options o = brio_convex_hull_options_default();
     brio_convex_hull_stats s = {.size = sizeof s};
     brio_mesh *input = NULL, *surface = NULL;
+    uint32_t *samples = NULL;
     brio_status status = BRIO_OK;
-    o.polygons = a->polygons;
     TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read_points(r, r->operands[0], &input));
     TRY(cli_require_memory(r, cli_hull_bytes(input)));
+    o.polygons = a->polygons;
+    o.samples = samples = malloc((input->num_vertices + 1) * sizeof *samples);
+    if (!samples) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", input->num_vertices));
     TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, &s));
     if (s.dimension < 0) TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "no points, so no convex hull"));
     report(r, surface, &s);
+    TRY(cli_carry_properties(r, input, samples, surface));
     TRY(cli_check_interrupt(r));
     TRY(cli_certify(r, surface, s.dimension < 3 ? CERTIFY_OPEN : 0u)); /* flat hulls bound nothing */
     TRY(cli_write(r, surface));
 done:
+    free(samples);
     brio_mesh_free(surface);
     brio_mesh_free(input);
     return status;

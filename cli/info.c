@@ -37,7 +37,7 @@ static void report_properties(facts *f, const brio_mesh *mesh) {
 
 /* Estimates of the commands that go by the triangulation. */
 static brio_status report_triangulations(run *r, const brio_mesh *mesh) {
-    static const weights_options standard = {.exponent = NO_EXPONENT};
+    static const weights_options standard = {.exponent = NO_EXPONENT, .estimate = true};
     facts *f = &r->facts;
     double *weights = NULL, beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh), delaunay, cells, places;
     size_t n = mesh->num_vertices;

@@ -1,6 +1,7 @@
 /* brio interpolate: values of a property of the points of a file, at the points of another file. */
 #include "commands.h"
 #include "located.h"
+#include "properties.h"
 #include "table.h"
 #include <math.h>
 #include <stdlib.h>
@@ -39,15 +40,19 @@ static brio_status values_of(run *r, const brio_mesh *points, const char *name, 
     if (!property) return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have no property '%s'", r->operands[0], name);
     *values = malloc((points->num_vertices + 1) * sizeof **values);
     if (!*values) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu values", points->num_vertices);
-    for (size_t i = 0; i < points->num_vertices; i++) (*values)[i] = brio_property_value(property, i);
+    size_t none = 0;
+    for (size_t i = 0; i < points->num_vertices; i++) {
+        (*values)[i] = brio_property_value(property, i);
+        none += !isfinite((*values)[i]);
+    }
+    if (none) cli_warn(r, "%zu values of '%s' are not finite: neither are the results beside them", none, name);
     return BRIO_OK;
 }
 
 /* Adds the property to the places, which a table leaves out. */
 static brio_status add_results(run *r, brio_mesh *at, const arguments *a, double **results) {
     void *data;
-    if (brio_mesh_property(at, a->property))
-        return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have a property '%s' already", a->at, a->property);
+    cli_set_aside(r, at, a->property);
     brio_status status = brio_mesh_add_property(at, a->property, BRIO_SCALAR_FLOAT64, &data);
     if (status == BRIO_OK) *results = data;
     return status;
@@ -89,6 +94,8 @@ static brio_status interpolate(run *r) {
     TRY(cli_read_located(r, a->at, NULL, &l));
     TRY(values_of(r, l.points, a->property, &values));
     TRY(cli_make_locator(r, &l));
+    if (l.duplicates)
+        cli_warn(r, "%zu points are at the positions of others: the value of the first one there counts", l.duplicates);
     TRY(answer(r, &l, a, values));
 done:
     free(values);

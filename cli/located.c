@@ -31,7 +31,9 @@ brio_status cli_make_locator(run *r, located *l) {
     cli_lap(r, "delaunay");
     TRY(brio_locator_new(r->ctx, t, l->points->vertices, l->weights, count, &l->locator));
     cli_lap(r, "locator");
+    l->duplicates = brio_triangulation_stats(t)->duplicates;
     cli_fact_count(&r->facts, "points", brio_triangulation_stats(t)->points);
+    cli_fact_count(&r->facts, "duplicates", l->duplicates);
     cli_fact_count(&r->facts, "tetrahedra", brio_triangulation_stats(t)->tetrahedra);
 done:
     brio_triangulation_free(t);

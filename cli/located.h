@@ -7,13 +7,14 @@
 
 typedef struct located {
     brio_mesh *points, *at;
-    double *weights; /* NULL: none */
+    double *weights;   /* NULL: none */
+    size_t duplicates; /* points at the positions of others */
     brio_locator *locator;
 } located;
 
 /** The row of the option --at for a command's table. */
 /* clang-format off */
-#define AT_ROW(type, field) {"at", 0, OPTION_TEXT, offsetof(type, field), "FILE", "the places asked about, points of a file", 0}
+#define AT_ROW(type, field) {"at", 0, OPTION_INPUT, offsetof(type, field), "FILE", "the places asked about, points of a file", 0}
 /* clang-format on */
 
 /** Reads IN and the file --at. Refuses the work over --max-memory.   weights  NULL: points without weights. */

@@ -4,6 +4,7 @@
 #include "estimate.h"
 #include "files.h"
 #include "power_crust.h"
+#include "properties.h"
 
 typedef struct arguments {
     int labeling, sides, noise;
@@ -26,7 +27,7 @@ static const option options[] = {
      "leave out balls that lie in another when both are scaled by S", 0},
     {"redundancy", 0, OPTION_NUMBER, offsetof(arguments, redundancy), "E",
      "leave out balls that lie in another enlarged by E of its radius", 0},
-    {"crust", 0, OPTION_TEXT, offsetof(arguments, crust), "FILE",
+    {"crust", 0, OPTION_OUTPUT, offsetof(arguments, crust), "FILE",
      "also write the surface of the balls: their power crust", 0},
     {"noise", 0, OPTION_CHOICE, offsetof(arguments, noise), "NAME",
      "what to do about noisy points (default auto: smooth if noise is found)", cli_noise},
@@ -101,7 +102,10 @@ static brio_status write_shape(run *r, brio_mesh *shape) {
     brio_status status = BRIO_OK;
     if (!r->common.output) return BRIO_OK; /* --json alone asks for the facts */
     TRY(cli_output_format(r, r->common.output, r->common.format, &format));
-    if (format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) shape->num_tetrahedra = 0;
+    if ((format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) && shape->num_tetrahedra) {
+        shape->num_tetrahedra = 0;
+        cli_warn(r, "%s: without the tetrahedra, which the format cannot hold", r->common.output);
+    }
     TRY(cli_write(r, shape));
 done:
     return status;
@@ -136,6 +140,8 @@ static brio_status medial(run *r) {
     cli_suggest_labeling(r, status, a->labeling, by_mesh);
     if (status != BRIO_OK) goto done;
     report(r, &o, &s, shape);
+    TRY(cli_carry_properties(r, input, NULL, shape));
+    if (crust) TRY(cli_carry_properties(r, input, NULL, crust));
     brio_mesh_free(input);
     input = NULL;
     TRY(cli_check_interrupt(r));

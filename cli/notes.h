@@ -7,7 +7,7 @@
 
 /** Sentences one after the other, each ended by a zero. Zeroed to begin with. What does not fit is left out. */
 typedef struct notes {
-    char text[2048];
+    char text[8192];
     size_t used;
 } notes;
 

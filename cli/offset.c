@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "estimate.h"
 #include "power_crust.h"
+#include "properties.h"
 #include <math.h>
 
 typedef struct arguments {
@@ -90,9 +91,10 @@ static brio_status offset(run *r) {
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));
     TRY(offset_surface(r, &crust, points, by_mesh, &surface));
     TRY(cli_check_interrupt(r));
+    if (a->vertex_normals) TRY(brio_mesh_add_normals(surface));
+    TRY(cli_carry_properties(r, points, NULL, surface));
     brio_mesh_free(points);
     points = NULL;
-    if (a->vertex_normals) TRY(brio_mesh_add_normals(surface));
     TRY(cli_certify(r, surface, a->self_intersections ? CERTIFY_COUNTED : 0u));
     TRY(cli_write(r, surface));
 done:

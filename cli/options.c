@@ -102,10 +102,16 @@ static bool parse_choice(option_parse *parse, const option *row, const char *tex
     return wrong(parse, "--%s: unknown name '%s', expected %s", row->name, text, names);
 }
 
+static bool is_text(option_kind kind) {
+    return kind == OPTION_TEXT || kind == OPTION_INPUT || kind == OPTION_OUTPUT;
+}
+
 static bool store(option_parse *parse, const option *row, void *field, const char *text) {
     const char *expected = NULL;
     switch (row->kind) {
     case OPTION_TEXT:
+    case OPTION_INPUT:
+    case OPTION_OUTPUT:
         *(const char **)field = text;
         break;
     case OPTION_INT:
@@ -199,7 +205,7 @@ static bool take(option_parse *parse, int argc, char **argv, int *i) {
             return wrong(parse, "%s needs a value (%s)", argument, f.row->value);
         value = argv[++*i];
     }
-    if (!*value && f.row->kind == OPTION_TEXT) return wrong(parse, "%s: the value is empty", argument);
+    if (!*value && is_text(f.row->kind)) return wrong(parse, "%s: the value is empty", argument);
     return store(parse, f.row, f.field, value);
 }
 

@@ -11,6 +11,8 @@ typedef enum option_kind {
     OPTION_END = 0, /* closes a table */
     OPTION_FLAG,    /* bool, without a value */
     OPTION_TEXT,    /* const char *, a view of the command line */
+    OPTION_INPUT,   /* the same: a file that is read */
+    OPTION_OUTPUT,  /* the same: a file that is written */
     OPTION_INT,     /* int */
     OPTION_NATURAL, /* uint64_t: 1000000, also 1e6 */
     OPTION_NUMBER,  /* double, finite */

@@ -1,7 +1,7 @@
 /* brio delaunay --plane: triangles of two coordinates of the points, over the points in space. */
 #include "plane.h"
 #include "estimate.h"
-#include "weights.h"
+#include "properties.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -100,7 +100,7 @@ brio_status cli_plane(run *r, int plane, brio_mesh *mesh, const double *weights,
     TRY(report(r, t, points, weights != NULL));
     if (verify) TRY(verify_result(r, t, points, weights));
     if (!r->common.output) goto done;
-    TRY(cli_keep_weights(mesh, weights));
+    TRY(cli_add_representatives(r, mesh, brio_triangulation2_representatives(t)));
     TRY(set_faces(r, mesh, t));
     TRY(cli_write(r, mesh));
 done:

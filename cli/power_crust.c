@@ -2,6 +2,7 @@
 #include "power_crust.h"
 #include "estimate.h"
 #include "files.h"
+#include "properties.h"
 #include <stdlib.h>
 
 const option_choice cli_labelings[] = {{"global", BRIO_LABELING_GLOBAL},
@@ -41,6 +42,7 @@ brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points,
         TRY(brio_mesh_add_property(out, names[k], BRIO_SCALAR_FLOAT64, &data));
         for (size_t i = 0; i < points->num_vertices; i++) ((double *)data)[i] = normals[3 * i + k];
     }
+    TRY(cli_copy_properties(r, points, out));
     TRY(cli_write_to(r, path, out));
 done:
     brio_mesh_free(out);

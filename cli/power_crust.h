@@ -39,7 +39,7 @@ void cli_suggest_labeling(run *r, brio_status status, int labeling, bool by_mesh
      "a quarter as many faces, as far as the shape allows; triangles", 0},                                             \
     {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
      "write triangles; the default, kept for old scripts", 0},                                                         \
-    {"normals", 0, OPTION_TEXT, offsetof(type, field.normals), "FILE",                                                 \
+    {"normals", 0, OPTION_OUTPUT, offsetof(type, field.normals), "FILE",                                                 \
      "also write the points with oriented normals", 0}
 
 #define POWER_CRUST_ROWS(type, field)                                                                                  \

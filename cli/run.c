@@ -2,6 +2,8 @@
 #include "run.h"
 #include "files.h"
 #include "interrupt.h"
+#include "lost.h"
+#include "precision.h"
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +14,7 @@ enum { MAX_THREADS = 1024 };
 
 #define FIELD(name) offsetof(common_options, name)
 const option cli_common_options[] = {
-    {"output", 'o', OPTION_TEXT, FIELD(output), "FILE",
+    {"output", 'o', OPTION_OUTPUT, FIELD(output), "FILE",
      "the file to write; its extension names the format; - is standard output", 0},
     {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output, such as ply (needed with -o -)", 0},
     {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT",
@@ -102,6 +104,7 @@ brio_status cli_begin(run *r) {
     const common_options *c = &r->common;
     brio_status status = BRIO_OK;
     TRY(check_common(r));
+    TRY(cli_check_named_twice(r));
     TRY(brio_context_new(NULL, &r->ctx));
     brio_context_set_threads(r->ctx, c->threads);
     brio_context_set_memory_limit(r->ctx, c->max_memory);
@@ -172,6 +175,8 @@ brio_status cli_read(run *r, const char *path, brio_mesh **out) {
     brio_status status = BRIO_OK;
     TRY(brio_read(r->ctx, path, extension ? brio_format_of(extension) : BRIO_FORMAT_AUTO, out));
     TRY(cli_check_interrupt(r));
+    TRY(cli_check_precision(r, path, *out));
+    r->has_properties |= (*out)->num_properties > 0;
     cli_lap(r, "read");
 done:
     return status;
@@ -227,15 +232,22 @@ done:
 static brio_status write_file(run *r, const char *path, const char *extension, const brio_mesh *mesh) {
     brio_write_options options = brio_write_options_default();
     brio_status status = BRIO_OK;
+    double moved = 0;
+    size_t merged = 0;
     TRY(cli_output_format(r, path, extension, &options.format));
     options.ascii = r->common.ascii;
     options.float32 = r->common.float32;
+    options.moved = &moved;
+    TRY(cli_settle_precision(r, path, mesh, &options, &merged));
     options.comment = "brio " BRIO_VERSION;
     TRY(cli_check_interrupt(r));
     cli_interrupt_writing(strcmp(path, "-") != 0);
     status = brio_write(r->ctx, path, mesh, &options);
     cli_interrupt_writing(false);
     cli_lap(r, "write");
+    if (status != BRIO_OK) goto done;
+    cli_tell_moved(r, path, moved, merged);
+    cli_tell_lost(r, path, mesh, options.format);
 done:
     return status;
 }

@@ -43,6 +43,7 @@ typedef struct run {
     int num_operands;
     brio_context *ctx;
     facts facts;
+    bool has_properties; /* an input's points have */
     progress bar;
     struct {
         const char *stage;

@@ -4,6 +4,7 @@
 #include "estimate.h"
 #include "files.h"
 #include "power_crust.h"
+#include "properties.h"
 #include "surface_extras.h"
 #include <stdlib.h>
 
@@ -84,7 +85,7 @@ static int method_of(const arguments *a) {
 }
 
 /* Completes the surface: normals, the properties of its points, fewer components. Reports what it then has.
- * samples  the point of each vertex, NULL if vertex v is point v.   num_samples  distinct positions. */
+ * samples  the point of each vertex; NULL for the co-cones and the power crust.   num_samples  distinct positions. */
 static brio_status complete(run *r, const brio_mesh *points, const uint32_t *samples, size_t num_samples,
                             brio_mesh *surface) {
     const arguments *a = r->arguments;
@@ -92,7 +93,8 @@ static brio_status complete(run *r, const brio_mesh *points, const uint32_t *sam
     brio_status status = BRIO_OK;
     size_t dropped[2];
     if (a->vertex_normals || method == LABELED_DELAUNAY) TRY(brio_mesh_add_normals(surface));
-    if (method != POWER_CRUST) TRY(cli_copy_properties(r, points, samples, surface));
+    TRY(method == COCONE || method == TIGHT_COCONE ? cli_copy_properties(r, points, surface)
+                                                   : cli_carry_properties(r, points, samples, surface));
     TRY(cli_keep_components(r, &a->components, surface, dropped));
     cli_fact_text(&r->facts, "method", methods[method - 1].name);
     cli_fact_count(&r->facts, "samples", num_samples);

@@ -24,11 +24,6 @@ typedef struct component_options {
             0                                                                                                          \
     }
 
-/** Copies the properties of points to the vertices of their surface. Where the surface has a property of that name, the
- *  one of the points is called input_NAME; it is left out where that name is taken or too long, too.
- *  samples  the point of each vertex; NULL: vertex v is point v. */
-brio_status cli_copy_properties(run *r, const brio_mesh *points, const uint32_t *samples, brio_mesh *surface);
-
 /** Drops components as the options say; nothing without options.   dropped  components and faces. */
 brio_status cli_keep_components(run *r, const component_options *options, brio_mesh *surface, size_t dropped[2]);
 

@@ -4,6 +4,7 @@
  * Based on: the NEP 1 of numpy, a simple file format for arrays. */
 #include "table.h"
 #include "files.h"
+#include "lost.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -136,6 +137,7 @@ brio_status cli_write_table(run *r, const table *t) {
     struct stat info;
     brio_status status = BRIO_OK;
     if (!path) return BRIO_OK;
+    cli_tell_idle(r, path, cli_is_table(r, "csv"), false);
     TRY(cli_check_interrupt(r));
     if (!strcmp(path, "-"))
         status = write_rows(r, stdout, t);

@@ -50,7 +50,7 @@ static void write_value(FILE *out, const fact *f) {
         write_bytes(out, f->count);
         break;
     case FACT_NULL:
-        fputs("none", out);
+        fputs(f->text ? f->text : "none", out);
         break;
     default:
         break;

@@ -3,6 +3,7 @@
 #include "estimate.h"
 #include "files.h"
 #include "interrupt.h"
+#include "lost.h"
 #include "weights.h"
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +18,7 @@ typedef struct arguments {
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
     {"box", 0, OPTION_TEXT, FIELD(box), "B", "clip the cells to x0,y0,z0,x1,y1,z1", 0},
-    {"faces", 0, OPTION_TEXT, FIELD(faces), "FILE",
+    {"faces", 0, OPTION_OUTPUT, FIELD(faces), "FILE",
      "write a row for each face of each cell (.csv): site,neighbour,area,nx,ny,nz; walls are -1 to -6", 0},
     {0},
 };
@@ -91,6 +92,7 @@ static brio_status write_file(run *r, const char *path, const brio_cells *cells,
     brio_status status = BRIO_OK;
     if (!path) return BRIO_OK;
     TRY(cli_check_interrupt(r));
+    cli_tell_idle(r, path, format != BRIO_CELLS_FORMAT_VTU && format != BRIO_CELLS_FORMAT_NPY, false);
     cli_interrupt_writing(strcmp(path, "-") != 0);
     status = brio_cells_write(r->ctx, path, cells, format, "brio " BRIO_VERSION);
     cli_interrupt_writing(false);

@@ -1,9 +1,17 @@
-/* Weights of points. A file of weights has one number a line; blank lines and what follows a # are comments. */
+/* Weights of points. A file of weights has one number a line; blank lines and what follows a # are comments.
+ *
+ * A point of weight w is the ball of squared radius w. So the property `radius`, which `brio medial` writes, stands for
+ * weights, too: its squares. */
 #include "weights.h"
+#include "properties.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Weights and squares of radii that differ by this share are equal: singles that were rounded, and squared, differ by
+ * 2^-23. */
+static const double ROUNDING = 1e-6;
 
 brio_status cli_check_weights_options(run *r, const weights_options *options) {
     int sources = (options->file != NULL) + (options->exponent != NO_EXPONENT) + options->unweighted;
@@ -18,7 +26,8 @@ brio_status cli_check_weights_options(run *r, const weights_options *options) {
 
 bool cli_is_weighted(const weights_options *options, const brio_mesh *mesh) {
     if (options->unweighted) return false;
-    return options->file || options->exponent != NO_EXPONENT || brio_mesh_property(mesh, "weight");
+    return options->file || options->exponent != NO_EXPONENT || brio_mesh_property(mesh, "weight") ||
+           brio_mesh_property(mesh, "radius");
 }
 
 /* --- a file of weights --- */
@@ -76,8 +85,56 @@ static void copy_property(const brio_property *property, double *weights, size_t
     for (size_t i = 0; i < count; i++) weights[i] = brio_property_value(property, i);
 }
 
+static brio_status square_radii(run *r, const brio_property *radius, double *weights, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        double value = brio_property_value(radius, i);
+        weights[i] = value * value;
+        if (!(value >= 0) || !isfinite(weights[i]))
+            return cli_fail(
+                r, BRIO_ERR_FORMAT,
+                "point %zu (counted from 0) has the radius %g, expected 0 or more, whose square is the weight; "
+                "--unweighted ignores the property",
+                i, value);
+    }
+    return BRIO_OK;
+}
+
+/* Refuses weights that are not the squares of the radii. */
+static brio_status compare_weights(run *r, const brio_property *weight, const double *squares, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        double value = brio_property_value(weight, i);
+        if (!(fabs(value - squares[i]) <= ROUNDING * squares[i]))
+            return cli_fail(r, BRIO_ERR_FORMAT,
+                            "point %zu (counted from 0) has the weight %g and the radius %g, whose square is another "
+                            "number; --unweighted ignores both, --weights FILE overrules them",
+                            i, value, sqrt(squares[i]));
+    }
+    return BRIO_OK;
+}
+
+static brio_status weights_of_properties(run *r, const brio_mesh *mesh, double *weights) {
+    const brio_property *weight = brio_mesh_property(mesh, "weight"), *radius = brio_mesh_property(mesh, "radius");
+    brio_status status = BRIO_OK;
+    if (radius) TRY(square_radii(r, radius, weights, mesh->num_vertices));
+    if (weight && radius) TRY(compare_weights(r, weight, weights, mesh->num_vertices));
+    if (weight) copy_property(weight, weights, mesh->num_vertices);
+done:
+    return status;
+}
+
 static void modular_weights(int exponent, double *weights, size_t count) {
     for (size_t i = 0; i < count; i++) weights[i] = ldexp((double)((uint64_t)i * 7919 % 1000), exponent);
+}
+
+/* Says which weights hold where that is not plain. */
+static void tell_weights(run *r, const weights_options *options, const brio_mesh *mesh) {
+    bool weight = brio_mesh_property(mesh, "weight"), radius = brio_mesh_property(mesh, "radius");
+    if ((!weight && !radius) || options->unweighted || options->estimate) return;
+    if (options->file || options->exponent != NO_EXPONENT)
+        cli_warn(r, "--weights%s overrules the property %s of the points", options->file ? "" : "-mod",
+                 weight ? "weight" : "radius");
+    else if (!weight)
+        cli_warn(r, "the points have radii: each weighs its radius squared (--unweighted ignores the radii)");
 }
 
 brio_status cli_weights(run *r, const weights_options *options, const brio_mesh *mesh, double **weights) {
@@ -92,7 +149,14 @@ brio_status cli_weights(run *r, const weights_options *options, const brio_mesh 
     else if (options->exponent != NO_EXPONENT)
         modular_weights(options->exponent, w, count);
     else
-        copy_property(brio_mesh_property(mesh, "weight"), w, count);
+        status = weights_of_properties(r, mesh, w);
+    if (status == BRIO_ERR_FORMAT && options->estimate) {
+        r->message[0] = 0;
+        status = BRIO_OK;
+        goto done;
+    }
+    if (status != BRIO_OK) goto done;
+    tell_weights(r, options, mesh);
     *weights = w;
     w = NULL;
 done:
@@ -100,10 +164,15 @@ done:
     return status;
 }
 
-brio_status cli_keep_weights(brio_mesh *mesh, const double *weights) {
+brio_status cli_keep_weights(run *r, const weights_options *options, brio_mesh *mesh, const double *weights) {
     void *data;
+    brio_status status = BRIO_OK;
+    bool overruled = options->file || options->exponent != NO_EXPONENT || options->unweighted;
+    if (overruled) cli_set_aside(r, mesh, "weight");
+    if (overruled) cli_set_aside(r, mesh, "radius");
     if (!weights || brio_mesh_property(mesh, "weight")) return BRIO_OK;
-    brio_status status = brio_mesh_add_property(mesh, "weight", BRIO_SCALAR_FLOAT64, &data);
-    if (status == BRIO_OK) memcpy(data, weights, mesh->num_vertices * sizeof *weights);
+    TRY(brio_mesh_add_property(mesh, "weight", BRIO_SCALAR_FLOAT64, &data));
+    memcpy(data, weights, mesh->num_vertices * sizeof *weights);
+done:
     return status;
 }

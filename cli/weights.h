@@ -1,4 +1,5 @@
-/* Weights of points: from a file, from the property `weight` of the input, or by the rule of --weights-mod. */
+/* Weights of points: from a file, from the properties `weight` or `radius` of the input, or by the rule of
+ * --weights-mod. A radius stands for its square. */
 #ifndef BRIO_CLI_WEIGHTS_H
 #define BRIO_CLI_WEIGHTS_H
 
@@ -9,6 +10,7 @@ typedef struct weights_options {
     const char *file;
     int exponent; /* of --weights-mod; NO_EXPONENT without */
     bool unweighted;
+    bool estimate; /* no words, and properties that are no weights count as none */
 } weights_options;
 
 enum { NO_EXPONENT = INT_MIN };
@@ -16,9 +18,9 @@ enum { NO_EXPONENT = INT_MIN };
 /** Rows of a command's option table whose struct has weights_options as its member `field`. */
 /* clang-format off */
 #define WEIGHTS_ROWS(type, field)                                                                                      \
-    {"weights", 0, OPTION_TEXT, offsetof(type, field.file), "FILE", "weights of the points, one number a line", 0},    \
+    {"weights", 0, OPTION_INPUT, offsetof(type, field.file), "FILE", "weights of the points, one number a line; overrules the properties weight and radius (weight = radius squared)", 0},    \
     {"weights-mod", 0, OPTION_INT, offsetof(type, field.exponent), "E", "weight i is ((i*7919) mod 1000) * 2^E", 0},   \
-    {"unweighted", 0, OPTION_FLAG, offsetof(type, field.unweighted), NULL, "ignore a property named weight", 0}
+    {"unweighted", 0, OPTION_FLAG, offsetof(type, field.unweighted), NULL, "ignore properties named weight and radius", 0}
 /* clang-format on */
 
 /** Wrong usage when more than one source is named. */
@@ -30,8 +32,8 @@ bool cli_is_weighted(const weights_options *options, const brio_mesh *mesh);
 /** The weights, to be freed with free(); NULL for none. */
 brio_status cli_weights(run *r, const weights_options *options, const brio_mesh *mesh, double **weights);
 
-/** Adds the weights as a property of the mesh, so that its file can be checked by itself; one that is there stays as it
- *  was read. */
-brio_status cli_keep_weights(brio_mesh *mesh, const double *weights);
+/** Makes the property `weight` of the mesh the weights that hold, so that its file can be checked by itself. Properties
+ *  that they overrule become input_weight and input_radius. */
+brio_status cli_keep_weights(run *r, const weights_options *options, brio_mesh *mesh, const double *weights);
 
 #endif

@@ -6,6 +6,7 @@
 #include "mesh/edge_rings.h"
 #include "io/textrow.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -29,27 +30,55 @@ static bool is_axis(const char *name) {
     return strlen(name) == 1 && strchr("xyzXYZ", name[0]);
 }
 
+/* Returns whether a coordinate or one of the first `count` properties has the name. */
+static bool is_taken(const brio_write_job *job, size_t count, const char *name) {
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(job->names[i], name)) return true;
+    return is_axis(name);
+}
+
+/* A name that is taken gets _2, _3 and so on behind it, and is cut so that the whole fits: no result of long work is
+ * refused for a name. */
 static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job) {
     brio_status status = BRIO_OK;
     size_t count = job->mesh->num_properties;
     BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
     for (size_t i = 0; i < count; i++) {
-        const char *name = job->mesh->properties[i].name;
-        make_word(job->names[i], name);
-        BRIO_REQUIRE(ctx, name[0] && !is_axis(name), BRIO_ERR_ARGUMENT,
-                     "%s: a property cannot be named \"%s\" beside the coordinates", path, name);
-        for (size_t j = 0; j < i; j++)
-            BRIO_REQUIRE(ctx, strcmp(job->names[i], job->names[j]) != 0, BRIO_ERR_ARGUMENT,
-                         "%s: two properties named %s", path, job->names[i]);
+        char word[64], end[24];
+        BRIO_REQUIRE(ctx, job->mesh->properties[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
+        make_word(word, job->mesh->properties[i].name);
+        memcpy(job->names[i], word, sizeof word);
+        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) {
+            snprintf(end, sizeof end, "_%zu", n);
+            snprintf(job->names[i], 64, "%.*s%s", (int)(63 - strlen(end)), word, end);
+        }
     }
 done:
     return status;
 }
 
+/* Single precision, by the option or by the format. */
+static bool is_single(brio_format format, const brio_write_options *o) {
+    bool both = format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
+                format == BRIO_FORMAT_NPY;
+    return format == BRIO_FORMAT_STL || (o->float32 && both);
+}
+
+/* The greatest distance between a vertex and its coordinates in single precision. */
+static double moved_by_singles(const brio_mesh *m) {
+    double most = 0;
+    for (size_t v = 0; v < m->num_vertices; v++) {
+        double by[3];
+        for (size_t k = 0; k < 3; k++) by[k] = m->vertices[3 * v + k] - (double)(float)m->vertices[3 * v + k];
+        if (by[0] != 0 || by[1] != 0 || by[2] != 0) most = fmax(most, hypot(by[0], hypot(by[1], by[2])));
+    }
+    return most;
+}
+
 static brio_status check_single(brio_context *ctx, const char *path, const brio_mesh *m) {
     brio_status status = BRIO_OK;
     for (size_t i = 0; i < 3 * m->num_vertices; i++)
-        BRIO_REQUIRE(ctx, !(fabs(m->vertices[i]) > 0x1.ffffffp127), BRIO_ERR_ARGUMENT,
+        BRIO_REQUIRE(ctx, !(fabs(m->vertices[i]) >= 0x1.ffffffp127), BRIO_ERR_ARGUMENT,
                      "%s: point %zu (counted from 0): %g does not fit single precision", path, i / 3, m->vertices[i]);
 done:
     return status;
@@ -69,7 +98,7 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
                  "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, without_tetrahedra[format]);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0, BRIO_ERR_ARGUMENT,
                  "standard output cannot hold the two files .node and .ele");
-    if (options->float32 || format == BRIO_FORMAT_STL) BRIO_TRY(check_single(ctx, path, m));
+    if (is_single(format, options)) BRIO_TRY(check_single(ctx, path, m));
 done:
     return status;
 }
@@ -194,6 +223,7 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
     if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_NPY)
         BRIO_TRY(make_names(ctx, path, &job));
+    if (o.moved) *o.moved = is_single(format, &o) ? moved_by_singles(mesh) : 0; /* the LAS writer sets its own */
     BRIO_TRY(format == BRIO_FORMAT_NODE ? write_node(ctx, path, &job) : write_one(ctx, path, &job, format));
 done:
     brio_release(ctx, job.names);

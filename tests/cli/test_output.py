@@ -99,12 +99,6 @@ class Writing(CliTest):
         self.expect(0, "delaunay", self.xyz("a.xyz", CUBE), "-o", "/dev/null", "--format", "ply")
         self.assertFalse(os.path.isfile("/dev/null"))
 
-    def test_output_onto_the_input(self):
-        points = self.cloud("a.ply", 300)
-        self.expect(0, "delaunay", points, "-o", points)
-        self.assertTrue(self.facts("check", points)["verified"])
-        self.assert_only(self.folder, "a.ply")
-
     def test_name_of_the_greatest_length(self):
         points = self.xyz("a.xyz", CUBE)
         name = "n" * 251 + ".ply"

@@ -78,3 +78,16 @@ int32_t brio_las_grid_number(const brio_las_grid *grid, int axis, double x) {
     double n = number_of(x, grid->step[axis], grid->origin[axis]);
     return n <= INT32_MIN ? INT32_MIN : n >= INT32_MAX ? INT32_MAX : (int32_t)n;
 }
+
+double brio_las_grid_moved(const brio_las_grid *grid, const brio_mesh *m) {
+    double most = 0;
+    for (size_t v = 0; v < m->num_vertices; v++) {
+        double by[3];
+        for (int k = 0; k < 3; k++) {
+            double x = m->vertices[3 * v + (size_t)k];
+            by[k] = x - (brio_las_grid_number(grid, k, x) * grid->step[k] + grid->origin[k]);
+        }
+        if (by[0] != 0 || by[1] != 0 || by[2] != 0) most = fmax(most, hypot(by[0], hypot(by[1], by[2])));
+    }
+    return most;
+}

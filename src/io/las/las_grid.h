@@ -13,6 +13,9 @@ typedef struct brio_las_grid {
  *  whole numbers have 32 bits: coordinates are then rounded to the nearest multiple. */
 void brio_las_grid_find(const brio_mesh *mesh, brio_las_grid *grid);
 
+/** Returns the greatest distance between a vertex and the point that a reader computes. */
+double brio_las_grid_moved(const brio_las_grid *grid, const brio_mesh *mesh);
+
 /** Returns the whole number that stands for a coordinate. */
 int32_t brio_las_grid_number(const brio_las_grid *grid, int axis, double x);
 

@@ -258,6 +258,7 @@ brio_status brio_las_write(brio_output *out, const brio_write_job *job) {
     brio_status status = BRIO_OK;
     las_writer w = {.job = job};
     BRIO_TRY(plan(out, &w));
+    if (job->options->moved) *job->options->moved = brio_las_grid_moved(&w.grid, job->mesh);
     BRIO_TRY(write_header(out, &w));
     BRIO_TRY(write_extras(out, &w));
     BRIO_TRY(write_records(out, &w));
