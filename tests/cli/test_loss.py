@@ -129,7 +129,7 @@ class SinglePrecision(LossTest):
     def test_single_precision_that_would_merge_points_gives_way(self):
         points = self.box()
         for extension in ["ply", "vtu"]:
-            run = self.expect(0, "delaunay", points, "-o", self.path("out." + extension), "--float32", "--quiet")
+            run = self.expect(0, "delaunay", points, "-o", self.path("out." + extension), "--float32")
             self.assertRegex(run.err, r"warning: .*out\.\w+: in double precision: .* would merge \d+ of 1728 points")
         columns, kinds = self.vertices("out.ply")
         self.assertEqual(kinds["x"], "double")
@@ -141,7 +141,7 @@ class SinglePrecision(LossTest):
     def test_single_precision_that_would_move_points_over_their_neighbours_gives_way(self):
         points, out = self.far(2.0), self.path("out.ply")
         for method in ["labeled-delaunay", "power-crust", "cocone"]:
-            run = self.expect(0, "surface", points, "--method", method, "-o", out, "--float32", "--quiet")
+            run = self.expect(0, "surface", points, "--method", method, "-o", out, "--float32")
             self.assertRegex(run.err, r"warning: .*out.ply: in double precision: single precision would")
             self.assertEqual(self.vertices("out.ply")[1]["x"], "double")
 
@@ -470,9 +470,9 @@ class SelfIntersections(LossTest):
     def test_what_was_not_counted_is_called_so(self):
         mesh = self.path("hull.ply")
         run = self.expect(0, "hull", self.xyz("a.xyz", ball(40)), "-o", mesh)
-        self.assertRegex(run.text, r"self_intersections +not counted\n")
+        self.assertRegex(run.text, r"self-intersections +not counted\n")
         self.assertIsNone(self.facts("check", mesh)["certificate"]["self_intersections"])
-        self.assertRegex(self.expect(0, "check", mesh, "--self-intersections").text, r"self_intersections +0\n")
+        self.assertRegex(self.expect(0, "check", mesh, "--self-intersections").text, r"self-intersections +0\n")
 
     def test_a_surface_that_intersects_itself_is_said_to(self):
         points = self.cloud("a.ply", 300, "clusters")
@@ -480,7 +480,7 @@ class SelfIntersections(LossTest):
         run = self.expect(0, *how)
         pairs = self.facts(*how)["certificate"]["self_intersections"]
         self.assertGreater(pairs, 0)
-        self.assertIn("brio: the surface intersects itself: %d pairs of faces\n" % pairs, run.err)
+        self.assertIn("brio: warning: the surface intersects itself: %d pairs of faces\n" % pairs, run.err)
         run = self.expect(0, "surface", points, "--method", "tight-cocone", "-o", self.path("out.ply"), "--self-intersections")
         self.assertEqual(run.err, "")
 

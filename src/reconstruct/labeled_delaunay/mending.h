@@ -12,7 +12,7 @@ typedef struct {
     uint8_t *queued;  /* #P: 1 if the sample is in the queue */
     uint32_t *looked; /* #P: the last call of brio_mending_look that came by, counted by `looks` */
     uint32_t looks;
-    uint32_t *queue;  /* singular samples, and samples that were singular when they were queued */
+    uint32_t *queue; /* singular samples, and samples that were singular when they were queued */
     size_t size, capacity;
     size_t singular;  /* samples */
     int64_t all_fans; /* the sum */
