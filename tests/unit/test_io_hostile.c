@@ -6,26 +6,31 @@
 typedef struct {
     const char *name;
     int parts;
-    int ascii;
+    int ascii, compress;
 } file_case;
 
-static const file_case files[] = {{"b.ply", IO_FACES | IO_TETRAHEDRA | IO_PROPERTIES, 0},
-                                  {"a.ply", IO_FACES | IO_TETRAHEDRA | IO_PROPERTIES, 1},
-                                  {"a.xyz", IO_PROPERTIES, 0},
-                                  {"a.csv", IO_PROPERTIES, 0},
-                                  {"a.obj", IO_FACES, 0},
-                                  {"a.off", IO_FACES, 0},
-                                  {"a.vtu", IO_FACES | IO_TETRAHEDRA | IO_PROPERTIES, 0},
-                                  {"a.node", IO_TETRAHEDRA | IO_PROPERTIES, 0},
-                                  {"a.las", IO_PROPERTIES, 0},
-                                  {"b.stl", IO_FACES | IO_SINGLE, 0},
-                                  {"a.stl", IO_FACES | IO_SINGLE, 1},
-                                  {"a.npy", IO_PROPERTIES, 0}};
+static const file_case files[] = {{"b.ply", IO_FACES | IO_TETRAHEDRA | IO_PROPERTIES, 0, 0},
+                                  {"a.ply", IO_FACES | IO_TETRAHEDRA | IO_PROPERTIES, 1, 0},
+                                  {"a.xyz", IO_PROPERTIES, 0, 0},
+                                  {"a.csv", IO_PROPERTIES, 0, 0},
+                                  {"a.obj", IO_FACES, 0, 0},
+                                  {"a.off", IO_FACES, 0, 0},
+                                  {"a.vtu", IO_FACES | IO_TETRAHEDRA | IO_PROPERTIES, 0, 0},
+                                  {"t.vtu", IO_FACES | IO_TETRAHEDRA, 1, 0},
+                                  {"z.vtu", IO_FACES | IO_TETRAHEDRA, 0, 1},
+                                  {"a.vtp", IO_FACES, 0, 0},
+                                  {"a.glb", IO_FACES | IO_PROPERTIES | IO_SINGLE, 0, 0},
+                                  {"a.node", IO_TETRAHEDRA | IO_PROPERTIES, 0, 0},
+                                  {"a.las", IO_PROPERTIES, 0, 0},
+                                  {"b.stl", IO_FACES | IO_SINGLE, 0, 0},
+                                  {"a.stl", IO_FACES | IO_SINGLE, 1, 0},
+                                  {"a.npy", IO_PROPERTIES, 0, 0}};
 enum { NUM_FILES = sizeof files / sizeof *files };
 
 static brio_write_options options_of(const file_case *file) {
     brio_write_options options = brio_write_options_default();
     options.ascii = file->ascii;
+    options.compress = file->compress;
     options.comment = "c";
     return options;
 }
@@ -51,6 +56,8 @@ static void expect_sane(const char *name, const char *bytes, size_t size, const 
         uint64_t corners = mesh->face_offsets[mesh->num_faces];
         for (uint64_t i = 0; i < corners; i++) EXPECT(mesh->face_vertices[i] < mesh->num_vertices, "%s %zu", how, at);
     }
+    for (size_t i = 0; mesh && i < 2 * mesh->num_edges; i++)
+        EXPECT(mesh->edges[i] < mesh->num_vertices, "%s %zu", how, at);
     for (size_t i = 0; mesh && i < 4 * mesh->num_tetrahedra; i++)
         EXPECT(mesh->tetrahedra[i] < mesh->num_vertices, "%s %zu", how, at);
     brio_mesh_free(mesh);

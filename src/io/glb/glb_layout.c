@@ -44,7 +44,7 @@ static void find_middle(const brio_mesh *m, double *middle) {
     for (size_t k = 0; k < 3; k++) side = fmax(side, most[k] / 2 - least[k] / 2);
     double step = side > 0 ? ldexp(1, ilogb(side) + 1 - STEPS) : 0;
     for (size_t k = 0; k < 3; k++) {
-        double x = least[k] / 2 + most[k] / 2, rounded = step > 0 ? rint(x / step) * step : x;
+        double x = least[k] / 2 + most[k] / 2, rounded = step > 0 ? rint(x / step) * step + 0.0 : x; /* no -0 */
         middle[k] = isfinite(rounded) ? rounded : 0;
     }
 }

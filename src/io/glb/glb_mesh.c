@@ -164,13 +164,16 @@ static void set_place(builder *b, const brio_glb_instance *instance) {
     for (int i = 0; i < 9 && b->flip; i++) b->normal_matrix[i] = -b->normal_matrix[i];
 }
 
+/* A coordinate that is not moved keeps its bits: -0 + 0 would be 0. */
 static void place_positions(const builder *b, const brio_glb_column *c, uint64_t first) {
     const double *m = b->instance->matrix;
     for (uint64_t v = 0; v < c->count; v++) {
         double *to = b->builder->mesh->vertices + 3 * (first + v), p[3];
         for (int k = 0; k < 3; k++) p[k] = brio_glb_scaled(c, v, k);
-        for (int k = 0; k < 3; k++)
-            to[k] = b->plain ? p[k] + m[12 + k] : m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k];
+        for (int k = 0; k < 3; k++) {
+            double turned = b->plain ? p[k] : m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2];
+            to[k] = m[12 + k] != 0 ? turned + m[12 + k] : turned;
+        }
     }
 }
 
