@@ -14,7 +14,7 @@ import unittest
 import numpy
 
 import ply_mesh
-from test_foreign import FILES, ForeignTest, missing
+from test_foreign import FILES, ForeignTest, main, missing
 
 TYPES = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
 
@@ -273,4 +273,4 @@ class TrimeshTest(GlbTest):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=1)
+    main()

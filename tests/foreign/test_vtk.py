@@ -12,7 +12,7 @@ import unittest
 import numpy
 
 import ply_mesh
-from test_foreign import FILES, ForeignTest, missing
+from test_foreign import FILES, ForeignTest, main, missing
 
 BRIO = os.environ.get("BRIO", "brio")
 WAYS = {"raw": [], "compressed": ["--compress"], "text": ["--ascii"]}
@@ -275,4 +275,4 @@ class MeshioVtuTest(VtkFileTest):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=1)
+    main()

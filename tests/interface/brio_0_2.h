@@ -1435,15 +1435,16 @@ typedef enum brio_format {
     BRIO_FORMAT_XYZ = 2, /* .xyz .pts .txt .csv */
     BRIO_FORMAT_OBJ = 3,
     BRIO_FORMAT_OFF = 4,
-    BRIO_FORMAT_VTU = 5,  /* read if its arrays are appended raw, as brio_write writes them */
+    BRIO_FORMAT_VTU = 5,
     BRIO_FORMAT_NODE = 6, /* TetGen's .node, with .ele beside it */
-    BRIO_FORMAT_VTP = 7,  /* written, not read */
+    BRIO_FORMAT_VTP = 7,
     BRIO_FORMAT_LAS = 8,  /* versions 1.0 to 1.4, point formats 0 to 10 without waveforms */
     BRIO_FORMAT_LAZ = 9,  /* read, not written */
     BRIO_FORMAT_PCD = 10, /* read, not written */
     BRIO_FORMAT_PTX = 11, /* read, not written */
     BRIO_FORMAT_STL = 12, /* corners at the same position become one vertex */
     BRIO_FORMAT_NPY = 13, /* NumPy: an array of rows of coordinates, or of records with names */
+    BRIO_FORMAT_GLB = 14, /* glTF 2.0: .glb; .gltf is read, not written. Single precision about an origin */
     BRIO_FORMAT_END
 } brio_format;
 
@@ -1464,6 +1465,10 @@ typedef struct brio_write_options {
     int ascii;           /* 1: text, in formats with a text and a binary form; default 0 */
     int float32;         /* 1: coordinates in single precision, in formats with both; default 0 */
     const char *comment; /* a line for the header; default NULL: none */
+    int compress;        /* 1: compressed by zlib: VTU and VTP, if the library was built with zlib; default 0 */
+    int reserved_int;
+    double *moved; /* not NULL: receives the greatest distance between a vertex as it was given and as it reads back, 0
+                      if the file has every coordinate exactly; default NULL */
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);
