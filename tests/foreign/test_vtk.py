@@ -19,6 +19,13 @@ WAYS = {"raw": [], "compressed": ["--compress"], "text": ["--ascii"]}
 
 
 class VtkFileTest(ForeignTest):
+    def setUp(self):
+        super().setUp()
+        run = subprocess.run([BRIO, "generate", "ball", "-n", "9", "-o", self.path("try.vtu"), "--compress"],
+                             capture_output=True, check=False)
+        if b"built without" in run.stderr:
+            self.skipTest("brio was built without zlib")
+
     def read_mesh(self, name):
         self.convert(self.path(name), self.path("read.ply"))
         return ply_mesh.read(self.path("read.ply"))
@@ -121,7 +128,7 @@ class VtkTest(VtkFileTest):
             for real in "f4", "f8":
                 grid, kept = make(1000, real)
                 for writer, what in self.writers(grid):
-                    if real == "f4" and "Big" in what:
+                    if real == "f4" and not what.endswith("Little 32"):
                         continue
                     writer.SetFileName(self.path("a." + extension))
                     writer.SetBlockSize(4096)
@@ -134,6 +141,8 @@ class VtkTest(VtkFileTest):
         from vtk.util.numpy_support import vtk_to_numpy
         grid, _ = self.poly_data(500, "f8")
         for writer, what in self.writers(grid):
+            if not what.endswith("Little 32"):
+                continue
             writer.SetNumberOfPieces(4)
             writer.SetFileName(self.path("a.vtp"))
             writer.Write()

@@ -49,14 +49,15 @@ static void check_way(const char *name, way w, size_t n, int parts, bool edges) 
 
 /* Without compression where the library was built without zlib. */
 static int num_ways(void) {
+    static int found;
+    if (found) return found;
     brio_write_options options = options_of(PACKED);
     brio_mesh *mesh = io_make(3, 0);
-    brio_status status = brio_write(io_ctx, io_path("z.vtu"), mesh, &options);
+    found = brio_write(io_ctx, io_path("z.vtu"), mesh, &options) == BRIO_OK ? NUM_WAYS : PACKED;
     brio_mesh_free(mesh);
-    if (status == BRIO_OK) return NUM_WAYS;
-    EXPECT(strstr(brio_message(io_ctx), "zlib"), "%s", brio_message(io_ctx));
-    printf("skipped: compressed files: %s\n", brio_message(io_ctx));
-    return PACKED;
+    if (found == PACKED) printf("skipped: compressed files: %s\n", brio_message(io_ctx));
+    EXPECT(found == NUM_WAYS || strstr(brio_message(io_ctx), "zlib"), "%s", brio_message(io_ctx));
+    return found;
 }
 
 static void all_parts_read_back(void) {
