@@ -1465,10 +1465,10 @@ typedef struct brio_write_options {
     int ascii;           /* 1: text, in formats with a text and a binary form; default 0 */
     int float32;         /* 1: coordinates in single precision, in formats with both; default 0 */
     const char *comment; /* a line for the header; default NULL: none */
+    double *moved;       /* receives the greatest distance between a vertex and the point that a reader gets: not 0
+                            where the format or `float32` rounds coordinates; default NULL */
     int compress;        /* 1: compressed by zlib: VTU and VTP, if the library was built with zlib; default 0 */
     int reserved_int;
-    double *moved; /* not NULL: receives the greatest distance between a vertex as it was given and as it reads back, 0
-                      if the file has every coordinate exactly; default NULL */
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);
@@ -1482,7 +1482,7 @@ static inline brio_write_options brio_write_options_default(void) {
  *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
- *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU and VTP only. In the names of properties, formats
+ *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only. In the names of properties, formats
  *  that cannot quote have _ for blanks and commas; a comment of several lines becomes several comments.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, or an index is out of range), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */

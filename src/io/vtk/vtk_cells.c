@@ -7,6 +7,7 @@
 #include "io/vtk/vtk_cells.h"
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 /* Types of cells of VTK. */
 enum {
@@ -23,6 +24,9 @@ enum {
     QUADRATIC_TETRAHEDRON = 24
 };
 
+/* Cells between two reports of progress. Chosen. */
+enum { BETWEEN_REPORTS = 1 << 20 };
+
 /* The cell that is being added. */
 typedef struct {
     brio_builder *builder;
@@ -30,11 +34,24 @@ typedef struct {
     uint64_t number, from, count; /* corners from `from` on */
 } cell;
 
+/* brio_vtk_number, without a call for the types that indices have. */
+static inline double number_of(const brio_vtk_values *values, uint64_t i) {
+    int32_t narrow;
+    int64_t wide;
+    if (values->type == BRIO_SCALAR_INT32) {
+        memcpy(&narrow, values->bytes + i * sizeof narrow, sizeof narrow);
+        return narrow;
+    }
+    if (values->type != BRIO_VTK_INT64) return brio_vtk_number(values, i);
+    memcpy(&wide, values->bytes + i * sizeof wide, sizeof wide);
+    return (double)wide;
+}
+
 /* Reads corner i of the cell, a vertex of the mesh. */
 static brio_status corner(const cell *c, uint64_t i, double *vertex) {
     brio_status status = BRIO_OK;
     const brio_vtk_piece *piece = c->cells->piece;
-    double index = brio_vtk_number(&c->cells->connectivity, c->from + i);
+    double index = number_of(&c->cells->connectivity, c->from + i);
     BRIO_REQUIRE(
         c->builder->ctx, index >= 0 && index < (double)piece->num_points && index == floor(index), BRIO_ERR_FORMAT,
         "%s: cell %" PRIu64 " (counted from 0): point %.17g, expected one of the %" PRIu64 " points, counted from 0",
@@ -155,7 +172,8 @@ brio_status brio_vtk_add_cells(brio_builder *b, const brio_vtk_cells *cells) {
     brio_status status = BRIO_OK;
     cell c = {.builder = b, .cells = cells};
     for (; c.number < cells->piece->num_cells[cells->section]; c.number++) {
-        double to = brio_vtk_number(&cells->offsets, c.number);
+        double to = number_of(&cells->offsets, c.number);
+        if (c.number % BETWEEN_REPORTS == 0) BRIO_TRY(brio_progress(b->ctx, "read", 1));
         BRIO_REQUIRE(b->ctx, to >= (double)c.from && to <= (double)cells->connectivity.count, BRIO_ERR_FORMAT,
                      "%s: cell %" PRIu64 " (counted from 0): offset %.17g, expected %" PRIu64 " to %" PRIu64, b->name,
                      c.number, to, c.from, cells->connectivity.count);
