@@ -205,6 +205,25 @@ static void vtp_of_others(void) {
     brio_mesh_free(m);
 }
 
+/* Point data that a piece lacks are passed over, and so are data that a piece has in another type. */
+static void data_of_some_pieces(void) {
+#define PIECE(data)                                                                                                    \
+    "<Piece NumberOfPoints=\"1\"><Points><DataArray type=\"Int8\" NumberOfComponents=\"3\" format=\"ascii\">1 2 3"     \
+    "</DataArray></Points><PointData><DataArray type=\"Int8\" Name=\"all\" format=\"ascii\">7</DataArray>" data        \
+    "</PointData></Piece>"
+#define DATA(name, type) "<DataArray type=\"" type "\" Name=\"" name "\" format=\"ascii\">5</DataArray>"
+    brio_mesh *m =
+        io_read_text("a.vtp", VTP_TAG "><PolyData>" PIECE(DATA("outer", "Int8") DATA("two types", "Int8"))
+                                  PIECE(DATA("inner", "Int8") DATA("two types", "Int16"))
+                                      PIECE(DATA("outer", "Int8") DATA("two types", "Int8")) "</PolyData></VTKFile>");
+#undef PIECE
+#undef DATA
+    if (!m) return;
+    EXPECT(m->num_vertices == 3 && m->num_properties == 1 && !strcmp(m->properties->name, "all"), "%zu properties",
+           m->num_properties);
+    brio_mesh_free(m);
+}
+
 /* 36 bytes in three blocks, as base 64. */
 #define PACKED_POINTS                                                                                                  \
     "AwAAAAAAAAAQAAAAAAAAAAQAAAAAAAAAGwAAAAAAAAAbAAAAAAAAAA8AAAAAAAAAeAEBEADv/wAAgD8AAABAAABAQA"                       \
@@ -362,6 +381,64 @@ static void errors_of_appended_arrays(void) {
     expect_appended_error(zlib, "0", none, 3, "has 0 bytes");
 }
 
+/* A stream of zlib that stores n bytes as they are; returns its size. */
+static size_t store_block(const uint8_t *bytes, size_t n, uint8_t *out) {
+    uint32_t a = 1, b = 0;
+    const uint8_t head[] = {0x78, 1, 1, (uint8_t)n, 0, (uint8_t)~n, 0xff};
+    memcpy(out, head, sizeof head);
+    memcpy(out + sizeof head, bytes, n);
+    for (size_t i = 0; i < n; i++) b += a += bytes[i];
+    const uint8_t tail[] = {(uint8_t)(b >> 8), (uint8_t)b, (uint8_t)(a >> 8), (uint8_t)a};
+    memcpy(out + sizeof head + n, tail, sizeof tail);
+    return sizeof head + n + sizeof tail;
+}
+
+/* A compressed array of one point in blocks of `stored` bytes, which are said to be `block` bytes of `extra` bytes more in
+ * the file. */
+static void expect_blocks(size_t stored, uint64_t block, uint64_t extra, const char *part) {
+    uint64_t words[32] = {24 / stored, block, 0};
+    const double point[] = {1, 2, 3};
+    uint8_t *at = (uint8_t *)(words + 3 + words[0]);
+    for (uint64_t i = 0; i < words[0]; i++) {
+        size_t size = store_block((const uint8_t *)point + i * stored, stored, at);
+        words[3 + i] = size + extra;
+        at += size + extra;
+    }
+    if (part) {
+        expect_appended_error(" compressor=\"vtkZLibDataCompressor\"", "0", words, 24, part);
+        return;
+    }
+    char text[1024];
+    brio_status status;
+    int size = snprintf(text, sizeof text,
+                        VTP_TAG " compressor=\"vtkZLibDataCompressor\"><PolyData><Piece NumberOfPoints=\"1\"><Points>"
+                                "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"appended\" "
+                                "offset=\"0\"/></Points></Piece></PolyData><AppendedData encoding=\"raw\">_");
+    memcpy(text + size, words, sizeof words);
+    brio_mesh *m = io_read_bytes("b.vtp", text, (size_t)size + sizeof words, &status);
+    EXPECT(m && m->vertices[0] == 1 && m->vertices[2] == 3, "%s", brio_message(io_ctx));
+    brio_mesh_free(m);
+}
+
+/* Blocks that inflate to more or to less than their sizes say, or that end before the next one begins. */
+static void sizes_of_blocks_are_held_against_the_bytes(void) {
+    if (num_ways() < NUM_WAYS) return;
+    expect_blocks(24, 24, 0, NULL);
+    expect_blocks(6, 6, 0, NULL); /* coordinates that two blocks share */
+    expect_blocks(12, 12, 3, "ends before its size says");
+    expect_blocks(12, 24, 0, "bytes");
+    expect_blocks(8, 8, (uint64_t)0 - 1, "does not end where its size says");
+    const uint64_t short_block[] = {1, 24, 0, 19, 0, 0, 0}, long_block[] = {1, 24, 0, 43, 0, 0, 0, 0, 0, 0};
+    uint64_t words[10];
+    const uint8_t zeros[32] = {0};
+    memcpy(words, short_block, sizeof short_block);
+    store_block(zeros, 8, (uint8_t *)(words + 4));
+    expect_appended_error(" compressor=\"vtkZLibDataCompressor\"", "0", words, 7, "ends before its size says");
+    memcpy(words, long_block, sizeof long_block);
+    store_block(zeros, 32, (uint8_t *)(words + 4));
+    expect_appended_error(" compressor=\"vtkZLibDataCompressor\"", "0", words, 10, "more bytes than its size says");
+}
+
 /* Two arrays at one place, and cells that lie. */
 static void errors_of_cells(void) {
 #define CELLS(connectivity, offsets)                                                                                   \
@@ -416,11 +493,13 @@ int main(void) {
     RUN(vtu_of_others);
     RUN(vtp_of_others);
     RUN(packed_base64);
+    RUN(data_of_some_pieces);
     RUN(names_stay_distinct);
     RUN(errors_of_tags);
     RUN(errors_of_text);
     RUN(errors_of_base64);
     RUN(errors_of_appended_arrays);
+    RUN(sizes_of_blocks_are_held_against_the_bytes);
     RUN(errors_of_cells);
     RUN(bomb_is_held_against_the_limit);
     return io_end();
