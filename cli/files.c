@@ -73,20 +73,27 @@ brio_status cli_check_target(run *r, const char *path) {
     return status;
 }
 
+static bool is_gltf(const char *name) {
+    const char *dot = strrchr(name, '.');
+    return !strcasecmp(dot ? dot + 1 : name, "gltf");
+}
+
 brio_status cli_output_format(run *r, const char *path, const char *extension, brio_format *format) {
     *format = brio_format_of(extension ? extension : path);
     if (*format == BRIO_FORMAT_LAZ || *format == BRIO_FORMAT_PCD || *format == BRIO_FORMAT_PTX)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD and PTX files are read, not written", path);
+    if (*format == BRIO_FORMAT_GLB && is_gltf(extension ? extension : path))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: .gltf files are read, not written; .glb files are", path);
     if (*format != BRIO_FORMAT_AUTO) return BRIO_OK;
     if (extension)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--format %s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy",
+                        "--format %s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy .glb",
                         extension);
     if (!strcmp(path, "-")) return cli_fail(r, BRIO_ERR_ARGUMENT, "-o - needs --format");
-    return cli_fail(
-        r, BRIO_ERR_ARGUMENT,
-        "%s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy; name one of these with --format",
-        path);
+    return cli_fail(r, BRIO_ERR_ARGUMENT,
+                    "%s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy .glb; name one of "
+                    "these with --format",
+                    path);
 }
 
 /* --- files named twice --- */

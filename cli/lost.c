@@ -11,7 +11,8 @@ static bool holds_faces(brio_format format) {
 }
 
 static bool holds_edges(brio_format format) {
-    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP;
+    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
+           format == BRIO_FORMAT_GLB;
 }
 
 /* Lists the names of the properties, the first few of them. */

@@ -76,8 +76,8 @@ brio_status cli_settle_precision(run *r, const char *path, const brio_mesh *mesh
     loss l = {.merged = 0};
     brio_status status = BRIO_OK;
     bool always = o->format == BRIO_FORMAT_STL, chosen = o->float32 && has_both(o->format);
-    bool binary = o->format == BRIO_FORMAT_LAS || (has_both(o->format) && o->format != BRIO_FORMAT_PLY);
-    cli_tell_idle(r, path, !binary, always || has_both(o->format));
+    bool binary = o->format == BRIO_FORMAT_LAS || o->format == BRIO_FORMAT_NPY || o->format == BRIO_FORMAT_GLB;
+    cli_tell_idle(r, path, !binary, always || has_both(o->format) || o->format == BRIO_FORMAT_GLB);
     if (always || chosen) TRY(measure_loss(r, mesh, &l));
     if (chosen && l.is_harmful) {
         cli_warn(r, "%s: in double precision: %s", path, l.reason);

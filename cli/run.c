@@ -21,6 +21,7 @@ const option cli_common_options[] = {
      "format of the input, where its name and content do not tell", 0},
     {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
     {"float32", 0, OPTION_FLAG, FIELD(float32), NULL, "write coordinates in single precision", 0},
+    {"compress", 0, OPTION_FLAG, FIELD(compress), NULL, "write arrays compressed: .vtu and .vtp", 0},
     {"json", 0, OPTION_FLAG, FIELD(json), NULL, "print the report as one JSON object on standard output", 0},
     {"threads", 0, OPTION_INT, FIELD(threads), "N", "threads to use (default 0: all cores)", 0},
     {"seed", 0, OPTION_NATURAL, FIELD(seed), "N", "every random choice follows from it (default 1)", 0},
@@ -89,6 +90,19 @@ static int on_progress(const char *stage, double fraction, void *user) {
     return cli_interrupted();
 }
 
+static bool can_compress(brio_format format) {
+    return format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP;
+}
+
+static brio_status check_compress(run *r) {
+    const common_options *c = &r->common;
+    if (!c->compress || !c->output) return BRIO_OK;
+    if (c->ascii) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress and --ascii: text is not compressed");
+    if (can_compress(brio_format_of(c->format ? c->format : c->output))) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot be compressed; .vtu and .vtp can",
+                    c->output);
+}
+
 static brio_status check_common(run *r) {
     const common_options *c = &r->common;
     if (c->threads < 0 || c->threads > MAX_THREADS)
@@ -97,7 +111,7 @@ static brio_status check_common(run *r) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--json and -o - both want standard output");
     if (c->input_format && brio_format_of(c->input_format) == BRIO_FORMAT_AUTO)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--input-format: unknown format '%s'", c->input_format);
-    return BRIO_OK;
+    return check_compress(r);
 }
 
 brio_status cli_begin(run *r) {
@@ -203,10 +217,11 @@ brio_status cli_read_points(run *r, const char *path, brio_mesh **out) {
 }
 
 const brio_format cli_mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
-                                        BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_AUTO};
+                                        BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_GLB, BRIO_FORMAT_AUTO};
 
-const brio_format cli_point_formats[] = {BRIO_FORMAT_PLY,  BRIO_FORMAT_XYZ, BRIO_FORMAT_VTU, BRIO_FORMAT_VTP,
-                                         BRIO_FORMAT_NODE, BRIO_FORMAT_LAS, BRIO_FORMAT_NPY, BRIO_FORMAT_AUTO};
+const brio_format cli_point_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_XYZ,  BRIO_FORMAT_VTU,
+                                         BRIO_FORMAT_VTP, BRIO_FORMAT_NODE, BRIO_FORMAT_LAS,
+                                         BRIO_FORMAT_NPY, BRIO_FORMAT_GLB,  BRIO_FORMAT_AUTO};
 
 static brio_status check_format(run *r, const brio_format *formats, brio_format format) {
     for (; formats && *formats != format; formats++)
@@ -239,6 +254,7 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     options.float32 = r->common.float32;
     options.moved = &moved;
     TRY(cli_settle_precision(r, path, mesh, &options, &merged));
+    options.compress = r->common.compress && can_compress(options.format);
     options.comment = "brio " BRIO_VERSION;
     TRY(cli_check_interrupt(r));
     cli_interrupt_writing(strcmp(path, "-") != 0);

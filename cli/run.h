@@ -19,7 +19,7 @@
 
 typedef struct common_options {
     const char *output, *format, *input_format, *scratch;
-    bool json, quiet, verbose, progress, ascii, float32;
+    bool json, quiet, verbose, progress, ascii, float32, compress;
     int threads;
     uint64_t seed;
     size_t max_memory; /* 0: no limit */

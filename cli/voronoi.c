@@ -44,6 +44,7 @@ static brio_status require_output(run *r, brio_cells_format *format) {
     if (*format == BRIO_CELLS_FORMAT_AUTO)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold cells, expected .vtu .npy or .csv",
                         c->output);
+    if (c->compress) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress: cells are written without compression");
     return strcmp(c->output, "-") ? cli_check_target(r, c->output) : BRIO_OK;
 }
 

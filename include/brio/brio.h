@@ -1450,15 +1450,16 @@ typedef enum brio_format {
     BRIO_FORMAT_XYZ = 2, /* .xyz .pts .txt .csv */
     BRIO_FORMAT_OBJ = 3,
     BRIO_FORMAT_OFF = 4,
-    BRIO_FORMAT_VTU = 5,  /* read if its arrays are appended raw, as brio_write writes them */
+    BRIO_FORMAT_VTU = 5,
     BRIO_FORMAT_NODE = 6, /* TetGen's .node, with .ele beside it */
-    BRIO_FORMAT_VTP = 7,  /* written, not read */
+    BRIO_FORMAT_VTP = 7,
     BRIO_FORMAT_LAS = 8,  /* versions 1.0 to 1.4, point formats 0 to 10 without waveforms */
     BRIO_FORMAT_LAZ = 9,  /* read, not written */
     BRIO_FORMAT_PCD = 10, /* read, not written */
     BRIO_FORMAT_PTX = 11, /* read, not written */
     BRIO_FORMAT_STL = 12, /* corners at the same position become one vertex */
     BRIO_FORMAT_NPY = 13, /* NumPy: an array of rows of coordinates, or of records with names */
+    BRIO_FORMAT_GLB = 14, /* glTF 2.0: .glb; .gltf is read, not written. Single precision about an origin */
     BRIO_FORMAT_END
 } brio_format;
 
@@ -1481,6 +1482,8 @@ typedef struct brio_write_options {
     const char *comment; /* a line for the header; default NULL: none */
     double *moved;       /* receives the greatest distance between a vertex and the point that a reader gets: not 0
                             where the format or `float32` rounds coordinates; default NULL */
+    int compress;        /* 1: compressed by zlib: VTU and VTP, if the library was built with zlib; default 0 */
+    int reserved_int;
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);
@@ -1494,7 +1497,7 @@ static inline brio_write_options brio_write_options_default(void) {
  *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
- *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU and VTP only. In the names of properties, formats
+ *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only. In the names of properties, formats
  *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
  *  several lines becomes several comments.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, or an index is out of range), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,

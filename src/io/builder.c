@@ -171,6 +171,22 @@ done:
     return status;
 }
 
+brio_status brio_builder_edge(brio_builder *b, const double *indices) {
+    brio_status status = BRIO_OK;
+    size_t e = b->mesh->num_edges;
+    for (int i = 0; i < 2; i++)
+        if (!is_index(indices[i])) return no_index(b, "edge", e, indices[i]);
+    if (e == b->edge_capacity) {
+        size_t capacity = grown(e, e + 1);
+        BRIO_TRY(brio_resize_to(b->ctx, &b->mesh->edges, capacity, 2 * sizeof *b->mesh->edges));
+        b->edge_capacity = capacity;
+    }
+    for (int i = 0; i < 2; i++) b->mesh->edges[2 * e + (size_t)i] = (uint32_t)indices[i];
+    b->mesh->num_edges = e + 1;
+done:
+    return status;
+}
+
 /* --- the end --- */
 
 static brio_status check_indices(const brio_builder *b) {
@@ -182,6 +198,8 @@ static brio_status check_indices(const brio_builder *b) {
     }
     for (size_t i = 0; i < 4 * m->num_tetrahedra; i++)
         if (m->tetrahedra[i] >= m->num_vertices) return bad_index(b, "tetrahedron", i / 4, m->tetrahedra[i]);
+    for (size_t i = 0; i < 2 * m->num_edges; i++)
+        if (m->edges[i] >= m->num_vertices) return bad_index(b, "edge", i / 2, m->edges[i]);
     return BRIO_OK;
 }
 
@@ -207,6 +225,7 @@ static brio_status trim(brio_builder *b) {
         brio_release(b->ctx, m->tetrahedra);
         m->tetrahedra = NULL;
     }
+    if (m->num_edges) BRIO_TRY(brio_resize_to(b->ctx, &m->edges, m->num_edges, 2 * sizeof *m->edges));
 done:
     return status;
 }

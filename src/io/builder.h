@@ -14,7 +14,7 @@ typedef struct brio_builder {
     const char *name; /* the file's name, for messages */
     brio_mesh *mesh;
     unsigned index_base; /* the number that the file gives to its first vertex, for messages */
-    size_t vertex_capacity, face_capacity, corner_capacity, tetrahedron_capacity;
+    size_t vertex_capacity, face_capacity, corner_capacity, tetrahedron_capacity, edge_capacity;
     size_t num_corners; /* corners of all faces, the unfinished face included */
 } brio_builder;
 
@@ -42,6 +42,8 @@ brio_status brio_builder_corner(brio_builder *b, double index);
 brio_status brio_builder_face(brio_builder *b);
 /** Appends a tetrahedron.   indices  4: the file's indices minus its index base. */
 brio_status brio_builder_tetrahedron(brio_builder *b, const double *indices);
+/** Appends an edge.   indices  2: the file's indices minus its index base. */
+brio_status brio_builder_edge(brio_builder *b, const double *indices);
 
 /** Releases unused memory, and checks all indices and coordinates. May also return BRIO_ERR_NOT_FINITE. */
 brio_status brio_builder_finish(brio_builder *b);

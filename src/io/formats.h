@@ -17,13 +17,14 @@ brio_status brio_ply_read(brio_stream *s, brio_builder *b);
 brio_status brio_xyz_read(brio_stream *s, brio_builder *b);
 brio_status brio_obj_read(brio_stream *s, brio_builder *b);
 brio_status brio_off_read(brio_stream *s, brio_builder *b);
-brio_status brio_vtu_read(brio_stream *s, brio_builder *b);
+brio_status brio_vtk_read(brio_stream *s, brio_builder *b); /* VTU and VTP */
 brio_status brio_node_read(brio_stream *s, brio_builder *b);
 brio_status brio_las_read(brio_stream *s, brio_builder *b); /* LAZ, too */
 brio_status brio_pcd_read(brio_stream *s, brio_builder *b);
 brio_status brio_ptx_read(brio_stream *s, brio_builder *b);
 brio_status brio_stl_read(brio_stream *s, brio_builder *b);
 brio_status brio_npy_read(brio_stream *s, brio_builder *b);
+brio_status brio_glb_read(brio_stream *s, brio_builder *b); /* .gltf, too */
 brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
 
 brio_status brio_ply_write(brio_output *out, const brio_write_job *job);
@@ -36,18 +37,25 @@ brio_status brio_node_write(brio_output *out, const brio_write_job *job);
 brio_status brio_las_write(brio_output *out, const brio_write_job *job);
 brio_status brio_stl_write(brio_output *out, const brio_write_job *job);
 brio_status brio_npy_write(brio_output *out, const brio_write_job *job);
+brio_status brio_glb_write(brio_output *out, const brio_write_job *job);
 brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
 
 /** Return whether the first bytes of a file are those of a format. */
 bool brio_ply_starts(const char *bytes, size_t size);
 bool brio_off_starts(const char *bytes, size_t size);
-bool brio_vtu_starts(const char *bytes, size_t size);
+bool brio_vtk_starts(const char *bytes, size_t size);
 bool brio_las_starts(const char *bytes, size_t size);
 bool brio_pcd_starts(const char *bytes, size_t size);
 bool brio_npy_starts(const char *bytes, size_t size);
+bool brio_glb_starts(const char *bytes, size_t size);
+
+/** Returns whether this build can compress VTU and VTP. */
+bool brio_vtk_has_zlib(void);
 
 /** Returns whether a path names an .ele file, which stands for the pair of .node and .ele. */
 bool brio_is_ele(const char *path);
+/** Returns whether a path names a .gltf file, which is JSON where .glb is a container. */
+bool brio_is_gltf(const char *path);
 /** Makes the name of the other file of the pair.   out  owned by the caller (brio_release).
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_sibling(brio_context *ctx, const char *path, const char *extension, char **out);

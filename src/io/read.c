@@ -11,12 +11,12 @@ enum { START = 4096 }; /* bytes of a file in which its content may show the form
 static const struct {
     const char *extension;
     brio_format format;
-} extensions[] = {{"ply", BRIO_FORMAT_PLY},  {"xyz", BRIO_FORMAT_XYZ}, {"pts", BRIO_FORMAT_XYZ},
-                  {"txt", BRIO_FORMAT_XYZ},  {"csv", BRIO_FORMAT_XYZ}, {"obj", BRIO_FORMAT_OBJ},
-                  {"off", BRIO_FORMAT_OFF},  {"vtu", BRIO_FORMAT_VTU}, {"node", BRIO_FORMAT_NODE},
-                  {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}, {"las", BRIO_FORMAT_LAS},
-                  {"laz", BRIO_FORMAT_LAZ},  {"pcd", BRIO_FORMAT_PCD}, {"ptx", BRIO_FORMAT_PTX},
-                  {"stl", BRIO_FORMAT_STL},  {"npy", BRIO_FORMAT_NPY}};
+} extensions[] = {
+    {"ply", BRIO_FORMAT_PLY},   {"xyz", BRIO_FORMAT_XYZ},  {"pts", BRIO_FORMAT_XYZ}, {"txt", BRIO_FORMAT_XYZ},
+    {"csv", BRIO_FORMAT_XYZ},   {"obj", BRIO_FORMAT_OBJ},  {"off", BRIO_FORMAT_OFF}, {"vtu", BRIO_FORMAT_VTU},
+    {"node", BRIO_FORMAT_NODE}, {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}, {"las", BRIO_FORMAT_LAS},
+    {"laz", BRIO_FORMAT_LAZ},   {"pcd", BRIO_FORMAT_PCD},  {"ptx", BRIO_FORMAT_PTX}, {"stl", BRIO_FORMAT_STL},
+    {"npy", BRIO_FORMAT_NPY},   {"glb", BRIO_FORMAT_GLB},  {"gltf", BRIO_FORMAT_GLB}};
 
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
@@ -33,6 +33,10 @@ brio_format brio_format_of(const char *path) {
 
 bool brio_is_ele(const char *path) {
     return !strcasecmp(extension_of(path), "ele");
+}
+
+bool brio_is_gltf(const char *path) {
+    return !strcasecmp(extension_of(path), "gltf");
 }
 
 brio_status brio_sibling(brio_context *ctx, const char *path, const char *extension, char **out) {
@@ -58,7 +62,7 @@ static brio_status find_format(brio_stream *s, const char *path, brio_format *fo
         *format = BRIO_FORMAT_PLY;
     else if (brio_off_starts(bytes, size))
         *format = BRIO_FORMAT_OFF;
-    else if (brio_vtu_starts(bytes, size))
+    else if (brio_vtk_starts(bytes, size))
         *format = BRIO_FORMAT_VTU;
     else if (brio_las_starts(bytes, size))
         *format = BRIO_FORMAT_LAS;
@@ -66,11 +70,13 @@ static brio_status find_format(brio_stream *s, const char *path, brio_format *fo
         *format = BRIO_FORMAT_PCD;
     else if (brio_npy_starts(bytes, size))
         *format = BRIO_FORMAT_NPY;
+    else if (brio_glb_starts(bytes, size))
+        *format = BRIO_FORMAT_GLB;
     else
         *format = strcmp(path, "-") ? brio_format_of(path) : BRIO_FORMAT_XYZ;
     BRIO_REQUIRE(s->ctx, *format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
-                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .node .ele .las .laz .pcd "
-                 ".ptx .stl or .npy",
+                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .ele .las .laz .pcd "
+                 ".ptx .stl .npy .glb or .gltf",
                  s->name);
 done:
     return status;
@@ -87,7 +93,8 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
     case BRIO_FORMAT_OFF:
         return brio_off_read(s, b);
     case BRIO_FORMAT_VTU:
-        return brio_vtu_read(s, b);
+    case BRIO_FORMAT_VTP:
+        return brio_vtk_read(s, b);
     case BRIO_FORMAT_NODE:
         return brio_node_read(s, b);
     case BRIO_FORMAT_LAS:
@@ -101,8 +108,8 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
         return brio_stl_read(s, b);
     case BRIO_FORMAT_NPY:
         return brio_npy_read(s, b);
-    case BRIO_FORMAT_VTP:
-        return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: VTP files are written, not read", s->name);
+    case BRIO_FORMAT_GLB:
+        return brio_glb_read(s, b);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;

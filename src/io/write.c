@@ -84,20 +84,36 @@ done:
     return status;
 }
 
+static brio_status check_compress(brio_context *ctx, const char *path, brio_format format,
+                                  const brio_write_options *options) {
+    brio_status status = BRIO_OK;
+    if (!options->compress) return BRIO_OK;
+    BRIO_REQUIRE(ctx, format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP, BRIO_ERR_ARGUMENT,
+                 "%s: a file of this format cannot be compressed; .vtu and .vtp can", path);
+    BRIO_REQUIRE(ctx, !options->ascii, BRIO_ERR_ARGUMENT, "%s: text is not compressed", path);
+    BRIO_REQUIRE(ctx, brio_vtk_has_zlib(), BRIO_ERR_ARGUMENT, "%s: this brio was built without zlib, which compresses",
+                 path);
+done:
+    return status;
+}
+
 static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
                                const brio_write_options *options) {
     static const char *const without_tetrahedra[BRIO_FORMAT_END] = {
         [BRIO_FORMAT_XYZ] = "a text of points", [BRIO_FORMAT_OBJ] = "an OBJ file", [BRIO_FORMAT_OFF] = "an OFF file",
         [BRIO_FORMAT_VTP] = "a VTP file",       [BRIO_FORMAT_LAS] = "a LAS file",  [BRIO_FORMAT_STL] = "an STL file",
-        [BRIO_FORMAT_NPY] = "an NPY file"};
+        [BRIO_FORMAT_NPY] = "an NPY file",      [BRIO_FORMAT_GLB] = "a GLB file"};
     brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, format > BRIO_FORMAT_AUTO && format < BRIO_FORMAT_END, BRIO_ERR_ARGUMENT,
-                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .las .stl or .npy",
-                 path);
+    BRIO_REQUIRE(
+        ctx, format > BRIO_FORMAT_AUTO && format < BRIO_FORMAT_END, BRIO_ERR_ARGUMENT,
+        "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .las .stl .npy or .glb", path);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || !without_tetrahedra[format], BRIO_ERR_ARGUMENT,
                  "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, without_tetrahedra[format]);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0, BRIO_ERR_ARGUMENT,
                  "standard output cannot hold the two files .node and .ele");
+    BRIO_REQUIRE(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
+                 "%s: .gltf files are read, not written; .glb files are", path);
+    BRIO_TRY(check_compress(ctx, path, format, options));
     if (is_single(format, options)) BRIO_TRY(check_single(ctx, path, m));
 done:
     return status;
@@ -134,6 +150,8 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
         return brio_stl_write(out, job);
     case BRIO_FORMAT_NPY:
         return brio_npy_write(out, job);
+    case BRIO_FORMAT_GLB:
+        return brio_glb_write(out, job);
     case BRIO_FORMAT_LAZ:
     case BRIO_FORMAT_PCD:
     case BRIO_FORMAT_PTX:
@@ -219,6 +237,7 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, options, &o));
     brio_format format = o.format;
     if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
+    if (o.moved) *o.moved = 0;
     BRIO_TRY(check_indices(ctx, mesh));
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
     if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_NPY)

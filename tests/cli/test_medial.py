@@ -102,7 +102,8 @@ class Files(CliTest):
             info = self.facts("info", self.path("out." + extension))
             self.assertEqual((info["points"], info["faces"], info["tetrahedra"]), (n, t, k))
         self.expect(0, "medial", points, "-o", self.path("out.xyz"))
-        self.expect(2, "info", self.path("out.vtp"))
+        info = self.facts("info", self.path("out.vtp"))
+        self.assertEqual((info["points"], info["faces"], info["tetrahedra"]), (n, t, 0))
 
 
 if __name__ == "__main__":

@@ -152,6 +152,21 @@ class Formats(CliTest):
             value = float(text)
             self.assertAlmostEqual(struct.unpack("f", struct.pack("f", value))[0], value, delta=1e-9)
 
+    def test_compressed_files(self):
+        for extension in "vtu", "vtp":
+            out, packed = self.path("a." + extension), self.path("b." + extension)
+            self.expect(0, "generate", "sphere", "-n", 3000, "-o", out)
+            run = self.run_brio("generate", "sphere", "-n", 3000, "-o", packed, "--compress")
+            if "without zlib" in run.err:
+                self.skipTest("brio was built without zlib")
+            self.assertEqual(run.code, 0, run.err)
+            self.assertLess(os.path.getsize(packed), os.path.getsize(out))
+            self.assertEqual(self.facts("info", out)["box"], self.facts("info", packed)["box"])
+        self.usage("cannot be compressed; .vtu and .vtp can", "generate", "sphere", "-n", 9, "-o", "x.ply", "--compress")
+        self.usage("text is not compressed", "generate", "sphere", "-n", 9, "-o", "x.vtu", "--compress", "--ascii")
+        self.usage("without compression", "voronoi", out, "-o", "x.vtu", "--compress")
+        self.usage(".glb files are", "generate", "sphere", "-n", 9, "-o", "x.gltf")
+
     def test_points_in_a_vtp_file_are_cells(self):
         self.expect(0, "generate", "ball", "-n", 20, "-o", self.path("b.vtp"))
         arrays, piece = self.appended_arrays("b.vtp")

@@ -1,4 +1,4 @@
-/* Texts of numbers, OBJ, OFF, NODE and VTU files as others write them. */
+/* Texts of numbers, OBJ, OFF and NODE files as others write them. */
 #include "io_files.h"
 
 static void format_of_names(void) {
@@ -209,76 +209,6 @@ static void node_errors(void) {
     io_expect_error("b.node", "2 3 0 0\n0 0 0 0\n1 0 0 0\n", BRIO_ERR_FORMAT, "b.ele: line 2: corner 2");
 }
 
-/* --- VTU --- */
-
-static void vtu_errors(void) {
-#define FILE_TAG "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\""
-    io_expect_error("a.vtu", "", BRIO_ERR_FORMAT, "a tag AppendedData");
-    io_expect_error("a.vtu", "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\">", BRIO_ERR_FORMAT, "UnstructuredGrid");
-    io_expect_error("a.vtu", FILE_TAG " compressor=\"vtkZLibDataCompressor\">", BRIO_ERR_FORMAT, "not compressed");
-    io_expect_error("a.vtu", FILE_TAG "><Piece NumberOfPoints=\"x\" NumberOfCells=\"0\">", BRIO_ERR_FORMAT,
-                    "a number NumberOfPoints, found \"x\"");
-    io_expect_error("a.vtu",
-                    FILE_TAG "><Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"><Points><DataArray format=\"ascii\">",
-                    BRIO_ERR_FORMAT, "format appended");
-    io_expect_error(
-        "a.vtu",
-        FILE_TAG
-        "><Piece NumberOfPoints=\"4\" NumberOfCells=\"0\"><Points><DataArray type=\"Float32\" "
-        "NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points><AppendedData encoding=\"raw\">_abcdefgh",
-        BRIO_ERR_FORMAT, "rows");
-    io_expect_error("a.vtu",
-                    FILE_TAG "><Piece NumberOfPoints=\"4\" NumberOfCells=\"0\"><AppendedData encoding=\"raw\">_",
-                    BRIO_ERR_FORMAT, "no array of points");
-}
-
-/* Narrow sizes, point data before the points, wide and unsigned indices, other cells, comments with tags in them. */
-static void vtu_of_others(void) {
-    static const char xml[] =
-        "<!-- <AppendedData> -->\n" FILE_TAG " header_type='UInt32'><UnstructuredGrid><Piece NumberOfPoints=\"4\" "
-        "NumberOfCells=\"3\"><PointData><DataArray type=\"Int16\" Name=\"a&lt;b\" format=\"appended\" offset=\"0\"/>"
-        "<DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"3\" format=\"appended\" "
-        "offset=\"12\"/></PointData>"
-        "<CellData><DataArray type=\"Float32\" Name=\"c\" format=\"ascii\">1 2</DataArray></CellData>"
-        "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"appended\" "
-        "offset=\"64\"/></Points><Cells>"
-        "<DataArray type=\"UInt32\" Name=\"connectivity\" format=\"appended\" offset=\"116\"/>"
-        "<DataArray type=\"Int32\" Name=\"offsets\" format=\"appended\" offset=\"156\"/>"
-        "<DataArray type=\"Int64\" Name=\"types\" format=\"appended\" "
-        "offset=\"172\"/></Cells></Piece></UnstructuredGrid>"
-        "<AppendedData encoding=\"raw\">\n   _";
-    struct __attribute__((packed)) {
-        uint32_t a_size;
-        int16_t a[4];
-        char vectors[52];
-        uint32_t points_size;
-        float points[12];
-        uint32_t connectivity_size;
-        uint32_t connectivity[9];
-        uint32_t offsets_size;
-        int32_t offsets[3];
-        uint32_t types_size;
-        int64_t types[3];
-    } data = {8,  {1, -2, 3, -4}, "", 48,        {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, 36, {0, 1, 2, 0, 1, 2, 3, 0, 1},
-              12, {3, 7, 9},      24, {5, 10, 3}};
-    const uint16_t probe = 1;
-    if (*(const uint8_t *)&probe == 0) return; /* the bytes above are those of a little-endian machine */
-    size_t size = sizeof xml - 1;
-    char *bytes = malloc(size + sizeof data);
-    memcpy(bytes, xml, size);
-    memcpy(bytes + size, &data, sizeof data);
-    brio_status status;
-    brio_mesh *m = io_read_bytes("o.vtu", bytes, size + sizeof data, &status);
-    free(bytes);
-    EXPECT(m, "%s", brio_message(io_ctx));
-    if (!m) return;
-    EXPECT(m->num_vertices == 4 && m->vertices[3] == 1 && m->vertices[11] == 1);
-    EXPECT(m->num_faces == 1 && m->face_vertices[2] == 2 && m->num_tetrahedra == 1 && m->tetrahedra[3] == 3);
-    EXPECT(m->num_properties == 1 && !strcmp(m->properties->name, "a<b") &&
-           brio_property_value(m->properties, 3) == -4);
-    brio_mesh_free(m);
-}
-
 int main(void) {
     io_begin();
     RUN(format_of_names);
@@ -293,7 +223,5 @@ int main(void) {
     RUN(off_errors);
     RUN(node_with_attributes_and_tetrahedra);
     RUN(node_errors);
-    RUN(vtu_errors);
-    RUN(vtu_of_others);
     return io_end();
 }

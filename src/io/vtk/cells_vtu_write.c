@@ -5,7 +5,8 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "io/cells_write.h"
-#include "io/vtk/vtk_xml.h"
+#include "io/vtk/vtk_writer.h"
+#include <string.h>
 
 enum { VTK_POLYHEDRON = 42 };
 
@@ -18,6 +19,11 @@ typedef struct {
     uint64_t *end;        /* of each polyhedron: behind its last vertex */
     uint32_t *polyhedron; /* the cell of each polyhedron */
     uint64_t num_numbers; /* of the array `faces` */
+    /* the place in the array `faces`: the next corner of a face of a polyhedron, or what stands before it */
+    size_t at_polyhedron;
+    uint64_t at_face, at_corner;
+    enum { AT_FACES, AT_CORNERS, AT_VERTEX } at;
+    uint64_t faces_end; /* of the polyhedra before, in the array `faceoffsets` */
 } polyhedra;
 
 static int compare_numbers(uint32_t a, uint32_t b, const void *user) {
@@ -57,99 +63,109 @@ done:
     return status;
 }
 
-static brio_status write_xml(polyhedra *w) {
+/* --- arrays --- */
+
+static void fill_vertices(void *user, uint64_t first, size_t count, void *to) {
+    const polyhedra *w = user;
+    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, w->vertex[first + i]);
+}
+
+static void fill_ends(void *user, uint64_t first, size_t count, void *to) {
+    const polyhedra *w = user;
+    memcpy(to, w->end + first, count * sizeof *w->end);
+}
+
+static void fill_types(void *user, uint64_t first, size_t count, void *to) {
+    (void)user, (void)first;
+    memset(to, VTK_POLYHEDRON, count);
+}
+
+/* Returns the next number of the array `faces`: for each cell the number of faces, and for each face the number of
+ * corners, then these. */
+static uint32_t next_of_faces(polyhedra *w) {
+    const brio_cells *cells = w->cells;
+    size_t c = w->polyhedron[w->at_polyhedron];
+    if (w->at == AT_FACES) {
+        w->at_face = cells->face_offsets[c];
+        w->at = AT_CORNERS;
+        return (uint32_t)brio_cells_num_faces(cells, c);
+    }
+    uint64_t end = cells->corner_offsets[w->at_face + 1];
+    if (w->at == AT_CORNERS) {
+        w->at_corner = cells->corner_offsets[w->at_face];
+        w->at = AT_VERTEX;
+        return (uint32_t)(end - w->at_corner);
+    }
+    uint32_t vertex = cells->face_vertices[w->at_corner++];
+    if (w->at_corner < end) return vertex;
+    w->at = ++w->at_face < cells->face_offsets[c + 1] ? AT_CORNERS : AT_FACES;
+    w->at_polyhedron += w->at == AT_FACES;
+    return vertex;
+}
+
+static void fill_faces(void *user, uint64_t first, size_t count, void *to) {
+    polyhedra *w = user;
+    (void)first;
+    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, next_of_faces(w));
+}
+
+static void fill_face_offsets(void *user, uint64_t first, size_t count, void *to) {
+    polyhedra *w = user;
+    const brio_cells *cells = w->cells;
+    for (size_t i = 0; i < count; i++) {
+        size_t c = w->polyhedron[first + i];
+        uint64_t from = cells->face_offsets[c], end = cells->face_offsets[c + 1];
+        w->faces_end += 1 + (end - from) + (cells->corner_offsets[end] - cells->corner_offsets[from]);
+        ((uint64_t *)to)[i] = w->faces_end;
+    }
+}
+
+static void fill_sites(void *user, uint64_t first, size_t count, void *to) {
+    const polyhedra *w = user;
+    for (size_t i = 0; i < count; i++) ((uint32_t *)to)[i] = w->cells->site[w->polyhedron[first + i]];
+}
+
+static void fill_volumes(void *user, uint64_t first, size_t count, void *to) {
+    const polyhedra *w = user;
+    for (size_t i = 0; i < count; i++) ((double *)to)[i] = w->cells->volume[w->polyhedron[first + i]];
+}
+
+static void fill_areas(void *user, uint64_t first, size_t count, void *to) {
+    const polyhedra *w = user;
+    for (size_t i = 0; i < count; i++) ((double *)to)[i] = w->cells->area[w->polyhedron[first + i]];
+}
+
+static void fill_counts(void *user, uint64_t first, size_t count, void *to) {
+    const polyhedra *w = user;
+    for (size_t i = 0; i < count; i++)
+        ((uint32_t *)to)[i] = (uint32_t)brio_cells_num_faces(w->cells, w->polyhedron[first + i]);
+}
+
+static brio_status write_arrays(polyhedra *w, const brio_vtk_source *arrays, size_t count) {
     brio_status status = BRIO_OK;
-    size_t n = w->num_polyhedra, index = brio_vtk_index_size(&w->xml);
-    BRIO_TRY(brio_vtk_begin(&w->xml));
-    BRIO_TRY(brio_output_format(w->xml.out, "<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
-                                w->cells->num_vertices, n));
-    BRIO_TRY(brio_vtk_declare_points(&w->xml));
+    for (size_t i = 0; i < count; i++) BRIO_TRY(brio_vtk_write_array(&w->xml, &arrays[i]));
+done:
+    return status;
+}
+
+static brio_status write_cells(polyhedra *w) {
+    brio_status status = BRIO_OK;
+    size_t n = w->num_polyhedra;
+    int index = brio_vtk_index_type(&w->xml);
+    const brio_vtk_source cells[] = {{"connectivity", index, 1, w->num_vertices, fill_vertices, w},
+                                     {"offsets", BRIO_VTK_INT64, 1, n, fill_ends, w},
+                                     {"types", BRIO_SCALAR_UINT8, 1, n, fill_types, w},
+                                     {"faces", index, 1, w->num_numbers, fill_faces, w},
+                                     {"faceoffsets", BRIO_VTK_INT64, 1, n, fill_face_offsets, w}};
+    const brio_vtk_source data[] = {{"site", BRIO_SCALAR_UINT32, 1, n, fill_sites, w},
+                                    {"volume", BRIO_SCALAR_FLOAT64, 1, n, fill_volumes, w},
+                                    {"area", BRIO_SCALAR_FLOAT64, 1, n, fill_areas, w},
+                                    {"faces", BRIO_SCALAR_UINT32, 1, n, fill_counts, w}};
     BRIO_TRY(brio_output_string(w->xml.out, "<Cells>\n"));
-    BRIO_TRY(brio_vtk_declare_cells(&w->xml, n, w->num_vertices));
-    BRIO_TRY(brio_vtk_declare(&w->xml, "UInt8", "types", 1, n));
-    BRIO_TRY(brio_vtk_declare(&w->xml, w->xml.wide ? "Int64" : "Int32", "faces", 1, w->num_numbers * index));
-    BRIO_TRY(brio_vtk_declare(&w->xml, "Int64", "faceoffsets", 1, n * sizeof(int64_t)));
+    BRIO_TRY(write_arrays(w, cells, sizeof cells / sizeof *cells));
     BRIO_TRY(brio_output_string(w->xml.out, "</Cells>\n<CellData>\n"));
-    BRIO_TRY(brio_vtk_declare(&w->xml, "UInt32", "site", 1, n * sizeof(uint32_t)));
-    BRIO_TRY(brio_vtk_declare(&w->xml, "Float64", "volume", 1, n * sizeof(double)));
-    BRIO_TRY(brio_vtk_declare(&w->xml, "Float64", "area", 1, n * sizeof(double)));
-    BRIO_TRY(brio_vtk_declare(&w->xml, "UInt32", "faces", 1, n * sizeof(uint32_t)));
+    BRIO_TRY(write_arrays(w, data, sizeof data / sizeof *data));
     BRIO_TRY(brio_output_string(w->xml.out, "</CellData>\n"));
-    BRIO_TRY(brio_vtk_begin_data(&w->xml));
-done:
-    return status;
-}
-
-/* Writes the array `faces`: for each cell the number of faces, and for each face the number of corners, then these. */
-static brio_status write_faces(polyhedra *w) {
-    const brio_cells *cells = w->cells;
-    brio_status status = brio_vtk_write_size(&w->xml, w->num_numbers * brio_vtk_index_size(&w->xml));
-    for (size_t i = 0; i < w->num_polyhedra && status == BRIO_OK; i++) {
-        size_t c = w->polyhedron[i];
-        uint32_t count = (uint32_t)brio_cells_num_faces(cells, c);
-        status = brio_vtk_write_indices(&w->xml, &count, 1);
-        for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1] && status == BRIO_OK; f++) {
-            uint64_t first = cells->corner_offsets[f], corners = cells->corner_offsets[f + 1] - first;
-            count = (uint32_t)corners;
-            BRIO_TRY(brio_vtk_write_indices(&w->xml, &count, 1));
-            BRIO_TRY(brio_vtk_write_indices(&w->xml, cells->face_vertices + first, (size_t)corners));
-        }
-    }
-done:
-    return status;
-}
-
-static brio_status write_face_offsets(polyhedra *w) {
-    const brio_cells *cells = w->cells;
-    uint64_t end = 0;
-    brio_status status = brio_vtk_write_size(&w->xml, w->num_polyhedra * sizeof end);
-    for (size_t i = 0; i < w->num_polyhedra && status == BRIO_OK; i++) {
-        uint64_t first = cells->face_offsets[w->polyhedron[i]], last = cells->face_offsets[w->polyhedron[i] + 1];
-        end += 1 + (last - first) + (cells->corner_offsets[last] - cells->corner_offsets[first]);
-        status = brio_output_bytes(w->xml.out, &end, sizeof end);
-    }
-    return status;
-}
-
-static brio_status write_types(polyhedra *w) {
-    const uint8_t type = VTK_POLYHEDRON;
-    brio_status status = brio_vtk_write_size(&w->xml, w->num_polyhedra);
-    for (size_t i = 0; i < w->num_polyhedra && status == BRIO_OK; i++) status = brio_output_bytes(w->xml.out, &type, 1);
-    return status;
-}
-
-/* Writes one number of each polyhedron, `size` bytes at `array` for each cell. */
-static brio_status write_numbers(polyhedra *w, const void *array, size_t size) {
-    brio_status status = brio_vtk_write_size(&w->xml, w->num_polyhedra * size);
-    for (size_t i = 0; i < w->num_polyhedra && status == BRIO_OK; i++)
-        status = brio_output_bytes(w->xml.out, (const char *)array + size * w->polyhedron[i], size);
-    return status;
-}
-
-static brio_status write_counts(polyhedra *w) {
-    brio_status status = brio_vtk_write_size(&w->xml, w->num_polyhedra * sizeof(uint32_t));
-    for (size_t i = 0; i < w->num_polyhedra && status == BRIO_OK; i++) {
-        uint32_t count = (uint32_t)brio_cells_num_faces(w->cells, w->polyhedron[i]);
-        status = brio_output_bytes(w->xml.out, &count, sizeof count);
-    }
-    return status;
-}
-
-static brio_status write_data(polyhedra *w) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_vtk_write_points(&w->xml));
-    BRIO_TRY(brio_vtk_write_size(&w->xml, w->num_vertices * brio_vtk_index_size(&w->xml)));
-    BRIO_TRY(brio_vtk_write_indices(&w->xml, w->vertex, w->num_vertices));
-    BRIO_TRY(brio_vtk_write_size(&w->xml, w->num_polyhedra * sizeof *w->end));
-    BRIO_TRY(brio_output_bytes(w->xml.out, w->end, w->num_polyhedra * sizeof *w->end));
-    BRIO_TRY(write_types(w));
-    BRIO_TRY(write_faces(w));
-    BRIO_TRY(write_face_offsets(w));
-    BRIO_TRY(write_numbers(w, w->cells->site, sizeof *w->cells->site));
-    BRIO_TRY(write_numbers(w, w->cells->volume, sizeof *w->cells->volume));
-    BRIO_TRY(write_numbers(w, w->cells->area, sizeof *w->cells->area));
-    BRIO_TRY(write_counts(w));
-    BRIO_TRY(brio_vtk_end(&w->xml));
 done:
     return status;
 }
@@ -161,9 +177,14 @@ brio_status brio_cells_vtu_write(brio_output *out, const brio_cells *cells, cons
     const brio_write_job job = {.mesh = &points, .options = &options};
     polyhedra w = {.xml = brio_vtk_writer_new(out, &job, "UnstructuredGrid"), .cells = cells};
     BRIO_TRY(take_cells(out->ctx, &w));
-    BRIO_TRY(write_xml(&w));
-    BRIO_TRY(write_data(&w));
+    BRIO_TRY(brio_vtk_begin(&w.xml));
+    BRIO_TRY(brio_output_format(out, "<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n", cells->num_vertices,
+                                w.num_polyhedra));
+    BRIO_TRY(brio_vtk_write_points(&w.xml));
+    BRIO_TRY(write_cells(&w));
+    BRIO_TRY(brio_vtk_end(&w.xml));
 done:
+    brio_vtk_writer_free(&w.xml);
     brio_release(out->ctx, w.vertex);
     brio_release(out->ctx, w.end);
     brio_release(out->ctx, w.polyhedron);

@@ -2,7 +2,7 @@
  * vertex cell for each point.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
-#include "io/vtk/vtk_xml.h"
+#include "io/vtk/vtk_writer.h"
 
 enum { VTK_VERTEX = 1, VTK_LINE = 3, VTK_POLYGON = 7, VTK_TETRAHEDRON = 10 };
 
@@ -10,38 +10,22 @@ typedef struct {
     brio_vtk_writer xml;
     const brio_mesh *mesh;
     size_t num_corners, num_cells; /* of all cells: tetrahedra, then faces, then edges */
-    bool vertices;                 /* whether the cells are the points */
+    size_t face_corners;
+    bool vertices; /* whether the cells are the points */
 } vtu_writer;
 
-static brio_status write_xml(vtu_writer *w) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_vtk_begin(&w->xml));
-    BRIO_TRY(brio_output_format(w->xml.out, "<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
-                                w->mesh->num_vertices, w->num_cells));
-    BRIO_TRY(brio_vtk_declare_points(&w->xml));
-    BRIO_TRY(brio_output_string(w->xml.out, "<Cells>\n"));
-    BRIO_TRY(brio_vtk_declare_cells(&w->xml, w->num_cells, w->num_corners));
-    BRIO_TRY(brio_vtk_declare(&w->xml, "UInt8", "types", 1, w->num_cells));
-    BRIO_TRY(brio_output_string(w->xml.out, "</Cells>\n"));
-    BRIO_TRY(brio_vtk_begin_data(&w->xml));
-done:
-    return status;
+static uint32_t corner(const vtu_writer *w, uint64_t i) {
+    const brio_mesh *m = w->mesh;
+    uint64_t of_tetrahedra = 4 * (uint64_t)m->num_tetrahedra;
+    if (w->vertices) return (uint32_t)i;
+    if (i < of_tetrahedra) return m->tetrahedra[i];
+    if (i < of_tetrahedra + w->face_corners) return m->face_vertices[i - of_tetrahedra];
+    return m->edges[i - of_tetrahedra - w->face_corners];
 }
 
-static brio_status write_connectivity(vtu_writer *w) {
-    brio_status status = BRIO_OK;
-    const brio_mesh *m = w->mesh;
-    BRIO_TRY(brio_vtk_write_size(&w->xml, w->num_corners * brio_vtk_index_size(&w->xml)));
-    BRIO_TRY(brio_vtk_write_indices(&w->xml, m->tetrahedra, 4 * m->num_tetrahedra));
-    if (m->num_faces)
-        BRIO_TRY(brio_vtk_write_indices(&w->xml, m->face_vertices, (size_t)m->face_offsets[m->num_faces]));
-    BRIO_TRY(brio_vtk_write_indices(&w->xml, m->edges, 2 * m->num_edges));
-    for (size_t v = 0; w->vertices && v < m->num_vertices; v++) {
-        uint32_t index = (uint32_t)v;
-        BRIO_TRY(brio_vtk_write_indices(&w->xml, &index, 1));
-    }
-done:
-    return status;
+static void fill_connectivity(void *user, uint64_t first, size_t count, void *to) {
+    const vtu_writer *w = user;
+    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, corner(w, first + i));
 }
 
 /* Returns the index behind the last corner of a cell. */
@@ -51,29 +35,33 @@ static uint64_t end_of_cell(const vtu_writer *w, size_t c) {
     if (w->vertices) return c + 1;
     if (c < t) return 4 * (c + 1);
     if (c < t + f) return 4 * t + m->face_offsets[c - t + 1];
-    return 4 * t + (f ? m->face_offsets[f] : 0) + 2 * (c - t - f + 1);
+    return 4 * t + w->face_corners + 2 * (c - t - f + 1);
 }
 
-static brio_status write_offsets(vtu_writer *w) {
-    brio_status status = brio_vtk_write_size(&w->xml, w->num_cells * sizeof(int64_t));
-    for (size_t c = 0; c < w->num_cells && status == BRIO_OK; c++) {
-        uint64_t offset = end_of_cell(w, c);
-        status = brio_output_bytes(w->xml.out, &offset, sizeof offset);
+static void fill_offsets(void *user, uint64_t first, size_t count, void *to) {
+    for (size_t i = 0; i < count; i++) ((uint64_t *)to)[i] = end_of_cell(user, (size_t)first + i);
+}
+
+static void fill_types(void *user, uint64_t first, size_t count, void *to) {
+    const vtu_writer *w = user;
+    size_t t = w->mesh->num_tetrahedra, f = w->mesh->num_faces;
+    for (size_t i = 0; i < count; i++) {
+        size_t c = (size_t)first + i;
+        ((uint8_t *)to)[i] = w->vertices ? VTK_VERTEX : c < t ? VTK_TETRAHEDRON : c < t + f ? VTK_POLYGON : VTK_LINE;
     }
-    return status;
 }
 
-static uint8_t type_of_cell(const vtu_writer *w, size_t c) {
-    size_t t = w->mesh->num_tetrahedra;
-    return w->vertices ? VTK_VERTEX : c < t ? VTK_TETRAHEDRON : c < t + w->mesh->num_faces ? VTK_POLYGON : VTK_LINE;
-}
-
-static brio_status write_types(vtu_writer *w) {
-    brio_status status = brio_vtk_write_size(&w->xml, w->num_cells);
-    for (size_t c = 0; c < w->num_cells && status == BRIO_OK; c++) {
-        uint8_t type = type_of_cell(w, c);
-        status = brio_output_bytes(w->xml.out, &type, 1);
-    }
+static brio_status write_cells(vtu_writer *w) {
+    brio_status status = BRIO_OK;
+    brio_vtk_writer *xml = &w->xml;
+    BRIO_TRY(brio_output_string(xml->out, "<Cells>\n"));
+    BRIO_TRY(brio_vtk_write_array(
+        xml, &(brio_vtk_source){"connectivity", brio_vtk_index_type(xml), 1, w->num_corners, fill_connectivity, w}));
+    BRIO_TRY(
+        brio_vtk_write_array(xml, &(brio_vtk_source){"offsets", BRIO_VTK_INT64, 1, w->num_cells, fill_offsets, w}));
+    BRIO_TRY(brio_vtk_write_array(xml, &(brio_vtk_source){"types", BRIO_SCALAR_UINT8, 1, w->num_cells, fill_types, w}));
+    BRIO_TRY(brio_output_string(xml->out, "</Cells>\n"));
+done:
     return status;
 }
 
@@ -82,15 +70,16 @@ brio_status brio_vtu_write(brio_output *out, const brio_write_job *job) {
     const brio_mesh *m = job->mesh;
     vtu_writer w = {.xml = brio_vtk_writer_new(out, job, "UnstructuredGrid"), .mesh = m};
     w.vertices = !m->num_faces && !m->num_tetrahedra && !m->num_edges;
+    w.face_corners = m->num_faces ? (size_t)m->face_offsets[m->num_faces] : 0;
     w.num_cells = w.vertices ? m->num_vertices : m->num_faces + m->num_tetrahedra + m->num_edges;
-    w.num_corners = w.vertices ? m->num_vertices : 4 * m->num_tetrahedra + 2 * m->num_edges;
-    if (m->num_faces) w.num_corners += (size_t)m->face_offsets[m->num_faces];
-    BRIO_TRY(write_xml(&w));
+    w.num_corners = w.vertices ? m->num_vertices : 4 * m->num_tetrahedra + w.face_corners + 2 * m->num_edges;
+    BRIO_TRY(brio_vtk_begin(&w.xml));
+    BRIO_TRY(brio_output_format(out, "<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n", m->num_vertices,
+                                w.num_cells));
     BRIO_TRY(brio_vtk_write_points(&w.xml));
-    BRIO_TRY(write_connectivity(&w));
-    BRIO_TRY(write_offsets(&w));
-    BRIO_TRY(write_types(&w));
+    BRIO_TRY(write_cells(&w));
     BRIO_TRY(brio_vtk_end(&w.xml));
 done:
+    brio_vtk_writer_free(&w.xml);
     return status;
 }

@@ -1,0 +1,282 @@
+/* The geometry of a glTF file as a mesh: the vertices of all primitives at their places, and properties from their
+ * attributes.
+ *
+ * NORMAL becomes nx, ny, nz; COLOR_0 red, green, blue, alpha; _NAME becomes NAME. First all primitives are looked at, to
+ * know the properties and their types: a property that has different types in two primitives is a float if it is a
+ * colour, and a double otherwise; a primitive that lacks it has 0, or white. Then the vertices are added. A primitive
+ * whose attributes are those of the one before it has that one's vertices.
+ *
+ * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
+#include "io/glb/glb_mesh.h"
+#include "base/memory.h"
+#include "io/scalar.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Chosen. */
+enum { MOST_PROPERTIES = 256 };
+
+/* A component of an attribute that becomes a property. */
+typedef struct {
+    char attribute[BRIO_GLB_NAME];
+    int component, components;
+    brio_scalar type;
+    bool colour, normal;
+} property;
+
+typedef struct {
+    const brio_glb_file *file;
+    brio_builder *builder;
+    const brio_glb_instance *instance;
+    const brio_glb_primitive *primitive;
+    property properties[MOST_PROPERTIES];
+    size_t num_properties;
+    bool plain, flip; /* the place leaves directions as they are; it is a mirror image */
+    double normal_matrix[9];
+} builder;
+
+/* --- attributes --- */
+
+static const brio_glb_attribute *attribute_of(const brio_glb_file *file, const brio_glb_primitive *p,
+                                              const char *name) {
+    const brio_glb_attribute *a = file->scene.attributes + p->attribute;
+    for (size_t i = 0; i < p->attributes; i++)
+        if (!strcmp(a[i].name, name)) return &a[i];
+    return NULL;
+}
+
+static bool same_attributes(const brio_glb_file *file, const brio_glb_primitive *p, const brio_glb_primitive *q) {
+    const brio_glb_attribute *a = file->scene.attributes + p->attribute, *b = file->scene.attributes + q->attribute;
+    if (p->attributes != q->attributes) return false;
+    for (size_t i = 0; i < p->attributes; i++)
+        if (a[i].accessor != b[i].accessor || strcmp(a[i].name, b[i].name) != 0) return false;
+    return true;
+}
+
+static brio_status positions_of(const builder *b, brio_glb_column *out) {
+    brio_status status = BRIO_OK;
+    const brio_glb_file *file = b->file;
+    BRIO_REQUIRE(file->ctx, !b->primitive->draco, BRIO_ERR_FORMAT,
+                 "%s: a primitive is compressed by Draco, which is not read: export it without", file->name);
+    const brio_glb_attribute *a = attribute_of(file, b->primitive, "POSITION");
+    BRIO_REQUIRE(file->ctx, a, BRIO_ERR_FORMAT, "%s: a primitive without POSITION", file->name);
+    BRIO_TRY(brio_glb_column_of(file, a->accessor, a->name, out));
+    BRIO_REQUIRE(file->ctx, out->components == 3, BRIO_ERR_FORMAT, "%s: accessors[%u]: POSITION is no VEC3", file->name,
+                 a->accessor);
+done:
+    return status;
+}
+
+/* --- properties --- */
+
+/* Returns the type of the property that a column becomes. */
+static brio_scalar type_of(const brio_glb_column *c, bool colour, bool normal) {
+    static const brio_scalar types[] = {BRIO_SCALAR_INT8,  BRIO_SCALAR_UINT8,  BRIO_SCALAR_INT16,  BRIO_SCALAR_UINT16,
+                                        BRIO_SCALAR_INT32, BRIO_SCALAR_UINT32, BRIO_SCALAR_FLOAT32};
+    bool bytes = c->type == BRIO_GLB_UINT8 || c->type == BRIO_GLB_UINT16;
+    if (normal || (colour && !bytes) || (c->normalized && !colour)) return BRIO_SCALAR_FLOAT32;
+    return types[c->type - BRIO_GLB_INT8];
+}
+
+static brio_status note_column(builder *b, const char *name, const brio_glb_column *c) {
+    brio_status status = BRIO_OK;
+    bool colour = !strcmp(name, "COLOR_0"), normal = !strcmp(name, "NORMAL");
+    brio_scalar type = type_of(c, colour, normal);
+    for (int k = 0; k < c->components; k++) {
+        property *p = b->properties, *end = p + b->num_properties;
+        while (p < end && (p->component != k || strcmp(p->attribute, name) != 0)) p++;
+        if (p < end) {
+            if (p->type != type) p->type = colour ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_FLOAT64;
+            if (p->components < c->components) p->components = c->components;
+            continue;
+        }
+        BRIO_REQUIRE(b->file->ctx, b->num_properties < MOST_PROPERTIES, BRIO_ERR_FORMAT,
+                     "%s: more than %d numbers a vertex", b->file->name, MOST_PROPERTIES);
+        *p = (property){.component = k, .components = c->components, .type = type, .colour = colour, .normal = normal};
+        memcpy(p->attribute, name, strlen(name) + 1);
+        b->num_properties++;
+    }
+done:
+    return status;
+}
+
+/* Notes the attributes of a primitive that become properties. */
+static brio_status note_primitive(builder *b) {
+    brio_status status = BRIO_OK;
+    brio_glb_column positions, c;
+    const brio_glb_attribute *a = b->file->scene.attributes + b->primitive->attribute;
+    BRIO_TRY(positions_of(b, &positions));
+    for (size_t i = 0; i < b->primitive->attributes; i++) {
+        bool normal = !strcmp(a[i].name, "NORMAL"), colour = !strcmp(a[i].name, "COLOR_0");
+        bool own = a[i].name[0] == '_' && a[i].name[1];
+        if (!normal && !colour && !own) continue;
+        BRIO_TRY(brio_glb_column_of(b->file, a[i].accessor, a[i].name, &c));
+        BRIO_REQUIRE(b->file->ctx,
+                     c.count >= positions.count && (!normal || c.components == 3) && (!colour || c.components >= 3),
+                     BRIO_ERR_FORMAT,
+                     "%s: accessors[%u]: %s has %" PRIu64 " rows of %d numbers, the positions have %" PRIu64 " rows",
+                     b->file->name, a[i].accessor, a[i].name, c.count, c.components, positions.count);
+        BRIO_TRY(note_column(b, a[i].name, &c));
+    }
+done:
+    return status;
+}
+
+/* Makes the properties of the mesh. A name that is taken gets _2 behind it. */
+static brio_status make_properties(builder *b) {
+    static const char *const normal[] = {"nx", "ny", "nz"}, *const colour[] = {"red", "green", "blue", "alpha"};
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < b->num_properties; i++) {
+        const property *p = &b->properties[i];
+        char plain[64], name[64];
+        if (p->normal || p->colour)
+            strcpy(plain, p->normal ? normal[p->component] : colour[p->component]);
+        else if (p->components == 1)
+            snprintf(plain, sizeof plain, "%.63s", p->attribute + 1);
+        else
+            snprintf(plain, sizeof plain, "%.60s_%c", p->attribute + 1, "0123"[p->component]);
+        strcpy(name, plain);
+        for (int n = 2; brio_mesh_property(b->builder->mesh, name); n++) snprintf(name, 64, "%.52s_%d", plain, n);
+        BRIO_TRY(brio_builder_property(b->builder, name, p->type));
+    }
+done:
+    return status;
+}
+
+/* --- vertices --- */
+
+/* Finds what the place does to normals: they go by the cofactors of its matrix. */
+static void set_place(builder *b, const brio_glb_instance *instance) {
+    const double *m = instance->matrix;
+    double determinant = 0;
+    b->instance = instance;
+    b->plain = true;
+    for (int j = 0; j < 3; j++)
+        for (int i = 0; i < 3; i++) {
+            int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            b->normal_matrix[3 * j + i] = m[4 * j1 + i1] * m[4 * j2 + i2] - m[4 * j2 + i1] * m[4 * j1 + i2];
+            determinant += j == 0 ? m[i] * b->normal_matrix[i] : 0;
+            if (m[4 * j + i] != (i == j)) b->plain = false;
+        }
+    b->flip = determinant < 0;
+    for (int i = 0; i < 9 && b->flip; i++) b->normal_matrix[i] = -b->normal_matrix[i];
+}
+
+/* A coordinate that is not moved keeps its bits: -0 + 0 would be 0. */
+static void place_positions(const builder *b, const brio_glb_column *c, uint64_t first) {
+    const double *m = b->instance->matrix;
+    for (uint64_t v = 0; v < c->count; v++) {
+        double *to = b->builder->mesh->vertices + 3 * (first + v), p[3];
+        for (int k = 0; k < 3; k++) p[k] = brio_glb_scaled(c, v, k);
+        for (int k = 0; k < 3; k++) {
+            double turned = b->plain ? p[k] : m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2];
+            to[k] = m[12 + k] != 0 ? turned + m[12 + k] : turned;
+        }
+    }
+}
+
+static double normal_component(const builder *b, const brio_glb_column *c, uint64_t v, int component) {
+    double n[3], turned[3], length = 0;
+    if (b->plain) return brio_glb_scaled(c, v, component);
+    for (int k = 0; k < 3; k++) n[k] = brio_glb_scaled(c, v, k);
+    for (int k = 0; k < 3; k++) {
+        const double *m = b->normal_matrix;
+        turned[k] = m[k] * n[0] + m[3 + k] * n[1] + m[6 + k] * n[2];
+        length += turned[k] * turned[k];
+    }
+    return length > 0 ? turned[component] / sqrt(length) : 0;
+}
+
+/* Returns the value of a colour where a primitive has none. */
+static double white(brio_scalar type) {
+    return type == BRIO_SCALAR_UINT8 ? UINT8_MAX : type == BRIO_SCALAR_UINT16 ? UINT16_MAX : 1;
+}
+
+/* Stores a property of the vertices of a primitive.   c  NULL where the primitive has no such attribute. */
+static void store(const builder *b, const property *p, const brio_glb_column *c, uint64_t first, uint64_t count) {
+    const brio_property *to = &b->builder->mesh->properties[p - b->properties];
+    size_t size = brio_scalar_size(p->type);
+    bool raw = p->type != BRIO_SCALAR_FLOAT32 && p->type != BRIO_SCALAR_FLOAT64;
+    for (uint64_t v = 0; v < count; v++) {
+        double value = p->colour ? white(p->type) : 0;
+        if (c && p->component < c->components) {
+            if (p->normal)
+                value = normal_component(b, c, v, p->component);
+            else
+                value = raw ? brio_glb_raw(c, v, p->component) : brio_glb_scaled(c, v, p->component);
+        }
+        brio_scalar_store((char *)to->data + (first + v) * size, p->type, value);
+    }
+}
+
+static brio_status add_vertices(builder *b, uint64_t vertices[2]) {
+    brio_status status = BRIO_OK;
+    brio_glb_column positions, c;
+    BRIO_TRY(positions_of(b, &positions));
+    vertices[0] = b->builder->mesh->num_vertices;
+    vertices[1] = positions.count;
+    BRIO_TRY(brio_builder_add_vertices(b->builder, (size_t)positions.count));
+    place_positions(b, &positions, vertices[0]);
+    for (size_t i = 0; i < b->num_properties; i++) {
+        const brio_glb_attribute *a = attribute_of(b->file, b->primitive, b->properties[i].attribute);
+        if (a) BRIO_TRY(brio_glb_column_of(b->file, a->accessor, a->name, &c));
+        store(b, &b->properties[i], a ? &c : NULL, vertices[0], positions.count);
+    }
+done:
+    return status;
+}
+
+/* --- the scene --- */
+
+static brio_status add_instance(builder *b, const brio_glb_instance *instance) {
+    brio_status status = BRIO_OK;
+    const brio_glb_mesh *mesh = &b->file->scene.meshes[instance->mesh];
+    const brio_glb_primitive *p = b->file->scene.primitives + mesh->primitive;
+    uint64_t vertices[2] = {0, 0};
+    set_place(b, instance);
+    BRIO_TRY(brio_progress(b->file->ctx, "read", 1));
+    for (size_t i = 0; i < mesh->primitives; i++) {
+        b->primitive = &p[i];
+        if (i == 0 || !same_attributes(b->file, &p[i - 1], &p[i])) BRIO_TRY(add_vertices(b, vertices));
+        BRIO_TRY(brio_glb_add_cells(b->file, b->builder, &p[i], vertices, b->flip));
+    }
+done:
+    return status;
+}
+
+/* Notes the primitives of a mesh, once. */
+static brio_status note_mesh(builder *b, uint32_t number, bool *noted) {
+    brio_status status = BRIO_OK;
+    const brio_glb_mesh *mesh = &b->file->scene.meshes[number];
+    if (noted[number]) return BRIO_OK;
+    noted[number] = true;
+    for (size_t i = 0; i < mesh->primitives; i++) {
+        b->primitive = &b->file->scene.primitives[mesh->primitive + i];
+        BRIO_TRY(note_primitive(b));
+    }
+done:
+    return status;
+}
+
+brio_status brio_glb_add_scene(const brio_glb_file *file, brio_builder *out) {
+    brio_status status = BRIO_OK;
+    brio_glb_instance *instances = NULL;
+    builder *b = NULL;
+    bool *noted = NULL;
+    size_t count = 0;
+    BRIO_TRY(brio_glb_instances(file, &instances, &count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(file->ctx, b, 1));
+    b->file = file;
+    b->builder = out;
+    BRIO_TRY(BRIO_ALLOC_ZERO(file->ctx, noted, file->scene.num_meshes));
+    for (size_t i = 0; i < count; i++) BRIO_TRY(note_mesh(b, instances[i].mesh, noted));
+    BRIO_TRY(make_properties(b));
+    for (size_t i = 0; i < count; i++) BRIO_TRY(add_instance(b, &instances[i]));
+done:
+    brio_release(file->ctx, instances);
+    brio_release(file->ctx, noted);
+    brio_release(file->ctx, b);
+    return status;
+}

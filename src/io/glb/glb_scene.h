@@ -1,0 +1,96 @@
+/* What the JSON of a glTF file says about geometry: buffers, views of them, accessors, the primitives of the meshes, and
+ * the nodes that place the meshes. */
+#ifndef BRIO_IO_GLB_SCENE_H
+#define BRIO_IO_GLB_SCENE_H
+
+#include "base/context.h"
+
+#define BRIO_GLB_NONE UINT32_MAX /* no index */
+
+/* Component types of accessors, as glTF numbers them. */
+enum {
+    BRIO_GLB_INT8 = 5120,
+    BRIO_GLB_UINT8 = 5121,
+    BRIO_GLB_INT16 = 5122,
+    BRIO_GLB_UINT16 = 5123,
+    BRIO_GLB_UINT32 = 5125,
+    BRIO_GLB_FLOAT = 5126
+};
+
+typedef enum {
+    BRIO_GLB_POINTS = 0,
+    BRIO_GLB_LINES = 1,
+    BRIO_GLB_LINE_LOOP = 2,
+    BRIO_GLB_LINE_STRIP = 3,
+    BRIO_GLB_TRIANGLES = 4,
+    BRIO_GLB_TRIANGLE_STRIP = 5,
+    BRIO_GLB_TRIANGLE_FAN = 6,
+    BRIO_GLB_MODE_END
+} brio_glb_mode;
+
+typedef struct brio_glb_buffer {
+    uint64_t size; /* as the JSON says */
+    char *bytes;   /* decoded from the JSON, or NULL: the binary chunk */
+} brio_glb_buffer;
+
+typedef struct brio_glb_view {
+    uint32_t buffer;
+    uint64_t offset, size, stride; /* stride 0: elements lie one behind the other */
+} brio_glb_view;
+
+typedef struct brio_glb_accessor {
+    uint32_t view;
+    uint64_t offset, count;
+    int type, components; /* type: BRIO_GLB_INT8 ... */
+    bool normalized, sparse;
+} brio_glb_accessor;
+
+enum { BRIO_GLB_NAME = 72 }; /* bytes of the name of an attribute; the rest is cut off */
+
+typedef struct brio_glb_attribute {
+    char name[BRIO_GLB_NAME];
+    uint32_t accessor;
+} brio_glb_attribute;
+
+typedef struct brio_glb_primitive {
+    brio_glb_mode mode;
+    uint32_t indices;             /* accessor, or BRIO_GLB_NONE */
+    size_t attribute, attributes; /* from and how many */
+    bool draco;                   /* compressed by Draco */
+} brio_glb_primitive;
+
+typedef struct brio_glb_mesh {
+    size_t primitive, primitives; /* from and how many */
+} brio_glb_mesh;
+
+typedef struct brio_glb_node {
+    double matrix[16]; /* column by column */
+    uint32_t mesh;     /* or BRIO_GLB_NONE */
+    size_t child, children;
+} brio_glb_node;
+
+typedef struct brio_glb_scene {
+    brio_glb_buffer *buffers;
+    brio_glb_view *views;
+    brio_glb_accessor *accessors;
+    brio_glb_attribute *attributes;
+    brio_glb_primitive *primitives;
+    brio_glb_mesh *meshes;
+    brio_glb_node *nodes;
+    uint32_t *children; /* of all nodes */
+    uint32_t *roots;    /* nodes of the scene */
+    size_t num_buffers, num_views, num_accessors, num_attributes, num_primitives, num_meshes, num_nodes, num_children,
+        num_roots;
+} brio_glb_scene;
+
+/** Reads the JSON of a file.
+ *  name   of the file, for messages.
+ *  text   `size` bytes and a 0 behind them.
+ *  scene  {0}; call brio_glb_scene_free even if this fails.
+ *  Returns BRIO_OK, BRIO_ERR_FORMAT (the message names the place in the JSON; or brio was built without a library of
+ *  JSON), BRIO_ERR_NO_MEMORY. */
+brio_status brio_glb_scene_read(brio_context *ctx, const char *name, const char *text, size_t size,
+                                brio_glb_scene *scene);
+void brio_glb_scene_free(brio_context *ctx, brio_glb_scene *scene);
+
+#endif

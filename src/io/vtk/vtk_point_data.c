@@ -1,0 +1,165 @@
+/* Point data of VTU and VTP files as properties.
+ *
+ * A column is a component of an array, and grows from piece to piece. An array of one component is a property of its
+ * name, one of several components is name_0, name_1, ... Normals become nx, ny, nz, and colours of bytes red, green,
+ * blue, alpha, which other formats have, too. Integers of 64 bits become doubles. */
+#include "base/memory.h"
+#include "io/scalar.h"
+#include "io/vtk/vtk_values.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+/* CHUNK: bytes decoded at a time. All chosen. */
+enum { CHUNK = 1 << 16, MOST_COMPONENTS = 16, MOST_COLUMNS = 4096 };
+
+bool brio_vtk_is_kept(const brio_vtk_array *array) {
+    return array->name[0] && array->components > 0 && array->components <= MOST_COMPONENTS;
+}
+
+/* --- columns --- */
+
+/* Returns the first column of an array, or NULL. The others follow it. */
+static brio_vtk_column *find(const brio_vtk_point_data *data, const brio_vtk_array *a) {
+    for (size_t i = 0; i < data->num_columns; i += (size_t)data->columns[i].components)
+        if (!strcmp(data->columns[i].source, a->name)) return &data->columns[i];
+    return NULL;
+}
+
+static brio_status add_columns(brio_vtk_point_data *data, const brio_vtk_decoder *d) {
+    brio_status status = BRIO_OK;
+    const brio_vtk_array *a = d->array;
+    BRIO_REQUIRE(d->stream->ctx, data->num_columns + a->components <= MOST_COLUMNS, BRIO_ERR_FORMAT,
+                 "%s: more than %d numbers a point", d->stream->name, MOST_COLUMNS);
+    BRIO_TRY(BRIO_RESERVE(d->stream->ctx, data->columns, data->capacity, data->num_columns + a->components));
+    for (uint64_t k = 0; k < a->components; k++) {
+        brio_vtk_column *c = &data->columns[data->num_columns++];
+        *c = (brio_vtk_column){.component = k, .components = a->components, .file_type = a->type};
+        memcpy(c->source, a->name, sizeof c->source);
+        c->type = a->type < BRIO_SCALAR_END ? (brio_scalar)a->type : BRIO_SCALAR_FLOAT64;
+    }
+done:
+    return status;
+}
+
+/* --- reading --- */
+
+static void convert_wide(char *to, const char *from, size_t rows, const brio_vtk_decoder *d) {
+    for (size_t i = 0; i < rows; i++) {
+        uint64_t raw;
+        brio_scalar_gather(&raw, from + i * d->array->components * sizeof raw, 1, 0, sizeof raw, d->swap);
+        double value = d->array->type == BRIO_VTK_INT64 ? (double)(int64_t)raw : (double)raw;
+        memcpy(to + i * sizeof value, &value, sizeof value);
+    }
+}
+
+static brio_status append(brio_vtk_column *columns, const brio_vtk_decoder *d, const char *chunk, size_t rows) {
+    brio_status status = BRIO_OK;
+    size_t size = brio_vtk_type_size(d->array->type), row = size * (size_t)d->array->components;
+    for (size_t k = 0; k < d->array->components; k++) {
+        brio_vtk_column *c = &columns[k];
+        BRIO_TRY(BRIO_RESERVE(d->stream->ctx, c->data, c->capacity, (c->rows + rows) * brio_scalar_size(c->type)));
+        char *to = c->data + c->rows * brio_scalar_size(c->type);
+        if (d->array->type < BRIO_SCALAR_END)
+            brio_scalar_gather(to, chunk + k * size, rows, row, size, d->swap);
+        else
+            convert_wide(to, chunk + k * size, rows, d);
+        c->rows += rows;
+    }
+done:
+    return status;
+}
+
+/* Makes room for all rows at once. Their number was held against the file. */
+static brio_status reserve(brio_vtk_column *columns, const brio_vtk_decoder *d, uint64_t rows) {
+    brio_status status = BRIO_OK;
+    for (size_t k = 0; k < d->array->components; k++) {
+        brio_vtk_column *c = &columns[k];
+        size_t need = (size_t)rows * brio_scalar_size(c->type);
+        if (c->rows || c->capacity >= need) continue;
+        BRIO_TRY(BRIO_RESIZE(d->stream->ctx, c->data, need));
+        c->capacity = need;
+    }
+done:
+    return status;
+}
+
+brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_vtk_decoder *d, uint64_t bytes,
+                                     const brio_vtk_piece *piece) {
+    brio_status status = BRIO_OK;
+    brio_vtk_column *columns = find(data, d->array);
+    size_t row = (size_t)d->array->components * brio_vtk_type_size(d->array->type), got;
+    uint64_t rows = piece->num_points, end = piece->first_point + rows;
+    if (!columns && piece->first_point) return BRIO_OK;
+    if (!columns) BRIO_TRY(add_columns(data, d));
+    if (!columns) columns = &data->columns[data->num_columns - d->array->components];
+    if (columns->components != d->array->components || columns->file_type != d->array->type) return BRIO_OK;
+    if (columns->rows == end && rows)
+        return brio_fail(d->stream->ctx, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": two arrays %s", d->stream->name,
+                         brio_stream_offset(d->stream), d->array->name);
+    if (columns->rows != piece->first_point) return BRIO_OK;
+    BRIO_TRY(brio_vtk_expect_rows(d, bytes, rows, row));
+    if (bytes != UINT64_MAX && d->stream->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(reserve(columns, d, rows));
+    if (!data->chunk) BRIO_TRY(BRIO_ALLOC(d->stream->ctx, data->chunk, CHUNK));
+    do {
+        BRIO_TRY(brio_vtk_decoder_take(d, data->chunk, CHUNK / row * row, &got));
+        if (columns->rows + got / row > end || got % row)
+            return brio_vtk_bad_rows(d, columns->rows - piece->first_point + got / row, rows);
+        BRIO_TRY(append(columns, d, data->chunk, got / row));
+        d->stream->row = columns->rows - piece->first_point;
+    } while (got);
+    if (columns->rows != end) return brio_vtk_bad_rows(d, columns->rows - piece->first_point, rows);
+done:
+    return status;
+}
+
+/* --- properties --- */
+
+static bool is_colour(const brio_vtk_column *c) {
+    static const char *const names[] = {"rgb", "rgba", "color", "colors", "colour", "colours"};
+    if (c->file_type != BRIO_SCALAR_UINT8 || (c->components != 3 && c->components != 4)) return false;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (!strcasecmp(c->source, names[i])) return true;
+    return false;
+}
+
+/* Chooses the name of a property: that of the column, or with _2, _3, ... behind it where that is taken. */
+static void choose_name(const brio_mesh *m, const brio_vtk_column *c, char name[64]) {
+    static const char *const normal[] = {"nx", "ny", "nz"}, *const colour[] = {"red", "green", "blue", "alpha"};
+    char plain[64];
+    if (c->components == 3 && !strcmp(c->source, "Normals"))
+        strcpy(plain, normal[c->component]);
+    else if (is_colour(c))
+        strcpy(plain, colour[c->component]);
+    else if (c->components == 1)
+        snprintf(plain, sizeof plain, "%s", c->source);
+    else
+        snprintf(plain, sizeof plain, "%.58s_%u", c->source, (unsigned)c->component % MOST_COMPONENTS);
+    strcpy(name, plain);
+    for (int n = 2; brio_mesh_property(m, name); n++) snprintf(name, 64, "%.52s_%d", plain, n);
+}
+
+brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *b) {
+    brio_status status = BRIO_OK;
+    char name[64];
+    for (size_t i = 0; i < data->num_columns; i++) {
+        brio_vtk_column *c = &data->columns[i];
+        if (c->rows != b->mesh->num_vertices) continue;
+        choose_name(b->mesh, c, name);
+        void *block = c->data;
+        c->data = NULL;
+        if (block)
+            BRIO_TRY(brio_builder_adopt_property(b, name, c->type, block));
+        else
+            BRIO_TRY(brio_builder_property(b, name, c->type));
+    }
+done:
+    return status;
+}
+
+void brio_vtk_point_data_free(brio_context *ctx, brio_vtk_point_data *data) {
+    for (size_t i = 0; i < data->num_columns; i++) brio_release(ctx, data->columns[i].data);
+    brio_release(ctx, data->columns);
+    brio_release(ctx, data->chunk);
+}

@@ -1,0 +1,265 @@
+/* Reads VTU and VTP files: points, point data, and cells, of one piece after the other.
+ *
+ * Arrays within the tags are read where they stand. Appended arrays are read after all tags, in the order of their
+ * offsets. Points become vertices at once. Point data and the arrays of the cells are kept until all have been read.
+ *
+ * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+#define _GNU_SOURCE
+#include "base/memory.h"
+#include "base/sort.h"
+#include "io/formats.h"
+#include "io/scalar.h"
+#include "io/vtk/vtk_cells.h"
+#include <inttypes.h>
+#include <string.h>
+
+/* Rows of points decoded at a time. Chosen. */
+enum { ROWS = 1 << 12 };
+
+typedef struct {
+    brio_stream *stream;
+    brio_builder *builder;
+    brio_vtk_header header;
+    brio_vtk_decoder decoder;
+    brio_vtk_point_data point_data;
+    brio_vtk_cells *cells; /* the sections of the pieces */
+    size_t num_cells, cells_capacity;
+    brio_vtk_array *appended;
+    size_t num_appended, appended_capacity;
+    uint32_t *order; /* of the appended arrays */
+    char *rows;      /* of points */
+} vtk_reader;
+
+bool brio_vtk_starts(const char *bytes, size_t size) {
+    static const char xml[] = "<?xml", file[] = "<VTKFile";
+    if (size >= strlen(xml) && !memcmp(bytes, xml, strlen(xml))) return memmem(bytes, size, file, strlen(file)) != NULL;
+    return size >= strlen(file) && !memcmp(bytes, file, strlen(file));
+}
+
+/* --- points --- */
+
+static void convert_points(const vtk_reader *r, double *to, size_t rows) {
+    const brio_vtk_decoder *d = &r->decoder;
+    if (d->array->type < BRIO_SCALAR_END) {
+        size_t row = 3 * brio_vtk_type_size(d->array->type);
+        brio_scalar_convert_triples(to, r->rows, rows, row, (brio_scalar)d->array->type, d->swap);
+        return;
+    }
+    const brio_vtk_values wide = {.bytes = r->rows, .type = d->array->type};
+    if (d->swap) brio_scalar_gather(r->rows, r->rows, 3 * rows, sizeof(int64_t), sizeof(int64_t), true);
+    for (size_t i = 0; i < 3 * rows; i++) to[i] = brio_vtk_number(&wide, i);
+}
+
+static brio_status read_points(vtk_reader *r, uint64_t bytes, const brio_vtk_piece *piece) {
+    brio_status status = BRIO_OK;
+    brio_vtk_decoder *d = &r->decoder;
+    brio_mesh *m = r->builder->mesh;
+    size_t row = 3 * brio_vtk_type_size(d->array->type), got;
+    BRIO_REQUIRE(d->stream->ctx, d->array->components == 3 && m->num_vertices == piece->first_point, BRIO_ERR_FORMAT,
+                 "%s: byte %" PRIu64 ": expected one array of points with 3 components for each piece, in their order",
+                 d->stream->name, brio_stream_offset(d->stream));
+    BRIO_TRY(brio_vtk_expect_rows(d, bytes, piece->num_points, row));
+    /* the array's size was held against that of the file */
+    if (bytes != UINT64_MAX && d->stream->size != BRIO_SIZE_UNKNOWN && !piece->first_point)
+        BRIO_TRY(brio_builder_expect_vertices(r->builder, piece->num_points));
+    if (!r->rows) BRIO_TRY(BRIO_ALLOC(d->stream->ctx, r->rows, ROWS * 3 * sizeof(double)));
+    do {
+        uint64_t found = m->num_vertices - piece->first_point;
+        BRIO_TRY(brio_vtk_decoder_take(d, r->rows, ROWS * row, &got));
+        if (got % row || found + got / row > piece->num_points)
+            return brio_vtk_bad_rows(d, found + got / row, piece->num_points);
+        BRIO_TRY(brio_builder_add_vertices(r->builder, got / row));
+        convert_points(r, m->vertices + 3 * (m->num_vertices - got / row), got / row);
+        d->stream->row = found + got / row;
+    } while (got);
+    uint64_t found = m->num_vertices - piece->first_point;
+    if (found != piece->num_points) return brio_vtk_bad_rows(d, found, piece->num_points);
+done:
+    return status;
+}
+
+/* --- cells --- */
+
+/* Finds the arrays of a section of a piece, or makes them. The last sections are the likely ones. */
+static brio_status find_cells(vtk_reader *r, const brio_vtk_array *a, brio_vtk_cells **out) {
+    brio_status status = BRIO_OK;
+    size_t first = a->piece * BRIO_VTK_SECTION_END, need = first + BRIO_VTK_SECTION_END;
+    if (need > r->num_cells) {
+        BRIO_TRY(BRIO_RESERVE(r->stream->ctx, r->cells, r->cells_capacity, need));
+        memset(r->cells + r->num_cells, 0, (need - r->num_cells) * sizeof *r->cells);
+        r->num_cells = need;
+    }
+    *out = &r->cells[first + a->section];
+    (*out)->section = a->section;
+done:
+    return status;
+}
+
+static brio_status read_cells(vtk_reader *r, uint64_t bytes, const brio_vtk_array *a) {
+    brio_status status = BRIO_OK;
+    brio_vtk_cells *cells = NULL;
+    BRIO_TRY(find_cells(r, a, &cells));
+    bool connectivity = !strcmp(a->name, "connectivity");
+    brio_vtk_values *target = connectivity                  ? &cells->connectivity
+                              : !strcmp(a->name, "offsets") ? &cells->offsets
+                                                            : &cells->types;
+    BRIO_REQUIRE(r->stream->ctx, !target->bytes, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": two arrays %s",
+                 r->stream->name, brio_stream_offset(r->stream), a->name);
+    uint64_t count = connectivity ? UINT64_MAX : r->header.pieces[a->piece].num_cells[a->section];
+    BRIO_TRY(brio_vtk_read_values(&r->decoder, bytes, count, target));
+done:
+    return status;
+}
+
+static brio_status add_cells(vtk_reader *r) {
+    brio_status status = BRIO_OK;
+    for (size_t p = 0; p < r->header.num_pieces; p++)
+        for (int k = BRIO_VTK_CELLS; k < BRIO_VTK_SECTION_END; k++) {
+            size_t i = p * BRIO_VTK_SECTION_END + (size_t)k;
+            if (!r->header.pieces[p].num_cells[k]) continue;
+            BRIO_REQUIRE(r->stream->ctx,
+                         i < r->num_cells && r->cells[i].connectivity.bytes && r->cells[i].offsets.bytes &&
+                             (k != BRIO_VTK_CELLS || r->cells[i].types.bytes),
+                         BRIO_ERR_FORMAT, "%s: expected arrays connectivity and offsets of the cells%s",
+                         r->stream->name, k == BRIO_VTK_CELLS ? ", and types" : "");
+            r->cells[i].piece = &r->header.pieces[p];
+            BRIO_TRY(brio_vtk_add_cells(r->builder, &r->cells[i]));
+        }
+done:
+    return status;
+}
+
+/* --- arrays --- */
+
+static bool is_kept(const brio_vtk_array *a) {
+    if (a->section == BRIO_VTK_OTHER) return false;
+    if (a->section == BRIO_VTK_POINTS) return true;
+    if (a->section == BRIO_VTK_POINT_DATA) return brio_vtk_is_kept(a);
+    return a->components == 1 && (!strcmp(a->name, "connectivity") || !strcmp(a->name, "offsets") ||
+                                  (a->section == BRIO_VTK_CELLS && !strcmp(a->name, "types")));
+}
+
+/* Reads the array whose first byte is the next one. */
+static brio_status read_array(vtk_reader *r, const brio_vtk_array *a, brio_vtk_encoding encoding) {
+    brio_status status = BRIO_OK;
+    uint64_t bytes = 0;
+    const brio_vtk_piece *piece = &r->header.pieces[a->piece];
+    brio_stream_element(r->stream, a->name[0] ? a->name : "array", piece->num_points);
+    BRIO_TRY(brio_vtk_decoder_open(&r->decoder, a, encoding, &bytes));
+    if (a->section == BRIO_VTK_POINTS)
+        BRIO_TRY(read_points(r, bytes, piece));
+    else if (a->section == BRIO_VTK_POINT_DATA)
+        BRIO_TRY(brio_vtk_read_point_data(&r->point_data, &r->decoder, bytes, piece));
+    else
+        BRIO_TRY(read_cells(r, bytes, a));
+done:
+    r->stream->element = NULL;
+    return status;
+}
+
+static brio_status take_array(vtk_reader *r, const char *tag) {
+    brio_status status = BRIO_OK;
+    brio_vtk_array a;
+    BRIO_TRY(brio_vtk_header_array(r->stream, &r->header, tag, &a));
+    if (!is_kept(&a)) return BRIO_OK;
+    if (!a.appended) return read_array(r, &a, a.encoding);
+    BRIO_TRY(BRIO_RESERVE(r->stream->ctx, r->appended, r->appended_capacity, r->num_appended + 1));
+    r->appended[r->num_appended++] = a;
+done:
+    return status;
+}
+
+static int compare_offsets(uint32_t i, uint32_t j, const void *user) {
+    const brio_vtk_array *a = user;
+    if (a[i].offset != a[j].offset) return a[i].offset < a[j].offset ? -1 : 1;
+    return i < j ? -1 : i > j;
+}
+
+static brio_status read_appended(vtk_reader *r, brio_vtk_encoding encoding) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    uint64_t start, base = brio_stream_offset(s);
+    BRIO_TRY(BRIO_ALLOC(s->ctx, r->order, r->num_appended));
+    for (size_t i = 0; i < r->num_appended; i++) r->order[i] = (uint32_t)i;
+    brio_sort_indices(r->order, r->num_appended, compare_offsets, r->appended);
+    for (size_t i = 0; i < r->num_appended; i++) {
+        const brio_vtk_array *a = &r->appended[r->order[i]];
+        uint64_t at = brio_stream_offset(s);
+        BRIO_REQUIRE(s->ctx, !__builtin_add_overflow(base, a->offset, &start) && start >= at, BRIO_ERR_FORMAT,
+                     "%s: array %s has the offset %" PRIu64 ", where another one is", s->name, a->name, a->offset);
+        BRIO_REQUIRE(s->ctx, start <= s->size, BRIO_ERR_FORMAT,
+                     "%s: array %s has the offset %" PRIu64 ", beyond the end of the file at byte %" PRIu64, s->name,
+                     a->name, a->offset, s->size);
+        brio_stream_element(s, a->name[0] ? a->name : "array", 0);
+        BRIO_TRY(brio_stream_skip(s, start - at));
+        BRIO_TRY(read_array(r, a, encoding));
+    }
+done:
+    return status;
+}
+
+/* --- the file --- */
+
+static brio_status begin_appended(vtk_reader *r, const char *tag) {
+    brio_status status = BRIO_OK;
+    bool base64 = brio_xml_attribute_is(tag, "encoding", "base64");
+    if (!base64 && !brio_xml_attribute_is(tag, "encoding", "raw"))
+        return brio_xml_bad(r->stream, "appended data of encoding raw or base64");
+    BRIO_TRY(brio_xml_skip_to(r->stream, '_', "_ before the appended data"));
+    r->stream->begin++;
+    BRIO_TRY(read_appended(r, base64 ? BRIO_VTK_BASE64 : BRIO_VTK_RAW));
+done:
+    return status;
+}
+
+static brio_status read_file(vtk_reader *r) {
+    brio_status status = BRIO_OK;
+    const char *tag;
+    for (;;) {
+        BRIO_TRY(brio_xml_next_tag(r->stream, r->header.known ? "a tag /VTKFile" : "a tag VTKFile", &tag));
+        if (brio_xml_is(tag, "DataArray")) {
+            BRIO_TRY(take_array(r, tag));
+        } else if (brio_xml_is(tag, "AppendedData")) {
+            if (r->num_appended) return begin_appended(r, tag);
+            return BRIO_OK;
+        } else if (brio_xml_is(tag, "/VTKFile")) {
+            return r->num_appended ? brio_xml_bad(r->stream, "a tag AppendedData") : BRIO_OK;
+        } else {
+            BRIO_TRY(brio_vtk_header_tag(r->stream, &r->header, tag));
+        }
+    }
+done:
+    return status;
+}
+
+static void free_reader(vtk_reader *r) {
+    brio_context *ctx = r->stream->ctx;
+    for (size_t i = 0; i < r->num_cells; i++) {
+        brio_release(ctx, r->cells[i].connectivity.bytes);
+        brio_release(ctx, r->cells[i].offsets.bytes);
+        brio_release(ctx, r->cells[i].types.bytes);
+    }
+    brio_release(ctx, r->cells);
+    brio_release(ctx, r->appended);
+    brio_release(ctx, r->order);
+    brio_release(ctx, r->rows);
+    brio_vtk_point_data_free(ctx, &r->point_data);
+    brio_vtk_decoder_free(&r->decoder);
+    brio_vtk_header_free(ctx, &r->header);
+}
+
+brio_status brio_vtk_read(brio_stream *s, brio_builder *b) {
+    brio_status status = BRIO_OK;
+    vtk_reader r = {.stream = s, .builder = b, .decoder.stream = s};
+    r.decoder.header = &r.header;
+    BRIO_TRY(read_file(&r));
+    BRIO_REQUIRE(s->ctx, r.header.num_pieces, BRIO_ERR_FORMAT, "%s: no Piece", s->name);
+    const brio_vtk_piece *last = &r.header.pieces[r.header.num_pieces - 1];
+    BRIO_REQUIRE(s->ctx, b->mesh->num_vertices == last->first_point + last->num_points, BRIO_ERR_FORMAT,
+                 "%s: no array of points", s->name);
+    BRIO_TRY(brio_vtk_finish_point_data(&r.point_data, b));
+    BRIO_TRY(add_cells(&r));
+done:
+    free_reader(&r);
+    return status;
+}

@@ -1,0 +1,216 @@
+/* Writes VTK's XML files: tags, points with their properties, and arrays.
+ *
+ * Raw arrays are appended: their offsets follow from their sizes, so that nothing need be kept. The size of a compressed
+ * array is known when it was compressed: compressed arrays are kept in memory until all tags are written.
+ *
+ * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+#include "io/vtk/vtk_writer.h"
+#include "base/memory.h"
+#include "io/scalar.h"
+#include "io/vtk/vtk_pack.h"
+#include <string.h>
+
+/* PART: bytes of w->part. PER_LINE: numbers of a line of text. SHARE: of the progress while arrays are compressed. All
+ * chosen. */
+enum { PART = 1 << 16, PER_LINE = 12 };
+static const double SHARE = 0.9;
+
+brio_vtk_writer brio_vtk_writer_new(brio_output *out, const brio_write_job *job, const char *kind) {
+    return (brio_vtk_writer){.out = out,
+                             .job = job,
+                             .kind = kind,
+                             .wide = job->mesh->num_vertices > INT32_MAX,
+                             .bar = brio_progress_bar(out->ctx)};
+}
+
+void brio_vtk_writer_free(brio_vtk_writer *w) {
+    for (size_t i = 0; i < w->num_appended; i++) brio_release(w->out->ctx, w->appended[i].packed);
+    brio_release(w->out->ctx, w->appended);
+    brio_release(w->out->ctx, w->part);
+    brio_progress_part(w->out->ctx, w->bar, 0, 1);
+}
+
+int brio_vtk_index_type(const brio_vtk_writer *w) {
+    return w->wide ? BRIO_VTK_INT64 : BRIO_SCALAR_INT32;
+}
+
+/* --- tags --- */
+
+static brio_status write_escaped(brio_output *out, const char *text) {
+    brio_status status = BRIO_OK;
+    for (; *text; text++) {
+        const char *escape = *text == '&'   ? "&amp;"
+                             : *text == '<' ? "&lt;"
+                             : *text == '>' ? "&gt;"
+                             : *text == '"' ? "&quot;"
+                                            : NULL;
+        char control = (unsigned char)*text < ' ' ? ' ' : *text; /* XML cannot represent control characters */
+        BRIO_TRY(escape ? brio_output_string(out, escape) : brio_output_bytes(out, &control, 1));
+    }
+done:
+    return status;
+}
+
+/* Writes a comment. Two hyphens would end an XML comment too early. */
+static brio_status write_comment(brio_output *out, const char *comment) {
+    brio_status status = BRIO_OK;
+    if (!comment || !*comment) return BRIO_OK;
+    BRIO_TRY(brio_output_string(out, "<!-- "));
+    for (char last = 0; *comment; last = *comment++) {
+        char plain = *comment == '-' && last == '-' ? ' ' : *comment;
+        BRIO_TRY(brio_output_bytes(out, &plain, 1));
+    }
+    BRIO_TRY(brio_output_string(out, " -->\n"));
+done:
+    return status;
+}
+
+brio_status brio_vtk_begin(brio_vtk_writer *w) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(w->out->ctx, w->part, PART));
+    if (w->job->options->compress) brio_progress_part(w->out->ctx, w->bar, 0, SHARE);
+    BRIO_TRY(brio_output_format(
+        w->out,
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\"%s>\n",
+        w->kind, brio_host_is_little() ? "LittleEndian" : "BigEndian",
+        w->job->options->compress ? " compressor=\"vtkZLibDataCompressor\"" : ""));
+    BRIO_TRY(write_comment(w->out, w->job->options->comment));
+    BRIO_TRY(brio_output_format(w->out, "<%s>\n", w->kind));
+done:
+    return status;
+}
+
+/* Writes a tag up to the format of the array. */
+static brio_status write_tag(brio_vtk_writer *w, const brio_vtk_source *a) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_output_format(w->out, "<DataArray type=\"%s\" Name=\"", brio_vtk_type_name(a->type)));
+    BRIO_TRY(write_escaped(w->out, a->name));
+    BRIO_TRY(brio_output_format(w->out, "\" NumberOfComponents=\"%d\"", a->components));
+done:
+    return status;
+}
+
+/* --- arrays --- */
+
+/* Calls fill for the whole array, a part at a time.   take  receives each part. */
+static brio_status for_parts(brio_vtk_writer *w, const brio_vtk_source *a,
+                             brio_status (*take)(brio_vtk_writer *w, const brio_vtk_source *a, size_t count)) {
+    brio_status status = BRIO_OK;
+    size_t most = PART / brio_vtk_type_size(a->type) / (size_t)a->components * (size_t)a->components;
+    for (uint64_t first = 0; first < a->count; first += most) {
+        size_t count = (size_t)(a->count - first < most ? a->count - first : most);
+        a->fill(a->user, first, count, w->part);
+        BRIO_TRY(take(w, a, count));
+    }
+done:
+    return status;
+}
+
+static brio_status write_raw_part(brio_vtk_writer *w, const brio_vtk_source *a, size_t count) {
+    return brio_output_bytes(w->out, w->part, count * brio_vtk_type_size(a->type));
+}
+
+static brio_status write_text_part(brio_vtk_writer *w, const brio_vtk_source *a, size_t count) {
+    brio_status status = BRIO_OK;
+    const brio_property numbers = {.type = (brio_scalar)a->type, .data = w->part};
+    size_t line = a->components > 1 ? (size_t)a->components : PER_LINE;
+    for (size_t i = 0; i < count; i++) {
+        char before = i % line ? ' ' : '\n';
+        BRIO_TRY(a->type == BRIO_VTK_INT64 ? brio_output_integer(w->out, before, ((const int64_t *)w->part)[i])
+                                           : brio_output_scalar(w->out, before, &numbers, i));
+    }
+done:
+    return status;
+}
+
+static brio_status write_text(brio_vtk_writer *w, const brio_vtk_source *a) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(write_tag(w, a));
+    BRIO_TRY(brio_output_string(w->out, " format=\"ascii\">"));
+    BRIO_TRY(for_parts(w, a, write_text_part));
+    BRIO_TRY(brio_output_string(w->out, "\n</DataArray>\n"));
+done:
+    return status;
+}
+
+brio_status brio_vtk_write_array(brio_vtk_writer *w, const brio_vtk_source *source) {
+    brio_status status = BRIO_OK;
+    if (w->job->options->ascii) return write_text(w, source);
+    BRIO_TRY(BRIO_RESERVE(w->out->ctx, w->appended, w->appended_capacity, w->num_appended + 1));
+    brio_vtk_appended *a = &w->appended[w->num_appended++];
+    *a = (brio_vtk_appended){.source = *source};
+    if (w->job->options->compress) BRIO_TRY(brio_vtk_pack(w, a));
+    BRIO_TRY(write_tag(w, source));
+    BRIO_TRY(brio_output_format(w->out, " format=\"appended\" offset=\"%llu\"/>\n", (unsigned long long)w->offset));
+    w->offset += a->packed ? a->packed_size : sizeof(uint64_t) + source->count * brio_vtk_type_size(source->type);
+done:
+    return status;
+}
+
+static brio_status write_appended(brio_vtk_writer *w) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_output_string(w->out, "<AppendedData encoding=\"raw\">\n_"));
+    for (size_t i = 0; i < w->num_appended; i++) {
+        brio_vtk_appended *a = &w->appended[i];
+        uint64_t bytes = a->source.count * brio_vtk_type_size(a->source.type);
+        if (a->packed) {
+            BRIO_TRY(brio_output_bytes(w->out, a->packed, a->packed_size));
+            brio_release(w->out->ctx, a->packed);
+            a->packed = NULL;
+            continue;
+        }
+        BRIO_TRY(brio_output_bytes(w->out, &bytes, sizeof bytes));
+        BRIO_TRY(for_parts(w, &a->source, write_raw_part));
+    }
+    BRIO_TRY(brio_output_string(w->out, "\n</AppendedData>\n"));
+done:
+    return status;
+}
+
+brio_status brio_vtk_end(brio_vtk_writer *w) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_output_format(w->out, "</Piece>\n</%s>\n", w->kind));
+    if (w->job->options->compress) {
+        brio_progress_part(w->out->ctx, w->bar, SHARE, 1);
+        w->out->expected = w->offset;
+    }
+    if (!w->job->options->ascii) BRIO_TRY(write_appended(w));
+    BRIO_TRY(brio_output_string(w->out, "</VTKFile>\n"));
+done:
+    return status;
+}
+
+/* --- points --- */
+
+static void fill_coordinates(void *user, uint64_t first, size_t count, void *to) {
+    const brio_vtk_writer *w = user;
+    const double *from = w->job->mesh->vertices + first;
+    if (!w->job->options->float32) {
+        memcpy(to, from, count * sizeof *from);
+        return;
+    }
+    for (size_t i = 0; i < count; i++) ((float *)to)[i] = (float)from[i];
+}
+
+static void fill_property(void *user, uint64_t first, size_t count, void *to) {
+    const brio_property *p = user;
+    size_t size = brio_scalar_size(p->type);
+    memcpy(to, (const char *)p->data + first * size, count * size);
+}
+
+brio_status brio_vtk_write_points(brio_vtk_writer *w) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = w->job->mesh;
+    const brio_scalar type = w->job->options->float32 ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_FLOAT64;
+    BRIO_TRY(brio_output_string(w->out, "<Points>\n"));
+    BRIO_TRY(brio_vtk_write_array(
+        w, &(brio_vtk_source){"Points", type, 3, 3 * (uint64_t)m->num_vertices, fill_coordinates, w}));
+    BRIO_TRY(brio_output_string(w->out, "</Points>\n<PointData>\n"));
+    for (size_t i = 0; i < m->num_properties; i++) {
+        brio_property *p = &m->properties[i];
+        BRIO_TRY(brio_vtk_write_array(w, &(brio_vtk_source){p->name, p->type, 1, m->num_vertices, fill_property, p}));
+    }
+    BRIO_TRY(brio_output_string(w->out, "</PointData>\n"));
+done:
+    return status;
+}

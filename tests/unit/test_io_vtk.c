@@ -1,0 +1,506 @@
+/* VTU and VTP files: what is written reads back in every encoding; files of other programs; files that lie. */
+#include "failing_allocator.h"
+#include "io_files.h"
+
+#define VTU_TAG "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\""
+#define VTP_TAG "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt64\""
+
+/* --- round trips --- */
+
+typedef enum { RAW, TEXT, PACKED, NUM_WAYS } way;
+
+static brio_write_options options_of(way w) {
+    brio_write_options options = brio_write_options_default();
+    options.ascii = w == TEXT;
+    options.compress = w == PACKED;
+    options.comment = "-- > <";
+    return options;
+}
+
+static bool same_edges(const brio_mesh *a, const brio_mesh *b) {
+    return a->num_edges == b->num_edges && io_same_bytes(a->edges, b->edges, 2 * a->num_edges * sizeof *a->edges);
+}
+
+static bool same_properties(const brio_mesh *a, const brio_mesh *b) {
+    if (a->num_properties != b->num_properties) return false;
+    for (size_t i = 0; i < a->num_properties; i++) {
+        const brio_property *p = &a->properties[i], *q = &b->properties[i];
+        size_t size = a->num_vertices * brio_scalar_size(p->type);
+        if (strcmp(p->name, q->name) != 0 || p->type != q->type || !io_same_bytes(p->data, q->data, size)) return false;
+    }
+    return true;
+}
+
+static void check_way(const char *name, way w, size_t n, int parts, bool edges) {
+    const uint32_t ends[] = {0, 1, 5, 2, 2, 2};
+    brio_write_options options = options_of(w);
+    brio_mesh *mesh = io_make(n, parts), *back = NULL;
+    options.float32 = parts & IO_SINGLE;
+    if (edges) EXPECT(brio_mesh_set_edges(mesh, ends, 3) == BRIO_OK);
+    EXPECT(brio_write(io_ctx, io_path(name), mesh, &options) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+    if (back)
+        EXPECT(io_same_points(mesh, back) && io_same_faces(mesh, back) && io_same_tetrahedra(mesh, back) &&
+                   same_edges(mesh, back) && same_properties(mesh, back),
+               "%s, way %d, parts %d", name, (int)w, parts);
+    brio_mesh_free(mesh);
+    brio_mesh_free(back);
+}
+
+/* Without compression where the library was built without zlib. */
+static int num_ways(void) {
+    static int found;
+    if (found) return found;
+    brio_write_options options = options_of(PACKED);
+    brio_mesh *mesh = io_make(3, 0);
+    found = brio_write(io_ctx, io_path("z.vtu"), mesh, &options) == BRIO_OK ? NUM_WAYS : PACKED;
+    brio_mesh_free(mesh);
+    if (found == PACKED) printf("skipped: compressed files: %s\n", brio_message(io_ctx));
+    EXPECT(found == NUM_WAYS || strstr(brio_message(io_ctx), "zlib"), "%s", brio_message(io_ctx));
+    return found;
+}
+
+static void all_parts_read_back(void) {
+    for (int w = 0; w < num_ways(); w++)
+        for (int parts = 0; parts < 32; parts++) {
+            check_way("a.vtu", (way)w, 700, parts, parts % 3 == 1);
+            if (!(parts & IO_TETRAHEDRA)) check_way("a.vtp", (way)w, 700, parts, parts % 3 == 1);
+        }
+}
+
+/* Arrays of several blocks, and of none. */
+static void sizes_read_back(void) {
+    static const size_t sizes[] = {0, 6, 5461, 5462, 16384, 40000};
+    for (int w = 0; w < num_ways(); w++)
+        for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+            check_way("b.vtu", (way)w, sizes[i], IO_PROPERTIES, sizes[i] > 0);
+            check_way("b.vtp", (way)w, sizes[i], 0, false);
+        }
+}
+
+static void threads_do_not_change_the_bytes(void) {
+    size_t sizes[2];
+    char *bytes[2];
+    brio_mesh *mesh = io_make(12000, IO_PROPERTIES);
+    brio_write_options options = options_of(num_ways() == NUM_WAYS ? PACKED : RAW);
+    for (int i = 0; i < 2; i++) {
+        brio_context_set_threads(io_ctx, 1 + 3 * i);
+        EXPECT(brio_write(io_ctx, io_path("a.vtu"), mesh, &options) == BRIO_OK);
+        bytes[i] = io_get("a.vtu", &sizes[i]);
+    }
+    EXPECT(sizes[0] == sizes[1] && io_same_bytes(bytes[0], bytes[1], sizes[0]));
+    brio_context_set_threads(io_ctx, 0);
+    free(bytes[0]);
+    free(bytes[1]);
+    brio_mesh_free(mesh);
+}
+
+static void refused_options(void) {
+    brio_mesh *mesh = io_make(5, 0);
+    brio_write_options options = options_of(PACKED);
+    EXPECT(brio_write(io_ctx, io_path("a.ply"), mesh, &options) == BRIO_ERR_ARGUMENT);
+    EXPECT(strstr(brio_message(io_ctx), ".vtu and .vtp can"), "%s", brio_message(io_ctx));
+    options.ascii = 1;
+    EXPECT(brio_write(io_ctx, io_path("a.vtu"), mesh, &options) == BRIO_ERR_ARGUMENT);
+    EXPECT(strstr(brio_message(io_ctx), "text is not compressed"), "%s", brio_message(io_ctx));
+    brio_mesh_free(mesh);
+}
+
+/* --- files of others --- */
+
+/* Narrow sizes, point data before the points, wide and unsigned indices, other cells, comments with tags in them. */
+static void vtu_of_others(void) {
+    static const char xml[] =
+        "<!-- <AppendedData> -->\n" VTU_TAG " header_type='UInt32'><UnstructuredGrid><Piece NumberOfPoints=\"4\" "
+        "NumberOfCells=\"3\"><PointData><DataArray type=\"Int16\" Name=\"a&lt;b\" format=\"appended\" offset=\"0\"/>"
+        "<DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"3\" format=\"appended\" "
+        "offset=\"12\"/></PointData>"
+        "<CellData><DataArray type=\"Float32\" Name=\"c\" format=\"ascii\">1 2</DataArray></CellData>"
+        "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"appended\" "
+        "offset=\"64\"/></Points><Cells>"
+        "<DataArray type=\"UInt32\" Name=\"connectivity\" format=\"appended\" offset=\"116\"/>"
+        "<DataArray type=\"Int32\" Name=\"offsets\" format=\"appended\" offset=\"156\"/>"
+        "<DataArray type=\"Int64\" Name=\"types\" format=\"appended\" "
+        "offset=\"172\"/></Cells></Piece></UnstructuredGrid>"
+        "<AppendedData encoding=\"raw\">\n   _";
+    struct __attribute__((packed)) {
+        uint32_t a_size;
+        int16_t a[4];
+        uint32_t v_size;
+        float v[12];
+        uint32_t points_size;
+        float points[12];
+        uint32_t connectivity_size;
+        uint32_t connectivity[9];
+        uint32_t offsets_size;
+        int32_t offsets[3];
+        uint32_t types_size;
+        int64_t types[3];
+    } data = {8,  {1, -2, 3, -4},
+              48, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11},
+              48, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1},
+              36, {0, 1, 2, 0, 1, 2, 3, 0, 1},
+              12, {3, 7, 9},
+              24, {5, 10, 3}};
+    const uint16_t probe = 1;
+    if (*(const uint8_t *)&probe == 0) return; /* the bytes above are those of a little-endian machine */
+    size_t size = sizeof xml - 1;
+    char *bytes = malloc(size + sizeof data);
+    memcpy(bytes, xml, size);
+    memcpy(bytes + size, &data, sizeof data);
+    brio_status status;
+    brio_mesh *m = io_read_bytes("o.vtu", bytes, size + sizeof data, &status);
+    free(bytes);
+    EXPECT(m, "%s", brio_message(io_ctx));
+    if (!m) return;
+    EXPECT(m->num_vertices == 4 && m->vertices[3] == 1 && m->vertices[11] == 1);
+    EXPECT(m->num_faces == 1 && m->face_vertices[2] == 2 && m->num_tetrahedra == 1 && m->tetrahedra[3] == 3);
+    EXPECT(m->num_edges == 1 && m->edges[1] == 1);
+    EXPECT(m->num_properties == 4 && !strcmp(m->properties->name, "a<b") &&
+           brio_property_value(m->properties, 3) == -4);
+    const brio_property *v = brio_mesh_property(m, "v_1");
+    EXPECT(v && v->type == BRIO_SCALAR_FLOAT32 && brio_property_value(v, 3) == 10);
+    brio_mesh_free(m);
+}
+
+/* A file of VTK: inline text of two pieces, tags within arrays, strips, lines, vertices; base 64 with blanks and with a
+ * padded end after its size. */
+static void vtp_of_others(void) {
+    static const char text[] =
+        "<?xml version=\"1.0\"?>\n" VTP_TAG "><PolyData>"
+        "<Piece NumberOfPoints=\"4\" NumberOfVerts=\"1\" NumberOfLines=\"1\" NumberOfStrips=\"1\" NumberOfPolys=\"1\">"
+        "<PointData Normals=\"Normals\"><DataArray type=\"Int64\" Name=\"id\" format=\"ascii\" RangeMin=\"1e+299\">\n"
+        "1 -2 9007199254740993\n4 <InformationKey name=\"L2\"><Value index=\"0\">\n7\n</Value></InformationKey>"
+        "</DataArray><DataArray type=\"UInt8\" Name=\"RGB\" NumberOfComponents=\"3\" format=\"ascii\">"
+        "1 2 3 4 5 6 7 8 9 10 11 12</DataArray>"
+        "<DataArray type='Float32' Name='only here' format='ascii'>1 2 3 nan</DataArray></PointData>"
+        "<CellData><DataArray type=\"Float32\" Name=\"a > b\" format=\"ascii\">1 2 3 4</DataArray></CellData>"
+        "<Points><DataArray type=\"Float32\" Name=\"Points\" NumberOfComponents=\"3\" format=\"ascii\">"
+        "0 0 0 1 0 0 0 1 0 .5 1e0 -2.5E-1</DataArray></Points>"
+        "<Verts><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">3</DataArray>"
+        "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">1</DataArray></Verts>"
+        "<Lines><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">3 1 0</DataArray>"
+        "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3</DataArray></Lines>"
+        "<Strips><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
+        "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray></Strips>"
+        "<Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">2 1 0</DataArray>"
+        "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3</DataArray></Polys></Piece>"
+        "<Piece NumberOfPoints=\"1\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"1\">"
+        "<PointData><DataArray type=\"Int64\" Name=\"id\" format=\"binary\">\n  CAAA AAAAAAA=\nBQAAAAAA\tAAA=\n"
+        "</DataArray><DataArray type=\"UInt8\" Name=\"RGB\" NumberOfComponents=\"3\" format=\"ascii\">7 8 9"
+        "</DataArray></PointData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">"
+        "DAAAAAAAAAAAAIA/AAAAQAAAQEA=</DataArray></Points><Polys><DataArray type=\"Int64\" Name=\"connectivity\" "
+        "format=\"ascii\">0 0 0</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3</DataArray>"
+        "</Polys></Piece></PolyData></VTKFile>\n";
+    const uint32_t corners[] = {0, 1, 2, 1, 3, 2, 2, 1, 0, 4, 4, 4}, edges[] = {3, 1, 1, 0};
+    brio_mesh *m = io_read_text("o.vtp", text);
+    if (!m) return;
+    EXPECT(m->num_vertices == 5 && m->vertices[11] == -.25 && m->vertices[12] == 1 && m->vertices[14] == 3);
+    EXPECT(m->num_faces == 4 && !memcmp(m->face_vertices, corners, sizeof corners));
+    EXPECT(m->num_edges == 2 && !memcmp(m->edges, edges, sizeof edges));
+    const brio_property *id = brio_mesh_property(m, "id"), *blue = brio_mesh_property(m, "blue");
+    EXPECT(id && id->type == BRIO_SCALAR_FLOAT64 && brio_property_value(id, 1) == -2 &&
+           brio_property_value(id, 4) == 5);
+    EXPECT(blue && blue->type == BRIO_SCALAR_UINT8 && brio_property_value(blue, 4) == 9 && m->num_properties == 4);
+    brio_mesh_free(m);
+}
+
+/* Point data that a piece lacks are passed over, and so are data that a piece has in another type. */
+static void data_of_some_pieces(void) {
+#define PIECE(data)                                                                                                    \
+    "<Piece NumberOfPoints=\"1\"><Points><DataArray type=\"Int8\" NumberOfComponents=\"3\" format=\"ascii\">1 2 3"     \
+    "</DataArray></Points><PointData><DataArray type=\"Int8\" Name=\"all\" format=\"ascii\">7</DataArray>" data        \
+    "</PointData></Piece>"
+#define DATA(name, type) "<DataArray type=\"" type "\" Name=\"" name "\" format=\"ascii\">5</DataArray>"
+    brio_mesh *m =
+        io_read_text("a.vtp", VTP_TAG "><PolyData>" PIECE(DATA("outer", "Int8") DATA("two types", "Int8"))
+                                  PIECE(DATA("inner", "Int8") DATA("two types", "Int16"))
+                                      PIECE(DATA("outer", "Int8") DATA("two types", "Int8")) "</PolyData></VTKFile>");
+#undef PIECE
+#undef DATA
+    if (!m) return;
+    EXPECT(m->num_vertices == 3 && m->num_properties == 1 && !strcmp(m->properties->name, "all"), "%zu properties",
+           m->num_properties);
+    brio_mesh_free(m);
+}
+
+/* 36 bytes in three blocks, as base 64. */
+#define PACKED_POINTS                                                                                                  \
+    "AwAAAAAAAAAQAAAAAAAAAAQAAAAAAAAAGwAAAAAAAAAbAAAAAAAAAA8AAAAAAAAAeAEBEADv/wAAgD8AAABAAABAQA"                       \
+    "AAgEAQgwJAeAEBEADv/wAAoEAAAMBAAADgQAAAAEEckQNCeAEBBAD7/wAAEEEAZQBS"
+
+#define PACKED_FILE(attributes, inside, behind)                                                                        \
+    VTP_TAG " compressor=\"vtkZLibDataCompressor\"><PolyData><Piece NumberOfPoints=\"3\"><Points><DataArray "          \
+            "type=\"Float32\" NumberOfComponents=\"3\" " attributes ">" inside "</DataArray></Points></Piece>"         \
+            "</PolyData>" behind "</VTKFile>"
+
+/* Compressed arrays as base 64, within the tags and behind them: whole, cut off anywhere, with any byte changed. */
+static void packed_base64(void) {
+    static const char *const files[] = {PACKED_FILE("format=\"binary\"", PACKED_POINTS, ""),
+                                        PACKED_FILE("format=\"appended\" offset=\"3\"", "",
+                                                    "<AppendedData encoding=\"base64\">\n_AAA\n" PACKED_POINTS
+                                                    "\n</AppendedData>")};
+    brio_status status;
+    if (num_ways() < NUM_WAYS) return;
+    for (size_t i = 0; i < 2; i++) {
+        size_t size = strlen(files[i]), data = (size_t)(strstr(files[i], "AwAAAAAAAAA") - files[i]);
+        brio_mesh *m = io_read_text("p.vtp", files[i]);
+        EXPECT(m && m->num_vertices == 3 && m->vertices[0] == 1 && m->vertices[8] == 9);
+        brio_mesh_free(m);
+        char *changed = malloc(size + 1);
+        for (size_t n = 0; n < size; n++) {
+            m = io_read_bytes("p.vtp", files[i], n, &status);
+            EXPECT(status == BRIO_OK || status == BRIO_ERR_FORMAT, "%zu: %d", n, (int)status);
+            EXPECT(n >= data + strlen(PACKED_POINTS) || !m, "%zu bytes", n);
+            brio_mesh_free(m);
+            memcpy(changed, files[i], size);
+            changed[n] ^= 1;
+            brio_mesh_free(io_read_bytes("p.vtp", changed, size, &status));
+            EXPECT(status == BRIO_OK || status == BRIO_ERR_FORMAT || status == BRIO_ERR_NOT_FINITE, "%zu: %d", n,
+                   (int)status);
+        }
+        free(changed);
+    }
+    EXPECT(brio_context_memory(io_ctx) == 0);
+}
+
+/* Names that two arrays would take. */
+static void names_stay_distinct(void) {
+    brio_mesh *m = io_read_text(
+        "a.vtp", VTP_TAG "><PolyData><Piece NumberOfPoints=\"1\"><PointData>"
+                         "<DataArray type=\"Int8\" Name=\"nx\" format=\"ascii\">1</DataArray>"
+                         "<DataArray type=\"Int8\" Name=\"Normals\" NumberOfComponents=\"3\" format=\"ascii\">2 3 4"
+                         "</DataArray><DataArray type=\"Int8\" Name=\"v\" NumberOfComponents=\"2\" format=\"ascii\">5 6"
+                         "</DataArray></PointData><Points><DataArray type=\"Int64\" NumberOfComponents=\"3\" "
+                         "format=\"ascii\">1 2 3</DataArray></Points></Piece></PolyData></VTKFile>");
+    if (!m) return;
+    EXPECT(m->num_properties == 6 && m->vertices[2] == 3);
+    EXPECT(brio_mesh_property(m, "nx_2") && brio_property_value(brio_mesh_property(m, "nx_2"), 0) == 2);
+    EXPECT(brio_mesh_property(m, "v_1") && brio_property_value(brio_mesh_property(m, "v_1"), 0) == 6);
+    brio_mesh_free(m);
+}
+
+/* --- files that lie --- */
+
+/* A VTP file of one piece with `points` points, whose array of points has these attributes and this content. */
+static void expect_points_error(const char *points, const char *attributes, const char *content, const char *part) {
+    char text[2048];
+    snprintf(text, sizeof text,
+             VTP_TAG "><PolyData><Piece NumberOfPoints=\"%s\"><Points><DataArray type=\"Float32\" "
+                     "NumberOfComponents=\"3\" %s>%s</DataArray></Points></Piece></PolyData></VTKFile>",
+             points, attributes, content);
+    io_expect_error("l.vtp", text, BRIO_ERR_FORMAT, part);
+}
+
+static void errors_of_tags(void) {
+    io_expect_error("a.vtu", "", BRIO_ERR_FORMAT, "a tag VTKFile");
+    io_expect_error("a.vtu", "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\">", BRIO_ERR_FORMAT,
+                    "UnstructuredGrid or PolyData");
+    io_expect_error("a.vtu", "<VTKFile type=\"PolyData\">", BRIO_ERR_FORMAT, "byte_order");
+    io_expect_error("a.vtu", VTU_TAG " compressor=\"vtkLZ4DataCompressor\">", BRIO_ERR_FORMAT,
+                    "compressed by vtkLZ4DataCompressor");
+    io_expect_error("a.vtu", VTU_TAG "><Piece NumberOfPoints=\"x\" NumberOfCells=\"0\">", BRIO_ERR_FORMAT,
+                    "a number NumberOfPoints, found \"x\"");
+    io_expect_error("a.vtu", VTU_TAG "><Piece NumberOfPoints=\"1\">", BRIO_ERR_FORMAT, "a number NumberOfCells");
+    io_expect_error("a.vtu", VTU_TAG "><Piece NumberOfPoints=\"0\" NumberOfCells=\"0\"/>", BRIO_ERR_FORMAT,
+                    "a tag /VTKFile");
+    io_expect_error("a.vtu", VTU_TAG "></VTKFile>", BRIO_ERR_FORMAT, "no Piece");
+    io_expect_error("a.vtu", VTU_TAG "><Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"/></VTKFile>", BRIO_ERR_FORMAT,
+                    "no array of points");
+    expect_points_error("1", "format=\"hex\"", "", "appended, binary or ascii");
+    expect_points_error("1", "format=\"appended\" offset=\"0\"", "", "a tag AppendedData");
+    expect_points_error("18446744073709551615", "format=\"ascii\"", "1 2 3", "has 1 rows");
+}
+
+static void errors_of_text(void) {
+    expect_points_error("1", "format=\"ascii\"", "1 2 x", "found \"x\"");
+    expect_points_error("1", "format=\"ascii\"", "1 2", "rows");
+    expect_points_error("2", "format=\"ascii\"", "1 2 3", "has 1 rows, not 2");
+    expect_points_error("1", "format=\"ascii\"", "1 2 3 4 5 6", "has 2 or more rows, not 1");
+    expect_points_error("1", "format=\"ascii\"/", "", "has 0 rows, not 1");
+    io_expect_error("a.vtp",
+                    VTP_TAG "><Piece NumberOfPoints=\"1\"><PointData><DataArray Name=\"a\" type=\"UInt8\" "
+                            "format=\"ascii\">256</DataArray>",
+                    BRIO_ERR_FORMAT, "a number of type UInt8");
+    io_expect_error("a.vtp",
+                    VTP_TAG "><Piece NumberOfPoints=\"1\"><PointData><DataArray Name=\"a\" type=\"Int64\" "
+                            "format=\"ascii\">9223372036854775808</DataArray>",
+                    BRIO_ERR_FORMAT, "type Int64");
+}
+
+static void errors_of_base64(void) {
+    expect_points_error("1", "format=\"binary\"", "DAAA*AAA", "expected base64");
+    expect_points_error("1", "format=\"binary\"", "D=AAAAAA", "expected base64");
+    expect_points_error("1", "format=\"binary\"", "", "expected base64");
+    expect_points_error("1", "format=\"binary\"", "DAAAAAAAAAAAAIA/", "expected base64");
+    expect_points_error("1", "format=\"binary\"", "DQAAAAAAAAAAAIA/AAAAQAAAQEA=", "13 bytes");
+    expect_points_error("2", "format=\"binary\"", "DAAAAAAAAAAAAIA/AAAAQAAAQEA=", "not the number of rows of 12");
+    expect_points_error("1", "format=\"binary\"",
+                        "////////////AIA/AAAAQAAAQEA=", "promises 18446744073709551615 bytes");
+}
+
+/* Files whose data are appended raw: `words` numbers of 64 bits. */
+static void expect_appended_error(const char *attributes, const char *offset, const uint64_t *words, size_t count,
+                                  const char *part) {
+    char text[1024];
+    int size = snprintf(text, sizeof text,
+                        VTP_TAG "%s><PolyData><Piece NumberOfPoints=\"1\"><Points><DataArray type=\"Float64\" "
+                                "NumberOfComponents=\"3\" format=\"appended\" offset=\"%s\"/></Points></Piece>"
+                                "</PolyData><AppendedData encoding=\"raw\">_",
+                        attributes, offset);
+    brio_status status;
+    memcpy(text + size, words, count * sizeof *words);
+    brio_mesh *m = io_read_bytes("l.vtp", text, (size_t)size + count * sizeof *words, &status);
+    EXPECT(status == BRIO_ERR_FORMAT && strstr(brio_message(io_ctx), part), "\"%s\" without \"%s\"",
+           brio_message(io_ctx), part);
+    brio_mesh_free(m);
+}
+
+static void errors_of_appended_arrays(void) {
+    static const char *const zlib = " compressor=\"vtkZLibDataCompressor\"";
+    const uint64_t right[] = {24, 0, 0, 0}, most = UINT64_MAX;
+    expect_appended_error("", "0", right, 3, "promises 24 bytes, the file has at most 16");
+    expect_appended_error("", "0", right, 0, "ends at byte");
+    expect_appended_error("", "9", right, 4, "bytes");
+    expect_appended_error("", "1000", right, 4, "beyond the end of the file");
+    expect_appended_error("", "18446744073709551615", right, 4, "where another one is");
+    expect_appended_error("", "99999999999999999999", right, 4, "a number offset");
+    expect_appended_error("", "0", &most, 1, "promises 18446744073709551615 bytes");
+    if (num_ways() < NUM_WAYS) return;
+    const uint64_t many[] = {UINT64_MAX, 1, 1, 1}, huge[] = {2, UINT64_C(1) << 63, 0, 1, 1, 0};
+    const uint64_t large[] = {1, 24, 0, UINT64_MAX, 0}, sum[] = {2, 12, 0, UINT64_C(1) << 63, UINT64_C(1) << 63};
+    const uint64_t bomb[] = {1, UINT64_C(1) << 40, 0, 8, 0}, wrong[] = {1, 24, 0, 8, 0x1234567890abcdef};
+    const uint64_t empty[] = {1, 24, 0, 0}, none[] = {0, 24, 0};
+    expect_appended_error(zlib, "0", many, 4, "promises 18446744073709551615 bytes");
+    expect_appended_error(zlib, "0", huge, 6, "which are not in");
+    expect_appended_error(zlib, "0", large, 5, "promises 18446744073709551615 bytes");
+    expect_appended_error(zlib, "0", sum, 5, "over 2^64");
+    expect_appended_error(zlib, "0", bomb, 5, "which are not in 8 compressed bytes");
+    expect_appended_error(zlib, "0", wrong, 5, "zlib cannot inflate");
+    expect_appended_error(zlib, "0", empty, 4, "which are not in 0 compressed bytes");
+    expect_appended_error(zlib, "0", none, 3, "has 0 bytes");
+}
+
+/* A stream of zlib that stores n bytes as they are; returns its size. */
+static size_t store_block(const uint8_t *bytes, size_t n, uint8_t *out) {
+    uint32_t a = 1, b = 0;
+    const uint8_t head[] = {0x78, 1, 1, (uint8_t)n, 0, (uint8_t)~n, 0xff};
+    memcpy(out, head, sizeof head);
+    memcpy(out + sizeof head, bytes, n);
+    for (size_t i = 0; i < n; i++) b += a += bytes[i];
+    const uint8_t tail[] = {(uint8_t)(b >> 8), (uint8_t)b, (uint8_t)(a >> 8), (uint8_t)a};
+    memcpy(out + sizeof head + n, tail, sizeof tail);
+    return sizeof head + n + sizeof tail;
+}
+
+/* A compressed array of one point in blocks of `stored` bytes, which are said to be `block` bytes of `extra` bytes more in
+ * the file. */
+static void expect_blocks(size_t stored, uint64_t block, uint64_t extra, const char *part) {
+    uint64_t words[32] = {24 / stored, block, 0};
+    const double point[] = {1, 2, 3};
+    uint8_t *at = (uint8_t *)(words + 3 + words[0]);
+    for (uint64_t i = 0; i < words[0]; i++) {
+        size_t size = store_block((const uint8_t *)point + i * stored, stored, at);
+        words[3 + i] = size + extra;
+        at += size + extra;
+    }
+    if (part) {
+        expect_appended_error(" compressor=\"vtkZLibDataCompressor\"", "0", words, 24, part);
+        return;
+    }
+    char text[1024];
+    brio_status status;
+    int size = snprintf(text, sizeof text,
+                        VTP_TAG " compressor=\"vtkZLibDataCompressor\"><PolyData><Piece NumberOfPoints=\"1\"><Points>"
+                                "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"appended\" "
+                                "offset=\"0\"/></Points></Piece></PolyData><AppendedData encoding=\"raw\">_");
+    memcpy(text + size, words, sizeof words);
+    brio_mesh *m = io_read_bytes("b.vtp", text, (size_t)size + sizeof words, &status);
+    EXPECT(m && m->vertices[0] == 1 && m->vertices[2] == 3, "%s", brio_message(io_ctx));
+    brio_mesh_free(m);
+}
+
+/* Blocks that inflate to more or to less than their sizes say, or that end before the next one begins. */
+static void sizes_of_blocks_are_held_against_the_bytes(void) {
+    if (num_ways() < NUM_WAYS) return;
+    expect_blocks(24, 24, 0, NULL);
+    expect_blocks(6, 6, 0, NULL); /* coordinates that two blocks share */
+    expect_blocks(12, 12, 3, "ends before its size says");
+    expect_blocks(12, 24, 0, "bytes");
+    expect_blocks(8, 8, (uint64_t)0 - 1, "does not end where its size says");
+    const uint64_t short_block[] = {1, 24, 0, 19, 0, 0, 0}, long_block[] = {1, 24, 0, 43, 0, 0, 0, 0, 0, 0};
+    uint64_t words[10];
+    const uint8_t zeros[32] = {0};
+    memcpy(words, short_block, sizeof short_block);
+    store_block(zeros, 8, (uint8_t *)(words + 4));
+    expect_appended_error(" compressor=\"vtkZLibDataCompressor\"", "0", words, 7, "ends before its size says");
+    memcpy(words, long_block, sizeof long_block);
+    store_block(zeros, 32, (uint8_t *)(words + 4));
+    expect_appended_error(" compressor=\"vtkZLibDataCompressor\"", "0", words, 10, "more bytes than its size says");
+}
+
+/* Two arrays at one place, and cells that lie. */
+static void errors_of_cells(void) {
+#define CELLS(connectivity, offsets)                                                                                   \
+    VTU_TAG "><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points><DataArray type=\"Int8\" "                       \
+            "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points><Cells><DataArray "       \
+            "type=\"Int64\" Name=\"connectivity\" format=\"ascii\">" connectivity "</DataArray><DataArray "            \
+            "type=\"Int64\" Name=\"offsets\" format=\"ascii\">" offsets "</DataArray><DataArray type=\"UInt8\" "       \
+            "Name=\"types\" format=\"ascii\">5</DataArray></Cells></Piece></VTKFile>"
+    io_expect_error("a.vtu", CELLS("0 1 3", "3"), BRIO_ERR_FORMAT, "point 3, expected one of the 3");
+    io_expect_error("a.vtu", CELLS("0 1 -1", "3"), BRIO_ERR_FORMAT, "point -1");
+    io_expect_error("a.vtu", CELLS("0 1 9223372036854775807", "3"), BRIO_ERR_FORMAT, "point 9.223372036854");
+    io_expect_error("a.vtu", CELLS("0 1 2", "4"), BRIO_ERR_FORMAT, "offset 4, expected 0 to 3");
+    io_expect_error("a.vtu", CELLS("0 1 2", "-1"), BRIO_ERR_FORMAT, "offset -1");
+    io_expect_error("a.vtu", CELLS("0 1 2", "2"), BRIO_ERR_FORMAT, "2 corners, expected 3");
+    io_expect_error("a.vtu", CELLS("0 1 2", "3 4"), BRIO_ERR_FORMAT, "has 2 or more rows, not 1");
+#undef CELLS
+    io_expect_error("a.vtp",
+                    VTP_TAG "><Piece NumberOfPoints=\"0\"><PointData><DataArray type=\"Int8\" Name=\"a\" "
+                            "format=\"appended\" offset=\"0\"/><DataArray type=\"Int8\" Name=\"b\" "
+                            "format=\"appended\" offset=\"0\"/></PointData></Piece><AppendedData encoding=\"base64\">"
+                            "_AAAAAAAAAAA=</AppendedData></VTKFile>",
+                    BRIO_ERR_FORMAT, "where another one is");
+}
+
+/* A small file of a large array of zeros, against the memory limit. */
+static void bomb_is_held_against_the_limit(void) {
+    enum { POINTS = 2000000 };
+    const uint32_t triangle[] = {0, 1, 2};
+    struct stat facts;
+    brio_mesh *mesh = NULL, *back = NULL;
+    brio_write_options options = options_of(PACKED);
+    if (num_ways() < NUM_WAYS) return;
+    EXPECT(brio_mesh_new(io_ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, NULL, POINTS) == BRIO_OK);
+    EXPECT(brio_mesh_set_faces(mesh, (const uint64_t[]){0, 3}, triangle, 1) == BRIO_OK);
+    EXPECT(brio_write(io_ctx, io_path("bomb.vtp"), mesh, &options) == BRIO_OK, "%s", brio_message(io_ctx));
+    brio_mesh_free(mesh);
+    EXPECT(stat(io_path("bomb.vtp"), &facts) == 0 && facts.st_size < 100000, "%zu bytes", (size_t)facts.st_size);
+    brio_context_set_memory_limit(io_ctx, 8 << 20);
+    EXPECT(brio_read(io_ctx, io_path("bomb.vtp"), BRIO_FORMAT_AUTO, &back) == BRIO_ERR_NO_MEMORY && !back);
+    brio_context_set_memory_limit(io_ctx, 0);
+    EXPECT(brio_read(io_ctx, io_path("bomb.vtp"), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(back && back->num_vertices == POINTS && back->vertices[3 * POINTS - 1] == 0);
+    brio_mesh_free(back);
+}
+
+int main(void) {
+    io_begin();
+    RUN(all_parts_read_back);
+    RUN(sizes_read_back);
+    RUN(threads_do_not_change_the_bytes);
+    RUN(refused_options);
+    RUN(vtu_of_others);
+    RUN(vtp_of_others);
+    RUN(packed_base64);
+    RUN(data_of_some_pieces);
+    RUN(names_stay_distinct);
+    RUN(errors_of_tags);
+    RUN(errors_of_text);
+    RUN(errors_of_base64);
+    RUN(errors_of_appended_arrays);
+    RUN(sizes_of_blocks_are_held_against_the_bytes);
+    RUN(errors_of_cells);
+    RUN(bomb_is_held_against_the_limit);
+    return io_end();
+}
