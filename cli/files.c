@@ -62,8 +62,9 @@ brio_status cli_check_target(run *r, const char *path) {
 
 brio_status cli_output_format(run *r, const char *path, const char *extension, brio_format *format) {
     *format = brio_format_of(extension ? extension : path);
-    if (*format == BRIO_FORMAT_LAZ || *format == BRIO_FORMAT_PCD || *format == BRIO_FORMAT_PTX)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD and PTX files are read, not written", path);
+    if (*format == BRIO_FORMAT_LAZ || *format == BRIO_FORMAT_PCD || *format == BRIO_FORMAT_PTX ||
+        *format == BRIO_FORMAT_E57)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD, PTX and E57 files are read, not written", path);
     if (*format != BRIO_FORMAT_AUTO) return BRIO_OK;
     if (extension)
         return cli_fail(r, BRIO_ERR_ARGUMENT,

@@ -16,7 +16,7 @@ static const struct {
                   {"off", BRIO_FORMAT_OFF},  {"vtu", BRIO_FORMAT_VTU}, {"node", BRIO_FORMAT_NODE},
                   {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}, {"las", BRIO_FORMAT_LAS},
                   {"laz", BRIO_FORMAT_LAZ},  {"pcd", BRIO_FORMAT_PCD}, {"ptx", BRIO_FORMAT_PTX},
-                  {"stl", BRIO_FORMAT_STL},  {"npy", BRIO_FORMAT_NPY}};
+                  {"stl", BRIO_FORMAT_STL},  {"npy", BRIO_FORMAT_NPY}, {"e57", BRIO_FORMAT_E57}};
 
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
@@ -66,11 +66,13 @@ static brio_status find_format(brio_stream *s, const char *path, brio_format *fo
         *format = BRIO_FORMAT_PCD;
     else if (brio_npy_starts(bytes, size))
         *format = BRIO_FORMAT_NPY;
+    else if (brio_e57_starts(bytes, size))
+        *format = BRIO_FORMAT_E57;
     else
         *format = strcmp(path, "-") ? brio_format_of(path) : BRIO_FORMAT_XYZ;
     BRIO_REQUIRE(s->ctx, *format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
                  "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .node .ele .las .laz .pcd "
-                 ".ptx .stl or .npy",
+                 ".ptx .stl .npy or .e57",
                  s->name);
 done:
     return status;
@@ -101,6 +103,8 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
         return brio_stl_read(s, b);
     case BRIO_FORMAT_NPY:
         return brio_npy_read(s, b);
+    case BRIO_FORMAT_E57:
+        return brio_e57_read(s, b);
     case BRIO_FORMAT_VTP:
         return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: VTP files are written, not read", s->name);
     case BRIO_FORMAT_AUTO:

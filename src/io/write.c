@@ -108,7 +108,9 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
     case BRIO_FORMAT_LAZ:
     case BRIO_FORMAT_PCD:
     case BRIO_FORMAT_PTX:
-        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD and PTX files are read, not written", out->name);
+    case BRIO_FORMAT_E57:
+        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD, PTX and E57 files are read, not written",
+                         out->name);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;
