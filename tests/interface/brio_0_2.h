@@ -1444,6 +1444,7 @@ typedef enum brio_format {
     BRIO_FORMAT_PTX = 11, /* read, not written */
     BRIO_FORMAT_STL = 12, /* corners at the same position become one vertex */
     BRIO_FORMAT_NPY = 13, /* NumPy: an array of rows of coordinates, or of records with names */
+    BRIO_FORMAT_E57 = 15, /* read, not written; where brio was built with the library expat */
     BRIO_FORMAT_END
 } brio_format;
 

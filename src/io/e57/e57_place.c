@@ -1,10 +1,11 @@
-/* Places the points of a scan.
+/* Places the points of a scan, and their normals.
  *
  * A pose turns by a unit quaternion, then moves. The quaternion is scaled to length 1 first, because its numbers are
  * rounded. A pose that does nothing leaves every bit as it was.
  *
  * Based on: ASTM E2807-11, 8.4.3 (pose) and 8.4.4.2 (spherical coordinates). */
 #include "io/e57/e57_place.h"
+#include "io/scalar.h"
 #include <math.h>
 #include <string.h>
 
@@ -31,12 +32,30 @@ void brio_e57_from_spherical(double *points, size_t num_points) {
     }
 }
 
-void brio_e57_move(const brio_e57_pose *pose, double *points, size_t num_points) {
-    const double *m = pose->matrix, *t = pose->translation;
-    for (double *p = points; p < points + 3 * num_points && pose->turns; p += 3) {
-        double x = p[0], y = p[1], z = p[2];
-        for (int k = 0; k < 3; k++) p[k] = m[3 * k] * x + m[3 * k + 1] * y + m[3 * k + 2] * z;
+static void turn(const double *m, double *p) {
+    double x = p[0], y = p[1], z = p[2];
+    for (int k = 0; k < 3; k++) p[k] = m[3 * k] * x + m[3 * k + 1] * y + m[3 * k + 2] * z;
+}
+
+void brio_e57_turn_normals(const brio_e57_pose *pose, brio_mesh *mesh, size_t first) {
+    static const char *const names[] = {"nx", "ny", "nz"};
+    const brio_property *p[3];
+    for (int k = 0; k < 3; k++) {
+        p[k] = brio_mesh_property(mesh, names[k]);
+        if (!p[k] || (p[k]->type != BRIO_SCALAR_FLOAT32 && p[k]->type != BRIO_SCALAR_FLOAT64)) return;
     }
+    for (size_t v = first; v < mesh->num_vertices && pose->turns; v++) {
+        double normal[3];
+        for (int k = 0; k < 3; k++) normal[k] = brio_property_value(p[k], v);
+        turn(pose->matrix, normal);
+        for (int k = 0; k < 3; k++)
+            brio_scalar_store((char *)p[k]->data + v * brio_scalar_size(p[k]->type), p[k]->type, normal[k]);
+    }
+}
+
+void brio_e57_move(const brio_e57_pose *pose, double *points, size_t num_points) {
+    const double *t = pose->translation;
+    for (double *p = points; p < points + 3 * num_points && pose->turns; p += 3) turn(pose->matrix, p);
     for (double *p = points; p < points + 3 * num_points && pose->moves; p += 3)
         for (int k = 0; k < 3; k++) p[k] += t[k];
 }

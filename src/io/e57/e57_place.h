@@ -18,6 +18,10 @@ void brio_e57_from_spherical(double *points, size_t num_points);
 /** Applies a pose.   points  #P by 3, changed in place. */
 void brio_e57_move(const brio_e57_pose *pose, double *points, size_t num_points);
 
+/** Turns the normals of the mesh's points from `first` on: the properties nx, ny, nz, if they are there and can hold
+ *  fractions. */
+void brio_e57_turn_normals(const brio_e57_pose *pose, brio_mesh *mesh, size_t first);
+
 /** Drops from the mesh the points from `first` on whose `invalid` is not 0.   invalid  of the points from `first` on. */
 void brio_e57_drop(brio_mesh *mesh, size_t first, const uint8_t *invalid);
 

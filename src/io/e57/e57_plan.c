@@ -71,8 +71,9 @@ static int64_t most_of(const brio_e57_code *code) {
     return range < room ? (int64_t)((uint64_t)code->least + range) : INT64_MAX;
 }
 
+/* Normals are never integers, since the pose may turn them. */
 static void widen(column *c, const brio_e57_code *code) {
-    if (is_integer(code)) {
+    if (is_integer(code) && strncmp(c->source, "nor:", 4) != 0) {
         int64_t most = most_of(code);
         if (!c->integers || code->least < c->least) c->least = code->least;
         if (!c->integers || most > c->most) c->most = most;

@@ -119,6 +119,7 @@ static brio_status read_scan(e57_reader *r, size_t scan) {
     double *points = m->vertices + 3 * r->first;
     if (r->plan.spherical[scan]) brio_e57_from_spherical(points, m->num_vertices - r->first);
     brio_e57_move(&pose, points, m->num_vertices - r->first);
+    brio_e57_turn_normals(&pose, m, r->first);
 done:
     brio_release(r->builder->ctx, r->decoders);
     brio_release(r->builder->ctx, r->invalid);

@@ -122,16 +122,21 @@ static void begin_scan(xml_reader *r) {
     s->scans[s->num_scans++] = (brio_e57_scan){.first_field = s->num_fields, .rotation = {1, 0, 0, 0}};
 }
 
+/* Reads a whole number; a number that is missing is wrong, too. */
+static bool take_count(xml_reader *r, const XML_Char **attributes, const char *name, uint64_t *value) {
+    const char *text = attribute(attributes, name), *at = text;
+    if (text && brio_parse_count(&at, value) && !*at) return true;
+    REFUSE(r, "points with the %s \"%.64s\", expected a whole number", name, text ? text : "");
+    return false;
+}
+
 static void begin_points(xml_reader *r, const XML_Char **attributes) {
     brio_e57_scan *scan = &r->scans->scans[r->scans->num_scans - 1];
-    const char *offset = attribute(attributes, "fileOffset"), *records = attribute(attributes, "recordCount");
     const char *type = attribute(attributes, "type");
     if (!type || strcmp(type, "CompressedVector") != 0)
         REFUSE(r, "points of the type %.64s, expected CompressedVector", type ? type : "(none)");
-    else if (!offset || !brio_parse_count(&offset, &scan->section) || *offset)
-        REFUSE(r, "points with the fileOffset \"%.64s\", expected a whole number", offset ? offset : "");
-    else if (!records || !brio_parse_count(&records, &scan->records) || *records)
-        REFUSE(r, "points with the recordCount \"%.64s\", expected a whole number", records ? records : "");
+    else if (take_count(r, attributes, "fileOffset", &scan->section))
+        take_count(r, attributes, "recordCount", &scan->records);
 }
 
 static void begin_field(xml_reader *r, const char *name, const XML_Char **attributes) {
