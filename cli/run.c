@@ -227,6 +227,9 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     options.ascii = r->common.ascii;
     options.float32 = r->common.float32;
     options.comment = "brio " BRIO_VERSION;
+    options.neighbours = r->neighbours;
+    options.faces = r->faces;
+    options.edges = r->edges;
     TRY(cli_check_interrupt(r));
     cli_interrupt_writing(strcmp(path, "-") != 0);
     status = brio_write(r->ctx, path, mesh, &options);

@@ -1465,6 +1465,10 @@ typedef struct brio_write_options {
     int ascii;           /* 1: text, in formats with a text and a binary form; default 0 */
     int float32;         /* 1: coordinates in single precision, in formats with both; default 0 */
     const char *comment; /* a line for the header; default NULL: none */
+    /* NODE, 1: TetGen's .neigh, .face and .edge too, beside .ele; default 0. They are found from the tetrahedra, with 40
+     * bytes a tetrahedron. Facets of one tetrahedron alone are the hull, whose faces and edges have the marker 1. */
+    int neighbours, faces, edges;
+    int reserved_int;
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);
@@ -1480,7 +1484,9 @@ static inline brio_write_options brio_write_options_default(void) {
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
  *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU and VTP only. In the names of properties, formats
  *  that cannot quote have _ for blanks and commas; a comment of several lines becomes several comments.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, or an index is out of range), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
+ *  Of several files (.node and those beside it) none gets its name before all are complete.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, an index is out of range, or three tetrahedra
+ *  whose neighbours are asked for share a facet), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);
