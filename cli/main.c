@@ -81,8 +81,18 @@ static brio_status interruption(run *r, brio_status status) {
     return status != BRIO_OK && cli_interrupted() ? cli_fail(r, BRIO_ERR_CANCELLED, "interrupted") : status;
 }
 
+/* The library's sentence about an input without an answer does not know the file, unless the library read it. */
+static brio_status name_input(run *r, brio_status status) {
+    int input = r->command ? r->command->first_input : 0;
+    if (status != BRIO_ERR_NO_ANSWER || r->message[0] || !r->ctx || r->num_operands != input + 1) return status;
+    const char *operand = r->operands[input], *message = brio_message(r->ctx);
+    const char *name = strcmp(operand, "-") ? operand : "standard input";
+    if (!strncmp(message, name, strlen(name))) return status;
+    return cli_fail(r, status, "%s: %s", name, message);
+}
+
 static int finish(run *r, brio_status status) {
-    status = interruption(r, status);
+    status = name_input(r, interruption(r, status));
     int code = cli_exit_code(status);
     cli_progress_end(&r->bar);
     bool reported = report(r, status, code);

@@ -138,6 +138,8 @@ static brio_status read_header(brio_e57_pages *p) {
     brio_stream *s = p->stream;
     char h[HEADER];
     BRIO_TRY(brio_stream_peek(s, 0, h, HEADER));
+    BRIO_REQUIRE(s->ctx, !memcmp(h, "ASTM-E57", 8), BRIO_ERR_FORMAT, "%s: byte 0: expected ASTM-E57: not an E57 file",
+                 s->name);
     BRIO_REQUIRE(s->ctx, brio_le32(h + 8) == 1, BRIO_ERR_FORMAT, "%s: byte 8: version %" PRIu32 ", expected 1", s->name,
                  brio_le32(h + 8));
     BRIO_REQUIRE(s->ctx, brio_le64(h + 40) == BRIO_E57_PAGE, BRIO_ERR_FORMAT,
@@ -160,6 +162,8 @@ done:
 brio_status brio_e57_pages_open(brio_e57_pages *p, brio_stream *s) {
     brio_status status = BRIO_OK;
     *p = (brio_e57_pages){.stream = s};
+    BRIO_TRY(brio_stream_fill(s, 1));
+    BRIO_REQUIRE(s->ctx, brio_stream_left(s), BRIO_ERR_FORMAT, "%s: is empty", s->name);
     BRIO_REQUIRE(s->ctx, s->size != BRIO_SIZE_UNKNOWN, BRIO_ERR_FORMAT,
                  "%s: an E57 file is read from its end first, which a pipe does not allow; expected a regular file",
                  s->name);
