@@ -286,7 +286,7 @@ class DamagedFiles(CliTest):
             content = bytes(int(number, 0) for number in re.findall(r"\w+", body))
             self.assertEqual(content[:4], b"LASF")
             self.expect_end("a.laz", content, codes=(0,))
-            for _ in range(200):
+            for _ in range(100):
                 changed = bytearray(content)
                 for _ in range(1 + state % 4):
                     state = (state * 6364136223846793005 + 1442695040888963407) % 2**64

@@ -321,6 +321,48 @@ class E57Test(ForeignTest):
         for scan in range(3):
             self.expect_scan(scan, points[points["scan"] == scan])
 
+    def test_scaled_integers(self):
+        """Numbers of odd widths and of none, to the last bit."""
+        import pye57
+        from pye57 import libe57
+        n, random = 5000, self.random
+        file = pye57.E57(self.path("a.e57"), mode="w")
+        image = file.image_file
+        prototype, scan = libe57.StructureNode(image), libe57.StructureNode(image)
+        fields = {"cartesianX": libe57.ScaledIntegerNode(image, 0, -5000000, 5000000, 0.001, 638982.55),
+                  "cartesianY": libe57.FloatNode(image, 0.0, libe57.FloatPrecision.E57_DOUBLE, -1e300, 1e300),
+                  "cartesianZ": libe57.ScaledIntegerNode(image, 0, 0, 2**40, 1e-7, -7.3),
+                  "rowIndex": libe57.IntegerNode(image, 0, 0, 2**18), "returnIndex": libe57.IntegerNode(image, 3, 3, 3)}
+        for name, node in fields.items():
+            prototype.set(name, node)
+        points = libe57.CompressedVectorNode(image, prototype, libe57.VectorNode(image, True))
+        scan.set("guid", libe57.StringNode(image, "{1}"))
+        scan.set("points", points)
+        file.data3d.append(scan)
+        data = {"cartesianX": random.integers(-5000000, 5000001, n) * 0.001 + 638982.55,
+                "cartesianY": random.standard_normal(n), "cartesianZ": random.integers(0, 2**40 + 1, n) * 1e-7 - 7.3,
+                "rowIndex": random.integers(0, 2**18 + 1, n), "returnIndex": numpy.full(n, 3)}
+        writer = points.writer(self.buffers(image, data, n))
+        writer.write(n)
+        writer.close()
+        file.close()
+        file = pye57.E57(self.path("a.e57"))
+        expected = {name: numpy.zeros(n) for name in data}
+        reader = file.data3d[0]["points"].reader(self.buffers(file.image_file, expected, n))
+        self.assertEqual(reader.read(), n)
+        reader.close()
+        found = self.read(self.path("a.e57"))
+        for name, column in zip(data, ("x", "y", "z", "row_index", "return_index")):
+            self.expect_equal(expected[name], found[column], name)
+
+    @staticmethod
+    def buffers(image, arrays, n):
+        from pye57 import libe57
+        buffers = libe57.VectorSourceDestBuffer()
+        for name, array in arrays.items():
+            buffers.append(libe57.SourceDestBuffer(image, name, array, n, True, True))
+        return buffers
+
     def test_pipe(self):
         self.make([([1, 0, 0, 0], [0, 0, 0])], 100)
         with open(self.path("a.e57"), "rb") as file:
