@@ -341,7 +341,7 @@ class E57Test(ForeignTest):
         file.data3d.append(scan)
         data = {"cartesianX": random.integers(-5000000, 5000001, n) * 0.001 + 638982.55,
                 "cartesianY": random.standard_normal(n), "cartesianZ": random.integers(0, 2**40 + 1, n) * 1e-7 - 7.3,
-                "rowIndex": random.integers(0, 2**18 + 1, n), "returnIndex": numpy.full(n, 3)}
+                "rowIndex": random.integers(0, 2**18 + 1, n), "returnIndex": numpy.full(n, 3, "u1")}
         writer = points.writer(self.buffers(image, data, n))
         writer.write(n)
         writer.close()
