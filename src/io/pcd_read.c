@@ -210,9 +210,7 @@ static brio_status read_text(pcd_reader *r) {
         BRIO_TRY(brio_text_row_end(&text));
         BRIO_TRY(add_point(r));
     }
-    BRIO_TRY(brio_text_next_line(&text));
-    BRIO_REQUIRE(s->ctx, !text.at, BRIO_ERR_FORMAT, "%s: line %zu: a row behind the %" PRIu64 " points of the header",
-                 s->name, s->line, r->header->points);
+    BRIO_TRY(brio_text_end(&text));
 done:
     return status;
 }

@@ -68,6 +68,10 @@ FILES = {
                 struct.pack("<HI", 20, 0) + bytes(20) + struct.pack("<6d", *[1] * 6) + bytes(68) + struct.pack("<Q", MANY) +
                 bytes(120),
     "cut.e57": e57_header(pages=MANY // 1024), "sum.e57": e57_header(), "version.e57": b"ASTM-E57" + b"\2" * 40,
+    "more.off": "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n", "more.stl": bytes(80) + struct.pack("<I", 1) + bytes(100),
+    "more.node": "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 0 0 2\n", "tail.node": "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", "tail.ele": "1 4 0\n0 0 1 2 3\n1 0 1 2 3\n",
+    "more.ply": "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+                "end_header\n0 0 0\n1 0 0\n2 0 0\n",
     "twice.xyz.gz": gzip.compress(gzip.compress(b"0 0 0\n")), "zip.ply": archive(), "zip.las": archive(), "a.zip": archive(),
 }
 
@@ -87,11 +91,14 @@ INPUTS = [
     ("many.ptx", "many.ptx: line 1: the number of columns"), ("many.pcd", "many.pcd: the header promises"),
     ("text.pcd", "text.pcd: the header promises"), ("lzf.pcd", "lzf.pcd: ", "4 GiB at most"),
     ("sizes.pcd", "sizes.pcd: the size of the data promises"), ("plain.pcd", "plain.pcd: byte ", "the header announces 24"),
-    ("more.pcd", "more.pcd: line 13: a row behind the 1 points"), ("zip.pcd", "zip.pcd: line 11: expected DATA ascii"),
+    ("more.pcd", "more.pcd: line 13: a row behind point 1 of 1"), ("zip.pcd", "zip.pcd: line 11: expected DATA ascii"),
+    ("more.off", "more.off: line 7: a row behind face 1 of 1"), ("more.node", "more.node: line 6: a row behind point 4 of 4"),
+    ("tail.node", "tail.ele: line 3: "), ("more.ply", "more.ply: line 10: a row behind vertex 2 of 2"),
+    ("more.stl", "more.stl: byte 80: 1 triangles are announced"),
     ("many.npy", "many.npy: the header promises"), ("flat.npy", "flat.npy: byte ", "shape"),
     ("object.npy", "object.npy: byte ", "expected a type"), ("columns.npy", "columns.npy: byte ", "3 to 4096 columns"),
     ("many.stl", "many.stl: the header promises"), ("many.las", "many.las: the header promises"),
-    ("cut.e57", "cut.e57: ends at byte 1024, its header announces"), ("sum.e57", "sum.e57: the page at byte 0 is damaged"),
+    ("cut.e57", "cut.e57: ends at byte 1024, its header announces"),
     ("version.e57", "version.e57: byte 8: version"),
     ("cube.xyz --input-format ply", "cube.xyz: line 1: expected ply"),
     ("cube.xyz --input-format las", "cube.xyz: byte 0: expected LASF"),
@@ -247,6 +254,13 @@ class WrongUses(CliTest):
             self.skipTest("root may write every file")
         os.chmod(self.path("old.ply"), 0o400)
         self.expect_use("delaunay cube.xyz -o old.ply", 6, "old.ply: Permission denied")
+
+    def test_e57_with_a_wrong_checksum(self):
+        code, message = self.run_line("info sum.e57")
+        self.assertEqual(code, 2)
+        if "without the library expat" in message:
+            self.skipTest("brio was built without the library expat")
+        self.assertIn("sum.e57: the page at byte 0 is damaged: its checksum is", message)
 
     def test_e57_from_a_pipe(self):
         code, message = self.run_line("info -", e57_header())

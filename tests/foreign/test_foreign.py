@@ -287,6 +287,12 @@ class E57Test(ForeignTest):
     COLUMNS = {"intensity": "intensity", "colorRed": "red", "colorGreen": "green", "colorBlue": "blue",
                "rowIndex": "row_index", "columnIndex": "column_index"}
 
+    def read(self, path):
+        run = subprocess.run([FILES, path, self.path("probe.ply")], capture_output=True, check=False)
+        if b"without the library expat" in run.stderr:
+            self.skipTest("brio was built without the library expat")
+        return super().read(path)
+
     def make(self, poses, n=30000):
         import pye57
         random = self.random

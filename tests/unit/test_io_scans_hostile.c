@@ -216,7 +216,7 @@ static void headers_of_pcd_that_lie(void) {
 
 static void points_of_pcd_that_lie(void) {
     const char *whole = "WIDTH 3\nHEIGHT 3\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 9";
-    expect_lie(&samples[0], whole, "POINTS 8", "line 17: a row behind the 8 points of the header");
+    expect_lie(&samples[0], whole, "POINTS 8", "line 17: a row behind point 8 of 8");
     expect_lie(&samples[0], whole, "POINTS 10", "ends at byte");
     expect_lie(&samples[1], whole, "POINTS 10", "the header promises at least 190 bytes");
     expect_lie(&samples[2], whole, "POINTS 10", "171 bytes of data, the header announces 190");
