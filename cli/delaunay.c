@@ -15,7 +15,7 @@ typedef struct arguments {
     int order, locate, subgraph, plane;
     double round_ratio;                /* NaN: not given */
     uint64_t block_size, record_every; /* 0: not given */
-    bool all_conflicts, rounds, verify;
+    bool all_conflicts, rounds, verify, neighbours, faces, edges;
 } arguments;
 
 enum { FITTING_ORDER = BRIO_ORDER_END }; /* random for a trace, else BRIO */
@@ -55,6 +55,11 @@ static const option options[] = {
      "trace, neighbour: edges of IN, a surface mesh, to go along (default bounded for trace, all for neighbour)",
      cli_subgraphs},
     {"rounds", 0, OPTION_FLAG, FIELD(rounds), NULL, "report the counters at the end of each round", 0},
+    {"neighbors", 0, OPTION_FLAG, FIELD(neighbours), NULL, "-o x.node: also x.neigh, the neighbours of tetrahedra", 0},
+    {"faces", 0, OPTION_FLAG, FIELD(faces), NULL, "-o x.node: also x.face, their facets, with those of the hull marked",
+     0},
+    {"edges", 0, OPTION_FLAG, FIELD(edges), NULL, "-o x.node: also x.edge, their edges, with those of the hull marked",
+     0},
     {"record-every", 0, OPTION_NATURAL, FIELD(record_every), "N", "report the counters after every N insertions", 0},
     {0},
 };
@@ -100,10 +105,25 @@ static brio_status check_plane(run *r, const arguments *a) {
     return cli_require_output(r, cli_mesh_formats, true);
 }
 
+/* Refuses the files beside .node and .ele where these are not written. */
+static brio_status check_beside_node(run *r, const arguments *a) {
+    const char *name = a->neighbours ? "neighbors" : a->faces ? "faces" : "edges", *output = r->common.output;
+    bool node = output && brio_format_of(r->common.format ? r->common.format : output) == BRIO_FORMAT_NODE;
+    r->neighbours = a->neighbours;
+    r->faces = a->faces;
+    r->edges = a->edges;
+    if (!a->neighbours && !a->faces && !a->edges) return BRIO_OK;
+    if (a->plane != NO_PLANE) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s: not with --plane", name);
+    if (!node)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s: only with -o x.node, beside which the file is written", name);
+    return BRIO_OK;
+}
+
 static brio_status check_arguments(run *r, const arguments *a) {
     brio_status status = BRIO_OK;
     TRY(check_order(r, a));
     TRY(cli_check_weights_options(r, &a->weights));
+    TRY(check_beside_node(r, a));
     if (a->plane != NO_PLANE) return check_plane(r, a);
     TRY(cli_require_output(r, formats, true));
     if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)

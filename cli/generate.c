@@ -88,7 +88,8 @@ static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
     brio_status status = BRIO_OK;
     if (a->solid != NO_SOLID || a->resolution)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--kind and --resolution go with solid only");
-    if (a->points == NO_COUNT) return cli_fail(r, BRIO_ERR_ARGUMENT, "the number of points is missing: -n N");
+    if (a->points == NO_COUNT)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "the number of points is missing, or too large: -n N");
     if (kind != BRIO_KIND_SCAN && has_scan_options(a))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
     if (a->views != NO_VIEWS && a->views < 1)

@@ -118,7 +118,7 @@ static bool store(option_parse *parse, const option *row, void *field, const cha
         expected = parse_int(text, field) ? NULL : "a whole number";
         break;
     case OPTION_NATURAL:
-        expected = parse_natural(text, field) ? NULL : "a whole number, 0 or more";
+        expected = parse_natural(text, field) ? NULL : "a whole number, 0 or more (above 2^53: with all its digits)";
         break;
     case OPTION_NUMBER:
         expected = parse_number(text, field) ? NULL : "a finite number";

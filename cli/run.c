@@ -256,6 +256,9 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     TRY(cli_settle_precision(r, path, mesh, &options, &merged));
     options.compress = r->common.compress && can_compress(options.format);
     options.comment = "brio " BRIO_VERSION;
+    options.neighbours = r->neighbours;
+    options.faces = r->faces;
+    options.edges = r->edges;
     TRY(cli_check_interrupt(r));
     cli_interrupt_writing(strcmp(path, "-") != 0);
     status = brio_write(r->ctx, path, mesh, &options);

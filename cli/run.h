@@ -50,8 +50,9 @@ typedef struct run {
         double seconds;
     } stages[MAX_STAGES];
     int num_stages;
-    double started, lap; /* clock at the beginning, and at the end of the last stage */
-    char message[1024];  /* of a failure found here; the library's is in the context */
+    double started, lap;           /* clock at the beginning, and at the end of the last stage */
+    bool neighbours, faces, edges; /* whether cli_write writes these files beside .node and .ele */
+    char message[1024];            /* of a failure found here; the library's is in the context */
     notes warnings, hints;
 } run;
 

@@ -59,6 +59,7 @@ missing() {
 missing_peers() {
     [ -f /usr/include/zlib.h ] || echo zlib1g-dev
     [ -f /usr/include/cjson/cJSON.h ] || echo libcjson-dev
+    [ -f /usr/include/expat.h ] || echo libexpat1-dev
     [ "$1" != build ] || return 0
     if [ "$1" = check ]; then
         has g++ || echo g++

@@ -1460,6 +1460,7 @@ typedef enum brio_format {
     BRIO_FORMAT_STL = 12, /* corners at the same position become one vertex */
     BRIO_FORMAT_NPY = 13, /* NumPy: an array of rows of coordinates, or of records with names */
     BRIO_FORMAT_GLB = 14, /* glTF 2.0: .glb; .gltf is read, not written. Single precision about an origin */
+    BRIO_FORMAT_E57 = 15, /* read, not written; where brio was built with the library expat */
     BRIO_FORMAT_END
 } brio_format;
 
@@ -1483,7 +1484,9 @@ typedef struct brio_write_options {
     double *moved;       /* receives the greatest distance between a vertex and the point that a reader gets: not 0
                             where the format or `float32` rounds coordinates; default NULL */
     int compress;        /* 1: compressed by zlib: VTU and VTP, if the library was built with zlib; default 0 */
-    int reserved_int;
+    /* NODE, 1: TetGen's .neigh, .face and .edge too, beside .ele; default 0. They are found from the tetrahedra, with 40
+     * bytes a tetrahedron. Facets of one tetrahedron alone are the hull, whose faces and edges have the marker 1. */
+    int neighbours, faces, edges;
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);
@@ -1499,8 +1502,10 @@ static inline brio_write_options brio_write_options_default(void) {
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
  *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only. In the names of properties, formats
  *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
- *  several lines becomes several comments.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, or an index is out of range), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
+ *  several lines becomes several comments. Of several files (.node and those beside it) none gets its name before all are
+ *  complete.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, an index is out of range, or three tetrahedra
+ *  whose neighbours are asked for share a facet), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);

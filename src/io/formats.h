@@ -25,6 +25,7 @@ brio_status brio_ptx_read(brio_stream *s, brio_builder *b);
 brio_status brio_stl_read(brio_stream *s, brio_builder *b);
 brio_status brio_npy_read(brio_stream *s, brio_builder *b);
 brio_status brio_glb_read(brio_stream *s, brio_builder *b); /* .gltf, too */
+brio_status brio_e57_read(brio_stream *s, brio_builder *b);
 brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
 
 brio_status brio_ply_write(brio_output *out, const brio_write_job *job);
@@ -48,6 +49,7 @@ bool brio_las_starts(const char *bytes, size_t size);
 bool brio_pcd_starts(const char *bytes, size_t size);
 bool brio_npy_starts(const char *bytes, size_t size);
 bool brio_glb_starts(const char *bytes, size_t size);
+bool brio_e57_starts(const char *bytes, size_t size);
 
 /** Returns whether this build can compress VTU and VTP. */
 bool brio_vtk_has_zlib(void);

@@ -98,6 +98,7 @@ brio_status brio_node_read(brio_stream *s, brio_builder *b) {
     brio_stream_element(s, "point", counts[0]);
     BRIO_TRY(find_base(&t, &b->index_base));
     for (; s->row < counts[0]; s->row++) BRIO_TRY(read_node_row(&t, b));
+    BRIO_TRY(brio_text_end(&t));
 done:
     return status;
 }
@@ -132,6 +133,7 @@ brio_status brio_ele_read(brio_stream *s, brio_builder *b) {
     BRIO_TRY(brio_stream_expect(s, counts[0], 2 * (1 + counts[1]) - 1, "the number of tetrahedra"));
     brio_stream_element(s, "tetrahedron", counts[0]);
     for (; s->row < counts[0]; s->row++) BRIO_TRY(read_ele_row(&t, b, counts[1]));
+    BRIO_TRY(brio_text_end(&t));
 done:
     return status;
 }

@@ -83,10 +83,10 @@ brio_status brio_npy_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_npy_header h;
     BRIO_TRY(brio_npy_header_read(s, &h));
+    BRIO_TRY(brio_stream_expect(s, h.rows, h.record, "the header"));
     BRIO_REQUIRE(b->ctx, h.rows <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
                  "%s: %" PRIu64 " points, the most are %" PRIu64, b->name, h.rows, BRIO_MAX_VERTICES);
     BRIO_TRY(plan(b, &h));
-    BRIO_TRY(brio_stream_expect(s, h.rows, h.record, "the header"));
     if (s->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(brio_builder_expect_vertices(b, h.rows));
     brio_stream_element(s, "row", h.rows);
     BRIO_TRY(h.fortran ? read_columns(s, b, &h) : read_rows(s, b, &h));

@@ -137,6 +137,7 @@ brio_status brio_off_read(brio_stream *s, brio_builder *b) {
     for (; s->row < vertices; s->row++) BRIO_TRY(read_vertex(&t, b, &kind));
     brio_stream_element(s, "face", faces);
     for (; s->row < faces; s->row++) BRIO_TRY(read_face(&t, b));
+    BRIO_TRY(brio_text_end(&t));
 done:
     return status;
 }

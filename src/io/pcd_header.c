@@ -43,14 +43,15 @@ done:
 
 /* Reads SIZE or COUNT: a number for each field. */
 static brio_status read_counts(brio_stream *s, brio_pcd_header *h, char *line, bool sizes) {
+    const char *expected = sizes ? "a size 1, 2, 4 or 8 for each field" : "a count 1 to 4096 for each field";
     for (size_t i = 0; i < h->num_fields; i++) {
         uint64_t value;
         if (!next_count(&line, &value) || !value || value > (sizes ? 8 : BRIO_PCD_MOST_NUMBERS) ||
             (sizes && (value & (value - 1))))
-            return bad_line(s, sizes ? "a size 1, 2, 4 or 8 for each field" : "a count 1 to 4096 for each field");
+            return bad_line(s, expected);
         *(sizes ? &h->fields[i].size : &h->fields[i].count) = (unsigned)value;
     }
-    return BRIO_OK;
+    return next_word(&line) ? bad_line(s, expected) : BRIO_OK;
 }
 
 static brio_status read_types(brio_stream *s, brio_pcd_header *h, char *line) {
@@ -59,7 +60,7 @@ static brio_status read_types(brio_stream *s, brio_pcd_header *h, char *line) {
         if (!word || strlen(word) != 1 || !strchr("IUF", *word)) return bad_line(s, "a type I, U or F for each field");
         h->fields[i].type = *word;
     }
-    return BRIO_OK;
+    return next_word(&line) ? bad_line(s, "a type I, U or F for each field") : BRIO_OK;
 }
 
 static brio_status read_data(brio_stream *s, brio_pcd_header *h, char *line) {
@@ -75,13 +76,15 @@ static brio_status read_data(brio_stream *s, brio_pcd_header *h, char *line) {
 
 typedef struct {
     uint64_t width, height, points;
-    bool has_points;
+    bool has_width, has_points;
 } pcd_size;
 
 static brio_status read_line(brio_stream *s, brio_pcd_header *h, char *line, pcd_size *size, bool *end) {
     const char *key = next_word(&line);
     if (!key || *key == '#' || !strcmp(key, "VERSION") || !strcmp(key, "VIEWPOINT")) return BRIO_OK;
     if (!strcmp(key, "FIELDS") || !strcmp(key, "COLUMNS")) return read_fields(s, h, line);
+    bool of_fields = !strcmp(key, "SIZE") || !strcmp(key, "COUNT") || !strcmp(key, "TYPE");
+    if (of_fields && !h->num_fields) return bad_line(s, "FIELDS before this line");
     if (!strcmp(key, "SIZE")) return read_counts(s, h, line, true);
     if (!strcmp(key, "COUNT")) return read_counts(s, h, line, false);
     if (!strcmp(key, "TYPE")) return read_types(s, h, line);
@@ -90,6 +93,7 @@ static brio_status read_line(brio_stream *s, brio_pcd_header *h, char *line, pcd
         return read_data(s, h, line);
     }
     uint64_t *target = !strcmp(key, "WIDTH") ? &size->width : !strcmp(key, "HEIGHT") ? &size->height : NULL;
+    size->has_width |= target == &size->width;
     if (!strcmp(key, "POINTS")) {
         target = &size->points;
         size->has_points = true;
@@ -101,8 +105,9 @@ static brio_status read_line(brio_stream *s, brio_pcd_header *h, char *line, pcd
 /* Sums up the fields, and checks them. */
 static brio_status finish(brio_stream *s, brio_pcd_header *h, const pcd_size *size) {
     brio_status status = BRIO_OK;
+    if (!size->has_points && !size->has_width) return bad_line(s, "WIDTH or POINTS before this line");
     if (__builtin_mul_overflow(size->width, size->height, &h->points)) h->points = UINT64_MAX;
-    BRIO_REQUIRE(s->ctx, !size->has_points || !h->points || size->points == h->points, BRIO_ERR_FORMAT,
+    BRIO_REQUIRE(s->ctx, !size->has_points || !size->has_width || size->points == h->points, BRIO_ERR_FORMAT,
                  "%s: %" PRIu64 " points, WIDTH times HEIGHT is %" PRIu64, s->name, size->points, h->points);
     if (size->has_points) h->points = size->points;
     for (size_t i = 0; i < h->num_fields; i++) {

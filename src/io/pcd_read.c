@@ -148,7 +148,6 @@ static brio_status read_binary(pcd_reader *r) {
     brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     const char *bytes = NULL;
-    BRIO_TRY(brio_stream_expect(s, r->header->points, r->header->record, "the header"));
     for (; s->row < r->header->points; s->row++) {
         BRIO_TRY(brio_stream_take(s, r->header->record, &bytes));
         load_point(r, bytes, 1, 0);
@@ -211,6 +210,23 @@ static brio_status read_text(pcd_reader *r) {
         BRIO_TRY(brio_text_row_end(&text));
         BRIO_TRY(add_point(r));
     }
+    BRIO_TRY(brio_text_end(&text));
+done:
+    return status;
+}
+
+/* Checks the header's number of points against the bytes that are there. Each number of a text has another character
+ * behind it, except the last one. Compressed data tell their size themselves, in 32 bits. */
+static brio_status check_points(brio_stream *s, const brio_pcd_header *h) {
+    brio_status status = BRIO_OK;
+    bool compressed = h->data == BRIO_PCD_COMPRESSED;
+    uint64_t least = h->data == BRIO_PCD_ASCII ? 2 * h->numbers - 1 : h->record;
+    if (!compressed) BRIO_TRY(brio_stream_expect(s, h->points, least, "the header"));
+    BRIO_REQUIRE(s->ctx, !compressed || h->points <= UINT32_MAX / least, BRIO_ERR_FORMAT,
+                 "%s: the header announces %" PRIu64 " points of %" PRIu64 " bytes, compressed data hold 4 GiB at most",
+                 s->name, h->points, least);
+    BRIO_REQUIRE(s->ctx, h->points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+                 "%s: %" PRIu64 " points, the most are %" PRIu64, s->name, h->points, BRIO_MAX_VERTICES);
 done:
     return status;
 }
@@ -220,8 +236,7 @@ brio_status brio_pcd_read(brio_stream *s, brio_builder *b) {
     brio_pcd_header header;
     pcd_reader r = {.stream = s, .builder = b, .header = &header};
     BRIO_TRY(brio_pcd_header_read(s, &header));
-    BRIO_REQUIRE(s->ctx, header.points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
-                 "%s: %" PRIu64 " points, the most are %" PRIu64, s->name, header.points, BRIO_MAX_VERTICES);
+    BRIO_TRY(check_points(s, &header));
     BRIO_TRY(plan(&r));
     brio_stream_element(s, "point", header.points);
     if (header.data == BRIO_PCD_ASCII)

@@ -243,6 +243,7 @@ brio_status brio_ply_read(brio_stream *s, brio_builder *b) {
     r.swap = !r.ascii && (header.encoding == BRIO_PLY_LITTLE) != brio_host_is_little();
     BRIO_TRY(plan(&r, &header));
     for (size_t i = 0; i < header.num_elements; i++) BRIO_TRY(read_element(&r, &header.elements[i]));
+    if (r.ascii) BRIO_TRY(brio_text_end(&r.text));
 done:
     brio_ply_header_free(b->ctx, &header);
     return status;

@@ -16,7 +16,7 @@ static const struct {
     {"csv", BRIO_FORMAT_XYZ},   {"obj", BRIO_FORMAT_OBJ},  {"off", BRIO_FORMAT_OFF}, {"vtu", BRIO_FORMAT_VTU},
     {"node", BRIO_FORMAT_NODE}, {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}, {"las", BRIO_FORMAT_LAS},
     {"laz", BRIO_FORMAT_LAZ},   {"pcd", BRIO_FORMAT_PCD},  {"ptx", BRIO_FORMAT_PTX}, {"stl", BRIO_FORMAT_STL},
-    {"npy", BRIO_FORMAT_NPY},   {"glb", BRIO_FORMAT_GLB},  {"gltf", BRIO_FORMAT_GLB}};
+    {"npy", BRIO_FORMAT_NPY},   {"glb", BRIO_FORMAT_GLB},  {"gltf", BRIO_FORMAT_GLB}, {"e57", BRIO_FORMAT_E57}};
 
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
@@ -72,11 +72,13 @@ static brio_status find_format(brio_stream *s, const char *path, brio_format *fo
         *format = BRIO_FORMAT_NPY;
     else if (brio_glb_starts(bytes, size))
         *format = BRIO_FORMAT_GLB;
+    else if (brio_e57_starts(bytes, size))
+        *format = BRIO_FORMAT_E57;
     else
         *format = strcmp(path, "-") ? brio_format_of(path) : BRIO_FORMAT_XYZ;
     BRIO_REQUIRE(s->ctx, *format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
                  "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .ele .las .laz .pcd "
-                 ".ptx .stl .npy .glb or .gltf",
+                 ".ptx .stl .npy .glb .gltf or .e57",
                  s->name);
 done:
     return status;
@@ -110,6 +112,8 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
         return brio_npy_read(s, b);
     case BRIO_FORMAT_GLB:
         return brio_glb_read(s, b);
+    case BRIO_FORMAT_E57:
+        return brio_e57_read(s, b);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;

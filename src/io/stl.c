@@ -54,6 +54,11 @@ static brio_status read_binary(brio_stream *s, brio_builder *b, brio_weld *weld)
                                     !brio_host_is_little());
         BRIO_TRY(add_triangle(b, weld, corners));
     }
+    /* some writers never set the number; a few bytes behind the triangles are theirs */
+    BRIO_TRY(brio_stream_fill(s, TRIANGLE));
+    BRIO_REQUIRE(s->ctx, brio_stream_left(s) < TRIANGLE, BRIO_ERR_FORMAT,
+                 "%s: byte %d: %u triangles are announced, behind which the file has another one", s->name, COUNT_AT,
+                 count);
 done:
     return status;
 }

@@ -70,3 +70,16 @@ brio_status brio_text_row_end(brio_text *t) {
     return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: expected the end of %s %" PRIu64 ", found \"%s\"", s->name,
                      s->line, s->element ? s->element : "row", s->row, brio_excerpt_of(t->at).text);
 }
+
+brio_status brio_text_end(brio_text *t) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = t->stream;
+    if (!brio_text_more(t)) BRIO_TRY(brio_text_next_line(t));
+    if (!t->at) return BRIO_OK;
+    status =
+        brio_fail(s->ctx, BRIO_ERR_FORMAT,
+                  "%s: line %zu: a row behind %s %" PRIu64 " of %" PRIu64 ", where the file should end: \"%s\"",
+                  s->name, s->line, s->element ? s->element : "row", s->rows, s->rows, brio_excerpt_of(t->at).text);
+done:
+    return status;
+}

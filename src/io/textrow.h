@@ -44,6 +44,9 @@ brio_status brio_text_count(brio_text *t, const char *what, uint64_t most, uint6
 /** Fails if the current line has another word. */
 brio_status brio_text_row_end(brio_text *t);
 
+/** Fails if the current line has another word or the text another line: a row beyond those that it announced. */
+brio_status brio_text_end(brio_text *t);
+
 /** Returns the error of a line in which `what` was expected. */
 brio_status brio_text_expected(const brio_text *t, const char *what);
 

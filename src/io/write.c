@@ -2,13 +2,12 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
-#include "io/formats.h"
+#include "io/node_files.h"
 #include "mesh/edge_rings.h"
 #include "io/textrow.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 static const brio_write_options STANDARD = {.size = sizeof STANDARD, .format = BRIO_FORMAT_AUTO};
 
@@ -109,8 +108,11 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
         "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .las .stl .npy or .glb", path);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || !without_tetrahedra[format], BRIO_ERR_ARGUMENT,
                  "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, without_tetrahedra[format]);
-    BRIO_REQUIRE(ctx, !m->num_tetrahedra || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0, BRIO_ERR_ARGUMENT,
-                 "standard output cannot hold the two files .node and .ele");
+    bool beside = options->neighbours || options->faces || options->edges;
+    BRIO_REQUIRE(ctx, !beside || format == BRIO_FORMAT_NODE, BRIO_ERR_ARGUMENT,
+                 "%s: neighbours, faces and edges are written beside .node only", path);
+    BRIO_REQUIRE(ctx, (!m->num_tetrahedra && !beside) || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0,
+                 BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
     BRIO_REQUIRE(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
                  "%s: .gltf files are read, not written; .glb files are", path);
     BRIO_TRY(check_compress(ctx, path, format, options));
@@ -155,7 +157,9 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
     case BRIO_FORMAT_LAZ:
     case BRIO_FORMAT_PCD:
     case BRIO_FORMAT_PTX:
-        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD and PTX files are read, not written", out->name);
+    case BRIO_FORMAT_E57:
+        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD, PTX and E57 files are read, not written",
+                         out->name);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;
@@ -174,44 +178,6 @@ static brio_status write_one(brio_context *ctx, const char *path, const brio_wri
     BRIO_TRY(brio_output_publish(&out));
 done:
     brio_output_close(&out);
-    return status;
-}
-
-/* Writes .node and .ele. Both files are complete before either gets its name. */
-static brio_status write_pair(brio_context *ctx, const char *node_path, const char *ele_path,
-                              const brio_write_job *job) {
-    brio_status status = BRIO_OK;
-    brio_output node = {.ctx = ctx, .target.folder = -1, .file = -1}, ele = node;
-    uint64_t expected = expected_bytes(job->mesh, true);
-    BRIO_TRY(brio_output_open(&node, ctx, node_path, expected));
-    BRIO_TRY(brio_node_write(&node, job));
-    BRIO_TRY(brio_output_finish(&node));
-    BRIO_TRY(brio_output_open(&ele, ctx, ele_path, expected));
-    ele.written = node.written;
-    BRIO_TRY(brio_ele_write(&ele, job));
-    BRIO_TRY(brio_output_finish(&ele));
-    BRIO_TRY(brio_output_publish(&node));
-    BRIO_TRY(brio_output_publish(&ele));
-done:
-    brio_output_close(&node);
-    brio_output_close(&ele);
-    return status;
-}
-
-/* Writes a .node file and the .ele file beside it. An old .ele file is replaced even by an empty one, because it
- * belongs to the points that are replaced. */
-static brio_status write_node(brio_context *ctx, const char *path, const brio_write_job *job) {
-    brio_status status = BRIO_OK;
-    char *node = NULL, *ele = NULL;
-    if (!strcmp(path, "-")) return write_one(ctx, path, job, BRIO_FORMAT_NODE);
-    if (brio_is_ele(path)) BRIO_TRY(brio_sibling(ctx, path, ".node", &node));
-    BRIO_TRY(brio_sibling(ctx, path, ".ele", &ele));
-    const char *points = node ? node : path;
-    bool pair = job->mesh->num_tetrahedra || access(ele, F_OK) == 0;
-    BRIO_TRY(pair ? write_pair(ctx, points, ele, job) : write_one(ctx, points, job, BRIO_FORMAT_NODE));
-done:
-    brio_release(ctx, node);
-    brio_release(ctx, ele);
     return status;
 }
 
@@ -243,7 +209,10 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_NPY)
         BRIO_TRY(make_names(ctx, path, &job));
     if (o.moved) *o.moved = is_single(format, &o) ? moved_by_singles(mesh) : 0; /* the LAS writer sets its own */
-    BRIO_TRY(format == BRIO_FORMAT_NODE ? write_node(ctx, path, &job) : write_one(ctx, path, &job, format));
+    if (format == BRIO_FORMAT_NODE && strcmp(path, "-") != 0)
+        BRIO_TRY(brio_node_write_files(ctx, path, &job, expected_bytes(mesh, true)));
+    else
+        BRIO_TRY(write_one(ctx, path, &job, format));
 done:
     brio_release(ctx, job.names);
     return status;

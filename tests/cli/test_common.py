@@ -15,7 +15,8 @@ COMMON_OPTIONS = ["--output", "--format", "--input-format", "--ascii", "--float3
                   "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
-                 "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify"],
+                 "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify", "--neighbors", "--faces",
+                 "--edges"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--normals", "--vertex-normals",
                 "--self-intersections", "--polygons", "--extraction", "--keep-largest", "--min-component"],
@@ -117,7 +118,7 @@ class Usage(CliTest):
         self.usage("cannot hold", "delaunay", "missing.xyz", "-o", "out.off")
 
     def test_formats_that_are_only_read_are_refused_before_the_input_is_read(self):
-        for name in ["out.laz", "out.pcd", "out.ptx"]:
+        for name in ["out.laz", "out.pcd", "out.ptx", "out.e57"]:
             self.usage("read, not written", "interpolate", "missing.xyz", "--at", "b", "--property", "p", "-o", name)
             self.usage("read, not written", "generate", "cube", "-n", "9", "-o", name)
 

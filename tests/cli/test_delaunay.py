@@ -7,6 +7,19 @@ from brio_cli import (CliTest, COMMON_FACTS, count, CUBE, FLAT, FLAT_WRONG, main
 
 
 class Usage(CliTest):
+    def test_files_beside_node(self):
+        cloud = self.cloud("a.xyz", 100)
+        self.expect(0, "delaunay", cloud, "-o", self.path("t.ele"), "--neighbors", "--faces", "--edges", "--quiet")
+        self.assert_only(self.folder, "a.xyz", "t.node", "t.ele", "t.neigh", "t.face", "t.edge")
+        rows = {}
+        for name in ("ele", "neigh", "face", "edge"):
+            with open(self.path("t." + name), encoding="ascii") as f:
+                rows[name] = [list(map(int, line.split())) for line in f if not line.startswith("#")][1:]
+        self.assertEqual(len(rows["ele"]), len(rows["neigh"]))
+        hull = sum(row.count(-1) for row in rows["neigh"])
+        self.assertEqual(sum(row[-1] for row in rows["face"]), hull)
+        self.assertEqual(100 - len(rows["edge"]) + len(rows["face"]) - len(rows["ele"]), 1, "Euler")
+
     def test_output_that_cannot_hold_tetrahedra(self):
         self.usage("cannot hold", "delaunay", "a.xyz", "-o", "out.obj")
 

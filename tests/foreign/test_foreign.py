@@ -2,7 +2,7 @@
 
 BRIO_FILES names the example program 03_files, which reads one file and writes another. Each class of tests is skipped
 with its reason where the other program's package is missing; to run them all, use a Python that has numpy, laspy, lazrs,
-laszip, meshio, trimesh and pypcd4.
+laszip, meshio, trimesh, pypcd4 and pye57.
 """
 
 import importlib
@@ -288,6 +288,104 @@ class PcdTest(ForeignTest):
             for name, column in zip(names, columns):
                 found = points[name].astype(column.dtype) if encoding is Encoding.ASCII else points[name]
                 self.expect_equal(column, found, f"{encoding}: {name}")
+
+
+@unittest.skipIf(missing("pye57"), missing("pye57"))
+class E57Test(ForeignTest):
+    """Files that libE57Format writes, against what it reads of them."""
+
+    COLUMNS = {"intensity": "intensity", "colorRed": "red", "colorGreen": "green", "colorBlue": "blue",
+               "rowIndex": "row_index", "columnIndex": "column_index"}
+
+    def read(self, path):
+        run = subprocess.run([FILES, path, self.path("probe.ply")], capture_output=True, check=False)
+        if b"without the library expat" in run.stderr:
+            self.skipTest("brio was built without the library expat")
+        return super().read(path)
+
+    def make(self, poses, n=30000):
+        import pye57
+        random = self.random
+        file = pye57.E57(self.path("a.e57"), mode="w")
+        for rotation, translation in poses:
+            data = {name: random.standard_normal(n) * 10 for name in ("cartesianX", "cartesianY", "cartesianZ")}
+            data["intensity"] = random.random(n)
+            data.update({name: random.integers(0, 256, n).astype("u1") for name in self.COLUMNS if "color" in name})
+            data.update(rowIndex=numpy.arange(n) // 300, columnIndex=numpy.arange(n) % 300,
+                        cartesianInvalidState=(numpy.arange(n) % 7 == 3).astype("i1"))
+            file.write_scan_raw(data, rotation=numpy.array(rotation), translation=numpy.array(translation))
+        file.close()
+
+    def expect_scan(self, scan, points):
+        import pye57
+        file = pye57.E57(self.path("a.e57"))
+        raw = file.read_scan(scan, ignore_missing_fields=True, intensity=True, colors=True, row_column=True)
+        for k, axis in enumerate("xyz"):
+            self.assertLess(numpy.abs(raw["cartesian" + axis.upper()] - points[axis]).max(), 1e-12, axis)
+        for name, column in self.COLUMNS.items():
+            self.expect_equal(raw[name], points[column], name)
+
+    def test_one_scan(self):
+        self.make([([1, 0, 0, 0], [0, 0, 0])])
+        points = self.read(self.path("a.e57"))
+        self.assertNotIn("scan", points.dtype.names)
+        self.expect_scan(0, points)
+
+    def test_scans_with_poses(self):
+        self.make([([1, 0, 0, 0], [0, 0, 0]), ([0.5, 0.5, -0.5, 0.5], [100, -2, 0.3]), ([0.8, 0, 0.6, 0], [0, 0, 7])])
+        points = self.read(self.path("a.e57"))
+        for scan in range(3):
+            self.expect_scan(scan, points[points["scan"] == scan])
+
+    def test_scaled_integers(self):
+        """Numbers of odd widths and of none, to the last bit."""
+        import pye57
+        from pye57 import libe57
+        n, random = 5000, self.random
+        file = pye57.E57(self.path("a.e57"), mode="w")
+        image = file.image_file
+        prototype, scan = libe57.StructureNode(image), libe57.StructureNode(image)
+        fields = {"cartesianX": libe57.ScaledIntegerNode(image, 0, -5000000, 5000000, 0.001, 638982.55),
+                  "cartesianY": libe57.FloatNode(image, 0.0, libe57.FloatPrecision.E57_DOUBLE, -1e300, 1e300),
+                  "cartesianZ": libe57.ScaledIntegerNode(image, 0, 0, 2**40, 1e-7, -7.3),
+                  "rowIndex": libe57.IntegerNode(image, 0, 0, 2**18), "returnIndex": libe57.IntegerNode(image, 3, 3, 3)}
+        for name, node in fields.items():
+            prototype.set(name, node)
+        points = libe57.CompressedVectorNode(image, prototype, libe57.VectorNode(image, True))
+        scan.set("guid", libe57.StringNode(image, "{1}"))
+        scan.set("points", points)
+        file.data3d.append(scan)
+        data = {"cartesianX": random.integers(-5000000, 5000001, n) * 0.001 + 638982.55,
+                "cartesianY": random.standard_normal(n), "cartesianZ": random.integers(0, 2**40 + 1, n) * 1e-7 - 7.3,
+                "rowIndex": random.integers(0, 2**18 + 1, n), "returnIndex": numpy.full(n, 3, "u1")}
+        writer = points.writer(self.buffers(image, data, n))
+        writer.write(n)
+        writer.close()
+        file.close()
+        file = pye57.E57(self.path("a.e57"))
+        expected = {name: numpy.zeros(n) for name in data}
+        reader = file.data3d[0]["points"].reader(self.buffers(file.image_file, expected, n))
+        self.assertEqual(reader.read(), n)
+        reader.close()
+        found = self.read(self.path("a.e57"))
+        for name, column in zip(data, ("x", "y", "z", "row_index", "return_index")):
+            self.expect_equal(expected[name], found[column], name)
+
+    @staticmethod
+    def buffers(image, arrays, n):
+        from pye57 import libe57
+        buffers = libe57.VectorSourceDestBuffer()
+        for name, array in arrays.items():
+            buffers.append(libe57.SourceDestBuffer(image, name, array, n, True, True))
+        return buffers
+
+    def test_pipe(self):
+        self.make([([1, 0, 0, 0], [0, 0, 0])], 100)
+        with open(self.path("a.e57"), "rb") as file:
+            run = subprocess.run(["sh", "-c", f"cat | '{FILES}' - {self.path('pipe.ply')}"], stdin=file,
+                                 capture_output=True, check=False)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertIn(b"which a pipe does not allow", run.stderr)
 
 
 if __name__ == "__main__":

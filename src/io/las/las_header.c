@@ -64,10 +64,11 @@ static brio_status read_fixed(brio_stream *s, brio_las_header *h, uint32_t *num_
     const char *bytes = NULL;
     brio_stream_element(s, "header", 1);
     BRIO_TRY(brio_stream_fill(s, LEAST_HEADER));
-    if (brio_stream_left(s) < LEAST_HEADER) return brio_stream_truncated(s);
     bytes = s->buffer + s->begin;
+    BRIO_REQUIRE(s->ctx, brio_stream_left(s) < 4 || !memcmp(bytes, "LASF", 4), BRIO_ERR_FORMAT,
+                 "%s: byte 0: expected LASF: not a LAS or LAZ file", s->name);
+    if (brio_stream_left(s) < LEAST_HEADER) return brio_stream_truncated(s);
     size_t size = brio_le16(bytes + 94);
-    BRIO_REQUIRE(s->ctx, !memcmp(bytes, "LASF", 4), BRIO_ERR_FORMAT, "%s: byte 0: expected LASF", s->name);
     BRIO_REQUIRE(s->ctx, bytes[24] == 1 && (uint8_t)bytes[25] <= 4, BRIO_ERR_FORMAT,
                  "%s: byte 24: version %u.%u, expected 1.0 to 1.4", s->name, (uint8_t)bytes[24], (uint8_t)bytes[25]);
     BRIO_REQUIRE(s->ctx, size >= LEAST_HEADER, BRIO_ERR_FORMAT, "%s: byte 94: a header of %zu bytes, expected %d",

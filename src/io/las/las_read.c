@@ -35,7 +35,6 @@ static void store_part(void *user, size_t begin, size_t end, int thread) {
 
 static brio_status read_records(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(brio_stream_expect(s, h->num_points, h->record, "the header"));
     if (s->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(brio_builder_expect_vertices(b, h->num_points));
     while (s->row < h->num_points) {
         BRIO_TRY(brio_stream_fill(s, h->record));
@@ -57,6 +56,7 @@ brio_status brio_las_read(brio_stream *s, brio_builder *b) {
     brio_las_header h;
     brio_las_plan plan = {.columns = NULL};
     BRIO_TRY(brio_las_header_read(s, &h));
+    if (!h.compressed) BRIO_TRY(brio_stream_expect(s, h.num_points, h.record, "the header"));
     BRIO_REQUIRE(b->ctx, h.num_points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
                  "%s: %" PRIu64 " points, the most are %" PRIu64, b->name, h.num_points, BRIO_MAX_VERTICES);
     BRIO_TRY(brio_las_plan_make(&plan, b, &h));

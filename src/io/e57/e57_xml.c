@@ -1,0 +1,326 @@
+/* Reads the XML section of an E57 file with expat, part by part.
+ *
+ * The parser's events move a place in the tree of the elements that matter; below any other element everything is
+ * passed over. A document type is refused, and with it all entities, which could grow without bound.
+ *
+ * The memory that expat asks for is the context's. Expat's requests do not say whose they are, so the running thread
+ * notes the context while expat runs.
+ *
+ * Based on: ASTM E2807-11, 8 (XML section). */
+#include "io/e57/e57_xml.h"
+#include "base/memory.h"
+#include <inttypes.h>
+
+#ifdef BRIO_HAS_EXPAT
+
+#include "io/e57/e57_prototype.h"
+#include "io/number.h"
+#include <expat.h>
+#include <math.h>
+#include <string.h>
+
+/* PART: bytes given to expat at a time. LONGEST: bytes of a section. TEXT: of a number. All chosen. */
+enum { PART = 1 << 15, LONGEST = 1 << 26, TEXT = 128 };
+
+#define E57_NAMES "http://www.astm.org/COMMIT/E57/2010-e57-v1.0"
+
+/* Where the parser is. Place i is an element, and `inside` the place that it stands in. */
+typedef enum {
+    OUTSIDE,
+    ROOT,
+    DATA3D,
+    SCAN,
+    POSE,
+    ROTATION,
+    TRANSLATION,
+    NUMBER, /* an element whose text is a number of the pose */
+    POINTS,
+    PROTOTYPE,
+    FIELD,
+    CODECS,
+    CODEC,
+    CODEC_PART
+} place;
+
+static const struct {
+    place inside;
+    const char *name; /* NULL: any */
+    place is;
+} tree[] = {{OUTSIDE, "e57Root", ROOT}, {ROOT, "data3D", DATA3D},     {DATA3D, NULL, SCAN},
+            {SCAN, "pose", POSE},       {POSE, "rotation", ROTATION}, {POSE, "translation", TRANSLATION},
+            {ROTATION, "w", NUMBER},    {ROTATION, "x", NUMBER},      {ROTATION, "y", NUMBER},
+            {ROTATION, "z", NUMBER},    {TRANSLATION, "x", NUMBER},   {TRANSLATION, "y", NUMBER},
+            {TRANSLATION, "z", NUMBER}, {SCAN, "points", POINTS},     {POINTS, "prototype", PROTOTYPE},
+            {PROTOTYPE, NULL, FIELD},   {POINTS, "codecs", CODECS},   {CODECS, NULL, CODEC},
+            {CODEC, NULL, CODEC_PART}};
+enum { DEEPEST = 8 };
+
+typedef struct {
+    brio_context *ctx;
+    const char *name; /* of the file */
+    XML_Parser parser;
+    brio_e57_scans *scans;
+    brio_status status;
+    place path[DEEPEST];
+    int depth;      /* of the place; path[depth] is the place */
+    size_t skipped; /* elements that are open below the place */
+    double *number; /* receives the text of NUMBER */
+    char text[TEXT];
+    size_t length;
+} xml_reader;
+
+/* --- failures --- */
+
+static void fail(xml_reader *r, brio_status status) {
+    if (r->status == BRIO_OK) r->status = status;
+    XML_StopParser(r->parser, XML_FALSE);
+}
+
+/* Adds file and line to a sentence. */
+#define REFUSE(r, format, ...)                                                                                         \
+    fail(r, brio_fail((r)->ctx, BRIO_ERR_FORMAT, "%s: XML section, line %lu: " format, (r)->name,                      \
+                      (unsigned long)XML_GetCurrentLineNumber((r)->parser), __VA_ARGS__))
+
+/* --- the tree --- */
+
+static place find_place(place inside, const char *name) {
+    for (size_t i = 0; i < sizeof tree / sizeof *tree; i++)
+        if (tree[i].inside == inside && (!tree[i].name || !strcmp(tree[i].name, name))) return tree[i].is;
+    return OUTSIDE;
+}
+
+static const char *attribute(const XML_Char **attributes, const char *name) {
+    for (; *attributes; attributes += 2)
+        if (!strcmp(attributes[0], name)) return attributes[1];
+    return NULL;
+}
+
+/* Turns expat's "namespace|name|prefix" into the name, with its prefix if it is of an extension. */
+static void take_name(const XML_Char *full, char name[BRIO_E57_NAME]) {
+    const char *bar = strchr(full, '|'), *local = bar ? bar + 1 : full, *second = strchr(local, '|');
+    bool own = !bar || ((size_t)(bar - full) == strlen(E57_NAMES) && !strncmp(full, E57_NAMES, (size_t)(bar - full)));
+    size_t length = second ? (size_t)(second - local) : strlen(local), at = 0;
+    if (!own && second)
+        for (const char *c = second + 1; *c && at < 16; c++) name[at++] = *c;
+    if (!own && second) name[at++] = ':';
+    if (length > BRIO_E57_NAME - 1 - at) length = BRIO_E57_NAME - 1 - at;
+    memcpy(name + at, local, length);
+    name[at + length] = 0;
+}
+
+static void begin_scan(xml_reader *r) {
+    brio_e57_scans *s = r->scans;
+    if (s->num_scans == BRIO_E57_MOST_SCANS) {
+        REFUSE(r, "more than %d scans", BRIO_E57_MOST_SCANS);
+        return;
+    }
+    brio_status status = BRIO_RESERVE(r->ctx, s->scans, s->scan_capacity, s->num_scans + 1);
+    if (status != BRIO_OK) {
+        fail(r, status);
+        return;
+    }
+    s->scans[s->num_scans++] = (brio_e57_scan){.first_field = s->num_fields, .rotation = {1, 0, 0, 0}};
+}
+
+/* Reads a whole number; a number that is missing is wrong, too. */
+static bool take_count(xml_reader *r, const XML_Char **attributes, const char *name, uint64_t *value) {
+    const char *text = attribute(attributes, name), *at = text;
+    if (text && brio_parse_count(&at, value) && !*at) return true;
+    REFUSE(r, "points with the %s \"%.64s\", expected a whole number", name, text ? text : "");
+    return false;
+}
+
+static void begin_points(xml_reader *r, const XML_Char **attributes) {
+    brio_e57_scan *scan = &r->scans->scans[r->scans->num_scans - 1];
+    const char *type = attribute(attributes, "type");
+    if (!type || strcmp(type, "CompressedVector") != 0)
+        REFUSE(r, "points of the type %.64s, expected CompressedVector", type ? type : "(none)");
+    else if (take_count(r, attributes, "fileOffset", &scan->section))
+        take_count(r, attributes, "recordCount", &scan->records);
+}
+
+static void begin_field(xml_reader *r, const char *name, const XML_Char **attributes) {
+    brio_e57_scans *s = r->scans;
+    brio_e57_scan *scan = &s->scans[s->num_scans - 1];
+    brio_e57_field field = {.text = false};
+    char reason[BRIO_E57_REASON];
+    memcpy(field.name, name, BRIO_E57_NAME);
+    if (scan->num_fields == BRIO_E57_MOST_FIELDS) {
+        REFUSE(r, "more than %d fields", BRIO_E57_MOST_FIELDS);
+    } else if (!brio_e57_field_read(&field, (const char *const *)attributes, reason)) {
+        REFUSE(r, "field %s: %s", name, reason);
+    } else {
+        brio_status status = BRIO_RESERVE(r->ctx, s->fields, s->field_capacity, s->num_fields + 1);
+        if (status != BRIO_OK) {
+            fail(r, status);
+            return;
+        }
+        s->fields[s->num_fields++] = field;
+        scan->num_fields++;
+    }
+}
+
+static void begin_number(xml_reader *r, place inside, char axis) {
+    brio_e57_scan *scan = &r->scans->scans[r->scans->num_scans - 1];
+    r->length = 0;
+    if (inside == ROTATION)
+        r->number = &scan->rotation[axis == 'w' ? 0 : axis - 'x' + 1];
+    else
+        r->number = &scan->translation[axis - 'x'];
+}
+
+static void begin_codec_part(xml_reader *r, const char *name) {
+    if (strcmp(name, "inputs") != 0 && strcmp(name, "bitPackCodec") != 0)
+        REFUSE(r, "the codec %s is not known, expected bitPackCodec", name);
+}
+
+/* --- expat's events --- */
+
+static void XMLCALL on_start(void *user, const XML_Char *full, const XML_Char **attributes) {
+    xml_reader *r = user;
+    char name[BRIO_E57_NAME];
+    if (r->status != BRIO_OK) return;
+    take_name(full, name);
+    place inside = r->path[r->depth], is = r->skipped ? OUTSIDE : find_place(inside, name);
+    if (inside == OUTSIDE && is != ROOT) {
+        REFUSE(r, "the element %s, expected e57Root", name);
+        return;
+    }
+    if (is == OUTSIDE) {
+        r->skipped++;
+        return;
+    }
+    r->path[++r->depth] = is;
+    if (is == SCAN) begin_scan(r);
+    if (is == POINTS) begin_points(r, attributes);
+    if (is == FIELD) begin_field(r, name, attributes);
+    if (is == CODEC_PART) begin_codec_part(r, name);
+    if (is == NUMBER) begin_number(r, inside, name[0]);
+}
+
+/* An empty element is the number 0. */
+static void end_number(xml_reader *r) {
+    const char *text = r->text;
+    r->text[r->length] = 0;
+    while (*text == ' ' || *text == '\t' || *text == '\r' || *text == '\n') text++;
+    *r->number = 0;
+    if (!*text) return;
+    bool read = r->length < TEXT - 1 && brio_parse_number(&text, r->number) && isfinite(*r->number);
+    while (read && (*text == ' ' || *text == '\t' || *text == '\r' || *text == '\n')) text++;
+    if (!read || *text) REFUSE(r, "the pose has \"%.64s\", expected a finite number", r->text);
+}
+
+static void XMLCALL on_end(void *user, const XML_Char *name) {
+    xml_reader *r = user;
+    (void)name;
+    if (r->status != BRIO_OK) return;
+    if (r->skipped) {
+        r->skipped--;
+        return;
+    }
+    if (r->path[r->depth] == NUMBER) end_number(r);
+    r->depth--;
+}
+
+static void XMLCALL on_text(void *user, const XML_Char *text, int length) {
+    xml_reader *r = user;
+    if (r->skipped || r->path[r->depth] != NUMBER) return;
+    for (int i = 0; i < length && r->length < TEXT - 1; i++) r->text[r->length++] = text[i];
+}
+
+static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char *system, const XML_Char *public,
+                               int own) {
+    xml_reader *r = user;
+    (void)system, (void)public, (void)own;
+    REFUSE(r, "a document type (%.64s), which E57 files do not have: entities are not read", name);
+}
+
+/* --- memory --- */
+
+static _Thread_local brio_context *running; /* the context of the section that this thread reads */
+
+static void *take_memory(size_t size) {
+    brio_status status = BRIO_OK;
+    return brio_resize(running, NULL, size, 1, &status);
+}
+
+static void *resize_memory(void *block, size_t size) {
+    brio_status status = BRIO_OK;
+    return brio_resize(running, block, size, 1, &status);
+}
+
+static void release_memory(void *block) {
+    brio_release(running, block);
+}
+
+/* --- the section --- */
+
+static brio_status start(xml_reader *r) {
+    static const XML_Memory_Handling_Suite memory = {take_memory, resize_memory, release_memory};
+    r->parser = XML_ParserCreate_MM(NULL, &memory, "|");
+    if (!r->parser) return brio_fail(r->ctx, BRIO_ERR_NO_MEMORY, "%s: out of memory for the XML section", r->name);
+    XML_SetReturnNSTriplet(r->parser, 1);
+    XML_SetUserData(r->parser, r);
+    XML_SetElementHandler(r->parser, on_start, on_end);
+    XML_SetCharacterDataHandler(r->parser, on_text);
+    XML_SetStartDoctypeDeclHandler(r->parser, on_doctype);
+    return BRIO_OK;
+}
+
+/* The status of a parse that stopped. */
+static brio_status stopped(const xml_reader *r) {
+    enum XML_Error error = XML_GetErrorCode(r->parser);
+    if (r->status != BRIO_OK) return r->status;
+    if (error == XML_ERROR_NO_MEMORY)
+        return brio_fail(r->ctx, BRIO_ERR_NO_MEMORY, "%s: out of memory for the XML section", r->name);
+    return brio_fail(r->ctx, BRIO_ERR_FORMAT, "%s: XML section, line %lu, column %lu: %s", r->name,
+                     (unsigned long)XML_GetCurrentLineNumber(r->parser),
+                     (unsigned long)XML_GetCurrentColumnNumber(r->parser), XML_ErrorString(error));
+}
+
+static brio_status parse(xml_reader *r, brio_e57_pages *p) {
+    brio_status status = BRIO_OK;
+    for (uint64_t at = 0; at < p->xml_length;) {
+        const char *bytes = NULL;
+        size_t size = p->xml_length - at < PART ? (size_t)(p->xml_length - at) : PART;
+        BRIO_TRY(brio_e57_take(p, p->xml + at, size, &bytes));
+        at += size;
+        if (XML_Parse(r->parser, bytes, (int)size, at == p->xml_length) != XML_STATUS_OK) return stopped(r);
+    }
+done:
+    return status;
+}
+
+brio_status brio_e57_xml_read(brio_e57_pages *p, brio_e57_scans *out) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = p->stream->ctx, *before = running;
+    xml_reader r = {.ctx = ctx, .name = p->stream->name, .scans = out};
+    *out = (brio_e57_scans){.scans = NULL};
+    running = ctx;
+    BRIO_REQUIRE(ctx, p->xml_length && p->xml_length <= LONGEST, BRIO_ERR_FORMAT,
+                 "%s: byte 32: an XML section of %" PRIu64 " bytes, expected 1 to %d", p->stream->name, p->xml_length,
+                 LONGEST);
+    BRIO_TRY(start(&r));
+    BRIO_TRY(parse(&r, p));
+done:
+    if (r.parser) XML_ParserFree(r.parser);
+    running = before;
+    return status;
+}
+
+#else
+
+brio_status brio_e57_xml_read(brio_e57_pages *p, brio_e57_scans *out) {
+    *out = (brio_e57_scans){.scans = NULL};
+    return brio_fail(p->stream->ctx, BRIO_ERR_FORMAT,
+                     "%s: this build of brio cannot read E57 files: it was built without the library expat",
+                     p->stream->name);
+}
+
+#endif
+
+void brio_e57_scans_free(brio_context *ctx, brio_e57_scans *scans) {
+    brio_release(ctx, scans->scans);
+    brio_release(ctx, scans->fields);
+    *scans = (brio_e57_scans){.scans = NULL};
+}
