@@ -46,7 +46,7 @@ class Iso(CliTest):
 
     def test_iso_refusals(self):
         ball, out = self.ball_map("a.map", 8), self.path("s.ply")
-        self.usage("expected IN, got 0 arguments", "iso", "-o", out)
+        self.usage("expected IN, got no argument", "iso", "-o", out)
         self.usage("--level L", "iso", ball, "-o", out)
         self.usage("one of -n and --resolution", "iso", ball, "--level", "1", "-n", "5", "--resolution",
                    "5", "-o", out)
