@@ -29,9 +29,9 @@ extern const option cli_common_options[];
 extern const common_options cli_common_defaults;
 
 /** Extensions of the files that hold points, meshes, or both. */
-#define CLI_INPUTS        "ply xyz pts txt csv obj off stl vtu node ele las laz pcd ptx npy"
-#define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp"
-#define CLI_POINT_OUTPUTS "ply xyz pts txt csv vtu vtp node las npy"
+#define CLI_INPUTS        "ply xyz pts txt csv obj off stl vtu vtp node ele las laz pcd ptx npy glb gltf e57"
+#define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp glb"
+#define CLI_POINT_OUTPUTS "ply xyz pts txt csv vtu vtp node las npy glb"
 
 enum { MAX_STAGES = 16 };
 

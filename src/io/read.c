@@ -12,10 +12,10 @@ static const struct {
     const char *extension;
     brio_format format;
 } extensions[] = {
-    {"ply", BRIO_FORMAT_PLY},   {"xyz", BRIO_FORMAT_XYZ},  {"pts", BRIO_FORMAT_XYZ}, {"txt", BRIO_FORMAT_XYZ},
-    {"csv", BRIO_FORMAT_XYZ},   {"obj", BRIO_FORMAT_OBJ},  {"off", BRIO_FORMAT_OFF}, {"vtu", BRIO_FORMAT_VTU},
-    {"node", BRIO_FORMAT_NODE}, {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP}, {"las", BRIO_FORMAT_LAS},
-    {"laz", BRIO_FORMAT_LAZ},   {"pcd", BRIO_FORMAT_PCD},  {"ptx", BRIO_FORMAT_PTX}, {"stl", BRIO_FORMAT_STL},
+    {"ply", BRIO_FORMAT_PLY},   {"xyz", BRIO_FORMAT_XYZ},  {"pts", BRIO_FORMAT_XYZ},  {"txt", BRIO_FORMAT_XYZ},
+    {"csv", BRIO_FORMAT_XYZ},   {"obj", BRIO_FORMAT_OBJ},  {"off", BRIO_FORMAT_OFF},  {"vtu", BRIO_FORMAT_VTU},
+    {"node", BRIO_FORMAT_NODE}, {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP},  {"las", BRIO_FORMAT_LAS},
+    {"laz", BRIO_FORMAT_LAZ},   {"pcd", BRIO_FORMAT_PCD},  {"ptx", BRIO_FORMAT_PTX},  {"stl", BRIO_FORMAT_STL},
     {"npy", BRIO_FORMAT_NPY},   {"glb", BRIO_FORMAT_GLB},  {"gltf", BRIO_FORMAT_GLB}, {"e57", BRIO_FORMAT_E57}};
 
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
