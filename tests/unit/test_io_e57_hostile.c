@@ -305,13 +305,28 @@ static void deep_and_long_xml(void) {
     at = text + sprintf(text, "<e57Root><other>");
     for (int i = 0; i < DEEP; i++) at += sprintf(at, "<a>");
     store_xml(text);
-    e57_refused("x.e57", BRIO_ERR_FORMAT, "no element found");
+    e57_refused("x.e57", BRIO_ERR_FORMAT, "elements nested more than 1000 deep");
     at = text + sprintf(text, "<e57Root><data3D><s><pose><rotation><w>");
     memset(at, '1', 300000);
     strcpy(at + 300000, "</w></rotation></pose></s></data3D></e57Root>");
     store_xml(text);
     e57_refused("x.e57", BRIO_ERR_FORMAT, "expected a finite number");
     free(text);
+}
+
+/* Expat would go through the tag again with each part of it. */
+static void a_tag_without_an_end(void) {
+    static const char start[] = "<e57Root a=\"";
+    e57_image f = e57_begin();
+    f.xml = f.size;
+    f.bytes = realloc(f.bytes, 3 * (size_t)E57_ROOM);
+    memcpy(f.bytes + f.size, start, sizeof start);
+    memset(f.bytes + f.size + sizeof start - 1, 'x', 2 * (size_t)E57_ROOM);
+    f.size += 2 * (size_t)E57_ROOM;
+    e57_set_header(&f);
+    e57_store(&f, "x.e57");
+    e57_refused("x.e57", BRIO_ERR_FORMAT, "line 1: a tag or comment of more than 1048576 bytes");
+    free(f.bytes);
 }
 
 /* --- the machine --- */
@@ -362,6 +377,7 @@ int main(void) {
     RUN(wrong_prototypes);
     RUN(wrong_xml);
     RUN(deep_and_long_xml);
+    RUN(a_tag_without_an_end);
     RUN(each_allocation_fails);
     RUN(limits_and_cancellation);
     return io_end();

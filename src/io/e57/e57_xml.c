@@ -19,8 +19,10 @@
 #include <math.h>
 #include <string.h>
 
-/* PART: bytes given to expat at a time. LONGEST: bytes of a section. TEXT: of a number. All chosen. */
-enum { PART = 1 << 15, LONGEST = 1 << 26, TEXT = 128 };
+/* PART: bytes given to expat at a time. LONGEST: bytes of a section. TAG: bytes of a tag or a comment, which expat goes through again
+ * with each part. NESTED: elements that are open below those that matter; expat keeps all. TEXT: bytes of a number. All
+ * chosen. */
+enum { PART = 1 << 15, LONGEST = 1 << 26, TAG = 1 << 20, NESTED = 1000, TEXT = 128 };
 
 #define E57_NAMES "http://www.astm.org/COMMIT/E57/2010-e57-v1.0"
 
@@ -187,7 +189,7 @@ static void XMLCALL on_start(void *user, const XML_Char *full, const XML_Char **
         return;
     }
     if (is == OUTSIDE) {
-        r->skipped++;
+        if (++r->skipped > NESTED) REFUSE(r, "elements nested more than %d deep", NESTED);
         return;
     }
     r->path[++r->depth] = is;
@@ -286,6 +288,10 @@ static brio_status parse(xml_reader *r, brio_e57_pages *p) {
         BRIO_TRY(brio_e57_take(p, p->xml + at, size, &bytes));
         at += size;
         if (XML_Parse(r->parser, bytes, (int)size, at == p->xml_length) != XML_STATUS_OK) return stopped(r);
+        XML_Index done = XML_GetCurrentByteIndex(r->parser);
+        BRIO_REQUIRE(r->ctx, done < 0 || at - (uint64_t)done <= TAG, BRIO_ERR_FORMAT,
+                     "%s: XML section, line %lu: a tag or comment of more than %d bytes", r->name,
+                     (unsigned long)XML_GetCurrentLineNumber(r->parser), TAG);
     }
 done:
     return status;
