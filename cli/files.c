@@ -64,6 +64,8 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
     *format = brio_format_of(extension ? extension : path);
     if (*format == BRIO_FORMAT_LAZ || *format == BRIO_FORMAT_PCD || *format == BRIO_FORMAT_PTX)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD and PTX files are read, not written", path);
+    if (*format == BRIO_FORMAT_CHEMICAL || *format == BRIO_FORMAT_BNPTS || *format == BRIO_FORMAT_NPZ)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: chemical XYZ, BNPTS and NPZ files are read, not written", path);
     if (*format != BRIO_FORMAT_AUTO) return BRIO_OK;
     if (extension)
         return cli_fail(r, BRIO_ERR_ARGUMENT,

@@ -17,7 +17,7 @@
     } while (0)
 
 typedef struct common_options {
-    const char *output, *format, *input_format, *scratch;
+    const char *output, *format, *input_format, *columns, *scratch;
     bool json, quiet, progress, ascii, float32;
     int threads;
     uint64_t seed;
@@ -80,8 +80,11 @@ bool cli_limits_memory(const run *r);
  *  context holds. */
 brio_status cli_require_memory(run *r, double bytes);
 
-/** Reads an input with --input-format. The time is lapped as `read`. */
+/** Reads an input with --input-format and --columns. The time is lapped as `read`. */
 brio_status cli_read(run *r, const char *path, brio_mesh **out);
+
+/** Refuses --columns for a command that reads no text of points. */
+brio_status cli_refuse_columns(run *r);
 
 /** Frees the faces and tetrahedra of a mesh. */
 brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);

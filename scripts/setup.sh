@@ -55,8 +55,12 @@ missing() {
     has_python_with ensurepip || echo python3-venv
 }
 
-# The Debian packages of other libraries, and of the plots, that are missing: the bench, and tests, do without them.
+# The Debian packages of other libraries, and of the plots, that are missing: the build, the bench and tests do without
+# them.
 missing_peers() {
+    [ -f /usr/include/zlib.h ] || echo zlib1g-dev
+    [ -f /usr/include/zstd.h ] || echo libzstd-dev
+    case $1 in build | quality | thesis) return 0 ;; esac
     if [ "$1" = check ]; then
         has g++ || echo g++
         [ -d /usr/include/voro++ ] || echo voro++-dev
@@ -132,7 +136,7 @@ build | check | bench | quality | thesis) ;;
     ;;
 esac
 
-case $purpose in bench | check) install_peers "$purpose" ;; esac
+install_peers "$purpose"
 packages=$(missing "$purpose" | xargs)
 if [ -n "$packages" ] && [ "$(id -u)" = 0 ] && has apt-get; then
     echo "setup: installing $packages"

@@ -109,6 +109,11 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
     case BRIO_FORMAT_PCD:
     case BRIO_FORMAT_PTX:
         return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD and PTX files are read, not written", out->name);
+    case BRIO_FORMAT_CHEMICAL:
+    case BRIO_FORMAT_BNPTS:
+    case BRIO_FORMAT_NPZ:
+        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: chemical XYZ, BNPTS and NPZ files are read, not written",
+                         out->name);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;
