@@ -10,10 +10,10 @@ enum { LONGEST = 64 /* characters of a number with a decimal comma; chosen */ };
 
 /* What stands between the numbers of a line. */
 typedef struct {
-    size_t tight; /* commas between two digits */
-    size_t other; /* blanks or a semicolon alone, between two numbers */
-    bool comma;   /* a comma follows a number */
-    bool words;   /* a blank alone follows a word */
+    bool tight; /* a comma stands between a number and a digit */
+    bool other; /* blanks or a semicolon alone stand between two numbers */
+    bool comma; /* a comma follows a number */
+    bool words; /* a blank alone follows a word */
 } gaps;
 
 static bool is_digit(char c) {
@@ -74,11 +74,11 @@ static void record_gap(gaps *g, const brio_field *field, const char *end, const 
         g->words |= field->kind == BRIO_FIELD_WORD && separator > end && *separator != ',' && *separator != ';';
     } else if (*separator == ',') {
         g->comma = true;
-        g->tight += separator == end && is_digit(end[-1]) && is_digit(end[1]);
+        g->tight |= separator == end && is_digit(end[1]);
     } else if (*separator == ';') {
-        g->other++;
+        g->other = true;
     } else if (is_digit(*separator) || *separator == '-' || *separator == '+' || *separator == '.') {
-        g->other++;
+        g->other = true;
     }
 }
 
