@@ -83,6 +83,8 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
     if (*format == BRIO_FORMAT_LAZ || *format == BRIO_FORMAT_PCD || *format == BRIO_FORMAT_PTX ||
         *format == BRIO_FORMAT_E57)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD, PTX and E57 files are read, not written", path);
+    if (*format == BRIO_FORMAT_CHEMICAL || *format == BRIO_FORMAT_BNPTS || *format == BRIO_FORMAT_NPZ)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: chemical XYZ, BNPTS and NPZ files are read, not written", path);
     if (*format == BRIO_FORMAT_GLB && is_gltf(extension ? extension : path))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: .gltf files are read, not written; .glb files are", path);
     if (*format != BRIO_FORMAT_AUTO) return BRIO_OK;

@@ -43,6 +43,7 @@ static brio_status iso(run *r) {
     brio_iso_surface_options o = brio_iso_surface_options_default();
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
+    TRY(cli_refuse_columns(r));
     TRY(check_arguments(r, a));
     o.level = a->level;
     o.deviations = a->sigma;

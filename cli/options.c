@@ -179,7 +179,7 @@ static bool unknown(option_parse *parse, const char *argument) {
 
 static bool looks_like_option(const char *argument) {
     if (argument[0] != '-' || argument[1] == 0) return false;
-    return !strchr("0123456789.", argument[1]);
+    return !strchr("0123456789.,", argument[1]); /* "-,x,y,z" are names of columns */
 }
 
 /* One option at argv[*i]; *i moves on over a value that stands by itself. */

@@ -19,6 +19,7 @@ const option cli_common_options[] = {
     {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output, such as ply (needed with -o -)", 0},
     {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT",
      "format of the input, where its name and content do not tell", 0},
+    {"columns", 0, OPTION_TEXT, FIELD(columns), "NAMES", "columns of a text input: x,y,z,-,nx (- leaves one out)", 0},
     {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
     {"float32", 0, OPTION_FLAG, FIELD(float32), NULL, "write coordinates in single precision", 0},
     {"compress", 0, OPTION_FLAG, FIELD(compress), NULL, "write arrays compressed: .vtu and .vtp", 0},
@@ -186,14 +187,23 @@ static uint64_t peak_bytes(void) {
 
 brio_status cli_read(run *r, const char *path, brio_mesh **out) {
     const char *extension = r->common.input_format;
+    brio_read_options options = brio_read_options_default();
     brio_status status = BRIO_OK;
-    TRY(brio_read(r->ctx, path, extension ? brio_format_of(extension) : BRIO_FORMAT_AUTO, out));
+    if (extension) options.format = brio_format_of(extension);
+    options.columns = r->common.columns;
+    TRY(brio_read_as(r->ctx, path, &options, out));
     TRY(cli_check_interrupt(r));
     TRY(cli_check_precision(r, path, *out));
     r->has_properties |= (*out)->num_properties > 0;
     cli_lap(r, "read");
 done:
     return status;
+}
+
+brio_status cli_refuse_columns(run *r) {
+    if (!r->common.columns) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s reads no text of points; --columns has no meaning here",
+                    r->command->name);
 }
 
 /* Moves the arrays into a mesh that is freed. */

@@ -18,7 +18,7 @@
     } while (0)
 
 typedef struct common_options {
-    const char *output, *format, *input_format, *scratch;
+    const char *output, *format, *input_format, *columns, *scratch;
     bool json, quiet, verbose, progress, ascii, float32, compress;
     int threads;
     uint64_t seed;
@@ -29,7 +29,7 @@ extern const option cli_common_options[];
 extern const common_options cli_common_defaults;
 
 /** Extensions of the files that hold points, meshes, or both. */
-#define CLI_INPUTS        "ply xyz pts txt csv obj off stl vtu vtp node ele las laz pcd ptx npy glb gltf e57"
+#define CLI_INPUTS        "ply xyz pts txt csv obj off stl vtu vtp node ele las laz pcd ptx npy npz glb gltf e57 bnpts"
 #define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp glb"
 #define CLI_POINT_OUTPUTS "ply xyz pts txt csv vtu vtp node las npy glb"
 
@@ -99,8 +99,11 @@ bool cli_limits_memory(const run *r);
  *  context holds. */
 brio_status cli_require_memory(run *r, double bytes);
 
-/** Reads an input with --input-format. The time is lapped as `read`. */
+/** Reads an input with --input-format and --columns. The time is lapped as `read`. */
 brio_status cli_read(run *r, const char *path, brio_mesh **out);
+
+/** Refuses --columns for a command that reads no text of points. */
+brio_status cli_refuse_columns(run *r);
 
 /** Frees the faces and tetrahedra of a mesh. */
 brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);

@@ -58,9 +58,10 @@ missing() {
 # The Debian packages of other libraries, and of the plots, that are missing: brio, the bench, and tests do without them.
 missing_peers() {
     [ -f /usr/include/zlib.h ] || echo zlib1g-dev
+    [ -f /usr/include/zstd.h ] || echo libzstd-dev
     [ -f /usr/include/cjson/cJSON.h ] || echo libcjson-dev
     [ -f /usr/include/expat.h ] || echo libexpat1-dev
-    [ "$1" != build ] || return 0
+    case $1 in build | quality | thesis) return 0 ;; esac
     if [ "$1" = check ]; then
         has g++ || echo g++
         [ -d /usr/include/voro++ ] || echo voro++-dev
@@ -139,7 +140,7 @@ build | check | bench | quality | thesis) ;;
     ;;
 esac
 
-case $purpose in build | bench | check) install_peers "$purpose" ;; esac
+install_peers "$purpose"
 packages=$(missing "$purpose" | xargs)
 if [ -n "$packages" ] && [ "$(id -u)" = 0 ] && has apt-get; then
     echo "setup: installing $packages"

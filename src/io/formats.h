@@ -14,7 +14,8 @@ typedef struct brio_write_job {
 } brio_write_job;
 
 brio_status brio_ply_read(brio_stream *s, brio_builder *b);
-brio_status brio_xyz_read(brio_stream *s, brio_builder *b);
+/* columns  the names of the columns that the caller gives (brio_read_options), or NULL */
+brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns);
 brio_status brio_obj_read(brio_stream *s, brio_builder *b);
 brio_status brio_off_read(brio_stream *s, brio_builder *b);
 brio_status brio_vtk_read(brio_stream *s, brio_builder *b); /* VTU and VTP */
@@ -26,6 +27,9 @@ brio_status brio_stl_read(brio_stream *s, brio_builder *b);
 brio_status brio_npy_read(brio_stream *s, brio_builder *b);
 brio_status brio_glb_read(brio_stream *s, brio_builder *b); /* .gltf, too */
 brio_status brio_e57_read(brio_stream *s, brio_builder *b);
+brio_status brio_chemical_read(brio_stream *s, brio_builder *b);
+brio_status brio_bnpts_read(brio_stream *s, brio_builder *b);
+brio_status brio_npz_read(brio_stream *s, brio_builder *b);
 brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
 
 brio_status brio_ply_write(brio_output *out, const brio_write_job *job);
@@ -50,6 +54,9 @@ bool brio_pcd_starts(const char *bytes, size_t size);
 bool brio_npy_starts(const char *bytes, size_t size);
 bool brio_glb_starts(const char *bytes, size_t size);
 bool brio_e57_starts(const char *bytes, size_t size);
+bool brio_npz_starts(const char *bytes, size_t size);
+/* Only asked of what is called .xyz, and of standard input: other texts are not so far from it. */
+bool brio_chemical_starts(const char *bytes, size_t size);
 
 /** Returns whether this build can compress VTU and VTP. */
 bool brio_vtk_has_zlib(void);

@@ -3,6 +3,7 @@
 #include "base/float_state.h"
 #include "base/versioned.h"
 #include "io/pdb.h"
+#include "io/unpack.h"
 #include "iso/iso_source.h"
 #include <math.h>
 #include <string.h>
@@ -17,9 +18,11 @@ BRIO_OPTIONS_INIT(brio_iso_surface_options)
 /* --- reading --- */
 
 static bool has_extension(const char *path, const char *const *extensions) {
-    const char *dot = strrchr(path, '.');
-    for (; dot && *extensions; extensions++)
-        if (!strcasecmp(dot, *extensions)) return true;
+    size_t length = brio_unpacked_length(path);
+    for (; *extensions; extensions++) {
+        size_t suffix = strlen(*extensions);
+        if (length >= suffix && !strncasecmp(path + length - suffix, *extensions, suffix)) return true;
+    }
     return false;
 }
 

@@ -36,15 +36,8 @@ done:
     return status;
 }
 
-static double load(const brio_npy_field *f, const char *bytes) {
-    if (!f->wide) return brio_scalar_load(bytes, f->type, f->big == brio_host_is_little());
-    uint64_t bits = brio_le64(bytes);
-    if (f->big) bits = __builtin_bswap64(bits);
-    return f->type == BRIO_SCALAR_UINT32 ? (double)bits : (double)(int64_t)bits;
-}
-
 static void store(const brio_mesh *m, const brio_npy_field *f, size_t v, const char *bytes) {
-    double value = load(f, bytes);
+    double value = brio_npy_load(f, bytes);
     if (f->axis >= 0) {
         m->vertices[3 * v + (size_t)f->axis] = value;
         return;

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "io/little_endian.h"
 #include "io/number.h"
+#include "io/scalar.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -22,6 +23,13 @@ static brio_status expected(const parser *p, const char *what) {
     return brio_fail(p->stream->ctx, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": expected %s", p->stream->name,
                      p->offset + (uint64_t)(p->at - p->start), what);
 }
+
+typedef struct {
+    const char *descr; /* where its value begins */
+    bool has_shape, fortran;
+    uint64_t shape[2]; /* 1 where there are fewer dimensions */
+    size_t dimensions;
+} dictionary;
 
 /* Moves behind a character, if it is the next one besides blanks. */
 static bool take(parser *p, char c) {
@@ -43,8 +51,8 @@ static brio_status take_string(parser *p, char text[64]) {
     return BRIO_OK;
 }
 
-/* Adds a field of a type such as <f8. */
-static brio_status add_field(parser *p, brio_npy_header *h, const char *name, const char *type) {
+/* Finds the type of a number such as <f8. Returns false if it is not known. */
+static bool find_type(const char *type, brio_npy_field *f) {
     static const struct {
         const char *name;
         brio_scalar type;
@@ -54,17 +62,37 @@ static brio_status add_field(parser *p, brio_npy_header *h, const char *name, co
         {"i2", BRIO_SCALAR_INT16, false},   {"u2", BRIO_SCALAR_UINT16, false}, {"i4", BRIO_SCALAR_INT32, false},
         {"u4", BRIO_SCALAR_UINT32, false},  {"i8", BRIO_SCALAR_INT32, true},   {"u8", BRIO_SCALAR_UINT32, true},
         {"f4", BRIO_SCALAR_FLOAT32, false}, {"f8", BRIO_SCALAR_FLOAT64, false}};
-    brio_status status = BRIO_OK;
     size_t i = 0, count = sizeof types / sizeof *types;
     while (i < count && (!strchr("<>|", type[0]) || strcmp(type + 1, types[i].name) != 0)) i++;
-    if (i == count || !type[0])
+    if (i == count || !type[0]) return false;
+    *f = (brio_npy_field){.type = types[i].type, .wide = types[i].wide, .big = type[0] == '>'};
+    return true;
+}
+
+size_t brio_npy_size(const brio_npy_field *f) {
+    return f->wide ? 8 : brio_scalar_size(f->type);
+}
+
+double brio_npy_load(const brio_npy_field *f, const char *bytes) {
+    if (!f->wide) return brio_scalar_load(bytes, f->type, f->big == brio_host_is_little());
+    uint64_t bits = brio_le64(bytes);
+    if (f->big) bits = __builtin_bswap64(bits);
+    return f->type == BRIO_SCALAR_UINT32 ? (double)bits : (double)(int64_t)bits;
+}
+
+/* Adds a field of a type such as <f8. */
+static brio_status add_field(parser *p, brio_npy_header *h, const char *name, const char *type) {
+    brio_status status = BRIO_OK;
+    brio_npy_field found;
+    if (!find_type(type, &found))
         return expected(p, "a type < > or | with b1 i1 u1 i2 u2 i4 u4 i8 u8 f4 or f8 before here");
     if (h->num_fields == MOST_COLUMNS) return expected(p, "at most 4096 numbers in a row");
     BRIO_TRY(BRIO_RESERVE(p->stream->ctx, h->fields, h->capacity, h->num_fields + 1));
     brio_npy_field *f = &h->fields[h->num_fields++];
-    *f = (brio_npy_field){.type = types[i].type, .wide = types[i].wide, .big = type[0] == '>', .at = h->record};
+    *f = found;
+    f->at = h->record;
     snprintf(f->name, sizeof f->name, "%s", name);
-    h->record += types[i].wide ? 8 : brio_scalar_size(types[i].type);
+    h->record += brio_npy_size(f);
 done:
     return status;
 }
@@ -91,17 +119,41 @@ done:
     return status;
 }
 
-/* Reads a shape: (rows,) or (rows, columns). */
-static brio_status take_shape(parser *p, uint64_t *shape, size_t *dimensions) {
-    *dimensions = 0;
+/* Reads a shape: (), (rows,), (rows, columns) or one of more dimensions. */
+static brio_status take_shape(parser *p, dictionary *d) {
+    uint64_t length;
+    d->shape[0] = d->shape[1] = 1;
+    d->dimensions = 0;
     if (!take(p, '(')) return expected(p, "(");
     while (!take(p, ')')) {
         take(p, ' ');
-        if (*dimensions == 2 || !brio_parse_count(&p->at, &shape[*dimensions]))
-            return expected(p, "a shape of one or two dimensions");
-        ++*dimensions;
+        if (!brio_parse_count(&p->at, &length)) return expected(p, "a length of a dimension");
+        if (d->dimensions < 2) d->shape[d->dimensions] = length;
+        d->dimensions++;
         take(p, ',');
     }
+    return BRIO_OK;
+}
+
+/* Passes over a value: a string, or brackets with anything in them. */
+static brio_status skip_value(parser *p) {
+    size_t depth = 0;
+    take(p, ' ');
+    do {
+        char c = *p->at;
+        if (!c) return expected(p, "the end of the value of descr");
+        if (c == '\'' || c == '"') {
+            const char *end = strchr(p->at + 1, c);
+            if (!end) return expected(p, "a string that ends");
+            p->at = end;
+        }
+        depth += c == '(' || c == '[' || c == '{';
+        if (c == ')' || c == ']' || c == '}') {
+            if (!depth) return expected(p, "a value of descr");
+            depth--;
+        }
+        p->at++;
+    } while (depth || (*p->at && *p->at != ',' && *p->at != '}'));
     return BRIO_OK;
 }
 
@@ -120,41 +172,56 @@ done:
     return status;
 }
 
-static brio_status parse(parser *p, brio_npy_header *h) {
+static brio_status parse(parser *p, dictionary *d) {
     brio_status status = BRIO_OK;
-    char key[64], type[64] = "";
-    uint64_t shape[2] = {0};
-    size_t dimensions = 0;
+    char key[64];
     if (!take(p, '{')) return expected(p, "{");
     while (!take(p, '}')) {
         BRIO_TRY(take_string(p, key));
         if (!take(p, ':')) return expected(p, ":");
         if (!strcmp(key, "descr")) {
-            BRIO_TRY(take(p, '[') ? take_records(p, h) : take_string(p, type));
+            take(p, ' ');
+            d->descr = p->at;
+            BRIO_TRY(skip_value(p));
         } else if (!strcmp(key, "shape")) {
-            BRIO_TRY(take_shape(p, shape, &dimensions));
+            BRIO_TRY(take_shape(p, d));
+            d->has_shape = true;
         } else if (!strcmp(key, "fortran_order")) {
             take(p, ' ');
-            h->fortran = *p->at == 'T';
+            d->fortran = *p->at == 'T';
             p->at += strspn(p->at, "TrueFals");
         } else {
             return expected(p, "before here the key descr, fortran_order or shape");
         }
         take(p, ',');
     }
-    h->rows = shape[0];
-    if (*type) return make_columns(p, h, type, shape, dimensions);
-    if (!h->num_fields || dimensions != 1) return expected(p, "before here fields, and a shape of one dimension");
+    if (!d->descr || !d->has_shape) return expected(p, "before here the keys descr and shape");
+done:
+    return status;
+}
+
+/* Makes the fields of an array of points. */
+static brio_status make_fields(parser *p, const dictionary *d, brio_npy_header *h) {
+    brio_status status = BRIO_OK;
+    char type[64];
+    p->at = d->descr;
+    h->rows = d->shape[0];
+    h->fortran = d->fortran;
+    if (!take(p, '[')) {
+        BRIO_TRY(take_string(p, type));
+        return make_columns(p, h, type, d->shape, d->dimensions);
+    }
+    BRIO_TRY(take_records(p, h));
+    if (!h->num_fields || d->dimensions != 1) return expected(p, "before here fields, and a shape of one dimension");
     h->fortran = false; /* one dimension: the orders are the same */
 done:
     return status;
 }
 
-brio_status brio_npy_header_read(brio_stream *s, brio_npy_header *h) {
+/* Reads the text of the header, which ends with a 0 in *text, owned by the caller. */
+static brio_status read_text(brio_stream *s, char **text, uint64_t *offset) {
     brio_status status = BRIO_OK;
     const char *bytes = NULL;
-    char *text = NULL;
-    *h = (brio_npy_header){.num_fields = 0};
     brio_stream_element(s, "header", 1);
     BRIO_TRY(brio_stream_take(s, 8, &bytes));
     BRIO_REQUIRE(s->ctx, !memcmp(bytes, "\x93NUMPY", 6) && bytes[6] >= 1 && bytes[6] <= 3, BRIO_ERR_FORMAT,
@@ -165,11 +232,47 @@ brio_status brio_npy_header_read(brio_stream *s, brio_npy_header *h) {
     BRIO_REQUIRE(s->ctx, size <= MOST_HEADER, BRIO_ERR_FORMAT, "%s: byte 8: a header of %zu bytes, expected at most %d",
                  s->name, size, MOST_HEADER);
     BRIO_TRY(brio_stream_take(s, size, &bytes));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, text, size + 1));
-    memcpy(text, bytes, size);
-    text[size] = 0;
-    parser p = {s, text, text, wide ? 12 : 10};
-    BRIO_TRY(parse(&p, h));
+    BRIO_TRY(BRIO_ALLOC(s->ctx, *text, size + 1));
+    memcpy(*text, bytes, size);
+    (*text)[size] = 0;
+    *offset = wide ? 12 : 10;
+done:
+    return status;
+}
+
+brio_status brio_npy_header_read(brio_stream *s, brio_npy_header *h) {
+    brio_status status = BRIO_OK;
+    char *text = NULL;
+    uint64_t offset = 0;
+    dictionary d = {.descr = NULL};
+    *h = (brio_npy_header){.num_fields = 0};
+    BRIO_TRY(read_text(s, &text, &offset));
+    parser p = {s, text, text, offset};
+    BRIO_TRY(parse(&p, &d));
+    BRIO_TRY(make_fields(&p, &d, h));
+done:
+    brio_release(s->ctx, text);
+    return status;
+}
+
+brio_status brio_npy_array_read(brio_stream *s, brio_npy_array *array) {
+    brio_status status = BRIO_OK;
+    char *text = NULL, type[64];
+    uint64_t offset = 0;
+    dictionary d = {.descr = NULL};
+    *array = (brio_npy_array){.known = false};
+    BRIO_TRY(read_text(s, &text, &offset));
+    parser p = {s, text, text, offset};
+    BRIO_TRY(parse(&p, &d));
+    memcpy(array->shape, d.shape, sizeof d.shape);
+    array->dimensions = d.dimensions;
+    array->fortran = d.fortran && d.dimensions == 2;
+    array->records = *d.descr == '[';
+    p.at = d.descr;
+    if (!array->records) {
+        BRIO_TRY(take_string(&p, type));
+        array->known = find_type(type, &array->element);
+    }
 done:
     brio_release(s->ctx, text);
     return status;

@@ -1,4 +1,4 @@
-/* The header of an NPY file. */
+/* The header of an NPY file, or of an array in an NPZ file. */
 #ifndef BRIO_IO_NPY_HEADER_H
 #define BRIO_IO_NPY_HEADER_H
 
@@ -22,7 +22,24 @@ typedef struct brio_npy_header {
     bool fortran;
 } brio_npy_header;
 
-/** Reads the header. Call brio_npy_header_free even if this fails.
+/** Any array: of points or not. */
+typedef struct brio_npy_array {
+    bool records;           /* fields with names; nothing else below is set then, except shape and dimensions */
+    bool known;             /* whether `element` is a number that can be read */
+    brio_npy_field element; /* its type */
+    uint64_t shape[2];      /* the first two lengths; 1 where there are fewer dimensions */
+    size_t dimensions;
+    bool fortran;
+} brio_npy_array;
+
+/** Reads the header of any array. Returns as brio_npy_header_read. */
+brio_status brio_npy_array_read(brio_stream *s, brio_npy_array *array);
+
+/** Returns the bytes of an element, and the element at an address as a double. */
+size_t brio_npy_size(const brio_npy_field *f);
+double brio_npy_load(const brio_npy_field *f, const char *bytes);
+
+/** Reads the header of points. Call brio_npy_header_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_npy_header_read(brio_stream *s, brio_npy_header *h);
 void brio_npy_header_free(brio_context *ctx, brio_npy_header *h);

@@ -21,8 +21,9 @@
 typedef unsigned __int128 wide;
 
 /* MAX_DIGITS: 10^19 < 2^64. MAX_POWER: 5^27 < 2^64. EXACT_POWER: 10^22 is a double, 10^23 is not. FAR_EXPONENT: chosen,
- * so that no int overflows; strtod decides beyond it. */
-enum { MAX_DIGITS = 19, MAX_POWER = 27, EXACT_POWER = 22, FAR_EXPONENT = 100000 };
+ * so that no int overflows; strtod decides beyond it. LONGEST_D: of a number with Fortran's exponent, if strtod has to
+ * decide; chosen. */
+enum { MAX_DIGITS = 19, MAX_POWER = 27, EXACT_POWER = 22, FAR_EXPONENT = 100000, LONGEST_D = 512 };
 
 /* clang-format off */
 static const uint64_t powers_of_5[MAX_POWER + 1] = {
@@ -122,7 +123,7 @@ static const char *scan_decimal(const char *p, decimal *d) {
         seen += (size_t)(p - point) - 1;
     }
     if (!seen) return NULL;
-    return *p == 'e' || *p == 'E' ? scan_exponent(p, d) : p;
+    return *p == 'e' || *p == 'E' || *p == 'd' || *p == 'D' ? scan_exponent(p, d) : p;
 }
 
 static const char *scan_word(const char *p, double *value) {
@@ -133,6 +134,15 @@ static const char *scan_word(const char *p, double *value) {
     if (strncasecmp(p, "inf", 3) != 0) return NULL;
     *value = (double)INFINITY;
     return p + (strncasecmp(p, "infinity", 8) ? 3 : 8);
+}
+
+/* Copies a number with the E of C in the place of Fortran's D. Returns false if the number is too long for that. */
+static bool copy_with_e(const char *text, const char *end, char copy[LONGEST_D]) {
+    size_t length = (size_t)(end - text);
+    if (length >= LONGEST_D) return false;
+    for (size_t i = 0; i < length; i++) copy[i] = text[i] == 'd' || text[i] == 'D' ? 'e' : text[i];
+    copy[length] = 0;
+    return true;
 }
 
 /* Reads a number with strtod in the C locale. This locale is a constant of the C library: newlocale allocates
@@ -154,7 +164,10 @@ bool brio_parse_number(const char **text, double *value) {
         end = scan_word(p, value);
         if (!end) return false;
     } else if (d.digits > MAX_DIGITS || !compose(d.mantissa, d.power, value)) {
-        *value = parse_far(p);
+        char copy[LONGEST_D];
+        bool fortran = memchr(p, 'd', (size_t)(end - p)) || memchr(p, 'D', (size_t)(end - p));
+        if (fortran && !copy_with_e(p, end, copy)) return false;
+        *value = parse_far(fortran ? copy : p);
     }
     if (negative) *value = -*value;
     *text = end;

@@ -9,8 +9,8 @@
 
 enum { BRIO_NUMBER_LENGTH = 32 }; /* no printed number is longer */
 
-/** Reads the decimal number, "nan" or "inf" at *text and moves *text behind it. Returns false, and moves nothing, if
- *  there is none.   text  ends with a 0. */
+/** Reads the decimal number, with an exponent as of C or Fortran (1e3, 1D+3), "nan" or "inf" at *text and moves *text
+ *  behind it. Returns false, and moves nothing, if there is none.   text  ends with a 0. */
 bool brio_parse_number(const char **text, double *value);
 
 /** Reads the digits at *text and moves *text behind them. Returns false, and moves nothing, if there are none or they

@@ -4,12 +4,10 @@
  * location, 18 to 20 the residue, 31 to 54 the coordinates in angstrom, 77 and 78 the element. If the element is
  * missing, the first two columns of the name give it, right-justified.
  *
- * Based on: Worldwide Protein Data Bank. Atomic coordinate entry format version 3.3. 2012.
- *           Bondi. Van der Waals volumes and radii. Journal of Physical Chemistry 1964.
- *           Rowland, Taylor. Intermolecular nonbonded contact distances in organic crystal structures. Journal of
- *           Physical Chemistry 1996 (hydrogen). */
+ * Based on: Worldwide Protein Data Bank. Atomic coordinate entry format version 3.3. 2012. */
 #include "io/pdb.h"
 #include "base/memory.h"
+#include "io/elements.h"
 #include "io/number.h"
 #include "io/textrow.h"
 #include <ctype.h>
@@ -25,21 +23,6 @@ enum {
     ELEMENT = 76,
     NEEDED = COORDINATES + 3 * COORDINATE_WIDTH
 };
-
-static const double OTHER_RADIUS = 1.8; /* of elements that are not in the table, mostly metals; chosen */
-
-static const struct {
-    char element[3];
-    double radius;
-} radii[] = {{"H", 1.10},  {"D", 1.10},  {"C", 1.70},  {"N", 1.55},  {"O", 1.52},  {"F", 1.47},  {"P", 1.80},
-             {"S", 1.80},  {"CL", 1.75}, {"BR", 1.85}, {"I", 1.98},  {"SE", 1.90}, {"SI", 2.10}, {"NA", 2.27},
-             {"MG", 1.73}, {"K", 2.75},  {"LI", 1.82}, {"ZN", 1.39}, {"NI", 1.63}, {"CU", 1.40}, {"AS", 1.85}};
-
-static double radius_of(const char *element) {
-    for (size_t i = 0; i < sizeof radii / sizeof *radii; i++)
-        if (!strcmp(radii[i].element, element)) return radii[i].radius;
-    return OTHER_RADIUS;
-}
 
 /* Copies the letters of two columns, in capitals. */
 static void take_letters(const char *columns, char element[3]) {
@@ -93,7 +76,7 @@ static brio_status parse_atom(const brio_stream *s, const char *line, brio_atom 
     char element[3];
     for (int k = 0; k < 3; k++) BRIO_TRY(parse_coordinate(s, line, k, &atom->position[k]));
     find_element(line, strlen(line), element);
-    atom->radius = radius_of(element);
+    atom->radius = brio_van_der_waals_radius(brio_element_of(element, strlen(element)));
 done:
     return status;
 }

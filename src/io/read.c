@@ -1,7 +1,9 @@
 /* Reads a file: finds its format and calls the format's reader. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/versioned.h"
 #include "io/formats.h"
+#include "io/unpack.h"
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
@@ -11,17 +13,30 @@ enum { START = 4096 }; /* bytes of a file in which its content may show the form
 static const struct {
     const char *extension;
     brio_format format;
-} extensions[] = {
-    {"ply", BRIO_FORMAT_PLY},   {"xyz", BRIO_FORMAT_XYZ},  {"pts", BRIO_FORMAT_XYZ},  {"txt", BRIO_FORMAT_XYZ},
-    {"csv", BRIO_FORMAT_XYZ},   {"obj", BRIO_FORMAT_OBJ},  {"off", BRIO_FORMAT_OFF},  {"vtu", BRIO_FORMAT_VTU},
-    {"node", BRIO_FORMAT_NODE}, {"ele", BRIO_FORMAT_NODE}, {"vtp", BRIO_FORMAT_VTP},  {"las", BRIO_FORMAT_LAS},
-    {"laz", BRIO_FORMAT_LAZ},   {"pcd", BRIO_FORMAT_PCD},  {"ptx", BRIO_FORMAT_PTX},  {"stl", BRIO_FORMAT_STL},
-    {"npy", BRIO_FORMAT_NPY},   {"glb", BRIO_FORMAT_GLB},  {"gltf", BRIO_FORMAT_GLB}, {"e57", BRIO_FORMAT_E57}};
+} extensions[] = {{"ply", BRIO_FORMAT_PLY},     {"xyz", BRIO_FORMAT_XYZ},           {"pts", BRIO_FORMAT_XYZ},
+                  {"txt", BRIO_FORMAT_XYZ},     {"csv", BRIO_FORMAT_XYZ},           {"obj", BRIO_FORMAT_OBJ},
+                  {"off", BRIO_FORMAT_OFF},     {"vtu", BRIO_FORMAT_VTU},           {"node", BRIO_FORMAT_NODE},
+                  {"ele", BRIO_FORMAT_NODE},    {"vtp", BRIO_FORMAT_VTP},           {"las", BRIO_FORMAT_LAS},
+                  {"laz", BRIO_FORMAT_LAZ},     {"pcd", BRIO_FORMAT_PCD},           {"ptx", BRIO_FORMAT_PTX},
+                  {"stl", BRIO_FORMAT_STL},     {"npy", BRIO_FORMAT_NPY},           {"npz", BRIO_FORMAT_NPZ},
+                  {"glb", BRIO_FORMAT_GLB},     {"gltf", BRIO_FORMAT_GLB},          {"e57", BRIO_FORMAT_E57},
+                  {"bnpts", BRIO_FORMAT_BNPTS}, {"chemical", BRIO_FORMAT_CHEMICAL}, {"extxyz", BRIO_FORMAT_CHEMICAL}};
+
+static const brio_read_options STANDARD = {.size = sizeof STANDARD, .format = BRIO_FORMAT_AUTO};
+
+BRIO_OPTIONS_INIT(brio_read_options)
 
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
     return dot ? dot + 1 : name;
+}
+
+/* Whether the extension of a name, which may have .gz or .zst behind it, is the one wanted. */
+static bool has_extension(const char *path, const char *wanted) {
+    size_t stem = brio_unpacked_length(path), length = strlen(wanted);
+    if (stem == strlen(path)) return !strcasecmp(extension_of(path), wanted);
+    return stem > length && path[stem - length - 1] == '.' && !strncasecmp(path + stem - length, wanted, length);
 }
 
 brio_format brio_format_of(const char *path) {
@@ -31,29 +46,42 @@ brio_format brio_format_of(const char *path) {
     return BRIO_FORMAT_AUTO;
 }
 
+/* Returns the format by the extension of a file that may be compressed. */
+static brio_format format_to_read(const char *path) {
+    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
+        if (has_extension(path, extensions[i].extension)) return extensions[i].format;
+    return BRIO_FORMAT_AUTO;
+}
+
 bool brio_is_ele(const char *path) {
-    return !strcasecmp(extension_of(path), "ele");
+    return has_extension(path, "ele");
+}
+
+/* Returns the length of a path of the pair .node and .ele without its extension, or of any other path. */
+static size_t length_of_stem(const char *path) {
+    size_t length = brio_unpacked_length(path);
+    size_t extension = has_extension(path, "node") ? 5 : has_extension(path, "ele") ? 4 : 0;
+    return extension && length >= extension && path[length - extension] == '.' ? length - extension : strlen(path);
 }
 
 bool brio_is_gltf(const char *path) {
-    return !strcasecmp(extension_of(path), "gltf");
+    return has_extension(path, "gltf");
 }
 
 brio_status brio_sibling(brio_context *ctx, const char *path, const char *extension, char **out) {
     brio_status status = BRIO_OK;
-    const char *old = extension_of(path);
-    size_t stem = brio_format_of(path) == BRIO_FORMAT_NODE && old > path && old[-1] == '.' ? (size_t)(old - path) - 1
-                                                                                           : strlen(path);
-    BRIO_TRY(BRIO_ALLOC(ctx, *out, stem + strlen(extension) + 1));
+    size_t stem = length_of_stem(path);
+    const char *packed = path[stem] ? path + brio_unpacked_length(path) : "";
+    BRIO_TRY(BRIO_ALLOC(ctx, *out, stem + strlen(extension) + strlen(packed) + 1));
     memcpy(*out, path, stem);
-    strcpy(*out + stem, extension);
+    strcpy(stpcpy(*out + stem, extension), packed);
 done:
     return status;
 }
 
 /* Finds the format by the content or, failing that, the extension. Standard input in no known format is read as rows of
- * numbers. */
-static brio_status find_format(brio_stream *s, const char *path, brio_format *format) {
+ * numbers; so is a file .xyz whose columns have names from the caller, whatever its first line. */
+static brio_status find_format(brio_stream *s, const char *path, const brio_read_options *o, brio_format *format) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_stream_fill(s, START));
     const char *bytes = s->buffer + s->begin;
@@ -74,22 +102,26 @@ static brio_status find_format(brio_stream *s, const char *path, brio_format *fo
         *format = BRIO_FORMAT_GLB;
     else if (brio_e57_starts(bytes, size))
         *format = BRIO_FORMAT_E57;
+    else if (brio_npz_starts(bytes, size))
+        *format = BRIO_FORMAT_NPZ;
     else
-        *format = strcmp(path, "-") ? brio_format_of(path) : BRIO_FORMAT_XYZ;
+        *format = strcmp(path, "-") ? format_to_read(path) : BRIO_FORMAT_XYZ;
+    bool may_be_chemical = *format == BRIO_FORMAT_XYZ && (!strcmp(path, "-") || has_extension(path, "xyz"));
+    if (may_be_chemical && !o->columns && brio_chemical_starts(bytes, size)) *format = BRIO_FORMAT_CHEMICAL;
     BRIO_REQUIRE(s->ctx, *format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
                  "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .ele .las .laz .pcd "
-                 ".ptx .stl .npy .glb .gltf or .e57",
+                 ".ptx .stl .npy .npz .glb .gltf .e57 or .bnpts",
                  s->name);
 done:
     return status;
 }
 
-static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format format) {
+static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format format, const char *columns) {
     switch (format) {
     case BRIO_FORMAT_PLY:
         return brio_ply_read(s, b);
     case BRIO_FORMAT_XYZ:
-        return brio_xyz_read(s, b);
+        return brio_xyz_read(s, b, columns);
     case BRIO_FORMAT_OBJ:
         return brio_obj_read(s, b);
     case BRIO_FORMAT_OFF:
@@ -114,6 +146,12 @@ static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format form
         return brio_glb_read(s, b);
     case BRIO_FORMAT_E57:
         return brio_e57_read(s, b);
+    case BRIO_FORMAT_CHEMICAL:
+        return brio_chemical_read(s, b);
+    case BRIO_FORMAT_BNPTS:
+        return brio_bnpts_read(s, b);
+    case BRIO_FORMAT_NPZ:
+        return brio_npz_read(s, b);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;
@@ -137,19 +175,27 @@ done:
     return status;
 }
 
-brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out) {
-    BRIO_DOOR;
+/* Refuses names of columns for a format that has none. */
+static brio_status check_columns(const brio_stream *s, brio_format format, const char *columns) {
+    if (!columns || format == BRIO_FORMAT_XYZ) return BRIO_OK;
+    return brio_fail(s->ctx, BRIO_ERR_ARGUMENT,
+                     "%s: columns are named (--columns), but only texts of points (.xyz .pts .txt .csv) have columns",
+                     s->name);
+}
+
+static brio_status read_file(brio_context *ctx, const char *path, const brio_read_options *o, brio_mesh **out) {
     brio_status status = BRIO_OK;
     brio_stream s = {.ctx = ctx, .file = -1};
     brio_builder b = {.ctx = ctx};
+    brio_format format = o->format;
     char *node = NULL;
-    *out = NULL;
     bool tetrahedra = (format == BRIO_FORMAT_AUTO || format == BRIO_FORMAT_NODE) && brio_is_ele(path);
     if (tetrahedra) BRIO_TRY(brio_sibling(ctx, path, ".node", &node));
     BRIO_TRY(brio_stream_open(&s, ctx, node ? node : path));
-    if (format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : path, &format));
+    if (format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : path, o, &format));
+    BRIO_TRY(check_columns(&s, format, o->columns));
     BRIO_TRY(brio_builder_start(&b, ctx, s.name));
-    BRIO_TRY(read_stream(&s, &b, format));
+    BRIO_TRY(read_stream(&s, &b, format, o->columns));
     if (format == BRIO_FORMAT_NODE && strcmp(path, "-") != 0) BRIO_TRY(read_tetrahedra(&b, path, tetrahedra));
     BRIO_TRY(brio_builder_finish(&b));
     BRIO_TRY(brio_progress(ctx, "read", 1));
@@ -160,4 +206,22 @@ done:
     brio_stream_close(&s);
     brio_release(ctx, node);
     return status;
+}
+
+brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_options *options, brio_mesh **out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_read_options o = STANDARD;
+    *out = NULL;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
+    BRIO_TRY(read_file(ctx, path, &o, out));
+done:
+    return status;
+}
+
+brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out) {
+    BRIO_DOOR;
+    brio_read_options o = STANDARD;
+    o.format = format;
+    return brio_read_as(ctx, path, &o, out);
 }

@@ -5,6 +5,8 @@
  * MAX_LINE. */
 #include "io/stream.h"
 #include "base/memory.h"
+#include "io/crc32.h"
+#include "io/unpack.h"
 #include "io/wait.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -41,11 +43,13 @@ brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path
     size_t capacity = s->size < BLOCK ? (size_t)s->size + 1 : BLOCK;
     BRIO_TRY(BRIO_ALLOC(ctx, s->buffer, capacity + 1));
     s->capacity = capacity;
+    BRIO_TRY(brio_unpack_start(s));
 done:
     return status;
 }
 
 void brio_stream_close(brio_stream *s) {
+    brio_unpack_end(s);
     if (s->owned) close(s->file);
     s->owned = false;
     brio_release(s->ctx, s->buffer);
@@ -56,7 +60,10 @@ static brio_status report(brio_stream *s) {
     uint64_t read_so_far = s->base + s->end;
     if (read_so_far - s->reported < BLOCK) return BRIO_OK;
     s->reported = read_so_far;
-    double share = s->size == BRIO_SIZE_UNKNOWN ? 0 : (double)read_so_far / (double)s->size;
+    double share = s->outer                       ? (double)s->part_at / (double)s->outer->size
+                   : s->unpacker                  ? brio_unpack_share(s)
+                   : s->size == BRIO_SIZE_UNKNOWN ? 0
+                                                  : (double)read_so_far / (double)s->size;
     return brio_progress(s->ctx, "read", share < 1 ? share : 1);
 }
 
@@ -74,22 +81,56 @@ static brio_status make_room(brio_stream *s, size_t need) {
     return status;
 }
 
+/* Reads the next bytes of the part that the stream is of another one's file. */
+static brio_status read_part(brio_stream *s, char *to, size_t room, size_t *got) {
+    *got = room < s->part_left ? room : (size_t)s->part_left;
+    brio_status status = brio_stream_peek(s->outer, s->part_at, to, *got);
+    s->part_at += *got;
+    s->part_left -= *got;
+    return status;
+}
+
+brio_status brio_stream_read_raw(brio_stream *s, char *to, size_t room, size_t *got) {
+    brio_status status = BRIO_OK;
+    *got = 0;
+    if (s->outer) return read_part(s, to, room, got);
+    for (;;) {
+        if (s->waits) BRIO_TRY(brio_wait_for(s->ctx, s->file, BRIO_WAIT_READ, 0));
+        ssize_t count = read(s->file, to, room);
+        if (count < 0 && (errno == EINTR || errno == EAGAIN)) { /* a signal: the caller may want to cancel */
+            BRIO_TRY(brio_wait_a_moment(s->ctx, BRIO_WAIT_READ, 0));
+            continue;
+        }
+        BRIO_REQUIRE(s->ctx, count >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+        *got = (size_t)count;
+        return BRIO_OK;
+    }
+done:
+    return status;
+}
+
 brio_status brio_stream_fill(brio_stream *s, size_t need) {
     brio_status status = BRIO_OK;
     if (brio_stream_left(s) >= need || s->ended) return BRIO_OK;
     BRIO_TRY(make_room(s, need));
     while (brio_stream_left(s) < need && !s->ended) {
-        if (s->waits) BRIO_TRY(brio_wait_for(s->ctx, s->file, BRIO_WAIT_READ, 0));
-        ssize_t got = read(s->file, s->buffer + s->end, s->capacity - s->end);
-        if (got < 0 && (errno == EINTR || errno == EAGAIN)) { /* a signal: the caller may want to cancel */
-            BRIO_TRY(brio_wait_a_moment(s->ctx, BRIO_WAIT_READ, 0));
-            continue;
-        }
-        BRIO_REQUIRE(s->ctx, got >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+        char *to = s->buffer + s->end;
+        size_t room = s->capacity - s->end, got = 0;
+        BRIO_TRY(s->unpacker ? brio_unpack_read(s, to, room, &got) : brio_stream_read_raw(s, to, room, &got));
+        if (s->crc) brio_crc32_add(s->crc, to, got);
         s->ended = got == 0;
-        s->end += (size_t)got;
+        s->end += got;
         BRIO_TRY(report(s));
     }
+done:
+    return status;
+}
+
+brio_status brio_stream_hold(brio_stream *s) {
+    brio_status status = BRIO_OK;
+    if (s->size != BRIO_SIZE_UNKNOWN) return BRIO_OK;
+    while (!s->ended) BRIO_TRY(brio_stream_fill(s, brio_stream_left(s) + 1));
+    s->size = s->base + s->end;
 done:
     return status;
 }
@@ -110,6 +151,10 @@ done:
 
 brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_t size) {
     brio_status status = BRIO_OK;
+    if (offset >= s->base && offset - s->base <= s->end && size <= s->end - (offset - s->base)) {
+        memcpy(bytes, s->buffer + (offset - s->base), size);
+        return BRIO_OK;
+    }
     off_t here = lseek(s->file, 0, SEEK_CUR);
     BRIO_REQUIRE(s->ctx, here >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
     uint64_t start = (uint64_t)here - s->base - s->end;

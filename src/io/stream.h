@@ -1,4 +1,5 @@
-/* A file or a pipe, read once from front to end through one buffer. The stream knows the byte offset, the line, and the
+/* A file, a pipe or a part of another stream's file, read once from front to end through one buffer. A file that is
+ * compressed by gzip or zstd is decompressed on the way (unpack.h): then all places are those of decompressed data. The stream knows the byte offset, the line, and the
  * row of the element that is being read, so that every message can name them. It reports progress and can be cancelled.
  *
  * Pointers into the buffer are valid until the next call with the stream. All functions that return a status return
@@ -26,11 +27,18 @@ typedef struct brio_stream {
     bool ended;          /* whether the file has no bytes behind the buffer */
     const char *element; /* what is being read, e.g. "vertex", with its row and the number of rows; for messages */
     uint64_t row, rows;
+    struct brio_unpacker *unpacker; /* NULL: the bytes are not compressed */
+    struct brio_stream *outer;      /* NULL, or the stream in whose file this one is the bytes from part_at on */
+    uint64_t part_at, part_left;    /* raw bytes of the part that are still to be read */
+    struct brio_crc32 *crc;         /* NULL, or the checksum of all bytes that were read into the buffer */
 } brio_stream;
 
 /** Opens a file; "-" is standard input. Call brio_stream_close even if this fails. */
 brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path);
 void brio_stream_close(brio_stream *s);
+
+/** Reads bytes of the file itself, which may be compressed: at most `room`, 0 at the end. For unpack.c. */
+brio_status brio_stream_read_raw(brio_stream *s, char *to, size_t room, size_t *got);
 
 /** Reads until the buffer has `need` unused bytes or the file ends. */
 brio_status brio_stream_fill(brio_stream *s, size_t need);
@@ -51,7 +59,12 @@ brio_status brio_stream_skip(brio_stream *s, uint64_t count);
 /** Returns the next line in *line, with a 0 in place of its end (LF or CR LF), or NULL at the end of the file. */
 brio_status brio_stream_line(brio_stream *s, char **line);
 
-/** Copies bytes of a regular file from any place, without moving the stream. Fails if the file ends before. */
+/** Reads a pipe or compressed file to its end into the buffer, so that its size is known and brio_stream_peek works; the
+ *  buffer then has all of it and nothing may be taken before. Does nothing for a regular file. */
+brio_status brio_stream_hold(brio_stream *s);
+
+/** Copies bytes from any place of a regular file, or of a stream that brio_stream_hold read, without moving the stream.
+ *  Fails if the file ends before. */
 brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_t size);
 
 /** Names the element that is read from now on, and its number of rows, for messages; row becomes 0. */

@@ -160,6 +160,11 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
     case BRIO_FORMAT_E57:
         return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD, PTX and E57 files are read, not written",
                          out->name);
+    case BRIO_FORMAT_CHEMICAL:
+    case BRIO_FORMAT_BNPTS:
+    case BRIO_FORMAT_NPZ:
+        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: chemical XYZ, BNPTS and NPZ files are read, not written",
+                         out->name);
     case BRIO_FORMAT_AUTO:
     case BRIO_FORMAT_END:
         break;

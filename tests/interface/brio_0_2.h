@@ -1453,26 +1453,52 @@ typedef enum brio_format {
     BRIO_FORMAT_VTU = 5,
     BRIO_FORMAT_NODE = 6, /* TetGen's .node, with .ele beside it */
     BRIO_FORMAT_VTP = 7,
-    BRIO_FORMAT_LAS = 8,  /* versions 1.0 to 1.4, point formats 0 to 10 without waveforms */
-    BRIO_FORMAT_LAZ = 9,  /* read, not written */
-    BRIO_FORMAT_PCD = 10, /* read, not written */
-    BRIO_FORMAT_PTX = 11, /* read, not written */
-    BRIO_FORMAT_STL = 12, /* corners at the same position become one vertex */
-    BRIO_FORMAT_NPY = 13, /* NumPy: an array of rows of coordinates, or of records with names */
-    BRIO_FORMAT_GLB = 14, /* glTF 2.0: .glb; .gltf is read, not written. Single precision about an origin */
-    BRIO_FORMAT_E57 = 15, /* read, not written; where brio was built with the library expat */
+    BRIO_FORMAT_LAS = 8,       /* versions 1.0 to 1.4, point formats 0 to 10 without waveforms */
+    BRIO_FORMAT_LAZ = 9,       /* read, not written */
+    BRIO_FORMAT_PCD = 10,      /* read, not written */
+    BRIO_FORMAT_PTX = 11,      /* read, not written */
+    BRIO_FORMAT_STL = 12,      /* corners at the same position become one vertex */
+    BRIO_FORMAT_NPY = 13,      /* NumPy: an array of rows of coordinates, or of records with names */
+    BRIO_FORMAT_GLB = 14,      /* glTF 2.0: .glb; .gltf is read, not written. Single precision about an origin */
+    BRIO_FORMAT_E57 = 15,      /* read, not written; where brio was built with the library expat */
+    BRIO_FORMAT_CHEMICAL = 16, /* .xyz with element symbols or atomic numbers: read, not written */
+    BRIO_FORMAT_BNPTS = 17,    /* oriented points of Kazhdan's Poisson programs: read, not written */
+    BRIO_FORMAT_NPZ = 18,      /* NumPy's zip of arrays: read, not written */
     BRIO_FORMAT_END
 } brio_format;
 
 /** Returns the format of a file name or of an extension with or without its dot; BRIO_FORMAT_AUTO if it is unknown. */
 BRIO_API brio_format brio_format_of(const char *path);
 
+typedef struct brio_read_options {
+    size_t size;
+    brio_format format; /* default BRIO_FORMAT_AUTO */
+    const char
+        *columns; /* texts of points (BRIO_FORMAT_XYZ): the names of the columns in their order, "x,y,z,-,nx"; - and
+                            _ leave a column out, as it happens to columns behind the last name. x, y and z have to be
+                            there. Default NULL: by the file's line of names, or else the first three */
+} brio_read_options;
+
+BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);
+static inline brio_read_options brio_read_options_default(void) {
+    brio_read_options options;
+    brio_read_options_init(&options, sizeof options);
+    return options;
+}
+
 /** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of the vertices; skips other elements.
- *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads.
- *  "-" reads standard input.
- *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was
- *  expected), BRIO_ERR_NOT_FINITE (the message names the first such point and their number), BRIO_ERR_TOO_LARGE,
- *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads. A file
+ *  compressed by gzip or zstd is decompressed while it is read, if the library was built with zlib or libzstd; messages
+ *  then count lines and bytes of what was decompressed.
+ *  path  "-" reads standard input.   options  NULL for the defaults.   out  owned by the caller; NULL on error.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (columns of a format that has none, or that lack x, y or z), BRIO_ERR_OPEN,
+ *  BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was expected), BRIO_ERR_NOT_FINITE
+ *  (the message names the first such point and their number), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_options *options,
+                                  brio_mesh **out);
+
+/** brio_read_as with a format and else the defaults. */
 BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
 
 typedef struct brio_write_options {

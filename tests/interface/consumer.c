@@ -59,6 +59,7 @@ int main(void) {
     OPTIONS(brio_labeled_delaunay_options, labeled);
     OPTIONS(brio_iso_surface_options, iso);
     OPTIONS(brio_write_options, write);
+    OPTIONS(brio_read_options, read);
     OPTIONS(brio_cells_options, cells_options);
     brio_cells *cells;
     RESULT(brio_power_crust_stats, crust_stats);
@@ -105,6 +106,7 @@ int main(void) {
     printf("labeled %d\n", (int)labeled_stats.value.samples);
     brio_mesh_free(mesh);
     if (brio_iso_surface(ctx, "there is no such file.map", &iso.value, &mesh) != BRIO_ERR_OPEN) broken = 1;
+    if (brio_read_as(ctx, "there is no such file.xyz", &read.value, &mesh) != BRIO_ERR_OPEN) broken = 1;
     if (brio_write(ctx, "no such folder/x.ply", points, &write.value) != BRIO_ERR_WRITE) broken = 1;
     brio_certificate_free(&certificate.value);
     expect_guard("brio_certificate", certificate.before, certificate.after);

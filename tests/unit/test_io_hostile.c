@@ -47,22 +47,7 @@ static char *make_file(const file_case *file, size_t *size) {
 }
 
 static void expect_sane(const char *name, const char *bytes, size_t size, const char *how, size_t at) {
-    brio_mesh *mesh = NULL;
-    io_put(name, bytes, size);
-    brio_status status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &mesh);
-    EXPECT(status == BRIO_OK || status == BRIO_ERR_FORMAT || status == BRIO_ERR_NOT_FINITE ||
-               status == BRIO_ERR_TOO_LARGE,
-           "%s %s %zu: status %d: %s", name, how, at, (int)status, brio_message(io_ctx));
-    EXPECT((status == BRIO_OK) == (mesh != NULL) && (mesh || brio_message(io_ctx)[0]), "%s %s %zu", name, how, at);
-    if (mesh && mesh->num_faces) {
-        uint64_t corners = mesh->face_offsets[mesh->num_faces];
-        for (uint64_t i = 0; i < corners; i++) EXPECT(mesh->face_vertices[i] < mesh->num_vertices, "%s %zu", how, at);
-    }
-    for (size_t i = 0; mesh && i < 2 * mesh->num_edges; i++)
-        EXPECT(mesh->edges[i] < mesh->num_vertices, "%s %zu", how, at);
-    for (size_t i = 0; mesh && i < 4 * mesh->num_tetrahedra; i++)
-        EXPECT(mesh->tetrahedra[i] < mesh->num_vertices, "%s %zu", how, at);
-    brio_mesh_free(mesh);
+    brio_mesh_free(io_expect_sane(name, bytes, size, how, at));
     EXPECT(brio_context_memory(io_ctx) == 0, "%s %s %zu: %zu bytes left", name, how, at, brio_context_memory(io_ctx));
 }
 

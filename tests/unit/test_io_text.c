@@ -8,6 +8,8 @@ static void format_of_names(void) {
     EXPECT(brio_format_of("x.obj") == BRIO_FORMAT_OBJ && brio_format_of("x.off") == BRIO_FORMAT_OFF);
     EXPECT(brio_format_of("x.vtu") == BRIO_FORMAT_VTU && brio_format_of("x.node") == BRIO_FORMAT_NODE);
     EXPECT(brio_format_of("x.ele") == BRIO_FORMAT_NODE && brio_format_of("x.ply.gz") == BRIO_FORMAT_AUTO);
+    EXPECT(brio_format_of("x.npz") == BRIO_FORMAT_NPZ && brio_format_of("x.bnpts") == BRIO_FORMAT_BNPTS);
+    EXPECT(brio_format_of("x.extxyz") == BRIO_FORMAT_CHEMICAL);
     EXPECT(brio_format_of("") == BRIO_FORMAT_AUTO && brio_format_of("off.d/x") == BRIO_FORMAT_AUTO);
 }
 
@@ -68,8 +70,8 @@ static void xyz_names_of_columns(void) {
     m = io_read_text("a.txt", "# made by x y z inc\n1 2 3 4\n");
     EXPECT(value(m, "column4", 0) == 4);
     brio_mesh_free(m);
-    m = io_read_text("a.txt", "lon lat height lon x\n1 2 3 4 5\n");
-    EXPECT(value(m, "lon", 0) == 4 && value(m, "column5", 0) == 5 && m->vertices[2] == 3);
+    m = io_read_text("a.txt", "x lon y z lon\n1 9 2 3 4\n");
+    EXPECT(value(m, "lon", 0) == 9 && value(m, "column5", 0) == 4 && m->vertices[2] == 3);
     brio_mesh_free(m);
 }
 

@@ -111,6 +111,7 @@ static void sizes_that_were_not_set_are_arguments(void) {
                BRIO_ERR_ARGUMENT);
         EXPECT(brio_iso_surface(ctx, "no.map", &(brio_iso_surface_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_write(ctx, "no.ply", mesh, &(brio_write_options){.size = size}) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_read_as(ctx, "no.ply", &(brio_read_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_certificate(ctx, mesh, &(brio_certificate){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_distance(ctx, mesh, mesh, 9, 1, &(brio_distance){.size = size}) == BRIO_ERR_ARGUMENT);
     }
@@ -140,6 +141,7 @@ ENDS_WITH(brio_labeled_delaunay_stats, simplify_seconds);
 ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
 ENDS_WITH(brio_write_options, edges);
+ENDS_WITH(brio_read_options, columns);
 ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, coordinate_origin);
 

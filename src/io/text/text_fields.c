@@ -1,0 +1,256 @@
+/* Splits a line into fields, and finds out whether its commas are decimal. */
+#include "io/text/text_fields.h"
+#include "base/memory.h"
+#include "io/number.h"
+#include "io/textrow.h"
+#include <math.h>
+#include <string.h>
+
+enum { LONGEST = 64 /* characters of a number with a decimal comma; chosen */ };
+
+/* What stands between the numbers of a line. */
+typedef struct {
+    bool tight; /* a comma stands between a number and a digit */
+    bool other; /* blanks or a semicolon alone stand between two numbers */
+    bool comma; /* a comma follows a number */
+    bool words; /* a blank alone follows a word */
+} gaps;
+
+static bool is_digit(char c) {
+    return (unsigned)(c - '0') < 10;
+}
+
+static const char *skip_blanks(const char *p) {
+    while (brio_is_blank(*p)) p++;
+    return p;
+}
+
+static bool ends_field(const char *p) {
+    return brio_is_blank(*p) || *p == ',' || !*p || *p == ';' || brio_starts_comment(p);
+}
+
+static bool ends_word(const char *p) {
+    return !*p || brio_is_blank(*p) || *p == ';' || brio_starts_comment(p);
+}
+
+static brio_status add_field(brio_fields *f, brio_field field) {
+    brio_status status = BRIO_RESERVE(f->stream->ctx, f->at, f->capacity, f->count + 1);
+    if (status == BRIO_OK) f->at[f->count++] = field;
+    return status;
+}
+
+/* --- commas that separate --- */
+
+/* Returns the place behind the word at p, which may be in quotes. */
+static const char *skip_word(const char *p, bool (*ends)(const char *)) {
+    if (*p == '"') {
+        for (p++; *p && *p != '"'; p++) {}
+        if (*p) p++;
+    }
+    while (!ends(p)) p++;
+    return p;
+}
+
+/* Reads the field at p, which is neither a blank nor the end of the line. Returns the place behind the field. */
+static const char *scan_field(const char *p, brio_field *field) {
+    const char *end = p;
+    field->word = p;
+    if (brio_parse_number(&end, &field->value) && ends_field(end)) {
+        field->kind = BRIO_FIELD_NUMBER;
+        field->length = (size_t)(end - p);
+        return end;
+    }
+    *field = (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0};
+    if (*p == ',' || *p == ';') return p;
+    field->kind = BRIO_FIELD_WORD;
+    end = skip_word(p, ends_field);
+    field->length = (size_t)(end - p);
+    return end;
+}
+
+/* Records what stands between a field, which ends before `end`, and the next one. */
+static void record_gap(gaps *g, const brio_field *field, const char *end, const char *separator) {
+    if (field->kind != BRIO_FIELD_NUMBER) {
+        g->words |= field->kind == BRIO_FIELD_WORD && separator > end && *separator != ',' && *separator != ';';
+    } else if (*separator == ',') {
+        g->comma = true;
+        g->tight |= separator == end && is_digit(end[1]);
+    } else if (*separator == ';') {
+        g->other = true;
+    } else if (is_digit(*separator) || *separator == '-' || *separator == '+' || *separator == '.') {
+        g->other = true;
+    }
+}
+
+/* Joins words that neither a comma nor a semicolon separates, in a line that has some. */
+static void join_words(brio_fields *f) {
+    size_t kept = 0;
+    if (!strpbrk(f->at[0].word, ",;")) return;
+    for (size_t i = 0; i < f->count; i++) {
+        brio_field *here = &f->at[i], *last = kept ? &f->at[kept - 1] : NULL;
+        const char *gap = last ? last->word + last->length : NULL;
+        bool joined = last && last->kind == BRIO_FIELD_WORD && here->kind == BRIO_FIELD_WORD &&
+                      strcspn(gap, ",;") >= (size_t)(here->word - gap);
+        if (joined)
+            last->length = (size_t)(here->word - last->word) + here->length;
+        else
+            f->at[kept++] = *here;
+    }
+    f->count = kept;
+}
+
+static brio_status split(brio_fields *f, const char *p, size_t columns, gaps *g) {
+    brio_status status = BRIO_OK;
+    bool comma = false;
+    f->count = 0;
+    for (p = skip_blanks(p); *p && !brio_starts_comment(p);) {
+        if (f->count == f->capacity) BRIO_TRY(BRIO_RESERVE(f->stream->ctx, f->at, f->capacity, f->count + 1));
+        brio_field *field = &f->at[f->count++];
+        const char *end = scan_field(p, field);
+        p = skip_blanks(end);
+        record_gap(g, field, end, p);
+        comma = *p == ',' || *p == ';';
+        if (comma) p = skip_blanks(p + 1);
+    }
+    if (g->words) join_words(f);
+    if (comma && f->count < columns) BRIO_TRY(add_field(f, (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0}));
+done:
+    return status;
+}
+
+brio_status brio_fields_of_words(brio_fields *f, const char *line) {
+    gaps g = {0};
+    return split(f, line, 0, &g);
+}
+
+/* --- decimal commas --- */
+
+/* Reads a number with one comma in the place of the point, or none of both, up to `end`. */
+static bool parse_decimal_comma(const char *p, const char *end, double *value) {
+    char text[LONGEST + 1];
+    size_t length = (size_t)(end - p);
+    if (length == 0 || length > LONGEST || memchr(p, '.', length)) return false;
+    memcpy(text, p, length);
+    text[length] = 0;
+    char *comma = strchr(text, ',');
+    if (comma) {
+        if (comma == text || !is_digit(comma[-1]) || !is_digit(comma[1])) return false;
+        *comma = '.';
+    }
+    const char *at = text;
+    return brio_parse_number(&at, value) && !*at;
+}
+
+static brio_status split_decimal(brio_fields *f, const char *p, size_t columns) {
+    brio_status status = BRIO_OK;
+    bool separator = false, words = false;
+    f->count = 0;
+    for (;;) {
+        p = skip_blanks(p);
+        if (!*p || brio_starts_comment(p)) break;
+        const char *end = skip_word(p, ends_word);
+        brio_field field = {BRIO_FIELD_EMPTY, (double)NAN, p, (size_t)(end - p)};
+        if (end > p) field.kind = parse_decimal_comma(p, end, &field.value) ? BRIO_FIELD_NUMBER : BRIO_FIELD_WORD;
+        BRIO_TRY(add_field(f, field));
+        p = skip_blanks(end);
+        separator = *p == ';';
+        words |= field.kind == BRIO_FIELD_WORD && !separator;
+        p += separator;
+    }
+    if (words) join_words(f);
+    if (separator && f->count < columns) BRIO_TRY(add_field(f, (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0}));
+done:
+    return status;
+}
+
+/* --- which of both --- */
+
+/* Whether the word up to `end` is a number whose commas mark thousands, as 1,234,567.8 is. */
+static bool marks_thousands(const char *p, const char *end) {
+    p += *p == '-' || *p == '+';
+    const char *first = p;
+    while (is_digit(*p)) p++;
+    if (p == first || p - first > 3 || *p != ',') return false;
+    while (*p == ',' && is_digit(p[1]) && is_digit(p[2]) && is_digit(p[3]) && !is_digit(p[4])) p += 4;
+    if (*p == '.')
+        for (p++; is_digit(*p);) p++;
+    return p == end;
+}
+
+/* Finds out what the commas of a row are that has some between digits and something else between numbers. UNKNOWN: both
+ * are possible, or neither. */
+static brio_comma judge(const char *p) {
+    size_t words = 0, decimal = 0, points = 0, thousands = 0, others = 0;
+    double value;
+    for (p = skip_blanks(p); *p && !brio_starts_comment(p);) {
+        const char *end = skip_word(p, ends_word);
+        size_t length = (size_t)(end - p);
+        bool commas = memchr(p, ',', length) != NULL, number = is_digit(p[*p == '-' || *p == '+']);
+        words++;
+        if (commas && parse_decimal_comma(p, end, &value))
+            decimal++;
+        else if (commas && marks_thousands(p, end))
+            thousands++;
+        else if (commas && number)
+            others++;
+        else if (number && memchr(p, '.', length))
+            points += brio_parse_number(&p, &value) && p == end;
+        p = skip_blanks(end);
+        if (*p == ';') p = skip_blanks(p + 1);
+    }
+    if (others) return BRIO_COMMA_SEPARATES;
+    return decimal && !thousands && !points && words >= 3 ? BRIO_COMMA_DECIMAL : BRIO_COMMA_UNKNOWN;
+}
+
+static brio_status unclear(const brio_fields *f, const char *line) {
+    char shown[61];
+    size_t length = strcspn(line, "\r\n");
+    length = length < sizeof shown ? length : sizeof shown - 1;
+    memcpy(shown, line, length);
+    shown[length] = 0;
+    return brio_fail(f->stream->ctx, BRIO_ERR_FORMAT,
+                     "%s: line %zu: its commas may be decimal, mark thousands, or separate fields: \"%s\"; write "
+                     "points, or one separator that is no comma",
+                     f->stream->name, f->stream->line, shown);
+}
+
+/* Records what the commas of a row are, which must be what those of earlier rows are. */
+static brio_status decide(brio_fields *f, brio_comma comma) {
+    if (f->comma == BRIO_COMMA_UNKNOWN) {
+        f->comma = comma;
+        f->comma_line = f->stream->line;
+    }
+    if (f->comma == comma) return BRIO_OK;
+    return brio_fail(f->stream->ctx, BRIO_ERR_FORMAT,
+                     "%s: line %zu: its commas seem to be decimal, but since line %zu a comma separates fields",
+                     f->stream->name, f->stream->line, f->comma_line);
+}
+
+/* Looks for a point in the numbers of the first row that has numbers. */
+static bool has_point(brio_fields *f) {
+    if (f->seen_numbers) return false;
+    for (size_t i = 0; i < f->count; i++) {
+        const brio_field *field = &f->at[i];
+        if (field->kind != BRIO_FIELD_NUMBER) continue;
+        f->seen_numbers = true;
+        if (field->word[strcspn(field->word, ".,; \t#%/")] == '.') return true;
+    }
+    return false;
+}
+
+brio_status brio_fields_of_line(brio_fields *f, const char *line, size_t columns) {
+    brio_status status = BRIO_OK;
+    gaps g = {0};
+    if (f->comma == BRIO_COMMA_DECIMAL) return split_decimal(f, line, columns);
+    BRIO_TRY(split(f, line, columns, &g));
+    if (g.tight && g.other) {
+        brio_comma comma = judge(line);
+        if (comma == BRIO_COMMA_UNKNOWN) return unclear(f, line);
+        BRIO_TRY(decide(f, comma));
+        if (comma == BRIO_COMMA_DECIMAL) BRIO_TRY(split_decimal(f, line, columns));
+    } else if (f->comma == BRIO_COMMA_UNKNOWN && (g.comma || has_point(f))) {
+        BRIO_TRY(decide(f, BRIO_COMMA_SEPARATES));
+    }
+done:
+    return status;
+}

@@ -1,0 +1,52 @@
+/* A line of a text of points, split into fields.
+ *
+ * Fields are separated by blanks, or by a comma or semicolon with blanks around it. Between two commas is an empty
+ * field. Words between which there is only a blank are one field in a line with commas or semicolons. Comments begin
+ * with #, % or // and end with the line.
+ *
+ * A comma between two digits may be a decimal comma. What it is shows in the first row of numbers that has one:
+ *   - Nothing but commas separates its numbers (1,5,2): commas separate.
+ *   - Its numbers are three or more words between blanks, tabs or semicolons, each of which is a number with at most one
+ *     comma and no point (1,5;2,5;3): commas are decimal, and separate nothing from then on.
+ *   - A word has commas and cannot be one number (1.5,2.5,3.5 255): commas separate.
+ *   - Anything else (1,5 2; 1,234.5 6 7; 1,5 2.5 3) is an error.
+ * A point in the first row of numbers decides that commas separate, too. A later row that says the opposite is an error. */
+#ifndef BRIO_IO_TEXT_TEXT_FIELDS_H
+#define BRIO_IO_TEXT_TEXT_FIELDS_H
+
+#include "io/stream.h"
+
+typedef enum { BRIO_FIELD_NUMBER, BRIO_FIELD_EMPTY, BRIO_FIELD_WORD } brio_field_kind;
+
+typedef struct brio_field {
+    brio_field_kind kind;
+    double value;     /* NaN if the field is empty */
+    const char *word; /* its place in the line */
+    size_t length;    /* of the field's characters */
+} brio_field;
+
+typedef enum { BRIO_COMMA_UNKNOWN, BRIO_COMMA_SEPARATES, BRIO_COMMA_DECIMAL } brio_comma;
+
+typedef struct brio_fields {
+    brio_stream *stream;
+    brio_field *at; /* the fields of the last line */
+    size_t count, capacity;
+    brio_comma comma;
+    size_t comma_line; /* the line that decided what a comma is */
+    bool seen_numbers; /* whether a line with numbers has been read */
+} brio_fields;
+
+static inline bool brio_starts_comment(const char *p) {
+    return *p == '#' || *p == '%' || (*p == '/' && p[1] == '/');
+}
+
+/** Splits a line of words: a comma separates, and nothing is decided. The fields point into the line.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_fields_of_words(brio_fields *f, const char *line);
+
+/** Splits a line. A comma at its end is followed by an empty field if the line would have fewer than `columns` fields
+ *  without it; otherwise it means nothing.
+ *  Returns BRIO_OK, BRIO_ERR_FORMAT (with the line: what a comma is cannot be told), BRIO_ERR_NO_MEMORY. */
+brio_status brio_fields_of_line(brio_fields *f, const char *line, size_t columns);
+
+#endif

@@ -1,0 +1,342 @@
+/* Reads points as rows of numbers: .xyz .pts .txt .csv.
+ *
+ * A line of names before the first row, plain or as a comment, names the columns and gives the places of x, y and z;
+ * names that the caller gives stand in its place. Without names the first three columns are x, y, z. Plain names that do
+ * not say which are x, y and z are an error: the first column may be a number of the point. A column becomes a property
+ * if the first row has a number (or nothing) in it and no row lacks it. A single number before the first row is the
+ * number of rows. A ; at the start of a line begins a comment, too. */
+#include "base/memory.h"
+#include "io/formats.h"
+#include "io/text/text_columns.h"
+#include "io/text/text_fields.h"
+#include "io/textrow.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef enum { COLUMN_IGNORED, COLUMN_AXIS, COLUMN_PROPERTY } column_role;
+
+typedef struct {
+    column_role role;
+    size_t target; /* axis, or index of the property */
+    bool missing;  /* whether some row lacks it */
+} column;
+
+typedef enum { NAMES_NONE, NAMES_COMMENT, NAMES_PLAIN, NAMES_GIVEN /* by the caller */ } names_source;
+
+typedef struct {
+    char (*at)[64];
+    size_t count, capacity;
+} name_list;
+
+typedef struct {
+    brio_stream *stream;
+    brio_builder *builder;
+    brio_fields fields; /* of the last line */
+    name_list names, tried;
+    names_source source;
+    size_t name_line;
+    bool header_passed; /* names are given, and the file's own line of names was passed over */
+    column *columns;
+    size_t num_columns;
+    size_t axes[3]; /* columns of x, y, z */
+    bool counted;   /* whether the first line announced a number of rows */
+    uint64_t promised;
+    size_t count_line;
+    char shown[2][64]; /* the beginnings of the first lines, for messages */
+    int num_shown;
+} xyz_reader;
+
+/* --- messages --- */
+
+static const char angles_are_no_lengths[] =
+    "latitude and longitude are angles, not lengths (project the points first), or else";
+
+static void show_line(xyz_reader *r, const char *line) {
+    char *to = r->shown[r->num_shown++];
+    size_t n = 0;
+    for (; line[n] && n + 1 < sizeof *r->shown; n++)
+        to[n] = (unsigned char)line[n] < ' ' || line[n] == '"' ? ' ' : line[n];
+    to[n] = 0;
+}
+
+/* Returns the error of names that do not give x, y and z.   why  what is wrong with them. */
+static brio_status unclear_columns(const xyz_reader *r, const char *why) {
+    const brio_stream *s = r->stream;
+    return brio_fail(
+        s->ctx, BRIO_ERR_FORMAT,
+        "%s: line %zu: %s: name the columns in their order (--columns x,y,z,-: - leaves one out); the file "
+        "begins \"%s\"%s%s%s",
+        s->name, r->name_line, why, r->shown[0], r->num_shown > 1 ? ", \"" : "", r->num_shown > 1 ? r->shown[1] : "",
+        r->num_shown > 1 ? "\"" : "");
+}
+
+static brio_status bad_field(const xyz_reader *r, size_t i) {
+    const brio_field *f = &r->fields.at[i];
+    brio_stream *s = r->stream;
+    if (f->kind == BRIO_FIELD_EMPTY)
+        return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: column %zu is empty, expected a number", s->name,
+                         s->line, i + 1);
+    return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: expected a number, found \"%s\"", s->name, s->line,
+                     brio_excerpt_of(f->word).text);
+}
+
+/* --- names of columns --- */
+
+static void copy_name(char name[64], const brio_field *f) {
+    const char *word = f->word;
+    size_t length = f->length;
+    if (length > 1 && word[0] == '"' && word[length - 1] == '"') {
+        word++;
+        length -= 2;
+    }
+    if (length > 63) length = 63;
+    memcpy(name, word, length);
+    name[length] = 0;
+}
+
+/* Takes the fields as names for a try. */
+static brio_status try_names(xyz_reader *r, brio_axes_result *result) {
+    brio_status status = BRIO_OK;
+    name_list *t = &r->tried;
+    size_t axes[3];
+    BRIO_TRY(BRIO_RESERVE(r->stream->ctx, t->at, t->capacity, r->fields.count));
+    t->count = r->fields.count;
+    for (size_t i = 0; i < t->count; i++) copy_name(t->at[i], &r->fields.at[i]);
+    *result = brio_axes_of_names((const char(*)[64])t->at, t->count, axes);
+done:
+    return status;
+}
+
+static void keep_tried_names(xyz_reader *r, names_source source) {
+    name_list names = r->tried;
+    r->tried = r->names;
+    r->names = names;
+    r->source = source;
+    r->name_line = r->stream->line;
+}
+
+static size_t count_words(const xyz_reader *r) {
+    size_t words = 0;
+    for (size_t i = 0; i < r->fields.count; i++) words += r->fields.at[i].kind != BRIO_FIELD_NUMBER;
+    return words;
+}
+
+/* Reads a comment before the first row as a line of names if x, y and z, or angles, are among its words. */
+static brio_status try_comment(xyz_reader *r, const char *comment) {
+    brio_status status = BRIO_OK;
+    brio_axes_result result;
+    if (r->num_columns || r->source > NAMES_COMMENT) return BRIO_OK;
+    BRIO_TRY(brio_fields_of_words(&r->fields, comment + strspn(comment, "#/;% \t")));
+    if (count_words(r) != r->fields.count) return BRIO_OK;
+    BRIO_TRY(try_names(r, &result));
+    if (result == BRIO_AXES_FOUND || result == BRIO_AXES_ANGLES) keep_tried_names(r, NAMES_COMMENT);
+done:
+    return status;
+}
+
+/* Whether the line before the first row is one of names: words alone, or words that give x, y and z. */
+static brio_status try_plain_names(xyz_reader *r, bool *are_names) {
+    brio_status status = BRIO_OK;
+    brio_axes_result result;
+    size_t words = count_words(r), count = r->fields.count;
+    *are_names = false;
+    if (!words || r->source == NAMES_PLAIN || r->header_passed) return BRIO_OK;
+    BRIO_TRY(try_names(r, &result));
+    *are_names = words == count || result == BRIO_AXES_FOUND;
+done:
+    return status;
+}
+
+/* --- columns, from the names and the first row --- */
+
+static brio_status add_property(xyz_reader *r, size_t i) {
+    char name[64] = "";
+    if (i < r->names.count) strcpy(name, r->names.at[i]);
+    bool axis = strlen(name) == 1 && strchr("xyzXYZ", name[0]);
+    if (!name[0] || axis || brio_mesh_property(r->builder->mesh, name)) snprintf(name, sizeof name, "column%zu", i + 1);
+    r->columns[i].role = COLUMN_PROPERTY;
+    r->columns[i].target = r->builder->mesh->num_properties;
+    return brio_builder_property(r->builder, name, BRIO_SCALAR_FLOAT64);
+}
+
+static void first_three(size_t axes[3]) {
+    for (size_t k = 0; k < 3; k++) axes[k] = k;
+}
+
+/* Names in a comment count if there are as many as columns. What looks like names and is not harms nobody if x, y and z
+ * would be the first columns anyway, or columns that are not there. */
+static brio_status place_by_comment(xyz_reader *r, brio_axes_result result) {
+    size_t found = r->fields.count, count = r->names.count, *axes = r->axes;
+    if (count == found && result == BRIO_AXES_ANGLES) return unclear_columns(r, angles_are_no_lengths);
+    if (count == found) return BRIO_OK;
+    bool first = axes[0] == 0 && axes[1] == 1 && axes[2] == 2;
+    bool there = axes[0] < found && axes[1] < found && axes[2] < found;
+    if (result == BRIO_AXES_FOUND && there && !first)
+        return unclear_columns(r, "a comment names columns, but not as many as there are");
+    r->names.count = 0;
+    first_three(axes);
+    return BRIO_OK;
+}
+
+static brio_status place_by_names(const xyz_reader *r, brio_axes_result result) {
+    switch (result) {
+    case BRIO_AXES_FOUND:
+        return BRIO_OK;
+    case BRIO_AXES_ANGLES:
+        return unclear_columns(r, angles_are_no_lengths);
+    case BRIO_AXES_SEVERAL:
+        break;
+    case BRIO_AXES_UNKNOWN:
+        return unclear_columns(r, "the names do not say which columns are x, y and z");
+    }
+    return unclear_columns(r, "several columns have a name of x, y or z");
+}
+
+/* The caller's names have been checked: x, y and z are there. */
+static brio_status place_as_given(xyz_reader *r) {
+    const brio_stream *s = r->stream;
+    if (r->fields.count < r->names.count)
+        return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: %zu columns, but %zu are named (--columns)", s->name,
+                         s->line, r->fields.count, r->names.count);
+    for (size_t i = 0; i < r->names.count; i++) {
+        const char *name = r->names.at[i];
+        if (name[0] >= 'x' && name[0] <= 'z' && !name[1]) r->axes[name[0] - 'x'] = i;
+    }
+    return BRIO_OK;
+}
+
+static brio_status place_axes(xyz_reader *r) {
+    if (r->source == NAMES_GIVEN) return place_as_given(r);
+    first_three(r->axes);
+    if (r->source == NAMES_NONE) return BRIO_OK;
+    brio_axes_result result = brio_axes_of_names((const char(*)[64])r->names.at, r->names.count, r->axes);
+    return r->source == NAMES_COMMENT ? place_by_comment(r, result) : place_by_names(r, result);
+}
+
+/* Whether a column that is no axis becomes a property. Of columns that the caller names, those with a name do. */
+static bool is_property(const xyz_reader *r, size_t i) {
+    if (r->source == NAMES_GIVEN) return i < r->names.count && r->names.at[i][0];
+    return r->fields.at[i].kind != BRIO_FIELD_WORD;
+}
+
+static brio_status plan_columns(xyz_reader *r) {
+    brio_status status = BRIO_OK;
+    size_t found = r->fields.count;
+    BRIO_TRY(place_axes(r));
+    size_t count = r->names.count > found ? r->names.count : found;
+    BRIO_TRY(BRIO_ALLOC_ZERO(r->stream->ctx, r->columns, count));
+    r->num_columns = count;
+    for (size_t k = 0; k < 3; k++) r->columns[r->axes[k]] = (column){COLUMN_AXIS, k, false};
+    for (size_t i = 0; i < found; i++)
+        if (r->columns[i].role == COLUMN_IGNORED && is_property(r, i)) BRIO_TRY(add_property(r, i));
+done:
+    return status;
+}
+
+/* --- rows --- */
+
+static brio_status read_point(const xyz_reader *r, double point[3]) {
+    brio_stream *s = r->stream;
+    for (int k = 0; k < 3; k++) {
+        size_t i = r->axes[k];
+        if (i >= r->fields.count)
+            return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: expected %s numbers, found %zu", s->name, s->line,
+                             i < 3 ? "3" : "more", r->fields.count);
+        if (r->fields.at[i].kind != BRIO_FIELD_NUMBER) return bad_field(r, i);
+        point[k] = r->fields.at[i].value;
+    }
+    return BRIO_OK;
+}
+
+static brio_status read_row(xyz_reader *r) {
+    brio_status status = BRIO_OK;
+    double point[3];
+    BRIO_TRY(read_point(r, point));
+    BRIO_TRY(brio_builder_vertex(r->builder, point));
+    brio_mesh *mesh = r->builder->mesh;
+    for (size_t i = 0; i < r->num_columns; i++) {
+        column *c = &r->columns[i];
+        if (c->role != COLUMN_PROPERTY) continue;
+        if (i >= r->fields.count) {
+            c->missing = true;
+            continue;
+        }
+        if (r->fields.at[i].kind == BRIO_FIELD_WORD) return bad_field(r, i);
+        ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = r->fields.at[i].value;
+    }
+done:
+    return status;
+}
+
+/* Reads a line before the first row: the number of rows, names, or the first row itself. */
+static brio_status read_first(xyz_reader *r) {
+    brio_status status = BRIO_OK;
+    brio_stream *s = r->stream;
+    bool are_names;
+    double first = r->fields.at[0].kind == BRIO_FIELD_NUMBER ? r->fields.at[0].value : -1;
+    if (r->fields.count == 1 && !r->counted && r->source != NAMES_PLAIN && first >= 0 && first < 0x1p53 &&
+        first == floor(first)) {
+        r->counted = true;
+        r->promised = (uint64_t)first;
+        r->count_line = s->line;
+        return BRIO_OK;
+    }
+    BRIO_REQUIRE(s->ctx, r->fields.count >= 3, BRIO_ERR_FORMAT, "%s: line %zu: expected 3 numbers, found %zu", s->name,
+                 s->line, r->fields.count - count_words(r));
+    BRIO_TRY(try_plain_names(r, &are_names));
+    if (are_names && r->source == NAMES_GIVEN)
+        r->header_passed = true;
+    else if (are_names)
+        keep_tried_names(r, NAMES_PLAIN);
+    if (are_names) return BRIO_OK;
+    BRIO_TRY(plan_columns(r));
+    BRIO_TRY(read_row(r));
+done:
+    return status;
+}
+
+static brio_status read_line(xyz_reader *r, const char *line) {
+    brio_status status = BRIO_OK;
+    while (brio_is_blank(*line)) line++;
+    if (!*line) return BRIO_OK;
+    if (r->num_shown < 2) show_line(r, line);
+    if (*line == ';' || brio_starts_comment(line)) return try_comment(r, line);
+    size_t columns = r->num_columns ? r->num_columns : r->source > NAMES_COMMENT ? r->names.count : 0;
+    BRIO_TRY(brio_fields_of_line(&r->fields, line, columns));
+    BRIO_TRY(r->num_columns ? read_row(r) : read_first(r));
+done:
+    return status;
+}
+
+static void drop_missing(const xyz_reader *r) {
+    for (size_t i = r->num_columns; i-- > 0;)
+        if (r->columns[i].role == COLUMN_PROPERTY && r->columns[i].missing)
+            brio_builder_drop_property(r->builder, r->columns[i].target);
+}
+
+brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) {
+    brio_status status = BRIO_OK;
+    xyz_reader r = {.stream = s, .builder = b, .fields = {.stream = s}};
+    char *line;
+    if (columns) {
+        BRIO_TRY(brio_columns_parse(s->ctx, columns, &r.names.at, &r.names.count));
+        r.source = NAMES_GIVEN;
+    }
+    for (;;) {
+        BRIO_TRY(brio_stream_line(s, &line));
+        if (!line) break;
+        BRIO_TRY(read_line(&r, line));
+    }
+    BRIO_REQUIRE(s->ctx, !r.counted || r.promised == b->mesh->num_vertices, BRIO_ERR_FORMAT,
+                 "%s: line %zu: promises %" PRIu64 " points, %zu rows follow", s->name, r.count_line, r.promised,
+                 b->mesh->num_vertices);
+    drop_missing(&r);
+done:
+    brio_release(s->ctx, r.fields.at);
+    brio_release(s->ctx, r.names.at);
+    brio_release(s->ctx, r.tried.at);
+    brio_release(s->ctx, r.columns);
+    return status;
+}
