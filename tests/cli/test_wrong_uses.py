@@ -288,8 +288,8 @@ class DamagedFiles(CliTest):
             with open(self.path("a." + extension), "rb") as f:
                 formats[extension] = f.read()
         for extension, content in formats.items():
-            for k in range(16):
-                self.expect_end("cut." + extension, content[:len(content) * k // 16])
+            for k in range(10):
+                self.expect_end("cut." + extension, content[:len(content) * k // 10])
 
     def test_changed_laz(self):
         with open(os.path.join(HERE, "..", "unit", "laz_samples.h"), encoding="ascii") as f:
@@ -300,7 +300,7 @@ class DamagedFiles(CliTest):
             content = bytes(int(number, 0) for number in re.findall(r"\w+", body))
             self.assertEqual(content[:4], b"LASF")
             self.expect_end("a.laz", content, codes=(0,))
-            for _ in range(100):
+            for _ in range(75):
                 changed = bytearray(content)
                 for _ in range(1 + state % 4):
                     state = (state * 6364136223846793005 + 1442695040888963407) % 2**64
