@@ -79,8 +79,8 @@ FILES = {
 INPUTS = [
     ("missing.ply", "missing.ply: No such file"), ("no/a.ply", "no/a.ply: No such file"), ("folder", "folder: Is a directory"),
     ("folder.ply", "folder.ply: Is a directory"), ("cube.xyz/", "cube.xyz/: Not a directory"),
-    ("doc.what", "doc.what: unknown format, expected"), ("a.zip", "a.zip: unknown format"), ("twice.xyz.gz", "twice.xyz.gz: "),
-    ("zip.ply", "zip.ply: "), ("zip.las", "zip.las: byte 0: expected LASF"),
+    ("doc.what", "doc.what: unknown format, expected"), ("a.zip", "a.zip: a zip archive without arrays"), ("twice.xyz.gz", "twice.xyz.gz, decompressed: it is compressed again"),
+    ("zip.ply", "zip.ply: "), ("zip.las", "zip.las: a zip archive without arrays"),
     ("cols.xyz", "cols.xyz: line 1: expected 3 numbers, found 2"), ("word.xyz", "word.xyz: line 2: expected a number, found"),
     ("row.csv", "row.csv: line 2: expected 3 numbers, found 2"),
     ("nan.xyz", "nan.xyz: point 1: x is NaN (2 such points in all)"), ("face.off", "face.off: face 0", "index 7"),

@@ -141,6 +141,9 @@ static brio_npz_use use_of(const brio_npz *n, const brio_npz_array *a) {
 
 brio_status brio_npz_choose(brio_npz *n) {
     bool several = false;
+    if (n->num_arrays == 0)
+        return brio_fail(n->zip.stream->ctx, BRIO_ERR_FORMAT, "%s: a zip archive without arrays of NumPy (NPZ)",
+                         n->zip.stream->name);
     brio_npz_array *points = find_points(n, &several);
     if (several) return unclear(n, "several arrays may be the points");
     if (points) {
