@@ -111,7 +111,7 @@ static void unclear_files_list_their_arrays(void) {
     expect_z("no array is known to be the points");
     zip_begin(&z, false);
     zip_end(&z);
-    expect_z("the arrays: none");
+    expect_z("without arrays of NumPy");
 }
 
 static void claims_are_held_against_the_file(void) {
