@@ -139,7 +139,7 @@ ENDS_WITH(brio_labeled_delaunay_options, reserved_int);
 ENDS_WITH(brio_labeled_delaunay_stats, simplify_seconds);
 ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
-ENDS_WITH(brio_write_options, comment);
+ENDS_WITH(brio_write_options, reserved_int);
 ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, coordinate_origin);
 
