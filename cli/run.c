@@ -214,10 +214,11 @@ brio_status cli_drop_connectivity(run *r, brio_mesh *mesh) {
     rest->face_offsets = mesh->face_offsets;
     rest->face_vertices = mesh->face_vertices;
     rest->tetrahedra = mesh->tetrahedra;
+    rest->edges = mesh->edges;
     brio_mesh_free(rest);
     mesh->face_offsets = NULL;
-    mesh->face_vertices = mesh->tetrahedra = NULL;
-    mesh->num_faces = mesh->num_tetrahedra = 0;
+    mesh->face_vertices = mesh->tetrahedra = mesh->edges = NULL;
+    mesh->num_faces = mesh->num_tetrahedra = mesh->num_edges = 0;
     return BRIO_OK;
 }
 

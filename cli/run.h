@@ -105,7 +105,7 @@ brio_status cli_read(run *r, const char *path, brio_mesh **out);
 /** Refuses --columns for a command that reads no text of points. */
 brio_status cli_refuse_columns(run *r);
 
-/** Frees the faces and tetrahedra of a mesh. */
+/** Frees the faces, tetrahedra and edges of a mesh. */
 brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);
 
 /** Reads for a command that goes by the points alone: faces and tetrahedra of the file are dropped. */
