@@ -139,7 +139,7 @@ int input_has_rows(const input *in, const char *name, size_t rows);
 
 /* --- the functions of the module, by file --- */
 
-extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], cells_methods[], mesh_methods[],
-    surface_methods[], alpha_methods[];
+extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
+    mesh_methods[], surface_methods[], alpha_methods[];
 
 #endif
