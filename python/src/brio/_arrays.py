@@ -58,8 +58,10 @@ def as_weights(weights: Any, count: int) -> Floats | None:
 
 def as_queries(xi: Any, columns: int) -> tuple[Floats, tuple[int, ...]]:
     """Returns positions as rows, and the shape of the answers: that of `xi` without its last axis."""
+    if as_array(xi).ndim == 0:
+        raise IndexError("xi: a position is an array of coordinates, not a number")
     array = as_floats(xi, "xi")
-    if array.ndim == 0 or array.shape[-1] != columns:
+    if array.shape[-1] != columns:
         raise ArgumentError(f"xi: positions of {columns} coordinates are wanted, along the last axis, "
                             f"not an array of shape {array.shape}")
     return array.reshape(-1, columns), array.shape[:-1]

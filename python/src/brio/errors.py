@@ -122,3 +122,6 @@ def _make_error(status: int, sentence: str) -> Error:
 
 
 _native.set_make_error(_make_error)
+
+__all__ = ["ArgumentError", "CancelledError", "CheckError", "Error", "FormatError", "InternalError", "NoAnswerError",
+           "NotFiniteError", "NotOfferedError", "OpenError", "OutOfMemoryError", "TooLargeError", "WriteError"]
