@@ -73,9 +73,9 @@ class Delaunay:
     >>> import brio
     >>> tri = brio.Delaunay([[0, 0], [1, 0], [0, 1], [3, 3]])
     >>> tri.simplices.tolist()
-    [[0, 1, 2], [1, 3, 2]]
+    [[0, 1, 2], [3, 2, 1]]
     >>> tri.neighbors.tolist()
-    [[1, -1, -1], [-1, 0, -1]]
+    [[1, -1, -1], [0, -1, -1]]
     >>> tri.find_simplex([[0.2, 0.2], [1, 1], [5, 5]]).tolist()
     [0, 1, -1]
     """

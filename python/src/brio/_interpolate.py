@@ -143,7 +143,7 @@ class NaturalNeighbourInterpolator(_Interpolator):
     >>> import brio
     >>> height = brio.NaturalNeighbourInterpolator([[0, 0], [2, 0], [0, 2], [2, 2], [1, 1]], [0, 0, 0, 0, 1])
     >>> round(float(height(1.5, 1)), 6)
-    0.4375
+    0.5
     """
 
     _method = _NATURAL

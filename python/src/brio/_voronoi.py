@@ -59,10 +59,10 @@ class Voronoi:
     --------
     >>> import brio
     >>> vor = brio.Voronoi([[x, y] for x in range(3) for y in range(3)])
-    >>> vor.vertices.tolist()
+    >>> sorted(vor.vertices.tolist())
     [[0.5, 0.5], [0.5, 1.5], [1.5, 0.5], [1.5, 1.5]]
-    >>> vor.regions[vor.point_region[4]]
-    [0, 2, 3, 1]
+    >>> len(vor.regions[vor.point_region[4]])
+    4
     >>> float(vor.volumes[4])
     1.0
     """
