@@ -37,7 +37,7 @@ static PyObject *alpha_values(PyObject *module, PyObject *args) {
     else {
         brio_status status;
         a->size = sizeof *a;
-        CALL(c, status, brio_alpha_values(c.ctx, t, p.view.buf, w.view.buf, p.rows, a));
+        CALL(c, status, brio_alpha_values(c.ctx, t, p.data, w.data, p.rows, a));
         owner = call_end_with(&c, status, KIND_ALPHA, a, free_alpha, object);
     }
     input_close(&p);
@@ -59,7 +59,7 @@ static PyObject *alpha_order(PyObject *module, PyObject *args) {
     if (!input_has_rows(&out, "out", a->counts[0] + a->counts[1] + a->counts[2] + a->counts[3]) &&
         !call_begin(&c, state_of(module), 0, Py_None)) {
         brio_status status;
-        CALL(c, status, brio_alpha_order(c.ctx, a, out.view.buf));
+        CALL(c, status, brio_alpha_order(c.ctx, a, out.data));
         failed = call_end(&c, status);
     }
     input_close(&out);
@@ -77,24 +77,26 @@ static PyObject *alpha_auto(PyObject *module, PyObject *object) {
     return call_end(&c, status) ? NULL : PyFloat_FromDouble(alpha);
 }
 
-/* alpha_shape(complex, points, alpha): a mesh, and counts in a dict. */
+/* alpha_shape(complex, points, weights, alpha): a mesh, and counts in a dict. */
 static PyObject *alpha_shape(PyObject *module, PyObject *args) {
-    PyObject *object, *points, *result = NULL;
+    PyObject *object, *points, *weights, *result = NULL;
     double alpha;
-    input p;
+    input p, w = {.held = 0};
     call c;
     brio_alpha_shape_stats s = {.size = sizeof s};
-    if (!PyArg_ParseTuple(args, "OOd", &object, &points, &alpha)) return NULL;
+    if (!PyArg_ParseTuple(args, "OOOd", &object, &points, &weights, &alpha)) return NULL;
     const brio_alpha_complex *a = handle_object(state_of(module), object, KIND_ALPHA);
     if (!a || input_open(&p, points, "points", 'd', 3)) return NULL;
-    size_t rows = brio_triangulation_stats(a->triangulation)->points;
-    if (!input_has_rows(&p, "points", rows) && !call_begin(&c, state_of(module), 0, Py_None)) {
+    if (!input_open_weights(&w, weights, p.rows) &&
+        !handle_has_points(state_of(module), ((handle *)object)->base, &p, &w) &&
+        !call_begin(&c, state_of(module), 0, Py_None)) {
         brio_status status;
         brio_mesh *mesh = NULL;
-        CALL(c, status, brio_alpha_shape(c.ctx, p.view.buf, a, alpha, &mesh, &s));
+        CALL(c, status, brio_alpha_shape(c.ctx, p.data, a, alpha, &mesh, &s));
         result = call_end_with_mesh(&c, status, mesh);
     }
     input_close(&p);
+    input_close(&w);
 #define COUNT(name) #name, (Py_ssize_t)s.name
     return result ? Py_BuildValue("(N{s:n,s:n,s:n,s:n,s:n,s:n,s:n})", result, COUNT(tetrahedra), COUNT(vertices),
                                   COUNT(split), COUNT(uncovered), COUNT(singular_vertices), COUNT(singular_edges),
@@ -107,6 +109,6 @@ PyMethodDef alpha_methods[] = {
     {"alpha_values", alpha_values, METH_VARARGS, "alpha_values(t, points, weights, threads, progress)"},
     {"alpha_order", alpha_order, METH_VARARGS, "alpha_order(complex, out)"},
     {"alpha_auto", alpha_auto, METH_O, "The least alpha of one solid with all vertices."},
-    {"alpha_shape", alpha_shape, METH_VARARGS, "alpha_shape(complex, points, alpha): a mesh, and counts."},
+    {"alpha_shape", alpha_shape, METH_VARARGS, "alpha_shape(complex, points, weights, alpha): a mesh, and counts."},
     {NULL, NULL, 0, NULL},
 };

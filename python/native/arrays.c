@@ -111,28 +111,47 @@ static int same_type(const char *found, char wanted) {
     return *found == wanted;
 }
 
-static int open_as(input *in, PyObject *object, const char *name, char format, int columns, int flags) {
-    in->held = 0;
+static int open_view(input *in, PyObject *object, const char *name, char format, int columns, int flags) {
+    *in = (input){.held = 0};
     if (PyObject_GetBuffer(object, &in->view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | flags)) return -1;
     in->held = 1;
     const Py_buffer *view = &in->view;
     int ndim = columns ? 2 : 1;
+    in->data = view->buf;
     in->rows = view->ndim > 0 ? (size_t)view->shape[0] : 0;
     in->columns = view->ndim > 1 ? (size_t)view->shape[1] : 1;
+    in->bytes = (size_t)view->len;
     if (same_type(view->format, format) && view->ndim == ndim && (columns <= 0 || in->columns == (size_t)columns))
         return 0;
     PyErr_Format(PyExc_ValueError, "%s: an array of another type or shape than wanted (%c, %d dimensions)", name,
                  format, ndim);
-    input_close(in);
+    PyBuffer_Release(&in->view);
+    *in = (input){.held = 0};
     return -1;
 }
 
 int input_open(input *in, PyObject *object, const char *name, char format, int columns) {
-    return open_as(in, object, name, format, columns, 0);
+    if (open_view(in, object, name, format, columns, 0)) return -1;
+    in->data = malloc(in->bytes + 1);
+    if (in->data) memcpy(in->data, in->view.buf, in->bytes);
+    PyBuffer_Release(&in->view);
+    in->held = 0;
+    if (in->data) return 0;
+    PyErr_NoMemory();
+    return -1;
 }
 
 int output_open(input *in, PyObject *object, const char *name, char format, int columns) {
-    return open_as(in, object, name, format, columns, PyBUF_WRITABLE);
+    return open_view(in, object, name, format, columns, PyBUF_WRITABLE);
+}
+
+uint64_t input_hash(const input *in) {
+    const uint64_t *word = in->data;
+    uint64_t lane[4] = {in->bytes, 1, 2, 3};
+    for (size_t k = 0; in->data && k < in->bytes / 8; k++)
+        lane[k & 3] = (lane[k & 3] ^ word[k]) * 0x9e3779b97f4a7c15u + (lane[k & 3] >> 29);
+    for (int k = 1; k < 4; k++) lane[0] = (lane[0] ^ (lane[k] >> 7)) * 0xbf58476d1ce4e5b9u + lane[k];
+    return lane[0];
 }
 
 int input_has_rows(const input *in, const char *name, size_t rows) {
@@ -151,7 +170,9 @@ int input_open_weights(input *in, PyObject *object, size_t rows) {
 }
 
 void input_close(input *in) {
-    if (in->held) PyBuffer_Release(&in->view);
-    in->held = 0;
-    in->view.buf = NULL;
+    if (in->held)
+        PyBuffer_Release(&in->view);
+    else
+        free(in->data);
+    *in = (input){.held = 0};
 }

@@ -151,6 +151,7 @@ PyObject *call_end_with(call *c, brio_status status, kind what, void *object, vo
         h->kind = what;
         h->record = r;
         h->base = base;
+        h->points_hash = 0;
         Py_XINCREF(base);
     } else if (r) {
         PyThread_acquire_lock(state->lock, WAIT_LOCK);
@@ -189,6 +190,20 @@ void *handle_object(module_state *state, PyObject *object, kind wanted) {
         return ((handle *)object)->record->object;
     PyErr_SetString(PyExc_TypeError, "not an object of the library, or of another kind");
     return NULL;
+}
+
+static uint64_t hash_of(const input *points, const input *weights) {
+    return input_hash(points) ^ (weights->data ? 3 * input_hash(weights) : 0);
+}
+
+void handle_keep_points(PyObject *object, const input *points, const input *weights) {
+    if (object) ((handle *)object)->points_hash = hash_of(points, weights);
+}
+
+int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights) {
+    if (((handle *)object)->points_hash == hash_of(points, weights)) return 0;
+    raise(state, BRIO_ERR_ARGUMENT, "the points are not those of the triangulation: they were changed since");
+    return -1;
 }
 
 static PyType_Slot handle_slots[] = {

@@ -54,14 +54,15 @@ static PyObject *cells(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OOOOOiO", &object, &points, &weights, &box, &planes, &threads, &progress)) return NULL;
     const brio_triangulation *t = object == Py_None ? NULL : handle_object(state, object, KIND_TRIANGULATION);
     if (object != Py_None && !t) return NULL;
-    if (!open_arrays(&a, points, weights, box, planes) && !call_begin(&c, state, threads, progress)) {
+    if (!open_arrays(&a, points, weights, box, planes) &&
+        (!t || !handle_has_points(state, object, &a.points, &a.weights)) && !call_begin(&c, state, threads, progress)) {
         brio_cells_options o = brio_cells_options_default();
         brio_status status;
         o.vertices = 1;
-        o.box = a.box.view.buf;
-        o.planes = a.planes.view.buf;
-        o.num_planes = a.planes.held ? a.planes.rows : 0;
-        CALL(c, status, brio_voronoi_cells(c.ctx, t, a.points.view.buf, a.weights.view.buf, a.points.rows, &o, &made));
+        o.box = a.box.data;
+        o.planes = a.planes.data;
+        o.num_planes = a.planes.rows;
+        CALL(c, status, brio_voronoi_cells(c.ctx, t, a.points.data, a.weights.data, a.points.rows, &o, &made));
         owner = call_end_with(&c, status, KIND_CELLS, made, free_cells, NULL);
     }
     close_arrays(&a);

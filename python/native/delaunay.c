@@ -23,14 +23,14 @@ static PyObject *build(PyObject *module, PyObject *args, int columns, int flat) 
         brio_status status;
         if (columns == 3 && !flat) {
             brio_triangulation *t = NULL;
-            CALL(c, status, brio_delaunay(c.ctx, p.view.buf, w.view.buf, p.rows, NULL, &t));
+            CALL(c, status, brio_delaunay(c.ctx, p.data, w.data, p.rows, NULL, &t));
             result = call_end_with(&c, status, KIND_TRIANGULATION, t, free_triangulation, NULL);
         } else {
             brio_triangulation2 *t = NULL;
-            CALL(c, status,
-                 (flat ? brio_delaunay2_flat : brio_delaunay2)(c.ctx, p.view.buf, w.view.buf, p.rows, NULL, &t));
+            CALL(c, status, (flat ? brio_delaunay2_flat : brio_delaunay2)(c.ctx, p.data, w.data, p.rows, NULL, &t));
             result = call_end_with(&c, status, KIND_TRIANGULATION2, t, free_triangulation2, NULL);
         }
+        handle_keep_points(result, &p, &w);
     }
     input_close(&w);
     input_close(&p);
@@ -126,7 +126,7 @@ static PyObject *triangulation_neighbors(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OO", &object, &array) || look_at(state_of(module), object, &f)) return NULL;
     if (output_open(&out, array, "out", 'i', (int)f.vertices)) return NULL;
     int wrong = input_has_rows(&out, "out", f.simplices);
-    int32_t *to = out.view.buf;
+    int32_t *to = out.data;
     for (size_t t = 0; !wrong && t < f.simplices; t++)
         for (uint32_t i = 0; i < f.vertices; i++) {
             uint32_t mate = f.numbers[(2 * t + 1) * f.vertices + i] >> 2;
@@ -145,7 +145,7 @@ static PyObject *triangulation_vertex_simplices(PyObject *module, PyObject *args
     if (!PyArg_ParseTuple(args, "OO", &object, &array) || look_at(state_of(module), object, &f)) return NULL;
     if (output_open(&out, array, "out", 'i', 0)) return NULL;
     int wrong = input_has_rows(&out, "out", f.points);
-    int32_t *to = out.view.buf;
+    int32_t *to = out.data;
     for (size_t p = 0; !wrong && p < f.points; p++) to[p] = -1;
     for (size_t t = wrong ? 0 : f.simplices; t-- > 0;)
         for (uint32_t i = 0; i < f.vertices; i++) to[f.numbers[2 * t * f.vertices + i]] = (int32_t)t;
@@ -179,9 +179,10 @@ static int check_begin(check *k, PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &weights, &threads, &progress)) return -1;
     if (look_at(state_of(module), object, &k->f)) return -1;
     k->t = ((handle *)object)->record->object;
-    k->weights.held = 0;
+    k->weights = (input){.held = 0};
     if (input_open(&k->points, points, "points", 'd', k->f.plane ? k->f.plane->coordinates : 3)) return -1;
     if (!input_has_rows(&k->points, "points", k->f.points) && !input_open_weights(&k->weights, weights, k->f.points) &&
+        !handle_has_points(state_of(module), object, &k->points, &k->weights) &&
         !call_begin(&k->c, state_of(module), threads, progress))
         return 0;
     input_close(&k->points);
@@ -199,7 +200,7 @@ static PyObject *triangulation_verify(PyObject *module, PyObject *args) {
     check k;
     brio_status status;
     if (check_begin(&k, module, args)) return NULL;
-    const double *p = k.points.view.buf, *w = k.weights.view.buf;
+    const double *p = k.points.data, *w = k.weights.data;
     CALL(k.c, status,
          k.f.plane ? brio_triangulation2_check(k.c.ctx, k.t, p, w, k.f.points)
                    : brio_triangulation_check(k.c.ctx, k.t, p, w, k.f.points));
@@ -212,7 +213,7 @@ static PyObject *triangulation_checksum(PyObject *module, PyObject *args) {
     brio_status status;
     uint64_t sum = 0;
     if (check_begin(&k, module, args)) return NULL;
-    const double *p = k.points.view.buf;
+    const double *p = k.points.data;
     CALL(k.c, status,
          k.f.plane ? brio_triangulation2_checksum(k.c.ctx, k.t, p, &sum)
                    : brio_triangulation_checksum(k.c.ctx, k.t, p, &sum));

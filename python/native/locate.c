@@ -13,10 +13,11 @@ static PyObject *locator(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &weights, &threads, &progress)) return NULL;
     const brio_triangulation *t = handle_object(state_of(module), object, KIND_TRIANGULATION);
     if (!t || input_open(&p, points, "points", 'd', 3)) return NULL;
-    if (!input_open_weights(&w, weights, p.rows) && !call_begin(&c, state_of(module), threads, progress)) {
+    if (!input_open_weights(&w, weights, p.rows) && !handle_has_points(state_of(module), object, &p, &w) &&
+        !call_begin(&c, state_of(module), threads, progress)) {
         brio_locator *l = NULL;
         brio_status status;
-        CALL(c, status, brio_locator_new(c.ctx, t, p.view.buf, w.view.buf, p.rows, &l));
+        CALL(c, status, brio_locator_new(c.ctx, t, p.data, w.data, p.rows, &l));
         result = call_end_with(&c, status, KIND_LOCATOR, l, free_locator, NULL);
     }
     input_close(&w);
@@ -42,9 +43,9 @@ static PyObject *locate(PyObject *module, PyObject *args) {
     if (!input_has_rows(&out, "out", q.rows) && !call_begin(&c, state_of(module), threads, progress)) {
         brio_status status;
         CALL(c, status,
-             what == FIND_NEAREST       ? brio_locator_nearest(c.ctx, l, q.view.buf, q.rows, out.columns, out.view.buf)
-             : what == FIND_LEAST_POWER ? brio_locator_least_power(c.ctx, l, q.view.buf, q.rows, out.view.buf)
-                                        : brio_locator_tetrahedra(c.ctx, l, q.view.buf, q.rows, out.view.buf));
+             what == FIND_NEAREST       ? brio_locator_nearest(c.ctx, l, q.data, q.rows, out.columns, out.data)
+             : what == FIND_LEAST_POWER ? brio_locator_least_power(c.ctx, l, q.data, q.rows, out.data)
+                                        : brio_locator_tetrahedra(c.ctx, l, q.data, q.rows, out.data));
         failed = call_end(&c, status);
     }
     input_close(&q);
@@ -81,10 +82,9 @@ static PyObject *interpolate(PyObject *module, PyObject *args) {
         brio_status status;
         brio_interpolation options = brio_interpolation_default();
         options.method = (brio_interpolation_method)method;
-        options.values = a.values.view.buf;
+        options.values = a.values.data;
         options.components = a.values.columns;
-        CALL(c, status,
-             brio_locator_interpolate(c.ctx, l, a.queries.view.buf, a.queries.rows, &options, a.out.view.buf));
+        CALL(c, status, brio_locator_interpolate(c.ctx, l, a.queries.data, a.queries.rows, &options, a.out.data));
         failed = call_end(&c, status);
     }
     close_arrays(&a);

@@ -62,22 +62,22 @@ static int maybe_open(input *in, PyObject *object, const char *name, char format
 
 /* The library takes offsets on trust; here they come from anybody. */
 static int offsets_are_sound(const mesh_arrays *a) {
-    const uint64_t *offset = a->offsets.view.buf;
-    if (!a->offsets.held) return 1;
+    const uint64_t *offset = a->offsets.data;
+    if (!a->offsets.data) return 1;
     int sound = a->offsets.rows && offset[0] == 0;
     for (size_t f = 1; sound && f < a->offsets.rows; f++) sound = offset[f - 1] <= offset[f];
-    if (sound && a->corners.held && offset[a->offsets.rows - 1] == a->corners.rows) return 1;
+    if (sound && a->corners.data && offset[a->offsets.rows - 1] == a->corners.rows) return 1;
     PyErr_SetString(PyExc_ValueError, "face_offsets: should rise from 0 to the number of face_vertices");
     return 0;
 }
 
 static brio_status set_arrays(brio_mesh *mesh, const mesh_arrays *a) {
-    brio_status status = brio_mesh_set_vertices(mesh, a->vertices.view.buf, a->vertices.rows);
-    if (status == BRIO_OK && a->offsets.held)
-        status = brio_mesh_set_faces(mesh, a->offsets.view.buf, a->corners.view.buf, a->offsets.rows - 1);
-    if (status == BRIO_OK && a->tetrahedra.held)
-        status = brio_mesh_set_tetrahedra(mesh, a->tetrahedra.view.buf, 4, a->tetrahedra.rows);
-    if (status == BRIO_OK && a->edges.held) status = brio_mesh_set_edges(mesh, a->edges.view.buf, a->edges.rows);
+    brio_status status = brio_mesh_set_vertices(mesh, a->vertices.data, a->vertices.rows);
+    if (status == BRIO_OK && a->offsets.data)
+        status = brio_mesh_set_faces(mesh, a->offsets.data, a->corners.data, a->offsets.rows - 1);
+    if (status == BRIO_OK && a->tetrahedra.data)
+        status = brio_mesh_set_tetrahedra(mesh, a->tetrahedra.data, 4, a->tetrahedra.rows);
+    if (status == BRIO_OK && a->edges.data) status = brio_mesh_set_edges(mesh, a->edges.data, a->edges.rows);
     return status;
 }
 

@@ -8,6 +8,7 @@
 
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <brio/brio.h>
 
@@ -69,6 +70,47 @@ int call_end_saying(call *c, brio_status status, const char *sentence);
  *  function. Returns whether to stop. */
 int call_look(call *c, const char *stage, double fraction);
 
+/* --- arrays --- */
+
+/** What a view shows: format in the notation of `struct`, sizes and strides in bytes. */
+typedef struct {
+    const void *data;
+    const char *format;
+    Py_ssize_t item;
+    int ndim;
+    Py_ssize_t shape[2], strides[2];
+} layout;
+
+/** Makes an object with a read-only buffer that keeps `base` alive; numpy.asarray makes an array of it. */
+PyObject *array_new(module_state *state, PyObject *base, layout shown);
+/** The layouts that occur: #n, or #n by columns, one after the other. */
+layout layout_of(const void *data, char format, size_t rows, size_t columns);
+extern PyType_Spec array_spec;
+
+/** An array of the caller during a call: C-contiguous, native, of the format asked for.
+ *  I1  What the library reads is a copy, made with the interpreter's lock and before any check: other threads may write to
+ *      the caller's array meanwhile, and the library trusts what it has checked.
+ *  I2  What the library writes is an array that Python has just made. */
+typedef struct {
+    void *data;
+    Py_buffer view; /* of an array to write to */
+    int held;       /* `view` is open */
+    size_t rows, columns, bytes;
+} input;
+
+/** Copies an array.   format  one letter as in `struct`: d I L B.   columns  0: of one dimension; else of two, and of that
+ *  many columns; -1: of two, and of any number of columns.   Returns 0 or -1 with an exception set. */
+int input_open(input *in, PyObject *object, const char *name, char format, int columns);
+/** Opens an array to write to. */
+int output_open(input *in, PyObject *object, const char *name, char format, int columns);
+/** Opens an array of one number a row of another, unless the object is None. */
+int input_open_weights(input *in, PyObject *object, size_t rows);
+void input_close(input *in);
+/** Returns a hash of the bytes, which tells arrays that were changed. */
+uint64_t input_hash(const input *in);
+/** Returns 0, or -1 with ValueError set unless the array has that many rows. */
+int input_has_rows(const input *in, const char *name, size_t rows);
+
 /* --- objects of the library --- */
 
 typedef enum {
@@ -93,49 +135,20 @@ struct record {
 typedef struct {
     PyObject_HEAD kind kind;
     record *record;
-    PyObject *base; /* an object that this one reads, or NULL */
+    PyObject *base;       /* an object that this one reads, or NULL */
+    uint64_t points_hash; /* of a triangulation: of the points and weights that it was made of */
 } handle;
 
 /** Ends the call and makes a handle of what it made. Frees the object if the handle cannot be made. */
 PyObject *call_end_with(call *c, brio_status status, kind what, void *object, void (*release)(void *), PyObject *base);
 /** Returns the object of a handle of that kind, or NULL with TypeError set. */
 void *handle_object(module_state *state, PyObject *object, kind kind);
+/** Keeps the hash of the points (and weights) that a triangulation was made of; NULL is accepted. */
+void handle_keep_points(PyObject *object, const input *points, const input *weights);
+/** Returns 0, or -1 with an exception set if these are not the points that it was made of. A triangulation with other
+ *  points than its own would lead the library astray. */
+int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights);
 extern PyType_Spec handle_spec;
-
-/* --- arrays --- */
-
-/** What a view shows: format in the notation of `struct`, sizes and strides in bytes. */
-typedef struct {
-    const void *data;
-    const char *format;
-    Py_ssize_t item;
-    int ndim;
-    Py_ssize_t shape[2], strides[2];
-} layout;
-
-/** Makes an object with a read-only buffer that keeps `base` alive; numpy.asarray makes an array of it. */
-PyObject *array_new(module_state *state, PyObject *base, layout shown);
-/** The layouts that occur: #n, or #n by columns, one after the other. */
-layout layout_of(const void *data, char format, size_t rows, size_t columns);
-extern PyType_Spec array_spec;
-
-/** An array of the caller during a call: C-contiguous, native, of the format asked for. */
-typedef struct {
-    Py_buffer view;
-    int held;
-    size_t rows, columns;
-} input;
-
-/** Opens an array.   format  one letter as in `struct`: d I L B.   columns  0: of one dimension; else of two, and of that
- *  many columns; -1: of two, and of any number of columns.   Returns 0 or -1 with an exception set. */
-int input_open(input *in, PyObject *object, const char *name, char format, int columns);
-/** Opens an array to write to. */
-int output_open(input *in, PyObject *object, const char *name, char format, int columns);
-/** Opens an array of one number a row of another, unless the object is None. */
-int input_open_weights(input *in, PyObject *object, size_t rows);
-void input_close(input *in);
-/** Returns 0, or -1 with ValueError set unless the array has that many rows. */
-int input_has_rows(const input *in, const char *name, size_t rows);
 
 /* --- the functions of the module, by file --- */
 

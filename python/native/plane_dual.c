@@ -57,10 +57,10 @@ static PyObject *circles(PyObject *module, PyObject *args) {
         return NULL;
     size_t rows = brio_triangulation2_stats(handle_object(state_of(module), object, KIND_TRIANGULATION2))->points;
     if (!input_open(&p, points, "points", 'd', 2) && !input_has_rows(&p, "points", rows) &&
-        !input_open_weights(&w, weights, rows) && !output_open(&out, array, "out", 'I', 0) &&
-        !input_has_rows(&out, "out", d.count)) {
-        d.xy = p.view.buf, d.w = w.view.buf;
-        Py_BEGIN_ALLOW_THREADS classes = (Py_ssize_t)number_circles(&d, out.view.buf);
+        !input_open_weights(&w, weights, rows) && !handle_has_points(state_of(module), object, &p, &w) &&
+        !output_open(&out, array, "out", 'I', 0) && !input_has_rows(&out, "out", d.count)) {
+        d.xy = p.data, d.w = w.data;
+        Py_BEGIN_ALLOW_THREADS classes = (Py_ssize_t)number_circles(&d, out.data);
         Py_END_ALLOW_THREADS
     }
     input_close(&p);
@@ -119,16 +119,15 @@ static PyObject *regions(PyObject *module, PyObject *args) {
         !input_open(&first, arrays[1], "first", 'i', 0) && !input_has_rows(&first, "first", rows) &&
         !output_open(&offsets, arrays[2], "offsets", 'l', 0) && !input_has_rows(&offsets, "offsets", rows + 1) &&
         !output_open(&items, arrays[3], "items", 'l', 0) && !input_has_rows(&items, "items", 3 * d.count + d.hull)) {
-        const int32_t *t = first.view.buf;
-        int64_t *offset = offsets.view.buf, *item = items.view.buf;
+        const int32_t *t = first.data;
+        int64_t *offset = offsets.data, *item = items.data;
         offset[0] = 0;
         for (size_t p = 0; p < rows; p++) {
             int sound = t[p] >= 0 && (size_t)t[p] < d.count &&
                         d.triangles[t[p]].vertex[slot_of(&d.triangles[t[p]], (uint32_t)p)] == p;
             offset[p + 1] = offset[p];
             if (sound)
-                offset[p + 1] +=
-                    (int64_t)write_region(&d, class.view.buf, (uint32_t)t[p], (uint32_t)p, item + offset[p]);
+                offset[p + 1] += (int64_t)write_region(&d, class.data, (uint32_t)t[p], (uint32_t)p, item + offset[p]);
         }
         done = 1;
     }

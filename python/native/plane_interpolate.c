@@ -182,13 +182,12 @@ typedef struct {
 static int run(module_state *state, const plane_locator *l, arrays *a, int natural, PyObject *progress) {
     call k;
     brio_status status = BRIO_ERR_NO_MEMORY;
-    const table v = {l, a->values.view.buf, a->values.columns};
+    const table v = {l, a->values.data, a->values.columns};
     cavity c = {.mark = natural ? calloc(l->count + 1, sizeof *c.mark) : NULL,
                 .triangle = natural ? malloc((l->count + 1) * sizeof *c.triangle) : NULL};
     int failed = call_begin(&k, state, 1, progress);
     if (!failed) {
-        if (!natural || (c.mark && c.triangle))
-            CALL(k, status, interpolate_all(&k, &v, &c, &a->queries, a->out.view.buf));
+        if (!natural || (c.mark && c.triangle)) CALL(k, status, interpolate_all(&k, &v, &c, &a->queries, a->out.data));
         failed = call_end_saying(&k, status, plane_sentence(status));
     }
     free(c.mark);

@@ -79,22 +79,24 @@ static plane_locator *locator2_new(const brio_triangulation2 *t, const double *x
     return l;
 }
 
-/* locator2(t, points): the locator reads the triangles of t, which it keeps. */
+/* locator2(t, points, weights): the locator reads the triangles of t, which it keeps. */
 static PyObject *locator2(PyObject *module, PyObject *args) {
-    PyObject *object, *points;
-    input p;
+    PyObject *object, *points, *weights;
+    input p, w = {.held = 0};
     call c;
-    if (!PyArg_ParseTuple(args, "OO", &object, &points)) return NULL;
+    if (!PyArg_ParseTuple(args, "OOO", &object, &points, &weights)) return NULL;
     const brio_triangulation2 *t = handle_object(state_of(module), object, KIND_TRIANGULATION2);
     if (!t || input_open(&p, points, "points", 'd', 2)) return NULL;
     PyObject *result = NULL;
     if (!input_has_rows(&p, "points", brio_triangulation2_stats(t)->points) &&
+        !input_open_weights(&w, weights, p.rows) && !handle_has_points(state_of(module), object, &p, &w) &&
         !call_begin(&c, state_of(module), 1, Py_None)) {
-        plane_locator *l = locator2_new(t, p.view.buf);
+        plane_locator *l = locator2_new(t, p.data);
         if (!l) PyErr_NoMemory();
         result = call_end_with(&c, BRIO_OK, KIND_LOCATOR2, l, locator2_free, object);
     }
     input_close(&p);
+    input_close(&w);
     return result;
 }
 
@@ -181,7 +183,7 @@ static PyObject *locate2(PyObject *module, PyObject *args) {
     }
     if (!input_has_rows(&out, "out", q.rows) && !call_begin(&c, state_of(module), 1, progress)) {
         brio_status status;
-        CALL(c, status, find_all(&c, l, &q, out.view.buf));
+        CALL(c, status, find_all(&c, l, &q, out.data));
         failed = call_end_saying(&c, status, plane_sentence(status));
     }
     input_close(&q);
@@ -191,7 +193,7 @@ static PyObject *locate2(PyObject *module, PyObject *args) {
 }
 
 PyMethodDef plane_methods[] = {
-    {"locator2", locator2, METH_VARARGS, "locator2(t, points)"},
+    {"locator2", locator2, METH_VARARGS, "locator2(t, points, weights)"},
     {"locate2", locate2, METH_VARARGS, "locate2(locator, queries, out, progress)"},
     {"interpolate2", plane_interpolate, METH_VARARGS, "interpolate2(locator, queries, values, natural, out, progress)"},
     {NULL, NULL, 0, NULL},

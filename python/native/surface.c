@@ -56,7 +56,7 @@ typedef struct {
 
 /* Reads (points, options, number, extra or None, threads, progress). `extra` is an array to write, of `columns`. */
 static int open_surface_call(surface_call *s, PyObject *args, char format, int columns) {
-    s->p.held = s->out.held = 0;
+    s->p = s->out = (input){.held = 0};
     if (!PyArg_ParseTuple(args, "OO!dOiO", &s->points, &PyDict_Type, &s->options, &s->number, &s->extra, &s->threads,
                           &s->progress))
         return -1;
@@ -100,7 +100,7 @@ static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
         {"seed", SEED, &o.seed},   {"noise", INT, &o.noise},       {"confidence", INT, &o.confidence},
         {"open", DOUBLE, &o.open}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, 'I', 0))
-        RUN_SURFACE(table, brio_labeled_delaunay(c.ctx, s.p.view.buf, s.p.rows, &o, &mesh, s.out.view.buf, NULL));
+        RUN_SURFACE(table, brio_labeled_delaunay(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
     close_surface_call(&s);
     return result;
 }
@@ -118,7 +118,7 @@ static PyObject *power_crust(PyObject *module, PyObject *args) {
                             {"open", DOUBLE, &o.open},
                             {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, 'd', 3))
-        RUN_SURFACE(table, brio_power_crust(c.ctx, s.p.view.buf, s.p.rows, &o, &mesh, s.out.view.buf, NULL));
+        RUN_SURFACE(table, brio_power_crust(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
     close_surface_call(&s);
     return result;
 }
@@ -133,7 +133,7 @@ static PyObject *offset_surface(PyObject *module, PyObject *args) {
     const option table[] = {
         POLE_OPTIONS(o), {"triangulate", INT, &o.triangulate}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, 'd', 3))
-        RUN_SURFACE(table, brio_offset_surface(c.ctx, s.p.view.buf, s.p.rows, s.number, &o, &mesh, NULL));
+        RUN_SURFACE(table, brio_offset_surface(c.ctx, s.p.data, s.p.rows, s.number, &o, &mesh, NULL));
     close_surface_call(&s);
     return result;
 }
@@ -151,7 +151,7 @@ static PyObject *power_shape(PyObject *module, PyObject *args) {
                             {"redundancy", DOUBLE, &o.redundancy},
                             {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, 'd', 3))
-        RUN_SURFACE(table, brio_power_shape(c.ctx, s.p.view.buf, s.p.rows, &o, &mesh, NULL, NULL));
+        RUN_SURFACE(table, brio_power_shape(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL, NULL));
     close_surface_call(&s);
     return result;
 }
@@ -172,7 +172,7 @@ static PyObject *cocone(PyObject *module, PyObject *args) {
                             {"extraction", INT, &o.extraction},
                             {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, 'd', 3))
-        RUN_SURFACE(table, brio_cocone(c.ctx, s.p.view.buf, s.p.rows, &o, &mesh, NULL));
+        RUN_SURFACE(table, brio_cocone(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
     close_surface_call(&s);
     return result;
 }
@@ -187,8 +187,8 @@ static PyObject *convex_hull(PyObject *module, PyObject *args) {
     brio_convex_hull_options o = brio_convex_hull_options_default();
     const option table[] = {{"polygons", INT, &o.polygons}, {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, 'I', 0)) {
-        o.samples = s.out.view.buf;
-        RUN_SURFACE(table, brio_convex_hull(c.ctx, s.p.view.buf, s.p.rows, &o, &mesh, NULL));
+        o.samples = s.out.data;
+        RUN_SURFACE(table, brio_convex_hull(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
     }
     close_surface_call(&s);
     return result;
@@ -211,7 +211,7 @@ static PyObject *point_normals(PyObject *module, PyObject *args) {
          (!input_open(&of, samples, "samples", 'I', 0) && !input_has_rows(&of, "samples", rows))) &&
         !call_begin(&c, state_of(module), threads, progress)) {
         brio_status status;
-        CALL(c, status, brio_point_normals(c.ctx, p.view.buf, p.rows, m, of.view.buf, out.view.buf));
+        CALL(c, status, brio_point_normals(c.ctx, p.data, p.rows, m, of.data, out.data));
         failed = call_end(&c, status);
     }
     input_close(&p);

@@ -33,7 +33,7 @@ class AlphaComplex:
     def __init__(self, tri: Delaunay) -> None:
         with reporting(tri.progress) as report:
             views = _native.alpha_values(tri._handle, tri.points, tri.weights, tri.threads, report)
-        self.points, self._complex = tri.points, views["complex"]
+        self.points, self.weights, self._complex = tri.points, tri.weights, views["complex"]
         self.simplices: list[NDArray[np.uint32]] = [np.asarray(view) for view in views["simplices"]]
         self.values: list[Floats] = [np.asarray(view) for view in views["values"]]
         self.solid: list[Floats] = [np.asarray(view) for view in views["solid"]]
@@ -55,7 +55,7 @@ class AlphaComplex:
 
     def shape(self, alpha: float) -> "AlphaShape":
         """The boundary of the tetrahedra with values of at most `alpha`."""
-        handle, counts = _native.alpha_shape(self._complex, self.points, float(alpha))
+        handle, counts = _native.alpha_shape(self._complex, self.points, self.weights, float(alpha))
         shape: AlphaShape = AlphaShape._of(handle)
         shape.alpha, shape.counts, shape.complex = float(alpha), counts, self
         return shape

@@ -248,7 +248,7 @@ class Delaunay:
     @cached_property
     def _locator(self) -> Any:
         if self.ndim == 2:
-            return _native.locator2(self._handle, self.points)
+            return _native.locator2(self._handle, self.points, self.weights)
         with reporting(self.progress) as report:
             return _native.locator(self._handle, self.points, self.weights, self.threads, report)
 
