@@ -9,7 +9,7 @@
 #include "native.h"
 #include <time.h>
 
-static const double LOOK = 0.05;
+static const double LOOK = 0.02;
 
 static double seconds(void) {
     struct timespec now;

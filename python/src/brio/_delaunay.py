@@ -33,7 +33,7 @@ class Delaunay:
         The most threads of the library; 0 is one for each processor.
     progress : bool or callable, optional
         True shows a bar (of tqdm, where it is installed). A function is called with the name of the stage and the share
-        that is done, about 20 times a second; if it returns something true, the work ends with CancelledError.
+        that is done, up to 50 times a second; if it returns something true, the work ends with CancelledError.
     incremental : bool
         Taken for scipy's sake: add_points works in any case.
     furthest_site, qhull_options

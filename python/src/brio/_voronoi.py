@@ -122,8 +122,10 @@ class Voronoi:
     # --- in space: the library's cells ---
 
     def _build_space(self, points: Floats, weights: Floats | None) -> None:
+        tri = Delaunay(points, weights, threads=self.threads, progress=self.progress)
+
         def cells(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
-            return _native.cells(None, p, w, self.box, None, threads, report)
+            return _native.cells(tri._handle, p, w, self.box, None, threads, report)
 
         raw = _calls.of_points(cells, points, weights, self.threads, self.progress)
         self.cells = {name: part if isinstance(part, float) else np.asarray(part) for name, part in raw.items()}
@@ -134,7 +136,7 @@ class Voronoi:
         owner = c["site"][face_cell].astype(np.int64)
         wanted = owner < c["face_neighbours"]
         self._set_ridges_space(np.stack([owner, c["face_neighbours"]], axis=1), corners, wanted)
-        self._set_regions_space(face_cell, corners)
+        self._set_regions_space(tri, face_cell, corners)
 
     def _set_ridges_space(self, pairs: Ints, corners: Ints, wanted: NDArray[np.bool_]) -> None:
         open_face = np.isinf(self.cells["face_areas"])[wanted]
@@ -145,7 +147,7 @@ class Voronoi:
         self.ridge_items = np.insert(items, starts[:-1][open_face], -1)
         self.ridge_offsets = np.concatenate([[0], np.cumsum(counts + open_face)])
 
-    def _set_regions_space(self, face_cell: Ints, corners: Ints) -> None:
+    def _set_regions_space(self, tri: Delaunay, face_cell: Ints, corners: Ints) -> None:
         c = self.cells
         vertex = c["face_vertices"].astype(np.int64)
         cell = np.repeat(face_cell, corners)
@@ -153,8 +155,7 @@ class Voronoi:
         cell, vertex = np.concatenate([cell, unbounded]), np.concatenate([vertex, np.full(len(unbounded), -1)])
         width = len(self.vertices) + 1
         cell, vertex = np.divmod(np.unique(cell * width + vertex + 1), width)
-        representatives = np.asarray(_representatives(self.points, self.weights, c["site"], self.threads))
-        self._set_regions(representatives, c["site"].astype(np.int64), np.bincount(cell, minlength=len(c["site"])), vertex - 1)
+        self._set_regions(tri.representatives, c["site"].astype(np.int64), np.bincount(cell, minlength=len(c["site"])), vertex - 1)
 
     # --- both ---
 
@@ -220,13 +221,6 @@ class Voronoi:
     def close(self) -> None:
         """Ends the adding of points."""
         self._closed = True
-
-
-def _representatives(points: Floats, weights: Floats | None, sites: NDArray[Any], threads: int) -> NDArray[Any]:
-    """For each point, the site that represents it."""
-    if len(sites) == len(points):
-        return np.arange(len(points))
-    return Delaunay(points, weights, threads=threads).representatives
 
 
 def _centres(points: Floats, weights: Floats | None, simplices: NDArray[Any]) -> Floats:
