@@ -81,11 +81,15 @@ class Delaunay:
     """
 
     furthest_site = False
+    points: Floats
+    weights: Floats | None
+    _handle: Any
 
     def __new__(cls, points: Any, weights: Any = None, *, fallback: str | None = None, **options: Any) -> Any:
         usual = type(points) is np.ndarray and points.ndim == 2 and points.shape[1] in (2, 3) and not options
         if not usual:
-            scipys = {key: options[key] for key in ("furthest_site", "incremental", "qhull_options") if key in options}
+            wanted = ("furthest_site", "incremental", "qhull_options")
+            scipys: dict[str, Any] = {key: options[key] for key in wanted if key in options}
             other = other_class("Delaunay", points, fallback, scipys)
             if other is not None:
                 return other
@@ -181,8 +185,9 @@ class Delaunay:
 
     @cached_property
     def duplicates(self) -> NDArray[np.int64]:
-        others = self._others
-        return others[(self.points[others] == self.points[self.representatives[others]]).all(axis=1)]
+        others: NDArray[np.int64] = self._others
+        same: NDArray[np.bool_] = (self.points[others] == self.points[self.representatives[others]]).all(axis=1)
+        return others[same]
 
     @cached_property
     def hidden(self) -> NDArray[np.int64]:
@@ -191,8 +196,8 @@ class Delaunay:
     @cached_property
     def coplanar(self) -> Ints:
         others = self._others
-        columns = [others, self.vertex_to_simplex[others], self.representatives[others]]
-        return frozen(np.stack(columns, axis=1).astype(np.int32))
+        columns = [part.astype(np.int32) for part in (others, self.vertex_to_simplex[others], self.representatives[others])]
+        return frozen(np.stack(columns, axis=1))
 
     @cached_property
     def transform(self) -> Floats:

@@ -50,8 +50,18 @@ class ConvexHull:
     ([0, 1, 2, 3], 2.0, 6.0)
     """
 
+    points: Floats
+    vertices: Ints
+    simplices: Ints
+    neighbors: Ints
+    equations: Floats
+    volume: float
+    area: float
+    polygon_offsets: NDArray[np.int64]
+    polygon_vertices: Ints
+
     def __new__(cls, points: Any, *, fallback: str | None = None, **options: Any) -> Any:
-        scipys = {key: options[key] for key in ("incremental", "qhull_options") if key in options}
+        scipys: dict[str, Any] = {key: options[key] for key in ("incremental", "qhull_options") if key in options}
         other = other_class("ConvexHull", points, fallback, scipys)
         return object.__new__(cls) if other is None else other
 

@@ -76,7 +76,7 @@ class _Interpolator:
         rows = np.ascontiguousarray(xi.reshape(-1, self.tri.ndim))
         if self.offset is not None and self.scale is not None:
             rows = (rows - self.offset) / self.scale
-        finite = np.isfinite(rows).all(axis=1)
+        finite: NDArray[np.bool_] = np.asarray(np.isfinite(rows).all(axis=1))
         out = np.full((len(rows), self.values.shape[1]), np.nan)
         inside = finite.copy()
         if finite.all():

@@ -67,8 +67,15 @@ class Voronoi:
     1.0
     """
 
+    points: Floats
+    weights: Floats | None
+    vertices: Floats
+    ridge_points: NDArray[np.int32]
+    cells: dict[str, Any]
+
     def __new__(cls, points: Any, weights: Any = None, *, fallback: str | None = None, **options: Any) -> Any:
-        scipys = {key: options[key] for key in ("furthest_site", "incremental", "qhull_options") if key in options}
+        wanted = ("furthest_site", "incremental", "qhull_options")
+        scipys: dict[str, Any] = {key: options[key] for key in wanted if key in options}
         other = other_class("Voronoi", points, fallback, scipys)
         return object.__new__(cls) if other is None else other
 
@@ -243,6 +250,6 @@ def _areas(vertices: Floats, offsets: Ints, items: Ints) -> Floats:
     following[ends] = offsets[:-1][np.diff(offsets) > 0]
     origin = vertices[items[offsets[:-1][region]]]
     a, b = vertices[items] - origin, vertices[items[following]] - origin
-    areas = np.bincount(region, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2, minlength=len(offsets) - 1)
+    areas: Floats = np.bincount(region, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2, minlength=len(offsets) - 1).astype(np.float64)
     areas[region[items < 0]] = np.inf
     return areas
