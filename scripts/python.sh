@@ -49,7 +49,7 @@ try_beside_others() {
     "$tools" -m venv "$out/heavy"
     "$out/heavy/bin/pip" install -q torch --index-url https://download.pytorch.org/whl/cpu ||
         "$out/heavy/bin/pip" install -q torch || echo "skipped: torch cannot be installed"
-    for package in open3d scikit-learn; do
+    for package in open3d-cpu scikit-learn; do
         "$out/heavy/bin/pip" install -q $package || echo "skipped: $package cannot be installed"
     done
     "$out/heavy/bin/pip" install -q "$out"/brio-*.whl
