@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check bench quality votes thesis clean
+.PHONY: all demo check python python-heavy bench quality votes thesis clean
 
 all:
 	@sh scripts/setup.sh build
@@ -16,6 +16,15 @@ demo: all
 check:
 	@sh scripts/setup.sh check
 	@sh scripts/check.sh $(JOBS)
+
+# The Python package: a wheel and an sdist in out/python, tried in a new environment.
+python:
+	@sh scripts/setup.sh check
+	@sh scripts/python.sh wheel
+
+# What takes long or needs large packages from PyPI: torch, Open3D and scikit-learn beside brio, and the address sanitizer.
+python-heavy: python
+	@sh scripts/python.sh heavy
 
 # BENCH="--runs 5 --only uniform_1m happy_raw" measures less, BENCH="--sizes 1e4 1e5 1e6 1e7" more: docs/benchmarks.md.
 bench: all

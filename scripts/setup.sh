@@ -53,6 +53,7 @@ missing() {
     has clang-format || echo clang-format
     has pkg-config || echo pkg-config
     has_python_with ensurepip || echo python3-venv
+    [ -f "$($python -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" ] || echo python3-dev
 }
 
 # The Debian packages of other libraries, and of the plots, that are missing: brio, the bench, and tests do without them.

@@ -1,0 +1,114 @@
+/* Alpha complexes and alpha shapes. */
+#include "mesh.h"
+
+static void free_alpha(void *complex) {
+    brio_alpha_complex_free(complex);
+    free(complex);
+}
+
+static PyObject *views(module_state *state, PyObject *owner, const brio_alpha_complex *a) {
+    PyObject *lists[4] = {PyList_New(4), PyList_New(4), PyList_New(4), PyList_New(4)};
+    for (size_t k = 0; k < 4; k++) {
+        const layout shown[4] = {
+            layout_of(a->simplices[k], 'I', a->counts[k], k + 1), layout_of(a->values[k], 'd', a->counts[k], 0),
+            layout_of(a->solid[k], 'd', a->counts[k], 0), layout_of(a->gabriel[k], '?', a->counts[k], 0)};
+        for (int n = 0; n < 4; n++)
+            if (lists[n]) PyList_SetItem(lists[n], (Py_ssize_t)k, array_new(state, owner, shown[n]));
+    }
+    return Py_BuildValue("{s:N,s:N,s:N,s:N,s:O}", "simplices", lists[0], "values", lists[1], "solid", lists[2],
+                         "gabriel", lists[3], "complex", owner);
+}
+
+/* alpha_values(t, points, weights, threads, progress): a dict of lists of arrays, and the complex. */
+static PyObject *alpha_values(PyObject *module, PyObject *args) {
+    PyObject *object, *points, *weights, *progress, *owner = NULL, *result = NULL;
+    int threads;
+    input p, w = {.held = 0};
+    call c;
+    module_state *state = state_of(module);
+    if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &weights, &threads, &progress)) return NULL;
+    const brio_triangulation *t = handle_object(state, object, KIND_TRIANGULATION);
+    if (!t || input_open(&p, points, "points", 'd', 3)) return NULL;
+    brio_alpha_complex *a = calloc(1, sizeof *a);
+    if (!a)
+        PyErr_NoMemory();
+    else if (input_open_weights(&w, weights, p.rows) || call_begin(&c, state, threads, progress))
+        free(a);
+    else {
+        brio_status status;
+        a->size = sizeof *a;
+        CALL(c, status, brio_alpha_values(c.ctx, t, p.data, w.data, p.rows, a));
+        owner = call_end_with(&c, status, KIND_ALPHA, a, free_alpha, object);
+    }
+    input_close(&p);
+    input_close(&w);
+    if (owner) result = views(state, owner, a);
+    Py_XDECREF(owner);
+    return result;
+}
+
+/* alpha_order(complex, out): the simplices as they enter. */
+static PyObject *alpha_order(PyObject *module, PyObject *args) {
+    PyObject *object, *array;
+    input out;
+    call c;
+    int failed = -1;
+    if (!PyArg_ParseTuple(args, "OO", &object, &array)) return NULL;
+    const brio_alpha_complex *a = handle_object(state_of(module), object, KIND_ALPHA);
+    if (!a || output_open(&out, array, "out", 'I', 0)) return NULL;
+    if (!input_has_rows(&out, "out", a->counts[0] + a->counts[1] + a->counts[2] + a->counts[3]) &&
+        !call_begin(&c, state_of(module), 0, Py_None)) {
+        brio_status status;
+        CALL(c, status, brio_alpha_order(c.ctx, a, out.data));
+        failed = call_end(&c, status);
+    }
+    input_close(&out);
+    if (failed) return NULL;
+    Py_RETURN_NONE;
+}
+
+static PyObject *alpha_auto(PyObject *module, PyObject *object) {
+    call c;
+    brio_status status;
+    double alpha = 0;
+    const brio_alpha_complex *a = handle_object(state_of(module), object, KIND_ALPHA);
+    if (!a || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    CALL(c, status, brio_alpha_auto(c.ctx, a, &alpha));
+    return call_end(&c, status) ? NULL : PyFloat_FromDouble(alpha);
+}
+
+/* alpha_shape(complex, points, weights, alpha): a mesh, and counts in a dict. */
+static PyObject *alpha_shape(PyObject *module, PyObject *args) {
+    PyObject *object, *points, *weights, *result = NULL;
+    double alpha;
+    input p, w = {.held = 0};
+    call c;
+    brio_alpha_shape_stats s = {.size = sizeof s};
+    if (!PyArg_ParseTuple(args, "OOOd", &object, &points, &weights, &alpha)) return NULL;
+    const brio_alpha_complex *a = handle_object(state_of(module), object, KIND_ALPHA);
+    if (!a || input_open(&p, points, "points", 'd', 3)) return NULL;
+    if (!input_open_weights(&w, weights, p.rows) &&
+        !handle_has_points(state_of(module), ((handle *)object)->base, &p, &w) &&
+        !call_begin(&c, state_of(module), 0, Py_None)) {
+        brio_status status;
+        brio_mesh *mesh = NULL;
+        CALL(c, status, brio_alpha_shape(c.ctx, p.data, a, alpha, &mesh, &s));
+        result = call_end_with_mesh(&c, status, mesh);
+    }
+    input_close(&p);
+    input_close(&w);
+#define COUNT(name) #name, (Py_ssize_t)s.name
+    return result ? Py_BuildValue("(N{s:n,s:n,s:n,s:n,s:n,s:n,s:n})", result, COUNT(tetrahedra), COUNT(vertices),
+                                  COUNT(split), COUNT(uncovered), COUNT(singular_vertices), COUNT(singular_edges),
+                                  COUNT(singular_facets))
+                  : NULL;
+#undef COUNT
+}
+
+PyMethodDef alpha_methods[] = {
+    {"alpha_values", alpha_values, METH_VARARGS, "alpha_values(t, points, weights, threads, progress)"},
+    {"alpha_order", alpha_order, METH_VARARGS, "alpha_order(complex, out)"},
+    {"alpha_auto", alpha_auto, METH_O, "The least alpha of one solid with all vertices."},
+    {"alpha_shape", alpha_shape, METH_VARARGS, "alpha_shape(complex, points, weights, alpha): a mesh, and counts."},
+    {NULL, NULL, 0, NULL},
+};

@@ -1,0 +1,178 @@
+/* Arrays: views of what the library made, and arrays of the caller, both by the buffer protocol. */
+#include "native.h"
+#include <stdint.h>
+#include <string.h>
+
+/* --- views --- */
+
+typedef struct {
+    PyObject_HEAD PyObject *base;
+    layout shown;
+} array;
+
+static Py_ssize_t size_of(char format) {
+    switch (format) {
+    case 'd':
+    case 'L':
+    case 'l':
+        return 8;
+    case 'I':
+    case 'i':
+    case 'f':
+        return 4;
+    case 'h':
+    case 'H':
+        return 2;
+    default:
+        return 1;
+    }
+}
+
+static const char *format_of(char format) {
+    static const char formats[][2] = {"d", "L", "l", "I", "i", "f", "h", "H", "b", "B", "?"};
+    for (size_t k = 0; k < sizeof formats / sizeof *formats; k++)
+        if (formats[k][0] == format) return formats[k];
+    return "B";
+}
+
+layout layout_of(const void *data, char format, size_t rows, size_t columns) {
+    Py_ssize_t item = size_of(format), width = columns ? (Py_ssize_t)columns * item : item;
+    layout shown = {data,         format_of(format), item, columns ? 2 : 1, {(Py_ssize_t)rows, (Py_ssize_t)columns},
+                    {width, item}};
+    return shown;
+}
+
+PyObject *array_new(module_state *state, PyObject *base, layout shown) {
+    static const uint64_t nothing; /* for arrays of 0 elements, which may be NULL in C */
+    array *a = PyObject_New(array, state->array_type);
+    if (!a) return NULL;
+    Py_INCREF(base);
+    a->base = base;
+    a->shown = shown;
+    if (!a->shown.data) a->shown.data = &nothing;
+    return (PyObject *)a;
+}
+
+static int is_contiguous(const layout *shown) {
+    Py_ssize_t stride = shown->item;
+    for (int k = shown->ndim - 1; k >= 0; k--) {
+        if (shown->shape[k] > 1 && shown->strides[k] != stride) return 0;
+        stride *= shown->shape[k];
+    }
+    return 1;
+}
+
+static int array_getbuffer(PyObject *self, Py_buffer *view, int flags) {
+    layout *shown = &((array *)self)->shown;
+    Py_ssize_t length = shown->item;
+    for (int k = 0; k < shown->ndim; k++) length *= shown->shape[k];
+    view->obj = NULL;
+    if ((flags & PyBUF_WRITABLE) || ((flags & PyBUF_STRIDES) != PyBUF_STRIDES && !is_contiguous(shown))) {
+        PyErr_SetString(PyExc_BufferError, "the array is read-only, and may have strides");
+        return -1;
+    }
+    *view = (Py_buffer){.buf = (void *)shown->data,
+                        .obj = self,
+                        .len = length,
+                        .readonly = 1,
+                        .itemsize = shown->item,
+                        .format = (flags & PyBUF_FORMAT) ? (char *)shown->format : NULL,
+                        .ndim = shown->ndim,
+                        .shape = (flags & PyBUF_ND) ? shown->shape : NULL,
+                        .strides = (flags & PyBUF_STRIDES) == PyBUF_STRIDES ? shown->strides : NULL};
+    Py_INCREF(self);
+    return 0;
+}
+
+static void array_dealloc(PyObject *self) {
+    PyTypeObject *type = Py_TYPE(self);
+    Py_DECREF(((array *)self)->base);
+    PyObject_Free(self);
+    Py_DECREF(type);
+}
+
+static PyType_Slot array_slots[] = {
+    {Py_tp_dealloc, array_dealloc},
+    {Py_bf_getbuffer, array_getbuffer},
+    {Py_tp_doc, "Numbers of an object of the library, for numpy.asarray."},
+    {0, NULL},
+};
+PyType_Spec array_spec = {"brio._native.Array", sizeof(array), 0,
+                          Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, array_slots};
+
+/* --- arrays of the caller --- */
+
+/* Whether two letters mean the same type here: numpy may say q for l, or Q for L. */
+static int same_type(const char *found, char wanted) {
+    if (!found || found[1]) return 0;
+    if (wanted == 'L') return strchr("LQ", *found) != NULL;
+    if (wanted == 'l') return strchr("lq", *found) != NULL;
+    if (wanted == 'B') return strchr("B?", *found) != NULL;
+    return *found == wanted;
+}
+
+static int open_view(input *in, PyObject *object, const char *name, char format, int columns, int flags) {
+    *in = (input){.held = 0};
+    if (PyObject_GetBuffer(object, &in->view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | flags)) return -1;
+    in->held = 1;
+    const Py_buffer *view = &in->view;
+    int ndim = columns ? 2 : 1;
+    in->data = view->buf;
+    in->rows = view->ndim > 0 ? (size_t)view->shape[0] : 0;
+    in->columns = view->ndim > 1 ? (size_t)view->shape[1] : 1;
+    in->bytes = (size_t)view->len;
+    if (same_type(view->format, format) && view->ndim == ndim && (columns <= 0 || in->columns == (size_t)columns))
+        return 0;
+    PyErr_Format(PyExc_ValueError, "%s: an array of another type or shape than wanted (%c, %d dimensions)", name,
+                 format, ndim);
+    PyBuffer_Release(&in->view);
+    *in = (input){.held = 0};
+    return -1;
+}
+
+int input_open(input *in, PyObject *object, const char *name, char format, int columns) {
+    if (open_view(in, object, name, format, columns, 0)) return -1;
+    in->data = malloc(in->bytes + 1);
+    if (in->data) memcpy(in->data, in->view.buf, in->bytes);
+    PyBuffer_Release(&in->view);
+    in->held = 0;
+    if (in->data) return 0;
+    PyErr_NoMemory();
+    return -1;
+}
+
+int output_open(input *in, PyObject *object, const char *name, char format, int columns) {
+    return open_view(in, object, name, format, columns, PyBUF_WRITABLE);
+}
+
+uint64_t input_hash(const input *in) {
+    const uint64_t *word = in->data;
+    uint64_t lane[4] = {in->bytes, 1, 2, 3};
+    for (size_t k = 0; in->data && k < in->bytes / 8; k++)
+        lane[k & 3] = (lane[k & 3] ^ word[k]) * 0x9e3779b97f4a7c15u + (lane[k & 3] >> 29);
+    for (int k = 1; k < 4; k++) lane[0] = (lane[0] ^ (lane[k] >> 7)) * 0xbf58476d1ce4e5b9u + lane[k];
+    return lane[0];
+}
+
+int input_has_rows(const input *in, const char *name, size_t rows) {
+    if (in->rows == rows) return 0;
+    PyErr_Format(PyExc_ValueError, "%s: %zu rows, where there should be %zu", name, in->rows, rows);
+    return -1;
+}
+
+int input_open_weights(input *in, PyObject *object, size_t rows) {
+    *in = (input){.held = 0};
+    if (object == Py_None) return 0;
+    if (input_open(in, object, "weights", 'd', 0)) return -1;
+    if (!input_has_rows(in, "weights", rows)) return 0;
+    input_close(in);
+    return -1;
+}
+
+void input_close(input *in) {
+    if (in->held)
+        PyBuffer_Release(&in->view);
+    else
+        free(in->data);
+    *in = (input){.held = 0};
+}

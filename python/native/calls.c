@@ -1,0 +1,215 @@
+/* Calls of the library: contexts with their locks, and what happens while a call runs.
+ *
+ * Making a context costs more than triangulating ten points, since it reads how much memory the machine has; so contexts
+ * are kept. There are as many as calls ever ran at a time. A context that another process was using when this one was
+ * forked stays busy here, and is never used again.
+ *
+ * The library calls back often. Every LOOK seconds the module takes the interpreter's lock, looks for signals, and calls
+ * the user's function. */
+#include "native.h"
+#include <time.h>
+
+static const double LOOK = 0.02;
+
+static double seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* --- contexts --- */
+
+static pooled_context *take_idle(module_state *state) {
+    PyThread_acquire_lock(state->lock, WAIT_LOCK);
+    pooled_context *context = state->contexts;
+    while (context && context->busy) context = context->next;
+    if (context) context->busy = 1;
+    PyThread_release_lock(state->lock);
+    return context;
+}
+
+pooled_context *context_take(module_state *state) {
+    pooled_context *context = take_idle(state);
+    if (context) return context;
+    context = calloc(1, sizeof *context);
+    if (!context || brio_context_new(NULL, &context->ctx) != BRIO_OK) {
+        free(context);
+        PyErr_NoMemory();
+        return NULL;
+    }
+    context->busy = 1;
+    PyThread_acquire_lock(state->lock, WAIT_LOCK);
+    context->next = state->contexts;
+    state->contexts = context;
+    PyThread_release_lock(state->lock);
+    return context;
+}
+
+static void record_free(record *r) {
+    r->release(r->object);
+    free(r);
+}
+
+/* Takes what is pending; if nothing is, the context becomes idle. */
+static record *take_pending(module_state *state, pooled_context *context) {
+    PyThread_acquire_lock(state->lock, WAIT_LOCK);
+    record *pending = context->pending;
+    context->pending = NULL;
+    if (!pending) context->busy = 0;
+    PyThread_release_lock(state->lock);
+    return pending;
+}
+
+void context_give(module_state *state, pooled_context *context) {
+    for (record *r; (r = take_pending(state, context));)
+        while (r) {
+            record *next = r->next;
+            record_free(r);
+            r = next;
+        }
+}
+
+void contexts_free(module_state *state) {
+    while (state->contexts) {
+        pooled_context *context = state->contexts;
+        state->contexts = context->next;
+        if (!context->busy) brio_context_free(context->ctx);
+        free(context);
+    }
+}
+
+/* --- calls --- */
+
+static int call_user(call *c, const char *stage, double fraction) {
+    if (c->progress == Py_None) return 0;
+    PyObject *result = PyObject_CallFunction(c->progress, "sd", stage, fraction);
+    int stop = result ? PyObject_IsTrue(result) : -1;
+    Py_XDECREF(result);
+    return stop;
+}
+
+int call_look(call *c, const char *stage, double fraction) {
+    double now = seconds();
+    if (now - c->looked < LOOK) return 0;
+    c->looked = now;
+    PyEval_RestoreThread(c->thread);
+    int stop = PyErr_CheckSignals() || call_user(c, stage, fraction);
+    c->thread = PyEval_SaveThread();
+    return stop;
+}
+
+static int look(const char *stage, double fraction, void *user) {
+    return call_look(user, stage, fraction);
+}
+
+int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
+    if (progress != Py_None && !PyCallable_Check(progress)) {
+        PyErr_SetString(PyExc_TypeError, "progress must be a function of the stage and of the share that is done");
+        return -1;
+    }
+    *c = (call){.state = state, .progress = progress, .looked = seconds()};
+    if (!(c->context = context_take(state))) return -1;
+    c->ctx = c->context->ctx;
+    brio_context_set_threads(c->ctx, threads);
+    brio_context_set_progress(c->ctx, look, c);
+    return 0;
+}
+
+static void raise(module_state *state, brio_status status, const char *sentence) {
+    PyObject *error = PyObject_CallFunction(state->make_error, "is", (int)status, sentence);
+    if (!error) return;
+    PyErr_SetObject((PyObject *)Py_TYPE(error), error);
+    Py_DECREF(error);
+}
+
+int call_end(call *c, brio_status status) {
+    return call_end_saying(c, status, brio_message(c->ctx));
+}
+
+int call_end_saying(call *c, brio_status status, const char *sentence) {
+    int failed = status != BRIO_OK || PyErr_Occurred();
+    if (failed && !PyErr_Occurred()) raise(c->state, status, sentence);
+    brio_context_set_progress(c->ctx, NULL, NULL);
+    context_give(c->state, c->context);
+    return failed ? -1 : 0;
+}
+
+/* --- handles --- */
+
+PyObject *call_end_with(call *c, brio_status status, kind what, void *object, void (*release)(void *), PyObject *base) {
+    record *r = object ? malloc(sizeof *r) : NULL;
+    if (object && !r) {
+        release(object);
+        PyErr_NoMemory();
+        object = NULL;
+    }
+    if (r) *r = (record){object, release, c->context, NULL};
+    module_state *state = c->state;
+    pooled_context *context = c->context;
+    handle *h = r && status == BRIO_OK && !PyErr_Occurred() ? PyObject_New(handle, state->handle_type) : NULL;
+    if (h) {
+        h->kind = what;
+        h->record = r;
+        h->base = base;
+        h->points_hash = 0;
+        Py_XINCREF(base);
+    } else if (r) {
+        PyThread_acquire_lock(state->lock, WAIT_LOCK);
+        r->next = context->pending;
+        context->pending = r;
+        PyThread_release_lock(state->lock);
+    }
+    if (call_end(c, status)) Py_CLEAR(h);
+    return (PyObject *)h;
+}
+
+/* Frees the record now if its context is idle, else leaves it to the call that uses the context. */
+static void drop(module_state *state, record *r) {
+    pooled_context *context = r->context;
+    PyThread_acquire_lock(state->lock, WAIT_LOCK);
+    int idle = !context->busy;
+    context->busy = 1;
+    r->next = context->pending;
+    context->pending = r;
+    PyThread_release_lock(state->lock);
+    if (idle) context_give(state, context);
+}
+
+static void handle_dealloc(PyObject *self) {
+    handle *h = (handle *)self;
+    PyTypeObject *type = Py_TYPE(self);
+    module_state *state = PyType_GetModuleState(type);
+    if (state && h->record) drop(state, h->record);
+    Py_XDECREF(h->base);
+    PyObject_Free(self);
+    Py_DECREF(type);
+}
+
+void *handle_object(module_state *state, PyObject *object, kind wanted) {
+    if (Py_TYPE(object) == state->handle_type && ((handle *)object)->kind == wanted)
+        return ((handle *)object)->record->object;
+    PyErr_SetString(PyExc_TypeError, "not an object of the library, or of another kind");
+    return NULL;
+}
+
+static uint64_t hash_of(const input *points, const input *weights) {
+    return input_hash(points) ^ (weights->data ? 3 * input_hash(weights) : 0);
+}
+
+void handle_keep_points(PyObject *object, const input *points, const input *weights) {
+    if (object) ((handle *)object)->points_hash = hash_of(points, weights);
+}
+
+int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights) {
+    if (((handle *)object)->points_hash == hash_of(points, weights)) return 0;
+    raise(state, BRIO_ERR_ARGUMENT, "the points are not those of the triangulation: they were changed since");
+    return -1;
+}
+
+static PyType_Slot handle_slots[] = {
+    {Py_tp_dealloc, handle_dealloc},
+    {Py_tp_doc, "An object of the library; brio._native has the functions that use it."},
+    {0, NULL},
+};
+PyType_Spec handle_spec = {"brio._native.Handle", sizeof(handle), 0,
+                           Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, handle_slots};

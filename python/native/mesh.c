@@ -1,0 +1,263 @@
+/* Meshes: made of arrays, shown as arrays, certified, read and written. */
+#include "mesh.h"
+#include <string.h>
+
+static void free_mesh(void *mesh) {
+    brio_mesh_free(mesh);
+}
+
+PyObject *call_end_with_mesh(call *c, brio_status status, brio_mesh *mesh) {
+    return call_end_with(c, status, KIND_MESH, mesh, free_mesh, NULL);
+}
+
+/* --- properties --- */
+
+static const char letters[] = {'b', 'B', 'h', 'H', 'i', 'I', 'f', 'd'};
+
+/* Adds a property of one number a vertex, an array of one dimension. */
+static brio_status add_property(brio_mesh *mesh, const char *name, PyObject *array) {
+    Py_buffer view;
+    void *data;
+    brio_status status = BRIO_ERR_ARGUMENT;
+    if (PyObject_GetBuffer(array, &view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT)) return status;
+    int type = 0;
+    while (type < BRIO_SCALAR_END && (view.format[1] || letters[type] != view.format[0])) type++;
+    if (type == BRIO_SCALAR_END || view.ndim != 1 || (size_t)view.shape[0] != mesh->num_vertices)
+        PyErr_Format(PyExc_ValueError, "property %s: not one number a vertex, of a type of at most 32 bits or float64",
+                     name);
+    else if ((status = brio_mesh_add_property(mesh, name, (brio_scalar)type, &data)) == BRIO_OK && view.len)
+        memcpy(data, view.buf, (size_t)view.len);
+    PyBuffer_Release(&view);
+    return status;
+}
+
+static brio_status add_properties(brio_mesh *mesh, PyObject *properties) {
+    PyObject *name, *array;
+    Py_ssize_t at = 0;
+    brio_status status = BRIO_OK;
+    while (status == BRIO_OK && PyDict_Next(properties, &at, &name, &array)) {
+        const char *text = PyUnicode_AsUTF8AndSize(name, NULL);
+        status = text ? add_property(mesh, text, array) : BRIO_ERR_ARGUMENT;
+    }
+    return status;
+}
+
+/* --- made of arrays --- */
+
+typedef struct {
+    input vertices, offsets, corners, tetrahedra, edges;
+} mesh_arrays;
+
+static void close_arrays(mesh_arrays *a) {
+    input_close(&a->vertices);
+    input_close(&a->offsets);
+    input_close(&a->corners);
+    input_close(&a->tetrahedra);
+    input_close(&a->edges);
+}
+
+static int maybe_open(input *in, PyObject *object, const char *name, char format, int columns) {
+    return object == Py_None ? 0 : input_open(in, object, name, format, columns);
+}
+
+/* The library takes offsets on trust; here they come from anybody. */
+static int offsets_are_sound(const mesh_arrays *a) {
+    const uint64_t *offset = a->offsets.data;
+    if (!a->offsets.data) return 1;
+    int sound = a->offsets.rows && offset[0] == 0;
+    for (size_t f = 1; sound && f < a->offsets.rows; f++) sound = offset[f - 1] <= offset[f];
+    if (sound && a->corners.data && offset[a->offsets.rows - 1] == a->corners.rows) return 1;
+    PyErr_SetString(PyExc_ValueError, "face_offsets: should rise from 0 to the number of face_vertices");
+    return 0;
+}
+
+static brio_status set_arrays(brio_mesh *mesh, const mesh_arrays *a) {
+    brio_status status = brio_mesh_set_vertices(mesh, a->vertices.data, a->vertices.rows);
+    if (status == BRIO_OK && a->offsets.data)
+        status = brio_mesh_set_faces(mesh, a->offsets.data, a->corners.data, a->offsets.rows - 1);
+    if (status == BRIO_OK && a->tetrahedra.data)
+        status = brio_mesh_set_tetrahedra(mesh, a->tetrahedra.data, 4, a->tetrahedra.rows);
+    if (status == BRIO_OK && a->edges.data) status = brio_mesh_set_edges(mesh, a->edges.data, a->edges.rows);
+    return status;
+}
+
+/* mesh(vertices, offsets, corners, tetrahedra, edges, properties): a mesh of copies; None for an absent part. */
+static PyObject *mesh(PyObject *module, PyObject *args) {
+    PyObject *vertices, *offsets, *corners, *tetrahedra, *edges, *properties, *result = NULL;
+    mesh_arrays a = {{.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}};
+    call c;
+    if (!PyArg_ParseTuple(args, "OOOOOO", &vertices, &offsets, &corners, &tetrahedra, &edges, &properties)) return NULL;
+    if (!PyDict_Check(properties)) {
+        PyErr_SetString(PyExc_TypeError, "properties: a dict of arrays");
+        return NULL;
+    }
+    if (!input_open(&a.vertices, vertices, "vertices", 'd', 3) &&
+        !maybe_open(&a.offsets, offsets, "face_offsets", 'L', 0) &&
+        !maybe_open(&a.corners, corners, "face_vertices", 'I', 0) &&
+        !maybe_open(&a.tetrahedra, tetrahedra, "tetrahedra", 'I', 4) && !maybe_open(&a.edges, edges, "edges", 'I', 2) &&
+        offsets_are_sound(&a) && !call_begin(&c, state_of(module), 1, Py_None)) {
+        brio_mesh *made = NULL;
+        brio_status status = brio_mesh_new(c.ctx, &made);
+        if (status == BRIO_OK) status = set_arrays(made, &a);
+        if (status == BRIO_OK) status = add_properties(made, properties);
+        result = call_end_with_mesh(&c, status, made);
+    }
+    close_arrays(&a);
+    return result;
+}
+
+/* --- shown as arrays --- */
+
+static PyObject *property_views(module_state *state, PyObject *owner, const brio_mesh *m) {
+    PyObject *dict = PyDict_New();
+    for (size_t k = 0; dict && k < m->num_properties; k++) {
+        const brio_property *p = &m->properties[k];
+        PyObject *view = array_new(state, owner, layout_of(p->data, letters[p->type], m->num_vertices, 0));
+        PyObject *name = view ? PyUnicode_DecodeUTF8(p->name, (Py_ssize_t)strlen(p->name), "replace") : NULL;
+        if (!name || PyDict_SetItem(dict, name, view)) Py_CLEAR(dict);
+        Py_XDECREF(name);
+        Py_XDECREF(view);
+    }
+    return dict;
+}
+
+static PyObject *mesh_views(PyObject *module, PyObject *object) {
+    module_state *state = state_of(module);
+    const brio_mesh *m = handle_object(state, object, KIND_MESH);
+    if (!m) return NULL;
+    size_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0;
+#define VIEW(name, format, rows, columns) #name, array_new(state, object, layout_of(m->name, format, rows, columns))
+    return Py_BuildValue("{s:N,s:N,s:N,s:N,s:N,s:N}", VIEW(vertices, 'd', m->num_vertices, 3),
+                         VIEW(face_offsets, 'L', m->face_offsets ? m->num_faces + 1 : 1, 0),
+                         VIEW(face_vertices, 'I', corners, 0), VIEW(tetrahedra, 'I', m->num_tetrahedra, 4),
+                         VIEW(edges, 'I', m->num_edges, 2), "properties", property_views(state, object, m));
+#undef VIEW
+}
+
+/* --- what is computed of a mesh --- */
+
+/* Copies the vertices and polygons of a mesh, and adds normals. */
+static brio_status with_normals(brio_context *ctx, const brio_mesh *m, brio_mesh **out) {
+    brio_status status = brio_mesh_new(ctx, out);
+    if (status == BRIO_OK) status = brio_mesh_set_vertices(*out, m->vertices, m->num_vertices);
+    if (status == BRIO_OK && m->face_offsets)
+        status = brio_mesh_set_faces(*out, m->face_offsets, m->face_vertices, m->num_faces);
+    return status == BRIO_OK ? brio_mesh_add_normals(*out) : status;
+}
+
+/* A mesh of the same vertices and polygons with the properties nx, ny, nz. */
+static PyObject *mesh_with_normals(PyObject *module, PyObject *object) {
+    call c;
+    brio_mesh *made = NULL;
+    brio_status status;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    CALL(c, status, with_normals(c.ctx, m, &made));
+    return call_end_with_mesh(&c, status, made);
+}
+
+static PyObject *certificate_dict(const brio_certificate *k) {
+    PyObject *genera = PyList_New((Py_ssize_t)k->components);
+    for (size_t n = 0; genera && n < k->components; n++)
+        PyList_SetItem(genera, (Py_ssize_t)n, PyLong_FromLongLong(k->genera[n]));
+#define COUNT(name) #name, (Py_ssize_t)k->name
+    return Py_BuildValue("{s:N,s:N,s:N,s:n,s:n,s:N,s:n,s:n,s:n,s:n,s:n,s:d,s:d}", "closed", PyBool_FromLong(k->closed),
+                         "manifold", PyBool_FromLong(k->manifold), "oriented", PyBool_FromLong(k->oriented),
+                         COUNT(components), COUNT(genus), "genera", genera, COUNT(boundary_edges),
+                         COUNT(boundary_loops), COUNT(nonmanifold_edges), COUNT(nonmanifold_vertices),
+                         COUNT(flipped_edges), "area", k->area, "volume", k->volume);
+#undef COUNT
+}
+
+static PyObject *mesh_certificate(PyObject *module, PyObject *object) {
+    call c;
+    brio_status status;
+    brio_certificate k = {.size = sizeof k};
+    PyObject *result = NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    CALL(c, status, brio_mesh_certificate(c.ctx, m, &k));
+    if (status == BRIO_OK) result = certificate_dict(&k);
+    brio_certificate_free(&k);
+    if (call_end(&c, status)) Py_CLEAR(result);
+    return result;
+}
+
+/* mesh_self_intersections(mesh, threads, progress): the number of pairs of faces. */
+static PyObject *mesh_self_intersections(PyObject *module, PyObject *args) {
+    PyObject *object, *progress;
+    int threads;
+    call c;
+    brio_status status;
+    int64_t pairs = 0;
+    if (!PyArg_ParseTuple(args, "OiO", &object, &threads, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_mesh_self_intersections(c.ctx, m, &pairs));
+    return call_end(&c, status) ? NULL : PyLong_FromLongLong(pairs);
+}
+
+/* mesh_distance(a, b, samples, seed, threads, progress): a dict. */
+static PyObject *mesh_distance(PyObject *module, PyObject *args) {
+    PyObject *first, *second, *progress;
+    int threads;
+    Py_ssize_t samples;
+    unsigned long long seed;
+    call c;
+    brio_status status;
+    brio_distance d = {.size = sizeof d};
+    if (!PyArg_ParseTuple(args, "OOnKiO", &first, &second, &samples, &seed, &threads, &progress)) return NULL;
+    const brio_mesh *a = handle_object(state_of(module), first, KIND_MESH);
+    const brio_mesh *b = a ? handle_object(state_of(module), second, KIND_MESH) : NULL;
+    if (!b || call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_mesh_distance(c.ctx, a, b, (size_t)samples, seed, &d));
+    if (call_end(&c, status)) return NULL;
+    return Py_BuildValue("{s:d,s:d,s:d,s:d,s:d,s:d}", "mean", d.mean, "rms", d.rms, "p95", d.p95, "hausdorff",
+                         d.hausdorff, "normal_consistency", d.normal_consistency, "diagonal", d.diagonal);
+}
+
+/* --- files --- */
+
+/* read(path, threads, progress): a mesh. The path is bytes. */
+static PyObject *read_mesh(PyObject *module, PyObject *args) {
+    PyObject *progress;
+    const char *path;
+    int threads;
+    call c;
+    brio_status status;
+    brio_mesh *made = NULL;
+    if (!PyArg_ParseTuple(args, "yiO", &path, &threads, &progress)) return NULL;
+    if (call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_read(c.ctx, path, BRIO_FORMAT_AUTO, &made));
+    return call_end_with_mesh(&c, status, made);
+}
+
+/* write(path, mesh, ascii, float32, comment or None, threads, progress) */
+static PyObject *write_mesh(PyObject *module, PyObject *args) {
+    PyObject *object, *progress;
+    brio_write_options o = brio_write_options_default();
+    const char *path;
+    int threads;
+    call c;
+    brio_status status;
+    if (!PyArg_ParseTuple(args, "yOppziO", &path, &object, &o.ascii, &o.float32, &o.comment, &threads, &progress))
+        return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_write(c.ctx, path, m, &o));
+    if (call_end(&c, status)) return NULL;
+    Py_RETURN_NONE;
+}
+
+PyMethodDef mesh_methods[] = {
+    {"mesh", mesh, METH_VARARGS, "mesh(vertices, offsets, corners, tetrahedra, edges, properties)"},
+    {"mesh_views", mesh_views, METH_O, "The arrays of a mesh, in a dict."},
+    {"mesh_with_normals", mesh_with_normals, METH_O, "The same surface with the properties nx, ny, nz."},
+    {"mesh_certificate", mesh_certificate, METH_O, "What the connectivity says, in a dict."},
+    {"mesh_self_intersections", mesh_self_intersections, METH_VARARGS,
+     "mesh_self_intersections(mesh, threads, progress)"},
+    {"mesh_distance", mesh_distance, METH_VARARGS, "mesh_distance(a, b, samples, seed, threads, progress)"},
+    {"read", read_mesh, METH_VARARGS, "read(path, threads, progress)"},
+    {"write", write_mesh, METH_VARARGS, "write(path, mesh, ascii, float32, comment, threads, progress)"},
+    {NULL, NULL, 0, NULL},
+};

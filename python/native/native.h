@@ -1,0 +1,158 @@
+/* What the files of the module share: its state, calls of the library, objects of the library, arrays.
+ *
+ * The module is thin: it checks types and shapes, calls one function of brio.h without the interpreter's lock, and hands
+ * out what the library made as views. Everything else is Python, in ../src/brio. It uses the limited API, so that one
+ * build serves every CPython from 3.11 on, and the buffer protocol in place of numpy's C API. */
+#ifndef BRIO_PYTHON_NATIVE_H
+#define BRIO_PYTHON_NATIVE_H
+
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <brio/brio.h>
+
+/* --- contexts --- */
+
+typedef struct record record;
+
+/** A context with its lock. A call takes an idle context, or makes one; objects stay with the context that made them.
+ *  I1  `busy`, `pending` and `next` change under module_state.lock only. `busy` is the context's lock.
+ *  I2  An object is freed by who holds `busy`: by its handle, or, where a call holds it, at the end of that call. */
+typedef struct pooled_context {
+    brio_context *ctx;
+    int busy;
+    record *pending; /* objects to be freed */
+    struct pooled_context *next;
+} pooled_context;
+
+typedef struct {
+    PyThread_type_lock lock;
+    pooled_context *contexts;
+    PyTypeObject *handle_type, *array_type;
+    PyObject *make_error; /* of status and sentence, an exception; None until errors.py has set it */
+} module_state;
+
+module_state *state_of(PyObject *module);
+
+/** Takes an idle context. Returns NULL with an exception set. */
+pooled_context *context_take(module_state *state);
+/** Gives it back, and frees what became garbage meanwhile. */
+void context_give(module_state *state, pooled_context *context);
+/** Frees the contexts when the module goes. */
+void contexts_free(module_state *state);
+
+/* --- calls of the library --- */
+
+typedef struct {
+    module_state *state;
+    pooled_context *context;
+    brio_context *ctx;
+    PyObject *progress; /* a callable, or None */
+    PyThreadState *thread;
+    double looked; /* when it last looked for signals, in seconds */
+} call;
+
+/** Begins a call: takes a context, sets its threads and its progress. Returns 0 or -1 with an exception set. */
+int call_begin(call *c, module_state *state, int threads, PyObject *progress);
+/** Runs `expression`, which uses c.ctx, without the interpreter's lock. */
+#define CALL(c, status, expression)                                                                                    \
+    do {                                                                                                               \
+        (c).thread = PyEval_SaveThread();                                                                              \
+        (status) = (expression);                                                                                       \
+        PyEval_RestoreThread((c).thread);                                                                              \
+    } while (0)
+/** Ends a call. Returns 0, or -1 with an exception set if the status is an error. */
+int call_end(call *c, brio_status status);
+/** The same with a sentence of the module's own. */
+int call_end_saying(call *c, brio_status status, const char *sentence);
+/** For loops of the module's own, without the interpreter's lock: looks for signals now and then and calls the user's
+ *  function. Returns whether to stop. */
+int call_look(call *c, const char *stage, double fraction);
+
+/* --- arrays --- */
+
+/** What a view shows: format in the notation of `struct`, sizes and strides in bytes. */
+typedef struct {
+    const void *data;
+    const char *format;
+    Py_ssize_t item;
+    int ndim;
+    Py_ssize_t shape[2], strides[2];
+} layout;
+
+/** Makes an object with a read-only buffer that keeps `base` alive; numpy.asarray makes an array of it. */
+PyObject *array_new(module_state *state, PyObject *base, layout shown);
+/** The layouts that occur: #n, or #n by columns, one after the other. */
+layout layout_of(const void *data, char format, size_t rows, size_t columns);
+extern PyType_Spec array_spec;
+
+/** An array of the caller during a call: C-contiguous, native, of the format asked for.
+ *  I1  What the library reads is a copy, made with the interpreter's lock and before any check: other threads may write to
+ *      the caller's array meanwhile, and the library trusts what it has checked.
+ *  I2  What the library writes is an array that Python has just made. */
+typedef struct {
+    void *data;
+    Py_buffer view; /* of an array to write to */
+    int held;       /* `view` is open */
+    size_t rows, columns, bytes;
+} input;
+
+/** Copies an array.   format  one letter as in `struct`: d I L B.   columns  0: of one dimension; else of two, and of that
+ *  many columns; -1: of two, and of any number of columns.   Returns 0 or -1 with an exception set. */
+int input_open(input *in, PyObject *object, const char *name, char format, int columns);
+/** Opens an array to write to. */
+int output_open(input *in, PyObject *object, const char *name, char format, int columns);
+/** Opens an array of one number a row of another, unless the object is None. */
+int input_open_weights(input *in, PyObject *object, size_t rows);
+void input_close(input *in);
+/** Returns a hash of the bytes, which tells arrays that were changed. */
+uint64_t input_hash(const input *in);
+/** Returns 0, or -1 with ValueError set unless the array has that many rows. */
+int input_has_rows(const input *in, const char *name, size_t rows);
+
+/* --- objects of the library --- */
+
+typedef enum {
+    KIND_TRIANGULATION,
+    KIND_TRIANGULATION2,
+    KIND_LOCATOR,
+    KIND_LOCATOR2,
+    KIND_INCIDENCES,
+    KIND_CELLS,
+    KIND_ALPHA,
+    KIND_MESH
+} kind;
+
+/** An object and the context that frees it. */
+struct record {
+    void *object;
+    void (*release)(void *object);
+    pooled_context *context;
+    record *next;
+};
+
+typedef struct {
+    PyObject_HEAD kind kind;
+    record *record;
+    PyObject *base;       /* an object that this one reads, or NULL */
+    uint64_t points_hash; /* of a triangulation: of the points and weights that it was made of */
+} handle;
+
+/** Ends the call and makes a handle of what it made. Frees the object if the handle cannot be made. */
+PyObject *call_end_with(call *c, brio_status status, kind what, void *object, void (*release)(void *), PyObject *base);
+/** Returns the object of a handle of that kind, or NULL with TypeError set. */
+void *handle_object(module_state *state, PyObject *object, kind kind);
+/** Keeps the hash of the points (and weights) that a triangulation was made of; NULL is accepted. */
+void handle_keep_points(PyObject *object, const input *points, const input *weights);
+/** Returns 0, or -1 with an exception set if these are not the points that it was made of. A triangulation with other
+ *  points than its own would lead the library astray. */
+int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights);
+extern PyType_Spec handle_spec;
+
+/* --- the functions of the module, by file --- */
+
+extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
+    mesh_methods[], surface_methods[], alpha_methods[];
+
+#endif

@@ -1,0 +1,236 @@
+/* Convex hulls, surfaces of samples, medial axes, offsets, and normals of points. */
+#include "mesh.h"
+
+/* --- options: read from a dict, by name --- */
+
+typedef enum { INT, DOUBLE, SIZE, SEED } option_type;
+
+typedef struct {
+    const char *name;
+    option_type type;
+    void *field;
+} option;
+
+static void set_option(const option *o, PyObject *value) {
+    switch (o->type) {
+    case INT:
+        *(int *)o->field = (int)PyLong_AsLong(value);
+        break;
+    case DOUBLE:
+        *(double *)o->field = PyFloat_AsDouble(value);
+        break;
+    case SIZE:
+        *(size_t *)o->field = PyLong_AsSize_t(value);
+        break;
+    case SEED:
+        *(uint64_t *)o->field = PyLong_AsUnsignedLongLong(value);
+        break;
+    }
+}
+
+/* Sets the options that the dict names. Returns 0, or -1 with an exception set; a name that is not there is an error. */
+static int set_options(const option *options, PyObject *dict) {
+    PyObject *name, *value;
+    Py_ssize_t at = 0;
+    while (PyDict_Next(dict, &at, &name, &value)) {
+        const option *o = options;
+        while (o->name && PyUnicode_CompareWithASCIIString(name, o->name)) o++;
+        if (!o->name) {
+            PyErr_Format(PyExc_TypeError, "this method has no option %R", name);
+            return -1;
+        }
+        set_option(o, value);
+        if (PyErr_Occurred()) return -1;
+    }
+    return 0;
+}
+
+/* --- a call: (points, options, ..., threads, progress) --- */
+
+typedef struct {
+    PyObject *points, *options, *extra, *progress;
+    int threads;
+    double number;
+    input p, out;
+} surface_call;
+
+/* Reads (points, options, number, extra or None, threads, progress). `extra` is an array to write, of `columns`. */
+static int open_surface_call(surface_call *s, PyObject *args, char format, int columns) {
+    s->p = s->out = (input){.held = 0};
+    if (!PyArg_ParseTuple(args, "OO!dOiO", &s->points, &PyDict_Type, &s->options, &s->number, &s->extra, &s->threads,
+                          &s->progress))
+        return -1;
+    if (input_open(&s->p, s->points, "points", 'd', 3)) return -1;
+    if (s->extra == Py_None) return 0;
+    if (output_open(&s->out, s->extra, "out", format, columns)) return -1;
+    return input_has_rows(&s->out, "out", s->p.rows);
+}
+
+static void close_surface_call(surface_call *s) {
+    input_close(&s->p);
+    input_close(&s->out);
+}
+
+/* --- methods --- */
+
+/* Fields that every method with poles has. */
+#define POLE_OPTIONS(o)                                                                                                \
+    {"seed", SEED, &(o).seed}, {"labeling", INT, &(o).poles.labeling}, {"noise", INT, &(o).poles.noise},               \
+        {"sampling_density", DOUBLE, &(o).poles.sampling_density}, {                                                   \
+        "sharp", INT, &(o).poles.sharp                                                                                 \
+    }
+
+/* Begins the call, runs `expression` with `o`, the options that `table` names, and makes a handle of `mesh`. */
+#define RUN_SURFACE(table, expression)                                                                                 \
+    do {                                                                                                               \
+        if (!set_options(table, s.options) && !call_begin(&c, state_of(module), s.threads, s.progress)) {              \
+            CALL(c, status, expression);                                                                               \
+            result = call_end_with_mesh(&c, status, mesh);                                                             \
+        }                                                                                                              \
+    } while (0)
+
+static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    const option table[] = {
+        {"seed", SEED, &o.seed},   {"noise", INT, &o.noise},       {"confidence", INT, &o.confidence},
+        {"open", DOUBLE, &o.open}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, 'I', 0))
+        RUN_SURFACE(table, brio_labeled_delaunay(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
+    close_surface_call(&s);
+    return result;
+}
+
+static PyObject *power_crust(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    brio_power_crust_options o = brio_power_crust_options_default();
+    const option table[] = {POLE_OPTIONS(o),
+                            {"triangulate", INT, &o.triangulate},
+                            {"simplify", INT, &o.simplify},
+                            {"open", DOUBLE, &o.open},
+                            {NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, 'd', 3))
+        RUN_SURFACE(table, brio_power_crust(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
+    close_surface_call(&s);
+    return result;
+}
+
+static PyObject *offset_surface(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    brio_offset_surface_options o = brio_offset_surface_options_default();
+    const option table[] = {
+        POLE_OPTIONS(o), {"triangulate", INT, &o.triangulate}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, 'd', 3))
+        RUN_SURFACE(table, brio_offset_surface(c.ctx, s.p.data, s.p.rows, s.number, &o, &mesh, NULL));
+    close_surface_call(&s);
+    return result;
+}
+
+static PyObject *power_shape(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    brio_power_shape_options o = brio_power_shape_options_default();
+    const option table[] = {POLE_OPTIONS(o),
+                            {"sides", INT, &o.sides},
+                            {"scale", DOUBLE, &o.scale},
+                            {"redundancy", DOUBLE, &o.redundancy},
+                            {NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, 'd', 3))
+        RUN_SURFACE(table, brio_power_shape(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL, NULL));
+    close_surface_call(&s);
+    return result;
+}
+
+static PyObject *cocone(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    brio_cocone_options o = brio_cocone_options_default();
+    const option table[] = {{"seed", SEED, &o.seed},
+                            {"theta", DOUBLE, &o.theta},
+                            {"tight", INT, &o.tight},
+                            {"boundaries", INT, &o.boundaries},
+                            {"density", INT, &o.density},
+                            {"pieces", SIZE, &o.pieces},
+                            {"extraction", INT, &o.extraction},
+                            {NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, 'd', 3))
+        RUN_SURFACE(table, brio_cocone(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
+    close_surface_call(&s);
+    return result;
+}
+
+/* Of options: polygons. The extra array receives the point of each vertex. */
+static PyObject *convex_hull(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    brio_convex_hull_options o = brio_convex_hull_options_default();
+    const option table[] = {{"polygons", INT, &o.polygons}, {NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, 'I', 0)) {
+        o.samples = s.out.data;
+        RUN_SURFACE(table, brio_convex_hull(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
+    }
+    close_surface_call(&s);
+    return result;
+}
+
+/* --- normals --- */
+
+/* point_normals(points, mesh, samples or None, out, threads, progress) */
+static PyObject *point_normals(PyObject *module, PyObject *args) {
+    PyObject *points, *object, *samples, *array, *progress;
+    int threads, failed = -1;
+    input p, out = {.held = 0}, of = {.held = 0};
+    call c;
+    if (!PyArg_ParseTuple(args, "OOOOiO", &points, &object, &samples, &array, &threads, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || input_open(&p, points, "points", 'd', 3)) return NULL;
+    size_t rows = samples == Py_None ? p.rows : m->num_vertices; /* without samples, vertex v is point v */
+    if (!output_open(&out, array, "out", 'd', 3) && !input_has_rows(&out, "out", p.rows) &&
+        (samples == Py_None ||
+         (!input_open(&of, samples, "samples", 'I', 0) && !input_has_rows(&of, "samples", rows))) &&
+        !call_begin(&c, state_of(module), threads, progress)) {
+        brio_status status;
+        CALL(c, status, brio_point_normals(c.ctx, p.data, p.rows, m, of.data, out.data));
+        failed = call_end(&c, status);
+    }
+    input_close(&p);
+    input_close(&out);
+    input_close(&of);
+    if (failed) return NULL;
+    Py_RETURN_NONE;
+}
+
+#define SURFACE(name, what)                                                                                            \
+    { #name, name, METH_VARARGS, #name "(points, options, number, out, threads, progress): " what }
+
+PyMethodDef surface_methods[] = {
+    SURFACE(labeled_delaunay, "a mesh; out: the sample of each vertex."),
+    SURFACE(power_crust, "a mesh; out: normals of the points."),
+    SURFACE(offset_surface, "a mesh; number: the distance."),
+    SURFACE(power_shape, "a mesh."),
+    SURFACE(cocone, "a mesh."),
+    SURFACE(convex_hull, "a mesh; out: the point of each vertex."),
+    {"point_normals", point_normals, METH_VARARGS, "point_normals(points, mesh, samples, out, threads, progress)"},
+    {NULL, NULL, 0, NULL},
+};

@@ -1,0 +1,73 @@
+"""Arrays of the caller, as the library takes them: C-contiguous float64 is taken as it is, all else is converted."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import ArgumentError
+
+Floats = NDArray[np.float64]
+
+
+def as_array(values: Any) -> NDArray[Any]:
+    """Takes arrays, lists, DataFrames, tensors, and what speaks DLPack."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise ArgumentError("masked arrays are not taken: leave the masked rows out")
+    if hasattr(values, "detach"):  # a tensor, maybe one that records gradients, maybe on another device
+        values = values.detach()
+        values = values.cpu() if hasattr(values, "cpu") else values
+    if hasattr(values, "__dlpack__") and not hasattr(values, "__array__"):
+        return np.from_dlpack(values)
+    return np.asarray(values)
+
+
+def as_floats(values: Any, name: str) -> Floats:
+    """Returns a C-contiguous array of float64; without a copy if `values` is one."""
+    if type(values) is np.ndarray and values.dtype == np.float64 and values.flags.c_contiguous and values.dtype.isnative:
+        return values
+    try:
+        array = as_array(values)
+        if array.dtype.kind not in "biufO":
+            raise ArgumentError(f"{name}: numbers are wanted, not {array.dtype}")
+        return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+    except ArgumentError:
+        raise
+    except (TypeError, ValueError, BufferError, RuntimeError) as error:
+        raise ArgumentError(f"{name}: not an array of numbers: {error}") from error
+
+
+def as_rows(values: Any, name: str, columns: tuple[int, ...] = (3,)) -> Floats:
+    """Returns an array of rows of so many numbers."""
+    rows = as_floats(values, name)
+    if rows.ndim != 2 or rows.shape[1] not in columns:
+        wanted = " or ".join(f"n by {k}" for k in columns)
+        raise ArgumentError(f"{name}: an array of shape {wanted} is wanted, not of shape {rows.shape}")
+    return rows
+
+
+def as_weights(weights: Any, count: int) -> Floats | None:
+    """Returns one number a point, or None."""
+    if weights is None:
+        return None
+    array = as_floats(weights, "weights")
+    if array.shape != (count,):
+        raise ArgumentError(f"weights: an array of shape ({count},) is wanted, one a point, not of shape {array.shape}")
+    return array
+
+
+def as_queries(xi: Any, columns: int) -> tuple[Floats, tuple[int, ...]]:
+    """Returns positions as rows, and the shape of the answers: that of `xi` without its last axis."""
+    if as_array(xi).ndim == 0:
+        raise IndexError("xi: a position is an array of coordinates, not a number")
+    array = as_floats(xi, "xi")
+    if array.shape[-1] != columns:
+        raise ArgumentError(f"xi: positions of {columns} coordinates are wanted, along the last axis, "
+                            f"not an array of shape {array.shape}")
+    return array.reshape(-1, columns), array.shape[:-1]
+
+
+def frozen(array: NDArray[Any]) -> NDArray[Any]:
+    """Makes an array read-only."""
+    array.flags.writeable = False
+    return array

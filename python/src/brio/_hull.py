@@ -1,0 +1,184 @@
+"""Convex hulls, under scipy's names."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _calls, _native
+from ._arrays import Floats, as_rows
+from ._calls import Progress
+from ._scipy import other_class
+from .errors import NoAnswerError
+
+Ints = NDArray[np.int32]
+
+
+class ConvexHull:
+    """The convex hull of points in the plane or in space, exactly.
+
+    Vertices are the strictly extreme points. Names, shapes and types are those of ``scipy.spatial.ConvexHull``. In space,
+    facets of more than three vertices are fans of triangles with one equation; ``polygons`` has them as they are.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3)
+    threads, progress, incremental, qhull_options, fallback
+        As for Delaunay.
+
+    Attributes
+    ----------
+    vertices : ndarray of int32, shape (nvertices,)
+        Indices of points; counterclockwise in the plane, ascending in space.
+    simplices : ndarray of int32, shape (nfacet, ndim)
+        Edges, or triangles, counterclockwise seen from outside.
+    neighbors : ndarray of int32, shape (nfacet, ndim)
+        The simplex on the other side of each vertex.
+    equations : ndarray of float64, shape (nfacet, ndim + 1)
+        Unit normals to the outside, and offsets.
+    volume, area : float
+        In the plane, the area and the perimeter.
+    polygon_offsets, polygon_vertices : ndarray
+        Facet f has the vertices ``polygon_vertices[polygon_offsets[f]:polygon_offsets[f + 1]]``; in space only.
+
+    Examples
+    --------
+    >>> import brio
+    >>> hull = brio.ConvexHull([[0, 0], [2, 0], [2, 1], [0, 1], [1, 0], [1, 0.5]])
+    >>> hull.vertices.tolist(), hull.volume, hull.area
+    ([0, 1, 2, 3], 2.0, 6.0)
+    """
+
+    points: Floats
+    vertices: Ints
+    simplices: Ints
+    neighbors: Ints
+    equations: Floats
+    volume: float
+    area: float
+    polygon_offsets: NDArray[np.int64]
+    polygon_vertices: Ints
+
+    def __new__(cls, points: Any, *, fallback: str | None = None, **options: Any) -> Any:
+        scipys: dict[str, Any] = {key: options[key] for key in ("incremental", "qhull_options") if key in options}
+        other = other_class("ConvexHull", points, fallback, scipys)
+        return object.__new__(cls) if other is None else other
+
+    def __init__(self, points: Any, *, incremental: bool = False, qhull_options: str | None = None, threads: int = 0,
+                 progress: bool | Progress | None = None, fallback: str | None = None) -> None:
+        self.threads, self.progress, self._closed = threads, progress, False
+        self.good = None
+        self._build(as_rows(points, "points", (2, 3)))
+
+    def _build(self, points: Floats) -> None:
+        d = points.shape[1]
+        space = points if d == 3 else np.column_stack([points, np.zeros(len(points))])
+        samples = np.empty(len(points), np.uint32)
+
+        def hull(p: Floats, w: None, threads: int, report: Any) -> Any:
+            return _native.convex_hull(p, {"polygons": 1}, 0.0, samples, threads, report)
+
+        views = _native.mesh_views(_calls.of_points(hull, space, None, self.threads, self.progress))
+        offsets = np.asarray(views["face_offsets"]).astype(np.int64)
+        corners = samples[np.asarray(views["face_vertices"])].astype(np.int32)
+        if len(offsets) < (2 if d == 2 else 5):
+            raise NoAnswerError(f"the points have no hull with an inside: they lie in a flat of dimension below {d}")
+        kept = {"threads": self.threads, "progress": self.progress, "_closed": self._closed, "good": None}
+        self.__dict__.clear()
+        self.__dict__.update(kept, points=points, polygon_offsets=offsets, polygon_vertices=corners)
+        if d == 2:
+            self.vertices = corners
+            self._set_edges()
+        else:
+            self.vertices = samples[: len(np.asarray(views["vertices"]))].astype(np.int32)
+            self._set_triangles()
+
+    # --- in the plane ---
+
+    def _set_edges(self) -> None:
+        count = len(self.vertices)
+        self.simplices = np.stack([self.vertices, np.roll(self.vertices, -1)], axis=1)
+        order = np.arange(count, dtype=np.int32)
+        self.neighbors = np.stack([np.roll(order, -1), np.roll(order, 1)], axis=1)
+        start, end = self.points[self.simplices[:, 0]], self.points[self.simplices[:, 1]]
+        along = end - start
+        lengths = np.hypot(along[:, 0], along[:, 1])
+        normals = np.stack([along[:, 1], -along[:, 0]], axis=1) / lengths[:, None]
+        self.equations = np.column_stack([normals, -(normals * start).sum(axis=1)])
+        self.area = float(lengths.sum())
+        a, b = start - self.points[self.vertices[0]], end - self.points[self.vertices[0]]
+        self.volume = float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2)
+
+    # --- in space ---
+
+    def _set_triangles(self) -> None:
+        offsets, corners = self.polygon_offsets, self.polygon_vertices
+        sizes = np.diff(offsets) - 2
+        facet = np.repeat(np.arange(len(sizes)), sizes)
+        first = offsets[:-1][facet]
+        step = np.arange(len(facet)) - np.repeat(np.cumsum(sizes) - sizes, sizes) + 1
+        self.simplices = np.stack([corners[first], corners[first + step], corners[first + step + 1]], axis=1)
+        self.neighbors = _neighbors(self.simplices)
+        corner = self.points[self.simplices]
+        twice = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        sums = np.stack([np.bincount(facet, twice[:, k]) for k in range(3)], axis=1)
+        sizes_of = np.linalg.norm(sums, axis=1)
+        normals = (sums / sizes_of[:, None])[facet]
+        self.equations = np.column_stack([normals, -(normals * corner[:, 0]).sum(axis=1)])
+        self.area = float(sizes_of.sum() / 2)
+        self.volume = float(((corner[:, 0] - self.points[self.vertices[0]]) * twice).sum() / 6)
+
+    @property
+    def polygons(self) -> list[list[int]]:
+        """The facets as lists of points, counterclockwise seen from outside."""
+        flat, ends = self.polygon_vertices.tolist(), self.polygon_offsets.tolist()
+        return [flat[i:j] for i, j in zip(ends[:-1], ends[1:])]
+
+    # --- sizes ---
+
+    @property
+    def ndim(self) -> int:
+        return int(self.points.shape[1])
+
+    @property
+    def npoints(self) -> int:
+        return len(self.points)
+
+    @property
+    def nsimplex(self) -> int:
+        return len(self.simplices)
+
+    @cached_property
+    def coplanar(self) -> Ints:
+        """scipy lists points here only if Qhull is asked to: there are none."""
+        return np.empty((0, 3), np.int32)
+
+    @property
+    def min_bound(self) -> Floats:
+        return self.points.min(axis=0)  # type: ignore[no-any-return]
+
+    @property
+    def max_bound(self) -> Floats:
+        return self.points.max(axis=0)  # type: ignore[no-any-return]
+
+    def add_points(self, points: Any, restart: bool = False) -> None:
+        """Adds points and builds the hull again, from all points."""
+        if self._closed:
+            raise RuntimeError("the hull is closed: it takes no more points")
+        self._build(np.concatenate([self.points, as_rows(points, "points", (self.ndim,))]))
+
+    def close(self) -> None:
+        """Ends the adding of points."""
+        self._closed = True
+
+
+def _neighbors(triangles: Ints) -> Ints:
+    """The triangle beyond the edge opposite to each corner, in a closed oriented surface."""
+    edges = triangles[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2).astype(np.int64)
+    width = int(triangles.max()) + 1
+    there = edges[:, 0] * width + edges[:, 1]
+    back = edges[:, 1] * width + edges[:, 0]
+    order = np.argsort(there)
+    mate = order[np.searchsorted(there, back, sorter=order)]
+    return (mate // 3).reshape(-1, 3).astype(np.int32)

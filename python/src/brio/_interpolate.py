@@ -1,0 +1,155 @@
+"""Interpolation of values at scattered points, under scipy's names."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._arrays import Floats, as_array, as_floats
+from ._delaunay import Delaunay
+from .errors import ArgumentError
+
+_NATURAL, _LINEAR = 0, 1
+
+
+def coordinates(args: Any, ndim: int | None = None) -> Floats:
+    """Takes positions as one array, or as a tuple of arrays of their coordinates, as scipy does."""
+    if isinstance(args, tuple) and len(args) == 1:
+        args = args[0]
+    if isinstance(args, tuple):
+        parts = np.broadcast_arrays(*[as_floats(part, "xi") for part in args])
+        return np.stack(parts, axis=-1)
+    array = as_floats(args, "xi")
+    if array.ndim == 1:
+        array = array.reshape(-1, 1) if ndim is None else array.reshape(-1, ndim)
+    return array
+
+
+class _Interpolator:
+    """What both methods share."""
+
+    _method = _LINEAR
+
+    def __init__(self, points: Any, values: Any, fill_value: complex = np.nan, rescale: bool = False, *,
+                 threads: int = 0) -> None:
+        self.threads = threads
+        self.offset: Floats | None = None
+        self.scale: Floats | None = None
+        if isinstance(points, Delaunay):
+            if rescale:
+                raise ArgumentError("Rescaling is not supported when passing a Delaunay triangulation as ``points``.")
+            self.tri = points
+        else:
+            rows = coordinates(points)
+            if rescale:
+                self.offset, self.scale = rows.mean(axis=0), np.ptp(rows, axis=0)
+                self.scale[~(self.scale > 0)] = 1
+                rows = (rows - self.offset) / self.scale
+            self.tri = Delaunay(rows, threads=threads)
+        self.points = self.tri.points
+        self._set_values(values, fill_value)
+
+    def _set_values(self, values: Any, fill_value: complex) -> None:
+        array = as_array(values)
+        if array.ndim == 0 or len(array) != self.tri.npoints:
+            raise ArgumentError(f"values: one row a point is wanted: {self.tri.npoints}, not an array of shape {array.shape}")
+        self.is_complex = array.dtype.kind == "c"
+        self.values_shape = array.shape[1:]
+        flat = array.reshape(len(array), -1)
+        if self.is_complex:
+            flat = np.concatenate([flat.real, flat.imag], axis=1)
+        self.values = np.ascontiguousarray(flat, dtype=np.float64)
+        self.fill_value = complex(fill_value) if self.is_complex else float(np.real(fill_value))
+
+    def __call__(self, *args: Any) -> NDArray[Any]:
+        """Interpolates at positions: an array of shape (..., ndim), or an array for each coordinate.
+
+        Returns
+        -------
+        ndarray, shape (...) and then that of a value
+            `fill_value` outside of the hull.
+        """
+        xi = coordinates(args, self.tri.ndim)
+        if xi.shape[-1] != self.tri.ndim:
+            raise ArgumentError(f"number of dimensions in xi does not match x: {xi.shape[-1]} and {self.tri.ndim}")
+        rows = np.ascontiguousarray(xi.reshape(-1, self.tri.ndim))
+        if self.offset is not None and self.scale is not None:
+            rows = (rows - self.offset) / self.scale
+        finite: NDArray[np.bool_] = np.asarray(np.isfinite(rows).all(axis=1))
+        out = np.full((len(rows), self.values.shape[1]), np.nan)
+        inside = finite.copy()
+        if finite.all():
+            self._interpolate(rows, out)
+        else:
+            some = np.empty((int(finite.sum()), out.shape[1]))
+            self._interpolate(rows[finite], some)
+            out[finite] = some
+        if not np.isnan(self.fill_value):
+            inside[finite] = self.tri.find_simplex(rows[finite]) >= 0
+            out[~inside] = np.nan
+        return self._shaped(out, inside).reshape(xi.shape[:-1] + self.values_shape)
+
+    def _interpolate(self, rows: Floats, out: Floats) -> None:
+        if self.tri.ndim == 2:
+            _native.interpolate2(self.tri._locator, rows, self.values, int(self._method == _NATURAL), out, None)
+        else:
+            _native.interpolate(self.tri._locator, rows, self.values, self._method, self.tri.npoints, out,
+                                self.threads, None)
+
+    def _shaped(self, out: Floats, inside: NDArray[np.bool_]) -> NDArray[Any]:
+        half = out.shape[1] // 2
+        result: NDArray[Any] = out[:, :half] + 1j * out[:, half:] if self.is_complex else out
+        if not np.isnan(self.fill_value):
+            result[~inside] = self.fill_value
+        return result
+
+
+class LinearNDInterpolator(_Interpolator):
+    """Linear interpolation in the triangles or tetrahedra of scattered points.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3); a tuple of arrays of coordinates; or a Delaunay
+    values : array_like, shape (n, ...)
+        Real or complex.
+    fill_value : number
+        For positions outside of the hull.
+    rescale : bool
+        Scales the points to a unit box first.
+    threads : int
+
+    Examples
+    --------
+    >>> import brio
+    >>> height = brio.LinearNDInterpolator([[0, 0], [1, 0], [0, 1], [1, 1]], [0, 1, 1, 2])
+    >>> height([[0.25, 0.5], [2, 2]]).tolist()
+    [0.75, nan]
+    """
+
+    _method = _LINEAR
+
+
+class NaturalNeighbourInterpolator(_Interpolator):
+    """Sibson's interpolation by natural neighbours: smooth except at the points.
+
+    Parameters
+    ----------
+    points, values, fill_value, rescale, threads
+        As for LinearNDInterpolator; a Delaunay must have no weights.
+
+    Examples
+    --------
+    >>> import brio
+    >>> height = brio.NaturalNeighbourInterpolator([[0, 0], [2, 0], [0, 2], [2, 2], [1, 1]], [0, 0, 0, 0, 1])
+    >>> round(float(height(1.5, 1)), 6)
+    0.5
+    """
+
+    _method = _NATURAL
+
+    def __init__(self, points: Any, values: Any, fill_value: complex = np.nan, rescale: bool = False, *,
+                 threads: int = 0) -> None:
+        if isinstance(points, Delaunay) and points.weights is not None:
+            raise ArgumentError("natural neighbours are those of points without weights")
+        super().__init__(points, values, fill_value, rescale, threads=threads)

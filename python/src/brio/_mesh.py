@@ -1,0 +1,318 @@
+"""Meshes: vertices with polygons, tetrahedra, edges, and properties of the vertices."""
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._arrays import Floats, as_array, as_rows, frozen
+from ._calls import Progress, reporting
+from .errors import ArgumentError
+
+Indices = NDArray[np.uint32]
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What the connectivity of a mesh's polygons says about the surface.
+
+    ``closed``: every edge has two faces. ``manifold``: no edge has more, and the faces at a vertex form one fan.
+    ``oriented``: the two faces of an edge run along it in opposite directions. ``genera`` has the genus of each component,
+    that with the most faces first. ``volume`` is positive if faces are seen counterclockwise from outside.
+    """
+
+    closed: bool
+    manifold: bool
+    oriented: bool
+    components: int
+    genus: int
+    genera: list[int]
+    boundary_edges: int
+    boundary_loops: int
+    nonmanifold_edges: int
+    nonmanifold_vertices: int
+    flipped_edges: int
+    area: float
+    volume: float
+
+
+@dataclass(frozen=True)
+class Distance:
+    """Distances between two surfaces, in the unit of the coordinates."""
+
+    mean: float
+    rms: float
+    p95: float
+    hausdorff: float
+    normal_consistency: float
+    diagonal: float
+
+
+def as_indices(values: Any, name: str, columns: int) -> Indices:
+    """Returns rows of indices as the library takes them."""
+    array = as_array(values)
+    if array.ndim != 2 or array.shape[1] != columns or array.dtype.kind not in "iu":
+        raise ArgumentError(f"{name}: rows of {columns} indices are wanted, not {array.dtype} of shape {array.shape}")
+    if array.size and (array.min() < 0 or array.max() >= 2**32 - 1):
+        raise ArgumentError(f"{name}: an index is out of range")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def as_polygons(faces: Any) -> tuple[NDArray[np.uint64], Indices]:
+    """Returns offsets and corners of triangles, of rows of k corners, or of a list of polygons."""
+    try:
+        array = as_array(faces)
+    except ValueError:  # polygons of several sizes
+        array = np.empty(0, object)
+    if array.ndim == 2 and array.dtype.kind in "iu":
+        k = array.shape[1]
+        return np.arange(0, k * len(array) + 1, k, dtype=np.uint64), as_indices(array, "faces", k).ravel()
+    corners = [as_indices([list(face)], "faces", len(face)) for face in faces]
+    offsets = np.zeros(len(corners) + 1, np.uint64)
+    np.cumsum([c.shape[1] for c in corners], out=offsets[1:])
+    return offsets, np.concatenate([c.ravel() for c in corners]) if corners else np.empty(0, np.uint32)
+
+
+class Mesh:
+    """Points, polygons, tetrahedra or edges over them, and properties of the points.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+    faces : array_like of int, shape (m, k), or a list of polygons, optional
+    tetrahedra : array_like of int, shape (t, 4), optional
+    edges : array_like of int, shape (e, 2), optional
+    properties : dict of arrays, optional
+        Each with one row a vertex.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, shape (n, 3)
+    faces : ndarray of uint32, shape (m, 3)
+        Triangles; polygons are cut into fans.
+    face_offsets, face_vertices : ndarray
+        The polygons: f has the vertices ``face_vertices[face_offsets[f]:face_offsets[f + 1]]``.
+    tetrahedra : ndarray of uint32, shape (t, 4)
+    edges : ndarray of uint32, shape (e, 2)
+        Edges of their own, such as those of a medial axis.
+    properties : dict of ndarray
+    normals : ndarray of float64, shape (n, 3)
+        Of the vertices; 0 where there are no faces.
+    certificate : Certificate
+
+    Examples
+    --------
+    >>> import brio
+    >>> tetrahedron = brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    ...                         [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    >>> tetrahedron.certificate.closed, round(tetrahedron.certificate.volume, 6)
+    (True, 0.166667)
+    """
+
+    _handle: Any
+
+    def __init__(self, vertices: Any, faces: Any = None, *, tetrahedra: Any = None, edges: Any = None,
+                 properties: dict[str, Any] | None = None) -> None:
+        rows = as_rows(vertices, "vertices")
+        offsets, corners = (None, None) if faces is None else as_polygons(faces)
+        tets = None if tetrahedra is None else as_indices(tetrahedra, "tetrahedra", 4)
+        ends = None if edges is None else as_indices(edges, "edges", 2)
+        for name, indices in (("faces", corners), ("tetrahedra", tets), ("edges", ends)):
+            if indices is not None and indices.size and indices.max() >= len(rows):
+                raise ArgumentError(f"{name}: there is no vertex {indices.max()}; there are {len(rows)}",
+                                    np.flatnonzero(indices.ravel() >= len(rows)))
+        self._take(_native.mesh(rows, offsets, corners, tets, ends, {}))
+        for name, values in (properties or {}).items():
+            self.properties[name] = self._as_property(name, values)
+
+    @classmethod
+    def _of(cls, handle: Any) -> Any:
+        """Makes an object of what the library made."""
+        mesh = cls.__new__(cls)
+        mesh._take(handle)
+        return mesh
+
+    def _take(self, handle: Any) -> None:
+        views = _native.mesh_views(handle)
+        self._handle = handle
+        self.vertices: Floats = np.asarray(views["vertices"])
+        self.face_offsets: NDArray[np.uint64] = np.asarray(views["face_offsets"])
+        self.face_vertices: Indices = np.asarray(views["face_vertices"])
+        self.tetrahedra: Indices = np.asarray(views["tetrahedra"])
+        self.edges: Indices = np.asarray(views["edges"])
+        self.properties: dict[str, NDArray[Any]] = {k: np.asarray(v) for k, v in views["properties"].items()}
+
+    def _as_property(self, name: str, values: Any) -> NDArray[Any]:
+        array = as_array(values)
+        if array.ndim == 0 or len(array) != len(self.vertices):
+            raise ArgumentError(f"property {name}: one row a vertex is wanted, {len(self.vertices)}, not {array.shape}")
+        return array
+
+    @property
+    def polygons(self) -> list[list[int]]:
+        """The faces as lists of vertices."""
+        flat, ends = self.face_vertices.tolist(), self.face_offsets.tolist()
+        return [flat[i:j] for i, j in zip(ends[:-1], ends[1:])]
+
+    @cached_property
+    def faces(self) -> Indices:
+        if len(self.face_offsets) == 1:
+            return np.empty((0, 3), np.uint32)
+        sizes = np.diff(self.face_offsets).astype(np.int64)
+        if (sizes == 3).all():
+            return self.face_vertices.reshape(-1, 3)
+        count = np.maximum(sizes - 2, 0)
+        first = np.repeat(self.face_offsets[:-1].astype(np.int64), count)
+        step = np.arange(len(first)) - np.repeat(np.cumsum(count) - count, count) + 1
+        corners = [self.face_vertices[first], self.face_vertices[first + step], self.face_vertices[first + step + 1]]
+        return frozen(np.stack(corners, axis=1))
+
+    @cached_property
+    def normals(self) -> Floats:
+        views = _native.mesh_views(_native.mesh_with_normals(self._handle))["properties"]
+        return frozen(np.stack([np.asarray(views[name]).astype(np.float64) for name in ("nx", "ny", "nz")], axis=1))
+
+    @cached_property
+    def certificate(self) -> Certificate:
+        return Certificate(**_native.mesh_certificate(self._handle))
+
+    def self_intersections(self, *, threads: int = 0, progress: bool | Progress | None = None) -> int:
+        """Counts, exactly, the pairs of faces that meet in more than common corners and edges."""
+        with reporting(progress) as report:
+            pairs: int = _native.mesh_self_intersections(self._handle, threads, report)
+        return pairs
+
+    def distance(self, other: "Mesh", *, samples: int = 0, seed: int = 1, threads: int = 0,
+                 progress: bool | Progress | None = None) -> Distance:
+        """Compares two surfaces by random points on each (0: 100,000) and their exact distances from the other."""
+        with reporting(progress) as report:
+            return Distance(**_native.mesh_distance(self._handle, other._handle, samples, seed, threads, report))
+
+    def write(self, path: str | os.PathLike[str], *, ascii: bool = False, float32: bool = False,
+              comment: str | None = None, progress: bool | Progress | None = None) -> None:
+        """Writes a file, in the format of its extension; see docs/formats.md for what each keeps."""
+        faces = self.face_offsets if len(self.face_offsets) > 1 else None
+        handle = _native.mesh(self.vertices, faces, None if faces is None else self.face_vertices,
+                              self.tetrahedra if len(self.tetrahedra) else None, self.edges if len(self.edges) else None,
+                              _scalars(self.properties))
+        with reporting(progress) as report:
+            _native.write(os.fsencode(path), handle, ascii, float32, comment, 0, report)
+
+    # --- for other packages, none of which is needed otherwise ---
+
+    def to_trimesh(self) -> Any:
+        """Returns a trimesh.Trimesh or, without faces, a trimesh.PointCloud."""
+        import trimesh
+
+        if not len(self.faces):
+            return trimesh.PointCloud(np.array(self.vertices))
+        attributes = {name: np.array(values) for name, values in self.properties.items()}
+        return trimesh.Trimesh(np.array(self.vertices), self.faces.astype(np.int64), process=False,
+                               vertex_attributes=attributes)
+
+    def to_open3d(self) -> Any:
+        """Returns an open3d.geometry.TriangleMesh or, without faces, a PointCloud."""
+        import open3d
+
+        vertices = open3d.utility.Vector3dVector(np.array(self.vertices))
+        if not len(self.faces):
+            return open3d.geometry.PointCloud(vertices)
+        mesh = open3d.geometry.TriangleMesh(vertices, open3d.utility.Vector3iVector(self.faces.astype(np.int32)))
+        mesh.vertex_normals = open3d.utility.Vector3dVector(np.array(self.normals))
+        return mesh
+
+    def to_pyvista(self) -> Any:
+        """Returns a pyvista.UnstructuredGrid of tetrahedra if there are some, else a pyvista.PolyData."""
+        import pyvista
+
+        if len(self.tetrahedra):
+            out = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.tetrahedra.astype(np.int64)},
+                                           np.array(self.vertices))
+        elif len(self.faces):
+            sizes = np.diff(self.face_offsets).astype(np.int64)
+            cells = np.insert(self.face_vertices.astype(np.int64), self.face_offsets[:-1].astype(np.int64), sizes)
+            out = pyvista.PolyData(np.array(self.vertices), cells)
+        else:
+            out = pyvista.PolyData(np.array(self.vertices))
+        for name, values in self.properties.items():
+            out.point_data[name] = np.array(values)
+        return out
+
+    def to_meshio(self) -> Any:
+        """Returns a meshio.Mesh."""
+        import meshio
+
+        sizes = np.diff(self.face_offsets).astype(np.int64)
+        cells = []
+        for k in np.unique(sizes):
+            starts = self.face_offsets[:-1][sizes == k].astype(np.int64)
+            rows = self.face_vertices[starts[:, None] + np.arange(k)].astype(np.int64)
+            cells.append(({3: "triangle", 4: "quad"}.get(int(k), "polygon"), rows))
+        for kind, rows in (("tetra", self.tetrahedra), ("line", self.edges)):
+            if len(rows):
+                cells.append((kind, rows.astype(np.int64)))
+        if not cells:
+            cells = [("vertex", np.arange(len(self.vertices)).reshape(-1, 1))]
+        data = {name: np.array(values) for name, values in self.properties.items()}
+        return meshio.Mesh(np.array(self.vertices), cells, point_data=data)
+
+    def __repr__(self) -> str:
+        parts = [f"{len(self.vertices)} vertices"]
+        for count, name in ((len(self.face_offsets) - 1, "faces"), (len(self.tetrahedra), "tetrahedra"),
+                            (len(self.edges), "edges")):
+            if count:
+                parts.append(f"{count} {name}")
+        return f"<brio.{type(self).__name__}: {', '.join(parts)}>"
+
+
+def _scalars(properties: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Properties as files take them: one number each, of a type of PLY. Rows of numbers become several properties."""
+    out: dict[str, NDArray[Any]] = {}
+    for name, values in properties.items():
+        flat = values.reshape(len(values), -1)
+        for k in range(flat.shape[1]):
+            out[name if values.ndim == 1 else f"{name}_{k}"] = _scalar(flat[:, k], name)
+    return out
+
+
+def _scalar(column: NDArray[Any], name: str) -> NDArray[Any]:
+    if column.dtype.kind == "b":
+        return np.ascontiguousarray(column, np.uint8)
+    if column.dtype.kind in "iu" and column.dtype.itemsize == 8:
+        small = np.int32 if not len(column) or (-(2**31) <= column.min() and column.max() < 2**31) else np.float64
+        return np.ascontiguousarray(column, small)
+    if column.dtype.kind == "f" and column.dtype.itemsize == 2:
+        return np.ascontiguousarray(column, np.float32)
+    if column.dtype.kind not in "iuf":
+        raise ArgumentError(f"property {name}: files take numbers, not {column.dtype}")
+    return np.ascontiguousarray(column, column.dtype.newbyteorder("="))
+
+
+def read(path: str | os.PathLike[str], *, threads: int = 0, progress: bool | Progress | None = None) -> Mesh:
+    """Reads a file of points or of a mesh: PLY, XYZ, OBJ, OFF, VTU, LAS, LAZ, PCD, STL, NPY and others.
+
+    Returns
+    -------
+    Mesh
+        Without faces if the file has points alone.
+
+    Examples
+    --------
+    >>> import brio, os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "three.ply")
+    >>> brio.write(path, [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    >>> brio.read(path)
+    <brio.Mesh: 3 vertices>
+    """
+    with reporting(progress) as report:
+        mesh: Mesh = Mesh._of(_native.read(os.fsencode(path), threads, report))
+    return mesh
+
+
+def write(path: str | os.PathLike[str], mesh: Any, **options: Any) -> None:
+    """Writes a Mesh, or an array of points, in the format of the file's extension; options as for Mesh.write."""
+    (mesh if isinstance(mesh, Mesh) else Mesh(mesh)).write(path, **options)

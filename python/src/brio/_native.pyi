@@ -1,0 +1,9 @@
+from collections.abc import Callable
+from typing import Any
+
+version: str
+
+class Handle: ...
+class Array: ...
+
+def __getattr__(name: str) -> Callable[..., Any]: ...

@@ -1,0 +1,228 @@
+"""Surfaces of samples, and what comes with them: medial axes, offsets, normals of points."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _calls, _native
+from ._arrays import Floats, as_rows
+from ._calls import Progress
+from ._delaunay import _FIND_NEAREST, Delaunay
+from ._mesh import Mesh
+from .errors import ArgumentError
+
+_NOISE = {"auto": 0, "keep": 1, "smooth": 2}
+_LABELING = {"global": 0, "greedy": 1, "naive": 2, "theoretical": 3}
+_EXTRACTION = {"labels": 0, "candidates": 1, "pruned": 2, "walk": 3}
+_SIDES = {"inner": 0, "outer": 1, "both": 2}
+_NAMES = {"noise": _NOISE, "labeling": _LABELING, "extraction": _EXTRACTION, "sides": _SIDES}
+
+
+class Surface(Mesh):
+    """A surface of samples: a Mesh, and
+
+    Attributes
+    ----------
+    points : ndarray of float64, shape (n, 3)
+        The samples.
+    samples : ndarray of int64, shape (nvertices,), or None
+        The sample that each vertex is, maybe moved; None where vertices are no samples.
+    """
+
+    points: Floats
+    samples: NDArray[np.int64] | None = None
+
+
+def _options(options: dict[str, Any]) -> dict[str, Any]:
+    """Options as the module takes them: names become numbers."""
+    out = dict(options)
+    for key, names in _NAMES.items():
+        value = out.get(key)
+        if isinstance(value, str):
+            if value not in names:
+                raise ArgumentError(f"{key}: one of {', '.join(names)}, not {value!r}")
+            out[key] = names[value]
+    return out
+
+
+def _run(function: Any, points: Floats, options: dict[str, Any], number: float, out: NDArray[Any] | None, threads: int,
+         progress: bool | Progress | None) -> Surface:
+    def call(p: Floats, w: None, t: int, report: Any) -> Any:
+        return function(p, _options(options), number, out, t, report)
+
+    surface: Surface = Surface._of(_calls.of_points(call, points, None, threads, progress))
+    surface.points = points
+    return surface
+
+
+def _split(points: Any) -> tuple[Floats, dict[str, Any]]:
+    """Positions, and the properties of a Mesh."""
+    if isinstance(points, Mesh):
+        return points.vertices, points.properties
+    return as_rows(points, "points"), {}
+
+
+def reconstruct(points: Any, method: str = "labeled-delaunay", *, attributes: dict[str, Any] | None = None,
+                threads: int = 0, progress: bool | Progress | None = None, **options: Any) -> Surface:
+    """Reconstructs a surface from samples of it.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3), or Mesh
+    method : str
+        "labeled-delaunay" (default): a closed, manifold, oriented surface of triangles of the samples; options `noise`
+        ("auto", "keep", "smooth"), `open`, `confidence`, `simplify`, `seed`.
+        "power-crust": closed, manifold, oriented, of polygons; options `noise`, `open`, `sharp`, `sampling_density`,
+        `labeling`, `triangulate`, `simplify`, `seed`.
+        "cocone": triangles of the samples, maybe open; options `theta`, `boundaries`, `density`, `pieces`,
+        `extraction`, `seed`. "tight-cocone": the same, closed.
+        The options are those of ``brio.h``.
+    attributes : dict of arrays, optional
+        Each with one row a point; carried to the vertices as properties. Those of a Mesh are carried anyway. A vertex that
+        is no sample has the attributes of the nearest one.
+
+    Returns
+    -------
+    Surface
+        A Mesh with `points` and `samples`; `certificate` says what it is.
+
+    Examples
+    --------
+    >>> import brio, numpy as np
+    >>> rng = np.random.default_rng(1)
+    >>> ball = rng.normal(size=(1000, 3))
+    >>> ball /= np.linalg.norm(ball, axis=1)[:, None]
+    >>> surface = brio.reconstruct(ball)
+    >>> surface.certificate.closed, surface.certificate.genus
+    (True, 0)
+    """
+    rows, carried = _split(points)
+    name = method.replace("_", "-")
+    if name == "labeled-delaunay":
+        samples = np.empty(len(rows), np.uint32)
+        surface = _run(_native.labeled_delaunay, rows, options, 0.0, samples, threads, progress)
+        surface.samples = samples[: len(surface.vertices)].astype(np.int64)
+    elif name == "power-crust":
+        surface = _run(_native.power_crust, rows, options, 0.0, None, threads, progress)
+    elif name in ("cocone", "tight-cocone"):
+        tight = {"tight": 1} if name == "tight-cocone" else {}
+        surface = _run(_native.cocone, rows, {**options, **tight}, 0.0, None, threads, progress)
+        surface.samples = np.arange(len(rows))
+    else:
+        raise ArgumentError(f"method: labeled-delaunay, power-crust, cocone or tight-cocone, not {method!r}")
+    _carry(surface, {**carried, **(attributes or {})}, threads)
+    return surface
+
+
+def _carry(surface: Surface, attributes: dict[str, Any], threads: int) -> None:
+    """Gives the vertices the attributes of their samples."""
+    if not attributes:
+        return
+    of = surface.samples if surface.samples is not None else _nearest(surface.points, surface.vertices, threads)
+    for name, values in attributes.items():
+        array = np.asarray(values)
+        if array.ndim == 0 or len(array) != len(surface.points):
+            raise ArgumentError(f"attribute {name}: one row a point is wanted, {len(surface.points)}, not {array.shape}")
+        surface.properties[name] = array[of]
+
+
+def _nearest(points: Floats, queries: Floats, threads: int) -> NDArray[np.int32]:
+    out = np.empty((len(queries), 1), np.int32)
+    _native.locate(Delaunay(points, threads=threads)._locator, np.ascontiguousarray(queries), _FIND_NEAREST, out, threads, None)
+    return out[:, 0]
+
+
+def oriented_normals(points: Any, method: str = "labeled-delaunay", *, threads: int = 0,
+                     progress: bool | Progress | None = None, **options: Any) -> Floats:
+    """Finds the unit normals of samples, which point out of the surface through them.
+
+    Parameters
+    ----------
+    points, method, options
+        As for reconstruct.
+
+    Returns
+    -------
+    ndarray of float64, shape (n, 3)
+
+    Examples
+    --------
+    >>> import brio, numpy as np
+    >>> rng = np.random.default_rng(1)
+    >>> ball = rng.normal(size=(1000, 3))
+    >>> ball /= np.linalg.norm(ball, axis=1)[:, None]
+    >>> normals = brio.oriented_normals(ball)
+    >>> bool(((normals * ball).sum(axis=1) > 0.9).all())
+    True
+    """
+    rows, _ = _split(points)
+    normals = np.empty((len(rows), 3))
+    if method.replace("_", "-") == "power-crust":
+        _run(_native.power_crust, rows, options, 0.0, normals, threads, progress)
+        return normals
+    surface = reconstruct(rows, method, threads=threads, progress=progress, **options)
+    samples = None if surface.samples is None else surface.samples.astype(np.uint32)
+    _native.point_normals(rows, surface._handle, samples, normals, threads, None)
+    return normals
+
+
+def offset(points: Any, distance: float, *, threads: int = 0, progress: bool | Progress | None = None,
+           **options: Any) -> Surface:
+    """Computes the surface at `distance` outside the power crust of samples; inside it for a negative distance.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3), or Mesh
+    distance : float
+        In the unit of the points.
+    options
+        Those of "power-crust" without `open`.
+
+    Returns
+    -------
+    Surface
+        Closed, manifold and oriented.
+
+    Examples
+    --------
+    >>> import brio, numpy as np
+    >>> rng = np.random.default_rng(1)
+    >>> ball = rng.normal(size=(1000, 3))
+    >>> ball /= np.linalg.norm(ball, axis=1)[:, None]
+    >>> far = np.linalg.norm(brio.offset(ball, 0.5).vertices, axis=1)
+    >>> bool(abs(far - 1.5).max() < 0.05)
+    True
+    """
+    rows, _ = _split(points)
+    return _run(_native.offset_surface, rows, options, float(distance), None, threads, progress)
+
+
+def medial_axis(points: Any, *, sides: str = "inner", threads: int = 0, progress: bool | Progress | None = None,
+                **options: Any) -> Surface:
+    """Approximates the medial axis of a sampled surface: the power shape of the samples' poles.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3), or Mesh
+    sides : "inner", "outer" or "both"
+    options
+        `scale` and `redundancy` simplify; `noise`, `labeling`, `sharp`, `sampling_density`, `seed`.
+
+    Returns
+    -------
+    Surface
+        Vertices with the properties "radius" and "side" (-1 inner, 1 outer), `edges`, `faces` and `tetrahedra`.
+
+    Examples
+    --------
+    >>> import brio, numpy as np
+    >>> rng = np.random.default_rng(1)
+    >>> ball = rng.normal(size=(1000, 3))
+    >>> ball /= np.linalg.norm(ball, axis=1)[:, None]
+    >>> axis = brio.medial_axis(ball)
+    >>> bool(abs(axis.properties["radius"] - 1).max() < 0.1)
+    True
+    """
+    rows, _ = _split(points)
+    return _run(_native.power_shape, rows, {**options, "sides": sides}, 0.0, None, threads, progress)

@@ -1,0 +1,255 @@
+"""Voronoi and power diagrams, under scipy's names and as arrays."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _calls, _geometry, _native
+from ._arrays import Floats, as_floats, as_rows, as_weights
+from ._calls import Progress
+from ._delaunay import Delaunay
+from ._scipy import other_class
+from .errors import ArgumentError, NoAnswerError
+
+Ints = NDArray[np.int64]
+Lists = list[list[int]]
+
+
+def as_lists(offsets: NDArray[Any], items: NDArray[Any]) -> Lists:
+    """Returns the lists that offsets and items stand for."""
+    flat, ends = items.tolist(), offsets.tolist()
+    return [flat[i:j] for i, j in zip(ends[:-1], ends[1:])]
+
+
+class Voronoi:
+    """The Voronoi diagram of points in the plane or in space or, with weights, the power diagram.
+
+    Vertices that rounding alone would tell apart are one vertex: that is decided exactly. Names and the use of -1 are
+    those of ``scipy.spatial.Voronoi``.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2) or (n, 3)
+    weights : array_like, shape (n,), optional
+    box : array_like, shape (2, 3) or (6,), optional
+        Low and high corner of a box that clips the cells; in space only.
+    threads, progress, incremental, furthest_site, qhull_options, fallback
+        As for Delaunay.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, shape (nvertices, ndim)
+    ridge_points : ndarray of int32, shape (nridges, 2)
+        The two points that each ridge lies between.
+    ridge_vertices : list of lists of int
+        The vertices of each ridge, in order; -1 first where the ridge is unbounded.
+    regions : list of lists of int
+        The vertices of each region, -1 where it is unbounded. Region 0 is empty, as scipy's point at infinity.
+        In the plane, vertices are in counterclockwise order.
+    point_region : ndarray of int64, shape (npoints,)
+        The region of each point; a point without one has that of the vertex that represents it.
+    ridge_offsets, ridge_items, region_offsets, region_items : ndarray of int64
+        The same lists as arrays: ridge k is ``ridge_items[ridge_offsets[k]:ridge_offsets[k + 1]]``.
+    volumes : ndarray of float64, shape (npoints,)
+        Of each point's cell (in the plane: areas); infinite for unbounded cells, 0 for points without a cell.
+
+    Examples
+    --------
+    >>> import brio
+    >>> vor = brio.Voronoi([[x, y] for x in range(3) for y in range(3)])
+    >>> sorted(vor.vertices.tolist())
+    [[0.5, 0.5], [0.5, 1.5], [1.5, 0.5], [1.5, 1.5]]
+    >>> len(vor.regions[vor.point_region[4]])
+    4
+    >>> float(vor.volumes[4])
+    1.0
+    """
+
+    points: Floats
+    weights: Floats | None
+    vertices: Floats
+    ridge_points: NDArray[np.int32]
+    cells: dict[str, Any]
+
+    def __new__(cls, points: Any, weights: Any = None, *, fallback: str | None = None, **options: Any) -> Any:
+        wanted = ("furthest_site", "incremental", "qhull_options")
+        scipys: dict[str, Any] = {key: options[key] for key in wanted if key in options}
+        other = other_class("Voronoi", points, fallback, scipys)
+        return object.__new__(cls) if other is None else other
+
+    def __init__(self, points: Any, weights: Any = None, *, box: Any = None, threads: int = 0,
+                 progress: bool | Progress | None = None, furthest_site: bool = False, incremental: bool = False,
+                 qhull_options: str | None = None, fallback: str | None = None) -> None:
+        rows = as_rows(points, "points", (2, 3))
+        self.threads, self.progress, self.furthest_site, self._closed = threads, progress, False, False
+        self._empty = 0 if qhull_options is not None and "Qz" not in str(qhull_options).split() else 1
+        self.box: Floats | None = None
+        if box is not None:
+            self.box = as_floats(box, "box").ravel()
+            if rows.shape[1] == 2 or self.box.shape != (6,):
+                raise ArgumentError("box: low and high corner, 6 numbers, of points in space")
+        self._build(rows, as_weights(weights, len(rows)))
+
+    def _build(self, points: Floats, weights: Floats | None) -> None:
+        self.__dict__.update(points=points, weights=weights)
+        for name in ("regions", "ridge_vertices", "volumes"):
+            self.__dict__.pop(name, None)
+        (self._build_plane if points.shape[1] == 2 else self._build_space)(points, weights)
+
+    # --- in the plane: the dual of the triangulation ---
+
+    def _build_plane(self, points: Floats, weights: Floats | None) -> None:
+        tri = Delaunay(points, weights, threads=self.threads, progress=self.progress)
+        if tri.facts["dimension"] < 2:
+            raise NoAnswerError("points on a line have no Voronoi vertices")
+        classes = np.empty(tri.nsimplex, np.uint32)
+        count = _native.circles(tri._handle, points, weights, classes)
+        _, first = np.unique(classes, return_index=True)
+        self.vertices = _centres(points, weights, tri.simplices[first[:count]])
+        self._set_ridges_plane(tri, classes)
+        offsets = np.empty(len(points) + 1, np.int64)
+        items = np.empty(3 * tri.nsimplex + tri.facts["hull"], np.int64)
+        own = np.where(tri.representatives == np.arange(len(points)), tri.vertex_to_simplex, -1).astype(np.int32)
+        _native.regions(tri._handle, classes, own, offsets, items)
+        self._set_regions(tri.representatives, np.flatnonzero(own >= 0), np.diff(offsets)[own >= 0], items[: offsets[-1]])
+
+    def _set_ridges_plane(self, tri: Delaunay, classes: NDArray[np.uint32]) -> None:
+        simplex = np.repeat(np.arange(tri.nsimplex), 3)
+        beyond = tri.neighbors.ravel()
+        ends = tri.simplices[:, [1, 2, 2, 0, 0, 1]].reshape(-1, 2)
+        here = classes[simplex].astype(np.int64)
+        there = np.where(beyond < 0, -1, classes[beyond].astype(np.int64))
+        wanted = ((beyond < simplex) | (beyond < 0)) & (here != there)
+        self.ridge_points = ends[wanted].astype(np.int32)
+        self.ridge_items = np.stack([there[wanted], here[wanted]], axis=1).ravel()
+        self.ridge_offsets = 2 * np.arange(len(self.ridge_points) + 1)
+
+    # --- in space: the library's cells ---
+
+    def _build_space(self, points: Floats, weights: Floats | None) -> None:
+        tri = Delaunay(points, weights, threads=self.threads, progress=self.progress)
+
+        def cells(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
+            return _native.cells(tri._handle, p, w, self.box, None, threads, report)
+
+        raw = _calls.of_points(cells, points, weights, self.threads, self.progress)
+        self.cells = {name: part if isinstance(part, float) else np.asarray(part) for name, part in raw.items()}
+        c = self.cells
+        self.vertices = c["vertices"]
+        corners = np.diff(c["corner_offsets"]).astype(np.int64)
+        face_cell = np.repeat(np.arange(len(c["site"])), np.diff(c["face_offsets"]).astype(np.int64))
+        owner = c["site"][face_cell].astype(np.int64)
+        wanted = owner < c["face_neighbours"]
+        self._set_ridges_space(np.stack([owner, c["face_neighbours"]], axis=1), corners, wanted)
+        self._set_regions_space(tri, face_cell, corners)
+
+    def _set_ridges_space(self, pairs: Ints, corners: Ints, wanted: NDArray[np.bool_]) -> None:
+        open_face = np.isinf(self.cells["face_areas"])[wanted]
+        items = self.cells["face_vertices"][np.repeat(wanted, corners)].astype(np.int64)
+        counts = corners[wanted]
+        starts = np.concatenate([[0], np.cumsum(counts)])
+        self.ridge_points = pairs[wanted].astype(np.int32)
+        self.ridge_items = np.insert(items, starts[:-1][open_face], -1)
+        self.ridge_offsets = np.concatenate([[0], np.cumsum(counts + open_face)])
+
+    def _set_regions_space(self, tri: Delaunay, face_cell: Ints, corners: Ints) -> None:
+        c = self.cells
+        vertex = c["face_vertices"].astype(np.int64)
+        cell = np.repeat(face_cell, corners)
+        unbounded = np.flatnonzero(~c["bounded"])
+        cell, vertex = np.concatenate([cell, unbounded]), np.concatenate([vertex, np.full(len(unbounded), -1)])
+        width = len(self.vertices) + 1
+        cell, vertex = np.divmod(np.unique(cell * width + vertex + 1), width)
+        self._set_regions(tri.representatives, c["site"].astype(np.int64), np.bincount(cell, minlength=len(c["site"])), vertex - 1)
+
+    # --- both ---
+
+    def _set_regions(self, representatives: NDArray[Any], sites: Ints, counts: Ints, items: Ints) -> None:
+        """Region 0 is empty; then come those of the sites."""
+        region = np.full(len(self.points), -1, np.int64)
+        region[sites] = np.arange(self._empty, self._empty + len(sites))
+        self.point_region = region[representatives]
+        self.region_offsets = np.concatenate([np.zeros(self._empty + 1, np.int64), np.cumsum(counts)])
+        self.region_items = items
+
+    @cached_property
+    def regions(self) -> Lists:
+        return as_lists(self.region_offsets, self.region_items)
+
+    @cached_property
+    def ridge_vertices(self) -> Lists:
+        return as_lists(self.ridge_offsets, self.ridge_items)
+
+    @property
+    def ridge_dict(self) -> dict[tuple[int, int], list[int]]:
+        """The vertices of the ridge between two points, by the pair of points."""
+        return {(p, q): v for (p, q), v in zip(self.ridge_points.tolist(), self.ridge_vertices)}
+
+    @cached_property
+    def volumes(self) -> Floats:
+        out = np.zeros(len(self.points))
+        if self.ndim == 3:
+            out[self.cells["site"]] = self.cells["volume"]
+            return out
+        areas = _areas(self.vertices, self.region_offsets, self.region_items)
+        sites = np.unique(self.point_region, return_index=True)[1]
+        out[sites] = areas[self.point_region[sites]]
+        return out
+
+    @property
+    def ndim(self) -> int:
+        return int(self.points.shape[1])
+
+    @property
+    def npoints(self) -> int:
+        return len(self.points)
+
+    @property
+    def min_bound(self) -> Floats:
+        return self.points.min(axis=0)  # type: ignore[no-any-return]
+
+    @property
+    def max_bound(self) -> Floats:
+        return self.points.max(axis=0)  # type: ignore[no-any-return]
+
+    def add_points(self, points: Any, restart: bool = False, weights: Any = None) -> None:
+        """Adds points and builds the diagram again, from all points."""
+        if self._closed:
+            raise RuntimeError("the diagram is closed: it takes no more points")
+        rows = as_rows(points, "points", (self.ndim,))
+        added = as_weights(weights, len(rows))
+        if (added is None) != (self.weights is None):
+            raise ArgumentError("either all points have weights, or none has")
+        both = None if added is None or self.weights is None else np.concatenate([self.weights, added])
+        self._build(np.concatenate([self.points, rows]), both)
+
+    def close(self) -> None:
+        """Ends the adding of points."""
+        self._closed = True
+
+
+def _centres(points: Floats, weights: Floats | None, simplices: NDArray[Any]) -> Floats:
+    """Circumcentres, or orthocentres, of triangles."""
+    edges = _geometry.edges_from(points, simplices, 0)
+    rise = (edges**2).sum(axis=2)
+    if weights is not None:
+        rise = rise - weights[simplices[:, 1:]] + weights[simplices[:, :1]]
+    columns, det = _geometry.cofactors(edges)
+    with np.errstate(all="ignore"):
+        centres: Floats = points[simplices[:, 0]] + np.einsum("sk,ski->si", rise / 2, columns) / det[:, None]
+    return centres
+
+
+def _areas(vertices: Floats, offsets: Ints, items: Ints) -> Floats:
+    """Areas of polygons; infinite for those with -1."""
+    region = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+    following = np.arange(1, len(items) + 1)
+    ends = offsets[1:][np.diff(offsets) > 0] - 1
+    following[ends] = offsets[:-1][np.diff(offsets) > 0]
+    origin = vertices[items[offsets[:-1][region]]]
+    a, b = vertices[items] - origin, vertices[items[following]] - origin
+    areas: Floats = np.bincount(region, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2, minlength=len(offsets) - 1).astype(np.float64)
+    areas[region[items < 0]] = np.inf
+    return areas

@@ -1,0 +1,362 @@
+"""Nothing that a program can do from Python crashes the interpreter. Each test runs in a process of its own."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+HOSTILE = r"""
+import random, sys, warnings
+import numpy as np
+import brio
+from brio import _native
+
+warnings.simplefilter("ignore")
+draw = random.Random(int(sys.argv[1]))
+calls = int(sys.argv[2])
+
+
+def numbers():
+    n, d = draw.choice([0, 1, 2, 3, 4, 5, 8, 20, 50]), draw.choice([1, 2, 3, 2, 3, 2, 3, 4])
+    kind = draw.randrange(7)
+    rng = np.random.default_rng(draw.randrange(10**6))
+    if kind == 0:
+        return rng.random((n, d))
+    if kind == 1:
+        return rng.integers(0, 3, (n, d)).astype(float)
+    if kind == 2:
+        return rng.choice([0, 1, -1, 1e-300, 1e300, 1.7e308, -1.7e308, 5e-324], (n, d))
+    if kind == 3:
+        return rng.choice([0, 1, np.nan, np.inf, -np.inf], (n, d))
+    if kind == 4:
+        return rng.random((n, d))[::-1]
+    if kind == 5:
+        return np.asfortranarray(rng.random((n, d)).astype(draw.choice([">f8", "f4", "f2", "i8", "u1", "c16"])))
+    return np.lib.stride_tricks.as_strided(rng.random((n + 1) * d), (n, d), (8, 8))
+
+
+class Odd:
+    def __array__(self, *args, **options):
+        raise draw.choice([ValueError("no"), KeyError("no"), RuntimeError("no")])
+
+    def __len__(self):
+        return 10**9
+
+    def __call__(self, *args):
+        raise ZeroDivisionError
+
+
+def thing():
+    odd = [None, 0, -1, 1.5, "text", b"bytes", [], [[]], [[1, 2], [3]], {}, object(), Odd(), [None] * 3, float("nan"), 2**70,
+           -2**70, np.zeros((0, 3)), np.zeros((3, 0)), np.zeros((2, 3, 4)), np.array(5), np.array([object()] * 4),
+           np.ma.masked_all((4, 3)), memoryview(b"123"), range(5), np.zeros((5, 3), "f8,f8"), np.zeros(4, "U3"), True, Ellipsis]
+    return numbers() if draw.random() < 0.6 else draw.choice(odd)
+
+
+def objects():
+    p = np.random.default_rng(draw.randrange(1000)).random((draw.choice([4, 20, 60]), draw.choice([2, 3])))
+    out = [brio.Delaunay(p), brio.Voronoi(p), brio.ConvexHull(p), brio.LinearNDInterpolator(p, p[:, 0]),
+           brio.NaturalNeighbourInterpolator(p, p), brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])]
+    if p.shape[1] == 3:
+        out.append(brio.alpha_complex(p))
+    return out
+
+
+NAMES = [name for name in brio.__all__ if name[0] != "_" and name not in ("errors", "write", "read")]
+NATIVE = [name for name in dir(_native) if callable(getattr(_native, name)) and name not in ("set_make_error", "read", "write")]
+alive, handles, outcomes = objects(), [], {}
+
+
+def attempt():
+    global alive
+    kind = draw.randrange(10)
+    if kind < 3:
+        arguments = [thing() for _ in range(draw.randrange(1, 4))]
+        options = draw.choice([{}, {"threads": draw.choice([0, 1, 2, -5, 10**6])}, {"progress": thing()}, {"weights": thing()}])
+        return getattr(brio, draw.choice(NAMES))(*arguments, **options)
+    if kind < 7:
+        target = draw.choice(alive)
+        name = draw.choice([n for n in dir(type(target)) if not n.startswith("__")] or ["close"])
+        value = getattr(target, name)
+        return value(*[thing() for _ in range(draw.randrange(0, 3))]) if callable(value) else value
+    if kind < 9:
+        pool = handles + [thing() for _ in range(4)]
+        return getattr(_native, draw.choice(NATIVE))(*[draw.choice(pool) for _ in range(draw.randrange(0, 8))])
+    alive = objects()
+    handles[:] = [t._handle for t in alive if hasattr(t, "_handle")] + [np.empty((9, 3), np.int32), np.empty(9), 0, 1, None]
+    return setattr(draw.choice(alive), draw.choice(["points", "weights", "_handle", "values", "simplices"]), thing())
+
+
+for n in range(calls):
+    try:
+        attempt()
+        outcome = "fine"
+    except (KeyboardInterrupt, SystemExit):
+        raise
+    except Exception as error:
+        outcome = type(error).__name__
+    outcomes[outcome] = outcomes.get(outcome, 0) + 1
+print(sum(outcomes.values()), outcomes)
+"""
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_hostile_calls(alone, seed):
+    calls = 2500
+    out = alone(HOSTILE, str(seed), str(calls), timeout=300)
+    assert out.startswith("%d " % calls) and "SystemError" not in out
+
+
+CHANGED = r"""
+import threading, time
+import numpy as np
+import brio
+
+stop = False
+
+
+def change(points):
+    rng = np.random.default_rng(1)
+    while not stop:
+        k = rng.integers(0, len(points), 50)
+        points[k] = rng.random((50, points.shape[1])) if rng.random() < 0.9 else rng.choice([0, 1, 0.5], (50, points.shape[1]))
+
+
+fine = refused = 0
+for d in 2, 3:
+    for n in 300, 5000:
+        points, stop = np.random.default_rng(2).random((n, d)), False
+        thread = threading.Thread(target=change, args=(points,))
+        thread.start()
+        end = time.monotonic() + 1.5
+        while time.monotonic() < end:
+            tri = brio.Delaunay(points)
+            for call in (lambda: tri.find_simplex(points), tri.verify, lambda: brio.ConvexHull(points),
+                         lambda: brio.LinearNDInterpolator(tri, points)(points)):
+                try:
+                    call()
+                    fine += 1
+                except brio.ArgumentError:
+                    refused += 1
+        stop = True
+        thread.join()
+print(fine > 0, refused > 0)
+"""
+
+
+def test_arrays_that_another_thread_changes(alone):
+    assert alone(CHANGED).split() == ["True", "True"]
+
+
+FORK = r"""
+import os, threading, numpy as np, brio
+
+points = np.random.default_rng(1).random((30000, 3))
+first = brio.Delaunay(points, threads=2)
+busy = threading.Thread(target=lambda: [brio.Delaunay(points, threads=2) for _ in range(6)])
+busy.start()
+children = []
+for _ in range(4):
+    child = os.fork()
+    if not child:
+        assert brio.Delaunay(points, threads=2).checksum == first.checksum
+        assert first.find_simplex(points[:100]).min() >= 0
+        del first
+        os._exit(0)
+    children.append(child)
+busy.join()
+print(all(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0 for child in children))
+"""
+
+
+def test_fork_while_a_call_runs(alone):
+    assert alone(FORK, timeout=100).strip() == "True"
+
+
+POOL = r"""
+import multiprocessing, numpy as np, brio
+
+def total(seed):
+    return brio.Delaunay(np.random.default_rng(seed).random((5000, 3)), threads=2).checksum
+
+if __name__ == "__main__":
+    wanted = [total(k) for k in range(4)]
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        print(pool.map(total, range(4)) == wanted)
+"""
+
+
+def test_processes_of_multiprocessing(alone):
+    assert alone(POOL).strip() == "True"
+
+
+SUBINTERPRETER = r"""
+try:
+    import _interpreters as interpreters
+except ImportError:
+    import _xxsubinterpreters as interpreters
+import brio, numpy as np
+from brio import _native
+
+brio.Delaunay(np.random.default_rng(1).random((100, 3)))
+for _ in range(3):
+    other = interpreters.create()
+    try:
+        # numpy may refuse to be loaded by an interpreter that is not the first; the module itself must not mind.
+        interpreters.run_string(other, '''
+import importlib.util, array
+spec = importlib.util.spec_from_file_location("brio._native", %r)
+native = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(native)
+native.set_make_error(lambda status, sentence: RuntimeError(sentence))
+points = memoryview(array.array("d", [0, 0, 1, 0, 0, 1])).cast("B").cast("d", (3, 2))
+t = native.delaunay2(points, None, 0, None)
+assert native.triangulation_facts(t)["simplices"] == 1
+assert sorted(memoryview(native.triangulation_view(t, 0)).tolist()[0]) == [0, 1, 2]
+''' % _native.__file__)
+    finally:
+        interpreters.destroy(other)
+brio.Delaunay(np.random.default_rng(1).random((100, 3))).verify()
+print("done")
+"""
+
+
+def test_other_interpreters(alone):
+    assert alone(SUBINTERPRETER).strip().endswith("done")
+
+
+INTERRUPT = r"""
+import signal, sys, time, numpy as np, brio
+
+rng = np.random.default_rng(1)
+tri, ball = brio.Delaunay(rng.random((1000, 3))), rng.normal(size=(100_000, 3))
+flat = brio.Delaunay(rng.random((1000, 2)))
+ball /= np.linalg.norm(ball, axis=1)[:, None]
+space, plane = rng.random((1_000_000, 3)), rng.random((2_000_000, 2))
+many, surface = rng.random((4_000_000, 3)), brio.reconstruct(ball[:2000])
+WORKS = {
+    "delaunay": lambda: brio.Delaunay(space, threads=1), "plane": lambda: brio.Delaunay(plane),
+    "labeled": lambda: brio.reconstruct(ball, threads=1), "crust": lambda: brio.reconstruct(ball, "power-crust", threads=1),
+    "voronoi": lambda: brio.Voronoi(space, threads=1), "alpha": lambda: brio.alpha_complex(space, threads=1),
+    "locate": lambda: tri._locate(many), "natural": lambda: brio.NaturalNeighbourInterpolator(tri, ball[:1000])(many),
+    "natural2": lambda: brio.NaturalNeighbourInterpolator(flat, ball[:1000])(plane),
+}
+signal.signal(signal.SIGPROF, signal.default_int_handler)
+worst = 0
+for after in 0.1, 0.37:
+    begin = time.process_time()
+    signal.setitimer(signal.ITIMER_PROF, after)
+    try:
+        WORKS[sys.argv[1]]()
+        raise SystemExit("ended after %g s" % (time.process_time() - begin))
+    except KeyboardInterrupt:
+        worst = max(worst, time.process_time() - begin - after)
+print(worst)
+"""
+
+
+@pytest.mark.parametrize("work", ["delaunay", "plane", "labeled", "crust", "voronoi", "alpha", "locate", "natural", "natural2"])
+def test_interrupt(alone, work):
+    """A signal ends a call within 0.2 s of the process's processor time, wherever in the call it comes."""
+    assert float(alone(INTERRUPT, work)) < 0.2
+
+
+def test_ctrl_c():
+    program = """
+import numpy as np, brio
+points = np.random.default_rng(1).random((4_000_000, 3))
+print("ready", flush=True)
+try:
+    brio.Delaunay(points)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
+    process = subprocess.Popen([sys.executable, "-c", program], env=environment, stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=60)[0].split() == ["interrupted"]
+
+
+MEMORY = r"""
+import gc, resource, sys, numpy as np, brio
+
+def held():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * resource.getpagesize()
+
+points = np.random.default_rng(1).random((2000, 3))
+plane = np.ascontiguousarray(points[:, :2])
+
+def build():
+    for p in points, plane:
+        tri = brio.Delaunay(p)
+        tri.find_simplex(p[:10]), tri.neighbors, tri.simplices
+        try:
+            brio.Delaunay(np.full((3, 2), np.nan))
+        except brio.NotFiniteError:
+            pass
+
+for _ in range(100):
+    build()
+gc.collect()
+before = held()
+for _ in range(1000):
+    build()
+gc.collect()
+print((held() - before) / 2**20)
+"""
+
+
+def test_a_thousand_builds_without_growth(alone):
+    assert float(alone(MEMORY, timeout=300)) < 4
+
+
+TOGETHER = r"""
+import threading, time, numpy as np, brio
+
+sets = [np.random.default_rng(k).random((150_000, 3)) for k in range(2)]
+ratios = []
+for _ in range(5):
+    begin = time.monotonic()
+    for p in sets:
+        brio.Delaunay(p, threads=1)
+    alone = time.monotonic() - begin
+    begin = time.monotonic()
+    threads = [threading.Thread(target=brio.Delaunay, args=(p,), kwargs={"threads": 1}) for p in sets]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    ratios.append((time.monotonic() - begin) / alone)
+print(min(ratios))
+"""
+
+
+@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="one processor")
+def test_two_threads_side_by_side(alone):
+    assert float(alone(TOGETHER)) < 0.95
+
+
+def test_one_object_used_by_several_threads(alone):
+    alone(r"""
+import threading, numpy as np, brio
+points = np.random.default_rng(1).random((3000, 3))
+for d in 2, 3:
+    p = np.ascontiguousarray(points[:, :d])
+    tri = brio.Delaunay(p)
+    wanted, wrong = brio.Delaunay(p).find_simplex(p), []
+    def use():
+        for _ in range(20):
+            if (tri.find_simplex(p) != wanted).any(): wrong.append(1)
+            tri.neighbors, tri.transform, tri.vertex_neighbor_vertices, tri.checksum
+            tri.add_points(p[:0])
+    threads = [threading.Thread(target=use) for _ in range(4)]
+    for t in threads: t.start()
+    for t in threads: t.join()
+    assert not wrong
+""")

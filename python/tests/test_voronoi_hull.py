@@ -1,0 +1,117 @@
+"""Diagrams and hulls: against definitions and scipy."""
+
+import numpy as np
+import pytest
+
+import brio
+
+GENERATOR = np.random.default_rng(2)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("weighted", [False, True])
+def test_vertices_are_equally_far_from_their_sites(d, weighted):
+    points = GENERATOR.random((200, d))
+    weights = 0.001 * GENERATOR.random(200) if weighted else None
+    vor = brio.Voronoi(points, weights)
+    power = ((vor.vertices[:, None] - points) ** 2).sum(axis=2) - (0 if weights is None else weights)
+    nearest = power.min(axis=1)
+    for p in np.unique(brio.Delaunay(points, weights).representatives):
+        for v in vor.regions[vor.point_region[p]]:
+            if v >= 0:
+                assert abs(power[v, p] - nearest[v]) <= 1e-9 * max(1, np.abs(vor.vertices[v]).max() ** 2)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_same_diagram_as_scipy(d):
+    spatial = pytest.importorskip("scipy.spatial")
+    points = GENERATOR.random((300, d))
+    mine, theirs = brio.Voronoi(points), spatial.Voronoi(points)
+    assert mine.vertices.shape == theirs.vertices.shape
+    ridges, other = ({tuple(sorted(k)): v for k, v in vor.ridge_dict.items()} for vor in (mine, theirs))
+    # Qhull leaves out some unbounded ridges with one vertex.
+    assert set(other) <= set(ridges) and all(len(ridges[k]) == 2 and -1 in ridges[k] for k in set(ridges) - set(other))
+
+    def places(vor, items):
+        return sorted(vor.vertices[[v for v in items if v >= 0]].tolist())
+
+    for pair, vertices in other.items():
+        assert (-1 in vertices) == (-1 in ridges[pair])
+        assert np.allclose(places(mine, ridges[pair]), places(theirs, vertices))
+    for p in range(300):
+        a, b = mine.regions[mine.point_region[p]], theirs.regions[theirs.point_region[p]]
+        assert (-1 in a) == (-1 in b) and np.allclose(places(mine, a), places(theirs, b))
+        if -1 in b:
+            assert np.isinf(mine.volumes[p])
+        else:
+            assert np.isclose(mine.volumes[p], spatial.ConvexHull(theirs.vertices[b]).volume)
+
+
+def test_grid_has_square_regions():
+    points = np.stack(np.meshgrid(np.arange(4.0), np.arange(5.0)), -1).reshape(-1, 2)
+    vor = brio.Voronoi(points)
+    assert len(vor.vertices) == 12
+    inside = ~np.isinf(vor.volumes)
+    assert inside.sum() == 6 and np.allclose(vor.volumes[inside], 1)
+    assert all(len(vor.regions[vor.point_region[p]]) == 4 for p in np.flatnonzero(inside))
+    assert (np.diff(vor.region_offsets) == [len(r) for r in vor.regions]).all()
+
+
+def test_duplicates_share_a_region():
+    points = GENERATOR.random((30, 2))
+    for d in (2, 3):
+        sites = np.column_stack([points, GENERATOR.random((30, d - 2))])
+        vor = brio.Voronoi(np.concatenate([sites, sites[:3]]))
+        assert (vor.point_region[30:] == vor.point_region[:3]).all()
+        assert len(vor.regions) == 31 and vor.regions[0] == []
+        assert (vor.volumes[30:] == 0).all()
+
+
+def test_cells_in_a_box_fill_it():
+    points = GENERATOR.random((500, 3))
+    vor = brio.Voronoi(points, box=[[0, 0, 0], [1, 1, 1]])
+    assert np.isclose(vor.volumes.sum(), 1) and (vor.volumes > 0).all()
+    with pytest.raises(brio.ArgumentError, match="box"):
+        brio.Voronoi(points[:, :2].copy(), box=[0, 0, 1, 1])
+
+
+def test_no_diagram_of_points_on_a_line():
+    with pytest.raises(brio.NoAnswerError, match="line"):
+        brio.Voronoi([[0, 0], [1, 1], [2, 2]])
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_hull_is_convex_and_closed(d):
+    points = GENERATOR.normal(size=(2000, d))
+    hull = brio.ConvexHull(points)
+    assert (hull.equations[:, :-1] @ points.T + hull.equations[:, -1:] <= 1e-12).all()
+    assert np.allclose(np.linalg.norm(hull.equations[:, :-1], axis=1), 1)
+    for s, row in enumerate(hull.neighbors):
+        for k, other in enumerate(row):
+            assert s in hull.neighbors[other] and set(np.delete(hull.simplices[s], k)) <= set(hull.simplices[other])
+    assert sorted(set(hull.simplices.ravel())) == sorted(hull.vertices)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_same_hull_as_scipy(d):
+    spatial = pytest.importorskip("scipy.spatial")
+    points = GENERATOR.random((1000, d))
+    mine, theirs = brio.ConvexHull(points), spatial.ConvexHull(points)
+    assert np.isclose(mine.volume, theirs.volume) and np.isclose(mine.area, theirs.area)
+    assert set(mine.vertices) == set(theirs.vertices)
+    for name in ("vertices", "simplices", "neighbors", "equations", "coplanar"):
+        assert getattr(mine, name).shape == getattr(theirs, name).shape, name
+        assert getattr(mine, name).dtype == getattr(theirs, name).dtype, name
+
+
+def test_hull_of_a_cube_has_six_polygons():
+    cube = np.array([[x, y, z] for x in (0, 0.5, 1) for y in (0, 0.5, 1) for z in (0, 0.5, 1)])
+    hull = brio.ConvexHull(cube)
+    assert len(hull.polygons) == 6 and all(len(p) == 4 for p in hull.polygons) and hull.nsimplex == 12
+    assert hull.volume == 1 and hull.area == 6 and len(np.unique(hull.equations.round(12), axis=0)) == 6
+
+
+@pytest.mark.parametrize("points", [np.zeros((0, 3)), np.zeros((4, 2)), np.eye(3), np.outer(np.arange(5.0), [1, 2])])
+def test_no_hull_without_an_inside(points):
+    with pytest.raises(brio.NoAnswerError):
+        brio.ConvexHull(points)
