@@ -220,7 +220,8 @@ brio_status brio_pcd_read(brio_stream *s, brio_builder *b) {
     brio_pcd_header header;
     pcd_reader r = {.stream = s, .builder = b, .header = &header};
     BRIO_TRY(brio_pcd_header_read(s, &header));
-    BRIO_REQUIRE(s->ctx, header.points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+    brio_builder_stream(b, BRIO_COUNT_UNKNOWN);
+    BRIO_REQUIRE(s->ctx, b->streams || header.points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
                  "%s: %" PRIu64 " points, the most are %" PRIu64, s->name, header.points, BRIO_MAX_VERTICES);
     BRIO_TRY(plan(&r));
     brio_stream_element(s, "point", header.points);

@@ -1,7 +1,8 @@
 /* Reads a file: finds its format and calls the format's reader. */
 #include "base/float_state.h"
 #include "base/memory.h"
-#include "io/formats.h"
+#include "base/versioned.h"
+#include "io/read_job.h"
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
@@ -126,27 +127,78 @@ done:
     return status;
 }
 
-brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out) {
-    BRIO_DOOR;
+brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     brio_status status = BRIO_OK;
     brio_stream s = {.ctx = ctx, .file = -1};
     brio_builder b = {.ctx = ctx};
     char *node = NULL;
-    *out = NULL;
-    bool tetrahedra = (format == BRIO_FORMAT_AUTO || format == BRIO_FORMAT_NODE) && brio_is_ele(path);
-    if (tetrahedra) BRIO_TRY(brio_sibling(ctx, path, ".node", &node));
-    BRIO_TRY(brio_stream_open(&s, ctx, node ? node : path));
-    if (format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : path, &format));
+    job->mesh = NULL;
+    bool tetrahedra =
+        (job->format == BRIO_FORMAT_AUTO || job->format == BRIO_FORMAT_NODE) && brio_is_ele(job->path);
+    if (tetrahedra) BRIO_TRY(brio_sibling(ctx, job->path, ".node", &node));
+    BRIO_TRY(brio_stream_open(&s, ctx, node ? node : job->path));
+    if (job->format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : job->path, &job->format));
     BRIO_TRY(brio_builder_start(&b, ctx, s.name));
-    BRIO_TRY(read_stream(&s, &b, format));
-    if (format == BRIO_FORMAT_NODE && strcmp(path, "-") != 0) BRIO_TRY(read_tetrahedra(&b, path, tetrahedra));
+    b.sink = job->sink;
+    b.absent = job->absent;
+    b.announced = &job->announced;
+    BRIO_TRY(read_stream(&s, &b, job->format));
+    if (job->format == BRIO_FORMAT_NODE && strcmp(job->path, "-") != 0)
+        BRIO_TRY(read_tetrahedra(&b, job->path, tetrahedra));
     BRIO_TRY(brio_builder_finish(&b));
     BRIO_TRY(brio_progress(ctx, "read", 1));
-    *out = b.mesh;
+    memcpy(job->version, b.version, sizeof job->version);
+    job->streamed = b.streams;
+    if (b.streams) goto done;
+    job->mesh = b.mesh;
     b.mesh = NULL;
 done:
     brio_mesh_free(b.mesh);
     brio_stream_close(&s);
     brio_release(ctx, node);
+    return status;
+}
+
+brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out) {
+    BRIO_DOOR;
+    brio_read_job job = {.path = path, .format = format};
+    brio_status status = brio_read_file(ctx, &job);
+    *out = job.mesh;
+    return status;
+}
+
+/* --- blocks --- */
+
+typedef struct {
+    brio_context *ctx;
+    brio_rows_fn take;
+    void *user;
+} block_call;
+
+static brio_status call(void *user, const brio_mesh *block) {
+    const block_call *c = user;
+    if (c->take(block, c->user)) return brio_fail(c->ctx, BRIO_ERR_CANCELLED, "cancelled");
+    return BRIO_OK;
+}
+
+brio_status brio_read_blocks(brio_context *ctx, const char *path, brio_format format, brio_rows_fn take, void *user,
+                             brio_file_facts *facts) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    block_call c = {ctx, take, user};
+    const brio_sink sink = {call, &c};
+    brio_names absent = {.names = NULL};
+    brio_read_job job = {.path = path, .format = format, .sink = &sink, .absent = &absent};
+    brio_file_facts found = {.size = sizeof found};
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_file_facts, facts));
+    BRIO_TRY(brio_read_file(ctx, &job));
+    if (job.mesh) BRIO_TRY(call(&c, job.mesh));
+    found.format = job.format;
+    found.streamed = job.streamed;
+    memcpy(found.version, job.version, sizeof found.version);
+done:
+    BRIO_GIVE(brio_file_facts, facts, &found);
+    brio_mesh_free(job.mesh);
+    brio_names_free(ctx, &absent);
     return status;
 }

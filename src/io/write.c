@@ -2,10 +2,8 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
-#include "io/formats.h"
+#include "io/row_format.h"
 #include "mesh/edge_rings.h"
-#include "io/textrow.h"
-#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -14,46 +12,6 @@ static const brio_write_options STANDARD = {.size = sizeof STANDARD, .format = B
 BRIO_OPTIONS_INIT(brio_write_options)
 
 /* --- what a format can hold --- */
-
-/* Makes a name one word: PLY and the header of XYZ cannot quote a blank or a comma. */
-static void make_word(char name[64], const char *source) {
-    size_t n = 0;
-    for (; n < 63 && source[n]; n++) {
-        bool plain = (unsigned char)source[n] > ' ' && source[n] != 127 && !strchr(",;\"'", source[n]);
-        name[n] = plain ? source[n] : '_';
-    }
-    name[n] = 0;
-}
-
-static bool is_axis(const char *name) {
-    return strlen(name) == 1 && strchr("xyzXYZ", name[0]);
-}
-
-static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job) {
-    brio_status status = BRIO_OK;
-    size_t count = job->mesh->num_properties;
-    BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
-    for (size_t i = 0; i < count; i++) {
-        const char *name = job->mesh->properties[i].name;
-        make_word(job->names[i], name);
-        BRIO_REQUIRE(ctx, name[0] && !is_axis(name), BRIO_ERR_ARGUMENT,
-                     "%s: a property cannot be named \"%s\" beside the coordinates", path, name);
-        for (size_t j = 0; j < i; j++)
-            BRIO_REQUIRE(ctx, strcmp(job->names[i], job->names[j]) != 0, BRIO_ERR_ARGUMENT,
-                         "%s: two properties named %s", path, job->names[i]);
-    }
-done:
-    return status;
-}
-
-static brio_status check_single(brio_context *ctx, const char *path, const brio_mesh *m) {
-    brio_status status = BRIO_OK;
-    for (size_t i = 0; i < 3 * m->num_vertices; i++)
-        BRIO_REQUIRE(ctx, !(fabs(m->vertices[i]) > 0x1.ffffffp127), BRIO_ERR_ARGUMENT,
-                     "%s: point %zu (counted from 0): %g does not fit single precision", path, i / 3, m->vertices[i]);
-done:
-    return status;
-}
 
 static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
                                const brio_write_options *options) {
@@ -69,14 +27,16 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
                  "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, without_tetrahedra[format]);
     BRIO_REQUIRE(ctx, !m->num_tetrahedra || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0, BRIO_ERR_ARGUMENT,
                  "standard output cannot hold the two files .node and .ele");
-    if (options->float32 || format == BRIO_FORMAT_STL) BRIO_TRY(check_single(ctx, path, m));
+    if (options->float32 || format == BRIO_FORMAT_STL) BRIO_TRY(brio_check_single(ctx, path, m));
 done:
     return status;
 }
 
 /* --- writing --- */
 
-static uint64_t expected_bytes(const brio_mesh *m, bool text) {
+static uint64_t expected_bytes(const brio_mesh *m, brio_format format, bool ascii) {
+    bool text = ascii || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_OBJ || format == BRIO_FORMAT_OFF ||
+                format == BRIO_FORMAT_NODE;
     uint64_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0, scalars = 3 + m->num_properties;
     uint64_t number = text ? 18 : 8, index = text ? 7 : 4;
     return m->num_vertices * scalars * number +
@@ -85,10 +45,6 @@ static uint64_t expected_bytes(const brio_mesh *m, bool text) {
 
 static brio_status write_output(brio_output *out, const brio_write_job *job, brio_format format) {
     switch (format) {
-    case BRIO_FORMAT_PLY:
-        return brio_ply_write(out, job);
-    case BRIO_FORMAT_XYZ:
-        return brio_xyz_write(out, job);
     case BRIO_FORMAT_OBJ:
         return brio_obj_write(out, job);
     case BRIO_FORMAT_OFF:
@@ -99,12 +55,13 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
         return brio_node_write(out, job);
     case BRIO_FORMAT_VTP:
         return brio_vtp_write(out, job);
-    case BRIO_FORMAT_LAS:
-        return brio_las_write(out, job);
     case BRIO_FORMAT_STL:
         return brio_stl_write(out, job);
-    case BRIO_FORMAT_NPY:
-        return brio_npy_write(out, job);
+    case BRIO_FORMAT_PLY:
+    case BRIO_FORMAT_XYZ:
+    case BRIO_FORMAT_LAS:
+    case BRIO_FORMAT_NPY: /* by row_writer.c */
+        break;
     case BRIO_FORMAT_LAZ:
     case BRIO_FORMAT_PCD:
     case BRIO_FORMAT_PTX:
@@ -119,9 +76,7 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
 static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
     brio_status status = BRIO_OK;
     brio_output out;
-    bool text = job->options->ascii || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_OBJ ||
-                format == BRIO_FORMAT_OFF || format == BRIO_FORMAT_NODE;
-    BRIO_TRY(brio_output_open(&out, ctx, path, expected_bytes(job->mesh, text)));
+    BRIO_TRY(brio_output_open(&out, ctx, path, job->expected));
     BRIO_TRY(write_output(&out, job, format));
     BRIO_TRY(brio_output_finish(&out));
     BRIO_TRY(brio_output_publish(&out));
@@ -135,11 +90,10 @@ static brio_status write_pair(brio_context *ctx, const char *node_path, const ch
                               const brio_write_job *job) {
     brio_status status = BRIO_OK;
     brio_output node = {.ctx = ctx, .target.folder = -1, .file = -1}, ele = node;
-    uint64_t expected = expected_bytes(job->mesh, true);
-    BRIO_TRY(brio_output_open(&node, ctx, node_path, expected));
+    BRIO_TRY(brio_output_open(&node, ctx, node_path, job->expected));
     BRIO_TRY(brio_node_write(&node, job));
     BRIO_TRY(brio_output_finish(&node));
-    BRIO_TRY(brio_output_open(&ele, ctx, ele_path, expected));
+    BRIO_TRY(brio_output_open(&ele, ctx, ele_path, job->expected));
     ele.written = node.written;
     BRIO_TRY(brio_ele_write(&ele, job));
     BRIO_TRY(brio_output_finish(&ele));
@@ -168,6 +122,22 @@ done:
     return status;
 }
 
+/* Writes a mesh as one block. */
+static brio_status write_rows(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
+    brio_status status = BRIO_OK;
+    brio_row_writer w;
+    BRIO_TRY(brio_row_writer_new(&w, ctx, format, job));
+    while (w.surveys) {
+        BRIO_TRY(brio_row_writer_survey(&w, job->mesh));
+        brio_row_writer_end_survey(&w);
+    }
+    BRIO_TRY(brio_row_writer_write(&w, path, job->mesh));
+    BRIO_TRY(brio_row_writer_end(&w, job->mesh));
+done:
+    brio_row_writer_free(&w);
+    return status;
+}
+
 /* Refuses indices of vertices that there are not. */
 static brio_status check_indices(brio_context *ctx, const brio_mesh *mesh) {
     brio_status status = BRIO_OK;
@@ -192,10 +162,12 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
     BRIO_TRY(check_indices(ctx, mesh));
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
-    if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_NPY)
-        BRIO_TRY(make_names(ctx, path, &job));
-    BRIO_TRY(format == BRIO_FORMAT_NODE ? write_node(ctx, path, &job) : write_one(ctx, path, &job, format));
+    job.expected = expected_bytes(mesh, format, o.ascii);
+    job.points = mesh->num_vertices;
+    if (brio_row_format_of(format))
+        BRIO_TRY(write_rows(ctx, path, &job, format));
+    else
+        BRIO_TRY(format == BRIO_FORMAT_NODE ? write_node(ctx, path, &job) : write_one(ctx, path, &job, format));
 done:
-    brio_release(ctx, job.names);
     return status;
 }

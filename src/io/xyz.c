@@ -6,8 +6,8 @@
  * becomes a property if the first row has a number (or nothing) in it and no row lacks it. A single number before the
  * first row is the number of rows. */
 #include "base/memory.h"
-#include "io/formats.h"
 #include "io/number.h"
+#include "io/row_format.h"
 #include "io/textrow.h"
 #include <inttypes.h>
 #include <math.h>
@@ -299,14 +299,15 @@ brio_status brio_xyz_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     xyz_reader r = {.stream = s, .builder = b};
     char *line;
+    brio_builder_stream(b, BRIO_COUNT_UNKNOWN);
     for (;;) {
         BRIO_TRY(brio_stream_line(s, &line));
         if (!line) break;
         BRIO_TRY(read_line(&r, line));
     }
-    BRIO_REQUIRE(s->ctx, !r.counted || r.promised == b->mesh->num_vertices, BRIO_ERR_FORMAT,
-                 "%s: line %zu: promises %" PRIu64 " points, %zu rows follow", s->name, r.count_line, r.promised,
-                 b->mesh->num_vertices);
+    BRIO_REQUIRE(s->ctx, !r.counted || r.promised == brio_builder_count(b), BRIO_ERR_FORMAT,
+                 "%s: line %zu: promises %" PRIu64 " points, %" PRIu64 " rows follow", s->name, r.count_line,
+                 r.promised, brio_builder_count(b));
     drop_missing(&r);
 done:
     brio_release(s->ctx, r.fields);
@@ -333,12 +334,20 @@ done:
     return status;
 }
 
-brio_status brio_xyz_write(brio_output *out, const brio_write_job *job) {
+static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
+    brio_status status = BRIO_OK;
+    (void)state;
+    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
+    BRIO_TRY(write_names(out, job, wants_commas(out->name) ? ',' : ' '));
+done:
+    return status;
+}
+
+static brio_status write_rows(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     char separator = wants_commas(out->name) ? ',' : ' ';
-    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
-    BRIO_TRY(write_names(out, job, separator));
+    (void)state;
     for (size_t v = 0; v < m->num_vertices; v++) {
         for (int k = 0; k < 3; k++)
             BRIO_TRY(brio_output_double(out, k ? separator : 0, m->vertices[3 * v + (size_t)k]));
@@ -349,3 +358,5 @@ brio_status brio_xyz_write(brio_output *out, const brio_write_job *job) {
 done:
     return status;
 }
+
+const brio_row_format brio_xyz_rows = {.begin = begin, .rows = write_rows};
