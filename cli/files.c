@@ -76,9 +76,9 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
         path);
 }
 
-/* Whether two names are those of one file; devices may be named twice. */
-static bool is_same_file(const char *a, const char *b) {
+bool cli_same_file(const char *a, const char *b) {
     struct stat of_a, of_b;
+    if (!strcmp(a, "-") || !strcmp(b, "-")) return false;
     if (stat(a, &of_a) != 0 || stat(b, &of_b) != 0) return !strcmp(a, b);
     return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
 }
@@ -88,7 +88,7 @@ brio_status cli_check_beside(run *r, const char *name, const char *path, const b
     brio_format format;
     brio_status status = BRIO_OK;
     if (!strcmp(path, "-")) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name));
-    if (output && is_same_file(path, output))
+    if (output && cli_same_file(path, output))
         TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "%s: --%s and -o name the same file", path, name));
     if (formats) TRY(cli_output_format(r, path, NULL, &format));
     for (; formats && *formats != format; formats++)

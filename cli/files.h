@@ -8,6 +8,9 @@
  *  is protected, or it is a folder. */
 brio_status cli_check_target(run *r, const char *path);
 
+/** Whether two names are those of one file, also through links; standard input, output and devices may be named twice. */
+bool cli_same_file(const char *a, const char *b);
+
 /** Finds everything wrong with a file that an option wants beside -o: standard output, the file of -o itself, a format
  *  not among those of the list, a file that cannot be written.   formats  ended by BRIO_FORMAT_AUTO; NULL: any name. */
 brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats);

@@ -101,8 +101,10 @@ done:
 
 /* --- writing --- */
 
+/* Where the number of rows is to be written later: the dictionary from there on ends with `behind` and blanks. */
 typedef struct {
-    size_t start; /* bytes before the rows, if their number is to be written later, otherwise 0 */
+    size_t at, room; /* room 0: the number was known */
+    const char *behind;
 } npy_writer;
 
 typedef struct {
@@ -124,44 +126,43 @@ static brio_status put(brio_context *ctx, growing_text *t, const char *format, .
     return BRIO_OK;
 }
 
-/* Makes all bytes before the rows: the dictionary of Python, with blanks behind it so that the bytes are a multiple of
- * 64 and at least `least`. */
-static brio_status make_start(brio_context *ctx, const brio_write_job *job, size_t least, growing_text *text) {
+/* Makes the dictionary of Python up to the number of rows. */
+static brio_status make_start(brio_context *ctx, const brio_write_job *job, growing_text *text) {
     static const char *const types[BRIO_SCALAR_END] = {"i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"};
     const char order = brio_host_is_little() ? '<' : '>', *real = job->options->float32 ? "f4" : "f8";
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    *text = (growing_text){.bytes = NULL};
     BRIO_TRY(put(ctx, text, "............{'descr': ")); /* version 2.0: a length of 32 bits */
-    if (m->num_properties) {
-        for (int k = 0; k < 3; k++)
-            BRIO_TRY(put(ctx, text, "%s('%c', '%c%s')", k ? ", " : "[", "xyz"[k], order, real));
-        for (size_t i = 0; i < m->num_properties; i++) {
-            brio_scalar type = m->properties[i].type;
-            BRIO_TRY(put(ctx, text, ", ('%s', '%c%s')", job->names[i],
-                         brio_scalar_size(type) == 1 ? '|' : order, types[type]));
-        }
-        BRIO_TRY(put(ctx, text, "], 'fortran_order': False, 'shape': (%" PRIu64 ",), }", job->points));
-    } else {
-        BRIO_TRY(put(ctx, text, "'%c%s', 'fortran_order': False, 'shape': (%" PRIu64 ", 3), }", order, real,
-                     job->points));
+    for (int k = 0; k < 3 && m->num_properties; k++)
+        BRIO_TRY(put(ctx, text, "%s('%c', '%c%s')", k ? ", " : "[", "xyz"[k], order, real));
+    for (size_t i = 0; i < m->num_properties; i++) {
+        brio_scalar type = m->properties[i].type;
+        char letter = brio_scalar_size(type) == 1 ? '|' : order;
+        BRIO_TRY(put(ctx, text, ", ('%s', '%c%s')", job->names[i], letter, types[type]));
     }
-    size_t size = (text->used + 1 + 63) / 64 * 64;
-    if (size < least) size = least;
-    while (text->used + 1 < size) BRIO_TRY(put(ctx, text, " "));
-    BRIO_TRY(put(ctx, text, "\n"));
-    memcpy(text->bytes, "\x93NUMPY\x02\x00", 8);
-    brio_put_le32(text->bytes + 8, (uint32_t)(size - 12));
+    if (m->num_properties)
+        BRIO_TRY(put(ctx, text, "]"));
+    else
+        BRIO_TRY(put(ctx, text, "'%c%s'", order, real));
+    BRIO_TRY(put(ctx, text, ", 'fortran_order': False, 'shape': ("));
 done:
     return status;
 }
 
+/* Writes all bytes before the rows, a multiple of 64. BRIO_COUNT_UNKNOWN has as many digits as a number can have. */
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
     npy_writer *w = state;
-    growing_text text;
-    BRIO_TRY(make_start(out->ctx, job, 0, &text)); /* BRIO_COUNT_UNKNOWN has as many digits as a count can have */
-    if (job->points == BRIO_COUNT_UNKNOWN) w->start = text.used;
+    growing_text text = {.bytes = NULL};
+    BRIO_TRY(make_start(out->ctx, job, &text));
+    w->at = text.used;
+    w->behind = job->mesh->num_properties ? ",), }" : ", 3), }";
+    BRIO_TRY(put(out->ctx, &text, "%" PRIu64 "%s", job->points, w->behind));
+    while ((text.used + 1) % 64) BRIO_TRY(put(out->ctx, &text, " "));
+    BRIO_TRY(put(out->ctx, &text, "\n"));
+    memcpy(text.bytes, "\x93NUMPY\x02\x00", 8);
+    brio_put_le32(text.bytes + 8, (uint32_t)(text.used - 12));
+    if (job->points == BRIO_COUNT_UNKNOWN) w->room = text.used - 1 - w->at;
     BRIO_TRY(brio_output_bytes(out, text.bytes, text.used));
 done:
     brio_release(out->ctx, text.bytes);
@@ -174,15 +175,13 @@ static brio_status write_rows(brio_output *out, const brio_write_job *job, void 
 }
 
 static brio_status end(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     const npy_writer *w = state;
-    growing_text text;
-    if (!w->start) return BRIO_OK;
-    BRIO_TRY(make_start(out->ctx, job, w->start, &text));
-    BRIO_TRY(brio_output_patch(out, 0, text.bytes, text.used));
-done:
-    brio_release(out->ctx, text.bytes);
-    return status;
+    char text[128];
+    if (!w->room) return BRIO_OK;
+    memset(text, ' ', sizeof text);
+    int length = snprintf(text, sizeof text, "%" PRIu64 "%s", job->points, w->behind);
+    text[length] = ' ';
+    return brio_output_patch(out, w->at, text, w->room);
 }
 
 const brio_row_format brio_npy_rows = {.state = sizeof(npy_writer),

@@ -15,6 +15,7 @@ typedef struct brio_row_format {
      *  All blocks are shown, from the first to the last, then `surveyed` is asked, and all again until it is true. */
     brio_status (*survey)(brio_context *ctx, const brio_write_job *job, void *state);
     bool (*surveyed)(void *state);
+    uint64_t (*surveyed_points)(const void *state);
 
     /** Writes what comes before the points. job->points is their number or, if the output can be patched,
      *  BRIO_COUNT_UNKNOWN. */
@@ -50,6 +51,8 @@ brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_form
 brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block);
 /** Ends a pass over all blocks. w->surveys says whether another one is needed. */
 void brio_row_writer_end_survey(brio_row_writer *w);
+/** Returns the number of points that were shown in a pass. */
+uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w);
 /** Writes a block; the first one opens the output. */
 brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const brio_mesh *block);
 /** Ends the file and gives it its name.   last  the mesh whose polygons, tetrahedra and edges follow its points. */

@@ -79,6 +79,10 @@ void brio_row_writer_end_survey(brio_row_writer *w) {
     w->surveys = !w->format->surveyed(w->state);
 }
 
+uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w) {
+    return w->format->surveyed_points(w->state);
+}
+
 static brio_status open_output(brio_row_writer *w, const char *path) {
     brio_status status = BRIO_OK;
     if (w->format != &brio_las_rows) BRIO_TRY(make_names(w->ctx, path, &w->job));
@@ -118,7 +122,8 @@ void brio_row_writer_free(brio_row_writer *w) {
     if (w->format && w->format->free && w->state) w->format->free(w->ctx, w->state);
     brio_release(w->ctx, w->state);
     brio_release(w->ctx, w->job.names);
-    brio_output_close(&w->out);
+    if (w->begun) brio_output_close(&w->out);
+    w->begun = false;
     w->state = NULL;
     w->job.names = NULL;
 }

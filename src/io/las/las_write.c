@@ -275,6 +275,11 @@ static bool surveyed(void *state) {
     return brio_las_grid_end_pass(&w->grid);
 }
 
+static uint64_t surveyed_points(const void *state) {
+    const las_writer *w = state;
+    return w->grid.points;
+}
+
 static bool rounds(const void *state) {
     const las_writer *w = state;
     return w->grid.rounds[0] || w->grid.rounds[1] || w->grid.rounds[2];
@@ -302,6 +307,7 @@ static void free_state(brio_context *ctx, void *state) {
 const brio_row_format brio_las_rows = {.state = sizeof(las_writer),
                                        .survey = survey,
                                        .surveyed = surveyed,
+                                       .surveyed_points = surveyed_points,
                                        .begin = begin,
                                        .rows = write_records,
                                        .free = free_state,
