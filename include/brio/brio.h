@@ -1434,8 +1434,8 @@ BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const
  *  the order of the points or the number of threads; of coincident points the first one is chosen.
  *  points   #P by 3, finite.   spacing  greater than 0.
  *  chosen   #P: receives 1 for chosen points, 0 for others.   num_chosen  NULL, or receives their number.
- *  Cost: expected linear in the number of points, if the set has few points with more than some hundred chosen ones in the
- *  cube of width `spacing` round them - which no set in three dimensions has. Memory: 40 bytes a point.
+ *  Cost: linear in the number of points, if cells as wide as the spacing can be numbered in 63 bits; otherwise cells are
+ *  wider, and cost the square of the points chosen in them. Memory: 24 bytes a point.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Cook 1986] for the property; docs/algorithms.md. */
 BRIO_API brio_status brio_thin(brio_context *ctx, const double *points, size_t num_points, double spacing,
@@ -1443,7 +1443,7 @@ BRIO_API brio_status brio_thin(brio_context *ctx, const double *points, size_t n
 
 typedef struct brio_outliers_options {
     size_t size;
-    double factor; /* 1 or more; default 4 */
+    double factor; /* 1 or more; default 3 */
 } brio_outliers_options;
 
 BRIO_API void brio_outliers_options_init(brio_outliers_options *options, size_t size);
@@ -1454,12 +1454,14 @@ static inline brio_outliers_options brio_outliers_options_default(void) {
 }
 
 /** Finds outliers. The spacing of a point is its mean distance to its nearest points, `neighbours` of them. A point is an
- *  outlier if its spacing is more than `factor` times the median of the spacings of these points: stray points that lie
- *  apart from their surroundings, alone or fewer together than half of `neighbours`. Where points become sparse by and by,
- *  none is an outlier. Which positions are outliers does not depend on the order of the points or the number of threads.
+ *  outlier if its spacing is more than `factor` times the lower quartile of the spacings of these points, or if it is far
+ *  beyond the spacings of all points: in logarithms 8 robust standard deviations above their median, and more than factor^2
+ *  times the median. So where points become sparse by and by none is an outlier. More than `neighbours` stray points that
+ *  are close together are not found. Which positions are outliers does not depend on the order of the points or the
+ *  number of threads.
  *  points   #P by 3, finite.   neighbours  1 to 63; 8 to 16 are usual.
  *  outlier  #P: receives 1 for outliers, 0 for others.
- *  Cost: O(n log n). Memory: 37 bytes a point.
+ *  Cost: O(n log n). Memory: 45 bytes a point.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Breunig 2000]; docs/algorithms.md. */
 BRIO_API brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_points, int neighbours,

@@ -1,15 +1,19 @@
 /* Finds outliers: points that are much farther from their neighbours than these are from theirs.
  *
  * The spacing of a point is its mean distance to its k nearest points. A point is an outlier if its spacing is more than
- * `factor` times the median of the spacings of its k nearest points. The comparison is with the surroundings and not
- * with all points, so where a scan becomes sparse by and by nothing is dropped; and a median is not moved by a few other
- * outliers among the neighbours.
+ * `factor` times the lower quartile of the spacings of its k nearest points. The comparison is with the surroundings
+ * and not with all points, so where a scan becomes sparse by and by nothing is dropped. In space far from the scan the
+ * neighbours of an outlier are outliers, too. So a point is also an outlier if the logarithm of its spacing is DEVIATIONS
+ * robust standard deviations above the median of these logarithms (the median absolute deviation times 1.4826).
+ * A spacing up to factor^2 times the median is always allowed by this rule.
  *
  * Based on: Breunig Kriegel Ng Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
- * Differs from the paper: mean distances instead of reachability distances, and a median instead of a mean. */
+ * Differs from the paper: mean distances instead of reachability distances, a quartile instead of a mean, and the
+ * second rule. */
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/sort.h"
 #include "base/team.h"
 #include "base/versioned.h"
 #include "query/nearest_points.h"
@@ -19,7 +23,10 @@
 /* POINTS_A_THREAD, GROUP (points between two reports of progress): chosen. */
 enum { POINTS_A_THREAD = 1 << 8, CHUNK = 1 << 10, GROUP = 1 << 16 };
 
-static const brio_outliers_options STANDARD = {.size = sizeof STANDARD, .factor = 4};
+/* Chosen on the sets of docs/algorithms.md, with the factor. */
+static const double DEVIATIONS = 8;
+
+static const brio_outliers_options STANDARD = {.size = sizeof STANDARD, .factor = 3};
 
 BRIO_OPTIONS_INIT(brio_outliers_options)
 
@@ -28,6 +35,7 @@ typedef struct {
     size_t neighbours;
     double factor;
     double *spacing; /* of the points, in the order of the tree */
+    double most;     /* the greatest spacing that the second rule allows */
     uint8_t *outlier;
     size_t first; /* of the points that are being done */
 } search;
@@ -53,15 +61,15 @@ static void find_spacings(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* Returns the median of a few numbers, which it sorts. */
-static double median(double *numbers, size_t count) {
+/* Returns the lower quartile of a few numbers, which it sorts. */
+static double lower_quartile(double *numbers, size_t count) {
     for (size_t i = 1; i < count; i++) {
         double number = numbers[i];
         size_t j = i;
         for (; j > 0 && numbers[j - 1] > number; j--) numbers[j] = numbers[j - 1];
         numbers[j] = number;
     }
-    return numbers[count / 2];
+    return numbers[count / 4];
 }
 
 static void judge(void *user, size_t begin, size_t end, int thread) {
@@ -72,8 +80,39 @@ static void judge(void *user, size_t begin, size_t end, int thread) {
     for (size_t i = s->first + begin; i < s->first + end; i++) {
         size_t found = find_near(s, i, near);
         for (size_t j = 0; j < found; j++) spacings[j] = s->spacing[near[j].place];
-        s->outlier[s->tree.index[i]] = found && s->spacing[i] > s->factor * median(spacings, found);
+        bool stands_out = found && s->spacing[i] > s->factor * lower_quartile(spacings, found);
+        s->outlier[s->tree.index[i]] = stands_out || s->spacing[i] > s->most;
     }
+}
+
+/* Returns the median of numbers that are not negative, given as sorting keys. */
+static double median_of(uint64_t *keys, size_t count) {
+    double x;
+    brio_sort_keys(keys, count);
+    uint64_t bits = keys[count / 2] & ~(UINT64_C(1) << 63);
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* Finds the greatest spacing that the second rule allows. Points that coincide with all their nearest points do not
+ * count. */
+static brio_status find_most(brio_context *ctx, search *s) {
+    brio_status status = BRIO_OK;
+    uint64_t *keys = NULL;
+    size_t count = 0;
+    s->most = INFINITY;
+    BRIO_TRY(BRIO_ALLOC(ctx, keys, s->tree.count + 1));
+    for (size_t i = 0; i < s->tree.count; i++)
+        if (s->spacing[i] > 0) keys[count++] = brio_double_key(s->spacing[i]);
+    if (!count) goto done;
+    double middle = log(median_of(keys, count));
+    count = 0;
+    for (size_t i = 0; i < s->tree.count; i++)
+        if (s->spacing[i] > 0) keys[count++] = brio_double_key(fabs(log(s->spacing[i]) - middle));
+    s->most = exp(middle + fmax(DEVIATIONS * 1.4826 * median_of(keys, count), 2 * log(s->factor)));
+done:
+    brio_release(ctx, keys);
+    return status;
 }
 
 /* Does all points, a group at a time. */
@@ -116,6 +155,7 @@ brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_po
     BRIO_TRY(BRIO_ALLOC(ctx, s.spacing, num_points + 1));
     brio_progress_part(ctx, bar, 0.2, 0.6);
     BRIO_TRY(for_all(ctx, &s, find_spacings));
+    BRIO_TRY(find_most(ctx, &s));
     brio_progress_part(ctx, bar, 0.6, 1);
     BRIO_TRY(for_all(ctx, &s, judge));
 done:

@@ -13,7 +13,7 @@
 #include <sys/stat.h>
 
 static const brio_convert_options STANDARD = {
-    .size = sizeof STANDARD, .to = {.size = sizeof(brio_write_options)}, .outliers = {.size = sizeof(brio_outliers_options), .factor = 4}};
+    .size = sizeof STANDARD, .to = {.size = sizeof(brio_write_options)}, .outliers = {.size = sizeof(brio_outliers_options), .factor = 3}};
 
 BRIO_OPTIONS_INIT(brio_convert_options)
 
