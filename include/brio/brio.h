@@ -1553,14 +1553,14 @@ typedef void (*brio_lost_fn)(const char *name, void *user);
 
 typedef struct brio_convert_options {
     size_t size;
-    brio_format from;        /* default BRIO_FORMAT_AUTO */
-    brio_write_options to;   /* default: brio_write_options_default() */
-    int crop;                /* 1: keeps what is in the box; default 0 */
-    int drop_outliers;       /* neighbours by which brio_outliers judges; default 0: keeps outliers */
-    double box[6];           /* x0, y0, z0, x1, y1, z1; its border belongs to it */
+    brio_format from;      /* default BRIO_FORMAT_AUTO */
+    brio_write_options to; /* default: brio_write_options_default() */
+    int crop;              /* 1: keeps what is in the box; default 0 */
+    int drop_outliers;     /* neighbours by which brio_outliers judges; default 0: keeps outliers */
+    double box[6];         /* x0, y0, z0, x1, y1, z1; its border belongs to it */
     brio_outliers_options outliers;
-    double thin;             /* spacing of brio_thin; default 0: keeps all points */
-    brio_lost_fn lost;       /* default NULL: called once for each part that is lost, before the file gets its name */
+    double thin;       /* spacing of brio_thin; default 0: keeps all points */
+    brio_lost_fn lost; /* default NULL: called once for each part that is lost, before the file gets its name */
     void *lost_user;
 } brio_convert_options;
 

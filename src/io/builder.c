@@ -131,7 +131,7 @@ void brio_builder_drop_property(brio_builder *b, size_t i) {
     if (b->streams && b->passed) {
         if (!brio_names_have(b->absent, m->properties[i].name) && b->drop_status != BRIO_ERR_NO_MEMORY)
             b->drop_status = brio_names_add(b->ctx, b->absent, m->properties[i].name) == BRIO_OK ? BRIO_ERR_FORMAT
-                                                                                                : BRIO_ERR_NO_MEMORY;
+                                                                                                 : BRIO_ERR_NO_MEMORY;
         return;
     }
     brio_release(b->ctx, m->properties[i].data);

@@ -36,12 +36,12 @@ typedef struct brio_builder {
     brio_mesh *mesh;
     unsigned index_base; /* the number that the file gives to its first vertex, for messages */
     size_t vertex_capacity, face_capacity, corner_capacity, tetrahedron_capacity;
-    size_t num_corners; /* corners of all faces, the unfinished face included */
-    const brio_sink *sink;   /* NULL: the mesh keeps all vertices */
-    bool streams;            /* whether vertices go to the sink block by block */
-    uint64_t passed;         /* vertices that the sink has received */
-    uint64_t *announced;     /* NULL, or receives the number of vertices that the file will have (brio_builder_stream) */
-    brio_names *absent;      /* properties that some row lacks: not shown to the sink */
+    size_t num_corners;    /* corners of all faces, the unfinished face included */
+    const brio_sink *sink; /* NULL: the mesh keeps all vertices */
+    bool streams;          /* whether vertices go to the sink block by block */
+    uint64_t passed;       /* vertices that the sink has received */
+    uint64_t *announced;   /* NULL, or receives the number of vertices that the file will have (brio_builder_stream) */
+    brio_names *absent;    /* properties that some row lacks: not shown to the sink */
     brio_not_finite refused; /* with `streams`: vertices seen that are no numbers */
     brio_status drop_status; /* of brio_builder_drop_property */
     char version[64];        /* what the reader says of the file's version; may be empty */

@@ -11,8 +11,8 @@ typedef struct brio_write_job {
     const brio_mesh *mesh;
     const brio_write_options *options;
     char (*names)[64]; /* PLY, XYZ and NPY: the names of the properties, each as one word */
-    uint64_t points;    /* formats of rows: the number of points of all blocks, as row_format.h says */
-    uint64_t expected;  /* an estimate of all bytes, for progress, or BRIO_NO_PROGRESS */
+    uint64_t points;   /* formats of rows: the number of points of all blocks, as row_format.h says */
+    uint64_t expected; /* an estimate of all bytes, for progress, or BRIO_NO_PROGRESS */
 } brio_write_job;
 
 brio_status brio_ply_read(brio_stream *s, brio_builder *b);

@@ -184,8 +184,5 @@ static brio_status end(brio_output *out, const brio_write_job *job, void *state)
     return brio_output_patch(out, w->at, text, w->room);
 }
 
-const brio_row_format brio_npy_rows = {.state = sizeof(npy_writer),
-                                       .counts = true,
-                                       .begin = begin,
-                                       .rows = write_rows,
-                                       .end = end};
+const brio_row_format brio_npy_rows = {
+    .state = sizeof(npy_writer), .counts = true, .begin = begin, .rows = write_rows, .end = end};

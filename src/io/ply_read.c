@@ -89,8 +89,8 @@ static brio_status plan(ply_reader *r, brio_ply_header *header) {
         if (!strcmp(e->name, "vertex")) {
             vertices = true;
             if (!holds_cells(header)) brio_builder_stream(b, e->count);
-            BRIO_REQUIRE(b->ctx, b->streams || e->count <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE, "%s: %zu points, the most are %zu",
-                         b->name, (size_t)e->count, (size_t)BRIO_MAX_VERTICES);
+            BRIO_REQUIRE(b->ctx, b->streams || e->count <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+                         "%s: %zu points, the most are %zu", b->name, (size_t)e->count, (size_t)BRIO_MAX_VERTICES);
             BRIO_TRY(plan_vertex(b, e));
             if (known) BRIO_TRY(brio_builder_expect_vertices(b, e->count));
         } else if (!strcmp(e->name, "face")) {
@@ -186,8 +186,7 @@ static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, doubl
     if (brio_scalar_store(target, p->type, value)) return BRIO_OK;
     return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT,
                      "%s: vertex %zu (counted from 0): %s is %.17g, not a number of its type %s", r->stream->name,
-                     (size_t)r->stream->row,
-                     p->name, value, brio_ply_type_name(p->type));
+                     (size_t)r->stream->row, p->name, value, brio_ply_type_name(p->type));
 }
 
 static brio_status read_list(ply_reader *r, const brio_ply_property *p) {

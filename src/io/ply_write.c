@@ -221,8 +221,5 @@ done:
     return status;
 }
 
-const brio_row_format brio_ply_rows = {.state = sizeof(ply_writer),
-                                       .counts = true,
-                                       .begin = begin,
-                                       .rows = write_vertices,
-                                       .end = end};
+const brio_row_format brio_ply_rows = {
+    .state = sizeof(ply_writer), .counts = true, .begin = begin, .rows = write_vertices, .end = end};

@@ -133,8 +133,7 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     brio_builder b = {.ctx = ctx};
     char *node = NULL;
     job->mesh = NULL;
-    bool tetrahedra =
-        (job->format == BRIO_FORMAT_AUTO || job->format == BRIO_FORMAT_NODE) && brio_is_ele(job->path);
+    bool tetrahedra = (job->format == BRIO_FORMAT_AUTO || job->format == BRIO_FORMAT_NODE) && brio_is_ele(job->path);
     if (tetrahedra) BRIO_TRY(brio_sibling(ctx, job->path, ".node", &node));
     BRIO_TRY(brio_stream_open(&s, ctx, node ? node : job->path));
     if (job->format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : job->path, &job->format));

@@ -6,7 +6,7 @@
 
 typedef struct brio_read_job {
     const char *path;
-    brio_format format;   /* BRIO_FORMAT_AUTO becomes the format that was found */
+    brio_format format;    /* BRIO_FORMAT_AUTO becomes the format that was found */
     const brio_sink *sink; /* NULL: the mesh receives everything */
     brio_names *absent;    /* with a sink: as in brio_builder */
     uint64_t announced;    /* set before the sink's first call, as in brio_builder */

@@ -31,8 +31,8 @@ static const double WIDER = 1 + 0x1p-8;
 enum { MOST_AXIS_BITS = 42 };
 
 typedef struct {
-    uint64_t place;     /* along the longest axis */
-    size_t begin, end;  /* of its points in the sorted arrays */
+    uint64_t place;    /* along the longest axis */
+    size_t begin, end; /* of its points in the sorted arrays */
     size_t num_chosen; /* of these; they are at the front */
 } slab;
 
@@ -112,8 +112,7 @@ static void find_keys(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         uint64_t key = 0;
-        for (int k = 0; k < 3; k++)
-            key |= ((uint64_t)place_of(t, t->points + 3 * i, t->axes[k]) + 1) << t->shift[k];
+        for (int k = 0; k < 3; k++) key |= ((uint64_t)place_of(t, t->points + 3 * i, t->axes[k]) + 1) << t->shift[k];
         t->keys[i] = key;
         t->order[i] = (uint32_t)i;
     }
@@ -269,8 +268,7 @@ static brio_status thin_all(thinning *t, brio_bar bar) {
             t->first_slab = first;
             size_t points = t->slabs[last - 1].end - t->slabs[first].begin;
             brio_for_chunks(t->ctx, brio_threads(t->ctx, points, POINTS_A_THREAD), last - first, 1, thin_slabs, t);
-            BRIO_TRY(brio_progress(t->ctx, "thin",
-                                   (t->parity + (double)last / (double)t->num_slabs) / 2));
+            BRIO_TRY(brio_progress(t->ctx, "thin", (t->parity + (double)last / (double)t->num_slabs) / 2));
         }
 done:
     return status;

@@ -12,8 +12,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const brio_convert_options STANDARD = {
-    .size = sizeof STANDARD, .to = {.size = sizeof(brio_write_options)}, .outliers = {.size = sizeof(brio_outliers_options), .factor = 3}};
+static const brio_convert_options STANDARD = {.size = sizeof STANDARD,
+                                              .to = {.size = sizeof(brio_write_options)},
+                                              .outliers = {.size = sizeof(brio_outliers_options), .factor = 3}};
 
 BRIO_OPTIONS_INIT(brio_convert_options)
 
@@ -142,8 +143,7 @@ static brio_status stream(conversion *c) {
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(c->ctx);
     const brio_sink sink = {write_block, c};
-    const brio_write_job job = {
-        .options = &c->options->to, .points = BRIO_COUNT_UNKNOWN, .expected = BRIO_NO_PROGRESS};
+    const brio_write_job job = {.options = &c->options->to, .points = BRIO_COUNT_UNKNOWN, .expected = BRIO_NO_PROGRESS};
     BRIO_TRY(brio_row_writer_new(&c->writer, c->ctx, c->format, &job));
     bool prepared = c->writer.surveys || (c->writer.format->counts && !can_patch(c->to));
     if (prepared) BRIO_TRY(prepare(c, bar));
@@ -212,6 +212,7 @@ static brio_status run(conversion *c) {
     for (size_t absent = 0;; absent = c->source.absent.count) {
         c->stats.points = c->counted = 0;
         c->told = false;
+        status = BRIO_OK;
         double started = brio_seconds();
         if (c->options->drop_outliers || c->options->thin > 0) status = brio_source_choose(&c->source);
         c->stats.select_seconds = brio_seconds() - started;

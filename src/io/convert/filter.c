@@ -6,8 +6,8 @@
 void brio_find_in_box(const brio_mesh *mesh, const double *box, uint8_t *stays) {
     for (size_t v = 0; v < mesh->num_vertices; v++) {
         const double *p = mesh->vertices + 3 * v;
-        stays[v] = p[0] >= box[0] && p[0] <= box[3] && p[1] >= box[1] && p[1] <= box[4] && p[2] >= box[2] &&
-                   p[2] <= box[5];
+        stays[v] =
+            p[0] >= box[0] && p[0] <= box[3] && p[1] >= box[1] && p[1] <= box[4] && p[2] >= box[2] && p[2] <= box[5];
     }
 }
 

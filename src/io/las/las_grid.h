@@ -20,8 +20,8 @@ typedef struct brio_las_grid {
     bool rounds[3];            /* whether coordinates are rounded */
     uint64_t points;           /* of all blocks seen in the first pass */
     int pass;
-    bool begun;                       /* whether this pass has seen a block */
-    double (*witnesses)[3];           /* some points of the first pass, on which candidates are tried first */
+    bool begun;             /* whether this pass has seen a block */
+    double (*witnesses)[3]; /* some points of the first pass, on which candidates are tried first */
     size_t num_witnesses;
 } brio_las_grid;
 

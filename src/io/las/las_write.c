@@ -16,7 +16,11 @@
 /* CHUNK: rows encoded at a time. Both chosen. */
 enum { CHUNK = 1 << 15, ROWS_A_THREAD = 1 << 12 };
 enum { HEADER = 227, HEADER_1_4 = 375, RECORD_HEADER = 54, EXTRA_RECORD = 192, MOST_EXTRAS = 340, EXTRA_NAME = 32 };
-enum { LATE = 4 /* place of the first format of version 1.4 in a list of formats */, RETURNS = 15, WKT = 16 /* the flag of formats 6 to 10: coordinate systems as text */ };
+enum {
+    LATE = 4 /* place of the first format of version 1.4 in a list of formats */,
+    RETURNS = 15,
+    WKT = 16 /* the flag of formats 6 to 10: coordinate systems as text */
+};
 
 /* Where a property goes. */
 typedef struct {

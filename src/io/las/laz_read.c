@@ -32,7 +32,7 @@ typedef struct {
     size_t size;
     size_t first, points; /* its points in the block of the mesh */
     bool damaged;
-    size_t at;      /* damaged: the first of the points decoded together that is */
+    size_t at;    /* damaged: the first of the points decoded together that is */
     uint64_t row; /* its first point in the file */
 } loaded_chunk;
 
@@ -119,8 +119,8 @@ static brio_status read_batch(laz_reader *r, const brio_laz_chunk *chunks, size_
     const char *data = NULL;
     for (; n < count && n < most && (n == 0 || bytes + chunks[n].bytes <= BATCH); n++) {
         if (n && r->builder->streams && points + chunks[n].points > BRIO_BLOCK_ROWS * (size_t)r->threads) break;
-        r->batch[n] =
-            (loaded_chunk){.size = chunks[n].bytes, .first = points, .points = chunks[n].points, .row = s->row + points};
+        r->batch[n] = (loaded_chunk){
+            .size = chunks[n].bytes, .first = points, .points = chunks[n].points, .row = s->row + points};
         bytes += chunks[n].bytes;
         points += chunks[n].points;
     }
