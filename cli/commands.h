@@ -15,6 +15,7 @@
     X(check)                                                                                                           \
     X(compare)                                                                                                         \
     X(iso)                                                                                                             \
+    X(convert)                                                                                                         \
     X(info)                                                                                                            \
     X(generate)                                                                                                        \
     X(subdivide)                                                                                                       \

@@ -1,9 +1,33 @@
-/* brio info: what is in a file, and how much memory each command would take for it. */
+/* brio info: what is in a file, and how much memory each command would take for it.
+ *
+ * The file is read in blocks first, for its counts, its box and the ranges of its properties. Duplicates, the spacing and
+ * the estimates need the points in memory; a file of more than MOST_IN_MEMORY points is not read a second time, and the
+ * report has null for duplicates and spacing. */
 #include "cloud.h"
 #include "commands.h"
 #include "estimate.h"
 #include "weights.h"
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define MOST_IN_MEMORY UINT64_C(100000000) /* chosen: 2.4 GB of coordinates */
+
+typedef struct property_range {
+    char name[64];
+    brio_scalar type;
+    double low, high; /* of the values that are numbers; low > high if there are none */
+} property_range;
+
+/* What a pass over the file found. */
+typedef struct survey {
+    uint64_t points, faces, tetrahedra;
+    double low[3], high[3], step[3], origin[3];
+    property_range *ranges;
+    size_t num_ranges;
+    bool failed; /* out of memory */
+    brio_file_facts file;
+} survey;
 
 static const option options[] = {{0}};
 static const char defaults = 0; /* info has no options of its own */
@@ -14,24 +38,104 @@ static void report_vector(facts *f, const char *name, const double v[3]) {
     cli_fact_close(f);
 }
 
-static void report_box(facts *f, const brio_mesh *mesh) {
+static int take_properties(survey *v, const brio_mesh *block) {
+    v->ranges = calloc(block->num_properties + 1, sizeof *v->ranges);
+    if (!v->ranges) return 1;
+    v->num_ranges = block->num_properties;
+    for (size_t i = 0; i < v->num_ranges; i++) {
+        memcpy(v->ranges[i].name, block->properties[i].name, sizeof v->ranges[i].name);
+        v->ranges[i].type = block->properties[i].type;
+        v->ranges[i].low = 1;
+    }
+    return 0;
+}
+
+static void widen(property_range *range, double x) {
+    bool none = range->low > range->high;
+    if (x != x) return;
+    if (none || x < range->low) range->low = x;
+    if (none || x > range->high) range->high = x;
+}
+
+static int take_block(const brio_mesh *block, void *user) {
+    survey *v = user;
     double low[3], high[3];
-    if (!mesh->num_vertices) {
+    if (!v->ranges && take_properties(v, block)) return v->failed = true;
+    if (block->num_vertices) cli_cloud_box(block->vertices, block->num_vertices, low, high);
+    for (int k = 0; k < 3 && block->num_vertices; k++) {
+        if (!v->points || low[k] < v->low[k]) v->low[k] = low[k];
+        if (!v->points || high[k] > v->high[k]) v->high[k] = high[k];
+        v->step[k] = block->coordinate_step[k];
+        v->origin[k] = block->coordinate_origin[k];
+    }
+    for (size_t i = 0; i < v->num_ranges; i++)
+        for (size_t j = 0; j < block->num_vertices; j++)
+            widen(&v->ranges[i], brio_property_value(&block->properties[i], j));
+    v->points += block->num_vertices;
+    v->faces += block->num_faces;
+    v->tetrahedra += block->num_tetrahedra;
+    return 0;
+}
+
+/* Reads the file in blocks, if it can be read again, or into memory. A text whose later rows lack a column goes into
+ * memory, too. */
+static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
+    const char *path = r->operands[0], *extension = r->common.input_format;
+    brio_read_options how = brio_read_options_default();
+    struct stat kind;
+    brio_status status = BRIO_ERR_FORMAT;
+    if (extension) how.format = brio_format_of(extension);
+    how.columns = r->common.columns;
+    if (strcmp(path, "-") && stat(path, &kind) == 0 && S_ISREG(kind.st_mode))
+        status = brio_read_blocks(r->ctx, path, &how, take_block, v, &v->file);
+    if (v->failed) return BRIO_ERR_NO_MEMORY;
+    if (status == BRIO_OK && v->points > MOST_IN_MEMORY) return BRIO_OK;
+    bool known = status == BRIO_OK;
+    if (!known && status != BRIO_ERR_FORMAT) return status;
+    TRY(cli_read(r, path, mesh));
+    if (known) return BRIO_OK;
+    free(v->ranges);
+    *v = (survey){.file.size = sizeof v->file};
+    if (take_block(*mesh, v)) return BRIO_ERR_NO_MEMORY;
+done:
+    return status;
+}
+
+static void report_file(facts *f, const survey *v) {
+    static const char *const names[BRIO_FORMAT_END] = {NULL,  "ply", "xyz", "obj", "off", "vtu", "node",
+                                                       "vtp", "las", "laz", "pcd", "ptx", "stl", "npy"};
+    if (names[v->file.format]) cli_fact_text(f, "format", names[v->file.format]);
+    if (v->file.version[0]) cli_fact_text(f, "version", v->file.version);
+}
+
+static void report_box(facts *f, const survey *v) {
+    if (!v->points) {
         cli_fact_null(f, "box");
         return;
     }
-    cli_cloud_box(mesh->vertices, mesh->num_vertices, low, high);
     cli_fact_open(f, "box", FACT_OBJECT);
-    report_vector(f, "min", low);
-    report_vector(f, "max", high);
+    report_vector(f, "min", v->low);
+    report_vector(f, "max", v->high);
     cli_fact_close(f);
+    if (v->step[0] == 0) return;
+    report_vector(f, "coordinate_step", v->step);
+    report_vector(f, "coordinate_origin", v->origin);
 }
 
-static void report_properties(facts *f, const brio_mesh *mesh) {
+static void report_properties(facts *f, const survey *v) {
     static const char *const types[] = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
     cli_fact_open(f, "properties", FACT_OBJECT);
-    for (size_t i = 0; i < mesh->num_properties; i++)
-        cli_fact_text(f, mesh->properties[i].name, types[mesh->properties[i].type]);
+    for (size_t i = 0; i < v->num_ranges; i++) cli_fact_text(f, v->ranges[i].name, types[v->ranges[i].type]);
+    cli_fact_close(f);
+    cli_fact_open(f, "ranges", FACT_OBJECT);
+    for (size_t i = 0; i < v->num_ranges; i++) {
+        const property_range *range = &v->ranges[i];
+        if (range->low > range->high) continue;
+        cli_fact_open(f, range->name, FACT_LIST);
+        cli_fact_real(f, NULL, range->low);
+        cli_fact_real(f, NULL, range->high);
+        cli_fact_close(f);
+    }
     cli_fact_close(f);
 }
 
@@ -87,31 +191,48 @@ static brio_status report_estimates(run *r, const brio_mesh *mesh) {
     return status;
 }
 
-static brio_status info(run *r) {
-    brio_mesh *mesh = NULL;
+/* Duplicates and spacing, which need the points in memory. */
+static brio_status measure(run *r, const brio_mesh *mesh) {
+    facts *f = &r->facts;
     size_t duplicates;
     double spacing;
-    facts *f = &r->facts;
     brio_status status = BRIO_OK;
-    if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "info writes no file; -o has no meaning here"));
-    TRY(cli_read(r, r->operands[0], &mesh));
+    if (!mesh) {
+        cli_fact_null(f, "duplicates");
+        cli_fact_null(f, "spacing");
+        return BRIO_OK;
+    }
     TRY(cli_require_memory(r, cli_info_bytes(mesh)));
     TRY(cli_cloud_duplicates(r, mesh->vertices, mesh->num_vertices, &duplicates));
     TRY(cli_cloud_spacing(r, mesh->vertices, mesh->num_vertices, &spacing));
     cli_lap(r, "measure");
-    cli_fact_count(f, "points", mesh->num_vertices);
-    cli_fact_count(f, "faces", mesh->num_faces);
-    cli_fact_count(f, "tetrahedra", mesh->num_tetrahedra);
-    report_box(f, mesh);
     cli_fact_count(f, "duplicates", duplicates);
     if (spacing > 0)
         cli_fact_real(f, "spacing", spacing);
     else
         cli_fact_null(f, "spacing");
-    report_properties(f, mesh);
-    TRY(report_estimates(r, mesh));
+done:
+    return status;
+}
+
+static brio_status info(run *r) {
+    brio_mesh *mesh = NULL;
+    survey v = {.file.size = sizeof v.file};
+    facts *f = &r->facts;
+    brio_status status = BRIO_OK;
+    if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "info writes no file; -o has no meaning here"));
+    TRY(survey_file(r, &v, &mesh));
+    report_file(f, &v);
+    cli_fact_count(f, "points", v.points);
+    cli_fact_count(f, "faces", v.faces);
+    cli_fact_count(f, "tetrahedra", v.tetrahedra);
+    report_box(f, &v);
+    TRY(measure(r, mesh));
+    report_properties(f, &v);
+    if (mesh) TRY(report_estimates(r, mesh));
 done:
     brio_mesh_free(mesh);
+    free(v.ranges);
     return status;
 }
 

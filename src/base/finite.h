@@ -4,6 +4,19 @@
 
 #include "base/context.h"
 
+/** Points that are no numbers, counted over the parts of an array. */
+typedef struct brio_not_finite {
+    uint64_t count, first; /* their number, and the index of the first one */
+    const char *axis, *what;
+} brio_not_finite;
+
+/** Counts such points among rows `first` to first + num_points - 1, whose coordinates are in `points`. */
+void brio_count_not_finite(brio_not_finite *found, uint64_t first, const double *points, const double *weights,
+                           size_t num_points);
+
+/** Refuses what was counted, as brio_refuse_not_finite does. */
+brio_status brio_refuse_counted(brio_context *ctx, const brio_not_finite *found, const char *file);
+
 /** Refuses points with a coordinate or a weight that is not finite; the message names the first such point and how many
  *  there are.   points  #P by 3.   weights  #P, or NULL.   file  what the points were read from, or NULL.
  *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE. */

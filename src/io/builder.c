@@ -4,7 +4,6 @@
  * capacity counts against the memory limit. Messages count points, faces and tetrahedra from 0, and show indices of
  * vertices as they are in the file. */
 #include "io/builder.h"
-#include "base/finite.h"
 #include "base/memory.h"
 #include <inttypes.h>
 #include <math.h>
@@ -45,12 +44,47 @@ static brio_status too_many_vertices(const brio_builder *b, uint64_t count) {
 }
 
 brio_status brio_builder_expect_vertices(brio_builder *b, uint64_t count) {
+    if (b->streams) return BRIO_OK;
     if (count > BRIO_MAX_VERTICES) return too_many_vertices(b, count);
     return count > b->vertex_capacity ? set_vertex_capacity(b, count) : BRIO_OK;
 }
 
+/* --- blocks --- */
+
+void brio_builder_stream(brio_builder *b, uint64_t announced) {
+    b->streams = b->sink != NULL;
+    if (b->announced) *b->announced = announced;
+}
+
+/* Hands a block to the sink, without the properties that are absent. */
+static brio_status give(brio_builder *b) {
+    brio_status status = BRIO_OK;
+    brio_mesh block = *b->mesh;
+    block.num_properties = 0;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, block.properties, b->mesh->num_properties));
+    for (size_t i = 0; i < b->mesh->num_properties; i++)
+        if (!b->absent || !brio_names_have(b->absent, b->mesh->properties[i].name))
+            block.properties[block.num_properties++] = b->mesh->properties[i];
+    BRIO_TRY(b->sink->take(b->sink->user, &block));
+done:
+    brio_release(b->ctx, block.properties);
+    return status;
+}
+
+/* Hands the vertices on and begins again with none. After a vertex that is no number, vertices are counted only. */
+static brio_status hand_on(brio_builder *b) {
+    brio_status status = BRIO_OK;
+    brio_count_not_finite(&b->refused, b->passed, b->mesh->vertices, NULL, b->mesh->num_vertices);
+    if (!b->refused.count) BRIO_TRY(give(b));
+    b->passed += b->mesh->num_vertices;
+    b->mesh->num_vertices = 0;
+done:
+    return status;
+}
+
 brio_status brio_builder_add_vertices(brio_builder *b, size_t count) {
     brio_status status = BRIO_OK;
+    if (b->streams && b->mesh->num_vertices && b->mesh->num_vertices + count > BRIO_BLOCK_ROWS) BRIO_TRY(hand_on(b));
     size_t need = b->mesh->num_vertices + count;
     if (need > b->vertex_capacity) {
         if (need > BRIO_MAX_VERTICES) return too_many_vertices(b, need);
@@ -94,6 +128,12 @@ brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_
 
 void brio_builder_drop_property(brio_builder *b, size_t i) {
     brio_mesh *m = b->mesh;
+    if (b->streams && b->passed) {
+        if (!brio_names_have(b->absent, m->properties[i].name) && b->drop_status != BRIO_ERR_NO_MEMORY)
+            b->drop_status = brio_names_add(b->ctx, b->absent, m->properties[i].name) == BRIO_OK ? BRIO_ERR_FORMAT
+                                                                                                 : BRIO_ERR_NO_MEMORY;
+        return;
+    }
     brio_release(b->ctx, m->properties[i].data);
     m->num_properties--;
     memmove(m->properties + i, m->properties + i + 1, (m->num_properties - i) * sizeof *m->properties);
@@ -232,9 +272,36 @@ done:
 
 brio_status brio_builder_finish(brio_builder *b) {
     brio_status status = BRIO_OK;
+    if (b->streams) {
+        if (b->mesh->num_vertices || !b->passed) BRIO_TRY(hand_on(b));
+        BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
+        if (b->drop_status == BRIO_ERR_FORMAT)
+            return brio_fail(b->ctx, BRIO_ERR_FORMAT, "%s: a row lacks the column %s, which the rows before it have",
+                             b->name, b->absent->names[b->absent->count - 1]);
+        return b->drop_status;
+    }
     BRIO_TRY(trim(b));
     BRIO_TRY(check_indices(b));
     BRIO_TRY(brio_refuse_not_finite(b->ctx, b->mesh->vertices, NULL, b->mesh->num_vertices, b->name));
 done:
     return status;
+}
+
+/* --- names --- */
+
+brio_status brio_names_add(brio_context *ctx, brio_names *names, const char *name) {
+    brio_status status = BRIO_RESERVE(ctx, names->names, names->capacity, names->count + 1);
+    if (status == BRIO_OK) strcpy(names->names[names->count++], name);
+    return status;
+}
+
+bool brio_names_have(const brio_names *names, const char *name) {
+    for (size_t i = 0; i < names->count; i++)
+        if (!strcmp(names->names[i], name)) return true;
+    return false;
+}
+
+void brio_names_free(brio_context *ctx, brio_names *names) {
+    brio_release(ctx, names->names);
+    *names = (brio_names){.names = NULL};
 }

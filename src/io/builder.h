@@ -1,13 +1,34 @@
 /* A mesh under construction: arrays that grow as rows are read, and the checks that all formats share.
  *
+ * A builder with a sink hands the vertices on in blocks, if the reader says that it appends rows and does not look at
+ * earlier ones (brio_builder_stream). Each time that new vertices do not fit in a block, the sink receives those that
+ * are there, and the mesh begins again with none. So a file of any length needs the memory of a block. A reader that
+ * does not say so fills one mesh, whatever the sink.
+ *
  * All functions that return a status return BRIO_OK, BRIO_ERR_FORMAT (with the file's name), BRIO_ERR_TOO_LARGE or
  * BRIO_ERR_NO_MEMORY. */
 #ifndef BRIO_IO_BUILDER_H
 #define BRIO_IO_BUILDER_H
 
-#include "base/context.h"
+#include "base/finite.h"
 
 #define BRIO_MAX_VERTICES ((uint64_t)UINT32_MAX - 16)
+
+/** Receives a file's vertices with their properties, block by block. A file without vertices is one empty block. The
+ *  block is valid during the call. */
+typedef struct brio_sink {
+    brio_status (*take)(void *user, const brio_mesh *block);
+    void *user;
+} brio_sink;
+
+/** Names of properties. */
+typedef struct brio_names {
+    char (*names)[64];
+    size_t count, capacity;
+} brio_names;
+
+enum { BRIO_BLOCK_ROWS = 1 << 16 /* vertices of a block, at most, unless a reader adds more at once; chosen */ };
+#define BRIO_COUNT_UNKNOWN UINT64_MAX
 
 typedef struct brio_builder {
     brio_context *ctx;
@@ -15,18 +36,35 @@ typedef struct brio_builder {
     brio_mesh *mesh;
     unsigned index_base; /* the number that the file gives to its first vertex, for messages */
     size_t vertex_capacity, face_capacity, corner_capacity, tetrahedron_capacity, edge_capacity;
-    size_t num_corners; /* corners of all faces, the unfinished face included */
+    size_t num_corners;    /* corners of all faces, the unfinished face included */
+    const brio_sink *sink; /* NULL: the mesh keeps all vertices */
+    bool streams;          /* whether vertices go to the sink block by block */
+    uint64_t passed;       /* vertices that the sink has received */
+    uint64_t *announced;   /* NULL, or receives the number of vertices that the file will have (brio_builder_stream) */
+    brio_names *absent;    /* properties that some row lacks: not shown to the sink */
+    brio_not_finite refused; /* with `streams`: vertices seen that are no numbers */
+    brio_status drop_status; /* of brio_builder_drop_property */
+    char version[64];        /* what the reader says of the file's version; may be empty */
 } brio_builder;
 
 /** Makes an empty mesh. It belongs to the caller: brio_mesh_free(b->mesh), on failure too. */
 brio_status brio_builder_start(brio_builder *b, brio_context *ctx, const char *name);
+
+/** Announces that vertices are appended, and not looked at again once others follow. Readers call this before the first
+ *  vertex.   announced  the number of vertices, if every row becomes one; otherwise BRIO_COUNT_UNKNOWN. */
+void brio_builder_stream(brio_builder *b, uint64_t announced);
+
+/** Returns the number of vertices that were appended. */
+static inline uint64_t brio_builder_count(const brio_builder *b) {
+    return b->passed + b->mesh->num_vertices;
+}
 
 /** Makes room for exactly `count` vertices, faces or tetrahedra. The caller knows that the file has as many. */
 brio_status brio_builder_expect_vertices(brio_builder *b, uint64_t count);
 brio_status brio_builder_expect_faces(brio_builder *b, uint64_t count);
 brio_status brio_builder_expect_tetrahedra(brio_builder *b, uint64_t count);
 
-/** Appends `count` vertices. The caller then sets their coordinates and properties. */
+/** Appends `count` vertices: the last ones of b->mesh. The caller then sets their coordinates and properties. */
 brio_status brio_builder_add_vertices(brio_builder *b, size_t count);
 /** Appends one vertex. */
 brio_status brio_builder_vertex(brio_builder *b, const double *point);
@@ -34,7 +72,8 @@ brio_status brio_builder_vertex(brio_builder *b, const double *point);
 brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar type);
 /** Adds a property whose values are in `data`. The mesh takes the block; on failure the function frees the block. */
 brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_scalar type, void *data);
-/** Removes property i. */
+/** Removes property i, because some row lacks it. If the sink has received vertices with it, adds the property's name to
+ *  b->absent instead, and brio_builder_finish fails: the file must be read again. */
 void brio_builder_drop_property(brio_builder *b, size_t i);
 /** Appends a corner to the face under construction.   index  the file's index minus its index base. */
 brio_status brio_builder_corner(brio_builder *b, double index);
@@ -45,7 +84,13 @@ brio_status brio_builder_tetrahedron(brio_builder *b, const double *indices);
 /** Appends an edge.   indices  2: the file's indices minus its index base. */
 brio_status brio_builder_edge(brio_builder *b, const double *indices);
 
-/** Releases unused memory, and checks all indices and coordinates. May also return BRIO_ERR_NOT_FINITE. */
+/** Releases unused memory, and checks all indices and coordinates. With `streams` hands on the last block. May also
+ *  return BRIO_ERR_NOT_FINITE, and what the sink returns. */
 brio_status brio_builder_finish(brio_builder *b);
+
+/** Adds a name. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_names_add(brio_context *ctx, brio_names *names, const char *name);
+bool brio_names_have(const brio_names *names, const char *name);
+void brio_names_free(brio_context *ctx, brio_names *names);
 
 #endif

@@ -11,6 +11,8 @@ typedef struct brio_write_job {
     const brio_mesh *mesh;
     const brio_write_options *options;
     char (*names)[64]; /* PLY, XYZ and NPY: the names of the properties, each as one word */
+    uint64_t points;   /* formats of rows: the number of points of all blocks, as row_format.h says */
+    uint64_t expected; /* an estimate of all bytes, for progress, or BRIO_NO_PROGRESS */
 } brio_write_job;
 
 brio_status brio_ply_read(brio_stream *s, brio_builder *b);
@@ -32,18 +34,23 @@ brio_status brio_bnpts_read(brio_stream *s, brio_builder *b);
 brio_status brio_npz_read(brio_stream *s, brio_builder *b);
 brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
 
-brio_status brio_ply_write(brio_output *out, const brio_write_job *job);
-brio_status brio_xyz_write(brio_output *out, const brio_write_job *job);
 brio_status brio_obj_write(brio_output *out, const brio_write_job *job);
 brio_status brio_off_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtu_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
 brio_status brio_node_write(brio_output *out, const brio_write_job *job);
-brio_status brio_las_write(brio_output *out, const brio_write_job *job);
 brio_status brio_stl_write(brio_output *out, const brio_write_job *job);
-brio_status brio_npy_write(brio_output *out, const brio_write_job *job);
 brio_status brio_glb_write(brio_output *out, const brio_write_job *job);
 brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
+
+/** Returns whether the format holds coordinates in single precision, by itself or by the options. */
+bool brio_is_single(brio_format format, const brio_write_options *options);
+
+/** Returns the greatest distance between a vertex and its coordinates in single precision. */
+double brio_moved_by_singles(const brio_mesh *m);
+
+/** Refuses coordinates beyond single precision.   Returns BRIO_OK or BRIO_ERR_ARGUMENT. */
+brio_status brio_check_single(brio_context *ctx, const char *path, const brio_mesh *m);
 
 /** Return whether the first bytes of a file are those of a format. */
 bool brio_ply_starts(const char *bytes, size_t size);

@@ -4,11 +4,14 @@
  * fields are properties. Integers of 64 bits become doubles. An array in Fortran's order is one column after the other.
  *
  * Based on: NumPy enhancement proposal 1: a simple file format for NumPy arrays. 2007. */
-#include "io/formats.h"
+#include "base/memory.h"
 #include "io/little_endian.h"
 #include "io/npy_header.h"
+#include "io/row_format.h"
+#include "io/rows.h"
 #include "io/scalar.h"
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -53,7 +56,7 @@ static brio_status read_rows(brio_stream *s, brio_builder *b, const brio_npy_hea
         BRIO_TRY(brio_stream_take(s, h->record, &bytes));
         BRIO_TRY(brio_builder_add_vertices(b, 1));
         for (size_t i = 0; i < h->num_fields; i++)
-            store(b->mesh, &h->fields[i], (size_t)s->row, bytes + h->fields[i].at);
+            store(b->mesh, &h->fields[i], b->mesh->num_vertices - 1, bytes + h->fields[i].at);
     }
 done:
     return status;
@@ -77,7 +80,8 @@ brio_status brio_npy_read(brio_stream *s, brio_builder *b) {
     brio_npy_header h;
     BRIO_TRY(brio_npy_header_read(s, &h));
     BRIO_TRY(brio_stream_expect(s, h.rows, h.record, "the header"));
-    BRIO_REQUIRE(b->ctx, h.rows <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+    if (!h.fortran) brio_builder_stream(b, h.rows);
+    BRIO_REQUIRE(b->ctx, b->streams || h.rows <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
                  "%s: %" PRIu64 " points, the most are %" PRIu64, b->name, h.rows, BRIO_MAX_VERTICES);
     BRIO_TRY(plan(b, &h));
     if (s->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(brio_builder_expect_vertices(b, h.rows));
@@ -90,68 +94,88 @@ done:
 
 /* --- writing --- */
 
-/* Writes the header: a dictionary of Python. Its length with what precedes it is a multiple of 64. */
-static brio_status write_header(brio_output *out, const brio_write_job *job, bool count_only, size_t *length) {
-    static const char *const types[BRIO_SCALAR_END] = {"|i1", "|u1", "<i2", "<u2", "<i4", "<u4", "<f4", "<f8"};
+/* Where the number of rows is to be written later: the dictionary from there on ends with `behind` and blanks. */
+typedef struct {
+    size_t at, room; /* room 0: the number was known */
+    const char *behind;
+} npy_writer;
+
+typedef struct {
+    char *bytes;
+    size_t used, capacity;
+} growing_text;
+
+/* Adds at most 159 bytes. */
+static brio_status put(brio_context *ctx, growing_text *t, const char *format, ...) {
+    char piece[160];
+    va_list arguments;
+    va_start(arguments, format);
+    size_t length = (size_t)vsnprintf(piece, sizeof piece, format, arguments);
+    va_end(arguments);
+    brio_status status = BRIO_RESERVE(ctx, t->bytes, t->capacity, t->used + length + 1);
+    if (status != BRIO_OK) return status;
+    memcpy(t->bytes + t->used, piece, length + 1);
+    t->used += length;
+    return BRIO_OK;
+}
+
+/* Makes the dictionary of Python up to the number of rows. */
+static brio_status make_start(brio_context *ctx, const brio_write_job *job, growing_text *text) {
+    static const char *const types[BRIO_SCALAR_END] = {"i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"};
+    const char order = brio_host_is_little() ? '<' : '>', *real = job->options->float32 ? "f4" : "f8";
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    const char *real = job->options->float32 ? "<f4" : "<f8";
-    char text[160];
-    *length = 0;
-#define PUT(...)                                                                                                       \
-    do {                                                                                                               \
-        *length += (size_t)snprintf(text, sizeof text, __VA_ARGS__);                                                   \
-        if (!count_only) BRIO_TRY(brio_output_string(out, text));                                                      \
-    } while (0)
-    if (m->num_properties) {
-        PUT("{'descr': [('x', '%s'), ('y', '%s'), ('z', '%s')", real, real, real);
-        for (size_t i = 0; i < m->num_properties; i++)
-            PUT(", ('%s', '%s')", job->names[i], types[m->properties[i].type]);
-        PUT("], 'fortran_order': False, 'shape': (%zu,), }", m->num_vertices);
-    } else {
-        PUT("{'descr': '%s', 'fortran_order': False, 'shape': (%zu, 3), }", real, m->num_vertices);
+    BRIO_TRY(put(ctx, text, "............{'descr': ")); /* version 2.0: a length of 32 bits */
+    for (int k = 0; k < 3 && m->num_properties; k++)
+        BRIO_TRY(put(ctx, text, "%s('%c', '%c%s')", k ? ", " : "[", "xyz"[k], order, real));
+    for (size_t i = 0; i < m->num_properties; i++) {
+        brio_scalar type = m->properties[i].type;
+        char letter = brio_scalar_size(type) == 1 ? '|' : order;
+        BRIO_TRY(put(ctx, text, ", ('%s', '%c%s')", job->names[i], letter, types[type]));
     }
-#undef PUT
+    if (m->num_properties)
+        BRIO_TRY(put(ctx, text, "]"));
+    else
+        BRIO_TRY(put(ctx, text, "'%c%s'", order, real));
+    BRIO_TRY(put(ctx, text, ", 'fortran_order': False, 'shape': ("));
 done:
     return status;
 }
 
-static brio_status write_start(brio_output *out, const brio_write_job *job) {
+/* Writes all bytes before the rows, a multiple of 64. BRIO_COUNT_UNKNOWN has as many digits as a number can have. */
+static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
-    char start[12] = "\x93NUMPY\x02"; /* version 2.0: a length of 32 bits */
-    size_t length;
-    BRIO_TRY(write_header(out, job, true, &length));
-    size_t blanks = 63 - (sizeof start + length) % 64;
-    brio_put_le32(start + 8, (uint32_t)(length + blanks + 1));
-    BRIO_TRY(brio_output_bytes(out, start, sizeof start));
-    BRIO_TRY(write_header(out, job, false, &length));
-    for (size_t i = 0; i < blanks; i++) BRIO_TRY(brio_output_string(out, " "));
-    BRIO_TRY(brio_output_string(out, "\n"));
+    npy_writer *w = state;
+    growing_text text = {.bytes = NULL};
+    BRIO_TRY(make_start(out->ctx, job, &text));
+    w->at = text.used;
+    w->behind = job->mesh->num_properties ? ",), }" : ", 3), }";
+    BRIO_TRY(put(out->ctx, &text, "%" PRIu64 "%s", job->points, w->behind));
+    while ((text.used + 1) % 64) BRIO_TRY(put(out->ctx, &text, " "));
+    BRIO_TRY(put(out->ctx, &text, "\n"));
+    memcpy(text.bytes, "\x93NUMPY\x02\x00", 8);
+    brio_put_le32(text.bytes + 8, (uint32_t)(text.used - 12));
+    if (job->points == BRIO_COUNT_UNKNOWN) w->room = text.used - 1 - w->at;
+    BRIO_TRY(brio_output_bytes(out, text.bytes, text.used));
 done:
+    brio_release(out->ctx, text.bytes);
     return status;
 }
 
-static brio_status write_number(brio_output *out, const void *number, size_t size) {
-    char bytes[8];
-    brio_scalar_gather(bytes, number, 1, size, size, !brio_host_is_little());
-    return brio_output_bytes(out, bytes, size);
+static brio_status write_rows(brio_output *out, const brio_write_job *job, void *state) {
+    (void)state;
+    return brio_rows_write(out, job);
 }
 
-brio_status brio_npy_write(brio_output *out, const brio_write_job *job) {
-    brio_status status = BRIO_OK;
-    const brio_mesh *m = job->mesh;
-    BRIO_TRY(write_start(out, job));
-    for (size_t v = 0; v < m->num_vertices; v++) {
-        for (size_t k = 0; k < 3; k++) {
-            float single = (float)m->vertices[3 * v + k];
-            BRIO_TRY(job->options->float32 ? write_number(out, &single, sizeof single)
-                                           : write_number(out, &m->vertices[3 * v + k], sizeof(double)));
-        }
-        for (size_t i = 0; i < m->num_properties; i++) {
-            size_t size = brio_scalar_size(m->properties[i].type);
-            BRIO_TRY(write_number(out, (const char *)m->properties[i].data + v * size, size));
-        }
-    }
-done:
-    return status;
+static brio_status end(brio_output *out, const brio_write_job *job, void *state) {
+    const npy_writer *w = state;
+    char text[128];
+    if (!w->room) return BRIO_OK;
+    memset(text, ' ', sizeof text);
+    int length = snprintf(text, sizeof text, "%" PRIu64 "%s", job->points, w->behind);
+    text[length] = ' ';
+    return brio_output_patch(out, w->at, text, w->room);
 }
+
+const brio_row_format brio_npy_rows = {
+    .state = sizeof(npy_writer), .counts = true, .begin = begin, .rows = write_rows, .end = end};

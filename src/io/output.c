@@ -97,7 +97,8 @@ done:
 }
 
 static double share_written(const brio_output *out) {
-    double share = out->expected ? (double)out->written / (double)out->expected : 0;
+    bool known = out->expected && out->expected != BRIO_NO_PROGRESS;
+    double share = known ? (double)out->written / (double)out->expected : 0;
     return share < 1 ? share : 1;
 }
 
@@ -144,6 +145,7 @@ static void write_back(brio_output *out) {
 
 static brio_status report(brio_output *out) {
     write_back(out);
+    if (out->expected == BRIO_NO_PROGRESS) return BRIO_OK;
     return brio_progress(out->ctx, "write", share_written(out));
 }
 
@@ -162,6 +164,22 @@ static bool is_on_disk(int file) {
     while (fsync(file) != 0)
         if (errno != EINTR) return false;
     return true;
+}
+
+brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *bytes, size_t size) {
+    brio_status status = BRIO_OK;
+    const char *p = bytes;
+    BRIO_TRY(flush(out));
+    while (size) {
+        ssize_t done = pwrite(out->file, p, size, (off_t)offset);
+        if (done < 0 && errno == EINTR) continue;
+        if (done <= 0) return fail(out);
+        p += done;
+        offset += (uint64_t)done;
+        size -= (size_t)done;
+    }
+done:
+    return status;
 }
 
 brio_status brio_output_finish(brio_output *out) {

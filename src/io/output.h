@@ -23,9 +23,23 @@ typedef struct brio_output {
     uint64_t expected; /* estimate of all bytes, for progress */
 } brio_output;
 
+/** In place of an estimate: reports no progress. */
+#define BRIO_NO_PROGRESS UINT64_MAX
+
 /** Opens an output; "-" is standard output. Call brio_output_close even if this fails.
  *  expected  an estimate of all bytes, for progress. */
 brio_status brio_output_open(brio_output *out, brio_context *ctx, const char *path, uint64_t expected);
+
+/** Returns the number of bytes that were given to the output. */
+static inline uint64_t brio_output_offset(const brio_output *out) {
+    return out->written + out->used;
+}
+/** Returns whether bytes that were written can be replaced: whether the output is a new file. */
+static inline bool brio_output_can_patch(const brio_output *out) {
+    return out->target.temporary != NULL;
+}
+/** Replaces bytes that were written. */
+brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *bytes, size_t size);
 
 /** Writes the buffer and flushes the file to the disk. After this only the rename can fail. */
 brio_status brio_output_finish(brio_output *out);

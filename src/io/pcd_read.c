@@ -217,7 +217,7 @@ done:
 
 /* Checks the header's number of points against the bytes that are there. Each number of a text has another character
  * behind it, except the last one. Compressed data tell their size themselves, in 32 bits. */
-static brio_status check_points(brio_stream *s, const brio_pcd_header *h) {
+static brio_status check_points(brio_stream *s, const brio_pcd_header *h, bool streams) {
     brio_status status = BRIO_OK;
     bool compressed = h->data == BRIO_PCD_COMPRESSED;
     uint64_t least = h->data == BRIO_PCD_ASCII ? 2 * h->numbers - 1 : h->record;
@@ -225,7 +225,7 @@ static brio_status check_points(brio_stream *s, const brio_pcd_header *h) {
     BRIO_REQUIRE(s->ctx, !compressed || h->points <= UINT32_MAX / least, BRIO_ERR_FORMAT,
                  "%s: the header announces %" PRIu64 " points of %" PRIu64 " bytes, compressed data hold 4 GiB at most",
                  s->name, h->points, least);
-    BRIO_REQUIRE(s->ctx, h->points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+    BRIO_REQUIRE(s->ctx, streams || h->points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
                  "%s: %" PRIu64 " points, the most are %" PRIu64, s->name, h->points, BRIO_MAX_VERTICES);
 done:
     return status;
@@ -236,7 +236,8 @@ brio_status brio_pcd_read(brio_stream *s, brio_builder *b) {
     brio_pcd_header header;
     pcd_reader r = {.stream = s, .builder = b, .header = &header};
     BRIO_TRY(brio_pcd_header_read(s, &header));
-    BRIO_TRY(check_points(s, &header));
+    brio_builder_stream(b, BRIO_COUNT_UNKNOWN);
+    BRIO_TRY(check_points(s, &header, b->streams));
     BRIO_TRY(plan(&r));
     brio_stream_element(s, "point", header.points);
     if (header.data == BRIO_PCD_ASCII)

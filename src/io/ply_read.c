@@ -71,6 +71,15 @@ static bool has_role(const brio_ply_element *e, brio_ply_role role) {
     return false;
 }
 
+/* Returns whether the file has faces or tetrahedra. */
+static bool holds_cells(const brio_ply_header *header) {
+    for (size_t i = 0; i < header->num_elements; i++) {
+        const brio_ply_element *e = &header->elements[i];
+        if (e->count && (!strcmp(e->name, "face") || !strcmp(e->name, "tetrahedron"))) return true;
+    }
+    return false;
+}
+
 static brio_status plan(ply_reader *r, brio_ply_header *header) {
     brio_status status = BRIO_OK;
     brio_builder *b = r->builder;
@@ -79,8 +88,9 @@ static brio_status plan(ply_reader *r, brio_ply_header *header) {
         brio_ply_element *e = &header->elements[i];
         if (!strcmp(e->name, "vertex")) {
             vertices = true;
-            BRIO_REQUIRE(b->ctx, e->count <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE, "%s: %zu points, the most are %zu",
-                         b->name, (size_t)e->count, (size_t)BRIO_MAX_VERTICES);
+            if (!holds_cells(header)) brio_builder_stream(b, e->count);
+            BRIO_REQUIRE(b->ctx, b->streams || e->count <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+                         "%s: %zu points, the most are %zu", b->name, (size_t)e->count, (size_t)BRIO_MAX_VERTICES);
             BRIO_TRY(plan_vertex(b, e));
             if (known) BRIO_TRY(brio_builder_expect_vertices(b, e->count));
         } else if (!strcmp(e->name, "face")) {
@@ -145,7 +155,7 @@ static brio_status read_blocks(ply_reader *r, const brio_ply_element *e) {
         if (!rows) return brio_stream_truncated(s);
         if (vertices) {
             BRIO_TRY(brio_builder_add_vertices(r->builder, rows));
-            convert_vertices(r, e, s->buffer + s->begin, (size_t)s->row, rows);
+            convert_vertices(r, e, s->buffer + s->begin, r->builder->mesh->num_vertices - rows, rows);
         }
         s->begin += rows * e->row_size;
         s->row += rows;
@@ -166,7 +176,7 @@ static brio_status next_scalar(ply_reader *r, brio_scalar type, double *value) {
 
 static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, double value) {
     const brio_mesh *mesh = r->builder->mesh;
-    size_t row = (size_t)r->stream->row;
+    size_t row = mesh->num_vertices - 1;
     if (p->role == BRIO_PLY_COORDINATE) {
         /* not rounded to the declared type: texts often have more digits than the float that they declare */
         mesh->vertices[3 * row + p->target] = value;
@@ -175,8 +185,8 @@ static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, doubl
     char *target = (char *)mesh->properties[p->target].data + row * brio_scalar_size(p->type);
     if (brio_scalar_store(target, p->type, value)) return BRIO_OK;
     return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT,
-                     "%s: vertex %zu (counted from 0): %s is %.17g, not a number of its type %s", r->stream->name, row,
-                     p->name, value, brio_ply_type_name(p->type));
+                     "%s: vertex %zu (counted from 0): %s is %.17g, not a number of its type %s", r->stream->name,
+                     (size_t)r->stream->row, p->name, value, brio_ply_type_name(p->type));
 }
 
 static brio_status read_list(ply_reader *r, const brio_ply_property *p) {

@@ -1,13 +1,26 @@
 /* Writes PLY files: binary in this machine's byte order, or text.
  *
+ * While the number of vertices is not known, a comment keeps room for its digits.
+ *
  * The place of every binary row is known in advance: threads encode chunks of rows, and each chunk is written as a
  * whole. */
 #include "base/memory.h"
 #include "base/team.h"
-#include "io/formats.h"
 #include "io/ply_header.h"
+#include "io/row_format.h"
+#include "io/rows.h"
 #include "io/scalar.h"
+#include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
+
+/* COUNT_LINES: bytes of the lines that count_lines makes. */
+enum { DIGITS = 20, COUNT_LINES = DIGITS + 24 };
+
+typedef struct {
+    bool long_lists;
+    uint64_t count_at; /* the byte at which the number of vertices is to be written, or 0 */
+} ply_writer;
 
 static size_t most_corners(const brio_mesh *m) {
     size_t most = 0;
@@ -18,21 +31,38 @@ static size_t most_corners(const brio_mesh *m) {
     return most;
 }
 
-static brio_status write_header(brio_output *out, const brio_write_job *job, bool long_lists) {
+/* Makes the line with the number of vertices, and a comment before it that fills up to COUNT_LINES bytes. */
+static void count_lines(char text[COUNT_LINES + 1], uint64_t points) {
+    char line[COUNT_LINES + 1];
+    int length = snprintf(line, sizeof line, "\nelement vertex %" PRIu64 "\n", points);
+    memset(text, ' ', COUNT_LINES);
+    memcpy(text, "comment", 7);
+    memcpy(text + COUNT_LINES - length, line, (size_t)length + 1);
+}
+
+static brio_status write_count(brio_output *out, const brio_write_job *job, ply_writer *w) {
+    char text[COUNT_LINES + 1];
+    if (job->points != BRIO_COUNT_UNKNOWN) return brio_output_format(out, "element vertex %" PRIu64 "\n", job->points);
+    w->count_at = brio_output_offset(out);
+    count_lines(text, 0);
+    return brio_output_string(out, text);
+}
+
+static brio_status write_header(brio_output *out, const brio_write_job *job, ply_writer *w) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     const char *binary = brio_host_is_little() ? "binary_little_endian" : "binary_big_endian";
     const char *index = m->num_vertices > INT32_MAX ? "uint" : "int";
     BRIO_TRY(brio_output_format(out, "ply\nformat %s 1.0\n", job->options->ascii ? "ascii" : binary));
     BRIO_TRY(brio_output_comment(out, "comment ", job->options->comment));
-    BRIO_TRY(brio_output_format(out, "element vertex %zu\n", m->num_vertices));
+    BRIO_TRY(write_count(out, job, w));
     for (int k = 0; k < 3; k++)
         BRIO_TRY(brio_output_format(out, "property %s %c\n", job->options->float32 ? "float" : "double", "xyz"[k]));
     for (size_t i = 0; i < m->num_properties; i++)
         BRIO_TRY(brio_output_format(out, "property %s %s\n", brio_ply_type_name(m->properties[i].type), job->names[i]));
     if (m->num_faces)
         BRIO_TRY(brio_output_format(out, "element face %zu\nproperty list %s %s vertex_indices\n", m->num_faces,
-                                    long_lists ? "int" : "uchar", index));
+                                    w->long_lists ? "int" : "uchar", index));
     if (m->num_tetrahedra)
         BRIO_TRY(brio_output_format(out, "element tetrahedron %zu\nproperty list uchar %s vertex_indices\n",
                                     m->num_tetrahedra, index));
@@ -46,60 +76,16 @@ done:
 
 /* --- binary rows --- */
 
-/* CHUNK: rows encoded at a time. Both chosen. */
+/* CHUNK: faces encoded at a time. Both chosen. */
 enum { CHUNK = 1 << 16, ROWS_A_THREAD = 1 << 12 };
 
-static size_t vertex_size(const brio_write_job *job) {
-    size_t size = 3 * (job->options->float32 ? sizeof(float) : sizeof(double));
-    for (size_t i = 0; i < job->mesh->num_properties; i++) size += brio_scalar_size(job->mesh->properties[i].type);
-    return size;
-}
-
-static void encode_vertex(const brio_write_job *job, size_t v, char *bytes) {
-    const double *p = job->mesh->vertices + 3 * v;
-    float rounded[3] = {(float)p[0], (float)p[1], (float)p[2]};
-    size_t size = job->options->float32 ? sizeof rounded : 3 * sizeof *p;
-    memcpy(bytes, job->options->float32 ? (const void *)rounded : p, size);
-    for (size_t i = 0; i < job->mesh->num_properties; i++) {
-        const brio_property *property = &job->mesh->properties[i];
-        bytes += size;
-        size = brio_scalar_size(property->type);
-        memcpy(bytes, (const char *)property->data + v * size, size);
-    }
-}
-
-/* A chunk of encoded rows: vertices or faces from `first` on. */
+/* A chunk of encoded faces from `first` on. */
 typedef struct {
     const brio_write_job *job;
     size_t first;
     char *bytes;
-    size_t size; /* bytes of a vertex, or of the number before the corners of a face */
+    size_t size; /* bytes of the number before the corners of a face */
 } rows;
-
-static void encode_vertices(void *user, size_t begin, size_t end, int thread) {
-    const rows *r = user;
-    (void)thread;
-    for (size_t i = begin; i < end; i++) encode_vertex(r->job, r->first + i, r->bytes + i * r->size);
-}
-
-static brio_status write_binary_vertices(brio_output *out, const brio_write_job *job) {
-    brio_status status = BRIO_OK;
-    const brio_mesh *m = job->mesh;
-    size_t size = vertex_size(job);
-    char *bytes = NULL;
-    if (!m->num_properties && !job->options->float32)
-        return brio_output_bytes(out, m->vertices, 3 * m->num_vertices * sizeof *m->vertices);
-    BRIO_TRY(BRIO_ALLOC(out->ctx, bytes, CHUNK * size));
-    for (size_t begin = 0; begin < m->num_vertices; begin += CHUNK) {
-        size_t count = m->num_vertices - begin < CHUNK ? m->num_vertices - begin : CHUNK;
-        brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode_vertices,
-                 &(rows){job, begin, bytes, size});
-        BRIO_TRY(brio_output_bytes(out, bytes, count * size));
-    }
-done:
-    brio_release(out->ctx, bytes);
-    return status;
-}
 
 static void encode_list(const uint32_t *items, size_t count, bool long_list, char *bytes) {
     uint32_t wide = (uint32_t)count;
@@ -141,7 +127,6 @@ done:
 static brio_status write_binary(brio_output *out, const brio_write_job *job, bool long_lists) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    BRIO_TRY(write_binary_vertices(out, job));
     BRIO_TRY(write_binary_faces(out, job, long_lists));
     for (size_t t = 0; t < m->num_tetrahedra; t++) {
         char bytes[1 + 4 * sizeof(uint32_t)];
@@ -190,7 +175,6 @@ done:
 static brio_status write_text(brio_output *out, const brio_write_job *job) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    for (size_t v = 0; v < m->num_vertices; v++) BRIO_TRY(write_text_vertex(out, job, v));
     for (size_t f = 0; f < m->num_faces; f++) {
         uint64_t from = m->face_offsets[f], to = m->face_offsets[f + 1];
         BRIO_TRY(write_text_list(out, m->face_vertices + from, (size_t)(to - from)));
@@ -203,15 +187,39 @@ done:
 
 /* --- file --- */
 
-brio_status brio_ply_write(brio_output *out, const brio_write_job *job) {
+static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
-    const brio_mesh *m = job->mesh;
-    size_t corners = most_corners(m);
-    bool long_lists = corners > UINT8_MAX;
+    ply_writer *w = state;
+    size_t corners = most_corners(job->mesh);
+    w->long_lists = corners > UINT8_MAX;
     BRIO_REQUIRE(out->ctx, corners <= INT32_MAX, BRIO_ERR_ARGUMENT, "%s: a face of %zu corners does not fit a PLY file",
                  out->name, corners);
-    BRIO_TRY(write_header(out, job, long_lists));
-    BRIO_TRY(job->options->ascii ? write_text(out, job) : write_binary(out, job, long_lists));
+    BRIO_TRY(write_header(out, job, w));
 done:
     return status;
 }
+
+static brio_status write_vertices(brio_output *out, const brio_write_job *job, void *state) {
+    brio_status status = BRIO_OK;
+    (void)state;
+    if (!job->options->ascii) return brio_rows_write(out, job);
+    for (size_t v = 0; v < job->mesh->num_vertices; v++) BRIO_TRY(write_text_vertex(out, job, v));
+done:
+    return status;
+}
+
+static brio_status end(brio_output *out, const brio_write_job *job, void *state) {
+    brio_status status = BRIO_OK;
+    const ply_writer *w = state;
+    char count[COUNT_LINES + 1];
+    if (w->count_at) {
+        count_lines(count, job->points);
+        BRIO_TRY(brio_output_patch(out, w->count_at, count, COUNT_LINES));
+    }
+    BRIO_TRY(job->options->ascii ? write_text(out, job) : write_binary(out, job, w->long_lists));
+done:
+    return status;
+}
+
+const brio_row_format brio_ply_rows = {
+    .state = sizeof(ply_writer), .counts = true, .begin = begin, .rows = write_vertices, .end = end};

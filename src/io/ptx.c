@@ -89,6 +89,7 @@ brio_status brio_ptx_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     ptx_reader r = {.text = {s, 0, NULL}, .builder = b};
     uint64_t points;
+    brio_builder_stream(b, BRIO_COUNT_UNKNOWN);
     do {
         brio_stream_element(s, "scan's header", 1);
         BRIO_TRY(read_scan_header(&r, &points));

@@ -2,7 +2,7 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
-#include "io/formats.h"
+#include "io/read_job.h"
 #include "io/unpack.h"
 #include <string.h>
 #include <strings.h>
@@ -81,34 +81,34 @@ done:
 
 /* Finds the format by the content or, failing that, the extension. Standard input in no known format is read as rows of
  * numbers; so is a file .xyz whose columns have names from the caller, whatever its first line. */
-static brio_status find_format(brio_stream *s, const char *path, const brio_read_options *o, brio_format *format) {
+static brio_status find_format(brio_stream *s, const char *path, brio_read_job *job) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_stream_fill(s, START));
     const char *bytes = s->buffer + s->begin;
     size_t size = brio_stream_left(s);
     if (brio_ply_starts(bytes, size))
-        *format = BRIO_FORMAT_PLY;
+        job->format = BRIO_FORMAT_PLY;
     else if (brio_off_starts(bytes, size))
-        *format = BRIO_FORMAT_OFF;
+        job->format = BRIO_FORMAT_OFF;
     else if (brio_vtk_starts(bytes, size))
-        *format = BRIO_FORMAT_VTU;
+        job->format = BRIO_FORMAT_VTU;
     else if (brio_las_starts(bytes, size))
-        *format = BRIO_FORMAT_LAS;
+        job->format = BRIO_FORMAT_LAS;
     else if (brio_pcd_starts(bytes, size))
-        *format = BRIO_FORMAT_PCD;
+        job->format = BRIO_FORMAT_PCD;
     else if (brio_npy_starts(bytes, size))
-        *format = BRIO_FORMAT_NPY;
+        job->format = BRIO_FORMAT_NPY;
     else if (brio_glb_starts(bytes, size))
-        *format = BRIO_FORMAT_GLB;
+        job->format = BRIO_FORMAT_GLB;
     else if (brio_e57_starts(bytes, size))
-        *format = BRIO_FORMAT_E57;
+        job->format = BRIO_FORMAT_E57;
     else if (brio_npz_starts(bytes, size))
-        *format = BRIO_FORMAT_NPZ;
+        job->format = BRIO_FORMAT_NPZ;
     else
-        *format = strcmp(path, "-") ? format_to_read(path) : BRIO_FORMAT_XYZ;
-    bool may_be_chemical = *format == BRIO_FORMAT_XYZ && (!strcmp(path, "-") || has_extension(path, "xyz"));
-    if (may_be_chemical && !o->columns && brio_chemical_starts(bytes, size)) *format = BRIO_FORMAT_CHEMICAL;
-    BRIO_REQUIRE(s->ctx, *format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
+        job->format = strcmp(path, "-") ? format_to_read(path) : BRIO_FORMAT_XYZ;
+    bool may_be_chemical = job->format == BRIO_FORMAT_XYZ && (!strcmp(path, "-") || has_extension(path, "xyz"));
+    if (may_be_chemical && !job->columns && brio_chemical_starts(bytes, size)) job->format = BRIO_FORMAT_CHEMICAL;
+    BRIO_REQUIRE(s->ctx, job->format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
                  "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .ele .las .laz .pcd "
                  ".ptx .stl .npy .npz .glb .gltf .e57 or .bnpts",
                  s->name);
@@ -183,23 +183,30 @@ static brio_status check_columns(const brio_stream *s, brio_format format, const
                      s->name);
 }
 
-static brio_status read_file(brio_context *ctx, const char *path, const brio_read_options *o, brio_mesh **out) {
+brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     brio_status status = BRIO_OK;
     brio_stream s = {.ctx = ctx, .file = -1};
     brio_builder b = {.ctx = ctx};
-    brio_format format = o->format;
     char *node = NULL;
-    bool tetrahedra = (format == BRIO_FORMAT_AUTO || format == BRIO_FORMAT_NODE) && brio_is_ele(path);
-    if (tetrahedra) BRIO_TRY(brio_sibling(ctx, path, ".node", &node));
-    BRIO_TRY(brio_stream_open(&s, ctx, node ? node : path));
-    if (format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : path, o, &format));
-    BRIO_TRY(check_columns(&s, format, o->columns));
+    job->mesh = NULL;
+    bool tetrahedra = (job->format == BRIO_FORMAT_AUTO || job->format == BRIO_FORMAT_NODE) && brio_is_ele(job->path);
+    if (tetrahedra) BRIO_TRY(brio_sibling(ctx, job->path, ".node", &node));
+    BRIO_TRY(brio_stream_open(&s, ctx, node ? node : job->path));
+    if (job->format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : job->path, job));
+    BRIO_TRY(check_columns(&s, job->format, job->columns));
     BRIO_TRY(brio_builder_start(&b, ctx, s.name));
-    BRIO_TRY(read_stream(&s, &b, format, o->columns));
-    if (format == BRIO_FORMAT_NODE && strcmp(path, "-") != 0) BRIO_TRY(read_tetrahedra(&b, path, tetrahedra));
+    b.sink = job->sink;
+    b.absent = job->absent;
+    b.announced = &job->announced;
+    BRIO_TRY(read_stream(&s, &b, job->format, job->columns));
+    if (job->format == BRIO_FORMAT_NODE && strcmp(job->path, "-") != 0)
+        BRIO_TRY(read_tetrahedra(&b, job->path, tetrahedra));
     BRIO_TRY(brio_builder_finish(&b));
     BRIO_TRY(brio_progress(ctx, "read", 1));
-    *out = b.mesh;
+    memcpy(job->version, b.version, sizeof job->version);
+    job->streamed = b.streams;
+    if (b.streams) goto done;
+    job->mesh = b.mesh;
     b.mesh = NULL;
 done:
     brio_mesh_free(b.mesh);
@@ -214,7 +221,9 @@ brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_op
     brio_read_options o = STANDARD;
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
-    BRIO_TRY(read_file(ctx, path, &o, out));
+    brio_read_job job = {.path = path, .format = o.format, .columns = o.columns};
+    BRIO_TRY(brio_read_file(ctx, &job));
+    *out = job.mesh;
 done:
     return status;
 }
@@ -224,4 +233,43 @@ brio_status brio_read(brio_context *ctx, const char *path, brio_format format, b
     brio_read_options o = STANDARD;
     o.format = format;
     return brio_read_as(ctx, path, &o, out);
+}
+
+/* --- blocks --- */
+
+typedef struct {
+    brio_context *ctx;
+    brio_rows_fn take;
+    void *user;
+} block_call;
+
+static brio_status call(void *user, const brio_mesh *block) {
+    const block_call *c = user;
+    if (c->take(block, c->user)) return brio_fail(c->ctx, BRIO_ERR_CANCELLED, "cancelled");
+    return BRIO_OK;
+}
+
+brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_read_options *options, brio_rows_fn take,
+                             void *user, brio_file_facts *facts) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    block_call c = {ctx, take, user};
+    const brio_sink sink = {call, &c};
+    brio_names absent = {.names = NULL};
+    brio_read_options o = STANDARD;
+    brio_read_job job = {.path = path, .sink = &sink, .absent = &absent};
+    brio_file_facts found = {.size = sizeof found};
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_file_facts, facts));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
+    job.format = o.format, job.columns = o.columns;
+    BRIO_TRY(brio_read_file(ctx, &job));
+    if (job.mesh) BRIO_TRY(call(&c, job.mesh));
+    found.format = job.format;
+    found.streamed = job.streamed;
+    memcpy(found.version, job.version, sizeof found.version);
+done:
+    BRIO_GIVE(brio_file_facts, facts, &found);
+    brio_mesh_free(job.mesh);
+    brio_names_free(ctx, &absent);
+    return status;
 }

@@ -3,10 +3,8 @@
 #include "base/memory.h"
 #include "base/versioned.h"
 #include "io/node_files.h"
+#include "io/row_format.h"
 #include "mesh/edge_rings.h"
-#include "io/textrow.h"
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const brio_write_options STANDARD = {.size = sizeof STANDARD, .format = BRIO_FORMAT_AUTO};
@@ -14,74 +12,6 @@ static const brio_write_options STANDARD = {.size = sizeof STANDARD, .format = B
 BRIO_OPTIONS_INIT(brio_write_options)
 
 /* --- what a format can hold --- */
-
-/* Makes a name one word: PLY and the header of XYZ cannot quote a blank or a comma. */
-static void make_word(char name[64], const char *source) {
-    size_t n = 0;
-    for (; n < 63 && source[n]; n++) {
-        bool plain = (unsigned char)source[n] > ' ' && source[n] != 127 && !strchr(",;\"'", source[n]);
-        name[n] = plain ? source[n] : '_';
-    }
-    name[n] = 0;
-}
-
-static bool is_axis(const char *name) {
-    return strlen(name) == 1 && strchr("xyzXYZ", name[0]);
-}
-
-/* Returns whether a coordinate or one of the first `count` properties has the name. */
-static bool is_taken(const brio_write_job *job, size_t count, const char *name) {
-    for (size_t i = 0; i < count; i++)
-        if (!strcmp(job->names[i], name)) return true;
-    return is_axis(name);
-}
-
-/* A name that is taken gets _2, _3 and so on behind it, and is cut so that the whole fits: no result of long work is
- * refused for a name. */
-static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job) {
-    brio_status status = BRIO_OK;
-    size_t count = job->mesh->num_properties;
-    BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
-    for (size_t i = 0; i < count; i++) {
-        char word[64], end[24];
-        BRIO_REQUIRE(ctx, job->mesh->properties[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
-        make_word(word, job->mesh->properties[i].name);
-        memcpy(job->names[i], word, sizeof word);
-        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) {
-            snprintf(end, sizeof end, "_%zu", n);
-            snprintf(job->names[i], 64, "%.*s%s", (int)(63 - strlen(end)), word, end);
-        }
-    }
-done:
-    return status;
-}
-
-/* Single precision, by the option or by the format. */
-static bool is_single(brio_format format, const brio_write_options *o) {
-    bool both = format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
-                format == BRIO_FORMAT_NPY;
-    return format == BRIO_FORMAT_STL || (o->float32 && both);
-}
-
-/* The greatest distance between a vertex and its coordinates in single precision. */
-static double moved_by_singles(const brio_mesh *m) {
-    double most = 0;
-    for (size_t v = 0; v < m->num_vertices; v++) {
-        double by[3];
-        for (size_t k = 0; k < 3; k++) by[k] = m->vertices[3 * v + k] - (double)(float)m->vertices[3 * v + k];
-        if (by[0] != 0 || by[1] != 0 || by[2] != 0) most = fmax(most, hypot(by[0], hypot(by[1], by[2])));
-    }
-    return most;
-}
-
-static brio_status check_single(brio_context *ctx, const char *path, const brio_mesh *m) {
-    brio_status status = BRIO_OK;
-    for (size_t i = 0; i < 3 * m->num_vertices; i++)
-        BRIO_REQUIRE(ctx, !(fabs(m->vertices[i]) >= 0x1.ffffffp127), BRIO_ERR_ARGUMENT,
-                     "%s: point %zu (counted from 0): %g does not fit single precision", path, i / 3, m->vertices[i]);
-done:
-    return status;
-}
 
 static brio_status check_compress(brio_context *ctx, const char *path, brio_format format,
                                   const brio_write_options *options) {
@@ -116,14 +46,16 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
     BRIO_REQUIRE(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
                  "%s: .gltf files are read, not written; .glb files are", path);
     BRIO_TRY(check_compress(ctx, path, format, options));
-    if (is_single(format, options)) BRIO_TRY(check_single(ctx, path, m));
+    if (brio_is_single(format, options)) BRIO_TRY(brio_check_single(ctx, path, m));
 done:
     return status;
 }
 
 /* --- writing --- */
 
-static uint64_t expected_bytes(const brio_mesh *m, bool text) {
+static uint64_t expected_bytes(const brio_mesh *m, brio_format format, bool ascii) {
+    bool text = ascii || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_OBJ || format == BRIO_FORMAT_OFF ||
+                format == BRIO_FORMAT_NODE;
     uint64_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0, scalars = 3 + m->num_properties;
     uint64_t number = text ? 18 : 8, index = text ? 7 : 4;
     return m->num_vertices * scalars * number +
@@ -132,10 +64,6 @@ static uint64_t expected_bytes(const brio_mesh *m, bool text) {
 
 static brio_status write_output(brio_output *out, const brio_write_job *job, brio_format format) {
     switch (format) {
-    case BRIO_FORMAT_PLY:
-        return brio_ply_write(out, job);
-    case BRIO_FORMAT_XYZ:
-        return brio_xyz_write(out, job);
     case BRIO_FORMAT_OBJ:
         return brio_obj_write(out, job);
     case BRIO_FORMAT_OFF:
@@ -146,14 +74,15 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
         return brio_node_write(out, job);
     case BRIO_FORMAT_VTP:
         return brio_vtp_write(out, job);
-    case BRIO_FORMAT_LAS:
-        return brio_las_write(out, job);
     case BRIO_FORMAT_STL:
         return brio_stl_write(out, job);
-    case BRIO_FORMAT_NPY:
-        return brio_npy_write(out, job);
     case BRIO_FORMAT_GLB:
         return brio_glb_write(out, job);
+    case BRIO_FORMAT_PLY:
+    case BRIO_FORMAT_XYZ:
+    case BRIO_FORMAT_LAS:
+    case BRIO_FORMAT_NPY: /* by row_writer.c */
+        break;
     case BRIO_FORMAT_LAZ:
     case BRIO_FORMAT_PCD:
     case BRIO_FORMAT_PTX:
@@ -175,14 +104,28 @@ static brio_status write_output(brio_output *out, const brio_write_job *job, bri
 static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
     brio_status status = BRIO_OK;
     brio_output out;
-    bool text = job->options->ascii || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_OBJ ||
-                format == BRIO_FORMAT_OFF || format == BRIO_FORMAT_NODE;
-    BRIO_TRY(brio_output_open(&out, ctx, path, expected_bytes(job->mesh, text)));
+    BRIO_TRY(brio_output_open(&out, ctx, path, job->expected));
     BRIO_TRY(write_output(&out, job, format));
     BRIO_TRY(brio_output_finish(&out));
     BRIO_TRY(brio_output_publish(&out));
 done:
     brio_output_close(&out);
+    return status;
+}
+
+/* Writes a mesh as one block. */
+static brio_status write_rows(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
+    brio_status status = BRIO_OK;
+    brio_row_writer w;
+    BRIO_TRY(brio_row_writer_new(&w, ctx, format, job));
+    while (w.surveys) {
+        BRIO_TRY(brio_row_writer_survey(&w, job->mesh));
+        brio_row_writer_end_survey(&w);
+    }
+    BRIO_TRY(brio_row_writer_write(&w, path, job->mesh));
+    BRIO_TRY(brio_row_writer_end(&w, job->mesh));
+done:
+    brio_row_writer_free(&w);
     return status;
 }
 
@@ -211,14 +154,15 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     if (o.moved) *o.moved = 0;
     BRIO_TRY(check_indices(ctx, mesh));
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
-    if (format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_NPY)
-        BRIO_TRY(make_names(ctx, path, &job));
-    if (o.moved) *o.moved = is_single(format, &o) ? moved_by_singles(mesh) : 0; /* the LAS writer sets its own */
-    if (format == BRIO_FORMAT_NODE && strcmp(path, "-") != 0)
-        BRIO_TRY(brio_node_write_files(ctx, path, &job, expected_bytes(mesh, true)));
+    job.expected = expected_bytes(mesh, format, o.ascii);
+    job.points = mesh->num_vertices;
+    if (o.moved && brio_is_single(format, &o)) *o.moved = brio_moved_by_singles(mesh);
+    if (brio_row_format_of(format))
+        BRIO_TRY(write_rows(ctx, path, &job, format));
+    else if (format == BRIO_FORMAT_NODE && strcmp(path, "-") != 0)
+        BRIO_TRY(brio_node_write_files(ctx, path, &job, job.expected));
     else
         BRIO_TRY(write_one(ctx, path, &job, format));
 done:
-    brio_release(ctx, job.names);
     return status;
 }

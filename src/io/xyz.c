@@ -1,5 +1,5 @@
 /* Writes points as rows of numbers: .xyz .pts .txt .csv. A line of names comes first. */
-#include "io/formats.h"
+#include "io/row_format.h"
 #include <string.h>
 #include <strings.h>
 
@@ -19,12 +19,20 @@ done:
     return status;
 }
 
-brio_status brio_xyz_write(brio_output *out, const brio_write_job *job) {
+static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
+    brio_status status = BRIO_OK;
+    (void)state;
+    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
+    BRIO_TRY(write_names(out, job, wants_commas(out->name) ? ',' : ' '));
+done:
+    return status;
+}
+
+static brio_status write_rows(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     char separator = wants_commas(out->name) ? ',' : ' ';
-    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
-    BRIO_TRY(write_names(out, job, separator));
+    (void)state;
     for (size_t v = 0; v < m->num_vertices; v++) {
         for (int k = 0; k < 3; k++)
             BRIO_TRY(brio_output_double(out, k ? separator : 0, m->vertices[3 * v + (size_t)k]));
@@ -35,3 +43,5 @@ brio_status brio_xyz_write(brio_output *out, const brio_write_job *job) {
 done:
     return status;
 }
+
+const brio_row_format brio_xyz_rows = {.begin = begin, .rows = write_rows};

@@ -38,6 +38,12 @@ class Info(CliTest):
     def test_properties_are_named(self):
         facts = self.facts("info", self.file("a.ply", PLY_WITH_PROPERTIES))
         self.assertEqual(facts["properties"], {"red": "uint8", "quality": "float64"})
+        self.assertEqual(facts["ranges"], {"red": [10, 255], "quality": [-7, 0.5]})
+
+    def test_version_of_a_las_file(self):
+        facts = self.facts("info", self.cloud("a.las", 100))
+        self.assertEqual((facts["format"], facts["version"]), ("las", "1.2, point format 0"))
+        self.assertEqual(len(facts["coordinate_step"]), 3)
 
 
 if __name__ == "__main__":

@@ -1440,6 +1440,49 @@ BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const
                                       brio_mesh **out);
 
 /* ------------------------------------------------------------------------------------------------------------------
+ * Choosing points
+ */
+
+/** Thins points to a spacing: chooses points that are at least `spacing` from each other, such that every other point is
+ *  less than `spacing` from a chosen one. (Distances as computed in doubles.) No other point can be added, so the set has no
+ *  holes that the points do not have. The chosen positions depend on the set of positions and the spacing only, and not on
+ *  the order of the points or the number of threads; of coincident points the first one is chosen.
+ *  points   #P by 3, finite.   spacing  greater than 0.
+ *  chosen   #P: receives 1 for chosen points, 0 for others.   num_chosen  NULL, or receives their number.
+ *  Cost: linear in the number of points, if cells as wide as the spacing can be numbered in 63 bits; otherwise cells are
+ *  wider, and cost the square of the points chosen in them. Memory: 24 bytes a point.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Cook 1986] for the property; docs/algorithms.md. */
+BRIO_API brio_status brio_thin(brio_context *ctx, const double *points, size_t num_points, double spacing,
+                               uint8_t *chosen, size_t *num_chosen);
+
+typedef struct brio_outliers_options {
+    size_t size;
+    double factor; /* 1 or more; default 3 */
+} brio_outliers_options;
+
+BRIO_API void brio_outliers_options_init(brio_outliers_options *options, size_t size);
+static inline brio_outliers_options brio_outliers_options_default(void) {
+    brio_outliers_options options;
+    brio_outliers_options_init(&options, sizeof options);
+    return options;
+}
+
+/** Finds outliers. The spacing of a point is its mean distance to its nearest points, `neighbours` of them. A point is an
+ *  outlier if its spacing is more than `factor` times the lower quartile of the spacings of these points, or if it is far
+ *  beyond the spacings of all points: in logarithms 8 robust standard deviations above their median, and more than factor^2
+ *  times the median. So where points become sparse by and by none is an outlier. More than `neighbours` stray points that
+ *  are close together are not found. Which positions are outliers does not depend on the order of the points or the
+ *  number of threads.
+ *  points   #P by 3, finite.   neighbours  1 to 63; 8 to 16 are usual.
+ *  outlier  #P: receives 1 for outliers, 0 for others.
+ *  Cost: O(n log n). Memory: 45 bytes a point.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Breunig 2000]; docs/algorithms.md. */
+BRIO_API brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_points, int neighbours,
+                                   const brio_outliers_options *options, uint8_t *outlier);
+
+/* ------------------------------------------------------------------------------------------------------------------
  * Files
  */
 
@@ -1501,6 +1544,27 @@ BRIO_API brio_status brio_read_as(brio_context *ctx, const char *path, const bri
 /** brio_read_as with a format and else the defaults. */
 BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
 
+/** What a file is. */
+typedef struct brio_file_facts {
+    size_t size;
+    brio_format format;
+    int streamed;     /* 1: the callback received the points block by block */
+    char version[64]; /* of the file, where the format has versions, such as "1.2, point format 3"; else "" */
+} brio_file_facts;
+
+/** Receives a part of a file. `block` is valid during the call. A result other than 0 cancels the reading. */
+typedef int (*brio_rows_fn)(const brio_mesh *block, void *user);
+
+/** Reads a file as brio_read does, and hands over its points in blocks of some 65,536, in the order of the file, each with
+ *  its part of the properties: a file of any size needs the memory of a few blocks. All blocks have the same properties; a
+ *  file without points is one empty block. Files with polygons or tetrahedra, and formats and orders that do not hold one
+ *  point after the other (OBJ, OFF, VTU, NODE, STL, NPY in Fortran's order), are one block.
+ *  facts  NULL, or receives what the file is.
+ *  Returns what brio_read returns; BRIO_ERR_CANCELLED if the callback asked for it; BRIO_ERR_FORMAT if a row of a text lacks
+ *  a column that earlier blocks have. Earlier blocks were handed over when an error is found. */
+BRIO_API brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_read_options *options,
+                                      brio_rows_fn take, void *user, brio_file_facts *facts);
+
 typedef struct brio_write_options {
     size_t size;
     brio_format format;  /* default BRIO_FORMAT_AUTO: by the extension */
@@ -1535,6 +1599,56 @@ static inline brio_write_options brio_write_options_default(void) {
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);
+
+/** Receives the name of something that a file cannot hold. */
+typedef void (*brio_lost_fn)(const char *name, void *user);
+
+typedef struct brio_convert_options {
+    size_t size;
+    const brio_read_options *from; /* default NULL: the defaults of reading */
+    const brio_write_options *to;  /* default NULL: the defaults of writing */
+    int crop;                      /* 1: keeps what is in the box; default 0 */
+    int drop_outliers;             /* neighbours by which brio_outliers judges; default 0: keeps outliers */
+    double box[6];                 /* x0, y0, z0, x1, y1, z1; its border belongs to it */
+    const brio_outliers_options *outliers; /* default NULL: the defaults of brio_outliers */
+    double thin;                           /* spacing of brio_thin; default 0: keeps all points */
+    brio_lost_fn lost; /* default NULL: called once for each part that is lost, before the file gets its name */
+    void *lost_user;
+} brio_convert_options;
+
+BRIO_API void brio_convert_options_init(brio_convert_options *options, size_t size);
+static inline brio_convert_options brio_convert_options_default(void) {
+    brio_convert_options options;
+    brio_convert_options_init(&options, sizeof options);
+    return options;
+}
+
+typedef struct brio_convert_stats {
+    size_t size;
+    uint64_t points_read, points, faces, tetrahedra, edges; /* read; written */
+    uint64_t outliers, thinned;                             /* points dropped by the options of these names */
+    int streamed;                                           /* 1: block by block; 0: the whole file was in memory */
+    int passes;                                             /* how often the file was read */
+    double select_seconds, seconds;                         /* finding outliers and thinning, reading included; all */
+} brio_convert_stats;
+
+/** Converts a file to another format, or chooses among its points, or both. First come the points in the box, of these
+ *  those that are no outliers, of these a thinned set; the points keep their order and all properties. A polygon, tetrahedron
+ *  or edge stays if all its vertices stay.
+ *  Memory: files of points are converted block by block, in less than 64 MB with two threads, from LAS, LAZ, PLY, text, NPY,
+ *  PCD (uncompressed) and PTX to LAS, PLY, text and NPY. The input is read twice or three times if the output must know all
+ *  points before the first one (LAS; PLY and NPY into a pipe, if their number is not known), or if outliers are dropped or
+ *  points are thinned. Outliers and thinning need the coordinates in memory: 24 bytes a point, and what brio_outliers and
+ *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
+ *  file is in memory.
+ *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
+ *  properties, and "precision" if coordinates are rounded.
+ *  from, to  paths of different files; "-" as in brio_read and brio_write.
+ *  stats     NULL, or receives facts.
+ *  Returns what brio_read, brio_write, brio_outliers and brio_thin return, and BRIO_ERR_FORMAT if the input changed between
+ *  two readings. */
+BRIO_API brio_status brio_convert(brio_context *ctx, const char *from, const char *to,
+                                  const brio_convert_options *options, brio_convert_stats *stats);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Test data

@@ -1,13 +1,17 @@
-/* Finds scale and offset for the coordinates of a mesh.
+/* Finds scale and offset for the coordinates of a LAS file.
  *
  * A grid is accepted if for every coordinate x the nearest whole number n gives x = n * step + origin in doubles, the
- * way a reader computes it. Most grids that do not fit fail at one of the first points. */
+ * way a reader computes it. Most grids that do not fit fail at one of the first points, or at one of the witnesses: a
+ * candidate that fails behind the first block costs another pass. */
 #include "io/las/las_grid.h"
+#include "base/memory.h"
 #include <math.h>
+#include <string.h>
 
 /* Powers of 1/10 and of 1/2 that are tried: a nanometre, and the last bits of singles near 1. ORIGINS: whole numbers
- * within the range that are tried as origins of the first COARSE decimals. All chosen. */
-enum { DECIMALS = 9, HALVES = 24, ORIGINS = 1024, COARSE = 4 };
+ * within the range that are tried as origins of the first COARSE decimals. MOST_PASSES: after these, coordinates are
+ * rounded. WITNESSES_A_BLOCK: points of a block that become witnesses. All chosen. */
+enum { DECIMALS = 9, HALVES = 24, ORIGINS = 1024, COARSE = 4, MOST_PASSES = 16, WITNESSES_A_BLOCK = 16 };
 
 static const double tenths[] = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
 
@@ -15,67 +19,142 @@ static double number_of(double x, double step, double origin) {
     return rint((x - origin) / step);
 }
 
-static bool gives_back(const brio_mesh *m, int axis, double step, double origin) {
+/* Returns whether an axis' candidate gives back coordinates. */
+static bool gives_back(const brio_las_grid *g, int axis, const double *points, size_t count) {
+    double step = g->step[axis], origin = g->origin[axis];
     if (!(step != 0) || !isfinite(step) || !isfinite(origin)) return false;
-    for (size_t v = 0; v < m->num_vertices; v++) {
-        double x = m->vertices[3 * v + (size_t)axis], n = number_of(x, step, origin);
+    for (size_t v = 0; v < count; v++) {
+        double x = points[3 * v + (size_t)axis], n = number_of(x, step, origin);
         if (!(n >= INT32_MIN && n <= INT32_MAX) || n * step + origin != x) return false;
     }
     return true;
 }
 
-static bool try_grid(const brio_mesh *m, int axis, double step, double origin, brio_las_grid *grid) {
-    grid->step[axis] = step;
-    grid->origin[axis] = origin;
-    return gives_back(m, axis, step, origin);
+/* --- candidates --- */
+
+/* Sets whole numbers within the range as origins. Near an origin products with the step are small, so their sums with
+ * the origin round to the double nearest to the decimal number. The doubles of most texts are such. */
+static bool set_origin(brio_las_grid *g, int axis, size_t which) {
+    double low = g->low[axis], high = g->high[axis], first = floor(low), count = ceil(high) - first;
+    if (!(count > 0 && fabs(low) + fabs(high) < 0x1p53)) return false;
+    double stride = count > ORIGINS ? ceil(count / ORIGINS) : 1;
+    size_t origins = (size_t)((high - first) / stride) + 1, decimals = which / origins;
+    if (decimals > COARSE) return false;
+    g->step[axis] = tenths[decimals];
+    g->origin[axis] = first + (double)(which % origins) * stride;
+    return true;
 }
 
-static void find_range(const brio_mesh *m, int axis, double *low, double *high) {
-    *low = *high = m->num_vertices ? m->vertices[axis] : 0;
-    for (size_t v = 1; v < m->num_vertices; v++) {
-        double x = m->vertices[3 * v + (size_t)axis];
-        if (x < *low) *low = x;
-        if (x > *high) *high = x;
+/* Sets the candidate of an axis by its number. Returns false behind the last one. */
+static bool set_candidate(brio_las_grid *g, int axis) {
+    const double origins[] = {0, floor(g->low[axis])};
+    size_t which = g->candidate[axis] - 1;
+    if (which < 2 * (DECIMALS + 1)) {
+        g->step[axis] = tenths[which % (DECIMALS + 1)];
+        g->origin[axis] = origins[which / (DECIMALS + 1)];
+        return true;
+    }
+    which -= 2 * (DECIMALS + 1);
+    if (which < 2 * HALVES) {
+        g->step[axis] = ldexp(1, -(int)(which % HALVES) - 1);
+        g->origin[axis] = origins[which / HALVES];
+        return true;
+    }
+    return set_origin(g, axis, which - 2 * HALVES);
+}
+
+/* Takes a grid on which coordinates are rounded. */
+static void round_axis(brio_las_grid *g, int axis) {
+    double low = g->low[axis], high = g->high[axis];
+    double half = high / 2 - low / 2; /* halves, because the difference of two doubles may overflow */
+    g->origin[axis] = low / 2 + high / 2;
+    g->step[axis] = half > 0 ? pow(10, ceil(log10(half / (INT32_MAX - 1)))) : 1;
+    if (!(g->step[axis] > 0)) g->step[axis] = 0x1p-1022;
+    g->found[axis] = g->rounds[axis] = true;
+}
+
+/* Goes on to the next candidate that gives back the witnesses. */
+static void next_candidate(brio_las_grid *g, int axis) {
+    do {
+        g->candidate[axis]++;
+        if (set_candidate(g, axis)) continue;
+        round_axis(g, axis);
+        return;
+    } while (!gives_back(g, axis, *g->witnesses, g->num_witnesses));
+}
+
+/* --- passes --- */
+
+static void take_box(brio_las_grid *g, const brio_mesh *block) {
+    for (size_t v = 0; v < block->num_vertices; v++)
+        for (int k = 0; k < 3; k++) {
+            double x = block->vertices[3 * v + (size_t)k];
+            bool first = v == 0 && g->points == 0;
+            if (first || x < g->low[k]) g->low[k] = x;
+            if (first || x > g->high[k]) g->high[k] = x;
+        }
+    g->points += block->num_vertices;
+}
+
+static void take_witnesses(brio_las_grid *g, const brio_mesh *block) {
+    size_t stride = block->num_vertices / WITNESSES_A_BLOCK + 1;
+    for (size_t v = 0; v < block->num_vertices && g->num_witnesses < BRIO_LAS_WITNESSES; v += stride)
+        memcpy(g->witnesses[g->num_witnesses++], block->vertices + 3 * v, sizeof *g->witnesses);
+}
+
+/* The first pass: `failed` says whether the source's grid failed anywhere. */
+static void try_source(brio_las_grid *g, int axis, const brio_mesh *block) {
+    if (!g->begun) {
+        g->step[axis] = block->coordinate_step[axis];
+        g->origin[axis] = block->coordinate_origin[axis];
+    }
+    if (!g->failed[axis]) g->failed[axis] = !gives_back(g, axis, block->vertices, block->num_vertices);
+}
+
+static void try_candidates(brio_las_grid *g, int axis, const brio_mesh *block) {
+    while (!g->found[axis] && !gives_back(g, axis, block->vertices, block->num_vertices)) {
+        next_candidate(g, axis);
+        g->failed[axis] |= g->begun;
     }
 }
 
-/* Tries whole numbers within the range as origins. Near an origin products with the step are small, so their sums with
- * the origin round to the double nearest to the decimal number. The doubles of most texts are such. */
-static bool try_origins(const brio_mesh *m, int axis, double low, double high, brio_las_grid *grid) {
-    double first = floor(low), count = ceil(high) - first;
-    if (!(count > 0 && fabs(low) + fabs(high) < 0x1p53)) return false;
-    double step = count > ORIGINS ? ceil(count / ORIGINS) : 1;
-    for (int i = 0; i <= COARSE; i++)
-        for (double origin = first; origin <= high; origin += step)
-            if (try_grid(m, axis, tenths[i], origin, grid)) return true;
-    return false;
+brio_status brio_las_grid_survey(brio_context *ctx, brio_las_grid *g, const brio_mesh *block) {
+    brio_status status = BRIO_OK;
+    if (!g->witnesses) BRIO_TRY(BRIO_ALLOC(ctx, g->witnesses, BRIO_LAS_WITNESSES));
+    if (g->pass == 0) {
+        take_box(g, block);
+        take_witnesses(g, block);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (g->pass == 0)
+            try_source(g, k, block);
+        else
+            try_candidates(g, k, block);
+    }
+    g->begun = true;
+done:
+    return status;
 }
 
-static void find_axis(const brio_mesh *m, int axis, brio_las_grid *grid) {
-    double low, high;
-    if (try_grid(m, axis, m->coordinate_step[axis], m->coordinate_origin[axis], grid)) return;
-    find_range(m, axis, &low, &high);
-    double origins[] = {0, floor(low)};
-    for (int o = 0; o < 2; o++)
-        for (int i = 0; i <= DECIMALS; i++)
-            if (try_grid(m, axis, tenths[i], origins[o], grid)) return;
-    for (int o = 0; o < 2; o++)
-        for (int i = 1; i <= HALVES; i++)
-            if (try_grid(m, axis, ldexp(1, -i), origins[o], grid)) return;
-    if (try_origins(m, axis, low, high, grid)) return;
-    /* halves, because the difference of two doubles may overflow */
-    double half = high / 2 - low / 2;
-    grid->origin[axis] = low / 2 + high / 2;
-    grid->step[axis] = half > 0 ? pow(10, ceil(log10(half / (INT32_MAX - 1)))) : 1;
-    if (!(grid->step[axis] > 0)) grid->step[axis] = 0x1p-1022;
+bool brio_las_grid_end_pass(brio_las_grid *g) {
+    g->pass++;
+    g->begun = false;
+    for (int k = 0; k < 3; k++) {
+        if (!g->failed[k]) g->found[k] = true;
+        if (!g->found[k] && g->pass == 1) next_candidate(g, k);
+        if (!g->found[k] && g->pass == MOST_PASSES) round_axis(g, k);
+        g->failed[k] = false;
+    }
+    return g->found[0] && g->found[1] && g->found[2];
 }
 
-void brio_las_grid_find(const brio_mesh *mesh, brio_las_grid *grid) {
-    for (int k = 0; k < 3; k++) find_axis(mesh, k, grid);
+void brio_las_grid_free(brio_context *ctx, brio_las_grid *g) {
+    brio_release(ctx, g->witnesses);
+    g->witnesses = NULL;
 }
 
-int32_t brio_las_grid_number(const brio_las_grid *grid, int axis, double x) {
-    double n = number_of(x, grid->step[axis], grid->origin[axis]);
+int32_t brio_las_grid_number(const brio_las_grid *g, int axis, double x) {
+    double n = number_of(x, g->step[axis], g->origin[axis]);
     return n <= INT32_MIN ? INT32_MIN : n >= INT32_MAX ? INT32_MAX : (int32_t)n;
 }
 

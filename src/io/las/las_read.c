@@ -8,6 +8,7 @@
 #include "base/team.h"
 #include "io/formats.h"
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Both chosen: a block fits in the second-level cache, and a thread's part is worth waking it. */
@@ -39,10 +40,11 @@ static brio_status read_records(brio_stream *s, brio_builder *b, const brio_las_
     while (s->row < h->num_points) {
         BRIO_TRY(brio_stream_fill(s, h->record));
         size_t rows = brio_stream_left(s) / h->record;
+        if (rows > BRIO_BLOCK_ROWS) rows = BRIO_BLOCK_ROWS;
         if (rows > h->num_points - s->row) rows = (size_t)(h->num_points - s->row);
         if (!rows) return brio_stream_truncated(s);
         BRIO_TRY(brio_builder_add_vertices(b, rows));
-        block_job job = {plan, b->mesh, s->buffer + s->begin, (size_t)s->row};
+        block_job job = {plan, b->mesh, s->buffer + s->begin, b->mesh->num_vertices - rows};
         brio_for(s->ctx, brio_threads(s->ctx, rows, LEAST_ROWS), rows, store_part, &job);
         s->begin += rows * h->record;
         s->row += rows;
@@ -57,7 +59,9 @@ brio_status brio_las_read(brio_stream *s, brio_builder *b) {
     brio_las_plan plan = {.columns = NULL};
     BRIO_TRY(brio_las_header_read(s, &h));
     if (!h.compressed) BRIO_TRY(brio_stream_expect(s, h.num_points, h.record, "the header"));
-    BRIO_REQUIRE(b->ctx, h.num_points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+    brio_builder_stream(b, h.num_points);
+    snprintf(b->version, sizeof b->version, "1.%d, point format %u", h.minor, h.format);
+    BRIO_REQUIRE(b->ctx, b->streams || h.num_points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
                  "%s: %" PRIu64 " points, the most are %" PRIu64, b->name, h.num_points, BRIO_MAX_VERTICES);
     BRIO_TRY(brio_las_plan_make(&plan, b, &h));
     memcpy(b->mesh->coordinate_step, h.scale, sizeof h.scale);

@@ -6,7 +6,7 @@
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
 #include "base/memory.h"
 #include "base/team.h"
-#include "io/formats.h"
+#include "io/row_format.h"
 #include "io/las/las_fields.h"
 #include "io/las/las_grid.h"
 #include "io/little_endian.h"
@@ -16,7 +16,11 @@
 /* CHUNK: rows encoded at a time. Both chosen. */
 enum { CHUNK = 1 << 15, ROWS_A_THREAD = 1 << 12 };
 enum { HEADER = 227, HEADER_1_4 = 375, RECORD_HEADER = 54, EXTRA_RECORD = 192, MOST_EXTRAS = 340, EXTRA_NAME = 32 };
-enum { RETURNS = 15, WKT = 16 /* the flag of formats 6 to 10: coordinate systems as text */ };
+enum {
+    LATE = 4 /* place of the first format of version 1.4 in a list of formats */,
+    RETURNS = 15,
+    WKT = 16 /* the flag of formats 6 to 10: coordinate systems as text */
+};
 
 /* Where a property goes. */
 typedef struct {
@@ -33,7 +37,7 @@ typedef struct {
 } range;
 
 typedef struct {
-    const brio_write_job *job;
+    const brio_mesh *block; /* that is being written; of the first one the properties count */
     brio_las_grid grid;
     unsigned format;
     size_t record, num_extras;
@@ -46,18 +50,17 @@ typedef struct {
 
 /* --- the format --- */
 
-static range range_of(const brio_property *p, size_t count) {
-    range r = {true, 0, 0};
+static void widen(range *r, const brio_property *p, size_t count) {
     for (size_t i = 0; i < count; i++) {
         double x = brio_property_value(p, i);
-        r.whole &= x == floor(x) && fabs(x) <= UINT32_MAX;
-        if (i == 0 || x < r.low) r.low = x;
-        if (i == 0 || x > r.high) r.high = x;
+        r->whole &= x == floor(x) && fabs(x) <= UINT32_MAX;
+        if (x < r->low) r->low = x;
+        if (x > r->high) r->high = x;
     }
-    return r;
 }
 
 static bool fits(const brio_las_field *f, const range *r) {
+    if (r->low > r->high) return true; /* there are no values */
     if (f->type == BRIO_SCALAR_FLOAT64) return true;
     bool is_signed = f->type == BRIO_SCALAR_INT8 || f->type == BRIO_SCALAR_INT16;
     int bits = f->bits ? f->bits : 8 * (int)brio_scalar_size(f->type);
@@ -75,11 +78,12 @@ static const brio_las_field *field_of(const brio_las_field *fields, size_t count
 
 static unsigned choose_format(const las_writer *w) {
     static const unsigned formats[] = {0, 1, 2, 3, 6, 7, 8};
-    const brio_mesh *m = w->job->mesh;
+    const brio_mesh *m = w->block;
     brio_las_field fields[BRIO_LAS_FIELDS];
     size_t most = 0;
-    unsigned best = 0;
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+    size_t first = w->grid.points > UINT32_MAX ? LATE : 0; /* the others count points in 32 bits */
+    unsigned best = formats[first];
+    for (size_t i = first; i < sizeof formats / sizeof *formats; i++) {
         size_t taken = 0, count = brio_las_fields_of(formats[i], fields);
         for (size_t j = 0; j < m->num_properties; j++)
             taken += field_of(fields, count, &m->properties[j], &w->ranges[j]) != NULL;
@@ -102,11 +106,9 @@ done:
 
 static brio_status plan(brio_output *out, las_writer *w) {
     brio_status status = BRIO_OK;
-    const brio_mesh *m = w->job->mesh;
+    const brio_mesh *m = w->block;
     brio_las_field fields[BRIO_LAS_FIELDS];
     BRIO_TRY(BRIO_ALLOC_ZERO(out->ctx, w->places, m->num_properties + 1));
-    BRIO_TRY(BRIO_ALLOC(out->ctx, w->ranges, m->num_properties + 1));
-    for (size_t i = 0; i < m->num_properties; i++) w->ranges[i] = range_of(&m->properties[i], m->num_vertices);
     w->format = choose_format(w);
     w->record = brio_las_record_bytes(w->format);
     size_t count = brio_las_fields_of(w->format, fields);
@@ -122,7 +124,6 @@ static brio_status plan(brio_output *out, las_writer *w) {
         w->record += brio_scalar_size(p->type);
         w->num_extras++;
     }
-    brio_las_grid_find(m, &w->grid);
 done:
     return status;
 }
@@ -130,35 +131,25 @@ done:
 /* --- the header --- */
 
 static void put_limits(const las_writer *w, char *header) {
-    const brio_mesh *m = w->job->mesh;
+    const brio_las_grid *g = &w->grid;
     for (int k = 0; k < 3; k++) {
-        int32_t low = m->num_vertices ? INT32_MAX : 0, high = m->num_vertices ? INT32_MIN : 0;
-        for (size_t v = 0; v < m->num_vertices; v++) {
-            int32_t n = brio_las_grid_number(&w->grid, k, m->vertices[3 * v + (size_t)k]);
-            if (n < low) low = n;
-            if (n > high) high = n;
-        }
-        brio_put_le_double(header + 131 + 8 * k, w->grid.step[k]);
-        brio_put_le_double(header + 155 + 8 * k, w->grid.origin[k]);
-        brio_put_le_double(header + 179 + 16 * k, high * w->grid.step[k] + w->grid.origin[k]);
-        brio_put_le_double(header + 187 + 16 * k, low * w->grid.step[k] + w->grid.origin[k]);
+        int32_t low = g->points ? brio_las_grid_number(g, k, g->low[k]) : 0;
+        int32_t high = g->points ? brio_las_grid_number(g, k, g->high[k]) : 0;
+        brio_put_le_double(header + 131 + 8 * k, g->step[k]);
+        brio_put_le_double(header + 155 + 8 * k, g->origin[k]);
+        brio_put_le_double(header + 179 + 16 * k, high * g->step[k] + g->origin[k]);
+        brio_put_le_double(header + 187 + 16 * k, low * g->step[k] + g->origin[k]);
     }
 }
 
-static void count_returns(las_writer *w) {
-    const brio_mesh *m = w->job->mesh;
-    const brio_property *p = brio_mesh_property(m, "return_number");
-    if (!p || w->places[p - m->properties].extra) return;
-    for (size_t v = 0; v < m->num_vertices; v++) w->returns[(int)brio_property_value(p, v) & RETURNS]++;
-}
-
-static brio_status write_header(brio_output *out, las_writer *w) {
+static brio_status write_header(brio_output *out, const brio_write_job *job, las_writer *w) {
     char header[HEADER_1_4] = "LASF";
-    uint64_t n = w->job->mesh->num_vertices;
+    const brio_property *numbers = brio_mesh_property(w->block, "return_number");
+    uint64_t n = job->points;
     bool late = w->format >= 6;
     size_t size = late ? HEADER_1_4 : HEADER, extras = w->num_extras ? RECORD_HEADER + EXTRA_RECORD * w->num_extras : 0;
-    const char *comment = w->job->options->comment ? w->job->options->comment : "brio " BRIO_VERSION;
-    count_returns(w);
+    const char *comment = job->options->comment ? job->options->comment : "brio " BRIO_VERSION;
+    if (numbers && w->places[numbers - w->block->properties].extra) memset(w->returns, 0, sizeof w->returns);
     brio_put_le16(header + 6, late ? WKT : 0);
     header[24] = 1;
     header[25] = late ? 4 : 2;
@@ -180,7 +171,7 @@ static brio_status write_header(brio_output *out, las_writer *w) {
 static brio_status write_extras(brio_output *out, const las_writer *w) {
     static const uint8_t types[BRIO_SCALAR_END] = {2, 1, 4, 3, 6, 5, 9, 10};
     brio_status status = BRIO_OK;
-    const brio_mesh *m = w->job->mesh;
+    const brio_mesh *m = w->block;
     char header[RECORD_HEADER] = {0};
     if (!w->num_extras) return BRIO_OK;
     memcpy(header + 2, "LASF_Spec", 9);
@@ -221,7 +212,7 @@ static void put_number(char *bytes, brio_scalar type, double x) {
 
 static void encode(void *user, size_t begin, size_t end, int thread) {
     const las_writer *w = user;
-    const brio_mesh *m = w->job->mesh;
+    const brio_mesh *m = w->block;
     (void)thread;
     memset(w->rows + begin * w->record, 0, (end - begin) * w->record);
     for (size_t i = begin; i < end; i++)
@@ -241,10 +232,12 @@ static void encode(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-static brio_status write_records(brio_output *out, las_writer *w) {
+static brio_status write_records(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
-    size_t n = w->job->mesh->num_vertices;
-    BRIO_TRY(BRIO_ALLOC(out->ctx, w->rows, CHUNK * w->record));
+    las_writer *w = state;
+    size_t n = job->mesh->num_vertices;
+    w->block = job->mesh;
+    if (!w->rows) BRIO_TRY(BRIO_ALLOC(out->ctx, w->rows, CHUNK * w->record));
     for (w->first = 0; w->first < n; w->first += CHUNK) {
         size_t count = n - w->first < CHUNK ? n - w->first : CHUNK;
         brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode, w);
@@ -254,17 +247,78 @@ done:
     return status;
 }
 
-brio_status brio_las_write(brio_output *out, const brio_write_job *job) {
+/* --- what must be known before --- */
+
+static void count_returns(las_writer *w, const brio_mesh *block) {
+    const brio_property *p = brio_mesh_property(block, "return_number");
+    for (size_t v = 0; p && v < block->num_vertices; v++) {
+        double x = brio_property_value(p, v);
+        if (x >= 0 && x <= RETURNS) w->returns[(int)x]++;
+    }
+}
+
+static brio_status survey(brio_context *ctx, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
-    las_writer w = {.job = job};
-    BRIO_TRY(plan(out, &w));
-    if (job->options->moved) *job->options->moved = brio_las_grid_moved(&w.grid, job->mesh);
-    BRIO_TRY(write_header(out, &w));
-    BRIO_TRY(write_extras(out, &w));
-    BRIO_TRY(write_records(out, &w));
+    las_writer *w = state;
+    const brio_mesh *m = job->mesh;
+    if (!w->ranges) {
+        BRIO_TRY(BRIO_ALLOC(ctx, w->ranges, m->num_properties + 1));
+        for (size_t i = 0; i < m->num_properties; i++) w->ranges[i] = (range){true, INFINITY, -INFINITY};
+    }
+    if (w->grid.pass == 0) {
+        for (size_t i = 0; i < m->num_properties; i++) widen(&w->ranges[i], &m->properties[i], m->num_vertices);
+        count_returns(w, m);
+    }
+    BRIO_TRY(brio_las_grid_survey(ctx, &w->grid, m));
 done:
-    brio_release(out->ctx, w.places);
-    brio_release(out->ctx, w.ranges);
-    brio_release(out->ctx, w.rows);
     return status;
 }
+
+static bool surveyed(void *state) {
+    las_writer *w = state;
+    return brio_las_grid_end_pass(&w->grid);
+}
+
+static uint64_t surveyed_points(const void *state) {
+    const las_writer *w = state;
+    return w->grid.points;
+}
+
+static bool rounds(const void *state) {
+    const las_writer *w = state;
+    return w->grid.rounds[0] || w->grid.rounds[1] || w->grid.rounds[2];
+}
+
+static double moved(const void *state, const brio_mesh *block) {
+    const las_writer *w = state;
+    return brio_las_grid_moved(&w->grid, block);
+}
+
+static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
+    brio_status status = BRIO_OK;
+    las_writer *w = state;
+    w->block = job->mesh;
+    BRIO_TRY(plan(out, w));
+    BRIO_TRY(write_header(out, job, w));
+    BRIO_TRY(write_extras(out, w));
+done:
+    return status;
+}
+
+static void free_state(brio_context *ctx, void *state) {
+    las_writer *w = state;
+    brio_release(ctx, w->places);
+    brio_release(ctx, w->ranges);
+    brio_release(ctx, w->rows);
+    brio_las_grid_free(ctx, &w->grid);
+}
+
+const brio_row_format brio_las_rows = {.state = sizeof(las_writer),
+                                       .survey = survey,
+                                       .surveyed = surveyed,
+                                       .surveyed_points = surveyed_points,
+                                       .begin = begin,
+                                       .rows = write_records,
+                                       .free = free_state,
+                                       .rounds = rounds,
+                                       .moved = moved};

@@ -30,9 +30,10 @@ typedef struct {
 typedef struct {
     const uint8_t *bytes;
     size_t size;
-    size_t first, points; /* its points in the mesh */
+    size_t first, points; /* its points in the block of the mesh */
     bool damaged;
-    size_t at; /* damaged: the first point of the block that is */
+    size_t at;    /* damaged: the first of the points decoded together that is */
+    uint64_t row; /* its first point in the file */
 } loaded_chunk;
 
 typedef struct {
@@ -99,7 +100,7 @@ static brio_status damaged(const laz_reader *r, const loaded_chunk *c, uint64_t 
                      "%s: the compressed chunk at byte %" PRIu64
                      " is damaged or cut off: at point %zu (counted from 0) "
                      "of the file or soon behind it",
-                     r->stream->name, offset, c->first + c->at);
+                     r->stream->name, offset, (size_t)c->row + c->at);
 }
 
 /* --- with a table --- */
@@ -117,14 +118,19 @@ static brio_status read_batch(laz_reader *r, const brio_laz_chunk *chunks, size_
     uint64_t offset = brio_stream_offset(s);
     const char *data = NULL;
     for (; n < count && n < most && (n == 0 || bytes + chunks[n].bytes <= BATCH); n++) {
-        r->batch[n] =
-            (loaded_chunk){.size = chunks[n].bytes, .first = (size_t)s->row + points, .points = chunks[n].points};
+        if (n && r->builder->streams && points + chunks[n].points > BRIO_BLOCK_ROWS * (size_t)r->threads) break;
+        r->batch[n] = (loaded_chunk){
+            .size = chunks[n].bytes, .first = points, .points = chunks[n].points, .row = s->row + points};
         bytes += chunks[n].bytes;
         points += chunks[n].points;
     }
     BRIO_TRY(brio_stream_take(s, bytes, &data));
     BRIO_TRY(brio_builder_add_vertices(r->builder, points));
-    for (size_t i = 0; i < n; data += r->batch[i++].size) r->batch[i].bytes = (const uint8_t *)data;
+    size_t base = r->builder->mesh->num_vertices - points;
+    for (size_t i = 0; i < n; data += r->batch[i++].size) {
+        r->batch[i].bytes = (const uint8_t *)data;
+        r->batch[i].first += base;
+    }
     brio_for_chunks(s->ctx, r->threads, n, 1, decode_part, r);
     for (size_t i = 0; i < n; offset += r->batch[i++].size)
         if (r->batch[i].damaged) return damaged(r, &r->batch[i], offset);
@@ -187,6 +193,7 @@ static brio_status next_layers(laz_reader *r, loaded_chunk *c) {
     if (brio_stream_left(s) < size) return brio_stream_truncated(s);
     BRIO_TRY(check_points(r, points, size));
     BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
+    c->first = r->builder->mesh->num_vertices - c->points;
     c->bytes = (uint8_t *)s->buffer + s->begin;
     c->size = (size_t)size;
     decode_chunk(r, r->workers, c);
@@ -200,6 +207,7 @@ static brio_status next_stream(laz_reader *r, loaded_chunk *c) {
     brio_stream *s = r->stream;
     BRIO_TRY(check_points(r, c->points, s->size == BRIO_SIZE_UNKNOWN ? s->size : s->size - brio_stream_offset(s)));
     BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
+    c->first = r->builder->mesh->num_vertices - c->points;
     for (uint64_t window = WINDOW;; window *= 2) {
         BRIO_TRY(gather(s, window));
         c->bytes = (uint8_t *)s->buffer + s->begin;
@@ -223,7 +231,7 @@ static brio_status read_without_table(laz_reader *r) {
                  s->name);
     BRIO_TRY(make_workers(r, 1));
     while (s->row < h->num_points) {
-        loaded_chunk c = {.first = (size_t)s->row, .points = (size_t)(h->num_points - s->row)};
+        loaded_chunk c = {.row = s->row, .points = (size_t)(h->num_points - s->row)};
         if (fixed && c.points > h->chunk) c.points = h->chunk;
         BRIO_TRY(h->form.layered ? next_layers(r, &c) : next_stream(r, &c));
         if (c.damaged) return damaged(r, &c, brio_stream_offset(s));

@@ -320,6 +320,7 @@ brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) 
     brio_status status = BRIO_OK;
     xyz_reader r = {.stream = s, .builder = b, .fields = {.stream = s}};
     char *line;
+    brio_builder_stream(b, BRIO_COUNT_UNKNOWN);
     if (columns) {
         BRIO_TRY(brio_columns_parse(s->ctx, columns, &r.names.at, &r.names.count));
         r.source = NAMES_GIVEN;
@@ -329,9 +330,9 @@ brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) 
         if (!line) break;
         BRIO_TRY(read_line(&r, line));
     }
-    BRIO_REQUIRE(s->ctx, !r.counted || r.promised == b->mesh->num_vertices, BRIO_ERR_FORMAT,
-                 "%s: line %zu: promises %" PRIu64 " points, %zu rows follow", s->name, r.count_line, r.promised,
-                 b->mesh->num_vertices);
+    BRIO_REQUIRE(s->ctx, !r.counted || r.promised == brio_builder_count(b), BRIO_ERR_FORMAT,
+                 "%s: line %zu: promises %" PRIu64 " points, %" PRIu64 " rows follow", s->name, r.count_line,
+                 r.promised, brio_builder_count(b));
     drop_missing(&r);
 done:
     brio_release(s->ctx, r.fields.at);

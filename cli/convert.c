@@ -1,0 +1,160 @@
+/* brio convert: any format to any other, and a choice among the points. */
+#include "commands.h"
+#include "files.h"
+#include "interrupt.h"
+#include "precision.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct arguments {
+    const char *crop;
+    double thin;
+    int outliers;
+} arguments;
+
+#define FIELD(name) offsetof(arguments, name)
+static const option options[] = {
+    {"crop", 0, OPTION_TEXT, FIELD(crop), "x0,y0,z0,x1,y1,z1", "keep the points in this box, its border included", 0},
+    {"drop-outliers", 0, OPTION_INT, FIELD(outliers), "K",
+     "drop points that are far from their K nearest points (8 to 16)", 0},
+    {"thin", 0, OPTION_NUMBER, FIELD(thin), "S", "keep points at least S apart, all others being nearer than S to one",
+     0},
+    {0},
+};
+#undef FIELD
+
+static const arguments defaults = {0};
+
+static brio_status take_crop(run *r, const char *text, double box[6]) {
+    const char *at = text;
+    for (int i = 0; i < 6; i++) {
+        char *end;
+        box[i] = strtod(at, &end);
+        if (end == at || !isfinite(box[i]) || *end != (i < 5 ? ',' : 0))
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--crop: expected x0,y0,z0,x1,y1,z1, got '%s'", text);
+        at = end + 1;
+    }
+    for (int k = 0; k < 3; k++)
+        if (box[k] > box[k + 3])
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--crop: %c from %g to %g is empty", "xyz"[k], box[k], box[k + 3]);
+    return BRIO_OK;
+}
+
+static void on_lost(const char *name, void *user) {
+    cli_fact_text(user, NULL, name); /* a list until the report */
+}
+
+static void report_lost(run *r, const char *path, const facts *lost) {
+    cli_fact_open(&r->facts, "lost", FACT_LIST);
+    for (size_t i = 0; i < lost->count; i++) cli_fact_text(&r->facts, NULL, lost->list[i].text);
+    cli_fact_close(&r->facts);
+    size_t used = 0;
+    char names[1024] = "";
+    for (size_t i = 0; i < lost->count && used < sizeof names; i++)
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s %s", i ? "," : "", lost->list[i].text);
+    if (lost->count) cli_warn(r, "%s cannot hold:%s", path, names);
+}
+
+/* The target is the second operand or, as for other commands, -o. */
+static brio_status take_target(run *r) {
+    common_options *c = &r->common;
+    if (r->num_operands == 2 && c->output)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "two outputs: %s and -o %s", r->operands[1], c->output);
+    if (r->num_operands == 2) c->output = r->operands[1];
+    if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: expected A B, got one file");
+    if (c->json && !strcmp(c->output, "-"))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--json and the output - both want standard output");
+    if (cli_same_file(r->operands[0], c->output))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s and %s are the same file", r->operands[0], c->output);
+    return cli_require_output(r, NULL, false);
+}
+
+static brio_status take_files(run *r, brio_read_options *from, brio_write_options *to) {
+    const common_options *c = &r->common;
+    brio_status status = cli_output_format(r, c->output, c->format, &to->format);
+    if (status != BRIO_OK) return status;
+    if (c->input_format) from->format = brio_format_of(c->input_format);
+    from->columns = c->columns;
+    to->ascii = c->ascii;
+    to->float32 = c->float32;
+    to->compress = c->compress;
+    to->comment = "brio " BRIO_VERSION;
+    return BRIO_OK;
+}
+
+static brio_status take_options(run *r, brio_convert_options *o) {
+    const arguments *chosen = r->arguments;
+    brio_status status = BRIO_OK;
+    o->crop = chosen->crop != NULL;
+    if (chosen->crop) TRY(take_crop(r, chosen->crop, o->box));
+    if (chosen->thin < 0) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--thin: %g is below 0", chosen->thin));
+    if (chosen->outliers < 0 || chosen->outliers > 63)
+        TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--drop-outliers: %d is not between 1 and 63", chosen->outliers));
+    o->thin = chosen->thin;
+    o->drop_outliers = chosen->outliers;
+done:
+    return status;
+}
+
+static void report(run *r, const brio_convert_stats *stats) {
+    facts *f = &r->facts;
+    cli_fact_count(f, "points", stats->points);
+    cli_fact_count(f, "faces", stats->faces);
+    if (stats->tetrahedra) cli_fact_count(f, "tetrahedra", stats->tetrahedra);
+    if (stats->points_read != stats->points) cli_fact_count(f, "points_read", stats->points_read);
+    if (stats->outliers) cli_fact_count(f, "outliers", stats->outliers);
+    if (stats->thinned) cli_fact_count(f, "thinned", stats->thinned);
+    cli_fact_bool(f, "streamed", stats->streamed);
+}
+
+static brio_status convert(run *r) {
+    brio_convert_options o = brio_convert_options_default();
+    brio_read_options from = brio_read_options_default();
+    brio_write_options to = brio_write_options_default();
+    double moved = 0;
+    brio_convert_stats stats = {.size = sizeof stats};
+    facts lost = {0};
+    brio_status status = BRIO_OK;
+    TRY(take_target(r));
+    TRY(take_files(r, &from, &to));
+    TRY(take_options(r, &o));
+    to.moved = &moved;
+    o.from = &from, o.to = &to;
+    o.lost = on_lost;
+    o.lost_user = &lost;
+    TRY(cli_check_interrupt(r));
+    cli_interrupt_writing(strcmp(r->common.output, "-") != 0);
+    status = brio_convert(r->ctx, r->operands[0], r->common.output, &o, &stats);
+    cli_interrupt_writing(false);
+    TRY(status);
+    cli_stage(r, "select", stats.select_seconds);
+    cli_stage(r, "convert", stats.seconds - stats.select_seconds);
+    report(r, &stats);
+    report_lost(r, r->common.output, &lost);
+    cli_tell_moved(r, r->common.output, moved, 0);
+done:
+    cli_facts_free(&lost);
+    return status;
+}
+
+const command cli_convert = {
+    .name = "convert",
+    .operands = "A B",
+    .summary = "any format to any other; crops, thins, drops outliers",
+    .description =
+        "Points go by in blocks, so that a file of any size needs some MiB; files with faces are read as a whole. "
+        "First come the points in the box, of these those that are no outliers, of these a thinned set.",
+    .examples =
+        "brio convert scan.laz scan.ply\nevery property is kept\n"
+        "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n",
+    .outputs = "ply xyz pts txt csv obj off stl vtu vtp node las npy glb",
+    .output_optional = true,
+    .group = GROUP_FILES,
+    .min_operands = 1,
+    .max_operands = 2,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = convert,
+};

@@ -1,0 +1,257 @@
+/* Converts a file to another format.
+ *
+ * The points go through the steps as a stream of blocks: source.c reads and chooses, a row writer (row_format.h) takes
+ * them. Formats that are not written row by row, and files with polygons, take the way through memory: the source is then
+ * one mesh. */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/versioned.h"
+#include "io/convert/source.h"
+#include "io/row_format.h"
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const brio_convert_options STANDARD = {.size = sizeof STANDARD};
+
+BRIO_OPTIONS_INIT(brio_convert_options)
+
+typedef struct {
+    brio_context *ctx;
+    const char *to;
+    const brio_convert_options *options;
+    brio_write_options write;
+    brio_format format;
+    brio_source source;
+    brio_row_writer writer;
+    bool told;    /* whether the losses of the parts were named */
+    bool rounded; /* whether single precision rounded a coordinate */
+    uint64_t counted;
+    brio_convert_stats stats;
+} conversion;
+
+/* --- what is lost --- */
+
+static void lose(const conversion *c, const char *name) {
+    if (c->options->lost) c->options->lost(name, c->options->lost_user);
+}
+
+static bool holds_properties(brio_format format) {
+    return format != BRIO_FORMAT_OBJ && format != BRIO_FORMAT_OFF && format != BRIO_FORMAT_STL;
+}
+
+static bool holds_faces(brio_format format) {
+    return format != BRIO_FORMAT_XYZ && format != BRIO_FORMAT_NODE && format != BRIO_FORMAT_LAS &&
+           format != BRIO_FORMAT_NPY;
+}
+
+static bool holds_tetrahedra(brio_format format) {
+    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_NODE;
+}
+
+static bool holds_edges(brio_format format) {
+    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP;
+}
+
+/* Names the parts of a mesh that the format cannot hold. */
+static void name_losses(conversion *c, const brio_mesh *m) {
+    if (c->told) return;
+    c->told = true;
+    if (m->num_faces && !holds_faces(c->format)) lose(c, "faces");
+    if (m->num_tetrahedra && !holds_tetrahedra(c->format)) lose(c, "tetrahedra");
+    if (m->num_edges && !holds_edges(c->format)) lose(c, "edges");
+    for (size_t i = 0; i < m->num_properties && !holds_properties(c->format); i++) lose(c, m->properties[i].name);
+}
+
+static bool stores_single(const conversion *c) {
+    bool both = c->format == BRIO_FORMAT_PLY || c->format == BRIO_FORMAT_NPY || c->format == BRIO_FORMAT_VTU ||
+                c->format == BRIO_FORMAT_VTP;
+    return c->format == BRIO_FORMAT_STL || (both && c->write.float32);
+}
+
+static void find_rounding(conversion *c, const brio_mesh *m) {
+    for (size_t i = 0; i < 3 * m->num_vertices && !c->rounded && stores_single(c); i++)
+        c->rounded = fabs(m->vertices[i]) <= 0x1.ffffffp127 && (double)(float)m->vertices[i] != m->vertices[i];
+}
+
+/* --- passes --- */
+
+static brio_status survey(void *user, const brio_mesh *block) {
+    conversion *c = user;
+    return brio_row_writer_survey(&c->writer, block);
+}
+
+static brio_status count(void *user, const brio_mesh *block) {
+    conversion *c = user;
+    c->counted += block->num_vertices;
+    return BRIO_OK;
+}
+
+static brio_status write_block(void *user, const brio_mesh *block) {
+    conversion *c = user;
+    brio_status status = BRIO_OK;
+    brio_mesh shown = *block;
+    name_losses(c, block);
+    find_rounding(c, block);
+    if (!holds_faces(c->format)) shown.num_faces = 0;
+    if (!holds_tetrahedra(c->format)) shown.num_tetrahedra = 0;
+    /* the file announces as many points as all blocks have, if every one stays */
+    if (!c->writer.begun && c->writer.job.points == BRIO_COUNT_UNKNOWN) {
+        if (c->source.job.mesh)
+            c->writer.job.points = block->num_vertices;
+        else if (!c->options->crop && !c->source.chosen)
+            c->writer.job.points = c->source.job.announced;
+    }
+    BRIO_TRY(brio_row_writer_write(&c->writer, c->to, &shown));
+    c->stats.points += block->num_vertices;
+    if (c->source.job.mesh) {
+        c->stats.faces = shown.num_faces;
+        c->stats.tetrahedra = shown.num_tetrahedra;
+        c->stats.edges = holds_edges(c->format) ? shown.num_edges : 0;
+    }
+done:
+    return status;
+}
+
+/* Whether the output is a new file, of which the beginning can be written last. */
+static bool can_patch(const char *path) {
+    struct stat facts;
+    return strcmp(path, "-") != 0 && (stat(path, &facts) != 0 || S_ISREG(facts.st_mode));
+}
+
+/* Goes through the points before the first one is written, as often as the format needs. */
+static brio_status prepare(conversion *c, brio_bar bar) {
+    brio_status status = BRIO_OK;
+    const brio_sink surveys = {survey, c}, counts = {count, c};
+    brio_progress_part(c->ctx, bar, 0, 0.5);
+    while (c->writer.surveys) {
+        BRIO_TRY(brio_source_pass(&c->source, &surveys));
+        brio_row_writer_end_survey(&c->writer);
+        c->writer.job.points = brio_row_writer_surveyed_points(&c->writer);
+    }
+    if (c->writer.format->counts && !can_patch(c->to)) {
+        BRIO_TRY(brio_source_pass(&c->source, &counts));
+        c->writer.job.points = c->counted;
+    }
+done:
+    return status;
+}
+
+/* Writes with the passes that the format needs. */
+static brio_status stream(conversion *c) {
+    brio_status status = BRIO_OK;
+    brio_bar bar = brio_progress_bar(c->ctx);
+    const brio_sink sink = {write_block, c};
+    const brio_write_job job = {.options = &c->write, .points = BRIO_COUNT_UNKNOWN, .expected = BRIO_NO_PROGRESS};
+    BRIO_TRY(brio_row_writer_new(&c->writer, c->ctx, c->format, &job));
+    bool prepared = c->writer.surveys || (c->writer.format->counts && !can_patch(c->to));
+    if (prepared) BRIO_TRY(prepare(c, bar));
+    brio_progress_part(c->ctx, bar, prepared ? 0.5 : 0, 1);
+    BRIO_TRY(brio_source_pass(&c->source, &sink));
+    if (c->rounded || (c->writer.format->rounds && c->writer.format->rounds(c->writer.state))) lose(c, "precision");
+    brio_mesh last = {.num_vertices = 0};
+    if (c->source.job.mesh) last = *c->source.job.mesh;
+    if (!holds_faces(c->format)) last.num_faces = 0;
+    if (!holds_tetrahedra(c->format)) last.num_tetrahedra = 0;
+    BRIO_TRY(brio_row_writer_end(&c->writer, &last));
+done:
+    brio_progress_part(c->ctx, bar, 0, 1);
+    brio_row_writer_free(&c->writer);
+    c->writer = (brio_row_writer){.ctx = c->ctx};
+    return status;
+}
+
+static brio_status write_whole(void *user, const brio_mesh *mesh) {
+    conversion *c = user;
+    brio_mesh shown = *mesh;
+    brio_write_options o = c->write;
+    o.format = c->format;
+    name_losses(c, mesh);
+    find_rounding(c, mesh);
+    if (c->rounded) lose(c, "precision");
+    if (!holds_faces(c->format)) shown.num_faces = 0;
+    if (!holds_tetrahedra(c->format)) shown.num_tetrahedra = 0;
+    if (!holds_edges(c->format)) shown.num_edges = 0;
+    c->stats.points = shown.num_vertices;
+    c->stats.faces = shown.num_faces;
+    c->stats.tetrahedra = shown.num_tetrahedra;
+    c->stats.edges = shown.num_edges;
+    return brio_write(c->ctx, c->to, &shown, &o);
+}
+
+/* --- the whole --- */
+
+static brio_status check(conversion *c) {
+    brio_status status = BRIO_OK;
+    const brio_convert_options *o = c->options;
+    const char *from = c->source.path;
+    BRIO_REQUIRE(c->ctx, o->thin >= 0 && isfinite(o->thin), BRIO_ERR_ARGUMENT, "a spacing of %g, expected 0 or more",
+                 o->thin);
+    BRIO_REQUIRE(c->ctx, o->drop_outliers >= 0, BRIO_ERR_ARGUMENT, "outliers by %d neighbours", o->drop_outliers);
+    for (int k = 0; k < 3 && o->crop; k++)
+        BRIO_REQUIRE(c->ctx, o->box[k] <= o->box[k + 3], BRIO_ERR_ARGUMENT, "a box from %g to %g along %c", o->box[k],
+                     o->box[k + 3], "xyz"[k]);
+    struct stat a, b;
+    bool known = strcmp(from, "-") != 0 && strcmp(c->to, "-") != 0 && stat(from, &a) == 0 && stat(c->to, &b) == 0;
+    BRIO_REQUIRE(c->ctx, !known || !S_ISREG(a.st_mode) || a.st_dev != b.st_dev || a.st_ino != b.st_ino,
+                 BRIO_ERR_ARGUMENT, "%s and %s are the same file", from, c->to);
+done:
+    return status;
+}
+
+/* Converts; if a column turns out to be absent, starts again without it. */
+static brio_status run(conversion *c) {
+    brio_status status = BRIO_OK;
+    const brio_sink whole = {write_whole, c};
+    bool rows = brio_row_format_of(c->format) != NULL;
+    bool again = brio_source_rereadable(c->source.path);
+    bool once = !c->options->drop_outliers && !(c->options->thin > 0) && c->format != BRIO_FORMAT_LAS &&
+                (can_patch(c->to) || (rows && !brio_row_format_of(c->format)->counts));
+    c->source.whole = !rows || (!again && !once);
+    for (size_t absent = 0;; absent = c->source.absent.count) {
+        c->stats.points = c->counted = 0;
+        c->told = false;
+        status = BRIO_OK;
+        double started = brio_seconds();
+        if (c->options->drop_outliers || c->options->thin > 0) status = brio_source_choose(&c->source);
+        c->stats.select_seconds = brio_seconds() - started;
+        if (status == BRIO_OK) status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
+        if (status != BRIO_ERR_FORMAT || c->source.absent.count == absent || !again) return status;
+        brio_release(c->ctx, c->source.chosen);
+        c->source.chosen = NULL;
+    }
+}
+
+brio_status brio_convert(brio_context *ctx, const char *from, const char *to, const brio_convert_options *options,
+                         brio_convert_stats *stats) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_convert_options o = STANDARD;
+    conversion c = {.ctx = ctx, .to = to, .options = &o, .stats = {.size = sizeof c.stats}};
+    c.source = (brio_source){.ctx = ctx, .path = from, .options = &o};
+    c.writer = (brio_row_writer){.ctx = ctx};
+    double started = brio_seconds();
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_convert_stats, stats));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_convert_options, options, &o));
+    BRIO_TRY(check(&c));
+    brio_read_options read = brio_read_options_default();
+    c.write = brio_write_options_default();
+    if (o.from) BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, o.from, &read));
+    if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));
+    if (c.write.moved) *c.write.moved = 0;
+    c.format = c.write.format == BRIO_FORMAT_AUTO && strcmp(to, "-") ? brio_format_of(to) : c.write.format;
+    c.source.job =
+        (brio_read_job){.path = from, .format = read.format, .columns = read.columns, .announced = BRIO_COUNT_UNKNOWN};
+    BRIO_TRY(run(&c));
+    c.stats.streamed = c.source.job.streamed;
+    c.stats.points_read = c.source.points_read;
+    c.stats.outliers = c.source.outliers;
+    c.stats.thinned = c.source.thinned;
+    c.stats.passes = c.source.passes;
+    c.stats.seconds = brio_seconds() - started;
+    BRIO_GIVE(brio_convert_stats, stats, &c.stats);
+done:
+    brio_row_writer_free(&c.writer);
+    brio_source_free(&c.source);
+    return status;
+}

@@ -1,0 +1,22 @@
+/* One reading of a file: of all of it into a mesh, or block by block into a sink. */
+#ifndef BRIO_IO_READ_JOB_H
+#define BRIO_IO_READ_JOB_H
+
+#include "io/formats.h"
+
+typedef struct brio_read_job {
+    const char *path;
+    brio_format format;    /* BRIO_FORMAT_AUTO becomes the format that was found */
+    const char *columns;   /* as in brio_read_options */
+    const brio_sink *sink; /* NULL: the mesh receives everything */
+    brio_names *absent;    /* with a sink: as in brio_builder */
+    uint64_t announced;    /* set before the sink's first call, as in brio_builder */
+    bool streamed;         /* whether the sink received the vertices */
+    brio_mesh *mesh;       /* what was read, owned by the caller, or NULL if it was streamed */
+    char version[64];
+} brio_read_job;
+
+/** Reads a file. On failure job->mesh is NULL.   Returns what brio_read and the sink return. */
+brio_status brio_read_file(brio_context *ctx, brio_read_job *job);
+
+#endif

@@ -1,0 +1,160 @@
+/* Writes a file of points block by block, see row_format.h. */
+#include "base/memory.h"
+#include "io/row_format.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const brio_row_format *brio_row_format_of(brio_format format) {
+    switch (format) {
+    case BRIO_FORMAT_PLY:
+        return &brio_ply_rows;
+    case BRIO_FORMAT_XYZ:
+        return &brio_xyz_rows;
+    case BRIO_FORMAT_NPY:
+        return &brio_npy_rows;
+    case BRIO_FORMAT_LAS:
+        return &brio_las_rows;
+    default:
+        return NULL;
+    }
+}
+
+/* --- what a format can hold --- */
+
+/* Makes a name one word: PLY and the header of XYZ cannot quote a blank or a comma. */
+static void make_word(char name[64], const char *source) {
+    size_t n = 0;
+    for (; n < 63 && source[n]; n++) {
+        bool plain = (unsigned char)source[n] > ' ' && source[n] != 127 && !strchr(",;\"'", source[n]);
+        name[n] = plain ? source[n] : '_';
+    }
+    name[n] = 0;
+}
+
+static bool is_axis(const char *name) {
+    return strlen(name) == 1 && strchr("xyzXYZ", name[0]);
+}
+
+/* Returns whether a coordinate or one of the first `count` properties has the name. */
+static bool is_taken(const brio_write_job *job, size_t count, const char *name) {
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(job->names[i], name)) return true;
+    return is_axis(name);
+}
+
+/* A name that is taken gets _2, _3 and so on behind it, and is cut so that the whole fits: no result of long work is
+ * refused for a name. */
+static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    size_t count = job->mesh->num_properties;
+    BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
+    for (size_t i = 0; i < count; i++) {
+        char word[64], end[24];
+        BRIO_REQUIRE(ctx, job->mesh->properties[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
+        make_word(word, job->mesh->properties[i].name);
+        memcpy(job->names[i], word, sizeof word);
+        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) {
+            snprintf(end, sizeof end, "_%zu", n);
+            snprintf(job->names[i], 64, "%.*s%s", (int)(63 - strlen(end)), word, end);
+        }
+    }
+done:
+    return status;
+}
+
+bool brio_is_single(brio_format format, const brio_write_options *o) {
+    bool both = format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
+                format == BRIO_FORMAT_NPY;
+    return format == BRIO_FORMAT_STL || (o->float32 && both);
+}
+
+double brio_moved_by_singles(const brio_mesh *m) {
+    double most = 0;
+    for (size_t v = 0; v < m->num_vertices; v++) {
+        double by[3];
+        for (size_t k = 0; k < 3; k++) by[k] = m->vertices[3 * v + k] - (double)(float)m->vertices[3 * v + k];
+        if (by[0] != 0 || by[1] != 0 || by[2] != 0) most = fmax(most, hypot(by[0], hypot(by[1], by[2])));
+    }
+    return most;
+}
+
+brio_status brio_check_single(brio_context *ctx, const char *path, const brio_mesh *m) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < 3 * m->num_vertices; i++)
+        BRIO_REQUIRE(ctx, !(fabs(m->vertices[i]) >= 0x1.ffffffp127), BRIO_ERR_ARGUMENT,
+                     "%s: point %zu (counted from 0): %g does not fit single precision", path, i / 3, m->vertices[i]);
+done:
+    return status;
+}
+
+/* --- the file --- */
+
+brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_format format, const brio_write_job *job) {
+    *w = (brio_row_writer){.ctx = ctx, .format = brio_row_format_of(format), .job = *job};
+    w->out = (brio_output){.ctx = ctx, .target.folder = -1, .file = -1};
+    w->surveys = w->format->survey != NULL;
+    return brio_zeroed(ctx, &w->state, 1, w->format->state + 1);
+}
+
+brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block) {
+    w->job.mesh = block;
+    return w->format->survey(w->ctx, &w->job, w->state);
+}
+
+void brio_row_writer_end_survey(brio_row_writer *w) {
+    w->surveys = !w->format->surveyed(w->state);
+}
+
+uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w) {
+    return w->format->surveyed_points(w->state);
+}
+
+static brio_status open_output(brio_row_writer *w, const char *path) {
+    brio_status status = BRIO_OK;
+    if (w->format != &brio_las_rows) BRIO_TRY(make_names(w->ctx, path, &w->job));
+    w->begun = true;
+    BRIO_TRY(brio_output_open(&w->out, w->ctx, path, w->job.expected));
+    BRIO_REQUIRE(w->ctx, !w->format->counts || w->job.points != BRIO_COUNT_UNKNOWN || brio_output_can_patch(&w->out),
+                 BRIO_ERR_INTERNAL, "%s: the number of points is not known", path);
+    BRIO_TRY(w->format->begin(&w->out, &w->job, w->state));
+done:
+    return status;
+}
+
+brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const brio_mesh *block) {
+    brio_status status = BRIO_OK;
+    w->job.mesh = block;
+    if (!w->begun) BRIO_TRY(open_output(w, path));
+    bool single = w->job.options->float32 && w->format != &brio_las_rows && w->format != &brio_xyz_rows;
+    if (single) BRIO_TRY(brio_check_single(w->ctx, path, block));
+    BRIO_TRY(w->format->rows(&w->out, &w->job, w->state));
+    if (w->job.options->moved && w->format->moved)
+        *w->job.options->moved = fmax(*w->job.options->moved, w->format->moved(w->state, block));
+    else if (w->job.options->moved && single)
+        *w->job.options->moved = fmax(*w->job.options->moved, brio_moved_by_singles(block));
+    w->points += block->num_vertices;
+done:
+    return status;
+}
+
+brio_status brio_row_writer_end(brio_row_writer *w, const brio_mesh *last) {
+    brio_status status = BRIO_OK;
+    w->job.mesh = last;
+    w->job.points = w->points;
+    if (w->format->end) BRIO_TRY(w->format->end(&w->out, &w->job, w->state));
+    BRIO_TRY(brio_output_finish(&w->out));
+    BRIO_TRY(brio_output_publish(&w->out));
+done:
+    return status;
+}
+
+void brio_row_writer_free(brio_row_writer *w) {
+    if (w->format && w->format->free && w->state) w->format->free(w->ctx, w->state);
+    brio_release(w->ctx, w->state);
+    brio_release(w->ctx, w->job.names);
+    if (w->begun) brio_output_close(&w->out);
+    w->begun = false;
+    w->state = NULL;
+    w->job.names = NULL;
+}

@@ -1,0 +1,166 @@
+/* Finds outliers: points that are much farther from their neighbours than these are from theirs.
+ *
+ * The spacing of a point is its mean distance to its k nearest points. A point is an outlier if its spacing is more than
+ * `factor` times the lower quartile of the spacings of its k nearest points. The comparison is with the surroundings
+ * and not with all points, so where a scan becomes sparse by and by nothing is dropped. In space far from the scan the
+ * neighbours of an outlier are outliers, too. So a point is also an outlier if the logarithm of its spacing is DEVIATIONS
+ * robust standard deviations above the median of these logarithms (the median absolute deviation times 1.4826).
+ * A spacing up to factor^2 times the median is always allowed by this rule.
+ *
+ * Based on: Breunig Kriegel Ng Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
+ * Differs from the paper: mean distances instead of reachability distances, a quartile instead of a mean, and the
+ * second rule. */
+#include "base/finite.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/sort.h"
+#include "base/team.h"
+#include "base/versioned.h"
+#include "query/nearest_points.h"
+#include <math.h>
+#include <string.h>
+
+/* POINTS_A_THREAD, GROUP (points between two reports of progress): chosen. */
+enum { POINTS_A_THREAD = 1 << 8, CHUNK = 1 << 10, GROUP = 1 << 16 };
+
+/* Chosen on the sets of docs/algorithms.md, with the factor. */
+static const double DEVIATIONS = 8;
+
+static const brio_outliers_options STANDARD = {.size = sizeof STANDARD, .factor = 3};
+
+BRIO_OPTIONS_INIT(brio_outliers_options)
+
+typedef struct {
+    brio_point_tree tree;
+    size_t neighbours;
+    double factor;
+    double *spacing; /* of the points, in the order of the tree */
+    double most;     /* the greatest spacing that the second rule allows */
+    uint8_t *outlier;
+    size_t first; /* of the points that are being done */
+} search;
+
+/* Finds the nearest points of a point of the tree, without the point itself. */
+static size_t find_near(const search *s, size_t place, brio_near_point *near) {
+    size_t found = brio_nearest_points(&s->tree, s->tree.point[place], s->neighbours + 1, INFINITY, near), kept = 0;
+    brio_sort_near_points(&s->tree, near, found);
+    for (size_t i = 0; i < found; i++)
+        if (near[i].place != place) near[kept++] = near[i];
+    return kept < s->neighbours ? kept : s->neighbours;
+}
+
+static void find_spacings(void *user, size_t begin, size_t end, int thread) {
+    const search *s = user;
+    brio_near_point near[BRIO_NEAR_ROOM];
+    (void)thread;
+    for (size_t i = s->first + begin; i < s->first + end; i++) {
+        size_t found = find_near(s, i, near);
+        double sum = 0;
+        for (size_t j = 0; j < found; j++) sum += sqrt(near[j].square);
+        s->spacing[i] = found ? sum / (double)found : 0;
+    }
+}
+
+/* Returns the lower quartile of a few numbers, which it sorts. */
+static double lower_quartile(double *numbers, size_t count) {
+    for (size_t i = 1; i < count; i++) {
+        double number = numbers[i];
+        size_t j = i;
+        for (; j > 0 && numbers[j - 1] > number; j--) numbers[j] = numbers[j - 1];
+        numbers[j] = number;
+    }
+    return numbers[count / 4];
+}
+
+static void judge(void *user, size_t begin, size_t end, int thread) {
+    const search *s = user;
+    brio_near_point near[BRIO_NEAR_ROOM];
+    double spacings[BRIO_MOST_NEAR];
+    (void)thread;
+    for (size_t i = s->first + begin; i < s->first + end; i++) {
+        size_t found = find_near(s, i, near);
+        for (size_t j = 0; j < found; j++) spacings[j] = s->spacing[near[j].place];
+        bool stands_out = found && s->spacing[i] > s->factor * lower_quartile(spacings, found);
+        s->outlier[s->tree.index[i]] = stands_out || s->spacing[i] > s->most;
+    }
+}
+
+/* Returns the median of numbers that are not negative, given as sorting keys. */
+static double median_of(uint64_t *keys, size_t count) {
+    double x;
+    brio_sort_keys(keys, count);
+    uint64_t bits = keys[count / 2] & ~(UINT64_C(1) << 63);
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* Finds the greatest spacing that the second rule allows. Points that coincide with all their nearest points do not
+ * count. */
+static brio_status find_most(brio_context *ctx, search *s) {
+    brio_status status = BRIO_OK;
+    uint64_t *keys = NULL;
+    size_t count = 0;
+    s->most = INFINITY;
+    BRIO_TRY(BRIO_ALLOC(ctx, keys, s->tree.count + 1));
+    for (size_t i = 0; i < s->tree.count; i++)
+        if (s->spacing[i] > 0) keys[count++] = brio_double_key(s->spacing[i]);
+    if (!count) goto done;
+    double middle = log(median_of(keys, count));
+    count = 0;
+    for (size_t i = 0; i < s->tree.count; i++)
+        if (s->spacing[i] > 0) keys[count++] = brio_double_key(fabs(log(s->spacing[i]) - middle));
+    s->most = exp(middle + fmax(DEVIATIONS * 1.4826 * median_of(keys, count), 2 * log(s->factor)));
+done:
+    brio_release(ctx, keys);
+    return status;
+}
+
+/* Does all points, a group at a time. */
+static brio_status for_all(brio_context *ctx, search *s, brio_part_fn part) {
+    brio_status status = BRIO_OK;
+    size_t n = s->tree.count;
+    for (s->first = 0; s->first < n; s->first += GROUP) {
+        size_t count = n - s->first < GROUP ? n - s->first : GROUP;
+        brio_for_chunks(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, CHUNK, part, s);
+        BRIO_TRY(brio_progress(ctx, "outliers", (double)(s->first + count) / (double)n));
+    }
+done:
+    return status;
+}
+
+static brio_status check(brio_context *ctx, const double *points, size_t n, int neighbours, double factor) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, neighbours >= 1 && neighbours < BRIO_MOST_NEAR, BRIO_ERR_ARGUMENT,
+                 "outliers by %d neighbours, expected 1 to %d", neighbours, BRIO_MOST_NEAR - 1);
+    BRIO_REQUIRE(ctx, factor >= 1 && isfinite(factor), BRIO_ERR_ARGUMENT, "a factor of %g, expected 1 or more", factor);
+    BRIO_TRY(brio_refuse_not_finite(ctx, points, NULL, n, NULL));
+done:
+    return status;
+}
+
+brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_points, int neighbours,
+                          const brio_outliers_options *options, uint8_t *outlier) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_bar bar = brio_progress_bar(ctx);
+    brio_outliers_options o = STANDARD;
+    search s = {.outlier = outlier};
+    BRIO_TRY(BRIO_TAKE(ctx, brio_outliers_options, options, &o));
+    BRIO_TRY(check(ctx, points, num_points, neighbours, o.factor));
+    s.neighbours = (size_t)neighbours;
+    s.factor = o.factor;
+    brio_progress_part(ctx, bar, 0, 0.2);
+    BRIO_TRY(brio_progress(ctx, "outliers", 0));
+    BRIO_TRY(brio_point_tree_new(ctx, points, num_points, &s.tree));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.spacing, num_points + 1));
+    brio_progress_part(ctx, bar, 0.2, 0.6);
+    BRIO_TRY(for_all(ctx, &s, find_spacings));
+    BRIO_TRY(find_most(ctx, &s));
+    brio_progress_part(ctx, bar, 0.6, 1);
+    BRIO_TRY(for_all(ctx, &s, judge));
+done:
+    brio_progress_part(ctx, bar, 0, 1);
+    brio_point_tree_free(ctx, &s.tree);
+    brio_release(ctx, s.spacing);
+    return status;
+}

@@ -1,0 +1,181 @@
+/* Thinning and outliers: held against their definitions by brute force, on any order of the points, with any number of
+ * threads, on degenerate and extreme inputs, and without memory. */
+#include "failing_allocator.h"
+#include "points.h"
+
+static double square_of(const double *p, const double *q, double spacing) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++) sum += (p[k] / spacing - q[k] / spacing) * (p[k] / spacing - q[k] / spacing);
+    return sum;
+}
+
+/* Chosen points are apart, and each other point is near a chosen one. Distances within a rounding of the spacing may
+ * count as either. */
+static void expect_maximal(const double *points, size_t n, double spacing, const uint8_t *chosen) {
+    const double rounding = 1e-12;
+    for (size_t i = 0; i < n; i++) {
+        size_t near = 0;
+        for (size_t j = 0; j < n; j++)
+            if (j != i && chosen[j])
+                near += square_of(points + 3 * i, points + 3 * j, spacing) < 1 + (chosen[i] ? -rounding : rounding);
+        EXPECT(chosen[i] ? near == 0 : near > 0, "point %zu: %d, %zu near", i, chosen[i], near);
+    }
+}
+
+/* Thins points, and again reversed with three threads. */
+static void expect_thinned(const double *points, size_t n, double spacing) {
+    brio_context *ctx = new_context();
+    double *turned = malloc(3 * n * sizeof *turned);
+    uint8_t *chosen = malloc(n), *again = malloc(n);
+    size_t count = 0, count_again = 0;
+    for (size_t i = 0; i < n; i++) memcpy(turned + 3 * i, points + 3 * (n - 1 - i), 3 * sizeof *points);
+    brio_context_set_threads(ctx, 1);
+    EXPECT(brio_thin(ctx, points, n, spacing, chosen, &count) == BRIO_OK, "%s", brio_message(ctx));
+    expect_maximal(points, n, spacing, chosen);
+    brio_context_set_threads(ctx, 3);
+    EXPECT(brio_thin(ctx, turned, n, spacing, again, &count_again) == BRIO_OK);
+    EXPECT(count == count_again && count > 0, "%zu, %zu", count, count_again);
+    for (size_t i = 0; i < n; i++) {
+        if (chosen[i] == again[n - 1 - i]) continue;
+        bool coincident = false; /* of coincident points either may be the first */
+        for (size_t j = 0; j < n; j++) coincident |= j != i && !memcmp(points + 3 * i, points + 3 * j, 24);
+        EXPECT(coincident, "point %zu", i);
+    }
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+    free(turned);
+    free(chosen);
+    free(again);
+}
+
+static void thinned_sets_are_maximal(void) {
+    enum { N = 1500 };
+    double points[3 * N];
+    static const double spacings[] = {1e-9, 0.03, 0.2, 5};
+    for (int i = 0; i < 4; i++) {
+        uniform_points(1, N, points);
+        expect_thinned(points, N, spacings[i]);
+        clustered_points(2, N, points);
+        expect_thinned(points, N, spacings[i]);
+        sphere_points(3, N, points);
+        expect_thinned(points, N, spacings[i]);
+    }
+    integer_points(4, N, 8, points);
+    for (int i = 1; i < 4; i++) expect_thinned(points, N, i);
+}
+
+static void thinning_at_extreme_scales(void) {
+    enum { N = 300 };
+    double points[3 * N];
+    static const double scales[] = {1e-300, 1e-150, 1e150, 1e307};
+    for (int i = 0; i < 4; i++) {
+        uniform_points(5, N, points);
+        for (size_t j = 0; j < 3 * N; j++) points[j] = (points[j] - 0.5) * 2 * scales[i];
+        expect_thinned(points, N, 0.3 * scales[i]);
+    }
+    clustered_points(6, N, points);
+    for (int k = 0; k < 3; k++) points[k] = 1e200; /* cells as wide as the spacing have no numbers */
+    expect_thinned(points, N, 1e-3);
+}
+
+static void thinning_refuses(void) {
+    brio_context *ctx = new_context();
+    double points[6] = {0, 0, 0, 1, NAN, 0};
+    uint8_t chosen[2];
+    size_t count = 7;
+    EXPECT(brio_thin(ctx, points, 1, 0, chosen, NULL) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_thin(ctx, points, 1, NAN, chosen, NULL) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_thin(ctx, points, 2, 1, chosen, NULL) == BRIO_ERR_NOT_FINITE);
+    EXPECT(brio_thin(ctx, points, 1, 1, chosen, &count) == BRIO_OK && count == 1 && chosen[0] == 1);
+    EXPECT(brio_thin(ctx, NULL, 0, 1, NULL, &count) == BRIO_OK && count == 0);
+    EXPECT(brio_outliers(ctx, points, 1, 0, NULL, chosen) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_outliers(ctx, points, 1, 64, NULL, chosen) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_outliers(ctx, points, 2, 8, NULL, chosen) == BRIO_ERR_NOT_FINITE);
+    EXPECT(brio_outliers(ctx, points, 1, 8, NULL, chosen) == BRIO_OK && chosen[0] == 0);
+    brio_context_free(ctx);
+}
+
+/* Points on a sphere with stray points: the stray ones are found and no other, in any order. */
+static void outliers_are_found(void) {
+    enum { N = 4000, STRAY = 20, ALL = N + STRAY };
+    static double points[3 * ALL], turned[3 * ALL];
+    uint8_t outlier[ALL], again[ALL];
+    brio_context *ctx = new_context();
+    sphere_points(7, N, points);
+    for (size_t i = N; i < ALL; i++) {
+        double r = i % 2 ? 0.5 : 1.8;
+        sphere_points(i, 1, points + 3 * i);
+        for (size_t k = 0; k < 3; k++) points[3 * i + k] *= r;
+    }
+    for (size_t i = 0; i < ALL; i++) memcpy(turned + 3 * i, points + 3 * (ALL - 1 - i), 3 * sizeof *points);
+    brio_context_set_threads(ctx, 1);
+    EXPECT(brio_outliers(ctx, points, ALL, 8, NULL, outlier) == BRIO_OK);
+    brio_context_set_threads(ctx, 3);
+    EXPECT(brio_outliers(ctx, turned, ALL, 8, NULL, again) == BRIO_OK);
+    for (size_t i = 0; i < ALL; i++) {
+        EXPECT(outlier[i] == (i >= N), "point %zu: %d", i, outlier[i]);
+        EXPECT(outlier[i] == again[ALL - 1 - i], "point %zu", i);
+    }
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* A set whose spacing doubles again and again has no outliers. */
+static void sparse_parts_are_no_outliers(void) {
+    enum { N = 600 };
+    double points[3 * N];
+    uint8_t outlier[N];
+    brio_context *ctx = new_context();
+    for (size_t i = 0; i < N; i++) {
+        double r = pow(1.02, (double)(i / 12)), a = (double)(i % 12) * 0.523599;
+        points[3 * i] = r * cos(a), points[3 * i + 1] = r * sin(a), points[3 * i + 2] = 0;
+    }
+    EXPECT(brio_outliers(ctx, points, N, 8, NULL, outlier) == BRIO_OK);
+    for (size_t i = 0; i < N; i++) EXPECT(!outlier[i], "point %zu", i);
+    brio_context_free(ctx);
+}
+
+static brio_status choose(brio_context *ctx) {
+    double points[300];
+    uint8_t flags[100];
+    uniform_points(8, 100, points);
+    brio_status status = brio_thin(ctx, points, 100, 0.2, flags, NULL);
+    return status == BRIO_OK ? brio_outliers(ctx, points, 100, 4, NULL, flags) : status;
+}
+
+static void without_memory(void) {
+    expect_clean_failures(choose);
+}
+
+static int cancel(const char *stage, double fraction, void *user) {
+    EXPECT(fraction >= 0 && fraction <= 1, "%s %g", stage, fraction);
+    return --*(int *)user < 0;
+}
+
+static void can_be_cancelled(void) {
+    enum { N = 3000 };
+    double points[3 * N];
+    uint8_t flags[N];
+    brio_context *ctx = new_context();
+    uniform_points(9, N, points);
+    for (int allowed = 0; allowed < 3; allowed++) {
+        int left = allowed;
+        brio_context_set_progress(ctx, cancel, &left);
+        EXPECT(brio_thin(ctx, points, N, 0.1, flags, NULL) == BRIO_ERR_CANCELLED);
+        left = allowed;
+        EXPECT(brio_outliers(ctx, points, N, 4, NULL, flags) == BRIO_ERR_CANCELLED);
+        EXPECT(brio_context_memory(ctx) == 0);
+    }
+    brio_context_free(ctx);
+}
+
+int main(void) {
+    RUN(thinned_sets_are_maximal);
+    RUN(thinning_at_extreme_scales);
+    RUN(thinning_refuses);
+    RUN(outliers_are_found);
+    RUN(sparse_parts_are_no_outliers);
+    RUN(without_memory);
+    RUN(can_be_cancelled);
+    return harness_end();
+}
