@@ -49,6 +49,10 @@ bool brio_is_single(brio_format format, const brio_write_options *options);
 /** Returns the greatest distance between a vertex and its coordinates in single precision. */
 double brio_moved_by_singles(const brio_mesh *m);
 
+/** Refuses compression for a format that has none, and in a build without zlib. */
+brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format format,
+                                const brio_write_options *options);
+
 /** Refuses coordinates beyond single precision.   Returns BRIO_OK or BRIO_ERR_ARGUMENT. */
 brio_status brio_check_single(brio_context *ctx, const char *path, const brio_mesh *m);
 

@@ -13,8 +13,8 @@ BRIO_OPTIONS_INIT(brio_write_options)
 
 /* --- what a format can hold --- */
 
-static brio_status check_compress(brio_context *ctx, const char *path, brio_format format,
-                                  const brio_write_options *options) {
+brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format format,
+                                const brio_write_options *options) {
     brio_status status = BRIO_OK;
     if (!options->compress) return BRIO_OK;
     BRIO_REQUIRE(ctx, format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP, BRIO_ERR_ARGUMENT,
@@ -45,7 +45,7 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
                  BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
     BRIO_REQUIRE(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
                  "%s: .gltf files are read, not written; .glb files are", path);
-    BRIO_TRY(check_compress(ctx, path, format, options));
+    BRIO_TRY(brio_check_compress(ctx, path, format, options));
     if (brio_is_single(format, options)) BRIO_TRY(brio_check_single(ctx, path, m));
 done:
     return status;

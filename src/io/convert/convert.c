@@ -50,7 +50,8 @@ static bool holds_tetrahedra(brio_format format) {
 }
 
 static bool holds_edges(brio_format format) {
-    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP;
+    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
+           format == BRIO_FORMAT_GLB;
 }
 
 /* Names the parts of a mesh that the format cannot hold. */
@@ -240,6 +241,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));
     if (c.write.moved) *c.write.moved = 0;
     c.format = c.write.format == BRIO_FORMAT_AUTO && strcmp(to, "-") ? brio_format_of(to) : c.write.format;
+    BRIO_TRY(brio_check_compress(ctx, to, c.format, &c.write));
     c.source.job =
         (brio_read_job){.path = from, .format = read.format, .columns = read.columns, .announced = BRIO_COUNT_UNKNOWN};
     BRIO_TRY(run(&c));
