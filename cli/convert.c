@@ -56,20 +56,6 @@ static void report_lost(run *r, const char *path, const facts *lost) {
     if (lost->count) cli_warn(r, "%s cannot hold:%s", path, names);
 }
 
-/* The target is the second operand or, as for other commands, -o. */
-static brio_status take_target(run *r) {
-    common_options *c = &r->common;
-    if (r->num_operands == 2 && c->output)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "two outputs: %s and -o %s", r->operands[1], c->output);
-    if (r->num_operands == 2) c->output = r->operands[1];
-    if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: expected A B, got one file");
-    if (c->json && !strcmp(c->output, "-"))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--json and the output - both want standard output");
-    if (cli_same_file(r->operands[0], c->output))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s and %s are the same file", r->operands[0], c->output);
-    return cli_require_output(r, NULL, false);
-}
-
 static brio_status take_files(run *r, brio_read_options *from, brio_write_options *to) {
     const common_options *c = &r->common;
     brio_status status = cli_output_format(r, c->output, c->format, &to->format);
@@ -116,7 +102,8 @@ static brio_status convert(run *r) {
     brio_convert_stats stats = {.size = sizeof stats};
     facts lost = {0};
     brio_status status = BRIO_OK;
-    TRY(take_target(r));
+    if (!r->common.output) return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: expected A B, got one file");
+    TRY(cli_require_output(r, NULL, false));
     TRY(take_files(r, &from, &to));
     TRY(take_options(r, &o));
     to.moved = &moved;
@@ -153,6 +140,7 @@ const command cli_convert = {
     .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 2,
+    .writes_last = true,
     .options = options,
     .defaults = &defaults,
     .size = sizeof defaults,

@@ -69,7 +69,8 @@ typedef struct command {
     const option_choice *choices;          /* the words that the first operand can be; NULL: it is a file */
     command_group group;
     int min_operands, max_operands;
-    int first_input; /* operands before it say what to do; without inputs the report names the first */
+    bool writes_last; /* the last of max_operands operands is the output, as -o is */
+    int first_input;  /* operands before it say what to do; without inputs the report names the first */
     const option *options;
     const void *defaults; /* what the command's options are before the line is read */
     size_t size;          /* of that struct */

@@ -67,6 +67,7 @@ static size_t write_list(FILE *out, const facts *f, size_t i) {
         if (members > 1) fputc(' ', out);
         write_value(out, &f->list[i]);
     }
+    if (members == 0) fputs("none", out);
     return i;
 }
 

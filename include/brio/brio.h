@@ -1605,11 +1605,11 @@ typedef void (*brio_lost_fn)(const char *name, void *user);
 
 typedef struct brio_convert_options {
     size_t size;
-    const brio_read_options *from; /* default NULL: the defaults of reading */
-    const brio_write_options *to;  /* default NULL: the defaults of writing */
-    int crop;                      /* 1: keeps what is in the box; default 0 */
-    int drop_outliers;             /* neighbours by which brio_outliers judges; default 0: keeps outliers */
-    double box[6];                 /* x0, y0, z0, x1, y1, z1; its border belongs to it */
+    const brio_read_options *from;         /* default NULL: the defaults of reading */
+    const brio_write_options *to;          /* default NULL: the defaults of writing */
+    int crop;                              /* 1: keeps what is in the box; default 0 */
+    int drop_outliers;                     /* neighbours by which brio_outliers judges; default 0: keeps outliers */
+    double box[6];                         /* x0, y0, z0, x1, y1, z1; its border belongs to it */
     const brio_outliers_options *outliers; /* default NULL: the defaults of brio_outliers */
     double thin;                           /* spacing of brio_thin; default 0: keeps all points */
     brio_lost_fn lost; /* default NULL: called once for each part that is lost, before the file gets its name */

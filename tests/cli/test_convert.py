@@ -28,7 +28,7 @@ class Convert(CliTest):
 
     def test_facts_of_a_run(self):
         facts = self.convert(self.cloud("a.ply", 500), self.path("b.las"))
-        self.assert_schema(facts, {**COMMON_FACTS, "input": list, "points": count, "faces": count, "lost": list,
+        self.assert_schema(facts, {**COMMON_FACTS, "input": str, "points": count, "faces": count, "lost": list,
                                    "streamed": bool})
         self.assertEqual((facts["points"], facts["faces"]), (500, 0))
 
