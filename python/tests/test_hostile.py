@@ -1,6 +1,7 @@
 """Nothing that a program can do from Python crashes the interpreter. Each test runs in a process of its own."""
 
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -228,50 +229,14 @@ def test_other_interpreters(alone):
     assert alone(SUBINTERPRETER).strip().endswith("done")
 
 
-INTERRUPT = r"""
-import signal, sys, time, numpy as np, brio
-
-rng = np.random.default_rng(1)
-
-
-def prepare(work):
-    if work in ("delaunay", "voronoi", "alpha"):
-        space = rng.random((1_000_000, 3))
-        function = {"delaunay": brio.Delaunay, "voronoi": brio.Voronoi, "alpha": brio.alpha_complex}[work]
-        return lambda: function(space, threads=1)
-    if work in ("labeled-delaunay", "power-crust"):
-        ball = rng.normal(size=(100_000, 3))
-        ball /= np.linalg.norm(ball, axis=1)[:, None]
-        return lambda: brio.reconstruct(ball, work, threads=1)
-    d = 2 if work in ("plane", "natural2") else 3
-    queries, tri = rng.random((2_000_000, d)), brio.Delaunay(rng.random((1000, d)))
-    if work == "plane":
-        return lambda: brio.Delaunay(queries)
-    if work == "locate":
-        return lambda: [tri.find_simplex(queries) for _ in range(9)]
-    return lambda: brio.NaturalNeighbourInterpolator(tri, np.ones(1000))(queries)
-
-
-work = prepare(sys.argv[1])
-signal.signal(signal.SIGPROF, signal.default_int_handler)
-worst = 0
-for after in 0.1, 0.37:
-    begin = time.process_time()
-    signal.setitimer(signal.ITIMER_PROF, after)
-    try:
-        work()
-        raise SystemExit("ended after %g s" % (time.process_time() - begin))
-    except KeyboardInterrupt:
-        worst = max(worst, time.process_time() - begin - after)
-print(worst)
-"""
+INTERRUPT = pathlib.Path(__file__).parent.parent / "bench" / "interrupt.py"
 
 
 @pytest.mark.parametrize("work", ["delaunay", "plane", "labeled-delaunay", "power-crust", "voronoi", "alpha", "locate",
                                   "natural", "natural2"])
 def test_interrupt(alone, work):
-    """A signal ends a call within 0.2 s of the process's processor time, wherever in the call it comes."""
-    assert float(alone(INTERRUPT, work)) < 0.2
+    """A signal ends a call, wherever in the call it comes. How soon: docs/python/performance.md."""
+    assert alone(INTERRUPT.read_text(), work).startswith(work)
 
 
 def test_ctrl_c():
