@@ -38,7 +38,7 @@ typedef struct {
 typedef struct {
     brio_context *ctx;
     brio_mesh *mesh;
-    const brio_simplify_options *options;
+    const brio_collapse_options *options;
     double *position;
     uint32_t *vertex, *mate; /* #half-edges; vertex is NONE in triangles that have vanished */
     size_t num_half_edges, num_faces;
@@ -435,7 +435,7 @@ static void simplifier_free(simplifier *s) {
     brio_release(s->ctx, s->heap);
 }
 
-brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_simplify_options *options) {
+brio_status brio_collapse_edges(brio_context *ctx, brio_mesh *mesh, const brio_collapse_options *options) {
     brio_status status = BRIO_OK;
     simplifier s = {.ctx = ctx, .mesh = mesh, .options = options};
     BRIO_TRY(prepare(&s));

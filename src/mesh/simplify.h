@@ -9,7 +9,7 @@ typedef struct {
     const double *spacing; /* #V: an edge may collapse if it is at most `longest` times the spacing at each end */
     double longest;
     double tolerance; /* most RMS distance of the new point from the planes it stands for, as a share of spacing */
-} brio_simplify_options;
+} brio_collapse_options;
 
 /** Collapses edges of a manifold oriented triangle mesh in place, edges of least error first. The mesh stays manifold
  *  and oriented, and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary
@@ -18,6 +18,6 @@ typedef struct {
  *  Returns BRIO_OK; BRIO_ERR_ARGUMENT when a face is not a triangle or the mesh is not manifold and oriented at an
  *  edge or a vertex, and leaves the mesh unchanged; BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED, after which the mesh can
  *  only be freed. */
-brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_simplify_options *options);
+brio_status brio_collapse_edges(brio_context *ctx, brio_mesh *mesh, const brio_collapse_options *options);
 
 #endif

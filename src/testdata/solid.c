@@ -235,8 +235,8 @@ static brio_status collapse_short_edges(brio_context *ctx, const brio_implicit_g
     double *spacing = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, spacing, mesh->num_vertices));
     for (size_t v = 0; v < mesh->num_vertices; v++) spacing[v] = grid->cell;
-    brio_simplify_options options = {(size_t)((double)mesh->num_faces * KEPT), spacing, LONGEST, TOLERANCE};
-    BRIO_TRY(brio_mesh_simplify(ctx, mesh, &options));
+    brio_collapse_options options = {(size_t)((double)mesh->num_faces * KEPT), spacing, LONGEST, TOLERANCE};
+    BRIO_TRY(brio_collapse_edges(ctx, mesh, &options));
 done:
     brio_release(ctx, spacing);
     return status;

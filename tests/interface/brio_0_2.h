@@ -777,6 +777,31 @@ BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, c
  *  Based on: [Dyn Levin Gregory 1990], [Zorin Schroeder Sweldens 1996]. */
 BRIO_API brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out);
 
+typedef struct brio_mesh_simplify_options {
+    size_t size;
+    size_t target_faces; /* stops at this number of faces; default 0: as few as the tolerance allows */
+    double
+        tolerance; /* most distance of a new vertex from the planes of the triangles that it stands for, as the root of
+                            the mean of squares, in the unit of the mesh; default 0: any distance */
+} brio_mesh_simplify_options;
+
+BRIO_API void brio_mesh_simplify_options_init(brio_mesh_simplify_options *options, size_t size);
+static inline brio_mesh_simplify_options brio_mesh_simplify_options_default(void) {
+    brio_mesh_simplify_options options;
+    brio_mesh_simplify_options_init(&options, sizeof options);
+    return options;
+}
+
+/** Simplifies a mesh of triangles in place: edges collapse, those of least error first. The mesh stays manifold and oriented,
+ *  and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary stay. Vertices that
+ *  no triangle uses are dropped. A vertex keeps the properties of one of those that it stands for.
+ *  Cost: O(n log n), one thread; 500 bytes a vertex.
+ *  Returns BRIO_OK; BRIO_ERR_ARGUMENT (neither target nor tolerance, a negative one, a face is no triangle, an index is out
+ *  of range, the mesh is not manifold and oriented at an edge or a vertex) and BRIO_ERR_NOT_FINITE, after which the mesh is
+ *  what it was; BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, after which it can only be freed.
+ *  Based on: [Garland Heckbert 1997], [Dey Edelsbrunner Guha Nekhayev 1999]. */
+BRIO_API brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *options);
+
 /** Edges between vertices. */
 typedef struct brio_edges {
     size_t count;

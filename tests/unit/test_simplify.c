@@ -14,8 +14,8 @@ static brio_context *ctx;
 static brio_status simplify_within(brio_context *c, brio_mesh *mesh, size_t target, double longest, double tolerance) {
     double *spacing = malloc((mesh->num_vertices + 1) * sizeof *spacing);
     for (size_t v = 0; v < mesh->num_vertices; v++) spacing[v] = 1;
-    brio_simplify_options o = {target, spacing, longest, tolerance};
-    brio_status status = brio_mesh_simplify(c, mesh, &o);
+    brio_collapse_options o = {target, spacing, longest, tolerance};
+    brio_status status = brio_collapse_edges(c, mesh, &o);
     free(spacing);
     return status;
 }
@@ -441,7 +441,9 @@ static brio_status simplify_a_grid(brio_context *c) {
     brio_status status = brio_mesh_new(c, &mesh);
     if (status == BRIO_OK) status = brio_mesh_set_vertices(mesh, points, VERTICES);
     if (status == BRIO_OK) status = brio_mesh_set_faces(mesh, offsets, triangles, count / 3);
-    if (status == BRIO_OK) status = simplify_within(c, mesh, 0, 100, 100);
+    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    o.tolerance = 100;
+    if (status == BRIO_OK) status = brio_mesh_simplify(c, mesh, &o);
     if (status == BRIO_OK) EXPECT(mesh->num_faces < count / 3);
     brio_mesh_free(mesh);
     return status;
@@ -449,6 +451,66 @@ static brio_status simplify_a_grid(brio_context *c) {
 
 static void refused_memory_is_a_status_and_leaves_nothing(void) {
     expect_clean_failures(simplify_a_grid);
+}
+
+/* --- brio_mesh_simplify --- */
+
+static brio_status simplify_to(brio_mesh *mesh, size_t target_faces, double tolerance) {
+    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    o.target_faces = target_faces;
+    o.tolerance = tolerance;
+    return brio_mesh_simplify(ctx, mesh, &o);
+}
+
+static void larger_tolerances_leave_fewer_faces(void) {
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+        brio_mesh *mesh = random_mesh(ctx, seed);
+        brio_certificate before = certify(mesh);
+        size_t last = mesh->num_faces;
+        for (double tolerance = 1e-6; tolerance < 1; tolerance *= 10) {
+            brio_mesh *copy = copy_of(mesh);
+            EXPECT(simplify_to(copy, 0, tolerance) == BRIO_OK, "%s", brio_message(ctx));
+            brio_certificate after = certify(copy);
+            EXPECT(copy->num_faces <= last && is_sound(copy), "%g: %zu, %zu", tolerance, copy->num_faces, last);
+            EXPECT(after.manifold && after.oriented && after.components == before.components &&
+                   after.genus == before.genus && after.boundary_edges == before.boundary_edges);
+            last = copy->num_faces;
+            brio_certificate_free(&after);
+            brio_mesh_free(copy);
+        }
+        EXPECT(last < mesh->num_faces);
+        brio_certificate_free(&before);
+        brio_mesh_free(mesh);
+    }
+}
+
+/* Squares of 2^600 are no doubles. */
+static void size_of_the_mesh_does_not_matter(void) {
+    for (int exponent = -600; exponent <= 600; exponent += 300) {
+        brio_mesh *a = random_mesh(ctx, 3), *b = copy_of(a);
+        for (size_t i = 0; i < 3 * b->num_vertices; i++) b->vertices[i] = ldexp(b->vertices[i], exponent);
+        EXPECT(simplify_to(a, a->num_faces / 3, 0.1) == BRIO_OK);
+        EXPECT(simplify_to(b, b->num_faces / 3, ldexp(0.1, exponent)) == BRIO_OK);
+        for (size_t i = 0; i < 3 * b->num_vertices; i++) b->vertices[i] = ldexp(b->vertices[i], -exponent);
+        EXPECT(same_mesh(a, b), "2^%d: %zu faces, %zu", exponent, a->num_faces, b->num_faces);
+        brio_mesh_free(a);
+        brio_mesh_free(b);
+    }
+}
+
+static void what_is_refused_stays(void) {
+    brio_mesh *mesh = random_mesh(ctx, 5), *copy = copy_of(mesh);
+    EXPECT(simplify_to(copy, 0, 0) == BRIO_ERR_ARGUMENT && simplify_to(copy, 10, -1) == BRIO_ERR_ARGUMENT &&
+           simplify_to(copy, 10, INFINITY) == BRIO_ERR_ARGUMENT && same_mesh(mesh, copy));
+    copy->vertices[4] = NAN;
+    EXPECT(simplify_to(copy, 10, 0) == BRIO_ERR_NOT_FINITE);
+    copy->vertices[4] = mesh->vertices[4];
+    copy->face_vertices[0] = copy->face_vertices[3] = (uint32_t)copy->num_vertices;
+    EXPECT(simplify_to(copy, 10, 0) == BRIO_ERR_ARGUMENT);
+    copy->face_vertices[0] = mesh->face_vertices[0], copy->face_vertices[3] = mesh->face_vertices[3];
+    EXPECT(same_mesh(mesh, copy));
+    brio_mesh_free(copy);
+    brio_mesh_free(mesh);
 }
 
 int main(void) {
@@ -466,6 +528,9 @@ int main(void) {
     RUN(polygons_are_refused);
     RUN(mesh_of_nothing_stays_nothing);
     RUN(cancelled_work_leaves_nothing);
+    RUN(larger_tolerances_leave_fewer_faces);
+    RUN(size_of_the_mesh_does_not_matter);
+    RUN(what_is_refused_stays);
     RUN(refused_memory_is_a_status_and_leaves_nothing);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);

@@ -142,6 +142,7 @@ ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
 ENDS_WITH(brio_write_options, edges);
 ENDS_WITH(brio_read_options, columns);
+ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, coordinate_origin);
 

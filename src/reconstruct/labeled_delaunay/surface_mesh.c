@@ -1,6 +1,6 @@
 /* From triangles of samples to a mesh: vertices in the caller's order, their confidence, simplification.
  *
- * A simplified surface goes through brio_mesh_simplify in scaled coordinates, so that squares do not overflow. What a
+ * A simplified surface goes through brio_collapse_edges in scaled coordinates, so that squares do not overflow. What a
  * vertex is called rides along as a property.
  *
  * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997. */
@@ -81,11 +81,11 @@ static brio_status simplify(const filling *x, uint32_t *samples) {
             ((uint32_t *)sample)[x->vertex[p] - 1] = p;
             ((double *)spacing)[x->vertex[p] - 1] = x->s->spacing[x->rank[p]];
         }
-    brio_simplify_options o = {.target_faces = (size_t)(FEWEST * (double)mesh->num_faces),
+    brio_collapse_options o = {.target_faces = (size_t)(FEWEST * (double)mesh->num_faces),
                                .spacing = spacing,
                                .longest = LONGEST_COLLAPSE,
                                .tolerance = COLLAPSE_TOLERANCE};
-    BRIO_TRY(brio_mesh_simplify(mesh->context, mesh, &o));
+    BRIO_TRY(brio_collapse_edges(mesh->context, mesh, &o));
     for (size_t v = 0; samples && v < mesh->num_vertices; v++) samples[v] = ((uint32_t *)sample)[v];
     drop_last_property(mesh);
     drop_last_property(mesh);

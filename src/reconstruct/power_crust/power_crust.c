@@ -26,11 +26,11 @@ BRIO_OPTIONS_INIT(brio_power_crust_options)
 static brio_status simplify(brio_labeled_poles *l, size_t polygons, brio_mesh *mesh, double *seconds) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
-    brio_simplify_options o = {.target_faces = polygons / 4,
+    brio_collapse_options o = {.target_faces = polygons / 4,
                                .spacing = brio_mesh_property(mesh, "spacing")->data,
                                .longest = LONGEST_COLLAPSE,
                                .tolerance = COLLAPSE_TOLERANCE};
-    BRIO_TRY(brio_mesh_simplify(l->ctx, mesh, &o));
+    BRIO_TRY(brio_collapse_edges(l->ctx, mesh, &o));
     *seconds = brio_seconds() - start;
 done:
     return status;

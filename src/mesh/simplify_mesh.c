@@ -1,0 +1,57 @@
+/* Simplification of a mesh as a whole: one tolerance everywhere, edges of any length. See simplify.c for the collapses.
+ *
+ * Squares of coordinates beyond 2^HUGE, and below 2^-HUGE, would overflow or vanish: such meshes are scaled meanwhile. */
+#include "base/finite.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/scale.h"
+#include "base/versioned.h"
+#include "mesh/simplify.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { HUGE_EXPONENT = 200 };
+
+static const brio_mesh_simplify_options STANDARD = {.size = sizeof STANDARD};
+
+BRIO_OPTIONS_INIT(brio_mesh_simplify_options)
+
+/* Returns the exponent of the largest coordinate if its square is out of range, or 0. */
+static int exponent_of(const brio_mesh *mesh) {
+    double most = 0;
+    int exponent;
+    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) most = fmax(most, fabs(mesh->vertices[i]));
+    frexp(most, &exponent);
+    return abs(exponent) > HUGE_EXPONENT ? exponent : 0;
+}
+
+static brio_status collapse(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *o, double tolerance) {
+    brio_status status = BRIO_OK;
+    double *unit = NULL; /* the tolerance is one length, not a share of a spacing */
+    BRIO_TRY(BRIO_ALLOC(ctx, unit, mesh->num_vertices));
+    for (size_t v = 0; v < mesh->num_vertices; v++) unit[v] = 1;
+    brio_collapse_options options = {
+        .target_faces = o->target_faces, .spacing = unit, .longest = INFINITY, .tolerance = tolerance};
+    BRIO_TRY(brio_collapse_edges(ctx, mesh, &options));
+done:
+    brio_release(ctx, unit);
+    return status;
+}
+
+brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *options) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_mesh_simplify_options o = STANDARD;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_mesh_simplify_options, options, &o));
+    BRIO_REQUIRE(ctx, o.tolerance >= 0 && o.tolerance < INFINITY, BRIO_ERR_ARGUMENT,
+                 "a tolerance of %g, expected 0 or a positive number", o.tolerance);
+    BRIO_REQUIRE(ctx, o.target_faces > 0 || o.tolerance > 0, BRIO_ERR_ARGUMENT,
+                 "neither a number of faces nor a tolerance to simplify to");
+    BRIO_TRY(brio_refuse_not_finite(ctx, mesh->vertices, NULL, mesh->num_vertices, NULL));
+    int exponent = exponent_of(mesh);
+    if (exponent) brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, mesh->vertices);
+    status = collapse(ctx, mesh, &o, o.tolerance > 0 ? ldexp(o.tolerance, -exponent) : INFINITY);
+    if (exponent) brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, exponent, mesh->vertices);
+done:
+    return status;
+}
