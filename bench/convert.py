@@ -18,6 +18,7 @@ def run(brio, *arguments):
 def main():
     brio, folder, points = sys.argv[1], sys.argv[2], sys.argv[3] if len(sys.argv) > 3 else "25000000"
     source, target = os.path.join(folder, "a.las"), os.path.join(folder, "b")
+    os.makedirs(folder, exist_ok=True)
     run(brio, "generate", "torus", "-n", points, "-o", source)
     print("%s points, %.0f MB" % (points, os.path.getsize(source) / 1e6))
     cases = [(extension, []) for extension in ("ply", "las", "xyz", "npy")]

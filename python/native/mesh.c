@@ -156,6 +156,48 @@ static PyObject *mesh_with_normals(PyObject *module, PyObject *object) {
     return call_end_with_mesh(&c, status, made);
 }
 
+/* Copies what a mesh holds, except for tetrahedra and edges. */
+static brio_status copy_surface(brio_context *ctx, const brio_mesh *m, brio_mesh **out) {
+    brio_status status = brio_mesh_new(ctx, out);
+    if (status == BRIO_OK) status = brio_mesh_set_vertices(*out, m->vertices, m->num_vertices);
+    if (status == BRIO_OK && m->num_faces)
+        status = brio_mesh_set_faces(*out, m->face_offsets, m->face_vertices, m->num_faces);
+    for (size_t i = 0; status == BRIO_OK && i < m->num_properties; i++) {
+        const brio_property *p = &m->properties[i];
+        void *data;
+        status = brio_mesh_add_property(*out, p->name, p->type, &data);
+        if (status == BRIO_OK && m->num_vertices) memcpy(data, p->data, m->num_vertices * brio_scalar_size(p->type));
+    }
+    return status;
+}
+
+/* Returns a simplified copy, which is freed if that fails. */
+static brio_status simplified(brio_context *ctx, const brio_mesh *m, const brio_mesh_simplify_options *o,
+                              brio_mesh **out) {
+    brio_status status = copy_surface(ctx, m, out);
+    if (status == BRIO_OK) status = brio_mesh_simplify(ctx, *out, o);
+    if (status == BRIO_OK) return status;
+    brio_mesh_free(*out);
+    *out = NULL;
+    return status;
+}
+
+/* mesh_simplified(mesh, faces, tolerance, progress): a mesh of fewer triangles. */
+static PyObject *mesh_simplified(PyObject *module, PyObject *args) {
+    PyObject *object, *progress;
+    Py_ssize_t faces;
+    call c;
+    brio_mesh *made = NULL;
+    brio_status status;
+    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    if (!PyArg_ParseTuple(args, "OndO", &object, &faces, &o.tolerance, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), 0, progress)) return NULL;
+    o.target_faces = (size_t)faces;
+    CALL(c, status, simplified(c.ctx, m, &o, &made));
+    return call_end_with_mesh(&c, status, made);
+}
+
 static PyObject *certificate_dict(const brio_certificate *k) {
     PyObject *genera = PyList_New((Py_ssize_t)k->components);
     for (size_t n = 0; genera && n < k->components; n++)
@@ -253,6 +295,7 @@ PyMethodDef mesh_methods[] = {
     {"mesh", mesh, METH_VARARGS, "mesh(vertices, offsets, corners, tetrahedra, edges, properties)"},
     {"mesh_views", mesh_views, METH_O, "The arrays of a mesh, in a dict."},
     {"mesh_with_normals", mesh_with_normals, METH_O, "The same surface with the properties nx, ny, nz."},
+    {"mesh_simplified", mesh_simplified, METH_VARARGS, "mesh_simplified(mesh, faces, tolerance, progress)"},
     {"mesh_certificate", mesh_certificate, METH_O, "What the connectivity says, in a dict."},
     {"mesh_self_intersections", mesh_self_intersections, METH_VARARGS,
      "mesh_self_intersections(mesh, threads, progress)"},

@@ -101,6 +101,18 @@ def test_offset_and_medial_axis(ball):
     assert (axis.properties["side"] == -1).all()
 
 
+def test_simplification(ball):
+    surface = brio.reconstruct(ball)
+    fewer = brio.simplify(surface, len(surface.faces) // 4)
+    assert len(fewer.faces) <= len(surface.faces) // 4 + 1
+    assert (fewer.certificate.closed, fewer.certificate.genus) == (True, 0)
+    assert np.abs(np.linalg.norm(fewer.vertices, axis=1) - 1).max() < 0.2
+    assert len(surface.simplify(tolerance=1e-12).faces) == len(surface.faces)
+    for arguments in [{}, {"faces": -1}, {"tolerance": -1.0}, {"tolerance": np.inf}]:
+        with pytest.raises(brio.ArgumentError):
+            surface.simplify(**arguments)
+
+
 def test_alpha_complex_against_the_definition():
     points = GENERATOR.random((30, 3))
     complex = brio.alpha_complex(points)

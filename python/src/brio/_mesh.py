@@ -180,6 +180,39 @@ class Mesh:
     def certificate(self) -> Certificate:
         return Certificate(**_native.mesh_certificate(self._handle))
 
+    def simplify(self, faces: int = 0, *, tolerance: float = 0, progress: bool | Progress | None = None) -> "Mesh":
+        """Simplifies a surface of triangles: edges collapse, those of least error first (Garland and Heckbert 1997).
+
+        Components, genus and boundary stay; the surface stays manifold and oriented, and its vertices keep properties.
+
+        Parameters
+        ----------
+        faces : int
+            Stops at this number of triangles; 0: as few as the tolerance allows.
+        tolerance : float
+            The most that a new vertex may be away from the planes of the triangles that it stands for, as the root of
+            the mean of squares, in the unit of the mesh; 0: any distance.
+
+        Returns
+        -------
+        Mesh
+
+        Examples
+        --------
+        >>> import brio, numpy as np
+        >>> rng = np.random.default_rng(1)
+        >>> ball = rng.normal(size=(1000, 3))
+        >>> ball /= np.linalg.norm(ball, axis=1)[:, None]
+        >>> surface = brio.reconstruct(ball)
+        >>> len(surface.simplify(500).faces)
+        500
+        """
+        if faces < 0:
+            raise ArgumentError(f"faces: {faces} is below 0")
+        with reporting(progress) as report:
+            mesh: Mesh = Mesh._of(_native.mesh_simplified(self._handle, faces, tolerance, report))
+        return mesh
+
     def self_intersections(self, *, threads: int = 0, progress: bool | Progress | None = None) -> int:
         """Counts, exactly, the pairs of faces that meet in more than common corners and edges."""
         with reporting(progress) as report:
@@ -311,6 +344,11 @@ def read(path: str | os.PathLike[str], *, threads: int = 0, progress: bool | Pro
     with reporting(progress) as report:
         mesh: Mesh = Mesh._of(_native.read(os.fsencode(path), threads, report))
     return mesh
+
+
+def simplify(mesh: Mesh, faces: int = 0, *, tolerance: float = 0, progress: bool | Progress | None = None) -> Mesh:
+    """Simplifies a surface of triangles: see Mesh.simplify."""
+    return mesh.simplify(faces, tolerance=tolerance, progress=progress)
 
 
 def write(path: str | os.PathLike[str], mesh: Any, **options: Any) -> None:
