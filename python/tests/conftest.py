@@ -12,7 +12,7 @@ if os.environ.get("BRIO_PYTHON"):
 
 @pytest.fixture
 def alone():
-    """Runs a program in a process of its own; returns what it printed."""
+    """Runs a program in a new process; returns what it printed."""
 
     def run(program, *arguments, timeout=120):
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}

@@ -1,4 +1,4 @@
-"""Nothing that a program can do from Python crashes the interpreter. Each test runs in a process of its own."""
+"""Nothing that a program can do from Python crashes the interpreter. Each test runs in a new process."""
 
 import os
 import pathlib

@@ -64,14 +64,8 @@ static void name_losses(conversion *c, const brio_mesh *m) {
     for (size_t i = 0; i < m->num_properties && !holds_properties(c->format); i++) lose(c, m->properties[i].name);
 }
 
-static bool stores_single(const conversion *c) {
-    bool both = c->format == BRIO_FORMAT_PLY || c->format == BRIO_FORMAT_NPY || c->format == BRIO_FORMAT_VTU ||
-                c->format == BRIO_FORMAT_VTP;
-    return c->format == BRIO_FORMAT_STL || (both && c->write.float32);
-}
-
 static void find_rounding(conversion *c, const brio_mesh *m) {
-    for (size_t i = 0; i < 3 * m->num_vertices && !c->rounded && stores_single(c); i++)
+    for (size_t i = 0; i < 3 * m->num_vertices && !c->rounded && brio_is_single(c->format, &c->write); i++)
         c->rounded = fabs(m->vertices[i]) <= 0x1.ffffffp127 && (double)(float)m->vertices[i] != m->vertices[i];
 }
 
