@@ -4,6 +4,11 @@
 #include <assert.h>
 #include <math.h>
 
+/* More steps than it takes to cross vertices that fill space, as the walks of orders without locality do. */
+static uint64_t most_steps(const brio_store *store) {
+    return 40 + (uint64_t)(4 * cbrt((double)store->num_points));
+}
+
 brio_status brio_inserter_new(brio_store *store, brio_inserter **out) {
     brio_inserter *ins = NULL;
     brio_status status = BRIO_OK;
@@ -14,6 +19,7 @@ brio_status brio_inserter_new(brio_store *store, brio_inserter **out) {
     ins->filter.unsettled = 0;
     ins->engine = brio_engine_choose(store->weighted);
     ins->locator = &brio_strategy_walk;
+    ins->most_steps = most_steps(store);
     brio_read_ahead_start(&ins->read_ahead, store->ctx);
     ins->goes_on = ins->read_ahead.active && store->follows;
     BRIO_TRY(brio_cavity_new(store->ctx, &ins->cavity));

@@ -33,6 +33,7 @@ struct brio_inserter {
 
     const brio_strategy *locator; /* the strategy of point location */
     void *location;               /* what the strategy keeps; locator->release frees it */
+    uint64_t most_steps;          /* after which a walk counts as long */
     unsigned long_walks;          /* how often of late a walk was given up, see locator.c */
     brio_star star;               /* workspace of locate_descent.c; its marks are the store's states */
 

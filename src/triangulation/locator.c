@@ -2,19 +2,13 @@
 #include "triangulation/inserter.h"
 #include "triangulation/locate_descent.h"
 
-/* The steps after which a walk counts as long: more than it takes to cross vertices that fill space, as the walks of
- * orders without locality do. */
-static uint64_t most_steps(const brio_inserter *ins) {
-    return 40 + (uint64_t)(4 * cbrt((double)ins->store->num_points));
-}
-
 /* A walk, which is best nearly always; where walks are long again and again, the descent, with a walk tried now and
  * then. */
 static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     const double *point = ins->store->record[p];
     enum { DESCENTS = 64 };
     if (ins->long_walks == 0) {
-        *tet = brio_inserter_walk(ins, point, most_steps(ins));
+        *tet = brio_inserter_walk(ins, point, ins->most_steps);
         if (*tet != BRIO_NO_TET || ins->walk.blocked) return BRIO_OK;
         ins->long_walks = DESCENTS;
     }
