@@ -25,7 +25,7 @@ COLUMNS = ['machine', 'compiler', 'commit', 'distribution', 'n', 'program', 'thr
 # distribution: kind of `brio generate`, exponent of the weights of its regular triangulation
 GENERATED = {'uniform': ('cube', -30), 'ball': ('ball', -30), 'clusters': ('clusters', -60), 'grid': ('grid', -10),
              'sphere': ('sphere', -30), 'torus': ('torus', -30), 'cylinder': ('cylinder', -30),
-             'moment': ('moment', -40)}
+             'depth': ('depth', -10), 'moment': ('moment', -40)}
 MOMENT_SIZES = [1000, 3000]  # n^2 / 2 tetrahedra
 SCANS = ['happy_raw', 'dragon_raw', 'bunny_raw', 'csite4', 'autzen']
 OTHER_NAMES = {'grid_100': 'grid_1m'}

@@ -33,6 +33,7 @@ static const option options[] = {
     {"moment", 0, OPTION_NOTE, 0, NULL, "points of the moment curve: quadratically many tetrahedra", 0},
     {"clusters", 0, OPTION_NOTE, 0, NULL, "points in clusters", 0},
     {"scan", 0, OPTION_NOTE, 0, NULL, "a simulated laser scan of a sculpture", 0},
+    {"depth", 0, OPTION_NOTE, 0, NULL, "a frame of a simulated depth camera, depths rounded to 1 mm", 0},
     {"solid", 0, OPTION_NOTE, 0, NULL, "a random closed surface, as a mesh; see also brio iso", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options", 0},
     {"points", 'n', OPTION_NATURAL, FIELD(points), "N", "number of points", 0},
@@ -49,7 +50,7 @@ static const option options[] = {
 
 static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .views = NO_VIEWS, .solid = NO_SOLID};
 
-#define KINDS "cube ball sphere torus cylinder grid scan clusters moment solid"
+#define KINDS "cube ball sphere torus cylinder grid scan clusters moment depth solid"
 #define SOLID BRIO_KIND_END /* no kind of points */
 
 static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
@@ -61,6 +62,7 @@ static const option_choice kinds[] = {{"cube", BRIO_KIND_CUBE},
                                       {"scan", BRIO_KIND_SCAN},
                                       {"clusters", BRIO_KIND_CLUSTERS},
                                       {"moment", BRIO_KIND_MOMENT},
+                                      {"depth", BRIO_KIND_DEPTH},
                                       {"moment-curve", BRIO_KIND_MOMENT},
                                       {"solid", SOLID},
                                       {NULL, 0}};

@@ -1689,6 +1689,7 @@ typedef enum brio_kind {
     BRIO_KIND_SCAN = 6,     /* a simulated laser scan of a sculpture of genus 3 */
     BRIO_KIND_CLUSTERS = 7, /* uniform in 256 balls in the unit cube, whose radii are log-uniform from 1e-7 to 0.1 */
     BRIO_KIND_MOMENT = 8,   /* (t, t^2, t^3), t uniform in [0, 1): about n^2 / 2 tetrahedra */
+    BRIO_KIND_DEPTH = 9,    /* a frame of a depth camera, row by row, in mm, its depths rounded to 1 mm */
     BRIO_KIND_END
 } brio_kind;
 

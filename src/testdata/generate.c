@@ -1,6 +1,6 @@
 /* Points of well-known kinds, for tests, examples and measurements.
  *
- * The seed and i alone determine point i, for every n and every number of threads. The round kinds use rejection and
+ * The seed and i alone determine point i, for every number of threads and, but for grids and frames, for every n. The round kinds use rejection and
  * square roots and no other function of the mathematical library, so their numbers are equal on every machine.
  *
  * Based on: Marsaglia. Choosing a point from the surface of a sphere. Annals of Mathematical Statistics 1972. */
@@ -9,6 +9,7 @@
 #include "base/rng.h"
 #include "base/team.h"
 #include "iso/iso_surface.h"
+#include "testdata/depth.h"
 #include "testdata/scan.h"
 #include "testdata/sculpture.h"
 #include <math.h>
@@ -144,6 +145,7 @@ static void random_point(brio_kind kind, uint64_t seed, size_t i, double *p) {
         point_of_moment(&rng, p);
         break;
     case BRIO_KIND_GRID:
+    case BRIO_KIND_DEPTH:
     case BRIO_KIND_SCAN:
     case BRIO_KIND_END:
         break;
@@ -167,7 +169,8 @@ static void grid_point(size_t side, size_t i, double *p) {
 typedef struct {
     brio_kind kind;
     uint64_t seed;
-    size_t side;  /* of the grid */
+    size_t side; /* of the grid */
+    brio_depth_frame frame;
     size_t start; /* first point of the batch in work */
     double *points;
 } generator;
@@ -179,6 +182,8 @@ static void make_points(void *user, size_t begin, size_t end, int thread) {
     for (size_t i = g->start + begin; i < g->start + end; i++) {
         if (g->kind == BRIO_KIND_GRID)
             grid_point(g->side, i, g->points + 3 * i);
+        else if (g->kind == BRIO_KIND_DEPTH)
+            brio_depth_point(&g->frame, i, g->points + 3 * i);
         else
             random_point(g->kind, g->seed, i, g->points + 3 * i);
     }
@@ -187,7 +192,9 @@ static void make_points(void *user, size_t begin, size_t end, int thread) {
 static brio_status fill(brio_context *ctx, brio_kind kind, uint64_t seed, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     size_t n = mesh->num_vertices;
-    generator g = {kind, seed, kind == BRIO_KIND_GRID ? grid_side(n) : 0, 0, mesh->vertices};
+    generator g = {.kind = kind, .seed = seed, .points = mesh->vertices};
+    if (kind == BRIO_KIND_GRID) g.side = grid_side(n);
+    if (kind == BRIO_KIND_DEPTH) g.frame = brio_depth_frame_of(n, seed);
     for (; g.start < n; g.start += BATCH) {
         size_t count = n - g.start < BATCH ? n - g.start : BATCH;
         BRIO_TRY(brio_progress(ctx, "generate", (double)g.start / (double)n));

@@ -42,7 +42,7 @@ class Generate(CliTest):
 
     def test_generate_of_every_kind(self):
         listed = self.expect(0, "generate", "--help").text
-        for kind in ["cube", "ball", "sphere", "torus", "cylinder", "grid", "clusters", "moment"]:
+        for kind in ["cube", "ball", "sphere", "torus", "cylinder", "grid", "clusters", "moment", "depth"]:
             self.assertEqual(self.facts("generate", kind, "-n", "77")["points"], 77, kind)
             self.assertIn(kind, listed)
 

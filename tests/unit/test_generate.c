@@ -166,6 +166,29 @@ static void grid_is_the_smallest_that_has_room(void) {
     brio_mesh_free(mesh);
 }
 
+/* A frame of 160 x 120: depths are whole, columns are planes through the camera, rays see the near before the far. */
+static void depth_frame_has_whole_depths_along_its_rays(void) {
+    enum { WIDTH = 160, HEIGHT = 120, MOST = 4400 };
+    static bool seen[MOST];
+    brio_mesh *frame = make(BRIO_KIND_DEPTH, (size_t)WIDTH * HEIGHT, 3), *other = make(BRIO_KIND_DEPTH, 1000, 4);
+    size_t broken = 0, depths = 0, near = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        const double *p = frame->vertices + 3 * i, *top = frame->vertices + 3 * (i % WIDTH);
+        broken += p[2] != floor(p[2]) || p[2] < 500 || p[2] >= MOST;
+        broken += fabs(p[0] / p[2] - top[0] / top[2]) > 1e-12;
+        if (p[2] < 500 || p[2] >= MOST) continue;
+        depths += !seen[(size_t)p[2]];
+        seen[(size_t)p[2]] = true;
+        near += p[2] < 3000;
+    }
+    EXPECT(broken == 0, "%zu points", broken);
+    EXPECT(depths > 100 && depths < 3000, "%zu depths", depths);
+    EXPECT(near > 1000, "%zu points", near);
+    EXPECT(memcmp(frame->vertices, other->vertices, 3000 * sizeof(double)));
+    brio_mesh_free(frame);
+    brio_mesh_free(other);
+}
+
 static void bad_options_are_refused(void) {
     brio_generate_options options = brio_generate_options_default();
     brio_mesh *mesh;
@@ -408,6 +431,7 @@ int main(void) {
     RUN(points_are_uniform);
     RUN(gaps_in_clusters_spread_evenly_over_six_decades);
     RUN(grid_is_the_smallest_that_has_room);
+    RUN(depth_frame_has_whole_depths_along_its_rays);
     RUN(bad_options_are_refused);
     RUN(sculpture_function_never_exceeds_the_distance);
     RUN(truth_is_a_certified_surface_of_genus_3);
