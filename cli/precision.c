@@ -29,8 +29,10 @@ static bool fits_single(const brio_mesh *mesh, double *largest, double *moved) {
     for (size_t i = 0; i < count; i++)
         if (fabs(mesh->vertices[i]) > fabs(*largest)) *largest = mesh->vertices[i];
     if (fabs(*largest) > LARGEST_SINGLE) return false;
-    for (size_t i = 0; i < count; i++)
-        *moved = fmax(*moved, fabs(mesh->vertices[i] - (double)(float)mesh->vertices[i]));
+    for (size_t i = 0; i < count; i++) {
+        double move = fabs(mesh->vertices[i] - (double)(float)mesh->vertices[i]);
+        if (move > *moved) *moved = move;
+    }
     return true;
 }
 

@@ -1,10 +1,14 @@
-/* Two doubles side by side: the vector operations of centre_lanes.h with instructions that every processor has. */
+/* Two doubles side by side: the vector operations of conflict_lanes.h and centre_lanes.h with what every processor of the
+ * target has: SSE2, or NEON with its fused operations. */
 #ifndef BRIO_PREDICATES_LANES_PLAIN_H
 #define BRIO_PREDICATES_LANES_PLAIN_H
 
 #include "predicates/double_double.h"
 #include <stdint.h>
 #include <string.h>
+#if defined(__aarch64__)
+#include <arm_neon.h>
+#endif
 
 enum { LANES = 2 };
 
@@ -26,6 +30,9 @@ static inline lane_mask equal(lanes x, lanes y) {
 static inline lane_mask both(lane_mask a, lane_mask b) {
     return a & b;
 }
+static inline lane_mask first_only(lane_mask a, lane_mask b) {
+    return a & ~b;
+}
 static inline lane_mask either(lane_mask a, lane_mask b) {
     return a | b;
 }
@@ -41,15 +48,30 @@ static inline unsigned bits_of(lane_mask m) {
     return (unsigned)(m[0] & 1) | (unsigned)(m[1] & 2);
 }
 
-/* Returns x y + z, rounded once or twice. */
+/* These return x y - z and x y + z, rounded once or twice. */
+static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {
+#if defined(__aarch64__)
+    return (lanes)vfmaq_f64((float64x2_t)-z, (float64x2_t)x, (float64x2_t)y);
+#else
+    return x * y - z;
+#endif
+}
 static inline lanes multiply_add(lanes x, lanes y, lanes z) {
+#if defined(__aarch64__)
+    return (lanes)vfmaq_f64((float64x2_t)z, (float64x2_t)x, (float64x2_t)y);
+#else
     return x * y + z;
+#endif
 }
 /* Returns x y - p, where p is the rounded product of x and y. */
 static inline lanes product_error(lanes x, lanes y, lanes p) {
+#if defined(__aarch64__)
+    return multiply_subtract(x, y, p);
+#else
     lanes error = p;
     for (int i = 0; i < LANES; i++) error[i] = dd_two_product(x[i], y[i], DD_TARGET_HAS_FMA).lo;
     return error;
+#endif
 }
 
 /* Returns the largest power of two that is at most x, by keeping only the exponent bits. x is positive and normal. */

@@ -111,9 +111,10 @@ static brio_status sort_result(brio_inserter *ins) {
     return status;
 }
 
+#ifndef NDEBUG
 /* Whether mates are mates of each other, finite tetrahedra come first, and infinite ones have their vertex last: I2 and
  * I3 of tetrahedra.h, in the order of the result. */
-static inline bool result_is_valid(const brio_triangulation *t) {
+static bool result_is_valid(const brio_triangulation *t) {
     size_t finite = t->stats.tetrahedra, count = finite + t->stats.hull_facets;
     for (size_t tet = 0; tet < count; tet++)
         for (int i = 0; i < 4; i++) {
@@ -123,6 +124,7 @@ static inline bool result_is_valid(const brio_triangulation *t) {
         }
     return true;
 }
+#endif
 
 static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder, brio_triangulation **out) {
     brio_store *s = ins->store;

@@ -1,4 +1,4 @@
-/* The inner loops without vector instructions, and the versions by instruction set. */
+/* The versions of the inner loops by instruction set, and the exact test that they share. */
 #include "triangulation/engine.h"
 #include "base/instruction_set.h"
 
@@ -13,19 +13,6 @@ bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t t
     int sign = brio_insphere_exact(a, b, c, d, p, weighted);
     return (sign ? sign : brio_insphere_tie(f, a, b, c, d, p)) > 0;
 }
-
-static inline unsigned batch_in_conflict(const brio_tetrahedra *t, brio_filter *f, const uint32_t *facets, size_t count,
-                                         const double *p, const bool weighted) {
-    unsigned mask = 0;
-    for (size_t i = 0; i < count; i++)
-        mask |= (unsigned)brio_in_conflict(t, f, brio_tet_of(facets[i]), p, weighted) << i;
-    return mask;
-}
-
-#define WALK    brio_locate_walk
-#define ABREAST brio_locate_abreast
-#define ENGINE  brio_engine_plain
-#include "triangulation/engine_body.h"
 
 const brio_engine *brio_engine_choose(bool weighted) {
     static const brio_engine *const OF_SET[] = {

@@ -85,7 +85,8 @@ size_t brio_laz_decoder_bytes(const brio_laz_form *form) {
 brio_laz_decoder *brio_laz_decoder_make(void *memory, const brio_laz_form *form) {
     brio_laz_decoder *d = memory;
     size_t channels = channels_of(form);
-    *d = (brio_laz_decoder){.form = *form};
+    memset(d, 0, sizeof *d); /* a compound literal of its size could be made on the stack first */
+    d->form = *form;
     d->extra_coders = (brio_laz_coder *)(void *)(d + 1);
     d->extra_models = (brio_laz_model *)(void *)(d->extra_coders + form->num_extra);
     d->extra_last = (uint8_t *)(d->extra_models + channels * form->num_extra);

@@ -265,8 +265,9 @@ static void sort_edges(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
+#ifndef NDEBUG
 /* Whether the run of each pole's edges leads to other poles, in ascending order. */
-static inline bool runs_are_sorted(const brio_pole_graph *g) {
+static bool runs_are_sorted(const brio_pole_graph *g) {
     size_t n = g->diagram->poles->count;
     if (g->first[0] != 0) return false;
     for (size_t p = 0; p < n; p++) {
@@ -278,6 +279,7 @@ static inline bool runs_are_sorted(const brio_pole_graph *g) {
     }
     return true;
 }
+#endif
 
 static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative, brio_pole_evidence evidence) {
     brio_status status = BRIO_OK;

@@ -277,9 +277,10 @@ done:
     return status;
 }
 
+#ifndef NDEBUG
 /* Whether every pole has a label and every pole on the hull of the triangulation is outer. Then every face between an
  * inner and an outer cell is bounded, and the crust closes. */
-static inline bool labels_close(const brio_power_diagram *d, const uint8_t *label) {
+static bool labels_close(const brio_power_diagram *d, const uint8_t *label) {
     for (size_t p = 0; p < d->poles->count; p++)
         if (label[p] != BRIO_LABEL_INNER && label[p] != BRIO_LABEL_OUTER) return false;
     for (size_t tet = d->num_finite; tet < d->power.count; tet++)
@@ -287,6 +288,7 @@ static inline bool labels_close(const brio_power_diagram *d, const uint8_t *labe
             if (label[d->power.tet[tet].vertex[i]] != BRIO_LABEL_OUTER) return false;
     return true;
 }
+#endif
 
 brio_status brio_crust_faces(const brio_power_diagram *d, const uint8_t *label, const brio_crust_options *options,
                              brio_mesh *mesh, brio_crust_counts *counts) {
