@@ -3,6 +3,7 @@
  *
  * Not under the thread sanitizer, which rightly calls the second thread's writes a data race: that is what is tested. */
 #include "harness.h"
+#include "order/order.h"
 #include "points.h"
 #include <math.h>
 #include <pthread.h>
@@ -27,11 +28,11 @@ static void write_number(size_t i, double x) {
     __atomic_store(number_at(i), &x, __ATOMIC_RELAXED);
 }
 
-static int flat; /* whether the points lie in the plane x = z; atomic */
+static int in_plane; /* whether the points lie in the plane x = z; atomic */
 
 static double good_number(size_t i) {
     if (i >= 3 * N) return good.weights[i - 3 * N];
-    return good.points[i % 3 == 2 && __atomic_load_n(&flat, __ATOMIC_RELAXED) ? i - 2 : i];
+    return good.points[i % 3 == 2 && __atomic_load_n(&in_plane, __ATOMIC_RELAXED) ? i - 2 : i];
 }
 
 static void restore(void) {
@@ -211,7 +212,7 @@ static const struct {
 enum { NUM_CALLS = sizeof CALL / sizeof *CALL };
 
 static void begin(size_t which) {
-    __atomic_store_n(&flat, CALL[which].call == plane_flat, __ATOMIC_RELAXED);
+    __atomic_store_n(&in_plane, CALL[which].call == plane_flat, __ATOMIC_RELAXED);
     restore();
 }
 
@@ -227,16 +228,27 @@ static void expect_sane(size_t which, brio_status status, const brio_context *ct
 typedef struct {
     int left; /* calls of the callback until it writes */
     double wild;
-    size_t rows; /* what it writes to: the first of so many numbers, or all */
+    size_t rows;       /* what it writes to: the first of so many numbers, or all */
+    const char *stage; /* where it wrote, or NULL */
 } change;
 
 static int change_now(const char *stage, double fraction, void *user) {
     change *c = user;
-    (void)stage, (void)fraction;
+    (void)fraction;
     if (c->left-- != 0) return 0;
+    c->stage = stage;
     for (size_t i = 0; i < c->rows; i++) write_number(i, c->wild);
     for (size_t i = 0; i < 2 * (size_t)N; i++) __atomic_store_n(&now.edges[i], UINT32_MAX, __ATOMIC_RELAXED);
     return 0;
+}
+
+/* What is no number when the points are copied is refused, though it was one when the call began. Points are copied after
+ * the stages "order" of triangulations and "skip" of the hull. */
+static void expect_refused(size_t which, const change *c, brio_status status) {
+    bool copied_later = c->stage && (!strcmp(c->stage, "order") || !strcmp(c->stage, "skip"));
+    bool read = c->rows >= 3 * N || (c->rows == 30 && CALL[which].call != hull);
+    if (!copied_later || !read || isfinite(c->wild) || CALL[which].call == cells || in_plane) return;
+    EXPECT(status == BRIO_ERR_NOT_FINITE, "%s: %s", CALL[which].name, brio_status_string(status));
 }
 
 /* Writes at the k-th report, for each k until the call ends before it. */
@@ -246,13 +258,14 @@ static void by_a_callback(void) {
     brio_context_set_threads(ctx, 1);
     for (size_t which = 0; which < NUM_CALLS; which++)
         for (size_t wild = 0; wild < WILDS; wild++) {
-            change c = {-1, WILD[wild], 0};
+            change c = {-1, WILD[wild], 0, NULL};
             for (int k = 0; c.left < 0; k++) {
-                c.left = k, c.rows = ROWS[(wild + (size_t)k) % (sizeof ROWS / sizeof *ROWS)];
+                c.left = k, c.stage = NULL, c.rows = ROWS[(wild + (size_t)k) % (sizeof ROWS / sizeof *ROWS)];
                 brio_context_set_progress(ctx, change_now, &c);
                 begin(which);
                 brio_status status = CALL[which].call(ctx);
                 expect_sane(which, status, ctx);
+                expect_refused(which, &c, status);
             }
         }
     brio_context_free(ctx);
@@ -307,6 +320,60 @@ static void by_a_second_thread(void) {
     pthread_join(thread, NULL);
 }
 
+/* --- orders --- */
+
+enum { MANY = 20000 };
+static double many[3 * MANY];
+
+/* Moves points to and fro all the time. */
+static void *move_points(void *user) {
+    brio_rng rng = brio_rng_new(*(const uint64_t *)user);
+    while (!__atomic_load_n(&stopped, __ATOMIC_RELAXED)) {
+        double x = WILD[brio_rng_below(&rng, WILDS)], y = brio_rng_double(&rng);
+        size_t i = brio_rng_below(&rng, 3 * MANY);
+        if (brio_rng_below(&rng, 100)) x = y;
+        __atomic_store(&many[i], &x, __ATOMIC_RELAXED);
+        __atomic_fetch_add(&writes, 1, __ATOMIC_RELAXED);
+    }
+    return NULL;
+}
+
+static void expect_permutation(brio_context *ctx, brio_order order) {
+    static uint32_t found[MANY];
+    static uint8_t seen[MANY];
+    brio_delaunay_options o = brio_delaunay_options_default();
+    size_t twice = 0;
+    o.order = order, o.block_size = 50;
+    EXPECT(brio_order_points(ctx, many, MANY, &o, found, NULL, NULL) == BRIO_OK);
+    memset(seen, 0, sizeof seen);
+    for (size_t i = 0; i < MANY; i++) {
+        EXPECT(found[i] < MANY, "order %d", (int)order);
+        if (found[i] < MANY) twice += seen[found[i]]++;
+    }
+    EXPECT(twice == 0, "order %d: %zu points come twice", (int)order, twice);
+}
+
+static void orders_stay_permutations(void) {
+    pthread_t thread;
+    uint64_t seed = 11;
+    brio_context *ctx = new_context();
+    __atomic_store_n(&stopped, 0, __ATOMIC_RELAXED);
+    EXPECT(pthread_create(&thread, NULL, move_points, &seed) == 0);
+    for (int order = 0; order < BRIO_ORDER_END; order++)
+        for (int threads = 1; threads <= 3; threads++) {
+            size_t before = __atomic_load_n(&writes, __ATOMIC_RELAXED), written = 0;
+            brio_context_set_threads(ctx, threads);
+            for (int n = 0; n < 5 || (written < 100 * WRITES && n < 60); n++) {
+                expect_permutation(ctx, (brio_order)order);
+                written = __atomic_load_n(&writes, __ATOMIC_RELAXED) - before;
+            }
+        }
+    __atomic_store_n(&stopped, 1, __ATOMIC_RELAXED);
+    pthread_join(thread, NULL);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
 /* --- what a triangulation knows of its points --- */
 
 static void points_hash_is_that_of_the_points(void) {
@@ -348,5 +415,6 @@ int main(void) {
     RUN(points_hash_is_that_of_the_points);
     RUN(by_a_callback);
     RUN(by_a_second_thread);
+    RUN(orders_stay_permutations);
     return harness_end() || sum == SIZE_MAX;
 }
