@@ -138,7 +138,8 @@ static brio_status copy_points(brio_context *ctx, const brio_triangulation *t, c
     BRIO_REQUIRE(ctx, in->count == t->stats.points, BRIO_ERR_ARGUMENT,
                  "%zu points were given, the triangulation has %zu", in->count, t->stats.points);
     BRIO_TRY(brio_records_new(ctx, in, NULL, 0, &hash, record));
-    BRIO_REQUIRE(ctx, hash == t->points_hash, BRIO_ERR_ARGUMENT, "the points are not those of the triangulation");
+    BRIO_REQUIRE(ctx, hash == t->points_hash, BRIO_ERR_ARGUMENT,
+                 "the points are not those of the triangulation, or were changed since");
 done:
     return status;
 }

@@ -12,7 +12,7 @@ brio_status brio_plane_take_points(brio_context *ctx, const brio_triangulation2 
                  "%zu points were given, the triangulation has %zu", given->count, t->stats.points);
     BRIO_TRY(brio_plane_records_new(ctx, given, NULL, 0, record));
     BRIO_REQUIRE(ctx, given->hash == t->points_hash, BRIO_ERR_ARGUMENT,
-                 "the points are not those of the triangulation");
+                 "the points are not those of the triangulation, or were changed since");
 done:
     if (status != BRIO_OK) {
         brio_release(ctx, *record);
