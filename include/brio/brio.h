@@ -27,9 +27,9 @@
  *   - The library reads the caller's arrays during a call. It does not keep, reorder or change them. Some functions bear
  *     that another thread changes the points, the weights or the queries meanwhile, whatever it writes: the result is
  *     then that of some numbers, or an error. They are brio_delaunay, brio_delaunay2, brio_delaunay2_flat and their
- *     checks, brio_convex_hull, brio_voronoi_cells without a triangulation, brio_voronoi2, brio_thin, brio_outliers, and the
- *     functions of brio_locator and brio_locator2. For all other functions, and for values, options and meshes, the arrays must
- *     not change. (To C such a change is undefined all the same; an atomic store is not.)
+ *     checks, brio_points_hash, brio_convex_hull, brio_voronoi_cells without a triangulation, brio_voronoi2, brio_thin,
+ *     brio_outliers, and the functions of brio_locator and brio_locator2. For all other functions, and for values,
+ *     options and meshes, the arrays must not change. (To C a change that is no atomic store is undefined all the same.)
  *   - The library never prints, exits or aborts. Every function that can fail returns a status, and the context keeps
  *     a sentence that explains the failure.
  *   - The caller's floating-point state (rounding mode, subnormal numbers, traps) does not change a result: each
@@ -623,8 +623,8 @@ BRIO_API brio_status brio_triangulation2_check(brio_context *ctx, const brio_tri
 BRIO_API brio_status brio_triangulation2_checksum(brio_context *ctx, const brio_triangulation2 *t, const double *points,
                                                   uint64_t *checksum);
 
-/* Queries of a triangulation of the plane. What is said of brio_locator and of queries above holds here, with `queries` #Q
- * by 2. */
+/* Queries of a triangulation of the plane. What is said of brio_locator and of its queries holds here, with `queries` #Q by
+ * 2, except that these are not sorted and take no workspace. */
 
 typedef struct brio_locator2 brio_locator2;
 
@@ -632,7 +632,7 @@ typedef struct brio_locator2 brio_locator2;
  *  points, weights, num_points  as they were given to brio_delaunay2; triangulations by brio_delaunay2_flat are refused.
  *  out  owned by the caller, freed with brio_locator2_free; NULL on error. Several threads, each with a context of its own,
  *       may query one locator.
- *  Memory: 26 bytes a triangle and 40 a point.   Cost: O(n), for points on a line O(n log n).
+ *  Memory: 25 bytes a triangle and 36 a point, for points on a line 36 a point.   Cost: O(n).
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation, or they are points in space),
  *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_locator2_new(brio_context *ctx, const brio_triangulation2 *t, const double *points,
@@ -682,7 +682,7 @@ typedef struct brio_diagram2 {
  *  out  owned by the caller, freed with brio_diagram2_free; NULL on error.
  *  A vertex is wrong by at most 2^-44 times its distance from the points, plus one rounding; NaN where doubles cannot hold
  *  it. The bits of a vertex of three points depend on their positions alone.
- *  Cost: O(n). Memory: 4 bytes a triangle, 16 a vertex, 8 a point and 4 an item; meanwhile 40 a point more.
+ *  Cost: O(n). Memory: 4 bytes a triangle, 16 a vertex, 8 a point and 4 an item; meanwhile 36 a point more.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation, or they are points in space),
  *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Aurenhammer 1987]. */

@@ -250,6 +250,31 @@ static void linear_functions_are_reproduced(void) {
     for_all_sets(check_linear_functions);
 }
 
+/* Beside the hull natural neighbours have far centres. */
+static void check_beside_the_hull(const set *s) {
+    fixture f = fixture_new(s);
+    const brio_delaunay2_stats *stats = brio_triangulation2_stats(f.t);
+    const brio_triangle *t = brio_triangulation2_triangles(f.t) + stats->triangles;
+    double values[2 * MOST], row[2], most = 0;
+    for (size_t i = 0; i < 2 * s->n; i++) most = fmax(most, fabs(values[i] = s->p[i]));
+    for (size_t i = 0; i < stats->hull_edges; i++)
+        for (double way = 1e-3; way > 1e-18; way /= 10) {
+            const double *a = s->p + 2 * (size_t)t[i].vertex[0], *b = s->p + 2 * (size_t)t[i].vertex[1];
+            double x[2] = {0.3 * a[0] + 0.7 * b[0] + way * (b[1] - a[1]),
+                           0.3 * a[1] + 0.7 * b[1] + way * (a[0] - b[0])};
+            x[0] = 2 * (0.3 * a[0] + 0.7 * b[0]) - x[0], x[1] = 2 * (0.3 * a[1] + 0.7 * b[1]) - x[1];
+            EXPECT(interpolate(&f, s->weighted, values, 2, x, 1, row) == BRIO_OK, "%s", brio_message(f.ctx));
+            for (int k = 0; k < 2 && !isnan(row[0]); k++)
+                EXPECT(fabs(row[k] - x[k]) <= 1e-13 * most, "%s, %g from the hull: %.17g, not %.17g", s->name, way,
+                       row[k], x[k]);
+        }
+    fixture_free(&f);
+}
+
+static void linear_functions_are_reproduced_beside_the_hull(void) {
+    for_all_sets(check_beside_the_hull);
+}
+
 static void check_values_at_vertices(const set *s) {
     fixture f = fixture_new(s);
     double values[MOST], rows[MOST];
@@ -517,6 +542,7 @@ int main(void) {
     RUN(least_power_is_that_of_brute_force);
     RUN(answers_do_not_depend_on_the_threads);
     RUN(linear_functions_are_reproduced);
+    RUN(linear_functions_are_reproduced_beside_the_hull);
     RUN(values_at_vertices_are_exact);
     RUN(natural_neighbours_have_the_areas_of_clipping);
     RUN(diagrams_are_dual);
