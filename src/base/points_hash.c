@@ -1,5 +1,6 @@
 /* The hash of a caller's points, see points_hash.h. */
 #include "base/points_hash.h"
+#include "base/context.h"
 #include "base/float_state.h"
 
 uint64_t brio_points_hash(const double *points, const double *weights, size_t num_points, int coordinates) {

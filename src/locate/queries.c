@@ -17,10 +17,10 @@ int brio_query_threads(brio_context *ctx, size_t count) {
 
 static brio_status refuse_not_finite(brio_context *ctx, const double *queries, size_t count) {
     for (size_t i = 0; i < count; i++) {
-        const double *x = queries + 3 * i;
-        if (isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2])) continue;
+        const double x[3] = {queries[3 * i], queries[3 * i + 1], queries[3 * i + 2]};
+        if (brio_all_finite(x, 3)) continue;
         int k = 0;
-        while (isfinite(x[k])) k++;
+        while (k < 2 && isfinite(x[k])) k++;
         return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "query %zu: %c is %s", i, "xyz"[k],
                          isnan(x[k]) ? "NaN" : "infinite");
     }
