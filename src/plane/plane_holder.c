@@ -15,6 +15,29 @@ static unsigned zero_sides(brio_plane_querent *q, uint32_t t, const double *x) {
     return zeros;
 }
 
+/* Walks to a finite triangle whose closure holds x, or returns BRIO_INFINITE. Keeps which lines of its edges hold x: not
+ * that of the edge by which the walk came in, because x was strictly beyond it. */
+static uint32_t walk(brio_plane_querent *q, const double *x, unsigned *zeros) {
+    const brio_locator2 *l = q->l;
+    uint32_t t = *brio_locator2_square(l, x), entered = 3;
+    for (;;) {
+        const uint32_t *v = l->triangle[t].vertex;
+        uint32_t out = 3;
+        *zeros = 0;
+        for (uint32_t i = 0; i < 3 && out == 3; i++) {
+            if (i == entered) continue;
+            int sign =
+                brio_orient2d_sign(&q->filter, l->record[v[brio_slot_after(i)]], l->record[v[brio_slot_before(i)]], x);
+            if (sign < 0) out = i;
+            *zeros |= (unsigned)(sign == 0) << i;
+        }
+        if (out == 3) return t;
+        uint32_t mate = l->triangle[t].mate[out];
+        t = brio_triangle_of(mate), entered = brio_edge_slot(mate);
+        if (t >= l->num_finite) return BRIO_INFINITE;
+    }
+}
+
 /* Returns the lowest index of the triangles that hold a query which is in triangle t. */
 static uint32_t lowest_holder(const brio_locator2 *l, uint32_t t, unsigned zeros) {
     const brio_triangle *own = &l->triangle[t];
@@ -26,12 +49,10 @@ static uint32_t lowest_holder(const brio_locator2 *l, uint32_t t, unsigned zeros
 
 brio_plane_holder brio_plane_find_holder(brio_plane_querent *q, const double *x) {
     const brio_locator2 *l = q->l;
-    const brio_plane_view view = brio_locator2_view(l);
-    uint64_t steps = 0;
     if (!l->num_finite || !brio_locator2_boxes(l, x)) return (brio_plane_holder){BRIO_INFINITE, 0};
-    uint32_t t = brio_plane_walk(&view, &q->filter, *brio_locator2_square(l, x), x, &steps);
-    if (t >= l->num_finite) return (brio_plane_holder){BRIO_INFINITE, 0};
-    unsigned zeros = zero_sides(q, t, x);
+    unsigned zeros;
+    uint32_t t = walk(q, x, &zeros);
+    if (t == BRIO_INFINITE) return (brio_plane_holder){BRIO_INFINITE, 0};
     uint32_t lowest = lowest_holder(l, t, zeros);
     return (brio_plane_holder){lowest, lowest == t ? zeros : zero_sides(q, lowest, x)};
 }
