@@ -145,6 +145,10 @@ static void *copy_place(size_t bytes) {
     return place;
 }
 
+int input_borrow(input *in, PyObject *object, const char *name, char format, int columns) {
+    return open_view(in, object, name, format, columns, 0);
+}
+
 int input_open(input *in, PyObject *object, const char *name, char format, int columns) {
     if (open_view(in, object, name, format, columns, 0)) return -1;
     in->data = copy_place(in->bytes);
@@ -160,37 +164,29 @@ int output_open(input *in, PyObject *object, const char *name, char format, int 
     return open_view(in, object, name, format, columns, PyBUF_WRITABLE);
 }
 
-static uint64_t mix(uint64_t lane, uint64_t word) {
-    return (lane ^ word) * 0x9e3779b97f4a7c15u + (lane >> 29);
-}
-
-uint64_t input_hash(const input *in) {
-    const uint64_t *word = in->data;
-    size_t words = in->data ? in->bytes / 8 : 0, k = 0;
-    uint64_t a = in->bytes, b = 1, c = 2, d = 3; /* four chains, since each waits for its multiplications */
-    for (; k + 4 <= words; k += 4) {
-        a = mix(a, word[k]);
-        b = mix(b, word[k + 1]);
-        c = mix(c, word[k + 2]);
-        d = mix(d, word[k + 3]);
-    }
-    for (; k < words; k++) a = mix(a, word[k]);
-    return mix(mix(mix(a, b), c), d);
-}
-
 int input_has_rows(const input *in, const char *name, size_t rows) {
     if (in->rows == rows) return 0;
     PyErr_Format(PyExc_ValueError, "%s: %zu rows, where there should be %zu", name, in->rows, rows);
     return -1;
 }
 
-int input_open_weights(input *in, PyObject *object, size_t rows) {
+/* Opens weights by one of the functions above. */
+static int open_weights(input *in, PyObject *object, size_t rows,
+                        int (*open)(input *, PyObject *, const char *, char, int)) {
     *in = (input){.held = 0};
     if (object == Py_None) return 0;
-    if (input_open(in, object, "weights", 'd', 0)) return -1;
+    if (open(in, object, "weights", 'd', 0)) return -1;
     if (!input_has_rows(in, "weights", rows)) return 0;
     input_close(in);
     return -1;
+}
+
+int input_open_weights(input *in, PyObject *object, size_t rows) {
+    return open_weights(in, object, rows, input_open);
+}
+
+int input_borrow_weights(input *in, PyObject *object, size_t rows) {
+    return open_weights(in, object, rows, input_borrow);
 }
 
 void input_close(input *in) {

@@ -151,7 +151,6 @@ PyObject *call_end_with(call *c, brio_status status, kind what, void *object, vo
         h->kind = what;
         h->record = r;
         h->base = base;
-        h->points_hash = 0;
         Py_XINCREF(base);
     } else if (r) {
         PyThread_acquire_lock(state->lock, WAIT_LOCK);
@@ -192,16 +191,12 @@ void *handle_object(module_state *state, PyObject *object, kind wanted) {
     return NULL;
 }
 
-static uint64_t hash_of(const input *points, const input *weights) {
-    return input_hash(points) ^ (weights->data ? 3 * input_hash(weights) : 0);
-}
-
-void handle_keep_points(PyObject *object, const input *points, const input *weights) {
-    if (object) ((handle *)object)->points_hash = hash_of(points, weights);
-}
-
 int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights) {
-    if (((handle *)object)->points_hash == hash_of(points, weights)) return 0;
+    const handle *h = (const handle *)object;
+    const void *t = h->record->object;
+    uint64_t own = h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t)
+                                                  : brio_triangulation_points_hash(t);
+    if (own == brio_points_hash(points->data, weights->data, points->rows, (int)points->columns)) return 0;
     raise(state, BRIO_ERR_ARGUMENT, "the points are not those of the triangulation: they were changed since");
     return -1;
 }

@@ -18,8 +18,8 @@ static PyObject *build(PyObject *module, PyObject *args, int columns, int flat) 
     input p, w = {.held = 0};
     call c;
     if (!PyArg_ParseTuple(args, "OOiO", &points, &weights, &threads, &progress)) return NULL;
-    if (input_open(&p, points, "points", 'd', columns)) return NULL;
-    if (!input_open_weights(&w, weights, p.rows) && !call_begin(&c, state_of(module), threads, progress)) {
+    if (input_borrow(&p, points, "points", 'd', columns)) return NULL;
+    if (!input_borrow_weights(&w, weights, p.rows) && !call_begin(&c, state_of(module), threads, progress)) {
         brio_status status;
         if (columns == 3 && !flat) {
             brio_triangulation *t = NULL;
@@ -30,7 +30,6 @@ static PyObject *build(PyObject *module, PyObject *args, int columns, int flat) 
             CALL(c, status, (flat ? brio_delaunay2_flat : brio_delaunay2)(c.ctx, p.data, w.data, p.rows, NULL, &t));
             result = call_end_with(&c, status, KIND_TRIANGULATION2, t, free_triangulation2, NULL);
         }
-        handle_keep_points(result, &p, &w);
     }
     input_close(&w);
     input_close(&p);

@@ -12,8 +12,8 @@ static PyObject *locator(PyObject *module, PyObject *args) {
     call c;
     if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &weights, &threads, &progress)) return NULL;
     const brio_triangulation *t = handle_object(state_of(module), object, KIND_TRIANGULATION);
-    if (!t || input_open(&p, points, "points", 'd', 3)) return NULL;
-    if (!input_open_weights(&w, weights, p.rows) && !handle_has_points(state_of(module), object, &p, &w) &&
+    if (!t || input_borrow(&p, points, "points", 'd', 3)) return NULL;
+    if (!input_borrow_weights(&w, weights, p.rows) &&
         !call_begin(&c, state_of(module), threads, progress)) {
         brio_locator *l = NULL;
         brio_status status;
@@ -35,7 +35,7 @@ static PyObject *locate(PyObject *module, PyObject *args) {
     call c;
     if (!PyArg_ParseTuple(args, "OOiOiO", &object, &queries, &what, &array, &threads, &progress)) return NULL;
     const brio_locator *l = handle_object(state_of(module), object, KIND_LOCATOR);
-    if (!l || input_open(&q, queries, "queries", 'd', 3)) return NULL;
+    if (!l || input_borrow(&q, queries, "queries", 'd', 3)) return NULL;
     if (output_open(&out, array, "out", 'i', what == FIND_NEAREST ? -1 : 0)) {
         input_close(&q);
         return NULL;
@@ -75,7 +75,7 @@ static PyObject *interpolate(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OOOinOiO", &object, &queries, &values, &method, &points, &array, &threads, &progress))
         return NULL;
     const brio_locator *l = handle_object(state_of(module), object, KIND_LOCATOR);
-    if (l && !input_open(&a.queries, queries, "queries", 'd', 3) && !input_open(&a.values, values, "values", 'd', -1) &&
+    if (l && !input_borrow(&a.queries, queries, "queries", 'd', 3) && !input_open(&a.values, values, "values", 'd', -1) &&
         !output_open(&a.out, array, "out", 'd', (int)a.values.columns) &&
         !input_has_rows(&a.out, "out", a.queries.rows) && !input_has_rows(&a.values, "values", (size_t)points) &&
         !call_begin(&c, state_of(module), threads, progress)) {

@@ -88,12 +88,12 @@ layout layout_of(const void *data, char format, size_t rows, size_t columns);
 extern PyType_Spec array_spec;
 
 /** An array of the caller during a call: C-contiguous, native, of the format asked for.
- *  I1  What the library reads is a copy, made with the interpreter's lock and before any check: other threads may write to
- *      the caller's array meanwhile, and the library trusts what it has checked.
+ *  I1  Other threads may write to the caller's array while the library works. The library bears that of the arrays that
+ *      brio.h names. What it reads of all others is a copy, made with the interpreter's lock and before any check.
  *  I2  What the library writes is an array that Python has just made. */
 typedef struct {
     void *data;
-    Py_buffer view; /* of an array to write to */
+    Py_buffer view; /* of an array that is no copy */
     int held;       /* `view` is open */
     size_t rows, columns, bytes;
 } input;
@@ -101,13 +101,15 @@ typedef struct {
 /** Copies an array.   format  one letter as in `struct`: d I L B.   columns  0: of one dimension; else of two, and of that
  *  many columns; -1: of two, and of any number of columns.   Returns 0 or -1 with an exception set. */
 int input_open(input *in, PyObject *object, const char *name, char format, int columns);
+/** Opens an array without a copy, for a function that bears changes of it. */
+int input_borrow(input *in, PyObject *object, const char *name, char format, int columns);
 /** Opens an array to write to. */
 int output_open(input *in, PyObject *object, const char *name, char format, int columns);
 /** Opens an array of one number a row of another, unless the object is None. */
 int input_open_weights(input *in, PyObject *object, size_t rows);
+/** The same without a copy. */
+int input_borrow_weights(input *in, PyObject *object, size_t rows);
 void input_close(input *in);
-/** Returns a hash of the bytes, which tells arrays that were changed. */
-uint64_t input_hash(const input *in);
 /** Returns 0, or -1 with ValueError set unless the array has that many rows. */
 int input_has_rows(const input *in, const char *name, size_t rows);
 
@@ -118,6 +120,7 @@ typedef enum {
     KIND_TRIANGULATION2,
     KIND_LOCATOR,
     KIND_LOCATOR2,
+    KIND_DIAGRAM2,
     KIND_INCIDENCES,
     KIND_CELLS,
     KIND_ALPHA,
@@ -135,18 +138,15 @@ struct record {
 typedef struct {
     PyObject_HEAD kind kind;
     record *record;
-    PyObject *base;       /* an object that this one reads, or NULL */
-    uint64_t points_hash; /* of a triangulation: of the points and weights that it was made of */
+    PyObject *base; /* an object that this one reads, or NULL */
 } handle;
 
 /** Ends the call and makes a handle of what it made. Frees the object if the handle cannot be made. */
 PyObject *call_end_with(call *c, brio_status status, kind what, void *object, void (*release)(void *), PyObject *base);
 /** Returns the object of a handle of that kind, or NULL with TypeError set. */
 void *handle_object(module_state *state, PyObject *object, kind kind);
-/** Keeps the hash of the points (and weights) that a triangulation was made of; NULL is accepted. */
-void handle_keep_points(PyObject *object, const input *points, const input *weights);
-/** Returns 0, or -1 with an exception set if these are not the points that it was made of. A triangulation with other
- *  points than its own would lead the library astray. */
+/** Returns 0, or -1 with an exception set if these copies are not of the points that a triangulation was made of. A
+ *  triangulation with other points than its own would lead the library astray. */
 int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights);
 extern PyType_Spec handle_spec;
 

@@ -3,21 +3,25 @@
 #include <inttypes.h>
 #include <math.h>
 
-static bool is_finite(const double *points, const double *weights, size_t i) {
-    const double *p = points + 3 * i;
-    return isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]) && (!weights || isfinite(weights[i]));
+/* Copies the numbers of a point: what is judged and named is what was read once, since another thread of the caller may
+ * write to them. */
+static inline void copy_point(const double *points, const double *weights, size_t i, double row[4]) {
+    for (size_t k = 0; k < 3; k++) row[k] = points[3 * i + k];
+    row[3] = weights ? weights[i] : 0;
 }
 
 void brio_count_not_finite(brio_not_finite *found, uint64_t first, const double *points, const double *weights,
                            size_t n) {
     static const char *const NAME[] = {"x", "y", "z", "weight"};
+    double row[4];
     for (size_t i = 0; i < n; i++) {
-        if (is_finite(points, weights, i) || found->count++ > 0) continue;
+        copy_point(points, weights, i, row);
+        if (brio_all_finite(row, 4) || found->count++ > 0) continue;
         size_t c = 0;
-        while (c < 3 && isfinite(points[3 * i + c])) c++;
+        while (c < 3 && isfinite(row[c])) c++;
         found->first = first + i;
         found->axis = NAME[c];
-        found->what = isnan(c < 3 ? points[3 * i + c] : weights[i]) ? "NaN" : "infinite";
+        found->what = isnan(row[c]) ? "NaN" : "infinite";
     }
 }
 

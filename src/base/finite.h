@@ -3,6 +3,8 @@
 #define BRIO_BASE_FINITE_H
 
 #include "base/context.h"
+#include <stdbool.h>
+#include <stddef.h>
 
 /** Points that are no numbers, counted over the parts of an array. */
 typedef struct brio_not_finite {
@@ -16,6 +18,13 @@ void brio_count_not_finite(brio_not_finite *found, uint64_t first, const double 
 
 /** Refuses what was counted, as brio_refuse_not_finite does. */
 brio_status brio_refuse_counted(brio_context *ctx, const brio_not_finite *found, const char *file);
+
+/** Returns whether all numbers are finite. */
+static inline bool brio_all_finite(const double *numbers, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) sum += 0 * numbers[i];
+    return sum == 0; /* else NaN */
+}
 
 /** Refuses points with a coordinate or a weight that is not finite; the message names the first such point and how many
  *  there are.   points  #P by 3.   weights  #P, or NULL.   file  what the points were read from, or NULL.

@@ -51,6 +51,7 @@ typedef struct {
     size_t num_points;
     brio_cells_options options;
     brio_triangulation *own;         /* made by the call, or NULL */
+    double *rows, *row_weights;      /* a copy of the caller's points, where the call triangulates them; or NULL */
     brio_completed_points all;       /* of flat points */
     double *scaled, *scaled_weights; /* or NULL */
     brio_diagram diagram;
@@ -74,11 +75,28 @@ done:
     return status;
 }
 
+/* Copies the caller's points: another thread of the caller may change them meanwhile, and the triangulation and the cells
+ * must be those of the same points. */
+static brio_status copy_points(cell_call *c) {
+    brio_status status = BRIO_OK;
+    size_t n = c->num_points;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, c->rows, 3 * n));
+    if (n) memcpy(c->rows, c->points, 3 * n * sizeof *c->rows);
+    c->points = c->rows;
+    if (!c->weights) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, c->row_weights, n));
+    if (n) memcpy(c->row_weights, c->weights, n * sizeof *c->row_weights);
+    c->weights = c->row_weights;
+done:
+    return status;
+}
+
 /* Finds the triangulation to work with. */
 static brio_status triangulate(cell_call *c, const brio_triangulation *t) {
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(c->ctx);
     if (!t) {
+        BRIO_TRY(copy_points(c));
         brio_progress_part(c->ctx, bar, 0, 0.6);
         BRIO_TRY(brio_delaunay(c->ctx, c->points, c->weights, c->num_points, NULL, &c->own));
         t = c->own;
@@ -276,6 +294,8 @@ static void end_call(cell_call *c) {
     brio_diagram_free(&c->diagram);
     brio_region_free(&c->region);
     brio_triangulation_free(c->own);
+    brio_release(c->ctx, c->rows);
+    brio_release(c->ctx, c->row_weights);
     brio_release(c->ctx, c->all.points);
     brio_release(c->ctx, c->all.weights);
     brio_release(c->ctx, c->scaled);

@@ -9,6 +9,7 @@
  *
  * Based on: Clarkson, Shor. Applications of random sampling in computational geometry, II. DCG 1989.
  *           Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003. */
+#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -40,7 +41,8 @@ static void lap(hull *h, double *seconds) {
     h->lap = now;
 }
 
-/* Copies the candidates in a biased randomized insertion order. */
+/* Copies the candidates in a biased randomized insertion order. They were finite when the call began, but another thread
+ * of the caller may have written to them since; from here on the hull is that of the copies. */
 static brio_status take_records(hull *h, size_t n) {
     brio_status status = BRIO_OK;
     double *rows = NULL;
@@ -50,6 +52,8 @@ static brio_status take_records(hull *h, size_t n) {
     BRIO_TRY(BRIO_ALLOC(h->ctx, order, n));
     BRIO_TRY(BRIO_ALLOC(h->ctx, h->records.record, n + 1));
     brio_copy_points(h->points, h->index, n, rows);
+    BRIO_REQUIRE(h->ctx, brio_all_finite(rows, 3 * n), BRIO_ERR_NOT_FINITE,
+                 "the points changed during the call, to numbers that are not finite");
     BRIO_TRY(brio_order_points(h->ctx, rows, n, &o, order, NULL, NULL));
     for (size_t r = 0; r < n; r++) {
         const double *p = rows + 3 * (size_t)order[r];

@@ -9,8 +9,11 @@
  * wrong by at most 3 * 8 u E^2 M; the offset, a sum of three such products, by as much again, and the roundings of both
  * sums add less than 2 * 4 u * 3 * 2.01 E^2 M. Together less than 128 u E^2 M. ERROR is eight times that.
  *
+ * The caller's points may change meanwhile. What is computed from them here only chooses which points are candidates.
+ *
  * Based on: Akl, Toussaint. A fast convex hull algorithm. IPL 1978. */
 #include "hull/interior.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/vector.h"
@@ -112,7 +115,7 @@ static void set_planes(const brio_polytope *p, const double (*record)[4], planes
 }
 
 /* Finds the planes of the hull of the extreme points. The extremes along the axes bound all coordinates, so E and M are
- * those of all points. Leaves no planes where the hull is flat or the coordinates are too large. */
+ * those of all points. Leaves no planes where the hull is flat or the coordinates are too large or have changed to no numbers. */
 static brio_status find_planes(brio_context *ctx, const double *points, const extremes *e, planes *out) {
     double record[EXTREMES + 1][4], extent;
     uint32_t corner[4];
@@ -125,6 +128,7 @@ static brio_status find_planes(brio_context *ctx, const double *points, const ex
         for (int k = 0; k < 3; k++) record[d][k] = points[3 * (size_t)e->point[d] + (size_t)k] + 0.0;
         record[d][3] = 0;
     }
+    if (!brio_all_finite(record[0], 4 * EXTREMES)) return BRIO_OK;
     double most = magnitude((const double(*)[4])record, EXTREMES, &extent);
     if (!(most < MOST_MAGNITUDE)) return BRIO_OK;
     out->error = ERROR * extent * extent * most + UNDERFLOW_FLOOR;

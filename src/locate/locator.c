@@ -1,7 +1,6 @@
 /* Makes the object that queries read (locator.h): sorts the vertices into a k-d tree, and copies the tetrahedra with the
  * places of their vertices. */
 #include "locate/locator.h"
-#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/team.h"
@@ -16,24 +15,25 @@ enum { TETRAHEDRA_A_THREAD = 1 << 14 };
 /* --- vertices --- */
 
 /* Copies the positions of the vertices, and lists the vertices in the order of their indices. */
-static size_t list_vertices(const brio_triangulation *t, const double *points, double *rows, uint32_t *vertex) {
+static size_t list_vertices(const brio_triangulation *t, const brio_record *record, double *rows, uint32_t *vertex) {
     size_t count = 0;
     for (size_t p = 0; p < t->stats.points; p++) {
         if (t->representative[p] != p) continue;
-        for (size_t k = 0; k < 3; k++) rows[3 * count + k] = points[3 * p + k] + 0.0; /* -0 becomes 0 */
+        memcpy(rows + 3 * count, record[p], 3 * sizeof *rows);
         vertex[count++] = (uint32_t)p;
     }
     return count;
 }
 
 /* Moves the points of a tree into records. */
-static brio_status take_tree(brio_locator *l, brio_point_tree *tree, const uint32_t *vertex, const double *weights) {
+static brio_status take_tree(brio_locator *l, brio_point_tree *tree, const uint32_t *vertex,
+                             const brio_record *record) {
     brio_status status = BRIO_ALLOC(l->ctx, l->record, l->num_vertices);
     if (status != BRIO_OK) return status;
     for (size_t v = 0; v < l->num_vertices; v++) {
         uint32_t point = vertex[tree->index[v]];
         memcpy(l->record[v], tree->point[v], sizeof *tree->point);
-        l->record[v][3] = weights ? weights[point] + 0.0 : 0;
+        l->record[v][3] = record[point][3];
         tree->index[v] = point;
     }
     l->name = tree->index;
@@ -43,17 +43,16 @@ static brio_status take_tree(brio_locator *l, brio_point_tree *tree, const uint3
     return BRIO_OK;
 }
 
-static brio_status sort_vertices(brio_locator *l, const brio_triangulation *t, const double *points,
-                                 const double *weights) {
+static brio_status sort_vertices(brio_locator *l, const brio_triangulation *t, const brio_record *record) {
     brio_status status = BRIO_OK;
     double *rows = NULL;
     uint32_t *vertex = NULL;
     brio_point_tree tree = {0};
     BRIO_TRY(BRIO_ALLOC(l->ctx, rows, 3 * l->num_vertices));
     BRIO_TRY(BRIO_ALLOC(l->ctx, vertex, l->num_vertices));
-    list_vertices(t, points, rows, vertex);
+    list_vertices(t, record, rows, vertex);
     BRIO_TRY(brio_point_tree_new(l->ctx, rows, l->num_vertices, &tree));
-    BRIO_TRY(take_tree(l, &tree, vertex, weights));
+    BRIO_TRY(take_tree(l, &tree, vertex, record));
 done:
     brio_point_tree_free(l->ctx, &tree);
     brio_release(l->ctx, rows);
@@ -130,20 +129,30 @@ done:
 
 /* --- the object --- */
 
-static brio_status check_input(brio_context *ctx, const brio_triangulation *t, const brio_input *in) {
+/* Copies the points, which must be those of the triangulation: with others a walk might not end. Another thread of the
+ * caller may write to the caller's arrays meanwhile; what counts is the copy. */
+static brio_status copy_points(brio_context *ctx, const brio_triangulation *t, const brio_input *in,
+                               brio_record **record) {
     brio_status status = BRIO_OK;
+    uint64_t hash = 0;
     BRIO_REQUIRE(ctx, in->count == t->stats.points, BRIO_ERR_ARGUMENT,
                  "%zu points were given, the triangulation has %zu", in->count, t->stats.points);
-    BRIO_TRY(brio_refuse_not_finite(ctx, in->points, in->weights, in->count, NULL));
+    BRIO_TRY(brio_records_new(ctx, in, NULL, 0, &hash, record));
+    BRIO_REQUIRE(ctx, hash == t->points_hash, BRIO_ERR_ARGUMENT,
+                 "the points are not those of the triangulation, or were changed since");
 done:
     return status;
 }
 
 static brio_status fill(brio_locator *l, const brio_triangulation *t, const brio_input *in) {
     brio_status status = BRIO_OK;
+    brio_record *record = NULL;
+    BRIO_TRY(copy_points(l->ctx, t, in, &record));
     BRIO_TRY(brio_progress(l->ctx, "locator", 0));
-    BRIO_TRY(sort_vertices(l, t, in->points, in->weights));
-    if (in->weights) {
+    BRIO_TRY(sort_vertices(l, t, (const brio_record *)record));
+    brio_release(l->ctx, record);
+    record = NULL;
+    if (l->weighted) {
         BRIO_TRY(BRIO_ALLOC(l->ctx, l->most, l->num_vertices));
         find_most(l, 0, l->num_vertices);
     }
@@ -152,6 +161,7 @@ static brio_status fill(brio_locator *l, const brio_triangulation *t, const brio
     BRIO_TRY(take_tetrahedra(l, t));
     BRIO_TRY(brio_progress(l->ctx, "locator", 1));
 done:
+    brio_release(l->ctx, record);
     return status;
 }
 
@@ -162,7 +172,6 @@ brio_status brio_locator_new(brio_context *ctx, const brio_triangulation *t, con
     brio_status status = BRIO_OK;
     brio_input in = {points, weights, num_points};
     *out = NULL;
-    BRIO_TRY(check_input(ctx, t, &in));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, l, 1));
     l->ctx = ctx;
     l->num_points = num_points;

@@ -1,6 +1,7 @@
 /* Many queries at once: sorted along a Hilbert curve, so that each walk is short and the memory that it reads is in the
  * cache, and divided among threads. The queries are taken in blocks, which bounds the workspace. */
 #include "locate/queries.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include "order/curve.h"
@@ -16,10 +17,10 @@ int brio_query_threads(brio_context *ctx, size_t count) {
 
 static brio_status refuse_not_finite(brio_context *ctx, const double *queries, size_t count) {
     for (size_t i = 0; i < count; i++) {
-        const double *x = queries + 3 * i;
-        if (isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2])) continue;
+        const double x[3] = {queries[3 * i], queries[3 * i + 1], queries[3 * i + 2]};
+        if (brio_all_finite(x, 3)) continue;
         int k = 0;
-        while (isfinite(x[k])) k++;
+        while (k < 2 && isfinite(x[k])) k++;
         return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "query %zu: %c is %s", i, "xyz"[k],
                          isnan(x[k]) ? "NaN" : "infinite");
     }
@@ -39,8 +40,9 @@ static inline size_t query_at(const block_job *job, size_t i) {
     return job->begin + (job->items ? (size_t)(uint32_t)job->items[i] : i);
 }
 
-/* Takes the queries i, i + stride, ... before `end` in the order of the block. */
-static void take_row(const block_job *job, size_t i, size_t stride, size_t end, brio_query_row *row) {
+/* Takes the queries i, i + stride, ... before `end` in the order of the block. Returns false if one is not finite: all were
+ * when the call began, but another thread of the caller may write to them. */
+static bool take_row(const block_job *job, size_t i, size_t stride, size_t end, brio_query_row *row) {
     const double *queries = job->batch->queries;
     for (row->count = 0; i < end && row->count < BRIO_ABREAST; i += stride) {
         size_t query = query_at(job, i), c = row->count++;
@@ -48,7 +50,9 @@ static void take_row(const block_job *job, size_t i, size_t stride, size_t end, 
         row->x[c][3] = 0;
         row->index[c] = query;
         if (i + 2 < end) __builtin_prefetch(queries + 3 * query_at(job, i + 2));
+        if (!brio_all_finite(row->x[c], 3)) return false;
     }
+    return true;
 }
 
 static void begin_querent(const block_job *job, int thread, brio_querent *q) {
@@ -68,8 +72,8 @@ static void answer_chunk(void *user, size_t begin, size_t end, int thread) {
         brio_report(&job->status, brio_progress(job->ctx, b->stage, (double)(job->begin + begin) / (double)b->count));
     for (size_t r = 0; r < rows; r++) {
         brio_query_row row;
-        take_row(job, begin + r, rows, end, &row);
-        brio_status status = b->answer(b->user, &q, &row);
+        bool finite = take_row(job, begin + r, rows, end, &row);
+        brio_status status = finite ? b->answer(b->user, &q, &row) : BRIO_ERR_NOT_FINITE;
         if (status == BRIO_OK) continue;
         brio_report(&job->status, status);
         return;
@@ -86,6 +90,9 @@ static brio_status answer_block(block_job *job, int threads, size_t count, uint6
     job->items = items;
     job->near = items && count >= job->batch->l->num_vertices / SPARSE;
     brio_for_chunks(job->ctx, threads, count, QUERIES_A_CHUNK, answer_chunk, job);
+    if (job->status == BRIO_ERR_NOT_FINITE)
+        return brio_fail(job->ctx, BRIO_ERR_NOT_FINITE,
+                         "the queries changed during the call, to numbers that are not finite");
     return job->status;
 }
 

@@ -25,7 +25,8 @@ typedef struct {
 } brio_blocks;
 
 /** Divides points into the cells of an octree. Points that no cube can separate are cut into blocks in their present
- *  order.   spare  room for n indices.   Needs up to 256 KiB of workspace for each thread, and n / 170 bytes. */
+ *  order.   spare  room for n indices.   Needs up to 256 KiB of workspace for each thread, and 2 n + n / 170
+ *  bytes. */
 brio_status brio_octree_blocks(brio_context *ctx, const brio_blocks *blocks, uint32_t *spare);
 
 /** Divides points into the cells of a k-d tree: a cell of n points has children of n / 2 and n - n / 2 points.

@@ -1,5 +1,5 @@
 /* The smallest cube around points, cut into a grid of cells. Coordinates are halved first, so that the side of the cube
- * cannot overflow. A coordinate that is not finite falls in some cell. */
+ * cannot overflow. A coordinate that is not finite, or that was changed after the cube was found, falls in some cell. */
 #ifndef BRIO_ORDER_CUBE_H
 #define BRIO_ORDER_CUBE_H
 
@@ -44,10 +44,11 @@ static inline bool brio_cube_divide(brio_cube *c, int bits) {
     return side > 0;
 }
 
-/** Returns coordinate k of the cell that holds a point of the cube. */
+/** Returns coordinate k of the cell that holds a point of the cube; for any other point, that of some cell. */
 static inline uint32_t brio_cube_cell(const brio_cube *c, const double *p, int k) {
     double x = (p[k] * 0.5 - c->low[k]) * c->scale;
-    return (uint32_t)(int64_t)(x < c->last ? x : c->last);
+    x = x < c->last ? x : c->last;
+    return (uint32_t)(int64_t)(x > 0 ? x : 0);
 }
 
 #endif

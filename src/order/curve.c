@@ -1,5 +1,8 @@
 /* Sorts points along a Hilbert curve: a radix sort by keys of at most ten levels. Cells with more than CELL_MOST points
- * are sorted again, along the curve through the cube of their own points. So clusters of any size are resolved. */
+ * are sorted again, along the curve through the cube of their own points. So clusters of any size are resolved.
+ *
+ * The caller's points may change meanwhile. A pass reads them twice, for the cube and for the keys; the order of the items
+ * follows from the keys alone, so it stays a permutation, and each pass leaves a cell with fewer points. */
 #include "order/curve.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -21,6 +24,55 @@ typedef struct {
     uint64_t *items, *spare;
 } curve;
 
+/* The positions [begin, end) of items. */
+typedef struct {
+    size_t begin, end;
+} range;
+
+static inline size_t size_of(range r) {
+    return r.end - r.begin;
+}
+
+static brio_status sort_range(const curve *c, range r);
+
+/* Sorts the cells of a range that have more than CELL_MOST points, except the largest one, which it writes to *largest;
+ * without any, *largest is empty. A cell starts where the range starts, and one ends where it ends. The cells that it
+ * sorts have at most half of the points, so the recursion is as deep as the logarithm of the number of points. */
+static brio_status refine_cells(const curve *c, range r, range *largest) {
+    const uint64_t *items = c->items;
+    brio_status status = BRIO_OK;
+    *largest = (range){r.begin, r.begin};
+    for (size_t from = r.begin, next; from < r.end && status == BRIO_OK; from = next) {
+        for (next = from + 1; next < r.end && items[next] >> 32 == items[from] >> 32;) next++;
+        range cell = {from, next};
+        if (size_of(cell) <= CELL_MOST) continue;
+        if (size_of(cell) > size_of(*largest)) {
+            range smaller = *largest;
+            *largest = cell, cell = smaller;
+        }
+        if (size_of(cell)) status = sort_range(c, cell);
+    }
+    return status;
+}
+
+/* Sorts a range along the curve through the cube of its points, and goes on with the largest cell. Stops at a cell with
+ * all points of its range: its cube is too small to be divided. */
+static brio_status sort_range(const curve *c, range r) {
+    brio_status status = BRIO_OK;
+    for (range largest; size_of(r); r = largest) {
+        uint64_t *items = c->items + r.begin;
+        int bits = curve_bits(size_of(r));
+        if (!brio_hilbert_items(c->ctx, c->points, items, size_of(r), bits, 1)) break;
+        BRIO_TRY(brio_sort_items(c->ctx, items, c->spare + r.begin, size_of(r), 3 * bits, 1));
+        BRIO_TRY(refine_cells(c, r, &largest));
+        if (size_of(largest) == size_of(r)) break;
+    }
+done:
+    return status;
+}
+
+/* --- with several threads --- */
+
 /* The refinement of the cells of n items. Part i of the cells is at the positions [start[i], start[i + 1]). */
 typedef struct {
     const curve *c;
@@ -29,42 +81,29 @@ typedef struct {
     brio_status status;
 } refinement;
 
-static brio_status sort_along_curve(const curve *c, size_t begin, size_t end, int threads);
-
-/* Returns the first position of [from, end) where a cell of [begin, end) starts, or `end` if there is none. */
-static size_t start_of_cell(const curve *c, size_t begin, size_t end, size_t from) {
-    while (from > begin && from < end && c->items[from] >> 32 == c->items[from - 1] >> 32) from++;
+/* Returns the first position from `from` on where a cell of the first n items starts, or n if there is none. */
+static size_t start_of_cell(const curve *c, size_t n, size_t from) {
+    while (from > 0 && from < n && c->items[from] >> 32 == c->items[from - 1] >> 32) from++;
     return from;
-}
-
-/* Sorts the cells of [from, to) that have more than CELL_MOST points. A cell starts at `from`, and one ends at `to`.
- * Skips a cell with all `all` points: its cube is too small to be divided. */
-static brio_status refine_cells(const curve *c, size_t from, size_t to, size_t all) {
-    const uint64_t *items = c->items;
-    brio_status status = BRIO_OK;
-    for (size_t next; from < to && status == BRIO_OK; from = next) {
-        for (next = from + 1; next < to && items[next] >> 32 == items[from] >> 32;) next++;
-        if (next - from > CELL_MOST && next - from < all) status = sort_along_curve(c, from, next, 1);
-    }
-    return status;
 }
 
 static void refine_part(void *user, size_t part, size_t end, int thread) {
     refinement *r = user;
+    range largest;
     (void)end, (void)thread;
-    brio_report(&r->status, refine_cells(r->c, r->start[part], r->start[part + 1], r->n));
+    brio_report(&r->status, refine_cells(r->c, (range){r->start[part], r->start[part + 1]}, &largest));
+    if (size_of(largest) < r->n) brio_report(&r->status, sort_range(r->c, largest));
 }
 
-/* Sorts the items [begin, end) along the curve through the cube of their points. */
-static brio_status sort_along_curve(const curve *c, size_t begin, size_t end, int threads) {
+/* Sorts all n items. */
+static brio_status sort_together(const curve *c, size_t n, int threads) {
     brio_status status = BRIO_OK;
-    size_t n = end - begin, *start = NULL; /* the bounds of each thread's cells, found before a thread changes a key */
+    size_t *start = NULL; /* the bounds of each thread's cells, found before a thread changes a key */
     int bits = curve_bits(n);
-    if (!brio_hilbert_items(c->ctx, c->points, c->items + begin, n, bits, threads)) return BRIO_OK;
-    BRIO_TRY(brio_sort_items(c->ctx, c->items + begin, c->spare + begin, n, 3 * bits, threads));
-    if (threads == 1) return refine_cells(c, begin, end, n);
+    if (!brio_hilbert_items(c->ctx, c->points, c->items, n, bits, threads)) return BRIO_OK;
+    BRIO_TRY(brio_sort_items(c->ctx, c->items, c->spare, n, 3 * bits, threads));
     BRIO_TRY(BRIO_ALLOC(c->ctx, start, (size_t)threads + 1));
-    for (int t = 0; t <= threads; t++) start[t] = start_of_cell(c, begin, end, begin + brio_part(n, t, threads));
+    for (int t = 0; t <= threads; t++) start[t] = start_of_cell(c, n, brio_part(n, t, threads));
     refinement r = {c, start, n, BRIO_OK};
     brio_for_chunks(c->ctx, threads, (size_t)threads, 1, refine_part, &r);
     status = r.status;
@@ -75,5 +114,6 @@ done:
 
 brio_status brio_sort_along_curve(brio_context *ctx, const double *points, uint64_t *items, uint64_t *spare, size_t n,
                                   int threads) {
-    return sort_along_curve(&(curve){ctx, points, items, spare}, 0, n, threads);
+    const curve c = {ctx, points, items, spare};
+    return threads > 1 ? sort_together(&c, n, threads) : sort_range(&c, (range){0, n});
 }

@@ -29,6 +29,7 @@ typedef struct {
 typedef struct {
     const double *points;
     uint32_t *index, *spare;
+    uint16_t *cell; /* room for a number a point */
     size_t block_size;
     brio_block_fn visit;
     const void *user;
@@ -36,10 +37,12 @@ typedef struct {
     size_t num_next;        /* number of cells in `next`; all threads of a turn raise it atomically */
 } octree;
 
-/* The points of a pass and their cube, divided into 8^levels cells. */
+/* The points of a pass and their cube, divided into 8^levels cells. The pass counts the points of the cells and then places
+ * them; it keeps the cells in between, because the caller's points may change meanwhile. */
 typedef struct {
     const double *points;
     const uint32_t *from; /* the indices before the pass; NULL: index i is at position i */
+    uint16_t *cell;       /* of each position, once it is counted: the number of its finest cell */
     size_t begin, end;
     brio_cube cube;
     int levels, passes; /* `passes` includes this pass */
@@ -70,11 +73,11 @@ static inline uint32_t spread(uint32_t x) {
 }
 
 /* Returns the depth-first number of the finest cell of a point. */
-static inline uint32_t cell_of(const grid *g, uint32_t point) {
+static inline uint16_t cell_of(const grid *g, uint32_t point) {
     const double *p = g->points + 3 * (size_t)point;
     const brio_cube *c = &g->cube;
-    return spread(brio_cube_cell(c, p, 0)) << 2 | spread(brio_cube_cell(c, p, 1)) << 1 |
-           spread(brio_cube_cell(c, p, 2));
+    return (uint16_t)(spread(brio_cube_cell(c, p, 0)) << 2 | spread(brio_cube_cell(c, p, 1)) << 1 |
+                      spread(brio_cube_cell(c, p, 2)));
 }
 
 static void add_to_cube(const grid *g, size_t from, size_t to, brio_cube *cube) {
@@ -82,14 +85,11 @@ static void add_to_cube(const grid *g, size_t from, size_t to, brio_cube *cube) 
 }
 
 static void count_cells(const grid *g, size_t from, size_t to, size_t *place) {
-    for (size_t i = from; i < to; i++) place[cell_of(g, index_at(g, i))]++;
+    for (size_t i = from; i < to; i++) place[g->cell[i] = cell_of(g, index_at(g, i))]++;
 }
 
 static void place_in_cells(const grid *g, size_t from, size_t to, size_t *place, uint32_t *index) {
-    for (size_t i = from; i < to; i++) {
-        uint32_t point = index_at(g, i);
-        index[place[cell_of(g, point)]++] = point;
-    }
+    for (size_t i = from; i < to; i++) index[place[g->cell[i]]++] = index_at(g, i);
 }
 
 /* --- blocks --- */
@@ -152,7 +152,7 @@ static bool bring_cells_together(const octree *o, grid *g, size_t *stop) {
     if (!brio_cube_divide(&g->cube, g->levels)) return false;
     memset(stop, 0, cells_of(g) * sizeof *stop);
     count_cells(g, g->begin, g->end, stop);
-    if (stop[cell_of(g, index_at(g, g->begin))] == g->end - g->begin) return false;
+    if (stop[g->cell[g->begin]] == g->end - g->begin) return false;
     brio_counts_to_places(stop, 1, cells_of(g), g->begin);
     place_in_cells(g, g->begin, g->end, stop, o->index);
     return true;
@@ -160,8 +160,13 @@ static bool bring_cells_together(const octree *o, grid *g, size_t *stop) {
 
 static grid grid_of(const octree *o, size_t begin, size_t end, int passes) {
     int levels = levels_for(end - begin, o->block_size, LEVELS);
-    return (grid){
-        .points = o->points, .from = o->spare, .begin = begin, .end = end, .levels = levels, .passes = passes};
+    return (grid){.points = o->points,
+                  .from = o->spare,
+                  .cell = o->cell,
+                  .begin = begin,
+                  .end = end,
+                  .levels = levels,
+                  .passes = passes};
 }
 
 /* Divides [begin, end), which is not large, into blocks. The loop continues with the most crowded cell. The recursion
@@ -244,9 +249,11 @@ static void bring_all_together(brio_context *ctx, root *r, int threads) {
     r->stop = r->place + cells * (size_t)(threads - 1);
 }
 
-static brio_status divide_root(brio_context *ctx, octree *o, const grid *g, int threads) {
+static brio_status divide_root(brio_context *ctx, octree *o, grid *g, int threads) {
     brio_status status = BRIO_OK;
     root r = {.o = o, .g = g};
+    BRIO_TRY(BRIO_ALLOC(ctx, o->cell, g->end));
+    g->cell = o->cell;
     BRIO_TRY(BRIO_ALLOC(ctx, o->now, g->end / LARGE + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, o->next, g->end / LARGE + 1));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.place, cells_of(g) * (size_t)threads));
@@ -256,6 +263,7 @@ static brio_status divide_root(brio_context *ctx, octree *o, const grid *g, int 
 done:
     brio_release(ctx, o->now);
     brio_release(ctx, o->next);
+    brio_release(ctx, o->cell);
     brio_release(ctx, r.place);
     return status;
 }

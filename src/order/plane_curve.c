@@ -1,6 +1,6 @@
 /* Sorts points of the plane along a Hilbert curve: a radix sort by keys of at most 16 levels. Cells with more than
  * CELL_MOST points are sorted again, along the curve through the square of their own points, as in curve.c. One thread
- * does it all.
+ * does it all. As in curve.c, the points may change meanwhile.
  *
  * Based on: Hamilton. Compact Hilbert indices. Technical report CS-2006-07, Dalhousie University 2006 (states and their
  * table, here for two dimensions, where four orientations occur). */
@@ -84,7 +84,8 @@ static bool find_square(const curve *c, const uint64_t *items, size_t n, int bit
 
 static inline uint32_t cell_of(const square *s, double half, int k) {
     double x = (half - s->low[k]) * s->scale;
-    return (uint32_t)(int64_t)(x < s->last ? x : s->last);
+    x = x < s->last ? x : s->last;
+    return (uint32_t)(int64_t)(x > 0 ? x : 0);
 }
 
 /* Writes the keys of the items. Returns false when all their points have one place. */
@@ -105,17 +106,40 @@ static int curve_bits(size_t n) {
     return bits;
 }
 
-static brio_status sort_range(const curve *c, size_t begin, size_t end) {
-    size_t n = end - begin;
-    uint64_t *items = c->items + begin;
-    int bits = curve_bits(n);
-    if (n < 2 || !number_items(c, items, n, bits)) return BRIO_OK;
-    brio_status status = brio_sort_items(c->ctx, items, c->spare + begin, n, 2 * bits, 1);
-    for (size_t from = 0, next; from < n && status == BRIO_OK; from = next) {
-        for (next = from + 1; next < n && items[next] >> 32 == items[from] >> 32;) next++;
-        /* a cell with all points is a square too small to be divided */
-        if (next - from > CELL_MOST && next - from < n) status = sort_range(c, begin + from, begin + next);
+static brio_status sort_range(const curve *c, size_t begin, size_t end);
+
+/* Sorts the cells of the items [begin, end) with more than CELL_MOST points, except the largest one, whose bounds it
+ * writes; without any, *from == *to. The cells that it sorts have at most half of the points. */
+static brio_status refine_cells(const curve *c, size_t begin, size_t end, size_t *from, size_t *to) {
+    const uint64_t *items = c->items;
+    brio_status status = BRIO_OK;
+    *from = *to = begin;
+    for (size_t next; begin < end && status == BRIO_OK; begin = next) {
+        for (next = begin + 1; next < end && items[next] >> 32 == items[begin] >> 32;) next++;
+        size_t first = begin, last = next;
+        if (last - first <= CELL_MOST) continue;
+        if (last - first > *to - *from) {
+            first = *from, last = *to;
+            *from = begin, *to = next;
+        }
+        if (first < last) status = sort_range(c, first, last);
     }
+    return status;
+}
+
+/* Sorts the items [begin, end), and goes on with the largest cell. Stops at a cell with all points of its range: its
+ * square is too small to be divided. */
+static brio_status sort_range(const curve *c, size_t begin, size_t end) {
+    brio_status status = BRIO_OK;
+    for (size_t n = end - begin; n >= 2; n = end - begin) {
+        uint64_t *items = c->items + begin;
+        int bits = curve_bits(n);
+        if (!number_items(c, items, n, bits)) break;
+        BRIO_TRY(brio_sort_items(c->ctx, items, c->spare + begin, n, 2 * bits, 1));
+        BRIO_TRY(refine_cells(c, begin, end, &begin, &end));
+        if (end - begin == n) break;
+    }
+done:
     return status;
 }
 

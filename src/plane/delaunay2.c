@@ -119,6 +119,7 @@ static brio_status triangulation_new(brio_plane_store *s, brio_triangulation2 **
     for (size_t p = 0; p < s->num_points; p++) t->representative[s->caller[p]] = s->caller[s->representative[p]];
     t->triangle = s->triangle;
     t->stats = s->stats;
+    t->points_hash = s->points_hash;
     s->triangle = NULL;
     *out = t;
     t = NULL;
@@ -127,7 +128,7 @@ done:
     return status;
 }
 
-static brio_status construct(brio_context *ctx, const brio_plane_input *input, const brio_delaunay2_options *options,
+static brio_status construct(brio_context *ctx, brio_plane_input *input, const brio_delaunay2_options *options,
                              double start, brio_triangulation2 **out) {
     brio_plane_store *s = NULL;
     brio_status status = BRIO_OK;
@@ -150,7 +151,7 @@ static brio_status triangulate(brio_context *ctx, const brio_plane_input *given,
                                brio_triangulation2 **out) {
     brio_status status = BRIO_OK;
     brio_delaunay2_options o = STANDARD;
-    brio_plane_input input;
+    brio_plane_input input = {.own = NULL};
     size_t n = given->count;
     *out = NULL;
     brio_keep_begin(ctx);
@@ -162,6 +163,7 @@ static brio_status triangulate(brio_context *ctx, const brio_plane_input *given,
     BRIO_TRY(brio_plane_input_set(ctx, given->points, given->weights, n, given->coordinates, &input));
     BRIO_TRY(construct(ctx, &input, &o, start, out));
 done:
+    brio_plane_input_free(ctx, &input);
     brio_keep_end(ctx);
     return status;
 }
@@ -169,13 +171,13 @@ done:
 brio_status brio_delaunay2(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                            const brio_delaunay2_options *options, brio_triangulation2 **out) {
     BRIO_DOOR;
-    return triangulate(ctx, &(brio_plane_input){points, weights, num_points, 2, {0, 1, 2}}, options, out);
+    return triangulate(ctx, &(brio_plane_input){points, weights, num_points, 2, {0, 1, 2}, 0, NULL}, options, out);
 }
 
 brio_status brio_delaunay2_flat(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                 const brio_delaunay2_options *options, brio_triangulation2 **out) {
     BRIO_DOOR;
-    return triangulate(ctx, &(brio_plane_input){points, weights, num_points, 3, {0, 1, 2}}, options, out);
+    return triangulate(ctx, &(brio_plane_input){points, weights, num_points, 3, {0, 1, 2}, 0, NULL}, options, out);
 }
 
 void brio_triangulation2_free(brio_triangulation2 *t) {
@@ -194,6 +196,9 @@ const brio_triangle *brio_triangulation2_triangles(const brio_triangulation2 *t)
 }
 const uint32_t *brio_triangulation2_representatives(const brio_triangulation2 *t) {
     return t->representative;
+}
+uint64_t brio_triangulation2_points_hash(const brio_triangulation2 *t) {
+    return t->points_hash;
 }
 const uint32_t *brio_triangulation2_line(const brio_triangulation2 *t, size_t *count) {
     *count = t->line ? t->stats.vertices : 0;

@@ -170,11 +170,11 @@ brio_status brio_triangulation2_check(brio_context *ctx, const brio_triangulatio
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_plane_record *record = NULL;
-    brio_plane_input input;
+    brio_plane_input input = {.own = NULL};
     BRIO_REQUIRE(ctx, num_points == t->stats.points, BRIO_ERR_ARGUMENT, "%zu points for a triangulation of %zu",
                  num_points, t->stats.points);
     BRIO_TRY(brio_plane_input_set(ctx, points, weights, num_points, t->stats.coordinates, &input));
-    BRIO_TRY(brio_plane_records_new(ctx, &input, 1, &record));
+    BRIO_TRY(brio_plane_records_new(ctx, &input, NULL, 1, &record));
     brio_plane_judge j = {.ctx = ctx, .t = t, .num_points = num_points, .weighted = weights != NULL};
     j.view = (brio_plane_view){t->triangle, (const brio_plane_record *)record, BRIO_INFINITE};
     j.count = t->stats.triangles + t->stats.hull_edges;
@@ -184,6 +184,7 @@ brio_status brio_triangulation2_check(brio_context *ctx, const brio_triangulatio
                  "the points' dimension is not %d", t->stats.dimension);
     BRIO_TRY(t->stats.dimension < 2 ? brio_plane_check_line(&j, record) : check_triangles(&j));
 done:
+    brio_plane_input_free(ctx, &input);
     brio_release(ctx, record);
     return status;
 }

@@ -1,30 +1,82 @@
 /* Reads the caller's points: refuses numbers that are not finite, and finds the plane of points in space.
  *
+ * Each number is read once, into a record, and it is the record that must be finite: another thread of the caller may
+ * write to the caller's arrays meanwhile.
+ *
  * The plane is projected along the coordinate axis closest to its normal. The projection keeps which triples of points
  * are collinear and, up to one sign for all, which are counterclockwise. The order of the two axes sets that sign. */
 #include "plane/plane_input.h"
 #include "base/memory.h"
+#include "base/points_hash.h"
 #include "predicates/predicates.h"
 #include <math.h>
 #include <string.h>
 
-static bool is_finite_point(const brio_plane_input *in, size_t i) {
-    const double *p = in->points + (size_t)in->coordinates * i;
-    double sum = in->weights ? 0 * in->weights[i] : 0;
-    for (int k = 0; k < in->coordinates; k++) sum += 0 * p[k];
+/* --- records --- */
+
+static inline bool is_finite(const double *record) {
+    double sum = 0;
+    for (int k = 0; k < 4; k++) sum += 0 * record[k];
     return sum == 0; /* else NaN */
 }
 
-static brio_status refuse_not_finite(brio_context *ctx, const brio_plane_input *in, size_t first) {
-    static const char *const name[] = {"x", "y", "z"};
-    const double *p = in->points + (size_t)in->coordinates * first;
-    size_t bad = 0;
-    for (size_t i = first; i < in->count; i++) bad += !is_finite_point(in, i);
+/* Names the first point, in the input's order, whose record is not finite. There is one. */
+static brio_status refuse_not_finite(brio_context *ctx, const brio_plane_record *record, const uint32_t *order,
+                                     size_t n) {
+    static const char *const NAME[] = {"x", "y", "z", "weight"};
+    size_t bad = 0, first = SIZE_MAX, at = 0;
+    for (size_t i = 0; i < n; i++) {
+        size_t from = order ? order[i] : i;
+        if (is_finite(record[i])) continue;
+        bad++;
+        if (from < first) first = from, at = i;
+    }
     int k = 0;
-    while (k < in->coordinates && isfinite(p[k])) k++;
-    double x = k < in->coordinates ? p[k] : in->weights[first];
-    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %s is %s (%zu such points in all)", first,
-                     k < in->coordinates ? name[k] : "weight", isnan(x) ? "NaN" : "infinite", bad);
+    while (k < 3 && isfinite(record[at][k])) k++;
+    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %s is %s (%zu such points in all)", first, NAME[k],
+                     isnan(record[at][k]) ? "NaN" : "infinite", bad);
+}
+
+/* Copies the coordinates of a point, in the caller's order of the coordinates, and its weight. */
+static inline void copy_point(const brio_plane_input *in, size_t i, double *record) {
+    const double *p = in->points + (size_t)in->coordinates * i;
+    record[0] = p[0] + 0.0;
+    record[1] = p[1] + 0.0;
+    record[2] = in->coordinates == 3 ? p[2] + 0.0 : 0;
+    record[3] = in->weights ? in->weights[i] + 0.0 : 0;
+}
+
+static inline void turn_point(const brio_plane_input *in, size_t i, double *record) {
+    for (int k = 0; k < 3; k++) record[k] = in->own[i][in->axis[k]];
+    record[3] = in->own[i][3];
+}
+
+brio_status brio_plane_records_new(brio_context *ctx, brio_plane_input *input, const uint32_t *order, size_t room,
+                                   brio_plane_record **out) {
+    size_t n = input->count;
+    brio_plane_record *record = NULL;
+    uint64_t hash = 0;
+    bool finite = true;
+    brio_status status = BRIO_ALLOC(ctx, record, n + room);
+    if (status != BRIO_OK) return status;
+    for (size_t i = 0; i < n; i++) {
+        size_t from = order ? order[i] : i;
+        if (input->own)
+            turn_point(input, from, record[i]);
+        else
+            copy_point(input, from, record[i]);
+        finite &= is_finite(record[i]);
+        hash += brio_point_hash(from, record[i]);
+    }
+    if (!input->own) input->hash = hash;
+    if (!finite) {
+        status = refuse_not_finite(ctx, (const brio_plane_record *)record, order, n);
+        brio_release(ctx, record);
+        return status;
+    }
+    memset(record + n, 0, room * sizeof *record);
+    *out = record;
+    return BRIO_OK;
 }
 
 /* --- points of a plane in space --- */
@@ -38,7 +90,7 @@ typedef struct {
 } search;
 
 static void load(const brio_plane_input *in, size_t i, double *record) {
-    for (int k = 0; k < 3; k++) record[k] = in->points[3 * i + (size_t)k] + 0.0;
+    memcpy(record, in->own[i], sizeof *in->own);
     record[3] = 0;
 }
 
@@ -46,7 +98,7 @@ static void find_filter(search *s) {
     double low[3], high[3], extent[3];
     for (size_t i = 0; i < s->in->count; i++)
         for (int k = 0; k < 3; k++) {
-            double x = s->in->points[3 * i + (size_t)k];
+            double x = s->in->own[i][k];
             low[k] = i && low[k] < x ? low[k] : x;
             high[k] = i && high[k] > x ? high[k] : x;
         }
@@ -140,19 +192,20 @@ static brio_status find_plane(brio_context *ctx, brio_plane_input *in) {
 
 brio_status brio_plane_input_set(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                  int coordinates, brio_plane_input *input) {
-    *input = (brio_plane_input){points, weights, num_points, coordinates, {0, 1, 2}};
-    for (size_t i = 0; i < num_points; i++)
-        if (!is_finite_point(input, i)) return refuse_not_finite(ctx, input, i);
-    return coordinates == 3 ? find_plane(ctx, input) : BRIO_OK;
+    brio_plane_record *own = NULL;
+    *input = (brio_plane_input){points, weights, num_points, coordinates, {0, 1, 2}, 0, NULL};
+    if (coordinates == 2) return BRIO_OK;
+    brio_status status = brio_plane_records_new(ctx, input, NULL, 1, &own);
+    if (status != BRIO_OK) return status;
+    input->own = own;
+    return find_plane(ctx, input);
+}
+
+void brio_plane_input_free(brio_context *ctx, brio_plane_input *input) {
+    brio_release(ctx, input->own);
+    input->own = NULL;
 }
 
 void brio_plane_input_key(const brio_plane_input *input, brio_plane_filter *filter) {
     for (int i = 0; i < 3; i++) filter->key[input->axis[i]] = (uint8_t)i;
-}
-
-brio_status brio_plane_records_new(brio_context *ctx, const brio_plane_input *input, size_t room,
-                                   brio_plane_record **out) {
-    brio_status status = BRIO_ALLOC(ctx, *out, input->count + room);
-    for (size_t i = 0; status == BRIO_OK && i < input->count; i++) brio_plane_input_record(input, i, (*out)[i]);
-    return status;
 }

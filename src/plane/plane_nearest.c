@@ -1,14 +1,12 @@
 /* The vertex of least power distance, by descent along edges: in a regular triangulation a vertex without a nearer
  * neighbour is the nearest of all. The descent goes to the first nearer neighbour that it meets around a vertex. */
 #include "plane/plane_nearest.h"
-#include "predicates/predicates.h"
 
 static bool is_nearer(const brio_plane_nearest *n, const double *x, uint32_t u, uint32_t v) {
     const brio_plane_record *r = n->view->record;
     if (u >= n->num_points) return false;
     if (v >= n->num_points) return true;
-    int sign = brio_power_compare(x, r[u], r[v]);
-    return (sign ? sign : brio_plane_lexicographic(n->filter, r[u], r[v])) < 0;
+    return brio_plane_is_nearer(n->filter, x, r[u], r[v]);
 }
 
 /* Returns a neighbour of v that is nearer to x, or v. */

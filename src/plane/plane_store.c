@@ -14,7 +14,7 @@ static brio_status order_points(brio_context *ctx, const brio_plane_input *input
     size_t n = input->count;
     uint64_t *items = NULL, *spare = NULL;
     uint32_t *index = NULL;
-    brio_plane_points points = {input->points, (size_t)input->coordinates, {input->axis[0], input->axis[1]}};
+    brio_plane_points points = brio_plane_input_points(input);
     brio_round_ends ends;
     BRIO_TRY(brio_progress(ctx, "order", 0));
     BRIO_TRY(BRIO_ALLOC(ctx, items, n));
@@ -34,12 +34,11 @@ done:
     return status;
 }
 
-/* The arrays whose sizes are known. */
+/* The arrays beside the records, whose sizes are known. */
 static brio_status allocate(brio_plane_store *s) {
     brio_status status = BRIO_OK;
     size_t records = s->num_points + MORE_RECORDS;
     s->capacity = 2 * records;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, s->record, records));
     BRIO_TRY(BRIO_ALLOC(s->ctx, s->representative, records));
     BRIO_TRY(BRIO_ALLOC(s->ctx, s->triangle, s->capacity));
     if (s->weighted) BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, s->dug, s->capacity));
@@ -48,17 +47,18 @@ done:
     return status;
 }
 
-static void write_records(brio_plane_store *s, const brio_plane_input *input) {
-    for (size_t i = 0; i < s->num_points; i++) brio_plane_input_record(input, s->caller[i], s->record[i]);
-    for (size_t i = 0; i < MORE_RECORDS; i++)
-        for (int k = 0; k < 4; k++) s->record[s->num_points + i][k] = 0;
+static brio_status make_records(brio_plane_store *s, brio_plane_input *input) {
+    brio_status status = brio_plane_records_new(s->ctx, input, s->caller, MORE_RECORDS, &s->record);
+    brio_plane_input_free(s->ctx, input);
+    s->points_hash = input->hash;
     for (uint32_t i = 0; i < MORE_RECORDS; i++) s->caller[s->num_points + i] = BRIO_INFINITE;
     s->filter = (brio_plane_filter){.general = brio_plane_general(input)};
     brio_plane_input_key(input, &s->filter);
+    return status;
 }
 
-brio_status brio_plane_store_new(brio_context *ctx, const brio_plane_input *input,
-                                 const brio_delaunay2_options *options, brio_plane_store **out) {
+brio_status brio_plane_store_new(brio_context *ctx, brio_plane_input *input, const brio_delaunay2_options *options,
+                                 brio_plane_store **out) {
     brio_plane_store *s = NULL;
     brio_status status = BRIO_OK;
     *out = NULL;
@@ -71,8 +71,8 @@ brio_status brio_plane_store_new(brio_context *ctx, const brio_plane_input *inpu
         (brio_delaunay2_stats){.size = sizeof s->stats, .points = input->count, .coordinates = input->coordinates};
     BRIO_TRY(BRIO_ALLOC(ctx, s->caller, input->count + MORE_RECORDS));
     BRIO_TRY(order_points(ctx, input, options, s->caller));
+    BRIO_TRY(make_records(s, input));
     BRIO_TRY(allocate(s));
-    write_records(s, input);
     *out = s;
     s = NULL;
 done:

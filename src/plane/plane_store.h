@@ -54,6 +54,7 @@ typedef struct {
     brio_plane_list boundary; /* edges of triangles around the cavity, counterclockwise as the cavity sees them */
     uint8_t *dug;             /* of each slot: whether it is in the cavity; NULL without weights */
     brio_delaunay2_stats stats;
+    uint64_t points_hash; /* base/points_hash.h */
 } brio_plane_store;
 
 static const uint32_t BRIO_NO_TRIANGLE = UINT32_MAX;
@@ -75,9 +76,10 @@ static inline uint32_t brio_slot_before(uint32_t i) {
     return i == 0 ? 2 : i - 1;
 }
 
-/** Orders the points and makes a store of their records, without triangles. */
-brio_status brio_plane_store_new(brio_context *ctx, const brio_plane_input *input,
-                                 const brio_delaunay2_options *options, brio_plane_store **out);
+/** Orders the points and makes a store of their records, without triangles. Frees what the input owns.
+ *  Returns what brio_plane_records_new returns. */
+brio_status brio_plane_store_new(brio_context *ctx, brio_plane_input *input, const brio_delaunay2_options *options,
+                                 brio_plane_store **out);
 
 /** NULL is accepted. */
 void brio_plane_store_free(brio_plane_store *store);

@@ -10,6 +10,7 @@ struct brio_triangulation2 {
     uint32_t *representative; /* of each point of the caller */
     uint32_t *line;           /* dimension 1: the vertices in lexicographic order */
     brio_delaunay2_stats stats;
+    uint64_t points_hash; /* base/points_hash.h */
 };
 
 #endif

@@ -11,6 +11,7 @@
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  * 1977. */
 #include "query/nearest_points.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include "base/halving.h"
@@ -113,6 +114,8 @@ brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t 
     BRIO_TRY(BRIO_ALLOC(ctx, out->index, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->axis, count));
     memcpy(out->point, points, count * sizeof *out->point);
+    BRIO_TRY(
+        brio_refuse_not_finite(ctx, *out->point, NULL, count, NULL)); /* the copy: the points may change meanwhile */
     for (size_t i = 0; i < count; i++) out->index[i] = (uint32_t)i;
     brio_halve(ctx, &(brio_halving){
                         .count = count, .gap = 1, .least = POINTS_A_PIECE, .cut = cut, .finish = build, .user = out});

@@ -10,7 +10,6 @@
  * Based on: Breunig Kriegel Ng Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
  * Differs from the paper: mean distances instead of reachability distances, a quartile instead of a mean, and the
  * second rule. */
-#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -128,12 +127,11 @@ done:
     return status;
 }
 
-static brio_status check(brio_context *ctx, const double *points, size_t n, int neighbours, double factor) {
+static brio_status check(brio_context *ctx, int neighbours, double factor) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, neighbours >= 1 && neighbours < BRIO_MOST_NEAR, BRIO_ERR_ARGUMENT,
                  "outliers by %d neighbours, expected 1 to %d", neighbours, BRIO_MOST_NEAR - 1);
     BRIO_REQUIRE(ctx, factor >= 1 && isfinite(factor), BRIO_ERR_ARGUMENT, "a factor of %g, expected 1 or more", factor);
-    BRIO_TRY(brio_refuse_not_finite(ctx, points, NULL, n, NULL));
 done:
     return status;
 }
@@ -146,7 +144,7 @@ brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_po
     brio_outliers_options o = STANDARD;
     search s = {.outlier = outlier};
     BRIO_TRY(BRIO_TAKE(ctx, brio_outliers_options, options, &o));
-    BRIO_TRY(check(ctx, points, num_points, neighbours, o.factor));
+    BRIO_TRY(check(ctx, neighbours, o.factor));
     s.neighbours = (size_t)neighbours;
     s.factor = o.factor;
     brio_progress_part(ctx, bar, 0, 0.2);

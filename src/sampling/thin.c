@@ -90,8 +90,9 @@ static bool count_bits(thinning *t, const double high[3]) {
     return sum <= KEY_BITS;
 }
 
-/* Makes the cells as wide as the spacing asks, or wider if their numbers would have too many bits. */
-static void find_cells(thinning *t, double spacing) {
+/* Makes the cells as wide as the spacing asks, or wider if their numbers would have too many bits. The points were finite
+ * when the call began, but another thread of the caller may have written to them since. */
+static brio_status find_cells(thinning *t, double spacing) {
     double high[3];
     for (int k = 0; k < 3; k++) t->low[k] = high[k] = t->points[k];
     for (size_t i = 1; i < t->num_points; i++)
@@ -100,11 +101,21 @@ static void find_cells(thinning *t, double spacing) {
             if (x < t->low[k]) t->low[k] = x;
             if (x > high[k]) high[k] = x;
         }
+    if (!brio_all_finite(t->low, 3) || !brio_all_finite(high, 3))
+        return brio_fail(t->ctx, BRIO_ERR_NOT_FINITE,
+                         "the points changed during the call, to numbers that are not finite");
     find_axes(t, high);
     t->scale = ldexp(1, -ilogb(spacing) > 1000 ? 1000 : -ilogb(spacing));
     t->square = spacing * t->scale * (spacing * t->scale);
     t->width = fmax(spacing * WIDER, 0x1p-1000);
     while (!count_bits(t, high)) t->width *= 2;
+    return BRIO_OK;
+}
+
+/* Returns the number of a point's cell along an axis. A point that left the box during the call has some cell. */
+static inline uint64_t cell_of(const thinning *t, const double *p, int axis) {
+    double place = place_of(t, p, axis);
+    return (uint64_t)(int64_t)(place > 0 ? fmin(place, 0x1p42) : 0) + 1;
 }
 
 static void find_keys(void *user, size_t begin, size_t end, int thread) {
@@ -112,7 +123,7 @@ static void find_keys(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         uint64_t key = 0;
-        for (int k = 0; k < 3; k++) key |= ((uint64_t)place_of(t, t->points + 3 * i, t->axes[k]) + 1) << t->shift[k];
+        for (int k = 0; k < 3; k++) key |= cell_of(t, t->points + 3 * i, t->axes[k]) << t->shift[k];
         t->keys[i] = key;
         t->order[i] = (uint32_t)i;
     }
@@ -307,7 +318,7 @@ brio_status brio_thin(brio_context *ctx, const double *points, size_t num_points
     BRIO_TRY(brio_refuse_not_finite(ctx, points, NULL, num_points, NULL));
     if (num_points) {
         memset(chosen, 0, num_points);
-        find_cells(&t, spacing);
+        BRIO_TRY(find_cells(&t, spacing));
         brio_progress_part(ctx, bar, 0, 0.5);
         BRIO_TRY(sort_points(&t));
         BRIO_TRY(thin_all(&t, bar));

@@ -233,7 +233,7 @@ brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const
     bool same = true;
     BRIO_REQUIRE(ctx, stride >= 4, BRIO_ERR_ARGUMENT, "a stride of %zu numbers for four vertices", stride);
     BRIO_REQUIRE(ctx, num_points < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", num_points);
-    BRIO_TRY(brio_records_new(ctx, &(brio_input){points, weights, num_points}, NULL, 1, &record));
+    BRIO_TRY(brio_records_new(ctx, &(brio_input){points, weights, num_points}, NULL, 1, NULL, &record));
     if (num_tetrahedra == 0) {
         BRIO_REQUIRE(ctx, brio_dimension(record, num_points) < 3, BRIO_ERR_CHECK,
                      "no tetrahedra, but the points are not in a plane");
@@ -283,7 +283,7 @@ brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation
     brio_record *record = NULL;
     BRIO_REQUIRE(ctx, num_points == t->stats.points, BRIO_ERR_ARGUMENT, "%zu points for a triangulation of %zu",
                  num_points, t->stats.points);
-    BRIO_TRY(brio_records_new(ctx, &(brio_input){points, weights, num_points}, NULL, 1, &record));
+    BRIO_TRY(brio_records_new(ctx, &(brio_input){points, weights, num_points}, NULL, 1, NULL, &record));
     BRIO_REQUIRE(ctx, brio_dimension(record, num_points) == t->stats.dimension, BRIO_ERR_CHECK,
                  "the points' dimension is not %d", t->stats.dimension);
     if (t->stats.dimension < 3)

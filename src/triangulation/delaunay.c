@@ -142,6 +142,7 @@ static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder
     for (size_t p = 0; p < s->num_points; p++) t->representative[s->caller[p]] = s->caller[s->representative[p]];
     t->tet = s->t.tet;
     t->stats = ins->stats;
+    t->points_hash = s->points_hash;
     s->t.tet = NULL;
     t->round = recorder->list;
     t->num_rounds = recorder->count;
@@ -213,6 +214,9 @@ const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triangulation *
 }
 const uint32_t *brio_triangulation_representatives(const brio_triangulation *t) {
     return t->representative;
+}
+uint64_t brio_triangulation_points_hash(const brio_triangulation *t) {
+    return t->points_hash;
 }
 const brio_round *brio_triangulation_rounds(const brio_triangulation *t, size_t *count) {
     *count = t->num_rounds;

@@ -1,4 +1,5 @@
-/* Builds lists of neighbours from pairs of points: counts, sums, fills. */
+/* Builds lists of neighbours from pairs of points: copies, counts, sums, fills. The caller's edges are read once, since
+ * another thread of the caller may write to them. */
 #include "triangulation/point_graph.h"
 #include "base/memory.h"
 #include <string.h>
@@ -11,7 +12,7 @@ void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph) {
 brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_options *options, brio_point_graph *out) {
     brio_status status = BRIO_OK;
     size_t n = store->num_points, ends = 2 * options->num_edges;
-    uint32_t *record = NULL, *first, sum = 0;
+    uint32_t *record = NULL, *end = NULL, *first, sum = 0;
     memset(out, 0, sizeof *out);
     BRIO_REQUIRE(store->ctx, options->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1",
                  options->num_edges);
@@ -19,14 +20,20 @@ brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_op
     for (uint32_t p = 0; p < n; p++) record[store->caller[p]] = p;
     BRIO_TRY(BRIO_ALLOC_ZERO(store->ctx, out->first, n + 1));
     BRIO_TRY(BRIO_ALLOC(store->ctx, out->neighbour, ends));
+    BRIO_TRY(BRIO_ALLOC(store->ctx, end, ends));
     first = out->first;
-    for (size_t i = 0; i < ends; i++) first[record[options->edges[i]]]++;
+    for (size_t i = 0; i < ends; i++) {
+        uint32_t point = __atomic_load_n(&options->edges[i], __ATOMIC_RELAXED);
+        BRIO_REQUIRE(store->ctx, point < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, point, n);
+        end[i] = record[point];
+        first[end[i]]++;
+    }
     for (size_t p = 0; p < n; p++)
         first[p] = sum += first[p]; /* the end of the list of p; filling moves first[p] back to the list's start */
     first[n] = sum;
-    for (size_t i = 0; i < ends; i++)
-        out->neighbour[--first[record[options->edges[i]]]] = record[options->edges[i ^ 1]];
+    for (size_t i = 0; i < ends; i++) out->neighbour[--first[end[i]]] = end[i ^ 1];
 done:
     brio_release(store->ctx, record);
+    brio_release(store->ctx, end);
     return status;
 }

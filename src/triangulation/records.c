@@ -1,24 +1,32 @@
-/* The points as records, copied in the order of insertion by all threads of the context. */
+/* The points as records, copied in the order of insertion by all threads of the context. Each number is read once, and it
+ * is the copy that must be finite: another thread of the caller may write to the caller's arrays meanwhile. */
 #include "triangulation/records.h"
 #include "base/memory.h"
+#include "base/points_hash.h"
 #include "base/team.h"
 #include <math.h>
 #include <string.h>
 
 enum { RECORDS_A_THREAD = 1 << 14 };
 
-static brio_status refuse_not_finite(brio_context *ctx, const brio_input *input, size_t first) {
-    const double *points = input->points, *weights = input->weights;
-    size_t bad = 0, n = input->count;
-    for (size_t i = first; i < n; i++)
-        bad += !(isfinite(points[3 * i]) && isfinite(points[3 * i + 1]) && isfinite(points[3 * i + 2]) &&
-                 (!weights || isfinite(weights[i])));
+static inline bool is_finite(const double *record) {
+    return isfinite(record[0]) && isfinite(record[1]) && isfinite(record[2]) && isfinite(record[3]);
+}
+
+/* Names the first point, in the input's order, whose record is not finite. There is one. */
+static brio_status refuse_not_finite(brio_context *ctx, const brio_record *record, const uint32_t *order, size_t n) {
+    static const char *const NAME[] = {"x", "y", "z", "weight"};
+    size_t bad = 0, first = SIZE_MAX, at = 0;
+    for (size_t i = 0; i < n; i++) {
+        size_t from = order ? order[i] : i;
+        if (is_finite(record[i])) continue;
+        bad++;
+        if (from < first) first = from, at = i;
+    }
     int c = 0;
-    while (c < 3 && isfinite(points[3 * first + (size_t)c])) c++;
-    double x = c < 3 ? points[3 * first + (size_t)c] : weights[first];
-    static const char *const name[] = {"x", "y", "z", "weight"};
-    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %s is %s (%zu such points in all)", first, name[c],
-                     isnan(x) ? "NaN" : "infinite", bad);
+    while (c < 3 && isfinite(record[at][c])) c++;
+    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %s is %s (%zu such points in all)", first, NAME[c],
+                     isnan(record[at][c]) ? "NaN" : "infinite", bad);
 }
 
 /* Writes a record; whether all its numbers are finite. */
@@ -36,35 +44,40 @@ typedef struct {
     const double *points, *weights;
     const uint32_t *order; /* NULL: as they are */
     brio_record *record;
-    size_t bad; /* the least index of a point that is not finite */
+    bool bad;      /* a record is not finite; atomic */
+    uint64_t hash; /* the sum of the records' hashes; atomic */
 } record_job;
 
 static void write_records(void *user, size_t begin, size_t end, int thread) {
     record_job *job = user;
-    size_t bad = SIZE_MAX, least = __atomic_load_n(&job->bad, __ATOMIC_RELAXED);
+    bool finite = true;
+    uint64_t hash = 0;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         size_t from = job->order ? job->order[i] : i;
-        if (!write_record(job->points, job->weights, from, job->record[i]) && from < bad) bad = from;
+        finite &= write_record(job->points, job->weights, from, job->record[i]);
+        hash += brio_point_hash(from, job->record[i]);
     }
-    while (bad < least &&
-           !__atomic_compare_exchange_n(&job->bad, &least, bad, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+    __atomic_fetch_add(&job->hash, hash, __ATOMIC_RELAXED);
+    if (!finite) __atomic_store_n(&job->bad, true, __ATOMIC_RELAXED);
 }
 
 brio_status brio_records_new(brio_context *ctx, const brio_input *input, const uint32_t *order, size_t room,
-                             brio_record **out) {
+                             uint64_t *hash, brio_record **out) {
     brio_record *record = NULL;
     size_t n = input->count;
     brio_status status = BRIO_ALLOC(ctx, record, n + room);
     if (status != BRIO_OK) return status;
     brio_expect_sequence(record);
-    record_job job = {input->points, input->weights, order, record, n};
+    record_job job = {input->points, input->weights, order, record, false, 0};
     brio_for(ctx, brio_threads(ctx, n, RECORDS_A_THREAD), n, write_records, &job);
-    if (job.bad < n) {
+    if (job.bad) {
+        status = refuse_not_finite(ctx, (const brio_record *)record, order, n);
         brio_release(ctx, record);
-        return refuse_not_finite(ctx, input, job.bad);
+        return status;
     }
     memset(record + n, 0, room * sizeof *record);
+    if (hash) *hash = job.hash;
     *out = record;
     return BRIO_OK;
 }

@@ -48,7 +48,7 @@ brio_status brio_store_new(brio_context *ctx, const brio_input *input, const bri
     BRIO_TRY(brio_progress(ctx, "order", 0));
     if (parallel && brio_order_has_ranks(options->order)) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->rank, n + MORE_RECORDS));
     BRIO_TRY(brio_order_points(ctx, input->points, n, options, s->caller, s->rank, rounds));
-    BRIO_TRY(brio_records_new(ctx, input, s->caller, MORE_RECORDS, &s->record));
+    BRIO_TRY(brio_records_new(ctx, input, s->caller, MORE_RECORDS, &s->points_hash, &s->record));
     BRIO_TRY(end_store(s));
     *out = s;
     s = NULL;

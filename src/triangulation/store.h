@@ -59,6 +59,7 @@ typedef struct {
     uint8_t *state;    /* of each slot: brio_tet_state */
     size_t capacity;   /* slots that there is room for */
     size_t max_tetrahedra;
+    uint64_t points_hash;     /* base/points_hash.h */
     brio_record *record;      /* NULL once only their indices matter */
     uint32_t *rank;           /* of each record: its place along the curve; NULL when one thread is to insert */
     uint32_t *caller;         /* of each record: its index in the caller's arrays */

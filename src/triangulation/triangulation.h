@@ -9,7 +9,8 @@ struct brio_triangulation {
     brio_tetrahedron *tet;    /* finite ones first; vertices are the caller's indices or BRIO_INFINITE */
     uint32_t *representative; /* of each point of the caller */
     brio_delaunay_stats stats;
-    brio_round *round; /* NULL when nothing was recorded */
+    uint64_t points_hash; /* base/points_hash.h */
+    brio_round *round;    /* NULL when nothing was recorded */
     size_t num_rounds;
 };
 

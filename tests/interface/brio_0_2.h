@@ -24,12 +24,18 @@
  *   - A point set has one set of tetrahedra: it does not depend on the order of the points, the insertion order, the
  *     location strategy or the number of threads. Ties are broken by a symbolic perturbation of the lifted coordinate
  *     whose key is the lexicographic position of the point [Devillers Teillaud 2011]. -0.0 equals 0.0.
- *   - The library reads the caller's arrays during a call. It does not keep, reorder or change them.
+ *   - The library reads the caller's arrays during a call. It does not keep, reorder or change them. Some functions bear
+ *     that another thread changes the points, the weights or the queries meanwhile, whatever it writes: the result is
+ *     then that of some numbers, or an error. They are brio_delaunay, brio_delaunay2, brio_delaunay2_flat and their
+ *     checks, brio_points_hash, brio_convex_hull, brio_voronoi_cells without a triangulation, brio_voronoi2, brio_thin,
+ *     brio_outliers, and the functions of brio_locator and brio_locator2. For all other functions, and for values,
+ *     options and meshes, the arrays must not change. (To C a change that is no atomic store is undefined all the same.)
  *   - The library never prints, exits or aborts. Every function that can fail returns a status, and the context keeps
  *     a sentence that explains the failure.
  *   - The caller's floating-point state (rounding mode, subnormal numbers, traps) does not change a result: each
  *     function sets the state that it needs and restores the caller's state before it returns. Callbacks run in the
- *     library's state. *   - A stack of 64 KiB suffices in the calling thread.
+ *     library's state.
+ *   - A stack of 64 KiB suffices in the calling thread.
  * Rules.
  *   - A pointer is not NULL unless its function says that it may be; arrays of 0 elements may be NULL. An object must not
  *     be used after it or its context was freed.
@@ -300,6 +306,14 @@ BRIO_API const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triang
  *  view is valid until the triangulation is freed. */
 BRIO_API const uint32_t *brio_triangulation_representatives(const brio_triangulation *t);
 
+/** Returns the hash of the points and weights that the triangulation was made of, as brio_points_hash has it. So a caller
+ *  who keeps points beside a triangulation can see whether they are still its points. */
+BRIO_API uint64_t brio_triangulation_points_hash(const brio_triangulation *t);
+
+/** Returns a hash of points in their order.
+ *  points  #P by `coordinates`, which is 2 or 3.   weights  #P, or NULL, which counts as weights of 0.   Cost: O(n). */
+BRIO_API uint64_t brio_points_hash(const double *points, const double *weights, size_t num_points, int coordinates);
+
 /** Checks a triangulation exactly and completely against its points. It passes if and only if it is the result of
  *  brio_delaunay, up to the order of the finite tetrahedra, the order of the infinite ones, and even permutations of the
  *  vertices of a tetrahedron. Checked are: the tetrahedra cover the convex hull once and meet in common faces; no point is
@@ -349,9 +363,9 @@ typedef struct brio_locator brio_locator;
  *  out  owned by the caller, freed with brio_locator_free; NULL on error. Several threads, each with a context of its
  *       own, may query one locator.
  *  Memory: 32 bytes a tetrahedron, 41 a vertex, 8 more a vertex with weights: about 260 bytes a vertex for evenly spread
- *  points. While it is made, 28 bytes a vertex and 4 a point more.
+ *  points. Before the tetrahedra are copied, 60 bytes a vertex and 32 a point.
  *  Cost: O(n log n).
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the triangulation has another number of points), BRIO_ERR_NOT_FINITE,
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation), BRIO_ERR_NOT_FINITE,
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_locator_new(brio_context *ctx, const brio_triangulation *t, const double *points,
                                       const double *weights, size_t num_points, brio_locator **out);
@@ -584,6 +598,9 @@ BRIO_API const brio_triangle *brio_triangulation2_triangles(const brio_triangula
  *  view is valid until the triangulation is freed. */
 BRIO_API const uint32_t *brio_triangulation2_representatives(const brio_triangulation2 *t);
 
+/** Returns the hash of the points and weights that the triangulation was made of, as brio_points_hash has it. */
+BRIO_API uint64_t brio_triangulation2_points_hash(const brio_triangulation2 *t);
+
 /** Returns the vertices of points on a line, in lexicographic order, each joined to the next by an edge of the
  *  triangulation; NULL and 0 for other dimensions than 1. The view is valid until the triangulation is freed. */
 BRIO_API const uint32_t *brio_triangulation2_line(const brio_triangulation2 *t, size_t *count);
@@ -605,6 +622,75 @@ BRIO_API brio_status brio_triangulation2_check(brio_context *ctx, const brio_tri
  *  points  as they were given.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_triangulation2_checksum(brio_context *ctx, const brio_triangulation2 *t, const double *points,
                                                   uint64_t *checksum);
+
+/* Queries of a triangulation of the plane. What is said of brio_locator and of its queries holds here, with `queries` #Q by
+ * 2, except that these are not sorted and take no workspace. */
+
+typedef struct brio_locator2 brio_locator2;
+
+/** Makes a locator of a triangulation of the plane. It needs neither the triangulation nor the points afterwards.
+ *  points, weights, num_points  as they were given to brio_delaunay2; triangulations by brio_delaunay2_flat are refused.
+ *  out  owned by the caller, freed with brio_locator2_free; NULL on error. Several threads, each with a context of its own,
+ *       may query one locator.
+ *  Memory: 25 bytes a triangle and 36 a point, for points on a line 36 a point.   Cost: O(n).
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation, or they are points in space),
+ *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_locator2_new(brio_context *ctx, const brio_triangulation2 *t, const double *points,
+                                       const double *weights, size_t num_points, brio_locator2 **out);
+
+/** Frees a locator; NULL is accepted. */
+BRIO_API void brio_locator2_free(brio_locator2 *locator);
+
+/** Finds the triangle that holds each query: the finite one of lowest index whose closure holds it.
+ *  triangles  #Q: indices of brio_triangulation2_triangles; BRIO_INFINITE for a query strictly outside the convex hull,
+ *             and for every query if the points have dimension 1 or less. Queries on the hull's boundary are inside.
+ *  Cost: one walk; a few steps where points are spread evenly. For a query at a vertex, O(triangles at that vertex).
+ *  Based on: [Devillers Pion Teillaud 2002]. */
+BRIO_API brio_status brio_locator2_triangles(brio_context *ctx, const brio_locator2 *locator, const double *queries,
+                                             size_t num_queries, uint32_t *triangles);
+
+/** Finds the vertex of least power distance |x - p|^2 - w from each query x; without weights, the nearest vertex. Ties are
+ *  lexicographic. Works in every dimension.
+ *  vertices  #Q: indices of points that are vertices; BRIO_INFINITE if there are no points.
+ *  Cost: one walk, and a descent along edges from there. */
+BRIO_API brio_status brio_locator2_least_power(brio_context *ctx, const brio_locator2 *locator, const double *queries,
+                                               size_t num_queries, uint32_t *vertices);
+
+/** Interpolates values at the vertices, at each query, as brio_locator_interpolate does: NATURAL weighs the natural
+ *  neighbours of the query x by the areas that the Voronoi cell of x would take from their cells.
+ *  results  #Q by components: NaN for queries outside the hull, and for every query if the points have dimension 1 or less.
+ *  Returns also BRIO_ERR_ARGUMENT (options out of range, no values, NATURAL of a triangulation with weights).
+ *  Based on: [Sibson 1980], [Sibson 1981]. */
+BRIO_API brio_status brio_locator2_interpolate(brio_context *ctx, const brio_locator2 *locator, const double *queries,
+                                               size_t num_queries, const brio_interpolation *options, double *results);
+
+/** The Voronoi diagram of points in the plane or, with weights, their power diagram. Triangles with one circle, decided
+ *  exactly, have one vertex. */
+typedef struct brio_diagram2 {
+    size_t size;
+    size_t num_vertices, num_triangles, num_points;
+    double *vertices;          /* #V by 2: the centres of the circles, in the order of their first triangles */
+    uint32_t *triangle_vertex; /* #T: of each finite triangle, the vertex at the centre of its circle */
+    uint64_t *offsets;         /* #P + 1: the region of point p is items[offsets[p]] to items[offsets[p + 1] - 1] */
+    uint32_t *items; /* vertices, counterclockwise, each once; BRIO_INFINITE first in an unbounded region. Points
+                                  that are no vertices of the triangulation have no items. */
+    brio_context *context;
+} brio_diagram2;
+
+/** Computes the Voronoi diagram from a triangulation. Points of dimension 1 or less have no vertices and empty regions.
+ *  points, weights, num_points  as they were given to brio_delaunay2; triangulations by brio_delaunay2_flat are refused.
+ *  out  owned by the caller, freed with brio_diagram2_free; NULL on error.
+ *  A vertex is wrong by at most 2^-44 times its distance from the points, plus one rounding; NaN where doubles cannot hold
+ *  it. The bits of a vertex of three points depend on their positions alone.
+ *  Cost: O(n). Memory: 4 bytes a triangle, 16 a vertex, 8 a point and 4 an item; meanwhile 36 a point more.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation, or they are points in space),
+ *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Aurenhammer 1987]. */
+BRIO_API brio_status brio_voronoi2(brio_context *ctx, const brio_triangulation2 *t, const double *points,
+                                   const double *weights, size_t num_points, brio_diagram2 **out);
+
+/** Frees a diagram with all its arrays; NULL is accepted. */
+BRIO_API void brio_diagram2_free(brio_diagram2 *diagram);
 
 /* ------------------------------------------------------------------------------------------------------------------
  * Meshes and their certificates
@@ -908,7 +994,7 @@ typedef struct brio_cells {
  *  points, weights, num_points, and limits as brio_delaunay.   options  NULL for the defaults.
  *  out  owned by the caller, freed with brio_cells_free; NULL on error.
  *  The result has the same bits for every number of threads.
- *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron and 110 a cell,
+ *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron and 110 a cell, without t 24 a point,
  *  and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes take one pass over
  *  the facets, about as long as brio_delaunay.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty or unbounded), and as

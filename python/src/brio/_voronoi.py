@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _calls, _geometry, _native
+from . import _calls, _native
 from ._arrays import Floats, as_floats, as_rows, as_weights
 from ._calls import Progress
 from ._delaunay import Delaunay
@@ -104,16 +104,12 @@ class Voronoi:
         tri = Delaunay(points, weights, threads=self.threads, progress=self.progress)
         if tri.facts["dimension"] < 2:
             raise NoAnswerError("points on a line have no Voronoi vertices")
-        classes = np.empty(tri.nsimplex, np.uint32)
-        count = _native.circles(tri._handle, points, weights, classes)
-        _, first = np.unique(classes, return_index=True)
-        self.vertices = _centres(points, weights, tri.simplices[first[:count]])
-        self._set_ridges_plane(tri, classes)
-        offsets = np.empty(len(points) + 1, np.int64)
-        items = np.empty(3 * tri.nsimplex + tri.facts["hull"], np.int64)
-        own = np.where(tri.representatives == np.arange(len(points)), tri.vertex_to_simplex, -1).astype(np.int32)
-        _native.regions(tri._handle, classes, own, offsets, items)
-        self._set_regions(tri.representatives, np.flatnonzero(own >= 0), np.diff(offsets)[own >= 0], items[: offsets[-1]])
+        raw = {name: np.asarray(part) for name, part in _native.voronoi2(tri._handle, points, weights).items()}
+        self.vertices = raw["vertices"]
+        self._set_ridges_plane(tri, raw["triangle_vertex"])
+        counts = np.diff(raw["offsets"]).astype(np.int64)
+        sites = np.flatnonzero(counts)
+        self._set_regions(tri.representatives, sites, counts[sites], raw["items"].astype(np.int64))
 
     def _set_ridges_plane(self, tri: Delaunay, classes: NDArray[np.uint32]) -> None:
         simplex = np.repeat(np.arange(tri.nsimplex), 3)
@@ -228,18 +224,6 @@ class Voronoi:
     def close(self) -> None:
         """Ends the adding of points."""
         self._closed = True
-
-
-def _centres(points: Floats, weights: Floats | None, simplices: NDArray[Any]) -> Floats:
-    """Circumcentres, or orthocentres, of triangles."""
-    edges = _geometry.edges_from(points, simplices, 0)
-    rise = (edges**2).sum(axis=2)
-    if weights is not None:
-        rise = rise - weights[simplices[:, 1:]] + weights[simplices[:, :1]]
-    columns, det = _geometry.cofactors(edges)
-    with np.errstate(all="ignore"):
-        centres: Floats = points[simplices[:, 0]] + np.einsum("sk,ski->si", rise / 2, columns) / det[:, None]
-    return centres
 
 
 def _areas(vertices: Floats, offsets: Ints, items: Ints) -> Floats:

@@ -1,0 +1,76 @@
+/* Interpolation of values at the vertices of a triangulation of the plane, at many places. */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/versioned.h"
+#include "plane/plane_natural.h"
+#include <math.h>
+
+typedef struct {
+    const brio_interpolation *o;
+    const brio_locator2 *l;
+    double *results;
+    brio_plane_natural *natural; /* of each thread */
+} interpolation_job;
+
+/* Adds a share of the values at a point to a row. */
+static void add_share(const brio_interpolation *o, uint32_t point, double share, double *row) {
+    const double *values = o->values + o->components * point;
+    for (size_t c = 0; c < o->components; c++) row[c] += share * values[c];
+}
+
+static void add_linear(const interpolation_job *job, const brio_plane_holder *h, const double *x, double *row) {
+    double share[3];
+    brio_plane_barycentric(job->l, h, x, share);
+    for (int i = 0; i < 3; i++)
+        if (share[i] != 0) add_share(job->o, job->l->triangle[h->triangle].vertex[i], share[i], row);
+}
+
+static brio_status answer_values(void *user, brio_plane_querent *q, size_t index, const double *x) {
+    const interpolation_job *job = user;
+    const brio_interpolation *o = job->o;
+    brio_plane_natural *n = &job->natural[q->thread];
+    brio_plane_holder h = brio_plane_find_holder(q, x);
+    double *row = job->results + o->components * index;
+    bool natural = false;
+    for (size_t c = 0; c < o->components; c++) row[c] = h.triangle == BRIO_INFINITE ? NAN : 0;
+    if (h.triangle == BRIO_INFINITE) return BRIO_OK;
+    if (o->method == BRIO_INTERPOLATION_NATURAL && __builtin_popcount(h.zeros) < 2 &&
+        !brio_plane_holder_on_hull(job->l, &h)) {
+        brio_status status = brio_plane_natural_coordinates(n, q, &h, x, &natural);
+        if (status != BRIO_OK) return status;
+    }
+    if (!natural) add_linear(job, &h, x, row);
+    for (size_t k = 0; natural && k < n->num_points; k++) add_share(o, n->point[k], n->share[k], row);
+    return BRIO_OK;
+}
+
+static brio_status check_options(brio_context *ctx, const brio_locator2 *l, const brio_interpolation *o) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, o->method >= 0 && o->method < BRIO_INTERPOLATION_END, BRIO_ERR_ARGUMENT,
+                 "there is no interpolation method %d", (int)o->method);
+    BRIO_REQUIRE(ctx, o->components > 0, BRIO_ERR_ARGUMENT, "0 components of each value; at least 1");
+    BRIO_REQUIRE(ctx, o->values || !l->num_points, BRIO_ERR_ARGUMENT, "there are no values to interpolate");
+    BRIO_REQUIRE(ctx, o->method != BRIO_INTERPOLATION_NATURAL || !l->weighted, BRIO_ERR_ARGUMENT,
+                 "natural neighbour interpolation is for triangulations without weights");
+done:
+    return status;
+}
+
+brio_status brio_locator2_interpolate(brio_context *ctx, const brio_locator2 *l, const double *queries,
+                                      size_t num_queries, const brio_interpolation *options, double *results) {
+    BRIO_DOOR;
+    brio_interpolation o = brio_interpolation_default();
+    brio_status status = BRIO_OK;
+    int threads = brio_plane_query_threads(ctx, num_queries);
+    interpolation_job job = {&o, l, results, NULL};
+    BRIO_TRY(BRIO_TAKE(ctx, brio_interpolation, options, &o));
+    BRIO_TRY(check_options(ctx, l, &o));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, job.natural, (size_t)threads));
+    for (int i = 0; i < threads; i++) job.natural[i].ctx = ctx;
+    BRIO_TRY(brio_plane_answer_all(ctx, threads,
+                                   &(brio_plane_batch){l, queries, num_queries, "interpolate", answer_values, &job}));
+done:
+    for (int i = 0; job.natural && i < threads; i++) brio_plane_natural_free(&job.natural[i]);
+    brio_release(ctx, job.natural);
+    return status;
+}

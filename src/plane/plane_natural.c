@@ -1,0 +1,199 @@
+/* Sibson's coordinates of a query in the plane, from its cavity.
+ *
+ * The cavity is the set of triangles whose circles hold the query x (Bowyer, Watson). Inserted, x would take from the
+ * Voronoi cell of each vertex a of the cavity a convex polygon R(a). Its corners are the centres of the cavity's triangles
+ * at a, and the centres of x with the two border edges at a. The coordinate of a is the area of R(a), divided by the sum of
+ * all these areas.
+ *
+ * The cavity is a disk without vertices inside, so its triangles are the nodes of a tree whose branches are the edges
+ * inside it. A depth-first search that crosses the edges of each triangle counterclockwise goes round this tree, meets
+ * the border edges counterclockwise, and between two of them goes through the triangles at their common vertex, in
+ * order. So one tour has the corners of every R(a) one after the other, clockwise. Areas are computed relative to the
+ * first corner; all their parts are positive but for rounding, and nothing large cancels.
+ *
+ * The last step makes the coordinates reproduce x, as in locate/natural.c.
+ *
+ * Based on: Sibson. A vector identity for the Dirichlet tessellation. Math. Proc. Cambridge 1980. */
+#include "plane/plane_natural.h"
+#include "base/memory.h"
+#include "plane/plane_centre.h"
+#include <math.h>
+
+void brio_plane_natural_free(brio_plane_natural *n) {
+    void *const block[] = {n->ahead, n->corner, n->centre, n->tour, n->border, n->point, n->offset, n->share};
+    if (!n->ctx) return;
+    for (size_t i = 0; i < sizeof block / sizeof *block; i++) brio_release(n->ctx, block[i]);
+    *n = (brio_plane_natural){0};
+}
+
+/* --- the tour round the cavity --- */
+
+static brio_status visit(brio_plane_natural *n, uint32_t centre) {
+    brio_status status = BRIO_RESERVE(n->ctx, n->tour, n->tour_room, n->num_tour + 1);
+    if (status == BRIO_OK) n->tour[n->num_tour++] = centre;
+    return status;
+}
+
+/* Adds the centre of three points and visits it. */
+static brio_status add_centre(brio_plane_natural *n, uint32_t a, uint32_t b, uint32_t c) {
+    brio_status status = BRIO_RESERVE(n->ctx, n->corner, n->corner_room, n->num_centres + 1);
+    if (status != BRIO_OK) return status;
+    uint32_t *corner = n->corner[n->num_centres];
+    corner[0] = a, corner[1] = b, corner[2] = c;
+    return visit(n, (uint32_t)n->num_centres++);
+}
+
+/* Plans to cross an edge and then to come back to a centre; without a centre, to stay. */
+static brio_status plan(brio_plane_natural *n, uint32_t edge, uint32_t centre) {
+    brio_status status = BRIO_RESERVE(n->ctx, n->ahead, n->ahead_room, n->num_ahead + 2);
+    if (status != BRIO_OK) return status;
+    if (centre != BRIO_INFINITE) n->ahead[n->num_ahead++] = (brio_plane_step){BRIO_INFINITE, centre};
+    n->ahead[n->num_ahead++] = (brio_plane_step){edge, 0};
+    return BRIO_OK;
+}
+
+/* Notes the border edge before the edge `outer` of a triangle outside the cavity, which sees it clockwise. */
+static brio_status add_border(brio_plane_natural *n, const brio_triangle *outside, uint32_t outer) {
+    uint32_t from = outside->vertex[brio_slot_before(brio_edge_slot(outer))];
+    uint32_t to = outside->vertex[brio_slot_after(brio_edge_slot(outer))];
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(n->ctx, n->border, n->border_room, n->num_points + 1));
+    BRIO_TRY(BRIO_RESERVE(n->ctx, n->point, n->point_room, n->num_points + 1));
+    n->border[n->num_points] = (uint32_t)n->num_tour;
+    n->point[n->num_points++] = to;
+    BRIO_TRY(add_centre(n, BRIO_INFINITE, from, to));
+done:
+    return status;
+}
+
+static brio_status cross(brio_plane_natural *n, brio_plane_querent *q, uint32_t edge, const double *x) {
+    const brio_locator2 *l = q->l;
+    uint32_t t = brio_triangle_of(edge), i = brio_edge_slot(edge), centre = (uint32_t)n->num_centres;
+    const brio_triangle *own = &l->triangle[t];
+    const uint32_t *v = own->vertex;
+    brio_status status = BRIO_OK;
+    if (t >= l->num_finite ||
+        !brio_circle_conflict(&q->filter, l->record[v[0]], l->record[v[1]], l->record[v[2]], x, false))
+        return add_border(n, own, edge);
+    BRIO_TRY(add_centre(n, v[0], v[1], v[2]));
+    BRIO_TRY(plan(n, own->mate[brio_slot_before(i)], centre));
+    BRIO_TRY(plan(n, own->mate[brio_slot_after(i)], centre));
+done:
+    return status;
+}
+
+/* Goes round the cavity from triangle t, which holds x. */
+static brio_status go_round(brio_plane_natural *n, brio_plane_querent *q, uint32_t t, const double *x) {
+    const brio_triangle *own = &q->l->triangle[t];
+    brio_status status = BRIO_OK;
+    n->num_ahead = n->num_centres = n->num_tour = n->num_points = 0;
+    BRIO_TRY(add_centre(n, own->vertex[0], own->vertex[1], own->vertex[2]));
+    BRIO_TRY(plan(n, own->mate[2], BRIO_INFINITE)); /* then the tour begins again */
+    BRIO_TRY(plan(n, own->mate[1], 0));
+    BRIO_TRY(plan(n, own->mate[0], 0));
+    while (n->num_ahead) {
+        brio_plane_step step = n->ahead[--n->num_ahead];
+        BRIO_TRY(step.edge == BRIO_INFINITE ? visit(n, step.centre) : cross(n, q, step.edge, x));
+    }
+done:
+    return status;
+}
+
+/* --- areas --- */
+
+static void corner_offset(const brio_locator2 *l, uint32_t point, const double *x, double scale, double record[4]) {
+    record[0] = record[1] = record[2] = record[3] = 0;
+    if (point != BRIO_INFINITE) brio_plane_offset(l, point, x, scale, record);
+}
+
+/* Computes the centres. *found becomes false where doubles do not hold them. */
+static brio_status find_centres(brio_plane_natural *n, const brio_locator2 *l, const double *x, bool *found) {
+    brio_status status = BRIO_OK;
+    brio_plane_circles batch; /* no initializer, which would clear all of it */
+    double scale = brio_plane_offset_scale(l, n->point, n->num_points, x), record[3][4];
+    batch.count = 0;
+    BRIO_TRY(BRIO_RESERVE(n->ctx, n->centre, n->centre_room, n->num_centres));
+    BRIO_TRY(BRIO_RESERVE(n->ctx, n->offset, n->offset_room, n->num_points));
+    for (size_t k = 0; k < n->num_points; k++) brio_plane_offset(l, n->point[k], x, scale, n->offset[k]);
+    for (size_t c = 0; c < n->num_centres; c++) {
+        for (int i = 0; i < 3; i++) corner_offset(l, n->corner[c][i], x, scale, record[i]);
+        brio_plane_circles_add(&batch, record[0], record[1], record[2]);
+        if (batch.count == BRIO_CENTRE_BATCH || c + 1 == n->num_centres)
+            brio_plane_circles_solve(&batch, false, n->centre + c + 1 - batch.count);
+    }
+    *found = scale > 0;
+    for (size_t c = 0; c < n->num_centres; c++) *found &= isfinite(n->centre[c][0]);
+done:
+    return status;
+}
+
+/* Returns twice the area that x takes from the point at the end of border edge k. */
+static double area_at(const brio_plane_natural *n, size_t k) {
+    size_t at = n->border[k], end = n->border[k + 1 < n->num_points ? k + 1 : 0];
+    const double *first = n->centre[n->tour[at]];
+    double last[2] = {0, 0}, area = 0;
+    while (at != end) {
+        at = at + 1 < n->num_tour ? at + 1 : 0;
+        const double *c = n->centre[n->tour[at]];
+        double next[2] = {c[0] - first[0], c[1] - first[1]};
+        area -= brio_plane_cross(last, next);
+        last[0] = next[0], last[1] = next[1];
+    }
+    return area;
+}
+
+/* Sets the shares to the areas. Sets *sum to their sum. */
+static brio_status add_areas(brio_plane_natural *n, double *sum) {
+    brio_status status = BRIO_RESERVE(n->ctx, n->share, n->share_room, n->num_points);
+    *sum = 0;
+    if (status != BRIO_OK) return status;
+    for (size_t k = 0; k < n->num_points; k++) {
+        double area = area_at(n, k);
+        *sum += n->share[k] = area > 0 ? area : 0;
+    }
+    return BRIO_OK;
+}
+
+/* --- the last step --- */
+
+/* Makes the shares reproduce x: multiplies each by 1 + g . (offset - r), r being their mean. Returns false if that takes a
+ * change that is no rounding error. */
+static bool correct(brio_plane_natural *n) {
+    static const double MOST = 1e-4; /* chosen, as in locate/natural.c */
+    double r[2] = {0, 0}, m[2][2] = {{0, 0}, {0, 0}};
+    for (size_t k = 0; k < n->num_points; k++)
+        for (int i = 0; i < 2; i++) {
+            r[i] += n->share[k] * n->offset[k][i];
+            for (int j = 0; j < 2; j++) m[i][j] += n->share[k] * n->offset[k][i] * n->offset[k][j];
+        }
+    if (r[0] == 0 && r[1] == 0) return true;
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++) m[i][j] -= r[i] * r[j];
+    double determinant = brio_plane_cross(m[0], m[1]);
+    double g[2] = {(r[1] * m[0][1] - r[0] * m[1][1]) / determinant, (r[0] * m[1][0] - r[1] * m[0][0]) / determinant};
+    for (size_t k = 0; k < n->num_points; k++) {
+        double change = g[0] * (n->offset[k][0] - r[0]) + g[1] * (n->offset[k][1] - r[1]);
+        if (!(fabs(change) <= MOST)) return false;
+        n->share[k] *= 1 + change;
+    }
+    return true;
+}
+
+static bool divide_by_sum(brio_plane_natural *n, double sum) {
+    if (!(sum > 0 && sum < INFINITY)) return false;
+    for (size_t k = 0; k < n->num_points; k++) n->share[k] /= sum;
+    return true;
+}
+
+brio_status brio_plane_natural_coordinates(brio_plane_natural *n, brio_plane_querent *q, const brio_plane_holder *h,
+                                           const double *x, bool *found) {
+    brio_status status = BRIO_OK;
+    double sum;
+    BRIO_TRY(go_round(n, q, h->triangle, x));
+    BRIO_TRY(find_centres(n, q->l, x, found));
+    if (!*found) goto done;
+    BRIO_TRY(add_areas(n, &sum));
+    *found = divide_by_sum(n, sum) && correct(n) && correct(n);
+done:
+    return status;
+}
