@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check python python-heavy bench quality votes thesis clean
+.PHONY: all demo check python python-heavy bench quality votes thesis machines clean
 
 all:
 	@sh scripts/setup.sh build
@@ -52,6 +52,11 @@ votes: all
 thesis: all
 	@sh scripts/setup.sh thesis
 	/usr/bin/python3 bench/thesis/thesis.py $(BRIO) $(THESIS)
+
+# Other processors, systems and compilers give the same bits: docs/machines.md.
+machines:
+	@sh scripts/setup.sh machines
+	/usr/bin/python3 tests/machines/machines.py . out/machines
 
 clean:
 	rm -rf build build-ci build-debug build-sanitize out

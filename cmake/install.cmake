@@ -3,16 +3,16 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS brio EXPORT brioTargets)
 install(TARGETS brio-cli)
-install(FILES ${CMAKE_SOURCE_DIR}/include/brio/brio.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/brio)
-install(FILES docs/which-method.md DESTINATION ${CMAKE_INSTALL_DOCDIR}) # errors refer to it by name
+install(FILES ${PROJECT_SOURCE_DIR}/include/brio/brio.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/brio)
+install(FILES docs/which-method.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}) # errors refer to the first by name
 
 # CMake: find_package(brio), then link with brio::brio.
 set(BRIO_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/brio)
-configure_package_config_file(cmake/brioConfig.cmake.in ${CMAKE_BINARY_DIR}/brioConfig.cmake
+configure_package_config_file(cmake/brioConfig.cmake.in ${PROJECT_BINARY_DIR}/brioConfig.cmake
                               INSTALL_DESTINATION ${BRIO_CMAKE_DIR})
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/brioConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/brioConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(EXPORT brioTargets NAMESPACE brio:: DESTINATION ${BRIO_CMAKE_DIR})
-install(FILES ${CMAKE_BINARY_DIR}/brioConfig.cmake ${CMAKE_BINARY_DIR}/brioConfigVersion.cmake
+install(FILES ${PROJECT_BINARY_DIR}/brioConfig.cmake ${PROJECT_BINARY_DIR}/brioConfigVersion.cmake
         DESTINATION ${BRIO_CMAKE_DIR})
 
 # pkg-config: the folders are relative to the file, so that an installed tree can be moved. What a static library needs
@@ -28,5 +28,5 @@ if(BUILD_SHARED_LIBS)
 else()
   set(BRIO_PC_STATIC_LIBRARIES " ${BRIO_PC_LIBRARIES}")
 endif()
-configure_file(cmake/brio.pc.in ${CMAKE_BINARY_DIR}/brio.pc @ONLY)
-install(FILES ${CMAKE_BINARY_DIR}/brio.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+configure_file(cmake/brio.pc.in ${PROJECT_BINARY_DIR}/brio.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/brio.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,12 +1,12 @@
 # Manual pages and completions of shells. A program made of the command line's own tables writes them, so that they say
 # what --help says: below pages/ of the build folder, for the installation.
-set(BRIO_PAGES ${CMAKE_BINARY_DIR}/pages)
+set(BRIO_PAGES ${PROJECT_BINARY_DIR}/pages)
 if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
   message(STATUS "No manual pages and completions: the program that writes them cannot run on this machine")
   return()
 endif()
 
-file(GLOB BRIO_PAGES_SOURCES CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cli/pages/*.c)
+file(GLOB BRIO_PAGES_SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cli/pages/*.c)
 add_executable(brio-pages ${BRIO_PAGES_SOURCES} $<TARGET_OBJECTS:brio-cli-objects>)
 target_link_libraries(brio-pages PRIVATE brio m)
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# setup.sh build|check|bench|quality|thesis: sees to the tools that building, testing or measuring needs.
+# setup.sh build|check|bench|quality|thesis|machines: sees to the tools that building, testing or measuring needs.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
 set -eu
 
@@ -46,6 +46,10 @@ missing() {
         has_python_with numpy || echo python3-numpy
         has gnuplot || echo gnuplot-nox
     fi
+    if [ "$1" = machines ]; then
+        [ -x $python ] || echo python3
+        return 0
+    fi
     [ "$1" = check ] || return 0
     [ -x $python ] || echo python3
     has_python_with numpy || echo python3-numpy
@@ -63,6 +67,14 @@ missing_peers() {
     [ -f /usr/include/cjson/cJSON.h ] || echo libcjson-dev
     [ -f /usr/include/expat.h ] || echo libexpat1-dev
     case $1 in build | quality | thesis) return 0 ;; esac
+    if [ "$1" = machines ]; then
+        has clang || echo clang
+        has musl-gcc || echo musl-tools
+        has aarch64-linux-gnu-gcc || echo gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+        has s390x-linux-gnu-gcc || echo gcc-s390x-linux-gnu libc6-dev-s390x-cross
+        has qemu-s390x || echo qemu-user
+        return 0
+    fi
     if [ "$1" = check ]; then
         has g++ || echo g++
         [ -d /usr/include/voro++ ] || echo voro++-dev
@@ -134,9 +146,9 @@ install_tests_packages() {
 
 purpose=${1:-build}
 case $purpose in
-build | check | bench | quality | thesis) ;;
+build | check | bench | quality | thesis | machines) ;;
 *)
-    echo "usage: setup.sh build|check|bench|quality|thesis" >&2
+    echo "usage: setup.sh build|check|bench|quality|thesis|machines" >&2
     exit 1
     ;;
 esac

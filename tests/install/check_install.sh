@@ -1,6 +1,7 @@
 #!/bin/sh
-# check_install.sh CMAKE CC ROOT static|shared: installs the library to a folder of its own, moves that, and builds and
-# runs a program with what is found there: by CMake's find_package and by pkg-config.
+# check_install.sh CMAKE CC ROOT static|shared|subproject: installs the library to a folder of its own, moves that, and
+# builds and runs a program with what is found there: by CMake's find_package and by pkg-config. Or builds the program's
+# project with brio as a part of it.
 set -eu
 
 cmake=$1
@@ -33,6 +34,24 @@ expect_output() {
     exit 1
 }
 
+if [ "$kind" = subproject ]; then
+    step "FetchContent"
+    "$cmake" -S "$consumer" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" -DBRIO_SOURCE="$root" >>"$folder/log" 2>&1
+    "$cmake" --build "$folder/build" >>"$folder/log" 2>&1
+    expect_output "$folder/build/consumer"
+    # nothing of brio's own is built beside the library, or installed
+    [ -z "$(find "$folder/build" -name 'test_*' -o -name brio -type f)" ] || {
+        echo "tests or the program are built, too" >&2
+        exit 1
+    }
+    "$cmake" --install "$folder/build" --prefix "$folder/installed" >>"$folder/log" 2>&1
+    [ ! -e "$folder/installed/include" ] || {
+        echo "brio installs itself" >&2
+        exit 1
+    }
+    exit 0
+fi
+
 step "build and install ($kind)"
 [ "$kind" = shared ] && shared=ON || shared=OFF
 "$cmake" -S "$root" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS="$shared" \
@@ -42,7 +61,7 @@ step "build and install ($kind)"
 mv "$folder/installed" "$prefix"
 "$prefix/bin/brio" --version
 for page in man/man1/brio.1 man/man1/brio-surface.1 bash-completion/completions/brio zsh/site-functions/_brio \
-    doc/brio/which-method.md; do
+    doc/brio/which-method.md doc/brio/LICENSE; do
     [ -s "$prefix/share/$page" ] || {
         echo "share/$page is not installed" >&2
         exit 1
