@@ -322,6 +322,29 @@ def test_what_the_build_reads(tmp_path):
             brio.read(path)
 
 
+def test_copies_and_pickles(ball):
+    import copy
+    import pickle
+
+    mesh = brio.Mesh(CORNERS, [[0, 1, 2, 3]], tetrahedra=[[0, 1, 2, 3]], edges=[[0, 1]], properties={"n": np.arange(4)})
+    surface = brio.reconstruct(ball, attributes={"place": ball})
+    points = GENERATOR.random((50, 3))
+    for clone in (copy.deepcopy, copy.copy, lambda thing: pickle.loads(pickle.dumps(thing))):
+        again = clone(mesh)
+        assert again.polygons == mesh.polygons and again.properties["n"].tolist() == [0, 1, 2, 3]
+        assert again.tetrahedra.tolist() == [[0, 1, 2, 3]] and again.edges.tolist() == [[0, 1]]
+        assert clone(brio.Mesh(CORNERS)).polygons == [] and not again.vertices.flags.writeable
+        other = clone(surface)
+        assert type(other) is brio._reconstruct.Surface and (other.samples == surface.samples).all()
+        assert other.certificate == surface.certificate and other.simplify(500).properties["place"].shape[1] == 3
+        assert clone(brio.ConvexHull(points)).volume == brio.ConvexHull(points).volume
+        assert (clone(brio.Voronoi(points)).volumes == brio.Voronoi(points).volumes).all()
+        shape = clone(brio.AlphaShape(points))
+        assert shape.complex.auto_alpha() == shape.alpha and len(shape.complex.shape(shape.alpha).faces) == len(shape.faces)
+        for interpolator in (brio.LinearNDInterpolator, brio.NaturalNeighbourInterpolator):
+            assert np.isclose(clone(interpolator(points, points[:, 0]))(points.mean(axis=0)), points[:, 0].mean())
+
+
 # --- objects of other packages ---
 
 

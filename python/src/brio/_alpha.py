@@ -43,6 +43,9 @@ class AlphaComplex:
         self.order: NDArray[np.uint32] = np.empty(sum(len(part) for part in self.values), np.uint32)
         _native.alpha_order(self._complex, self.order)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._tri,)
+
     def auto_alpha(self) -> float:
         """The least alpha whose tetrahedra are one solid, or whose triangles one region, that has all vertices."""
         alpha: float = _native.alpha_auto(self._complex)

@@ -175,6 +175,12 @@ class ConvexHull:
         """Ends the adding of points."""
         self._closed = True
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "progress": None}
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return (self.points,)
+
 
 def _neighbors(triangles: Ints) -> Ints:
     """The triangle beyond the edge opposite to each corner, in a closed oriented surface."""

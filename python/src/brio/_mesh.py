@@ -443,6 +443,18 @@ class Mesh:
         data = {name: np.array(values) for name, values in self.properties.items()}
         return meshio.Mesh(np.array(self.vertices), cells, point_data=data)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What pickle and copy take; the object of the library is made again."""
+        return {name: value for name, value in self.__dict__.items() if name != "_handle"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        views = {name: np.ascontiguousarray(state[name])
+                 for name in ("vertices", "face_offsets", "face_vertices", "tetrahedra", "edges")}
+        self._handle = _native.mesh(views["vertices"], views["face_offsets"], views["face_vertices"],
+                                    views["tetrahedra"], views["edges"], {}, None)
+        self.__dict__.update({name: frozen(array) for name, array in views.items()})
+
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices"]
         for count, name in ((len(self.face_offsets) - 1, "faces"), (len(self.tetrahedra), "tetrahedra"),

@@ -231,6 +231,12 @@ class Voronoi:
         """Ends the adding of points."""
         self._closed = True
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "progress": None}
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return (self.points,)
+
 
 def _centres(points: Floats, weights: Floats | None, simplices: NDArray[Any]) -> Floats:
     """Circumcentres, or orthocentres, of triangles."""
