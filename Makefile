@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check python python-heavy bench quality votes thesis machines clean
+.PHONY: all demo check python python-heavy python-sanitize bench quality votes thesis machines clean
 
 all:
 	@sh scripts/setup.sh build
@@ -22,9 +22,14 @@ python:
 	@sh scripts/setup.sh check
 	@sh scripts/python.sh wheel
 
-# What takes long or needs large packages from PyPI: torch, Open3D and scikit-learn beside brio, and the address sanitizer.
+# The wheel beside torch, Open3D and scikit-learn, in one process: 1 GB of packages from Debian and PyPI.
 python-heavy: python
 	@sh scripts/python.sh heavy
+
+# The Python package's tests under the address and undefined-behaviour sanitizers.
+python-sanitize:
+	@sh scripts/setup.sh check
+	@JOBS=$(JOBS) sh scripts/python.sh sanitized
 
 # BENCH="--runs 5 --only uniform_1m happy_raw" measures less, BENCH="--sizes 1e4 1e5 1e6 1e7" more: docs/benchmarks.md.
 bench: all

@@ -1096,7 +1096,7 @@ BRIO_API brio_status brio_convex_hull(brio_context *ctx, const double *points, s
 typedef struct brio_alpha_complex {
     size_t size;
     brio_context *context;
-    const brio_triangulation *triangulation; /* not owned; must outlive the complex */
+    const brio_triangulation *triangulation; /* not owned; must outlive the complex; NULL in the plane */
     size_t counts[4];
     /** counts[k] by k + 1: indices of points, ascending in each simplex; tetrahedra in the triangulation's order. */
     uint32_t *simplices[4];
@@ -1107,6 +1107,7 @@ typedef struct brio_alpha_complex {
     double *solid[4];
     /** counts[k]: 1 if no vertex is strictly inside the smallest orthosphere of the simplex. */
     uint8_t *gabriel[4];
+    const brio_triangulation2 *triangulation2; /* of points in the plane; else NULL; as `triangulation` */
 } brio_alpha_complex;
 
 /** Computes the alpha filtration. A simplex that is Gabriel, which is decided exactly, has the squared radius of its
@@ -1125,6 +1126,17 @@ typedef struct brio_alpha_complex {
 BRIO_API brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, const double *points,
                                        const double *weights, size_t num_points, brio_alpha_complex *out);
 
+/** Computes the alpha filtration of points in the plane: as brio_alpha_values, with triangles in place of tetrahedra and
+ *  circles in place of spheres. counts[3] is 0, and `solid` is the least value of a triangle. brio_alpha_order and
+ *  brio_alpha_auto take the complex, brio_alpha_shape does not.
+ *  t        made of these points and weights by brio_delaunay2 or brio_delaunay2_flat, of dimension 2.
+ *  points   #P by the coordinates of t.   weights  #P, or NULL.   out  its `size` set; freed with brio_alpha_complex_free.
+ *  Cost: linear, one thread. For the result and the work 29 bytes a triangle, 25 an edge and 57 a point.
+ *  Returns what brio_alpha_values returns; BRIO_ERR_NO_ANSWER for points on a line.
+ *  Based on: [Edelsbrunner Kirkpatrick Seidel 1983], [Edelsbrunner 1995] for weights. */
+BRIO_API brio_status brio_alpha_values2(brio_context *ctx, const brio_triangulation2 *t, const double *points,
+                                        const double *weights, size_t num_points, brio_alpha_complex *out);
+
 /** Frees what a complex owns and sets its fields but `size` to 0; NULL is accepted. */
 BRIO_API void brio_alpha_complex_free(brio_alpha_complex *complex);
 
@@ -1135,7 +1147,8 @@ BRIO_API void brio_alpha_complex_free(brio_alpha_complex *complex);
 BRIO_API brio_status brio_alpha_order(brio_context *ctx, const brio_alpha_complex *complex, uint32_t *order);
 
 /** Finds the least alpha at which the tetrahedra of the complex are one solid, joined across facets, that has all
- *  vertices of the triangulation. There is one: the greatest value of a tetrahedron at the latest.
+ *  vertices of the triangulation; in the plane, at which the triangles are one region, joined across edges. There is one:
+ *  the greatest value of a tetrahedron (triangle) at the latest.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha);
 
@@ -1153,8 +1166,8 @@ typedef struct brio_alpha_shape_stats {
  *  seen counterclockwise from outside. The mesh is closed and manifold: where parts of the solid touch in a vertex or an
  *  edge only, vertices are doubled. Singular simplices are counted, and are not in the mesh.
  *  points  as they were given to brio_alpha_values.   out  owned by the caller.   stats  NULL, or its `size` set.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN), BRIO_ERR_NO_ANSWER (no tetrahedron has a value of at most alpha),
- *  BRIO_ERR_NO_MEMORY.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN, or the complex is of the plane), BRIO_ERR_NO_ANSWER (no tetrahedron
+ *  has a value of at most alpha), BRIO_ERR_NO_MEMORY.
  *  Based on: [Edelsbrunner Muecke 1994]. */
 BRIO_API brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex,
                                       double alpha, brio_mesh **out, brio_alpha_shape_stats *stats);

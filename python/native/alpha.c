@@ -1,14 +1,24 @@
 /* Alpha complexes and alpha shapes. */
 #include "mesh.h"
 
+/* Returns how many coordinates the points of a triangulation have, or 0 with an exception set. */
+static int handle_coordinates(module_state *state, PyObject *object) {
+    if (Py_TYPE(object) == state->handle_type && ((handle *)object)->kind == KIND_TRIANGULATION2)
+        return brio_triangulation2_stats(((handle *)object)->record->object)->coordinates;
+    return handle_object(state, object, KIND_TRIANGULATION) ? 3 : 0;
+}
+
 static void free_alpha(void *complex) {
     brio_alpha_complex_free(complex);
     free(complex);
 }
 
+/* The lists have an array for each dimension: 4 in space, 3 in the plane. */
 static PyObject *views(module_state *state, PyObject *owner, const brio_alpha_complex *a) {
-    PyObject *lists[4] = {PyList_New(4), PyList_New(4), PyList_New(4), PyList_New(4)};
-    for (size_t k = 0; k < 4; k++) {
+    const size_t dimensions = a->triangulation ? 4 : 3;
+    PyObject *lists[4];
+    for (int n = 0; n < 4; n++) lists[n] = PyList_New((Py_ssize_t)dimensions);
+    for (size_t k = 0; k < dimensions; k++) {
         const layout shown[4] = {
             layout_of(a->simplices[k], 'I', a->counts[k], k + 1), layout_of(a->values[k], 'd', a->counts[k], 0),
             layout_of(a->solid[k], 'd', a->counts[k], 0), layout_of(a->gabriel[k], '?', a->counts[k], 0)};
@@ -19,6 +29,18 @@ static PyObject *views(module_state *state, PyObject *owner, const brio_alpha_co
                          "gabriel", lists[3], "complex", owner);
 }
 
+/* Runs the call for a triangulation of space or of the plane. */
+static PyObject *run_values(call *c, handle *of, const input *p, const input *w, brio_alpha_complex *a) {
+    brio_status status;
+    const void *t = of->record->object;
+    a->size = sizeof *a;
+    if (of->kind == KIND_TRIANGULATION)
+        CALL(*c, status, brio_alpha_values(c->ctx, t, p->data, w->data, p->rows, a));
+    else
+        CALL(*c, status, brio_alpha_values2(c->ctx, t, p->data, w->data, p->rows, a));
+    return call_end_with(c, status, KIND_ALPHA, a, free_alpha, (PyObject *)of);
+}
+
 /* alpha_values(t, points, weights, threads, progress): a dict of lists of arrays, and the complex. */
 static PyObject *alpha_values(PyObject *module, PyObject *args) {
     PyObject *object, *points, *weights, *progress, *owner = NULL, *result = NULL;
@@ -27,19 +49,16 @@ static PyObject *alpha_values(PyObject *module, PyObject *args) {
     call c;
     module_state *state = state_of(module);
     if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &weights, &threads, &progress)) return NULL;
-    const brio_triangulation *t = handle_object(state, object, KIND_TRIANGULATION);
-    if (!t || input_open(&p, points, "points", 'd', 3)) return NULL;
+    int columns = handle_coordinates(state, object);
+    if (!columns || input_open(&p, points, "points", 'd', columns)) return NULL;
     brio_alpha_complex *a = calloc(1, sizeof *a);
     if (!a)
         PyErr_NoMemory();
-    else if (input_open_weights(&w, weights, p.rows) || call_begin(&c, state, threads, progress))
+    else if (input_open_weights(&w, weights, p.rows) || handle_has_points(state, object, &p, &w) ||
+             call_begin(&c, state, threads, progress))
         free(a);
-    else {
-        brio_status status;
-        a->size = sizeof *a;
-        CALL(c, status, brio_alpha_values(c.ctx, t, p.data, w.data, p.rows, a));
-        owner = call_end_with(&c, status, KIND_ALPHA, a, free_alpha, object);
-    }
+    else
+        owner = run_values(&c, (handle *)object, &p, &w, a);
     input_close(&p);
     input_close(&w);
     if (owner) result = views(state, owner, a);
@@ -86,7 +105,7 @@ static PyObject *alpha_shape(PyObject *module, PyObject *args) {
     brio_alpha_shape_stats s = {.size = sizeof s};
     if (!PyArg_ParseTuple(args, "OOOd", &object, &points, &weights, &alpha)) return NULL;
     const brio_alpha_complex *a = handle_object(state_of(module), object, KIND_ALPHA);
-    if (!a || input_open(&p, points, "points", 'd', 3)) return NULL;
+    if (!a || input_open(&p, points, "points", 'd', -1)) return NULL;
     if (!input_open_weights(&w, weights, p.rows) &&
         !handle_has_points(state_of(module), ((handle *)object)->base, &p, &w) &&
         !call_begin(&c, state_of(module), 0, Py_None)) {

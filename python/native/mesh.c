@@ -1,4 +1,4 @@
-/* Meshes: made of arrays, shown as arrays, certified, read and written. */
+/* Meshes: made of arrays, shown as arrays, certified, and changed. */
 #include "mesh.h"
 #include <string.h>
 
@@ -81,12 +81,22 @@ static brio_status set_arrays(brio_mesh *mesh, const mesh_arrays *a) {
     return status;
 }
 
-/* mesh(vertices, offsets, corners, tetrahedra, edges, properties): a mesh of copies; None for an absent part. */
+/* Copies what a LAS file says of its coordinates, so that they are written as they were read. */
+static void copy_steps(const brio_mesh *from, brio_mesh *to) {
+    memcpy(to->coordinate_step, from->coordinate_step, sizeof to->coordinate_step);
+    memcpy(to->coordinate_origin, from->coordinate_origin, sizeof to->coordinate_origin);
+}
+
+/* mesh(vertices, offsets, corners, tetrahedra, edges, properties, like): a mesh of copies; None for an absent part. The
+ * coordinates have the steps of the mesh `like`, or None. */
 static PyObject *mesh(PyObject *module, PyObject *args) {
-    PyObject *vertices, *offsets, *corners, *tetrahedra, *edges, *properties, *result = NULL;
+    PyObject *vertices, *offsets, *corners, *tetrahedra, *edges, *properties, *like, *result = NULL;
+    const brio_mesh *steps = NULL;
     mesh_arrays a = {{.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}};
     call c;
-    if (!PyArg_ParseTuple(args, "OOOOOO", &vertices, &offsets, &corners, &tetrahedra, &edges, &properties)) return NULL;
+    if (!PyArg_ParseTuple(args, "OOOOOOO", &vertices, &offsets, &corners, &tetrahedra, &edges, &properties, &like))
+        return NULL;
+    if (like != Py_None && !(steps = handle_object(state_of(module), like, KIND_MESH))) return NULL;
     if (!PyDict_Check(properties)) {
         PyErr_SetString(PyExc_TypeError, "properties: a dict of arrays");
         return NULL;
@@ -100,6 +110,7 @@ static PyObject *mesh(PyObject *module, PyObject *args) {
         brio_status status = brio_mesh_new(c.ctx, &made);
         if (status == BRIO_OK) status = set_arrays(made, &a);
         if (status == BRIO_OK) status = add_properties(made, properties);
+        if (status == BRIO_OK && steps) copy_steps(steps, made);
         result = call_end_with_mesh(&c, status, made);
     }
     close_arrays(&a);
@@ -198,6 +209,45 @@ static PyObject *mesh_simplified(PyObject *module, PyObject *args) {
     return call_end_with_mesh(&c, status, made);
 }
 
+/* Returns a copy of the components that are wanted, which is freed if that fails. */
+static brio_status kept_components(brio_context *ctx, const brio_mesh *m, int largest, size_t least, brio_mesh **out) {
+    brio_status status = copy_surface(ctx, m, out);
+    if (status == BRIO_OK) status = brio_mesh_keep_components(*out, largest, least, NULL, NULL);
+    if (status == BRIO_OK) return status;
+    brio_mesh_free(*out);
+    *out = NULL;
+    return status;
+}
+
+/* mesh_kept_components(mesh, largest, least_faces): a mesh of fewer components. */
+static PyObject *mesh_kept_components(PyObject *module, PyObject *args) {
+    PyObject *object;
+    int largest;
+    Py_ssize_t least;
+    call c;
+    brio_mesh *made = NULL;
+    brio_status status;
+    if (!PyArg_ParseTuple(args, "Opn", &object, &largest, &least)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    CALL(c, status, kept_components(c.ctx, m, largest, (size_t)least, &made));
+    return call_end_with_mesh(&c, status, made);
+}
+
+/* mesh_subdivided(mesh, levels, progress): a mesh whose triangles are cut into four, `levels` times. */
+static PyObject *mesh_subdivided(PyObject *module, PyObject *args) {
+    PyObject *object, *progress;
+    int levels;
+    call c;
+    brio_mesh *made = NULL;
+    brio_status status;
+    if (!PyArg_ParseTuple(args, "OiO", &object, &levels, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), 0, progress)) return NULL;
+    CALL(c, status, brio_mesh_subdivide(c.ctx, m, levels, &made));
+    return call_end_with_mesh(&c, status, made);
+}
+
 static PyObject *certificate_dict(const brio_certificate *k) {
     PyObject *genera = PyList_New((Py_ssize_t)k->components);
     for (size_t n = 0; genera && n < k->components; n++)
@@ -258,41 +308,8 @@ static PyObject *mesh_distance(PyObject *module, PyObject *args) {
                          d.hausdorff, "normal_consistency", d.normal_consistency, "diagonal", d.diagonal);
 }
 
-/* --- files --- */
-
-/* read(path, threads, progress): a mesh. The path is bytes. */
-static PyObject *read_mesh(PyObject *module, PyObject *args) {
-    PyObject *progress;
-    const char *path;
-    int threads;
-    call c;
-    brio_status status;
-    brio_mesh *made = NULL;
-    if (!PyArg_ParseTuple(args, "yiO", &path, &threads, &progress)) return NULL;
-    if (call_begin(&c, state_of(module), threads, progress)) return NULL;
-    CALL(c, status, brio_read(c.ctx, path, BRIO_FORMAT_AUTO, &made));
-    return call_end_with_mesh(&c, status, made);
-}
-
-/* write(path, mesh, ascii, float32, comment or None, threads, progress) */
-static PyObject *write_mesh(PyObject *module, PyObject *args) {
-    PyObject *object, *progress;
-    brio_write_options o = brio_write_options_default();
-    const char *path;
-    int threads;
-    call c;
-    brio_status status;
-    if (!PyArg_ParseTuple(args, "yOppziO", &path, &object, &o.ascii, &o.float32, &o.comment, &threads, &progress))
-        return NULL;
-    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
-    if (!m || call_begin(&c, state_of(module), threads, progress)) return NULL;
-    CALL(c, status, brio_write(c.ctx, path, m, &o));
-    if (call_end(&c, status)) return NULL;
-    Py_RETURN_NONE;
-}
-
 PyMethodDef mesh_methods[] = {
-    {"mesh", mesh, METH_VARARGS, "mesh(vertices, offsets, corners, tetrahedra, edges, properties)"},
+    {"mesh", mesh, METH_VARARGS, "mesh(vertices, offsets, corners, tetrahedra, edges, properties, like)"},
     {"mesh_views", mesh_views, METH_O, "The arrays of a mesh, in a dict."},
     {"mesh_with_normals", mesh_with_normals, METH_O, "The same surface with the properties nx, ny, nz."},
     {"mesh_simplified", mesh_simplified, METH_VARARGS, "mesh_simplified(mesh, faces, tolerance, progress)"},
@@ -300,7 +317,7 @@ PyMethodDef mesh_methods[] = {
     {"mesh_self_intersections", mesh_self_intersections, METH_VARARGS,
      "mesh_self_intersections(mesh, threads, progress)"},
     {"mesh_distance", mesh_distance, METH_VARARGS, "mesh_distance(a, b, samples, seed, threads, progress)"},
-    {"read", read_mesh, METH_VARARGS, "read(path, threads, progress)"},
-    {"write", write_mesh, METH_VARARGS, "write(path, mesh, ascii, float32, comment, threads, progress)"},
+    {"mesh_kept_components", mesh_kept_components, METH_VARARGS, "mesh_kept_components(mesh, largest, least_faces)"},
+    {"mesh_subdivided", mesh_subdivided, METH_VARARGS, "mesh_subdivided(mesh, levels, progress)"},
     {NULL, NULL, 0, NULL},
 };

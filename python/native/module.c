@@ -13,14 +13,48 @@ static PyObject *set_make_error(PyObject *module, PyObject *function) {
     Py_RETURN_NONE;
 }
 
+#ifdef BRIO_HAS_ZLIB
+#define HAS_ZLIB Py_True
+#else
+#define HAS_ZLIB Py_False
+#endif
+#ifdef BRIO_HAS_ZSTD
+#define HAS_ZSTD Py_True
+#else
+#define HAS_ZSTD Py_False
+#endif
+#ifdef BRIO_HAS_EXPAT
+#define HAS_EXPAT Py_True
+#else
+#define HAS_EXPAT Py_False
+#endif
+#ifdef BRIO_HAS_CJSON
+#define HAS_CJSON Py_True
+#else
+#define HAS_CJSON Py_False
+#endif
+#ifdef Py_GIL_DISABLED
+#define IS_FREE_THREADED Py_True
+#else
+#define IS_FREE_THREADED Py_False
+#endif
+
+/* What the library was built with: its optional libraries, and the kind of CPython. */
+static PyObject *build_info(PyObject *module, PyObject *unused) {
+    (void)module, (void)unused;
+    return Py_BuildValue("{s:s,s:O,s:O,s:O,s:O,s:O}", "version", brio_version(), "zlib", HAS_ZLIB, "zstd", HAS_ZSTD,
+                         "expat", HAS_EXPAT, "cjson", HAS_CJSON, "free_threaded", IS_FREE_THREADED);
+}
+
 static PyMethodDef methods[] = {
+    {"build_info", build_info, METH_NOARGS, "How the library was built, in a dict."},
     {"set_make_error", set_make_error, METH_O, "Sets the function that makes exceptions of status and sentence."},
     {NULL, NULL, 0, NULL},
 };
 
 static int add_all(PyObject *module) {
-    PyMethodDef *all[] = {methods,      delaunay_methods, locate_methods, plane_methods,   dual_methods,
-                          dual_methods, cells_methods,    mesh_methods,   surface_methods, alpha_methods};
+    PyMethodDef *all[] = {methods,      delaunay_methods, locate_methods, plane_methods,   dual_methods, cells_methods,
+                          mesh_methods, files_methods,    points_methods, surface_methods, alpha_methods};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         if (PyModule_AddFunctions(module, all[k])) return -1;
     return PyModule_AddStringConstant(module, "version", brio_version());

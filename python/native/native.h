@@ -153,6 +153,6 @@ extern PyType_Spec handle_spec;
 /* --- the functions of the module, by file --- */
 
 extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
-    mesh_methods[], surface_methods[], alpha_methods[];
+    mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[];
 
 #endif

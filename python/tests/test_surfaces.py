@@ -124,14 +124,228 @@ def test_alpha_complex_against_the_definition():
     assert entered == sorted(entered) and len(entered) == sum(map(len, complex.values))
     shape = complex.shape(complex.auto_alpha())
     assert shape.certificate.closed and shape.certificate.manifold and shape.counts["uncovered"] == 0
-    with pytest.raises(brio.NotOfferedError):
-        brio.alpha_complex(points[:, :2].copy())
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+def test_alpha_complex_of_the_plane(weighted):
+    points = GENERATOR.random((200, 2))
+    weights = 0.001 * GENERATOR.random(200) if weighted else None
+    complex = brio.alpha_complex(points, weights)
+    assert complex.ndim == 2 and [part.shape[1] for part in complex.simplices] == [1, 2, 3]
+    corner = points[complex.simplices[2]]
+    edges = corner[:, 1:] - corner[:, :1]
+    w = np.zeros((200,)) if weights is None else weights
+    w = w[complex.simplices[2]]
+    right = ((edges**2).sum(axis=2) - w[:, 1:] + w[:, :1]) / 2
+    centre = np.linalg.solve(edges, right[..., None])[..., 0]
+    assert np.allclose(complex.values[2], (centre**2).sum(axis=1) - w[:, 0])
+    entered = [value for _, value in complex.filtration()]
+    assert entered == sorted(entered) and len(entered) == sum(map(len, complex.values))
+    alpha = complex.auto_alpha()
+    shape = complex.shape(alpha)
+    c = shape.certificate
+    assert shape.counts["uncovered"] == 0 and c.components == 1 and c.oriented
+    assert len(shape.faces) == (complex.values[2] <= alpha).sum() and len(shape.edges) == c.boundary_edges
+    area = np.cross(*shape.vertices[shape.edges].swapaxes(0, 1))[:, 2].sum() / 2  # the triangles are left of the border
+    assert np.isclose(area, c.area)
+
+
+def test_alpha_shapes_of_the_plane():
+    ring = GENERATOR.random((4000, 2)) * 2 - 1
+    ring = ring[np.abs(np.hypot(*ring.T) - 0.7) < 0.3]
+    shape = brio.AlphaShape(ring, 0.01)
+    assert shape.certificate.boundary_loops == 2 and abs(shape.certificate.area - np.pi * (1 - 0.16)) < 0.15
+    with pytest.raises(brio.NoAnswerError):
+        brio.AlphaShape(ring, 0)
+    with pytest.raises(brio.ArgumentError):
+        brio.AlphaShape(ring, np.nan)
+    with pytest.raises(brio.NoAnswerError):
+        brio.alpha_complex([[0, 0], [1, 1], [2, 2]])
+
+
+def test_alpha_complex_of_the_plane_against_gudhi():
+    gudhi = pytest.importorskip("gudhi")
+    points = GENERATOR.random((300, 2))
+    mine = {simplex: value for simplex, value in brio.alpha_complex(points).filtration()}
+    tree = gudhi.AlphaComplex(points=points, precision="exact").create_simplex_tree()
+    theirs = {tuple(sorted(simplex)): value for simplex, value in tree.get_filtration()}
+    assert set(mine) == set(theirs)
+    assert np.allclose([mine[s] for s in theirs], list(theirs.values()), rtol=1e-12, atol=0)
 
 
 def test_alpha_shape_of_a_ball(ball):
     solid = ball * GENERATOR.random((2000, 1)) ** (1 / 3)
     shape = brio.AlphaShape(solid, 0.05)
     assert shape.alpha == 0.05 and 3 < shape.certificate.volume < 4.2
+
+
+# --- properties, choosing, files ---
+
+
+def test_thin_and_outliers():
+    points = GENERATOR.random((3000, 3))
+    chosen = brio.thin(points, 0.1)
+    distance = np.linalg.norm(points[chosen][:, None] - points, axis=2)
+    assert (np.sort(distance, axis=1)[:, 0] == 0).all() and distance.min(axis=0).max() < 0.1
+    near = np.linalg.norm(points[chosen][:, None] - points[chosen], axis=2)
+    assert near[near > 0].min() >= 0.1
+    stray = np.concatenate([points, [[3, 3, 3], [-2, 0, 0]]])
+    assert np.flatnonzero(brio.outliers(stray)).tolist() == [3000, 3001]
+    assert (brio.outliers(brio.Mesh(stray)) == brio.outliers(stray)).all()
+    assert len(brio.Mesh(points).select(chosen).vertices) == chosen.sum()
+    assert brio.outliers(stray, factor=1e6).sum() == 0
+    for call in (lambda: brio.thin(points, 0), lambda: brio.thin(points, np.nan), lambda: brio.outliers(points, 0),
+                 lambda: brio.outliers(points, 64), lambda: brio.outliers(points, factor=0.5)):
+        with pytest.raises(brio.ArgumentError):
+            call()
+    points[5] = np.nan
+    for call in (lambda: brio.thin(points, 0.1), lambda: brio.outliers(points)):
+        with pytest.raises(brio.NotFiniteError) as caught:
+            call()
+        assert caught.value.indices.tolist() == [5]
+
+
+def test_selected_vertices_keep_what_they_join():
+    mesh = brio.Mesh(np.concatenate([CORNERS, [[5, 5, 5]]]), [[0, 2, 1], [0, 1, 3, 2]], tetrahedra=[[0, 1, 2, 3]],
+                     edges=[[0, 4], [2, 1]], properties={"n": np.arange(5), "rgb": np.arange(15).reshape(5, 3)})
+    some = mesh.select([2, 1, 0])
+    assert (some.vertices == CORNERS[[2, 1, 0]]).all() and some.polygons == [[2, 0, 1]] and some.edges.tolist() == [[0, 1]]
+    assert len(some.tetrahedra) == 0 and some.properties["n"].tolist() == [2, 1, 0]
+    assert some.properties["rgb"].tolist() == [[6, 7, 8], [3, 4, 5], [0, 1, 2]]
+    assert len(mesh.select(np.zeros(5, bool)).vertices) == 0 and mesh.select(np.ones(5, bool)).polygons == mesh.polygons
+    for which in [[5], [-1], [0, 0], [True], [0.5], [[1]], "ab"]:
+        with pytest.raises(brio.ArgumentError):
+            mesh.select(which)
+
+
+def test_carried_properties_keep_types_and_names():
+    scan = brio.Mesh([[0, 0, 0], [9, 0, 0], [1, 0, 0]],
+                     properties={"label": np.array([7, 8, 9], np.int64), "x": np.eye(3), "name": np.array(["a", "b", "c"])})
+    mesh = brio.Mesh([[8, 0, 0], [0, 0, 0], [0.5, 0, 0]], properties={"label": [1.0, 2.0, 3.0]})
+    mesh.carry_properties(scan)
+    mesh.carry_properties(scan, samples=[2, 1, 0])
+    assert mesh.properties["label"].tolist() == [1, 2, 3]
+    assert mesh.properties["input_label"].tolist() == [8, 7, 7] and mesh.properties["input_label"].dtype == np.int64
+    assert mesh.properties["input_label_2"].tolist() == [9, 8, 7]
+    assert mesh.properties["name"].tolist() == ["b", "a", "a"] and mesh.properties["x"].tolist() == np.eye(3)[[1, 0, 0]].tolist()
+    for samples in [[0, 1], [0, 1, 3], [0, 1, -1], [0.0, 1.0, 2.0]]:
+        with pytest.raises(brio.ArgumentError):
+            mesh.carry_properties(scan, samples)
+    with pytest.raises(brio.ArgumentError):
+        mesh.carry_properties(brio.Mesh(np.empty((0, 3))))
+
+
+def test_attributes_with_a_name_of_the_surface(ball):
+    surface = brio.reconstruct(ball, confidence=True, attributes={"confidence": np.arange(2000)})
+    assert (surface.properties["input_confidence"] == surface.samples).all()
+    assert surface.properties["confidence"].dtype == np.float32
+
+
+def test_simplified_meshes_keep_properties(ball):
+    surface = brio.reconstruct(ball, attributes={"number": np.arange(2000), "place": ball})
+    fewer = surface.simplify(500)
+    assert np.abs(fewer.properties["place"] - fewer.vertices).max() < 0.3
+    assert (fewer.properties["place"] == ball[fewer.properties["number"]]).all()
+
+
+def test_components_and_subdivision():
+    two = brio.Mesh(np.concatenate([CORNERS, CORNERS * 3 + 9]), np.concatenate([TRIANGLES, TRIANGLES[:3] + 4]),
+                    properties={"n": np.arange(8)})
+    assert two.keep_components(largest=True).properties["n"].tolist() == [4, 5, 6, 7]
+    assert two.keep_components(least_faces=4).properties["n"].tolist() == [0, 1, 2, 3]
+    with pytest.raises(brio.NoAnswerError):
+        two.keep_components(least_faces=9)
+    with pytest.raises(brio.ArgumentError):
+        two.keep_components(least_faces=-1)
+    finer = two.subdivide()
+    assert len(finer.faces) == 28 and finer.certificate.components == 2 and (finer.vertices[:8] == two.vertices).all()
+
+
+def test_columns_of_texts(tmp_path):
+    path = tmp_path / "rows.txt"
+    path.write_text("1 10 0.5 7 7\n2 20 1.5 8 8\n")
+    for columns in ("-,heat,x,y,z", ["-", "heat", "x", "y", "z"], (None, "heat", "x", "y", "z")):
+        mesh = brio.read(path, columns=columns)
+        assert mesh.vertices.tolist() == [[0.5, 7, 7], [1.5, 8, 8]] and mesh.properties["heat"].tolist() == [10, 20]
+    assert brio.read(path).vertices.tolist() == [[1, 10, 0.5], [2, 20, 1.5]]
+    with pytest.raises(brio.ArgumentError):
+        brio.read(path, columns="x,y")
+    brio.write(tmp_path / "a.ply", CORNERS)
+    with pytest.raises(brio.ArgumentError):
+        brio.read(tmp_path / "a.ply", columns="x,y,z")
+
+
+def test_conversion(tmp_path):
+    points = np.concatenate([GENERATOR.random((2000, 3)), [[9, 9, 9]]])
+    brio.Mesh(points, [[0, 1, 2]], properties={"heat": np.arange(2001, dtype=np.float32)}).write(tmp_path / "a.ply")
+    done = brio.convert(tmp_path / "a.ply", tmp_path / "b.xyz", outliers=12, thin=0.1, box=[[0, 0, 0], [9, 9, 9]])
+    again = brio.read(tmp_path / "b.xyz", columns="x,y,z,heat")
+    assert (done.points_read, done.outliers) == (2001, 1) and done.points == len(again.vertices) < 1000
+    assert done.points + done.thinned + done.outliers == 2001 and (done.faces == 0 or "faces" in done.lost)
+    assert (again.vertices == points[again.properties["heat"].astype(int)]).all()
+    lost = brio.convert(tmp_path / "a.ply", tmp_path / "c.stl").lost
+    assert "heat" in lost
+    for options in [{"box": [1, 2, 3]}, {"outliers": -1}, {"outliers": 64}, {"thin": -1.0}, {"columns": "x,y,z"}]:
+        with pytest.raises(brio.ArgumentError):
+            brio.convert(tmp_path / "a.ply", tmp_path / "d.xyz", **options)
+    with pytest.raises(brio.OpenError):
+        brio.convert(tmp_path / "absent.ply", tmp_path / "d.xyz")
+    assert not (tmp_path / "d.xyz").exists()
+    with pytest.raises(brio.CancelledError):
+        brio.convert(tmp_path / "a.ply", tmp_path / "d.xyz", thin=0.001, progress=lambda *_: True)
+        brio.Delaunay(GENERATOR.random((200_000, 3)), progress=lambda *_: True)
+
+
+def test_las_files_keep_the_steps_of_their_coordinates(tmp_path):
+    points = GENERATOR.integers(0, 10**6, (100, 3)) * 0.001 + 4e5
+    brio.write(tmp_path / "a.las", points)
+    first = brio.read(tmp_path / "a.las")
+    first.write(tmp_path / "b.las")
+    assert (brio.read(tmp_path / "b.las").vertices == first.vertices).all()
+    first.select(np.arange(50)).write(tmp_path / "c.las")
+    assert (brio.read(tmp_path / "c.las").vertices == first.vertices[:50]).all()
+    head = (tmp_path / "a.las").read_bytes()[131:155]
+    assert (tmp_path / "b.las").read_bytes()[131:155] == head == (tmp_path / "c.las").read_bytes()[131:155]
+
+
+def test_what_the_build_reads(tmp_path):
+    import gzip
+
+    info = brio.build_info()
+    assert info["version"] == brio.__version__ and set(info) == {"version", "zlib", "zstd", "expat", "cjson", "free_threaded"}
+    path = tmp_path / "a.xyz.gz"
+    path.write_bytes(gzip.compress(b"1 2 3\n"))
+    if info["zlib"]:
+        assert brio.read(path).vertices.tolist() == [[1, 2, 3]]
+    else:
+        with pytest.raises(brio.Error, match="zlib"):
+            brio.read(path)
+
+
+def test_copies_and_pickles(ball):
+    import copy
+    import pickle
+
+    mesh = brio.Mesh(CORNERS, [[0, 1, 2, 3]], tetrahedra=[[0, 1, 2, 3]], edges=[[0, 1]], properties={"n": np.arange(4)})
+    surface = brio.reconstruct(ball, attributes={"place": ball})
+    points = GENERATOR.random((50, 3))
+    for clone in (copy.deepcopy, copy.copy, lambda thing: pickle.loads(pickle.dumps(thing))):
+        again = clone(mesh)
+        assert again.polygons == mesh.polygons and again.properties["n"].tolist() == [0, 1, 2, 3]
+        assert again.tetrahedra.tolist() == [[0, 1, 2, 3]] and again.edges.tolist() == [[0, 1]]
+        assert clone(brio.Mesh(CORNERS)).polygons == [] and not again.vertices.flags.writeable
+        other = clone(surface)
+        assert type(other) is brio._reconstruct.Surface and (other.samples == surface.samples).all()
+        assert other.certificate == surface.certificate and other.simplify(500).properties["place"].shape[1] == 3
+        assert clone(brio.ConvexHull(points)).volume == brio.ConvexHull(points).volume
+        assert (clone(brio.Voronoi(points)).volumes == brio.Voronoi(points).volumes).all()
+        shape = clone(brio.AlphaShape(points))
+        assert shape.complex.auto_alpha() == shape.alpha and len(shape.complex.shape(shape.alpha).faces) == len(shape.faces)
+        for interpolator in (brio.LinearNDInterpolator, brio.NaturalNeighbourInterpolator):
+            assert np.isclose(clone(interpolator(points, points[:, 0]))(points.mean(axis=0)), points[:, 0].mean())
+
+
+# --- objects of other packages ---
 
 
 def test_objects_of_trimesh():

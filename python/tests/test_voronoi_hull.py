@@ -99,6 +99,7 @@ def test_same_hull_as_scipy(d):
     mine, theirs = brio.ConvexHull(points), spatial.ConvexHull(points)
     assert np.isclose(mine.volume, theirs.volume) and np.isclose(mine.area, theirs.area)
     assert set(mine.vertices) == set(theirs.vertices)
+    assert mine.good is None and theirs.good is None  # without Qhull's option QG
     for name in ("vertices", "simplices", "neighbors", "equations", "coplanar"):
         assert getattr(mine, name).shape == getattr(theirs, name).shape, name
         assert getattr(mine, name).dtype == getattr(theirs, name).dtype, name

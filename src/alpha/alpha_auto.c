@@ -1,6 +1,6 @@
 /* The least alpha whose shape is one solid with all vertices.
  *
- * Adds the tetrahedra by ascending value and joins them across facets in a union-find. Looks, where the value rises, at
+ * Adds the tetrahedra, or in the plane the triangles, by ascending value and joins them across facets in a union-find. Looks, where the value rises, at
  * the number of sets and of vertices met so far.
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
@@ -8,31 +8,48 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/union_find.h"
-#include "triangulation/view.h"
+#include <brio/brio.h>
 
+/* The cells are tetrahedra or triangles, as numbers: `corners` vertices and as many mates, handles 4 * cell + slot. */
 typedef struct {
-    const brio_tetrahedra *t;
+    const uint32_t *numbers;
+    size_t corners;
     const double *value;
     size_t num_finite;
-    uint32_t *set;  /* #T */
-    uint8_t *added; /* #T, then #P: whether a tetrahedron or a vertex was met */
+    uint32_t *set;  /* #cells */
+    uint8_t *added; /* #cells, then #P: whether a cell or a vertex was met */
     size_t sets, vertices;
 } growth;
 
-static void add(growth *g, uint32_t tet) {
-    const brio_tetrahedron *own = &g->t->tet[tet];
+static void add(growth *g, uint32_t cell) {
+    const uint32_t *vertex = g->numbers + 2 * g->corners * cell, *mate = vertex + g->corners;
     uint8_t *met = g->added + g->num_finite;
-    g->added[tet] = 1;
+    g->added[cell] = 1;
     g->sets++;
-    for (int i = 0; i < 4; i++) {
-        uint32_t other = brio_tet_of(own->mate[i]);
-        if (!met[own->vertex[i]]) g->vertices++;
-        met[own->vertex[i]] = 1;
+    for (size_t i = 0; i < g->corners; i++) {
+        uint32_t other = mate[i] >> 2;
+        if (!met[vertex[i]]) g->vertices++;
+        met[vertex[i]] = 1;
         if (other >= g->num_finite || !g->added[other]) continue;
-        if (brio_find(g->set, tet) == brio_find(g->set, other)) continue;
-        brio_unite(g->set, tet, other, true);
+        if (brio_find(g->set, cell) == brio_find(g->set, other)) continue;
+        brio_unite(g->set, cell, other, true);
         g->sets--;
     }
+}
+
+/* Begins with the cells of a complex. Returns the number of its points. */
+static size_t begin(const brio_alpha_complex *c, growth *g) {
+    if (c->triangulation) {
+        g->numbers = (const uint32_t *)brio_triangulation_tetrahedra(c->triangulation);
+        g->corners = 4;
+    } else {
+        g->numbers = (const uint32_t *)brio_triangulation2_triangles(c->triangulation2);
+        g->corners = 3;
+    }
+    g->value = c->values[g->corners - 1];
+    g->num_finite = c->counts[g->corners - 1];
+    return c->triangulation ? brio_triangulation_stats(c->triangulation)->points
+                            : brio_triangulation2_stats(c->triangulation2)->points;
 }
 
 static int by_index(uint32_t a, uint32_t b, const void *user) {
@@ -43,9 +60,8 @@ static int by_index(uint32_t a, uint32_t b, const void *user) {
 brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    const brio_tetrahedra tets = brio_tetrahedra_of(complex->triangulation);
-    size_t n = complex->counts[3], points = brio_triangulation_stats(complex->triangulation)->points;
-    growth g = {&tets, complex->values[3], n, NULL, NULL, 0, 0};
+    growth g = {.sets = 0};
+    size_t points = begin(complex, &g), n = g.num_finite;
     uint32_t *order = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, order, n));
     BRIO_TRY(BRIO_ALLOC(ctx, g.set, n));

@@ -110,9 +110,10 @@ brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     shape s = {.ctx = ctx, .complex = complex, .alpha = alpha};
+    *out = NULL;
+    BRIO_REQUIRE(ctx, complex->triangulation, BRIO_ERR_ARGUMENT, "the complex is of points in the plane");
     s.t = brio_tetrahedra_of(complex->triangulation);
     s.num_points = brio_triangulation_stats(complex->triangulation)->points;
-    *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_alpha_shape_stats, stats));
     BRIO_REQUIRE(ctx, !isnan(alpha), BRIO_ERR_ARGUMENT, "alpha is NaN");
     BRIO_TRY(brio_mesh_new(ctx, &s.mesh));

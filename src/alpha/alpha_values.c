@@ -11,8 +11,7 @@
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994.
  *           Edelsbrunner. The union of balls and its dual shape. DCG 1995. */
-#include "alpha/alpha_complex.h"
-#include "alpha/squared_radius.h"
+#include "alpha/simplex_values.h"
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
@@ -21,7 +20,6 @@
 #include "triangulation/ring.h"
 #include "triangulation/view.h"
 #include <math.h>
-#include <string.h>
 
 enum { CHUNK = 1 << 11, TETS_A_THREAD = 1 << 12 };
 
@@ -35,8 +33,7 @@ typedef struct {
     brio_context *ctx;
     brio_tetrahedra t; /* without records */
     size_t num_finite, num_points;
-    bool weighted;
-    double (*record)[4];    /* #P */
+    brio_records records;
     double *of_facet;       /* 4 #T: the value of each facet, at the handles of its finite tetrahedra */
     const uint32_t *facet;  /* #facets: one handle each */
     const edge_place *edge; /* #edges */
@@ -47,33 +44,12 @@ static bool is_finite(const evaluation *e, uint32_t handle) {
     return brio_tet_of(handle) < e->num_finite;
 }
 
-static const double *point(const evaluation *e, uint32_t vertex) {
-    return e->record[vertex];
-}
-
-/* Copies vertices in ascending order. */
-static void put_simplex(const uint32_t *from, int count, uint32_t *to) {
-    for (int n = 0; n < count; n++) {
-        int at = n;
-        for (; at > 0 && to[at - 1] > from[n]; at--) to[at] = to[at - 1];
-        to[at] = from[n];
-    }
-}
-
-/* Returns the squared radius of a simplex whose vertices are in ascending order, so that it has the same bits wherever the
- * simplex was found. */
 static double own_value(const evaluation *e, const uint32_t *vertex, int count) {
-    const double *p[4];
-    for (int i = 0; i < count; i++) p[i] = point(e, vertex[i]);
-    return brio_squared_radius(p, count);
+    return brio_own_value(&e->records, vertex, count);
 }
 
-/* Returns whether a vertex is strictly inside the smallest orthosphere of an edge or a facet. */
 static bool is_inside(const evaluation *e, const uint32_t *vertex, int count, uint32_t other) {
-    const double *p[4];
-    for (int i = 0; i < count; i++) p[i] = point(e, vertex[i]);
-    p[count] = point(e, other);
-    return brio_attached(p, count, e->weighted);
+    return brio_is_inside(&e->records, vertex, count, other);
 }
 
 /* --- tetrahedra --- */
@@ -83,7 +59,7 @@ static void find_tetrahedra(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t t = begin; t < end; t++) {
         uint32_t *vertex = e->out->simplices[3] + 4 * t;
-        put_simplex(e->t.tet[t].vertex, 4, vertex);
+        brio_put_simplex(e->t.tet[t].vertex, 4, vertex);
         e->out->values[3][t] = own_value(e, vertex, 4);
         e->out->solid[3][t] = e->out->values[3][t];
         e->out->gabriel[3][t] = 1;
@@ -96,7 +72,7 @@ static void find_facet(const evaluation *e, size_t f) {
     const uint32_t h = e->facet[f], side[2] = {h, *brio_mate(&e->t, h)};
     uint32_t *vertex = e->out->simplices[2] + 3 * f, seen[3];
     for (int k = 0; k < 3; k++) seen[k] = e->t.tet[brio_tet_of(h)].vertex[BRIO_FACET[brio_slot_of(h)][k]];
-    put_simplex(seen, 3, vertex);
+    brio_put_simplex(seen, 3, vertex);
     double value = INFINITY;
     bool gabriel = true;
     for (int s = 0; s < 2; s++) {
@@ -142,7 +118,7 @@ static void find_edge(const evaluation *e, size_t n) {
     const edge_place *at = &e->edge[n];
     const uint32_t *v = e->t.tet[at->tet].vertex, seen[2] = {v[at->i], v[at->j]};
     uint32_t *vertex = e->out->simplices[1] + 2 * n;
-    put_simplex(seen, 2, vertex);
+    brio_put_simplex(seen, 2, vertex);
     edge_star star = {vertex, INFINITY, INFINITY, true};
     meet_tetrahedron(e, at->tet, &star);
     brio_ring ring = brio_ring_second(&e->t, at->tet, at->i, at->j);
@@ -157,28 +133,6 @@ static void find_edge(const evaluation *e, size_t n) {
 static void find_edges(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t n = begin; n < end; n++) find_edge(user, n);
-}
-
-/* --- vertices --- */
-
-/* Vertex a is attached when a neighbour b has power distance |a - b|^2 - wb below -wa from a. */
-static void find_vertices(const evaluation *e, const uint32_t *place) {
-    brio_alpha_complex *c = e->out;
-    double *least = c->values[0], *solid = c->solid[0];
-    for (size_t v = 0; v < c->counts[0]; v++) {
-        least[v] = solid[v] = INFINITY;
-        c->gabriel[0][v] = 1;
-    }
-    for (size_t n = 0; n < c->counts[1]; n++)
-        for (int i = 0; i < 2; i++) {
-            uint32_t own = c->simplices[1][2 * n + (size_t)i], other = c->simplices[1][2 * n + (size_t)!i];
-            const double *a = point(e, own), *b = point(e, other);
-            least[place[own]] = fmin(least[place[own]], c->values[1][n]);
-            solid[place[own]] = fmin(solid[place[own]], c->solid[1][n]);
-            if (e->weighted && brio_power_compare(a, b, a) < 0) c->gabriel[0][place[own]] = 0;
-        }
-    for (size_t v = 0; v < c->counts[0]; v++)
-        if (c->gabriel[0][v]) least[v] = fmin(least[v], 0 - point(e, c->simplices[0][v])[3]);
 }
 
 /* --- which simplices there are --- */
@@ -220,36 +174,7 @@ static size_t number_vertices(const evaluation *e, uint32_t *place) {
     return count;
 }
 
-static brio_status make_room(brio_context *ctx, brio_alpha_complex *c) {
-    brio_status status = BRIO_OK;
-    size_t total = 0, corners = 0;
-    for (size_t k = 0; k < 4; k++) {
-        total += c->counts[k];
-        corners += c->counts[k] * (k + 1);
-    }
-    BRIO_REQUIRE(ctx, total < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu simplices; at most 2^32 - 2", total);
-    BRIO_TRY(BRIO_ALLOC(ctx, c->simplices[0], corners));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->values[0], total));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->solid[0], total));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->gabriel[0], total));
-    for (size_t k = 1; k < 4; k++) {
-        c->simplices[k] = c->simplices[k - 1] + c->counts[k - 1] * k;
-        c->values[k] = c->values[k - 1] + c->counts[k - 1];
-        c->solid[k] = c->solid[k - 1] + c->counts[k - 1];
-        c->gabriel[k] = c->gabriel[k - 1] + c->counts[k - 1];
-    }
-done:
-    return status;
-}
-
 /* --- all of it --- */
-
-static void take_records(evaluation *e, const double *points, const double *weights) {
-    for (size_t i = 0; i < e->num_points; i++) {
-        for (size_t k = 0; k < 3; k++) e->record[i][k] = points[3 * i + k];
-        e->record[i][3] = weights ? weights[i] : 0;
-    }
-}
 
 static brio_status evaluate(evaluation *e, const uint32_t *place) {
     brio_status status = BRIO_OK;
@@ -262,7 +187,7 @@ static brio_status evaluate(evaluation *e, const uint32_t *place) {
     brio_for_chunks(e->ctx, threads, c->counts[1], CHUNK, find_edges, e);
     for (size_t n = 0; n < 2 * c->counts[1]; n++) /* every vertex has edges */
         c->simplices[0][place[c->simplices[1][n]]] = c->simplices[1][n];
-    find_vertices(e, place);
+    brio_find_vertex_values(c, &e->records, place);
 done:
     return status;
 }
@@ -272,23 +197,22 @@ static brio_status find_values(evaluation *e, const double *points, const double
     uint32_t *facet = NULL, *place = NULL;
     edge_place *edge = NULL;
     size_t *counts = e->out->counts;
-    BRIO_TRY(BRIO_ALLOC(e->ctx, e->record, e->num_points));
+    BRIO_TRY(brio_records_take(e->ctx, points, 3, weights, e->num_points, &e->records));
     BRIO_TRY(BRIO_ALLOC(e->ctx, e->of_facet, 4 * e->num_finite));
     BRIO_TRY(BRIO_ALLOC_ZERO(e->ctx, place, e->num_points));
-    take_records(e, points, weights);
     BRIO_TRY(list_facets(e, &facet, &counts[2]));
     BRIO_TRY(list_edges(e, &edge, &counts[1]));
     BRIO_TRY(brio_progress(e->ctx, "values", 0.2));
     counts[0] = number_vertices(e, place);
     counts[3] = e->num_finite;
     e->facet = facet, e->edge = edge;
-    BRIO_TRY(make_room(e->ctx, e->out));
+    BRIO_TRY(brio_alpha_room(e->ctx, e->out));
     BRIO_TRY(evaluate(e, place));
 done:
     brio_release(e->ctx, facet);
     brio_release(e->ctx, edge);
     brio_release(e->ctx, place);
-    brio_release(e->ctx, e->record);
+    brio_release(e->ctx, e->records.of);
     brio_release(e->ctx, e->of_facet);
     return status;
 }
@@ -299,7 +223,7 @@ brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, co
     brio_status status = BRIO_OK;
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
     brio_alpha_complex mine = {.size = sizeof mine, .context = ctx, .triangulation = t};
-    evaluation e = {.ctx = ctx, .num_finite = s->tetrahedra, .num_points = num_points, .weighted = weights != NULL};
+    evaluation e = {.ctx = ctx, .num_finite = s->tetrahedra, .num_points = num_points};
     e.t = brio_tetrahedra_of(t);
     e.out = &mine;
     brio_status size = BRIO_CHECK_RESULT(ctx, brio_alpha_complex, out);

@@ -145,6 +145,7 @@ ENDS_WITH(brio_read_options, columns);
 ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, coordinate_origin);
+ENDS_WITH(brio_alpha_complex, triangulation2);
 
 int main(void) {
     RUN(older_callers_get_what_they_know);

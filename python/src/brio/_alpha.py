@@ -11,7 +11,7 @@ from ._arrays import Floats
 from ._calls import Progress, reporting
 from ._delaunay import Delaunay
 from ._mesh import Mesh
-from .errors import NotOfferedError
+from .errors import ArgumentError, NoAnswerError
 
 
 class AlphaComplex:
@@ -19,13 +19,14 @@ class AlphaComplex:
 
     Attributes
     ----------
-    simplices : list of four ndarrays of uint32, shapes (n, 1) to (n, 4)
-        Vertices, edges, triangles, tetrahedra.
-    values : list of four ndarrays of float64
+    ndim : int
+    simplices : list of ndim + 1 ndarrays of uint32, shapes (n, 1) to (n, ndim + 1)
+        Vertices, edges, triangles and, in space, tetrahedra.
+    values : list of ndim + 1 ndarrays of float64
         The least alpha at which each simplex is in the complex.
-    solid : list of four ndarrays of float64
-        The least alpha at which a tetrahedron with the simplex is.
-    gabriel : list of four ndarrays of bool
+    solid : list of ndim + 1 ndarrays of float64
+        The least alpha at which a tetrahedron (in the plane, a triangle) with the simplex is.
+    gabriel : list of ndim + 1 ndarrays of bool
     order : ndarray of uint32
         The numbers of all simplices as they enter: those of vertices come first, then edges, and so on.
     """
@@ -33,7 +34,8 @@ class AlphaComplex:
     def __init__(self, tri: Delaunay) -> None:
         with reporting(tri.progress) as report:
             views = _native.alpha_values(tri._handle, tri.points, tri.weights, tri.threads, report)
-        self.points, self.weights, self._complex = tri.points, tri.weights, views["complex"]
+        self.points, self.weights, self._complex, self.ndim = tri.points, tri.weights, views["complex"], tri.ndim
+        self._tri = tri
         self.simplices: list[NDArray[np.uint32]] = [np.asarray(view) for view in views["simplices"]]
         self.values: list[Floats] = [np.asarray(view) for view in views["values"]]
         self.solid: list[Floats] = [np.asarray(view) for view in views["solid"]]
@@ -41,8 +43,11 @@ class AlphaComplex:
         self.order: NDArray[np.uint32] = np.empty(sum(len(part) for part in self.values), np.uint32)
         _native.alpha_order(self._complex, self.order)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._tri,)
+
     def auto_alpha(self) -> float:
-        """The least alpha whose tetrahedra are one solid that has all vertices."""
+        """The least alpha whose tetrahedra are one solid, or whose triangles one region, that has all vertices."""
         alpha: float = _native.alpha_auto(self._complex)
         return alpha
 
@@ -54,20 +59,46 @@ class AlphaComplex:
             yield simplices[number], values[number]
 
     def shape(self, alpha: float) -> "AlphaShape":
-        """The boundary of the tetrahedra with values of at most `alpha`."""
-        handle, counts = _native.alpha_shape(self._complex, self.points, self.weights, float(alpha))
+        """The alpha shape for `alpha`, a squared radius: see AlphaShape."""
+        handle, counts = (self._in_plane if self.ndim == 2 else self._in_space)(float(alpha))
         shape: AlphaShape = AlphaShape._of(handle)
         shape.alpha, shape.counts, shape.complex = float(alpha), counts, self
         return shape
 
+    def _in_space(self, alpha: float) -> tuple[Any, dict[str, int]]:
+        made: tuple[Any, dict[str, int]] = _native.alpha_shape(self._complex, self.points, self.weights, alpha)
+        return made
+
+    def _in_plane(self, alpha: float) -> tuple[Any, dict[str, int]]:
+        """The triangles of at most `alpha`, and their border."""
+        if np.isnan(alpha):
+            raise ArgumentError("alpha is NaN")
+        inside = self.values[2] <= alpha
+        if not inside.any():
+            raise NoAnswerError(f"no triangle has a value of at most alpha = {alpha:g}")
+        triangles, mates = self._tri.simplices[inside], self._tri.neighbors[inside]
+        is_border = (mates < 0) | ~inside[mates]
+        border = np.concatenate([triangles[is_border[:, k]][:, [(k + 1) % 3, (k + 2) % 3]] for k in range(3)])
+        used = np.unique(triangles)
+        place = np.zeros(len(self.points), np.uint32)
+        place[used] = np.arange(len(used), dtype=np.uint32)
+        vertices = np.column_stack([self.points[used], np.zeros(len(used))])
+        counts = {"triangles": int(inside.sum()), "vertices": len(used),
+                  "uncovered": int((self.solid[0] > alpha).sum()),
+                  "singular_vertices": int(((self.values[0] <= alpha) & (self.solid[0] > alpha)).sum()),
+                  "singular_edges": int(((self.values[1] <= alpha) & (self.solid[1] > alpha)).sum())}
+        offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.uint64)
+        corners = place[triangles.ravel()]
+        return _native.mesh(vertices, offsets, corners, None, np.ascontiguousarray(place[border]), {}, None), counts
+
 
 def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0,
                   progress: bool | Progress | None = None) -> AlphaComplex:
-    """Computes the alpha filtration of points in space or, with weights, the weighted one.
+    """Computes the alpha filtration of points in the plane or in space or, with weights, the weighted one.
 
     Parameters
     ----------
-    points : array_like, shape (n, 3)
+    points : array_like, shape (n, 2) or (n, 3)
     weights : array_like, shape (n,), optional
 
     Returns
@@ -83,20 +114,20 @@ def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0,
     >>> sorted(complex.values[1].tolist())
     [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
     """
-    tri = Delaunay(points, weights, threads=threads, progress=progress)
-    if tri.ndim != 3:
-        raise NotOfferedError("alpha complexes of points in the plane are not offered")
-    return AlphaComplex(tri)
+    return AlphaComplex(Delaunay(points, weights, threads=threads, progress=progress))
 
 
 class AlphaShape(Mesh):
-    """The alpha shape of points in space: a closed, manifold Mesh.
+    """The alpha shape of points, a Mesh: in space the closed, manifold border of the tetrahedra of at most alpha.
+
+    In the plane the faces are the triangles of at most alpha (z is 0), and `edges` their border, with the triangles to
+    its left.
 
     Parameters
     ----------
-    points : array_like, shape (n, 3)
+    points : array_like, shape (n, 2) or (n, 3)
     alpha : float, optional
-        A squared radius; the default is the least one of a single solid that has all vertices.
+        A squared radius; the default is the least one of a single solid (in the plane, region) that has all vertices.
     weights, threads, progress
         As for Delaunay.
 
@@ -104,8 +135,8 @@ class AlphaShape(Mesh):
     ----------
     alpha : float
     counts : dict
-        Of the tetrahedra in the complex, of vertices on the surface and of those in no tetrahedron ("uncovered"), of
-        simplices that bound no tetrahedron ("singular_...").
+        Of the tetrahedra (triangles) in the complex, of vertices on the surface and of those in no tetrahedron
+        ("uncovered"), of simplices that bound no tetrahedron ("singular_...").
     complex : AlphaComplex
 
     Examples
@@ -114,6 +145,9 @@ class AlphaShape(Mesh):
     >>> shape = brio.AlphaShape(list(itertools.product(range(3), repeat=3)))
     >>> shape.alpha, round(shape.certificate.volume, 9)
     (0.75, 8.0)
+    >>> flat = brio.AlphaShape([[0, 0], [1, 0], [1, 1], [0, 1], [9, 0]], 1.0)
+    >>> len(flat.faces), len(flat.edges), flat.counts["uncovered"]
+    (2, 4, 1)
     """
 
     alpha: float

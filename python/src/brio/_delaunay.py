@@ -108,8 +108,7 @@ class Delaunay:
         function = _native.delaunay if points.shape[1] == 3 else _native.delaunay2
         handle = _calls.of_points(function, points, weights, self.threads, self.progress)
         kept = {"threads": self.threads, "progress": self.progress, "_closed": self._closed}
-        self.__dict__.clear()
-        self.__dict__.update(kept, points=points, weights=weights, _handle=handle)
+        self.__dict__ = dict(kept, points=points, weights=weights, _handle=handle)  # at once: other threads may read
 
     # --- sizes ---
 

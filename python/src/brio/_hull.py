@@ -39,6 +39,9 @@ class ConvexHull:
         Unit normals to the outside, and offsets.
     volume, area : float
         In the plane, the area and the perimeter.
+    good : None
+        scipy's mask of the facets that are visible from a point; None there, too, without Qhull's option QG, which brio
+        does not offer.
     polygon_offsets, polygon_vertices : ndarray
         Facet f has the vertices ``polygon_vertices[polygon_offsets[f]:polygon_offsets[f + 1]]``; in space only.
 
@@ -84,9 +87,7 @@ class ConvexHull:
         corners = samples[np.asarray(views["face_vertices"])].astype(np.int32)
         if len(offsets) < (2 if d == 2 else 5):
             raise NoAnswerError(f"the points have no hull with an inside: they lie in a flat of dimension below {d}")
-        kept = {"threads": self.threads, "progress": self.progress, "_closed": self._closed, "good": None}
-        self.__dict__.clear()
-        self.__dict__.update(kept, points=points, polygon_offsets=offsets, polygon_vertices=corners)
+        self.points, self.polygon_offsets, self.polygon_vertices = points, offsets, corners
         if d == 2:
             self.vertices = corners
             self._set_edges()
@@ -166,11 +167,19 @@ class ConvexHull:
         """Adds points and builds the hull again, from all points."""
         if self._closed:
             raise RuntimeError("the hull is closed: it takes no more points")
-        self._build(np.concatenate([self.points, as_rows(points, "points", (self.ndim,))]))
+        both = np.concatenate([self.points, as_rows(points, "points", (self.ndim,))])
+        bigger = ConvexHull(both, threads=self.threads, progress=self.progress)
+        self.__dict__ = bigger.__dict__  # at once: other threads may read
 
     def close(self) -> None:
         """Ends the adding of points."""
         self._closed = True
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "progress": None}
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return (self.points,)
 
 
 def _neighbors(triangles: Ints) -> Ints:

@@ -1,6 +1,7 @@
 """Meshes: vertices with polygons, tetrahedra, edges, and properties of the vertices."""
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,6 +12,8 @@ from numpy.typing import NDArray
 from . import _native
 from ._arrays import Floats, as_array, as_rows, frozen
 from ._calls import Progress, reporting
+from ._points import nearest
+from ._properties import Properties, as_property, carry, scalars
 from .errors import ArgumentError
 
 Indices = NDArray[np.uint32]
@@ -125,9 +128,9 @@ class Mesh:
             if indices is not None and indices.size and indices.max() >= len(rows):
                 raise ArgumentError(f"{name}: there is no vertex {indices.max()}; there are {len(rows)}",
                                     np.flatnonzero(indices.ravel() >= len(rows)))
-        self._take(_native.mesh(rows, offsets, corners, tets, ends, {}))
+        self._take(_native.mesh(rows, offsets, corners, tets, ends, {}, None))
         for name, values in (properties or {}).items():
-            self.properties[name] = self._as_property(name, values)
+            self.properties[name] = as_property(f"property {name}", values, len(rows))
 
     @classmethod
     def _of(cls, handle: Any) -> Any:
@@ -145,12 +148,6 @@ class Mesh:
         self.tetrahedra: Indices = np.asarray(views["tetrahedra"])
         self.edges: Indices = np.asarray(views["edges"])
         self.properties: dict[str, NDArray[Any]] = {k: np.asarray(v) for k, v in views["properties"].items()}
-
-    def _as_property(self, name: str, values: Any) -> NDArray[Any]:
-        array = as_array(values)
-        if array.ndim == 0 or len(array) != len(self.vertices):
-            raise ArgumentError(f"property {name}: one row a vertex is wanted, {len(self.vertices)}, not {array.shape}")
-        return array
 
     @property
     def polygons(self) -> list[list[int]]:
@@ -210,7 +207,143 @@ class Mesh:
         if faces < 0:
             raise ArgumentError(f"faces: {faces} is below 0")
         with reporting(progress) as report:
-            mesh: Mesh = Mesh._of(_native.mesh_simplified(self._handle, faces, tolerance, report))
+            return self._changed(lambda numbered: _native.mesh_simplified(numbered, faces, tolerance, report))
+
+    def select(self, which: Any) -> "Mesh":
+        """Chooses vertices, with their properties. Faces, tetrahedra and edges stay if all their vertices do.
+
+        Parameters
+        ----------
+        which : array_like of bool, shape (n,), or of int, shape (k,)
+            A mask, such as that of thin or outliers, or indices, which give the order.
+
+        Returns
+        -------
+        Mesh
+
+        Examples
+        --------
+        >>> import brio
+        >>> square = brio.Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+        >>> square.select([True, True, True, False])
+        <brio.Mesh: 3 vertices, 1 faces>
+        """
+        count = len(self.vertices)
+        chosen = as_array(which)
+        if chosen.dtype.kind == "b" and chosen.shape == (count,):
+            chosen = np.flatnonzero(chosen)
+        elif chosen.ndim != 1 or (chosen.size and chosen.dtype.kind not in "iu"):
+            raise ArgumentError(f"which: a mask of {count} or indices are wanted, not {chosen.dtype} of shape {chosen.shape}")
+        chosen = chosen.astype(np.int64)
+        if chosen.size and (chosen.min() < 0 or chosen.max() >= count or len(np.unique(chosen)) < len(chosen)):
+            raise ArgumentError(f"which: indices from 0 to {count - 1} are wanted, each at most once")
+        place = np.full(count, -1, np.int64)
+        place[chosen] = np.arange(len(chosen))
+        properties = {name: values[chosen] for name, values in self.properties.items()}
+        sizes = np.diff(self.face_offsets).astype(np.int64)
+        corners = place[self.face_vertices]
+        lost = np.bincount(np.repeat(np.arange(len(sizes)), sizes)[corners < 0], minlength=len(sizes)) > 0
+        offsets = np.concatenate([[0], np.cumsum(sizes[~lost])]).astype(np.uint64)
+        left = corners[~np.repeat(lost, sizes)].astype(np.uint32)
+
+        def rest(rows: Indices) -> Indices | None:
+            moved = place[rows]
+            kept: Indices = moved[(moved >= 0).all(axis=1)].astype(np.uint32)
+            return kept if len(kept) else None
+
+        faces = (offsets, left) if len(offsets) > 1 else (None, None)
+        mesh: Mesh = Mesh._of(_native.mesh(np.ascontiguousarray(self.vertices[chosen]), *faces, rest(self.tetrahedra),
+                                           rest(self.edges), {}, self._handle))
+        mesh.properties = properties
+        return mesh
+
+    def carry_properties(self, source: "Mesh", samples: Any = None, *, threads: int = 0,
+                         progress: bool | Progress | None = None) -> None:
+        """Gives the vertices the properties of points, such as the colours of the samples of a surface.
+
+        A property whose name is taken becomes input_NAME, or input_NAME_2 and so on. Values keep their types.
+
+        Parameters
+        ----------
+        source : Mesh
+            The points and their properties.
+        samples : array_like of int, shape (n,), optional
+            The point of `source` that each vertex takes the properties of; the default is the nearest one (among equally
+            near ones, the lexicographically first).
+
+        Examples
+        --------
+        >>> import brio
+        >>> scan = brio.Mesh([[0, 0, 0], [9, 0, 0]], properties={"colour": [[255, 0, 0], [0, 0, 255]]})
+        >>> mesh = brio.Mesh([[8, 0, 0], [1, 1, 0], [10, 0, 0]])
+        >>> mesh.carry_properties(scan)
+        >>> mesh.properties["colour"].tolist()
+        [[0, 0, 255], [255, 0, 0], [0, 0, 255]]
+        """
+        count = len(source.vertices)
+        if samples is None:
+            rows = nearest(source.vertices, self.vertices, threads, progress)
+        else:
+            rows = as_array(samples)
+            if rows.shape != (len(self.vertices),) or rows.dtype.kind not in "iu":
+                raise ArgumentError(f"samples: one index a vertex is wanted, {len(self.vertices)}, "
+                                    f"not {rows.dtype} of shape {rows.shape}")
+            if rows.size and (rows.min() < 0 or rows.max() >= count):
+                raise ArgumentError(f"samples: indices from 0 to {count - 1} are wanted")
+        carry(source.properties, rows, self.properties)
+
+    def keep_components(self, *, largest: bool = False, least_faces: int = 0) -> "Mesh":
+        """Drops components, sets of faces joined across edges, and the vertices that they alone use.
+
+        Parameters
+        ----------
+        largest : bool
+            Keeps one component, that of the largest area.
+        least_faces : int
+            Drops the components of fewer faces, before the largest one is looked for.
+
+        Returns
+        -------
+        Mesh
+
+        Examples
+        --------
+        >>> import brio
+        >>> two = brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 0, 0], [7, 0, 0], [5, 2, 0]], [[0, 1, 2], [3, 4, 5]])
+        >>> two.keep_components(largest=True).vertices.tolist()
+        [[5.0, 0.0, 0.0], [7.0, 0.0, 0.0], [5.0, 2.0, 0.0]]
+        """
+        if least_faces < 0:
+            raise ArgumentError(f"least_faces: {least_faces} is below 0")
+        return self._changed(lambda numbered: _native.mesh_kept_components(numbered, largest, least_faces))
+
+    def subdivide(self, levels: int = 1, *, progress: bool | Progress | None = None) -> "Mesh":
+        """Subdivides a surface of triangles smoothly, by the butterfly scheme: `levels` times each becomes four.
+
+        Old vertices keep their indices and positions. A new vertex receives the mean of the properties of its edge's
+        ends or, for properties that are whole numbers, those of one end.
+
+        Returns
+        -------
+        Mesh
+
+        Examples
+        --------
+        >>> import brio
+        >>> len(brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).subdivide(2).faces)
+        16
+        """
+        handle = self._copy(scalars(self.properties))
+        with reporting(progress) as report:
+            mesh: Mesh = Mesh._of(_native.mesh_subdivided(handle, levels, report))
+        return mesh
+
+    def _changed(self, change: Callable[[Any], Any]) -> "Mesh":
+        """Returns what `change` makes of this mesh with its vertices numbered; properties follow the numbers."""
+        numbers = {"number": np.arange(len(self.vertices), dtype=np.uint32)}
+        mesh: Mesh = Mesh._of(change(self._copy(numbers)))
+        rows = mesh.properties.pop("number")
+        carry(self.properties, rows, mesh.properties)
         return mesh
 
     def self_intersections(self, *, threads: int = 0, progress: bool | Progress | None = None) -> int:
@@ -225,15 +358,32 @@ class Mesh:
         with reporting(progress) as report:
             return Distance(**_native.mesh_distance(self._handle, other._handle, samples, seed, threads, report))
 
-    def write(self, path: str | os.PathLike[str], *, ascii: bool = False, float32: bool = False,
-              comment: str | None = None, progress: bool | Progress | None = None) -> None:
-        """Writes a file, in the format of its extension; see docs/formats.md for what each keeps."""
+    def _copy(self, properties: Properties) -> Any:
+        """Returns an object of the library with what this mesh has now."""
         faces = self.face_offsets if len(self.face_offsets) > 1 else None
-        handle = _native.mesh(self.vertices, faces, None if faces is None else self.face_vertices,
-                              self.tetrahedra if len(self.tetrahedra) else None, self.edges if len(self.edges) else None,
-                              _scalars(self.properties))
+        return _native.mesh(self.vertices, faces, None if faces is None else self.face_vertices,
+                            self.tetrahedra if len(self.tetrahedra) else None, self.edges if len(self.edges) else None,
+                            properties, self._handle)
+
+    def write(self, path: str | os.PathLike[str], *, ascii: bool = False, float32: bool = False, compress: bool = False,
+              comment: str | None = None, progress: bool | Progress | None = None) -> None:
+        """Writes a file, in the format of its extension; see docs/formats.md for what each keeps.
+
+        Parameters
+        ----------
+        path : str or path
+        ascii : bool
+            Text, in formats with a text and a binary form.
+        float32 : bool
+            Coordinates in single precision, in formats with both.
+        compress : bool
+            Compressed by zlib: VTU and VTP.
+        comment : str, optional
+            A line for the header.
+        """
+        handle = self._copy(scalars(self.properties))
         with reporting(progress) as report:
-            _native.write(os.fsencode(path), handle, ascii, float32, comment, 0, report)
+            _native.write(os.fsencode(path), handle, (ascii, float32, compress, comment), 0, report)
 
     # --- for other packages, none of which is needed otherwise ---
 
@@ -293,6 +443,18 @@ class Mesh:
         data = {name: np.array(values) for name, values in self.properties.items()}
         return meshio.Mesh(np.array(self.vertices), cells, point_data=data)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What pickle and copy take; the object of the library is made again."""
+        return {name: value for name, value in self.__dict__.items() if name != "_handle"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        views = {name: np.ascontiguousarray(state[name])
+                 for name in ("vertices", "face_offsets", "face_vertices", "tetrahedra", "edges")}
+        self._handle = _native.mesh(views["vertices"], views["face_offsets"], views["face_vertices"],
+                                    views["tetrahedra"], views["edges"], {}, None)
+        self.__dict__.update({name: frozen(array) for name, array in views.items()})
+
     def __repr__(self) -> str:
         parts = [f"{len(self.vertices)} vertices"]
         for count, name in ((len(self.face_offsets) - 1, "faces"), (len(self.tetrahedra), "tetrahedra"),
@@ -302,55 +464,6 @@ class Mesh:
         return f"<brio.{type(self).__name__}: {', '.join(parts)}>"
 
 
-def _scalars(properties: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Properties as files take them: one number each, of a type of PLY. Rows of numbers become several properties."""
-    out: dict[str, NDArray[Any]] = {}
-    for name, values in properties.items():
-        flat = values.reshape(len(values), -1)
-        for k in range(flat.shape[1]):
-            out[name if values.ndim == 1 else f"{name}_{k}"] = _scalar(flat[:, k], name)
-    return out
-
-
-def _scalar(column: NDArray[Any], name: str) -> NDArray[Any]:
-    if column.dtype.kind == "b":
-        return np.ascontiguousarray(column, np.uint8)
-    if column.dtype.kind in "iu" and column.dtype.itemsize == 8:
-        small = np.int32 if not len(column) or (-(2**31) <= column.min() and column.max() < 2**31) else np.float64
-        return np.ascontiguousarray(column, small)
-    if column.dtype.kind == "f" and column.dtype.itemsize == 2:
-        return np.ascontiguousarray(column, np.float32)
-    if column.dtype.kind not in "iuf":
-        raise ArgumentError(f"property {name}: files take numbers, not {column.dtype}")
-    return np.ascontiguousarray(column, column.dtype.newbyteorder("="))
-
-
-def read(path: str | os.PathLike[str], *, threads: int = 0, progress: bool | Progress | None = None) -> Mesh:
-    """Reads a file of points or of a mesh: PLY, XYZ, OBJ, OFF, VTU, LAS, LAZ, PCD, STL, NPY and others.
-
-    Returns
-    -------
-    Mesh
-        Without faces if the file has points alone.
-
-    Examples
-    --------
-    >>> import brio, os, tempfile
-    >>> path = os.path.join(tempfile.mkdtemp(), "three.ply")
-    >>> brio.write(path, [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
-    >>> brio.read(path)
-    <brio.Mesh: 3 vertices>
-    """
-    with reporting(progress) as report:
-        mesh: Mesh = Mesh._of(_native.read(os.fsencode(path), threads, report))
-    return mesh
-
-
 def simplify(mesh: Mesh, faces: int = 0, *, tolerance: float = 0, progress: bool | Progress | None = None) -> Mesh:
     """Simplifies a surface of triangles: see Mesh.simplify."""
     return mesh.simplify(faces, tolerance=tolerance, progress=progress)
-
-
-def write(path: str | os.PathLike[str], mesh: Any, **options: Any) -> None:
-    """Writes a Mesh, or an array of points, in the format of the file's extension; options as for Mesh.write."""
-    (mesh if isinstance(mesh, Mesh) else Mesh(mesh)).write(path, **options)

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from . import _calls, _native
 from ._arrays import Floats, as_rows
 from ._calls import Progress
-from ._delaunay import _FIND_NEAREST, Delaunay
 from ._mesh import Mesh
+from ._points import nearest
+from ._properties import as_property, carry
 from .errors import ArgumentError
 
 _NOISE = {"auto": 0, "keep": 1, "smooth": 2}
@@ -80,7 +81,7 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, attributes: di
         The options are those of ``brio.h``.
     attributes : dict of arrays, optional
         Each with one row a point; carried to the vertices as properties. Those of a Mesh are carried anyway. A vertex that
-        is no sample has the attributes of the nearest one.
+        is no sample has the attributes of the nearest one. A name that the surface has becomes input_NAME.
 
     Returns
     -------
@@ -119,18 +120,10 @@ def _carry(surface: Surface, attributes: dict[str, Any], threads: int) -> None:
     """Gives the vertices the attributes of their samples."""
     if not attributes:
         return
-    of = surface.samples if surface.samples is not None else _nearest(surface.points, surface.vertices, threads)
-    for name, values in attributes.items():
-        array = np.asarray(values)
-        if array.ndim == 0 or len(array) != len(surface.points):
-            raise ArgumentError(f"attribute {name}: one row a point is wanted, {len(surface.points)}, not {array.shape}")
-        surface.properties[name] = array[of]
-
-
-def _nearest(points: Floats, queries: Floats, threads: int) -> NDArray[np.int32]:
-    out = np.empty((len(queries), 1), np.int32)
-    _native.locate(Delaunay(points, threads=threads)._locator, np.ascontiguousarray(queries), _FIND_NEAREST, out, threads, None)
-    return out[:, 0]
+    arrays = {k: as_property(f"attribute {k}", v, len(surface.points), "point") for k, v in attributes.items()}
+    samples = surface.samples
+    rows = nearest(surface.points, surface.vertices, threads, None) if samples is None else samples
+    carry(arrays, rows, surface.properties)
 
 
 def oriented_normals(points: Any, method: str = "labeled-delaunay", *, threads: int = 0,

@@ -93,9 +93,7 @@ class Voronoi:
         self._build(rows, as_weights(weights, len(rows)))
 
     def _build(self, points: Floats, weights: Floats | None) -> None:
-        self.__dict__.update(points=points, weights=weights)
-        for name in ("regions", "ridge_vertices", "volumes"):
-            self.__dict__.pop(name, None)
+        self.points, self.weights = points, weights
         (self._build_plane if points.shape[1] == 2 else self._build_space)(points, weights)
 
     # --- in the plane: the dual of the triangulation ---
@@ -219,11 +217,21 @@ class Voronoi:
         if (added is None) != (self.weights is None):
             raise ArgumentError("either all points have weights, or none has")
         both = None if added is None or self.weights is None else np.concatenate([self.weights, added])
-        self._build(np.concatenate([self.points, rows]), both)
+        bigger = object.__new__(Voronoi)
+        for name in ("threads", "progress", "furthest_site", "_closed", "_empty", "box"):
+            setattr(bigger, name, getattr(self, name))
+        bigger._build(np.concatenate([self.points, rows]), both)
+        self.__dict__ = bigger.__dict__  # at once: other threads may read
 
     def close(self) -> None:
         """Ends the adding of points."""
         self._closed = True
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "progress": None}
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return (self.points,)
 
 
 def _areas(vertices: Floats, offsets: Ints, items: Ints) -> Floats:

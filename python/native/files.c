@@ -1,0 +1,123 @@
+/* Files: reading, writing, converting, and what this build of the library reads and writes. */
+#include "mesh.h"
+#include <string.h>
+
+/* read(path, columns or None, threads, progress): a mesh. The path is bytes. */
+static PyObject *read_mesh(PyObject *module, PyObject *args) {
+    PyObject *progress;
+    brio_read_options o = brio_read_options_default();
+    const char *path;
+    int threads;
+    call c;
+    brio_status status;
+    brio_mesh *made = NULL;
+    if (!PyArg_ParseTuple(args, "yziO", &path, &o.columns, &threads, &progress)) return NULL;
+    if (call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_read_as(c.ctx, path, &o, &made));
+    return call_end_with_mesh(&c, status, made);
+}
+
+/* Reads the options of writing that Python offers: (ascii, float32, compress, comment or None). */
+static int read_write_options(PyObject *tuple, brio_write_options *o) {
+    return PyArg_ParseTuple(tuple, "pppz", &o->ascii, &o->float32, &o->compress, &o->comment) ? 0 : -1;
+}
+
+/* write(path, mesh, options, threads, progress) */
+static PyObject *write_mesh(PyObject *module, PyObject *args) {
+    PyObject *object, *options, *progress;
+    brio_write_options o = brio_write_options_default();
+    const char *path;
+    int threads;
+    call c;
+    brio_status status;
+    if (!PyArg_ParseTuple(args, "yOO!iO", &path, &object, &PyTuple_Type, &options, &threads, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || read_write_options(options, &o) || call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_write(c.ctx, path, m, &o));
+    if (call_end(&c, status)) return NULL;
+    Py_RETURN_NONE;
+}
+
+/* --- converting --- */
+
+/* The names of what a conversion loses. The library calls back without the interpreter's lock. */
+typedef struct {
+    char *names; /* one after the other, each with its 0 */
+    size_t bytes;
+    int failed;
+} losses;
+
+static void lose(const char *name, void *user) {
+    losses *l = user;
+    size_t bytes = strlen(name) + 1;
+    char *names = realloc(l->names, l->bytes + bytes);
+    if (!names) {
+        l->failed = 1;
+        return;
+    }
+    memcpy(names + l->bytes, name, bytes);
+    l->names = names;
+    l->bytes += bytes;
+}
+
+static PyObject *list_of(const losses *l) {
+    PyObject *list = PyList_New(0);
+    for (size_t at = 0; list && at < l->bytes; at += strlen(l->names + at) + 1) {
+        PyObject *name = PyUnicode_DecodeUTF8(l->names + at, (Py_ssize_t)strlen(l->names + at), "replace");
+        if (!name || PyList_Append(list, name)) Py_CLEAR(list);
+        Py_XDECREF(name);
+    }
+    return list;
+}
+
+static PyObject *conversion_dict(const brio_convert_stats *s, const losses *l) {
+    PyObject *lost = l->failed ? PyErr_NoMemory() : list_of(l);
+    if (!lost) return NULL;
+#define COUNT(name) #name, (unsigned long long)s->name
+    return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:N,s:N}", COUNT(points_read), COUNT(points), COUNT(faces),
+                         COUNT(tetrahedra), COUNT(edges), COUNT(outliers), COUNT(thinned), "streamed",
+                         PyBool_FromLong(s->streamed), "lost", lost);
+#undef COUNT
+}
+
+/* convert(from, to, columns or None, write options, box or None, (neighbours, factor, thin), threads, progress): a dict. */
+static PyObject *convert(PyObject *module, PyObject *args) {
+    PyObject *options, *box, *progress, *result = NULL;
+    brio_read_options in = brio_read_options_default();
+    brio_write_options out = brio_write_options_default();
+    brio_outliers_options outliers = brio_outliers_options_default();
+    brio_convert_options o = brio_convert_options_default();
+    brio_convert_stats stats = {.size = sizeof stats};
+    const char *from, *to;
+    int threads;
+    call c;
+    input corners = {.held = 0};
+    losses lost = {NULL, 0, 0};
+    if (!PyArg_ParseTuple(args, "yyzO!O(idd)iO", &from, &to, &in.columns, &PyTuple_Type, &options, &box,
+                          &o.drop_outliers, &outliers.factor, &o.thin, &threads, &progress) ||
+        read_write_options(options, &out))
+        return NULL;
+    o.from = &in, o.to = &out, o.outliers = &outliers, o.lost = lose, o.lost_user = &lost;
+    if (box != Py_None) {
+        if (input_open(&corners, box, "box", 'd', 0)) return NULL;
+        o.crop = corners.rows == 6;
+        if (o.crop) memcpy(o.box, corners.data, sizeof o.box);
+        int wrong = input_has_rows(&corners, "box", 6);
+        input_close(&corners);
+        if (wrong) return NULL;
+    }
+    if (call_begin(&c, state_of(module), threads, progress)) return NULL;
+    brio_status status;
+    CALL(c, status, brio_convert(c.ctx, from, to, &o, &stats));
+    if (!call_end(&c, status)) result = conversion_dict(&stats, &lost);
+    free(lost.names);
+    return result;
+}
+
+PyMethodDef files_methods[] = {
+    {"read", read_mesh, METH_VARARGS, "read(path, columns, threads, progress): a mesh."},
+    {"write", write_mesh, METH_VARARGS, "write(path, mesh, (ascii, float32, compress, comment), threads, progress)"},
+    {"convert", convert, METH_VARARGS,
+     "convert(from, to, columns, write options, box, (neighbours, factor, thin), threads, progress): a dict."},
+    {NULL, NULL, 0, NULL},
+};

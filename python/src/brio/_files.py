@@ -1,0 +1,161 @@
+"""Files, and what this build of the library reads and writes."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from . import _native
+from ._arrays import as_floats
+from ._calls import Progress, reporting
+from ._mesh import Mesh
+from .errors import ArgumentError
+
+Path = str | os.PathLike[str]
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """What convert did.
+
+    Attributes
+    ----------
+    points_read, points : int
+        Read, and written.
+    faces, tetrahedra, edges : int
+        Written.
+    outliers, thinned : int
+        Points that these options dropped.
+    streamed : bool
+        Block by block; else the whole file was in memory.
+    lost : list of str
+        What the other format cannot hold: "faces", "tetrahedra", "edges", names of properties, and "precision" if
+        coordinates were rounded.
+    """
+
+    points_read: int
+    points: int
+    faces: int
+    tetrahedra: int
+    edges: int
+    outliers: int
+    thinned: int
+    streamed: bool
+    lost: list[str]
+
+
+def _columns(columns: str | Sequence[str | None] | None) -> str | None:
+    if columns is None or isinstance(columns, str):
+        return columns
+    return ",".join("-" if name is None else name for name in columns)
+
+
+def read(path: Path, *, columns: str | Sequence[str | None] | None = None, threads: int = 0,
+         progress: bool | Progress | None = None) -> Mesh:
+    """Reads a file of points or of a mesh: PLY, XYZ, OBJ, OFF, VTU, LAS, LAZ, PCD, STL, NPY and others.
+
+    Parameters
+    ----------
+    path : str or path
+    columns : sequence of str, optional
+        The names of the columns of a text of points, in their order: "x", "y" and "z" have to be there; None or "-"
+        leaves a column out, as it happens to columns behind the last name. "x,y,z,-,nx" says the same. The default is the
+        file's line of names or, without one, that the first three are the coordinates.
+
+    Returns
+    -------
+    Mesh
+        Without faces if the file has points alone.
+
+    Examples
+    --------
+    >>> import brio, os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "three.ply")
+    >>> brio.write(path, [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    >>> brio.read(path)
+    <brio.Mesh: 3 vertices>
+    >>> path = os.path.join(tempfile.mkdtemp(), "two.xyz")
+    >>> with open(path, "w") as file:
+    ...     _ = file.write("7 100 0 0 0\\n8 200 0 0 1\\n")
+    >>> scan = brio.read(path, columns=[None, "heat", "x", "y", "z"])
+    >>> scan.vertices.tolist(), scan.properties["heat"].tolist()
+    ([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [100.0, 200.0])
+    """
+    with reporting(progress) as report:
+        mesh: Mesh = Mesh._of(_native.read(os.fsencode(path), _columns(columns), threads, report))
+    return mesh
+
+
+def write(path: Path, mesh: Any, **options: Any) -> None:
+    """Writes a Mesh, or an array of points, in the format of the file's extension; options as for Mesh.write."""
+    (mesh if isinstance(mesh, Mesh) else Mesh(mesh)).write(path, **options)
+
+
+def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] | None = None, box: Any = None,
+            outliers: int = 0, factor: float = 3.0, thin: float = 0.0, ascii: bool = False, float32: bool = False,
+            compress: bool = False, comment: str | None = None, threads: int = 0,
+            progress: bool | Progress | None = None) -> Conversion:
+    """Converts a file to another format, or chooses among its points, or both; large files block by block.
+
+    First come the points in the box, of these those that are no outliers, of these a thinned set. The points keep their
+    order and all properties. A face, tetrahedron or edge stays if all its vertices stay.
+
+    Parameters
+    ----------
+    source, target : str or path
+    columns
+        As for read.
+    box : array_like of 6 numbers, optional
+        The lower corner and the upper one; its border belongs to it.
+    outliers : int
+        The neighbours by which outliers judges; 0 keeps outliers.
+    factor : float
+        As for outliers.
+    thin : float
+        The spacing; 0 keeps all points.
+    ascii, float32, compress, comment
+        As for Mesh.write.
+
+    Returns
+    -------
+    Conversion
+
+    Examples
+    --------
+    >>> import brio, os, tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> a, b = os.path.join(folder, "a.ply"), os.path.join(folder, "b.xyz")
+    >>> brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).write(a)
+    >>> done = brio.convert(a, b, box=[0, 0, 0, 1, 0.5, 0])
+    >>> done.points_read, done.points, done.lost
+    (3, 2, [])
+    """
+    corners = None if box is None else as_floats(box, "box").ravel()
+    if corners is not None and len(corners) != 6:
+        raise ArgumentError(f"box: six numbers are wanted, the lower corner and the upper one, not {len(corners)}")
+    if not 0 <= outliers <= 63:
+        raise ArgumentError(f"outliers: from 1 to 63 neighbours, or 0, not {outliers}")
+    with reporting(progress) as report:
+        facts = _native.convert(os.fsencode(source), os.fsencode(target), _columns(columns),
+                                (ascii, float32, compress, comment), corners, (outliers, factor, thin), threads, report)
+    return Conversion(**facts)
+
+
+def build_info() -> dict[str, Any]:
+    """Says how the library was built.
+
+    Returns
+    -------
+    dict
+        "version"; "zlib", "zstd", "expat", "cjson": whether the library reads what needs these libraries (gzip, npz and
+        compressed VTU; zstd; E57; glTF); "free_threaded": whether the module was built for CPython without the lock of
+        the interpreter.
+
+    Examples
+    --------
+    >>> import brio
+    >>> brio.build_info()["version"] == brio.__version__
+    True
+    """
+    facts: dict[str, Any] = _native.build_info()
+    return facts
