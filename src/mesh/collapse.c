@@ -26,10 +26,8 @@ static double best_point(const brio_collapse_mesh *m, uint32_t h, brio_quadric *
     const double *a = brio_collapse_at(m, u), *b = brio_collapse_at(m, v);
     double candidate[3][3], least = INFINITY;
     brio_quadric_sum(&m->quadric[u], &m->quadric[v], sum);
-    for (int k = 0; k < 3; k++)
-        candidate[0][k] = a[k], candidate[1][k] = b[k], candidate[2][k] = 0.5 * (a[k] + b[k]);
-    if (brio_quadric_minimum(sum, point) &&
-        brio_square_distance(point, candidate[2]) <= brio_square_distance(a, b))
+    for (int k = 0; k < 3; k++) candidate[0][k] = a[k], candidate[1][k] = b[k], candidate[2][k] = 0.5 * (a[k] + b[k]);
+    if (brio_quadric_minimum(sum, point) && brio_square_distance(point, candidate[2]) <= brio_square_distance(a, b))
         return brio_quadric_at(sum, point);
     for (int i = 0; i < 3; i++) {
         double error = brio_quadric_at(sum, candidate[i]);

@@ -1,6 +1,6 @@
 /* Edges collapse in passes, those of least error first.
  *
- * A pass has a limit: half of the edges that may be tried have errors of at most the limit, or fewer when the number of
+ * A pass has a limit: a quarter of the edges that may be tried have errors of at most the limit, or fewer when the number of
  * faces comes near its target. A pass divides the vertices into blocks along a curve and collapses, in each block, edges
  * up to the limit in the order of their errors (collapse_blocks.h). Edges at the borders of blocks wait: passes use two
  * curves in turns, whose blocks have different borders. So all parts of the surface reach one error together, as they do
@@ -21,16 +21,16 @@
 #include <string.h>
 
 enum {
-    BLOCK = 1 << 12,          /* vertices; the data of a block and its heap fit into the cache of a processor; chosen */
-    ALONE = 4 * BLOCK,        /* a mesh of so many vertices is one block; chosen */
-    LAST_SHARE = 64,          /* one block collapses the rest when less than vertices / LAST_SHARE is left to do; chosen */
-    CLASSES = 1 << 15,        /* of errors: all values of the 15 bits below a float's sign */
+    BLOCK = 1 << 12,   /* vertices; the data of a block and its heap fit into the cache of a processor; chosen */
+    ALONE = 4 * BLOCK, /* a mesh of so many vertices is one block; chosen */
+    LAST_SHARE = 64,   /* one block collapses the rest when less than vertices / LAST_SHARE is left to do; chosen */
+    CLASSES = 1 << 15, /* of errors: all values of the 15 bits below a float's sign */
     EDGES_A_THREAD = 1 << 14, /* chosen */
 };
 
 /* A pass tries at most TRIED of the edges. Its limit is chosen so that it will probably make a share PACE of the
  * collapses to the target, and it makes at most a share MOST of them. All three chosen. */
-static const double TRIED = 0.5, PACE = 0.6, MOST = 0.9;
+static const double TRIED = 0.25, PACE = 0.6, MOST = 0.9;
 static const double FIRST_YIELD = 1.0 / 3, LEAST_YIELD = 0.02;
 
 typedef struct {

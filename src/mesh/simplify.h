@@ -5,8 +5,9 @@
 #include "base/context.h"
 
 typedef struct {
-    size_t target_faces;   /* stops at this number of faces, or when no allowed collapse is left */
-    const double *spacing; /* #V: an edge may collapse if it is at most `longest` times the spacing at each end; NULL: 1 */
+    size_t target_faces; /* stops at this number of faces, or when no allowed collapse is left */
+    const double
+        *spacing; /* #V: an edge may collapse if it is at most `longest` times the spacing at each end; NULL: 1 */
     double longest;
     double tolerance; /* most RMS distance of the new point from the planes it stands for, as a share of spacing */
 } brio_collapse_options;
