@@ -16,7 +16,7 @@ typedef struct {
  *  and oriented, and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary
  *  stay. Vertices that no triangle uses are dropped. A vertex has the properties that it had before its edges collapsed.
  *  The result does not depend on the number of threads.
- *  Cost: O(n log n); 230 bytes a vertex.
+ *  Cost: O(n log n); 175 bytes a vertex.
  *  Returns BRIO_OK; BRIO_ERR_ARGUMENT when a face is not a triangle or the mesh is not manifold and oriented at an
  *  edge or a vertex, and leaves the mesh unchanged; BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED, after which the mesh can
  *  only be freed. */

@@ -93,6 +93,7 @@ static void expect_same_bits(const char *what, const brio_mesh *whole, size_t ta
         EXPECT(same_mesh(result[0], result[i]), "%s: %d threads", what, THREADS[i]);
     }
     EXPECT(result[0]->num_faces < whole->num_faces / 2, "%s: %zu faces", what, result[0]->num_faces);
+    EXPECT(!target || result[0]->num_faces == target - target % 2, "%s: %zu faces", what, result[0]->num_faces);
     for (int i = 0; i < 4; i++) {
         brio_mesh_free(result[i]);
         brio_context_free(own[i]);
@@ -135,6 +136,15 @@ static void closed_surfaces_keep_genus_and_reach_their_number(void) {
         brio_certificate_free(&before);
         brio_mesh_free(whole);
     }
+}
+
+/* A pass up to the limit that all edges of a lattice have would go far beyond. */
+static void number_is_reached_where_all_errors_are_equal(void) {
+    brio_mesh *mesh = flat_grid(ctx, 180, 180);
+    size_t target = mesh->num_faces / 10 * 9;
+    EXPECT(simplify_to(ctx, mesh, target, 0) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(mesh->num_faces == target, "%zu faces, %zu wanted", mesh->num_faces, target);
+    brio_mesh_free(mesh);
 }
 
 /* Each octahedron keeps four faces at least. */
@@ -288,6 +298,7 @@ int main(void) {
     ctx = new_context();
     RUN(bits_are_the_same_with_every_number_of_threads);
     RUN(closed_surfaces_keep_genus_and_reach_their_number);
+    RUN(number_is_reached_where_all_errors_are_equal);
     RUN(components_stay);
     RUN(hills_are_covered_once);
     RUN(blocks_are_as_good_as_one_queue);
