@@ -881,7 +881,8 @@ static inline brio_mesh_simplify_options brio_mesh_simplify_options_default(void
 /** Simplifies a mesh of triangles in place: edges collapse, those of least error first. The mesh stays manifold and oriented,
  *  and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary stay. Vertices that
  *  no triangle uses are dropped. A vertex keeps the properties of one of those that it stands for.
- *  Cost: O(n log n), one thread; 500 bytes a vertex.
+ *  The result does not depend on the number of threads, nor on the numbers of the vertices.
+ *  Cost: O(n log n); 170 bytes a vertex beside the mesh.
  *  Returns BRIO_OK; BRIO_ERR_ARGUMENT (neither target nor tolerance, a negative one, a face is no triangle, an index is out
  *  of range, the mesh is not manifold and oriented at an edge or a vertex) and BRIO_ERR_NOT_FINITE, after which the mesh is
  *  what it was; BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, after which it can only be freed.

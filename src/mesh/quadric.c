@@ -1,4 +1,4 @@
-/* Quadric errors.
+/* The quadric of a triangle. See quadric.h.
  *
  * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
  * Differs from the paper: area weights the planes, and a small term draws each corner towards its original position. */
@@ -35,31 +35,4 @@ void brio_quadric_add_triangle(brio_quadric *q, const double *p, const double *r
     add_plane(q, n, n[0] * p[0] + n[1] * p[1] + n[2] * p[2], length);
     add_point(q, p, PULL * length);
     q->area += length;
-}
-
-void brio_quadric_add(brio_quadric *q, const brio_quadric *other) {
-    for (int i = 0; i < 6; i++) q->a[i] += other->a[i];
-    for (int i = 0; i < 3; i++) q->b[i] += other->b[i];
-    q->c += other->c;
-    q->area += other->area;
-}
-
-double brio_quadric_at(const brio_quadric *q, const double *x) {
-    const double *a = q->a;
-    double ax = a[0] * x[0] + a[1] * x[1] + a[2] * x[2], ay = a[1] * x[0] + a[3] * x[1] + a[4] * x[2];
-    double az = a[2] * x[0] + a[4] * x[1] + a[5] * x[2];
-    double value = x[0] * (ax - 2 * q->b[0]) + x[1] * (ay - 2 * q->b[1]) + x[2] * (az - 2 * q->b[2]) + q->c;
-    return fmax(value, 0);
-}
-
-int brio_quadric_minimum(const brio_quadric *q, double *x) {
-    const double *a = q->a, *b = q->b;
-    double m[6] = {a[3] * a[5] - a[4] * a[4], a[2] * a[4] - a[1] * a[5], a[1] * a[4] - a[2] * a[3],
-                   a[0] * a[5] - a[2] * a[2], a[1] * a[2] - a[0] * a[4], a[0] * a[3] - a[1] * a[1]};
-    double det = a[0] * m[0] + a[1] * m[1] + a[2] * m[2], trace = a[0] + a[3] + a[5];
-    if (!(det > 1e-8 * trace * trace * trace)) return 0;
-    x[0] = (m[0] * b[0] + m[1] * b[1] + m[2] * b[2]) / det;
-    x[1] = (m[1] * b[0] + m[3] * b[1] + m[4] * b[2]) / det;
-    x[2] = (m[2] * b[0] + m[4] * b[1] + m[5] * b[2]) / det;
-    return 1;
 }

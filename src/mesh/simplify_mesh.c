@@ -26,16 +26,9 @@ static int exponent_of(const brio_mesh *mesh) {
 }
 
 static brio_status collapse(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *o, double tolerance) {
-    brio_status status = BRIO_OK;
-    double *unit = NULL; /* the tolerance is one length, not a share of a spacing */
-    BRIO_TRY(BRIO_ALLOC(ctx, unit, mesh->num_vertices));
-    for (size_t v = 0; v < mesh->num_vertices; v++) unit[v] = 1;
-    brio_collapse_options options = {
-        .target_faces = o->target_faces, .spacing = unit, .longest = INFINITY, .tolerance = tolerance};
-    BRIO_TRY(brio_collapse_edges(ctx, mesh, &options));
-done:
-    brio_release(ctx, unit);
-    return status;
+    /* the tolerance is one length, not a share of a spacing */
+    brio_collapse_options options = {.target_faces = o->target_faces, .longest = INFINITY, .tolerance = tolerance};
+    return brio_collapse_edges(ctx, mesh, &options);
 }
 
 brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *options) {
