@@ -107,7 +107,8 @@ static void add_normals(const brio_collapse_mesh *m, uint32_t h, double *sum) {
 }
 
 /* Returns whether the triangle of g keeps its side when its first corner moves to `point`: its new normal agrees with
- * its old normal. If the old normal disagrees with `together`, the new normal must agree with `together`. */
+ * its old normal. If the old normal disagrees with `together`, the new normal must agree with `together`. Where nothing
+ * has area, as among vertices at one position, no side is known, and no triangle may get area. */
 static bool keeps_its_side(const brio_collapse_mesh *m, uint32_t g, const double *point, const double *together) {
     const double *b = brio_collapse_at(m, brio_collapse_end(m, g));
     const double *c = brio_collapse_at(m, m->vertex[brio_collapse_before(g)]);
@@ -115,9 +116,9 @@ static bool keeps_its_side(const brio_collapse_mesh *m, uint32_t g, const double
     normal_before(m, g, old);
     normal_of(point, b, c, new);
     const double *side = brio_dot(old, together) > 0 ? old : together;
-    double size = sqrt(brio_dot(new, new));
-    if (!(size > 0) && brio_dot(old, old) > 0) return false;
-    return brio_dot(new, side) >= LEAST_COSINE * size * sqrt(brio_dot(side, side));
+    double size = sqrt(brio_dot(new, new)), before = sqrt(brio_dot(side, side));
+    if (!(size > 0) || !(before > 0)) return !(size > 0) && !(brio_dot(old, old) > 0);
+    return brio_dot(new, side) >= LEAST_COSINE * size * before;
 }
 
 /* Returns whether all triangles round the start of h, except the two at the edge of h, keep their sides. */

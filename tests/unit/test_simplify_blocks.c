@@ -183,6 +183,29 @@ static void hills_are_covered_once(void) {
 
 /* The RMS distance of a sphere of cells of a size from itself simplified to a tenth, times the number of faces, which
  * does not depend on the size. */
+/* Ridges many of whose vertices are at the positions of others, or in line with all their neighbours: no triangle round these
+ * has an area, and no side. Those of a power crust that got one took the wrong one (test_crust_guarantees). */
+static void triangles_without_area_do_not_turn_over(void) {
+    enum { SIDE = 80, STEP = 8, ALONE = 16 };
+    brio_mesh *mesh = flat_grid(ctx, SIDE, SIDE);
+    size_t turned = 0;
+    for (size_t v = 0; v < mesh->num_vertices; v++) {
+        double *p = mesh->vertices + 3 * v;
+        for (int k = 0; k < 2; k++)
+            if (fmod(p[k], ALONE) < STEP) p[k] -= fmod(p[k], ALONE);
+        p[2] = 0.5 * fabs(fmod(p[0], 20) - 10) + 0.3 * fabs(fmod(p[1], 30) - 15);
+    }
+    EXPECT(simplify_to(ctx, mesh, 1500, 0) == BRIO_OK);
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        double n[3];
+        normal_of(mesh, f, n);
+        turned += n[2] < 0;
+    }
+    EXPECT(mesh->num_faces < (size_t)SIDE * SIDE && turned == 0, "%zu of %zu triangles turned over", turned,
+           (size_t)mesh->num_faces);
+    brio_mesh_free(mesh);
+}
+
 static double error_of_a_tenth(double cell, size_t *vertices) {
     brio_mesh *whole = random_surface(ctx, 0, cell, 3), *mesh;
     brio_distance d = {.size = sizeof d};
@@ -301,6 +324,7 @@ int main(void) {
     RUN(number_is_reached_where_all_errors_are_equal);
     RUN(components_stay);
     RUN(hills_are_covered_once);
+    RUN(triangles_without_area_do_not_turn_over);
     RUN(blocks_are_as_good_as_one_queue);
     RUN(order_and_properties_stay);
     RUN(numbers_of_vertices_do_not_matter);
