@@ -6,6 +6,7 @@
 #include "harness.h"
 #include "points.h"
 #include "reconstruct/labeled_delaunay/simple_flips.h"
+#include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include <math.h>
 #include <string.h>
@@ -150,6 +151,49 @@ static void mending_leaves_hardly_any_singular_sample(void) {
     for (size_t t = s->dual.num_finite; t < s->dual.t.count; t++) EXPECT(s->label[t] == BRIO_LABEL_OUTER);
     brio_mending_free(&m);
     brio_label_flips_free(&f);
+    free_scene(s);
+}
+
+/* --- small regions --- */
+
+/* Walks over the region of a tetrahedron; flips its tetrahedra in `dropped` if it is small. Returns whether it is. */
+static bool drop_region(const scene *s, uint32_t start, size_t least, bool *seen, uint8_t *dropped) {
+    uint32_t *front = calloc(s->dual.t.count, sizeof *front);
+    size_t size = 0, boundary = 0;
+    bool finite = true;
+    seen[front[size++] = start] = true;
+    for (size_t n = 0; n < size; n++) {
+        finite &= front[n] < s->dual.num_finite;
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = s->dual.t.tet[front[n]].mate[i] >> 2;
+            boundary += s->label[other] != s->label[start];
+            if (s->label[other] == s->label[start] && !seen[other]) seen[front[size++] = other] = true;
+        }
+    }
+    bool small = finite && boundary < least;
+    for (size_t n = 0; n < size && small; n++) dropped[front[n]] = brio_other_label(s->label[start]);
+    free(front);
+    return small;
+}
+
+static void small_regions_are_those_of_a_walk(void) {
+    scene *s = scene_of(uniform_points);
+    size_t count = s->dual.t.count, total = 0;
+    bool *seen = malloc(count);
+    uint8_t *dropped = malloc(count);
+    for (size_t least = 0; least < 40; least += 3) {
+        size_t wanted = 0, changed;
+        label_by(s, is_lucky);
+        memset(seen, 0, count);
+        memcpy(dropped, s->label, count);
+        for (uint32_t t = 0; t < count; t++) wanted += !seen[t] && drop_region(s, t, least, seen, dropped);
+        EXPECT(brio_drop_small_regions(s->ctx, &s->dual.t, least, s->label, &changed) == BRIO_OK);
+        EXPECT(changed == wanted && !memcmp(dropped, s->label, count), "%zu, not %zu", changed, wanted);
+        total += changed;
+    }
+    EXPECT(total > 100, "%zu", total);
+    free(seen);
+    free(dropped);
     free_scene(s);
 }
 
@@ -398,6 +442,7 @@ static void every_failed_allocation_is_a_status(void) {
 int main(void) {
     RUN(flips_know_the_energy);
     RUN(mending_leaves_hardly_any_singular_sample);
+    RUN(small_regions_are_those_of_a_walk);
     RUN(flips_that_deform_are_known);
     RUN(true_handles_stay_and_none_appears);
     RUN(nothing_falls_apart_in_a_chaos);

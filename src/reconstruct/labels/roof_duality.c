@@ -9,7 +9,8 @@
  * flips; some labeling of least energy agrees with both. Doing this, and leaving the undecided nodes as they are, does
  * not raise the energy (autarky).
  *
- * Most nodes need no flow: what is known pulls at them with more weight than all edges to nodes that are not settled have.
+ * Many nodes need no flow (of bunny_raw, 600,000 of 1.6 million): what is known pulls at them with more weight than all
+ * edges to nodes that are not settled have.
  * Such a node is on one side of every minimum cut, and its edges pull at its neighbours, which may settle these, too. The
  * flow decides what is left.
  *
