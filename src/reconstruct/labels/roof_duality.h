@@ -7,9 +7,8 @@
 
 /** A node of the block at hand. */
 typedef struct {
-    int64_t
-        pull; /* the weight of edges that want the node to keep its label, less the weight of those that want it flipped:
-                     edges to nodes outside the block, and to settled nodes */
+    int64_t pull;    /* what edges want the node to keep its label, less what edges want it flipped, by weight: edges to
+                        nodes outside the block, and to settled nodes */
     int64_t loose;   /* the weight of the edges to nodes of the block that are not settled */
     uint32_t end;    /* where the node's edges within the block end; they begin where those of the node before end */
     uint32_t number; /* of an open node in the flow; ROOF_KEEPS or ROOF_FLIPS of a settled one */
