@@ -6,7 +6,7 @@
  * characteristic of the boundary grows by 2 for each HANDLE of energy, and if no component appeared: on either side of the
  * boundary, the tetrahedra next to the patch must still be connected, and nearby. A patch with nothing but the other
  * label about it is a crumb or a bubble, which counts as much as a handle. Otherwise the flips are taken back. A patch whose
- * flip only deforms the boundary (simple_flips.c), as that of most does, leaves the Euler characteristic and is not weighed.
+ * flip is known to deform the boundary only (simple_flips.c) leaves the Euler characteristic, and is not weighed.
  *
  * The energy alone cannot do this, because it knows nothing of topology: it is a sum over tetrahedra and facets. */
 #include "reconstruct/labeled_delaunay/weak_handles.h"

@@ -10,9 +10,8 @@
  * not raise the energy (autarky).
  *
  * Many nodes need no flow (of bunny_raw, 600,000 of 1.6 million): what is known pulls at them with more weight than all
- * edges to nodes that are not settled have.
- * Such a node is on one side of every minimum cut, and its edges pull at its neighbours, which may settle these, too. The
- * flow decides what is left.
+ * edges to nodes that are not settled have. Such a node is on one side of every minimum cut, and its edges pull at its
+ * neighbours, which may settle these, too. The flow decides what is left.
  *
  * Based on: Hammer, Hansen, Simeone. Roof duality, complementation and persistency in quadratic 0-1 optimization.
  *           Mathematical Programming 1984.
