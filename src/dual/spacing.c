@@ -1,11 +1,15 @@
 /* The spacing of samples, from the shortest Delaunay edges. The Delaunay triangulation holds the edge from each sample
- * to its nearest sample, and edges that leave a smooth surface are longer than edges along it. */
+ * to its nearest sample, and edges that leave a smooth surface are longer than edges along it.
+ *
+ * Every thread reads all tetrahedra, and has its own samples: most of the work is done at the samples. */
 #include "dual/spacing.h"
 #include "base/memory.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include <math.h>
 
-enum { NEAREST = 6 }; /* derived: the mean degree of a triangulated surface */
+/* NEAREST: derived, the mean degree of a triangulated surface. SAMPLES_A_THREAD: chosen. */
+enum { NEAREST = 6, SAMPLES_A_THREAD = 1 << 12 };
 
 typedef struct {
     float square[NEAREST]; /* ascending */
@@ -23,31 +27,48 @@ static void offer(neighbours *n, uint32_t sample, float square) {
     n->sample[i] = sample;
 }
 
-static void offer_edge(neighbours *list, const double *points, uint32_t a, uint32_t b) {
-    double square = brio_square_distance(points + 3 * (size_t)a, points + 3 * (size_t)b);
-    offer(&list[a], b, (float)square);
-    offer(&list[b], a, (float)square);
+typedef struct {
+    const brio_tetrahedron *tet;
+    size_t num_tets, num_samples;
+    const double *points;
+    neighbours *list; /* #samples */
+    double *spacing;
+} measuring;
+
+/* Offers each end of an edge to the other end, if that is one of the samples begin to end - 1. */
+static void offer_edge(const measuring *m, uint32_t a, uint32_t b, size_t begin, size_t end) {
+    bool to_a = a - begin < end - begin && b < m->num_samples, to_b = b - begin < end - begin && a < m->num_samples;
+    if (!to_a && !to_b) return;
+    double square = brio_square_distance(m->points + 3 * (size_t)a, m->points + 3 * (size_t)b);
+    if (to_a) offer(&m->list[a], b, (float)square);
+    if (to_b) offer(&m->list[b], a, (float)square);
+}
+
+static void measure_part(void *user, size_t begin, size_t end, int thread) {
+    const measuring *m = user;
+    (void)thread;
+    for (size_t i = 0; i < m->num_tets; i++)
+        for (int j = 1; j < 4; j++)
+            for (int k = 0; k < j; k++) offer_edge(m, m->tet[i].vertex[j], m->tet[i].vertex[k], begin, end);
+    for (size_t s = begin; s < end; s++) {
+        double sum = 0;
+        for (uint32_t i = 0; i < m->list[s].count; i++) sum += sqrt((double)m->list[s].square[i]);
+        m->spacing[s] = m->list[s].count ? sum / m->list[s].count : 0;
+    }
 }
 
 brio_status brio_sample_spacing(brio_context *ctx, const brio_triangulation *t, const double *points,
                                 size_t num_samples, double *spacing) {
     brio_status status = BRIO_OK;
-    neighbours *list = NULL;
-    const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, list, num_samples));
-    for (size_t i = 0; i < brio_triangulation_stats(t)->tetrahedra; i++)
-        for (int j = 1; j < 4; j++)
-            for (int k = 0; k < j; k++) {
-                uint32_t a = tet[i].vertex[j], b = tet[i].vertex[k];
-                if (a < num_samples && b < num_samples) offer_edge(list, points, a, b);
-            }
-    for (size_t s = 0; s < num_samples; s++) {
-        double sum = 0;
-        for (uint32_t i = 0; i < list[s].count; i++) sum += sqrt((double)list[s].square[i]);
-        spacing[s] = list[s].count ? sum / list[s].count : 0;
-    }
+    measuring m = {.tet = brio_triangulation_tetrahedra(t),
+                   .num_tets = brio_triangulation_stats(t)->tetrahedra,
+                   .num_samples = num_samples,
+                   .points = points,
+                   .spacing = spacing};
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, m.list, num_samples));
+    brio_for(ctx, brio_threads(ctx, num_samples, SAMPLES_A_THREAD), num_samples, measure_part, &m);
 done:
-    brio_release(ctx, list);
+    brio_release(ctx, m.list);
     return status;
 }
 

@@ -5,6 +5,8 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "reconstruct/labeled_delaunay/simple_flips.h"
+#include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include <math.h>
 #include <string.h>
@@ -152,6 +154,129 @@ static void mending_leaves_hardly_any_singular_sample(void) {
     free_scene(s);
 }
 
+/* --- small regions --- */
+
+/* Walks over the region of a tetrahedron; flips its tetrahedra in `dropped` if it is small. Returns whether it is. */
+static bool drop_region(const scene *s, uint32_t start, size_t least, bool *seen, uint8_t *dropped) {
+    uint32_t *front = calloc(s->dual.t.count, sizeof *front);
+    size_t size = 0, boundary = 0;
+    bool finite = true;
+    seen[front[size++] = start] = true;
+    for (size_t n = 0; n < size; n++) {
+        finite &= front[n] < s->dual.num_finite;
+        for (int i = 0; i < 4; i++) {
+            uint32_t other = s->dual.t.tet[front[n]].mate[i] >> 2;
+            boundary += s->label[other] != s->label[start];
+            if (s->label[other] == s->label[start] && !seen[other]) seen[front[size++] = other] = true;
+        }
+    }
+    bool small = finite && boundary < least;
+    for (size_t n = 0; n < size && small; n++) dropped[front[n]] = brio_other_label(s->label[start]);
+    free(front);
+    return small;
+}
+
+static void small_regions_are_those_of_a_walk(void) {
+    scene *s = scene_of(uniform_points);
+    size_t count = s->dual.t.count, total = 0;
+    bool *seen = malloc(count);
+    uint8_t *dropped = malloc(count);
+    for (size_t least = 0; least < 40; least += 3) {
+        size_t wanted = 0, changed;
+        label_by(s, is_lucky);
+        memset(seen, 0, count);
+        memcpy(dropped, s->label, count);
+        for (uint32_t t = 0; t < count; t++) wanted += !seen[t] && drop_region(s, t, least, seen, dropped);
+        EXPECT(brio_drop_small_regions(s->ctx, &s->dual.t, least, s->label, &changed) == BRIO_OK);
+        EXPECT(changed == wanted && !memcmp(dropped, s->label, count), "%zu, not %zu", changed, wanted);
+        total += changed;
+    }
+    EXPECT(total > 100, "%zu", total);
+    free(seen);
+    free(dropped);
+    free_scene(s);
+}
+
+/* --- flips that deform --- */
+
+/* Samples off by up to 0.08: where they are exact no sample is in doubt, and nothing is looked at. */
+static void noisy(uint64_t seed, size_t count, double *points) {
+    brio_rng rng = brio_rng_new(seed);
+    for (size_t i = 0; i < 3 * count; i++) points[i] += 0.08 * (2 * brio_rng_double(&rng) - 1);
+}
+
+static void noisy_sphere_points(uint64_t seed, size_t count, double *points) {
+    sphere_points(seed, count, points);
+    noisy(seed, count, points);
+}
+
+static void noisy_torus_points(uint64_t seed, size_t count, double *points) {
+    torus_points(seed, count, points);
+    noisy(seed, count, points);
+}
+
+/* Grows a patch of one label from a tetrahedron: up to `most` finite ones, each next to the one before. Returns their
+ * number. */
+static size_t grow_patch(const scene *s, brio_rng *rng, uint32_t tet, size_t most, uint32_t *patch) {
+    size_t count = 0;
+    for (int trial = 0; count < most && trial < 50; trial++) {
+        uint32_t next = s->dual.t.tet[tet].mate[brio_rng_below(rng, 4)] >> 2;
+        bool listed = false;
+        for (size_t i = 0; i < count; i++) listed |= patch[i] == tet;
+        if (!listed) patch[count++] = tet;
+        if (next < s->dual.num_finite && s->label[next] == s->label[tet]) tet = next;
+    }
+    return count;
+}
+
+/* Returns whether flips leave the Euler characteristic and no singular sample. The flips are taken back. */
+static bool changes_nothing(brio_mending *m, const uint32_t *patch, size_t count) {
+    brio_label_flips *f = m->flips;
+    int64_t before = 2 * m->all_fans - f->faces;
+    for (size_t i = 0; i < count; i++) EXPECT(brio_flip(f, patch[i]) == BRIO_OK);
+    EXPECT(brio_mending_look(m, 0, count) == BRIO_OK);
+    bool same = m->singular == 0 && 2 * m->all_fans - f->faces == before;
+    brio_take_back(f, 0);
+    f->size = count; /* the list is still there */
+    EXPECT(brio_mending_look(m, 0, count) == BRIO_OK && m->singular == 0);
+    f->size = 0;
+    return same;
+}
+
+/* What is said to deform leaves the Euler characteristic; of single tetrahedra, so does nothing else. */
+static void deformations_are_known(scene *s, bool (*inside)(const double *), size_t *yes, size_t *no) {
+    brio_label_flips f;
+    brio_mending m;
+    brio_rng rng = brio_rng_new(5);
+    static uint8_t fans[SAMPLES], label[SAMPLES * 20];
+    label_by(s, inside);
+    EXPECT(brio_label_flips_new(&s->graph, s->label, &f) == BRIO_OK && s->dual.t.count <= sizeof label);
+    EXPECT(brio_mending_new(&f, &m) == BRIO_OK && brio_mend(&m) == BRIO_OK && m.singular == 0);
+    f.size = 0;
+    memcpy(fans, m.fans, SAMPLES), memcpy(label, s->label, s->dual.t.count);
+    for (int trial = 0; trial < 4000; trial++) {
+        uint32_t patch[8], tet = (uint32_t)brio_rng_below(&rng, s->dual.num_finite);
+        size_t count = grow_patch(s, &rng, tet, 1 + trial % 8, patch);
+        bool found = brio_flips_deform(&m, patch, count);
+        EXPECT(!memcmp(fans, m.fans, SAMPLES) && !memcmp(label, s->label, s->dual.t.count), "trial %d", trial);
+        bool same = changes_nothing(&m, patch, count);
+        EXPECT(found ? same : !same || count > 1, "trial %d, %zu tetrahedra", trial, count);
+        *yes += found && count > 1, *no += !found;
+    }
+    brio_mending_free(&m);
+    brio_label_flips_free(&f);
+}
+
+static void flips_that_deform_are_known(void) {
+    scene *torus = scene_of(noisy_torus_points), *chaos = scene_of(uniform_points);
+    size_t yes = 0, no = 0;
+    deformations_are_known(torus, in_torus, &yes, &no);
+    deformations_are_known(chaos, in_ball, &yes, &no);
+    EXPECT(yes > 200 && no > 200, "%zu, %zu", yes, no);
+    free_scene(torus);
+    free_scene(chaos);
+}
+
 /* --- handles --- */
 
 /* Returns twice the Euler characteristic of the boundary, of which every sample is one fan. */
@@ -220,22 +345,6 @@ static void true_handles_stay_and_none_appears(void) {
     EXPECT(after >= before, "spoiled torus: %lld, %lld", (long long)before, (long long)after);
     free_scene(torus);
     free_scene(sphere);
-}
-
-/* Samples off by up to 0.08: where they are exact no sample is in doubt, and nothing is looked at. */
-static void noisy(uint64_t seed, size_t count, double *points) {
-    brio_rng rng = brio_rng_new(seed);
-    for (size_t i = 0; i < 3 * count; i++) points[i] += 0.08 * (2 * brio_rng_double(&rng) - 1);
-}
-
-static void noisy_sphere_points(uint64_t seed, size_t count, double *points) {
-    sphere_points(seed, count, points);
-    noisy(seed, count, points);
-}
-
-static void noisy_torus_points(uint64_t seed, size_t count, double *points) {
-    torus_points(seed, count, points);
-    noisy(seed, count, points);
 }
 
 static bool in_spoiled_ball(const double *p) {
@@ -333,6 +442,8 @@ static void every_failed_allocation_is_a_status(void) {
 int main(void) {
     RUN(flips_know_the_energy);
     RUN(mending_leaves_hardly_any_singular_sample);
+    RUN(small_regions_are_those_of_a_walk);
+    RUN(flips_that_deform_are_known);
     RUN(true_handles_stay_and_none_appears);
     RUN(nothing_falls_apart_in_a_chaos);
     RUN(crumbs_and_bubbles_are_removed);

@@ -220,6 +220,8 @@ static void check_tetrahedra(brio_context *ctx, uint64_t trial) {
     brio_flow flow = brio_flow_new(ctx);
     brio_tet_flow tets;
     EXPECT(brio_tet_flow_new(ctx, &t, trial % 2 ? NULL : g->open, g->num_open, &tets) == BRIO_OK);
+    if (trial % 5) tets.part_size = 1 + trial % 40;
+    brio_context_set_threads(ctx, 1 + (int)(trial % 3));
     for (size_t i = 0; i < g->num_open; i++) tets.terminal[g->open[i]] = 0;
     join_tetrahedra(g, &rng, &tets);
     for (int again = 0; again < 4; again++) check_terminals(g, &rng, &flow, &tets);
@@ -229,7 +231,8 @@ static void check_tetrahedra(brio_context *ctx, uint64_t trial) {
     free(g);
 }
 
-/* The flow of tetrahedra, all or some; then with other terminals, three times. */
+/* The flow of tetrahedra, all or some, whole or in parts, in one to three threads; then with other terminals, three
+ * times. */
 static void cuts_of_tetrahedra_are_those_of_their_graph(void) {
     brio_context *ctx = new_context();
     for (uint64_t trial = 0; trial < 200; trial++) check_tetrahedra(ctx, trial);

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include <stdlib.h>
+#include <string.h>
 
 enum { SAMPLES_A_THREAD = 1 << 12 };
 
@@ -33,7 +34,7 @@ brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_
                               .label = label};
     BRIO_TRY(BRIO_ALLOC(ctx, out->outer, out->num_samples));
     BRIO_TRY(BRIO_ALLOC(ctx, out->place, out->num_tets));
-    for (size_t t = 0; t < out->num_tets; t++) out->place[t] = BRIO_NO_PLACE;
+    memset(out->place, 255, out->num_tets * sizeof *out->place);
     brio_for(ctx, brio_threads(ctx, out->num_samples, SAMPLES_A_THREAD), out->num_samples, sum_votes, out);
 done:
     return status;
@@ -115,7 +116,8 @@ static void flood(const brio_label_flips *f, brio_star_parts *s, int first) {
         uint32_t entry = s->at[stack[--size]];
         const uint32_t *mate = f->g->dual->t.tet[brio_star_tet(entry)].mate;
         for (int i = 0; i < 4; i++) {
-            uint32_t other = brio_tet_of(mate[i]), place = f->place[other];
+            uint32_t other = brio_tet_of(mate[i]);
+            uint16_t place = f->place[other];
             if (i == brio_slot_of(entry) || f->label[other] != label || s->part[place] >= 0) continue;
             s->part[place] = (int16_t)s->count;
             stack[size++] = (int16_t)place;
@@ -132,11 +134,11 @@ bool brio_find_parts(brio_label_flips *f, uint32_t sample, brio_star_parts *out)
     out->count = out->of[0] = out->of[1] = 0;
     if (out->size > BRIO_STAR_ROOM) return false;
     for (size_t i = 0; i < out->size; i++) {
-        f->place[brio_star_tet(out->at[i])] = (uint32_t)i;
+        f->place[brio_star_tet(out->at[i])] = (uint16_t)i;
         out->part[i] = -1;
     }
     for (size_t i = 0; i < out->size; i++)
         if (out->part[i] < 0) flood(f, out, (int)i);
-    for (size_t i = 0; i < out->size; i++) f->place[brio_star_tet(out->at[i])] = BRIO_NO_PLACE;
+    for (size_t i = 0; i < out->size; i++) f->place[brio_star_tet(out->at[i])] = BRIO_NOT_IN_STAR;
     return true;
 }

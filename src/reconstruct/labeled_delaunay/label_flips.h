@@ -13,7 +13,8 @@ static inline int64_t brio_vote_of(float weight) {
     return (int64_t)((double)weight / BRIO_VOTE_UNIT * (double)BRIO_FLIP_UNIT);
 }
 
-#define BRIO_NO_PLACE UINT32_MAX
+/** In brio_label_flips.place: the tetrahedron is not in the star at hand. */
+#define BRIO_NOT_IN_STAR UINT16_MAX
 
 /** Every sample always has the label that most of its votes want, so the energy is a function of the tetrahedra. */
 typedef struct {
@@ -26,7 +27,7 @@ typedef struct {
     int64_t faces;     /* facets between two labels, more than at the start */
     uint32_t *flipped; /* the tetrahedra that were flipped, in order */
     size_t size, capacity;
-    uint32_t *place; /* #T: of each tetrahedron in the star at hand, BRIO_NO_PLACE between calls */
+    uint16_t *place; /* #T: of each tetrahedron in the star at hand, BRIO_NOT_IN_STAR between calls */
 } brio_label_flips;
 
 /** The parts of a star that are connected across facets. */
@@ -56,7 +57,7 @@ void brio_label_samples(const brio_label_flips *f);
  *  number. Cost: quadratic. */
 size_t brio_list_samples(const brio_label_flips *f, size_t from, size_t to, uint32_t *sample);
 
-/** Finds the parts of the star of a sample. Returns false for a star of more than BRIO_STAR_ROOM tetrahedra. */
+/** Finds the parts of the star of a sample. Writes f->place only: threads have copies of f that differ there. Returns false for a star of more than BRIO_STAR_ROOM tetrahedra. */
 bool brio_find_parts(brio_label_flips *f, uint32_t sample, brio_star_parts *out);
 
 /** Returns by how many the parts of a star are more than one outer and one inner part. */

@@ -13,10 +13,14 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
+#include <string.h>
 
 /* MOST: tetrahedra that are flipped together. PRICES: the price is a quarter of a log-odds at first and doubles. SMALL: in
  * stars of more tetrahedra, single flips are not tried. All chosen. */
 enum { MOST = 64, PRICES = 9, SMALL = 96 };
+
+/* Chosen. MOST_PLACES: threads that look at all samples: each has two bytes a tetrahedron, all together less than a flow. */
+enum { SAMPLES_A_THREAD = 1 << 11, MOST_PLACES = 16 };
 
 /* What joining two sheets that touch costs, which makes a handle if they belong to one component. Chosen on seven models
  * beside the project, where 64 and 256 agree and 16 makes a handle more on two. */
@@ -74,6 +78,44 @@ done:
     return status;
 }
 
+typedef struct {
+    brio_mending *m;
+    uint16_t *place; /* #T for each thread */
+} looking;
+
+static void look_part(void *user, size_t begin, size_t end, int thread) {
+    const looking *l = user;
+    brio_label_flips flips = *l->m->flips;
+    brio_mending own = {.flips = &flips};
+    brio_star_parts s;
+    flips.place = l->place + (size_t)thread * flips.num_tets;
+    memset(flips.place, 255, flips.num_tets * sizeof *flips.place);
+    for (size_t p = begin; p < end; p++) {
+        tally now = count(&own, (uint32_t)p, &s);
+        l->m->surplus[p] = (uint8_t)now.surplus;
+        l->m->fans[p] = (uint8_t)now.fans;
+    }
+}
+
+/* Looks at all samples, in threads, and queues the singular ones. */
+static brio_status look_at_all(brio_mending *m) {
+    brio_status status = BRIO_OK;
+    const brio_label_flips *f = m->flips;
+    looking l = {.m = m};
+    int threads = brio_threads(f->ctx, f->num_samples, SAMPLES_A_THREAD);
+    if (threads > MOST_PLACES) threads = MOST_PLACES;
+    BRIO_TRY(BRIO_ALLOC(f->ctx, l.place, (size_t)threads * f->num_tets));
+    brio_for(f->ctx, threads, f->num_samples, look_part, &l);
+    for (uint32_t p = 0; p < f->num_samples; p++) {
+        m->singular += m->surplus[p] > 0;
+        m->all_fans += m->fans[p];
+        if (m->surplus[p] > 0) BRIO_TRY(enqueue(m, p));
+    }
+done:
+    brio_release(f->ctx, l.place);
+    return status;
+}
+
 brio_status brio_mending_new(brio_label_flips *flips, brio_mending *out) {
     brio_status status = BRIO_OK;
     *out = (brio_mending){.flips = flips};
@@ -81,7 +123,7 @@ brio_status brio_mending_new(brio_label_flips *flips, brio_mending *out) {
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->fans, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->queued, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->looked, flips->num_samples));
-    for (uint32_t p = 0; p < flips->num_samples; p++) BRIO_TRY(look_at(out, p));
+    BRIO_TRY(look_at_all(out));
 done:
     return status;
 }
@@ -151,8 +193,9 @@ static int nearest_open(const brio_star_parts *s, const paths *w) {
 static void step_from(brio_mending *m, uint32_t sample, const brio_star_parts *s, uint8_t label, int i, paths *w) {
     const brio_tetrahedron *t = &m->flips->g->dual->t.tet[brio_star_tet(s->at[i])];
     for (int k = 0; k < 4; k++) {
-        uint32_t other = t->mate[k] >> 2, j = m->flips->place[other];
-        if (t->vertex[k] == sample || j == BRIO_NO_PLACE || w->done[j]) continue;
+        uint32_t other = t->mate[k] >> 2;
+        uint16_t j = m->flips->place[other];
+        if (t->vertex[k] == sample || j == BRIO_NOT_IN_STAR || w->done[j]) continue;
         bool there = m->flips->label[other] == label;
         if (!there && other >= m->flips->num_finite) continue;
         int64_t cost = there ? 0 : brio_flip_cost(m->flips, other);
@@ -170,7 +213,7 @@ static bool take_path(brio_mending *m, uint32_t sample, const brio_star_parts *s
         w.cost[i] = s->part[i] == part ? 0 : INT64_MAX;
         w.from[i] = -1;
         w.done[i] = false;
-        m->flips->place[brio_star_tet(s->at[i])] = (uint32_t)i;
+        m->flips->place[brio_star_tet(s->at[i])] = (uint16_t)i;
     }
     while (end < 0 && (at = nearest_open(s, &w)) >= 0) {
         w.done[at] = true;
@@ -179,7 +222,7 @@ static bool take_path(brio_mending *m, uint32_t sample, const brio_star_parts *s
         else
             step_from(m, sample, s, label, at, &w);
     }
-    for (size_t i = 0; i < s->size; i++) m->flips->place[brio_star_tet(s->at[i])] = BRIO_NO_PLACE;
+    for (size_t i = 0; i < s->size; i++) m->flips->place[brio_star_tet(s->at[i])] = BRIO_NOT_IN_STAR;
     for (int i = end < 0 ? -1 : w.from[end]; i >= 0; i = w.from[i])
         if (m->flips->label[brio_star_tet(s->at[i])] != label) {
             if (x->size == MOST) return false;

@@ -1,59 +1,91 @@
-/* Small regions of labels, found by walks across facets. A walk begins at each tetrahedron that no walk has reached, and
- * stops at facets between two labels, which it counts. */
+/* Small regions of labels. A union-find joins the tetrahedra of one label across facets; its sets are the regions. At the
+ * least tetrahedron of a region the facets to the other label are counted, up to what makes the region large. The regions
+ * are the same for any number of threads. */
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "base/memory.h"
+#include "base/team.h"
+#include "base/union_find.h"
 #include "reconstruct/labels/label.h"
+
+/* LARGE: the count of a region with an infinite tetrahedron. TETS_A_THREAD is chosen. */
+enum { LARGE = UINT16_MAX, TETS_A_THREAD = 1 << 13 };
 
 typedef struct {
     const brio_tetrahedra *t;
-    uint8_t *label, *reached;
-    uint32_t *tet; /* of the region at hand; what is not walked from yet is at the end */
-    size_t size, boundary;
-    bool infinite;
-} walk;
+    uint8_t *label;
+    uint32_t *parent;   /* #T: union-find; the root of a region is its least tetrahedron */
+    uint16_t *boundary; /* #T: of roots: facets to the other label; those past `least` need not be counted */
+    size_t least, small;
+    bool alone; /* one thread does all */
+} sieve;
 
-static void reach(walk *w, uint32_t tet) {
-    w->reached[tet] = 1;
-    w->tet[w->size++] = tet;
-    w->infinite |= brio_is_infinite(w->t, tet);
+static void make_regions(void *user, size_t begin, size_t end, int thread) {
+    sieve *s = user;
+    (void)thread;
+    for (size_t tet = begin; tet < end; tet++) s->parent[tet] = (uint32_t)tet;
 }
 
-static void walk_from(walk *w, uint32_t start) {
-    w->size = w->boundary = 0;
-    w->infinite = false;
-    reach(w, start);
-    for (size_t n = 0; n < w->size; n++)
+static void join_regions(void *user, size_t begin, size_t end, int thread) {
+    sieve *s = user;
+    (void)thread;
+    for (uint32_t tet = (uint32_t)begin; tet < end; tet++)
         for (int i = 0; i < 4; i++) {
-            uint32_t other = brio_tet_of(w->t->tet[w->tet[n]].mate[i]);
-            if (w->label[other] != w->label[start])
-                w->boundary++;
-            else if (!w->reached[other])
-                reach(w, other);
+            uint32_t other = brio_tet_of(s->t->tet[tet].mate[i]);
+            if (other < tet && s->label[other] == s->label[tet]) brio_unite(s->parent, tet, other, s->alone);
         }
+}
+
+/* Counts facets to the other label. Threads that add to one region at once may count a few past `least`. */
+static void count_facets(void *user, size_t begin, size_t end, int thread) {
+    sieve *s = user;
+    (void)thread;
+    for (uint32_t tet = (uint32_t)begin; tet < end; tet++) {
+        uint16_t count = 0;
+        for (int i = 0; i < 4; i++) count += s->label[brio_tet_of(s->t->tet[tet].mate[i])] != s->label[tet];
+        if (count == 0) continue;
+        uint16_t *all = &s->boundary[brio_find(s->parent, tet)];
+        if (__atomic_load_n(all, __ATOMIC_RELAXED) < s->least) __atomic_fetch_add(all, count, __ATOMIC_RELAXED);
+    }
+}
+
+static void keep_infinite(void *user, size_t begin, size_t end, int thread) {
+    sieve *s = user;
+    (void)thread;
+    for (uint32_t tet = (uint32_t)begin; tet < end; tet++)
+        if (brio_is_infinite(s->t, tet))
+            __atomic_store_n(&s->boundary[brio_find(s->parent, tet)], LARGE, __ATOMIC_RELAXED);
+}
+
+static void drop_regions(void *user, size_t begin, size_t end, int thread) {
+    sieve *s = user;
+    size_t small = 0;
+    (void)thread;
+    for (uint32_t tet = (uint32_t)begin; tet < end; tet++) {
+        uint32_t root = brio_find(s->parent, tet);
+        if (s->boundary[root] >= s->least) continue;
+        s->label[tet] = brio_other_label(s->label[tet]);
+        small += root == tet;
+    }
+    __atomic_fetch_add(&s->small, small, __ATOMIC_RELAXED);
 }
 
 brio_status brio_drop_small_regions(brio_context *ctx, const brio_tetrahedra *t, size_t least, uint8_t *label,
                                     size_t *changed) {
     brio_status status = BRIO_OK;
-    walk w = {.t = t, .label = label};
-    uint8_t *flip = NULL;
+    int threads = brio_threads(ctx, t->count, TETS_A_THREAD);
+    sieve s = {.t = t, .label = label, .least = least, .alone = threads == 1};
     *changed = 0;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, w.reached, t->count));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, flip, t->count));
-    BRIO_TRY(BRIO_ALLOC(ctx, w.tet, t->count));
-    for (uint32_t tet = 0; tet < t->count; tet++) {
-        if (w.reached[tet]) continue;
-        walk_from(&w, tet);
-        bool small = w.boundary < least && !w.infinite;
-        *changed += small;
-        for (size_t n = 0; n < w.size && small; n++) flip[w.tet[n]] = 1;
-    }
-    for (size_t tet = 0; tet < t->count; tet++)
-        if (flip[tet]) label[tet] = brio_other_label(label[tet]);
+    BRIO_TRY(BRIO_ALLOC(ctx, s.parent, t->count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.boundary, t->count));
+    brio_for(ctx, threads, t->count, make_regions, &s);
+    brio_for(ctx, threads, t->count, join_regions, &s);
+    brio_for(ctx, threads, t->count, count_facets, &s);
+    brio_for(ctx, threads, t->count, keep_infinite, &s);
+    brio_for(ctx, threads, t->count, drop_regions, &s);
+    *changed = s.small;
 done:
-    brio_release(ctx, w.reached);
-    brio_release(ctx, w.tet);
-    brio_release(ctx, flip);
+    brio_release(ctx, s.parent);
+    brio_release(ctx, s.boundary);
     return status;
 }
 

@@ -6,6 +6,7 @@
 
 /** Gives the other label to every region of tetrahedra, connected across facets, whose boundary has fewer than `least`
  *  facets, unless it holds an infinite tetrahedron. Regions are judged as they are before the call.
+ *  least    at most 2^15.
  *  label    #T, read and written: inner or outer; infinite tetrahedra are outer.
  *  changed  receives the number of regions.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */

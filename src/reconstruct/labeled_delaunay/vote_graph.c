@@ -24,7 +24,7 @@
 #include <math.h>
 
 /* PARTS: sums of the energy that are added up in order. All chosen. */
-enum { TETS_A_THREAD = 1 << 11, PARTS = 256 };
+enum { TETS_A_THREAD = 1 << 11, SAMPLES_A_THREAD = 1 << 12, PARTS = 256 };
 
 /* In log-odds, of a facet of the area of an equilateral triangle whose sides are one spacing: AREA is its weight in any
  * case, DOUBT is added if its samples see both of its tetrahedra in one direction. Larger facets weigh more, up to
@@ -136,22 +136,51 @@ static void weigh_votes(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
+/* --- stars --- */
+
+typedef struct {
+    const builder *b;
+    size_t *next; /* #P: how many entries a star has, then where the next one goes */
+} lister;
+
+/* The two steps of listing, for parts of the samples. Every thread reads all tetrahedra, in ascending order. */
+
+static void count_entries(void *user, size_t begin, size_t end, int thread) {
+    const lister *l = user;
+    const brio_pole_vectors *v = l->b->dual;
+    (void)thread;
+    for (size_t tet = 0; tet < v->t.count; tet++)
+        for (int i = 0; i < num_samples(v, tet); i++) {
+            size_t p = v->t.tet[tet].vertex[i];
+            if (p - begin < end - begin) l->next[p]++;
+        }
+}
+
+static void write_entries(void *user, size_t begin, size_t end, int thread) {
+    const lister *l = user;
+    const brio_pole_vectors *v = l->b->dual;
+    (void)thread;
+    for (size_t tet = 0; tet < v->t.count; tet++)
+        for (int i = 0; i < num_samples(v, tet); i++) {
+            size_t p = v->t.tet[tet].vertex[i];
+            if (p - begin < end - begin) l->b->g->star[l->next[p]++] = brio_facet_of((uint32_t)tet, i);
+        }
+}
+
 /* Lists the stars of the samples. */
 static brio_status list_stars(const builder *b) {
     brio_status status = BRIO_OK;
-    const brio_pole_vectors *v = b->dual;
     brio_vote_graph *g = b->g;
-    size_t *next = NULL, n = v->num_points;
-    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, next, n));
-    for (size_t tet = 0; tet < v->t.count; tet++)
-        for (int i = 0; i < num_samples(v, tet); i++) next[v->t.tet[tet].vertex[i]]++;
-    g->first[n] = brio_counts_to_places(next, 1, n, 0);
-    for (size_t p = 0; p < n; p++) g->first[p] = next[p];
-    for (size_t tet = 0; tet < v->t.count; tet++)
-        for (int i = 0; i < num_samples(v, tet); i++)
-            g->star[next[v->t.tet[tet].vertex[i]]++] = brio_facet_of((uint32_t)tet, i);
+    lister l = {.b = b};
+    size_t n = b->dual->num_points;
+    int threads = brio_threads(g->ctx, n, SAMPLES_A_THREAD);
+    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, l.next, n));
+    brio_for(g->ctx, threads, n, count_entries, &l);
+    g->first[n] = brio_counts_to_places(l.next, 1, n, 0);
+    for (size_t p = 0; p < n; p++) g->first[p] = l.next[p];
+    brio_for(g->ctx, threads, n, write_entries, &l);
 done:
-    brio_release(g->ctx, next);
+    brio_release(g->ctx, l.next);
     return status;
 }
 

@@ -77,18 +77,25 @@ done:
 
 /* --- contested places --- */
 
+/* Frees a node. Threads may free one node at once. */
+static void free_node(const voting *v, size_t node) {
+    __atomic_store_n(&v->fixed[node], 0, __ATOMIC_RELAXED);
+}
+
 /* Frees a sample and its finite tetrahedra. */
 static void free_star(const voting *v, uint32_t sample) {
-    v->fixed[v->num_tets + sample] = 0;
+    free_node(v, v->num_tets + sample);
     for (size_t i = v->g->first[sample]; i < v->g->first[sample + 1]; i++) {
         uint32_t tet = brio_star_tet(v->g->star[i]);
-        if (tet < v->num_finite) v->fixed[tet] = 0;
+        if (tet < v->num_finite) free_node(v, tet);
     }
 }
 
 /* Frees contested samples, their tetrahedra, the samples of these, and the tetrahedra of these. */
-static void free_contested(const voting *v) {
-    for (size_t p = 0; p < v->num_samples; p++) {
+static void free_contested(void *user, size_t begin, size_t end, int thread) {
+    const voting *v = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
         double all, outer = tally(v, p, &all);
         if (!(all - fabs(outer) > 2 * CONTESTED * all)) continue;
         for (size_t i = v->g->first[p]; i < v->g->first[p + 1]; i++) {
@@ -127,7 +134,7 @@ brio_status brio_vote_labels(const brio_vote_graph *g, const uint8_t *turned, ui
     BRIO_TRY(take_turns(&v));
     BRIO_TRY(BRIO_ALLOC(v.ctx, v.fixed, v.num_tets + v.num_samples));
     memset(v.fixed, 1, v.num_tets + v.num_samples);
-    free_contested(&v);
+    brio_for(v.ctx, brio_threads(v.ctx, v.num_samples, NODES_A_THREAD), v.num_samples, free_contested, &v);
     BRIO_TRY(settle_contested(&v, undecided));
 done:
     brio_release(v.ctx, v.fixed);

@@ -5,17 +5,19 @@
  * patches. Each patch is flipped by itself, and stars that this spoils are mended. The flips stay if the Euler
  * characteristic of the boundary grows by 2 for each HANDLE of energy, and if no component appeared: on either side of the
  * boundary, the tetrahedra next to the patch must still be connected, and nearby. A patch with nothing but the other
- * label about it is a crumb or a bubble, which counts as much as a handle. Otherwise the flips are taken back.
+ * label about it is a crumb or a bubble, which counts as much as a handle. Otherwise the flips are taken back. A patch whose
+ * flip is known to deform the boundary only (simple_flips.c) leaves the Euler characteristic, and is not weighed.
  *
  * The energy alone cannot do this, because it knows nothing of topology: it is a sum over tetrahedra and facets. */
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "base/memory.h"
+#include "reconstruct/labeled_delaunay/simple_flips.h"
 #include "reconstruct/labeled_delaunay/vote_cut.h"
 #include <stdlib.h>
 
 /* BIASES: cuts for each label. MOST_PATCH: tetrahedra of a patch. NEARBY: tetrahedra
  * looked at until those next to a patch are connected. All chosen. */
-enum { BIASES = 3, MOST_PATCH = 256, NEARBY = 4096 };
+enum { BIASES = 3, MOST_PATCH = BRIO_MOST_SIMPLE, NEARBY = 4096 };
 
 /* In log-odds. BIAS: what all votes lean by. HANDLE: how much more likely a surface is without a small handle than with it,
  * before samples are looked at. Chosen: on generated solids, raw scans and the models beside the project 8, 16 and 32 differ by
@@ -158,7 +160,8 @@ static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     BRIO_TRY(brio_progress(s->f->ctx, "handles", 1));
     brio_vote_cut_find(&s->cut, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning);
     for (uint32_t tet = 0; tet < s->f->num_finite; tet++)
-        if (leans(s, tet, label) && collect_patch(s, tet, label)) BRIO_TRY(weigh_patch(s, label));
+        if (leans(s, tet, label) && collect_patch(s, tet, label) && !brio_flips_deform(s->m, s->patch, s->patch_size))
+            BRIO_TRY(weigh_patch(s, label));
 done:
     return status;
 }

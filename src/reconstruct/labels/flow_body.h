@@ -7,6 +7,9 @@
  * of a tree keeps its distance from the terminal and the time of its last check. With these an orphan finds out quickly
  * which nodes are still connected to the terminal, and takes the nearest one as its parent.
  *
+ * After a flow the terminals may change. The trees stay, except for nodes whose terminal is now another one or saturated,
+ * so little is to be done if few terminals change. An arc can be closed: no tree and no flow uses it.
+ *
  * Includers define first
  *   FLOW, FLOW_TERMINAL      the type of the workspace, with a member `trees` and the arrays node, terminal and side; the
  *                            type of the entries of `terminal`,
@@ -14,11 +17,16 @@
  *   FLOW_NODE(f, i)          the i-th of them, and
  *   FLOW_FIRST(f, v), FLOW_END(f, v), FLOW_HEAD(f, arc), FLOW_MATE(f, arc), FLOW_RESIDUAL(f, arc)
  *                            the arcs that leave a node, the end of an arc, the same edge in the other direction, and its
- *                            residual capacity, which can be assigned.
- * They get run(f).
+ *                            residual capacity, which can be assigned, and
+ *   FLOW_IS_CLOSED(f, arc)   whether an arc is closed.
+ * They get clear(f), which empties the trees of all nodes, plant(f), which makes the trees fit the terminals, and
+ * push(f), which makes the flow maximal. The ring of orphans is in the entries orphan_base to orphan_base + room - 1 of
+ * `node`.
  *
  * Based on: Boykov, Kolmogorov. An experimental comparison of min-cut/max-flow algorithms for energy minimization in
- *           vision. IEEE PAMI 2004. */
+ *           vision. IEEE PAMI 2004.
+ *           Kohli, Torr. Dynamic graph cuts for efficient inference in Markov random fields. IEEE PAMI 2007 (terminals
+ *           that change). */
 #include "reconstruct/labels/max_flow.h"
 
 /* Marks in `parent`: no parent, the terminal is the parent, the node is an orphan. NO_NODE is a mark in next_active. */
@@ -56,34 +64,17 @@ static void pop_active(FLOW *f) {
 static void make_orphan(FLOW *f, uint32_t v) {
     size_t at = f->trees.orphan_first + f->trees.num_orphans++;
     f->node[v].parent = ORPHAN;
-    f->node[at < f->trees.room ? at : at - f->trees.room].orphan = v;
+    f->node[f->trees.orphan_base + (at < f->trees.room ? at : at - f->trees.room)].orphan = v;
 }
 
 static uint32_t pop_orphan(FLOW *f) {
-    uint32_t v = f->node[f->trees.orphan_first].orphan;
+    uint32_t v = f->node[f->trees.orphan_base + f->trees.orphan_first].orphan;
     f->trees.orphan_first = f->trees.orphan_first + 1 < f->trees.room ? f->trees.orphan_first + 1 : 0;
     f->trees.num_orphans--;
     return v;
 }
 
 /* --- growing --- */
-
-static void plant(FLOW *f) {
-    for (size_t i = 0; i < FLOW_NODES(f); i++) {
-        uint32_t v = FLOW_NODE(f, i);
-        f->node[v].next_active = NO_NODE;
-        f->node[v].parent = NO_ARC;
-        f->node[v].checked = 0;
-        f->side[v] = f->terminal[v] > 0 ? SOURCE : f->terminal[v] < 0 ? SINK : FREE;
-    }
-    for (size_t i = 0; i < FLOW_NODES(f); i++) {
-        uint32_t v = FLOW_NODE(f, i);
-        if (f->side[v] == FREE) continue;
-        f->node[v].parent = AT_TERMINAL;
-        f->node[v].distance = 1;
-        activate(f, v);
-    }
-}
 
 static void hang(FLOW *f, uint32_t v, uint32_t arc_to_parent, uint32_t parent) {
     f->node[v].parent = arc_to_parent;
@@ -103,6 +94,7 @@ static uint32_t grow(FLOW *f, uint32_t v) {
     uint8_t side = f->side[v];
     for (uint32_t arc = FLOW_FIRST(f, v); arc < FLOW_END(f, v); arc++) {
         uint32_t w = FLOW_HEAD(f, arc);
+        if (FLOW_IS_CLOSED(f, arc)) continue;
         if (f->side[w] == side) {
             if (is_nearer_by(f, v, w) && capacity_outwards(f, side, arc)) hang(f, w, FLOW_MATE(f, arc), v);
         } else if (capacity_outwards(f, side, arc)) {
@@ -187,7 +179,7 @@ static void abandon(FLOW *f, uint32_t v) {
     uint8_t side = f->side[v];
     for (uint32_t arc = FLOW_FIRST(f, v); arc < FLOW_END(f, v); arc++) {
         uint32_t w = FLOW_HEAD(f, arc);
-        if (f->side[w] != side) continue;
+        if (FLOW_IS_CLOSED(f, arc) || f->side[w] != side) continue;
         if (capacity_inwards(f, side, arc)) activate(f, w);
         if (f->node[w].parent == FLOW_MATE(f, arc)) make_orphan(f, w);
     }
@@ -199,7 +191,7 @@ static void adopt(FLOW *f, uint32_t v) {
     uint8_t side = f->side[v];
     uint32_t best = NO_ARC, least = UINT32_MAX;
     for (uint32_t arc = FLOW_FIRST(f, v); arc < FLOW_END(f, v); arc++) {
-        if (f->side[FLOW_HEAD(f, arc)] != side || !capacity_inwards(f, side, arc)) continue;
+        if (FLOW_IS_CLOSED(f, arc) || f->side[FLOW_HEAD(f, arc)] != side || !capacity_inwards(f, side, arc)) continue;
         uint32_t distance = distance_to_terminal(f, FLOW_HEAD(f, arc));
         if (distance < least) least = distance, best = arc;
     }
@@ -212,12 +204,56 @@ static void adopt(FLOW *f, uint32_t v) {
     f->node[v].checked = f->trees.time;
 }
 
+/* Adopts the orphans. A node that is no orphan any more, because it was planted since, is left alone. */
+static void adopt_all(FLOW *f) {
+    while (f->trees.num_orphans) {
+        uint32_t v = pop_orphan(f);
+        if (f->node[v].parent == ORPHAN) adopt(f, v);
+    }
+}
+
+/* --- planting --- */
+
+static void clear(FLOW *f) {
+    for (size_t i = 0; i < FLOW_NODES(f); i++) {
+        uint32_t v = FLOW_NODE(f, i);
+        f->node[v].next_active = NO_NODE;
+        f->node[v].parent = NO_ARC;
+        f->node[v].checked = 0;
+        f->side[v] = FREE;
+    }
+}
+
+/* Makes a node of either tree or of none a child of the terminal of a tree. */
+static void plant_node(FLOW *f, uint32_t v, uint8_t side) {
+    if (f->side[v] != FREE && f->side[v] != side) abandon(f, v);
+    if (f->side[v] == FREE) activate(f, v);
+    f->side[v] = side;
+    f->node[v].parent = AT_TERMINAL;
+    f->node[v].distance = 1;
+}
+
+/* Returns whether a node without a terminal has lost its parent: the terminal is saturated, or the arc is closed. */
+static bool lost_parent(const FLOW *f, uint32_t v) {
+    uint32_t parent = f->node[v].parent;
+    return parent == AT_TERMINAL || (parent < ORPHAN && FLOW_IS_CLOSED(f, parent));
+}
+
+/* Makes the trees fit the terminals and the closed arcs. */
+static void plant(FLOW *f) {
+    f->trees.time++;
+    for (size_t i = 0; i < FLOW_NODES(f); i++) {
+        uint32_t v = FLOW_NODE(f, i);
+        uint8_t side = f->terminal[v] > 0 ? SOURCE : SINK;
+        if (f->terminal[v] != 0 && (side != f->side[v] || f->node[v].parent != AT_TERMINAL)) plant_node(f, v, side);
+        if (f->terminal[v] == 0 && lost_parent(f, v)) make_orphan(f, v);
+    }
+    adopt_all(f);
+}
+
 /* --- the whole --- */
 
-/* Makes the flow maximal, and sets the side of every node. */
-static void run(FLOW *f) {
-    f->trees = (brio_flow_trees){.room = f->trees.room, .active_head = NO_NODE};
-    plant(f);
+static void push(FLOW *f) {
     while (f->trees.active_head != NO_NODE) {
         uint32_t v = f->trees.active_head, arc = f->side[v] == FREE ? NO_ARC : grow(f, v);
         if (arc == NO_ARC) {
@@ -226,6 +262,6 @@ static void run(FLOW *f) {
         }
         f->trees.time++;
         augment(f, arc);
-        while (f->trees.num_orphans) adopt(f, pop_orphan(f));
+        adopt_all(f);
     }
 }

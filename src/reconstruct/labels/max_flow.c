@@ -2,15 +2,16 @@
 #include "base/memory.h"
 #include <string.h>
 
-#define FLOW                brio_flow
-#define FLOW_TERMINAL       int64_t
-#define FLOW_NODES(f)       ((f)->num_nodes)
-#define FLOW_NODE(f, i)     ((uint32_t)(i))
-#define FLOW_FIRST(f, v)    ((f)->first[v])
-#define FLOW_END(f, v)      ((f)->first[(v) + 1])
-#define FLOW_HEAD(f, a)     ((f)->arc[a].head)
-#define FLOW_MATE(f, a)     ((f)->arc[a].mate)
-#define FLOW_RESIDUAL(f, a) ((f)->arc[a].residual)
+#define FLOW                 brio_flow
+#define FLOW_TERMINAL        int64_t
+#define FLOW_NODES(f)        ((f)->num_nodes)
+#define FLOW_NODE(f, i)      ((uint32_t)(i))
+#define FLOW_FIRST(f, v)     ((f)->first[v])
+#define FLOW_END(f, v)       ((f)->first[(v) + 1])
+#define FLOW_HEAD(f, a)      ((f)->arc[a].head)
+#define FLOW_MATE(f, a)      ((f)->arc[a].mate)
+#define FLOW_RESIDUAL(f, a)  ((f)->arc[a].residual)
+#define FLOW_IS_CLOSED(f, a) false
 #include "reconstruct/labels/flow_body.h"
 
 static brio_status make_arcs(brio_flow *f, const brio_flow_edge *edges, size_t num_edges) {
@@ -49,10 +50,13 @@ brio_status brio_flow_maximum(brio_flow *f, size_t num_nodes, const brio_flow_ed
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(f->ctx, num_nodes < ORPHAN && num_edges < ORPHAN / 2, BRIO_ERR_TOO_LARGE,
                  "%zu edges of a flow are more than 32-bit indices can name", num_edges);
-    f->num_nodes = f->trees.room = num_nodes;
+    f->num_nodes = num_nodes;
+    f->trees = (brio_flow_trees){.room = num_nodes, .active_head = NO_NODE};
     f->terminal = terminal, f->side = side;
     BRIO_TRY(make_arcs(f, edges, num_edges));
-    run(f);
+    clear(f);
+    plant(f);
+    push(f);
 done:
     return status;
 }
