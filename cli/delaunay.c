@@ -145,6 +145,7 @@ static brio_delaunay_options library_options(const run *r, const arguments *a, c
     o.seed = r->common.seed;
     o.block_size = (size_t)a->block_size;
     o.record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every;
+    o.leave_hidden = !r->common.output && !a->verify; /* a report counts them, but names none */
     if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
     return o;
 }

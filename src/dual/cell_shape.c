@@ -15,7 +15,7 @@
 #include "base/vector.h"
 #include <math.h>
 
-enum { SAMPLES_A_THREAD = 1 << 13, TETRAHEDRA_A_THREAD = 1 << 10 };
+enum { SAMPLES_A_THREAD = 1 << 13, TETRAHEDRA_A_THREAD = 1 << 13 };
 
 static const double SQUARED_SINE = 0.14644660940672624; /* derived: sin(pi / 8)^2 */
 

@@ -20,7 +20,7 @@
 #include "predicates/predicates.h"
 #include <string.h>
 
-enum { NO_TET = UINT32_MAX, AHEAD = 12, TETRAHEDRA_A_THREAD = 1 << 11, POLES_A_THREAD = 1 << 12 };
+enum { NO_TET = UINT32_MAX, AHEAD = 12, TETRAHEDRA_A_THREAD = 1 << 14, POLES_A_THREAD = 1 << 14 };
 
 typedef struct {
     const brio_tetrahedron *tet;

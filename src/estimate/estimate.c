@@ -11,6 +11,7 @@
 
 /* While points are inserted: record, index in the input, representative, number in the cavity. */
 static const double INSERT_BYTES_A_POINT = 41, INSERT_BYTES_A_TETRAHEDRON = 33;
+static const double SEQUENCE_BYTES_A_POINT = 4; /* more, with weights */
 /* Then, where points are hidden, what finds the vertices that represent them (autzen and csite4: 32). */
 static const double BYTES_A_HIDDEN_POINT = 32;
 /* While the result is sorted: index, representative and two buckets; two numbers a tetrahedron. */
@@ -55,8 +56,12 @@ static double location_bytes(double points, const brio_delaunay_options *o) {
     }
 }
 
-static double delaunay_bytes(double points, const brio_triangulation_size *size, bool threads) {
-    double insert = INSERT_BYTES_A_POINT * points + INSERT_BYTES_A_TETRAHEDRON * size->tetrahedra +
+static double sequence_bytes(double points, const brio_delaunay_options *o) {
+    return o->order == BRIO_ORDER_BRIO && o->locate == BRIO_LOCATION_WALK ? SEQUENCE_BYTES_A_POINT * points : 0;
+}
+
+static double delaunay_bytes(double points, const brio_triangulation_size *size, double sequence, bool threads) {
+    double insert = sequence + INSERT_BYTES_A_POINT * points + INSERT_BYTES_A_TETRAHEDRON * size->tetrahedra +
                     BYTES_A_HIDDEN_POINT * size->hidden;
     double sort = SORT_BYTES_A_POINT * points + SORT_BYTES_A_TETRAHEDRON * size->tetrahedra;
     if (threads) sort += THREADS_BYTES_A_TETRAHEDRON * size->tetrahedra;
@@ -74,7 +79,8 @@ brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, cons
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
     BRIO_TRY(brio_estimate_size(ctx, points, weights, num_points, &size));
     double n = (double)num_points;
-    *bytes = bytes_of(delaunay_bytes(n, &size, brio_context_threads(ctx) > 1) + location_bytes(n, &o));
+    double sequence = weights ? sequence_bytes(n, &o) : 0;
+    *bytes = bytes_of(delaunay_bytes(n, &size, sequence, brio_context_threads(ctx) > 1) + location_bytes(n, &o));
 done:
     return status;
 }

@@ -54,7 +54,7 @@ static brio_status take_records(hull *h, size_t n) {
     brio_copy_points(h->points, h->index, n, rows);
     BRIO_REQUIRE(h->ctx, brio_all_finite(rows, 3 * n), BRIO_ERR_NOT_FINITE,
                  "the points changed during the call, to numbers that are not finite");
-    BRIO_TRY(brio_order_points(h->ctx, rows, n, &o, order, NULL, NULL));
+    BRIO_TRY(brio_order_points(h->ctx, &(brio_input){rows, NULL, n}, &o, order, NULL, NULL, NULL));
     for (size_t r = 0; r < n; r++) {
         const double *p = rows + 3 * (size_t)order[r];
         for (int k = 0; k < 3; k++) h->records.record[r][k] = p[k] + 0.0; /* no -0 */

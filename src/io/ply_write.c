@@ -77,7 +77,7 @@ done:
 /* --- binary rows --- */
 
 /* CHUNK: faces encoded at a time. Both chosen. */
-enum { CHUNK = 1 << 16, ROWS_A_THREAD = 1 << 12 };
+enum { CHUNK = 1 << 16, ROWS_A_THREAD = 1 << 15 };
 
 /* A chunk of encoded faces from `first` on. */
 typedef struct {

@@ -23,7 +23,8 @@
 #include "base/union_find.h"
 #include <math.h>
 
-enum { ITEMS_A_THREAD = 1 << 13 }; /* faces, corners or vertices */
+/* Faces, corners or vertices: a pass takes 1 to 25 ns an item. */
+enum { ITEMS_A_THREAD = 1 << 15 };
 
 typedef struct {
     brio_context *ctx;

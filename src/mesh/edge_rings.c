@@ -8,8 +8,8 @@
 #include "base/team.h"
 
 enum {
-    CORNERS_A_THREAD = 1 << 14, /* for a pass that only checks; chosen */
-    FACES_A_THREAD = 1 << 12,
+    CORNERS_A_THREAD = 1 << 17, /* for a pass that only checks, 1 ns a corner */
+    FACES_A_THREAD = 1 << 14,
     BUCKETS_A_CHUNK = 1 << 10
 };
 

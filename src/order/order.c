@@ -7,7 +7,8 @@
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, sections 5.3 and 5.8.
  * Differs from the paper: the default BRIO uses a Hilbert curve instead of octree blocks, and a ratio of 1/8 instead of
- * 1/2. The ratio of 1/8 inserts fewer points into a coarse triangulation. */
+ * 1/2. The ratio of 1/8 inserts fewer points into a coarse triangulation. With weights, points are inserted in a
+ * sequence by weights (rounds.c). */
 #include "order/order.h"
 #include "base/memory.h"
 #include "base/rng.h"
@@ -110,16 +111,18 @@ static brio_status order_index(maker *m) {
     }
 }
 
-brio_status brio_order_points(brio_context *ctx, const double *points, size_t n, const brio_delaunay_options *options,
-                              uint32_t *order, uint32_t *rank, brio_round_ends *rounds) {
+brio_status brio_order_points(brio_context *ctx, const brio_input *input, const brio_delaunay_options *options,
+                              uint32_t *order, uint32_t *rank, uint32_t *sequence, brio_round_ends *rounds) {
     brio_status status = BRIO_OK;
+    size_t n = input->count;
     brio_round_ends ends = {1, {n}};
     bool in_rounds = has_rounds(options->order);
-    maker m = {ctx, points, n, options, in_rounds ? NULL : order, in_rounds ? order : NULL};
+    maker m = {ctx, input->points, n, options, in_rounds ? NULL : order, in_rounds ? order : NULL};
     BRIO_TRY(order_index(&m));
     if (in_rounds)
         BRIO_TRY(brio_divide_into_rounds(
-            ctx, &(brio_division){m.index, n, ratio_of(options), options->seed, order, rank}, &ends));
+            ctx, &(brio_division){m.index, input->weights, n, ratio_of(options), options->seed, order, rank, sequence},
+            &ends));
     else
         for (size_t i = 0; rank && i < n; i++) rank[i] = (uint32_t)i;
     if (rounds) *rounds = ends;

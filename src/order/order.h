@@ -4,16 +4,24 @@
 
 #include "order/rounds.h"
 
-/** Writes the indices of the #P by 3 points to order[0 .. num_points), in the order of insertion. The result depends
- *  only on the options and the points.
+/** Points that a caller has. */
+typedef struct {
+    const double *points;  /* count by 3 */
+    const double *weights; /* count, or NULL */
+    size_t count;
+} brio_input;
+
+/** Writes the indices of the points to order[0 .. count), in the order of insertion. The result depends only on the
+ *  options and the input; weights change nothing but the sequence.
  *  rank    NULL, or receives for each position in `order` the rank of its point along the curve, or through the blocks,
  *          among all points. Ranks rise inside a round. Meaningful only where brio_order_has_ranks is true.
- *  rounds  NULL, or receives the ends of the rounds.
+ *  sequence  NULL, or, only for BRIO_ORDER_BRIO with weights, receives positions in `order`: a better sequence, whose
+ *          early rounds hold the heavier points. Ranks rise inside its rounds, too.
+ *  rounds  NULL, or receives the ends of the rounds, of `order` and of the sequence.
  *  Workspace in bytes for each point: brio, hilbert and random 16, brio-octree 5, octree 4, brio-kdtree 20, input
  *  none. */
-brio_status brio_order_points(brio_context *ctx, const double *points, size_t num_points,
-                              const brio_delaunay_options *options, uint32_t *order, uint32_t *rank,
-                              brio_round_ends *rounds);
+brio_status brio_order_points(brio_context *ctx, const brio_input *input, const brio_delaunay_options *options,
+                              uint32_t *order, uint32_t *rank, uint32_t *sequence, brio_round_ends *rounds);
 
 /** Returns whether the order, inside each round, follows a path through space. */
 bool brio_order_has_ranks(brio_order order);

@@ -26,7 +26,8 @@ static brio_status order_points(brio_context *ctx, const brio_plane_input *input
     BRIO_TRY(BRIO_ALLOC(ctx, index, n));
     for (size_t i = 0; i < n; i++) index[i] = (uint32_t)items[i];
     double ratio = options->round_ratio > 0 ? options->round_ratio : 0.125;
-    BRIO_TRY(brio_divide_into_rounds(ctx, &(brio_division){index, n, ratio, options->seed, order, NULL}, &ends));
+    BRIO_TRY(
+        brio_divide_into_rounds(ctx, &(brio_division){index, NULL, n, ratio, options->seed, order, NULL, NULL}, &ends));
 done:
     brio_release(ctx, items);
     brio_release(ctx, spare);

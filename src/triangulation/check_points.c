@@ -38,14 +38,14 @@ done:
     return status;
 }
 
-/* Checks that every representative is a vertex and that every vertex represents itself. */
+/* Checks that every representative is a vertex, or left open, and that every vertex represents itself. */
 static brio_status check_vertices(workspace *w) {
     brio_status status = BRIO_OK;
     const brio_judge *j = w->j;
     for (size_t p = 0; p < j->num_points; p++) {
         uint32_t v = w->result->representative[p];
-        bool vertex = w->vertex_tet[p] != BRIO_NO_TET;
-        BRIO_REQUIRE(j->ctx, v < j->num_points && w->vertex_tet[v] != BRIO_NO_TET, BRIO_ERR_CHECK,
+        bool vertex = w->vertex_tet[p] != BRIO_NO_TET, open = v == BRIO_INFINITE && w->result->leaves_hidden;
+        BRIO_REQUIRE(j->ctx, open || (v < j->num_points && w->vertex_tet[v] != BRIO_NO_TET), BRIO_ERR_CHECK,
                      "point %zu is represented by %u, which is no vertex", p, v);
         BRIO_REQUIRE(j->ctx, !vertex || v == p, BRIO_ERR_CHECK, "vertex %zu is represented by %u", p, v);
     }
@@ -81,11 +81,11 @@ done:
 static brio_status check_hidden(workspace *w, uint32_t p, uint32_t tet) {
     brio_status status = BRIO_OK;
     brio_judge *j = w->j;
-    uint32_t best = 0;
+    uint32_t best = BRIO_INFINITE;
     BRIO_TRY(brio_check_sphere(j, tet, p));
     if (!w->result) goto done;
     w->hidden[w->num_hidden++] = p;
-    BRIO_TRY(brio_nearest_vertex(&w->nearest, tet, j->t.record[p], &best));
+    if (!w->result->leaves_hidden) BRIO_TRY(brio_nearest_vertex(&w->nearest, tet, j->t.record[p], &best));
     BRIO_REQUIRE(j->ctx, w->result->representative[p] == best, BRIO_ERR_CHECK,
                  "hidden point %u is represented by %u instead of %u", p, w->result->representative[p], best);
 done:
@@ -96,7 +96,8 @@ static brio_status check_point(workspace *w, uint32_t p) {
     brio_status status = BRIO_OK;
     brio_judge *j = w->j;
     const double *x = j->t.record[p];
-    if (w->result) w->walk.start = w->vertex_tet[w->result->representative[p]];
+    uint32_t known = w->result ? w->result->representative[p] : BRIO_INFINITE;
+    if (known != BRIO_INFINITE) w->walk.start = w->vertex_tet[known];
     uint32_t tet = brio_locate_walk(&j->t, NULL, &j->filter, &w->walk, x, UINT64_MAX);
     w->walk.start = tet;
     BRIO_REQUIRE(j->ctx, !brio_is_infinite(&j->t, tet), BRIO_ERR_CHECK, "point %u is outside the hull", p);

@@ -49,10 +49,10 @@ static inline size_t least(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-/* Where the records from `begin` on stop to follow the curve, at most `end`. */
+/* Where the records whose turns are from `begin` on stop to follow the curve, at most `end`. */
 static size_t end_of_run(const brio_store *s, size_t begin, size_t end) {
     size_t i = begin + 1;
-    while (i < end && s->rank[i] > s->rank[i - 1]) i++;
+    while (i < end && s->rank[brio_record_at(s, i)] > s->rank[brio_record_at(s, i - 1)]) i++;
     return i;
 }
 
@@ -60,7 +60,7 @@ static brio_status insert_some(brio_inserter *ins, size_t begin, size_t end) {
     brio_status status = BRIO_OK;
     for (size_t p = begin; p < end; p++) {
         brio_insertion outcome;
-        BRIO_TRY(brio_insert(ins, (uint32_t)p, &outcome));
+        BRIO_TRY(brio_insert(ins, brio_record_at(ins->store, p), &outcome));
         assert(outcome != BRIO_DEFERRED);
         if (brio_inserter_work(ins) >= ins->report_at)
             BRIO_TRY(brio_inserter_report(ins, (double)p / (double)ins->store->num_points));
@@ -126,6 +126,17 @@ static bool result_is_valid(const brio_triangulation *t) {
 }
 #endif
 
+/* Names the representatives by the caller's indices. */
+static brio_status rename_representatives(const brio_store *s, uint32_t **out) {
+    brio_status status = BRIO_ALLOC(s->ctx, *out, s->num_points);
+    if (status != BRIO_OK) return status;
+    for (size_t p = 0; p < s->num_points; p++) {
+        uint32_t v = s->representative[p];
+        (*out)[s->caller[p]] = v == BRIO_INFINITE ? v : s->caller[v];
+    }
+    return BRIO_OK;
+}
+
 static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder, brio_triangulation **out) {
     brio_store *s = ins->store;
     brio_triangulation *t = NULL;
@@ -138,8 +149,7 @@ static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder
     BRIO_TRY(BRIO_RESIZE(s->ctx, s->t.tet, s->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, t, 1));
     t->ctx = s->ctx;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, t->representative, s->num_points));
-    for (size_t p = 0; p < s->num_points; p++) t->representative[s->caller[p]] = s->caller[s->representative[p]];
+    BRIO_TRY(rename_representatives(s, &t->representative));
     t->tet = s->t.tet;
     t->stats = ins->stats;
     t->points_hash = s->points_hash;
@@ -167,10 +177,11 @@ static brio_status construct(brio_store *store, const brio_delaunay_options *opt
     ins->stats.order_seconds = order_seconds;
     ins->stats.created = store->t.count; /* the first ones */
     BRIO_TRY(insert_all(ins, options, recorder));
-    BRIO_TRY(brio_represent(ins));
+    BRIO_TRY(brio_represent(ins, options->leave_hidden != 0));
     BRIO_TRY(sort_result(ins));
     ins->stats.insert_seconds = brio_seconds() - recorder->start;
     BRIO_TRY(triangulation_new(ins, recorder, out));
+    (*out)->leaves_hidden = options->leave_hidden != 0;
 done:
     brio_inserter_free(ins);
     return status;

@@ -43,7 +43,7 @@ enum {
 typedef struct {
     brio_inserter *main; /* the one that works alone between passes, and rests in them */
     brio_store *store;
-    uint32_t first; /* the records to insert, along the curve: from `first` on, or those listed */
+    uint32_t first; /* the records to insert, along the curve: those of the turns from `first` on, or those listed */
     uint32_t *list;
     size_t count;
     int shift; /* of ranks to segments */
@@ -66,7 +66,7 @@ typedef struct {
 } worker;
 
 static inline uint32_t record_of(const pass *own, size_t i) {
-    return own->list ? own->list[i] : own->first + (uint32_t)i;
+    return own->list ? own->list[i] : brio_record_at(own->store, own->first + i);
 }
 
 /* --- one thread --- */

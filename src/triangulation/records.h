@@ -2,14 +2,8 @@
 #ifndef BRIO_TRIANGULATION_RECORDS_H
 #define BRIO_TRIANGULATION_RECORDS_H
 
+#include "order/order.h"
 #include "triangulation/tetrahedra.h"
-
-/** Points that a caller has. */
-typedef struct {
-    const double *points;  /* count by 3 */
-    const double *weights; /* count, or NULL */
-    size_t count;
-} brio_input;
 
 /** Makes a private copy of the input as records; -0 becomes 0. Reads each number once: the input may change meanwhile, and
  *  what the call refuses or copies is what it read.

@@ -4,13 +4,18 @@
  * may have been hidden later, and a vertex at its position may have come after it. So each such point is located in
  * the finished triangulation. A point at the position of a vertex is a duplicate. Any other point is hidden, and
  * descent along edges finds its vertex of least power distance: in a regular triangulation a vertex without a nearer
- * neighbour is the nearest of all. Apexes of flat inputs are skipped: the edges of the flat triangulation suffice. */
+ * neighbour is the nearest of all. Apexes of flat inputs are skipped: the edges of the flat triangulation suffice.
+ *
+ * Where hidden points are to be left without a representative, nothing is located: a table of positions tells duplicates
+ * from hidden points. */
 #include "triangulation/represent.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "triangulation/nearest_vertex.h"
 #include "triangulation/vertex_tets.h"
+#include <string.h>
 
 enum { SLOTS_A_THREAD = 1 << 13 };
 
@@ -85,6 +90,67 @@ done:
     return status;
 }
 
+/* --- hidden points left without a representative --- */
+
+/* A hash table of records at distinct positions, by linear probing. */
+typedef struct {
+    const brio_store *store;
+    uint32_t *place; /* size of them: a record, or BRIO_INFINITE */
+    size_t size;     /* a power of two */
+} positions;
+
+static brio_status positions_new(const brio_store *s, positions *out) {
+    *out = (positions){.store = s, .size = 64};
+    while (out->size < s->num_points + s->num_points / 2) out->size *= 2;
+    brio_status status = BRIO_ALLOC(s->ctx, out->place, out->size);
+    if (status == BRIO_OK) memset(out->place, 0xff, out->size * sizeof *out->place);
+    return status;
+}
+
+static size_t first_place(const positions *t, uint32_t p) {
+    uint64_t x[3];
+    memcpy(x, t->store->record[p], sizeof x);
+    return brio_mix(x[0] ^ brio_mix(x[1] ^ brio_mix(x[2]))) & (t->size - 1);
+}
+
+/* Enters a record at a position that the table does not have. */
+static void enter(positions *t, uint32_t p) {
+    size_t at = first_place(t, p);
+    while (t->place[at] != BRIO_INFINITE) at = (at + 1) & (t->size - 1);
+    t->place[at] = p;
+}
+
+/* Returns the record of the table at the position of p, after entering p if there was none. */
+static uint32_t find_or_enter(positions *t, uint32_t p) {
+    const brio_record *r = t->store->record;
+    size_t at = first_place(t, p);
+    while (t->place[at] != BRIO_INFINITE && !brio_same_position(r[t->place[at]], r[p])) at = (at + 1) & (t->size - 1);
+    if (t->place[at] == BRIO_INFINITE) t->place[at] = p;
+    return t->place[at];
+}
+
+/* Names the vertices of duplicates, and counts the hidden points. */
+static brio_status leave_hidden(brio_inserter *ins) {
+    const brio_store *s = ins->store;
+    positions t;
+    brio_status status = positions_new(s, &t);
+    if (status != BRIO_OK) return status;
+    for (uint32_t p = 0; p < s->num_points; p++)
+        if (s->representative[p] == p) enter(&t, p);
+    for (uint32_t p = 0; p < s->num_points; p++) {
+        if (s->representative[p] == p) continue;
+        uint32_t same = find_or_enter(&t, p);
+        bool is_vertex = s->representative[same] == same;
+        s->representative[p] = is_vertex ? same : BRIO_INFINITE;
+        ins->stats.duplicates += same != p;
+        ins->stats.hidden += same == p;
+    }
+    brio_release(s->ctx, t.place);
+    return BRIO_OK;
+}
+
+/* --- all points --- */
+
 /* Represents points that are all at one position. The heaviest represents the others; among equal weights, the one
  * with the lowest index. */
 static void represent_coincident(brio_inserter *ins) {
@@ -126,8 +192,8 @@ static void rename_vertices(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* Makes the first of coincident points of equal weight their vertex again. A parallel pass may have inserted a later
- * one first; without this step the order of the tetrahedra would depend on that. */
+/* Makes the first of coincident points of equal weight their vertex again. A parallel pass, or a sequence by weights, may
+ * have inserted a later one first; without this step the order of the tetrahedra would depend on that. */
 static brio_status restore_first(brio_store *s) {
     uint32_t *first = NULL;
     brio_status status = BRIO_ALLOC(s->ctx, first, s->num_points + 3);
@@ -155,14 +221,15 @@ static void count_duplicates(brio_inserter *ins) {
     brio_expect_random(s->representative);
 }
 
-brio_status brio_represent(brio_inserter *ins) {
+brio_status brio_represent(brio_inserter *ins, bool leaves_hidden) {
     brio_store *s = ins->store;
-    brio_status status = s->rank && s->dimension == 3 && has_earlier_twin(s) ? restore_first(s) : BRIO_OK;
+    bool in_order = !s->rank && !s->sequence;
+    brio_status status = !in_order && s->dimension == 3 && has_earlier_twin(s) ? restore_first(s) : BRIO_OK;
     if (status != BRIO_OK) return status;
     if (s->dimension == 0)
         represent_coincident(ins);
     else if (s->weighted && s->dimension > 0)
-        status = represent_weighted(ins);
+        status = leaves_hidden ? leave_hidden(ins) : represent_weighted(ins);
     else
         count_duplicates(ins);
     ins->stats.vertices = s->num_points - ins->stats.duplicates - ins->stats.hidden;

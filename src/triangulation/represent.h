@@ -5,7 +5,8 @@
 #include "triangulation/inserter.h"
 
 /** Gives every point that is no vertex the vertex that represents it. Counts duplicates and hidden points. Call it
- *  after all insertions. */
-brio_status brio_represent(brio_inserter *ins);
+ *  after all insertions.
+ *  leaves_hidden  Hidden points and their duplicates receive BRIO_INFINITE instead. */
+brio_status brio_represent(brio_inserter *ins, bool leaves_hidden);
 
 #endif

@@ -48,6 +48,19 @@ static int general_position(brio_store *s) {
     return count;
 }
 
+/* The first four records, those of the first tetrahedron, take the first turns. Flat inputs need no sequence. */
+static void choose_turns(brio_store *s) {
+    size_t to = s->num_points;
+    if (s->dimension < 3) {
+        brio_release(s->ctx, s->sequence);
+        s->sequence = NULL;
+        return;
+    }
+    for (size_t i = s->num_points; i-- > 0;)
+        if (s->sequence[i] > 3) s->sequence[--to] = s->sequence[i];
+    for (uint32_t i = 0; i < 4; i++) s->sequence[i] = i;
+}
+
 /* Returns a finite number different from x, about `step` away. */
 static double moved(double x, double step) {
     double y = x > 0 ? x - step : x + step;
@@ -126,6 +139,7 @@ brio_status brio_start(brio_store *s) {
     choose_filter(s, s->num_points);
     int count = general_position(s);
     s->dimension = count - 1;
+    if (s->sequence) choose_turns(s);
     if (s->dimension == 0) return BRIO_OK;
     uint32_t corner[4] = {0, 1, 2, 3};
     double step = largest_difference(s);

@@ -47,7 +47,9 @@ brio_status brio_store_new(brio_context *ctx, const brio_input *input, const bri
     BRIO_TRY(BRIO_ALLOC(ctx, s->caller, n + MORE_RECORDS));
     BRIO_TRY(brio_progress(ctx, "order", 0));
     if (parallel && brio_order_has_ranks(options->order)) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->rank, n + MORE_RECORDS));
-    BRIO_TRY(brio_order_points(ctx, input->points, n, options, s->caller, s->rank, rounds));
+    if (s->weighted && options->order == BRIO_ORDER_BRIO && options->locate == BRIO_LOCATION_WALK)
+        BRIO_TRY(BRIO_ALLOC(ctx, s->sequence, n));
+    BRIO_TRY(brio_order_points(ctx, input, options, s->caller, s->rank, s->sequence, rounds));
     BRIO_TRY(brio_records_new(ctx, input, s->caller, MORE_RECORDS, &s->points_hash, &s->record));
     BRIO_TRY(end_store(s));
     *out = s;
@@ -78,6 +80,8 @@ void brio_store_drop_records(brio_store *s) {
     brio_release(s->ctx, s->record);
     s->record = NULL;
     s->t.record = NULL;
+    brio_release(s->ctx, s->sequence);
+    s->sequence = NULL;
 }
 
 void brio_store_free(brio_store *s) {
@@ -86,6 +90,7 @@ void brio_store_free(brio_store *s) {
     brio_release(s->ctx, s->state);
     brio_release(s->ctx, s->record);
     brio_release(s->ctx, s->rank);
+    brio_release(s->ctx, s->sequence);
     brio_release(s->ctx, s->caller);
     brio_release(s->ctx, s->representative);
     brio_release(s->ctx, s->local);

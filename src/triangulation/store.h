@@ -26,7 +26,7 @@
  *   t.tet[s], state[s]             the inserter alone; in a pass P1, P2           P3
  *   t.count                        brio_store_take, at any time, atomically;      brio_store_take
  *                                  alone also the inserter and the last step
- *   record, rank                   before the first insertion; brio_start         every thread
+ *   record, rank, sequence         before the first insertion; brio_start         every thread
  *                                  brings some records to the front
  *   caller, representative, local  the inserter alone; in a pass P4               P4
  *   dimension, filter              brio_start                                     every thread
@@ -62,6 +62,7 @@ typedef struct {
     uint64_t points_hash;     /* base/points_hash.h */
     brio_record *record;      /* NULL once only their indices matter */
     uint32_t *rank;           /* of each record: its place along the curve; NULL when one thread is to insert */
+    uint32_t *sequence;       /* the records in the sequence of insertion; NULL when they stand in it */
     uint32_t *caller;         /* of each record: its index in the caller's arrays */
     uint32_t *representative; /* of each record: itself, or a record that took its place */
     uint8_t *local;           /* of each vertex: its number in the cavity where it was last */
@@ -91,7 +92,12 @@ brio_status brio_store_reserve(brio_store *store, size_t more);
  *  thread at any time. */
 bool brio_store_take(brio_store *store, size_t size, size_t *begin);
 
-/** Frees the records, once only their indices matter. */
+/** The record that is inserted after so many others. */
+static inline uint32_t brio_record_at(const brio_store *store, size_t turn) {
+    return store->sequence ? store->sequence[turn] : (uint32_t)turn;
+}
+
+/** Frees the records and their sequence, once only the records' indices matter. */
 void brio_store_drop_records(brio_store *store);
 
 /** The vertex that took the place of record p; p itself for a vertex. Shortens the way there. Alone only. */

@@ -8,6 +8,7 @@ struct brio_triangulation {
     brio_context *ctx;
     brio_tetrahedron *tet;    /* finite ones first; vertices are the caller's indices or BRIO_INFINITE */
     uint32_t *representative; /* of each point of the caller */
+    bool leaves_hidden;       /* hidden points and their duplicates have BRIO_INFINITE for a representative */
     brio_delaunay_stats stats;
     uint64_t points_hash; /* base/points_hash.h */
     brio_round *round;    /* NULL when nothing was recorded */

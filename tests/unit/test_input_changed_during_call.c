@@ -369,7 +369,7 @@ static void expect_permutation(brio_context *ctx, brio_order order) {
     brio_delaunay_options o = brio_delaunay_options_default();
     size_t twice = 0;
     o.order = order, o.block_size = 50;
-    EXPECT(brio_order_points(ctx, many, MANY, &o, found, NULL, NULL) == BRIO_OK);
+    EXPECT(brio_order_points(ctx, &(brio_input){many, NULL, MANY}, &o, found, NULL, NULL, NULL) == BRIO_OK);
     memset(seen, 0, sizeof seen);
     for (size_t i = 0; i < MANY; i++) {
         EXPECT(found[i] < MANY, "order %d", (int)order);

@@ -93,7 +93,8 @@ static void every_order_is_a_permutation(void) {
                 for (size_t block_size = 0; block_size < 100; block_size = block_size * 10 + 1) {
                     const char *name = hard_points(set, n);
                     brio_delaunay_options o = options_of(kind, block_size);
-                    EXPECT(brio_order_points(ctx, points, n, &o, order, NULL, NULL) == BRIO_OK);
+                    EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, n}, &o, order, NULL, NULL, NULL) ==
+                           BRIO_OK);
                     EXPECT(is_permutation(order, n), "order %d of %zu points %s", kind, n, name);
                 }
     EXPECT(brio_context_memory(ctx) == 0);
@@ -107,9 +108,9 @@ static void number_of_threads_does_not_matter(void) {
             hard_points(set, MOST);
             brio_delaunay_options o = options_of(kind, 0);
             brio_context_set_threads(ctx, 1);
-            EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, NULL) == BRIO_OK);
+            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
             brio_context_set_threads(ctx, 3);
-            EXPECT(brio_order_points(ctx, points, MOST, &o, other, NULL, NULL) == BRIO_OK);
+            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
             EXPECT(!memcmp(order, other, sizeof order), "order %d of set %d", kind, set);
         }
     brio_context_free(ctx);
@@ -121,11 +122,11 @@ static void seed_decides_every_random_choice(void) {
     for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
         brio_delaunay_options o = options_of(kind, 0);
         bool random = kind != BRIO_ORDER_HILBERT && kind != BRIO_ORDER_INPUT;
-        EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, NULL) == BRIO_OK);
-        EXPECT(brio_order_points(ctx, points, MOST, &o, other, NULL, NULL) == BRIO_OK);
+        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
+        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
         EXPECT(!memcmp(order, other, sizeof order), "order %d", kind);
         o.seed++;
-        EXPECT(brio_order_points(ctx, points, MOST, &o, other, NULL, NULL) == BRIO_OK);
+        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
         EXPECT((memcmp(order, other, sizeof order) != 0) == random, "order %d", kind);
     }
     brio_context_free(ctx);
@@ -135,7 +136,7 @@ static brio_status order_everything(brio_context *ctx) {
     brio_status status = BRIO_OK;
     for (int kind = 0; kind < BRIO_ORDER_END && status == BRIO_OK; kind++) {
         brio_delaunay_options o = options_of(kind, 10);
-        status = brio_order_points(ctx, points, 1000, &o, order, rank, NULL);
+        status = brio_order_points(ctx, &(brio_input){points, NULL, 1000}, &o, order, rank, NULL, NULL);
     }
     return status;
 }
@@ -164,7 +165,7 @@ static void rounds_shrink_by_the_ratio(void) {
         brio_delaunay_options o = options_of(rows[row].kind, 0);
         brio_round_ends rounds;
         o.round_ratio = rows[row].given;
-        EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
+        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
         EXPECT(rounds.count > 1 && rounds.end[rounds.count - 1] == MOST);
         EXPECT(MOST * pow(rows[row].ratio, rounds.count) < 1 && MOST * pow(rows[row].ratio, rounds.count - 1) >= 1);
         for (int r = rounds.count - 1; r > 0; r--) {
@@ -183,7 +184,7 @@ static void round_follows_from_the_index(void) {
     uniform_points(3, MOST, points);
     for (int kind = BRIO_ORDER_BRIO_OCTREE; kind <= BRIO_ORDER_BRIO_KDTREE; kind++) {
         brio_delaunay_options o = options_of(kind, 0);
-        EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
+        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
         for (size_t i = 0, r = 0; i < MOST; i++) {
             while (i >= rounds.end[r]) r++;
             EXPECT(kind == BRIO_ORDER_BRIO_OCTREE || round_of[order[i]] == r);
@@ -200,11 +201,73 @@ static void ranks_rise_inside_rounds(void) {
         brio_delaunay_options o = options_of(kind, 500);
         brio_round_ends rounds;
         if (!brio_order_has_ranks(o.order)) continue;
-        EXPECT(brio_order_points(ctx, points, MOST, &o, order, rank, &rounds) == BRIO_OK);
+        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, rank, NULL, &rounds) == BRIO_OK);
         EXPECT(is_permutation(rank, MOST));
         for (int r = 0; r < rounds.count; r++)
             for (size_t i = (r ? rounds.end[r - 1] : 0) + 1; i < rounds.end[r]; i++) EXPECT(rank[i] > rank[i - 1]);
     }
+    brio_context_free(ctx);
+}
+
+/* Which round each place along the curve has in the sequence by these weights, or in the order without weights. */
+static void rounds_along_the_curve(brio_context *ctx, const double *weights, uint8_t *round, brio_round_ends *rounds) {
+    brio_delaunay_options o = options_of(BRIO_ORDER_BRIO, 0);
+    brio_input input = {points, weights, MOST};
+    EXPECT(brio_order_points(ctx, &input, &o, order, rank, weights ? spare : NULL, rounds) == BRIO_OK);
+    EXPECT(is_permutation(order, MOST) && is_permutation(rank, MOST) && (!weights || is_permutation(spare, MOST)));
+    for (size_t i = 0, r = 0; i < MOST; i++) {
+        while (i >= rounds->end[r]) r++;
+        uint32_t at = weights ? spare[i] : (uint32_t)i;
+        round[rank[at]] = (uint8_t)r;
+        index_of[rank[at]] = order[at];
+    }
+}
+
+/* The order itself, which decides how the tetrahedra stand in the result, is the one without weights. */
+static void weights_change_the_sequence_and_not_the_order(void) {
+    static double weights[MOST];
+    brio_context *ctx = new_context();
+    brio_delaunay_options o = options_of(BRIO_ORDER_BRIO, 0);
+    brio_round_ends rounds;
+    uniform_points(3, MOST, points);
+    integer_weights(5, MOST, 1000, weights);
+    EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
+    EXPECT(brio_order_points(ctx, &(brio_input){points, weights, MOST}, &o, order, rank, spare, &rounds) == BRIO_OK);
+    EXPECT(memcmp(order, other, sizeof order) == 0);
+    for (int r = 0; r < rounds.count; r++)
+        for (size_t i = (r ? rounds.end[r - 1] : 0) + 1; i < rounds.end[r]; i++)
+            EXPECT(rank[spare[i]] > rank[spare[i - 1]]);
+    brio_context_free(ctx);
+}
+
+/* Blocks of 64 places along the curve keep their number of points in each round. */
+static void heavier_points_take_the_earlier_rounds_of_their_block(void) {
+    enum { BLOCK = 64 };
+    static double weights[MOST];
+    static uint8_t plain[MOST], weighted[MOST], alone[MOST];
+    brio_context *ctx = new_context();
+    brio_round_ends rounds, same;
+    uniform_points(3, MOST, points);
+    integer_weights(5, MOST, 1000, weights);
+    rounds_along_the_curve(ctx, NULL, plain, &rounds);
+    brio_context_set_threads(ctx, 1);
+    rounds_along_the_curve(ctx, weights, alone, &same);
+    brio_context_set_threads(ctx, 3);
+    rounds_along_the_curve(ctx, weights, weighted, &same);
+    EXPECT(memcmp(alone, weighted, sizeof alone) == 0);
+    EXPECT(memcmp(rounds.end, same.end, (size_t)rounds.count * sizeof *rounds.end) == 0);
+    for (size_t i = 0; i < MOST; i++) {
+        size_t begin = i / BLOCK * BLOCK, end = begin + BLOCK < MOST ? begin + BLOCK : MOST;
+        int before = 0, after = 0;
+        for (size_t j = begin; j < end; j++) {
+            EXPECT(weighted[i] >= weighted[j] || weights[index_of[i]] >= weights[index_of[j]], "%zu and %zu", i, j);
+            before += plain[j] == weighted[i], after += weighted[j] == weighted[i];
+        }
+        EXPECT(before == after, "round %d: %d of block %zu, not %d", weighted[i], after, i / BLOCK, before);
+    }
+    for (size_t i = 0; i < MOST; i++) weights[i] = -1.5;
+    rounds_along_the_curve(ctx, weights, weighted, &same);
+    EXPECT(memcmp(plain, weighted, sizeof plain) == 0);
     brio_context_free(ctx);
 }
 
@@ -218,7 +281,7 @@ static void rounds_follow_the_curve(void) {
     brio_delaunay_options o = options_of(BRIO_ORDER_BRIO, 0);
     o.round_ratio = 0.5;
     brio_round_ends rounds;
-    EXPECT(brio_order_points(ctx, points, MOST, &o, order, NULL, &rounds) == BRIO_OK);
+    EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
     for (int r = 1; r < rounds.count; r++)
         for (size_t i = rounds.end[r - 1] + 1; i < rounds.end[r]; i++) EXPECT(key[order[i - 1]] <= key[order[i]]);
     EXPECT(rounds.end[rounds.count - 2] > 0.48 * MOST && rounds.end[rounds.count - 2] < 0.52 * MOST);
@@ -380,7 +443,7 @@ static void rounds_visit_blocks_in_turn(void) {
             make_blocks(kinds[i] != BRIO_ORDER_BRIO_KDTREE, N, BLOCK);
             for (size_t b = 0; b < N; b = blocks[b].end)
                 for (size_t j = b; j < blocks[b].end; j++) block_of[index_of[j]] = (uint32_t)b;
-            EXPECT(brio_order_points(ctx, points, N, &o, order, NULL, &rounds) == BRIO_OK);
+            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, N}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
             for (int r = 0; r < rounds.count; r++)
                 for (size_t j = (r ? rounds.end[r - 1] : 0) + 1; j < rounds.end[r]; j++) {
                     uint32_t before = block_of[order[j - 1]], now = block_of[order[j]];
@@ -469,6 +532,8 @@ int main(void) {
     RUN(rounds_shrink_by_the_ratio);
     RUN(round_follows_from_the_index);
     RUN(ranks_rise_inside_rounds);
+    RUN(weights_change_the_sequence_and_not_the_order);
+    RUN(heavier_points_take_the_earlier_rounds_of_their_block);
     RUN(rounds_follow_the_curve);
     RUN(blocks_are_never_too_large);
     RUN(octree_blocks_are_cells_depth_first);

@@ -34,7 +34,7 @@ static void the_first_of_coincident_points_becomes_the_vertex(void) {
     size_t unused, with_first = 0, with_later = 0;
     brio_inserter *ins = leave_insertion(ctx, &unused);
     const brio_store *s = ins->store;
-    EXPECT(brio_represent(ins) == BRIO_OK);
+    EXPECT(brio_represent(ins, false) == BRIO_OK);
     EXPECT(s->representative[FIRST] == FIRST && s->representative[LATER] == FIRST);
     for (size_t t = 0; t < unused; t++)
         for (int i = 0; i < 4; i++) {

@@ -123,7 +123,7 @@ static void sizes_that_were_not_set_are_arguments(void) {
 /* A field that is appended begins at the old size: no struct ends with padding, which would pass for the new field. */
 #define ENDS_WITH(type, last)                                                                                          \
     _Static_assert(offsetof(type, last) + sizeof(((type *)0)->last) == sizeof(type), #type " ends with padding")
-ENDS_WITH(brio_delaunay_options, num_edges);
+ENDS_WITH(brio_delaunay_options, reserved_int);
 ENDS_WITH(brio_delaunay_stats, insert_seconds);
 ENDS_WITH(brio_certificate, volume);
 ENDS_WITH(brio_distance, diagonal);

@@ -19,7 +19,7 @@
 #include <string.h>
 
 /* STEP: tetrahedra between two calls of the progress callback. All chosen. */
-enum { STEP = 1 << 21, TETRAHEDRA_A_THREAD = 1 << 12, CHUNK = 1 << 10 };
+enum { STEP = 1 << 21, TETRAHEDRA_A_THREAD = 1 << 14, CHUNK = 1 << 10 };
 
 /* Workspace of the construction. */
 typedef struct {
