@@ -1668,6 +1668,15 @@ BRIO_API brio_status brio_read_as(brio_context *ctx, const char *path, const bri
 /** brio_read_as with a format and else the defaults. */
 BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
 
+/** brio_read_as of a file's bytes in memory, compressed ones included. No file is opened: a .node file's tetrahedra, which
+ *  are in another file, are not read.
+ *  bytes  size of them, not kept.
+ *  name   what messages call the file, "scan.ply"; its extension tells the format where the content does not. NULL is for
+ *         none: then bytes in no known format are rows of numbers.
+ *  Returns what brio_read_as returns, but not BRIO_ERR_OPEN. */
+BRIO_API brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
+                                      const brio_read_options *options, brio_mesh **out);
+
 /** What a file is. */
 typedef struct brio_file_facts {
     size_t size;
