@@ -54,7 +54,7 @@ static brio_status visit(walk *w, brio_glb_instance *out) {
                  "%s: nodes[%u].mesh: the file has %zu meshes", w->file->name, t.node, s->num_meshes);
     multiply(t.matrix, node->matrix, out->matrix);
     out->mesh = node->mesh;
-    if (node->children) BRIO_TRY(push(w, out->matrix, s->children + node->child, node->children));
+    BRIO_TRY(push(w, out->matrix, s->children + node->child, node->children));
 done:
     return status;
 }
