@@ -78,6 +78,9 @@ static void a_form_feed_in_the_comment_ends_no_loop(void) {
     brio_mesh *m = io_read_text("a.xyz", "2\na\fb \v c\n\vC 0\f0 0\nO\t1 0 0\v\n");
     EXPECT(m && m->num_vertices == 2 && value(m, "atomic_number", 1) == 8);
     brio_mesh_free(m);
+    m = io_read_text("a.xyz", "1\na\fb\n6 0 0 0\n"); /* the comment decides that 6 is carbon */
+    EXPECT(m && m->num_vertices == 1 && value(m, "atomic_number", 0) == 6);
+    brio_mesh_free(m);
     m = io_read_text("a.xyz", "1\nc\nC 0 0 0\v5\f\n");
     EXPECT(m && m->num_vertices == 1 && value(m, "column5", 0) == 5);
     brio_mesh_free(m);

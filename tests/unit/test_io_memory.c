@@ -2,6 +2,7 @@
  * are compressed; names choose formats; no other file is opened. */
 #include "e57_image.h"
 #include "laz_samples.h"
+#include "io/stream.h"
 #include "packed_samples.h"
 
 static brio_mesh *read_bytes(const void *bytes, size_t size, const char *name, brio_status *status) {
@@ -90,6 +91,26 @@ static void formats_that_seek_read_the_same(void) {
     put_sample("a.las", las_format_8, sizeof las_format_8);
 }
 
+/* Before, in and behind what the stream's buffer holds. */
+static void any_place_can_be_looked_at(void) {
+    enum { SIZE = 3 << 20, WORDS = SIZE / 4 };
+    uint32_t *words = malloc(SIZE), found[2];
+    brio_stream s;
+    for (uint32_t i = 0; i < WORDS; i++) words[i] = i;
+    EXPECT(brio_stream_open_memory(&s, io_ctx, "m", words, SIZE) == BRIO_OK);
+    for (uint64_t skipped = 0; skipped <= SIZE; skipped += SIZE / 4) {
+        for (uint32_t i = 0; i < WORDS - 1; i += 9973)
+            EXPECT(brio_stream_peek(&s, 4 * (uint64_t)i, found, 8) == BRIO_OK && found[0] == i && found[1] == i + 1);
+        EXPECT(brio_stream_peek(&s, SIZE - 4, found, 8) == BRIO_ERR_FORMAT);
+        EXPECT(brio_stream_peek(&s, SIZE + UINT64_C(4), found, 1) == BRIO_ERR_FORMAT);
+        EXPECT(brio_stream_peek(&s, UINT64_MAX, found, 8) == BRIO_ERR_FORMAT);
+        EXPECT(!strcmp(brio_message(io_ctx), "m: ends at byte 3145728"), "%s", brio_message(io_ctx));
+        if (skipped < SIZE) EXPECT(brio_stream_skip(&s, SIZE / 4) == BRIO_OK);
+    }
+    brio_stream_close(&s);
+    free(words);
+}
+
 static void compressed_bytes_are_decompressed(void) {
     sample s = {.size = 0};
     sample_gzip(&s, packed_text, strlen(packed_text));
@@ -148,6 +169,7 @@ int main(void) {
     io_begin();
     RUN(written_formats_read_the_same);
     RUN(formats_that_seek_read_the_same);
+    RUN(any_place_can_be_looked_at);
     RUN(compressed_bytes_are_decompressed);
     RUN(long_texts_read_the_same);
     RUN(the_name_chooses_the_format);
