@@ -60,6 +60,7 @@ def run_subject(program, subject, minutes, out):
         row["all"] = last_number(r"\((\d+) inline 8-bit counters\)", text)
         if status:
             row["findings"] += 1
+            findings.mkdir(parents=True, exist_ok=True)  # somebody may have cleaned up
             shutil.copy(out / ("%s.log" % subject), findings / ("%d.log" % row["findings"]))
     return row
 
