@@ -36,7 +36,8 @@ def last_number(pattern, text, before=0):
 
 
 def options_of(subject, findings):
-    options = ["-artifact_prefix=%s/" % findings, "-max_len=4096", "-timeout=60", "-rss_limit_mb=3000", "-print_final_stats=1"]
+    options = ["-artifact_prefix=%s/" % findings, "-max_len=4096", "-timeout=60", "-rss_limit_mb=3000", "-print_final_stats=1",
+               "-len_control=0"]
     words = HERE / ("%s.dict" % subject)
     return options + (["-dict=%s" % words] if words.exists() else [])
 
