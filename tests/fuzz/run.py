@@ -48,7 +48,8 @@ def run_subject(program, subject, minutes, out):
     for folder in corpus, findings:
         folder.mkdir(parents=True, exist_ok=True)
     row = {"executions": 0, "seconds": 0.0, "edges": 0, "all": 0, "findings": 0}
-    command = [str(program), *options_of(subject, findings), str(corpus), str(HERE / "corpus" / subject)]
+    kept = [str(folder) for folder in [HERE / "corpus" / subject] if folder.is_dir()]
+    command = [str(program), *options_of(subject, findings), str(corpus), *kept]
     while row["seconds"] < 60 * minutes and row["findings"] < MOST_FINDINGS:
         left = 60 * minutes - row["seconds"]
         with open(out / ("%s.log" % subject), "w+", encoding="utf-8", errors="replace") as log:
