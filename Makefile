@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check python python-heavy python-sanitize bench quality votes thesis machines clean
+.PHONY: all demo check fuzz python python-heavy python-sanitize bench quality votes thesis machines clean
 
 all:
 	@sh scripts/setup.sh build
@@ -16,6 +16,14 @@ demo: all
 check:
 	@sh scripts/setup.sh check
 	@sh scripts/check.sh $(JOBS)
+
+# Each fuzzer for some minutes of processor time: docs/reliability.md. FUZZ="--subjects read write" runs some of them.
+MINUTES := 1
+fuzz:
+	@sh scripts/setup.sh fuzz
+	cmake --preset fuzz
+	cmake --build build-fuzz -j $(JOBS)
+	/usr/bin/python3 tests/fuzz/run.py build-fuzz --minutes $(MINUTES) $(FUZZ)
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:
@@ -64,4 +72,4 @@ machines:
 	/usr/bin/python3 tests/machines/machines.py . out/machines
 
 clean:
-	rm -rf build build-ci build-debug build-sanitize out
+	rm -rf build build-ci build-debug build-fuzz build-sanitize out

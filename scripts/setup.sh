@@ -1,5 +1,5 @@
 #!/bin/sh
-# setup.sh build|check|bench|quality|thesis|machines: sees to the tools that building, testing or measuring needs.
+# setup.sh build|check|fuzz|bench|quality|thesis|machines: sees to the tools that building, testing or measuring needs.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
 set -eu
 
@@ -26,6 +26,17 @@ has_compiler() {
     return $works
 }
 
+# clang with the library of its fuzzer.
+has_fuzzer() {
+    has clang || return 1
+    folder=$(mktemp -d)
+    printf 'int LLVMFuzzerTestOneInput(const char *b, unsigned long n) { return b && n > 9; }\n' >"$folder/try.c"
+    works=0
+    clang -fsanitize=fuzzer,address,undefined -o "$folder/try" "$folder/try.c" >/dev/null 2>&1 || works=1
+    rm -rf "$folder"
+    return $works
+}
+
 has_python_with() { [ -x $python ] && $python -c "import $1" >/dev/null 2>&1; }
 
 # The Debian packages that are missing for a purpose.
@@ -33,6 +44,10 @@ missing() {
     has_cmake || echo cmake
     has make || echo make
     has_compiler || echo gcc libc6-dev
+    if [ "$1" = fuzz ]; then
+        has_fuzzer || echo clang libclang-rt-dev
+        [ -x $python ] || echo python3
+    fi
     if [ "$1" = bench ]; then
         has g++ || echo g++
         has_python_with numpy || echo python3-numpy
@@ -66,7 +81,7 @@ missing_peers() {
     [ -f /usr/include/zstd.h ] || echo libzstd-dev
     [ -f /usr/include/cjson/cJSON.h ] || echo libcjson-dev
     [ -f /usr/include/expat.h ] || echo libexpat1-dev
-    case $1 in build | quality | thesis) return 0 ;; esac
+    case $1 in build | fuzz | quality | thesis) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -146,9 +161,9 @@ install_tests_packages() {
 
 purpose=${1:-build}
 case $purpose in
-build | check | bench | quality | thesis | machines) ;;
+build | check | fuzz | bench | quality | thesis | machines) ;;
 *)
-    echo "usage: setup.sh build|check|bench|quality|thesis|machines" >&2
+    echo "usage: setup.sh build|check|fuzz|bench|quality|thesis|machines" >&2
     exit 1
     ;;
 esac

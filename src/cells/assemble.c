@@ -45,16 +45,16 @@ static void copy_faces(void *user, size_t from, size_t to, int thread) {
     for (size_t c = from; c < to; c++) {
         const brio_cell_place *place = &a->job->place[c];
         const brio_cell_recorder *r = &a->job->recorder[place->thread];
-        const brio_cell_face *face = r->face + place->face;
         uint64_t corner = a->first_corner[c];
         for (size_t i = 0; i < place->num_faces; i++) {
+            const brio_cell_face *face = &r->face[place->face + i];
             size_t f = (size_t)out->face_offsets[c] + i;
-            out->face_neighbours[f] = face[i].neighbour;
-            out->face_areas[f] = face[i].area;
-            memcpy(out->face_normals + 3 * f, face[i].normal, sizeof face[i].normal);
+            out->face_neighbours[f] = face->neighbour;
+            out->face_areas[f] = face->area;
+            memcpy(out->face_normals + 3 * f, face->normal, sizeof face->normal);
             if (!out->corner_offsets) continue;
             out->corner_offsets[f] = corner;
-            corner += face[i].corners;
+            corner += face->corners;
         }
     }
 }
@@ -104,11 +104,11 @@ static void copy_corners(void *user, size_t from, size_t to, int thread) {
         const brio_cell_place *place = &job->place[c];
         const brio_cell_recorder *r = &job->recorder[place->thread];
         size_t first = a->num_voronoi + (size_t)a->first_vertex[c];
-        uint32_t *to_corner = job->out->face_vertices + a->first_corner[c];
         for (size_t i = 0; i < place->num_corners; i++) {
             uint32_t corner = r->corner[place->corner + i];
             bool own = corner & BRIO_OWN_VERTEX;
-            to_corner[i] = own ? (uint32_t)(first + (corner & ~BRIO_OWN_VERTEX)) : a->vertex_of[corner] - 1;
+            job->out->face_vertices[a->first_corner[c] + i] =
+                own ? (uint32_t)(first + (corner & ~BRIO_OWN_VERTEX)) : a->vertex_of[corner] - 1;
         }
         for (size_t i = 0; i < place->num_vertices; i++)
             for (size_t k = 0; k < 3; k++)

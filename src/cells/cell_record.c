@@ -21,6 +21,11 @@ static inline double in_lengths(const brio_diagram *d, double x, int power) {
     return x;
 }
 
+/* A volume or an area that doubles cannot hold: its terms are infinite, of either sign. */
+static inline double held(double x) {
+    return isnan(x) ? INFINITY : x;
+}
+
 /* --- numbers of a cell --- */
 
 /* Numbers of a cell, scaled, relative to the site. */
@@ -32,9 +37,9 @@ typedef struct {
 static void store_numbers(const brio_cell_job *job, uint32_t site, const cell_numbers *n) {
     const brio_diagram *d = job->d;
     size_t cell = job->cell_of[site];
-    job->out->volume[cell] = in_lengths(d, n->volume, 3);
+    job->out->volume[cell] = held(in_lengths(d, n->volume, 3));
     job->out->bounded[cell] = n->bounded;
-    if (job->areas) job->out->area[cell] = in_lengths(d, n->area, 2);
+    if (job->areas) job->out->area[cell] = held(in_lengths(d, n->area, 2));
     for (size_t k = 0; k < 3 && job->centroids; k++)
         job->out->centroid[3 * cell + k] =
             in_lengths(d, d->at[3 * (size_t)site + k] + n->centroid[k], 1) + d->origin[k];
@@ -89,7 +94,7 @@ static brio_status record_side(const brio_cell_job *job, brio_cell_recorder *r, 
     double normal[3];
     size_t count = 0;
     unit_normal(job->d, r->star.site, (int64_t)s->site, normal);
-    BRIO_TRY(begin_face(r, (int64_t)s->site, in_lengths(job->d, area_of(s), 2), normal));
+    BRIO_TRY(begin_face(r, (int64_t)s->site, held(in_lengths(job->d, area_of(s), 2)), normal));
     if (job->vertices) BRIO_TRY(brio_star_cell_polygon(&r->star, s, &count));
     for (size_t i = 0; i < count; i++) BRIO_TRY(add_corner(r, r->star.polygon[i]));
 done:

@@ -115,12 +115,15 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
         memcpy(r->high, high, sizeof high);
     } else {
         BRIO_TRY(search(ctx, r, low, high));
-        double outer[2][3];
+        double outer[2][3], found[2][3];
         for (int k = 0; k < 3; k++) {
             double more = (high[k] - low[k]) / 8;
             outer[0][k] = low[k] - more, outer[1][k] = high[k] + more;
         }
         BRIO_TRY(cut_out(r, outer[0], outer[1]));
+        /* so flat that rounding leaves a wall of the box */
+        BRIO_REQUIRE(ctx, !find_bounds(&r->shape, -(int64_t)num_planes, found[0], found[1]), BRIO_ERR_ARGUMENT,
+                     "the region is too flat");
     }
     for (int k = 0; k < 3; k++) {
         r->middle[k] = low[k] / 2 + high[k] / 2;

@@ -43,6 +43,11 @@ static bool ends_word(char c) {
     return !c || brio_is_blank(c);
 }
 
+static const char *skip_blanks(const char *p) {
+    while (brio_is_blank(*p)) p++;
+    return p;
+}
+
 /* Finds the element of a word: a symbol, a label such as C12 or Fe3+, or an atomic number. 0 if it is none. */
 static int element_of(const char *word) {
     const char *end = word;
@@ -71,20 +76,20 @@ static void copy_line(const char *p, const char *end, char *to, size_t size) {
 
 static bool is_count(const char *line) {
     uint64_t count;
-    const char *p = line + strspn(line, " \t");
+    const char *p = skip_blanks(line);
     if (!brio_parse_count(&p, &count)) return false;
-    return !p[strspn(p, " \t\r\n")];
+    return !*skip_blanks(p);
 }
 
 /* Whether a row begins with a word and three numbers. */
 static bool is_atom(const char *line, bool *symbol) {
-    const char *p = line + strspn(line, " \t");
+    const char *p = skip_blanks(line);
     double value;
     *symbol = isalpha((unsigned char)*p);
     if (!element_of(p)) return false;
     while (!ends_word(*p)) p++;
     for (int k = 0; k < 3; k++) {
-        p += strspn(p, " \t");
+        p = skip_blanks(p);
         if (!brio_parse_number(&p, &value) || !ends_word(*p)) return false;
     }
     return true;
@@ -94,7 +99,7 @@ static bool is_atom(const char *line, bool *symbol) {
 static bool is_prose(const char *line) {
     double value;
     size_t words = 0, others = 0;
-    for (const char *p = line + strspn(line, " \t\r\n"); *p; p += strspn(p, " \t\r\n")) {
+    for (const char *p = skip_blanks(line); *p; p = skip_blanks(p)) {
         const char *end = p;
         if (words++ == 0 && strchr("#%/;", *p)) return false;
         others += !brio_parse_number(&end, &value) || !ends_word(*end);
@@ -218,7 +223,7 @@ static brio_status plan_more(chemical_reader *r, const char *p) {
     char name[32];
     r->free_columns = false;
     for (size_t i = 0;; i++) {
-        p += strspn(p, " \t\r");
+        p = skip_blanks(p);
         if (!*p) break;
         const char *end = p;
         bool number = brio_parse_number(&end, &value) && ends_word(*end);

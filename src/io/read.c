@@ -1,4 +1,4 @@
-/* Reads a file: finds its format and calls the format's reader. */
+/* Reads a file, or bytes in memory: finds the format and calls the format's reader. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
@@ -79,8 +79,8 @@ done:
     return status;
 }
 
-/* Finds the format by the content or, failing that, the extension. Standard input in no known format is read as rows of
- * numbers; so is a file .xyz whose columns have names from the caller, whatever its first line. */
+/* Finds the format by the content or, failing that, the extension. What has no name (standard input, "-") and is in no
+ * known format is read as rows of numbers; so is a file .xyz whose columns have names from the caller, whatever its first line. */
 static brio_status find_format(brio_stream *s, const char *path, brio_read_job *job) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_stream_fill(s, START));
@@ -183,6 +183,13 @@ static brio_status check_columns(const brio_stream *s, brio_format format, const
                      s->name);
 }
 
+/* Opens a file, or memory under its name.   path  of the file to open, which is not always the job's own. */
+static brio_status open_job(brio_stream *s, brio_context *ctx, const brio_read_job *job, const char *path) {
+    if (!job->memory) return brio_stream_open(s, ctx, path);
+    const char *name = strcmp(path, "-") ? path : "memory";
+    return brio_stream_open_memory(s, ctx, name, job->memory->bytes, job->memory->size);
+}
+
 brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     brio_status status = BRIO_OK;
     brio_stream s = {.ctx = ctx, .file = -1};
@@ -190,8 +197,10 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     char *node = NULL;
     job->mesh = NULL;
     bool tetrahedra = (job->format == BRIO_FORMAT_AUTO || job->format == BRIO_FORMAT_NODE) && brio_is_ele(job->path);
+    BRIO_REQUIRE(ctx, !tetrahedra || !job->memory, BRIO_ERR_ARGUMENT,
+                 "%s: the .ele file of a .node file is read beside it, not from memory", job->path);
     if (tetrahedra) BRIO_TRY(brio_sibling(ctx, job->path, ".node", &node));
-    BRIO_TRY(brio_stream_open(&s, ctx, node ? node : job->path));
+    BRIO_TRY(open_job(&s, ctx, job, node ? node : job->path));
     if (job->format == BRIO_FORMAT_AUTO) BRIO_TRY(find_format(&s, node ? node : job->path, job));
     BRIO_TRY(check_columns(&s, job->format, job->columns));
     BRIO_TRY(brio_builder_start(&b, ctx, s.name));
@@ -199,7 +208,7 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     b.absent = job->absent;
     b.announced = &job->announced;
     BRIO_TRY(read_stream(&s, &b, job->format, job->columns));
-    if (job->format == BRIO_FORMAT_NODE && strcmp(job->path, "-") != 0)
+    if (job->format == BRIO_FORMAT_NODE && !job->memory && strcmp(job->path, "-") != 0)
         BRIO_TRY(read_tetrahedra(&b, job->path, tetrahedra));
     BRIO_TRY(brio_builder_finish(&b));
     BRIO_TRY(brio_progress(ctx, "read", 1));
@@ -233,6 +242,21 @@ brio_status brio_read(brio_context *ctx, const char *path, brio_format format, b
     brio_read_options o = STANDARD;
     o.format = format;
     return brio_read_as(ctx, path, &o, out);
+}
+
+brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
+                             const brio_read_options *options, brio_mesh **out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_read_options o = STANDARD;
+    const brio_bytes memory = {bytes, size};
+    *out = NULL;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
+    brio_read_job job = {.path = name ? name : "-", .memory = &memory, .format = o.format, .columns = o.columns};
+    BRIO_TRY(brio_read_file(ctx, &job));
+    *out = job.mesh;
+done:
+    return status;
 }
 
 /* --- blocks --- */

@@ -1,18 +1,24 @@
-/* One reading of a file: of all of it into a mesh, or block by block into a sink. */
+/* One reading of a file, or of bytes in memory: of all of it into a mesh, or block by block into a sink. */
 #ifndef BRIO_IO_READ_JOB_H
 #define BRIO_IO_READ_JOB_H
 
 #include "io/formats.h"
 
+typedef struct brio_bytes {
+    const void *bytes;
+    size_t size;
+} brio_bytes;
+
 typedef struct brio_read_job {
     const char *path;
-    brio_format format;    /* BRIO_FORMAT_AUTO becomes the format that was found */
-    const char *columns;   /* as in brio_read_options */
-    const brio_sink *sink; /* NULL: the mesh receives everything */
-    brio_names *absent;    /* with a sink: as in brio_builder */
-    uint64_t announced;    /* set before the sink's first call, as in brio_builder */
-    bool streamed;         /* whether the sink received the vertices */
-    brio_mesh *mesh;       /* what was read, owned by the caller, or NULL if it was streamed */
+    const brio_bytes *memory; /* NULL, or what is read: the path is then only a name, "-" for none */
+    brio_format format;       /* BRIO_FORMAT_AUTO becomes the format that was found */
+    const char *columns;      /* as in brio_read_options */
+    const brio_sink *sink;    /* NULL: the mesh receives everything */
+    brio_names *absent;       /* with a sink: as in brio_builder */
+    uint64_t announced;       /* set before the sink's first call, as in brio_builder */
+    bool streamed;            /* whether the sink received the vertices */
+    brio_mesh *mesh;          /* what was read, owned by the caller, or NULL if it was streamed */
     char version[64];
 } brio_read_job;
 

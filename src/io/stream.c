@@ -1,4 +1,4 @@
-/* Buffered input from a file or a pipe.
+/* Buffered input from a file, a pipe or memory.
  *
  * The buffer has BLOCK bytes, or the size of a smaller file, and moves forward over the file. When more bytes are
  * needed, the unused ones move to the front. The buffer grows only for a line or a request longer than itself, up to
@@ -27,6 +27,17 @@ static int open_input(const char *path) {
     return open(path, O_RDONLY | O_CLOEXEC | (special ? O_NONBLOCK : 0));
 }
 
+/* Makes the buffer and looks at the first bytes. */
+static brio_status start(brio_stream *s) {
+    brio_status status = BRIO_OK;
+    size_t capacity = s->size < BLOCK ? (size_t)s->size + 1 : BLOCK;
+    BRIO_TRY(BRIO_ALLOC(s->ctx, s->buffer, capacity + 1));
+    s->capacity = capacity;
+    BRIO_TRY(brio_unpack_start(s));
+done:
+    return status;
+}
+
 brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path) {
     brio_status status = BRIO_OK;
     bool standard = !strcmp(path, "-");
@@ -40,12 +51,16 @@ brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path
     s->waits = !regular;
     /* special file systems report a size of 0 for files with content */
     if (at >= 0 && facts.st_size > at) s->size = (uint64_t)(facts.st_size - at);
-    size_t capacity = s->size < BLOCK ? (size_t)s->size + 1 : BLOCK;
-    BRIO_TRY(BRIO_ALLOC(ctx, s->buffer, capacity + 1));
-    s->capacity = capacity;
-    BRIO_TRY(brio_unpack_start(s));
+    BRIO_TRY(start(s));
 done:
     return status;
+}
+
+brio_status brio_stream_open_memory(brio_stream *s, brio_context *ctx, const char *name, const void *bytes,
+                                    size_t size) {
+    *s = (brio_stream){.ctx = ctx, .name = name, .file = -1, .size = size, .part_left = size};
+    s->memory = size ? bytes : "";
+    return start(s);
 }
 
 void brio_stream_close(brio_stream *s) {
@@ -81,10 +96,14 @@ static brio_status make_room(brio_stream *s, size_t need) {
     return status;
 }
 
-/* Reads the next bytes of the part that the stream is of another one's file. */
+/* Reads the next bytes of memory, or of the part that the stream is of another one's file. */
 static brio_status read_part(brio_stream *s, char *to, size_t room, size_t *got) {
+    brio_status status = BRIO_OK;
     *got = room < s->part_left ? room : (size_t)s->part_left;
-    brio_status status = brio_stream_peek(s->outer, s->part_at, to, *got);
+    if (s->memory)
+        memcpy(to, s->memory + s->part_at, *got);
+    else
+        status = brio_stream_peek(s->outer, s->part_at, to, *got);
     s->part_at += *got;
     s->part_left -= *got;
     return status;
@@ -93,7 +112,7 @@ static brio_status read_part(brio_stream *s, char *to, size_t room, size_t *got)
 brio_status brio_stream_read_raw(brio_stream *s, char *to, size_t room, size_t *got) {
     brio_status status = BRIO_OK;
     *got = 0;
-    if (s->outer) return read_part(s, to, room, got);
+    if (s->outer || s->memory) return read_part(s, to, room, got);
     for (;;) {
         if (s->waits) BRIO_TRY(brio_wait_for(s->ctx, s->file, BRIO_WAIT_READ, 0));
         ssize_t count = read(s->file, to, room);
@@ -153,6 +172,12 @@ brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_
     brio_status status = BRIO_OK;
     if (offset >= s->base && offset - s->base <= s->end && size <= s->end - (offset - s->base)) {
         memcpy(bytes, s->buffer + (offset - s->base), size);
+        return BRIO_OK;
+    }
+    BRIO_REQUIRE(s->ctx, offset <= s->size && size <= s->size - offset, BRIO_ERR_FORMAT, "%s: ends at byte %" PRIu64,
+                 s->name, s->size);
+    if (s->memory) {
+        memcpy(bytes, s->memory + offset, size);
         return BRIO_OK;
     }
     off_t here = lseek(s->file, 0, SEEK_CUR);

@@ -1,6 +1,7 @@
-/* A file, a pipe or a part of another stream's file, read once from front to end through one buffer. A file that is
- * compressed by gzip or zstd is decompressed on the way (unpack.h): then all places are those of decompressed data. The stream knows the byte offset, the line, and the
- * row of the element that is being read, so that every message can name them. It reports progress and can be cancelled.
+/* A file, a pipe, bytes in memory or a part of another stream's file, read once from front to end through one buffer.
+ * What is compressed by gzip or zstd is decompressed on the way (unpack.h): then all places are those of decompressed
+ * data. The stream knows the byte offset, the line, and the row of the element that is being read, so that every message
+ * can name them. It reports progress and can be cancelled.
  *
  * Pointers into the buffer are valid until the next call with the stream. All functions that return a status return
  * BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
@@ -15,7 +16,7 @@ typedef struct brio_stream {
     brio_context *ctx;
     const char *name; /* for messages */
     int file;
-    uint64_t size;   /* bytes of a regular file, otherwise BRIO_SIZE_UNKNOWN */
+    uint64_t size;   /* bytes of a regular file or in memory, otherwise BRIO_SIZE_UNKNOWN */
     char *buffer;    /* capacity + 1 bytes: brio_stream_line can put a 0 behind a line at the end */
     size_t capacity; /* bytes begin to end - 1 were read and are not yet used */
     size_t begin, end;
@@ -28,13 +29,18 @@ typedef struct brio_stream {
     const char *element; /* what is being read, e.g. "vertex", with its row and the number of rows; for messages */
     uint64_t row, rows;
     struct brio_unpacker *unpacker; /* NULL: the bytes are not compressed */
+    const char *memory;             /* NULL, or what is read in place of a file */
     struct brio_stream *outer;      /* NULL, or the stream in whose file this one is the bytes from part_at on */
-    uint64_t part_at, part_left;    /* raw bytes of the part that are still to be read */
+    uint64_t part_at, part_left;    /* raw bytes of the memory or the part that are still to be read */
     struct brio_crc32 *crc;         /* NULL, or the checksum of all bytes that were read into the buffer */
 } brio_stream;
 
 /** Opens a file; "-" is standard input. Call brio_stream_close even if this fails. */
 brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path);
+/** Opens bytes in memory; they are only read, and stay as they are until the stream is closed. Call brio_stream_close even
+ *  if this fails.   name  for messages. */
+brio_status brio_stream_open_memory(brio_stream *s, brio_context *ctx, const char *name, const void *bytes,
+                                    size_t size);
 void brio_stream_close(brio_stream *s);
 
 /** Reads bytes of the file itself, which may be compressed: at most `room`, 0 at the end. For unpack.c. */
@@ -59,11 +65,11 @@ brio_status brio_stream_skip(brio_stream *s, uint64_t count);
 /** Returns the next line in *line, with a 0 in place of its end (LF or CR LF), or NULL at the end of the file. */
 brio_status brio_stream_line(brio_stream *s, char **line);
 
-/** Reads a pipe or compressed file to its end into the buffer, so that its size is known and brio_stream_peek works; the
- *  buffer then has all of it and nothing may be taken before. Does nothing for a regular file. */
+/** Reads a pipe or a compressed file to its end into the buffer, so that its size is known and brio_stream_peek works; the
+ *  buffer then has all of it and nothing may be taken before. Does nothing for a regular file and for memory. */
 brio_status brio_stream_hold(brio_stream *s);
 
-/** Copies bytes from any place of a regular file, or of a stream that brio_stream_hold read, without moving the stream.
+/** Copies bytes from any place of a regular file, of memory, or of a stream that brio_stream_hold read, without moving it.
  *  Fails if the file ends before. */
 brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_t size);
 

@@ -963,7 +963,7 @@ typedef struct brio_cells {
     brio_context *context;
     size_t num_cells;
     uint32_t *site;         /* #C, ascending: the point that owns the cell */
-    double *volume;         /* #C: infinite for unbounded cells */
+    double *volume;         /* #C: infinite for unbounded cells, and where doubles cannot hold it */
     uint8_t *bounded;       /* #C: 1, or 0 for a cell that reaches infinity. Clipped cells are bounded. */
     double *area;           /* #C: of the cell's surface; infinite for unbounded cells */
     double *centroid;       /* #C by 3: NaN for cells of no volume or an infinite one */
@@ -1003,7 +1003,7 @@ typedef struct brio_cells {
  *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron and 110 a cell, without t 24 a point,
  *  and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes take one pass over
  *  the facets, about as long as brio_delaunay.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty or unbounded), and as
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat or unbounded), and as
  *  brio_delaunay.
  *  Based on: [Aurenhammer 1987], [Choi 2003] sections 2.1 and 2.2. */
 BRIO_API brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, const double *points,
@@ -1673,6 +1673,15 @@ BRIO_API brio_status brio_read_as(brio_context *ctx, const char *path, const bri
 
 /** brio_read_as with a format and else the defaults. */
 BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
+
+/** brio_read_as of a file's bytes in memory, compressed ones included. No file is opened: a .node file's tetrahedra, which
+ *  are in another file, are not read.
+ *  bytes  size of them, not kept.
+ *  name   what messages call the file, "scan.ply"; its extension tells the format where the content does not. NULL is for
+ *         none: then bytes in no known format are rows of numbers.
+ *  Returns what brio_read_as returns, but not BRIO_ERR_OPEN. */
+BRIO_API brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
+                                      const brio_read_options *options, brio_mesh **out);
 
 /** What a file is. */
 typedef struct brio_file_facts {

@@ -489,6 +489,40 @@ static brio_status compute_some(brio_context *ctx) {
     return status;
 }
 
+/* Rounding left walls of the box from which the region was cut, whose numbers were beyond the planes. */
+static void a_region_too_flat_for_doubles_is_refused(void) {
+    static const double point[3] = {-4, -4, -4}, box[6] = {-4, -4, -4, 2, -2, 3};
+    static const double planes[16] = {1e77, 1e77, -4, -4, -4, 6, 1e77, 1e77, 10, 2, 2, 1.9e98, -4, -4, -4, -4};
+    brio_context *ctx = new_context();
+    brio_cells_options o = brio_cells_options_default();
+    brio_cells *cells;
+    o.box = box, o.planes = planes, o.num_planes = 4;
+    EXPECT(brio_voronoi_cells(ctx, NULL, point, NULL, 1, &o, &cells) == BRIO_ERR_ARGUMENT && !cells);
+    EXPECT(strstr(brio_message(ctx), "region"), "%s", brio_message(ctx));
+    brio_context_free(ctx);
+}
+
+/* Centres beyond doubles made the volume and the areas NaN. */
+static void what_doubles_cannot_hold_is_infinite(void) {
+    static const double points[] = {
+        5e-324, -4, -4, -4, 6.999999999999973, 5e-324, -1, -2, -4, -4, -4, -6.312163081858048e+212, -4, -4, -4};
+    brio_context *ctx = new_context();
+    for (int areas = 0; areas < 2; areas++) {
+        brio_cells_options o = brio_cells_options_default();
+        brio_cells *cells;
+        o.areas = o.centroids = o.faces = areas;
+        EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, 5, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
+        for (size_t c = 0; c < cells->num_cells; c++) {
+            EXPECT(cells->volume[c] >= 0, "cell %zu: volume %g", c, cells->volume[c]);
+            EXPECT(!areas || cells->area[c] >= 0, "cell %zu: area %g", c, cells->area[c]);
+        }
+        for (uint64_t f = 0; areas && f < cells->face_offsets[cells->num_cells]; f++)
+            EXPECT(cells->face_areas[f] >= 0, "face %llu", (unsigned long long)f);
+        brio_cells_free(cells);
+    }
+    brio_context_free(ctx);
+}
+
 static void memory_may_run_out(void) {
     expect_clean_failures(compute_some);
 }
@@ -507,6 +541,8 @@ int main(void) {
     RUN(threads_give_the_same_bits);
     RUN(powers_of_two_scale_the_cells);
     RUN(wrong_regions_are_refused);
+    RUN(a_region_too_flat_for_doubles_is_refused);
+    RUN(what_doubles_cannot_hold_is_infinite);
     RUN(memory_may_run_out);
     return harness_end();
 }

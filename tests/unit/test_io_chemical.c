@@ -73,6 +73,19 @@ static void extended_xyz_names_its_columns(void) {
     brio_mesh_free(m);
 }
 
+/* A form feed or a vertical tab ended words, but was skipped nowhere: the search for the next word never ended. */
+static void a_form_feed_in_the_comment_ends_no_loop(void) {
+    brio_mesh *m = io_read_text("a.xyz", "2\na\fb \v c\n\vC 0\f0 0\nO\t1 0 0\v\n");
+    EXPECT(m && m->num_vertices == 2 && value(m, "atomic_number", 1) == 8);
+    brio_mesh_free(m);
+    m = io_read_text("a.xyz", "1\na\fb\n6 0 0 0\n"); /* the comment decides that 6 is carbon */
+    EXPECT(m && m->num_vertices == 1 && value(m, "atomic_number", 0) == 6);
+    brio_mesh_free(m);
+    m = io_read_text("a.xyz", "1\nc\nC 0 0 0\v5\f\n");
+    EXPECT(m && m->num_vertices == 1 && value(m, "column5", 0) == 5);
+    brio_mesh_free(m);
+}
+
 static void errors_name_the_line(void) {
     io_expect_error("a.xyz", "2\nc\nC 0 0 0\nQq 0 0 0\n", BRIO_ERR_FORMAT,
                     "line 4: expected the symbol or number of an element, found \"Qq\"");
@@ -160,6 +173,7 @@ int main(void) {
     RUN(columns_that_the_caller_names_make_it_a_text);
     RUN(of_several_frames_the_first);
     RUN(extended_xyz_names_its_columns);
+    RUN(a_form_feed_in_the_comment_ends_no_loop);
     RUN(errors_name_the_line);
     RUN(oriented_points);
     RUN(every_prefix_and_changed_byte);

@@ -1,6 +1,7 @@
 /* LAS and LAZ: the compressed file is the plain one, for every number of threads and without its table; damaged files
  * are a status; what is written reads back bit for bit; other people's grids are kept. */
 #include "failing_allocator.h"
+#include "io/las/laz_model.h"
 #include "io_files.h"
 #include "laz_samples.h"
 
@@ -148,6 +149,39 @@ static void damaged_files_are_a_status(void) {
     }
 }
 
+/* The arithmetic decoder began with a value that was not below its length, which then grew beyond it: symbols were far
+ * beyond the models. */
+static void four_bytes_of_ones_make_no_wrong_symbol(void) {
+    enum { ARENA = 1 << 12, BYTES = 4096, SYMBOLS = 33 };
+    static char memory[ARENA];
+    static uint8_t bytes[BYTES];
+    brio_laz_arena arena = {memory, 0, ARENA};
+    brio_laz_model m = {.cumulative = NULL};
+    brio_laz_coder c;
+    memset(bytes, 0xff, sizeof bytes);
+    brio_laz_coder_begin(&c, bytes, bytes + sizeof bytes);
+    EXPECT(c.past, "no encoder writes them");
+    for (int i = 0; i < 4 * BYTES; i++) {
+        uint32_t symbol = brio_laz_symbol(&c, &arena, &m, SYMBOLS);
+        EXPECT(symbol < SYMBOLS && c.value < c.length, "symbol %u of %d", symbol, SYMBOLS);
+        if (symbol >= SYMBOLS || c.value >= c.length) return;
+    }
+}
+
+/* The same in a file, wherever a layer or a chunk may begin. */
+static void ones_anywhere_in_a_file_are_a_status(void) {
+    for (int k = 0; k < SAMPLES; k++) {
+        size_t size = samples[k].compressed_size;
+        uint8_t *bytes = malloc(size);
+        for (size_t n = 0; n + 8 <= size; n++) {
+            memcpy(bytes, samples[k].compressed, size);
+            memset(bytes + n, 0xff, 8);
+            expect_status("a.laz", bytes, size, "ones", n);
+        }
+        free(bytes);
+    }
+}
+
 /* A chunk that is cut off names the file and the byte. */
 static void errors_name_the_place(void) {
     brio_status status;
@@ -187,6 +221,8 @@ int main(void) {
     RUN(written_reads_back);
     RUN(grids_are_found);
     RUN(damaged_files_are_a_status);
+    RUN(four_bytes_of_ones_make_no_wrong_symbol);
+    RUN(ones_anywhere_in_a_file_are_a_status);
     RUN(errors_name_the_place);
     RUN(each_allocation_fails);
     return io_end();

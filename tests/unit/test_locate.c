@@ -1,52 +1,12 @@
 /* Queries of a locator against brute force: ties, hostile points, weights, every dimension. With file names: the points
  * of these files, too. BRIO_LOCATE_QUERIES sets the number of queries of each set. */
 #include "failing_allocator.h"
-#include "harness.h"
+#include "locate_brute.h"
 #include "points.h"
-#include "predicates/predicates.h"
 
 enum { MOST = 1200, QUERIES_A_FILE = 60 };
 
 static size_t queries_a_set = 600;
-
-/* --- brute force --- */
-
-static bool is_held(const double *p, const brio_tetrahedron *tet, const double *x) {
-    static const int FACET[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}};
-    const double *v[4];
-    for (int i = 0; i < 4; i++) v[i] = p + 3 * (size_t)tet->vertex[i];
-    for (int i = 0; i < 4; i++)
-        if (brio_orient3d(v[FACET[i][0]], v[FACET[i][1]], v[FACET[i][2]], x) < 0) return false;
-    return true;
-}
-
-static uint32_t brute_tetrahedron(const double *p, const brio_triangulation *t, const double *x) {
-    const brio_tetrahedron *tets = brio_triangulation_tetrahedra(t);
-    for (size_t i = 0; i < brio_triangulation_stats(t)->tetrahedra; i++)
-        if (is_held(p, &tets[i], x)) return (uint32_t)i;
-    return BRIO_INFINITE;
-}
-
-static void record_of(const double *p, const double *w, size_t i, double record[4]) {
-    for (size_t k = 0; k < 3; k++) record[k] = p[3 * i + k];
-    record[3] = w ? w[i] : 0;
-}
-
-/* The vertices that come before v, seen from x. */
-static size_t number_before(const double *p, const double *w, const brio_triangulation *t, const double *x,
-                            uint32_t v) {
-    const uint32_t *representative = brio_triangulation_representatives(t);
-    size_t before = 0;
-    double a[4], b[4];
-    record_of(p, w, v, b);
-    for (size_t i = 0; i < brio_triangulation_stats(t)->points; i++) {
-        if (representative[i] != i || i == v) continue;
-        record_of(p, w, i, a);
-        int sign = brio_power_compare(x, a, b);
-        before += sign < 0 || (sign == 0 && brio_lexicographic(a, b) < 0);
-    }
-    return before;
-}
 
 /* --- queries that make ties --- */
 

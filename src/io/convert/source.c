@@ -118,6 +118,7 @@ static brio_status collect(void *user, const brio_mesh *block) {
         BRIO_TRY(BRIO_RESIZE(c->ctx, c->points, 3 * capacity));
         c->capacity = capacity;
     }
+    if (!block->num_vertices) return BRIO_OK; /* then there may be no arrays */
     memcpy(c->points + 3 * c->count, block->vertices, 3 * block->num_vertices * sizeof *c->points);
     c->count = need;
 done:

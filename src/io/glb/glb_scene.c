@@ -324,6 +324,16 @@ done:
     return status;
 }
 
+/* Room in the lists that others point into by a first item and a count, so that none of them is NULL. */
+static brio_status begin_lists(reader *r) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(r->ctx, r->scene->attributes, r->attribute_capacity, 1));
+    BRIO_TRY(BRIO_RESERVE(r->ctx, r->scene->primitives, r->primitive_capacity, 1));
+    BRIO_TRY(BRIO_RESERVE(r->ctx, r->scene->children, r->child_capacity, 1));
+done:
+    return status;
+}
+
 brio_status brio_glb_scene_read(brio_context *ctx, const char *name, const char *text, size_t size, brio_glb_scene *s) {
     brio_status status = BRIO_OK;
     brio_json_document document = {.ctx = ctx, .name = name};
@@ -333,6 +343,7 @@ brio_status brio_glb_scene_read(brio_context *ctx, const char *name, const char 
     const char *version = brio_json_string(brio_json_get(brio_json_get(r.root, "asset"), "version"));
     BRIO_REQUIRE(ctx, version && version[0] == '2', BRIO_ERR_FORMAT, "%s: asset.version: expected glTF 2.0", name);
     BRIO_TRY(check_extensions(&r));
+    BRIO_TRY(begin_lists(&r));
     BRIO_TRY(read_list(&r, "buffers", &s->buffers, &s->num_buffers, read_buffer, sizeof *s->buffers));
     BRIO_TRY(read_list(&r, "bufferViews", &s->views, &s->num_views, read_view, sizeof *s->views));
     BRIO_TRY(read_list(&r, "accessors", &s->accessors, &s->num_accessors, read_accessor, sizeof *s->accessors));

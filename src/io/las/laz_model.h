@@ -20,7 +20,7 @@ enum { BRIO_LAZ_SYMBOL_BITS = 15, BRIO_LAZ_BIT_BITS = 13 };
 
 typedef struct brio_laz_coder {
     const uint8_t *at, *end;
-    uint32_t value, length; /* value < length or, in damaged data, value <= length */
+    uint32_t value, length; /* value < length, which keeps symbols below their number */
     bool past;              /* whether bytes were missing, or a number was impossible */
 } brio_laz_coder;
 
@@ -76,10 +76,13 @@ static inline uint8_t brio_laz_byte(brio_laz_coder *c) {
     return 0;
 }
 
-/** Begins to decode bytes. */
+/** Begins to decode bytes. Four bytes of ones would be a value that is not below the length: no encoder writes them. */
 static inline void brio_laz_coder_begin(brio_laz_coder *c, const uint8_t *bytes, const uint8_t *end) {
     *c = (brio_laz_coder){.at = bytes, .end = end, .length = UINT32_MAX};
     for (int i = 0; i < 4; i++) c->value = c->value << 8 | brio_laz_byte(c);
+    if (c->value < c->length) return;
+    c->past = true;
+    c->value = 0;
 }
 
 static inline void brio_laz_renew(brio_laz_coder *c) {

@@ -102,13 +102,14 @@ brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_vtk_decoder
     BRIO_TRY(brio_vtk_expect_rows(d, bytes, rows, row));
     if (bytes != UINT64_MAX && d->stream->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(reserve(columns, d, rows));
     if (!data->chunk) BRIO_TRY(BRIO_ALLOC(d->stream->ctx, data->chunk, CHUNK));
-    do {
+    for (;;) {
         BRIO_TRY(brio_vtk_decoder_take(d, data->chunk, CHUNK / row * row, &got));
+        if (!got) break;
         if (columns->rows + got / row > end || got % row)
             return brio_vtk_bad_rows(d, columns->rows - piece->first_point + got / row, rows);
         BRIO_TRY(append(columns, d, data->chunk, got / row));
         d->stream->row = columns->rows - piece->first_point;
-    } while (got);
+    }
     if (columns->rows != end) return brio_vtk_bad_rows(d, columns->rows - piece->first_point, rows);
 done:
     return status;

@@ -63,15 +63,16 @@ static brio_status read_points(vtk_reader *r, uint64_t bytes, const brio_vtk_pie
     if (bytes != UINT64_MAX && d->stream->size != BRIO_SIZE_UNKNOWN && !piece->first_point)
         BRIO_TRY(brio_builder_expect_vertices(r->builder, piece->num_points));
     if (!r->rows) BRIO_TRY(BRIO_ALLOC(d->stream->ctx, r->rows, ROWS * 3 * sizeof(double)));
-    do {
+    for (;;) {
         uint64_t found = m->num_vertices - piece->first_point;
         BRIO_TRY(brio_vtk_decoder_take(d, r->rows, ROWS * row, &got));
+        if (!got) break;
         if (got % row || found + got / row > piece->num_points)
             return brio_vtk_bad_rows(d, found + got / row, piece->num_points);
         BRIO_TRY(brio_builder_add_vertices(r->builder, got / row));
         convert_points(r, m->vertices + 3 * (m->num_vertices - got / row), got / row);
         d->stream->row = found + got / row;
-    } while (got);
+    }
     uint64_t found = m->num_vertices - piece->first_point;
     if (found != piece->num_points) return brio_vtk_bad_rows(d, found, piece->num_points);
 done:

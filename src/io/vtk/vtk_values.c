@@ -38,6 +38,7 @@ brio_status brio_vtk_read_values(brio_vtk_decoder *d, uint64_t bytes, uint64_t c
     *out = (brio_vtk_values){.type = d->array->type};
     BRIO_TRY(brio_vtk_expect_rows(d, bytes, count, size));
     if (s->size != BRIO_SIZE_UNKNOWN && bytes != UINT64_MAX) capacity = (size_t)bytes;
+    if (!capacity) capacity = 1; /* a place for no values, too */
     BRIO_TRY(BRIO_ALLOC(s->ctx, out->bytes, capacity));
     do {
         BRIO_TRY(BRIO_RESERVE(s->ctx, out->bytes, capacity, bytes == used ? used : used + PART));

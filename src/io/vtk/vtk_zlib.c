@@ -54,9 +54,9 @@ brio_status brio_vtk_inflate(brio_vtk_zlib *z, brio_vtk_span *span, bool *ended)
     z->stream.next_out = (Bytef *)span->out;
     z->stream.avail_out = out;
     int result = inflate(&z->stream, Z_NO_FLUSH);
-    span->in += in - z->stream.avail_in;
+    span->in = (const char *)z->stream.next_in; /* there may be no input: NULL */
     span->in_left -= in - z->stream.avail_in;
-    span->out += out - z->stream.avail_out;
+    span->out = (char *)z->stream.next_out;
     span->out_left -= out - z->stream.avail_out;
     *ended = result == Z_STREAM_END;
     if (result == Z_OK || result == Z_STREAM_END || result == Z_BUF_ERROR) return BRIO_OK;

@@ -1,0 +1,106 @@
+"""run.py FOLDER [--minutes N] [--subjects NAME...] [--keep]: runs the fuzzers that were built in FOLDER (preset fuzz).
+
+Each runs for N minutes of processor time, from its committed corpus and what earlier runs found (out/fuzz/corpus). Prints a
+row for each: executions, executions a second of processor time, edges of the program that were reached, findings. An input
+that makes a fuzzer stop is a finding, kept in out/fuzz/findings. The exit status is 1 if there is one.
+--keep: afterwards adds to the committed corpus the smallest inputs that reach all that was reached, those under 700 bytes.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+SLICE = 120  # seconds of the clock between two looks at the processor time
+MOST_FINDINGS = 3  # of a subject, before it is left
+LONGEST_KEPT, MOST_KEPT = 700, 60  # bytes, inputs of a subject
+
+
+def run_for(command, log):
+    """Runs a program; its exit status and processor seconds."""
+    child = subprocess.Popen(command, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+    _, status, used = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    return child.returncode, used.ru_utime + used.ru_stime
+
+
+def last_number(pattern, text, before=0):
+    found = re.findall(pattern, text)
+    return int(found[-1]) if found else before
+
+
+def options_of(subject, findings):
+    options = ["-artifact_prefix=%s/" % findings, "-max_len=4096", "-timeout=60", "-rss_limit_mb=3000", "-print_final_stats=1",
+               "-len_control=0"]
+    words = HERE / ("%s.dict" % subject)
+    return options + (["-dict=%s" % words] if words.exists() else [])
+
+
+def run_subject(program, subject, minutes, out):
+    """Row of the table: executions, processor seconds, edges, findings."""
+    corpus, findings = out / "corpus" / subject, out / "findings" / subject
+    for folder in corpus, findings:
+        folder.mkdir(parents=True, exist_ok=True)
+    row = {"executions": 0, "seconds": 0.0, "edges": 0, "all": 0, "findings": 0}
+    kept = [str(folder) for folder in [HERE / "corpus" / subject] if folder.is_dir()]
+    command = [str(program), *options_of(subject, findings), str(corpus), *kept]
+    while row["seconds"] < 60 * minutes and row["findings"] < MOST_FINDINGS:
+        left = 60 * minutes - row["seconds"]
+        with open(out / ("%s.log" % subject), "w+", encoding="utf-8", errors="replace") as log:
+            status, seconds = run_for([*command, "-max_total_time=%d" % max(1, min(SLICE, left))], log)
+            log.seek(0)
+            text = log.read()
+        row["seconds"] += seconds
+        row["executions"] += last_number(r"stat::number_of_executed_units: (\d+)", text, last_number(r"#(\d+)\s", text))
+        row["edges"] = max(row["edges"], last_number(r"cov: (\d+)", text))
+        row["all"] = last_number(r"\((\d+) inline 8-bit counters\)", text)
+        if status:
+            row["findings"] += 1
+            findings.mkdir(parents=True, exist_ok=True)  # somebody may have cleaned up
+            shutil.copy(out / ("%s.log" % subject), findings / ("%d.log" % row["findings"]))
+    return row
+
+
+def keep_smallest(program, subject, out):
+    kept = HERE / "corpus" / subject
+    kept.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as merged:
+        subprocess.run([str(program), "-merge=1", "-max_len=%d" % LONGEST_KEPT, merged, str(kept), str(out / "corpus" / subject)],
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+        inputs = sorted(pathlib.Path(merged).iterdir(), key=lambda path: (path.stat().st_size, path.name))
+        room = max(0, MOST_KEPT - len(list(kept.iterdir())))
+        step = max(1, len(inputs) // room if room else len(inputs) + 1)  # small and large ones
+        for path in inputs[::step][:room]:
+            shutil.copy(path, kept / path.name[:12])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--minutes", type=float, default=1)
+    parser.add_argument("--subjects", nargs="+")
+    parser.add_argument("--keep", action="store_true")
+    asked = parser.parse_args()
+    out = ROOT / "out" / "fuzz"
+    subjects = asked.subjects or sorted(path.stem[len("fuzz_"):] for path in HERE.glob("fuzz_*.c"))
+    findings = 0
+    print("%-10s %12s %9s %8s %8s %8s" % ("subject", "executions", "a second", "minutes", "edges", "findings"), flush=True)
+    for subject in subjects:
+        program = asked.folder.resolve() / ("fuzz_%s" % subject)
+        row = run_subject(program, subject, asked.minutes, out)
+        findings += row["findings"]
+        print("%-10s %12d %9.0f %8.1f %8d %8d" % (subject, row["executions"], row["executions"] / max(row["seconds"], 1e-9),
+                                                  row["seconds"] / 60, row["edges"], row["findings"]), flush=True)
+        if asked.keep:
+            keep_smallest(program, subject, out)
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
