@@ -254,6 +254,30 @@ static void names_stay_distinct(void) {
     brio_mesh_free(m);
 }
 
+/* Names that differ in control characters only, which XML cannot hold, were one name in the file. */
+static void names_of_control_characters_stay_distinct(void) {
+    static const char *const NAMES[] = {"a\1", "a\2", "a _2", "a\t"}, *const WRITTEN[] = {"a ", "a _2", "a _2_2",
+                                                                                          "a _3"};
+    static const char *const FILES[] = {"n.vtu", "n.vtp"};
+    for (int f = 0; f < 2; f++) {
+        brio_mesh *mesh = NULL, *back = NULL;
+        void *data;
+        EXPECT(brio_mesh_new(io_ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, NULL, 1) == BRIO_OK);
+        for (size_t i = 0; i < 4; i++) {
+            EXPECT(brio_mesh_add_property(mesh, NAMES[i], BRIO_SCALAR_UINT8, &data) == BRIO_OK);
+            *(uint8_t *)data = (uint8_t)(10 + i);
+        }
+        EXPECT(brio_write(io_ctx, io_path(FILES[f]), mesh, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path(FILES[f]), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+        for (size_t i = 0; i < 4; i++) {
+            const brio_property *p = brio_mesh_property(back, WRITTEN[i]);
+            EXPECT(p && *(const uint8_t *)p->data == 10 + i, "%s", WRITTEN[i]);
+        }
+        brio_mesh_free(mesh);
+        brio_mesh_free(back);
+    }
+}
+
 int main(void) {
     io_begin();
     RUN(all_parts_read_back);
@@ -265,5 +289,6 @@ int main(void) {
     RUN(packed_base64);
     RUN(data_of_some_pieces);
     RUN(names_stay_distinct);
+    RUN(names_of_control_characters_stay_distinct);
     return io_end();
 }

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "io/scalar.h"
 #include "io/vtk/vtk_pack.h"
+#include <stdio.h>
 #include <string.h>
 
 /* PART: bytes of w->part. PER_LINE: numbers of a line of text. SHARE: of the progress while arrays are compressed. All
@@ -27,6 +28,7 @@ void brio_vtk_writer_free(brio_vtk_writer *w) {
     for (size_t i = 0; i < w->num_appended; i++) brio_release(w->out->ctx, w->appended[i].packed);
     brio_release(w->out->ctx, w->appended);
     brio_release(w->out->ctx, w->part);
+    brio_release(w->out->ctx, w->names);
     brio_progress_part(w->out->ctx, w->bar, 0, 1);
 }
 
@@ -44,8 +46,7 @@ static brio_status write_escaped(brio_output *out, const char *text) {
                              : *text == '>' ? "&gt;"
                              : *text == '"' ? "&quot;"
                                             : NULL;
-        char control = (unsigned char)*text < ' ' ? ' ' : *text; /* XML cannot represent control characters */
-        BRIO_TRY(escape ? brio_output_string(out, escape) : brio_output_bytes(out, &control, 1));
+        BRIO_TRY(escape ? brio_output_string(out, escape) : brio_output_bytes(out, text, 1));
     }
 done:
     return status;
@@ -198,6 +199,27 @@ static void fill_property(void *user, uint64_t first, size_t count, void *to) {
     memcpy(to, (const char *)p->data + first * size, count * size);
 }
 
+static bool is_taken(char (*names)[64], size_t count, const char *name) {
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(names[i], name)) return true;
+    return false;
+}
+
+/* XML cannot represent control characters, which become blanks; a name that is taken then gets _2, _3 and so on. */
+static brio_status make_names(brio_vtk_writer *w) {
+    const brio_mesh *m = w->job->mesh;
+    brio_status status = BRIO_ALLOC(w->out->ctx, w->names, m->num_properties);
+    for (size_t i = 0; i < m->num_properties && status == BRIO_OK; i++) {
+        char plain[64];
+        snprintf(plain, sizeof plain, "%s", m->properties[i].name);
+        for (char *c = plain; *c; c++)
+            if ((unsigned char)*c < ' ') *c = ' ';
+        strcpy(w->names[i], plain);
+        for (unsigned n = 2; is_taken(w->names, i, w->names[i]); n++) snprintf(w->names[i], 64, "%.50s_%u", plain, n);
+    }
+    return status;
+}
+
 brio_status brio_vtk_write_points(brio_vtk_writer *w) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = w->job->mesh;
@@ -206,9 +228,11 @@ brio_status brio_vtk_write_points(brio_vtk_writer *w) {
     BRIO_TRY(brio_vtk_write_array(
         w, &(brio_vtk_source){"Points", type, 3, 3 * (uint64_t)m->num_vertices, fill_coordinates, w}));
     BRIO_TRY(brio_output_string(w->out, "</Points>\n<PointData>\n"));
+    BRIO_TRY(make_names(w));
     for (size_t i = 0; i < m->num_properties; i++) {
         brio_property *p = &m->properties[i];
-        BRIO_TRY(brio_vtk_write_array(w, &(brio_vtk_source){p->name, p->type, 1, m->num_vertices, fill_property, p}));
+        BRIO_TRY(
+            brio_vtk_write_array(w, &(brio_vtk_source){w->names[i], p->type, 1, m->num_vertices, fill_property, p}));
     }
     BRIO_TRY(brio_output_string(w->out, "</PointData>\n"));
 done:

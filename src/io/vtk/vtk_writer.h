@@ -37,7 +37,8 @@ typedef struct brio_vtk_writer {
     uint64_t offset;  /* of the next array in the appended data */
     brio_vtk_appended *appended;
     size_t num_appended, appended_capacity;
-    char *part; /* numbers on their way to the output */
+    char *part;        /* numbers on their way to the output */
+    char (*names)[64]; /* of the properties, as XML has them */
     brio_bar bar;
     uint64_t compressed; /* bytes that have been compressed */
 } brio_vtk_writer;
