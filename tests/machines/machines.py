@@ -4,7 +4,8 @@
 Builds the program for each machine of MACHINES whose compiler is there, static and without optional libraries, lets it
 do what RUNS says, in emulation where it must, and compares with the build of the default compiler: checksums of
 triangulations, and every byte of surfaces. Prints a table in Markdown; the exit status is 1 where something differs or
-does not build. A machine whose tools are missing is named with the packages that it needs, and skipped."""
+does not build. A machine whose tools are missing is named with the packages that it needs, and skipped; so is a set of
+instructions that this processor does not have, which the library would ignore."""
 import collections
 import hashlib
 import json
@@ -28,10 +29,11 @@ def cross(processor, packages, emulator=''):
 MACHINES = [
     machine('default'),
     machine('default, plain', environment='BRIO_INSTRUCTIONS=plain'),
-    machine('default, avx2', environment='BRIO_INSTRUCTIONS=avx2'),
-    machine('default, avx512', environment='BRIO_INSTRUCTIONS=avx512'),
-    machine('gcc -O0', CMAKE_C_FLAGS_RELEASE='-O0'),
-    machine('gcc -O3 -march=native', CMAKE_C_FLAGS_RELEASE='-O3 -DNDEBUG -march=native'),
+    machine('default, avx2', 'avx2 fma', environment='BRIO_INSTRUCTIONS=avx2'),
+    machine('default, avx512', 'avx512f avx512dq avx512vl', environment='BRIO_INSTRUCTIONS=avx512'),
+    # a release has flags of the project's own
+    machine('gcc -O0, asserts', CMAKE_BUILD_TYPE='Debug', CMAKE_C_FLAGS_DEBUG='-O0'),
+    machine('gcc -O3 -march=native', CMAKE_BUILD_TYPE='MinSizeRel', CMAKE_C_FLAGS_MINSIZEREL='-O3 -DNDEBUG -march=native'),
     machine('clang', 'clang', CMAKE_C_COMPILER='clang'),
     machine('musl', 'musl-tools', CMAKE_C_COMPILER='musl-gcc'),
     cross('aarch64', 'gcc-aarch64-linux-gnu qemu-user', 'qemu-aarch64'),
@@ -47,7 +49,7 @@ SURFACES = [['--method', 'labeled-delaunay'], ['--method', 'power-crust'], ['--m
 
 def build(root, out, m):
     """The program of a machine; what went wrong in a RuntimeError."""
-    folder = os.path.join(out, m.name.split(',')[0].replace(' ', '_') if m.environment else m.name.replace(' ', '_'))
+    folder = os.path.join(out, (m.name.split(',')[0] if m.environment else m.name).replace(' ', '_'))
     program = os.path.join(folder, 'brio')
     if m.environment and os.path.exists(program): return program
     options = {'BRIO_TESTS': 'OFF', 'BRIO_USE_ZLIB': 'OFF', 'BRIO_USE_ZSTD': 'OFF', 'BRIO_USE_EXPAT': 'OFF',
@@ -89,6 +91,10 @@ def results(m, program, points, folder):
 
 
 def missing_tools(m):
+    if m.environment and m.packages:
+        with open('/proc/cpuinfo') as f:
+            flags = next((line.split() for line in f if line.startswith('flags')), [])
+        return [flag for flag in m.packages.split() if flag not in flags]
     tools = [m.options.get('CMAKE_C_COMPILER', 'cc')] + m.emulator
     return [tool for tool in tools if not shutil.which(tool)]
 

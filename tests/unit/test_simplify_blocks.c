@@ -179,10 +179,6 @@ static void hills_are_covered_once(void) {
     brio_mesh_free(mesh);
 }
 
-/* --- quality --- */
-
-/* The RMS distance of a sphere of cells of a size from itself simplified to a tenth, times the number of faces, which
- * does not depend on the size. */
 /* Ridges many of whose vertices are at the positions of others, or in line with all their neighbours: no triangle round these
  * has an area, and no side. Those of a power crust that got one took the wrong one (test_crust_guarantees). */
 static void triangles_without_area_do_not_turn_over(void) {
@@ -206,6 +202,10 @@ static void triangles_without_area_do_not_turn_over(void) {
     brio_mesh_free(mesh);
 }
 
+/* --- quality --- */
+
+/* The RMS distance of a sphere of cells of a size from itself simplified to a tenth, times the number of faces, which
+ * does not depend on the size. */
 static double error_of_a_tenth(double cell, size_t *vertices) {
     brio_mesh *whole = random_surface(ctx, 0, cell, 3), *mesh;
     brio_distance d = {.size = sizeof d};
