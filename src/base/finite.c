@@ -10,18 +10,23 @@ static inline void copy_point(const double *points, const double *weights, size_
     row[3] = weights ? weights[i] : 0;
 }
 
+/* Counts a row that is not finite. */
+static void count_row(brio_not_finite *found, uint64_t index, const double row[4]) {
+    static const char *const NAME[] = {"x", "y", "z", "weight"};
+    size_t c = 0;
+    if (found->count++ > 0) return;
+    while (c < 3 && isfinite(row[c])) c++;
+    found->first = index;
+    found->axis = NAME[c];
+    found->what = isnan(row[c]) ? "NaN" : "infinite";
+}
+
 void brio_count_not_finite(brio_not_finite *found, uint64_t first, const double *points, const double *weights,
                            size_t n) {
-    static const char *const NAME[] = {"x", "y", "z", "weight"};
     double row[4];
     for (size_t i = 0; i < n; i++) {
         copy_point(points, weights, i, row);
-        if (brio_all_finite(row, 4) || found->count++ > 0) continue;
-        size_t c = 0;
-        while (c < 3 && isfinite(row[c])) c++;
-        found->first = first + i;
-        found->axis = NAME[c];
-        found->what = isnan(row[c]) ? "NaN" : "infinite";
+        if (!brio_all_finite(row, 4)) count_row(found, first + i, row);
     }
 }
 
@@ -40,4 +45,18 @@ brio_status brio_refuse_not_finite(brio_context *ctx, const double *points, cons
     brio_not_finite found = {.count = 0};
     brio_count_not_finite(&found, 0, points, weights, n);
     return brio_refuse_counted(ctx, &found, file);
+}
+
+brio_status brio_refuse_records(brio_context *ctx, const double (*record)[4], const uint32_t *order, size_t n) {
+    brio_not_finite found = {.first = UINT64_MAX};
+    for (size_t i = 0; i < n; i++) {
+        uint64_t from = order ? order[i] : i, count = found.count;
+        if (brio_all_finite(record[i], 4)) continue;
+        if (from < found.first) {
+            found.count = 0;
+            count_row(&found, from, record[i]);
+        }
+        found.count = count + 1;
+    }
+    return brio_refuse_counted(ctx, &found, NULL);
 }

@@ -26,6 +26,11 @@ static inline bool brio_all_finite(const double *numbers, size_t count) {
     return sum == 0; /* else NaN */
 }
 
+/** Refuses records, one of which is not finite, with the same message; the first of them in the input's order is named.
+ *  record  num_points by 4: x, y, z, weight.   order  the index of each in the input; NULL: as they are.
+ *  Returns BRIO_ERR_NOT_FINITE. */
+brio_status brio_refuse_records(brio_context *ctx, const double (*record)[4], const uint32_t *order, size_t num_points);
+
 /** Refuses points with a coordinate or a weight that is not finite; the message names the first such point and how many
  *  there are.   points  #P by 3.   weights  #P, or NULL.   file  what the points were read from, or NULL.
  *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE. */

@@ -14,7 +14,8 @@ static inline uint64_t brio_fold(uint64_t a, uint64_t b) {
     return (uint64_t)product ^ (uint64_t)(product >> 64);
 }
 
-/** Returns the hash of one point. The hash of an array is the sum of these, so any order of the points gives it.
+/** Returns the hash of one point. The hash of an array is the sum of these, which may be
+ *  added up in any sequence, by several threads.
  *  record  three coordinates and a weight, 0 where there are none; no -0. */
 static inline uint64_t brio_point_hash(size_t index, const double *record) {
     uint64_t bits[4];

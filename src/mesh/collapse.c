@@ -51,7 +51,8 @@ static float error_of(const brio_collapse_mesh *m, uint32_t h) {
     if ((m->marks[u] | m->marks[v]) & BRIO_COLLAPSE_BOUNDARY || too_long(m, u, v, spacing)) return INFINITY;
     brio_quadric sum;
     double point[3], error = best_point(m, h, &sum, point);
-    return error <= allowed * allowed * sum.area ? (float)(error * m->unit) : INFINITY;
+    /* without a tolerance the bound of an edge without area is no number, and the edge may be tried */
+    return error > allowed * allowed * sum.area ? INFINITY : (float)(error * m->unit);
 }
 
 uint32_t brio_collapse_measure(brio_collapse_mesh *m, uint32_t h) {

@@ -26,7 +26,6 @@ typedef struct {
     uint32_t *ring;                        /* brio_edge_rings of the caller's mesh */
     double *position;                      /* #V by 3: rotated; then in the new order */
     uint32_t *vertex;                      /* #half-edges, in the new order */
-    bool sound;
 } renumbering;
 
 /* Writes to items the vertices that triangles use, in the order of their first half-edges. */
@@ -249,11 +248,11 @@ static void add_quadrics(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* Returns what an error, an area times a squared length, is multiplied by to be in a unit in which the largest
- * coordinate is about 1. */
-static double unit_of(const brio_mesh *mesh) {
+ * coordinate of a vertex of a triangle is about 1. */
+static double unit_of(const double *position, size_t num_vertices) {
     double most = 0;
     int exponent;
-    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) most = fmax(most, fabs(mesh->vertices[i]));
+    for (size_t i = 0; i < 3 * num_vertices; i++) most = fmax(most, fabs(position[i]));
     frexp(most, &exponent);
     return ldexp(1, -4 * exponent);
 }
@@ -279,7 +278,7 @@ brio_status brio_collapse_mesh_new(brio_context *ctx, brio_mesh *mesh, const bri
     BRIO_TRY(BRIO_ALLOC(ctx, m->half_edge, m->num_vertices));
     BRIO_TRY(check_edges(m));
     BRIO_TRY(check_fans(m));
-    m->unit = unit_of(mesh);
+    m->unit = unit_of(r.position, m->num_vertices);
     take_over(&r);
     renumbering_free(ctx, &r);
     r.position = NULL, r.vertex = NULL;

@@ -1,6 +1,7 @@
 /* Simplification of a mesh as a whole: one tolerance everywhere, edges of any length. See simplify.c for the collapses.
  *
- * Squares of coordinates beyond 2^HUGE, and below 2^-HUGE, would overflow or vanish: such meshes are scaled meanwhile. */
+ * Products of seven lengths, as the quadrics' solutions have them, would overflow or vanish with coordinates beyond 2^HUGE or
+ * below 2^-HUGE: such meshes are scaled meanwhile. */
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
@@ -10,13 +11,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { HUGE_EXPONENT = 200 };
+enum { HUGE_EXPONENT = 100 };
 
 static const brio_mesh_simplify_options STANDARD = {.size = sizeof STANDARD};
 
 BRIO_OPTIONS_INIT(brio_mesh_simplify_options)
 
-/* Returns the exponent of the largest coordinate if its square is out of range, or 0. */
+/* Returns the exponent of the largest coordinate if that is out of range, or 0. */
 static int exponent_of(const brio_mesh *mesh) {
     double most = 0;
     int exponent;

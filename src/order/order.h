@@ -18,7 +18,7 @@ typedef struct {
  *  sequence  NULL, or, only for BRIO_ORDER_BRIO with weights, receives positions in `order`: a better sequence, whose
  *          early rounds hold the heavier points. Ranks rise inside its rounds, too.
  *  rounds  NULL, or receives the ends of the rounds, of `order` and of the sequence.
- *  Workspace in bytes for each point: brio, hilbert and random 16, brio-octree 5, octree 4, brio-kdtree 20, input
+ *  Workspace in bytes for each point: brio, hilbert and random 16, brio-octree 6, octree 6, brio-kdtree 20, input
  *  none. */
 brio_status brio_order_points(brio_context *ctx, const brio_input *input, const brio_delaunay_options *options,
                               uint32_t *order, uint32_t *rank, uint32_t *sequence, brio_round_ends *rounds);

@@ -6,6 +6,7 @@
  * The plane is projected along the coordinate axis closest to its normal. The projection keeps which triples of points
  * are collinear and, up to one sign for all, which are counterclockwise. The order of the two axes sets that sign. */
 #include "plane/plane_input.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/points_hash.h"
 #include "predicates/predicates.h"
@@ -13,29 +14,6 @@
 #include <string.h>
 
 /* --- records --- */
-
-static inline bool is_finite(const double *record) {
-    double sum = 0;
-    for (int k = 0; k < 4; k++) sum += 0 * record[k];
-    return sum == 0; /* else NaN */
-}
-
-/* Names the first point, in the input's order, whose record is not finite. There is one. */
-static brio_status refuse_not_finite(brio_context *ctx, const brio_plane_record *record, const uint32_t *order,
-                                     size_t n) {
-    static const char *const NAME[] = {"x", "y", "z", "weight"};
-    size_t bad = 0, first = SIZE_MAX, at = 0;
-    for (size_t i = 0; i < n; i++) {
-        size_t from = order ? order[i] : i;
-        if (is_finite(record[i])) continue;
-        bad++;
-        if (from < first) first = from, at = i;
-    }
-    int k = 0;
-    while (k < 3 && isfinite(record[at][k])) k++;
-    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %s is %s (%zu such points in all)", first, NAME[k],
-                     isnan(record[at][k]) ? "NaN" : "infinite", bad);
-}
 
 /* Copies the coordinates of a point, in the caller's order of the coordinates, and its weight. */
 static inline void copy_point(const brio_plane_input *in, size_t i, double *record) {
@@ -65,12 +43,12 @@ brio_status brio_plane_records_new(brio_context *ctx, brio_plane_input *input, c
             turn_point(input, from, record[i]);
         else
             copy_point(input, from, record[i]);
-        finite &= is_finite(record[i]);
+        finite &= brio_all_finite(record[i], 4);
         hash += brio_point_hash(from, record[i]);
     }
     if (!input->own) input->hash = hash;
     if (!finite) {
-        status = refuse_not_finite(ctx, (const brio_plane_record *)record, order, n);
+        status = brio_refuse_records(ctx, (const double(*)[4])record, order, n);
         brio_release(ctx, record);
         return status;
     }

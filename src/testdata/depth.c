@@ -14,8 +14,6 @@
 /* Millimetres, and the tangent of half of the frame's view from side to side; those of common cameras. */
 static const double WALL = 4000, FLOOR = 1200, HALF_VIEW = 0.55, NOISE = 1.5e-6;
 
-enum { SPHERES = 8 };
-
 static size_t width_of(size_t n) {
     size_t width = 4;
     while (width * (width * 3 / 4) < n) width += 4;
@@ -26,7 +24,7 @@ brio_depth_frame brio_depth_frame_of(size_t n, uint64_t seed) {
     brio_depth_frame frame = {.width = width_of(n), .seed = seed};
     brio_rng rng = brio_rng_new(brio_mix(~seed));
     frame.height = frame.width * 3 / 4;
-    for (int i = 0; i < SPHERES; i++) {
+    for (int i = 0; i < BRIO_DEPTH_SPHERES; i++) {
         double z = 1500 + 2000 * brio_rng_double(&rng), side = 2 * brio_rng_double(&rng) - 1;
         double up = 2 * brio_rng_double(&rng) - 1, radius = 100 + 300 * brio_rng_double(&rng);
         double *s = frame.sphere[i];
@@ -48,7 +46,7 @@ void brio_depth_point(const brio_depth_frame *frame, size_t i, double *p) {
     double x = ((double)(i % frame->width) + 0.5) * pixel - HALF_VIEW;
     double y = ((double)(i / frame->width) + 0.5 - 0.5 * (double)frame->height) * pixel;
     double z = y > 0 ? fmin(WALL, FLOOR / y) : WALL, noise = 0;
-    for (int k = 0; k < SPHERES; k++) z = fmin(z, depth_of_sphere(frame->sphere[k], x, y));
+    for (int k = 0; k < BRIO_DEPTH_SPHERES; k++) z = fmin(z, depth_of_sphere(frame->sphere[k], x, y));
     for (int k = 0; k < 4; k++) noise += brio_rng_double(&rng) - 0.5; /* nearly normal, of deviation 0.58 */
     z = floor(z + NOISE * z * z * noise / 0.58 + 0.5);
     p[0] = x * z, p[1] = y * z, p[2] = z;

@@ -5,11 +5,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { BRIO_DEPTH_SPHERES = 8 };
+
 /** What all pixels of a frame share. */
 typedef struct {
     size_t width, height; /* of the frame, in pixels */
     uint64_t seed;
-    double sphere[8][4]; /* centre, radius */
+    double sphere[BRIO_DEPTH_SPHERES][4]; /* centre, radius */
 } brio_depth_frame;
 
 /** A frame of n pixels, four to three, the last row perhaps not full. */

@@ -1,6 +1,7 @@
 /* The points as records, copied in the order of insertion by all threads of the context. Each number is read once, and it
  * is the copy that must be finite: another thread of the caller may write to the caller's arrays meanwhile. */
 #include "triangulation/records.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/points_hash.h"
 #include "base/team.h"
@@ -8,26 +9,6 @@
 #include <string.h>
 
 enum { RECORDS_A_THREAD = 1 << 14 };
-
-static inline bool is_finite(const double *record) {
-    return isfinite(record[0]) && isfinite(record[1]) && isfinite(record[2]) && isfinite(record[3]);
-}
-
-/* Names the first point, in the input's order, whose record is not finite. There is one. */
-static brio_status refuse_not_finite(brio_context *ctx, const brio_record *record, const uint32_t *order, size_t n) {
-    static const char *const NAME[] = {"x", "y", "z", "weight"};
-    size_t bad = 0, first = SIZE_MAX, at = 0;
-    for (size_t i = 0; i < n; i++) {
-        size_t from = order ? order[i] : i;
-        if (is_finite(record[i])) continue;
-        bad++;
-        if (from < first) first = from, at = i;
-    }
-    int c = 0;
-    while (c < 3 && isfinite(record[at][c])) c++;
-    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %zu: %s is %s (%zu such points in all)", first, NAME[c],
-                     isnan(record[at][c]) ? "NaN" : "infinite", bad);
-}
 
 /* Writes a record; whether all its numbers are finite. */
 static inline bool write_record(const double *points, const double *weights, size_t from, double *record) {
@@ -72,7 +53,7 @@ brio_status brio_records_new(brio_context *ctx, const brio_input *input, const u
     record_job job = {input->points, input->weights, order, record, false, 0};
     brio_for(ctx, brio_threads(ctx, n, RECORDS_A_THREAD), n, write_records, &job);
     if (job.bad) {
-        status = refuse_not_finite(ctx, (const brio_record *)record, order, n);
+        status = brio_refuse_records(ctx, (const brio_record *)record, order, n);
         brio_release(ctx, record);
         return status;
     }

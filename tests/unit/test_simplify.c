@@ -486,7 +486,7 @@ static void larger_tolerances_leave_fewer_faces(void) {
 
 /* Squares of 2^600 are no doubles. */
 static void size_of_the_mesh_does_not_matter(void) {
-    for (int exponent = -600; exponent <= 600; exponent += 300) {
+    for (int exponent = -600; exponent <= 600; exponent += 150) {
         brio_mesh *a = random_mesh(ctx, 3), *b = copy_of(a);
         for (size_t i = 0; i < 3 * b->num_vertices; i++) b->vertices[i] = ldexp(b->vertices[i], exponent);
         EXPECT(simplify_to(a, a->num_faces / 3, 0.1) == BRIO_OK);
@@ -496,6 +496,42 @@ static void size_of_the_mesh_does_not_matter(void) {
         brio_mesh_free(a);
         brio_mesh_free(b);
     }
+}
+
+/* Errors were counted in a unit of the largest coordinate of all vertices, so that a far one made them all 0. */
+static void unused_vertex_far_away_does_not_matter(void) {
+    brio_mesh *a = random_mesh(ctx, 3);
+    size_t n = a->num_vertices;
+    double *points = malloc(3 * (n + 1) * sizeof *points);
+    memcpy(points, a->vertices, 3 * n * sizeof *points);
+    points[3 * n] = 1e20, points[3 * n + 1] = points[3 * n + 2] = 0;
+    brio_mesh *b = triangle_mesh(ctx, points, n + 1, a->face_vertices, a->num_faces);
+    free(points);
+    EXPECT(simplify_to(a, a->num_faces / 3, 0) == BRIO_OK && simplify_to(b, b->num_faces / 3, 0) == BRIO_OK);
+    EXPECT(same_mesh(a, b), "%zu faces, %zu", a->num_faces, b->num_faces);
+    brio_mesh_free(a);
+    brio_mesh_free(b);
+}
+
+/* A component without area beside one with area; edges without area were never tried. */
+static void component_at_one_position_collapses(void) {
+    brio_mesh *a = random_mesh(ctx, 3);
+    size_t n = a->num_vertices, f = a->num_faces;
+    double *points = malloc(6 * n * sizeof *points);
+    uint32_t *triangles = malloc(6 * f * sizeof *triangles);
+    memcpy(points, a->vertices, 3 * n * sizeof *points);
+    for (size_t i = 3 * n; i < 6 * n; i++) points[i] = 5;
+    for (size_t i = 0; i < 3 * f; i++) {
+        triangles[i] = a->face_vertices[i];
+        triangles[3 * f + i] = a->face_vertices[i] + (uint32_t)n;
+    }
+    brio_mesh *both = triangle_mesh(ctx, points, 2 * n, triangles, 2 * f);
+    EXPECT(simplify_to(both, f / 2, 0) == BRIO_OK && both->num_faces <= f / 2 + 1, "%zu of %zu faces", both->num_faces,
+           2 * f);
+    brio_mesh_free(a);
+    brio_mesh_free(both);
+    free(points);
+    free(triangles);
 }
 
 static void what_is_refused_stays(void) {
@@ -530,6 +566,8 @@ int main(void) {
     RUN(cancelled_work_leaves_nothing);
     RUN(larger_tolerances_leave_fewer_faces);
     RUN(size_of_the_mesh_does_not_matter);
+    RUN(unused_vertex_far_away_does_not_matter);
+    RUN(component_at_one_position_collapses);
     RUN(what_is_refused_stays);
     RUN(refused_memory_is_a_status_and_leaves_nothing);
     EXPECT(brio_context_memory(ctx) == 0);

@@ -6,6 +6,7 @@
 #include "base/team.h"
 #include "base/union_find.h"
 #include "reconstruct/labels/label.h"
+#include <assert.h>
 
 /* LARGE: the count of a region with an infinite tetrahedron. TETS_A_THREAD is chosen. */
 enum { LARGE = UINT16_MAX, TETS_A_THREAD = 1 << 13 };
@@ -73,6 +74,7 @@ brio_status brio_drop_small_regions(brio_context *ctx, const brio_tetrahedra *t,
                                     size_t *changed) {
     brio_status status = BRIO_OK;
     int threads = brio_threads(ctx, t->count, TETS_A_THREAD);
+    assert(least <= LARGE / 2); /* counts stay below LARGE, with what threads add past `least` */
     sieve s = {.t = t, .label = label, .least = least, .alone = threads == 1};
     *changed = 0;
     BRIO_TRY(BRIO_ALLOC(ctx, s.parent, t->count));
