@@ -64,11 +64,6 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress);
     } while (0)
 /** Ends a call. Returns 0, or -1 with an exception set if the status is an error. */
 int call_end(call *c, brio_status status);
-/** The same with a sentence of the module's own. */
-int call_end_saying(call *c, brio_status status, const char *sentence);
-/** For loops of the module's own, without the interpreter's lock: looks for signals now and then and calls the user's
- *  function. Returns whether to stop. */
-int call_look(call *c, const char *stage, double fraction);
 
 /* --- arrays --- */
 
