@@ -291,8 +291,14 @@ def test_conversion(tmp_path):
     with pytest.raises(brio.OpenError):
         brio.convert(tmp_path / "absent.ply", tmp_path / "d.xyz")
     assert not (tmp_path / "d.xyz").exists()
+
+
+def test_a_cancelled_conversion_leaves_no_file(tmp_path):
+    brio.write(tmp_path / "a.ply", GENERATOR.random((300_000, 3)))
     with pytest.raises(brio.CancelledError):
-        brio.convert(tmp_path / "a.ply", tmp_path / "d.xyz", thin=0.001, progress=lambda *_: True)
+        brio.convert(tmp_path / "a.ply", tmp_path / "b.xyz", thin=0.001, progress=lambda *_: True)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.ply"]
+    with pytest.raises(brio.CancelledError):
         brio.Delaunay(GENERATOR.random((200_000, 3)), progress=lambda *_: True)
 
 
