@@ -188,8 +188,8 @@ void *handle_object(module_state *state, PyObject *object, kind wanted) {
 int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights) {
     const handle *h = (const handle *)object;
     const void *t = h->record->object;
-    uint64_t own = h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t)
-                                                  : brio_triangulation_points_hash(t);
+    uint64_t own =
+        h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t) : brio_triangulation_points_hash(t);
     if (own == brio_points_hash(points->data, weights->data, points->rows, (int)points->columns)) return 0;
     raise(state, BRIO_ERR_ARGUMENT, "the points are not those of the triangulation: they were changed since");
     return -1;

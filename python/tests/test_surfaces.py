@@ -1,5 +1,8 @@
 """Meshes, files, surfaces, alpha shapes, and other packages' objects."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -314,6 +317,18 @@ def test_las_files_keep_the_steps_of_their_coordinates(tmp_path):
     assert (tmp_path / "b.las").read_bytes()[131:155] == head == (tmp_path / "c.las").read_bytes()[131:155]
 
 
+def test_copies_and_pickles_keep_the_steps_of_coordinates(tmp_path):
+    brio.write(tmp_path / "a.las", GENERATOR.integers(0, 10**6, (100, 3)) * 0.001 + 4e5)
+    file = bytearray((tmp_path / "a.las").read_bytes())
+    file[131:155] = np.full(3, 1 / 3, "<f8").tobytes()  # no step that a writer would try
+    (tmp_path / "a.las").write_bytes(file)
+    mesh = brio.read(tmp_path / "a.las")
+    for clone in (copy.copy, copy.deepcopy, lambda thing: pickle.loads(pickle.dumps(thing))):
+        clone(mesh).write(tmp_path / "b.las")
+        assert (brio.read(tmp_path / "b.las").vertices == mesh.vertices).all()
+        assert (tmp_path / "b.las").read_bytes()[131:179] == file[131:179]
+
+
 def test_what_the_build_reads(tmp_path):
     import gzip
 
@@ -329,9 +344,6 @@ def test_what_the_build_reads(tmp_path):
 
 
 def test_copies_and_pickles(ball):
-    import copy
-    import pickle
-
     mesh = brio.Mesh(CORNERS, [[0, 1, 2, 3]], tetrahedra=[[0, 1, 2, 3]], edges=[[0, 1]], properties={"n": np.arange(4)})
     surface = brio.reconstruct(ball, attributes={"place": ball})
     points = GENERATOR.random((50, 3))

@@ -147,6 +147,7 @@ class Mesh:
         self.face_vertices: Indices = np.asarray(views["face_vertices"])
         self.tetrahedra: Indices = np.asarray(views["tetrahedra"])
         self.edges: Indices = np.asarray(views["edges"])
+        self._steps: Floats = np.stack([np.asarray(views["coordinate_step"]), np.asarray(views["coordinate_origin"])])
         self.properties: dict[str, NDArray[Any]] = {k: np.asarray(v) for k, v in views["properties"].items()}
 
     @property
@@ -253,7 +254,7 @@ class Mesh:
 
         faces = (offsets, left) if len(offsets) > 1 else (None, None)
         mesh: Mesh = Mesh._of(_native.mesh(np.ascontiguousarray(self.vertices[chosen]), *faces, rest(self.tetrahedra),
-                                           rest(self.edges), {}, self._handle))
+                                           rest(self.edges), {}, self._steps))
         mesh.properties = properties
         return mesh
 
@@ -363,7 +364,7 @@ class Mesh:
         faces = self.face_offsets if len(self.face_offsets) > 1 else None
         return _native.mesh(self.vertices, faces, None if faces is None else self.face_vertices,
                             self.tetrahedra if len(self.tetrahedra) else None, self.edges if len(self.edges) else None,
-                            properties, self._handle)
+                            properties, self._steps)
 
     def write(self, path: str | os.PathLike[str], *, ascii: bool = False, float32: bool = False, compress: bool = False,
               comment: str | None = None, progress: bool | Progress | None = None) -> None:
@@ -452,7 +453,7 @@ class Mesh:
         views = {name: np.ascontiguousarray(state[name])
                  for name in ("vertices", "face_offsets", "face_vertices", "tetrahedra", "edges")}
         self._handle = _native.mesh(views["vertices"], views["face_offsets"], views["face_vertices"],
-                                    views["tetrahedra"], views["edges"], {}, None)
+                                    views["tetrahedra"], views["edges"], {}, self._steps)
         self.__dict__.update({name: frozen(array) for name, array in views.items()})
 
     def __repr__(self) -> str:
