@@ -176,6 +176,20 @@ def test_alpha_complex_of_the_plane_against_gudhi():
     assert np.allclose([mine[s] for s in theirs], list(theirs.values()), rtol=1e-12, atol=0)
 
 
+@pytest.mark.parametrize("d", [2, 3])
+def test_alpha_complexes_do_not_follow_points_that_are_added(d):
+    points = GENERATOR.random((60, d))
+    tri = brio.Delaunay(points)
+    complex, wanted = brio.AlphaComplex(tri), brio.alpha_complex(points)
+    alpha = wanted.auto_alpha()
+    tri.add_points(GENERATOR.random((40, d)))
+    for other in (complex, copy.copy(complex), copy.deepcopy(complex), pickle.loads(pickle.dumps(complex))):
+        assert other.auto_alpha() == alpha and (other.simplices[d] == wanted.simplices[d]).all()
+        shape = other.shape(alpha)
+        assert (shape.faces == wanted.shape(alpha).faces).all() and (shape.edges == wanted.shape(alpha).edges).all()
+    assert tri.npoints == 100 and len(brio.AlphaComplex(tri).points) == 100
+
+
 def test_alpha_shape_of_a_ball(ball):
     solid = ball * GENERATOR.random((2000, 1)) ** (1 / 3)
     shape = brio.AlphaShape(solid, 0.05)
