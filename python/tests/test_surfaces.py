@@ -278,6 +278,28 @@ def test_components_and_subdivision():
     assert len(finer.faces) == 28 and finer.certificate.components == 2 and (finer.vertices[:8] == two.vertices).all()
 
 
+def test_subdivided_meshes_keep_properties():
+    properties = {"rgb": np.arange(12, dtype=np.uint8).reshape(4, 3), "label": np.arange(4) + 2**40, "place": CORNERS,
+                  "half": np.arange(4, dtype=np.float16), "big": np.arange(4, dtype=">f4"), "name": np.array(list("abcd")),
+                  "flag": np.array([True, False, True, False]), "number": np.arange(4.0), "0_0": np.ones((4, 2, 2)),
+                  "nothing": np.empty((4, 0)), "complex": np.arange(4) * 1j}
+    mesh = brio.Mesh(CORNERS, TRIANGLES, properties=properties)
+    for levels in 1, 2:
+        finer = mesh.subdivide(levels)
+        assert list(finer.properties) == list(properties)
+        for name, values in properties.items():
+            assert finer.properties[name].dtype == values.dtype and (finer.properties[name][:4] == values).all()
+            assert finer.properties[name].shape == (len(finer.vertices), *values.shape[1:])
+        number = finer.properties["label"] - 2**40
+        assert (finer.properties["rgb"] == properties["rgb"][number]).all()
+        assert (finer.properties["name"] == properties["name"][number]).all()
+        assert (finer.properties["0_0"] == 1).all() and (finer.properties["half"] == finer.properties["number"]).all()
+    once = mesh.subdivide()
+    middles = {tuple(2 * place) for place in once.properties["place"][4:]}
+    assert middles == {tuple(CORNERS[i] + CORNERS[j]) for i in range(4) for j in range(i)}
+    assert brio.Mesh(CORNERS, TRIANGLES).subdivide().properties == {}
+
+
 def test_columns_of_texts(tmp_path):
     path = tmp_path / "rows.txt"
     path.write_text("1 10 0.5 7 7\n2 20 1.5 8 8\n")

@@ -13,7 +13,7 @@ from . import _native
 from ._arrays import Floats, as_array, as_rows, frozen
 from ._calls import Progress, reporting
 from ._points import nearest
-from ._properties import Properties, as_property, carry, scalars
+from ._properties import Properties, as_property, carry, for_means, from_means, scalars
 from .errors import ArgumentError
 
 Indices = NDArray[np.uint32]
@@ -322,7 +322,8 @@ class Mesh:
         """Subdivides a surface of triangles smoothly, by the butterfly scheme: `levels` times each becomes four.
 
         Old vertices keep their indices and positions. A new vertex receives the mean of the properties of its edge's
-        ends or, for properties that are whole numbers, those of one end.
+        ends or, for properties that are no floating-point numbers, those of one end. Properties keep names, shapes and
+        types.
 
         Returns
         -------
@@ -334,9 +335,10 @@ class Mesh:
         >>> len(brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).subdivide(2).faces)
         16
         """
-        handle = self._copy(scalars(self.properties))
+        handle = self._copy(for_means(self.properties, len(self.vertices)))
         with reporting(progress) as report:
             mesh: Mesh = Mesh._of(_native.mesh_subdivided(handle, levels, report))
+        mesh.properties = from_means(mesh.properties, self.properties)
         return mesh
 
     def _changed(self, change: Callable[[Any], Any]) -> "Mesh":
