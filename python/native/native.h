@@ -84,7 +84,9 @@ extern PyType_Spec array_spec;
 
 /** An array of the caller during a call: C-contiguous, native, of the format asked for.
  *  I1  Other threads may write to the caller's array while the library works. The library bears that of the arrays that
- *      brio.h names. What it reads of all others is a copy, made with the interpreter's lock and before any check.
+ *      brio.h names. What it reads of all others is a copy, made before any check; without an interpreter's lock others
+ *      may write during the copying, too. Nobody may resize or free an array meanwhile: numpy does so, under an open view,
+ *      where it is told not to check (refcheck=False).
  *  I2  What the library writes is an array that Python has just made. */
 typedef struct {
     void *data;
