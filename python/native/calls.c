@@ -88,7 +88,9 @@ static int call_user(call *c, const char *stage, double fraction) {
     return stop;
 }
 
-int call_look(call *c, const char *stage, double fraction) {
+/* What the library calls back: looks for signals now and then, and calls the user's function. Returns whether to stop. */
+static int look(const char *stage, double fraction, void *user) {
+    call *c = user;
     double now = seconds();
     if (now - c->looked < LOOK) return 0;
     c->looked = now;
@@ -96,10 +98,6 @@ int call_look(call *c, const char *stage, double fraction) {
     int stop = PyErr_CheckSignals() || call_user(c, stage, fraction);
     c->thread = PyEval_SaveThread();
     return stop;
-}
-
-static int look(const char *stage, double fraction, void *user) {
-    return call_look(user, stage, fraction);
 }
 
 int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
@@ -123,12 +121,8 @@ static void raise(module_state *state, brio_status status, const char *sentence)
 }
 
 int call_end(call *c, brio_status status) {
-    return call_end_saying(c, status, brio_message(c->ctx));
-}
-
-int call_end_saying(call *c, brio_status status, const char *sentence) {
     int failed = status != BRIO_OK || PyErr_Occurred();
-    if (failed && !PyErr_Occurred()) raise(c->state, status, sentence);
+    if (failed && !PyErr_Occurred()) raise(c->state, status, brio_message(c->ctx));
     brio_context_set_progress(c->ctx, NULL, NULL);
     context_give(c->state, c->context);
     return failed ? -1 : 0;
@@ -194,8 +188,8 @@ void *handle_object(module_state *state, PyObject *object, kind wanted) {
 int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights) {
     const handle *h = (const handle *)object;
     const void *t = h->record->object;
-    uint64_t own = h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t)
-                                                  : brio_triangulation_points_hash(t);
+    uint64_t own =
+        h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t) : brio_triangulation_points_hash(t);
     if (own == brio_points_hash(points->data, weights->data, points->rows, (int)points->columns)) return 0;
     raise(state, BRIO_ERR_ARGUMENT, "the points are not those of the triangulation: they were changed since");
     return -1;

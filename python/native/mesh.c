@@ -45,7 +45,7 @@ static brio_status add_properties(brio_mesh *mesh, PyObject *properties) {
 /* --- made of arrays --- */
 
 typedef struct {
-    input vertices, offsets, corners, tetrahedra, edges;
+    input vertices, offsets, corners, tetrahedra, edges, steps;
 } mesh_arrays;
 
 static void close_arrays(mesh_arrays *a) {
@@ -54,6 +54,7 @@ static void close_arrays(mesh_arrays *a) {
     input_close(&a->corners);
     input_close(&a->tetrahedra);
     input_close(&a->edges);
+    input_close(&a->steps);
 }
 
 static int maybe_open(input *in, PyObject *object, const char *name, char format, int columns) {
@@ -78,25 +79,26 @@ static brio_status set_arrays(brio_mesh *mesh, const mesh_arrays *a) {
     if (status == BRIO_OK && a->tetrahedra.data)
         status = brio_mesh_set_tetrahedra(mesh, a->tetrahedra.data, 4, a->tetrahedra.rows);
     if (status == BRIO_OK && a->edges.data) status = brio_mesh_set_edges(mesh, a->edges.data, a->edges.rows);
+    if (status == BRIO_OK && a->steps.data) {
+        const double *steps = a->steps.data;
+        memcpy(mesh->coordinate_step, steps, sizeof mesh->coordinate_step);
+        memcpy(mesh->coordinate_origin, steps + 3, sizeof mesh->coordinate_origin);
+    }
     return status;
 }
 
-/* Copies what a LAS file says of its coordinates, so that they are written as they were read. */
-static void copy_steps(const brio_mesh *from, brio_mesh *to) {
-    memcpy(to->coordinate_step, from->coordinate_step, sizeof to->coordinate_step);
-    memcpy(to->coordinate_origin, from->coordinate_origin, sizeof to->coordinate_origin);
+/* Opens the steps and the origin of the coordinates, what a LAS file says of them. */
+static int open_steps(input *in, PyObject *steps) {
+    return maybe_open(in, steps, "steps", 'd', 3) || (in->data && input_has_rows(in, "steps", 2)) ? -1 : 0;
 }
 
-/* mesh(vertices, offsets, corners, tetrahedra, edges, properties, like): a mesh of copies; None for an absent part. The
- * coordinates have the steps of the mesh `like`, or None. */
+/* mesh(vertices, offsets, corners, tetrahedra, edges, properties, steps): a mesh of copies; None for an absent part. */
 static PyObject *mesh(PyObject *module, PyObject *args) {
-    PyObject *vertices, *offsets, *corners, *tetrahedra, *edges, *properties, *like, *result = NULL;
-    const brio_mesh *steps = NULL;
-    mesh_arrays a = {{.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}};
+    PyObject *vertices, *offsets, *corners, *tetrahedra, *edges, *properties, *steps, *result = NULL;
+    mesh_arrays a = {{.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}};
     call c;
-    if (!PyArg_ParseTuple(args, "OOOOOOO", &vertices, &offsets, &corners, &tetrahedra, &edges, &properties, &like))
+    if (!PyArg_ParseTuple(args, "OOOOOOO", &vertices, &offsets, &corners, &tetrahedra, &edges, &properties, &steps))
         return NULL;
-    if (like != Py_None && !(steps = handle_object(state_of(module), like, KIND_MESH))) return NULL;
     if (!PyDict_Check(properties)) {
         PyErr_SetString(PyExc_TypeError, "properties: a dict of arrays");
         return NULL;
@@ -105,12 +107,11 @@ static PyObject *mesh(PyObject *module, PyObject *args) {
         !maybe_open(&a.offsets, offsets, "face_offsets", 'L', 0) &&
         !maybe_open(&a.corners, corners, "face_vertices", 'I', 0) &&
         !maybe_open(&a.tetrahedra, tetrahedra, "tetrahedra", 'I', 4) && !maybe_open(&a.edges, edges, "edges", 'I', 2) &&
-        offsets_are_sound(&a) && !call_begin(&c, state_of(module), 1, Py_None)) {
+        !open_steps(&a.steps, steps) && offsets_are_sound(&a) && !call_begin(&c, state_of(module), 1, Py_None)) {
         brio_mesh *made = NULL;
         brio_status status = brio_mesh_new(c.ctx, &made);
         if (status == BRIO_OK) status = set_arrays(made, &a);
         if (status == BRIO_OK) status = add_properties(made, properties);
-        if (status == BRIO_OK && steps) copy_steps(steps, made);
         result = call_end_with_mesh(&c, status, made);
     }
     close_arrays(&a);
@@ -138,10 +139,11 @@ static PyObject *mesh_views(PyObject *module, PyObject *object) {
     if (!m) return NULL;
     size_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0;
 #define VIEW(name, format, rows, columns) #name, array_new(state, object, layout_of(m->name, format, rows, columns))
-    return Py_BuildValue("{s:N,s:N,s:N,s:N,s:N,s:N}", VIEW(vertices, 'd', m->num_vertices, 3),
+    return Py_BuildValue("{s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N}", VIEW(vertices, 'd', m->num_vertices, 3),
                          VIEW(face_offsets, 'L', m->face_offsets ? m->num_faces + 1 : 1, 0),
                          VIEW(face_vertices, 'I', corners, 0), VIEW(tetrahedra, 'I', m->num_tetrahedra, 4),
-                         VIEW(edges, 'I', m->num_edges, 2), "properties", property_views(state, object, m));
+                         VIEW(edges, 'I', m->num_edges, 2), VIEW(coordinate_step, 'd', 3, 0),
+                         VIEW(coordinate_origin, 'd', 3, 0), "properties", property_views(state, object, m));
 #undef VIEW
 }
 
@@ -309,7 +311,7 @@ static PyObject *mesh_distance(PyObject *module, PyObject *args) {
 }
 
 PyMethodDef mesh_methods[] = {
-    {"mesh", mesh, METH_VARARGS, "mesh(vertices, offsets, corners, tetrahedra, edges, properties, like)"},
+    {"mesh", mesh, METH_VARARGS, "mesh(vertices, offsets, corners, tetrahedra, edges, properties, steps)"},
     {"mesh_views", mesh_views, METH_O, "The arrays of a mesh, in a dict."},
     {"mesh_with_normals", mesh_with_normals, METH_O, "The same surface with the properties nx, ny, nz."},
     {"mesh_simplified", mesh_simplified, METH_VARARGS, "mesh_simplified(mesh, faces, tolerance, progress)"},

@@ -64,11 +64,6 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress);
     } while (0)
 /** Ends a call. Returns 0, or -1 with an exception set if the status is an error. */
 int call_end(call *c, brio_status status);
-/** The same with a sentence of the module's own. */
-int call_end_saying(call *c, brio_status status, const char *sentence);
-/** For loops of the module's own, without the interpreter's lock: looks for signals now and then and calls the user's
- *  function. Returns whether to stop. */
-int call_look(call *c, const char *stage, double fraction);
 
 /* --- arrays --- */
 
@@ -89,7 +84,9 @@ extern PyType_Spec array_spec;
 
 /** An array of the caller during a call: C-contiguous, native, of the format asked for.
  *  I1  Other threads may write to the caller's array while the library works. The library bears that of the arrays that
- *      brio.h names. What it reads of all others is a copy, made with the interpreter's lock and before any check.
+ *      brio.h names. What it reads of all others is a copy, made before any check; without an interpreter's lock others
+ *      may write during the copying, too. Nobody may resize or free an array meanwhile: numpy does so, under an open view,
+ *      where it is told not to check (refcheck=False).
  *  I2  What the library writes is an array that Python has just made. */
 typedef struct {
     void *data;

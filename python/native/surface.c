@@ -54,13 +54,16 @@ typedef struct {
     input p, out;
 } surface_call;
 
+/* Opens points: input_open, or input_borrow for a method that bears changes of them. */
+typedef int opener(input *in, PyObject *object, const char *name, char format, int columns);
+
 /* Reads (points, options, number, extra or None, threads, progress). `extra` is an array to write, of `columns`. */
-static int open_surface_call(surface_call *s, PyObject *args, char format, int columns) {
+static int open_surface_call(surface_call *s, PyObject *args, opener *open, char format, int columns) {
     s->p = s->out = (input){.held = 0};
     if (!PyArg_ParseTuple(args, "OO!dOiO", &s->points, &PyDict_Type, &s->options, &s->number, &s->extra, &s->threads,
                           &s->progress))
         return -1;
-    if (input_open(&s->p, s->points, "points", 'd', 3)) return -1;
+    if (open(&s->p, s->points, "points", 'd', 3)) return -1;
     if (s->extra == Py_None) return 0;
     if (output_open(&s->out, s->extra, "out", format, columns)) return -1;
     return input_has_rows(&s->out, "out", s->p.rows);
@@ -99,7 +102,7 @@ static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
     const option table[] = {
         {"seed", SEED, &o.seed},   {"noise", INT, &o.noise},       {"confidence", INT, &o.confidence},
         {"open", DOUBLE, &o.open}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, 'I', 0))
+    if (!open_surface_call(&s, args, input_open, 'I', 0))
         RUN_SURFACE(table, brio_labeled_delaunay(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
     close_surface_call(&s);
     return result;
@@ -117,7 +120,7 @@ static PyObject *power_crust(PyObject *module, PyObject *args) {
                             {"simplify", INT, &o.simplify},
                             {"open", DOUBLE, &o.open},
                             {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, 'd', 3))
+    if (!open_surface_call(&s, args, input_open, 'd', 3))
         RUN_SURFACE(table, brio_power_crust(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
     close_surface_call(&s);
     return result;
@@ -132,7 +135,7 @@ static PyObject *offset_surface(PyObject *module, PyObject *args) {
     brio_offset_surface_options o = brio_offset_surface_options_default();
     const option table[] = {
         POLE_OPTIONS(o), {"triangulate", INT, &o.triangulate}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, 'd', 3))
+    if (!open_surface_call(&s, args, input_open, 'd', 3))
         RUN_SURFACE(table, brio_offset_surface(c.ctx, s.p.data, s.p.rows, s.number, &o, &mesh, NULL));
     close_surface_call(&s);
     return result;
@@ -150,7 +153,7 @@ static PyObject *power_shape(PyObject *module, PyObject *args) {
                             {"scale", DOUBLE, &o.scale},
                             {"redundancy", DOUBLE, &o.redundancy},
                             {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, 'd', 3))
+    if (!open_surface_call(&s, args, input_open, 'd', 3))
         RUN_SURFACE(table, brio_power_shape(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL, NULL));
     close_surface_call(&s);
     return result;
@@ -171,7 +174,7 @@ static PyObject *cocone(PyObject *module, PyObject *args) {
                             {"pieces", SIZE, &o.pieces},
                             {"extraction", INT, &o.extraction},
                             {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, 'd', 3))
+    if (!open_surface_call(&s, args, input_open, 'd', 3))
         RUN_SURFACE(table, brio_cocone(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
     close_surface_call(&s);
     return result;
@@ -186,7 +189,7 @@ static PyObject *convex_hull(PyObject *module, PyObject *args) {
     PyObject *result = NULL;
     brio_convex_hull_options o = brio_convex_hull_options_default();
     const option table[] = {{"polygons", INT, &o.polygons}, {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, 'I', 0)) {
+    if (!open_surface_call(&s, args, input_borrow, 'I', 0)) {
         o.samples = s.out.data;
         RUN_SURFACE(table, brio_convex_hull(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
     }

@@ -152,6 +152,59 @@ def test_arrays_that_another_thread_changes(alone):
     assert alone(CHANGED).split() == ["True", "True"]
 
 
+CHANGED_HULL = r"""
+import threading, time
+import numpy as np
+import brio
+
+good = np.random.default_rng(1).normal(size=(100_000, 3))
+points, stop = good.copy(), threading.Event()
+
+
+def change():
+    rng = np.random.default_rng(2)
+    while not stop.is_set():
+        rows = rng.integers(0, len(points), 2000)
+        points[rows] = rng.normal(size=(2000, 3)) * rng.choice([1, 1, 1e150, np.nan]) if rng.random() < 0.7 else points[0]
+        points[rows] = good[rows]
+
+
+thread = threading.Thread(target=change)
+thread.start()
+made, end = 0, time.monotonic() + 4
+while time.monotonic() < end:
+    try:
+        hull = brio.ConvexHull(points, threads=2)
+    except brio.Error:
+        continue
+    assert hull.vertices.max() < len(points) and hull.simplices.min() >= 0 and hull.neighbors.max() < hull.nsimplex
+    made += 1
+stop.set()
+thread.join()
+print(made > 0, np.array_equal(brio.ConvexHull(points).vertices, brio.ConvexHull(good).vertices))
+"""
+
+
+def test_hulls_of_points_that_another_thread_changes(alone):
+    assert alone(CHANGED_HULL).split() == ["True", "True"]
+
+
+def test_hulls_without_a_copy_of_the_points(alone):
+    grown = alone(r"""
+import resource, numpy as np, brio
+
+def most():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+points = np.random.default_rng(1).random((4_000_000, 3))
+brio.ConvexHull(points[:1000])
+before = most()
+brio.ConvexHull(points)
+print(most() - before)
+""")
+    assert float(grown) < 4_000_000 * 24 / 2**20 / 2  # MiB: half a copy
+
+
 FORK = r"""
 import os, threading, numpy as np, brio
 

@@ -87,6 +87,18 @@ def test_shapes_and_types(interpolator):
         interpolator(points, values[:-1])
 
 
+@pytest.mark.parametrize("interpolator", BOTH)
+@pytest.mark.parametrize("d", [2, 3])
+def test_values_of_no_components(interpolator, d):
+    points = GENERATOR.random((20, d))
+    queries = np.concatenate([points[:3], np.full((2, d), 9), np.full((1, d), np.nan)])
+    for shape in (0,), (2, 0), (0, 3):
+        for dtype in np.float64, np.complex128:
+            for fill in np.nan, 7:
+                out = interpolator(points, np.empty((20, *shape), dtype), fill)(queries)
+                assert out.shape == (6, *shape) and out.dtype == dtype
+
+
 def test_rescale():
     points = GENERATOR.random((80, 2)) * [1, 1000]
     height = brio.LinearNDInterpolator(points, points.sum(axis=1), rescale=True)

@@ -1,5 +1,8 @@
 """Meshes, files, surfaces, alpha shapes, and other packages' objects."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -173,6 +176,20 @@ def test_alpha_complex_of_the_plane_against_gudhi():
     assert np.allclose([mine[s] for s in theirs], list(theirs.values()), rtol=1e-12, atol=0)
 
 
+@pytest.mark.parametrize("d", [2, 3])
+def test_alpha_complexes_do_not_follow_points_that_are_added(d):
+    points = GENERATOR.random((60, d))
+    tri = brio.Delaunay(points)
+    complex, wanted = brio.AlphaComplex(tri), brio.alpha_complex(points)
+    alpha = wanted.auto_alpha()
+    tri.add_points(GENERATOR.random((40, d)))
+    for other in (complex, copy.copy(complex), copy.deepcopy(complex), pickle.loads(pickle.dumps(complex))):
+        assert other.auto_alpha() == alpha and (other.simplices[d] == wanted.simplices[d]).all()
+        shape = other.shape(alpha)
+        assert (shape.faces == wanted.shape(alpha).faces).all() and (shape.edges == wanted.shape(alpha).edges).all()
+    assert tri.npoints == 100 and len(brio.AlphaComplex(tri).points) == 100
+
+
 def test_alpha_shape_of_a_ball(ball):
     solid = ball * GENERATOR.random((2000, 1)) ** (1 / 3)
     shape = brio.AlphaShape(solid, 0.05)
@@ -261,6 +278,28 @@ def test_components_and_subdivision():
     assert len(finer.faces) == 28 and finer.certificate.components == 2 and (finer.vertices[:8] == two.vertices).all()
 
 
+def test_subdivided_meshes_keep_properties():
+    properties = {"rgb": np.arange(12, dtype=np.uint8).reshape(4, 3), "label": np.arange(4) + 2**40, "place": CORNERS,
+                  "half": np.arange(4, dtype=np.float16), "big": np.arange(4, dtype=">f4"), "name": np.array(list("abcd")),
+                  "flag": np.array([True, False, True, False]), "number": np.arange(4.0), "0_0": np.ones((4, 2, 2)),
+                  "nothing": np.empty((4, 0)), "complex": np.arange(4) * 1j}
+    mesh = brio.Mesh(CORNERS, TRIANGLES, properties=properties)
+    for levels in 1, 2:
+        finer = mesh.subdivide(levels)
+        assert list(finer.properties) == list(properties)
+        for name, values in properties.items():
+            assert finer.properties[name].dtype == values.dtype and (finer.properties[name][:4] == values).all()
+            assert finer.properties[name].shape == (len(finer.vertices), *values.shape[1:])
+        number = finer.properties["label"] - 2**40
+        assert (finer.properties["rgb"] == properties["rgb"][number]).all()
+        assert (finer.properties["name"] == properties["name"][number]).all()
+        assert (finer.properties["0_0"] == 1).all() and (finer.properties["half"] == finer.properties["number"]).all()
+    once = mesh.subdivide()
+    middles = {tuple(2 * place) for place in once.properties["place"][4:]}
+    assert middles == {tuple(CORNERS[i] + CORNERS[j]) for i in range(4) for j in range(i)}
+    assert brio.Mesh(CORNERS, TRIANGLES).subdivide().properties == {}
+
+
 def test_columns_of_texts(tmp_path):
     path = tmp_path / "rows.txt"
     path.write_text("1 10 0.5 7 7\n2 20 1.5 8 8\n")
@@ -291,8 +330,14 @@ def test_conversion(tmp_path):
     with pytest.raises(brio.OpenError):
         brio.convert(tmp_path / "absent.ply", tmp_path / "d.xyz")
     assert not (tmp_path / "d.xyz").exists()
+
+
+def test_a_cancelled_conversion_leaves_no_file(tmp_path):
+    brio.write(tmp_path / "a.ply", GENERATOR.random((300_000, 3)))
     with pytest.raises(brio.CancelledError):
-        brio.convert(tmp_path / "a.ply", tmp_path / "d.xyz", thin=0.001, progress=lambda *_: True)
+        brio.convert(tmp_path / "a.ply", tmp_path / "b.xyz", thin=0.001, progress=lambda *_: True)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.ply"]
+    with pytest.raises(brio.CancelledError):
         brio.Delaunay(GENERATOR.random((200_000, 3)), progress=lambda *_: True)
 
 
@@ -306,6 +351,18 @@ def test_las_files_keep_the_steps_of_their_coordinates(tmp_path):
     assert (brio.read(tmp_path / "c.las").vertices == first.vertices[:50]).all()
     head = (tmp_path / "a.las").read_bytes()[131:155]
     assert (tmp_path / "b.las").read_bytes()[131:155] == head == (tmp_path / "c.las").read_bytes()[131:155]
+
+
+def test_copies_and_pickles_keep_the_steps_of_coordinates(tmp_path):
+    brio.write(tmp_path / "a.las", GENERATOR.integers(0, 10**6, (100, 3)) * 0.001 + 4e5)
+    file = bytearray((tmp_path / "a.las").read_bytes())
+    file[131:155] = np.full(3, 1 / 3, "<f8").tobytes()  # no step that a writer would try
+    (tmp_path / "a.las").write_bytes(file)
+    mesh = brio.read(tmp_path / "a.las")
+    for clone in (copy.copy, copy.deepcopy, lambda thing: pickle.loads(pickle.dumps(thing))):
+        clone(mesh).write(tmp_path / "b.las")
+        assert (brio.read(tmp_path / "b.las").vertices == mesh.vertices).all()
+        assert (tmp_path / "b.las").read_bytes()[131:179] == file[131:179]
 
 
 def test_what_the_build_reads(tmp_path):
@@ -323,9 +380,6 @@ def test_what_the_build_reads(tmp_path):
 
 
 def test_copies_and_pickles(ball):
-    import copy
-    import pickle
-
     mesh = brio.Mesh(CORNERS, [[0, 1, 2, 3]], tetrahedra=[[0, 1, 2, 3]], edges=[[0, 1]], properties={"n": np.arange(4)})
     surface = brio.reconstruct(ball, attributes={"place": ball})
     points = GENERATOR.random((50, 3))

@@ -32,10 +32,10 @@ class AlphaComplex:
     """
 
     def __init__(self, tri: Delaunay) -> None:
+        self._tri = tri = tri._as_it_is()
         with reporting(tri.progress) as report:
             views = _native.alpha_values(tri._handle, tri.points, tri.weights, tri.threads, report)
         self.points, self.weights, self._complex, self.ndim = tri.points, tri.weights, views["complex"], tri.ndim
-        self._tri = tri
         self.simplices: list[NDArray[np.uint32]] = [np.asarray(view) for view in views["simplices"]]
         self.values: list[Floats] = [np.asarray(view) for view in views["values"]]
         self.solid: list[Floats] = [np.asarray(view) for view in views["solid"]]

@@ -336,6 +336,12 @@ class Delaunay:
         both = None if added is None or self.weights is None else np.concatenate([self.weights, added])
         self._build(np.concatenate([self.points, rows]), both)
 
+    def _as_it_is(self) -> "Delaunay":
+        """The same triangulation, which later add_points of this one do not change."""
+        same: Delaunay = object.__new__(type(self))
+        same.__dict__ = self.__dict__.copy()
+        return same
+
     def close(self) -> None:
         """Ends the adding of points. What was computed stays until the object goes."""
         self._closed = True

@@ -91,6 +91,8 @@ class _Interpolator:
         return self._shaped(out, inside).reshape(xi.shape[:-1] + self.values_shape)
 
     def _interpolate(self, rows: Floats, out: Floats) -> None:
+        if not self.values.shape[1]:  # the library takes no values of 0 numbers
+            return
         if self.tri.ndim == 2:
             _native.interpolate2(self.tri._locator, rows, self.values, int(self._method == _NATURAL), out, None)
         else:

@@ -13,7 +13,7 @@ from . import _native
 from ._arrays import Floats, as_array, as_rows, frozen
 from ._calls import Progress, reporting
 from ._points import nearest
-from ._properties import Properties, as_property, carry, scalars
+from ._properties import Properties, as_property, carry, for_means, from_means, scalars
 from .errors import ArgumentError
 
 Indices = NDArray[np.uint32]
@@ -147,6 +147,7 @@ class Mesh:
         self.face_vertices: Indices = np.asarray(views["face_vertices"])
         self.tetrahedra: Indices = np.asarray(views["tetrahedra"])
         self.edges: Indices = np.asarray(views["edges"])
+        self._steps: Floats = np.stack([np.asarray(views["coordinate_step"]), np.asarray(views["coordinate_origin"])])
         self.properties: dict[str, NDArray[Any]] = {k: np.asarray(v) for k, v in views["properties"].items()}
 
     @property
@@ -253,7 +254,7 @@ class Mesh:
 
         faces = (offsets, left) if len(offsets) > 1 else (None, None)
         mesh: Mesh = Mesh._of(_native.mesh(np.ascontiguousarray(self.vertices[chosen]), *faces, rest(self.tetrahedra),
-                                           rest(self.edges), {}, self._handle))
+                                           rest(self.edges), {}, self._steps))
         mesh.properties = properties
         return mesh
 
@@ -321,7 +322,8 @@ class Mesh:
         """Subdivides a surface of triangles smoothly, by the butterfly scheme: `levels` times each becomes four.
 
         Old vertices keep their indices and positions. A new vertex receives the mean of the properties of its edge's
-        ends or, for properties that are whole numbers, those of one end.
+        ends or, for properties that are no floating-point numbers, those of one end. Properties keep names, shapes and
+        types.
 
         Returns
         -------
@@ -333,9 +335,10 @@ class Mesh:
         >>> len(brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).subdivide(2).faces)
         16
         """
-        handle = self._copy(scalars(self.properties))
+        handle = self._copy(for_means(self.properties, len(self.vertices)))
         with reporting(progress) as report:
             mesh: Mesh = Mesh._of(_native.mesh_subdivided(handle, levels, report))
+        mesh.properties = from_means(mesh.properties, self.properties)
         return mesh
 
     def _changed(self, change: Callable[[Any], Any]) -> "Mesh":
@@ -363,7 +366,7 @@ class Mesh:
         faces = self.face_offsets if len(self.face_offsets) > 1 else None
         return _native.mesh(self.vertices, faces, None if faces is None else self.face_vertices,
                             self.tetrahedra if len(self.tetrahedra) else None, self.edges if len(self.edges) else None,
-                            properties, self._handle)
+                            properties, self._steps)
 
     def write(self, path: str | os.PathLike[str], *, ascii: bool = False, float32: bool = False, compress: bool = False,
               comment: str | None = None, progress: bool | Progress | None = None) -> None:
@@ -452,7 +455,7 @@ class Mesh:
         views = {name: np.ascontiguousarray(state[name])
                  for name in ("vertices", "face_offsets", "face_vertices", "tetrahedra", "edges")}
         self._handle = _native.mesh(views["vertices"], views["face_offsets"], views["face_vertices"],
-                                    views["tetrahedra"], views["edges"], {}, None)
+                                    views["tetrahedra"], views["edges"], {}, self._steps)
         self.__dict__.update({name: frozen(array) for name, array in views.items()})
 
     def __repr__(self) -> str:

@@ -1,5 +1,6 @@
 """Properties of vertices: arrays with one row a vertex."""
 
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,32 @@ def scalars(properties: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         flat = values.reshape(len(values), -1)
         for k in range(flat.shape[1]):
             out[name if values.ndim == 1 else f"{name}_{k}"] = _scalar(flat[:, k], name)
+    return out
+
+
+def for_means(properties: Properties, count: int) -> Properties:
+    """Columns for the library to take means of: those of floating-point properties, and numbers of vertices."""
+    out: Properties = {"number": np.arange(count, dtype=np.uint32)}
+    for k, values in enumerate(properties.values()):
+        if values.dtype.kind == "f":
+            flat = values.reshape(len(values), prod(values.shape[1:]))
+            for j in range(flat.shape[1]):
+                out[f"{k}_{j}"] = np.ascontiguousarray(flat[:, j], np.float32 if values.itemsize <= 4 else np.float64)
+    return out
+
+
+def from_means(columns: Properties, like: Properties) -> Properties:
+    """Returns the properties of these columns, which for_means made of `like`: names, types and shapes of rows as in `like`."""
+    out: Properties = {}
+    rows = columns["number"]
+    for k, (name, values) in enumerate(like.items()):
+        if values.dtype.kind == "f":
+            out[name] = np.empty((len(rows), *values.shape[1:]), values.dtype)
+            flat = out[name].reshape(len(rows), prod(values.shape[1:]))
+            for j in range(flat.shape[1]):
+                flat[:, j] = columns[f"{k}_{j}"]
+        else:
+            out[name] = values[rows]
     return out
 
 
