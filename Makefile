@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check fuzz python python-heavy python-sanitize bench quality votes thesis machines clean
+.PHONY: all demo check fuzz python python-heavy python-sanitize bench quality votes thesis machines deb clean
 
 all:
 	@sh scripts/setup.sh build
@@ -70,6 +70,11 @@ thesis: all
 machines:
 	@sh scripts/setup.sh machines
 	/usr/bin/python3 tests/machines/machines.py . out/machines
+
+# Debian packages of what is committed, in out/deb.
+deb:
+	@sh scripts/setup.sh deb
+	@sh scripts/deb.sh
 
 clean:
 	rm -rf build build-ci build-debug build-fuzz build-sanitize out

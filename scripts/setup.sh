@@ -1,5 +1,5 @@
 #!/bin/sh
-# setup.sh build|check|fuzz|bench|quality|thesis|machines: sees to the tools that building, testing or measuring needs.
+# setup.sh build|check|fuzz|bench|quality|thesis|machines|deb: sees to the tools that building, testing or measuring needs.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
 set -eu
 
@@ -65,6 +65,13 @@ missing() {
         [ -x $python ] || echo python3
         return 0
     fi
+    if [ "$1" = deb ]; then
+        has git || echo git
+        has dpkg-buildpackage || echo dpkg-dev
+        has dh || echo debhelper
+        has lintian || echo lintian
+        return 0
+    fi
     [ "$1" = check ] || return 0
     [ -x $python ] || echo python3
     has_python_with numpy || echo python3-numpy
@@ -81,7 +88,7 @@ missing_peers() {
     [ -f /usr/include/zstd.h ] || echo libzstd-dev
     [ -f /usr/include/cjson/cJSON.h ] || echo libcjson-dev
     [ -f /usr/include/expat.h ] || echo libexpat1-dev
-    case $1 in build | fuzz | quality | thesis) return 0 ;; esac
+    case $1 in build | fuzz | quality | thesis | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -161,9 +168,9 @@ install_tests_packages() {
 
 purpose=${1:-build}
 case $purpose in
-build | check | fuzz | bench | quality | thesis | machines) ;;
+build | check | fuzz | bench | quality | thesis | machines | deb) ;;
 *)
-    echo "usage: setup.sh build|check|fuzz|bench|quality|thesis|machines" >&2
+    echo "usage: setup.sh build|check|fuzz|bench|quality|thesis|machines|deb" >&2
     exit 1
     ;;
 esac
