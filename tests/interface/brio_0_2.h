@@ -630,8 +630,7 @@ BRIO_API brio_status brio_triangulation2_checksum(brio_context *ctx, const brio_
                                                   uint64_t *checksum);
 
 /* Queries of a triangulation of the plane. What is said of brio_locator and of its queries holds here, with `queries` #Q by
- * 2, except that these are not sorted and take no workspace, but for NATURAL: some lists of the largest cavity, for each
- * thread. */
+ * 2, but queries are not sorted. Only NATURAL takes workspace: for each thread, lists as long as its largest cavity. */
 
 typedef struct brio_locator2 brio_locator2;
 
@@ -890,7 +889,8 @@ static inline brio_mesh_simplify_options brio_mesh_simplify_options_default(void
  *  no triangle uses are dropped. A vertex keeps the properties of one of those that it stands for.
  *  The result does not depend on the number of threads, nor on the numbers of the vertices; the order of the faces and of
  *  their corners breaks ties.
- *  Cost: O(n log n); 175 bytes a vertex beside the mesh, and while the last edges collapse 24 for each of theirs.
+ *  Cost: O(n log n); 175 bytes a vertex beside the mesh, and 24 more for each vertex that is left when the last edges
+ *  collapse.
  *  Returns BRIO_OK; BRIO_ERR_ARGUMENT (neither target nor tolerance, a negative one, a face is no triangle, an index is out
  *  of range, the mesh is not manifold and oriented at an edge or a vertex), BRIO_ERR_TOO_LARGE (2^32 corners) and
  *  BRIO_ERR_NOT_FINITE, after which the mesh is
