@@ -14,7 +14,6 @@
 #include "triangulation/cavity.h"
 #include "base/memory.h"
 #include "base/poison.h"
-#include "base/rng.h"
 #include "triangulation/inserter.h"
 #include <assert.h>
 #include <string.h>
@@ -29,8 +28,7 @@ void brio_cavity_free(brio_context *ctx, brio_cavity *c) {
     brio_release(ctx, c->facet);
     brio_release(ctx, c->border);
     brio_release(ctx, c->table);
-    brio_release(ctx, c->edge_key);
-    brio_release(ctx, c->edge_facet);
+    brio_release(ctx, c->edge);
     brio_release(ctx, c->cavity_vertex);
 }
 
@@ -177,46 +175,51 @@ static inline void join_by_table(brio_inserter *ins, uint32_t p, const int bits)
     }
 }
 
-static inline size_t edge_place(const brio_cavity *c, uint64_t key, size_t mask) {
-    size_t at = brio_mix(key) & mask;
-    while (c->edge_key[at] != key && c->edge_key[at] != UINT64_MAX) at = (at + 1) & mask;
-    return at;
-}
-
 /* Reports progress after every HASHED_BETWEEN border facets. */
 static brio_status report_between(brio_inserter *ins, size_t b) {
     return (b + 1) % HASHED_BETWEEN == 0 ? brio_inserter_report(ins, ins->done) : BRIO_OK;
 }
 
+/* An edge, from either side: multilinear hashing, whose upper bits are good. [Lemire Kaser 2014] */
+static inline uint64_t edge_hash(uint32_t u, uint32_t v) {
+    uint32_t low = u < v ? u : v, high = u ^ v ^ low;
+    return low * UINT64_C(0x9e3779b97f4a7c15) + high * UINT64_C(0xd1b54a32d192ed03);
+}
+
+/* Facet i > 0 of new tetrahedron tet, whose edge on the border leads from u to v: becomes the mate of the facet that was
+ * entered for this edge, else it is entered itself. */
+static inline void meet(brio_cavity *c, int bits, brio_tetrahedron *tets, uint32_t facet, uint32_t u, uint32_t v) {
+    uint64_t hash = edge_hash(u, v);
+    size_t at = hash >> (64 - bits), mask = ((size_t)1 << bits) - 1;
+    uint32_t tag = (uint32_t)(hash >> 16);
+    for (; c->edge[at].facet != 0; at = (at + 1) & mask) {
+        if (c->edge[at].tag != tag) continue;
+        uint32_t other = c->edge[at].facet, i = brio_slot_of(other);
+        brio_tetrahedron *mate = &tets[brio_tet_of(other)];
+        if (mate->vertex[i % 3 + 1] != v || mate->vertex[(i + 1) % 3 + 1] != u) continue;
+        mate->mate[i] = facet;
+        tets[brio_tet_of(facet)].mate[brio_slot_of(facet)] = other;
+        return;
+    }
+    c->edge[at] = (brio_border_edge){tag, facet};
+}
+
 /* The same with a hash table of edges, where there are too many numbers for bytes. */
 static brio_status join_by_hash(brio_inserter *ins, uint32_t p) {
     brio_cavity *c = &ins->cavity;
-    brio_context *ctx = ins->store->ctx;
     brio_tetrahedron *tets = ins->store->t.tet;
     brio_status status = BRIO_OK;
-    size_t size = 64;
-    while (size < 6 * c->num_border) size *= 2;
-    BRIO_TRY(BRIO_RESERVE(ctx, c->edge_key, c->hash_capacity, size));
-    BRIO_TRY(BRIO_RESERVE(ctx, c->edge_facet, c->hash_facet_capacity, size));
-    memset(c->edge_key, 0xff, size * sizeof *c->edge_key);
+    int bits = 6; /* of the number of places, at least twice that of the edges */
+    while ((size_t)1 << bits < 3 * c->num_border) bits++;
+    BRIO_TRY(BRIO_RESERVE(ins->store->ctx, c->edge, c->edge_capacity, (size_t)1 << bits));
+    memset(c->edge, 0, sizeof *c->edge << bits);
     for (size_t b = 0; b < c->num_border; b++) {
         uint32_t v[3];
         BRIO_TRY(report_between(ins, b));
         create(tets, c->created[b], c->border[b], p, v);
-        for (int i = 0; i < 3; i++) {
-            uint64_t key = (uint64_t)v[(i + 1) % 3] << 32 | v[(i + 2) % 3];
-            size_t at = edge_place(c, key, size - 1);
-            c->edge_key[at] = key, c->edge_facet[at] = brio_facet_of(c->created[b], i + 1);
-        }
-    }
-    for (size_t b = 0; b < c->num_border; b++) {
-        brio_tetrahedron *tet = &tets[c->created[b]];
-        BRIO_TRY(report_between(ins, b));
-        tet->mate[0] = c->border[b];
-        for (int i = 0; i < 3; i++) {
-            uint64_t key = (uint64_t)tet->vertex[(i + 2) % 3 + 1] << 32 | tet->vertex[(i + 1) % 3 + 1];
-            tet->mate[i + 1] = c->edge_facet[edge_place(c, key, size - 1)];
-        }
+        tets[c->created[b]].mate[0] = c->border[b];
+        for (int i = 0; i < 3; i++)
+            meet(c, bits, tets, brio_facet_of(c->created[b], i + 1), v[(i + 1) % 3], v[(i + 2) % 3]);
     }
 done:
     return status;

@@ -6,6 +6,12 @@
 
 typedef struct brio_inserter brio_inserter;
 
+/** An edge of the border that was met from one of its two facets. */
+typedef struct {
+    uint32_t tag;   /* bits of the edge's hash that do not choose its place */
+    uint32_t facet; /* of the new tetrahedron that it was met from; 0, a facet of none: no edge */
+} brio_border_edge;
+
 /** Workspace of one insertion, kept from one to the next. All of it belongs to one thread. */
 typedef struct {
     uint32_t *entry;   /* of each tetrahedron in conflict, the facet through which it was found */
@@ -19,9 +25,8 @@ typedef struct {
     size_t cavity_vertex_capacity;
     uint8_t infinite_local; /* the store's `local` of the infinite vertex, which all threads meet */
     uint32_t *table;        /* facet handle of each directed edge of the border, BRIO_TABLE of them */
-    uint64_t *edge_key;     /* hash table of directed edges, for large borders */
-    uint32_t *edge_facet;
-    size_t hash_capacity, hash_facet_capacity;
+    brio_border_edge *edge; /* hash table of edges, for large borders */
+    size_t edge_capacity;
 } brio_cavity;
 
 enum { BRIO_TABLE = 1 << 16 };
