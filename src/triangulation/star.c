@@ -24,8 +24,8 @@ brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint3
         size_t tet = star->tet[n];
         BRIO_TRY(BRIO_RESERVE(ctx, star->tet, star->capacity, star->size + 4));
         for (int i = 0; i < 4; i++) {
-            uint32_t other = brio_tet_of(t->tet[tet].mate[i]);
-            if (t->tet[tet].vertex[i] == v || !brio_owns(t, star->zone, other) || star->mark[other]) continue;
+            uint32_t mate = t->tet[tet].mate[i], other = brio_tet_of(mate);
+            if (t->tet[tet].vertex[i] == v || star->mark[other] || !brio_owns_beyond(t, star->zone, mate)) continue;
             star->mark[other] = 1;
             star->tet[star->size++] = other;
             __builtin_prefetch(&t->tet[other]);
