@@ -33,25 +33,52 @@ static const double *sample_at(const brio_power_diagram *d, uint32_t s) {
     return d->samples + 3 * (size_t)s;
 }
 
-/* Returns whether the sample is on the ball of the pole, up to the rounding of the ball. */
-static bool touches(const brio_power_diagram *d, uint32_t pole, const double *sample) {
-    const double *centre = d->poles->centre + 3 * (size_t)pole;
-    double square = d->poles->square[pole], most = 0;
-    for (int k = 0; k < 3; k++) most = fmax(most, fabs(centre[k]));
-    double error = brio_square_distance(centre, sample) - square;
-    return fabs(error) <= CENTRE_ERROR * square + ROUNDING * most * sqrt(square);
+/* A ball, with the error that it allows for. */
+typedef struct {
+    const double *centre;
+    double square, error;
+} ball;
+
+static ball ball_of(const brio_power_diagram *d, uint32_t pole) {
+    ball b = {d->poles->centre + 3 * (size_t)pole, d->poles->square[pole], 0};
+    double most = 0;
+    for (int k = 0; k < 3; k++) most = fabs(b.centre[k]) > most ? fabs(b.centre[k]) : most;
+    b.error = CENTRE_ERROR * b.square + ROUNDING * most * sqrt(b.square);
+    return b;
 }
 
-/* Writes the corners of the poles' tetrahedra that are samples on all four balls. A sample may be written more than once.
- * Returns the number written. */
-static int common_samples(const brio_power_diagram *d, const uint32_t pole[4], uint32_t sample[MOST_SAMPLES]) {
+/* Returns whether the sample is on the ball, up to the rounding of the ball. */
+static bool touches(const ball *b, const double *sample) {
+    return fabs(brio_square_distance(b->centre, sample) - b->square) <= b->error;
+}
+
+/* Lists the corners of the poles' tetrahedra that are samples, each once. Returns their number.
+ * at  receives for each the poles that it is a corner of, as bits. */
+static int corner_samples(const brio_power_diagram *d, const uint32_t pole[4], uint32_t sample[MOST_SAMPLES],
+                          unsigned at[MOST_SAMPLES]) {
     int count = 0;
     for (int i = 0; i < MOST_SAMPLES; i++) {
         uint32_t s = d->poles->touched[4 * (size_t)pole[i / 4] + (size_t)(i % 4)];
+        int n = 0;
         if (s >= d->num_samples) continue;
+        while (n < count && sample[n] != s) n++;
+        if (n == count) sample[count] = s, at[count++] = 0;
+        at[n] |= 1u << i / 4;
+    }
+    return count;
+}
+
+/* Writes the corners of the poles' tetrahedra that are samples on all four balls. Returns the number written. */
+static int common_samples(const brio_power_diagram *d, const uint32_t pole[4], uint32_t sample[MOST_SAMPLES]) {
+    unsigned at[MOST_SAMPLES];
+    int count = 0, corners = corner_samples(d, pole, sample, at);
+    ball b[4];
+    for (int j = 0; j < 4; j++) b[j] = ball_of(d, pole[j]);
+    for (int i = 0; i < corners; i++) {
         bool common = true;
-        for (int j = 0; j < 4 && common; j++) common = j == i / 4 || touches(d, pole[j], sample_at(d, s));
-        if (common) sample[count++] = s;
+        for (int j = 0; j < 4 && common; j++) common = at[i] >> j & 1 || touches(&b[j], sample_at(d, sample[i]));
+        sample[count] = sample[i];
+        count += common;
     }
     return count;
 }
