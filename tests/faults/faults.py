@@ -24,6 +24,9 @@ from server import CUT, ERROR, FOREVER, INTERRUPT, MAP, MEMORY, NONE, OPEN, OTHE
 
 HERE = pathlib.Path(__file__).resolve().parent
 OLD = b"an old file\n"
+# rename, renameat: no single call makes a file without a name replace another, so that between two calls it has a temporary name.
+# In a set of files, which are exchanged with old ones, the old ones have such names for some calls.
+GIVING_NAMES = (82, 264)
 
 
 class Kind:
@@ -130,7 +133,7 @@ class Case:
         if kind.kind == ERROR:
             return {"i": {2}, "o": {6}, "s": {2, 4}}.get(place, {6} if kind.detail == WRITE else {2, 4, 6})
         if kind.kind == INTERRUPT:
-            return {6} if came.call == 1 and place == "-" else set()  # the report, which stdio writes
+            return {6} if place == "-" else set()  # the report, which stdio writes
         if kind.kind == SIGNAL and kind.detail in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             return {130} if came.caught else {130, -kind.detail}
         if kind.kind == SIGNAL and (kind.detail == signal.SIGKILL or not came.caught):
@@ -144,6 +147,8 @@ class Case:
         states = set()
         for name in found.keys() | self.new.keys():
             content = found.get(name)
+            if ".part-" in name and came.code == -signal.SIGKILL and (came.call in GIVING_NAMES or ".node --" in self.line):
+                continue
             if name not in self.new:
                 return "a file stays: %s" % name
             if content not in (self.old.get(name), self.new[name]):
@@ -157,7 +162,7 @@ class Case:
         return ""
 
     def wrong_words(self, came, kind):
-        if came.code < 0 or (came.call == 1 and came.path.endswith("err")):
+        if came.code < 0 or kind.name == "SIGINT twice" or (came.call == 1 and came.path.endswith("err")):
             return ""
         if kind.kind in (ERROR, INTERRUPT) and (kind.span > 1 or self.place_of(came.path) == "-"):
             return ""  # standard error may be what failed
@@ -187,7 +192,7 @@ class Case:
                 return "another report: %s %s" % (came.out[:200], came.err[:200])
         elif self.wrong_words(came, kind):
             return self.wrong_words(came, kind)
-        if came.code >= 0 and came.live > self.reference.live:
+        if came.code >= 0 and kind.name != "SIGINT twice" and came.live > self.reference.live:
             return "%d blocks of memory stay" % (came.live - self.reference.live)
         return ""
 

@@ -104,45 +104,47 @@ done:
     return status;
 }
 
-static brio_status take_mesh(brio_status status, brio_mesh *m, uint64_t *sum) {
-    if (status == BRIO_OK) *sum = sum_of(m);
-    brio_mesh_free(m);
+static brio_status take_mesh(brio_status status, brio_mesh *const *m, uint64_t *sum) {
+    if (status == BRIO_OK) *sum = sum_of(*m);
+    brio_mesh_free(*m);
     return status;
 }
 
 static brio_status labeled_delaunay(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_labeled_delaunay(ctx, sphere, N, NULL, &m, NULL, NULL), m, sum);
+    return take_mesh(brio_labeled_delaunay(ctx, sphere, N, NULL, &m, NULL, NULL), &m, sum);
 }
 
 static brio_status power_crust(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_power_crust(ctx, sphere, N, NULL, &m, NULL, NULL), m, sum);
+    return take_mesh(brio_power_crust(ctx, sphere, N, NULL, &m, NULL, NULL), &m, sum);
 }
 
 static brio_status cocone(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_cocone(ctx, sphere, N, NULL, &m, NULL), m, sum);
+    return take_mesh(brio_cocone(ctx, sphere, N, NULL, &m, NULL), &m, sum);
 }
 
 static brio_status power_shape(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_power_shape(ctx, sphere, N, NULL, &m, NULL, NULL), m, sum);
+    return take_mesh(brio_power_shape(ctx, sphere, N, NULL, &m, NULL, NULL), &m, sum);
 }
 
 static brio_status offset_surface(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_offset_surface(ctx, sphere, N, 0.1, NULL, &m, NULL), m, sum);
+    return take_mesh(brio_offset_surface(ctx, sphere, N, 0.1, NULL, &m, NULL), &m, sum);
 }
 
 static brio_status hull_simplified(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
+    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
     brio_status status = BRIO_OK;
+    o.target_faces = 60;
     TRY(brio_convex_hull(ctx, sphere, N, NULL, &m, NULL));
     TRY(brio_mesh_add_normals(m));
-    TRY(brio_mesh_simplify(ctx, m, NULL));
+    TRY(brio_mesh_simplify(ctx, m, &o));
 done:
-    return take_mesh(status, m, sum);
+    return take_mesh(status, &m, sum);
 }
 
 static brio_status alpha_shape(brio_context *ctx, uint64_t *sum) {
@@ -158,7 +160,7 @@ static brio_status alpha_shape(brio_context *ctx, uint64_t *sum) {
 done:
     brio_alpha_complex_free(&complex);
     brio_triangulation_free(t);
-    return take_mesh(status, m, sum);
+    return take_mesh(status, &m, sum);
 }
 
 static brio_status cells(brio_context *ctx, uint64_t *sum) {
@@ -204,7 +206,7 @@ static brio_status files(brio_context *ctx, const char *extension, uint64_t *sum
 done:
     brio_mesh_free(m);
     unlink(a), unlink(b);
-    return take_mesh(status, again, sum);
+    return take_mesh(status, &again, sum);
 }
 
 #define FILES(name)                                                                                                    \
@@ -217,7 +219,6 @@ FILES(off)
 FILES(stl)
 FILES(vtu)
 FILES(vtp)
-FILES(glb)
 #undef FILES
 
 typedef struct {
@@ -231,8 +232,7 @@ static const row rows[] = {ROW(delaunay),    ROW(regular),          ROW(in_scrat
                            ROW(locate),      ROW(labeled_delaunay), ROW(power_crust),      ROW(cocone),
                            ROW(power_shape), ROW(offset_surface),   ROW(hull_simplified),  ROW(alpha_shape),
                            ROW(cells),       ROW(sampled),          ROW(files_ply),        ROW(files_obj),
-                           ROW(files_off),   ROW(files_stl),        ROW(files_vtu),        ROW(files_vtp),
-                           ROW(files_glb)};
+                           ROW(files_off),   ROW(files_stl),        ROW(files_vtu),        ROW(files_vtp)};
 
 enum { ROWS = sizeof rows / sizeof *rows };
 
