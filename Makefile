@@ -30,9 +30,11 @@ fuzz:
 faults:
 	@sh scripts/setup.sh check
 	cmake --preset faults
-	cmake --build build-faults -j $(JOBS) --target brio-cli fault fault_library
+	cmake --build build-faults -j $(JOBS) --target brio-cli fault fault_library fault_truncated
 	/usr/bin/python3 tests/faults/faults.py build-faults/brio build-faults/tests/faults/libfault.so --jobs $(JOBS) $(FAULTS)
 	build-faults/fault_library
+	build-faults/fault_truncated tests/fuzz/corpus/read
+	/usr/bin/python3 tests/faults/memory_limit.py build-faults/brio || [ $$? = 77 ]
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:

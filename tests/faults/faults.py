@@ -133,7 +133,8 @@ class Case:
         if kind.kind == ERROR:
             return {"i": {2}, "o": {6}, "s": {2, 4}}.get(place, {6} if kind.detail == WRITE else {2, 4, 6})
         if kind.kind == INTERRUPT:
-            return {6} if place == "-" else set()  # the report, which stdio writes
+            # The report and the weights go through stdio, which does not try again. Only a signal that asks to stop comes with it.
+            return {6} if place == "-" else {2} if came.path.endswith("weights.txt") else set()
         if kind.kind == SIGNAL and kind.detail in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             return {130} if came.caught else {130, -kind.detail}
         if kind.kind == SIGNAL and (kind.detail == signal.SIGKILL or not came.caught):
@@ -233,7 +234,8 @@ def work(asked, group, line, inputs, old):
 def lines_of(asked, formats):
     groups = {"commands": cases.COMMANDS, "scratch": cases.SCRATCH, "threads": cases.THREADS,
               "formats": ["info {i}/%s --json" % name for name in formats]}
-    chosen = [(group, line) for group, lines in groups.items() for line in lines if group in asked.groups]
+    placed = [(i / len(lines), group, line) for group, lines in groups.items() for i, line in enumerate(lines)]
+    chosen = [(group, line) for _, group, line in sorted(placed) if group in asked.groups]  # a spread, wherever it ends
     wanted = "|".join(lines for lines, _ in SHORT_PART) if asked.short else asked.only or ""
     return [pair for pair in chosen if re.search(wanted, pair[1])]
 
@@ -247,6 +249,7 @@ def parse():
     parser.add_argument("--only", help="command lines that hold this")
     parser.add_argument("--short", action="store_true", help="the part that is a test")
     parser.add_argument("--most", type=int, default=1 << 30, help="points of a kind in a line")
+    parser.add_argument("--minutes", type=float, default=0, help="begin no line after so long")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--folder", default="/dev/shm" if os.access("/dev/shm", os.W_OK) else None)
     return parser.parse_args()
@@ -266,7 +269,7 @@ def show(totals, seconds):
 
 def main():
     asked = parse()
-    totals, failures = {}, []
+    totals, failures, started = {}, [], time.monotonic()
     inputs = tempfile.mkdtemp(prefix="brio-faults-in-", dir=asked.folder)
     try:
         formats = cases.make_inputs(asked.brio, inputs, HERE.parent / "fuzz" / "corpus" / "read")
@@ -274,7 +277,15 @@ def main():
         with concurrent.futures.ProcessPoolExecutor(asked.jobs) as pool:
             futures = {pool.submit(work, asked, group, line, inputs, i % 2 == 0): line for i, (group, line) in enumerate(chosen)}
             for future in concurrent.futures.as_completed(futures):
-                for name, (points, refused, failed) in future.result().items():
+                if asked.minutes and time.monotonic() - started > 60 * asked.minutes:
+                    left = sum(other.cancel() for other in futures)
+                    asked.minutes = 0
+                    print("%d lines are left out: time is up" % left)
+                if future.cancelled():
+                    continue
+                done = future.result()
+                print("%6d points: %s" % (sum(row[0] for row in done.values()), futures[future]), flush=True)
+                for name, (points, refused, failed) in done.items():
                     before = totals.get(name, (0, 0, 0))
                     totals[name] = (before[0] + points, before[1] + refused, before[2] + len(failed))
                     failures += failed
