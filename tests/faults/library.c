@@ -228,11 +228,11 @@ typedef struct {
 
 #define ROW(call)                                                                                                      \
     { #call, call }
-static const row rows[] = {ROW(delaunay),    ROW(regular),          ROW(in_scratch_files), ROW(plane),
-                           ROW(locate),      ROW(labeled_delaunay), ROW(power_crust),      ROW(cocone),
-                           ROW(power_shape), ROW(offset_surface),   ROW(hull_simplified),  ROW(alpha_shape),
-                           ROW(cells),       ROW(sampled),          ROW(files_ply),        ROW(files_obj),
-                           ROW(files_off),   ROW(files_stl),        ROW(files_vtu),        ROW(files_vtp)};
+static const row rows[] = {ROW(delaunay),         ROW(regular),         ROW(plane),       ROW(locate),
+                           ROW(labeled_delaunay), ROW(power_crust),     ROW(cocone),      ROW(power_shape),
+                           ROW(offset_surface),   ROW(hull_simplified), ROW(alpha_shape), ROW(cells),
+                           ROW(sampled),          ROW(files_ply),       ROW(files_obj),   ROW(files_off),
+                           ROW(files_stl),        ROW(files_vtu),       ROW(files_vtp),   ROW(in_scratch_files)};
 
 enum { ROWS = sizeof rows / sizeof *rows };
 
@@ -339,7 +339,11 @@ int main(int argc, char **argv) {
     uniform_points(1, N, cube);
     sphere_points(2, N, sphere);
     for (int i = 0; i < N; i++) weights[i] = i % 5 * 0.001;
-    for (int i = 0; i < ROWS; i++) try_row(&rows[i], most);
+    for (int i = 0; i < ROWS; i++) {
+        size_t before = points;
+        try_row(&rows[i], most);
+        printf("%6zu points: %s\n", points - before, rows[i].name);
+    }
     rmdir(folder);
     printf("%zu points, %zu failures\n", points, failures);
     return failures ? 1 : 0;
