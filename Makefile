@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check fuzz python python-heavy python-sanitize bench quality votes thesis machines deb clean
+.PHONY: all demo check fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean
 
 all:
 	@sh scripts/setup.sh build
@@ -24,6 +24,17 @@ fuzz:
 	cmake --preset fuzz
 	cmake --build build-fuzz -j $(JOBS)
 	/usr/bin/python3 tests/fuzz/run.py build-fuzz --minutes $(MINUTES) $(FUZZ)
+
+# Faults at every point of runs: docs/reliability.md. Small blocks are mappings here, so that small inputs have scratch files.
+# FAULTS="--groups formats --kinds 'read fails'" runs some of them.
+faults:
+	@sh scripts/setup.sh check
+	cmake --preset faults
+	cmake --build build-faults -j $(JOBS) --target brio-cli fault fault_library fault_truncated
+	/usr/bin/python3 tests/faults/faults.py build-faults/brio build-faults/tests/faults/libfault.so --jobs $(JOBS) $(FAULTS)
+	build-faults/fault_library
+	build-faults/fault_truncated tests/fuzz/corpus/read
+	/usr/bin/python3 tests/faults/memory_limit.py build-faults/brio || [ $$? = 77 ]
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:
@@ -77,4 +88,4 @@ deb:
 	@sh scripts/deb.sh
 
 clean:
-	rm -rf build build-ci build-debug build-fuzz build-sanitize out
+	rm -rf build build-ci build-debug build-faults build-fuzz build-sanitize out

@@ -124,7 +124,10 @@ brio_status cli_begin(run *r) {
     brio_context_set_threads(r->ctx, c->threads);
     brio_context_set_memory_limit(r->ctx, c->max_memory);
     brio_context_set_progress(r->ctx, on_progress, r);
-    if (c->scratch) TRY(brio_context_set_scratch(r->ctx, c->scratch));
+    if (c->scratch) {
+        cli_interrupt_scratch(c->scratch, c->json);
+        TRY(brio_context_set_scratch(r->ctx, c->scratch));
+    }
     r->bar.terminal = isatty(STDERR_FILENO);
     r->bar.shown = c->progress || (r->bar.terminal && !c->quiet);
 done:

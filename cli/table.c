@@ -5,6 +5,7 @@
 #include "table.h"
 #include "files.h"
 #include "lost.h"
+#include "new_file.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -91,35 +92,14 @@ static brio_status write_rows(run *r, FILE *file, const table *t) {
 
 /* --- files --- */
 
-static brio_status write_beside(run *r, const char *path, char *part, const table *t) {
-    brio_status status = BRIO_OK;
-    int descriptor = mkstemp(part);
-    FILE *file = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    if (!file) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
-    TRY(write_rows(r, file, t));
-    mode_t mask = umask(0);
-    umask(mask);
-    if (fchmod(descriptor, 0666 & ~mask) != 0 || fsync(descriptor) != 0 || rename(part, path) != 0)
-        status = cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
-done:
-    fclose(file);
-    if (status != BRIO_OK) unlink(part);
-    return status;
-}
-
 static brio_status write_file(run *r, const char *path, const table *t) {
-    char *real = realpath(path, NULL); /* where a symbolic link leads; NULL for a new file */
-    const char *target = real ? real : path;
-    char *part = malloc(strlen(target) + sizeof ".XXXXXX");
     brio_status status = BRIO_OK;
-    if (part) {
-        sprintf(part, "%s.XXXXXX", target);
-        status = write_beside(r, target, part, t);
-    } else {
-        status = cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory");
-    }
-    free(part);
-    free(real);
+    new_file f;
+    TRY(cli_new_file_open(r, path, &f));
+    TRY(write_rows(r, f.file, t));
+    TRY(cli_new_file_publish(r, path, &f));
+done:
+    cli_new_file_close(&f);
     return status;
 }
 

@@ -43,6 +43,11 @@ static int line_number(char *line, double *value) {
     return end == line || *end || !isfinite(*value) ? -1 : 1;
 }
 
+/* What it means that the system does not give a file or its bytes. */
+static brio_status unread(void) {
+    return errno == ENOMEM ? BRIO_ERR_NO_MEMORY : BRIO_ERR_OPEN;
+}
+
 /* Lines longer than the buffer are refused: a number is short, and a file of one endless line is no file of weights. */
 static brio_status read_lines(run *r, const char *name, FILE *file, double *weights, size_t count) {
     char line[1024];
@@ -60,7 +65,7 @@ static brio_status read_lines(run *r, const char *name, FILE *file, double *weig
         last = number;
         if (found % 65536 == 0 && cli_check_interrupt(r) != BRIO_OK) return BRIO_ERR_CANCELLED;
     }
-    if (ferror(file)) return cli_fail(r, BRIO_ERR_OPEN, "%s: %s", name, strerror(errno));
+    if (ferror(file)) return cli_fail(r, unread(), "%s: %s", name, strerror(errno));
     if (found > count)
         return cli_fail(r, BRIO_ERR_FORMAT, "%s:%zu: the first weight too many: %zu weights for %zu points", name,
                         surplus, found, count);
@@ -73,7 +78,7 @@ static brio_status read_lines(run *r, const char *name, FILE *file, double *weig
 static brio_status read_weights(run *r, const char *name, double *weights, size_t count) {
     bool standard_input = !strcmp(name, "-");
     FILE *file = standard_input ? stdin : fopen(name, "r");
-    if (!file) return cli_fail(r, BRIO_ERR_OPEN, "%s: %s", name, strerror(errno));
+    if (!file) return cli_fail(r, unread(), "%s: %s", name, strerror(errno));
     brio_status status = read_lines(r, name, file, weights, count);
     if (!standard_input) fclose(file);
     return status;

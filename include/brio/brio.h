@@ -161,7 +161,8 @@ BRIO_API void brio_context_set_memory_limit(brio_context *ctx, size_t bytes);
 
 /** From now on, places large arrays in unlinked, mapped files in `folder` instead of anonymous memory. Disk space is
  *  allocated before it is touched: a full disk or a limit on the size of files is BRIO_ERR_NO_MEMORY. NULL returns to
- *  anonymous memory. A context with a caller's allocator has no scratch folder.
+ *  anonymous memory. A context with a caller's allocator has no scratch folder. A mapped file whose disk fails, or that
+ *  somebody cuts, raises SIGBUS where it is touched next, in any thread: the library handles no signals, the host may.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_context_set_scratch(brio_context *ctx, const char *folder);
 

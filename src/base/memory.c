@@ -18,9 +18,13 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-/* HEADER: a cache line. FRONT: the bytes before a mapped block. MAP_FROM: bytes from which blocks are mappings;
- * chosen. */
-enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = 1 << 20 };
+/* Bytes from which blocks are mappings; chosen. Tests set less, so that small inputs have mappings. */
+#ifndef BRIO_MAP_FROM
+#define BRIO_MAP_FROM (1 << 20)
+#endif
+
+/* HEADER: a cache line. FRONT: the bytes before a mapped block. */
+enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = BRIO_MAP_FROM };
 
 typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
@@ -189,7 +193,7 @@ static brio_status refuse(brio_context *ctx, size_t size) {
 /* Makes a block of `size` bytes, header included. The block is in a scratch file if the context has a folder for them,
  * unless `in_memory` or too small. */
 static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_status *status) {
-    block_header h = {.size = size, .file = {-1, -1}, .kind = KIND_HEAP};
+    block_header h = {.size = size, .file = {.cached = -1, .direct = -1}, .kind = KIND_HEAP};
     char *base = NULL;
     if (ctx->custom || (size < MAP_FROM && !in_memory)) {
         if (account_add(ctx, size)) {
@@ -284,6 +288,7 @@ static void *block_remap(brio_context *ctx, void *block, size_t target, brio_sta
     }
     if (file && !grows) brio_scratch_shrink(&h.file, target);
     header_of(base + FRONT)->size = target;
+    header_of(base + FRONT)->file = h.file;
     return base + FRONT;
 }
 

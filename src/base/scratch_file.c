@@ -30,12 +30,19 @@ brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file 
         if (file >= 0) unlink(name);
     }
     if (file < 0) return no_room(ctx, size, errno);
-    *out = (brio_scratch_file){file, -1};
+    *out = (brio_scratch_file){.cached = file, .direct = -1};
     brio_status status = brio_scratch_grow(ctx, out, size);
     if (status != BRIO_OK) brio_scratch_close(out);
     /* a page fault reads one page unless the block is read in sequence, see memory.c */
     if (status == BRIO_OK) posix_fadvise(file, 0, 0, POSIX_FADV_RANDOM);
     return status;
+}
+
+/* Fails if somebody else has cut a file. */
+static brio_status require_whole(brio_context *ctx, const brio_scratch_file *f) {
+    struct stat facts;
+    if (fstat(f->cached, &facts) == 0 && (size_t)facts.st_size >= f->size) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", ctx->scratch);
 }
 
 /* Allocates space. The signals are blocked, because a limit on the size of files raises one. Where the file system
@@ -59,25 +66,27 @@ static void cut(int file, size_t size) {
 /* Allocates in pieces of PIECE bytes (chosen). A signal that the process handles ends a call early, and some file
  * systems then give back all that the call had allocated. With one call for all bytes, the signals of a timer could
  * keep it from ever ending. */
-brio_status brio_scratch_grow(brio_context *ctx, const brio_scratch_file *f, size_t size) {
+brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size) {
     enum { PIECE = 1 << 24 };
-    struct stat facts;
-    size_t old = fstat(f->cached, &facts) == 0 ? (size_t)facts.st_size : 0;
-    for (size_t at = old; at < size;) {
+    brio_status status = require_whole(ctx, f);
+    if (status != BRIO_OK) return status;
+    for (size_t at = f->size; at < size;) {
         size_t piece = size - at < PIECE ? size - at : PIECE;
         int error = allocate(f->cached, at, piece);
         if (error == EINTR) continue;
         if (error) {
-            cut(f->cached, old);
+            cut(f->cached, f->size);
             return no_room(ctx, size, error);
         }
         at += piece;
     }
+    f->size = size;
     return BRIO_OK;
 }
 
-void brio_scratch_shrink(const brio_scratch_file *f, size_t size) {
+void brio_scratch_shrink(brio_scratch_file *f, size_t size) {
     cut(f->cached, size);
+    f->size = size;
 }
 
 void brio_scratch_close(brio_scratch_file *f) {
@@ -135,33 +144,47 @@ static brio_status move_all(brio_context *ctx, const brio_scratch_file *f, trans
     return BRIO_OK;
 }
 
+/* Makes the disk take bytes. A failure must not be lost: pages that the disk did not take are clean afterwards, and what
+ * is read later is something else. Returns whether there was none. */
+static bool give(int file, size_t offset, size_t size, unsigned flags) {
+    return sync_file_range(file, (off_t)offset, (off_t)size, flags) == 0 || errno == ESPIPE || errno == EINVAL ||
+           errno == ENOSYS;
+}
+
 /* Starts writing each stretch that ends between `begin` and `end`, waits for the stretch before it, and releases that
  * stretch's pages. Otherwise sequential writes would fill memory with pages that cannot be reused before they are
  * written. STRETCH is chosen. */
-static void write_behind(int file, size_t begin, size_t end) {
+static brio_status write_behind(brio_context *ctx, int file, size_t begin, size_t end) {
     enum { STRETCH = 1 << 22 };
+    const unsigned wait = SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER;
     for (size_t at = (begin / STRETCH + 1) * STRETCH; at <= end; at += STRETCH) {
-        sync_file_range(file, (off_t)(at - STRETCH), STRETCH, SYNC_FILE_RANGE_WRITE);
-        if (at < 2 * (size_t)STRETCH) continue;
-        off_t before = (off_t)(at - 2 * (size_t)STRETCH);
-        sync_file_range(file, before, STRETCH,
-                        SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
-        posix_fadvise(file, before, STRETCH, POSIX_FADV_DONTNEED);
+        bool taken = give(file, at - STRETCH, STRETCH, SYNC_FILE_RANGE_WRITE);
+        if (taken && at >= 2 * (size_t)STRETCH) {
+            size_t before = at - 2 * (size_t)STRETCH;
+            taken = give(file, before, STRETCH, wait);
+            posix_fadvise(file, (off_t)before, STRETCH, POSIX_FADV_DONTNEED);
+        }
+        if (!taken)
+            return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot write a scratch file: %s", ctx->scratch,
+                             strerror(errno));
     }
+    return BRIO_OK;
 }
 
 brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, size_t offset, void *to, size_t size) {
-    bool direct;
-    brio_status status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .in = to}, &direct);
+    bool direct = true;
+    brio_status status = require_whole(ctx, f);
+    if (status == BRIO_OK) status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .in = to}, &direct);
     if (!direct) posix_fadvise(f->cached, (off_t)offset, (off_t)size, POSIX_FADV_DONTNEED);
     return status;
 }
 
 brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, size_t offset, const void *from,
                                size_t size) {
-    bool direct;
-    brio_status status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .out = from}, &direct);
-    if (!direct) write_behind(f->cached, offset, offset + size);
+    bool direct = true;
+    brio_status status = require_whole(ctx, f);
+    if (status == BRIO_OK) status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .out = from}, &direct);
+    if (status == BRIO_OK && !direct) status = write_behind(ctx, f->cached, offset, offset + size);
     return status;
 }
 

@@ -9,6 +9,7 @@ enum { BRIO_SCRATCH_PAGE = 4096 }; /* transfers that bypass the system's cache a
 
 typedef struct {
     int cached, direct; /* descriptors; direct is -1 unless brio_scratch_direct opened it */
+    size_t size;        /* bytes; a file that has fewer was cut by somebody else, and its content is lost */
 } brio_scratch_file;
 
 /** Makes a file of `size` bytes in the context's scratch folder. Its space is allocated on disk, so that a full disk
@@ -17,11 +18,12 @@ typedef struct {
 brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out);
 
 /** Grows a file to `size` bytes; on failure the file keeps its size. Raises no signal.
- *  Returns BRIO_OK, or BRIO_ERR_NO_MEMORY for a full disk or a limit on the size of files (RLIMIT_FSIZE). */
-brio_status brio_scratch_grow(brio_context *ctx, const brio_scratch_file *f, size_t size);
+ *  Returns BRIO_OK, or BRIO_ERR_NO_MEMORY for a full disk, a limit on the size of files (RLIMIT_FSIZE), or a file that
+ *  was cut. */
+brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size);
 
 /** Shrinks a file to `size` bytes. No mapping may extend beyond them. */
-void brio_scratch_shrink(const brio_scratch_file *f, size_t size);
+void brio_scratch_shrink(brio_scratch_file *f, size_t size);
 
 void brio_scratch_close(brio_scratch_file *f);
 
@@ -29,7 +31,8 @@ void brio_scratch_close(brio_scratch_file *f);
  *  such transfers. */
 void brio_scratch_direct(brio_scratch_file *f, bool direct);
 
-/** Reads or writes bytes by system calls, without a page fault for each page. The bytes do not stay in memory.
+/** Reads or writes bytes by system calls, without a page fault for each page. The bytes do not stay in memory. A file
+ *  that was cut is an error, because a write would grow it again, with zeros for what is lost.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, size_t offset, void *to, size_t size);
 brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, size_t offset, const void *from,

@@ -138,9 +138,11 @@ static void *live(void *argument) {
     return NULL;
 }
 
-/* Creates one more thread. The thread takes no signals, so the host's handlers run in the host's threads. Returns
- * whether the system created it. */
+/* Creates one more thread. The thread takes no signals, so the host's handlers run in the host's threads, except those
+ * that its own work can raise: a thread that blocks such a signal ends the process when it raises one, whatever handler
+ * the host has. Returns whether the system created it. */
 static bool grow(brio_team *team) {
+    static const int OWN[] = {SIGBUS, SIGSEGV, SIGFPE, SIGILL, SIGTRAP};
     thread *t = &team->thread[team->size];
     pthread_attr_t attributes;
     sigset_t all, old;
@@ -148,6 +150,7 @@ static bool grow(brio_team *team) {
     t->team = team;
     gate_new(&t->start);
     sigfillset(&all);
+    for (size_t i = 0; i < sizeof OWN / sizeof *OWN; i++) sigdelset(&all, OWN[i]);
     pthread_attr_setstacksize(&attributes, STACK);
     pthread_sigmask(SIG_SETMASK, &all, &old);
     bool created = pthread_create(&t->handle, &attributes, live, t) == 0;

@@ -127,17 +127,19 @@ done:
 
 static brio_status write_files(brio_context *ctx, node_file *files, const node_job *job, uint64_t expected) {
     brio_status status = BRIO_OK;
+    brio_output *outs[FILES];
     uint64_t written = 0;
+    int count = 0;
     for (int i = 0; i < FILES; i++) {
         if (!files[i].wanted) continue;
+        outs[count++] = &files[i].output;
         BRIO_TRY(brio_output_open(&files[i].output, ctx, files[i].path, expected));
         files[i].output.written = written;
         BRIO_TRY(kinds[i].write(&files[i].output, job));
         BRIO_TRY(brio_output_finish(&files[i].output));
         written = files[i].output.written;
     }
-    for (int i = 0; i < FILES; i++)
-        if (files[i].wanted) BRIO_TRY(brio_output_publish(&files[i].output));
+    BRIO_TRY(brio_output_publish_all(outs, count));
 done:
     return status;
 }

@@ -129,23 +129,31 @@ done:
     return status;
 }
 
+/* Makes the disk take bytes and, if `waits`, waits until it has them. A failure must not be lost: the system tells of
+ * it once only, here or at the flush. Returns whether there was none. */
+static bool give(const brio_output *out, uint64_t from, uint64_t to, bool waits) {
+    unsigned flags = SYNC_FILE_RANGE_WRITE;
+    if (waits) flags |= SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WAIT_AFTER;
+    return sync_file_range(out->file, (off_t)from, (off_t)(to - from), flags) == 0 || errno == ESPIPE ||
+           errno == EINVAL || errno == ENOSYS;
+}
+
 /* Makes the disk take what was written, STRETCH bytes (chosen) at a time: one flush of a big file at its end could not
  * be cancelled. */
-static void write_back(brio_output *out) {
+static brio_status write_back(brio_output *out) {
     enum { STRETCH = 1 << 25 };
     uint64_t size = out->written - out->given;
-    if (!out->target.temporary || size < STRETCH) return;
-    if (out->given > out->taken)
-        sync_file_range(out->file, (off_t)out->taken, (off_t)(out->given - out->taken),
-                        SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER);
-    sync_file_range(out->file, (off_t)out->given, (off_t)size, SYNC_FILE_RANGE_WRITE);
+    if (!out->target.is_new || size < STRETCH) return BRIO_OK;
+    if (out->given > out->taken && !give(out, out->taken, out->given, true)) return fail(out);
+    if (!give(out, out->given, out->written, false)) return fail(out);
     out->taken = out->given;
     out->given = out->written;
+    return BRIO_OK;
 }
 
 static brio_status report(brio_output *out) {
-    write_back(out);
-    if (out->expected == BRIO_NO_PROGRESS) return BRIO_OK;
+    brio_status status = write_back(out);
+    if (status != BRIO_OK || out->expected == BRIO_NO_PROGRESS) return status;
     return brio_progress(out->ctx, "write", share_written(out));
 }
 
@@ -173,7 +181,7 @@ brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *byt
     while (size) {
         ssize_t done = pwrite(out->file, p, size, (off_t)offset);
         if (done < 0 && errno == EINTR) continue;
-        if (done <= 0) return fail(out);
+        if (done < 0) return fail(out);
         p += done;
         offset += (uint64_t)done;
         size -= (size_t)done;
@@ -187,7 +195,8 @@ brio_status brio_output_finish(brio_output *out) {
     brio_quiet_signals quiet;
     BRIO_TRY(flush(out));
     if (!out->owned) return BRIO_OK;
-    if (out->target.temporary && !is_on_disk(out->file)) return fail(out);
+    if (out->target.is_new && !is_on_disk(out->file)) return fail(out);
+    if (brio_target_is_nameless(&out->target)) return BRIO_OK; /* needed open to be named; all of it is on the disk */
     brio_signals_block(&quiet);
     int closed = close(out->file);
     brio_signals_restore(&quiet);
@@ -198,7 +207,15 @@ done:
 }
 
 brio_status brio_output_publish(brio_output *out) {
-    return brio_target_publish(&out->target, out->ctx, out->name);
+    return brio_target_publish(&out->target, out->ctx, out->name, out->file);
+}
+
+brio_status brio_output_publish_all(brio_output *const *outs, int count) {
+    brio_status status = BRIO_OK;
+    for (int i = 0; i < count && status == BRIO_OK; i++)
+        status = brio_target_exchange(&outs[i]->target, outs[i]->ctx, outs[i]->name, outs[i]->file);
+    for (int i = count - 1; i >= 0 && status != BRIO_OK; i--) brio_target_undo(&outs[i]->target);
+    return status;
 }
 
 void brio_output_close(brio_output *out) {

@@ -1,6 +1,6 @@
-/* Buffered output to a file that appears only when it is complete. The output is written under a temporary name beside
- * the target, flushed to the disk and renamed (target.h). A target that is no regular file (standard output, a device,
- * a pipe) is written directly.
+/* Buffered output to a file that appears only when it is complete. The output is written to a file without a name in
+ * the target's folder, flushed to the disk and named (target.h). A target that is no regular file (standard output, a
+ * device, a pipe) is written directly.
  *
  * All functions that return a status return BRIO_OK, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
 #ifndef BRIO_IO_OUTPUT_H
@@ -11,7 +11,7 @@
 typedef struct brio_output {
     brio_context *ctx;
     const char *name;   /* for messages */
-    brio_target target; /* target.temporary is NULL if the output is written directly */
+    brio_target target; /* target.is_new is false if the output is written directly */
     int file;
     bool owned; /* whether to close the file */
     bool waits; /* whether a write may block: the target is no regular file */
@@ -36,7 +36,7 @@ static inline uint64_t brio_output_offset(const brio_output *out) {
 }
 /** Returns whether bytes that were written can be replaced: whether the output is a new file. */
 static inline bool brio_output_can_patch(const brio_output *out) {
-    return out->target.temporary != NULL;
+    return out->target.is_new;
 }
 /** Replaces bytes that were written. */
 brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *bytes, size_t size);
@@ -45,6 +45,8 @@ brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *byt
 brio_status brio_output_finish(brio_output *out);
 /** Gives a finished file its name. */
 brio_status brio_output_publish(brio_output *out);
+/** Gives `count` finished files their names: all of them or, where the file system can exchange names, none. */
+brio_status brio_output_publish_all(brio_output *const *outs, int count);
 /** Frees everything. A file that was not published disappears. */
 void brio_output_close(brio_output *out);
 

@@ -1,4 +1,4 @@
-/* Output files under a temporary name, renamed when complete.
+/* Output files without a name, or under a temporary one, until they are complete.
  *
  * Symbolic links are followed here, one at a time, from folder to folder, because realpath refuses a link that leads to
  * no file. A shell's redirection writes through such a link and creates the file that it names. This code does the
@@ -16,9 +16,13 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
-enum { NAME_TRIES = 100, MOST_LINKS = 40 /* as many as Linux follows */ };
+#define OPEN_FILE "/proc/self/fd/%d" /* the name of an open file */
+
+enum { NAME_TRIES = 100, MOST_LINKS = 40 /* as many as Linux follows */, PATH_BYTES = 32 };
+enum { NAME_BYTES = BRIO_NAME_IN_TEMPORARY + 32, EXCHANGE = 2 /* RENAME_EXCHANGE, which not all C libraries know */ };
 
 static brio_status fail(brio_context *ctx, const char *shown, int error) {
     return brio_fail(ctx, BRIO_ERR_WRITE, "%s: %s", shown, strerror(error));
@@ -74,7 +78,7 @@ done:
     return status;
 }
 
-/* --- the temporary file --- */
+/* --- the new file --- */
 
 /* Returns how many bytes of a name the temporary name begins with: whole UTF-8 characters, as some file systems
  * require. */
@@ -93,41 +97,99 @@ static bool take_permissions(int file, const struct stat *old) {
     return fchmod(file, old->st_mode & kept) == 0;
 }
 
+/* Makes the temporary name of try i. */
+static void make_name(brio_target *target, unsigned i) {
+    uint64_t seed = (uint64_t)getpid() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
+    snprintf(target->temporary, NAME_BYTES, "%.*s.part-%08x", kept_bytes(target->name), target->name,
+             (unsigned)brio_mix(seed + i));
+}
+
+/* Makes a file without a name. Returns -1 where the file system has no such files, or where there is no /proc, through
+ * which one gets its name. */
+static int create_nameless(const brio_target *target) {
+    char path[PATH_BYTES];
+    struct stat facts, found;
+    int file = openat(target->folder, ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (file < 0) return -1;
+    snprintf(path, sizeof path, OPEN_FILE, file);
+    if (fstat(file, &facts) == 0 && stat(path, &found) == 0 && found.st_ino == facts.st_ino) return file;
+    close(file);
+    return -1;
+}
+
+static int create_named(brio_target *target) {
+    int file = -1;
+    for (unsigned i = 0; i < NAME_TRIES && file < 0; i++) {
+        make_name(target, i);
+        file = openat(target->folder, target->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file < 0 && errno != EEXIST && errno != EINTR) break;
+    }
+    target->is_named = file >= 0;
+    return file;
+}
+
 brio_status brio_target_create(brio_target *target, brio_context *ctx, const char *shown, int *file) {
     brio_status status = BRIO_OK;
-    size_t size = BRIO_NAME_IN_TEMPORARY + 32;
     struct stat old;
     bool exists = fstatat(target->folder, target->name, &old, 0) == 0;
-    BRIO_TRY(BRIO_ALLOC(ctx, target->temporary, size));
-    uint64_t seed = (uint64_t)getpid() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
+    target->replaces = exists;
     *file = -1;
-    for (int i = 0; i < NAME_TRIES && *file < 0; i++) {
-        snprintf(target->temporary, size, "%.*s.part-%08x", kept_bytes(target->name), target->name,
-                 (unsigned)brio_mix(seed + (unsigned)i));
-        *file = openat(target->folder, target->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (*file < 0 && errno != EEXIST && errno != EINTR) break;
-    }
-    if (*file < 0) {
-        status = fail(ctx, shown, errno);
-        brio_release(ctx, target->temporary);
-        target->temporary = NULL;
-    } else if (exists && !take_permissions(*file, &old)) {
-        status = fail(ctx, shown, errno);
-    }
+    BRIO_TRY(BRIO_ALLOC(ctx, target->temporary, NAME_BYTES));
+    *file = create_nameless(target);
+    if (*file < 0) *file = create_named(target);
+    target->is_new = *file >= 0;
+    if (*file < 0 || (exists && !take_permissions(*file, &old))) status = fail(ctx, shown, errno);
 done:
     return status;
 }
 
-brio_status brio_target_publish(brio_target *target, brio_context *ctx, const char *shown) {
-    if (!target->temporary) return BRIO_OK;
-    if (renameat(target->folder, target->temporary, target->folder, target->name) != 0) return fail(ctx, shown, errno);
-    brio_release(ctx, target->temporary);
-    target->temporary = NULL;
-    return BRIO_OK;
+/* Gives a nameless file the name, if no other file has it, or else a temporary name: no call makes it replace a file. */
+static bool give_name(brio_target *target, int file) {
+    char path[PATH_BYTES];
+    snprintf(path, sizeof path, OPEN_FILE, file);
+    target->published = linkat(AT_FDCWD, path, target->folder, target->name, AT_SYMLINK_FOLLOW) == 0;
+    for (unsigned i = 0; i < NAME_TRIES && !target->published && !target->is_named && errno == EEXIST; i++) {
+        make_name(target, i);
+        target->is_named = linkat(AT_FDCWD, path, target->folder, target->temporary, AT_SYMLINK_FOLLOW) == 0;
+    }
+    return target->published || target->is_named;
+}
+
+/* Gives the target's name to the file of the temporary name, or exchanges the two names. */
+static bool rename_file(brio_target *target, bool exchanges) {
+    int folder = target->folder;
+    target->published = exchanges
+                            ? syscall(SYS_renameat2, folder, target->temporary, folder, target->name, EXCHANGE) == 0
+                            : renameat(folder, target->temporary, folder, target->name) == 0;
+    if (target->published && !exchanges) target->is_named = false;
+    return target->published;
+}
+
+brio_status brio_target_publish(brio_target *target, brio_context *ctx, const char *shown, int file) {
+    if (!target->is_new) return BRIO_OK;
+    if (!target->is_named && !give_name(target, file)) return fail(ctx, shown, errno);
+    return target->published || rename_file(target, false) ? BRIO_OK : fail(ctx, shown, errno);
+}
+
+brio_status brio_target_exchange(brio_target *target, brio_context *ctx, const char *shown, int file) {
+    if (!target->is_new) return BRIO_OK;
+    if (!target->is_named && !give_name(target, file)) return fail(ctx, shown, errno);
+    if (target->published || rename_file(target, true)) return BRIO_OK;
+    return rename_file(target, false) ? BRIO_OK
+                                      : fail(ctx, shown, errno); /* no old file, or names cannot be exchanged */
+}
+
+void brio_target_undo(brio_target *target) {
+    if (!target->published) return;
+    if (target->is_named)
+        rename_file(target, true);
+    else if (!target->replaces)
+        unlinkat(target->folder, target->name, 0);
+    target->published = false;
 }
 
 void brio_target_close(brio_target *target, brio_context *ctx) {
-    if (target->temporary) unlinkat(target->folder, target->temporary, 0);
+    if (target->is_named) unlinkat(target->folder, target->temporary, 0);
     if (target->folder >= 0) close(target->folder);
     brio_release(ctx, target->temporary);
     brio_release(ctx, target->name);

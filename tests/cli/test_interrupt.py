@@ -52,6 +52,17 @@ class Interrupt(CliTest):
         self.assertIn(code, [0, 130])  # 0 when the file was complete before the signal came
         self.assert_only(self.folder, "a.ply", *(["out.vtu"] if code == 0 else []))
 
+    def test_end_that_nothing_can_catch_leaves_no_file(self):
+        """A file of a temporary name stayed behind."""
+        try:
+            os.close(os.open(self.folder, os.O_TMPFILE | os.O_WRONLY))
+        except OSError as error:
+            self.skipTest("the file system has no files without names: %s" % error)
+        points = self.cloud("a.ply", 100000)
+        code, shown = self.interrupted(signal.SIGKILL, ["write"], "delaunay", points, "--ascii", "-o", self.path("out.vtu"))
+        self.assertTrue(shown and code in [0, -signal.SIGKILL], code)
+        self.assert_only(self.folder, "a.ply", *(["out.vtu"] if code == 0 else []))
+
     def test_signal_while_standard_input_waits(self):
         process = self.start("delaunay", "-", "--input-format", "xyz", "-o", self.path("out.vtu"),
                              stdin=subprocess.PIPE)

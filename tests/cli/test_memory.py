@@ -1,10 +1,13 @@
 """Memory: limits, estimates, what the system refuses, scratch files."""
 
+import contextlib
+import json
 import os
 import resource
+import subprocess
 import time
 
-from brio_cli import CliTest, CUBE, main
+from brio_cli import BRIO, CliTest, CUBE, main
 
 
 class Memory(CliTest):
@@ -74,6 +77,37 @@ class Memory(CliTest):
         mapped = self.facts("delaunay", points, "--scratch", self.path("scratch"))
         self.assertEqual(plain["checksum"], mapped["checksum"])
         self.assert_only(self.path("scratch"))
+
+    def cut_scratch_files(self, process, folder):
+        """Cuts what the process has open in the folder, which has no name there; how many files that were."""
+        cut = 0
+        for name in os.listdir("/proc/%d/fd" % process.pid):
+            path = "/proc/%d/fd/%s" % (process.pid, name)
+            with contextlib.suppress(OSError):
+                if os.readlink(path).startswith(folder):
+                    os.truncate(path, 0)
+                    cut += 1
+        return cut
+
+    def test_scratch_file_that_is_cut_ends_the_run_with_a_message(self):
+        """It was the end of the process by SIGBUS."""
+        points, folder = self.cloud("a.ply", 200000), os.path.realpath(self.folder)
+        os.mkdir(self.path("scratch"))
+        for extra in [], ["--json"], ["--threads", "1"]:
+            process = subprocess.Popen([BRIO, "delaunay", points, "-o", "out.vtu", "--scratch", "scratch", "--progress", *extra],
+                                       cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            for line in process.stderr:
+                if line.startswith(b"insert"):
+                    break
+            cut = self.cut_scratch_files(process, os.path.join(folder, "scratch"))
+            out, err = process.communicate(timeout=120)
+            self.assertGreater(cut, 0)
+            self.assertEqual(process.returncode, 4, err)
+            self.assertRegex(err.decode(), r"brio: scratch: a scratch file was cut from outside")
+            if extra == ["--json"]:
+                self.assertEqual(json.loads(out)["exit"], 4)
+            self.assert_only(self.folder, "a.ply", "scratch")
+            self.assert_only(self.path("scratch"))
 
     def test_scratch_folder_that_is_missing(self):
         self.expect(2, "delaunay", self.xyz("a.xyz", CUBE), "--scratch", self.path("missing"))

@@ -6,6 +6,7 @@
 #include "harness.h"
 #include "points.h"
 #include <pthread.h>
+#include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -275,10 +276,33 @@ static void stack_of_64_kibibytes_is_enough(void) {
     pthread_attr_destroy(&attributes);
 }
 
+/* --- signals --- */
+
+static void ask_mask(void *user, const brio_member *m) {
+    int *wrong = user;
+    sigset_t mask;
+    if (m->thread == 0) return;
+    bool asked = pthread_sigmask(SIG_SETMASK, NULL, &mask) == 0;
+    if (!asked || sigismember(&mask, SIGBUS) || sigismember(&mask, SIGSEGV) || sigismember(&mask, SIGFPE))
+        __atomic_fetch_add(&wrong[0], 1, __ATOMIC_RELAXED);
+    if (!asked || !sigismember(&mask, SIGINT) || !sigismember(&mask, SIGTERM))
+        __atomic_fetch_add(&wrong[1], 1, __ATOMIC_RELAXED);
+}
+
+/* A thread that blocks a signal of its own work ends the process where the host has a handler: a cut scratch file did. */
+static void threads_block_signals_except_those_of_their_own_work(void) {
+    brio_context *ctx = context_with(3);
+    int wrong[2] = {0, 0}, threads = brio_threads(ctx, 100, 1);
+    brio_run(ctx, threads, ask_mask, wrong);
+    EXPECT(wrong[0] == 0 && wrong[1] == 0, "%d threads, %d and %d", threads, wrong[0], wrong[1]);
+    brio_context_free(ctx);
+}
+
 int main(void) {
     uniform_points(1, N, set);
     RUN(refused_address_space_is_fewer_threads_or_a_status); /* first: stacks of threads that ended are kept */
     RUN(loops_do_every_index_once);
+    RUN(threads_block_signals_except_those_of_their_own_work);
     RUN(small_work_starts_no_thread);
     RUN(impossible_numbers_of_threads_are_bounded);
     RUN(barriers_order_what_members_write);

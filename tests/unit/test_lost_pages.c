@@ -1,0 +1,126 @@
+/* Disks that lose what they were given, and scratch files that somebody cuts: errors, and never another result.
+ *
+ * sync_file_range stands here in place of the system's. The system tells once only that a disk did not take pages: what that
+ * call says must not be lost. */
+#define _GNU_SOURCE
+#include "base/memory.h"
+#include "base/scratch_file.h"
+#include "harness.h"
+#include "io/output.h"
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <unistd.h>
+
+static int calls, failing_call;
+
+int sync_file_range(int file, off_t offset, off_t size, unsigned flags) {
+    (void)file, (void)offset, (void)size, (void)flags;
+    if (++calls != failing_call) return 0;
+    errno = EIO;
+    return -1;
+}
+
+static brio_context *new_context(void) {
+    brio_context *ctx = NULL;
+    EXPECT(brio_context_new(NULL, &ctx) == BRIO_OK);
+    return ctx;
+}
+
+/* --- outputs --- */
+
+enum { PIECE = 1 << 20, PIECES = 70 /* more than two stretches of write_back */ };
+
+static brio_status write_pieces(brio_context *ctx, const char *bytes) {
+    brio_status status = BRIO_OK;
+    brio_output out;
+    BRIO_TRY(brio_output_open(&out, ctx, "lost-pages", BRIO_NO_PROGRESS));
+    for (int i = 0; i < PIECES; i++) BRIO_TRY(brio_output_bytes(&out, bytes, PIECE));
+    BRIO_TRY(brio_output_finish(&out));
+    BRIO_TRY(brio_output_publish(&out));
+done:
+    brio_output_close(&out);
+    return status;
+}
+
+static void pages_that_the_disk_loses_before_the_flush_fail_the_output(void) {
+    brio_context *ctx = new_context();
+    char *bytes = calloc(1, PIECE);
+    calls = failing_call = 0;
+    EXPECT(write_pieces(ctx, bytes) == BRIO_OK && calls >= 3 && access("lost-pages", F_OK) == 0);
+    for (int last = calls, i = 1; i <= last; i++) {
+        unlink("lost-pages");
+        calls = 0, failing_call = i;
+        EXPECT(write_pieces(ctx, bytes) == BRIO_ERR_WRITE, "call %d", i);
+        EXPECT(strstr(brio_message(ctx), "lost-pages: "), "%s", brio_message(ctx));
+        EXPECT(access("lost-pages", F_OK) != 0, "call %d: a file is left", i);
+    }
+    failing_call = 0;
+    free(bytes);
+    brio_context_free(ctx);
+}
+
+/* --- scratch files --- */
+
+enum { BLOCK = 20 << 20 }; /* several stretches of write_behind */
+
+static void pages_that_the_disk_loses_fail_the_write_of_a_scratch_file(void) {
+    brio_context *ctx = new_context();
+    char *block, *memory;
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+    EXPECT(BRIO_ALLOC(ctx, block, BLOCK) == BRIO_OK && BRIO_ALLOC_IN_MEMORY(ctx, memory, BLOCK) == BRIO_OK);
+    memset(memory, 7, BLOCK);
+    calls = failing_call = 0;
+    EXPECT(brio_block_write(ctx, block, 0, memory, BLOCK) == BRIO_OK && calls >= 3);
+    for (int last = calls, i = 1; i <= last; i++) {
+        calls = 0, failing_call = i;
+        EXPECT(brio_block_write(ctx, block, 0, memory, BLOCK) == BRIO_ERR_NO_MEMORY, "call %d", i);
+        EXPECT(strstr(brio_message(ctx), "cannot write a scratch file"), "%s", brio_message(ctx));
+    }
+    failing_call = 0;
+    brio_release(ctx, block);
+    brio_release(ctx, memory);
+    brio_context_free(ctx);
+}
+
+/* Cuts all open files that have no name, after the page of the block's header. */
+static int cut_nameless_files(void) {
+    int cut = 0;
+    DIR *dir = opendir("/proc/self/fd");
+    for (struct dirent *e = dir ? readdir(dir) : NULL; e; e = readdir(dir)) {
+        char path[300], target[300] = "";
+        snprintf(path, sizeof path, "/proc/self/fd/%s", e->d_name);
+        if (readlink(path, target, sizeof target - 1) > 0 && strstr(target, "(deleted)"))
+            cut += truncate(path, BRIO_SCRATCH_PAGE) == 0;
+    }
+    if (dir) closedir(dir);
+    return cut;
+}
+
+/* Writing and growing a file that was cut filled what was lost with zeros. */
+static void a_scratch_file_that_was_cut_is_an_error_and_no_zeros(void) {
+    brio_context *ctx = new_context();
+    char *block, bytes[64] = {1};
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+    EXPECT(BRIO_ALLOC(ctx, block, 3 << 20) == BRIO_OK);
+    EXPECT(brio_block_write(ctx, block, 100, bytes, sizeof bytes) == BRIO_OK);
+    brio_context_set_scratch(ctx, NULL); /* closes nothing: the block keeps its file */
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+    EXPECT(BRIO_RESIZE(ctx, block, 4 << 20) == BRIO_OK && BRIO_RESIZE(ctx, block, 2 << 20) == BRIO_OK);
+    EXPECT(brio_block_read(ctx, block, 100, bytes, sizeof bytes) == BRIO_OK && bytes[0] == 1);
+    EXPECT(cut_nameless_files() == 1);
+    EXPECT(brio_block_write(ctx, block, 1 << 20, bytes, sizeof bytes) == BRIO_ERR_NO_MEMORY);
+    EXPECT(strstr(brio_message(ctx), "was cut from outside"), "%s", brio_message(ctx));
+    EXPECT(brio_block_read(ctx, block, 100, bytes, sizeof bytes) == BRIO_ERR_NO_MEMORY);
+    EXPECT(BRIO_RESIZE(ctx, block, 4 << 20) == BRIO_ERR_NO_MEMORY);
+    brio_release(ctx, block);
+    brio_context_free(ctx);
+}
+
+int main(void) {
+    RUN(pages_that_the_disk_loses_before_the_flush_fail_the_output);
+    RUN(pages_that_the_disk_loses_fail_the_write_of_a_scratch_file);
+    RUN(a_scratch_file_that_was_cut_is_an_error_and_no_zeros);
+    return harness_end();
+}
