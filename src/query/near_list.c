@@ -5,9 +5,10 @@
  * the squares of the distances of points of a surface are. Counting reads all numbers side by side and has no branch.
  * After TRIES limits, and where the distance is that of several points, a selection goes on. */
 #include "query/near_list.h"
+#include <float.h>
 #include <string.h>
 
-enum { TRIES = 8 };
+enum { TRIES = 8, WIDE = 4, ROOM = (BRIO_NEAR_ROOM + WIDE - 1) / WIDE };
 _Static_assert(BRIO_NEAR_ROOM >= 2 * BRIO_MOST_NEAR + BRIO_TREE_LEAF, "a full list has room for one range more");
 
 /* Returns the k-th least of `count` numbers, k counted from 0. Overwrites x. Has no branches that depend on single
@@ -36,35 +37,59 @@ static double select_least(double *x, size_t count, size_t k) {
     }
 }
 
-static size_t count_within(const double *x, size_t count, double limit) {
-    int64_t within = 0;
-    for (size_t i = 0; i < count; i++) within += x[i] <= limit;
-    return (size_t)within;
+/* Numbers side by side. */
+typedef double lanes __attribute__((vector_size(8 * WIDE)));
+typedef int64_t lane_bits __attribute__((vector_size(8 * WIDE)));
+
+typedef struct {
+    lanes x[ROOM];
+    size_t count; /* of lanes; the last ones are filled up with INFINITY */
+} numbers;
+
+static size_t count_within(const numbers *n, double limit) {
+    lane_bits within = {0};
+    for (size_t i = 0; i < n->count; i++) within -= (lane_bits)(n->x[i] <= limit);
+    return (size_t)(within[0] + within[1] + within[2] + within[3]);
 }
 
-static double greatest_within(const double *x, size_t count, double limit) {
-    double most = 0;
-    for (size_t i = 0; i < count; i++) {
-        double now = x[i] <= limit ? x[i] : 0;
-        most = now > most ? now : most;
+static double greatest_within(const numbers *n, double limit) {
+    lanes most = {0};
+    for (size_t i = 0; i < n->count; i++) {
+        lane_bits more = (lane_bits)(n->x[i] <= limit) & (lane_bits)(n->x[i] > most);
+        most = (lanes)(((lane_bits)n->x[i] & more) | ((lane_bits)most & ~more));
     }
-    return most;
+    double low = most[0] > most[1] ? most[0] : most[1], high = most[2] > most[3] ? most[2] : most[3];
+    return low > high ? low : high;
 }
 
-/* Returns the `wanted`-th least of `count` numbers that are not negative. Overwrites x. */
-static double find_bound(double *x, size_t count, size_t wanted) {
-    double low = 0, high = greatest_within(x, count, INFINITY);
-    size_t below = 0, above = count; /* numbers within `low` and within `high` */
-    for (int n = 0; n < TRIES && high < INFINITY; n++) {
-        double limit = low + (high - low) * ((double)(wanted - below) / (double)(above - below));
-        size_t within = count_within(x, count, limit);
-        if (within == wanted) return greatest_within(x, count, limit);
-        if (within < wanted)
+static void take_squares(const brio_near_list *l, numbers *n) {
+    double *x = (double *)n->x;
+    size_t i = 0;
+    for (; i < l->size; i++) x[i] = l->near[i].square;
+    for (; i % WIDE; i++) x[i] = INFINITY;
+    n->count = i / WIDE;
+}
+
+/* Finds the least bound that holds `wanted` points of the list. Returns false if it did not find one: there is none where
+ * several points are at one distance. */
+static bool find_bound(const brio_near_list *l, double *bound) {
+    numbers n;
+    take_squares(l, &n);
+    double low = 0, high = l->bound < INFINITY ? l->bound : greatest_within(&n, DBL_MAX);
+    size_t below = 0, above = l->size; /* points within `low` and within `high` */
+    for (int i = 0; i < TRIES; i++) {
+        double limit = low + (high - low) * ((double)(l->wanted - below) / (double)(above - below));
+        size_t within = count_within(&n, limit);
+        if (within == l->wanted) {
+            *bound = greatest_within(&n, limit);
+            return true;
+        }
+        if (within < l->wanted)
             low = limit, below = within;
         else
             high = limit, above = within;
     }
-    return select_least(x, count, wanted - 1);
+    return false;
 }
 
 /* Returns whether fewer than `room` listed points at the bound come before the point at `place`. Among duplicates the
@@ -87,11 +112,12 @@ static void mark_out(const brio_near_list *l, size_t less, uint64_t *out) {
             out[i / 64] |= UINT64_C(1) << i % 64;
 }
 
-void brio_keep_nearest(brio_near_list *l) {
+/* Finds the bound by selection, and keeps the points within it that have a place. */
+static void keep_by_place(brio_near_list *l) {
     double square[BRIO_NEAR_ROOM];
     size_t kept = 0, less = 0, within = 0;
     for (size_t i = 0; i < l->size; i++) square[i] = l->near[i].square;
-    l->bound = find_bound(square, l->size, l->wanted);
+    l->bound = select_least(square, l->size, l->wanted - 1);
     for (size_t i = 0; i < l->size; i++) within += l->near[i].square <= l->bound, less += l->near[i].square < l->bound;
     uint64_t out[(BRIO_NEAR_ROOM + 63) / 64] = {0}; /* bits of list entries to drop */
     if (within > l->wanted) mark_out(l, less, out);
@@ -99,6 +125,21 @@ void brio_keep_nearest(brio_near_list *l) {
         l->near[kept] = l->near[i];
         kept += l->near[i].square <= l->bound && !(out[i / 64] >> i % 64 & 1);
     }
+    l->size = kept;
+}
+
+void brio_keep_nearest(brio_near_list *l) {
+    double bound;
+    size_t kept = 0;
+    if (!find_bound(l, &bound)) {
+        keep_by_place(l);
+        return;
+    }
+    for (size_t i = 0; i < l->size; i++) {
+        l->near[kept] = l->near[i];
+        kept += l->near[i].square <= bound;
+    }
+    l->bound = bound;
     l->size = kept;
 }
 
