@@ -18,8 +18,7 @@ typedef struct {
 
 static inline brio_near_list brio_near_list_for(const double (*point)[3], const double *p, size_t wanted,
                                                 brio_near_point *near) {
-    return (brio_near_list){
-        .point = point, .p = {p[0], p[1], p[2]}, .near = near, .wanted = wanted, .bound = INFINITY};
+    return (brio_near_list){.point = point, .p = {p[0], p[1], p[2]}, .near = near, .wanted = wanted, .bound = INFINITY};
 }
 
 static inline bool brio_is_before_in_others(const double *a, const double *b, int axis) {

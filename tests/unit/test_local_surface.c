@@ -62,7 +62,8 @@ static void points_of_a_quadratic_give_it_back(void) {
                 const double *a = s.frame[i], *b = s.frame[j];
                 EXPECT(fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] - (i == j)) < 1e-12, "axes %d and %d", i, j);
             }
-        EXPECT(fabs(s.height) < 0.05 && brio_local_spread(&n, &s) < 0.05, "%g, %g", s.height, brio_local_spread(&n, &s));
+        EXPECT(fabs(s.height) < 0.05 && brio_local_spread(&n, &s) < 0.05, "%g, %g", s.height,
+               brio_local_spread(&n, &s));
     }
 }
 

@@ -89,7 +89,8 @@ static void lists_keep_the_nearest_whatever_the_distances(void) {
         brio_rng rng = brio_rng_new(trial);
         size_t wanted = 1 + brio_rng_below(&rng, BRIO_MOST_NEAR), n = wanted + brio_rng_below(&rng, 97);
         for (size_t i = 0; i < n; i++)
-            for (int k = 0; k < 3; k++) p[i][k] = ldexp(brio_rng_double(&rng), (int)brio_rng_below(&rng, 1 + 4 * (uint32_t)trial));
+            for (int k = 0; k < 3; k++)
+                p[i][k] = ldexp(brio_rng_double(&rng), (int)brio_rng_below(&rng, 1 + 4 * (uint32_t)trial));
         brio_near_list l = brio_near_list_for((const double(*)[3])p, (double[3]){0, 0, 0}, wanted, near);
         for (size_t i = 0; i < n; i++) brio_offer_points(&l, i, i + 1);
         if (l.size > wanted) brio_keep_nearest(&l);

@@ -14,7 +14,7 @@ typedef int64_t lane_bits __attribute__((vector_size(8 * WIDE), aligned(8)));
 _Static_assert(BRIO_MOST_NEAR % WIDE == 0, "the arrays of a neighbourhood have room for whole lanes");
 _Static_assert(WIDE == 4, "sum_of adds four lanes");
 
-#define LANES_AT(array, i) (*(lanes *)&(array)[i])
+#define LANES_AT(array, i)       (*(lanes *)&(array)[i])
 #define CONST_LANES_AT(array, i) (*(const lanes *)&(array)[i])
 
 static inline double sum_of(const lanes *x) {

@@ -277,7 +277,8 @@ static void smooth_run(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     if (r->finds) find_near(r->smoothing, r->first + begin, r->first + end);
     for (size_t n = begin; n < end; n += BRIO_SURFACE_BATCH)
-        smooth_batch(r->smoothing, r->first + n, r->first + (end - n < BRIO_SURFACE_BATCH ? end : n + BRIO_SURFACE_BATCH));
+        smooth_batch(r->smoothing, r->first + n,
+                     r->first + (end - n < BRIO_SURFACE_BATCH ? end : n + BRIO_SURFACE_BATCH));
 }
 
 /* Moves all samples once. The first pass also finds the nearest points. */
