@@ -55,6 +55,12 @@ static void outward_normal(const brio_pole_vectors *v, const uint32_t *corner, d
     make_unit(normal);
 }
 
+/* Writes the row of `centre` of an infinite tetrahedron. */
+static void write_ray(const brio_pole_vectors *v, size_t tet, double *row) {
+    outward_normal(v, v->t.tet[tet].vertex, row);
+    row[3] = square(row);
+}
+
 /* --- which of two Voronoi vertices is farther --- */
 
 /* The workspace of the search for poles. Keys are those of farthest.h. */
@@ -104,8 +110,7 @@ static void find_hull_vectors(search *s) {
     brio_pole_vectors *v = s->v;
     for (size_t tet = v->num_finite; tet < v->t.count; tet++) {
         double *normal = v->centre + 4 * tet;
-        outward_normal(v, v->t.tet[tet].vertex, normal);
-        normal[3] = square(normal);
+        write_ray(v, tet, normal);
         for (int i = 0; i < 3; i++) {
             size_t p = v->t.tet[tet].vertex[i];
             for (size_t k = 0; k < 3; k++) v->plane[4 * p + k] += (normal[k] + ROUND) - ROUND;
@@ -114,14 +119,20 @@ static void find_hull_vectors(search *s) {
     }
 }
 
-/* Computes the centres of up to BRIO_CENTRE_BATCH tetrahedra from `first` on. Returns the number of centres. */
-static size_t find_centres(const brio_pole_vectors *v, size_t first) {
+/* Computes the centres of up to BRIO_CENTRE_BATCH tetrahedra from `first` on. */
+static void find_centres(const brio_pole_vectors *v, size_t first, size_t count, double *centre) {
     uint32_t vertex[BRIO_CENTRE_BATCH][4];
-    size_t left = v->num_finite - first, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
     for (size_t n = 0; n < count; n++) memcpy(vertex[n], v->t.tet[first + n].vertex, sizeof *vertex);
-    brio_rough_centres(&(brio_centre_batch){v->points, NULL, (const uint32_t(*)[4])vertex, count},
-                       v->centre + 4 * first);
-    return count;
+    brio_rough_centres(&(brio_centre_batch){v->points, NULL, (const uint32_t(*)[4])vertex, count}, centre);
+}
+
+void brio_centre_row(const brio_pole_vectors *v, size_t tet, double row[4]) {
+    if (v->centre)
+        memcpy(row, v->centre + 4 * tet, 4 * sizeof *row);
+    else if (tet < v->num_finite)
+        find_centres(v, tet, 1, row);
+    else
+        write_ray(v, tet, row);
 }
 
 /* Computes the centres of the batches [from, to), each of BRIO_CENTRE_BATCH tetrahedra, and offers them as farther
@@ -133,7 +144,9 @@ static void find_poles(void *user, size_t from, size_t to, int thread) {
     (void)thread;
     for (size_t first = from * BRIO_CENTRE_BATCH; first < to * BRIO_CENTRE_BATCH && first < v->num_finite;
          first += BRIO_CENTRE_BATCH) {
-        size_t end = first + find_centres(v, first);
+        size_t left = v->num_finite - first, count = left < BRIO_CENTRE_BATCH ? left : BRIO_CENTRE_BATCH;
+        size_t end = first + count;
+        find_centres(v, first, count, v->centre + 4 * first);
         for (size_t tet = first; tet < end; tet++) {
             uint32_t vertex[4];
             uint64_t key = brio_farthest_key(v->centre[4 * tet + 3], (uint32_t)tet);
@@ -311,10 +324,16 @@ done:
     return status;
 }
 
-void brio_pole_vectors_free(brio_context *ctx, brio_pole_vectors *v) {
+void brio_pole_vectors_drop(brio_context *ctx, brio_pole_vectors *v) {
     brio_release(ctx, v->centre);
     brio_release(ctx, v->plane);
     brio_release(ctx, v->pole);
+    v->centre = v->plane = NULL;
+    v->pole = NULL;
+}
+
+void brio_pole_vectors_free(brio_context *ctx, brio_pole_vectors *v) {
+    brio_pole_vectors_drop(ctx, v);
     brio_release(ctx, v->sides);
     *v = (brio_pole_vectors){0};
 }

@@ -18,6 +18,7 @@
 #include "mesh/edge_rings.h"
 #include "triangulation/star.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* AHEAD: the tetrahedron this many facets ahead is prefetched. All chosen, except NO_PIECE. */
 enum { AHEAD = 16, PATIENCE = 8, SAMPLES_A_THREAD = 1 << 10, NO_PIECE = UINT32_MAX };
@@ -27,7 +28,7 @@ typedef struct {
     uint8_t label;
     bool fixed;
     uint64_t weight;
-    const double *mark; /* the lexicographically largest of its centres, which decides ties */
+    double mark[4]; /* the row of the lexicographically largest of its centres, which decides ties */
 } piece;
 
 typedef struct {
@@ -160,6 +161,13 @@ done:
 
 /* --- one star --- */
 
+/* Lets a tetrahedron of a piece be its mark, if its centre is the largest so far. */
+static void take_mark(const repair *r, uint32_t tet, piece *p) {
+    double centre[4];
+    brio_centre_row(r->dual, tet, centre);
+    if (brio_lexicographic(centre, p->mark) > 0) memcpy(p->mark, centre, sizeof centre);
+}
+
 /* Collects the piece of the star of v that contains tetrahedron `first`. */
 static brio_status collect_piece(repair *r, uint32_t v, uint32_t first) {
     brio_status status = BRIO_OK;
@@ -169,11 +177,11 @@ static brio_status collect_piece(repair *r, uint32_t v, uint32_t first) {
     BRIO_TRY(BRIO_RESERVE(r->ctx, r->stack, r->stack_capacity, r->star.size));
     r->stack[0] = first;
     r->piece_of[first] = (uint32_t)r->num_pieces;
+    brio_centre_row(r->dual, first, p.mark);
     while (size > 0) {
         uint32_t tet = r->stack[--size];
         p.fixed |= r->fixed[tet];
-        const double *centre = r->dual->centre + 4 * (size_t)tet;
-        if (!p.mark || brio_lexicographic(centre, p.mark) > 0) p.mark = centre;
+        take_mark(r, tet, &p);
         p.weight += 1 + (uint64_t)abs(brio_tet_vote(r->labels, tet));
         for (int i = 0; i < 4; i++) {
             uint32_t other = brio_tet_of(r->t->tet[tet].mate[i]);

@@ -184,7 +184,7 @@ done:
     return status;
 }
 
-brio_status brio_vote_graph_new(brio_context *ctx, const brio_pole_vectors *dual, const double *spacing, double noise,
+brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, const double *spacing, double noise,
                                 brio_vote_graph *out) {
     brio_status status = BRIO_OK;
     size_t size = dual->t.count, hull = size - dual->num_finite;
@@ -192,10 +192,11 @@ brio_status brio_vote_graph_new(brio_context *ctx, const brio_pole_vectors *dual
     int threads = brio_threads(ctx, size, TETS_A_THREAD);
     *out = (brio_vote_graph){.ctx = ctx, .dual = dual};
     BRIO_TRY(BRIO_ALLOC(ctx, out->vote, size));
+    brio_for(ctx, threads, size, find_cosines, &b);
+    brio_pole_vectors_drop(ctx, dual);
     BRIO_TRY(BRIO_ALLOC(ctx, out->facet, size));
     BRIO_TRY(BRIO_ALLOC(ctx, out->first, dual->num_points + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, out->star, 4 * dual->num_finite + 3 * hull));
-    brio_for(ctx, threads, size, find_cosines, &b);
     brio_for(ctx, threads, size, weigh_facets, &b);
     brio_for(ctx, threads, size, weigh_votes, &b);
     BRIO_TRY(list_stars(&b));

@@ -24,12 +24,12 @@ typedef struct {
 /** Builds the graph. A tetrahedron and a sample of it share an edge: its weight is the log-odds that the tetrahedron is
  *  on the side to which the sample's axis points (vote_weight.h). Two neighbours share an edge that wants one label: its
  *  weight is the area of their facet.
- *  dual     kept: it must outlive the graph.
+ *  dual     kept: it must outlive the graph. Its centres, planes and poles are freed (brio_pole_vectors_drop).
  *  spacing  #P: of the samples.
  *  noise    of the samples, as brio_least_noise finds it.
  *  out      freed with brio_vote_graph_free, on failure too.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
-brio_status brio_vote_graph_new(brio_context *ctx, const brio_pole_vectors *dual, const double *spacing, double noise,
+brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, const double *spacing, double noise,
                                 brio_vote_graph *out);
 void brio_vote_graph_free(brio_vote_graph *g);
 

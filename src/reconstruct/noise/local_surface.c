@@ -6,18 +6,20 @@
  * point at distance d is (1 - (d/h)^2)^2, where h is the distance of the farthest point. Because the weight is 0 at h,
  * the fit does not depend on which of several points at distance h are in the neighbourhood.
  *
+ * Several surfaces are fitted side by side: the eigenvectors and the normal equations of one are chains of divisions.
+ *
  * Based on: Alexa, Behr, Cohen-Or, Fleishman, Levin, Silva. Computing and rendering point set surfaces. TVCG 2003.
  * Differs from the paper: each point has one plane and one polynomial, without a search for the best place of the
  *                         plane. A neighbourhood is a number of points, not a radius. */
 #include "reconstruct/noise/local_surface.h"
 #include "base/instruction_set.h"
-#include "base/rotate.h"
 #include "base/vector.h"
 #include "reconstruct/noise/local_sums.h"
 #include <math.h>
+#include <string.h>
 
-/* SWEEPS: most sweeps of rotations. Chosen. LANES_MOST: neighbours that an instruction set takes side by side. */
-enum { COEFFICIENTS = BRIO_SURFACE_COEFFICIENTS, SWEEPS = 12, LANES_MOST = 4 };
+/* LANES_MOST: neighbours that an instruction set takes side by side. */
+enum { COEFFICIENTS = BRIO_SURFACE_COEFFICIENTS, BATCH = BRIO_SURFACE_BATCH, LANES_MOST = 4 };
 
 static const brio_local_sums *sums(void) {
 #if defined(__x86_64__)
@@ -26,73 +28,57 @@ static const brio_local_sums *sums(void) {
     return &brio_local_sums_plain;
 }
 
-/* --- the plane --- */
+/* --- planes --- */
 
-static bool is_diagonal(double m[3][3]) {
-    return fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]) <= 1e-16 * (m[0][0] + m[1][1] + m[2][2]);
-}
-
-/* Finds the eigenvectors of m. frame[0] and frame[1] span the plane, frame[2] is its normal. Returns false if the
- * points are on a line. */
-static bool find_frame(double m[3][3], double frame[3][3]) {
-    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int sweep = 0; sweep < SWEEPS && !is_diagonal(m); sweep++) {
-        brio_rotate(m, v, 0, 1);
-        brio_rotate(m, v, 0, 2);
-        brio_rotate(m, v, 1, 2);
-    }
+/* Takes the axes of plane i. frame[0] and frame[1] span the plane, frame[2] is its normal. Returns false if the points are
+ * on a line. */
+static bool take_frame(const brio_eigen_batch *e, size_t i, double frame[3][3]) {
     int least = 0;
     for (int k = 1; k < 3; k++)
-        if (m[k][k] < m[least][least]) least = k;
+        if (e->matrix[k][k][i] < e->matrix[least][least][i]) least = k;
     int a = (least + 1) % 3, b = (least + 2) % 3;
     for (int k = 0; k < 3; k++) {
-        frame[0][k] = v[k][a];
-        frame[1][k] = v[k][b];
-        frame[2][k] = v[k][least];
+        frame[0][k] = e->vector[k][a][i];
+        frame[1][k] = e->vector[k][b][i];
+        frame[2][k] = e->vector[k][least][i];
     }
-    return fmin(m[a][a], m[b][b]) > 1e-10 * fmax(m[a][a], m[b][b]);
+    return fmin(e->matrix[a][a][i], e->matrix[b][b][i]) > 1e-10 * fmax(e->matrix[a][a][i], e->matrix[b][b][i]);
 }
 
-static bool fit_plane(const brio_neighbourhood *n, double frame[3][3]) {
-    double m[3][3];
-    sums()->covariance(n, m);
-    return find_frame(m, frame);
+/* Fits planes to the neighbourhoods that are `fit`, and takes this back where the neighbours are on a line. Places without
+ * a neighbourhood keep the zero matrix. */
+static void fit_planes(const brio_neighbourhood *n, size_t count, brio_local_surface *s, bool *fit) {
+    brio_eigen_batch e = {{{{0}}}, {{{0}}}};
+    for (size_t i = 0; i < count; i++)
+        if (fit[i]) sums()->covariance(&n[i], &e, i);
+    sums()->find_vectors(&e);
+    for (size_t i = 0; i < count; i++) fit[i] = fit[i] && take_frame(&e, i, s[i].frame);
 }
 
-/* --- the polynomial --- */
+/* --- polynomials --- */
 
-/* Solves a x = b in place by Cholesky's method; a is symmetric and given below its diagonal. Returns false unless a is
- * clearly positive definite. */
-static bool solve(double a[COEFFICIENTS][COEFFICIENTS], double *b) {
-    for (int i = 0; i < COEFFICIENTS; i++) {
-        double diagonal = a[i][i];
-        for (int j = 0; j < i; j++) {
-            for (int k = 0; k < j; k++) a[i][j] -= a[i][k] * a[j][k];
-            a[i][j] /= a[j][j];
-            a[i][i] -= a[i][j] * a[i][j];
-            b[i] -= a[i][j] * b[j];
-        }
-        if (!(a[i][i] > 1e-8 * diagonal)) return false;
-        a[i][i] = sqrt(a[i][i]);
-        b[i] /= a[i][i];
+static void take_polynomial(const brio_normal_equations *e, size_t i, brio_local_surface *s) {
+    for (int c = 0; c < COEFFICIENTS; c++) s->coefficient[c] = e->b[c][i];
+}
+
+static void fit_polynomials(const brio_neighbourhood *n, size_t count, brio_local_surface *s, const bool *fit) {
+    brio_normal_equations e = {{{{0}}}, {{0}}};
+    double mean[BATCH] = {0};
+    bool solved[BATCH];
+    for (size_t i = 0; i < count; i++) {
+        if (!fit[i]) continue;
+        sums()->equations(&n[i], &s[i], &e, i);
+        mean[i] = e.b[0][i] / e.a[0][0][i];
     }
-    for (int i = COEFFICIENTS; i-- > 0;) {
-        for (int j = i + 1; j < COEFFICIENTS; j++) b[i] -= a[j][i] * b[j];
-        b[i] /= a[i][i];
+    sums()->solve(&e, solved);
+    for (size_t i = 0; i < count; i++) {
+        memset(s[i].coefficient, 0, sizeof s[i].coefficient);
+        s[i].coefficient[0] = mean[i];
+        if (solved[i]) take_polynomial(&e, i, &s[i]);
     }
-    return true;
 }
 
-static void fit_polynomial(const brio_neighbourhood *n, brio_local_surface *s) {
-    brio_normal_equations e;
-    sums()->equations(n, s, &e);
-    double mean = e.b[0] / e.a[0][0];
-    bool solved = solve(e.a, e.b);
-    for (int c = 0; c < COEFFICIENTS; c++) s->coefficient[c] = solved ? e.b[c] : 0;
-    if (!solved) s->coefficient[0] = mean;
-}
-
-/* --- the surface --- */
+/* --- surfaces --- */
 
 /* Sets what follows the last neighbour, which sums run over as well, to a neighbour without weight. */
 static void pad(brio_neighbourhood *n) {
@@ -102,20 +88,27 @@ static void pad(brio_neighbourhood *n) {
     }
 }
 
-bool brio_fit_local_surface(brio_neighbourhood *n, brio_local_surface *s) {
-    double square = 0;
-    for (size_t i = 0; i < n->count; i++) square = n->square[i] > square ? n->square[i] : square;
+/* Measures and weighs the neighbours. Returns whether they may have a surface. */
+static bool prepare(brio_neighbourhood *n, brio_local_surface *s) {
+    pad(n);
+    double square = sums()->measure(n);
     s->unit = sqrt(square);
     if (n->count <= COEFFICIENTS || !(s->unit > 0) || isinf(s->unit)) return false;
-    for (size_t i = 0; i < n->count; i++) {
-        double rest = 1 - n->square[i] / square;
-        n->weight[i] = rest * rest;
-    }
+    sums()->weigh(n, square);
     pad(n);
-    if (!fit_plane(n, s->frame)) return false;
-    fit_polynomial(n, s);
-    s->height = s->unit * s->coefficient[0];
     return true;
+}
+
+void brio_fit_local_surfaces(brio_neighbourhood *n, size_t count, brio_local_surface *s, bool *fitted) {
+    for (size_t i = 0; i < count; i++) fitted[i] = prepare(&n[i], &s[i]);
+    fit_planes(n, count, s, fitted);
+    fit_polynomials(n, count, s, fitted);
+    for (size_t i = 0; i < count; i++) s[i].height = s[i].unit * s[i].coefficient[0];
+}
+
+void brio_move_onto(const brio_local_surface *s, double *point) {
+    if (fabs(s->height) > s->unit) return;
+    for (int k = 0; k < 3; k++) point[k] += s->height * s->frame[2][k];
 }
 
 /* Returns the height of neighbour i over the surface, in its unit. */
@@ -139,12 +132,15 @@ double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *
 }
 
 double brio_plane_spread(brio_neighbourhood *n) {
-    double frame[3][3], sum = 0, squares = 0;
+    double sum = 0, squares = 0;
+    brio_local_surface s;
+    bool fitted = true;
     for (size_t i = 0; i < n->count; i++) n->weight[i] = 1;
     pad(n);
-    if (!fit_plane(n, frame)) return INFINITY;
+    fit_planes(n, 1, &s, &fitted);
+    if (!fitted) return INFINITY;
     for (size_t i = 0; i < n->count; i++) {
-        double d[3] = {n->offset[0][i], n->offset[1][i], n->offset[2][i]}, height = brio_dot(d, frame[2]);
+        double d[3] = {n->offset[0][i], n->offset[1][i], n->offset[2][i]}, height = brio_dot(d, s.frame[2]);
         sum += height, squares += height * height;
     }
     double mean = sum / (double)n->count;

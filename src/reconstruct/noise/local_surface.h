@@ -8,18 +8,18 @@
 typedef struct {
     size_t count;
     double offset[3][BRIO_MOST_NEAR]; /* neighbour minus point */
-    double square[BRIO_MOST_NEAR];    /* squared distance from the point */
-    double weight[BRIO_MOST_NEAR];    /* written by brio_fit_local_surface */
+    double square[BRIO_MOST_NEAR];    /* squared distance from the point; written by brio_fit_local_surfaces */
+    double weight[BRIO_MOST_NEAR];    /* likewise */
 } brio_neighbourhood;
 
 /** Adds the neighbour at q to the neighbourhood of p. */
 static inline void brio_add_neighbour(brio_neighbourhood *n, const double *p, const double *q) {
-    double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
-    n->offset[0][n->count] = x, n->offset[1][n->count] = y, n->offset[2][n->count] = z;
-    n->square[n->count++] = x * x + y * y + z * z;
+    for (int k = 0; k < 3; k++) n->offset[k][n->count] = q[k] - p[k];
+    n->count++;
 }
 
-enum { BRIO_SURFACE_COEFFICIENTS = 6 };
+/** BATCH: surfaces that are fitted side by side. */
+enum { BRIO_SURFACE_COEFFICIENTS = 6, BRIO_SURFACE_BATCH = 4 };
 
 /** The graph of a quadratic polynomial over a plane through the point. */
 typedef struct {
@@ -30,10 +30,16 @@ typedef struct {
     double height; /* of the surface above the point, along the normal, in the unit of the points */
 } brio_local_surface;
 
-/** Fits a plane to the neighbours, and a quadratic height over the plane, both by weighted least squares. The weights
- *  fall to 0 at the farthest neighbour. Where the neighbours do not determine the polynomial, it is a constant.
- *  Returns false if the neighbours are fewer than 7, on a line, or at one position. */
-bool brio_fit_local_surface(brio_neighbourhood *n, brio_local_surface *out);
+/** Fits a plane to the neighbours of each of `count` points, and a quadratic height over the plane, both by weighted least
+ *  squares. The weights fall to 0 at the farthest neighbour. Where the neighbours do not determine the polynomial, it is a
+ *  constant. The bits of a surface do not depend on the other surfaces of the batch.
+ *  count   at most BRIO_SURFACE_BATCH.
+ *  fitted  #count: false if the neighbours are fewer than 7, on a line, or at one position. */
+void brio_fit_local_surfaces(brio_neighbourhood *n, size_t count, brio_local_surface *out, bool *fitted);
+
+/** Moves the point to which a surface was fitted onto the surface, unless the surface is farther away than the
+ *  neighbours. */
+void brio_move_onto(const brio_local_surface *s, double *point);
 
 /** Returns the weighted standard deviation of the neighbours from the surface that was fitted to them. */
 double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *s);

@@ -17,6 +17,7 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "base/vector.h"
+#include "query/point_boxes.h"
 #include "reconstruct/noise/local_surface.h"
 #include <math.h>
 #include <string.h>
@@ -35,7 +36,8 @@ enum {
     PASSES = 2,
     BLOCK = 1 << 20,
     RUN = 256,
-    LOOKS_A_THREAD = 16
+    LOOKS_A_THREAD = 16,
+    SAMPLES_A_THREAD = 1 << 13
 };
 /* In spacings. Below LEAST_LEVEL a crust through the samples is as good; above MOST_LEVEL no surface is visible. Chosen
  * on the shared models (docs/decisions/007-noise-is-smoothed.md). */
@@ -59,18 +61,39 @@ static uint64_t hash_of(const double *p) {
     return hash;
 }
 
+typedef struct {
+    const double *points;
+    size_t count;
+    uint8_t *chosen; /* of each point: whether it is measured */
+} choosing;
+
+static void choose_part(void *user, size_t begin, size_t end, int thread) {
+    const choosing *c = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) c->chosen[i] = hash_of(c->points + 3 * i) % c->count < LOOKS;
+}
+
+static brio_status list_chosen(brio_context *ctx, const choosing *c, looks *l) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < c->count; i++) {
+        if (!c->chosen[i]) continue;
+        BRIO_TRY(BRIO_RESERVE(ctx, l->hash, l->hash_capacity, l->count + 1));
+        BRIO_TRY(BRIO_RESERVE(ctx, l->sample, l->capacity, l->count + 1));
+        l->hash[l->count] = hash_of(c->points + 3 * i);
+        l->sample[l->count++] = (uint32_t)i;
+    }
+done:
+    return status;
+}
+
 /* Chooses about LOOKS positions by their hash, so that the order of the samples does not matter. Each position is
  * chosen once. */
 static brio_status choose_samples(brio_context *ctx, const double *points, size_t n, looks *l) {
     brio_status status = BRIO_OK;
-    for (size_t i = 0; i < n; i++) {
-        uint64_t hash = hash_of(points + 3 * i);
-        if (hash % n >= LOOKS) continue;
-        BRIO_TRY(BRIO_RESERVE(ctx, l->hash, l->hash_capacity, l->count + 1));
-        BRIO_TRY(BRIO_RESERVE(ctx, l->sample, l->capacity, l->count + 1));
-        l->hash[l->count] = hash;
-        l->sample[l->count++] = (uint32_t)i;
-    }
+    choosing c = {.points = points, .count = n};
+    BRIO_TRY(BRIO_ALLOC(ctx, c.chosen, n));
+    brio_for(ctx, brio_threads(ctx, n, SAMPLES_A_THREAD), n, choose_part, &c);
+    BRIO_TRY(list_chosen(ctx, &c, l));
     if (l->count == 0) goto done;
     BRIO_TRY(brio_radix_sort(ctx, l->hash, l->sample, l->count, 64));
     size_t kept = 1;
@@ -78,6 +101,7 @@ static brio_status choose_samples(brio_context *ctx, const double *points, size_
         if (l->hash[i] != l->hash[i - 1]) l->sample[kept++] = l->sample[i];
     l->count = kept;
 done:
+    brio_release(ctx, c.chosen);
     return status;
 }
 
@@ -96,69 +120,67 @@ static uint64_t bits_of(double x) {
 }
 
 /* Copies the first `count` points of a list, relative to p. */
-static void see_from(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
+static void see_from(const double *p, const brio_point_boxes *boxes, const brio_near_point *near, size_t count,
                      brio_neighbourhood *n) {
     n->count = 0;
-    for (size_t i = 0; i < count; i++) brio_add_neighbour(n, p, tree->point[near[i].place]);
+    for (size_t i = 0; i < count; i++) brio_add_neighbour(n, p, boxes->point[near[i].place]);
 }
 
-static bool spread_about(const double *p, const brio_point_tree *tree, const brio_near_point *near, size_t count,
+static bool spread_about(const double *p, const brio_point_boxes *boxes, const brio_near_point *near, size_t count,
                          double *spread) {
     brio_neighbourhood n;
     brio_local_surface surface;
-    see_from(p, tree, near, count, &n);
-    if (!brio_fit_local_surface(&n, &surface)) return false;
-    *spread = brio_local_spread(&n, &surface);
-    return true;
+    bool fitted;
+    see_from(p, boxes, near, count, &n);
+    brio_fit_local_surfaces(&n, 1, &surface, &fitted);
+    if (fitted) *spread = brio_local_spread(&n, &surface);
+    return fitted;
 }
 
-/* Computes the standard deviations of the points near p, the i-th sample that is measured; infinite where a fit
- * fails. */
-static void look(const brio_point_tree *tree, const double *p, const looks *l, size_t i) {
+/* Computes the standard deviations of the points near the i-th sample that is measured; infinite where a fit fails. */
+static void look(const brio_point_boxes *boxes, const looks *l, size_t i) {
     brio_near_point near[BRIO_NEAR_ROOM];
     brio_neighbourhood n;
+    const double *p = boxes->point[l->sample[i]];
     uint64_t *few = l->few + i, *more = l->more + i;
     double small, large;
-    size_t count = brio_nearest_points(tree, p, MORE, INFINITY, near);
-    brio_sort_near_points(tree, near, count);
+    size_t count = brio_nearest_in_boxes(boxes, l->sample[i], MORE, near);
     double spacing = mean_spacing(near, count);
     *few = *more = l->flat[i] = bits_of(INFINITY);
     if (count < MORE || !(spacing > 0)) return;
-    see_from(p, tree, near, FLAT, &n);
+    see_from(p, boxes, near, FLAT, &n);
     l->flat[i] = bits_of(brio_plane_spread(&n) / spacing);
-    if (!spread_about(p, tree, near, FEW, &small) || !spread_about(p, tree, near, MORE, &large)) return;
+    if (!spread_about(p, boxes, near, FEW, &small) || !spread_about(p, boxes, near, MORE, &large)) return;
     *few = bits_of(small / spacing);
     *more = bits_of(large / spacing);
 }
 
 typedef struct {
-    const brio_point_tree *tree;
-    const double *points;
+    const brio_point_boxes *boxes;
     const looks *looks;
 } looking;
 
 static void look_at_some(void *user, size_t begin, size_t end, int thread) {
     const looking *a = user;
-    const looks *l = a->looks;
     (void)thread;
-    for (size_t i = begin; i < end; i++) look(a->tree, a->points + 3 * (size_t)l->sample[i], l, i);
+    for (size_t i = begin; i < end; i++) look(a->boxes, a->looks, i);
 }
 
 /* Measures about LOOKS samples. l->count is 0 if there are too few.   l  freed with free_looks, on failure too. */
 static brio_status look_around(brio_context *ctx, const double *points, size_t count, looks *l) {
     brio_status status = BRIO_OK;
-    brio_point_tree tree = {0};
+    brio_point_boxes boxes = {0};
     BRIO_TRY(choose_samples(ctx, points, count, l));
     if (l->count < LEAST_LOOKS) l->count = 0;
     if (l->count == 0) goto done;
     BRIO_TRY(BRIO_ALLOC(ctx, l->few, l->count));
     BRIO_TRY(BRIO_ALLOC(ctx, l->more, l->count));
     BRIO_TRY(BRIO_ALLOC(ctx, l->flat, l->count));
-    BRIO_TRY(brio_point_tree_new(ctx, points, count, &tree));
-    looking all = {&tree, points, l};
+    BRIO_TRY(brio_point_boxes_new(ctx, points, count, &boxes));
+    looking all = {&boxes, l};
     brio_for_chunks(ctx, brio_threads(ctx, l->count, LOOKS_A_THREAD), l->count, LOOKS_A_THREAD, look_at_some, &all);
 done:
-    brio_point_tree_free(ctx, &tree);
+    brio_point_boxes_free(ctx, &boxes);
     return status;
 }
 
@@ -228,16 +250,20 @@ static void find_near(const smoothing *s, size_t begin, size_t end) {
     }
 }
 
-static void smooth_sample(const smoothing *s, size_t i) {
-    brio_neighbourhood n;
-    brio_local_surface surface;
-    double *to = s->to[i];
-    n.count = 0;
-    for (int j = 0; j < MORE; j++) brio_add_neighbour(&n, s->from[i], s->from[s->near[i][j]]);
-    memcpy(to, s->from[i], sizeof s->to[i]);
-    if (!brio_fit_local_surface(&n, &surface)) return;
-    if (fabs(surface.height) > surface.unit) return; /* the fit is far from its points */
-    for (int k = 0; k < 3; k++) to[k] += surface.height * surface.frame[2][k];
+/* Moves the samples begin to end - 1, at most BRIO_SURFACE_BATCH. */
+static void smooth_batch(const smoothing *s, size_t begin, size_t end) {
+    brio_neighbourhood n[BRIO_SURFACE_BATCH];
+    brio_local_surface surface[BRIO_SURFACE_BATCH];
+    bool fitted[BRIO_SURFACE_BATCH];
+    for (size_t i = begin; i < end; i++) {
+        n[i - begin].count = 0;
+        for (int j = 0; j < MORE; j++) brio_add_neighbour(&n[i - begin], s->from[i], s->from[s->near[i][j]]);
+    }
+    brio_fit_local_surfaces(n, end - begin, surface, fitted);
+    for (size_t i = begin; i < end; i++) {
+        memcpy(s->to[i], s->from[i], sizeof s->to[i]);
+        if (fitted[i - begin]) brio_move_onto(&surface[i - begin], s->to[i]);
+    }
 }
 
 typedef struct {
@@ -250,7 +276,9 @@ static void smooth_run(void *user, size_t begin, size_t end, int thread) {
     const smoothing_run *r = user;
     (void)thread;
     if (r->finds) find_near(r->smoothing, r->first + begin, r->first + end);
-    for (size_t n = begin; n < end; n++) smooth_sample(r->smoothing, r->first + n);
+    for (size_t n = begin; n < end; n += BRIO_SURFACE_BATCH)
+        smooth_batch(r->smoothing, r->first + n,
+                     r->first + (end - n < BRIO_SURFACE_BATCH ? end : n + BRIO_SURFACE_BATCH));
 }
 
 /* Moves all samples once. The first pass also finds the nearest points. */

@@ -8,15 +8,15 @@
 #include "base/memory.h"
 #include "base/places.h"
 #include "base/team.h"
-#include "base/vector.h"
 #include "reconstruct/noise/local_surface.h"
-#include <math.h>
 #include <string.h>
 
 /* As for samples (sample_noise.c). VERTICES_A_THREAD is chosen, too. */
 enum { MORE = 36, PASSES = 2, VERTICES_A_THREAD = 256 };
 
-enum { SLOT_BITS = 8, SLOTS = 1 << SLOT_BITS }; /* four times BRIO_MOST_NEAR */
+enum { SLOT_BITS = 9, SLOTS = 1 << SLOT_BITS }; /* eight times BRIO_MOST_NEAR, so that few vertices share a slot */
+
+static const uint32_t NOBODY = UINT32_MAX;
 
 typedef struct {
     size_t *first;  /* #P + 1: the vertices that faces join to p are next[first[p]] to next[first[p + 1] - 1] */
@@ -42,26 +42,26 @@ done:
     return status;
 }
 
-/* Distinct vertices in the order in which they came, and a hash table of their places. */
+/* Distinct vertices in the order in which they came, and a hash table of them. */
 typedef struct {
-    uint32_t vertex[BRIO_MOST_NEAR];
+    uint32_t vertex[BRIO_MOST_NEAR + 1];
     size_t count;
-    uint8_t
-        slot[SLOTS]; /* the place of a vertex + 1, or 0; vertices that fall into the same slot take the next free one */
+    uint32_t slot[SLOTS]; /* a vertex, or NOBODY; vertices that fall into the same slot take the next free one */
 } vertex_list;
 
-static void list(vertex_list *l, uint32_t p) {
+/* Lists p unless it is listed. Whether it is cannot be predicted, so there is no branch. */
+static inline void list(vertex_list *l, uint32_t p) {
     size_t i = p * 0x9E3779B1u >> (32 - SLOT_BITS);
-    for (; l->slot[i]; i = (i + 1) % SLOTS)
-        if (l->vertex[l->slot[i] - 1] == p) return;
-    l->vertex[l->count++] = p;
-    l->slot[i] = (uint8_t)l->count;
+    while (l->slot[i] != p && l->slot[i] != NOBODY) i = (i + 1) % SLOTS;
+    l->vertex[l->count] = p;
+    l->count += l->slot[i] != p;
+    l->slot[i] = p;
 }
 
 /* Lists p and the vertices nearest to it along edges: whole rings, until they are MORE, at most BRIO_MOST_NEAR. */
 static void list_rings(const smoothing *s, uint32_t p, vertex_list *l) {
     size_t ring = 0;
-    memset(l->slot, 0, sizeof l->slot);
+    memset(l->slot, 0xff, sizeof l->slot);
     l->count = 0;
     list(l, p);
     while (l->count < MORE && ring < l->count) {
@@ -73,23 +73,42 @@ static void list_rings(const smoothing *s, uint32_t p, vertex_list *l) {
     }
 }
 
-static void smooth_vertex(const smoothing *s, uint32_t p) {
+/* Vertices whose surfaces are fitted side by side. */
+typedef struct {
+    size_t count;
+    uint32_t vertex[BRIO_SURFACE_BATCH];
+    brio_neighbourhood near[BRIO_SURFACE_BATCH];
+} batch;
+
+static void smooth_batch(const smoothing *s, batch *b) {
+    brio_local_surface surface[BRIO_SURFACE_BATCH];
+    bool fitted[BRIO_SURFACE_BATCH];
+    brio_fit_local_surfaces(b->near, b->count, surface, fitted);
+    for (size_t i = 0; i < b->count; i++)
+        if (fitted[i]) brio_move_onto(&surface[i], s->to + 3 * (size_t)b->vertex[i]);
+    b->count = 0;
+}
+
+static void add_vertex(const smoothing *s, uint32_t p, batch *b) {
     vertex_list l;
+    brio_neighbourhood *n = &b->near[b->count];
     list_rings(s, p, &l);
-    brio_neighbourhood n;
-    brio_local_surface surface;
-    n.count = 0;
+    n->count = 0;
     for (size_t j = 0; j < l.count; j++)
-        brio_add_neighbour(&n, s->from + 3 * (size_t)p, s->from + 3 * (size_t)l.vertex[j]);
-    if (!brio_fit_local_surface(&n, &surface) || fabs(surface.height) > surface.unit) return;
-    for (size_t k = 0; k < 3; k++) s->to[3 * (size_t)p + k] += surface.height * surface.frame[2][k];
+        brio_add_neighbour(n, s->from + 3 * (size_t)p, s->from + 3 * (size_t)l.vertex[j]);
+    b->vertex[b->count++] = p;
 }
 
 static void smooth_part(void *user, size_t begin, size_t end, int thread) {
     const smoothing *s = user;
     (void)thread;
-    for (size_t p = begin; p < end; p++)
-        if (s->first[p + 1] > s->first[p]) smooth_vertex(s, (uint32_t)p);
+    batch b;
+    b.count = 0;
+    for (size_t p = begin; p < end; p++) {
+        if (s->first[p + 1] > s->first[p]) add_vertex(s, (uint32_t)p, &b);
+        if (b.count == BRIO_SURFACE_BATCH) smooth_batch(s, &b);
+    }
+    smooth_batch(s, &b);
 }
 
 brio_status brio_smooth_surface(brio_context *ctx, double *points, size_t num_points, const uint32_t *faces,
