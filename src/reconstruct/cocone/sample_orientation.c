@@ -19,6 +19,7 @@
 #include "reconstruct/cocone/sample_orientation.h"
 #include "base/memory.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include <string.h>
 
 /* A link between two samples whose axes have equal or opposite signs: both see one tetrahedron in a cone, or they are
@@ -27,8 +28,8 @@ typedef struct {
     uint32_t a, b, tet; /* tet is NO_TET for an edge */
 } sample_link;
 
-/* KEY_BITS: of the sort key of a link. AHEAD: how far ahead links are prefetched; chosen. */
-enum { KEY_BITS = 32, AHEAD = 16 };
+/* KEY_BITS: of the sort key of a link. AHEAD: how far ahead links are prefetched. The last two are chosen. */
+enum { KEY_BITS = 32, AHEAD = 16, LINKS_A_THREAD = 1 << 12 };
 
 static const uint32_t NO_TET = UINT32_MAX;
 
@@ -134,6 +135,19 @@ static bool join_unsorted(forest *f, int class, const uint32_t *before) {
     return true;
 }
 
+/* The links of a class, and their keys. */
+typedef struct {
+    const forest *f;
+    uint32_t *link;
+    uint64_t *key;
+} keyed_links;
+
+static void find_keys(void *user, size_t begin, size_t end, int thread) {
+    const keyed_links *k = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) k->key[i] = key_of(k->f, &k->f->link[k->link[i]]);
+}
+
 /* Joins the links of a class in the order of their weights. Links that contradict earlier ones are ignored. */
 static brio_status join_sorted(forest *f, int class, const uint32_t *before) {
     brio_status status = BRIO_OK;
@@ -146,7 +160,7 @@ static brio_status join_sorted(forest *f, int class, const uint32_t *before) {
         order[count++] = (uint32_t)i;
     }
     BRIO_TRY(BRIO_ALLOC(f->ctx, keys, count));
-    for (size_t i = 0; i < count; i++) keys[i] = key_of(f, &f->link[order[i]]);
+    brio_for(f->ctx, brio_threads(f->ctx, count, LINKS_A_THREAD), count, find_keys, &(keyed_links){f, order, keys});
     BRIO_TRY(brio_radix_sort(f->ctx, keys, order, count, KEY_BITS));
     for (size_t begin = 0, end; begin < count; begin = end) {
         for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;

@@ -2,30 +2,31 @@
  * leaves to the triangulation. */
 #include "reconstruct/labeled_delaunay/vote_region.h"
 #include "base/memory.h"
+#include "base/team.h"
 
-enum { EDGES = 8 /* of a finite tetrahedron */ };
+/* EDGES: of a finite tetrahedron. NODES_A_THREAD: chosen. */
+enum { EDGES = 8, NODES_A_THREAD = 1 << 12 };
 
 typedef struct {
     const brio_vote_graph *g;
-    const uint8_t *fixed;
+    const uint8_t *fixed, *label;
     uint32_t *number; /* #nodes of the graph: 1 + the number in the region, or 0 */
     brio_vote_region *out;
 } copier;
 
-/* Writes the edges of a free node of the graph of votes. Returns their number.   edges  room for num_edges. */
-static size_t list_edges(const brio_vote_graph *g, uint32_t node, brio_signed_edge *edges) {
+/* Writes the edges of a free node of the graph of votes.   edges  room for num_edges. */
+static void list_edges(const brio_vote_graph *g, uint32_t node, brio_signed_edge *edges) {
     uint32_t num_tets = (uint32_t)g->dual->t.count;
     size_t count = 0;
     if (node >= num_tets) {
         uint32_t p = node - num_tets;
         for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
             edges[count++] = (brio_signed_edge){brio_star_tet(g->star[i]), brio_star_vote(g, g->star[i])};
-        return count;
+        return;
     }
     const brio_tetrahedron *t = &g->dual->t.tet[node];
     for (int i = 0; i < 4; i++) edges[count++] = (brio_signed_edge){num_tets + t->vertex[i], g->vote[node][i]};
     for (int i = 0; i < 4; i++) edges[count++] = (brio_signed_edge){brio_tet_of(t->mate[i]), g->facet[node][i]};
-    return count;
 }
 
 /* Returns the number of edges of a free node: tetrahedra are free only if they are finite. */
@@ -69,29 +70,38 @@ static void place(const brio_vote_graph *g, uint32_t node, double at[3]) {
     }
 }
 
-static void copy_nodes(const copier *c, const uint8_t *label) {
+/* Lists the nodes of the region, and where their edges begin. */
+static void list_nodes(const copier *c) {
     brio_vote_region *r = c->out;
     size_t nodes = c->g->dual->t.count + c->g->dual->num_points, count = 0, edges = 0;
     for (uint32_t node = 0; node < nodes; node++) {
         if (!c->number[node]) continue;
         r->node[count] = node;
-        r->fixed[count] = c->fixed[node];
-        r->label[count] = label[node];
-        r->first[count] = edges;
-        if (!c->fixed[node]) place(c->g, node, r->position + 3 * count);
-        count++;
-        if (c->fixed[node]) continue;
-        size_t more = list_edges(c->g, node, r->edge + edges);
-        for (size_t e = edges; e < edges + more; e++) r->edge[e].node = c->number[r->edge[e].node] - 1;
-        edges += more;
+        r->first[count++] = edges;
+        if (!c->fixed[node]) edges += num_edges(c->g, node);
     }
     r->first[count] = edges;
+}
+
+static void copy_nodes(void *user, size_t begin, size_t end, int thread) {
+    const copier *c = user;
+    const brio_vote_region *r = c->out;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        uint32_t node = r->node[i];
+        r->fixed[i] = c->fixed[node];
+        r->label[i] = c->label[node];
+        if (c->fixed[node]) continue;
+        place(c->g, node, r->position + 3 * i);
+        list_edges(c->g, node, r->edge + r->first[i]);
+        for (size_t e = r->first[i]; e < r->first[i + 1]; e++) r->edge[e].node = c->number[r->edge[e].node] - 1;
+    }
 }
 
 brio_status brio_vote_region_new(const brio_vote_graph *g, const uint8_t *fixed, const uint8_t *label,
                                  brio_vote_region *out) {
     brio_status status = BRIO_OK;
-    copier c = {.g = g, .fixed = fixed, .out = out};
+    copier c = {.g = g, .fixed = fixed, .label = label, .out = out};
     *out = (brio_vote_region){.ctx = g->ctx};
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, c.number, g->dual->t.count + g->dual->num_points));
     size_t bound = mark(&c);
@@ -102,7 +112,8 @@ brio_status brio_vote_region_new(const brio_vote_graph *g, const uint8_t *fixed,
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->position, 3 * out->count));
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->first, out->count + 1));
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->edge, bound));
-    copy_nodes(&c, label);
+    list_nodes(&c);
+    brio_for(g->ctx, brio_threads(g->ctx, out->count, NODES_A_THREAD), out->count, copy_nodes, &c);
 done:
     brio_release(g->ctx, c.number);
     return status;
