@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "estimate.h"
 #include "weights.h"
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -86,8 +87,9 @@ static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
     brio_status status = BRIO_ERR_FORMAT;
     if (extension) how.format = brio_format_of(extension);
     how.columns = r->common.columns;
-    if (strcmp(path, "-") && stat(path, &kind) == 0 && S_ISREG(kind.st_mode))
-        status = brio_read_blocks(r->ctx, path, &how, take_block, v, &v->file);
+    bool named = strcmp(path, "-") != 0;
+    if (named && stat(path, &kind) != 0) return cli_fail(r, BRIO_ERR_OPEN, "%s: %s", path, strerror(errno));
+    if (named && S_ISREG(kind.st_mode)) status = brio_read_blocks(r->ctx, path, &how, take_block, v, &v->file);
     if (v->failed) return BRIO_ERR_NO_MEMORY;
     if (status == BRIO_OK && v->points > MOST_IN_MEMORY) return BRIO_OK;
     bool known = status == BRIO_OK;
