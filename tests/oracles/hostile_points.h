@@ -33,7 +33,7 @@ static inline double small_integer(dice *d, uint32_t side) {
 static inline double nudged(dice *d, double x) {
     if (one_in(d, 2)) return x;
     if (one_in(d, 2)) return nextafter(x, one_in(d, 2) ? 1e9 : -1e9);
-    return x + ldexp(small_integer(d, 5), -(int)(20 + below(d, one_in(d, 4) ? 1055 : 40)));
+    return x + ldexp(small_integer(d, 5), -(int)(20 + below(d, one_in(d, 60) ? 1055 : 40)));
 }
 
 /* --- kinds of coordinates --- */
@@ -108,7 +108,7 @@ static inline void move_away(dice *d, point_set *s) {
 static inline int scale_points(dice *d, point_set *s) {
     static const int ends[] = {-1074, -1060, -540, -500, 300, 500, 1010};
     int e = ends[below(d, sizeof ends / sizeof *ends)];
-    size_t axis = one_in(d, 4) ? below(d, (uint32_t)s->coordinates) : SIZE_MAX;
+    size_t axis = one_in(d, 12) ? below(d, (uint32_t)s->coordinates) : SIZE_MAX;
     if (axis != SIZE_MAX && s->n > 7) s->n = 7;
     for (size_t i = 0; i < s->coordinates * s->n; i++)
         if (axis == SIZE_MAX || i % s->coordinates == axis) s->x[i] = finite_or_zero(ldexp(s->x[i], e));
@@ -125,7 +125,7 @@ static inline void copy_some(dice *d, point_set *s) {
 }
 
 static inline void give_weights(dice *d, point_set *s, int exponent) {
-    uint32_t kind = below(d, 6), most = 1 + below(d, 8);
+    uint32_t kind = one_in(d, 30) ? 5 : below(d, 5), most = 1 + below(d, 8);
     for (size_t i = 0; i < s->n; i++) {
         const double *p = s->x + s->coordinates * i;
         double norm = p[0] * p[0] + p[1] * p[1] + (s->coordinates == 3 ? p[2] * p[2] : 0);
@@ -147,7 +147,7 @@ static inline void hostile_points(dice *d, point_set *s) {
     int exponent = 0;
     memset(s->x, 0, sizeof s->x);
     s->n = one_in(d, 8) ? below(d, MOST_POINTS + 1) : 5 + below(d, MOST_POINTS - 4);
-    if (one_in(d, 12)) {
+    if (one_in(d, 40)) { /* long numbers take most of the time */
         mixed_magnitudes(d, s);
     } else {
         kinds[below(d, sizeof kinds / sizeof *kinds)](d, s);
