@@ -32,7 +32,7 @@ static inline double small_integer(dice *d, uint32_t side) {
 /* A coordinate moved by a few units in the last place, or by a power of two that may be the least double. */
 static inline double nudged(dice *d, double x) {
     if (one_in(d, 2)) return x;
-    if (one_in(d, 2)) return nextafter(x, one_in(d, 2) ? 1e9 : -1e9);
+    if (one_in(d, 2) && (x != 0 || one_in(d, 60))) return nextafter(x, one_in(d, 2) ? 1e9 : -1e9);
     return x + ldexp(small_integer(d, 5), -(int)(20 + below(d, one_in(d, 60) ? 1055 : 40)));
 }
 
