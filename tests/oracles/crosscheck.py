@@ -226,14 +226,16 @@ class Table:
 
 
 def middle_alpha(brio, points):
-    """Sets with alphas in the middle of the widest gap among the middle values of tetrahedra."""
+    """Sets with alphas in the middle of the widest gap among the middle values of tetrahedra. Where all of these are equal but
+    for rounding, as those of points on a sphere are, the alpha is above them."""
     sets = [Set(p) for p in points]
     for s, (status, index, value, _) in zip(sets, run(brio, "filtration", sets)):
         values = np.unique(value[index[:, 3] != NONE]) if not status else np.array([1.0, 2.0])
         values = values[np.isfinite(values)]
         middle = values[len(values) // 4:len(values) * 3 // 4 + 2] if len(values) > 1 else np.array([0, 2.0])
         gap = int(np.argmax(np.diff(middle))) if len(middle) > 1 else 0
-        s.parameter = float(middle[gap:gap + 2].mean())
+        low, high = float(middle[gap]), float(middle[min(gap + 1, len(middle) - 1)])
+        s.parameter = (low + high) / 2 if high - low > 1e-9 * high else 1.5 * high
     return sets
 
 
