@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean
+.PHONY: all demo check fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic
 
 all:
 	@sh scripts/setup.sh build
@@ -35,6 +35,23 @@ faults:
 	build-faults/fault_library
 	build-faults/fault_truncated tests/fuzz/corpus/read
 	/usr/bin/python3 tests/faults/memory_limit.py build-faults/brio || [ $$? = 77 ]
+
+# Results against CGAL, Qhull, voro++ and GUDHI: docs/reliability.md. CROSSCHECK="--sets 200 --points 10000" compares less.
+crosscheck:
+	@sh scripts/setup.sh crosscheck
+	cmake -S . -B build-crosscheck -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_CROSSCHECK=ON
+	cmake --build build-crosscheck -j $(JOBS) --target crosscheck brio-cli
+	/usr/bin/python3 tests/oracles/crosscheck.py build-crosscheck $(CROSSCHECK)
+
+# Results against brute force in exact integers, spoiled results against the checks, changed points against the same points:
+# docs/reliability.md. INPUTS says how many.
+bruteforce mutations: INPUTS := 1000000
+metamorphic: INPUTS := 10000
+bruteforce mutations metamorphic:
+	@sh scripts/setup.sh oracles
+	cmake --preset release
+	cmake --build build -j $(JOBS) --target $@
+	build/$@ --inputs $(INPUTS)
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:
@@ -88,4 +105,4 @@ deb:
 	@sh scripts/deb.sh
 
 clean:
-	rm -rf build build-ci build-debug build-faults build-fuzz build-sanitize out
+	rm -rf build build-ci build-debug build-faults build-fuzz build-sanitize out build-crosscheck

@@ -1,5 +1,5 @@
 #!/bin/sh
-# setup.sh build|check|fuzz|bench|quality|thesis|machines|deb: sees to the tools that building, testing or measuring needs.
+# setup.sh build|check|fuzz|oracles|crosscheck|bench|quality|thesis|machines|deb: sees to the tools that building, testing or measuring needs.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
 set -eu
 
@@ -26,6 +26,9 @@ has_compiler() {
     return $works
 }
 
+# Debian has its header in a folder of the processor's, which the compiler knows.
+has_gmp() { printf '#include <gmp.h>\n' | ${CC:-cc} -E - >/dev/null 2>&1; }
+
 # clang with the library of its fuzzer.
 has_fuzzer() {
     has clang || return 1
@@ -48,10 +51,11 @@ missing() {
         has_fuzzer || echo clang libclang-rt-dev
         [ -x $python ] || echo python3
     fi
-    if [ "$1" = bench ]; then
+    if [ "$1" = bench ] || [ "$1" = crosscheck ]; then
         has g++ || echo g++
         has_python_with numpy || echo python3-numpy
     fi
+    [ "$1" != oracles ] || has_gmp || echo libgmp-dev
     if [ "$1" = quality ]; then
         has_python_with numpy || echo python3-numpy
         has_python_with scipy || echo python3-scipy
@@ -88,7 +92,7 @@ missing_peers() {
     [ -f /usr/include/zstd.h ] || echo libzstd-dev
     [ -f /usr/include/cjson/cJSON.h ] || echo libcjson-dev
     [ -f /usr/include/expat.h ] || echo libexpat1-dev
-    case $1 in build | fuzz | quality | thesis | deb) return 0 ;; esac
+    case $1 in build | fuzz | oracles | quality | thesis | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -99,6 +103,7 @@ missing_peers() {
     fi
     if [ "$1" = check ]; then
         has g++ || echo g++
+        has_gmp || echo libgmp-dev
         [ -d /usr/include/voro++ ] || echo voro++-dev
         has groff || echo groff-base # the manual pages
         has mandoc || echo mandoc
@@ -106,10 +111,15 @@ missing_peers() {
         return 0
     fi
     [ -d /usr/include/CGAL ] || echo libcgal-dev
-    [ -d /usr/include/tbb ] || echo libtbb-dev
-    [ -f /usr/include/tetgen.h ] || echo libtet1.5-dev
     [ -d /usr/include/libqhull_r ] || echo libqhull-dev
     [ -d /usr/include/voro++ ] || echo voro++-dev
+    if [ "$1" = crosscheck ]; then
+        [ -d /usr/include/gudhi ] || echo libgudhi-dev
+        [ -d /usr/include/eigen3 ] || echo libeigen3-dev
+        return 0
+    fi
+    [ -d /usr/include/tbb ] || echo libtbb-dev
+    [ -f /usr/include/tetgen.h ] || echo libtet1.5-dev
     has gnuplot || echo gnuplot-nox
 }
 
@@ -168,9 +178,9 @@ install_tests_packages() {
 
 purpose=${1:-build}
 case $purpose in
-build | check | fuzz | bench | quality | thesis | machines | deb) ;;
+build | check | fuzz | oracles | crosscheck | bench | quality | thesis | machines | deb) ;;
 *)
-    echo "usage: setup.sh build|check|fuzz|bench|quality|thesis|machines|deb" >&2
+    echo "usage: setup.sh build|check|fuzz|oracles|crosscheck|bench|quality|thesis|machines|deb" >&2
     exit 1
     ;;
 esac

@@ -81,7 +81,8 @@ static uint64_t curve_key(const box *all, const box *face) {
     for (int k = 0; k < 3; k++) {
         double size = 0.5 * all->high[k] - 0.5 * all->low[k];
         double place = 0.25 * face->low[k] + 0.25 * face->high[k] - 0.5 * all->low[k];
-        double unit = size > 0 ? place / size : 0;
+        double unit =
+            size > 0 && place > 0 ? fmin(place / size, 1) : 0; /* halves of the least doubles round either way */
         key |= spread_bits((uint64_t)(unit * ((1 << CURVE_BITS) - 1))) << k;
     }
     return key;

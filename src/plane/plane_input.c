@@ -148,11 +148,12 @@ static void choose_axes(brio_plane_input *in, const double (*corner)[4]) {
         set_axes(in, (along + 2) % 3, (along + 1) % 3);
 }
 
-/* Sets the axes for points on a line: u is the axis along which the line is longest. */
+/* Sets the axes for points on a line: u is the axis along which the line is longest. Different numbers have a difference
+ * that is not 0, though half of it may be; of lengths that overflow the first one is taken. */
 static void choose_line_axes(brio_plane_input *in, const double (*corner)[4]) {
     int u = 0;
     for (int k = 1; k < 3; k++)
-        if (fabs(corner[1][k] * 0.5 - corner[0][k] * 0.5) > fabs(corner[1][u] * 0.5 - corner[0][u] * 0.5)) u = k;
+        if (fabs(corner[1][k] - corner[0][k]) > fabs(corner[1][u] - corner[0][u])) u = k;
     set_axes(in, u, (u + 1) % 3);
 }
 

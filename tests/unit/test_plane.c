@@ -396,8 +396,27 @@ static void estimate_is_close(void) {
     free(w);
 }
 
+/* Half of the least double is 0: the axis along which such points differ must be found all the same. */
+static void a_line_one_least_double_long_keeps_both_ends(void) {
+    brio_context *ctx = new_context();
+    for (size_t axis = 0; axis < 3; axis++)
+        for (int far = 0; far < 2; far++) {
+            double p[9] = {0};
+            brio_triangulation2 *t;
+            p[3 + axis] = p[6 + axis] = far ? 5e-324 : -5e-324;
+            EXPECT(brio_delaunay2_flat(ctx, p, NULL, 3, NULL, &t) == BRIO_OK, "%s", brio_message(ctx));
+            const brio_delaunay2_stats *stats = brio_triangulation2_stats(t);
+            EXPECT(stats->dimension == 1 && stats->vertices == 2 && stats->duplicates == 1, "axis %zu: dimension %d",
+                   axis, stats->dimension);
+            EXPECT(brio_triangulation2_check(ctx, t, p, NULL, 3) == BRIO_OK, "%s", brio_message(ctx));
+            brio_triangulation2_free(t);
+        }
+    brio_context_free(ctx);
+}
+
 int main(void) {
     RUN(brute_force_on_grids);
+    RUN(a_line_one_least_double_long_keeps_both_ends);
     RUN(hostile_sets_pass_their_check);
     RUN(weighted_hostile_sets_pass_their_check);
     RUN(rounding_mode_does_not_matter);
