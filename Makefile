@@ -3,7 +3,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic
+.PHONY: all demo check fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage
 
 all:
 	@sh scripts/setup.sh build
@@ -53,6 +53,12 @@ bruteforce mutations metamorphic:
 	cmake --build build -j $(JOBS) --target $@
 	build/$@ --inputs $(INPUTS)
 
+# Lines and branches of src and cli that the tests and the fuzzers' inputs reach: a table, and pages in out/coverage.
+# COVERAGE="-R unit" runs some of the tests: docs/reliability.md.
+coverage:
+	@sh scripts/setup.sh coverage
+	@sh scripts/coverage.sh $(JOBS) $(COVERAGE)
+
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:
 	@sh scripts/setup.sh check
@@ -66,6 +72,11 @@ python-heavy: python
 python-sanitize:
 	@sh scripts/setup.sh check
 	@JOBS=$(JOBS) sh scripts/python.sh sanitized
+
+# Random calls of the Python package for so many minutes, under the same sanitizers.
+python-fuzz:
+	@sh scripts/setup.sh check
+	@JOBS=$(JOBS) MINUTES=$(MINUTES) sh scripts/python.sh fuzz
 
 # BENCH="--runs 5 --only uniform_1m happy_raw" measures less, BENCH="--sizes 1e4 1e5 1e6 1e7" more: docs/benchmarks.md.
 bench: all
@@ -105,4 +116,4 @@ deb:
 	@sh scripts/deb.sh
 
 clean:
-	rm -rf build build-ci build-debug build-faults build-fuzz build-sanitize out build-crosscheck
+	rm -rf build build-ci build-debug build-faults build-fuzz build-sanitize out build-crosscheck build-coverage

@@ -1,9 +1,10 @@
 #!/bin/sh
-# python.sh wheel|heavy|sanitized: packages of Python in out/python.
+# python.sh wheel|heavy|sanitized|fuzz: packages of Python in out/python.
 #
 # wheel: an sdist, and from it a wheel, made clean by auditwheel; installed with numpy alone in a new environment, the
 # README's five lines run. heavy: the same lines after torch, Open3D and scikit-learn, which share the process' threads, and
-# the conversions to Open3D and PyVista. sanitized: the tests under the address and undefined-behaviour sanitizers.
+# the conversions to Open3D and PyVista. sanitized: the tests under the address and undefined-behaviour sanitizers. fuzz: random
+# calls under the same, for MINUTES, with a seed of the day.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -91,27 +92,41 @@ try_beside_others() {
     "$heavy/bin/python" -m pytest -q -rs -p no:cacheprovider python/tests/test_surfaces.py -k objects_of
 }
 
-try_sanitized() {
-    say "the tests under the address and undefined-behaviour sanitizers"
+build_sanitized() {
     cmake -S python -B "$sanitized" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DPython_EXECUTABLE="$tools" \
         -DCMAKE_C_FLAGS="-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer" >/dev/null
     cmake --build "$sanitized" -j "${JOBS:-2}" >/dev/null
     cp -r python/src/brio/. "$sanitized/brio/"
-    # Left out: what measures memory, and what sends signals to calls within a time that the sanitizer does not allow.
-    # With the library of C++, since the sanitizer looks once for what throws, and GUDHI, a peer in the tests, throws.
+}
+
+# With the library of C++, since the sanitizer looks once for what throws, and GUDHI, a peer in the tests, throws.
+run_sanitized() {
     BRIO_PYTHON="$sanitized" PYTHONPATH="$sanitized" \
         LD_PRELOAD="$(cc -print-file-name=libasan.so) $(cc -print-file-name=libstdc++.so.6)" \
-        ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
-        "$tools" -m pytest -q -p no:cacheprovider python/tests --ignore python/tests/scipys \
+        ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 "$tools" "$@"
+}
+
+# Left out: what measures memory, and what sends signals to calls within a time that the sanitizer does not allow.
+try_sanitized() {
+    say "the tests under the address and undefined-behaviour sanitizers"
+    build_sanitized
+    run_sanitized -m pytest -q -p no:cacheprovider python/tests --ignore python/tests/scipys \
         -k "not test_interrupt and not thousand and not without_a_copy and not ctrl_c"
+}
+
+try_random_calls() {
+    say "random calls under the address and undefined-behaviour sanitizers"
+    build_sanitized
+    run_sanitized -X faulthandler python/tests/random_calls.py --seed "$(date +%Y%m%d)000000" --minutes "${MINUTES:-1}"
 }
 
 case ${1:-wheel} in
 wheel) make_packages && try_wheel ;;
 heavy) try_beside_others ;;
 sanitized) try_sanitized ;;
+fuzz) try_random_calls ;;
 *)
-    echo "usage: python.sh wheel|heavy|sanitized" >&2
+    echo "usage: python.sh wheel|heavy|sanitized|fuzz" >&2
     exit 1
     ;;
 esac

@@ -1,5 +1,5 @@
 #!/bin/sh
-# setup.sh build|check|fuzz|oracles|crosscheck|bench|quality|thesis|machines|deb: sees to the tools that building, testing or measuring needs.
+# setup.sh build|check|fuzz|coverage|oracles|crosscheck|bench|quality|thesis|machines|deb: sees to the tools that building, testing or measuring needs.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
 set -eu
 
@@ -40,6 +40,17 @@ has_fuzzer() {
     return $works
 }
 
+# clang with the library of its counters, and what reads them.
+has_coverage() {
+    has clang && has llvm-profdata && has llvm-cov || return 1
+    folder=$(mktemp -d)
+    printf 'int main(void) { return 0; }\n' >"$folder/try.c"
+    works=0
+    clang -fprofile-instr-generate -fcoverage-mapping -o "$folder/try" "$folder/try.c" >/dev/null 2>&1 || works=1
+    rm -rf "$folder"
+    return $works
+}
+
 has_python_with() { [ -x $python ] && $python -c "import $1" >/dev/null 2>&1; }
 
 # The Debian packages that are missing for a purpose.
@@ -49,6 +60,10 @@ missing() {
     has_compiler || echo gcc libc6-dev
     if [ "$1" = fuzz ]; then
         has_fuzzer || echo clang libclang-rt-dev
+        [ -x $python ] || echo python3
+    fi
+    if [ "$1" = coverage ]; then
+        has_coverage || echo clang llvm libclang-rt-dev
         [ -x $python ] || echo python3
     fi
     if [ "$1" = bench ] || [ "$1" = crosscheck ]; then
@@ -92,7 +107,7 @@ missing_peers() {
     [ -f /usr/include/zstd.h ] || echo libzstd-dev
     [ -f /usr/include/cjson/cJSON.h ] || echo libcjson-dev
     [ -f /usr/include/expat.h ] || echo libexpat1-dev
-    case $1 in build | fuzz | oracles | quality | thesis | deb) return 0 ;; esac
+    case $1 in build | fuzz | coverage | oracles | quality | thesis | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -178,9 +193,9 @@ install_tests_packages() {
 
 purpose=${1:-build}
 case $purpose in
-build | check | fuzz | oracles | crosscheck | bench | quality | thesis | machines | deb) ;;
+build | check | fuzz | coverage | oracles | crosscheck | bench | quality | thesis | machines | deb) ;;
 *)
-    echo "usage: setup.sh build|check|fuzz|oracles|crosscheck|bench|quality|thesis|machines|deb" >&2
+    echo "usage: setup.sh build|check|fuzz|coverage|oracles|crosscheck|bench|quality|thesis|machines|deb" >&2
     exit 1
     ;;
 esac

@@ -1702,7 +1702,7 @@ typedef int (*brio_rows_fn)(const brio_mesh *block, void *user);
 /** Reads a file as brio_read does, and hands over its points in blocks of some 65,536, in the order of the file, each with
  *  its part of the properties: a file of any size needs the memory of a few blocks. All blocks have the same properties; a
  *  file without points is one empty block. Files with polygons or tetrahedra, and formats and orders that do not hold one
- *  point after the other (OBJ, OFF, VTU, NODE, STL, NPY in Fortran's order), are one block.
+ *  point after the other (OBJ, OFF, VTU, NODE, STL, NPZ, NPY in Fortran's order), are one block.
  *  facts  NULL, or receives what the file is.
  *  Returns what brio_read returns; BRIO_ERR_CANCELLED if the callback asked for it; BRIO_ERR_FORMAT if a row of a text lacks
  *  a column that earlier blocks have. Earlier blocks were handed over when an error is found. */

@@ -44,6 +44,53 @@ def test_what_is_no_array_of_points(points):
             make(points)
 
 
+def unaligned(array):
+    out = np.frombuffer(bytearray(array.nbytes + 1), np.uint8)[1:].view(array.dtype).reshape(array.shape)
+    out[...] = array
+    return out
+
+
+def test_arrays_that_are_not_aligned_are_copied():
+    points, faces = GENERATOR.random((9, 3)), np.array([[0, 1, 2]], np.uint32)
+    assert np.array_equal(brio.Delaunay(unaligned(points)).simplices, brio.Delaunay(points).simplices)
+    assert np.array_equal(brio.Mesh(unaligned(points), unaligned(faces)).vertices, points)
+    assert brio.Delaunay(points, unaligned(np.arange(9.0))).checksum == brio.Delaunay(points, np.arange(9.0)).checksum
+
+
+def test_numbers_beyond_doubles_are_an_argument_error():
+    with pytest.raises(brio.ArgumentError, match="points"):
+        brio.Delaunay([[10**400, 0, 0]])
+    with pytest.raises(brio.ArgumentError, match="values"):
+        brio.LinearNDInterpolator([[0, 0, 0]], [10**400])
+
+
+def test_interpolators_of_no_points():
+    for shape in ((0,), (0, 2)):
+        found = brio.LinearNDInterpolator(np.zeros((0, 3)), np.zeros(shape))([[0, 0, 0]])
+        assert found.shape == (1, *shape[1:]) and np.isnan(found).all()
+
+
+def test_a_mesh_of_no_points_with_rows_as_properties_can_be_written(tmp_path):
+    brio.Mesh(np.zeros((0, 3)), properties={"rows": np.zeros((0, 2))}).write(tmp_path / "none.ply")
+    assert len(brio.read(tmp_path / "none.ply").vertices) == 0
+
+
+RAGGED = [[1, 2, 3], [4, 5]]
+
+
+@pytest.mark.parametrize("call", [
+    lambda m: brio.LinearNDInterpolator(m.vertices, RAGGED), lambda m: m.select(RAGGED),
+    lambda m: m.carry_properties(m, RAGGED), lambda m: brio.Mesh(m.vertices, properties={"a": RAGGED}),
+    lambda m: brio.Mesh(m.vertices, 5), lambda m: brio.Mesh(m.vertices, [1.5]), lambda m: brio.Mesh(m.vertices, object()),
+    lambda m: brio.Mesh(m.vertices, tetrahedra=RAGGED), lambda m: brio.Mesh(m.vertices, edges=RAGGED),
+    lambda m: brio.LinearNDInterpolator(m.vertices, [1, 2, 3])([1, 2, 3, 4]),
+    lambda m: brio.LinearNDInterpolator(m.vertices, [1, 2, 3])(5),
+    lambda m: brio.LinearNDInterpolator(m.vertices, [1, 2, 3])([1, 2], [1, 2, 3], 0)])
+def test_lists_that_are_no_array_are_an_argument_error(call):
+    with pytest.raises(brio.ArgumentError):
+        call(brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+
+
 @pytest.mark.parametrize("weights", [np.zeros(4), np.zeros((5, 1)), 1.0, "abcde", [1, 2, 3, 4, None]])
 def test_weights_of_another_shape(weights):
     with pytest.raises((brio.ArgumentError, brio.NotFiniteError), match="weight"):

@@ -100,7 +100,7 @@ brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t 
     BRIO_TRY(BRIO_ALLOC(ctx, out->point, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->index, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->axis, count));
-    memcpy(out->point, points, count * sizeof *out->point);
+    if (count) memcpy(out->point, points, count * sizeof *out->point);
     BRIO_TRY(
         brio_refuse_not_finite(ctx, *out->point, NULL, count, NULL)); /* the copy: the points may change meanwhile */
     for (size_t i = 0; i < count; i++) out->index[i] = (uint32_t)i;

@@ -1,5 +1,6 @@
 /* Triangulations of any finite doubles: the exact check passes, and the checksum is the same for every order, location and
- * number of threads, for points in another order, with duplicates, and scaled by a power of two. */
+ * number of threads, for points in another order, with duplicates, and scaled by a power of two; also with a scratch folder,
+ * and with hidden points left. */
 #include "points_input.h"
 
 enum { MOST = 40, ROOM = MOST + 8 };
@@ -63,7 +64,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     brio_context_set_threads(ctx, fuzz_byte(&in) < 16 ? 3 : 1);
     change_cloud(&in, &c);
     brio_delaunay_options o = fuzz_options(&in, c.n, edges);
+    uint8_t bits = fuzz_byte(&in);
+    o.leave_hidden = bits & 1;
+    if (bits & 2) FUZZ_EXPECT(brio_context_set_scratch(ctx, "/tmp") == BRIO_OK, "%s", brio_message(ctx));
     uint64_t second = checksum_of(ctx, &c, &o);
+    FUZZ_EXPECT(brio_context_set_scratch(ctx, NULL) == BRIO_OK);
     FUZZ_EXPECT(first == second, "order %d, location %d: %llx, %llx", (int)o.order, (int)o.locate,
                 (unsigned long long)first, (unsigned long long)second);
     fuzz_end();

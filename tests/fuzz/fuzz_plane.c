@@ -1,21 +1,13 @@
 /* Triangulations of the plane against brute force; and of planes in space, and of any finite doubles, by the exact check. */
-#include "fuzz.h"
 #include "plane_compare.h"
+#include "plane_input.h"
 
 enum { MOST = 16 };
 
 static void sites(fuzz_input *in) {
     plane_set s = {.n = 0};
     uint8_t mode = fuzz_byte(in);
-    int64_t step = mode & 1 ? 16 : 1;
-    s.weighted = mode & 2;
-    s.n = fuzz_below(in, MOST + 1);
-    for (size_t i = 0; i < s.n; i++) {
-        uint8_t place = fuzz_byte(in);
-        s.p[i].x = step * (place & 3) + (mode & 1 ? (place >> 4 & 3) % 3 : 0);
-        s.p[i].y = mode & 4 ? 2 * s.p[i].x + 1 : step * (place >> 2 & 3) + (mode & 1 ? (place >> 6) % 3 : 0);
-        if (s.weighted) s.p[i].w = fuzz_byte(in) % 8 * (mode & 8 ? 100 : 1);
-    }
+    fuzz_plane_sites(in, mode, MOST, &s);
     compare_with_brute(&s, mode);
     FUZZ_EXPECT(!harness_failures);
 }

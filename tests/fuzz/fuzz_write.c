@@ -1,8 +1,6 @@
 /* Every writer: a mesh of a few numbers, with hostile names of properties, is written and read again. Formats that hold
  * doubles give back the same bits, and every format the parts that docs/formats.md says it keeps. */
-#include "fuzz.h"
-#include <sys/stat.h>
-#include <unistd.h>
+#include "fuzz_folder.h"
 
 enum { MOST = 8, LONGEST = 1 << 18, DOUBLES = 1, FACES = 2, TETRAHEDRA = 4, PROPERTIES = 8, EDGES = 16 };
 
@@ -28,22 +26,11 @@ static const struct {
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-static const char *path_of(const char *name) {
-    static char folder[64], path[128];
-    if (!*folder) {
-        snprintf(folder, sizeof folder, "%s/brio-fuzz-XXXXXX", access("/dev/shm", W_OK) ? "/tmp" : "/dev/shm");
-        FUZZ_EXPECT(mkdtemp(folder), "%s", folder);
-    }
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return path;
-}
-
-static void leave_folder(void) {
-    const char *path = path_of("");
-    for (size_t i = 0; i < KINDS; i++) unlink(path_of(kinds[i].name));
-    unlink(path_of("a.ele")), unlink(path_of("a.neigh")), unlink(path_of("a.face")), unlink(path_of("a.edge"));
-    path = path_of("");
-    rmdir(path);
+static void forget_files(void) {
+    static const char *const beside[] = {"a.ele", "a.neigh", "a.face", "a.edge"};
+    for (size_t i = 0; i < KINDS; i++) fuzz_remove(kinds[i].name);
+    for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) fuzz_remove(beside[i]);
+    fuzz_leave_folder();
 }
 
 /* --- a mesh --- */
@@ -107,7 +94,7 @@ static brio_mesh *make_mesh(brio_context *ctx, fuzz_input *in) {
 static brio_mesh *read_again(brio_context *ctx, const char *name) {
     static char bytes[LONGEST];
     brio_mesh *m = NULL;
-    FILE *f = fopen(path_of(name), "rb");
+    FILE *f = fopen(fuzz_path(name), "rb");
     FUZZ_EXPECT(f, "%s is not there", name);
     size_t size = fread(bytes, 1, sizeof bytes, f);
     fclose(f);
@@ -160,7 +147,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     uint8_t bits = fuzz_byte(&in);
     char comment[9] = {0};
     double moved = -1;
-    if (!begun) atexit(leave_folder);
+    if (!begun) atexit(forget_files);
     begun = true;
     o.format = kinds[kind].format;
     o.ascii = bits & 1, o.float32 = (bits & 6) == 6, o.compress = (bits & 24) == 24, o.moved = &moved;
@@ -169,7 +156,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     o.comment = bits & 32 ? comment : NULL;
     if (bits & 64 && o.format == BRIO_FORMAT_NODE) o.neighbours = o.faces = o.edges = 1;
     brio_mesh *m = make_mesh(ctx, &in);
-    brio_status status = brio_write(ctx, path_of(kinds[kind].name), m, &o);
+    brio_status status = brio_write(ctx, fuzz_path(kinds[kind].name), m, &o);
     fuzz_expect_failure(status);
     FUZZ_EXPECT(status == BRIO_OK || status == BRIO_ERR_ARGUMENT || status == BRIO_ERR_TOO_LARGE, "%s",
                 brio_message(ctx));

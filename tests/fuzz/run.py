@@ -3,10 +3,13 @@
 Each runs for N minutes of processor time, from its committed corpus and what earlier runs found (out/fuzz/corpus). Prints a
 row for each: executions, executions a second of processor time, edges of the program that were reached, findings. An input
 that makes a fuzzer stop is a finding, kept in out/fuzz/findings. The exit status is 1 if there is one.
+out/fuzz/results.json has the sums of all runs: executions, minutes, the most edges, findings, of each fuzzer; --table prints
+them as docs/reliability.md has them, and runs nothing.
 --keep: afterwards adds to the committed corpus the smallest inputs that reach all that was reached, those under 700 bytes.
 """
 
 import argparse
+import json
 import os
 import pathlib
 import re
@@ -80,22 +83,51 @@ def keep_smallest(program, subject, out):
             shutil.copy(path, kept / path.name[:12])
 
 
+def add_up(path, subject, row):
+    """Adds a run to the sums of all runs. A run that is cut off leaves the file as it was or as it is to be."""
+    sums = json.loads(path.read_text()) if path.exists() else {}
+    own = sums.setdefault(subject, {"executions": 0, "minutes": 0.0, "edges": 0, "all": 0, "findings": 0})
+    own["executions"] += row["executions"]
+    own["minutes"] = round(own["minutes"] + row["seconds"] / 60, 3)
+    own["edges"] = max(own["edges"], row["edges"])
+    own["all"] = row["all"] or own["all"]
+    own["findings"] += row["findings"]
+    written = path.with_suffix(".new")
+    written.write_text(json.dumps(sums, indent=2) + "\n")
+    written.replace(path)
+
+
+def print_table(path):
+    print("| fuzzer | executions | a second | minutes | edges |\n|---|---|---|---|---|")
+    for subject, own in json.loads(path.read_text()).items():
+        print("| %s | %s | %s | %s | %s |" % (
+            subject, format(own["executions"], ","), format(round(own["executions"] / max(60 * own["minutes"], 1e-9)), ","),
+            format(own["minutes"], ",.1f"), format(own["edges"], ",")))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path, nargs="?")
     parser.add_argument("--minutes", type=float, default=1)
     parser.add_argument("--subjects", nargs="+")
     parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--table", action="store_true")
     asked = parser.parse_args()
     out = ROOT / "out" / "fuzz"
+    if asked.table:
+        return print_table(out / "results.json")
+    if not asked.folder:
+        parser.error("FOLDER is missing")
+    out.mkdir(parents=True, exist_ok=True)
     subjects = asked.subjects or sorted(path.stem[len("fuzz_"):] for path in HERE.glob("fuzz_*.c"))
     findings = 0
-    print("%-10s %12s %9s %8s %8s %8s" % ("subject", "executions", "a second", "minutes", "edges", "findings"), flush=True)
+    print("%-14s %12s %9s %8s %8s %8s" % ("subject", "executions", "a second", "minutes", "edges", "findings"), flush=True)
     for subject in subjects:
         program = asked.folder.resolve() / ("fuzz_%s" % subject)
         row = run_subject(program, subject, asked.minutes, out)
         findings += row["findings"]
-        print("%-10s %12d %9.0f %8.1f %8d %8d" % (subject, row["executions"], row["executions"] / max(row["seconds"], 1e-9),
+        add_up(out / "results.json", subject, row)
+        print("%-14s %12d %9.0f %8.1f %8d %8d" % (subject, row["executions"], row["executions"] / max(row["seconds"], 1e-9),
                                                   row["seconds"] / 60, row["edges"], row["findings"]), flush=True)
         if asked.keep:
             keep_smallest(program, subject, out)

@@ -2,8 +2,8 @@
  * ties, hostile points, weights, every dimension. */
 #include "failing_allocator.h"
 #include "harness.h"
+#include "plane_locate_brute.h"
 #include "points.h"
-#include "predicates/predicates.h"
 
 enum { MOST = 400, QUERIES = 500 };
 
@@ -124,20 +124,6 @@ static void make_queries(const set *s, double *x) {
 
 /* --- location --- */
 
-static bool is_held(const set *s, const brio_triangle *t, const double *x) {
-    for (int i = 0; i < 3; i++)
-        if (brio_orient2d(s->p + 2 * (size_t)t->vertex[(i + 1) % 3], s->p + 2 * (size_t)t->vertex[(i + 2) % 3], x) < 0)
-            return false;
-    return true;
-}
-
-static uint32_t brute_triangle(const set *s, const brio_triangulation2 *t, const double *x) {
-    const brio_triangle *triangle = brio_triangulation2_triangles(t);
-    for (size_t i = 0; i < brio_triangulation2_stats(t)->triangles; i++)
-        if (is_held(s, &triangle[i], x)) return (uint32_t)i;
-    return BRIO_INFINITE;
-}
-
 static void check_location(const set *s) {
     fixture f = fixture_new(s);
     double x[2 * QUERIES];
@@ -145,7 +131,7 @@ static void check_location(const set *s) {
     make_queries(s, x);
     EXPECT(brio_locator2_triangles(f.ctx, f.l, x, QUERIES, found) == BRIO_OK, "%s", brio_message(f.ctx));
     for (size_t i = 0; i < QUERIES; i++) {
-        uint32_t right = brute_triangle(s, f.t, x + 2 * i);
+        uint32_t right = brute_triangle(s->p, f.t, x + 2 * i);
         EXPECT(found[i] == right, "%s: query %zu (%a %a) got %u, not %u", s->name, i, x[2 * i], x[2 * i + 1], found[i],
                right);
     }
@@ -154,15 +140,6 @@ static void check_location(const set *s) {
 
 static void triangles_are_those_of_brute_force(void) {
     for_all_sets(check_location);
-}
-
-/* Whether point i is nearer to x than point v. */
-static bool comes_before(const set *s, const double *x, size_t i, size_t v) {
-    const double at[4] = {x[0], x[1], 0, 0};
-    const double a[4] = {s->p[2 * i], s->p[2 * i + 1], 0, s->weighted ? s->w[i] : 0};
-    const double b[4] = {s->p[2 * v], s->p[2 * v + 1], 0, s->weighted ? s->w[v] : 0};
-    int sign = brio_power_compare(at, a, b);
-    return (sign ? sign : brio_lexicographic(a, b)) < 0;
 }
 
 static void check_nearest(const set *s) {
@@ -178,7 +155,8 @@ static void check_nearest(const set *s) {
         if (found[i] == BRIO_INFINITE) continue;
         EXPECT(found[i] < s->n && representative[found[i]] == found[i], "%s: %u", s->name, found[i]);
         for (size_t p = 0; p < s->n; p++)
-            EXPECT(!comes_before(s, x + 2 * i, p, found[i]), "%s: query %zu got %u, not %zu", s->name, i, found[i], p);
+            EXPECT(!plane_comes_before(s->p, f.w, x + 2 * i, p, found[i]), "%s: query %zu got %u, not %zu", s->name, i,
+                   found[i], p);
     }
     fixture_free(&f);
 }

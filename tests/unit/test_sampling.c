@@ -95,6 +95,13 @@ static void thinning_refuses(void) {
     brio_context_free(ctx);
 }
 
+/* memcpy from NULL is undefined also for no bytes. */
+static void no_points_have_no_outliers(void) {
+    brio_context *ctx = new_context();
+    EXPECT(brio_outliers(ctx, NULL, 0, 8, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    brio_context_free(ctx);
+}
+
 /* Points on a sphere with stray points: the stray ones are found and no other, in any order. */
 static void outliers_are_found(void) {
     enum { N = 4000, STRAY = 20, ALL = N + STRAY };
@@ -173,6 +180,7 @@ int main(void) {
     RUN(thinned_sets_are_maximal);
     RUN(thinning_at_extreme_scales);
     RUN(thinning_refuses);
+    RUN(no_points_have_no_outliers);
     RUN(outliers_are_found);
     RUN(sparse_parts_are_no_outliers);
     RUN(without_memory);

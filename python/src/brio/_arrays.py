@@ -1,4 +1,4 @@
-"""Arrays of the caller, as the library takes them: C-contiguous float64 is taken as it is, all else is converted."""
+"""Arrays of the caller, as the library takes them: C-contiguous, aligned float64 is taken as it is, all else is converted."""
 
 from typing import Any
 
@@ -10,8 +10,7 @@ from .errors import ArgumentError
 Floats = NDArray[np.float64]
 
 
-def as_array(values: Any) -> NDArray[Any]:
-    """Takes arrays, lists, DataFrames, tensors, and what speaks DLPack."""
+def _taken(values: Any) -> NDArray[Any]:
     if isinstance(values, np.ma.MaskedArray):
         raise ArgumentError("masked arrays are not taken: leave the masked rows out")
     if hasattr(values, "detach"):  # a tensor, maybe one that records gradients, maybe on another device
@@ -22,19 +21,41 @@ def as_array(values: Any) -> NDArray[Any]:
     return np.asarray(values)
 
 
-def as_floats(values: Any, name: str) -> Floats:
-    """Returns a C-contiguous array of float64; without a copy if `values` is one."""
-    if type(values) is np.ndarray and values.dtype == np.float64 and values.flags.c_contiguous and values.dtype.isnative:
-        return values
+def as_array(values: Any, name: str) -> NDArray[Any]:
+    """Takes arrays, lists, DataFrames, tensors, and what speaks DLPack."""
     try:
-        array = as_array(values)
-        if array.dtype.kind not in "biufO":
-            raise ArgumentError(f"{name}: numbers are wanted, not {array.dtype}")
-        return np.ascontiguousarray(array, dtype=np.float64).reshape(array.shape)
+        return _taken(values)
     except ArgumentError:
         raise
-    except (TypeError, ValueError, BufferError, RuntimeError) as error:
+    except (TypeError, ValueError, OverflowError, BufferError, RuntimeError) as error:
+        raise ArgumentError(f"{name}: not an array: {error}") from error
+
+
+def _converted(values: Any, name: str, kinds: str) -> NDArray[Any]:
+    """Returns a C-contiguous, aligned array of float64, or of complex128 where `kinds` has c."""
+    try:
+        array = _taken(values)
+        if array.dtype.kind not in kinds:
+            raise ArgumentError(f"{name}: numbers are wanted, not {array.dtype}")
+        wanted = np.complex128 if array.dtype.kind == "c" else np.float64
+        return np.require(array, wanted, "CA").reshape(array.shape)
+    except ArgumentError:
+        raise
+    except (TypeError, ValueError, OverflowError, BufferError, RuntimeError) as error:
         raise ArgumentError(f"{name}: not an array of numbers: {error}") from error
+
+
+def as_floats(values: Any, name: str) -> Floats:
+    """Returns a C-contiguous, aligned array of float64; without a copy if `values` is one."""
+    if type(values) is np.ndarray and values.dtype == np.float64 and values.dtype.isnative:
+        if values.flags.c_contiguous and values.flags.aligned:
+            return values
+    return _converted(values, name, "biufO")
+
+
+def as_values(values: Any, name: str) -> NDArray[Any]:
+    """Returns a C-contiguous, aligned array of float64 or complex128."""
+    return _converted(values, name, "biufOc")
 
 
 def as_rows(values: Any, name: str, columns: tuple[int, ...] = (3,)) -> Floats:
@@ -58,7 +79,7 @@ def as_weights(weights: Any, count: int) -> Floats | None:
 
 def as_queries(xi: Any, columns: int) -> tuple[Floats, tuple[int, ...]]:
     """Returns positions as rows, and the shape of the answers: that of `xi` without its last axis."""
-    if as_array(xi).ndim == 0:
+    if as_array(xi, "xi").ndim == 0:
         raise IndexError("xi: a position is an array of coordinates, not a number")
     array = as_floats(xi, "xi")
     if array.shape[-1] != columns:

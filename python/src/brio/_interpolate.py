@@ -1,12 +1,13 @@
 """Interpolation of values at scattered points, under scipy's names."""
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, as_array, as_floats
+from ._arrays import Floats, as_floats, as_values
 from ._delaunay import Delaunay
 from .errors import ArgumentError
 
@@ -18,11 +19,18 @@ def coordinates(args: Any, ndim: int | None = None) -> Floats:
     if isinstance(args, tuple) and len(args) == 1:
         args = args[0]
     if isinstance(args, tuple):
-        parts = np.broadcast_arrays(*[as_floats(part, "xi") for part in args])
-        return np.stack(parts, axis=-1)
+        parts = [as_floats(part, "xi") for part in args]
+        try:
+            return np.stack(np.broadcast_arrays(*parts), axis=-1)
+        except ValueError as error:
+            raise ArgumentError(f"xi: coordinates that do not fit each other: {error}") from error
     array = as_floats(args, "xi")
+    if array.ndim == 0:
+        raise ArgumentError("xi: a position is an array of coordinates, not a number")
     if array.ndim == 1:
-        array = array.reshape(-1, 1) if ndim is None else array.reshape(-1, ndim)
+        if ndim is not None and array.size % ndim:
+            raise ArgumentError(f"xi: {array.size} numbers are no positions of {ndim} coordinates")
+        array = array.reshape(-1, 1 if ndim is None else ndim)
     return array
 
 
@@ -51,15 +59,15 @@ class _Interpolator:
         self._set_values(values, fill_value)
 
     def _set_values(self, values: Any, fill_value: complex) -> None:
-        array = as_array(values)
+        array = as_values(values, "values")
         if array.ndim == 0 or len(array) != self.tri.npoints:
             raise ArgumentError(f"values: one row a point is wanted: {self.tri.npoints}, not an array of shape {array.shape}")
         self.is_complex = array.dtype.kind == "c"
         self.values_shape = array.shape[1:]
-        flat = array.reshape(len(array), -1)
+        flat = array.reshape(len(array), math.prod(self.values_shape))
         if self.is_complex:
             flat = np.concatenate([flat.real, flat.imag], axis=1)
-        self.values = np.ascontiguousarray(flat, dtype=np.float64)
+        self.values = np.ascontiguousarray(flat)
         self.fill_value = complex(fill_value) if self.is_complex else float(np.real(fill_value))
 
     def __call__(self, *args: Any) -> NDArray[Any]:

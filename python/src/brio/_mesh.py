@@ -57,24 +57,28 @@ class Distance:
 
 def as_indices(values: Any, name: str, columns: int) -> Indices:
     """Returns rows of indices as the library takes them."""
-    array = as_array(values)
+    array = as_array(values, name)
     if array.ndim != 2 or array.shape[1] != columns or array.dtype.kind not in "iu":
         raise ArgumentError(f"{name}: rows of {columns} indices are wanted, not {array.dtype} of shape {array.shape}")
     if array.size and (array.min() < 0 or array.max() >= 2**32 - 1):
         raise ArgumentError(f"{name}: an index is out of range")
-    return np.ascontiguousarray(array, dtype=np.uint32)
+    return np.require(array, np.uint32, "CA").reshape(array.shape)
 
 
 def as_polygons(faces: Any) -> tuple[NDArray[np.uint64], Indices]:
     """Returns offsets and corners of triangles, of rows of k corners, or of a list of polygons."""
     try:
-        array = as_array(faces)
+        array = as_array(faces, "faces")
     except ValueError:  # polygons of several sizes
         array = np.empty(0, object)
     if array.ndim == 2 and array.dtype.kind in "iu":
         k = array.shape[1]
         return np.arange(0, k * len(array) + 1, k, dtype=np.uint64), as_indices(array, "faces", k).ravel()
-    corners = [as_indices([list(face)], "faces", len(face)) for face in faces]
+    try:
+        polygons = [list(face) for face in faces]
+    except TypeError as error:
+        raise ArgumentError(f"faces: rows of indices, or a list of polygons, are wanted: {error}") from error
+    corners = [as_indices([polygon], "faces", len(polygon)) for polygon in polygons]
     offsets = np.zeros(len(corners) + 1, np.uint64)
     np.cumsum([c.shape[1] for c in corners], out=offsets[1:])
     return offsets, np.concatenate([c.ravel() for c in corners]) if corners else np.empty(0, np.uint32)
@@ -230,7 +234,7 @@ class Mesh:
         <brio.Mesh: 3 vertices, 1 faces>
         """
         count = len(self.vertices)
-        chosen = as_array(which)
+        chosen = as_array(which, "which")
         if chosen.dtype.kind == "b" and chosen.shape == (count,):
             chosen = np.flatnonzero(chosen)
         elif chosen.ndim != 1 or (chosen.size and chosen.dtype.kind not in "iu"):
@@ -285,7 +289,7 @@ class Mesh:
         if samples is None:
             rows = nearest(source.vertices, self.vertices, threads, progress)
         else:
-            rows = as_array(samples)
+            rows = as_array(samples, "samples")
             if rows.shape != (len(self.vertices),) or rows.dtype.kind not in "iu":
                 raise ArgumentError(f"samples: one index a vertex is wanted, {len(self.vertices)}, "
                                     f"not {rows.dtype} of shape {rows.shape}")

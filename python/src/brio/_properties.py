@@ -14,7 +14,7 @@ Properties = dict[str, NDArray[Any]]
 
 def as_property(name: str, values: Any, count: int, of: str = "vertex") -> NDArray[Any]:
     """Returns an array of one row a vertex, of any type."""
-    array = as_array(values)
+    array = as_array(values, name)
     if array.ndim == 0 or len(array) != count:
         raise ArgumentError(f"{name}: one row a {of} is wanted, {count}, not {array.shape}")
     return array
@@ -33,7 +33,7 @@ def scalars(properties: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Properties as files take them: one number each, of a type of PLY. Rows of numbers become several properties."""
     out: dict[str, NDArray[Any]] = {}
     for name, values in properties.items():
-        flat = values.reshape(len(values), -1)
+        flat = values.reshape(len(values), prod(values.shape[1:]))
         for k in range(flat.shape[1]):
             out[name if values.ndim == 1 else f"{name}_{k}"] = _scalar(flat[:, k], name)
     return out
