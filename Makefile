@@ -1,14 +1,21 @@
-# The front door. Each target installs what it needs (scripts/setup.sh) and then hands over to CMake.
+# The front door, which hands over to CMake. `make` and `make all` install nothing: what is missing, they name, and `make setup`
+# installs it, as root on Debian (scripts/setup.sh). Every other target installs what it needs first.
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check fuzz python python-heavy python-sanitize bench quality votes thesis machines deb clean
+.PHONY: all setup demo check model threads soak analyze fuzz python python-heavy python-sanitize bench quality votes thesis machines deb clean
 
 all:
 	@sh scripts/setup.sh build
 	cmake --preset release
 	cmake --build build -j $(JOBS) --target brio-cli
+
+setup:
+	@BRIO_SETUP=1 sh scripts/setup.sh build
+
+# Also for `all`, which these build first.
+demo bench quality votes thesis: export BRIO_SETUP := 1
 
 demo: all
 	@sh scripts/demo.sh $(BRIO) out
@@ -24,6 +31,19 @@ fuzz:
 	cmake --preset fuzz
 	cmake --build build-fuzz -j $(JOBS)
 	/usr/bin/python3 tests/fuzz/run.py build-fuzz --minutes $(MINUTES) $(FUZZ)
+
+# The locks, by the model checker spin: docs/reliability.md.
+model:
+	@sh scripts/setup.sh model
+	@sh tests/model/run.sh || [ $$? = 77 ]
+
+# Every command in 2, 3 and 8 threads under the thread sanitizer, on larger inputs than make check has.
+threads:
+	@sh scripts/setup.sh threads
+	cmake --preset threads
+	cmake --build build-threads -j $(JOBS)
+	ctest --test-dir build-threads --output-on-failure -E threads.commands
+	BRIO=build-threads/brio python3 tests/threads/commands.py --long
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:

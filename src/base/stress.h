@@ -1,0 +1,33 @@
+/* What a build for tests of parallel work adds, with the option BRIO_STRESS of CMake: threads give way at random where they
+ * meet, and little work is divided among threads, too. Nothing in any other build. */
+#ifndef BRIO_BASE_STRESS_H
+#define BRIO_BASE_STRESS_H
+
+#ifdef BRIO_STRESS
+
+#include <sched.h>
+#include <stdint.h>
+#include <time.h>
+
+enum { BRIO_STRESSED = 1 };
+
+/** Gives way to other threads, or sleeps for some microseconds, now and then. */
+static inline void brio_stress(void) {
+    static _Thread_local uint64_t random;
+    if (!random) random = (uint64_t)(uintptr_t)&random | 1; /* another one in each thread */
+    random ^= random << 13;
+    random ^= random >> 7;
+    random ^= random << 17;
+    if (random % 8 == 0) sched_yield();
+    if (random % 256 == 1) nanosleep(&(struct timespec){0, (long)(random >> 48)}, NULL);
+}
+
+#else
+
+enum { BRIO_STRESSED = 0 };
+
+static inline void brio_stress(void) {
+}
+
+#endif
+#endif
