@@ -211,7 +211,7 @@ int brio_processors(void) {
 int brio_threads(brio_context *ctx, size_t n, size_t least) {
     brio_team *team = ctx->team;
     int most = brio_context_threads(ctx);
-    if (BRIO_STRESSED) least = 1;
+    if (brio_is_stressed()) least = 1;
     size_t useful = least ? n / least : n;
     int wanted = useful < (size_t)most ? (int)useful : most;
     if (wanted < 2 || team->busy) return 1;

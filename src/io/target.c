@@ -12,6 +12,7 @@
 #include "base/rng.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
@@ -93,18 +94,26 @@ static bool take_permissions(int file, const struct stat *old) {
     return fchmod(file, old->st_mode & kept) == 0;
 }
 
+/* Returns a number that others cannot guess, so that they cannot take the temporary names before. Where the system has none
+ * to give, the name is merely new: it is created, never opened. */
+static uint64_t unguessable(void) {
+    uint64_t seed;
+    if (getentropy(&seed, sizeof seed) == 0) return seed;
+    return (uint64_t)getpid() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
+}
+
 brio_status brio_target_create(brio_target *target, brio_context *ctx, const char *shown, int *file) {
     brio_status status = BRIO_OK;
     size_t size = BRIO_NAME_IN_TEMPORARY + 32;
     struct stat old;
     bool exists = fstatat(target->folder, target->name, &old, 0) == 0;
     BRIO_TRY(BRIO_ALLOC(ctx, target->temporary, size));
-    uint64_t seed = (uint64_t)getpid() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
+    uint64_t seed = unguessable();
     *file = -1;
     for (int i = 0; i < NAME_TRIES && *file < 0; i++) {
-        snprintf(target->temporary, size, "%.*s.part-%08x", kept_bytes(target->name), target->name,
-                 (unsigned)brio_mix(seed + (unsigned)i));
-        *file = openat(target->folder, target->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        snprintf(target->temporary, size, "%.*s.part-%016" PRIx64, kept_bytes(target->name), target->name,
+                 brio_mix(seed + (unsigned)i));
+        *file = openat(target->folder, target->temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (*file < 0 && errno != EEXIST && errno != EINTR) break;
     }
     if (*file < 0) {
