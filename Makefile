@@ -37,6 +37,13 @@ model:
 	@sh scripts/setup.sh model
 	@sh tests/model/run.sh || [ $$? = 77 ]
 
+# Calls of the library for MINUTES in one process, whose memory and open files must not grow.
+soak:
+	@BRIO_SETUP=1 sh scripts/setup.sh build
+	cmake --preset release
+	cmake --build build -j $(JOBS) --target soak
+	build/soak $(MINUTES)
+
 # Every command in 2, 3 and 8 threads under the thread sanitizer, on larger inputs than make check has.
 threads:
 	@sh scripts/setup.sh threads
@@ -44,6 +51,11 @@ threads:
 	cmake --build build-threads -j $(JOBS)
 	ctest --test-dir build-threads --output-on-failure -E threads.commands
 	BRIO=build-threads/brio python3 tests/threads/commands.py --long
+
+# clang-tidy, cppcheck and gcc's analyzer; ANALYZE="src/io/*.c" looks at some files.
+analyze:
+	@sh scripts/setup.sh analyze
+	@sh scripts/analyze.sh $(JOBS) $(ANALYZE)
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:
