@@ -47,10 +47,10 @@ soak:
 # Every command in 2, 3 and 8 threads under the thread sanitizer, on larger inputs than make check has.
 threads:
 	@sh scripts/setup.sh threads
-	cmake --preset threads
-	cmake --build build-threads -j $(JOBS)
-	ctest --test-dir build-threads --output-on-failure -E threads.commands
-	BRIO=build-threads/brio python3 tests/threads/commands.py --long
+	cmake --preset stress
+	cmake --build build-stress -j $(JOBS)
+	ctest --test-dir build-stress --output-on-failure -E threads.commands
+	BRIO=build-stress/brio python3 tests/threads/commands.py --long
 
 # clang-tidy, cppcheck and gcc's analyzer; ANALYZE="src/io/*.c" looks at some files.
 analyze:
@@ -109,4 +109,4 @@ deb:
 	@sh scripts/deb.sh
 
 clean:
-	rm -rf build build-ci build-debug build-fuzz build-sanitize out
+	rm -rf build build-ci build-debug build-analyze build-fuzz build-sanitize build-stress build-threads out
