@@ -67,7 +67,6 @@ finds segments forgets_deferred -DFAIL=false
 finds segments failed_keeps_running -DFAIL=true
 
 holds cavity -DTHREADS=2 -DPOINTS=1
-holds cavity -DTHREADS=2 -DPOINTS=2 -DSTEPS=0 -DRETRIES=0
 finds cavity two_vertices
 finds cavity gives_back_early
 finds cavity takes_not_beyond
