@@ -1,14 +1,21 @@
-# The front door. Each target installs what it needs (scripts/setup.sh) and then hands over to CMake.
+# The front door, which hands over to CMake. `make` and `make all` install nothing: what is missing, they name, and `make setup`
+# installs it, as root on Debian (scripts/setup.sh). Every other target installs what it needs first.
 JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage
+.PHONY: all demo check fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze
 
 all:
 	@sh scripts/setup.sh build
 	cmake --preset release
 	cmake --build build -j $(JOBS) --target brio-cli
+
+setup:
+	@BRIO_SETUP=1 sh scripts/setup.sh build
+
+# Also for `all`, which these build first.
+demo bench quality votes thesis: export BRIO_SETUP := 1
 
 demo: all
 	@sh scripts/demo.sh $(BRIO) out
@@ -58,6 +65,31 @@ bruteforce mutations metamorphic:
 coverage:
 	@sh scripts/setup.sh coverage
 	@sh scripts/coverage.sh $(JOBS) $(COVERAGE)
+
+# The locks, by the model checker spin: docs/reliability.md.
+model:
+	@sh scripts/setup.sh model
+	@sh tests/model/run.sh || [ $$? = 77 ]
+
+# Calls of the library for MINUTES in one process, whose memory and open files must not grow.
+soak:
+	@BRIO_SETUP=1 sh scripts/setup.sh build
+	cmake --preset release
+	cmake --build build -j $(JOBS) --target soak
+	build/soak $(MINUTES)
+
+# Every command in 2, 3 and 8 threads under the thread sanitizer, on larger inputs than make check has.
+threads:
+	@sh scripts/setup.sh threads
+	cmake --preset stress
+	cmake --build build-stress -j $(JOBS)
+	ctest --test-dir build-stress --output-on-failure -E threads.commands
+	BRIO=build-stress/brio python3 tests/threads/commands.py --long
+
+# clang-tidy, cppcheck and gcc's analyzer; ANALYZE="src/io/*.c" looks at some files.
+analyze:
+	@sh scripts/setup.sh analyze
+	@sh scripts/analyze.sh $(JOBS) $(ANALYZE)
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:
@@ -116,4 +148,4 @@ deb:
 	@sh scripts/deb.sh
 
 clean:
-	rm -rf build build-ci build-debug build-faults build-fuzz build-sanitize out build-crosscheck build-coverage
+	rm -rf build build-ci build-debug build-faults build-fuzz build-sanitize out build-crosscheck build-coverage build-analyze build-stress build-threads

@@ -1,6 +1,7 @@
 #!/bin/sh
-# setup.sh build|check|fuzz|coverage|oracles|crosscheck|bench|quality|thesis|machines|deb: sees to the tools that building, testing or measuring needs.
-# What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1.
+# setup.sh PURPOSE: sees to the tools that building, testing or measuring needs; the purposes are those at the end of this file.
+# What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1. For
+# `build` nothing is installed unless BRIO_SETUP is 1, as `make setup` and `make demo` set it.
 set -eu
 
 cmake_least=3.20
@@ -91,6 +92,9 @@ missing() {
         has lintian || echo lintian
         return 0
     fi
+    if [ "$1" = threads ]; then
+        [ -x $python ] || echo python3
+    fi
     [ "$1" = check ] || return 0
     [ -x $python ] || echo python3
     has_python_with numpy || echo python3-numpy
@@ -107,7 +111,14 @@ missing_peers() {
     [ -f /usr/include/zstd.h ] || echo libzstd-dev
     [ -f /usr/include/cjson/cJSON.h ] || echo libcjson-dev
     [ -f /usr/include/expat.h ] || echo libexpat1-dev
-    case $1 in build | fuzz | coverage | oracles | quality | thesis | deb) return 0 ;; esac
+    if [ "$1" = model ]; then
+        has spin || echo spin
+    fi
+    if [ "$1" = analyze ]; then
+        has clang-tidy || echo clang-tidy
+        has cppcheck || echo cppcheck
+    fi
+    case $1 in build | model | threads | analyze | fuzz | coverage | oracles | quality | thesis | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -138,6 +149,12 @@ missing_peers() {
     has gnuplot || echo gnuplot-nox
 }
 
+# Whether to install what is missing.
+may_install() {
+    [ "$purpose" != build ] || [ "${BRIO_SETUP:-}" = 1 ] || return 1
+    [ "$(id -u)" = 0 ] && has apt-get
+}
+
 install() {
     export DEBIAN_FRONTEND=noninteractive
     log=$(mktemp)
@@ -153,7 +170,7 @@ install() {
 install_peers() {
     wanted=$(missing_peers "$1")
     [ -n "$wanted" ] || return 0
-    if [ "$(id -u)" = 0 ] && has apt-get; then
+    if may_install; then
         apt-get update >/dev/null 2>&1 || true
         there=$(for package in $wanted; do apt-cache show "$package" >/dev/null 2>&1 && echo "$package"; done | xargs)
         if [ -n "$there" ]; then
@@ -193,16 +210,16 @@ install_tests_packages() {
 
 purpose=${1:-build}
 case $purpose in
-build | check | fuzz | coverage | oracles | crosscheck | bench | quality | thesis | machines | deb) ;;
+build | check | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | thesis | machines | deb) ;;
 *)
-    echo "usage: setup.sh build|check|fuzz|coverage|oracles|crosscheck|bench|quality|thesis|machines|deb" >&2
+    echo "usage: setup.sh build|check|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|thesis|machines|deb" >&2
     exit 1
     ;;
 esac
 
 install_peers "$purpose"
 packages=$(missing "$purpose" | xargs)
-if [ -n "$packages" ] && [ "$(id -u)" = 0 ] && has apt-get; then
+if [ -n "$packages" ] && may_install; then
     echo "setup: installing $packages"
     # shellcheck disable=SC2086
     install $packages
@@ -215,5 +232,6 @@ if [ -z "$packages" ]; then
 fi
 echo "setup: these are needed and missing: $packages" >&2
 echo "setup: on Debian or Ubuntu: sudo apt-get install $packages" >&2
+[ "$purpose" != build ] || echo "setup: or, as root: make setup" >&2
 case " $packages " in *" cmake "*) echo "setup: cmake has to be $cmake_least or later" >&2 ;; esac
 exit 1

@@ -14,9 +14,6 @@
 #if FLT_EVAL_METHOD != 0
 #error "brio needs doubles that are evaluated as doubles (on 32-bit x86: -msse2 -mfpmath=sse)"
 #endif
-#ifndef __SIZEOF_INT128__
-#error "brio needs a compiler with 128-bit integers"
-#endif
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>

@@ -9,6 +9,11 @@
 /* Most bytes kept outside brio_keep_begin and brio_keep_end. Chosen. */
 static const size_t BETWEEN_CALLS = (size_t)64 << 20;
 
+void brio_unmap(void *base, size_t size) {
+    brio_poison_show(base, size);
+    munmap(base, size);
+}
+
 /* Unmaps the last bytes of kept mapping i. */
 static void cut(brio_context *ctx, int i, size_t size) {
     brio_mapping *m = &ctx->kept[i];

@@ -5,6 +5,9 @@
 
 #include "base/context.h"
 
+/** Unmaps memory; the system may then reuse the addresses. */
+void brio_unmap(void *base, size_t size);
+
 /** Takes `size` bytes, a multiple of BRIO_PAGE, off the smallest kept mapping that has as many. Returns NULL if there
  *  is none. The bytes have the values that they had. */
 void *brio_kept_take(brio_context *ctx, size_t size);

@@ -3,15 +3,15 @@
 #ifndef BRIO_BASE_POINTS_HASH_H
 #define BRIO_BASE_POINTS_HASH_H
 
+#include "base/wide.h"
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
 /** Returns the two halves of a product, joined. */
 static inline uint64_t brio_fold(uint64_t a, uint64_t b) {
-    __extension__ typedef unsigned __int128 wide;
-    wide product = (wide)a * b;
-    return (uint64_t)product ^ (uint64_t)(product >> 64);
+    uint64_t high, low = brio_multiply_add(a, b, 0, 0, &high);
+    return low ^ high;
 }
 
 /** Returns the hash of one point. The hash of an array is the sum of these, which may be

@@ -11,7 +11,6 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <wchar.h>
 #if BRIO_ASAN
 #include <sanitizer/asan_interface.h>
@@ -57,12 +56,6 @@ static inline void brio_poison_show(void *bytes, size_t size) {
     ASAN_UNPOISON_MEMORY_REGION(bytes, size);
 #endif
     (void)bytes, (void)size;
-}
-
-/** Unmaps memory; the system may then reuse the addresses. */
-static inline void brio_unmap(void *base, size_t size) {
-    brio_poison_show(base, size);
-    munmap(base, size);
 }
 
 #endif

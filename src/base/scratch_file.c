@@ -26,7 +26,7 @@ brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file 
     if (file < 0) {
         char name[4096];
         snprintf(name, sizeof name, "%s/brio-XXXXXX", ctx->scratch);
-        file = mkstemp(name);
+        file = mkostemp(name, O_CLOEXEC);
         if (file >= 0) unlink(name);
     }
     if (file < 0) return no_room(ctx, size, errno);

@@ -12,6 +12,7 @@
 #include "base/team.h"
 #include "base/float_state.h"
 #include "base/sanitizers.h"
+#include "base/stress.h"
 #include <assert.h>
 #include <pthread.h>
 #include <sched.h>
@@ -74,6 +75,7 @@ static void gate_free(gate *g) {
 /* The stores and loads of `value` and `sleepers` in gate_change and gate_sleep are sequentially consistent: either the
  * sleeper sees the new value, or gate_change sees the sleeper. */
 static void gate_change(gate *g) {
+    brio_stress();
     __atomic_add_fetch(&g->value, 1, __ATOMIC_SEQ_CST);
     if (!__atomic_load_n(&g->sleepers, __ATOMIC_SEQ_CST)) return;
     pthread_mutex_lock(&g->lock);
@@ -98,6 +100,7 @@ static inline void pause_briefly(void) {
 }
 
 static void gate_wait(gate *g, unsigned old, bool looks) {
+    brio_stress();
     for (int i = 0; looks && i < LOOKS; i++) {
         if (__atomic_load_n(&g->value, __ATOMIC_ACQUIRE) != old) return;
         pause_briefly();
@@ -211,6 +214,7 @@ int brio_processors(void) {
 int brio_threads(brio_context *ctx, size_t n, size_t least) {
     brio_team *team = ctx->team;
     int most = brio_context_threads(ctx);
+    if (brio_is_stressed()) least = 1;
     size_t useful = least ? n / least : n;
     int wanted = useful < (size_t)most ? (int)useful : most;
     if (wanted < 2 || team->busy) return 1;
@@ -262,6 +266,7 @@ void brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void 
 static void do_chunks(void *user, const brio_member *m) {
     loop *l = user;
     for (;;) {
+        brio_stress();
         size_t begin = __atomic_fetch_add(&l->next, l->chunk, __ATOMIC_RELAXED);
         if (begin >= l->n) return;
         l->body(l->user, begin, l->n - begin < l->chunk ? l->n : begin + l->chunk, m->thread);

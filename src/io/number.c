@@ -11,14 +11,13 @@
  * Based on: Clinger. How to read floating point numbers accurately. PLDI 1990. */
 #define _GNU_SOURCE
 #include "io/number.h"
+#include "base/wide.h"
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-
-typedef unsigned __int128 wide;
 
 /* MAX_DIGITS: 10^19 < 2^64. MAX_POWER: 5^27 < 2^64. EXACT_POWER: 10^22 is a double, 10^23 is not. FAR_EXPONENT: chosen,
  * so that no int overflows; strtod decides beyond it. LONGEST_D: of a number with Fortran's exponent, if strtod has to
@@ -46,13 +45,11 @@ static bool is_digit(char c) {
 /* Returns w * 10^power for 0 <= power <= MAX_POWER. The product is exact in 128 bits; of its lower half only matters
  * whether it is 0. */
 static double rounded_product(uint64_t w, int power) {
-    wide product = (wide)w * powers_of_5[power];
-    uint64_t high = (uint64_t)(product >> 64);
-    if (high == 0) return ldexp((double)(uint64_t)product, power);
+    uint64_t high, low = brio_multiply_add(w, powers_of_5[power], 0, 0, &high);
+    if (high == 0) return ldexp((double)low, power);
     int lift = __builtin_clzll(high);
-    product <<= lift;
-    uint64_t sticky = (uint64_t)product != 0;
-    return ldexp((double)((uint64_t)(product >> 64) | sticky), 64 - lift + power);
+    uint64_t lifted = lift ? high << lift | low >> (64 - lift) : high, sticky = low << lift != 0;
+    return ldexp((double)(lifted | sticky), 64 - lift + power);
 }
 
 /* Returns w / 10^power for 0 < power <= MAX_POWER. The quotient has 63 or 64 bits; its last bit also records a
@@ -61,9 +58,8 @@ static double rounded_quotient(uint64_t w, int power) {
     uint64_t divisor = powers_of_5[power];
     int lift_w = __builtin_clzll(w), lift_d = __builtin_clzll(divisor);
     divisor <<= lift_d;
-    wide dividend = (wide)(w << lift_w) << 63;
-    uint64_t quotient = (uint64_t)(dividend / divisor);
-    uint64_t sticky = dividend != (wide)quotient * divisor;
+    uint64_t dividend = w << lift_w, remainder;
+    uint64_t quotient = brio_divide_wide(dividend >> 1, dividend << 63, divisor, &remainder), sticky = remainder != 0;
     return ldexp((double)(quotient | sticky), lift_d - lift_w - 63 - power);
 }
 
@@ -192,15 +188,25 @@ static uint64_t power_of_10(int n) {
     return powers_of_5[n] << n;
 }
 
+/* Returns high 2^64 + low divided by 2^shift, rounded half to even; 0 < shift < 128, and the result is below 2^63. */
+static uint64_t rounded_shift(uint64_t high, uint64_t low, int shift) {
+    if (shift > 64) { /* what is below only matters as being 0 or not */
+        low = high << (128 - shift) | (low != 0);
+        high >>= shift - 64;
+        shift = 64;
+    }
+    uint64_t whole = shift < 64 ? high << (64 - shift) | low >> shift : high, rest = low << (64 - shift) % 64;
+    uint64_t half = UINT64_C(1) << 63;
+    return whole + (rest > half || (rest == half && (whole & 1)));
+}
+
 /* Returns x * 10^power, rounded half to even, for x > 0 and a result below 2^62. */
 static uint64_t scaled(double x, int power) {
     int exponent;
     uint64_t mantissa = (uint64_t)ldexp(frexp(x, &exponent), 53);
     int shift = exponent - 53 + power;
-    wide product = (wide)mantissa * powers_of_5[power];
-    if (shift >= 0) return (uint64_t)(product << shift);
-    wide whole = product >> -shift, rest = product - (whole << -shift), half = (wide)1 << (-shift - 1);
-    return (uint64_t)whole + (rest > half || (rest == half && (whole & 1)));
+    uint64_t high, low = brio_multiply_add(mantissa, powers_of_5[power], 0, 0, &high);
+    return shift >= 0 ? low << shift : rounded_shift(high, low, -shift);
 }
 
 /* Returns what digits_of does, from text that the C library prints. Takes the text apart because its decimal point

@@ -12,6 +12,7 @@
 #include "base/rng.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
@@ -97,11 +98,18 @@ static bool take_permissions(int file, const struct stat *old) {
     return fchmod(file, old->st_mode & kept) == 0;
 }
 
-/* Makes the temporary name of try i. */
-static void make_name(brio_target *target, unsigned i) {
-    uint64_t seed = (uint64_t)getpid() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
-    snprintf(target->temporary, NAME_BYTES, "%.*s.part-%08x", kept_bytes(target->name), target->name,
-             (unsigned)brio_mix(seed + i));
+/* Returns a number that others cannot guess, so that they cannot take the temporary names before. Where the system has none
+ * to give, the name is merely new: it is created, never opened. */
+static uint64_t unguessable(void) {
+    uint64_t seed;
+    if (getentropy(&seed, sizeof seed) == 0) return seed;
+    return (uint64_t)getpid() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
+}
+
+/* Makes a temporary name. */
+static void make_name(brio_target *target) {
+    snprintf(target->temporary, NAME_BYTES, "%.*s.part-%016" PRIx64, kept_bytes(target->name), target->name,
+             brio_mix(unguessable()));
 }
 
 /* Makes a file without a name. Returns -1 where the file system has no such files, or where there is no /proc, through
@@ -120,8 +128,8 @@ static int create_nameless(const brio_target *target) {
 static int create_named(brio_target *target) {
     int file = -1;
     for (unsigned i = 0; i < NAME_TRIES && file < 0; i++) {
-        make_name(target, i);
-        file = openat(target->folder, target->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        make_name(target);
+        file = openat(target->folder, target->temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (file < 0 && errno != EEXIST && errno != EINTR) break;
     }
     target->is_named = file >= 0;
@@ -149,7 +157,7 @@ static bool give_name(brio_target *target, int file) {
     snprintf(path, sizeof path, OPEN_FILE, file);
     target->published = linkat(AT_FDCWD, path, target->folder, target->name, AT_SYMLINK_FOLLOW) == 0;
     for (unsigned i = 0; i < NAME_TRIES && !target->published && !target->is_named && errno == EEXIST; i++) {
-        make_name(target, i);
+        make_name(target);
         target->is_named = linkat(AT_FDCWD, path, target->folder, target->temporary, AT_SYMLINK_FOLLOW) == 0;
     }
     return target->published || target->is_named;

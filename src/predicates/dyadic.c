@@ -1,5 +1,6 @@
 /* Exact arithmetic on dyadic numbers, by schoolbook sums and products of 64-bit limbs. */
 #include "predicates/dyadic.h"
+#include "base/wide.h"
 #include <math.h>
 #include <string.h>
 
@@ -102,11 +103,8 @@ void brio_dyadic_multiply(brio_dyadic *r, const brio_dyadic *x, const brio_dyadi
     }
     for (int32_t i = 0; i < x->size; i++) {
         uint64_t carry = 0;
-        for (int32_t j = 0; j < y->size; j++) {
-            unsigned __int128 t = (unsigned __int128)x->limb[i] * y->limb[j] + r->limb[i + j] + carry;
-            r->limb[i + j] = (uint64_t)t;
-            carry = (uint64_t)(t >> 64);
-        }
+        for (int32_t j = 0; j < y->size; j++)
+            r->limb[i + j] = brio_multiply_add(x->limb[i], y->limb[j], r->limb[i + j], carry, &carry);
         r->limb[i + y->size] = carry;
     }
     trim(r);

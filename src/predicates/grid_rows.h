@@ -5,11 +5,21 @@
 #define BRIO_PREDICATES_GRID_ROWS_H
 
 #include "base/scale.h"
+#include "base/wide.h"
 #include "predicates/span.h"
 #include <stdbool.h>
 
+/* Without integers of 128 bits brio_grid_rows declines all points, and the stage of dyadic numbers decides: the same signs,
+ * later. */
+#if BRIO_HAS_INT128
 typedef __int128 brio_wide;
 typedef unsigned __int128 brio_unsigned_wide;
+#else
+typedef int64_t brio_wide;
+typedef uint64_t brio_unsigned_wide;
+#endif
+
+enum { BRIO_WIDE_BITS = 8 * sizeof(brio_wide), BRIO_HALF_BITS = BRIO_WIDE_BITS / 2 };
 
 /* Sets *d = a - b, rounded. Returns whether *d is exact. */
 static inline bool brio_exact_difference(double a, double b, double *d) {
@@ -25,6 +35,7 @@ static inline bool brio_grid_rows(const double *const *p, int count, const doubl
                                   brio_wide *weight) {
     double d[4][3], w[4];
     brio_span s = BRIO_NO_SPAN;
+    if (!BRIO_HAS_INT128) return false;
     for (int i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
             if (!brio_exact_difference(p[i][k], origin[k], &d[i][k])) return false;
@@ -75,12 +86,14 @@ static inline void brio_add_product(brio_sum256 *sum, brio_wide x, brio_wide y, 
     bool negative = (x < 0) != (y < 0);
     brio_unsigned_wide a = x < 0 ? -(brio_unsigned_wide)x : (brio_unsigned_wide)x;
     brio_unsigned_wide b = y < 0 ? -(brio_unsigned_wide)y : (brio_unsigned_wide)y;
-    uint64_t a0 = (uint64_t)a, a1 = (uint64_t)(a >> 64), b0 = (uint64_t)b, b1 = (uint64_t)(b >> 64);
+    uint64_t a0 = (uint64_t)a, a1 = (uint64_t)(a >> BRIO_HALF_BITS), b0 = (uint64_t)b,
+             b1 = (uint64_t)(b >> BRIO_HALF_BITS);
     brio_unsigned_wide p00 = (brio_unsigned_wide)a0 * b0, p01 = (brio_unsigned_wide)a0 * b1;
     brio_unsigned_wide p10 = (brio_unsigned_wide)a1 * b0;
-    brio_unsigned_wide middle = (p00 >> 64) + (uint64_t)p01 + (uint64_t)p10;
-    brio_unsigned_wide low = middle << 64 | (uint64_t)p00;
-    brio_unsigned_wide high = (brio_unsigned_wide)a1 * b1 + (p01 >> 64) + (p10 >> 64) + (middle >> 64);
+    brio_unsigned_wide middle = (p00 >> BRIO_HALF_BITS) + (uint64_t)p01 + (uint64_t)p10;
+    brio_unsigned_wide low = middle << BRIO_HALF_BITS | (uint64_t)p00;
+    brio_unsigned_wide high =
+        (brio_unsigned_wide)a1 * b1 + (p01 >> BRIO_HALF_BITS) + (p10 >> BRIO_HALF_BITS) + (middle >> BRIO_HALF_BITS);
     if (negative != (s < 0)) {
         low = -low;
         high = ~high + (low == 0);
@@ -90,7 +103,7 @@ static inline void brio_add_product(brio_sum256 *sum, brio_wide x, brio_wide y, 
 }
 
 static inline int brio_sum256_sign(brio_sum256 sum) {
-    if (sum.high >> 127) return -1;
+    if (sum.high >> (BRIO_WIDE_BITS - 1)) return -1;
     return (sum.high | sum.low) != 0;
 }
 

@@ -34,6 +34,7 @@ static brio_status check_options(brio_context *ctx, size_t n, const brio_delauna
     BRIO_REQUIRE(ctx, (unsigned)o->locate < BRIO_LOCATION_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
                  (int)o->locate);
     BRIO_REQUIRE(ctx, o->edges || !o->num_edges, BRIO_ERR_ARGUMENT, "%zu edges, but no array of them", o->num_edges);
+    BRIO_REQUIRE(ctx, o->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1", o->num_edges);
     for (size_t i = 0; i < 2 * o->num_edges; i++)
         BRIO_REQUIRE(ctx, o->edges[i] < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, o->edges[i],
                      n);

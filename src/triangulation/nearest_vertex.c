@@ -15,7 +15,7 @@ enum { LARGE_STAR = 256 };
 /* Differences below this share of their terms may be rounding errors; chosen. */
 static const double TRUSTED = 1e-9;
 /* Far more than squares of subnormal differences can lose; chosen. */
-static const double UNDERFLOW = 0x1p-900;
+static const double LOSS = 0x1p-900;
 
 brio_status brio_nearest_new(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, const uint32_t *vertex_tet,
                              brio_nearest *out) {
@@ -51,7 +51,7 @@ static brio_status remember(brio_nearest *n, brio_nearest_memory *m, uint32_t u)
     const double *a = n->t->record[m->vertex], *b = n->t->record[u];
     double to_a = brio_square_distance(m->centre, a), to_b = brio_square_distance(m->centre, b);
     double margin = to_b - b[3] - (to_a - a[3]);
-    if (margin > TRUSTED * (to_a + to_b + fabs(a[3]) + fabs(b[3])) + UNDERFLOW) {
+    if (margin > TRUSTED * (to_a + to_b + fabs(a[3]) + fabs(b[3])) + LOSS) {
         m->radius = fmin(m->radius, margin / (4 * sqrt(brio_square_distance(a, b))));
         return BRIO_OK;
     }

@@ -14,8 +14,6 @@ brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_op
     size_t n = store->num_points, ends = 2 * options->num_edges;
     uint32_t *record = NULL, *end = NULL, *first, sum = 0;
     memset(out, 0, sizeof *out);
-    BRIO_REQUIRE(store->ctx, options->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1",
-                 options->num_edges);
     BRIO_TRY(BRIO_ALLOC(store->ctx, record, n));
     for (uint32_t p = 0; p < n; p++) record[store->caller[p]] = p;
     BRIO_TRY(BRIO_ALLOC_ZERO(store->ctx, out->first, n + 1));

@@ -9,7 +9,7 @@ typedef struct {
     uint32_t *first, *neighbour;
 } brio_point_graph;
 
-/** Makes the graph of the options' edges. Returns BRIO_ERR_TOO_LARGE beyond 2^31 - 1 edges. The caller frees the
+/** Makes the graph of the options' edges, at most 2^31 - 1. The caller frees the
  *  graph, also after a failure. */
 brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_options *options, brio_point_graph *out);
 void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph);

@@ -4,6 +4,7 @@
  * there is seen. */
 #include "triangulation/zone.h"
 #include "base/memory.h"
+#include "base/stress.h"
 
 enum { SEGMENTS_KEPT = 8 };
 
@@ -22,6 +23,7 @@ void brio_zone_free(brio_context *ctx, brio_zone *zone) {
 
 bool brio_zone_take(brio_zone *zone, uint32_t segment) {
     uint8_t *taken = &zone->taken[segment], none = 0;
+    brio_stress();
     if (__atomic_load_n(taken, __ATOMIC_RELAXED)) return false;
     if (!__atomic_compare_exchange_n(taken, &none, 1, false, __ATOMIC_ACQUIRE, __ATOMIC_RELAXED)) return false;
     zone->segment[zone->count++] = segment;
@@ -30,6 +32,7 @@ bool brio_zone_take(brio_zone *zone, uint32_t segment) {
 
 static void give_back(brio_zone *zone, uint32_t segment) {
     zone->held[segment] = 0;
+    brio_stress();
     __atomic_store_n(&zone->taken[segment], 0, __ATOMIC_RELEASE);
 }
 

@@ -168,18 +168,27 @@ static void four_bytes_of_ones_make_no_wrong_symbol(void) {
     }
 }
 
-/* The same in a file, wherever a layer or a chunk may begin. */
-static void ones_anywhere_in_a_file_are_a_status(void) {
+/* Eight bytes of one value wherever a layer or a chunk may begin, or a size of one may stand. */
+static void fill_anywhere(int value, const char *what) {
     for (int k = 0; k < SAMPLES; k++) {
         size_t size = samples[k].compressed_size;
         uint8_t *bytes = malloc(size);
         for (size_t n = 0; n + 8 <= size; n++) {
             memcpy(bytes, samples[k].compressed, size);
-            memset(bytes + n, 0xff, 8);
-            expect_status("a.laz", bytes, size, "ones", n);
+            memset(bytes + n, value, n % 2 ? 8 : 4);
+            expect_status("a.laz", bytes, size, what, n);
         }
         free(bytes);
     }
+}
+
+static void ones_anywhere_in_a_file_are_a_status(void) {
+    fill_anywhere(0xff, "ones");
+}
+
+/* A layer of no bytes has no decoder: where that of the coordinates was such a one, the program divided by zero. */
+static void a_layer_of_no_bytes_divides_by_no_zero(void) {
+    fill_anywhere(0, "zeros");
 }
 
 /* A chunk that is cut off names the file and the byte. */
@@ -223,6 +232,7 @@ int main(void) {
     RUN(damaged_files_are_a_status);
     RUN(four_bytes_of_ones_make_no_wrong_symbol);
     RUN(ones_anywhere_in_a_file_are_a_status);
+    RUN(a_layer_of_no_bytes_divides_by_no_zero);
     RUN(errors_name_the_place);
     RUN(each_allocation_fails);
     return io_end();

@@ -248,6 +248,8 @@ bool brio_laz_next(brio_laz_decoder *d, uint8_t *rows, size_t count) {
         count--;
         d->first = false;
     }
+    /* a layer without bytes has no coder: all others may be absent, this one only where no second record is */
+    if (count && d->form.layered && !d->coders[BRIO_LAZ_RETURNS_XY].end) return false;
     for (; count; count--, rows += record) {
         if (d->form.layered)
             next_layered_record(d, rows);

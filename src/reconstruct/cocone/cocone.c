@@ -131,12 +131,12 @@ brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_poin
     brio_cocone_options o = STANDARD;
     brio_cocone_surface surface = {0};
     brio_mesh *mesh = NULL;
-    int exponent = exponent_of(points, num_points);
     *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_cocone_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_cocone_options, options, &o));
     BRIO_TRY(check_options(ctx, &o));
-    BRIO_TRY(brio_refuse_points(ctx, points, num_points));
+    BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
+    const int exponent = exponent_of(points, num_points);
     BRIO_TRY(o.pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, &o, &surface)
                           : find_surface(ctx, points, num_points, exponent, &o, &surface));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));

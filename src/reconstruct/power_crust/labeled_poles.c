@@ -53,7 +53,6 @@ done:
 static brio_status take_samples(brio_labeled_poles *l, const double *points) {
     brio_status status = BRIO_OK;
     size_t n = l->num_samples;
-    BRIO_TRY(brio_refuse_points(l->ctx, points, n));
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
     BRIO_TRY(brio_canonical_points(l->ctx, points, n, &l->order));
     brio_copy_points(points, l->order, n, l->points);
@@ -105,6 +104,7 @@ static brio_status prepare(brio_labeled_poles *l, const double *points, const br
     size_t n = l->num_samples;
     double most = request->margin;
     BRIO_REQUIRE(l->ctx, n > 0, BRIO_ERR_NO_ANSWER, "no points, no surface");
+    BRIO_TRY(brio_refuse_points(l->ctx, points, n)); /* before anything is read by their number */
     for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
     if (isfinite(most)) frexp(most, &l->exponent);
     BRIO_TRY(take_samples(l, points));

@@ -1,0 +1,166 @@
+/* Counts from a caller that no array can have: refused before anything is read or allocated by them. */
+#include "harness.h"
+#include "points.h"
+#include <stdint.h>
+
+static double points[3] = {1, 2, 3};
+static uint32_t indices[4] = {0, 1, 2, 3};
+static brio_context *ctx;
+
+/* Counts that wrap when they are multiplied by 3, 4, 8, 24 or 32, or when 1 is added. The least would fit in a size_t, and in
+ * no index. */
+static const size_t COUNTS[] = {SIZE_MAX,          SIZE_MAX - 1,      SIZE_MAX / 2 + 1,  SIZE_MAX / 3 + 1,
+                                SIZE_MAX / 4 + 2,  SIZE_MAX / 8 + 2,  SIZE_MAX / 16 + 2, SIZE_MAX / 24 + 2,
+                                SIZE_MAX / 32 + 2, SIZE_MAX / 72 + 2, SIZE_MAX / 96 + 2, (size_t)UINT32_MAX + 1};
+
+typedef brio_status (*call)(size_t n);
+
+static brio_status delaunay(size_t n) {
+    brio_triangulation *t = NULL;
+    return brio_delaunay(ctx, points, NULL, n, NULL, &t);
+}
+static brio_status delaunay2(size_t n) {
+    brio_triangulation2 *t = NULL;
+    return brio_delaunay2(ctx, points, NULL, n, NULL, &t);
+}
+static brio_status delaunay2_flat(size_t n) {
+    brio_triangulation2 *t = NULL;
+    return brio_delaunay2_flat(ctx, points, NULL, n, NULL, &t);
+}
+static brio_status convex_hull(size_t n) {
+    brio_mesh *mesh = NULL;
+    return brio_convex_hull(ctx, points, n, NULL, &mesh, NULL);
+}
+static brio_status labeled_delaunay(size_t n) {
+    brio_mesh *mesh = NULL;
+    return brio_labeled_delaunay(ctx, points, n, NULL, &mesh, NULL, NULL);
+}
+static brio_status power_crust(size_t n) {
+    brio_mesh *mesh = NULL;
+    return brio_power_crust(ctx, points, n, NULL, &mesh, NULL, NULL);
+}
+static brio_status cocone(size_t n) {
+    brio_mesh *mesh = NULL;
+    return brio_cocone(ctx, points, n, NULL, &mesh, NULL);
+}
+static brio_status offset_surface(size_t n) {
+    brio_mesh *mesh = NULL;
+    return brio_offset_surface(ctx, points, n, 1, NULL, &mesh, NULL);
+}
+static brio_status power_shape(size_t n) {
+    brio_mesh *shape = NULL;
+    return brio_power_shape(ctx, points, n, NULL, &shape, NULL, NULL);
+}
+static brio_status thin(size_t n) {
+    uint8_t chosen[1];
+    return brio_thin(ctx, points, n, 1, chosen, NULL);
+}
+static brio_status outliers(size_t n) {
+    uint8_t outlier[1];
+    return brio_outliers(ctx, points, n, 8, NULL, outlier);
+}
+static brio_status generate(size_t n) {
+    brio_mesh *mesh = NULL;
+    return brio_generate(ctx, BRIO_KIND_CUBE, n, NULL, &mesh);
+}
+static brio_status tetrahedra_check(size_t n) {
+    return brio_tetrahedra_check(ctx, points, NULL, n, indices, 4, 0, NULL);
+}
+static brio_status tetrahedra_check_many(size_t n) {
+    return brio_tetrahedra_check(ctx, points, NULL, 1, indices, 4, n, NULL);
+}
+static brio_status estimate(size_t n) {
+    uint64_t bytes;
+    return brio_estimate_delaunay(ctx, points, NULL, n, NULL, &bytes);
+}
+
+/* Edges were read by their number before it was held against any limit, and twice that number wrapped. */
+static brio_status edges(size_t n) {
+    brio_triangulation *t = NULL;
+    brio_delaunay_options o = brio_delaunay_options_default();
+    o.locate = BRIO_LOCATION_NEIGHBOUR;
+    o.edges = indices;
+    o.num_edges = n;
+    return brio_delaunay(ctx, points, NULL, 1, &o, &t);
+}
+
+/* Of a mesh: a new one for each call. */
+static brio_status of_mesh(size_t n, int way) {
+    static const uint64_t offsets[2] = {0, 3};
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_mesh_new(ctx, &mesh);
+    if (status != BRIO_OK) return status;
+    if (way == 0) status = brio_mesh_set_vertices(mesh, points, n);
+    if (way == 1) status = brio_mesh_set_faces(mesh, offsets, indices, n);
+    if (way == 2) status = brio_mesh_set_tetrahedra(mesh, indices, 4, n);
+    if (way == 3) status = brio_mesh_set_edges(mesh, indices, n);
+    brio_mesh_free(mesh);
+    return status;
+}
+static brio_status set_vertices(size_t n) {
+    return of_mesh(n, 0);
+}
+static brio_status set_faces(size_t n) {
+    return n == (size_t)UINT32_MAX + 1 ? BRIO_ERR_TOO_LARGE : of_mesh(n, 1); /* as many faces can be */
+}
+static brio_status set_tetrahedra(size_t n) {
+    return n == (size_t)UINT32_MAX + 1 ? BRIO_ERR_TOO_LARGE : of_mesh(n, 2);
+}
+static brio_status set_edges(size_t n) {
+    return n == (size_t)UINT32_MAX + 1 ? BRIO_ERR_TOO_LARGE : of_mesh(n, 3);
+}
+
+static const struct {
+    const char *name;
+    call run;
+} CALLS[] = {
+    {"delaunay", delaunay},
+    {"delaunay2", delaunay2},
+    {"delaunay2_flat", delaunay2_flat},
+    {"convex_hull", convex_hull},
+    {"labeled_delaunay", labeled_delaunay},
+    {"power_crust", power_crust},
+    {"cocone", cocone},
+    {"offset_surface", offset_surface},
+    {"power_shape", power_shape},
+    {"thin", thin},
+    {"outliers", outliers},
+    {"generate", generate},
+    {"tetrahedra_check", tetrahedra_check},
+    {"tetrahedra_check_many", tetrahedra_check_many},
+    {"estimate", estimate},
+    {"edges", edges},
+    {"set_vertices", set_vertices},
+    {"set_faces", set_faces},
+    {"set_tetrahedra", set_tetrahedra},
+    {"set_edges", set_edges},
+};
+
+/* The power crust and the co-cone read all points for their scale before they held the number against the limit. */
+static void counts_that_no_array_has_are_refused(void) {
+    for (size_t c = 0; c < sizeof CALLS / sizeof *CALLS; c++) {
+        for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
+            brio_status status = CALLS[c].run(COUNTS[i]);
+            EXPECT(status == BRIO_ERR_TOO_LARGE || status == BRIO_ERR_NO_MEMORY, "%s of %zu: %s", CALLS[c].name,
+                   COUNTS[i], brio_status_string(status));
+            EXPECT(brio_context_memory(ctx) == 0, "%s of %zu", CALLS[c].name, COUNTS[i]);
+        }
+    }
+}
+
+/* The estimates say how much, or the greatest number; they wrap nowhere. */
+static void estimates_do_not_wrap(void) {
+    for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
+        size_t n = COUNTS[i];
+        EXPECT(brio_estimate_delaunay2(n, 1) >= n && brio_estimate_generate(n) >= n, "%zu", n);
+        EXPECT(brio_estimate_iso_surface(n) >= n && brio_estimate_mesh_subdivide(n, 15) >= n, "%zu", n);
+    }
+}
+
+int main(void) {
+    ctx = new_context();
+    RUN(counts_that_no_array_has_are_refused);
+    RUN(estimates_do_not_wrap);
+    brio_context_free(ctx);
+    return harness_end();
+}
