@@ -11,7 +11,7 @@
 
 #define OPEN_FILE "/proc/self/fd/%d" /* the name of an open file */
 
-enum { PATH_BYTES = 32 };
+enum { PATH_BYTES = 32, NAME_TRIES = 100 };
 
 static brio_status fail(run *r, const char *path) {
     return cli_fail(r, errno == ENOMEM ? BRIO_ERR_NO_MEMORY : BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
@@ -72,10 +72,14 @@ static bool give_name(new_file *f, bool *published) {
     char path[PATH_BYTES];
     snprintf(path, sizeof path, OPEN_FILE, fileno(f->file));
     *published = linkat(AT_FDCWD, path, AT_FDCWD, f->target, AT_SYMLINK_FOLLOW) == 0;
-    if (*published || errno != EEXIST) return *published;
-    sprintf(strrchr(f->temporary, '-') + 1, "%06x", (unsigned)getpid() & 0xffffff);
-    f->is_named = linkat(AT_FDCWD, path, AT_FDCWD, f->temporary, AT_SYMLINK_FOLLOW) == 0;
-    return f->is_named;
+    for (int i = 0; i < NAME_TRIES && !*published && !f->is_named && errno == EEXIST; i++) {
+        unsigned number =
+            (unsigned)getpid() + (unsigned)i; /* where the system has no number that others cannot guess */
+        (void)!getentropy(&number, sizeof number);
+        sprintf(strrchr(f->temporary, '-') + 1, "%06x", number & 0xffffff);
+        f->is_named = linkat(AT_FDCWD, path, AT_FDCWD, f->temporary, AT_SYMLINK_FOLLOW) == 0;
+    }
+    return *published || f->is_named;
 }
 
 static bool is_on_disk(int file) {

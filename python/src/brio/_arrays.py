@@ -38,7 +38,7 @@ def _converted(values: Any, name: str, kinds: str) -> NDArray[Any]:
         if array.dtype.kind not in kinds:
             raise ArgumentError(f"{name}: numbers are wanted, not {array.dtype}")
         wanted = np.complex128 if array.dtype.kind == "c" else np.float64
-        return np.require(array, wanted, "CA").reshape(array.shape)
+        return np.require(array, wanted, ["C", "A"]).reshape(array.shape)
     except ArgumentError:
         raise
     except (TypeError, ValueError, OverflowError, BufferError, RuntimeError) as error:

@@ -62,7 +62,7 @@ def as_indices(values: Any, name: str, columns: int) -> Indices:
         raise ArgumentError(f"{name}: rows of {columns} indices are wanted, not {array.dtype} of shape {array.shape}")
     if array.size and (array.min() < 0 or array.max() >= 2**32 - 1):
         raise ArgumentError(f"{name}: an index is out of range")
-    return np.require(array, np.uint32, "CA").reshape(array.shape)
+    return np.require(array, np.uint32, ["C", "A"]).reshape(array.shape)
 
 
 def as_polygons(faces: Any) -> tuple[NDArray[np.uint64], Indices]:
