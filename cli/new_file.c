@@ -73,9 +73,8 @@ static bool give_name(new_file *f, bool *published) {
     snprintf(path, sizeof path, OPEN_FILE, fileno(f->file));
     *published = linkat(AT_FDCWD, path, AT_FDCWD, f->target, AT_SYMLINK_FOLLOW) == 0;
     for (int i = 0; i < NAME_TRIES && !*published && !f->is_named && errno == EEXIST; i++) {
-        unsigned number =
-            (unsigned)getpid() + (unsigned)i; /* where the system has no number that others cannot guess */
-        (void)!getentropy(&number, sizeof number);
+        unsigned number = (unsigned)getpid() + (unsigned)i;
+        (void)!getentropy(&number, sizeof number); /* one that others cannot guess, if the system has any */
         sprintf(strrchr(f->temporary, '-') + 1, "%06x", number & 0xffffff);
         f->is_named = linkat(AT_FDCWD, path, AT_FDCWD, f->temporary, AT_SYMLINK_FOLLOW) == 0;
     }
