@@ -101,6 +101,7 @@ static brio_status list_line(const brio_plane_store *s, brio_triangulation2 *t) 
         if (s->representative[p] == p) t->line[count++] = p;
     brio_sort_indices(t->line, count, compare_places, s);
     for (size_t i = 0; i < count; i++) t->line[i] = s->caller[t->line[i]];
+    t->line_count = count;
     return BRIO_OK;
 }
 
@@ -201,6 +202,6 @@ uint64_t brio_triangulation2_points_hash(const brio_triangulation2 *t) {
     return t->points_hash;
 }
 const uint32_t *brio_triangulation2_line(const brio_triangulation2 *t, size_t *count) {
-    *count = t->line ? t->stats.vertices : 0;
+    *count = t->line_count;
     return t->line;
 }

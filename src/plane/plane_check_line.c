@@ -144,7 +144,7 @@ brio_status brio_plane_check_line(brio_plane_judge *j, brio_plane_record *record
     workspace w = {.j = j, .record = (const brio_plane_record *)record, .line = j->t->line};
     if (j->t->stats.dimension < 1) return check_one_place(&w);
     w.count = j->t->stats.vertices;
-    BRIO_REQUIRE(j->ctx, w.count > 1 && w.count <= j->num_points && w.line, BRIO_ERR_CHECK,
+    BRIO_REQUIRE(j->ctx, w.count > 1 && w.count <= j->num_points && w.count == j->t->line_count, BRIO_ERR_CHECK,
                  "%zu vertices of %zu points on a line", w.count, j->num_points);
     size_t second = 1;
     while (brio_same_place(record[0], record[second])) second++;

@@ -28,7 +28,7 @@ static void errors_of_tags(void) {
                     "no array of points");
     expect_points_error("1", "format=\"hex\"", "", "appended, binary or ascii");
     expect_points_error("1", "format=\"appended\" offset=\"0\"", "", "a tag AppendedData");
-    expect_points_error("18446744073709551615", "format=\"ascii\"", "1 2 3", "has 1 rows");
+    expect_points_error("18446744073709551615", "format=\"ascii\"", "1 2 3", "a number NumberOfPoints, found");
 }
 
 static void errors_of_text(void) {
@@ -82,7 +82,8 @@ static void errors_of_appended_arrays(void) {
     expect_appended_error("", "0", right, 0, "ends at byte");
     expect_appended_error("", "9", right, 4, "bytes");
     expect_appended_error("", "1000", right, 4, "beyond the end of the file");
-    expect_appended_error("", "18446744073709551615", right, 4, "where another one is");
+    expect_appended_error("", "9223372036854775807", right, 4, "where another one is");
+    expect_appended_error("", "9223372036854775808", right, 4, "a number offset");
     expect_appended_error("", "99999999999999999999", right, 4, "a number offset");
     expect_appended_error("", "0", &most, 1, "promises 18446744073709551615 bytes");
     if (num_ways() < NUM_WAYS) return;
@@ -203,6 +204,18 @@ static void bomb_is_held_against_the_limit(void) {
     brio_mesh_free(back);
 }
 
+/* The greatest number stood for a number that is not known: then offsets were read behind the end of their array. */
+static void as_many_cells_as_no_array_has_are_refused(void) {
+    io_expect_error("a.vtp",
+                    VTP_TAG
+                    "><PolyData><Piece NumberOfPoints=\"3\" NumberOfPolys=\"18446744073709551615\"><Points><DataArray "
+                    "type=\"Int8\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points>"
+                    "<Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray>"
+                    "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3</DataArray></Polys></Piece>"
+                    "</PolyData></VTKFile>",
+                    BRIO_ERR_FORMAT, "a number NumberOfPolys, found \"18446744073709551615\"");
+}
+
 int main(void) {
     io_begin();
     RUN(errors_of_tags);
@@ -211,6 +224,7 @@ int main(void) {
     RUN(errors_of_appended_arrays);
     RUN(sizes_of_blocks_are_held_against_the_bytes);
     RUN(errors_of_cells);
+    RUN(as_many_cells_as_no_array_has_are_refused);
     RUN(bomb_is_held_against_the_limit);
     return io_end();
 }

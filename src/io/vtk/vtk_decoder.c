@@ -62,7 +62,7 @@ static uint64_t most_left(const brio_vtk_decoder *d) {
 }
 
 static brio_status expect(const brio_vtk_decoder *d, uint64_t bytes) {
-    if (bytes <= most_left(d)) return BRIO_OK;
+    if (bytes <= most_left(d) && bytes != UINT64_MAX) return BRIO_OK; /* which stands for a text, of unknown size */
     return brio_fail(d->stream->ctx, BRIO_ERR_FORMAT,
                      "%s: byte %" PRIu64 ": array %s promises %" PRIu64 " bytes, the file has at most %" PRIu64,
                      d->stream->name, brio_stream_offset(d->stream), d->array->name, bytes, most_left(d));

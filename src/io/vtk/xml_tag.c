@@ -116,7 +116,8 @@ bool brio_xml_attribute_is(const char *tag, const char *name, const char *expect
 brio_status brio_xml_count(brio_stream *s, const char *tag, const char *name, uint64_t *count) {
     char value[BRIO_XML_VALUE] = "";
     const char *p = value;
-    if (brio_xml_attribute(tag, name, value) && brio_parse_count(&p, count) && !*p) return BRIO_OK;
+    if (brio_xml_attribute(tag, name, value) && brio_parse_count(&p, count) && !*p && *count <= UINT64_MAX >> 1)
+        return BRIO_OK;
     return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": expected a number %s, found \"%s\"", s->name,
                      brio_stream_offset(s), name, brio_excerpt_of(value).text);
 }

@@ -26,7 +26,8 @@ bool brio_xml_is_empty(const char *tag);
 bool brio_xml_attribute(const char *tag, const char *name, char value[BRIO_XML_VALUE]);
 /** Returns whether an attribute has this value. */
 bool brio_xml_attribute_is(const char *tag, const char *name, const char *value);
-/** Reads an attribute that is a number. Fails if the tag has no such attribute. */
+/** Reads an attribute that is a number. Fails if the tag has no such attribute, or one of 2^63 or more, which
+ *  no file has, so that sums of two have room. */
 brio_status brio_xml_count(brio_stream *s, const char *tag, const char *name, uint64_t *count);
 
 /** Returns the error of a place, which it names, where something else was expected. */
