@@ -82,7 +82,7 @@ static void errors_of_appended_arrays(void) {
     expect_appended_error("", "0", right, 0, "ends at byte");
     expect_appended_error("", "9", right, 4, "bytes");
     expect_appended_error("", "1000", right, 4, "beyond the end of the file");
-    expect_appended_error("", "9223372036854775807", right, 4, "where another one is");
+    expect_appended_error("", "9223372036854775807", right, 4, "beyond the end of the file");
     expect_appended_error("", "9223372036854775808", right, 4, "a number offset");
     expect_appended_error("", "99999999999999999999", right, 4, "a number offset");
     expect_appended_error("", "0", &most, 1, "promises 18446744073709551615 bytes");
