@@ -39,7 +39,7 @@ brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *
 
 void brio_pole_vectors_free(brio_context *ctx, brio_pole_vectors *v);
 
-/** Frees the centres, planes and poles: 250 of 270 bytes a sample of a surface. The sides stay. */
+/** Frees the centres, planes and poles: some 260 bytes a sample of a surface. The sides, 14, stay. */
 void brio_pole_vectors_drop(brio_context *ctx, brio_pole_vectors *v);
 
 /** Writes the row of `centre` of a tetrahedron; computes it, with the same bits, if the centres were freed. */

@@ -12,12 +12,11 @@
 #include "base/context.h"
 
 typedef struct brio_target {
-    int folder;    /* descriptor, or -1 if there is none */
-    char *name;    /* of the file in the folder */
-    bool is_new;   /* whether the output is a new file: one of brio_target_create */
-    bool replaces; /* whether there was a file of that name when the new one was made */
-    bool
-        is_named; /* whether there is a file of the temporary name: the new one or, once that is published, the old one */
+    int folder;      /* descriptor, or -1 if there is none */
+    char *name;      /* of the file in the folder */
+    bool is_new;     /* whether the output is a new file: one of brio_target_create */
+    bool replaces;   /* whether there was a file of that name when the new one was made */
+    bool is_named;   /* whether a file has the temporary name: the new one or, once that is published, the old one */
     bool published;  /* whether the new file has the target's name */
     char *temporary; /* room for a temporary name, or NULL */
 } brio_target;
