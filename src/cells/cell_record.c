@@ -21,11 +21,6 @@ static inline double in_lengths(const brio_diagram *d, double x, int power) {
     return x;
 }
 
-/* A volume or an area that doubles cannot hold: its terms are infinite, of either sign. */
-static inline double held(double x) {
-    return isnan(x) ? INFINITY : x;
-}
-
 /* --- numbers of a cell --- */
 
 /* Numbers of a cell, scaled, relative to the site. */
@@ -37,9 +32,9 @@ typedef struct {
 static void store_numbers(const brio_cell_job *job, uint32_t site, const cell_numbers *n) {
     const brio_diagram *d = job->d;
     size_t cell = job->cell_of[site];
-    job->out->volume[cell] = held(in_lengths(d, n->volume, 3));
+    job->out->volume[cell] = brio_cells_held(in_lengths(d, n->volume, 3));
     job->out->bounded[cell] = n->bounded;
-    if (job->areas) job->out->area[cell] = held(in_lengths(d, n->area, 2));
+    if (job->areas) job->out->area[cell] = brio_cells_held(in_lengths(d, n->area, 2));
     for (size_t k = 0; k < 3 && job->centroids; k++)
         job->out->centroid[3 * cell + k] =
             in_lengths(d, d->at[3 * (size_t)site + k] + n->centroid[k], 1) + d->origin[k];
@@ -86,7 +81,7 @@ static void unit_normal(const brio_diagram *d, uint32_t site, int64_t neighbour,
 
 static double area_of(const brio_side *s) {
     double area = 0.5 * sqrt(brio_dot(s->area, s->area));
-    return s->open || isnan(area) ? INFINITY : area;
+    return s->open ? INFINITY : brio_cells_held(area);
 }
 
 static brio_status record_side(const brio_cell_job *job, brio_cell_recorder *r, const brio_side *s) {
@@ -94,7 +89,7 @@ static brio_status record_side(const brio_cell_job *job, brio_cell_recorder *r, 
     double normal[3];
     size_t count = 0;
     unit_normal(job->d, r->star.site, (int64_t)s->site, normal);
-    BRIO_TRY(begin_face(r, (int64_t)s->site, held(in_lengths(job->d, area_of(s), 2)), normal));
+    BRIO_TRY(begin_face(r, (int64_t)s->site, brio_cells_held(in_lengths(job->d, area_of(s), 2)), normal));
     if (job->vertices) BRIO_TRY(brio_star_cell_polygon(&r->star, s, &count));
     for (size_t i = 0; i < count; i++) BRIO_TRY(add_corner(r, r->star.polygon[i]));
 done:
@@ -106,7 +101,8 @@ static brio_status record_star(const brio_cell_job *job, brio_cell_recorder *r) 
     brio_status status = BRIO_OK;
     cell_numbers n = {.bounded = !c->open};
     n.volume = c->place == BRIO_PLACE_INSIDE ? brio_star_cell_volume(c) : INFINITY;
-    for (const brio_side *s = c->side; s < c->side + c->num_sides; s++) {
+    for (size_t i = 0; i < c->num_sides; i++) {
+        const brio_side *s = &c->side[i];
         if (s->vertices < 3 || s->site >= job->d->num_points) continue;
         if (job->areas) n.area += area_of(s);
         if (job->faces) BRIO_TRY(record_side(job, r, s));
@@ -172,7 +168,7 @@ static brio_status record_shape(const brio_cell_job *job, brio_cell_recorder *r)
     uint32_t num_own = 0;
     BRIO_TRY(BRIO_RESERVE(r->ctx, r->own, r->own_capacity, p->num_vertices));
     for (size_t v = 0; v < p->num_vertices; v++) r->own[v] = UINT32_MAX;
-    n.volume = fmax(0, brio_polyhedron_volume(p, job->centroids ? moment : NULL));
+    n.volume = brio_polyhedron_volume(p, job->centroids ? moment : NULL);
     for (size_t f = 0; f < p->faces.count && (job->areas || job->faces); f++) {
         double vector[3], area;
         brio_polyhedron_area(p, &p->faces.list[f], vector);

@@ -6,6 +6,7 @@
 #define BRIO_CELLS_CELL_RECORD_H
 
 #include "cells/clip.h"
+#include <math.h>
 
 /** A face, in the caller's lengths. */
 typedef struct brio_cell_face {
@@ -51,6 +52,12 @@ typedef struct brio_cell_job {
     brio_cell_recorder *recorder;           /* one a thread */
     int threads;
 } brio_cell_job;
+
+/** Returns a computed volume or area as the result has it. Where doubles cannot hold it, its terms are infinite, of either
+ *  sign; where it is nothing, rounding can make it negative. */
+static inline double brio_cells_held(double x) {
+    return isfinite(x) ? fmax(x, 0) : INFINITY;
+}
 
 /** Computes the cell of a vertex and records it.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_cell_record(const brio_cell_job *job, brio_cell_recorder *r, uint32_t site);

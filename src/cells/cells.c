@@ -246,8 +246,7 @@ static brio_status compute_volumes(brio_cell_job *job) {
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, volume, d->num_vertices));
     BRIO_TRY(brio_diagram_add_volumes(d, volume));
     for (size_t c = 0; c < out->num_cells; c++) {
-        double x = volume[d->rank[out->site[c]]] * inverse * inverse * inverse;
-        out->volume[c] = isnan(x) ? INFINITY : x; /* more than doubles hold */
+        out->volume[c] = brio_cells_held(volume[d->rank[out->site[c]]] * inverse * inverse * inverse);
         out->bounded[c] = 1;
     }
 done:

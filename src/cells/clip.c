@@ -15,7 +15,8 @@ static brio_status cut_from_region(const brio_star_cell *c, const brio_region *r
     brio_status status = BRIO_OK;
     bool neighbours = false, faces = false;
     BRIO_TRY(brio_polyhedron_copy(p, &region->shape, site));
-    for (const brio_side *s = c->side; s < c->side + c->num_sides && p->faces.count; s++) {
+    for (size_t i = 0; i < c->num_sides && p->faces.count; i++) {
+        const brio_side *s = &c->side[i];
         double plane[4];
         if (s->site >= d->num_points) continue;
         neighbours = true;
@@ -49,14 +50,15 @@ static brio_status take_cell(brio_star_cell *c, brio_polyhedron *p) {
     brio_status status = BRIO_OK;
     brio_polyhedron_clear(p);
     memset(c->slot, 0, c->num_slots * sizeof *c->slot);
-    for (const brio_side *s = c->side; s < c->side + c->num_sides; s++) {
+    for (size_t i = 0; i < c->num_sides; i++) {
+        const brio_side *s = &c->side[i];
         size_t count;
         uint32_t vertex;
         if (s->vertices < 3) continue;
         BRIO_TRY(brio_star_cell_polygon(c, s, &count));
         BRIO_TRY(brio_polyhedron_add_face(p, (int64_t)s->site));
-        for (size_t i = 0; i < count; i++) {
-            BRIO_TRY(vertex_of(c, p, c->polygon[i], &vertex));
+        for (size_t j = 0; j < count; j++) {
+            BRIO_TRY(vertex_of(c, p, c->polygon[j], &vertex));
             BRIO_TRY(brio_polyhedron_add_corner(p, vertex));
         }
     }

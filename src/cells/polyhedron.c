@@ -95,7 +95,8 @@ brio_status brio_polyhedron_copy(brio_polyhedron *p, const brio_polyhedron *from
         double x[3] = {from->x[v][0] - origin[0], from->x[v][1] - origin[1], from->x[v][2] - origin[2]};
         BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME));
     }
-    for (const brio_face *face = f->list; face < f->list + f->count; face++) {
+    for (size_t i = 0; i < f->count; i++) {
+        const brio_face *face = &f->list[i];
         BRIO_TRY(brio_polyhedron_add_face(p, face->neighbour));
         for (size_t c = face->begin; c < face->end; c++) BRIO_TRY(brio_polyhedron_add_corner(p, f->corner[c]));
     }
@@ -236,7 +237,8 @@ static void add_moment(const brio_polyhedron *p, const brio_face *face, double *
 double brio_polyhedron_volume(const brio_polyhedron *p, double *moment) {
     const brio_faces *f = &p->faces;
     double volume = 0, area[3];
-    for (const brio_face *face = f->list; face < f->list + f->count; face++) {
+    for (size_t i = 0; i < f->count; i++) {
+        const brio_face *face = &f->list[i];
         if (face->begin == face->end) continue;
         brio_polyhedron_area(p, face, area);
         volume += brio_dot(area, p->x[f->corner[face->begin]]) / 3;

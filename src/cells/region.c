@@ -90,7 +90,8 @@ static bool is_box(const brio_region *r) {
 static double volume_of(const brio_region *r) {
     const brio_faces *f = &r->shape.faces;
     double volume = 0, area[3], to[3];
-    for (const brio_face *face = f->list; face < f->list + f->count; face++) {
+    for (size_t i = 0; i < f->count; i++) {
+        const brio_face *face = &f->list[i];
         brio_polyhedron_area(&r->shape, face, area);
         for (int k = 0; k < 3; k++) to[k] = r->shape.x[f->corner[face->begin]][k] - r->middle[k];
         volume += brio_dot(area, to) / 3;

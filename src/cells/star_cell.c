@@ -122,8 +122,10 @@ brio_status brio_star_cell_fill(brio_star_cell *c, uint32_t site, bool moments) 
 
 double brio_star_cell_volume(const brio_star_cell *c) {
     double volume = 0;
-    for (const brio_side *s = c->side; s < c->side + c->num_sides; s++)
+    for (size_t i = 0; i < c->num_sides; i++) {
+        const brio_side *s = &c->side[i];
         if (s->vertices > 2) volume += brio_dot(s->foot, s->area) / 6;
+    }
     return volume;
 }
 

@@ -502,22 +502,64 @@ static void a_region_too_flat_for_doubles_is_refused(void) {
     brio_context_free(ctx);
 }
 
-/* Centres beyond doubles made the volume and the areas NaN. */
+/* Centres beyond doubles made the volume and the areas NaN, in the other set minus infinity. */
 static void what_doubles_cannot_hold_is_infinite(void) {
-    static const double points[] = {
-        5e-324, -4, -4, -4, 6.999999999999973, 5e-324, -1, -2, -4, -4, -4, -6.312163081858048e+212, -4, -4, -4};
+    static const double points[2][36] = {
+        {5e-324, -4, -4, -4, 6.999999999999973, 5e-324, -1, -2, -4, -4, -4, -6.312163081858048e+212, -4, -4, -4},
+        {4,
+         5,
+         -1.0000000000000001e-09,
+         1,
+         9.7882873059849429e+97,
+         -2,
+         0.99999999999998579,
+         -3,
+         6,
+         2,
+         -4,
+         1e-150,
+         1e+17,
+         6,
+         -8.7843122217192694e-127,
+         -1.2199398052693137e-60,
+         8,
+         1e+100,
+         5,
+         11,
+         -9.8110353327812743e+197,
+         0.33333333333333331,
+         6.7534574514433321e-59,
+         1e+17,
+         1,
+         11,
+         3,
+         -0.,
+         3,
+         10,
+         1,
+         6,
+         4,
+         2.5095400757544485e+76,
+         1e+17,
+         6}};
+    static const double weights[12] = {
+        -8.7843122217192694e-127, -1.2199398052693137e-60, 8,     1e+100, 5, 11, -9.8110353327812743e+197,
+        0.33333333333333331,      6.7534574514433321e-59,  1e+17, 1,      11};
     brio_context *ctx = new_context();
-    for (int areas = 0; areas < 2; areas++) {
+    for (int run = 0; run < 4; run++) {
+        bool areas = run % 2;
         brio_cells_options o = brio_cells_options_default();
         brio_cells *cells;
         o.areas = o.centroids = o.faces = areas;
-        EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, 5, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_voronoi_cells(ctx, NULL, points[run / 2], run < 2 ? NULL : weights, run < 2 ? 5 : 12, &o, &cells) ==
+                   BRIO_OK,
+               "%s", brio_message(ctx));
         for (size_t c = 0; c < cells->num_cells; c++) {
-            EXPECT(cells->volume[c] >= 0, "cell %zu: volume %g", c, cells->volume[c]);
-            EXPECT(!areas || cells->area[c] >= 0, "cell %zu: area %g", c, cells->area[c]);
+            EXPECT(cells->volume[c] >= 0, "run %d, cell %zu: volume %g", run, c, cells->volume[c]);
+            EXPECT(!areas || cells->area[c] >= 0, "run %d, cell %zu: area %g", run, c, cells->area[c]);
         }
         for (uint64_t f = 0; areas && f < cells->face_offsets[cells->num_cells]; f++)
-            EXPECT(cells->face_areas[f] >= 0, "face %llu", (unsigned long long)f);
+            EXPECT(cells->face_areas[f] >= 0, "run %d, face %llu", run, (unsigned long long)f);
         brio_cells_free(cells);
     }
     brio_context_free(ctx);

@@ -5,7 +5,11 @@
 #include <pthread.h>
 #include <unistd.h>
 
-enum { N = 40000 };
+#ifdef BRIO_SHORT_TESTS /* the thread sanitizer takes twenty times as long */
+enum { N = 12000, REPETITIONS = 8, SPARSE = 4 };
+#else
+enum { N = 40000, REPETITIONS = 20, SPARSE = 1 };
+#endif
 
 static double points[3 * N], weights[N];
 
@@ -56,7 +60,7 @@ static void make_set(int set) {
 static void every_number_of_threads_gives_the_same_arrays(void) {
     for (int set = 0; set < 6; set++) {
         make_set(set);
-        size_t n = set == 4 ? 20000 : N;
+        size_t n = set == 4 ? N / 2 : N;
         for (int weighted = 0; weighted < 2; weighted++) {
             brio_delaunay_stats one, many;
             uint64_t expected = fingerprint(points, weighted ? weights : NULL, n, 1, &one), deferred = 0;
@@ -75,7 +79,7 @@ static void repeated_runs_give_the_same_arrays(void) {
     brio_delaunay_stats stats;
     make_set(5);
     uint64_t expected = fingerprint(points, NULL, N, 1, &stats);
-    for (int run = 0; run < 20; run++)
+    for (int run = 0; run < REPETITIONS; run++)
         EXPECT(fingerprint(points, NULL, N, 1 + run % 8, &stats) == expected, "run %d", run);
 }
 
@@ -147,7 +151,7 @@ static void cancelled_threads_free_everything(void) {
 static void memory_running_out_in_a_thread_is_a_status(void) {
     make_set(0);
     int refused = 0, done = 0;
-    for (size_t limit = (size_t)1 << 22; limit < (size_t)1 << 27; limit += limit / 6) {
+    for (size_t limit = (size_t)100 * N; limit < (size_t)3200 * N; limit += limit / 6) {
         brio_context *ctx = new_context();
         brio_triangulation *t;
         brio_context_set_threads(ctx, 4);
@@ -167,7 +171,7 @@ static void few_tetrahedra_allowed_is_a_status(void) {
     brio_context *ctx = new_context();
     brio_triangulation *t;
     brio_delaunay_options o = brio_delaunay_options_default();
-    o.max_tetrahedra = 200000;
+    o.max_tetrahedra = 5 * N;
     brio_context_set_threads(ctx, 4);
     EXPECT(brio_delaunay(ctx, points, NULL, N, &o, &t) == BRIO_ERR_TOO_LARGE && !t);
     EXPECT(brio_context_memory(ctx) == 0);
@@ -204,13 +208,13 @@ static brio_status run_with_failure(size_t n, size_t k, bool *reached) {
  * cavities are larger than their stars and joined by a hash table: a thread once went on after it had failed there. */
 static void failed_allocations_in_threads_are_statuses(void) {
     for (int set = 0; set < 2; set++) {
-        size_t n = set ? 1500 : 20000;
+        size_t n = set ? 1500 : N / 2;
         if (set)
             skew_lines(n);
         else
             make_set(0);
         bool reached = true;
-        for (size_t k = 1; k < 1000 && reached; k += set ? 11 : 37) {
+        for (size_t k = 1; k < 1000 && reached; k += SPARSE * (set ? 11 : 37)) {
             brio_status status = run_with_failure(n, k, &reached);
             EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_MEMORY, "set %d, allocation %zu: %d", set, k,
                    (int)status);

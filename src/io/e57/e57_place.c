@@ -24,7 +24,8 @@ bool brio_e57_pose_make(brio_e57_pose *pose, const brio_e57_scan *scan) {
 }
 
 void brio_e57_from_spherical(double *points, size_t num_points) {
-    for (double *p = points; p < points + 3 * num_points; p += 3) {
+    for (size_t i = 0; i < num_points; i++) {
+        double *p = points + 3 * i;
         double range = p[0], azimuth = p[1], elevation = p[2], flat = range * cos(elevation);
         p[0] = flat * cos(azimuth);
         p[1] = flat * sin(azimuth);
@@ -55,9 +56,8 @@ void brio_e57_turn_normals(const brio_e57_pose *pose, brio_mesh *mesh, size_t fi
 
 void brio_e57_move(const brio_e57_pose *pose, double *points, size_t num_points) {
     const double *t = pose->translation;
-    for (double *p = points; p < points + 3 * num_points && pose->turns; p += 3) turn(pose->matrix, p);
-    for (double *p = points; p < points + 3 * num_points && pose->moves; p += 3)
-        for (int k = 0; k < 3; k++) p[k] += t[k];
+    for (size_t i = 0; i < num_points && pose->turns; i++) turn(pose->matrix, points + 3 * i);
+    for (size_t i = 0; i < 3 * num_points && pose->moves; i++) points[i] += t[i % 3];
 }
 
 static size_t keep(char *values, size_t size, const uint8_t *invalid, size_t count) {

@@ -9,6 +9,7 @@
 #include "io/glb/json.h"
 #include "base/memory.h"
 #include <cjson/cJSON.h>
+#include <errno.h>
 
 /* BLOCK: bytes of malloc for a block of its own. Both chosen. */
 enum { MOST_LEVELS = 64, BLOCK = 32 };
@@ -47,7 +48,9 @@ brio_status brio_json_parse(brio_json_document *d, const char *text, size_t size
     /* a value, its key and its string, which together are no longer than the text */
     BRIO_TRY(BRIO_ALLOC(d->ctx, reserve, e.values * (sizeof(cJSON) + 3 * BLOCK) + size));
     d->reserve = reserve;
+    errno = 0; /* by which malloc tells, as the parser does not */
     d->root = cJSON_ParseWithLengthOpts(text, size, &end, 0);
+    BRIO_REQUIRE(d->ctx, d->root || errno != ENOMEM, BRIO_ERR_NO_MEMORY, "%s: no memory for the JSON", d->name);
     BRIO_REQUIRE(d->ctx, d->root, BRIO_ERR_FORMAT, "%s: byte %zu of the JSON: expected JSON", d->name,
                  end ? (size_t)(end - text) : 0);
 done:
