@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "estimate.h"
 #include "files.h"
+#include "interrupt.h"
 #include "properties.h"
 #include "weights.h"
 #include <errno.h>
@@ -51,7 +52,9 @@ static brio_status write_filtration(run *r, const char *path, const brio_alpha_c
     uint32_t *order = malloc(total * sizeof *order);
     if (!order) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for the order of %zu simplices", total);
     TRY(brio_alpha_order(r->ctx, complex, order));
-    TRY(brio_write_filtration(r->ctx, path, complex, order, filtration_format(path)));
+    cli_interrupt_writing(strcmp(path, "-") != 0);
+    status = brio_write_filtration(r->ctx, path, complex, order, filtration_format(path));
+    cli_interrupt_writing(false);
     cli_lap(r, "filtration");
 done:
     free(order);

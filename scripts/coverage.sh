@@ -1,7 +1,8 @@
 #!/bin/sh
 # coverage.sh JOBS [OPTION OF CTEST...]: builds with clang's counters, runs the tests whose programs are built here and the
 # inputs that fuzzers kept (tests/fuzz/corpus, out/fuzz/corpus), and says which lines and branches of src and cli they reach:
-# a table by folder, out/coverage/index.html, and out/coverage/missed.txt, the lines that nothing reached.
+# a table by folder, out/coverage/index.html, and what nothing reached: out/coverage/missed.txt has lines, sides.txt sides of
+# branches. Files are read and written in blocks of 64 bytes here (src/io/blocks.h), so that they can fail anywhere.
 #
 # A test that fails does not end the run. Processes that are killed leave no counts.
 set -eu
@@ -31,4 +32,4 @@ set -- build-coverage/brio -object build-coverage/fuzz_cli -instr-profile "$out/
     -ignore-filename-regex '/(tests|include|build-coverage)/'
 llvm-cov show "$@" -format=html -show-branches=count -output-dir "$out" -project-title brio >/dev/null
 llvm-cov export "$@" >"$out/all.json"
-/usr/bin/python3 tests/coverage.py "$out/all.json" "$PWD" "$out/missed.txt"
+/usr/bin/python3 tests/coverage.py "$out/all.json" "$PWD" "$out"

@@ -11,6 +11,7 @@
 #define BRIO_IO_BUILDER_H
 
 #include "base/finite.h"
+#include "io/blocks.h"
 
 #define BRIO_MAX_VERTICES ((uint64_t)UINT32_MAX - 16)
 
@@ -27,7 +28,6 @@ typedef struct brio_names {
     size_t count, capacity;
 } brio_names;
 
-enum { BRIO_BLOCK_ROWS = 1 << 16 /* vertices of a block, at most, unless a reader adds more at once; chosen */ };
 #define BRIO_COUNT_UNKNOWN UINT64_MAX
 
 typedef struct brio_builder {

@@ -6,6 +6,7 @@
 #include "io/output.h"
 #include "base/memory.h"
 #include "base/quiet_signals.h"
+#include "io/blocks.h"
 #include "io/number.h"
 #include "io/wait.h"
 #include <errno.h>
@@ -17,8 +18,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Bytes of the buffer. Chosen. */
-enum { BLOCK = 1 << 20 };
+enum { BLOCK = BRIO_IO_BLOCK };
 
 static brio_status fail(brio_output *out) {
     return brio_fail(out->ctx, BRIO_ERR_WRITE, "%s: %s", out->name, strerror(errno));

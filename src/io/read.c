@@ -2,13 +2,15 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
+#include "io/blocks.h"
 #include "io/read_job.h"
 #include "io/unpack.h"
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
 
-enum { START = 4096 }; /* bytes of a file in which its content may show the format */
+/* Bytes of a file in which its content may show the format. */
+enum { START = BRIO_IO_BLOCK < 4096 ? BRIO_IO_BLOCK : 4096 };
 
 static const struct {
     const char *extension;

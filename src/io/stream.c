@@ -5,6 +5,7 @@
  * MAX_LINE. */
 #include "io/stream.h"
 #include "base/memory.h"
+#include "io/blocks.h"
 #include "io/crc32.h"
 #include "io/unpack.h"
 #include "io/wait.h"
@@ -17,8 +18,7 @@
 
 #define BYTE_ORDER_MARK "\xef\xbb\xbf" /* of UTF-8: some editors begin texts with it */
 
-/* Both chosen. */
-enum { BLOCK = 1 << 20, MAX_LINE = 1 << 28 };
+enum { BLOCK = BRIO_IO_BLOCK, MAX_LINE = 1 << 28 /* chosen */ };
 
 /* Opens a file. A FIFO is opened at once, without a writer: the wait for its first bytes can be cancelled. */
 static int open_input(const char *path) {

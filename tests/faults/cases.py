@@ -82,8 +82,8 @@ interpolate {i}/valued.csv --at {i}/cube.xyz --property height --method linear -
 locate {i}/cube.xyz --at {i}/grid.xyz -o {o}/a.csv --json
 locate {i}/cube.xyz --at {i}/grid.xyz -o {o}/a.npy --json
 locate {i}/cube.xyz --at {i}/grid.xyz -o - --format csv
-iso {i}/atoms.pdb --resolution 8 -o {o}/a.ply --json
-iso {i}/atoms.pdb --resolution 6 --delaunay-conforming -o {o}/a.ply --json
+iso {i}/atoms.pdb --level 1 --resolution 8 -o {o}/a.ply --json
+iso {i}/atoms.pdb --level 0.5 --resolution 6 --delaunay-conforming -o {o}/a.ply --json
 subdivide {i}/mesh.ply -o {o}/a.ply --json
 check {i}/mesh.ply --self-intersections --json
 check {i}/solid.node --json
