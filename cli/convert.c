@@ -46,6 +46,10 @@ static void on_lost(const char *name, void *user) {
 }
 
 static void report_lost(run *r, const char *path, const facts *lost) {
+    if (lost->failed) {
+        r->facts.failed = true;
+        return;
+    }
     cli_fact_open(&r->facts, "lost", FACT_LIST);
     for (size_t i = 0; i < lost->count; i++) cli_fact_text(&r->facts, NULL, lost->list[i].text);
     cli_fact_close(&r->facts);

@@ -29,6 +29,10 @@ static fact *add(facts *f, const char *name, fact_kind kind) {
 }
 
 void cli_fact_text(facts *f, const char *name, const char *text) {
+    if (!text) {
+        cli_fact_null(f, name);
+        return;
+    }
     fact *new = add(f, name, FACT_TEXT);
     if (!f->failed) new->text = copy_text(f, text);
 }

@@ -24,6 +24,19 @@ static bool has_flag(int argc, char **argv, const char *flag) {
     return false;
 }
 
+/* What is printed needs no memory: without a buffer, the C library loses it in silence. */
+static void buffer_output(void) {
+    static char buffer[BUFSIZ];
+    setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
+}
+
+/* Whether standard output took all that was printed. */
+static bool printed(void) {
+    if (fflush(stdout) == 0 && !ferror(stdout)) return true;
+    fprintf(stderr, "brio: standard output: %s\n", strerror(errno));
+    return false;
+}
+
 /* Facts to where they are asked for; false when standard output does not take them. */
 static bool report(run *r, brio_status status, int code) {
     bool answered = status == BRIO_OK || status == BRIO_ERR_CHECK;
@@ -46,9 +59,7 @@ static bool report(run *r, brio_status status, int code) {
         cli_json_write(stdout, &r->facts, name);
     else if (answered && !r->common.quiet)
         cli_text_write(data_on_stdout ? stderr : stdout, &r->facts, name, r->common.verbose);
-    if (fflush(stdout) == 0 && !ferror(stdout)) return true;
-    fprintf(stderr, "brio: standard output: %s\n", strerror(errno));
-    return false;
+    return printed();
 }
 
 /* After a signal any failure is an interruption: a call of the system that it cut short looks like another error. */
@@ -120,7 +131,7 @@ static int run_command(const command *c, int argc, char **argv) {
     if (help) {
         cli_print_command_help(stdout, c, has_flag(argc, argv, "--verbose"));
         free(arguments);
-        return fflush(stdout) == 0 ? 0 : 6;
+        return printed() ? 0 : cli_exit_code(BRIO_ERR_WRITE);
     }
     TRY(cli_begin(&r));
     cli_opening_facts(&r);
@@ -152,7 +163,7 @@ static int help(int argc, char **argv) {
         cli_print_help(stdout);
     else
         return unknown_command(subject, false);
-    return fflush(stdout) == 0 ? 0 : 6;
+    return printed() ? 0 : cli_exit_code(BRIO_ERR_WRITE);
 }
 
 static bool is_one_of(const char *word, const char *a, const char *b) {
@@ -161,6 +172,7 @@ static bool is_one_of(const char *word, const char *a, const char *b) {
 
 int main(int argc, char **argv) {
     cli_interrupt_install();
+    buffer_output();
     if (argc < 2) {
         fputs("brio: no command\nbrio: see 'brio --help'\n", stderr);
         return 1;
@@ -176,5 +188,5 @@ int main(int argc, char **argv) {
     if (is_one_of(first, "--help", "-h")) return help(0, NULL);
     if (!is_one_of(first, "--version", "-V")) return unknown_command(first, has_flag(argc - 2, argv + 2, "--json"));
     printf("brio %s\n", brio_version());
-    return fflush(stdout) == 0 ? 0 : 6;
+    return printed() ? 0 : cli_exit_code(BRIO_ERR_WRITE);
 }

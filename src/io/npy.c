@@ -119,19 +119,39 @@ static brio_status put(brio_context *ctx, growing_text *t, const char *format, .
     return BRIO_OK;
 }
 
+/* Writes a name as Python quotes it: a backslash behind a backslash. Other quotes are no part of names here. */
+static brio_status put_name(brio_context *ctx, growing_text *text, const char *name) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(put(ctx, text, "'"));
+    for (; *name; name++) BRIO_TRY(put(ctx, text, *name == '\\' ? "\\\\" : "%c", *name));
+    BRIO_TRY(put(ctx, text, "'"));
+done:
+    return status;
+}
+
+/* Returns whether a name is not ASCII, so that the header is UTF-8, which version 3.0 is for. */
+static bool needs_utf8(const brio_write_job *job) {
+    for (size_t i = 0; i < job->mesh->num_properties; i++)
+        for (const char *c = job->names[i]; *c; c++)
+            if ((unsigned char)*c > 127) return true;
+    return false;
+}
+
 /* Makes the dictionary of Python up to the number of rows. */
 static brio_status make_start(brio_context *ctx, const brio_write_job *job, growing_text *text) {
     static const char *const types[BRIO_SCALAR_END] = {"i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"};
     const char order = brio_host_is_little() ? '<' : '>', *real = job->options->float32 ? "f4" : "f8";
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    BRIO_TRY(put(ctx, text, "............{'descr': ")); /* version 2.0: a length of 32 bits */
+    BRIO_TRY(put(ctx, text, "............{'descr': ")); /* versions 2.0 and 3.0: a length of 32 bits */
     for (int k = 0; k < 3 && m->num_properties; k++)
         BRIO_TRY(put(ctx, text, "%s('%c', '%c%s')", k ? ", " : "[", "xyz"[k], order, real));
     for (size_t i = 0; i < m->num_properties; i++) {
         brio_scalar type = m->properties[i].type;
         char letter = brio_scalar_size(type) == 1 ? '|' : order;
-        BRIO_TRY(put(ctx, text, ", ('%s', '%c%s')", job->names[i], letter, types[type]));
+        BRIO_TRY(put(ctx, text, ", ("));
+        BRIO_TRY(put_name(ctx, text, job->names[i]));
+        BRIO_TRY(put(ctx, text, ", '%c%s')", letter, types[type]));
     }
     if (m->num_properties)
         BRIO_TRY(put(ctx, text, "]"));
@@ -153,7 +173,7 @@ static brio_status begin(brio_output *out, const brio_write_job *job, void *stat
     BRIO_TRY(put(out->ctx, &text, "%" PRIu64 "%s", job->points, w->behind));
     while ((text.used + 1) % 64) BRIO_TRY(put(out->ctx, &text, " "));
     BRIO_TRY(put(out->ctx, &text, "\n"));
-    memcpy(text.bytes, "\x93NUMPY\x02\x00", 8);
+    memcpy(text.bytes, needs_utf8(job) ? "\x93NUMPY\x03\x00" : "\x93NUMPY\x02\x00", 8);
     brio_put_le32(text.bytes + 8, (uint32_t)(text.used - 12));
     if (job->points == BRIO_COUNT_UNKNOWN) w->room = text.used - 1 - w->at;
     BRIO_TRY(brio_output_bytes(out, text.bytes, text.used));

@@ -17,6 +17,7 @@ typedef struct {
     brio_stream *stream;
     const char *start, *at; /* the dictionary ends with a 0 */
     uint64_t offset;        /* the byte of the file at which it begins */
+    bool latin;             /* Latin-1, as versions 1.0 and 2.0 are; else UTF-8 */
 } parser;
 
 static brio_status expected(const parser *p, const char *what) {
@@ -39,14 +40,25 @@ static bool take(parser *p, char c) {
     return true;
 }
 
-/* Reads a string in quotes. Escapes are not known. */
+/* The quote that ends a string, or NULL. Behind a backslash it is one of its characters. */
+static const char *end_of_string(const char *at, char quote) {
+    while (*at && *at != quote) at += *at == '\\' && at[1] ? 2 : 1;
+    return *at ? at : NULL;
+}
+
+/* Reads a string in quotes. Of Python's escapes those of a backslash and a quote are known. */
 static brio_status take_string(parser *p, char text[64]) {
     char quote = take(p, '\'') ? '\'' : take(p, '"') ? '"' : 0;
-    const char *end = quote ? strchr(p->at, quote) : NULL;
-    if (!end || end - p->at > 63 || memchr(p->at, '\\', (size_t)(end - p->at)))
-        return expected(p, "a string of at most 63 characters in quotes");
-    memcpy(text, p->at, (size_t)(end - p->at));
-    text[end - p->at] = 0;
+    const char *end = quote ? end_of_string(p->at, quote) : NULL;
+    size_t n = 0;
+    for (; end && p->at < end && n < 63; p->at++) {
+        bool escaped = *p->at == '\\';
+        if (escaped && !strchr("\\'\"", p->at[1])) break;
+        p->at += escaped;
+        text[n++] = *p->at;
+    }
+    if (!end || p->at < end) return expected(p, "a string of at most 63 characters in quotes");
+    text[n] = 0;
     p->at = end + 1;
     return BRIO_OK;
 }
@@ -97,6 +109,20 @@ done:
     return status;
 }
 
+/* Makes a name of Latin-1 UTF-8. */
+static brio_status make_utf8(const parser *p, char name[64]) {
+    char source[64];
+    size_t n = 0;
+    strcpy(source, name);
+    for (const unsigned char *c = (const unsigned char *)source; *c; c++) {
+        if (n + 1 + (*c > 127) > 63) return expected(p, "a name of at most 63 bytes in UTF-8 before here");
+        if (*c > 127) name[n++] = (char)(0xc0 | *c >> 6);
+        name[n++] = (char)(*c > 127 ? 0x80 | (*c & 0x3f) : *c);
+    }
+    name[n] = 0;
+    return BRIO_OK;
+}
+
 /* Reads [('x', '<f8'), ...]. A field without a name is padding in NumPy, which writes it as bytes '|V4'. */
 static brio_status take_records(parser *p, brio_npy_header *h) {
     brio_status status = BRIO_OK;
@@ -105,6 +131,7 @@ static brio_status take_records(parser *p, brio_npy_header *h) {
     while (!take(p, ']')) {
         if (!take(p, '(')) return expected(p, "( or ] in the list of fields");
         BRIO_TRY(take_string(p, name));
+        if (p->latin) BRIO_TRY(make_utf8(p, name));
         if (!take(p, ',')) return expected(p, "a comma");
         BRIO_TRY(take_string(p, type));
         if (!take(p, ')')) return expected(p, ") behind the type: fields of several numbers are not read");
@@ -143,7 +170,7 @@ static brio_status skip_value(parser *p) {
         char c = *p->at;
         if (!c) return expected(p, "the end of the value of descr");
         if (c == '\'' || c == '"') {
-            const char *end = strchr(p->at + 1, c);
+            const char *end = end_of_string(p->at + 1, c);
             if (!end) return expected(p, "a string that ends");
             p->at = end;
         }
@@ -218,15 +245,15 @@ done:
     return status;
 }
 
-/* Reads the text of the header, which ends with a 0 in *text, owned by the caller. */
-static brio_status read_text(brio_stream *s, char **text, uint64_t *offset) {
+/* Reads the text of the header into *text, which the caller owns, and begins to parse it. */
+static brio_status read_text(brio_stream *s, char **text, parser *p) {
     brio_status status = BRIO_OK;
     const char *bytes = NULL;
     brio_stream_element(s, "header", 1);
     BRIO_TRY(brio_stream_take(s, 8, &bytes));
     BRIO_REQUIRE(s->ctx, !memcmp(bytes, "\x93NUMPY", 6) && bytes[6] >= 1 && bytes[6] <= 3, BRIO_ERR_FORMAT,
                  "%s: byte 0: expected \\x93NUMPY and a version 1 to 3", s->name);
-    bool wide = bytes[6] > 1;
+    bool wide = bytes[6] > 1, latin = bytes[6] < 3;
     BRIO_TRY(brio_stream_take(s, wide ? 4 : 2, &bytes));
     size_t size = wide ? brio_le32(bytes) : brio_le16(bytes);
     BRIO_REQUIRE(s->ctx, size <= MOST_HEADER, BRIO_ERR_FORMAT, "%s: byte 8: a header of %zu bytes, expected at most %d",
@@ -235,7 +262,7 @@ static brio_status read_text(brio_stream *s, char **text, uint64_t *offset) {
     BRIO_TRY(BRIO_ALLOC(s->ctx, *text, size + 1));
     memcpy(*text, bytes, size);
     (*text)[size] = 0;
-    *offset = wide ? 12 : 10;
+    *p = (parser){s, *text, *text, wide ? 12 : 10, latin};
 done:
     return status;
 }
@@ -243,11 +270,10 @@ done:
 brio_status brio_npy_header_read(brio_stream *s, brio_npy_header *h) {
     brio_status status = BRIO_OK;
     char *text = NULL;
-    uint64_t offset = 0;
+    parser p;
     dictionary d = {.descr = NULL};
     *h = (brio_npy_header){.num_fields = 0};
-    BRIO_TRY(read_text(s, &text, &offset));
-    parser p = {s, text, text, offset};
+    BRIO_TRY(read_text(s, &text, &p));
     BRIO_TRY(parse(&p, &d));
     BRIO_TRY(make_fields(&p, &d, h));
 done:
@@ -258,11 +284,10 @@ done:
 brio_status brio_npy_array_read(brio_stream *s, brio_npy_array *array) {
     brio_status status = BRIO_OK;
     char *text = NULL, type[64];
-    uint64_t offset = 0;
+    parser p;
     dictionary d = {.descr = NULL};
     *array = (brio_npy_array){.known = false};
-    BRIO_TRY(read_text(s, &text, &offset));
-    parser p = {s, text, text, offset};
+    BRIO_TRY(read_text(s, &text, &p));
     BRIO_TRY(parse(&p, &d));
     memcpy(array->shape, d.shape, sizeof d.shape);
     array->dimensions = d.dimensions;

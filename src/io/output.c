@@ -47,24 +47,27 @@ static brio_status open_special(brio_output *out, const char *path, const struct
     return out->owned ? BRIO_OK : fail(out);
 }
 
-/* Returns whether the target's name leads to the file that the path opened. It does not if the file has no name any
- * more, as can happen with /dev/stdout. */
-static bool is_named(const brio_target *target, const struct stat *facts) {
+/* Finds whether the target's name leads to the file that the path opened. It does not if the file has no name any more,
+ * as can happen with /dev/stdout. */
+static brio_status find_named(brio_output *out, const struct stat *facts, bool *named) {
     struct stat found;
-    return fstatat(target->folder, target->name, &found, 0) == 0 && found.st_ino == facts->st_ino &&
-           found.st_dev == facts->st_dev;
+    bool exists = fstatat(out->target.folder, out->target.name, &found, 0) == 0;
+    *named = exists && found.st_ino == facts->st_ino && found.st_dev == facts->st_dev;
+    return exists || errno == ENOENT ? BRIO_OK : fail(out);
 }
 
 /* Opens a file. Symbolic links stay; the file that they lead to is replaced. */
 static brio_status open_file(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
     struct stat old;
-    bool exists = stat(path, &old) == 0;
+    bool exists = stat(path, &old) == 0, named = true;
+    if (!exists && errno != ENOENT) return fail(out);
     if (exists && !S_ISREG(old.st_mode)) return open_special(out, path, &old);
     /* a rename does not check whether the old file may be written */
     if (exists && access(path, W_OK) != 0) return fail(out);
     BRIO_TRY(brio_target_find(&out->target, out->ctx, path, out->name));
-    if (exists && !is_named(&out->target, &old)) {
+    if (exists) BRIO_TRY(find_named(out, &old, &named));
+    if (!named) {
         out->file = open(path, O_WRONLY | O_CLOEXEC | O_TRUNC);
         if (out->file < 0) return fail(out);
     } else {

@@ -142,6 +142,7 @@ brio_status brio_target_create(brio_target *target, brio_context *ctx, const cha
     bool exists = fstatat(target->folder, target->name, &old, 0) == 0;
     target->replaces = exists;
     *file = -1;
+    if (!exists && errno != ENOENT) return fail(ctx, shown, errno);
     BRIO_TRY(BRIO_ALLOC(ctx, target->temporary, NAME_BYTES));
     *file = create_nameless(target);
     if (*file < 0) *file = create_named(target);

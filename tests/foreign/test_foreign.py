@@ -235,6 +235,18 @@ class NpyTest(ForeignTest):
             self.expect_equal(records[name].astype(float), points[name].astype(float), name)
             self.expect_equal(records[name].astype(float), again[name].astype(float), name)
 
+    def test_names_with_escapes(self):
+        names = ["x", "y", "z", "a\\b", "\\", "it's", 'so "called"', "\\'\"", "h\u00f6he", "x" * 63]
+        records = numpy.zeros(5, dtype=[(name, "<f8") for name in names])
+        for name in names:
+            records[name] = self.random.standard_normal(5)
+        numpy.save(self.path("a.npy"), records)
+        self.convert(self.path("a.npy"), self.path("b.npy"))
+        again = numpy.load(self.path("b.npy"))
+        self.assertEqual(again.dtype.names, (*names[:5], "it_s", "so__called_", "\\__", *names[8:]))
+        for name, written in zip(names, again.dtype.names):
+            self.expect_equal(records[name], again[written], name)
+
     def test_write_rows(self):
         rows = self.random.standard_normal((30, 3))
         numpy.save(self.path("a.npy"), rows)

@@ -36,7 +36,7 @@ static void change_cloud(fuzz_input *in, cloud *c) {
     }
     for (size_t i = c->n; i > 1; i--) swap_rows(c, i - 1, fuzz_below(in, i));
     double most = 0;
-    for (size_t i = 0; i < c->n; i++) most = fmax(most, c->weights[i] / 4);
+    for (size_t i = 0; i < c->n; i++) most = fmax(most, fabs(c->weights[i]) / 4);
     for (size_t i = 0; i < 3 * c->n; i++) most = fmax(most, fabs(c->points[i]));
     if (most > 1e300 || (c->weighted && most > 1e70)) return;
     for (size_t i = 0; i < 3 * c->n; i++) c->points[i] *= 2;

@@ -20,7 +20,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-SLICE = 120  # seconds of the clock between two looks at the processor time
+SLICE = 600  # seconds of the clock between two looks at the processor time
 MOST_FINDINGS = 3  # of a subject, before it is left
 LONGEST_KEPT, MOST_KEPT = 700, 60  # bytes, inputs of a subject
 
