@@ -26,7 +26,9 @@
 /* HEADER: a cache line. FRONT: the bytes before a mapped block. */
 enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = BRIO_MAP_FROM };
 
-typedef enum { KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
+/* KIND_LOST is what is left of a header in a scratch file that somebody cut: zeros. Not even the size of such a block is
+ * known, so that its mapping and its file stay. */
+typedef enum { KIND_LOST, KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
 typedef struct {
     size_t size;            /* bytes of the block and of what is in front of it */
@@ -219,6 +221,7 @@ static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_stat
 void brio_release(brio_context *ctx, void *block) {
     if (!block) return;
     block_header h = *header_of(block);
+    if (h.kind == KIND_LOST) return;
     if (h.kind != KIND_FILE) account_sub(ctx, h.size);
     if (h.kind == KIND_HEAP)
         ctx->allocator.free(base_of(block), ctx->allocator.user);
@@ -230,6 +233,10 @@ void brio_release(brio_context *ctx, void *block) {
 }
 
 /* --- blocks in scratch files --- */
+
+static brio_status lost(brio_context *ctx) {
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", ctx->scratch);
+}
 
 void brio_expect_random(const void *block) {
     const block_header *h = header_of(block);
@@ -253,6 +260,7 @@ void brio_block_expect(const void *block, size_t offset, size_t size) {
 
 brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset, void *to, size_t size) {
     const block_header *h = header_of(block);
+    if (h->kind == KIND_LOST) return lost(ctx);
     if (h->kind == KIND_FILE) return brio_scratch_read(ctx, &h->file, FRONT + offset, to, size);
     memcpy(to, (const char *)block + offset, size);
     return BRIO_OK;
@@ -260,6 +268,7 @@ brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset,
 
 brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, const void *from, size_t size) {
     const block_header *h = header_of(block);
+    if (h->kind == KIND_LOST) return lost(ctx);
     if (h->kind == KIND_FILE) return brio_scratch_write(ctx, &h->file, FRONT + offset, from, size);
     memcpy((char *)block + offset, from, size);
     return BRIO_OK;
@@ -286,10 +295,10 @@ static void *block_remap(brio_context *ctx, void *block, size_t target, brio_sta
         *status = refuse(ctx, target);
         return NULL;
     }
-    if (file && !grows) brio_scratch_shrink(&h.file, target);
     header_of(base + FRONT)->size = target;
+    if (file && !grows) *status = brio_scratch_shrink(ctx, &h.file, target);
     header_of(base + FRONT)->file = h.file;
-    return base + FRONT;
+    return *status == BRIO_OK ? base + FRONT : NULL;
 }
 
 static void *block_move(brio_context *ctx, void *block, size_t size, brio_status *status) {
@@ -342,6 +351,10 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
     if (!block_bytes(ctx, count, size, &bytes, status)) return NULL;
     if (!block) return block_new(ctx, bytes, false, status);
     block_kind kind = header_of(block)->kind;
+    if (kind == KIND_LOST) {
+        *status = lost(ctx);
+        return NULL;
+    }
     bool mapped = !ctx->custom && bytes >= MAP_FROM;
     /* the sanitizers of threads and memory do not see mremap: their shadow memory would stay at the old addresses */
     if (kind != KIND_HEAP && mapped && !BRIO_TSAN && !BRIO_MSAN)

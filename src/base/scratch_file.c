@@ -2,7 +2,10 @@
  *
  * Data that is read or written once, in sequence, does not profit from the system's cache, which costs a copy and
  * memory that other arrays need. So transfers of whole pages bypass the cache, where the file system can do that. Other
- * transfers go through the cache, and their pages are released at once. */
+ * transfers go through the cache, and their pages are released at once.
+ *
+ * Somebody else may cut a file, and the next call that grows it fills what is lost with zeros. So each file ends with a
+ * mark, which is lost with anything before it, and every call here looks for it after its work. */
 #define _GNU_SOURCE
 #include "base/scratch_file.h"
 #include "base/quiet_signals.h"
@@ -12,95 +15,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
-
-static brio_status no_room(brio_context *ctx, size_t size, int error) {
-    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s",
-                     ctx->scratch ? ctx->scratch : "scratch", size, strerror(error));
-}
-
-brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {
-    int file = open(ctx->scratch, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-    if (file < 0) {
-        char name[4096];
-        snprintf(name, sizeof name, "%s/brio-XXXXXX", ctx->scratch);
-        file = mkostemp(name, O_CLOEXEC);
-        if (file >= 0) unlink(name);
-    }
-    if (file < 0) return no_room(ctx, size, errno);
-    *out = (brio_scratch_file){.cached = file, .direct = -1};
-    brio_status status = brio_scratch_grow(ctx, out, size);
-    if (status != BRIO_OK) brio_scratch_close(out);
-    /* a page fault reads one page unless the block is read in sequence, see memory.c */
-    if (status == BRIO_OK) posix_fadvise(file, 0, 0, POSIX_FADV_RANDOM);
-    return status;
-}
-
-/* Fails if somebody else has cut a file. */
-static brio_status require_whole(brio_context *ctx, const brio_scratch_file *f) {
-    struct stat facts;
-    if (fstat(f->cached, &facts) == 0 && (size_t)facts.st_size >= f->size) return BRIO_OK;
-    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", ctx->scratch);
-}
-
-/* Allocates space. The signals are blocked, because a limit on the size of files raises one. Where the file system
- * cannot allocate, the C library writes a byte to each block instead. */
-static int allocate(int file, size_t offset, size_t size) {
-    brio_quiet_signals quiet;
-    brio_signals_block(&quiet);
-    int error = posix_fallocate(file, (off_t)offset, (off_t)size);
-    brio_signals_restore(&quiet);
-    return error;
-}
-
-/* Shrinks a file. If this fails, the space is lost only until the file is closed. */
-static void cut(int file, size_t size) {
-    brio_quiet_signals quiet;
-    brio_signals_block(&quiet);
-    while (ftruncate(file, (off_t)size) != 0 && errno == EINTR) {}
-    brio_signals_restore(&quiet);
-}
-
-/* Allocates in pieces of PIECE bytes (chosen). A signal that the process handles ends a call early, and some file
- * systems then give back all that the call had allocated. With one call for all bytes, the signals of a timer could
- * keep it from ever ending. */
-brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size) {
-    enum { PIECE = 1 << 24 };
-    brio_status status = require_whole(ctx, f);
-    if (status != BRIO_OK) return status;
-    for (size_t at = f->size; at < size;) {
-        size_t piece = size - at < PIECE ? size - at : PIECE;
-        int error = allocate(f->cached, at, piece);
-        if (error == EINTR) continue;
-        if (error) {
-            cut(f->cached, f->size);
-            return no_room(ctx, size, error);
-        }
-        at += piece;
-    }
-    f->size = size;
-    return BRIO_OK;
-}
-
-void brio_scratch_shrink(brio_scratch_file *f, size_t size) {
-    cut(f->cached, size);
-    f->size = size;
-}
-
-void brio_scratch_close(brio_scratch_file *f) {
-    close(f->cached);
-    if (f->direct >= 0) close(f->direct);
-}
-
-void brio_scratch_direct(brio_scratch_file *f, bool direct) {
-    char name[64];
-    if (direct == (f->direct >= 0)) return;
-    snprintf(name, sizeof name, "/proc/self/fd/%d", f->cached);
-    if (!direct) close(f->direct);
-    f->direct = direct ? open(name, O_RDWR | O_DIRECT | O_CLOEXEC) : -1;
-}
 
 /* --- transfers --- */
 
@@ -144,6 +60,130 @@ static brio_status move_all(brio_context *ctx, const brio_scratch_file *f, trans
     return BRIO_OK;
 }
 
+/* --- the mark --- */
+
+static const char MARK[8] = {'b', 'r', 'i', 'o', ' ', 'e', 'n', 'd'};
+
+/* Writes what is behind the file's bytes. */
+static brio_status put(brio_context *ctx, const brio_scratch_file *f, const char bytes[sizeof MARK]) {
+    bool direct;
+    return move_all(ctx, f, (transfer){.offset = f->size, .size = sizeof MARK, .out = bytes}, &direct);
+}
+
+/* Fails if somebody else has cut a file. */
+static brio_status require_whole(brio_context *ctx, const brio_scratch_file *f) {
+    char found[sizeof MARK] = {0};
+    ssize_t n;
+    do n = pread(f->cached, found, sizeof found, (off_t)f->size);
+    while (n < 0 && errno == EINTR);
+    if (!memcmp(found, MARK, sizeof MARK)) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", ctx->scratch);
+}
+
+/* --- size --- */
+
+static brio_status no_room(brio_context *ctx, size_t size, int error) {
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s",
+                     ctx->scratch ? ctx->scratch : "scratch", size, strerror(error));
+}
+
+brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {
+    int file = open(ctx->scratch, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (file < 0) {
+        char name[4096];
+        snprintf(name, sizeof name, "%s/brio-XXXXXX", ctx->scratch);
+        file = mkostemp(name, O_CLOEXEC);
+        if (file >= 0) unlink(name);
+    }
+    if (file < 0) return no_room(ctx, size, errno);
+    *out = (brio_scratch_file){.cached = file, .direct = -1};
+    brio_status status = brio_scratch_grow(ctx, out, size);
+    if (status != BRIO_OK) brio_scratch_close(out);
+    /* a page fault reads one page unless the block is read in sequence, see memory.c */
+    if (status == BRIO_OK) posix_fadvise(file, 0, 0, POSIX_FADV_RANDOM);
+    return status;
+}
+
+/* Allocates space. The signals are blocked, because a limit on the size of files raises one. Where the file system
+ * cannot allocate, the C library writes a byte to each block instead. */
+static int allocate(int file, size_t offset, size_t size) {
+    brio_quiet_signals quiet;
+    brio_signals_block(&quiet);
+    int error = posix_fallocate(file, (off_t)offset, (off_t)size);
+    brio_signals_restore(&quiet);
+    return error;
+}
+
+/* Shrinks a file. If this fails, the space is lost only until the file is closed. */
+static void cut(int file, size_t size) {
+    brio_quiet_signals quiet;
+    brio_signals_block(&quiet);
+    while (ftruncate(file, (off_t)size) != 0 && errno == EINTR) {}
+    brio_signals_restore(&quiet);
+}
+
+/* Allocates in pieces of PIECE bytes (chosen). A signal that the process handles ends a call early, and some file
+ * systems then give back all that the call had allocated. With one call for all bytes, the signals of a timer could
+ * keep it from ever ending. */
+static int allocate_pieces(int file, size_t from, size_t to) {
+    enum { PIECE = 1 << 24 };
+    while (from < to) {
+        size_t piece = to - from < PIECE ? to - from : PIECE;
+        int error = allocate(file, from, piece);
+        if (error && error != EINTR) return error;
+        if (!error) from += piece;
+    }
+    return 0;
+}
+
+/* Puts a mark behind the grown file, and zeros where the old one was. */
+static brio_status move_mark(brio_context *ctx, const brio_scratch_file *f, const brio_scratch_file *grown) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(put(ctx, grown, MARK));
+    if (f->size) BRIO_TRY(require_whole(ctx, f));
+    if (f->size) BRIO_TRY(put(ctx, f, (const char[sizeof MARK]){0}));
+done:
+    return status;
+}
+
+brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size) {
+    brio_scratch_file grown = *f;
+    grown.size = size;
+    int error = allocate_pieces(f->cached, f->size ? f->size + sizeof MARK : 0, size + sizeof MARK);
+    brio_status status = error ? no_room(ctx, size, error) : move_mark(ctx, f, &grown);
+    if (status == BRIO_OK)
+        *f = grown;
+    else if (f->size)
+        cut(f->cached, f->size + sizeof MARK);
+    return status;
+}
+
+brio_status brio_scratch_shrink(brio_context *ctx, brio_scratch_file *f, size_t size) {
+    brio_scratch_file shrunk = *f;
+    shrunk.size = size;
+    brio_status status = put(ctx, &shrunk, MARK);
+    if (status == BRIO_OK) status = require_whole(ctx, f);
+    if (status != BRIO_OK) return status;
+    cut(f->cached, size + sizeof MARK);
+    *f = shrunk;
+    return require_whole(ctx, f);
+}
+
+void brio_scratch_close(brio_scratch_file *f) {
+    close(f->cached);
+    if (f->direct >= 0) close(f->direct);
+}
+
+void brio_scratch_direct(brio_scratch_file *f, bool direct) {
+    char name[64];
+    if (direct == (f->direct >= 0)) return;
+    snprintf(name, sizeof name, "/proc/self/fd/%d", f->cached);
+    if (!direct) close(f->direct);
+    f->direct = direct ? open(name, O_RDWR | O_DIRECT | O_CLOEXEC) : -1;
+}
+
+/* --- reading and writing --- */
+
 /* Makes the disk take bytes. A failure must not be lost: pages that the disk did not take are clean afterwards, and what
  * is read later is something else. Returns whether there was none. */
 static bool give(int file, size_t offset, size_t size, unsigned flags) {
@@ -173,8 +213,8 @@ static brio_status write_behind(brio_context *ctx, int file, size_t begin, size_
 
 brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, size_t offset, void *to, size_t size) {
     bool direct = true;
-    brio_status status = require_whole(ctx, f);
-    if (status == BRIO_OK) status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .in = to}, &direct);
+    brio_status status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .in = to}, &direct);
+    if (status == BRIO_OK) status = require_whole(ctx, f);
     if (!direct) posix_fadvise(f->cached, (off_t)offset, (off_t)size, POSIX_FADV_DONTNEED);
     return status;
 }
@@ -182,8 +222,8 @@ brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, siz
 brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, size_t offset, const void *from,
                                size_t size) {
     bool direct = true;
-    brio_status status = require_whole(ctx, f);
-    if (status == BRIO_OK) status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .out = from}, &direct);
+    brio_status status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .out = from}, &direct);
+    if (status == BRIO_OK) status = require_whole(ctx, f);
     if (status == BRIO_OK && !direct) status = write_behind(ctx, f->cached, offset, offset + size);
     return status;
 }

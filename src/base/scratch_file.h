@@ -9,7 +9,7 @@ enum { BRIO_SCRATCH_PAGE = 4096 }; /* transfers that bypass the system's cache a
 
 typedef struct {
     int cached, direct; /* descriptors; direct is -1 unless brio_scratch_direct opened it */
-    size_t size;        /* bytes; a file that has fewer was cut by somebody else, and its content is lost */
+    size_t size;        /* bytes; the mark behind them is lost if somebody else cuts the file */
 } brio_scratch_file;
 
 /** Makes a file of `size` bytes in the context's scratch folder. Its space is allocated on disk, so that a full disk
@@ -22,8 +22,9 @@ brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file 
  *  was cut. */
 brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size);
 
-/** Shrinks a file to `size` bytes. No mapping may extend beyond them. */
-void brio_scratch_shrink(brio_scratch_file *f, size_t size);
+/** Shrinks a file to `size` bytes. No mapping may extend beyond them.
+ *  Returns BRIO_OK, or BRIO_ERR_NO_MEMORY for a file that was cut, which keeps its size. */
+brio_status brio_scratch_shrink(brio_context *ctx, brio_scratch_file *f, size_t size);
 
 void brio_scratch_close(brio_scratch_file *f);
 
@@ -32,7 +33,7 @@ void brio_scratch_close(brio_scratch_file *f);
 void brio_scratch_direct(brio_scratch_file *f, bool direct);
 
 /** Reads or writes bytes by system calls, without a page fault for each page. The bytes do not stay in memory. A file
- *  that was cut is an error, because a write would grow it again, with zeros for what is lost.
+ *  that was cut is an error, also if the write has grown it again, with zeros for what is lost.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, size_t offset, void *to, size_t size);
 brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, size_t offset, const void *from,

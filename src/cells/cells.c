@@ -126,18 +126,29 @@ static void choose_origin(const cell_call *c, double origin[3]) {
     }
 }
 
-/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. */
+/* The greatest number of an array by its absolute value. */
+static double greatest(const double *x, size_t n) {
+    double most = 0;
+    for (size_t i = 0; x && i < n; i++) most = fabs(x[i]) > most ? fabs(x[i]) : most;
+    return most;
+}
+
+/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. The
+ * weights, multiplied by its square, stay below 2^MOST. */
 static double choose_scale(const cell_call *c) {
     enum { ORDINARY = 100, MOST = 1000 };
     double most = 0;
-    int exponent;
+    int exponent, of_weights;
     for (size_t i = 0; i < 3 * c->num_points; i++) {
         double way = fabs(c->points[i] * 0.5 - c->points[i % 3] * 0.5);
         most = way > most ? way : most;
     }
     frexp(most, &exponent);
     if (most == 0 || (exponent > -ORDINARY && exponent < ORDINARY)) return 1;
-    return brio_power_of_two(exponent < -MOST ? MOST : exponent > MOST ? -MOST : -exponent);
+    frexp(greatest(c->weights, c->num_points), &of_weights);
+    int scale = exponent < -MOST ? MOST : exponent > MOST ? -MOST : -exponent;
+    int highest = of_weights < MOST ? (MOST - of_weights) / 2 : 0;
+    return brio_power_of_two(scale < highest ? scale : highest);
 }
 
 static brio_status scale_points(cell_call *c) {

@@ -84,15 +84,15 @@ static void pages_that_the_disk_loses_fail_the_write_of_a_scratch_file(void) {
     brio_context_free(ctx);
 }
 
-/* Cuts all open files that have no name, after the page of the block's header. */
-static int cut_nameless_files(void) {
+/* Cuts all open files that have no name, and makes them as long as `then`. */
+static int cut_nameless_files(off_t size, off_t then) {
     int cut = 0;
     DIR *dir = opendir("/proc/self/fd");
     for (struct dirent *e = dir ? readdir(dir) : NULL; e; e = readdir(dir)) {
         char path[300], target[300] = "";
         snprintf(path, sizeof path, "/proc/self/fd/%s", e->d_name);
         if (readlink(path, target, sizeof target - 1) > 0 && strstr(target, "(deleted)"))
-            cut += truncate(path, BRIO_SCRATCH_PAGE) == 0;
+            cut += truncate(path, size) == 0 && truncate(path, then) == 0;
     }
     if (dir) closedir(dir);
     return cut;
@@ -109,7 +109,7 @@ static void a_scratch_file_that_was_cut_is_an_error_and_no_zeros(void) {
     EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
     EXPECT(BRIO_RESIZE(ctx, block, 4 << 20) == BRIO_OK && BRIO_RESIZE(ctx, block, 2 << 20) == BRIO_OK);
     EXPECT(brio_block_read(ctx, block, 100, bytes, sizeof bytes) == BRIO_OK && bytes[0] == 1);
-    EXPECT(cut_nameless_files() == 1);
+    EXPECT(cut_nameless_files(BRIO_SCRATCH_PAGE, BRIO_SCRATCH_PAGE) == 1); /* the page of the block's header stays */
     EXPECT(brio_block_write(ctx, block, 1 << 20, bytes, sizeof bytes) == BRIO_ERR_NO_MEMORY);
     EXPECT(strstr(brio_message(ctx), "was cut from outside"), "%s", brio_message(ctx));
     EXPECT(brio_block_read(ctx, block, 100, bytes, sizeof bytes) == BRIO_ERR_NO_MEMORY);
@@ -118,9 +118,32 @@ static void a_scratch_file_that_was_cut_is_an_error_and_no_zeros(void) {
     brio_context_free(ctx);
 }
 
+/* A call that was about to grow or shrink the file makes it as long as it was. The header of the block was zeros then, and
+ * the allocator was to free it. */
+static void a_scratch_file_of_zeros_is_lost(void) {
+    enum { SIZE = 3 << 20 };
+    brio_context *ctx = new_context();
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+    size_t before = brio_context_memory(ctx);
+    for (off_t left = 0; left <= SIZE; left += SIZE / 2) {
+        char *block, bytes[64] = {1};
+        EXPECT(BRIO_ALLOC(ctx, block, SIZE) == BRIO_OK);
+        EXPECT(cut_nameless_files(left, 2 * SIZE) > 0);
+        EXPECT(BRIO_RESIZE(ctx, block, SIZE / 2) == BRIO_ERR_NO_MEMORY);
+        EXPECT(strstr(brio_message(ctx), "was cut from outside"), "%s", brio_message(ctx));
+        EXPECT(BRIO_RESIZE(ctx, block, 2 * SIZE) == BRIO_ERR_NO_MEMORY);
+        EXPECT(brio_block_read(ctx, block, 100, bytes, sizeof bytes) == BRIO_ERR_NO_MEMORY);
+        EXPECT(brio_block_write(ctx, block, 100, bytes, sizeof bytes) == BRIO_ERR_NO_MEMORY);
+        brio_release(ctx, block);
+    }
+    EXPECT(brio_context_memory(ctx) == before);
+    brio_context_free(ctx);
+}
+
 int main(void) {
     RUN(pages_that_the_disk_loses_before_the_flush_fail_the_output);
     RUN(pages_that_the_disk_loses_fail_the_write_of_a_scratch_file);
     RUN(a_scratch_file_that_was_cut_is_an_error_and_no_zeros);
+    RUN(a_scratch_file_of_zeros_is_lost);
     return harness_end();
 }
