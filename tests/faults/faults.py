@@ -148,8 +148,10 @@ class Case:
         if kind.kind == ERROR:
             return {"i": {2}, "o": {6}, "s": {2, 4}}.get(place, {6} if kind.detail == WRITE else {2, 4, 6})
         if kind.kind == INTERRUPT:
-            # The report and the weights go through stdio, which does not try again. Only a signal that asks to stop comes with it.
-            return {6} if place == "-" else {2} if came.path.endswith("weights.txt") else set()
+            # Reports, tables and weights go through stdio, which does not try again. Only a signal that asks to stop comes with it.
+            if place == "-" or (place == "o" and "--at" in self.line):
+                return {6}
+            return {2} if came.path.endswith("weights.txt") else set()
         if kind.kind == SIGNAL and kind.detail in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             return {130} if came.caught else {130, -kind.detail}
         if kind.kind == SIGNAL and (kind.detail == signal.SIGKILL or not came.caught):
