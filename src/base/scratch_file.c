@@ -73,9 +73,11 @@ static brio_status put(brio_context *ctx, const brio_scratch_file *f, const char
 /* Fails if somebody else has cut a file. */
 static brio_status require_whole(brio_context *ctx, const brio_scratch_file *f) {
     char found[sizeof MARK] = {0};
-    ssize_t n;
-    do n = pread(f->cached, found, sizeof found, (off_t)f->size);
-    while (n < 0 && errno == EINTR);
+    ssize_t n = 0;
+    for (size_t at = 0; at < sizeof found && (n >= 0 || errno == EINTR); at += n > 0 ? (size_t)n : 0) {
+        n = pread(f->cached, found + at, sizeof found - at, (off_t)(f->size + at));
+        if (n == 0) break;
+    }
     if (!memcmp(found, MARK, sizeof MARK)) return BRIO_OK;
     return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", ctx->scratch);
 }
