@@ -3,11 +3,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The length of a name cut to at most so many bytes, between two characters of UTF-8. */
+static int cut_length(const char *name, size_t most) {
+    if (strlen(name) <= most) return (int)strlen(name);
+    while (most > 0 && ((unsigned char)name[most] & 0xc0) == 0x80) most--;
+    return (int)most;
+}
+
 /* Makes input_NAME, or input_NAME_2 and so on where that is taken; cuts NAME so that the whole fits. */
 static void make_free_name(const brio_mesh *mesh, const char *name, char out[64]) {
     char end[24] = "";
     for (size_t n = 2;; n++) {
-        snprintf(out, 64, "input_%.*s%s", (int)(57 - strlen(end)), name, end);
+        snprintf(out, 64, "input_%.*s%s", cut_length(name, 57 - strlen(end)), name, end);
         if (!brio_mesh_property(mesh, out)) return;
         snprintf(end, sizeof end, "_%zu", n);
     }

@@ -261,7 +261,8 @@ void brio_block_expect(const void *block, size_t offset, size_t size) {
 brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset, void *to, size_t size) {
     const block_header *h = header_of(block);
     if (h->kind == KIND_LOST) return lost(ctx);
-    if (h->kind == KIND_FILE) return brio_scratch_read(ctx, &h->file, FRONT + offset, to, size);
+    brio_scratch_file file = h->file; /* the header may be lost in the midst of the call */
+    if (h->kind == KIND_FILE) return brio_scratch_read(ctx, &file, FRONT + offset, to, size);
     memcpy(to, (const char *)block + offset, size);
     return BRIO_OK;
 }
@@ -269,7 +270,8 @@ brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset,
 brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, const void *from, size_t size) {
     const block_header *h = header_of(block);
     if (h->kind == KIND_LOST) return lost(ctx);
-    if (h->kind == KIND_FILE) return brio_scratch_write(ctx, &h->file, FRONT + offset, from, size);
+    brio_scratch_file file = h->file;
+    if (h->kind == KIND_FILE) return brio_scratch_write(ctx, &file, FRONT + offset, from, size);
     memcpy((char *)block + offset, from, size);
     return BRIO_OK;
 }
@@ -292,17 +294,24 @@ static void *block_remap(brio_context *ctx, void *block, size_t target, brio_sta
     char *base = mremap(base_of(block), h.size, target, MREMAP_MAYMOVE);
     if (base == MAP_FAILED) {
         if (!file) account_sub(ctx, target - h.size);
+        if (file && grows) brio_scratch_shrink(ctx, &h.file, h.size);
+        header_of(block)->file = h.file;
         *status = refuse(ctx, target);
         return NULL;
     }
     header_of(base + FRONT)->size = target;
-    if (file && !grows) *status = brio_scratch_shrink(ctx, &h.file, target);
+    brio_status shrunk = file && !grows ? brio_scratch_shrink(ctx, &h.file, target) : BRIO_OK;
     header_of(base + FRONT)->file = h.file;
-    return *status == BRIO_OK ? base + FRONT : NULL;
+    if (shrunk == BRIO_OK) return base + FRONT;
+    *status = shrunk;
+    return NULL;
 }
 
 static void *block_move(brio_context *ctx, void *block, size_t size, brio_status *status) {
     size_t old = BRIO_POISON ? header_of(block)->used : bytes_in(block);
+    brio_scratch_file file = header_of(block)->file;
+    bool is_file = header_of(block)->kind == KIND_FILE;
+    if (is_file && (*status = brio_scratch_require_whole(ctx, &file)) != BRIO_OK) return NULL;
     void *moved = block_new(ctx, size, false, status);
     if (!moved) return NULL;
     memcpy(moved, block, old < size - HEADER ? old : size - HEADER);

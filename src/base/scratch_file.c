@@ -70,8 +70,7 @@ static brio_status put(brio_context *ctx, const brio_scratch_file *f, const char
     return move_all(ctx, f, (transfer){.offset = f->size, .size = sizeof MARK, .out = bytes}, &direct);
 }
 
-/* Fails if somebody else has cut a file. */
-static brio_status require_whole(brio_context *ctx, const brio_scratch_file *f) {
+brio_status brio_scratch_require_whole(brio_context *ctx, const brio_scratch_file *f) {
     char found[sizeof MARK] = {0};
     ssize_t n = 0;
     for (size_t at = 0; at < sizeof found && (n >= 0 || errno == EINTR); at += n > 0 ? (size_t)n : 0) {
@@ -79,6 +78,8 @@ static brio_status require_whole(brio_context *ctx, const brio_scratch_file *f) 
         if (n == 0) break;
     }
     if (!memcmp(found, MARK, sizeof MARK)) return BRIO_OK;
+    if (n < 0)
+        return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot read a scratch file: %s", ctx->scratch, strerror(errno));
     return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", ctx->scratch);
 }
 
@@ -142,7 +143,7 @@ static int allocate_pieces(int file, size_t from, size_t to) {
 static brio_status move_mark(brio_context *ctx, const brio_scratch_file *f, const brio_scratch_file *grown) {
     brio_status status = BRIO_OK;
     BRIO_TRY(put(ctx, grown, MARK));
-    if (f->size) BRIO_TRY(require_whole(ctx, f));
+    if (f->size) BRIO_TRY(brio_scratch_require_whole(ctx, f));
     if (f->size) BRIO_TRY(put(ctx, f, (const char[sizeof MARK]){0}));
 done:
     return status;
@@ -163,12 +164,12 @@ brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t si
 brio_status brio_scratch_shrink(brio_context *ctx, brio_scratch_file *f, size_t size) {
     brio_scratch_file shrunk = *f;
     shrunk.size = size;
-    brio_status status = put(ctx, &shrunk, MARK);
-    if (status == BRIO_OK) status = require_whole(ctx, f);
-    if (status != BRIO_OK) return status;
+    bool marked = put(ctx, &shrunk, MARK) == BRIO_OK;
+    brio_status status = brio_scratch_require_whole(ctx, f);
+    if (status != BRIO_OK || !marked) return status;
     cut(f->cached, size + sizeof MARK);
     *f = shrunk;
-    return require_whole(ctx, f);
+    return brio_scratch_require_whole(ctx, f);
 }
 
 void brio_scratch_close(brio_scratch_file *f) {
@@ -216,7 +217,7 @@ static brio_status write_behind(brio_context *ctx, int file, size_t begin, size_
 brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, size_t offset, void *to, size_t size) {
     bool direct = true;
     brio_status status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .in = to}, &direct);
-    if (status == BRIO_OK) status = require_whole(ctx, f);
+    if (status == BRIO_OK) status = brio_scratch_require_whole(ctx, f);
     if (!direct) posix_fadvise(f->cached, (off_t)offset, (off_t)size, POSIX_FADV_DONTNEED);
     return status;
 }
@@ -225,7 +226,7 @@ brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, si
                                size_t size) {
     bool direct = true;
     brio_status status = move_all(ctx, f, (transfer){.offset = offset, .size = size, .out = from}, &direct);
-    if (status == BRIO_OK) status = require_whole(ctx, f);
+    if (status == BRIO_OK) status = brio_scratch_require_whole(ctx, f);
     if (status == BRIO_OK && !direct) status = write_behind(ctx, f->cached, offset, offset + size);
     return status;
 }

@@ -22,8 +22,9 @@ brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file 
  *  was cut. */
 brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size);
 
-/** Shrinks a file to `size` bytes. No mapping may extend beyond them.
- *  Returns BRIO_OK, or BRIO_ERR_NO_MEMORY for a file that was cut, which keeps its size. */
+/** Shrinks a file to `size` bytes, or leaves it as it is where the disk does not take its new end. No mapping may extend beyond
+ *  them.
+ *  Returns BRIO_OK, or BRIO_ERR_NO_MEMORY for a file that was cut. */
 brio_status brio_scratch_shrink(brio_context *ctx, brio_scratch_file *f, size_t size);
 
 void brio_scratch_close(brio_scratch_file *f);
@@ -38,6 +39,10 @@ void brio_scratch_direct(brio_scratch_file *f, bool direct);
 brio_status brio_scratch_read(brio_context *ctx, const brio_scratch_file *f, size_t offset, void *to, size_t size);
 brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, size_t offset, const void *from,
                                size_t size);
+
+/** Fails if somebody else has cut a file, even if it has grown again.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_scratch_require_whole(brio_context *ctx, const brio_scratch_file *f);
 
 /** Announces that these bytes will be read soon. */
 void brio_scratch_expect(const brio_scratch_file *f, size_t offset, size_t size);

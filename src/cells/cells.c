@@ -133,8 +133,8 @@ static double greatest(const double *x, size_t n) {
     return most;
 }
 
-/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. The
- * weights, multiplied by its square, stay below 2^MOST. */
+/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. One above 1
+ * leaves the weights, which are multiplied by its square, below 2^MOST. */
 static double choose_scale(const cell_call *c) {
     enum { ORDINARY = 100, MOST = 1000 };
     double most = 0;
@@ -145,9 +145,10 @@ static double choose_scale(const cell_call *c) {
     }
     frexp(most, &exponent);
     if (most == 0 || (exponent > -ORDINARY && exponent < ORDINARY)) return 1;
-    frexp(greatest(c->weights, c->num_points), &of_weights);
+    double weight = greatest(c->weights, c->num_points);
+    frexp(weight, &of_weights);
     int scale = exponent < -MOST ? MOST : exponent > MOST ? -MOST : -exponent;
-    int highest = of_weights < MOST ? (MOST - of_weights) / 2 : 0;
+    int highest = weight == 0 ? MOST : of_weights < MOST ? (MOST - of_weights) / 2 : 0;
     return brio_power_of_two(scale < highest ? scale : highest);
 }
 

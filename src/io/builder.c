@@ -3,6 +3,7 @@
  * Small arrays grow by half, large ones by an eighth: large arrays are mappings that grow without copying, and unused
  * capacity counts against the memory limit. Messages count points, faces and tetrahedra from 0, and show indices of
  * vertices as they are in the file. */
+#include "base/utf8.h"
 #include "io/builder.h"
 #include "base/memory.h"
 #include <inttypes.h>
@@ -103,12 +104,14 @@ brio_status brio_builder_vertex(brio_builder *b, const double *point) {
 
 brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar type) {
     brio_status status = BRIO_OK;
+    char clean[64];
     size_t length = strlen(name);
-    BRIO_REQUIRE(b->ctx, length > 0 && length < sizeof b->mesh->properties->name, BRIO_ERR_FORMAT,
+    BRIO_REQUIRE(b->ctx, length > 0 && length < sizeof clean, BRIO_ERR_FORMAT,
                  "%s: a property name of %zu characters, expected 1 to 63", b->name, length);
-    BRIO_REQUIRE(b->ctx, !brio_mesh_property(b->mesh, name), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name,
-                 name);
-    BRIO_TRY(brio_mesh_add_property(b->mesh, name, type, NULL));
+    brio_utf8_copy(clean, sizeof clean, name); /* Latin-1 may be longer then: the end is cut */
+    BRIO_REQUIRE(b->ctx, !brio_mesh_property(b->mesh, clean), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name,
+                 clean);
+    BRIO_TRY(brio_mesh_add_property(b->mesh, clean, type, NULL));
     if (b->vertex_capacity) BRIO_TRY(set_vertex_capacity(b, b->vertex_capacity));
 done:
     return status;

@@ -17,7 +17,6 @@ typedef struct {
     brio_stream *stream;
     const char *start, *at; /* the dictionary ends with a 0 */
     uint64_t offset;        /* the byte of the file at which it begins */
-    bool latin;             /* Latin-1, as versions 1.0 and 2.0 are; else UTF-8 */
 } parser;
 
 static brio_status expected(const parser *p, const char *what) {
@@ -109,21 +108,8 @@ done:
     return status;
 }
 
-/* Makes a name of Latin-1 UTF-8. */
-static brio_status make_utf8(const parser *p, char name[64]) {
-    char source[64];
-    size_t n = 0;
-    strcpy(source, name);
-    for (const unsigned char *c = (const unsigned char *)source; *c; c++) {
-        if (n + 1 + (*c > 127) > 63) return expected(p, "a name of at most 63 bytes in UTF-8 before here");
-        if (*c > 127) name[n++] = (char)(0xc0 | *c >> 6);
-        name[n++] = (char)(*c > 127 ? 0x80 | (*c & 0x3f) : *c);
-    }
-    name[n] = 0;
-    return BRIO_OK;
-}
-
-/* Reads [('x', '<f8'), ...]. A field without a name is padding in NumPy, which writes it as bytes '|V4'. */
+/* Reads [('x', '<f8'), ...]. Names are Latin-1 in versions 1.0 and 2.0, UTF-8 in 3.0 and as brio 0.1 wrote them: builder.h takes
+ * either. A field without a name is padding in NumPy, which writes it as bytes '|V4'. */
 static brio_status take_records(parser *p, brio_npy_header *h) {
     brio_status status = BRIO_OK;
     char name[64], type[64];
@@ -131,7 +117,6 @@ static brio_status take_records(parser *p, brio_npy_header *h) {
     while (!take(p, ']')) {
         if (!take(p, '(')) return expected(p, "( or ] in the list of fields");
         BRIO_TRY(take_string(p, name));
-        if (p->latin) BRIO_TRY(make_utf8(p, name));
         if (!take(p, ',')) return expected(p, "a comma");
         BRIO_TRY(take_string(p, type));
         if (!take(p, ')')) return expected(p, ") behind the type: fields of several numbers are not read");
@@ -253,7 +238,7 @@ static brio_status read_text(brio_stream *s, char **text, parser *p) {
     BRIO_TRY(brio_stream_take(s, 8, &bytes));
     BRIO_REQUIRE(s->ctx, !memcmp(bytes, "\x93NUMPY", 6) && bytes[6] >= 1 && bytes[6] <= 3, BRIO_ERR_FORMAT,
                  "%s: byte 0: expected \\x93NUMPY and a version 1 to 3", s->name);
-    bool wide = bytes[6] > 1, latin = bytes[6] < 3;
+    bool wide = bytes[6] > 1;
     BRIO_TRY(brio_stream_take(s, wide ? 4 : 2, &bytes));
     size_t size = wide ? brio_le32(bytes) : brio_le16(bytes);
     BRIO_REQUIRE(s->ctx, size <= MOST_HEADER, BRIO_ERR_FORMAT, "%s: byte 8: a header of %zu bytes, expected at most %d",
@@ -262,7 +247,7 @@ static brio_status read_text(brio_stream *s, char **text, parser *p) {
     BRIO_TRY(BRIO_ALLOC(s->ctx, *text, size + 1));
     memcpy(*text, bytes, size);
     (*text)[size] = 0;
-    *p = (parser){s, *text, *text, wide ? 12 : 10, latin};
+    *p = (parser){s, *text, *text, wide ? 12 : 10};
 done:
     return status;
 }

@@ -61,7 +61,7 @@ static brio_status open_file(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
     struct stat old;
     bool exists = stat(path, &old) == 0, named = true;
-    if (!exists && errno != ENOENT) return fail(out);
+    if (!exists && errno != ENOENT && errno != ENAMETOOLONG) return fail(out); /* the system splits a long path below */
     if (exists && !S_ISREG(old.st_mode)) return open_special(out, path, &old);
     /* a rename does not check whether the old file may be written */
     if (exists && access(path, W_OK) != 0) return fail(out);

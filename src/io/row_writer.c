@@ -1,4 +1,5 @@
 /* Writes a file of points block by block, see row_format.h. */
+#include "base/utf8.h"
 #include "base/memory.h"
 #include "io/row_format.h"
 #include <math.h>
@@ -50,14 +51,11 @@ static brio_status make_names(brio_context *ctx, const char *path, brio_write_jo
     size_t count = job->mesh->num_properties;
     BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
     for (size_t i = 0; i < count; i++) {
-        char word[64], end[24];
+        char word[64];
         BRIO_REQUIRE(ctx, job->mesh->properties[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
         make_word(word, job->mesh->properties[i].name);
         memcpy(job->names[i], word, sizeof word);
-        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) {
-            snprintf(end, sizeof end, "_%zu", n);
-            snprintf(job->names[i], 64, "%.*s%s", (int)(63 - strlen(end)), word, end);
-        }
+        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) brio_numbered_name(job->names[i], word, n);
     }
 done:
     return status;

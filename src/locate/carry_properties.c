@@ -5,6 +5,7 @@
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  * 1977. */
+#include "base/utf8.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/scale.h"
@@ -107,12 +108,10 @@ done:
 
 /* Finds a name that the mesh has not: NAME, input_NAME, input_NAME_2 and so on, NAME cut so that the whole fits. */
 static void find_name(const brio_mesh *mesh, const char *name, char out[64]) {
-    char end[24] = "";
-    snprintf(out, 64, "%s", name);
-    for (size_t n = 2; brio_mesh_property(mesh, out); n++) {
-        snprintf(out, 64, "input_%.*s%s", (int)(57 - strlen(end)), name, end);
-        snprintf(end, sizeof end, "_%zu", n);
-    }
+    char input[80];
+    snprintf(input, sizeof input, "input_%s", name);
+    brio_utf8_copy(out, 64, brio_mesh_property(mesh, name) ? input : name);
+    for (size_t n = 2; brio_mesh_property(mesh, out); n++) brio_numbered_name(out, input, n);
 }
 
 static brio_status copy_property(const brio_property *p, const uint32_t *samples, brio_mesh *mesh) {

@@ -1,6 +1,7 @@
 /* The mesh handle: points, polygons or tetrahedra over them, properties of the points. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/utf8.h"
 #include <string.h>
 
 /* Larger counts are refused, so that sizes in bytes cannot overflow. */
@@ -116,10 +117,9 @@ brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scala
     brio_status status = BRIO_OK;
     char *bytes = NULL;
     BRIO_REQUIRE(ctx, brio_scalar_size(type), BRIO_ERR_ARGUMENT, "property %s: no such scalar type", name);
-    BRIO_REQUIRE(ctx, name[0] && strlen(name) < sizeof p.name, BRIO_ERR_ARGUMENT, "property name of %zu characters",
-                 strlen(name));
-    BRIO_REQUIRE(ctx, !brio_mesh_property(mesh, name), BRIO_ERR_ARGUMENT, "two properties named %s", name);
-    strcpy(p.name, name);
+    BRIO_REQUIRE(ctx, brio_utf8_copy(p.name, sizeof p.name, name) && name[0], BRIO_ERR_ARGUMENT,
+                 "property name of %zu characters", strlen(name));
+    BRIO_REQUIRE(ctx, !brio_mesh_property(mesh, name), BRIO_ERR_ARGUMENT, "two properties named %s", p.name);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, bytes, mesh->num_vertices * brio_scalar_size(type)));
     p.data = bytes;
     BRIO_TRY(BRIO_RESIZE(ctx, mesh->properties, mesh->num_properties + 1));
@@ -132,8 +132,10 @@ done:
 }
 
 const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name) {
-    for (size_t i = 0; i < mesh->num_properties; i++)
-        if (!strcmp(mesh->properties[i].name, name)) return &mesh->properties[i];
+    char clean[64];
+    bool fits = brio_utf8_copy(clean, sizeof clean, name);
+    for (size_t i = 0; fits && i < mesh->num_properties; i++)
+        if (!strcmp(mesh->properties[i].name, clean)) return &mesh->properties[i];
     return NULL;
 }
 

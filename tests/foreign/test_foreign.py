@@ -247,6 +247,16 @@ class NpyTest(ForeignTest):
         for name, written in zip(names, again.dtype.names):
             self.expect_equal(records[name], again[written], name)
 
+    def test_names_in_utf8_of_version_2(self):
+        """As brio 0.1 wrote them; NumPy reads such a name as Latin-1."""
+        fields = ", ".join("('%s', '<f8')" % name for name in ("x", "y", "z", "h\u00f6he"))
+        text = "{'descr': [%s], 'fortran_order': False, 'shape': (1,), }\n" % fields
+        header = text.encode()
+        with open(self.path("a.npy"), "wb") as f:
+            f.write(b"\x93NUMPY\x02\x00" + len(header).to_bytes(4, "little") + header + numpy.arange(4.0).tobytes())
+        self.convert(self.path("a.npy"), self.path("b.npy"))
+        self.assertEqual(numpy.load(self.path("b.npy")).dtype.names, ("x", "y", "z", "h\u00f6he"))
+
     def test_write_rows(self):
         rows = self.random.standard_normal((30, 3))
         numpy.save(self.path("a.npy"), rows)

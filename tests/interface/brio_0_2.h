@@ -771,7 +771,7 @@ BRIO_API brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *t
 BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges, size_t num_edges);
 /** Adds a property of the vertices, filled with 0.   data  receives the array, #V scalars, owned by the mesh.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has a property of that name, the name is empty or has over 63 bytes, or
- *  there is no such type), BRIO_ERR_NO_MEMORY. */
+ *  there is no such type), BRIO_ERR_NO_MEMORY. Names are UTF-8: in one that is not, other bytes are taken for Latin-1. */
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
 /** Returns the property of that name, or NULL. */
 BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);

@@ -419,7 +419,7 @@ static void threads_give_the_same_bits(void) {
 
 static void powers_of_two_scale_the_cells(void) {
     enum { N = 200 };
-    static const int EXPONENT[] = {-320, -150, 3, 150, 320};
+    static const int EXPONENT[] = {-990, -800, -320, -150, 3, 150, 320};
     brio_context *ctx = new_context();
     double points[3 * N], scaled[3 * N], box[6];
     uniform_points(11, N, points);

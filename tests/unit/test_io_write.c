@@ -1,4 +1,5 @@
 /* Writing: what is written reads back with the same bits in each format; files appear complete or not at all. */
+#define _GNU_SOURCE
 #include "io_files.h"
 #include <fcntl.h>
 
@@ -133,6 +134,52 @@ static void property_names_become_words(void) {
     brio_mesh_free(mesh);
     brio_mesh_free(ply);
     brio_mesh_free(vtu);
+}
+
+static bool is_in_file(const char *name, const char *part) {
+    size_t size;
+    char *bytes = io_get(name, &size);
+    bool found = bytes && memmem(bytes, size, part, strlen(part));
+    free(bytes);
+    return found;
+}
+
+/* A name of Latin-1 made files that parsers of XML, JSON and NumPy refuse. */
+static void names_are_utf8_in_every_format(void) {
+    static const char *const files[] = {"u.ply", "u.csv", "u.vtu", "u.vtp", "u.glb", "u.npy"};
+    static const char ply[] =
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\n"
+        "property double z\nproperty int h\xf6he\nproperty int \xe2\x82\xac\xe2\x82\nend_header\n1 2 3 4 5\n";
+    brio_mesh *mesh = io_read_text("u.ply", ply);
+    EXPECT(mesh && mesh->num_properties == 2 && !strcmp(mesh->properties[0].name, "h\xc3\xb6he"));
+    EXPECT(!strcmp(mesh->properties[1].name, "\xe2\x82\xac\xc3\xa2\xc2\x82"), "%s", mesh->properties[1].name);
+    EXPECT(brio_mesh_property(mesh, "h\xf6he") && brio_mesh_property(mesh, "h\xc3\xb6he"));
+    EXPECT(brio_mesh_add_property(mesh, "h\xf6he", BRIO_SCALAR_INT8, NULL) == BRIO_ERR_ARGUMENT);
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        EXPECT(brio_write(io_ctx, io_path(files[i]), mesh, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(is_in_file(files[i], "h\xc3\xb6he"), "%s", files[i]);
+    }
+    brio_mesh_free(mesh);
+}
+
+/* Names that become one word, each longer than fits behind it a number, and of characters of two bytes. */
+static void numbered_names_are_whole_characters(void) {
+    brio_mesh *mesh = io_make(5, 0);
+    char name[64] = "";
+    for (size_t i = 0; i < 31; i++) strcat(name, "\xc3\xb6");
+    for (char last = 1; last < 13; last++) {
+        name[62] = last;
+        EXPECT(brio_mesh_add_property(mesh, name, BRIO_SCALAR_INT32, NULL) == BRIO_OK);
+    }
+    static const char *const files[] = {"m.ply", "m.vtu", "m.npy"};
+    for (size_t k = 0; k < 3; k++) {
+        brio_mesh *again = write_and_read(mesh, files[k], brio_write_options_default());
+        EXPECT(again && again->num_properties == 12, "%s", files[k]);
+        for (size_t i = 0; again && i < 12; i++)
+            EXPECT(!strstr(again->properties[i].name, "\xc3\x83"), "%s: %s", files[k], again->properties[i].name);
+        brio_mesh_free(again);
+    }
+    brio_mesh_free(mesh);
 }
 
 static void refuse_what_the_format_cannot_hold(void) {
@@ -387,6 +434,8 @@ int main(void) {
     RUN(empty_mesh_reads_back);
     RUN(node_replaces_old_tetrahedra);
     RUN(property_names_become_words);
+    RUN(names_are_utf8_in_every_format);
+    RUN(numbered_names_are_whole_characters);
     RUN(refuse_what_the_format_cannot_hold);
     RUN(full_disk_is_a_status);
     RUN(unwritable_folder_is_a_status);

@@ -4,6 +4,7 @@
  * call says must not be lost. */
 #define _GNU_SOURCE
 #include "base/memory.h"
+#include "base/sanitizers.h"
 #include "base/scratch_file.h"
 #include "harness.h"
 #include "io/output.h"
@@ -11,6 +12,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 static int calls, failing_call;
@@ -140,10 +142,30 @@ static void a_scratch_file_of_zeros_is_lost(void) {
     brio_context_free(ctx);
 }
 
+/* The file had grown, and the end that tells that it is whole had moved, when there was no room for its mapping. */
+static void a_scratch_file_without_room_for_its_mapping_stays_whole(void) {
+    brio_context *ctx = new_context();
+    char *block, byte = 7;
+    struct rlimit old, little;
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+    EXPECT(BRIO_ALLOC(ctx, block, 3 << 20) == BRIO_OK && brio_block_write(ctx, block, 100, &byte, 1) == BRIO_OK);
+    getrlimit(RLIMIT_AS, &old);
+    little = old, little.rlim_cur = 1 << 20;
+    bool limited = setrlimit(RLIMIT_AS, &little) == 0;
+    brio_status status = BRIO_RESIZE(ctx, block, 64 << 20);
+    setrlimit(RLIMIT_AS, &old);
+    EXPECT(!limited || BRIO_ASAN || BRIO_TSAN || status == BRIO_ERR_NO_MEMORY, "status %d", (int)status);
+    byte = 0;
+    EXPECT(brio_block_read(ctx, block, 100, &byte, 1) == BRIO_OK && byte == 7, "%s", brio_message(ctx));
+    brio_release(ctx, block);
+    brio_context_free(ctx);
+}
+
 int main(void) {
     RUN(pages_that_the_disk_loses_before_the_flush_fail_the_output);
     RUN(pages_that_the_disk_loses_fail_the_write_of_a_scratch_file);
     RUN(a_scratch_file_that_was_cut_is_an_error_and_no_zeros);
     RUN(a_scratch_file_of_zeros_is_lost);
+    RUN(a_scratch_file_without_room_for_its_mapping_stays_whole);
     return harness_end();
 }

@@ -7,6 +7,7 @@
  * whose attributes are those of the one before it has that one's vertices.
  *
  * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
+#include "base/utf8.h"
 #include "io/glb/glb_mesh.h"
 #include "base/memory.h"
 #include "io/scalar.h"
@@ -138,7 +139,7 @@ static brio_status make_properties(builder *b) {
         else
             snprintf(plain, sizeof plain, "%.60s_%c", p->attribute + 1, "0123"[p->component]);
         strcpy(name, plain);
-        for (int n = 2; brio_mesh_property(b->builder->mesh, name); n++) snprintf(name, 64, "%.52s_%d", plain, n);
+        for (size_t n = 2; brio_mesh_property(b->builder->mesh, name); n++) brio_numbered_name(name, plain, n);
         BRIO_TRY(brio_builder_property(b->builder, name, p->type));
     }
 done:

@@ -3,6 +3,7 @@
  * A column is a component of an array, and grows from piece to piece. An array of one component is a property of its
  * name, one of several components is name_0, name_1, ... Normals become nx, ny, nz, and colours of bytes red, green,
  * blue, alpha, which other formats have, too. Integers of 64 bits become doubles. */
+#include "base/utf8.h"
 #include "base/memory.h"
 #include "io/scalar.h"
 #include "io/vtk/vtk_values.h"
@@ -138,7 +139,7 @@ static void choose_name(const brio_mesh *m, const brio_vtk_column *c, char name[
     else
         snprintf(plain, sizeof plain, "%.58s_%u", c->source, (unsigned)c->component % MOST_COMPONENTS);
     strcpy(name, plain);
-    for (int n = 2; brio_mesh_property(m, name); n++) snprintf(name, 64, "%.52s_%d", plain, n);
+    for (size_t n = 2; brio_mesh_property(m, name); n++) brio_numbered_name(name, plain, n);
 }
 
 brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *b) {

@@ -4,6 +4,7 @@
  * array is known when it was compressed: compressed arrays are kept in memory until all tags are written.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+#include "base/utf8.h"
 #include "io/vtk/vtk_writer.h"
 #include "base/memory.h"
 #include "io/scalar.h"
@@ -205,13 +206,6 @@ static bool is_taken(char (*names)[64], size_t count, const char *name) {
     return false;
 }
 
-/* Cuts a text to at most so many bytes, between two characters of UTF-8. */
-static void cut_character(char *text, size_t most) {
-    if (strlen(text) <= most) return;
-    while (most > 0 && ((unsigned char)text[most] & 0xc0) == 0x80) most--;
-    text[most] = 0;
-}
-
 /* XML cannot represent control characters, which become blanks; a name that is taken then gets _2, _3 and so on. */
 static brio_status make_names(brio_vtk_writer *w) {
     const brio_mesh *m = w->job->mesh;
@@ -222,8 +216,7 @@ static brio_status make_names(brio_vtk_writer *w) {
         for (char *c = plain; *c; c++)
             if ((unsigned char)*c < ' ') *c = ' ';
         strcpy(w->names[i], plain);
-        if (is_taken(w->names, i, plain)) cut_character(plain, 50);
-        for (unsigned n = 2; is_taken(w->names, i, w->names[i]); n++) snprintf(w->names[i], 64, "%s_%u", plain, n);
+        for (size_t n = 2; is_taken(w->names, i, w->names[i]); n++) brio_numbered_name(w->names[i], plain, n);
     }
     return status;
 }
