@@ -45,7 +45,7 @@ static void add_property(fuzz_input *in, brio_mesh *m) {
     if (choice < sizeof names / sizeof *names)
         strcpy(name, names[choice]);
     else
-        for (size_t i = 0, length = fuzz_below(in, 66); i < length; i++) name[i] = (char)(1 + fuzz_byte(in) % 126);
+        for (size_t i = 0, length = fuzz_below(in, 66); i < length; i++) name[i] = (char)(1 + fuzz_byte(in) % 255);
     brio_scalar type = (brio_scalar)fuzz_below(in, BRIO_SCALAR_END);
     if (brio_mesh_add_property(m, name, type, &data) != BRIO_OK) return;
     for (size_t i = 0; i < m->num_vertices; i++) {
