@@ -230,7 +230,6 @@ brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, co
     if (size != BRIO_OK) return size;
     BRIO_REQUIRE(ctx, num_points == s->points, BRIO_ERR_ARGUMENT, "the triangulation has %zu points, not %zu",
                  s->points, num_points);
-    BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
     BRIO_REQUIRE(ctx, s->dimension == 3, BRIO_ERR_NO_ANSWER,
                  "%zu distinct points of dimension %d have no tetrahedra, so no alpha complex", s->vertices,
                  s->dimension);

@@ -101,19 +101,6 @@ done:
     return status;
 }
 
-static brio_status refuse_not_finite(brio_context *ctx, const double *points, const brio_delaunay2_stats *s,
-                                     const double *weights) {
-    brio_status status = BRIO_OK;
-    for (size_t i = 0; i < s->points; i++) {
-        bool finite = !weights || isfinite(weights[i]);
-        for (size_t k = 0; k < (size_t)s->coordinates; k++)
-            finite = finite && isfinite(points[(size_t)s->coordinates * i + k]);
-        BRIO_REQUIRE(ctx, finite, BRIO_ERR_NOT_FINITE, "point %zu is not finite", i);
-    }
-done:
-    return status;
-}
-
 brio_status brio_alpha_values2(brio_context *ctx, const brio_triangulation2 *t, const double *points,
                                const double *weights, size_t num_points, brio_alpha_complex *out) {
     BRIO_DOOR;
@@ -129,7 +116,6 @@ brio_status brio_alpha_values2(brio_context *ctx, const brio_triangulation2 *t, 
     if (size != BRIO_OK) return size;
     BRIO_REQUIRE(ctx, num_points == s->points, BRIO_ERR_ARGUMENT, "the triangulation has %zu points, not %zu",
                  s->points, num_points);
-    BRIO_TRY(refuse_not_finite(ctx, points, s, weights));
     BRIO_REQUIRE(ctx, s->dimension == 2, BRIO_ERR_NO_ANSWER,
                  "%zu distinct points of dimension %d have no triangles, so no alpha complex", s->vertices,
                  s->dimension);

@@ -18,6 +18,8 @@ brio_status brio_records_take(brio_context *ctx, const double *points, int coord
     for (size_t i = 0; i < num_points; i++) {
         for (int k = 0; k < coordinates; k++) out->of[i][k] = points[(size_t)coordinates * i + (size_t)k];
         if (weights) out->of[i][3] = weights[i];
+        for (int k = 0; k < 4; k++)
+            BRIO_REQUIRE(ctx, isfinite(out->of[i][k]), BRIO_ERR_NOT_FINITE, "point %zu is not finite", i);
     }
 done:
     return status;

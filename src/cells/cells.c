@@ -51,7 +51,7 @@ typedef struct {
     size_t num_points;
     brio_cells_options options;
     brio_triangulation *own;         /* made by the call, or NULL */
-    double *rows, *row_weights;      /* a copy of the caller's points, where the call triangulates them; or NULL */
+    double *rows, *row_weights;      /* a copy of the caller's points; or NULL */
     brio_completed_points all;       /* of flat points */
     double *scaled, *scaled_weights; /* or NULL */
     brio_diagram diagram;
@@ -95,8 +95,9 @@ done:
 static brio_status triangulate(cell_call *c, const brio_triangulation *t) {
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(c->ctx);
+    BRIO_TRY(copy_points(c));
+    if (t) BRIO_TRY(brio_refuse_not_finite(c->ctx, c->points, c->weights, c->num_points, NULL));
     if (!t) {
-        BRIO_TRY(copy_points(c));
         brio_progress_part(c->ctx, bar, 0, 0.6);
         BRIO_TRY(brio_delaunay(c->ctx, c->points, c->weights, c->num_points, NULL, &c->own));
         t = c->own;
@@ -348,7 +349,6 @@ brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, c
     BRIO_TRY(BRIO_TAKE(ctx, brio_cells_options, options, &c.options));
     BRIO_REQUIRE(ctx, !t || brio_triangulation_stats(t)->points == num_points, BRIO_ERR_ARGUMENT,
                  "the triangulation has %zu points, not %zu", brio_triangulation_stats(t)->points, num_points);
-    if (t) BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, cells, 1));
     cells->size = sizeof *cells;
     cells->context = ctx;

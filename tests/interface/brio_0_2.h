@@ -1005,8 +1005,8 @@ typedef struct brio_cells {
  *  points, weights, num_points, and limits as brio_delaunay.   options  NULL for the defaults.
  *  out  owned by the caller, freed with brio_cells_free; NULL on error.
  *  The result has the same bits for every number of threads.
- *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron and 110 a cell, without t 24 a point (32 with weights),
- *  and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes take one pass over
+ *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
+ *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes take one pass over
  *  the facets, about as long as brio_delaunay.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat or unbounded), and as
  *  brio_delaunay.

@@ -180,6 +180,43 @@ static brio_status cells(brio_context *ctx) {
     return BRIO_OK;
 }
 
+/* Of a triangulation that is there, perhaps of other points. */
+static brio_status cells_of_triangulation(brio_context *ctx) {
+    const double box[6] = {-1, -1, -1, 2, 2, 2};
+    brio_cells_options o = brio_cells_options_default();
+    brio_triangulation *t = NULL;
+    brio_cells *out = NULL;
+    o.box = box, o.vertices = o.faces = 1;
+    brio_status status = brio_delaunay(ctx, now.points, now.weights, N, NULL, &t);
+    if (status == BRIO_OK) status = brio_voronoi_cells(ctx, t, now.points, now.weights, N, &o, &out);
+    for (size_t i = 0; out && i < out->num_cells; i++) sum += out->site[i];
+    brio_cells_free(out);
+    brio_triangulation_free(t);
+    return status;
+}
+
+static brio_status alpha(brio_context *ctx) {
+    brio_triangulation *t = NULL;
+    brio_alpha_complex c = {.size = sizeof c};
+    brio_status status = brio_delaunay(ctx, now.points, now.weights, N, NULL, &t);
+    if (status == BRIO_OK) status = brio_alpha_values(ctx, t, now.points, now.weights, N, &c);
+    for (size_t i = 0; i < c.counts[0]; i++) sum += c.simplices[0][i];
+    brio_alpha_complex_free(&c);
+    brio_triangulation_free(t);
+    return status;
+}
+
+static brio_status alpha_plane(brio_context *ctx) {
+    brio_triangulation2 *t = NULL;
+    brio_alpha_complex c = {.size = sizeof c};
+    brio_status status = brio_delaunay2(ctx, now.points, now.weights, N, NULL, &t);
+    if (status == BRIO_OK) status = brio_alpha_values2(ctx, t, now.points, now.weights, N, &c);
+    for (size_t i = 0; i < c.counts[0]; i++) sum += c.simplices[0][i];
+    brio_alpha_complex_free(&c);
+    brio_triangulation2_free(t);
+    return status;
+}
+
 static brio_status thin(brio_context *ctx) {
     static uint8_t chosen[N];
     return brio_thin(ctx, now.points, N, 0.05, chosen, NULL);
@@ -210,6 +247,21 @@ static brio_status cocone(brio_context *ctx) {
     return status;
 }
 
+static brio_status offset(brio_context *ctx) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_offset_surface(ctx, now.points, N, 0.1, NULL, &mesh, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static brio_status power_shape(brio_context *ctx) {
+    brio_mesh *shape = NULL, *crust = NULL;
+    brio_status status = brio_power_shape(ctx, now.points, N, NULL, &shape, &crust, NULL);
+    brio_mesh_free(shape);
+    brio_mesh_free(crust);
+    return status;
+}
+
 static const struct {
     const char *name;
     brio_status (*call)(brio_context *ctx);
@@ -227,11 +279,16 @@ static const struct {
     {"space_queries", space_queries, false},
     {"hull", hull, false},
     {"cells", cells, false},
+    {"cells_of_triangulation", cells_of_triangulation, false},
+    {"alpha", alpha, false},
+    {"alpha_plane", alpha_plane, false},
     {"thin", thin, false},
     {"outliers", outliers, false},
     {"labeled", labeled, true},
     {"crust", crust, true},
     {"cocone", cocone, true},
+    {"offset", offset, true},
+    {"power_shape", power_shape, true},
 };
 enum { NUM_CALLS = sizeof CALL / sizeof *CALL };
 
