@@ -8,11 +8,11 @@ enum { N = 40000 };
 static double points[3 * N], weights[N];
 
 /* The most bytes that the context held, beyond what it held before. */
-static double peak_of_delaunay(const double *w, int threads) {
+static double peak_of_delaunay(const double *w, int threads, const brio_delaunay_options *o) {
     brio_context *ctx = new_context();
     brio_triangulation *t;
     brio_context_set_threads(ctx, threads);
-    EXPECT(brio_delaunay(ctx, points, w, N, NULL, &t) == BRIO_OK);
+    EXPECT(brio_delaunay(ctx, points, w, N, o, &t) == BRIO_OK, "%s", brio_message(ctx));
     double peak = (double)brio_context_memory_peak(ctx);
     brio_triangulation_free(t);
     brio_context_free(ctx);
@@ -35,9 +35,27 @@ static void triangulations_take_what_was_estimated(void) {
             EXPECT(brio_estimate_delaunay(ctx, points, w, N, NULL, &bytes) == BRIO_OK);
             EXPECT(brio_context_memory(ctx) == 0 && brio_context_threads(ctx) == 1 + way / 2);
             brio_context_free(ctx);
-            double ratio = (double)bytes / peak_of_delaunay(w, 1 + way / 2);
+            double ratio = (double)bytes / peak_of_delaunay(w, 1 + way / 2, NULL);
             EXPECT(ratio > (way < 2 ? 0.8 : 0.6) && ratio < 1.3, "set %d, way %d: %g", set, way, ratio);
         }
+    }
+}
+
+static void every_way_of_location_takes_what_was_estimated(void) {
+    static uint32_t edges[2 * N];
+    uniform_points(1, N, points);
+    for (uint32_t i = 0; i < N; i++) edges[2 * i] = i, edges[2 * i + 1] = (i + 1) % N;
+    for (int way = BRIO_LOCATION_WALK; way < BRIO_LOCATION_END; way++) {
+        brio_context *ctx = new_context();
+        brio_delaunay_options o = brio_delaunay_options_default();
+        uint64_t bytes;
+        o.locate = (brio_location)way;
+        if (way == BRIO_LOCATION_TRACE || way == BRIO_LOCATION_NEIGHBOUR) o.edges = edges, o.num_edges = N;
+        brio_context_set_threads(ctx, 1);
+        EXPECT(brio_estimate_delaunay(ctx, points, NULL, N, &o, &bytes) == BRIO_OK, "%s", brio_message(ctx));
+        double ratio = (double)bytes / peak_of_delaunay(NULL, 1, &o);
+        EXPECT(ratio > 0.8 && ratio < 1.3, "way %d: %g", way, ratio);
+        brio_context_free(ctx);
     }
 }
 
@@ -107,6 +125,7 @@ static void estimates_can_be_cancelled(void) {
 
 int main(void) {
     RUN(triangulations_take_what_was_estimated);
+    RUN(every_way_of_location_takes_what_was_estimated);
     RUN(surfaces_take_what_was_estimated);
     RUN(wrong_arguments_are_refused);
     RUN(estimates_can_be_cancelled);

@@ -147,11 +147,27 @@ ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, coordinate_origin);
 ENDS_WITH(brio_alpha_complex, triangulation2);
 
+static void statuses_have_words_of_their_own(void) {
+    static const brio_status all[] = {BRIO_OK,        BRIO_ERR_ARGUMENT,  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_ANSWER,
+                                      BRIO_ERR_CHECK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,  BRIO_ERR_CANCELLED,
+                                      BRIO_ERR_OPEN,  BRIO_ERR_FORMAT,    BRIO_ERR_WRITE,      BRIO_ERR_INTERNAL,
+                                      BRIO_STATUS_END};
+    for (size_t a = 0; a < sizeof all / sizeof *all; a++)
+        for (size_t b = 0; b < a; b++)
+            EXPECT(strcmp(brio_status_string(all[a]), brio_status_string(all[b])) != 0, "%d, %d", all[a], all[b]);
+}
+
+static void the_library_is_of_the_headers_version(void) {
+    EXPECT(!strcmp(brio_version(), BRIO_VERSION) && brio_version_number() == BRIO_VERSION_NUMBER);
+}
+
 int main(void) {
     RUN(older_callers_get_what_they_know);
     RUN(newer_callers_get_zeros);
     RUN(options_of_any_size_are_taken);
     RUN(results_stay_within_the_callers_size);
     RUN(sizes_that_were_not_set_are_arguments);
+    RUN(statuses_have_words_of_their_own);
+    RUN(the_library_is_of_the_headers_version);
     return harness_end();
 }
