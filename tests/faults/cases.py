@@ -93,7 +93,6 @@ info {i}/cube.xyz --json
 info {i}/mesh.ply
 generate sphere -n 90 -o {o}/a.las --json
 generate scan -n 60 -o {o}/a.vtp --compress --json
-generate solid --resolution 8 -o {o}/a.ply --json
 convert {i}/cube.xyz {o}/a.ply --json
 convert {i}/sphere.ply {o}/a.las --json
 convert {i}/mesh.ply {o}/a.glb --json
