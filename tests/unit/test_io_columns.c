@@ -61,6 +61,9 @@ static void names_of_surveyors_and_programs(void) {
     expect_first("x,y,z,450,550\n1.5,2.5,3.5,1,2\n", 1, 2);
     expect_first("# made by x y z inc\n1.5 2.5 3.5 1\n", 1, 1);
     expect_first("# x y z\n1.5 2.5 3.5 1\n", 1, 1);
+    expect_first("x y z x[m] #y z(gps) -x\n1.5 2.5 3.5 4 5 6 7\n", 1, 4);
+    expect_first("//X,Y,Z,x[m],#y\n1.5,2.5,3.5,4,5\n", 1, 2);
+    expect_first("# x z y x in words\n1.5 2.5 3.5\n", 1, 0);
     expect_first("# x y z nx\n# of something else\n1.5 2.5 3.5 1\n", 1, 1);
 }
 
@@ -68,9 +71,12 @@ static void names_that_do_not_decide_are_errors(void) {
     io_expect_error("a.txt", "a b c\n1 2 3\n", BRIO_ERR_FORMAT, "line 1: the names do not say");
     io_expect_error("a.txt", "id x y\n1 2 3\n", BRIO_ERR_FORMAT, "the names do not say");
     io_expect_error("a.txt", "x x y z\n1 2 3 4\n", BRIO_ERR_FORMAT, "several columns have a name of x, y or z");
+    io_expect_error("a.txt", "//X,Y,Z,x\n1,2,3,4\n", BRIO_ERR_FORMAT, "several columns");
+    io_expect_error("a.txt", "X[m],Y[m],Z[m],x(gps)\n1,2,3,4\n", BRIO_ERR_FORMAT, "several columns");
     io_expect_error("a.txt", "x,y,height,elevation\n1,2,3,4\n", BRIO_ERR_FORMAT, "several columns");
     io_expect_error("a.txt", "easting northing e n z\n1 2 3 4 5\n", BRIO_ERR_FORMAT, "several columns");
     io_expect_error("a.txt", "# id x y z name\n7 1 2 3\n", BRIO_ERR_FORMAT, "line 1: a comment names columns");
+    io_expect_error("a.txt", "# id x y z x\n7 1 2 3 4\n", BRIO_ERR_FORMAT, "several columns");
     io_expect_error("a.txt", "# id x y z\n7 1 2 3 4\n", BRIO_ERR_FORMAT, "a comment names columns");
 }
 

@@ -42,15 +42,25 @@ static int either(int a, int b) {
     return SEVERAL;
 }
 
-/* Finds the column of each known name: NONE, SEVERAL, or the column. */
-static void find_known(const char (*names)[64], size_t count, int columns[NAMES]) {
+/* Finds the column that bears each known name as it stands, or as what counts of it: NONE, SEVERAL, or the column. */
+static void find_named(const char (*names)[64], size_t count, bool as_it_stands, int columns[NAMES]) {
     char plain[64];
     for (int k = 0; k < NAMES; k++) columns[k] = NONE;
     for (size_t i = 0; i < count && i < INT_MAX; i++) {
         normalise(names[i], plain);
+        if (as_it_stands && strlen(plain) != strlen(names[i])) continue;
         for (int k = 0; k < NAMES; k++)
             if (!strcmp(plain, known[k])) columns[k] = either(columns[k], (int)i);
     }
+}
+
+/* Finds the column of each known name; beside an x, an "x [m]" is another property. */
+static void find_known(const char (*names)[64], size_t count, int columns[NAMES]) {
+    int looser[NAMES];
+    find_named(names, count, true, columns);
+    find_named(names, count, false, looser);
+    for (int k = 0; k < NAMES; k++)
+        if (columns[k] == NONE) columns[k] = looser[k];
 }
 
 static int any_of(const int *columns, int count) {

@@ -50,6 +50,7 @@ typedef struct {
 
 /* --- messages --- */
 
+static const char several_columns[] = "several columns have a name of x, y or z";
 static const char angles_are_no_lengths[] =
     "latitude and longitude are angles, not lengths (project the points first), or else";
 
@@ -131,7 +132,9 @@ static brio_status try_comment(xyz_reader *r, const char *comment) {
     BRIO_TRY(brio_fields_of_words(&r->fields, comment + strspn(comment, "#/;% \t")));
     if (count_words(r) != r->fields.count) return BRIO_OK;
     BRIO_TRY(try_names(r, &result));
-    if (result == BRIO_AXES_FOUND || result == BRIO_AXES_ANGLES) keep_tried_names(r, NAMES_COMMENT);
+    bool clear = result == BRIO_AXES_FOUND || result == BRIO_AXES_ANGLES;
+    bool first = result == BRIO_AXES_SEVERAL && r->source == NAMES_NONE;
+    if (clear || first) keep_tried_names(r, NAMES_COMMENT);
 done:
     return status;
 }
@@ -170,6 +173,7 @@ static void first_three(size_t axes[3]) {
 static brio_status place_by_comment(xyz_reader *r, brio_axes_result result) {
     size_t found = r->fields.count, count = r->names.count, *axes = r->axes;
     if (count == found && result == BRIO_AXES_ANGLES) return unclear_columns(r, angles_are_no_lengths);
+    if (count == found && result == BRIO_AXES_SEVERAL) return unclear_columns(r, several_columns);
     if (count == found) return BRIO_OK;
     bool first = axes[0] == 0 && axes[1] == 1 && axes[2] == 2;
     bool there = axes[0] < found && axes[1] < found && axes[2] < found;
@@ -191,7 +195,7 @@ static brio_status place_by_names(const xyz_reader *r, brio_axes_result result) 
     case BRIO_AXES_UNKNOWN:
         return unclear_columns(r, "the names do not say which columns are x, y and z");
     }
-    return unclear_columns(r, "several columns have a name of x, y or z");
+    return unclear_columns(r, several_columns);
 }
 
 /* The caller's names have been checked: x, y and z are there. */
