@@ -9,7 +9,8 @@
  *  has `state` bytes, which are 0 at first. */
 typedef struct brio_row_format {
     size_t state;
-    bool counts; /* whether the file begins with the number of points */
+    bool counts;   /* whether the file begins with the number of points */
+    bool comments; /* whether # % and // begin a comment in the line of names */
 
     /** Looks at a block before anything is written. NULL: the format need not know the points before it writes.
      *  All blocks are shown, from the first to the last, then `surveyed` is asked, and all again until it is true. */

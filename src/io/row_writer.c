@@ -2,6 +2,7 @@
 #include "base/utf8.h"
 #include "base/memory.h"
 #include "io/row_format.h"
+#include "io/text/text_fields.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,12 +24,13 @@ const brio_row_format *brio_row_format_of(brio_format format) {
 
 /* --- what a format can hold --- */
 
-/* Makes a name one word: PLY and the header of XYZ cannot quote a blank or a comma. */
-static void make_word(char name[64], const char *source) {
+/* Makes a name one word: PLY and the header of XYZ cannot quote a blank or a comma, nor the latter a comment's mark. */
+static void make_word(char name[64], const char *source, bool comments) {
     size_t n = 0;
     for (; n < 63 && source[n]; n++) {
         bool plain = (unsigned char)source[n] > ' ' && source[n] != 127 && !strchr(",;\"'", source[n]);
-        name[n] = plain ? source[n] : '_';
+        bool mark = comments && brio_starts_comment(source + n);
+        name[n] = plain && !mark ? source[n] : '_';
     }
     name[n] = 0;
 }
@@ -46,14 +48,14 @@ static bool is_taken(const brio_write_job *job, size_t count, const char *name) 
 
 /* A name that is taken gets _2, _3 and so on behind it, and is cut so that the whole fits: no result of long work is
  * refused for a name. */
-static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job) {
+static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job, bool comments) {
     brio_status status = BRIO_OK;
     size_t count = job->mesh->num_properties;
     BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
     for (size_t i = 0; i < count; i++) {
         char word[64];
         BRIO_REQUIRE(ctx, job->mesh->properties[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
-        make_word(word, job->mesh->properties[i].name);
+        make_word(word, job->mesh->properties[i].name, comments);
         memcpy(job->names[i], word, sizeof word);
         for (size_t n = 2; is_taken(job, i, job->names[i]); n++) brio_numbered_name(job->names[i], word, n);
     }
@@ -110,7 +112,7 @@ uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w) {
 
 static brio_status open_output(brio_row_writer *w, const char *path) {
     brio_status status = BRIO_OK;
-    if (w->format != &brio_las_rows) BRIO_TRY(make_names(w->ctx, path, &w->job));
+    if (w->format != &brio_las_rows) BRIO_TRY(make_names(w->ctx, path, &w->job, w->format->comments));
     w->begun = true;
     BRIO_TRY(brio_output_open(&w->out, w->ctx, path, w->job.expected));
     BRIO_REQUIRE(w->ctx, !w->format->counts || w->job.points != BRIO_COUNT_UNKNOWN || brio_output_can_patch(&w->out),

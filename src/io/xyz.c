@@ -44,4 +44,4 @@ done:
     return status;
 }
 
-const brio_row_format brio_xyz_rows = {.begin = begin, .rows = write_rows};
+const brio_row_format brio_xyz_rows = {.comments = true, .begin = begin, .rows = write_rows};

@@ -63,6 +63,7 @@ static void names_of_surveyors_and_programs(void) {
     expect_first("# x y z\n1.5 2.5 3.5 1\n", 1, 1);
     expect_first("x y z x[m] #y z(gps) -x\n1.5 2.5 3.5 4 5 6 7\n", 1, 4);
     expect_first("//X,Y,Z,x[m],#y\n1.5,2.5,3.5,4,5\n", 1, 2);
+    expect_first("# x y z 450 550\n1.5 2.5 3.5 1 2\n", 1, 2);
     expect_first("# x z y x in words\n1.5 2.5 3.5\n", 1, 0);
     expect_first("# x y z nx\n# of something else\n1.5 2.5 3.5 1\n", 1, 1);
 }

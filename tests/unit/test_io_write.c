@@ -182,6 +182,25 @@ static void numbered_names_are_whole_characters(void) {
     brio_mesh_free(mesh);
 }
 
+/* A text's line of names ended at # or %, and took "x[m]" for another x. */
+static void names_that_texts_take_for_something_else(void) {
+    static const char *const names[][2] = {{"x[m]", "x[m]"}, {"slope %", "slope__"}, {"z#1", "z_1"}, {"a//b", "a_/b"},
+                                           {"m/s", "m/s"},   {"450", "450"},         {"#y-", "_y-"}, {"y", "y_2"}};
+    static const char *const files[] = {"a.xyz", "a.csv"};
+    size_t count = sizeof names / sizeof *names;
+    brio_mesh *mesh = io_make(5, 0);
+    for (size_t i = 0; i < count; i++)
+        EXPECT(brio_mesh_add_property(mesh, names[i][0], BRIO_SCALAR_FLOAT64, NULL) == BRIO_OK);
+    for (size_t k = 0; k < 2; k++) {
+        brio_mesh *again = write_and_read(mesh, files[k], brio_write_options_default());
+        EXPECT(again && again->num_properties == count, "%s", brio_message(io_ctx));
+        for (size_t i = 0; again && i < count; i++)
+            EXPECT(!strcmp(again->properties[i].name, names[i][1]), "%s: %s", files[k], again->properties[i].name);
+        brio_mesh_free(again);
+    }
+    brio_mesh_free(mesh);
+}
+
 static void refuse_what_the_format_cannot_hold(void) {
     static const char *const names[] = {"t.obj", "t.off", "t.xyz", "t.csv", "t.unknown", "-"};
     brio_mesh *mesh = io_make(10, IO_TETRAHEDRA);
@@ -436,6 +455,7 @@ int main(void) {
     RUN(property_names_become_words);
     RUN(names_are_utf8_in_every_format);
     RUN(numbered_names_are_whole_characters);
+    RUN(names_that_texts_take_for_something_else);
     RUN(refuse_what_the_format_cannot_hold);
     RUN(full_disk_is_a_status);
     RUN(unwritable_folder_is_a_status);

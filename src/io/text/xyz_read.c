@@ -98,10 +98,9 @@ static void copy_name(char name[64], const brio_field *f) {
 }
 
 /* Takes the fields as names for a try. */
-static brio_status try_names(xyz_reader *r, brio_axes_result *result) {
+static brio_status try_names(xyz_reader *r, brio_axes_result *result, size_t axes[3]) {
     brio_status status = BRIO_OK;
     name_list *t = &r->tried;
-    size_t axes[3];
     BRIO_TRY(BRIO_RESERVE(r->stream->ctx, t->at, t->capacity, r->fields.count));
     t->count = r->fields.count;
     for (size_t i = 0; i < t->count; i++) copy_name(t->at[i], &r->fields.at[i]);
@@ -124,14 +123,21 @@ static size_t count_words(const xyz_reader *r) {
     return words;
 }
 
-/* Reads a comment before the first row as a line of names if x, y and z, or angles, are among its words. */
+static bool are_first(const size_t axes[3]) {
+    return axes[0] == 0 && axes[1] == 1 && axes[2] == 2;
+}
+
+/* Reads a comment before the first row as a line of names if x, y and z, or angles, are among its words. Behind x, y and z
+ * a number is a name, too. */
 static brio_status try_comment(xyz_reader *r, const char *comment) {
     brio_status status = BRIO_OK;
     brio_axes_result result;
+    size_t axes[3];
     if (r->num_columns || r->source > NAMES_COMMENT) return BRIO_OK;
     BRIO_TRY(brio_fields_of_words(&r->fields, comment + strspn(comment, "#/;% \t")));
-    if (count_words(r) != r->fields.count) return BRIO_OK;
-    BRIO_TRY(try_names(r, &result));
+    BRIO_TRY(try_names(r, &result, axes));
+    bool words = count_words(r) == r->fields.count;
+    if (!words && (result != BRIO_AXES_FOUND || !are_first(axes))) return BRIO_OK;
     bool clear = result == BRIO_AXES_FOUND || result == BRIO_AXES_ANGLES;
     bool first = result == BRIO_AXES_SEVERAL && r->source == NAMES_NONE;
     if (clear || first) keep_tried_names(r, NAMES_COMMENT);
@@ -143,10 +149,10 @@ done:
 static brio_status try_plain_names(xyz_reader *r, bool *are_names) {
     brio_status status = BRIO_OK;
     brio_axes_result result;
-    size_t words = count_words(r), count = r->fields.count;
+    size_t words = count_words(r), count = r->fields.count, axes[3];
     *are_names = false;
     if (!words || r->source == NAMES_PLAIN || r->header_passed) return BRIO_OK;
-    BRIO_TRY(try_names(r, &result));
+    BRIO_TRY(try_names(r, &result, axes));
     *are_names = words == count || result == BRIO_AXES_FOUND;
 done:
     return status;
@@ -175,9 +181,8 @@ static brio_status place_by_comment(xyz_reader *r, brio_axes_result result) {
     if (count == found && result == BRIO_AXES_ANGLES) return unclear_columns(r, angles_are_no_lengths);
     if (count == found && result == BRIO_AXES_SEVERAL) return unclear_columns(r, several_columns);
     if (count == found) return BRIO_OK;
-    bool first = axes[0] == 0 && axes[1] == 1 && axes[2] == 2;
     bool there = axes[0] < found && axes[1] < found && axes[2] < found;
-    if (result == BRIO_AXES_FOUND && there && !first)
+    if (result == BRIO_AXES_FOUND && there && !are_first(axes))
         return unclear_columns(r, "a comment names columns, but not as many as there are");
     r->names.count = 0;
     first_three(axes);
