@@ -26,3 +26,13 @@ void brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, doub
     scaling s = {x, out, exponent};
     brio_for(ctx, brio_threads(ctx, n, NUMBERS_A_THREAD), n, scale_part, &s);
 }
+
+brio_status brio_scale_vertices(brio_context *ctx, double *vertices, size_t num_vertices, int exponent) {
+    brio_status status = BRIO_OK;
+    brio_scale(ctx, vertices, 3 * num_vertices, exponent, vertices);
+    for (size_t i = 0; i < 3 * num_vertices; i++)
+        BRIO_REQUIRE(ctx, isfinite(vertices[i]), BRIO_ERR_NO_ANSWER,
+                     "doubles cannot hold vertex %zu (counted from 0) of the result: scale the points down", i / 3);
+done:
+    return status;
+}

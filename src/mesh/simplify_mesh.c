@@ -45,7 +45,10 @@ brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_me
     int exponent = exponent_of(mesh);
     if (exponent) brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, mesh->vertices);
     status = collapse(ctx, mesh, &o, o.tolerance > 0 ? ldexp(o.tolerance, -exponent) : INFINITY);
-    if (exponent) brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, exponent, mesh->vertices);
+    if (exponent) {
+        brio_status scaled = brio_scale_vertices(ctx, mesh->vertices, mesh->num_vertices, exponent);
+        if (status == BRIO_OK) status = scaled;
+    }
 done:
     return status;
 }

@@ -895,7 +895,8 @@ static inline brio_mesh_simplify_options brio_mesh_simplify_options_default(void
  *  Returns BRIO_OK; BRIO_ERR_ARGUMENT (neither target nor tolerance, a negative one, a face is no triangle, an index is out
  *  of range, the mesh is not manifold and oriented at an edge or a vertex), BRIO_ERR_TOO_LARGE (2^32 corners) and
  *  BRIO_ERR_NOT_FINITE, after which the mesh is
- *  what it was; BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, after which it can only be freed.
+ *  what it was; BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, BRIO_ERR_NO_ANSWER (doubles cannot hold a new vertex), after which
+ *  it can only be freed.
  *  Based on: [Garland Heckbert 1997], [Dey Edelsbrunner Guha Nekhayev 1999]. */
 BRIO_API brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *options);
 
@@ -1311,7 +1312,7 @@ typedef struct brio_power_crust_stats {
  *  normals  NULL, or receives #P by 3: the oriented unit normal of the surface at each point.
  *  stats    NULL, or its `size` set.
  *  Cost: two triangulations, of the samples and of their about 2 n poles; 1,300 to 1,700 bytes a sample at the peak.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found), and as brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or doubles cannot hold a vertex), and as brio_delaunay.
  *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] sections 3.3 and 5. */
 BRIO_API brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
                                       const brio_power_crust_options *options, brio_mesh **out, double *normals,
@@ -1345,7 +1346,8 @@ typedef struct brio_offset_surface_stats {
  *  distance  in the unit of the points.   options  NULL for the defaults.   out  owned by the caller.
  *  stats     NULL, or its `size` set.
  *  Cost: as brio_power_crust, and one more triangulation of the poles.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or an inward offset leaves nothing), and as brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, doubles cannot hold a vertex, or an inward offset leaves
+ *  nothing), and as brio_delaunay.
  *  Based on: [Choi 2003] section 3.3.4. */
 BRIO_API brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
                                          const brio_offset_surface_options *options, brio_mesh **out,
@@ -1395,8 +1397,8 @@ typedef struct brio_power_shape_stats {
  *  radius of the smaller and R of the larger ball. It leaves out balls without a power cell first; these lie within the
  *  union of the others.
  *  Cost: as brio_power_crust; with simplification, one more triangulation of the poles.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid, no pole is on a chosen side, or the mesh `solid` is not
- *  closed), and as brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid, no pole is on a chosen side, doubles cannot hold a vertex, or
+ *  the mesh `solid` is not closed), and as brio_delaunay.
  *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] section 3.3.2, [Miklos Giesen Pauly 2010]. */
 BRIO_API brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num_points,
                                       const brio_power_shape_options *options, brio_mesh **shape, brio_mesh **crust,

@@ -89,7 +89,7 @@ static brio_status simplify(const filling *x, uint32_t *samples) {
     for (size_t v = 0; samples && v < mesh->num_vertices; v++) samples[v] = ((uint32_t *)sample)[v];
     drop_last_property(mesh);
     drop_last_property(mesh);
-    brio_scale(mesh->context, mesh->vertices, 3 * mesh->num_vertices, x->s->exponent, mesh->vertices);
+    BRIO_TRY(brio_scale_vertices(mesh->context, mesh->vertices, mesh->num_vertices, x->s->exponent));
 done:
     return status;
 }

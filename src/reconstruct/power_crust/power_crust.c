@@ -55,7 +55,7 @@ brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_option
     brio_progress_part(l->ctx, bar, FACES_SHARE, 1);
     if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh, &stats->simplify_seconds));
     drop_properties(mesh);
-    brio_scale(l->ctx, mesh->vertices, 3 * mesh->num_vertices, l->exponent, mesh->vertices);
+    BRIO_TRY(brio_scale_vertices(l->ctx, mesh->vertices, mesh->num_vertices, l->exponent));
 done:
     brio_progress_part(l->ctx, bar, 0, 1);
     return status;

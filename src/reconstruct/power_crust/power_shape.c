@@ -10,6 +10,7 @@
  * Differs from the paper: outer poles whose tetrahedron has a bounding point are no part of the outer shape. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/versioned.h"
 #include "reconstruct/power_crust/ball_cover.h"
 #include "reconstruct/power_crust/power_crust.h"
@@ -105,10 +106,11 @@ static brio_status make_vertices(builder *b) {
     for (size_t p = 0; p < l->poles.count; p++) {
         size_t v = b->number[p];
         if (v == NO_VERTEX) continue;
-        for (size_t k = 0; k < 3; k++) b->mesh->vertices[3 * v + k] = ldexp(l->poles.centre[3 * p + k], l->exponent);
+        memcpy(b->mesh->vertices + 3 * v, l->poles.centre + 3 * p, 3 * sizeof(double));
         ((double *)radii)[v] = ldexp(sqrt(l->poles.square[p]), l->exponent);
         ((int8_t *)sides)[v] = l->label[p] == BRIO_LABEL_INNER ? -1 : 1;
     }
+    BRIO_TRY(brio_scale_vertices(l->ctx, b->mesh->vertices, count, l->exponent));
 done:
     return status;
 }
