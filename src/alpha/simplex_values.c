@@ -6,6 +6,7 @@
  * Based on: Edelsbrunner. The union of balls and its dual shape. DCG 1995. */
 #include "alpha/simplex_values.h"
 #include "alpha/squared_radius.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "predicates/predicates.h"
 #include <math.h>
@@ -18,9 +19,9 @@ brio_status brio_records_take(brio_context *ctx, const double *points, int coord
     for (size_t i = 0; i < num_points; i++) {
         for (int k = 0; k < coordinates; k++) out->of[i][k] = points[(size_t)coordinates * i + (size_t)k];
         if (weights) out->of[i][3] = weights[i];
-        for (int k = 0; k < 4; k++)
-            BRIO_REQUIRE(ctx, isfinite(out->of[i][k]), BRIO_ERR_NOT_FINITE, "point %zu is not finite", i);
     }
+    BRIO_TRY(
+        brio_refuse_records(ctx, (const double(*)[4])out->of, NULL, num_points)); /* they may have changed meanwhile */
 done:
     return status;
 }

@@ -100,7 +100,8 @@ BRIO_INLINE double squared_radius(const double *const *p, int count, const bool 
                                   : square_of_tetrahedron(&s, fma);
     square = scaled(square, 2 * s.exponent);
     if (!(square.hi < INFINITY)) return INFINITY;
-    return dd_subtract(square, (brio_dd){p[0][3], 0}).hi;
+    double power = dd_subtract(square, (brio_dd){p[0][3], 0}).hi;
+    return isnan(power) ? INFINITY : power; /* a sum beyond doubles has no second part */
 }
 
 BRIO_TARGET_FMA static double squared_radius_fma(const double *const *p, int count) {

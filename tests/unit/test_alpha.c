@@ -275,12 +275,30 @@ static void memory_that_runs_out(void) {
     expect_clean_failures(run_alpha);
 }
 
+/* A squared radius less a weight far below 0 was infinity less infinity. */
+static void values_beyond_doubles_are_infinite(void) {
+    static const double points[12] = {1.3e154, 0, 0, -1.3e154, 0, 0, 0, 1.3e154, 0, 0, 0, 1.3e154};
+    static const double weights[4] = {-2e307, -2e307, -2e307, -2e307};
+    brio_context *ctx = new_context();
+    brio_triangulation *t = NULL;
+    brio_alpha_complex c = {.size = sizeof c};
+    EXPECT(brio_delaunay(ctx, points, weights, 4, NULL, &t) == BRIO_OK);
+    EXPECT(brio_alpha_values(ctx, t, points, weights, 4, &c) == BRIO_OK, "%s", brio_message(ctx));
+    for (int k = 0; k < 4; k++)
+        for (size_t i = 0; i < c.counts[k]; i++) EXPECT(!isnan(c.values[k][i]), "dimension %d", k);
+    EXPECT(c.counts[3] == 1 && c.values[3][0] == INFINITY);
+    brio_alpha_complex_free(&c);
+    brio_triangulation_free(t);
+    brio_context_free(ctx);
+}
+
 int main(void) {
     RUN(values_against_brute_force);
     RUN(order_is_strict);
     RUN(shapes_bound_their_tetrahedra);
     RUN(threads_change_nothing);
     RUN(hostile_inputs);
+    RUN(values_beyond_doubles_are_infinite);
     RUN(memory_that_runs_out);
     return harness_end();
 }
