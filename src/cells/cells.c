@@ -16,6 +16,7 @@
 #include "cells/cell_record.h"
 #include "cells/flat_points.h"
 #include "triangulation/view.h"
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -134,21 +135,57 @@ static double greatest(const double *x, size_t n) {
     return most;
 }
 
+enum { MOST_EXPONENT = 1024 };
+
+/* The exponents of the least and the greatest length that matters. */
+typedef struct {
+    int low, high;
+} exponents;
+
+static void take_length(exponents *e, double length, bool least) {
+    int exponent = MOST_EXPONENT;
+    if (!(length > 0)) return;
+    if (length < INFINITY) frexp(length, &exponent);
+    if (exponent > e->high) e->high = exponent;
+    if (exponent < e->low && least) e->low = exponent;
+}
+
+/* Takes the size of the region, and how far off the points it reaches. */
+static void take_region(const cell_call *c, exponents *e) {
+    const brio_cells_options *o = &c->options;
+    double width = 0, way = 0;
+    for (size_t i = 0; i < 6 && o->box; i++) {
+        double point = c->num_points ? c->points[i % 3] : 0;
+        way = fmax(way, fabs(o->box[i] * 0.5 - point * 0.5));
+        width = fmax(width, fabs(o->box[i] * 0.5 - o->box[i % 3] * 0.5));
+    }
+    take_length(e, width, true);
+    take_length(e, way, false);
+    for (size_t i = 0; i < o->num_planes && o->planes; i++) {
+        const double *plane = o->planes + 4 * i;
+        take_length(e, fabs(plane[3]) / greatest(plane, 3), false);
+    }
+}
+
 /* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. One above 1
  * leaves the weights, which are multiplied by its square, below 2^MOST. */
 static double choose_scale(const cell_call *c) {
     enum { ORDINARY = 100, MOST = 1000 };
+    exponents e = {INT_MAX, INT_MIN};
     double most = 0;
-    int exponent, of_weights;
+    int of_weights;
     for (size_t i = 0; i < 3 * c->num_points; i++) {
         double way = fabs(c->points[i] * 0.5 - c->points[i % 3] * 0.5);
         most = way > most ? way : most;
     }
-    frexp(most, &exponent);
-    if (most == 0 || (exponent > -ORDINARY && exponent < ORDINARY)) return 1;
+    take_length(&e, most, true);
+    take_region(c, &e);
+    if (e.high == INT_MIN) return 1;
+    if (e.low > e.high) e.low = e.high;
+    if (e.low > -ORDINARY && e.high < ORDINARY) return 1;
     double weight = greatest(c->weights, c->num_points);
     frexp(weight, &of_weights);
-    int scale = exponent < -MOST ? MOST : exponent > MOST ? -MOST : -exponent;
+    int middle = (e.low + e.high) / 2, scale = middle < -MOST ? MOST : middle > MOST ? -MOST : -middle;
     int highest = weight == 0 ? MOST : of_weights < MOST ? (MOST - of_weights) / 2 : 0;
     return brio_power_of_two(scale < highest ? scale : highest);
 }

@@ -502,6 +502,29 @@ static void a_region_too_flat_for_doubles_is_refused(void) {
     brio_context_free(ctx);
 }
 
+/* Squares of lengths of the region were beyond doubles: areas were infinite, centroids NaN; or below them: an empty region. */
+static void a_region_much_larger_or_smaller_than_the_points(void) {
+    static const double points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const double sizes[] = {1e80, 1e90, 1e-80, 1e-90};
+    brio_context *ctx = new_context();
+    for (size_t n = 1; n <= 4; n += 3)
+        for (size_t k = 0; k < 4; k++) {
+            double s = sizes[k], volume = 0, box[6] = {-s, -s, -s, s, s, s};
+            brio_cells_options o = brio_cells_options_default();
+            brio_cells *cells = NULL;
+            o.box = box, o.areas = 1, o.centroids = 1;
+            EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, n, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
+            for (size_t c = 0; cells && c < cells->num_cells; c++) {
+                volume += cells->volume[c];
+                EXPECT(isfinite(cells->area[c]), "size %g: area %g", s, cells->area[c]);
+                EXPECT(!(cells->volume[c] > 0) || isfinite(cells->centroid[3 * c]), "size %g", s);
+            }
+            EXPECT(fabs(volume / (8 * s * s * s) - 1) < 1e-9, "size %g, %zu points: volume %g", s, n, volume);
+            brio_cells_free(cells);
+        }
+    brio_context_free(ctx);
+}
+
 /* Centres beyond doubles made the volume and the areas NaN, in the other set minus infinity. */
 static void what_doubles_cannot_hold_is_infinite(void) {
     static const double points[2][36] = {
@@ -584,6 +607,7 @@ int main(void) {
     RUN(powers_of_two_scale_the_cells);
     RUN(wrong_regions_are_refused);
     RUN(a_region_too_flat_for_doubles_is_refused);
+    RUN(a_region_much_larger_or_smaller_than_the_points);
     RUN(what_doubles_cannot_hold_is_infinite);
     RUN(memory_may_run_out);
     return harness_end();
