@@ -35,11 +35,11 @@ static inline bool brio_utf8_copy(char *to, size_t room, const char *from) {
     return !*from;
 }
 
-/** Makes the name that stands for one that is taken: NAME_2, NAME_3 and so on, NAME cut so that the whole fits. */
-static inline void brio_numbered_name(char to[64], const char *name, size_t number) {
+/** Makes NAME_NUMBER, NAME cut so that the whole fits in `room` bytes, more than 24. */
+static inline void brio_numbered_name(char *to, size_t room, const char *name, size_t number) {
     char end[24];
     size_t length = (size_t)snprintf(end, sizeof end, "_%zu", number);
-    brio_utf8_copy(to, 64 - length, name);
+    brio_utf8_copy(to, room - length, name);
     strcat(to, end);
 }
 

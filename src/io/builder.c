@@ -117,6 +117,18 @@ done:
     return status;
 }
 
+void brio_builder_new_name(const brio_builder *b, const char *source, char name[64]) {
+    brio_utf8_copy(name, 64, source);
+    for (size_t n = 2; brio_mesh_property(b->mesh, name); n++) brio_numbered_name(name, 64, source, n);
+}
+
+void brio_builder_component_name(const brio_builder *b, const char *source, uint64_t which, uint64_t count,
+                                 char name[64]) {
+    char part[64];
+    if (count > 1) brio_numbered_name(part, sizeof part, source, which);
+    brio_builder_new_name(b, count > 1 ? part : source, name);
+}
+
 brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_scalar type, void *data) {
     brio_status status = brio_builder_property(b, name, type);
     if (status != BRIO_OK) {

@@ -70,6 +70,13 @@ brio_status brio_builder_add_vertices(brio_builder *b, size_t count);
 brio_status brio_builder_vertex(brio_builder *b, const double *point);
 /** Adds a property. The caller sets the values of vertices that are there already. */
 brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar type);
+/** Makes a name that no property has: SOURCE, or SOURCE_2, SOURCE_3 and so on, cut in whole characters.
+ *  source  any bytes; those that are no UTF-8 are taken for Latin-1 */
+void brio_builder_new_name(const brio_builder *b, const char *source, char name[64]);
+/** Makes the name of number `which` of the `count` numbers that SOURCE is the name of: as above, of SOURCE_WHICH if there
+ *  are several. */
+void brio_builder_component_name(const brio_builder *b, const char *source, uint64_t which, uint64_t count,
+                                 char name[64]);
 /** Adds a property whose values are in `data`. The mesh takes the block; on failure the function frees the block. */
 brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_scalar type, void *data);
 /** Removes property i, because some row lacks it. If the sink has received vertices with it, adds the property's name to

@@ -133,11 +133,11 @@ static brio_status add_property_columns(chemical_reader *r, const char *name, ro
     static const brio_scalar types[] = {
         [ROLE_NUMBER] = BRIO_SCALAR_FLOAT64, [ROLE_INTEGER] = BRIO_SCALAR_INT32, [ROLE_LOGICAL] = BRIO_SCALAR_UINT8};
     brio_status status = BRIO_OK;
-    char full[64];
+    char part[64];
     for (uint64_t i = 0; i < count; i++) {
-        snprintf(full, sizeof full, count > 1 ? "%.48s_%u" : "%.48s", name, (unsigned)i);
+        brio_builder_component_name(r->builder, name, i, count, part);
         BRIO_TRY(add_column(r, what, r->builder->mesh->num_properties));
-        BRIO_TRY(brio_builder_property(r->builder, full, types[what]));
+        BRIO_TRY(brio_builder_property(r->builder, count > 1 ? part : name, types[what]));
     }
 done:
     return status;

@@ -29,6 +29,8 @@ static brio_status plan(brio_builder *b, brio_npy_header *h) {
         bool axis = f->name[0] >= 'x' && f->name[0] <= 'z' && !f->name[1];
         f->axis = axis ? f->name[0] - 'x' : -1;
         f->property = b->mesh->num_properties;
+        BRIO_REQUIRE(b->ctx, !axis || !(axes & 1u << f->axis), BRIO_ERR_FORMAT, "%s: two fields named %s", b->name,
+                     f->name);
         if (axis)
             axes |= 1u << f->axis;
         else

@@ -56,17 +56,28 @@ static brio_status find_named(brio_output *out, const struct stat *facts, bool *
     return exists || errno == ENOENT ? BRIO_OK : fail(out);
 }
 
+/* Looks at the file that a path too long for one call leads to: only a file can be replaced. */
+static brio_status check_far(brio_output *out) {
+    const brio_target *t = &out->target;
+    struct stat old;
+    if (fstatat(t->folder, t->name, &old, 0) != 0) return errno == ENOENT ? BRIO_OK : fail(out);
+    if (S_ISREG(old.st_mode)) return faccessat(t->folder, t->name, W_OK, 0) == 0 ? BRIO_OK : fail(out);
+    errno = ENAMETOOLONG;
+    return fail(out);
+}
+
 /* Opens a file. Symbolic links stay; the file that they lead to is replaced. */
 static brio_status open_file(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
     struct stat old;
-    bool exists = stat(path, &old) == 0, named = true;
-    if (!exists && errno != ENOENT && errno != ENAMETOOLONG) return fail(out); /* the system splits a long path below */
+    bool exists = stat(path, &old) == 0, named = true, far = !exists && errno == ENAMETOOLONG;
+    if (!exists && errno != ENOENT && !far) return fail(out);
     if (exists && !S_ISREG(old.st_mode)) return open_special(out, path, &old);
     /* a rename does not check whether the old file may be written */
     if (exists && access(path, W_OK) != 0) return fail(out);
     BRIO_TRY(brio_target_find(&out->target, out->ctx, path, out->name));
     if (exists) BRIO_TRY(find_named(out, &old, &named));
+    if (far) BRIO_TRY(check_far(out));
     if (!named) {
         out->file = open(path, O_WRONLY | O_CLOEXEC | O_TRUNC);
         if (out->file < 0) return fail(out);

@@ -68,10 +68,10 @@ static brio_status plan_field(pcd_reader *r, const brio_pcd_field *f, size_t *ro
     }
     if (is_colour(f)) return plan_colour(r, f, roles);
     for (unsigned i = 0; i < f->count && strcmp(f->name, "_") != 0; i++) {
-        char name[80];
-        snprintf(name, sizeof name, f->count > 1 ? "%s_%u" : "%s", f->name, i);
+        char name[64];
+        brio_builder_component_name(r->builder, f->name, i, f->count, name);
         roles[i] = PROPERTY + r->builder->mesh->num_properties;
-        BRIO_TRY(brio_builder_property(r->builder, name, type_of(f)));
+        BRIO_TRY(brio_builder_property(r->builder, f->count > 1 ? name : f->name, type_of(f)));
     }
 done:
     return status;

@@ -43,8 +43,10 @@ typedef struct brio_row_writer {
     brio_write_job job;
     brio_output out;
     void *state;
-    bool surveys;    /* whether all blocks must be shown (again) before the first one is written */
-    bool begun;      /* whether the output was opened */
+    bool surveys; /* whether all blocks must be shown (again) before the first one is written */
+    bool begun;   /* whether the output was opened */
+    bool shown;   /* whether a block was seen, which has `columns` properties */
+    size_t columns;
     uint64_t points; /* written */
 } brio_row_writer;
 

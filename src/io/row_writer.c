@@ -57,7 +57,7 @@ static brio_status make_names(brio_context *ctx, const char *path, brio_write_jo
         BRIO_REQUIRE(ctx, job->mesh->properties[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
         make_word(word, job->mesh->properties[i].name, comments);
         memcpy(job->names[i], word, sizeof word);
-        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) brio_numbered_name(job->names[i], word, n);
+        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) brio_numbered_name(job->names[i], 64, word, n);
     }
 done:
     return status;
@@ -97,9 +97,19 @@ brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_form
     return brio_zeroed(ctx, &w->state, 1, w->format->state + 1);
 }
 
-brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block) {
+/* Another pass over a file that somebody replaced can have other properties: what was planned is then of no use. */
+static brio_status take_block(brio_row_writer *w, const brio_mesh *block) {
+    if (!w->shown) w->columns = block->num_properties;
+    w->shown = true;
     w->job.mesh = block;
-    return w->format->survey(w->ctx, &w->job, w->state);
+    if (block->num_properties == w->columns) return BRIO_OK;
+    return brio_fail(w->ctx, BRIO_ERR_FORMAT, "blocks of one file have %zu and %zu properties", w->columns,
+                     block->num_properties);
+}
+
+brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block) {
+    brio_status status = take_block(w, block);
+    return status == BRIO_OK ? w->format->survey(w->ctx, &w->job, w->state) : status;
 }
 
 void brio_row_writer_end_survey(brio_row_writer *w) {
@@ -124,7 +134,7 @@ done:
 
 brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const brio_mesh *block) {
     brio_status status = BRIO_OK;
-    w->job.mesh = block;
+    BRIO_TRY(take_block(w, block));
     if (!w->begun) BRIO_TRY(open_output(w, path));
     bool single = w->job.options->float32 && w->format != &brio_las_rows && w->format != &brio_xyz_rows;
     if (single) BRIO_TRY(brio_check_single(w->ctx, path, block));

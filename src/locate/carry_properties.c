@@ -111,7 +111,7 @@ static void find_name(const brio_mesh *mesh, const char *name, char out[64]) {
     char input[80];
     snprintf(input, sizeof input, "input_%s", name);
     brio_utf8_copy(out, 64, brio_mesh_property(mesh, name) ? input : name);
-    for (size_t n = 2; brio_mesh_property(mesh, out); n++) brio_numbered_name(out, input, n);
+    for (size_t n = 2; brio_mesh_property(mesh, out); n++) brio_numbered_name(out, 64, input, n);
 }
 
 static brio_status copy_property(const brio_property *p, const uint32_t *samples, brio_mesh *mesh) {

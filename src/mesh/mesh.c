@@ -118,7 +118,7 @@ brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scala
     char *bytes = NULL;
     BRIO_REQUIRE(ctx, brio_scalar_size(type), BRIO_ERR_ARGUMENT, "property %s: no such scalar type", name);
     BRIO_REQUIRE(ctx, brio_utf8_copy(p.name, sizeof p.name, name) && name[0], BRIO_ERR_ARGUMENT,
-                 "property name of %zu characters", strlen(name));
+                 "a property name of %zu bytes, expected 1 to 63 bytes of UTF-8", strlen(name));
     BRIO_REQUIRE(ctx, !brio_mesh_property(mesh, name), BRIO_ERR_ARGUMENT, "two properties named %s", p.name);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, bytes, mesh->num_vertices * brio_scalar_size(type)));
     p.data = bytes;

@@ -68,6 +68,19 @@ static void names_of_surveyors_and_programs(void) {
     expect_first("# x y z nx\n# of something else\n1.5 2.5 3.5 1\n", 1, 1);
 }
 
+static void names_with_marks_of_comments_are_whole(void) {
+    static const char *const files[] = {"x,y,z,Humidity %,c#1,a//b,\"d # e\"\n1,2,3,4,5,6,7\n",
+                                        "x,y,z,c#1,a//b,d # e,Humidity %\n1,2,3,5,6,7,4 % note\n"};
+    static const char *const names[2][4] = {{"Humidity %", "c#1", "a//b", "d # e"}, {"c#1", "a//b", "d", "column7"}};
+    for (size_t k = 0; k < 2; k++) {
+        brio_mesh *m = io_read_text("a.csv", files[k]);
+        EXPECT(m && m->num_properties == 4, "%s", brio_message(io_ctx));
+        for (size_t i = 0; m && i < 4; i++)
+            EXPECT(!strcmp(m->properties[i].name, names[k][i]), "%s", m->properties[i].name);
+        brio_mesh_free(m);
+    }
+}
+
 static void names_that_do_not_decide_are_errors(void) {
     io_expect_error("a.txt", "a b c\n1 2 3\n", BRIO_ERR_FORMAT, "line 1: the names do not say");
     io_expect_error("a.txt", "id x y\n1 2 3\n", BRIO_ERR_FORMAT, "the names do not say");
@@ -224,6 +237,7 @@ int main(void) {
     io_begin();
     RUN(header_with_id_lat_lon_alt_read_the_id_as_x);
     RUN(names_of_surveyors_and_programs);
+    RUN(names_with_marks_of_comments_are_whole);
     RUN(names_that_do_not_decide_are_errors);
     RUN(words_between_rows_are_errors);
     RUN(columns_by_the_caller);

@@ -114,6 +114,12 @@ static bool can_patch(const char *path) {
     return strcmp(path, "-") != 0 && (stat(path, &facts) != 0 || S_ISREG(facts.st_mode));
 }
 
+/* Whether a pass comes first because nothing can be taken back from the output: neither the number of points nor rows with
+ * a column that a later row lacks. */
+static bool must_count(const conversion *c) {
+    return !can_patch(c->to) && (c->writer.format->counts || brio_source_may_lack_columns(&c->source));
+}
+
 /* Goes through the points before the first one is written, as often as the format needs. */
 static brio_status prepare(conversion *c, brio_bar bar) {
     brio_status status = BRIO_OK;
@@ -124,7 +130,7 @@ static brio_status prepare(conversion *c, brio_bar bar) {
         brio_row_writer_end_survey(&c->writer);
         c->writer.job.points = brio_row_writer_surveyed_points(&c->writer);
     }
-    if (c->writer.format->counts && !can_patch(c->to)) {
+    if (must_count(c)) {
         BRIO_TRY(brio_source_pass(&c->source, &counts));
         c->writer.job.points = c->counted;
     }
@@ -139,10 +145,11 @@ static brio_status stream(conversion *c) {
     const brio_sink sink = {write_block, c};
     const brio_write_job job = {.options = &c->write, .points = BRIO_COUNT_UNKNOWN, .expected = BRIO_NO_PROGRESS};
     BRIO_TRY(brio_row_writer_new(&c->writer, c->ctx, c->format, &job));
-    bool prepared = c->writer.surveys || (c->writer.format->counts && !can_patch(c->to));
+    bool prepared = c->writer.surveys || must_count(c);
     if (prepared) BRIO_TRY(prepare(c, bar));
     brio_progress_part(c->ctx, bar, prepared ? 0.5 : 0, 1);
     BRIO_TRY(brio_source_pass(&c->source, &sink));
+    if (prepared && c->writer.job.points != c->writer.points) BRIO_TRY(brio_source_changed(&c->source));
     if (c->rounded || (c->writer.format->rounds && c->writer.format->rounds(c->writer.state))) lose(c, "precision");
     brio_mesh last = {.num_vertices = 0};
     if (c->source.job.mesh) last = *c->source.job.mesh;
@@ -211,7 +218,8 @@ static brio_status run(conversion *c) {
         if (c->options->drop_outliers || c->options->thin > 0) status = brio_source_choose(&c->source);
         c->stats.select_seconds = brio_seconds() - started;
         if (status == BRIO_OK) status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
-        if (status != BRIO_ERR_FORMAT || c->source.absent.count == absent || !again) return status;
+        bool taken = c->stats.points > 0 && !can_patch(c->to); /* rows that cannot be taken back */
+        if (status != BRIO_ERR_FORMAT || c->source.absent.count == absent || !again || taken) return status;
         brio_release(c->ctx, c->source.chosen);
         c->source.chosen = NULL;
     }

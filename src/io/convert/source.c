@@ -23,8 +23,22 @@ bool brio_source_rereadable(const char *path) {
     return strcmp(path, "-") != 0 && stat(path, &facts) == 0 && S_ISREG(facts.st_mode);
 }
 
-static brio_status changed(const brio_source *s) {
+bool brio_source_may_lack_columns(const brio_source *s) {
+    brio_format format = s->job.format == BRIO_FORMAT_AUTO ? brio_format_of(s->path) : s->job.format;
+    return !s->whole && !s->job.mesh && (format == BRIO_FORMAT_AUTO || format == BRIO_FORMAT_XYZ);
+}
+
+brio_status brio_source_changed(const brio_source *s) {
     return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: the file changed while it was read", s->path);
+}
+
+/* Whether the file is the one that the first pass found: another one may have other properties and more points. */
+static bool is_unchanged(brio_source *s) {
+    struct stat facts, *first = &s->facts;
+    if (!brio_source_rereadable(s->path) || stat(s->path, &facts) != 0) return true; /* reading it tells */
+    if (!first->st_mode) *first = facts;
+    return facts.st_dev == first->st_dev && facts.st_ino == first->st_ino && facts.st_size == first->st_size &&
+           facts.st_mtim.tv_sec == first->st_mtim.tv_sec && facts.st_mtim.tv_nsec == first->st_mtim.tv_nsec;
 }
 
 /* Finds which points of a block stay. */
@@ -38,7 +52,7 @@ static brio_status find_stays(pass *p, const brio_mesh *block) {
         memset(p->stays, 1, block->num_vertices);
     for (size_t v = 0; v < block->num_vertices; v++) {
         if (!p->stays[v]) continue;
-        if (s->chosen && p->boxed == s->num_boxed) return changed(s);
+        if (s->chosen && p->boxed == s->num_boxed) return brio_source_changed(s);
         if (s->chosen) p->stays[v] = s->chosen[p->boxed];
         p->boxed++;
     }
@@ -70,8 +84,10 @@ static brio_status read_pass(pass *p) {
     s->job.absent = &s->absent;
     s->points_read = 0;
     s->passes++;
+    if (!is_unchanged(s)) return brio_source_changed(s);
     brio_status status = brio_read_file(s->ctx, &s->job);
-    if (status == BRIO_OK && !s->job.mesh && s->chosen && p->boxed != s->num_boxed) return changed(s);
+    if (status == BRIO_OK && !s->job.mesh && !is_unchanged(s)) return brio_source_changed(s);
+    if (status == BRIO_OK && !s->job.mesh && s->chosen && p->boxed != s->num_boxed) return brio_source_changed(s);
     return status;
 }
 

@@ -3,6 +3,7 @@
 #define BRIO_IO_CONVERT_SOURCE_H
 
 #include "io/read_job.h"
+#include <sys/stat.h>
 
 typedef struct brio_source {
     brio_context *ctx;
@@ -16,6 +17,7 @@ typedef struct brio_source {
     uint64_t num_boxed;   /* points in the box, if `chosen` was made */
     uint64_t outliers, thinned;
     int passes;
+    struct stat facts; /* of a file that can be read again, as the first pass found it */
 } brio_source;
 
 /** Returns whether a path names a file that can be read again. */
@@ -27,6 +29,12 @@ brio_status brio_source_pass(brio_source *s, const brio_sink *sink);
 
 /** Chooses points: drops outliers, then thins. Goes through the file once. */
 brio_status brio_source_choose(brio_source *s);
+
+/** Returns whether a row far behind the first ones may turn out to lack a column, so that all is read again. */
+bool brio_source_may_lack_columns(const brio_source *s);
+
+/** Returns BRIO_ERR_FORMAT: the passes found different things in the file. */
+brio_status brio_source_changed(const brio_source *s);
 
 void brio_source_free(brio_source *s);
 

@@ -6,6 +6,7 @@
  * Based on: ASTM E2807-11, 8.4.4 (elements of a point). */
 #include "io/e57/e57_plan.h"
 #include "base/memory.h"
+#include "base/utf8.h"
 #include <string.h>
 
 /* A property under construction: what its fields can hold. */
@@ -44,7 +45,7 @@ static void make_name(const planner *l, const char *source, char name[BRIO_E57_N
     static const char *const known[][2] = {{"colorRed", "red"},   {"colorGreen", "green"}, {"colorBlue", "blue"},
                                            {"nor:normalX", "nx"}, {"nor:normalY", "ny"},   {"nor:normalZ", "nz"}};
     size_t n = 0;
-    for (const char *c = source; *c && n < BRIO_E57_NAME - 4; c++) {
+    for (const char *c = source; *c && n + brio_utf8_length(c) < BRIO_E57_NAME - 4; c++) {
         bool upper = *c >= 'A' && *c <= 'Z';
         if (upper && n && name[n - 1] != '_') name[n++] = '_';
         name[n++] = *c == ':' ? '_' : upper ? (char)(*c - 'A' + 'a') : *c;

@@ -7,7 +7,6 @@
  * whose attributes are those of the one before it has that one's vertices.
  *
  * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
-#include "base/utf8.h"
 #include "io/glb/glb_mesh.h"
 #include "base/memory.h"
 #include "io/scalar.h"
@@ -131,15 +130,12 @@ static brio_status make_properties(builder *b) {
     brio_status status = BRIO_OK;
     for (size_t i = 0; i < b->num_properties; i++) {
         const property *p = &b->properties[i];
-        char plain[64], name[64];
+        char name[64];
         if (p->normal || p->colour)
-            strcpy(plain, p->normal ? normal[p->component] : colour[p->component]);
-        else if (p->components == 1)
-            snprintf(plain, sizeof plain, "%.63s", p->attribute + 1);
+            brio_builder_new_name(b->builder, p->normal ? normal[p->component] : colour[p->component], name);
         else
-            snprintf(plain, sizeof plain, "%.60s_%c", p->attribute + 1, "0123"[p->component]);
-        strcpy(name, plain);
-        for (size_t n = 2; brio_mesh_property(b->builder->mesh, name); n++) brio_numbered_name(name, plain, n);
+            brio_builder_component_name(b->builder, p->attribute + 1, (uint64_t)p->component, (uint64_t)p->components,
+                                        name);
         BRIO_TRY(brio_builder_property(b->builder, name, p->type));
     }
 done:

@@ -2,7 +2,6 @@
  * LAS does, so that the doubles are the same.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
-#include "base/utf8.h"
 #include "io/las/las_fields.h"
 #include "base/memory.h"
 #include "io/little_endian.h"
@@ -75,8 +74,7 @@ static brio_status plan_extra(brio_las_plan *plan, brio_builder *b, const brio_l
                          .scale = e->scale,
                          .offset = e->offset};
     char name[64];
-    snprintf(name, sizeof name, "%s", e->name);
-    for (size_t n = 2; brio_mesh_property(b->mesh, name); n++) brio_numbered_name(name, e->name, n);
+    brio_builder_new_name(b, e->name, name);
     BRIO_TRY(brio_builder_property(b, name, c.type));
     plan->columns[plan->num_columns++] = c;
 done:

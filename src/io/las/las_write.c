@@ -6,6 +6,7 @@
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
 #include "base/memory.h"
 #include "base/team.h"
+#include "base/utf8.h"
 #include "io/row_format.h"
 #include "io/las/las_fields.h"
 #include "io/las/las_grid.h"
@@ -60,7 +61,7 @@ static void widen(range *r, const brio_property *p, size_t count) {
 }
 
 static bool fits(const brio_las_field *f, const range *r) {
-    if (r->low > r->high) return true; /* there are no values */
+    if (r->low > r->high) return r->whole; /* no values, or NaN alone */
     if (f->type == BRIO_SCALAR_FLOAT64) return true;
     bool is_signed = f->type == BRIO_SCALAR_INT8 || f->type == BRIO_SCALAR_INT16;
     int bits = f->bits ? f->bits : 8 * (int)brio_scalar_size(f->type);
@@ -94,10 +95,8 @@ static unsigned choose_format(const las_writer *w) {
     return best;
 }
 
-static brio_status check_extra(brio_output *out, const las_writer *w, const char *name) {
+static brio_status check_extra(brio_output *out, const las_writer *w) {
     brio_status status = BRIO_OK;
-    BRIO_REQUIRE(out->ctx, strlen(name) <= EXTRA_NAME, BRIO_ERR_ARGUMENT,
-                 "%s: the property %s: a LAS file has names of at most %d bytes", out->name, name, EXTRA_NAME);
     BRIO_REQUIRE(out->ctx, w->num_extras < MOST_EXTRAS, BRIO_ERR_ARGUMENT,
                  "%s: a LAS file holds at most %d properties that its format does not know", out->name, MOST_EXTRAS);
 done:
@@ -119,7 +118,7 @@ static brio_status plan(brio_output *out, las_writer *w) {
             w->places[i] = (place){f->at, f->type, f->shift, f->bits, false};
             continue;
         }
-        BRIO_TRY(check_extra(out, w, p->name));
+        BRIO_TRY(check_extra(out, w));
         w->places[i] = (place){w->record, p->type, 0, 0, true};
         w->record += brio_scalar_size(p->type);
         w->num_extras++;
@@ -168,24 +167,37 @@ static brio_status write_header(brio_output *out, const brio_write_job *job, las
     return brio_output_bytes(out, header, size);
 }
 
-static brio_status write_extras(brio_output *out, const las_writer *w) {
+static bool is_taken(const char *extras, size_t count, const char *name) {
+    for (size_t i = 0; i < count; i++)
+        if (!strncmp(extras + EXTRA_RECORD * i + 4, name, EXTRA_NAME)) return true;
+    return false;
+}
+
+/* Names have 32 bytes, without an end: a longer one is cut, and one that is taken gets _2, _3 and so on behind it. */
+static void put_extra(char *extras, size_t count, const brio_property *p) {
     static const uint8_t types[BRIO_SCALAR_END] = {2, 1, 4, 3, 6, 5, 9, 10};
+    char name[EXTRA_NAME + 1], *extra = extras + EXTRA_RECORD * count;
+    brio_utf8_copy(name, sizeof name, p->name);
+    for (size_t n = 2; is_taken(extras, count, name); n++) brio_numbered_name(name, sizeof name, p->name, n);
+    extra[2] = (char)types[p->type];
+    memcpy(extra + 4, name, strlen(name));
+}
+
+static brio_status write_extras(brio_output *out, const las_writer *w) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = w->block;
-    char header[RECORD_HEADER] = {0};
+    char header[RECORD_HEADER] = {0}, *extras = NULL;
     if (!w->num_extras) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_ZERO(out->ctx, extras, EXTRA_RECORD * w->num_extras));
     memcpy(header + 2, "LASF_Spec", 9);
     brio_put_le16(header + 18, 4);
     brio_put_le16(header + 20, (uint16_t)(EXTRA_RECORD * w->num_extras));
     BRIO_TRY(brio_output_bytes(out, header, sizeof header));
-    for (size_t i = 0; i < m->num_properties; i++) {
-        char extra[EXTRA_RECORD] = {0};
-        if (!w->places[i].extra) continue;
-        extra[2] = (char)types[m->properties[i].type];
-        memcpy(extra + 4, m->properties[i].name, strlen(m->properties[i].name));
-        BRIO_TRY(brio_output_bytes(out, extra, sizeof extra));
-    }
+    for (size_t i = 0, count = 0; i < m->num_properties; i++)
+        if (w->places[i].extra) put_extra(extras, count++, &m->properties[i]);
+    BRIO_TRY(brio_output_bytes(out, extras, EXTRA_RECORD * w->num_extras));
 done:
+    brio_release(out->ctx, extras);
     return status;
 }
 

@@ -89,8 +89,8 @@ static brio_status add_properties(npz_reader *r, const brio_npz_array *a) {
             known = i / 4;
     r->first_property = r->builder->mesh->num_properties;
     for (uint64_t i = 0; i < columns; i++) {
-        char name[96];
-        snprintf(name, sizeof name, columns > 1 ? "%s_%u" : "%s", a->name, (unsigned)i);
+        char name[64];
+        brio_builder_component_name(r->builder, a->name, i, columns, name);
         const brio_npy_field *e = &a->header.element;
         BRIO_TRY(brio_builder_property(r->builder, known >= 0 ? components[known][i] : name,
                                        e->wide ? BRIO_SCALAR_FLOAT64 : e->type));

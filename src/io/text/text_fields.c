@@ -29,6 +29,11 @@ static bool ends_field(const char *p) {
     return brio_is_blank(*p) || *p == ',' || !*p || *p == ';' || brio_starts_comment(p);
 }
 
+/* In a word, as in z#1, a comment's mark is none. */
+static bool ends_text(const char *p) {
+    return brio_is_blank(*p) || *p == ',' || !*p || *p == ';';
+}
+
 static bool ends_word(const char *p) {
     return !*p || brio_is_blank(*p) || *p == ';' || brio_starts_comment(p);
 }
@@ -63,7 +68,7 @@ static const char *scan_field(const char *p, brio_field *field) {
     *field = (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0};
     if (*p == ',' || *p == ';') return p;
     field->kind = BRIO_FIELD_WORD;
-    end = skip_word(p, ends_field);
+    end = skip_word(p, ends_text);
     field->length = (size_t)(end - p);
     return end;
 }
@@ -99,11 +104,17 @@ static void join_words(brio_fields *f) {
     f->count = kept;
 }
 
+/* Whether a % is the end of a name with blanks, as in "Humidity %". */
+static bool is_unit(const brio_fields *f, const char *p) {
+    bool word = f->count && f->at[f->count - 1].kind == BRIO_FIELD_WORD;
+    return word && *p == '%' && (p[1] == ',' || p[1] == ';' || (!p[1] && strpbrk(f->at[0].word, ",;")));
+}
+
 static brio_status split(brio_fields *f, const char *p, size_t columns, gaps *g) {
     brio_status status = BRIO_OK;
     bool comma = false;
     f->count = 0;
-    for (p = skip_blanks(p); *p && !brio_starts_comment(p);) {
+    for (p = skip_blanks(p); *p && (!brio_starts_comment(p) || is_unit(f, p));) {
         if (f->count == f->capacity) BRIO_TRY(BRIO_RESERVE(f->stream->ctx, f->at, f->capacity, f->count + 1));
         brio_field *field = &f->at[f->count++];
         const char *end = scan_field(p, field);

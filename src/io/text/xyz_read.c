@@ -6,6 +6,7 @@
  * if the first row has a number (or nothing) in it and no row lacks it. A single number before the first row is the
  * number of rows. A ; at the start of a line begins a comment, too. */
 #include "base/memory.h"
+#include "base/utf8.h"
 #include "io/formats.h"
 #include "io/text/text_columns.h"
 #include "io/text/text_fields.h"
@@ -86,15 +87,17 @@ static brio_status bad_field(const xyz_reader *r, size_t i) {
 /* --- names of columns --- */
 
 static void copy_name(char name[64], const brio_field *f) {
+    char bytes[64 + 3]; /* with the rest of a character that does not fit */
     const char *word = f->word;
     size_t length = f->length;
     if (length > 1 && word[0] == '"' && word[length - 1] == '"') {
         word++;
         length -= 2;
     }
-    if (length > 63) length = 63;
-    memcpy(name, word, length);
-    name[length] = 0;
+    if (length >= sizeof bytes) length = sizeof bytes - 1;
+    memcpy(bytes, word, length);
+    bytes[length] = 0;
+    brio_utf8_copy(name, 64, bytes);
 }
 
 /* Takes the fields as names for a try. */
@@ -161,10 +164,11 @@ done:
 /* --- columns, from the names and the first row --- */
 
 static brio_status add_property(xyz_reader *r, size_t i) {
-    char name[64] = "";
+    char plain[64], name[64] = "";
     if (i < r->names.count) strcpy(name, r->names.at[i]);
     bool axis = strlen(name) == 1 && strchr("xyzXYZ", name[0]);
-    if (!name[0] || axis || brio_mesh_property(r->builder->mesh, name)) snprintf(name, sizeof name, "column%zu", i + 1);
+    snprintf(plain, sizeof plain, "column%zu", i + 1);
+    if (!name[0] || axis || brio_mesh_property(r->builder->mesh, name)) brio_builder_new_name(r->builder, plain, name);
     r->columns[i].role = COLUMN_PROPERTY;
     r->columns[i].target = r->builder->mesh->num_properties;
     return brio_builder_property(r->builder, name, BRIO_SCALAR_FLOAT64);

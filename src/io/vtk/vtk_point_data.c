@@ -3,7 +3,6 @@
  * A column is a component of an array, and grows from piece to piece. An array of one component is a property of its
  * name, one of several components is name_0, name_1, ... Normals become nx, ny, nz, and colours of bytes red, green,
  * blue, alpha, which other formats have, too. Integers of 64 bits become doubles. */
-#include "base/utf8.h"
 #include "base/memory.h"
 #include "io/scalar.h"
 #include "io/vtk/vtk_values.h"
@@ -127,19 +126,14 @@ static bool is_colour(const brio_vtk_column *c) {
 }
 
 /* Chooses the name of a property: that of the column, or with _2, _3, ... behind it where that is taken. */
-static void choose_name(const brio_mesh *m, const brio_vtk_column *c, char name[64]) {
+static void choose_name(const brio_builder *b, const brio_vtk_column *c, char name[64]) {
     static const char *const normal[] = {"nx", "ny", "nz"}, *const colour[] = {"red", "green", "blue", "alpha"};
-    char plain[64];
     if (c->components == 3 && !strcmp(c->source, "Normals"))
-        strcpy(plain, normal[c->component]);
+        brio_builder_new_name(b, normal[c->component], name);
     else if (is_colour(c))
-        strcpy(plain, colour[c->component]);
-    else if (c->components == 1)
-        snprintf(plain, sizeof plain, "%s", c->source);
+        brio_builder_new_name(b, colour[c->component], name);
     else
-        snprintf(plain, sizeof plain, "%.58s_%u", c->source, (unsigned)c->component % MOST_COMPONENTS);
-    strcpy(name, plain);
-    for (size_t n = 2; brio_mesh_property(m, name); n++) brio_numbered_name(name, plain, n);
+        brio_builder_component_name(b, c->source, (uint64_t)c->component, (uint64_t)c->components, name);
 }
 
 brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *b) {
@@ -148,7 +142,7 @@ brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *
     for (size_t i = 0; i < data->num_columns; i++) {
         brio_vtk_column *c = &data->columns[i];
         if (c->rows != b->mesh->num_vertices) continue;
-        choose_name(b->mesh, c, name);
+        choose_name(b, c, name);
         void *block = c->data;
         c->data = NULL;
         if (block)

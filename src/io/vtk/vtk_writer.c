@@ -216,7 +216,7 @@ static brio_status make_names(brio_vtk_writer *w) {
         for (char *c = plain; *c; c++)
             if ((unsigned char)*c < ' ') *c = ' ';
         strcpy(w->names[i], plain);
-        for (size_t n = 2; is_taken(w->names, i, w->names[i]); n++) brio_numbered_name(w->names[i], plain, n);
+        for (size_t n = 2; is_taken(w->names, i, w->names[i]); n++) brio_numbered_name(w->names[i], 64, plain, n);
     }
     return status;
 }

@@ -1,0 +1,148 @@
+/* Conversions whose input changes between two passes, or turns out to lack a column, and names that formats cut. The command
+ * line's tests convert between all formats. */
+#include "harness.h"
+#include "io_files.h"
+#include <math.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { ROWS = 70000 /* more than a block */ };
+
+static void put_rows(const char *name, const char *header, const char *row, size_t count) {
+    FILE *f = fopen(io_path(name), "w");
+    fputs(header, f);
+    for (size_t i = 0; i < count; i++) fputs(row, f);
+    fclose(f);
+}
+
+static brio_status convert(const char *from, const char *to) {
+    char path[4096];
+    strcpy(path, io_path(from));
+    return brio_convert(io_ctx, path, io_path(to), NULL, NULL);
+}
+
+static brio_mesh *read_back(const char *name) {
+    brio_mesh *m = NULL;
+    EXPECT(brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &m) == BRIO_OK, "%s", brio_message(io_ctx));
+    return m;
+}
+
+/* --- another file --- */
+
+/* Gives another file the name of the input when the first pass is over. */
+static int replace(const char *stage, double fraction, void *user) {
+    const char *other = user;
+    char path[4096];
+    (void)stage;
+    if (fraction < 0.5) return 0;
+    strcpy(path, io_path(other));
+    (void)!rename(path, io_path("in.csv")); /* the first time alone */
+    return 0;
+}
+
+/* The ranges of properties were those of the first file: memory behind them was read, or the file promised points that it
+ * had not. */
+static void a_file_replaced_between_two_passes_is_an_error(void) {
+    static const char *const outputs[] = {"out.las", "out.npy"};
+    char many[4096] = "x,y,z", row[4096] = "1,2,3";
+    for (int i = 0; i < 90; i++) snprintf(many + strlen(many), 16, ",p%d", i), strcat(row, ",1");
+    strcat(many, "\n"), strcat(row, "\n");
+    for (int kind = 0; kind < 3; kind++) {
+        put_rows("in.csv", "x,y,z,a\n", "1,2,3,4\n", ROWS);
+        put_rows("other.csv", kind == 1 ? many : "x,y,z,a\n", kind == 1 ? row : "1,2,3,4\n", kind == 0 ? 10 : ROWS);
+        brio_context_set_progress(io_ctx, replace, "other.csv");
+        EXPECT(convert("in.csv", outputs[0]) == BRIO_ERR_FORMAT, "kind %d", kind);
+        EXPECT(strstr(brio_message(io_ctx), "in.csv: the file changed"), "%s", brio_message(io_ctx));
+        EXPECT(io_count_files("out.") == 0);
+        brio_context_set_progress(io_ctx, NULL, NULL);
+    }
+}
+
+/* --- a column that late rows lack --- */
+
+/* The rows of the first try stayed in the output, and all came again behind them. */
+static void rows_in_a_pipe_are_written_once(void) {
+    char command[4200];
+    FILE *f = fopen(io_path("in.csv"), "w");
+    fputs("x,y,z,q\n", f);
+    for (int i = 0; i < 3 * ROWS; i++) fputs(i + 1 < 3 * ROWS ? "1,2,3,4\n" : "1,2,3\n", f);
+    fclose(f);
+    EXPECT(mkfifo(io_path("pipe.csv"), 0600) == 0);
+    snprintf(command, sizeof command, "wc -l <%s", io_path("pipe.csv"));
+    FILE *lines = popen(command, "r");
+    int count = 0;
+    EXPECT(convert("in.csv", "pipe.csv") == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(fscanf(lines, "%d", &count) == 1 && count == 3 * ROWS + 1, "%d lines", count);
+    pclose(lines);
+}
+
+/* --- LAS --- */
+
+static void a_las_field_of_nan_alone_stays_nan(void) {
+    static const char text[] = "x,y,z,intensity\n1,2,3,\n4,5,6,\n";
+    io_put("in.csv", text, strlen(text));
+    EXPECT(convert("in.csv", "out.las") == BRIO_OK, "%s", brio_message(io_ctx));
+    brio_mesh *m = read_back("out.las");
+    size_t nans = 0;
+    for (size_t p = 0; m && p < m->num_properties; p++) nans += isnan(brio_property_value(&m->properties[p], 1));
+    EXPECT(nans == 1);
+    brio_mesh_free(m);
+}
+
+/* --- long names --- */
+
+/* Names of Latin-1 that UTF-8 makes longer than there is room were one name, and refused; LAS refused over 32 bytes. */
+static void names_that_are_cut_stay_distinct(void) {
+    static const char *const outputs[] = {"out.las", "out.ply", "out.vtu", "out.npy", "out.csv"};
+    char name[33] = "", text[200];
+    memset(name, 0xf6, 32);
+    snprintf(text, sizeof text, "x,y,z,%s,%s1\n1,2,3,4,5\n", name, name);
+    io_put("in.csv", text, strlen(text));
+    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++) {
+        EXPECT(convert("in.csv", outputs[i]) == BRIO_OK, "%s", brio_message(io_ctx));
+        brio_mesh *m = read_back(outputs[i]);
+        size_t found = 0;
+        for (size_t p = 0; m && p < m->num_properties; p++) {
+            double value = brio_property_value(&m->properties[p], 0);
+            found += (value == 4 || value == 5) && !strstr(m->properties[p].name, "\xc3\x83");
+        }
+        EXPECT(found == 2, "%s: %zu", outputs[i], found);
+        brio_mesh_free(m);
+    }
+}
+
+/* A name was cut in the midst of a character, and the rest taken for another one. */
+static void names_are_cut_between_characters(void) {
+    char text[200] = "x,y,z,a";
+    for (int i = 0; i < 25; i++) strcat(text, "\xe6\xbc\xa2");
+    strcat(text, "\n1,2,3,4\n");
+    io_put("in.csv", text, strlen(text));
+    brio_mesh *m = read_back("in.csv");
+    EXPECT(m && m->num_properties == 1 && strlen(m->properties[0].name) == 61, "%s", m ? m->properties[0].name : "");
+    brio_mesh_free(m);
+}
+
+static void an_npy_field_that_is_there_twice_is_refused(void) {
+    static const char header[] = "{'descr': [('x', '<f8'), ('y', '<f8'), ('z', '<f8'), ('x', '<f8')], "
+                                 "'fortran_order': False, 'shape': (1,), }\n";
+    char bytes[256] = "\x93NUMPY\x01\x00";
+    size_t length = strlen(header);
+    bytes[8] = (char)length, bytes[9] = 0;
+    memcpy(bytes + 10, header, length);
+    io_put("in.npy", bytes, 10 + length + 32);
+    brio_mesh *m = NULL;
+    EXPECT(brio_read(io_ctx, io_path("in.npy"), BRIO_FORMAT_AUTO, &m) == BRIO_ERR_FORMAT, "%zu", m ? m->num_vertices : 0);
+    EXPECT(strstr(brio_message(io_ctx), "two fields named x"), "%s", brio_message(io_ctx));
+    brio_mesh_free(m);
+}
+
+int main(void) {
+    io_begin();
+    RUN(a_file_replaced_between_two_passes_is_an_error);
+    RUN(rows_in_a_pipe_are_written_once);
+    RUN(a_las_field_of_nan_alone_stays_nan);
+    RUN(names_that_are_cut_stay_distinct);
+    RUN(names_are_cut_between_characters);
+    RUN(an_npy_field_that_is_there_twice_is_refused);
+    return io_end();
+}
