@@ -44,7 +44,10 @@ static brio_status compare(run *r) {
         TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "both surfaces want standard input"));
     TRY(read_surface(r, r->operands[0], &a));
     TRY(read_surface(r, r->operands[1], &b));
-    TRY(brio_mesh_distance(r->ctx, a, b, (size_t)chosen->samples, r->common.seed, &distance));
+    status = brio_mesh_distance(r->ctx, a, b, (size_t)chosen->samples, r->common.seed, &distance);
+    if (status == BRIO_ERR_ARGUMENT) /* both have faces: they are without area */
+        TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "%s, %s: %s", r->operands[0], r->operands[1], brio_message(r->ctx)));
+    TRY(status);
     cli_lap(r, "compare");
     report_distance(&r->facts, &distance);
 done:

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct arguments {
     const char *crop;
@@ -57,7 +58,7 @@ static void report_lost(run *r, const char *path, const facts *lost) {
     char names[1024] = "";
     for (size_t i = 0; i < lost->count && used < sizeof names; i++)
         used += (size_t)snprintf(names + used, sizeof names - used, "%s %s", i ? "," : "", lost->list[i].text);
-    if (lost->count) cli_warn(r, "%s cannot hold:%s", path, names);
+    if (lost->count) cli_warn(r, "%s cannot hold, or not by this name:%s", path, names);
 }
 
 static brio_status take_files(run *r, brio_read_options *from, brio_write_options *to) {
@@ -66,6 +67,7 @@ static brio_status take_files(run *r, brio_read_options *from, brio_write_option
     if (status != BRIO_OK) return status;
     if (c->input_format) from->format = brio_format_of(c->input_format);
     from->columns = c->columns;
+    if (c->format && !strcasecmp(c->format, "csv")) to->separator = ",";
     to->ascii = c->ascii;
     to->float32 = c->float32;
     to->compress = c->compress;

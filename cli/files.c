@@ -114,10 +114,13 @@ static bool leads_to_one(const char *a, const char *b) {
     return same;
 }
 
-/* The .node file of a TetGen pair, to be freed; NULL for other names, and without memory. */
+/* The .node file of a set of TetGen's files, to be freed; NULL for other names, and without memory. */
 static char *node_of(const char *path) {
+    static const char *const set[] = {".node", ".ele", ".neigh", ".face", ".edge"};
     const char *dot = strrchr(path, '.');
-    if (!dot || (strcasecmp(dot, ".node") != 0 && strcasecmp(dot, ".ele") != 0)) return NULL;
+    size_t i = 0, count = sizeof set / sizeof *set;
+    while (dot && i < count && strcasecmp(dot, set[i]) != 0) i++;
+    if (!dot || i == count) return NULL;
     char *name = malloc((size_t)(dot - path) + sizeof ".node");
     if (name) sprintf(name, "%.*s.node", (int)(dot - path), path);
     return name;

@@ -7,6 +7,7 @@
 #include "hints.h"
 #include "interrupt.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -170,7 +171,15 @@ static bool is_one_of(const char *word, const char *a, const char *b) {
     return !strcmp(word, a) || !strcmp(word, b);
 }
 
+/* Standard streams that the caller closed get descriptors that refuse every call: a file opened later would get their
+ * numbers, and messages would be written into it. */
+static void fill_closed_streams(void) {
+    for (int stream = 0; stream < 3; stream++)
+        if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", stream ? O_RDONLY : O_WRONLY) != stream) return;
+}
+
 int main(int argc, char **argv) {
+    fill_closed_streams();
     cli_interrupt_install();
     buffer_output();
     if (argc < 2) {

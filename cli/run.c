@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -264,6 +265,7 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     double moved = 0;
     size_t merged = 0;
     TRY(cli_output_format(r, path, extension, &options.format));
+    if (extension && !strcasecmp(extension, "csv")) options.separator = ",";
     options.ascii = r->common.ascii;
     options.float32 = r->common.float32;
     options.moved = &moved;

@@ -855,7 +855,8 @@ typedef struct brio_distance {
 
 /** Compares two surfaces. Takes `samples` random points of each (0: 100,000), uniform by area, and computes their exact
  *  distances from the triangles of the other surface.   out  its `size` set.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without faces), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without faces, or whose faces have no area or one beyond doubles),
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
                                         uint64_t seed, brio_distance *out);
 
@@ -1723,6 +1724,9 @@ typedef struct brio_write_options {
     /* NODE, 1: TetGen's .neigh, .face and .edge too, beside .ele; default 0. They are found from the tetrahedra, with 40
      * bytes a tetrahedron. Facets of one tetrahedron alone are the hull, whose faces and edges have the marker 1. */
     int neighbours, faces, edges;
+    const char
+        *separator; /* XYZ: "," or " " between numbers; with "," there is no comment; default NULL: by the name, ","
+                              for .csv */
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);

@@ -70,7 +70,7 @@ static brio_status search(brio_context *ctx, brio_region *r, double low[3], doub
     for (int n = 0; open && n < MOST_DOUBLINGS; n++, half *= 4) {
         const double least[3] = {-half, -half, -half}, most[3] = {half, half, half};
         BRIO_TRY(cut_out(r, least, most));
-        BRIO_REQUIRE(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT, "the region is empty");
+        BRIO_REQUIRE(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT, "the region is empty, or too small beside the points for doubles");
         open = find_bounds(&r->shape, walls, low, high);
     }
     BRIO_REQUIRE(ctx, !open, BRIO_ERR_ARGUMENT, "the planes of the region bound no polytope");
@@ -109,7 +109,7 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
     if (is_box(r)) {
         for (int k = 0; k < 3; k++) low[k] = -r->plane[2 * k][3], high[k] = r->plane[2 * k + 1][3];
         BRIO_REQUIRE(ctx, low[0] < high[0] && low[1] < high[1] && low[2] < high[2], BRIO_ERR_ARGUMENT,
-                     "the region is empty");
+                     "the region is empty, or too small beside the points for doubles");
         BRIO_TRY(brio_polyhedron_set_box(&r->shape, low, high));
         r->box = true;
         memcpy(r->low, low, sizeof low);
@@ -131,7 +131,7 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
         r->reach = fmax(r->reach, high[k] - low[k]);
     }
     r->volume = r->box ? (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) : volume_of(r);
-    BRIO_REQUIRE(ctx, r->volume > 0, BRIO_ERR_ARGUMENT, "the region is empty");
+    BRIO_REQUIRE(ctx, r->volume > 0, BRIO_ERR_ARGUMENT, "the region is empty, or too small beside the points for doubles");
 done:
     return status;
 }

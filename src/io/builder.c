@@ -72,11 +72,12 @@ done:
     return status;
 }
 
-/* Hands the vertices on and begins again with none. After a vertex that is no number, vertices are counted only. */
+/* Hands the vertices on and begins again with none. After a vertex that is no number, or a row without a column, vertices
+ * are counted only. */
 static brio_status hand_on(brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_count_not_finite(&b->refused, b->passed, b->mesh->vertices, NULL, b->mesh->num_vertices);
-    if (!b->refused.count) BRIO_TRY(give(b));
+    if (!b->refused.count && b->drop_status == BRIO_OK) BRIO_TRY(give(b));
     b->passed += b->mesh->num_vertices;
     b->mesh->num_vertices = 0;
 done:

@@ -49,6 +49,8 @@ bool brio_is_single(brio_format format, const brio_write_options *options);
 /** Returns the greatest distance between a vertex and its coordinates in single precision. */
 double brio_moved_by_singles(const brio_mesh *m);
 
+/** Refuses more properties than readers of the format take. */
+brio_status brio_check_properties(brio_context *ctx, const char *path, brio_format format, size_t count);
 /** Refuses compression for a format that has none, and in a build without zlib. */
 brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format format,
                                 const brio_write_options *options);

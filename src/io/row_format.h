@@ -25,6 +25,8 @@ typedef struct brio_row_format {
     /** Writes what follows the points of the last block. job->points is their number. NULL: nothing does. */
     brio_status (*end)(brio_output *out, const brio_write_job *job, void *state);
     void (*free)(brio_context *ctx, void *state);
+    /** Returns whether a reader finds property i by another name. NULL: where job->names has another one. */
+    bool (*renames)(const void *state, size_t i);
     /** Returns whether coordinates are rounded. NULL: only as the options say. */
     bool (*rounds)(const void *state);
     /** Returns how far a vertex of a block is at most from where a reader finds it. NULL: as the options say. */
@@ -60,6 +62,8 @@ void brio_row_writer_end_survey(brio_row_writer *w);
 uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w);
 /** Writes a block; the first one opens the output. */
 brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const brio_mesh *block);
+/** Returns whether property i of the block that was written has another name in the file. */
+bool brio_row_writer_renames(const brio_row_writer *w, const brio_mesh *block, size_t i);
 /** Ends the file and gives it its name.   last  the mesh whose polygons, tetrahedra and edges follow its points. */
 brio_status brio_row_writer_end(brio_row_writer *w, const brio_mesh *last);
 /** Frees everything. A file that was not ended disappears. */

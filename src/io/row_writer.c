@@ -2,7 +2,7 @@
 #include "base/utf8.h"
 #include "base/memory.h"
 #include "io/row_format.h"
-#include "io/text/text_fields.h"
+#include "io/textrow.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -123,6 +123,7 @@ uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w) {
 static brio_status open_output(brio_row_writer *w, const char *path) {
     brio_status status = BRIO_OK;
     if (w->format != &brio_las_rows) BRIO_TRY(make_names(w->ctx, path, &w->job, w->format->comments));
+    if (w->format == &brio_npy_rows) BRIO_TRY(brio_check_properties(w->ctx, path, BRIO_FORMAT_NPY, w->columns));
     w->begun = true;
     BRIO_TRY(brio_output_open(&w->out, w->ctx, path, w->job.expected));
     BRIO_REQUIRE(w->ctx, !w->format->counts || w->job.points != BRIO_COUNT_UNKNOWN || brio_output_can_patch(&w->out),
@@ -146,6 +147,11 @@ brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const br
     w->points += block->num_vertices;
 done:
     return status;
+}
+
+bool brio_row_writer_renames(const brio_row_writer *w, const brio_mesh *block, size_t i) {
+    if (w->format->renames) return w->format->renames(w->state, i);
+    return w->job.names && strcmp(w->job.names[i], block->properties[i].name) != 0;
 }
 
 brio_status brio_row_writer_end(brio_row_writer *w, const brio_mesh *last) {

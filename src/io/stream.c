@@ -227,7 +227,9 @@ brio_status brio_stream_line(brio_stream *s, char **line) {
     s->line++;
     BRIO_REQUIRE(s->ctx, !length || !memchr(text, 0, length), BRIO_ERR_FORMAT,
                  "%s: line %zu: holds a byte 0: not a text", s->name, s->line);
-    if (length && text[length - 1] == '\r') length--;
+    while (length && text[length - 1] == '\r') length--;
+    BRIO_REQUIRE(s->ctx, !length || !memchr(text, '\r', length), BRIO_ERR_FORMAT,
+                 "%s: line %zu: a carriage return within it; lines end with a line feed", s->name, s->line);
     text[length] = 0;
     *line = s->line == 1 && !strncmp(text, BYTE_ORDER_MARK, 3) ? text + 3 : text;
 done:

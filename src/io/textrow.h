@@ -20,6 +20,11 @@ typedef struct brio_excerpt {
 } brio_excerpt;
 brio_excerpt brio_excerpt_of(const char *word);
 
+/** Whether a comment begins here in a text of points. */
+static inline bool brio_starts_comment(const char *p) {
+    return *p == '#' || *p == '%' || (*p == '/' && p[1] == '/');
+}
+
 static inline bool brio_is_blank(char c) {
     return c == ' ' || (c >= '\t' && c <= '\r');
 }

@@ -26,6 +26,20 @@ done:
     return status;
 }
 
+/* As many as the readers take, which must not believe every header. */
+brio_status brio_check_properties(brio_context *ctx, const char *path, brio_format format, size_t count) {
+    static const size_t most[BRIO_FORMAT_END] = {[BRIO_FORMAT_NPY] = 4093,
+                                                 [BRIO_FORMAT_VTU] = 4096,
+                                                 [BRIO_FORMAT_VTP] = 4096,
+                                                 [BRIO_FORMAT_NODE] = 4096,
+                                                 [BRIO_FORMAT_GLB] = 256};
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, !most[format] || count <= most[format], BRIO_ERR_ARGUMENT,
+                 "%s: %zu properties; readers of this format take at most %zu", path, count, most[format]);
+done:
+    return status;
+}
+
 static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
                                const brio_write_options *options) {
     static const char *const without_tetrahedra[BRIO_FORMAT_END] = {
@@ -46,6 +60,7 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
     BRIO_REQUIRE(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
                  "%s: .gltf files are read, not written; .glb files are", path);
     BRIO_TRY(brio_check_compress(ctx, path, format, options));
+    BRIO_TRY(brio_check_properties(ctx, path, format, m->num_properties));
     if (brio_is_single(format, options)) BRIO_TRY(brio_check_single(ctx, path, m));
 done:
     return status;

@@ -3,14 +3,15 @@
 #include <string.h>
 #include <strings.h>
 
-static bool wants_commas(const char *path) {
-    size_t length = strlen(path);
-    return length >= 4 && !strcasecmp(path + length - 4, ".csv");
+static char separator_of(const brio_output *out, const brio_write_job *job) {
+    size_t length = strlen(out->name);
+    if (job->options->separator) return job->options->separator[0];
+    return length >= 4 && !strcasecmp(out->name + length - 4, ".csv") ? ',' : ' ';
 }
 
 static brio_status write_names(brio_output *out, const brio_write_job *job, char separator) {
     brio_status status = BRIO_OK;
-    /* spreadsheets read a line that begins with # as data */
+    /* spreadsheets read a line that begins with # as data, so that CSV has no comment */
     BRIO_TRY(brio_output_format(out, "%sx%cy%cz", separator == ',' ? "" : "# ", separator, separator));
     for (size_t i = 0; i < job->mesh->num_properties; i++)
         BRIO_TRY(brio_output_format(out, "%c%s", separator, job->names[i]));
@@ -22,8 +23,12 @@ done:
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
     (void)state;
-    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
-    BRIO_TRY(write_names(out, job, wants_commas(out->name) ? ',' : ' '));
+    const char *given = job->options->separator;
+    BRIO_REQUIRE(out->ctx, !given || !strcmp(given, ",") || !strcmp(given, " "), BRIO_ERR_ARGUMENT,
+                 "%s: the separator \"%s\", expected a comma or a blank", out->name, given);
+    char separator = separator_of(out, job);
+    if (separator == ' ') BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
+    BRIO_TRY(write_names(out, job, separator));
 done:
     return status;
 }
@@ -31,7 +36,7 @@ done:
 static brio_status write_rows(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    char separator = wants_commas(out->name) ? ',' : ' ';
+    char separator = separator_of(out, job);
     (void)state;
     for (size_t v = 0; v < m->num_vertices; v++) {
         for (int k = 0; k < 3; k++)

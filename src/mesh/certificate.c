@@ -21,6 +21,7 @@
 #include "base/team.h"
 #include "mesh/edge_rings.h"
 #include "base/union_find.h"
+#include "base/vector.h"
 #include <math.h>
 
 /* Faces, corners or vertices: a pass takes 1 to 25 ns an item. */
@@ -468,7 +469,7 @@ static void measure_face(const brio_mesh *mesh, size_t f, const double *centre, 
         const double *c = mesh->vertices + 3 * (size_t)corners[i];
         double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
         double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-        m->area += sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
+        m->area += brio_length(n) / 2;
         m->volume += ((a[0] - centre[0]) * n[0] + (a[1] - centre[1]) * n[1] + (a[2] - centre[2]) * n[2]) / 6;
     }
 }

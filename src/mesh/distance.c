@@ -10,6 +10,7 @@
 #include "base/versioned.h"
 #include "base/rng.h"
 #include "base/team.h"
+#include "base/vector.h"
 #include "mesh/closest_point.h"
 #include "mesh/edge_rings.h"
 #include <math.h>
@@ -46,10 +47,6 @@ static void triangle_normal(const brio_triangle_tree *tree, size_t t, double *n)
     n[2] = u[0] * v[1] - u[1] * v[0];
 }
 
-static double length(const double *n) {
-    return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-}
-
 static void surface_free(brio_context *ctx, surface *s) {
     brio_triangle_tree_free(ctx, &s->tree);
     brio_release(ctx, s->area_up_to);
@@ -64,7 +61,7 @@ static brio_status surface_new(brio_context *ctx, const brio_mesh *mesh, const c
     for (size_t t = 0; t < s->tree.num_triangles; t++) {
         double n[3];
         triangle_normal(&s->tree, t, n);
-        sum += 0.5 * length(n);
+        sum += 0.5 * brio_length(n);
         s->area_up_to[t] = sum;
     }
     BRIO_REQUIRE(ctx, sum > 0 && isfinite(sum), BRIO_ERR_ARGUMENT, "the faces of %s have area %g", name, sum);
@@ -100,7 +97,7 @@ static size_t sample(const surface *s, brio_rng rng, double *p) {
 }
 
 static float normal_cosine(const double *m, const double *n) {
-    double lengths = length(m) * length(n);
+    double lengths = brio_length(m) * brio_length(n);
     if (!(lengths > 0)) return -1;
     return (float)fmin(fabs(m[0] * n[0] + m[1] * n[1] + m[2] * n[2]) / lengths, 1);
 }
@@ -204,7 +201,7 @@ brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio
     summarise(&m, &found);
     const brio_box *box = &surfaces[1].tree.boxes[0];
     double diagonal[3] = {box->high[0] - box->low[0], box->high[1] - box->low[1], box->high[2] - box->low[2]};
-    found.diagonal = length(diagonal);
+    found.diagonal = brio_length(diagonal);
     BRIO_GIVE(brio_distance, out, &found);
 done:
     surface_free(ctx, &surfaces[0]);

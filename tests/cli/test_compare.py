@@ -23,6 +23,16 @@ class Compare(CliTest):
         mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
         self.bad_input("found no faces", "compare", mesh, self.xyz("a.xyz", CUBE))
 
+    def test_surface_without_area_is_named(self):
+        mesh, flat = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES), self.off("f.off", [(1, 1, 1)] * 3, [(0, 1, 2)])
+        self.assertRegex(self.expect(3, "compare", mesh, flat).err, r"f\.off: the faces of the second mesh have area 0")
+
+    def test_sizes_near_the_ends_of_doubles(self):
+        for size in (1e-90, 1e-80, 1e80):
+            mesh = self.off("m.off", [(size * x, size * y, size * z) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
+            self.assertAlmostEqual(self.facts("check", mesh)["certificate"]["area"] / size**2, 4 * 3**0.5, places=12)
+            self.facts("compare", mesh, mesh, "--samples", "100")
+
 
 if __name__ == "__main__":
     main()

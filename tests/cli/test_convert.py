@@ -123,6 +123,32 @@ class Convert(CliTest):
         self.assertEqual(self.convert(node, self.path("b.obj"))["lost"], ["tetrahedra"])
         self.assertIn("warning", self.expect(0, "convert", mesh, self.path("b.xyz")).err)
 
+    def test_properties_that_get_another_name_or_value_are_named(self):
+        a = self.file("a.csv", "x,y,z,a b,intensity,id\n1,2,3,4,0.5,344522987.5\n4,5,6,7,0.25,1e300\n")
+        self.assertEqual(self.convert(a, self.path("b.ply"))["lost"], ["a b"])
+        self.assertEqual(self.convert(a, self.path("b.las"))["lost"], ["intensity"])
+        self.assertEqual(self.convert(a, self.path("b.glb"))["lost"], ["precision"])
+        self.assertEqual(self.convert(a, self.path("b.vtu"))["lost"], [])
+
+    def test_csv_has_commas_and_no_comment_wherever_it_goes(self):
+        a = self.xyz("a.xyz", CUBE)
+        self.convert(a, self.path("b.csv"))
+        self.convert(a, self.path("b.data"), "--format", "csv")
+        with open(self.path("b.csv"), "rb") as f:
+            expected = f.read()
+        self.assertEqual(expected.split(b"\n")[0], b"x,y,z")
+        with open(self.path("b.data"), "rb") as f:
+            self.assertEqual(f.read(), expected)
+        self.assertEqual(self.expect(0, "convert", a, "-", "--format", "csv").out, expected)
+
+    def test_more_properties_than_readers_take_are_refused(self):
+        for count, extension in ((257, "glb"), (4094, "npy"), (4097, "vtu")):
+            names = ",".join("p%d" % i for i in range(count))
+            a = self.file("a.csv", "x,y,z,%s\n1,2,3%s\n" % (names, ",1" * count))
+            b = self.path("b." + extension)
+            self.usage("%d properties" % count, "convert", a, b)
+            self.assertFalse(os.path.exists(b))
+
     def test_a_file_to_itself(self):
         a = self.xyz("a.xyz", CUBE)
         os.symlink(a, self.path("s.xyz"))
@@ -130,6 +156,10 @@ class Convert(CliTest):
         for b in (a, self.path("s.xyz"), self.path("h.xyz")):
             self.usage("the same file", "convert", a, b)
         self.assertEqual(len(self.rows(a)), 8)
+        for beside in ("edge", "face", "neigh", "ele"):
+            self.file("t." + beside, "1 2 3\n" * 8)
+            self.usage("the same file", "delaunay", self.path("t." + beside), "--input-format", "xyz", "-o",
+                       self.path("t.node"))
 
     def test_pipes(self):
         a = self.cloud("a.ply", 1000)

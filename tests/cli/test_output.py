@@ -86,6 +86,14 @@ class Writing(CliTest):
             self.expect(6, "info", points, "--json", stdout=full)
             self.expect(6, "info", points, stdout=full)
 
+    def test_streams_that_the_caller_closed_are_not_written_into_the_output(self):
+        a, out = self.cloud("a.ply", 200000), self.path("b.csv")
+        close = lambda: [os.close(stream) for stream in range(3)]
+        self.run_brio("convert", a, out, "--progress", preexec_fn=close)
+        with open(out, "rb") as f:
+            lines = f.read().split(b"\n")
+        self.assertTrue(len(lines) == 200002 and all(line.count(b",") == 2 for line in lines[:-1]))
+
     def test_reader_that_went_away(self):
         points = self.cloud("a.ply", 50000)
         process = subprocess.Popen([BRIO, "delaunay", points, "-o", "-", "--format", "ply"], stdout=subprocess.PIPE,

@@ -131,7 +131,8 @@ static void an_npy_field_that_is_there_twice_is_refused(void) {
     memcpy(bytes + 10, header, length);
     io_put("in.npy", bytes, 10 + length + 32);
     brio_mesh *m = NULL;
-    EXPECT(brio_read(io_ctx, io_path("in.npy"), BRIO_FORMAT_AUTO, &m) == BRIO_ERR_FORMAT, "%zu", m ? m->num_vertices : 0);
+    EXPECT(brio_read(io_ctx, io_path("in.npy"), BRIO_FORMAT_AUTO, &m) == BRIO_ERR_FORMAT, "%zu",
+           m ? m->num_vertices : 0);
     EXPECT(strstr(brio_message(io_ctx), "two fields named x"), "%s", brio_message(io_ctx));
     brio_mesh_free(m);
 }

@@ -61,7 +61,7 @@ static void names_of_surveyors_and_programs(void) {
     expect_first("x,y,z,450,550\n1.5,2.5,3.5,1,2\n", 1, 2);
     expect_first("# made by x y z inc\n1.5 2.5 3.5 1\n", 1, 1);
     expect_first("# x y z\n1.5 2.5 3.5 1\n", 1, 1);
-    expect_first("x y z x[m] #y z(gps) -x\n1.5 2.5 3.5 4 5 6 7\n", 1, 4);
+    expect_first("x y z x[m] y# z(gps) -x\n1.5 2.5 3.5 4 5 6 7\n", 1, 4);
     expect_first("//X,Y,Z,x[m],#y\n1.5,2.5,3.5,4,5\n", 1, 2);
     expect_first("# x y z 450 550\n1.5 2.5 3.5 1 2\n", 1, 2);
     expect_first("# x z y x in words\n1.5 2.5 3.5\n", 1, 0);
@@ -70,8 +70,8 @@ static void names_of_surveyors_and_programs(void) {
 
 static void names_with_marks_of_comments_are_whole(void) {
     static const char *const files[] = {"x,y,z,Humidity %,c#1,a//b,\"d # e\"\n1,2,3,4,5,6,7\n",
-                                        "x,y,z,c#1,a//b,d # e,Humidity %\n1,2,3,5,6,7,4 % note\n"};
-    static const char *const names[2][4] = {{"Humidity %", "c#1", "a//b", "d # e"}, {"c#1", "a//b", "d", "column7"}};
+                                        "x,y,z,c#1,a//b,d,Humidity %\n1,2,3,5,6,7,4 % note\n"};
+    static const char *const names[2][4] = {{"Humidity %", "c#1", "a//b", "d # e"}, {"c#1", "a//b", "d", "Humidity %"}};
     for (size_t k = 0; k < 2; k++) {
         brio_mesh *m = io_read_text("a.csv", files[k]);
         EXPECT(m && m->num_properties == 4, "%s", brio_message(io_ctx));
@@ -92,6 +92,20 @@ static void names_that_do_not_decide_are_errors(void) {
     io_expect_error("a.txt", "# id x y z name\n7 1 2 3\n", BRIO_ERR_FORMAT, "line 1: a comment names columns");
     io_expect_error("a.txt", "# id x y z x\n7 1 2 3 4\n", BRIO_ERR_FORMAT, "several columns");
     io_expect_error("a.txt", "# id x y z\n7 1 2 3 4\n", BRIO_ERR_FORMAT, "a comment names columns");
+}
+
+/* x was the thousands of a number, or the number of a row. */
+/* The number of a point's name was a column of its own, and all others were one place too far. */
+static void names_of_points_with_a_number_are_one_field(void) {
+    expect_first("Punkt;Rechtswert;Hochwert;H\xc3\xb6he [m]\nA 1;1,5;2,5;3,5\nA 2;4;5;6\n", 2, 0);
+    expect_first("name;x;y;z\nA 1;1.5;2.5;3.5\nB;4;5;6\n", 2, 0);
+}
+
+static void more_columns_than_names_are_errors(void) {
+    io_expect_error("a.txt", "x;y;z\n1.234,5;2.345,6;12,5\n", BRIO_ERR_FORMAT, "line 2: 6 columns, but line 1 names 3");
+    io_expect_error("a.csv", "x,y,z\n1,234.5,2,3\n", BRIO_ERR_FORMAT, "line 2: 4 columns, but line 1 names 3");
+    io_expect_error("a.txt", "x y z\n1 1.5 2.5 3.5\n", BRIO_ERR_FORMAT, "line 2: 4 columns, but line 1 names 3");
+    expect_first("x,y,z\n1.5,2.5,3.5,,\n", 1, 0);
 }
 
 static void words_between_rows_are_errors(void) {
@@ -239,6 +253,8 @@ int main(void) {
     RUN(names_of_surveyors_and_programs);
     RUN(names_with_marks_of_comments_are_whole);
     RUN(names_that_do_not_decide_are_errors);
+    RUN(names_of_points_with_a_number_are_one_field);
+    RUN(more_columns_than_names_are_errors);
     RUN(words_between_rows_are_errors);
     RUN(columns_by_the_caller);
     RUN(wrong_columns_by_the_caller);

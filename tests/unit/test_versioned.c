@@ -140,7 +140,7 @@ ENDS_WITH(brio_labeled_delaunay_options, reserved_int);
 ENDS_WITH(brio_labeled_delaunay_stats, simplify_seconds);
 ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
-ENDS_WITH(brio_write_options, edges);
+ENDS_WITH(brio_write_options, separator);
 ENDS_WITH(brio_read_options, columns);
 ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);

@@ -64,7 +64,18 @@ static void name_losses(conversion *c, const brio_mesh *m) {
     for (size_t i = 0; i < m->num_properties && !holds_properties(c->format); i++) lose(c, m->properties[i].name);
 }
 
+/* GLB has no doubles and no signed integers of 32 bits. */
+static bool rounds_property(const conversion *c, const brio_mesh *m, const brio_property *p) {
+    bool wide = p->type == BRIO_SCALAR_FLOAT64 || p->type == BRIO_SCALAR_INT32 || p->type == BRIO_SCALAR_UINT32;
+    for (size_t v = 0; c->format == BRIO_FORMAT_GLB && wide && v < m->num_vertices; v++) {
+        double x = brio_property_value(p, v);
+        if (!isnan(x) && (double)(float)x != x) return true;
+    }
+    return false;
+}
+
 static void find_rounding(conversion *c, const brio_mesh *m) {
+    for (size_t i = 0; i < m->num_properties && !c->rounded; i++) c->rounded = rounds_property(c, m, &m->properties[i]);
     for (size_t i = 0; i < 3 * m->num_vertices && !c->rounded && brio_is_single(c->format, &c->write); i++)
         c->rounded = fabs(m->vertices[i]) <= 0x1.ffffffp127 && (double)(float)m->vertices[i] != m->vertices[i];
 }
@@ -97,7 +108,10 @@ static brio_status write_block(void *user, const brio_mesh *block) {
         else if (!c->options->crop && !c->source.chosen)
             c->writer.job.points = c->source.job.announced;
     }
+    bool first = !c->writer.begun;
     BRIO_TRY(brio_row_writer_write(&c->writer, c->to, &shown));
+    for (size_t i = 0; first && i < shown.num_properties; i++)
+        if (brio_row_writer_renames(&c->writer, &shown, i)) lose(c, shown.properties[i].name);
     c->stats.points += block->num_vertices;
     if (c->source.job.mesh) {
         c->stats.faces = shown.num_faces;

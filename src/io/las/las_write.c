@@ -28,7 +28,7 @@ typedef struct {
     size_t at;
     brio_scalar type;
     uint8_t shift, bits;
-    bool extra;
+    bool extra, renamed; /* renamed: as an extra number, because a field or another extra number has its name */
 } place;
 
 /* What the values of a property are. */
@@ -77,6 +77,12 @@ static const brio_las_field *field_of(const brio_las_field *fields, size_t count
     return NULL;
 }
 
+static bool is_field(const brio_las_field *fields, size_t count, const char *name) {
+    for (size_t i = 0; i < count; i++)
+        if (!strcmp(fields[i].name, name)) return true;
+    return false;
+}
+
 static unsigned choose_format(const las_writer *w) {
     static const unsigned formats[] = {0, 1, 2, 3, 6, 7, 8};
     const brio_mesh *m = w->block;
@@ -115,11 +121,11 @@ static brio_status plan(brio_output *out, las_writer *w) {
         const brio_property *p = &m->properties[i];
         const brio_las_field *f = field_of(fields, count, p, &w->ranges[i]);
         if (f) {
-            w->places[i] = (place){f->at, f->type, f->shift, f->bits, false};
+            w->places[i] = (place){f->at, f->type, f->shift, f->bits, false, false};
             continue;
         }
         BRIO_TRY(check_extra(out, w));
-        w->places[i] = (place){w->record, p->type, 0, 0, true};
+        w->places[i] = (place){w->record, p->type, 0, 0, true, is_field(fields, count, p->name)};
         w->record += brio_scalar_size(p->type);
         w->num_extras++;
     }
@@ -173,17 +179,19 @@ static bool is_taken(const char *extras, size_t count, const char *name) {
     return false;
 }
 
-/* Names have 32 bytes, without an end: a longer one is cut, and one that is taken gets _2, _3 and so on behind it. */
-static void put_extra(char *extras, size_t count, const brio_property *p) {
+/* Names have 32 bytes, without an end: a longer one is cut, and one that is taken gets _2, _3 and so on behind it.
+ * Returns whether the name is the property's. */
+static bool put_extra(char *extras, size_t count, const brio_property *p) {
     static const uint8_t types[BRIO_SCALAR_END] = {2, 1, 4, 3, 6, 5, 9, 10};
     char name[EXTRA_NAME + 1], *extra = extras + EXTRA_RECORD * count;
     brio_utf8_copy(name, sizeof name, p->name);
     for (size_t n = 2; is_taken(extras, count, name); n++) brio_numbered_name(name, sizeof name, p->name, n);
     extra[2] = (char)types[p->type];
     memcpy(extra + 4, name, strlen(name));
+    return !strcmp(name, p->name);
 }
 
-static brio_status write_extras(brio_output *out, const las_writer *w) {
+static brio_status write_extras(brio_output *out, las_writer *w) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = w->block;
     char header[RECORD_HEADER] = {0}, *extras = NULL;
@@ -194,7 +202,7 @@ static brio_status write_extras(brio_output *out, const las_writer *w) {
     brio_put_le16(header + 20, (uint16_t)(EXTRA_RECORD * w->num_extras));
     BRIO_TRY(brio_output_bytes(out, header, sizeof header));
     for (size_t i = 0, count = 0; i < m->num_properties; i++)
-        if (w->places[i].extra) put_extra(extras, count++, &m->properties[i]);
+        if (w->places[i].extra) w->places[i].renamed |= !put_extra(extras, count++, &m->properties[i]);
     BRIO_TRY(brio_output_bytes(out, extras, EXTRA_RECORD * w->num_extras));
 done:
     brio_release(out->ctx, extras);
@@ -296,6 +304,11 @@ static uint64_t surveyed_points(const void *state) {
     return w->grid.points;
 }
 
+static bool renames(const void *state, size_t i) {
+    const las_writer *w = state;
+    return w->places[i].renamed;
+}
+
 static bool rounds(const void *state) {
     const las_writer *w = state;
     return w->grid.rounds[0] || w->grid.rounds[1] || w->grid.rounds[2];
@@ -332,5 +345,6 @@ const brio_row_format brio_las_rows = {.state = sizeof(las_writer),
                                        .begin = begin,
                                        .rows = write_records,
                                        .free = free_state,
+                                       .renames = renames,
                                        .rounds = rounds,
                                        .moved = moved};

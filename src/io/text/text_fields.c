@@ -87,15 +87,17 @@ static void record_gap(gaps *g, const brio_field *field, const char *end, const 
     }
 }
 
-/* Joins words that neither a comma nor a semicolon separates, in a line that has some. */
+/* Joins words that neither a comma nor a semicolon separates, in a line that has some; to a word also a number, as in
+ * "A 1", if there are semicolons. */
 static void join_words(brio_fields *f) {
     size_t kept = 0;
     if (!strpbrk(f->at[0].word, ",;")) return;
+    bool numbers = strchr(f->at[0].word, ';') != NULL;
     for (size_t i = 0; i < f->count; i++) {
         brio_field *here = &f->at[i], *last = kept ? &f->at[kept - 1] : NULL;
         const char *gap = last ? last->word + last->length : NULL;
-        bool joined = last && last->kind == BRIO_FIELD_WORD && here->kind == BRIO_FIELD_WORD &&
-                      strcspn(gap, ",;") >= (size_t)(here->word - gap);
+        bool fits = here->kind == BRIO_FIELD_WORD || (numbers && here->kind == BRIO_FIELD_NUMBER);
+        bool joined = last && last->kind == BRIO_FIELD_WORD && fits && strcspn(gap, ",;") >= (size_t)(here->word - gap);
         if (joined)
             last->length = (size_t)(here->word - last->word) + here->length;
         else

@@ -36,10 +36,6 @@ typedef struct brio_fields {
     bool seen_numbers; /* whether a line with numbers has been read */
 } brio_fields;
 
-static inline bool brio_starts_comment(const char *p) {
-    return *p == '#' || *p == '%' || (*p == '/' && p[1] == '/');
-}
-
 /** Splits a line of words: a comma separates, and nothing is decided. The fields point into the line.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_fields_of_words(brio_fields *f, const char *line);

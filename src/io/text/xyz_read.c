@@ -231,12 +231,23 @@ static brio_status place_axes(xyz_reader *r) {
 /* Whether a column that is no axis becomes a property. Of columns that the caller names, those with a name do. */
 static bool is_property(const xyz_reader *r, size_t i) {
     if (r->source == NAMES_GIVEN) return i < r->names.count && r->names.at[i][0];
+    if (r->source == NAMES_PLAIN && i >= r->names.count) return false; /* empty: a row may end with separators */
     return r->fields.at[i].kind != BRIO_FIELD_WORD;
+}
+
+/* More columns than names: an index that has no name, or commas that do not separate, so that x, y and z are elsewhere. */
+static brio_status refuse_nameless(const xyz_reader *r) {
+    size_t names = r->names.count, found = r->fields.count;
+    while (found > names && r->fields.at[found - 1].kind == BRIO_FIELD_EMPTY) found--;
+    if (r->source != NAMES_PLAIN || found <= names) return BRIO_OK;
+    return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT, "%s: line %zu: %zu columns, but line %zu names %zu",
+                     r->stream->name, r->stream->line, found, r->name_line, names);
 }
 
 static brio_status plan_columns(xyz_reader *r) {
     brio_status status = BRIO_OK;
     size_t found = r->fields.count;
+    BRIO_TRY(refuse_nameless(r));
     BRIO_TRY(place_axes(r));
     size_t count = r->names.count > found ? r->names.count : found;
     BRIO_TRY(BRIO_ALLOC_ZERO(r->stream->ctx, r->columns, count));
