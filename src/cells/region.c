@@ -70,7 +70,8 @@ static brio_status search(brio_context *ctx, brio_region *r, double low[3], doub
     for (int n = 0; open && n < MOST_DOUBLINGS; n++, half *= 4) {
         const double least[3] = {-half, -half, -half}, most[3] = {half, half, half};
         BRIO_TRY(cut_out(r, least, most));
-        BRIO_REQUIRE(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT, "the region is empty, or too small beside the points for doubles");
+        BRIO_REQUIRE(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT,
+                     "the region is empty, or too small beside the points for doubles");
         open = find_bounds(&r->shape, walls, low, high);
     }
     BRIO_REQUIRE(ctx, !open, BRIO_ERR_ARGUMENT, "the planes of the region bound no polytope");
@@ -131,7 +132,8 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
         r->reach = fmax(r->reach, high[k] - low[k]);
     }
     r->volume = r->box ? (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) : volume_of(r);
-    BRIO_REQUIRE(ctx, r->volume > 0, BRIO_ERR_ARGUMENT, "the region is empty, or too small beside the points for doubles");
+    BRIO_REQUIRE(ctx, r->volume > 0, BRIO_ERR_ARGUMENT,
+                 "the region is empty, or too small beside the points for doubles");
 done:
     return status;
 }
