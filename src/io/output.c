@@ -134,7 +134,8 @@ static brio_status write_all(brio_output *out, const char *bytes, size_t size) {
             BRIO_TRY(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, share_written(out)));
             continue;
         }
-        if (done < 0) return fail(out);
+        if (done == 0) errno = EIO; /* a device that takes nothing would be asked for ever */
+        if (done <= 0) return fail(out);
         bytes += done;
         size -= (size_t)done;
         out->written += (uint64_t)done;
@@ -195,7 +196,8 @@ brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *byt
     while (size) {
         ssize_t done = pwrite(out->file, p, size, (off_t)offset);
         if (done < 0 && errno == EINTR) continue;
-        if (done < 0) return fail(out);
+        if (done == 0) errno = EIO;
+        if (done <= 0) return fail(out);
         p += done;
         offset += (uint64_t)done;
         size -= (size_t)done;
