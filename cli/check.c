@@ -50,11 +50,10 @@ static brio_status check(run *r) {
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     TRY(cli_check_weights_options(r, &a->weights));
-    if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "check writes no file; -o has no meaning here"));
+    if (r->common.output) FAIL(r, BRIO_ERR_ARGUMENT, "check writes no file; -o has no meaning here");
     TRY(cli_read(r, r->operands[0], &mesh));
     if (!mesh->num_faces && !mesh->num_tetrahedra)
-        TRY(cli_fail(r, BRIO_ERR_FORMAT, "%s: expected faces or tetrahedra to check, found points only",
-                     r->operands[0]));
+        FAIL(r, BRIO_ERR_FORMAT, "%s: expected faces or tetrahedra to check, found points only", r->operands[0]);
     cli_fact_count(&r->facts, "vertices", mesh->num_vertices);
     cli_fact_count(&r->facts, "faces", mesh->num_faces);
     cli_fact_count(&r->facts, "tetrahedra", mesh->num_tetrahedra);

@@ -39,9 +39,9 @@ static brio_status compare(run *r) {
     brio_mesh *a = NULL, *b = NULL;
     brio_distance distance = {.size = sizeof distance};
     brio_status status = BRIO_OK;
-    if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "compare writes no file; -o has no meaning here"));
+    if (r->common.output) FAIL(r, BRIO_ERR_ARGUMENT, "compare writes no file; -o has no meaning here");
     if (!strcmp(r->operands[0], "-") && !strcmp(r->operands[1], "-"))
-        TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "both surfaces want standard input"));
+        FAIL(r, BRIO_ERR_ARGUMENT, "both surfaces want standard input");
     TRY(read_surface(r, r->operands[0], &a));
     TRY(read_surface(r, r->operands[1], &b));
     status = brio_mesh_distance(r->ctx, a, b, (size_t)chosen->samples, r->common.seed, &distance);

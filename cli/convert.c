@@ -80,9 +80,9 @@ static brio_status take_options(run *r, brio_convert_options *o) {
     brio_status status = BRIO_OK;
     o->crop = chosen->crop != NULL;
     if (chosen->crop) TRY(take_crop(r, chosen->crop, o->box));
-    if (chosen->thin < 0) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--thin: %g is below 0", chosen->thin));
+    if (chosen->thin < 0) FAIL(r, BRIO_ERR_ARGUMENT, "--thin: %g is below 0", chosen->thin);
     if (chosen->outliers < 0 || chosen->outliers > 63)
-        TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--drop-outliers: %d is not between 1 and 63", chosen->outliers));
+        FAIL(r, BRIO_ERR_ARGUMENT, "--drop-outliers: %d is not between 1 and 63", chosen->outliers);
     o->thin = chosen->thin;
     o->drop_outliers = chosen->outliers;
 done:

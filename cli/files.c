@@ -187,11 +187,11 @@ brio_status cli_check_named_twice(run *r) {
 brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats) {
     brio_format format;
     brio_status status = BRIO_OK;
-    if (!strcmp(path, "-")) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name));
+    if (!strcmp(path, "-")) FAIL(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name);
     if (formats) TRY(cli_output_format(r, path, NULL, &format));
     for (; formats && *formats != format; formats++)
         if (*formats == BRIO_FORMAT_AUTO)
-            TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold what --%s writes", path, name));
+            FAIL(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold what --%s writes", path, name);
     TRY(cli_check_target(r, path));
 done:
     return status;

@@ -43,9 +43,9 @@ static brio_status hull(run *r) {
     TRY(cli_require_memory(r, cli_hull_bytes(input)));
     o.polygons = a->polygons;
     o.samples = samples = malloc((input->num_vertices + 1) * sizeof *samples);
-    if (!samples) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", input->num_vertices));
+    if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", input->num_vertices);
     TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, &s));
-    if (s.dimension < 0) TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "no points, so no convex hull"));
+    if (s.dimension < 0) FAIL(r, BRIO_ERR_NO_ANSWER, "no points, so no convex hull");
     report(r, surface, &s);
     TRY(cli_carry_properties(r, input, samples, surface));
     TRY(cli_check_interrupt(r));

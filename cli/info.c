@@ -222,7 +222,7 @@ static brio_status info(run *r) {
     survey v = {.file.size = sizeof v.file};
     facts *f = &r->facts;
     brio_status status = BRIO_OK;
-    if (r->common.output) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "info writes no file; -o has no meaning here"));
+    if (r->common.output) FAIL(r, BRIO_ERR_ARGUMENT, "info writes no file; -o has no meaning here");
     TRY(survey_file(r, &v, &mesh));
     report_file(f, &v);
     cli_fact_count(f, "points", v.points);

@@ -70,7 +70,7 @@ static brio_status answer(run *r, const located *l, const arguments *a, const do
     double *results = NULL;
     size_t inside = 0, count = l->at->num_vertices;
     uint32_t *tetrahedra = malloc((count + 1) * sizeof *tetrahedra);
-    if (!tetrahedra) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu places", count));
+    if (!tetrahedra) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu places", count);
     o.method = (brio_interpolation_method)a->method;
     o.values = values;
     TRY(add_results(r, l->at, a, &results));

@@ -33,7 +33,7 @@ static brio_status answer(run *r, const located *l) {
     size_t count = l->at->num_vertices;
     uint32_t *tetrahedra = malloc((count + 1) * sizeof *tetrahedra), *vertices = malloc((count + 1) * sizeof *vertices);
     int64_t *rows = malloc((2 * count + 1) * sizeof *rows);
-    if (!tetrahedra || !vertices || !rows) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu places", count));
+    if (!tetrahedra || !vertices || !rows) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu places", count);
     TRY(brio_locator_tetrahedra(r->ctx, l->locator, l->at->vertices, count, tetrahedra));
     TRY(brio_locator_least_power(r->ctx, l->locator, l->at->vertices, count, vertices));
     cli_lap(r, "locate");

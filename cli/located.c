@@ -7,9 +7,9 @@
 brio_status cli_read_located(run *r, const char *at, const weights_options *weights, located *l) {
     brio_status status = BRIO_OK;
     double bytes;
-    if (!at) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "no places: --at FILE is missing"));
+    if (!at) FAIL(r, BRIO_ERR_ARGUMENT, "no places: --at FILE is missing");
     if (!strcmp(at, "-") && !strcmp(r->operands[0], "-"))
-        TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "points and places both want standard input"));
+        FAIL(r, BRIO_ERR_ARGUMENT, "points and places both want standard input");
     TRY(cli_read_points(r, r->operands[0], &l->points));
     TRY(cli_read_points(r, at, &l->at));
     if (weights) TRY(cli_weights(r, weights, l->points, &l->weights));

@@ -46,8 +46,8 @@ static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FOR
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
     brio_status status = BRIO_OK;
-    if (a->scale != 0 && a->scale < 1) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--scale: %g is less than 1", a->scale));
-    if (a->redundancy < 0) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "--redundancy: %g is negative", a->redundancy));
+    if (a->scale != 0 && a->scale < 1) FAIL(r, BRIO_ERR_ARGUMENT, "--scale: %g is less than 1", a->scale);
+    if (a->redundancy < 0) FAIL(r, BRIO_ERR_ARGUMENT, "--redundancy: %g is negative", a->redundancy);
     if (a->crust) TRY(cli_check_beside(r, "crust", a->crust, cli_mesh_formats));
 done:
     return status;

@@ -85,7 +85,7 @@ static brio_status offset(run *r) {
     brio_mesh *points = NULL, *surface = NULL;
     brio_status status = BRIO_OK;
     bool by_mesh;
-    if (isnan(a->distance)) TRY(cli_fail(r, BRIO_ERR_ARGUMENT, "no distance: --distance D is missing"));
+    if (isnan(a->distance)) FAIL(r, BRIO_ERR_ARGUMENT, "no distance: --distance D is missing");
     TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read(r, r->operands[0], &points));
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));

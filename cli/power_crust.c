@@ -86,14 +86,14 @@ brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mes
     double *normals = NULL;
     if (a->normals) {
         normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
-        if (!normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
+        if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
     }
     uint64_t work;
     status = brio_estimate_power_crust(r->ctx, points->num_vertices, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     TRY(brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, normals, stats));
     cli_report_power_crust_stages(r, a, stats);
-    if (a->normals) TRY(cli_write_normals(r, a->normals, points, normals));
+    if (normals) TRY(cli_write_normals(r, a->normals, points, normals));
 done:
     free(normals);
     return status;

@@ -38,7 +38,7 @@ static bool fits_single(const brio_mesh *mesh, double *largest, double *moved) {
 
 static brio_status measure_loss(run *r, const brio_mesh *mesh, loss *l) {
     brio_status status = BRIO_OK;
-    double largest, moved, spacing;
+    double largest, moved, spacing = 0;
     size_t n = mesh->num_vertices;
     *l = (loss){.is_harmful = true};
     if (!fits_single(mesh, &largest, &moved)) {

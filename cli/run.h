@@ -17,6 +17,14 @@
         if (status != BRIO_OK) goto done;                                                                              \
     } while (0)
 
+/** Stores a sentence, assigns `code` to `status` and jumps to `done`. */
+#define FAIL(r, code, ...)                                                                                             \
+    do {                                                                                                               \
+        status = (code);                                                                                               \
+        cli_fail(r, status, __VA_ARGS__);                                                                              \
+        goto done;                                                                                                     \
+    } while (0)
+
 typedef struct common_options {
     const char *output, *format, *input_format, *columns, *scratch;
     bool json, quiet, verbose, progress, ascii, float32, compress;

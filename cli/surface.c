@@ -225,7 +225,7 @@ static brio_status normals_of_points(run *r, const char *path, const brio_mesh *
                                      const uint32_t *samples) {
     double *normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
     brio_status status = BRIO_OK;
-    if (!normals) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices));
+    if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
     TRY(brio_point_normals(r->ctx, points->vertices, points->num_vertices, surface, samples, normals));
     TRY(cli_write_normals(r, path, points, normals));
 done:
@@ -254,7 +254,7 @@ static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh *
     status = brio_estimate_labeled_delaunay(r->ctx, points->num_vertices, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     samples = malloc((points->num_vertices + 1) * sizeof *samples);
-    if (!samples) TRY(cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices));
+    if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices);
     TRY(brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, samples, &s));
     report_labeled_delaunay_stages(r, &s);
     if (a->crust.normals) TRY(normals_of_points(r, a->crust.normals, points, *surface, samples));
@@ -356,7 +356,7 @@ static brio_status surface(run *r) {
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
     TRY(cli_read_points(r, r->operands[0], &points));
-    if (!points->num_vertices) TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]));
+    if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
     status = reconstruct(r, points, &result);
     suggest(r, status);
     if (status != BRIO_OK) goto done;

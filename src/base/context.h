@@ -73,7 +73,8 @@ double brio_seconds(void);
 #define BRIO_REQUIRE(ctx, condition, code, ...)                                                                        \
     do {                                                                                                               \
         if (!(condition)) {                                                                                            \
-            status = brio_fail(ctx, code, __VA_ARGS__);                                                                \
+            status = (code);                                                                                           \
+            brio_fail(ctx, status, __VA_ARGS__);                                                                       \
             goto done;                                                                                                 \
         }                                                                                                              \
     } while (0)

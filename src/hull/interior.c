@@ -104,13 +104,10 @@ static void set_planes(const brio_polytope *p, const double (*record)[4], planes
     out->count = (int)p->count;
     for (int f = 0; f < out->count; f++) {
         const uint32_t *v = p->triangle[f].vertex;
-        double u[3], w[3];
-        for (int k = 0; k < 3; k++) {
-            u[k] = record[v[1]][k] - record[v[0]][k];
-            w[k] = record[v[2]][k] - record[v[0]][k];
-        }
+        const double *o = record[v[0]], *a = record[v[1]], *b = record[v[2]];
+        double u[3] = {a[0] - o[0], a[1] - o[1], a[2] - o[2]}, w[3] = {b[0] - o[0], b[1] - o[1], b[2] - o[2]};
         brio_cross(u, w, out->normal[f]);
-        out->offset[f] = -brio_dot(out->normal[f], record[v[0]]);
+        out->offset[f] = -brio_dot(out->normal[f], o);
     }
 }
 

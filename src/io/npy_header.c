@@ -74,8 +74,9 @@ static bool find_type(const char *type, brio_npy_field *f) {
         {"u4", BRIO_SCALAR_UINT32, false},  {"i8", BRIO_SCALAR_INT32, true},   {"u8", BRIO_SCALAR_UINT32, true},
         {"f4", BRIO_SCALAR_FLOAT32, false}, {"f8", BRIO_SCALAR_FLOAT64, false}};
     size_t i = 0, count = sizeof types / sizeof *types;
-    while (i < count && (!strchr("<>|", type[0]) || strcmp(type + 1, types[i].name) != 0)) i++;
-    if (i == count || !type[0]) return false;
+    if (!type[0] || !strchr("<>|", type[0])) return false;
+    while (i < count && strcmp(type + 1, types[i].name) != 0) i++;
+    if (i == count) return false;
     *f = (brio_npy_field){.type = types[i].type, .wide = types[i].wide, .big = type[0] == '>'};
     return true;
 }

@@ -129,7 +129,7 @@ done:
 brio_status brio_off_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_text t = {s, '#', NULL};
-    off_kind kind;
+    off_kind kind = {.num_extra = 0};
     uint64_t vertices, faces;
     BRIO_TRY(read_keyword(&t, &kind));
     BRIO_TRY(read_counts(&t, &vertices, &faces));

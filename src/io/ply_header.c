@@ -65,7 +65,7 @@ static brio_status read_element(brio_stream *s, brio_ply_header *header, char **
     brio_status status = BRIO_OK;
     brio_ply_element element = {.count = 0};
     const char *digits = count == 3 ? words[2] : "";
-    if (!brio_parse_count(&digits, &element.count) || *digits) return bad_line(s, "element NAME COUNT");
+    if (count != 3 || !brio_parse_count(&digits, &element.count) || *digits) return bad_line(s, "element NAME COUNT");
     BRIO_TRY(copy_name(s, element.name, words[1]));
     for (size_t i = 0; i < header->num_elements; i++)
         BRIO_REQUIRE(s->ctx, strcmp(header->elements[i].name, element.name) != 0, BRIO_ERR_FORMAT,

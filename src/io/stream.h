@@ -88,7 +88,10 @@ static inline brio_status brio_stream_take(brio_stream *s, size_t need, const ch
     if (brio_stream_left(s) < need) {
         brio_status status = brio_stream_fill(s, need);
         if (status != BRIO_OK) return status;
-        if (brio_stream_left(s) < need) return brio_stream_truncated(s);
+        if (brio_stream_left(s) < need) {
+            brio_stream_truncated(s);
+            return BRIO_ERR_FORMAT;
+        }
     }
     *bytes = s->buffer + s->begin;
     s->begin += need;

@@ -54,7 +54,7 @@ done:
 
 brio_status brio_text_count(brio_text *t, const char *what, uint64_t most, uint64_t *value) {
     brio_status status = BRIO_OK;
-    double number;
+    double number = 0;
     BRIO_TRY(brio_text_number(t, &number));
     BRIO_REQUIRE(t->stream->ctx, number >= 0 && number < 0x1p63 && number == floor(number) && (uint64_t)number <= most,
                  BRIO_ERR_FORMAT, "%s: line %zu: %s is %g, expected a whole number from 0 to %" PRIu64, t->stream->name,

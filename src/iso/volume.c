@@ -159,7 +159,7 @@ static void choose_cube(const level_set *s, size_t resolution, double low[3], do
 static brio_status choose_cubes(brio_context *ctx, level_set *s, size_t resolution, brio_implicit_grid *grid) {
     brio_status status = BRIO_OK;
     const brio_volume *volume = s->volume;
-    double high[3], count[3], product = 1;
+    double high[3], count[3] = {0}, product = 1;
     choose_cube(s, resolution, grid->low, high, &grid->cell);
     for (int i = 0; i < 3; i++) {
         grid->low[i] -= grid->cell;

@@ -224,7 +224,7 @@ static brio_status fill_stats(brio_context *ctx, const brio_mesh *mesh, const pe
     uint32_t *degree = NULL;
     *stats = (brio_subgraph_stats){.copies = p->cut.num_sectors, .steps = p->cut.steps};
     for (uint32_t h = 0; h < p->cut.num_corners; h++)
-        stats->cut_edges += (p->cut.flags[h] & BRIO_EDGE_CUT) && h < p->cut.twin[h];
+        stats->cut_edges += h < p->cut.twin[h] && (p->cut.flags[h] & BRIO_EDGE_CUT);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, degree, mesh->num_vertices));
     for (size_t i = 0; i < 2 * edges->count; i++) {
         uint32_t d = ++degree[edges->ends[i]];

@@ -73,7 +73,7 @@ static void load(const brio_plane_input *in, size_t i, double *record) {
 }
 
 static void find_filter(search *s) {
-    double low[3], high[3], extent[3];
+    double low[3] = {0}, high[3] = {0}, extent[3];
     for (size_t i = 0; i < s->in->count; i++)
         for (int k = 0; k < 3; k++) {
             double x = s->in->own[i][k];
@@ -135,7 +135,7 @@ static void set_axes(brio_plane_input *in, int u, int v) {
 
 /* Sets the axes for three points in general position. */
 static void choose_axes(brio_plane_input *in, const double (*corner)[4]) {
-    int sign[3], along = -1, facing = 0;
+    int sign[3], along = 0, facing = 0;
     double most = -1;
     for (int k = 0; k < 3; k++) {
         sign[k] = normal_sign(corner, k);
@@ -159,7 +159,7 @@ static void choose_line_axes(brio_plane_input *in, const double (*corner)[4]) {
 
 static brio_status find_plane(brio_context *ctx, brio_plane_input *in) {
     search s = {.in = in};
-    double corner[3][4];
+    double corner[3][4] = {{0}};
     brio_status status = find_corners(ctx, &s, corner);
     if (status != BRIO_OK) return status;
     if (s.count == 3)

@@ -75,7 +75,7 @@ static int attached_rounded(const double *const *p, int count, bool weighted) {
 /* --- integers --- */
 
 static brio_wide dot_integer(const int64_t *p, const int64_t *q) {
-    return (brio_wide)(p[0] * q[0] + p[1] * q[1] + p[2] * q[2]);
+    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
 /* The rows are U, V (for a facet) and -A. */

@@ -43,8 +43,9 @@ static double depth_of_sphere(const double *s, double x, double y) {
 void brio_depth_point(const brio_depth_frame *frame, size_t i, double *p) {
     brio_rng rng = brio_rng_new(brio_mix(frame->seed) + i);
     double pixel = 2 * HALF_VIEW / (double)frame->width;
+    size_t row = i / frame->width;
     double x = ((double)(i % frame->width) + 0.5) * pixel - HALF_VIEW;
-    double y = ((double)(i / frame->width) + 0.5 - 0.5 * (double)frame->height) * pixel;
+    double y = ((double)row + 0.5 - 0.5 * (double)frame->height) * pixel;
     double z = y > 0 ? fmin(WALL, FLOOR / y) : WALL, noise = 0;
     for (int k = 0; k < BRIO_DEPTH_SPHERES; k++) z = fmin(z, depth_of_sphere(frame->sphere[k], x, y));
     for (int k = 0; k < 4; k++) noise += brio_rng_double(&rng) - 0.5; /* nearly normal, of deviation 0.58 */

@@ -161,7 +161,8 @@ static size_t grid_side(size_t n) {
 }
 
 static void grid_point(size_t side, size_t i, double *p) {
-    p[0] = (double)(i / (side * side));
+    size_t layer = i / (side * side);
+    p[0] = (double)layer;
     p[1] = (double)(i / side % side);
     p[2] = (double)(i % side);
 }

@@ -114,6 +114,14 @@ static void unclear_files_list_their_arrays(void) {
     expect_z("without arrays of NumPy");
 }
 
+/* The letters behind the end of an empty type were compared: valgrind tells. */
+static void an_empty_type_is_no_type(void) {
+    zip_begin(&z, false);
+    array("points", "", "(4, 3)", points, sizeof points);
+    zip_end(&z);
+    expect_z("expected");
+}
+
 static void claims_are_held_against_the_file(void) {
     static const char *const shapes[] = {"(5, 3)", "(9223372036854775808, 3)", "(18446744073709551615, 3)",
                                          "(4000000000, 3)"};
@@ -224,6 +232,7 @@ int main(void) {
     RUN(names_decide_which_arrays_are_points);
     RUN(columns_become_properties);
     RUN(unclear_files_list_their_arrays);
+    RUN(an_empty_type_is_no_type);
     RUN(claims_are_held_against_the_file);
     if (has_gzip) RUN(damaged_archives);
     RUN(every_prefix_and_changed_byte);

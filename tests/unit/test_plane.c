@@ -323,6 +323,17 @@ static void bad_input_is_refused_with_its_place(void) {
     brio_context_free(ctx);
 }
 
+/* The extent of no points was read before it was set: valgrind tells. */
+static void no_points_in_space_have_no_plane(void) {
+    brio_context *ctx = new_context();
+    brio_triangulation2 *t;
+    EXPECT(brio_delaunay2_flat(ctx, NULL, NULL, 0, NULL, &t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_triangulation2_stats(t)->dimension == -1);
+    EXPECT(brio_triangulation2_check(ctx, t, NULL, NULL, 0) == BRIO_OK, "%s", brio_message(ctx));
+    brio_triangulation2_free(t);
+    brio_context_free(ctx);
+}
+
 static brio_status build_and_check(brio_context *ctx, bool weighted, bool line) {
     enum { N = 300 };
     double p[2 * N], w[N];
@@ -423,6 +434,7 @@ int main(void) {
     RUN(planes_in_space_agree_with_tetrahedra);
     RUN(planes_of_coordinates_keep_their_orientation);
     RUN(bad_input_is_refused_with_its_place);
+    RUN(no_points_in_space_have_no_plane);
     RUN(memory_that_runs_out_leaves_nothing);
     RUN(progress_rises_and_cancels);
     RUN(estimate_is_close);

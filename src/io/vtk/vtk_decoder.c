@@ -44,7 +44,7 @@ done:
 
 static brio_status take_word(brio_vtk_decoder *d, uint64_t *word) {
     char bytes[8];
-    uint32_t narrow;
+    uint32_t narrow = 0;
     brio_status status = take_encoded(d, bytes, d->header->word);
     if (status != BRIO_OK) return status;
     bool wide = d->header->word == 8;
