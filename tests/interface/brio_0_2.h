@@ -863,7 +863,8 @@ BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, c
 /** Subdivides a mesh of triangles by the butterfly scheme. Each level adds one vertex on every edge and divides every
  *  triangle into four. Old vertices keep their indices and positions; the limit surface is smooth, also at vertices
  *  without six neighbours. Boundaries are subdivided as curves. A new vertex receives the mean of the properties of its
- *  edge's ends or, for integer properties, those of one end.
+ *  edge's ends or, for integer properties, those of one end. Of two triangles with the same corners the result has different
+ *  edges with the same ends, which a second level refuses.
  *  levels  1 to 15.   out  owned by the caller.
  *  Cost: linear in the result; 64 bytes a vertex of the result and 118 a vertex of the level before.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (a face is no triangle, an edge has more than two faces or two
