@@ -45,8 +45,8 @@ static brio_status compare(run *r) {
     TRY(read_surface(r, r->operands[0], &a));
     TRY(read_surface(r, r->operands[1], &b));
     status = brio_mesh_distance(r->ctx, a, b, (size_t)chosen->samples, r->common.seed, &distance);
-    if (status == BRIO_ERR_ARGUMENT) /* both have faces: they are without area */
-        TRY(cli_fail(r, BRIO_ERR_NO_ANSWER, "%s, %s: %s", r->operands[0], r->operands[1], brio_message(r->ctx)));
+    if (status == BRIO_ERR_ARGUMENT) /* faces without area, or of two corners */
+        FAIL(r, BRIO_ERR_NO_ANSWER, "%s, %s: %s", r->operands[0], r->operands[1], brio_message(r->ctx));
     TRY(status);
     cli_lap(r, "compare");
     report_distance(&r->facts, &distance);
