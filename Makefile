@@ -30,7 +30,7 @@ fuzz:
 	@sh scripts/setup.sh fuzz
 	cmake --preset fuzz
 	cmake --build build-fuzz -j $(JOBS)
-	/usr/bin/python3 tests/fuzz/run.py build-fuzz --minutes $(MINUTES) $(FUZZ)
+	/usr/bin/python3 tests/fuzz/run.py build-fuzz --minutes $(MINUTES) --jobs $(JOBS) $(FUZZ)
 
 # Faults at every point of runs: docs/reliability.md. Small blocks are mappings here, so that small inputs have scratch files.
 # FAULTS="--groups formats --kinds 'read fails'" runs some of them.

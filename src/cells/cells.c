@@ -167,21 +167,26 @@ static void take_region(const cell_call *c, exponents *e) {
     }
 }
 
-/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. One above 1
- * leaves the weights, which are multiplied by its square, below 2^MOST. */
-static double choose_scale(const cell_call *c) {
-    enum { ORDINARY = 100, MOST = 1000 };
+/* Takes the extent of the points and the region. */
+static exponents exponents_of(const cell_call *c) {
     exponents e = {INT_MAX, INT_MIN};
     double most = 0;
-    int of_weights;
     for (size_t i = 0; i < 3 * c->num_points; i++) {
         double way = fabs(c->points[i] * 0.5 - c->points[i % 3] * 0.5);
         most = way > most ? way : most;
     }
     take_length(&e, most, true);
     take_region(c, &e);
-    if (e.high == INT_MIN) return 1;
     if (e.low > e.high) e.low = e.high;
+    return e;
+}
+
+/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. One above 1
+ * leaves the weights, which are multiplied by its square, below 2^MOST. */
+static double choose_scale(const cell_call *c, exponents e) {
+    enum { ORDINARY = 100, MOST = 1000 };
+    int of_weights;
+    if (e.high == INT_MIN) return 1;
     if (e.low > -ORDINARY && e.high < ORDINARY) return 1;
     double weight = greatest(c->weights, c->num_points);
     frexp(weight, &of_weights);
@@ -190,13 +195,19 @@ static double choose_scale(const cell_call *c) {
     return brio_power_of_two(scale < highest ? scale : highest);
 }
 
+/* Scales so that cubes of lengths of the points and of the region are doubles: 2^1022 and 2^-1022 are far enough from these then,
+ * whose exponents differ by at most FARTHEST. */
 static brio_status scale_points(cell_call *c) {
+    enum { FARTHEST = 600 };
     brio_status status = BRIO_OK;
     brio_diagram *d = &c->diagram;
+    const exponents e = exponents_of(c);
     size_t rows = c->num_points + (d->flat ? BRIO_MOST_ADDED : 0);
     d->points = d->at = c->points;
     d->weights = d->square = c->weights;
-    d->scale = choose_scale(c);
+    BRIO_REQUIRE(c->ctx, e.high == INT_MIN || e.high - e.low <= FARTHEST, BRIO_ERR_ARGUMENT,
+                 "the region is too large or too small beside the points for doubles");
+    d->scale = choose_scale(c, e);
     choose_origin(c, d->origin);
     bool moved = d->origin[0] != 0 || d->origin[1] != 0 || d->origin[2] != 0;
     if (d->scale == 1 && !moved) return BRIO_OK;

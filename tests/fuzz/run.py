@@ -1,14 +1,16 @@
-"""run.py FOLDER [--minutes N] [--subjects NAME...] [--keep]: runs the fuzzers that were built in FOLDER (preset fuzz).
+"""run.py FOLDER [--minutes N] [--total] [--jobs N] [--subjects NAME...] [--keep]: runs the fuzzers built in FOLDER (preset fuzz).
 
 Each runs for N minutes of processor time, from its committed corpus and what earlier runs found (out/fuzz/corpus). Prints a
 row for each: executions, executions a second of processor time, edges of the program that were reached, findings. An input
 that makes a fuzzer stop is a finding, kept in out/fuzz/findings. The exit status is 1 if there is one.
 out/fuzz/results.json has the sums of all runs: executions, minutes, the most edges, findings, of each fuzzer; --table prints
-them as docs/reliability.md has them, and runs nothing.
+them as docs/reliability.md has them, and runs nothing. With --total, earlier minutes count: each fuzzer runs for what it lacks.
+--jobs: so many fuzzers at a time.
 --keep: afterwards adds to the committed corpus the smallest inputs that reach all that was reached, those under 700 bytes.
 """
 
 import argparse
+import concurrent.futures
 import json
 import os
 import pathlib
@@ -17,10 +19,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-SLICE = 600  # seconds of the clock between two looks at the processor time
+SUMS = threading.Lock()  # of results.json
+SLICE = 300  # seconds of the clock between two looks at the processor time
 MOST_FINDINGS = 3  # of a subject, before it is left
 LONGEST_KEPT, MOST_KEPT = 700, 60  # bytes, inputs of a subject
 
@@ -46,7 +50,7 @@ def options_of(subject, findings):
 
 
 def run_subject(program, subject, minutes, out):
-    """Row of the table: executions, processor seconds, edges, findings."""
+    """Row of the table: executions, processor seconds, edges, findings. Adds each slice to the sums of all runs."""
     corpus, findings = out / "corpus" / subject, out / "findings" / subject
     for folder in corpus, findings:
         folder.mkdir(parents=True, exist_ok=True)
@@ -59,12 +63,13 @@ def run_subject(program, subject, minutes, out):
             status, seconds = run_for([*command, "-max_total_time=%d" % max(1, min(SLICE, left))], log)
             log.seek(0)
             text = log.read()
-        row["seconds"] += seconds
-        row["executions"] += last_number(r"stat::number_of_executed_units: (\d+)", text, last_number(r"#(\d+)\s", text))
-        row["edges"] = max(row["edges"], last_number(r"cov: (\d+)", text))
-        row["all"] = last_number(r"\((\d+) inline 8-bit counters\)", text)
+        part = {"seconds": seconds, "findings": int(status != 0), "edges": last_number(r"cov: (\d+)", text),
+                "all": last_number(r"\((\d+) inline 8-bit counters\)", text),
+                "executions": last_number(r"stat::number_of_executed_units: (\d+)", text, last_number(r"#(\d+)\s", text))}
+        add_up(out / "results.json", subject, part)
+        for name, joined in ("seconds", sum), ("findings", sum), ("executions", sum), ("edges", max), ("all", max):
+            row[name] = joined([row[name], part[name]])
         if status:
-            row["findings"] += 1
             findings.mkdir(parents=True, exist_ok=True)  # somebody may have cleaned up
             shutil.copy(out / ("%s.log" % subject), findings / ("%d.log" % row["findings"]))
     return row
@@ -83,23 +88,28 @@ def keep_smallest(program, subject, out):
             shutil.copy(path, kept / path.name[:12])
 
 
+def sums_of(path):
+    return json.loads(path.read_text()) if path.exists() else {}
+
+
 def add_up(path, subject, row):
     """Adds a run to the sums of all runs. A run that is cut off leaves the file as it was or as it is to be."""
-    sums = json.loads(path.read_text()) if path.exists() else {}
-    own = sums.setdefault(subject, {"executions": 0, "minutes": 0.0, "edges": 0, "all": 0, "findings": 0})
-    own["executions"] += row["executions"]
-    own["minutes"] = round(own["minutes"] + row["seconds"] / 60, 3)
-    own["edges"] = max(own["edges"], row["edges"])
-    own["all"] = row["all"] or own["all"]
-    own["findings"] += row["findings"]
-    written = path.with_suffix(".new")
-    written.write_text(json.dumps(sums, indent=2) + "\n")
-    written.replace(path)
+    with SUMS:
+        sums = sums_of(path)
+        own = sums.setdefault(subject, {"executions": 0, "minutes": 0.0, "edges": 0, "all": 0, "findings": 0})
+        own["executions"] += row["executions"]
+        own["minutes"] = round(own["minutes"] + row["seconds"] / 60, 3)
+        own["edges"] = max(own["edges"], row["edges"])
+        own["all"] = row["all"] or own["all"]
+        own["findings"] += row["findings"]
+        written = path.with_suffix(".new")
+        written.write_text(json.dumps(sums, indent=2) + "\n")
+        written.replace(path)
 
 
 def print_table(path):
     print("| fuzzer | executions | a second | minutes | edges |\n|---|---|---|---|---|")
-    for subject, own in json.loads(path.read_text()).items():
+    for subject, own in sums_of(path).items():
         print("| %s | %s | %s | %s | %s |" % (
             subject, format(own["executions"], ","), format(round(own["executions"] / max(60 * own["minutes"], 1e-9)), ","),
             format(own["minutes"], ",.1f"), format(own["edges"], ",")))
@@ -109,6 +119,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, nargs="?")
     parser.add_argument("--minutes", type=float, default=1)
+    parser.add_argument("--total", action="store_true")
+    parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--subjects", nargs="+")
     parser.add_argument("--keep", action="store_true")
     parser.add_argument("--table", action="store_true")
@@ -120,17 +132,23 @@ def main():
         parser.error("FOLDER is missing")
     out.mkdir(parents=True, exist_ok=True)
     subjects = asked.subjects or sorted(path.stem[len("fuzz_"):] for path in HERE.glob("fuzz_*.c"))
+    earlier = sums_of(out / "results.json") if asked.total else {}
+    minutes = {subject: asked.minutes - earlier.get(subject, {"minutes": 0.0})["minutes"] for subject in subjects}
     findings = 0
     print("%-14s %12s %9s %8s %8s %8s" % ("subject", "executions", "a second", "minutes", "edges", "findings"), flush=True)
-    for subject in subjects:
+
+    def run(subject):
         program = asked.folder.resolve() / ("fuzz_%s" % subject)
-        row = run_subject(program, subject, asked.minutes, out)
-        findings += row["findings"]
-        add_up(out / "results.json", subject, row)
-        print("%-14s %12d %9.0f %8.1f %8d %8d" % (subject, row["executions"], row["executions"] / max(row["seconds"], 1e-9),
-                                                  row["seconds"] / 60, row["edges"], row["findings"]), flush=True)
+        row = run_subject(program, subject, minutes[subject], out)
         if asked.keep:
             keep_smallest(program, subject, out)
+        return row
+
+    with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
+        for subject, row in zip(subjects, pool.map(run, subjects)):
+            findings += row["findings"]
+            print("%-14s %12d %9.0f %8.1f %8d %8d" % (subject, row["executions"], row["executions"] / max(row["seconds"], 1e-9),
+                                                      row["seconds"] / 60, row["edges"], row["findings"]), flush=True)
     return 1 if findings else 0
 
 

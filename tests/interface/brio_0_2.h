@@ -1011,7 +1011,8 @@ typedef struct brio_cells {
  *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
  *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes take one pass over
  *  the facets, about as long as brio_delaunay.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat or unbounded), and as
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat, unbounded, or too
+ *  small or, 2^600 times, too large beside the points), and as
  *  brio_delaunay.
  *  Based on: [Aurenhammer 1987], [Choi 2003] sections 2.1 and 2.2. */
 BRIO_API brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, const double *points,
@@ -1024,9 +1025,10 @@ BRIO_API void brio_cells_free(brio_cells *cells);
 /** File formats of cells. BRIO_CELLS_FORMAT_AUTO decides by the extension. */
 typedef enum brio_cells_format {
     BRIO_CELLS_FORMAT_AUTO = 0,
-    BRIO_CELLS_FORMAT_VTU = 1, /* polyhedra of VTK; cells have `vertices`. Unbounded and empty cells are left out. */
-    BRIO_CELLS_FORMAT_NPY = 2, /* a table of NumPy, a structured array of one dimension */
-    BRIO_CELLS_FORMAT_CSV = 3, /* a text with a header */
+    BRIO_CELLS_FORMAT_VTU = 1,       /* polyhedra of VTK; cells have `vertices`. Left out are unbounded and empty
+                                  cells, and those with a vertex that doubles cannot hold. */
+    BRIO_CELLS_FORMAT_NPY = 2,       /* a table of NumPy, a structured array of one dimension */
+    BRIO_CELLS_FORMAT_CSV = 3,       /* a text with a header */
     BRIO_CELLS_FORMAT_FACES_CSV = 4, /* the faces as a text with a header; never chosen by the extension */
     BRIO_CELLS_FORMAT_END
 } brio_cells_format;

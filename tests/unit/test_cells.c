@@ -525,6 +525,24 @@ static void a_region_much_larger_or_smaller_than_the_points(void) {
     brio_context_free(ctx);
 }
 
+/* Cells that are bounded had no faces and no volume, since the squares of lengths of the points were below doubles. */
+static void a_region_too_large_beside_the_points_is_refused(void) {
+    static const double points[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.25, 0.25, 0.25};
+    brio_context *ctx = new_context();
+    for (int exponent = 0; exponent < 1023; exponent++) {
+        double s = ldexp(1, exponent + 1), box[6] = {-s, -s, -s, s, s, s};
+        brio_cells_options o = brio_cells_options_default();
+        brio_cells *cells = NULL;
+        o.box = box;
+        brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, 5, &o, &cells);
+        EXPECT(status == (exponent < 599 ? BRIO_OK : BRIO_ERR_ARGUMENT), "2^%d: %s", exponent, brio_message(ctx));
+        for (size_t c = 0; cells && c < cells->num_cells; c++)
+            EXPECT(cells->volume[c] > 0 && cells->face_offsets[c] < cells->face_offsets[c + 1], "2^%d", exponent);
+        brio_cells_free(cells);
+    }
+    brio_context_free(ctx);
+}
+
 /* Centres beyond doubles made the volume and the areas NaN, in the other set minus infinity. */
 static void what_doubles_cannot_hold_is_infinite(void) {
     static const double points[2][36] = {
@@ -608,6 +626,7 @@ int main(void) {
     RUN(wrong_regions_are_refused);
     RUN(a_region_too_flat_for_doubles_is_refused);
     RUN(a_region_much_larger_or_smaller_than_the_points);
+    RUN(a_region_too_large_beside_the_points_is_refused);
     RUN(what_doubles_cannot_hold_is_infinite);
     RUN(memory_may_run_out);
     return harness_end();

@@ -278,6 +278,27 @@ static void names_of_control_characters_stay_distinct(void) {
     }
 }
 
+/* A reader of VTK stops at an infinite coordinate. */
+static void vertices_beyond_doubles_are_no_part_of_files(void) {
+    static const double points[18] = {0,     0,     0,     1e300, 0,     0, 0,     1e300, 0,
+                                      1e300, 1e300, 1e290, 5e299, 4e299, 1, 5e299, 5e299, -1e299};
+    brio_context *ctx = io_ctx;
+    brio_cells_options o = brio_cells_options_default();
+    brio_cells *cells = NULL;
+    brio_mesh *mesh = NULL;
+    size_t infinite = 0;
+    o.vertices = 1;
+    EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, 6, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
+    for (size_t i = 0; i < 3 * cells->num_vertices; i += 3) infinite += !isfinite(cells->vertices[i + 2]);
+    EXPECT(infinite > 0 && infinite < cells->num_vertices);
+    EXPECT(brio_cells_write(ctx, io_path("beyond.vtu"), cells, BRIO_CELLS_FORMAT_AUTO, NULL) == BRIO_OK, "%s",
+           brio_message(ctx));
+    EXPECT(brio_read(ctx, io_path("beyond.vtu"), BRIO_FORMAT_AUTO, &mesh) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(mesh && mesh->num_vertices == cells->num_vertices - infinite);
+    brio_mesh_free(mesh);
+    brio_cells_free(cells);
+}
+
 int main(void) {
     io_begin();
     RUN(all_parts_read_back);
@@ -290,5 +311,6 @@ int main(void) {
     RUN(data_of_some_pieces);
     RUN(names_stay_distinct);
     RUN(names_of_control_characters_stay_distinct);
+    RUN(vertices_beyond_doubles_are_no_part_of_files);
     return io_end();
 }

@@ -1,11 +1,12 @@
-/* Writes cells as polyhedra in VTU, VTK's XML file of an unstructured grid. Cells that are unbounded or have no faces
- * are left out.
+/* Writes cells as polyhedra in VTU, VTK's XML file of an unstructured grid. Cells that are unbounded, that have no faces,
+ * or a vertex that doubles cannot hold, are left out, and so are such vertices.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "base/memory.h"
 #include "base/sort.h"
 #include "io/cells_write.h"
 #include "io/vtk/vtk_writer.h"
+#include <math.h>
 #include <string.h>
 
 enum { VTK_POLYHEDRON = 42 };
@@ -14,8 +15,11 @@ typedef struct {
     brio_vtk_writer xml;
     const brio_cells *cells;
     size_t num_polyhedra;
-    uint32_t *vertex;     /* the distinct vertices of each polyhedron, ascending */
-    size_t num_vertices;  /* of all polyhedra */
+    uint32_t *vertex;    /* the distinct vertices of each polyhedron, ascending */
+    size_t num_vertices; /* of all polyhedra */
+    uint32_t *number;    /* of each vertex in the file; NULL if all are finite, and keep their numbers */
+    double *finite;      /* then, the finite vertices */
+    size_t num_finite;
     uint64_t *end;        /* of each polyhedron: behind its last vertex */
     uint32_t *polyhedron; /* the cell of each polyhedron */
     uint64_t num_numbers; /* of the array `faces` */
@@ -29,6 +33,42 @@ typedef struct {
 static int compare_numbers(uint32_t a, uint32_t b, const void *user) {
     (void)user;
     return a < b ? -1 : a > b;
+}
+
+static bool is_finite(const brio_cells *cells, size_t vertex) {
+    const double *x = cells->vertices + 3 * vertex;
+    return isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
+}
+
+/* Numbers the finite vertices, if some are not. */
+static brio_status take_finite(brio_context *ctx, polyhedra *w) {
+    const brio_cells *cells = w->cells;
+    brio_status status = BRIO_OK;
+    size_t n = cells->num_vertices;
+    for (size_t v = 0; v < n; v++) w->num_finite += is_finite(cells, v);
+    if (w->num_finite == n) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, w->number, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, w->finite, 3 * w->num_finite));
+    for (size_t v = 0, kept = 0; v < n; v++) {
+        w->number[v] = (uint32_t)kept;
+        if (is_finite(cells, v)) memcpy(w->finite + 3 * kept++, cells->vertices + 3 * v, 3 * sizeof *w->finite);
+    }
+done:
+    return status;
+}
+
+static uint32_t number_of(const polyhedra *w, uint32_t vertex) {
+    return w->number ? w->number[vertex] : vertex;
+}
+
+static bool is_taken(const polyhedra *w, size_t c) {
+    const brio_cells *cells = w->cells;
+    uint64_t first = cells->corner_offsets[cells->face_offsets[c]];
+    uint64_t last = cells->corner_offsets[cells->face_offsets[c + 1]];
+    if (!cells->bounded[c] || !brio_cells_num_faces(cells, c)) return false;
+    for (uint64_t i = first; i < last && w->number; i++)
+        if (!is_finite(cells, cells->face_vertices[i])) return false;
+    return true;
 }
 
 /* Appends the distinct corners of a cell. */
@@ -54,7 +94,7 @@ static brio_status take_cells(brio_context *ctx, polyhedra *w) {
     BRIO_TRY(BRIO_ALLOC(ctx, w->end, cells->num_cells));
     BRIO_TRY(BRIO_ALLOC(ctx, w->polyhedron, cells->num_cells));
     for (size_t c = 0; c < cells->num_cells; c++) {
-        if (!cells->bounded[c] || !brio_cells_num_faces(cells, c)) continue;
+        if (!is_taken(w, c)) continue;
         take_vertices(w, c);
         w->polyhedron[w->num_polyhedra] = (uint32_t)c;
         w->end[w->num_polyhedra++] = w->num_vertices;
@@ -67,7 +107,7 @@ done:
 
 static void fill_vertices(void *user, uint64_t first, size_t count, void *to) {
     const polyhedra *w = user;
-    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, w->vertex[first + i]);
+    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, number_of(w, w->vertex[first + i]));
 }
 
 static void fill_ends(void *user, uint64_t first, size_t count, void *to) {
@@ -97,10 +137,10 @@ static uint32_t next_of_faces(polyhedra *w) {
         return (uint32_t)(end - w->at_corner);
     }
     uint32_t vertex = cells->face_vertices[w->at_corner++];
-    if (w->at_corner < end) return vertex;
+    if (w->at_corner < end) return number_of(w, vertex);
     w->at = ++w->at_face < cells->face_offsets[c + 1] ? AT_CORNERS : AT_FACES;
     w->at_polyhedron += w->at == AT_FACES;
-    return vertex;
+    return number_of(w, vertex);
 }
 
 static void fill_faces(void *user, uint64_t first, size_t count, void *to) {
@@ -172,13 +212,15 @@ done:
 
 brio_status brio_cells_vtu_write(brio_output *out, const brio_cells *cells, const char *comment) {
     brio_status status = BRIO_OK;
-    const brio_mesh points = {.num_vertices = cells->num_vertices, .vertices = cells->vertices};
+    brio_mesh points = {.num_vertices = cells->num_vertices, .vertices = cells->vertices};
     const brio_write_options options = {.size = sizeof options, .comment = comment};
     const brio_write_job job = {.mesh = &points, .options = &options};
     polyhedra w = {.xml = brio_vtk_writer_new(out, &job, "UnstructuredGrid"), .cells = cells};
+    BRIO_TRY(take_finite(out->ctx, &w));
+    if (w.number) points.num_vertices = w.num_finite, points.vertices = w.finite;
     BRIO_TRY(take_cells(out->ctx, &w));
     BRIO_TRY(brio_vtk_begin(&w.xml));
-    BRIO_TRY(brio_output_format(out, "<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n", cells->num_vertices,
+    BRIO_TRY(brio_output_format(out, "<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n", points.num_vertices,
                                 w.num_polyhedra));
     BRIO_TRY(brio_vtk_write_points(&w.xml));
     BRIO_TRY(write_cells(&w));
@@ -186,6 +228,8 @@ brio_status brio_cells_vtu_write(brio_output *out, const brio_cells *cells, cons
 done:
     brio_vtk_writer_free(&w.xml);
     brio_release(out->ctx, w.vertex);
+    brio_release(out->ctx, w.number);
+    brio_release(out->ctx, w.finite);
     brio_release(out->ctx, w.end);
     brio_release(out->ctx, w.polyhedron);
     return status;
