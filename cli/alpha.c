@@ -112,6 +112,7 @@ static brio_status alpha(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *input = NULL;
     double *weights = NULL, value = NAN;
+    size_t usual;
     brio_triangulation *t = NULL;
     brio_alpha_complex complex = {.size = sizeof complex};
     brio_status status = BRIO_OK;
@@ -121,7 +122,8 @@ static brio_status alpha(run *r) {
     if (a->filtration) TRY(cli_check_beside(r, "filtration", a->filtration, NULL));
     TRY(cli_read_points(r, r->operands[0], &input));
     TRY(cli_weights(r, &a->weights, input, &weights));
-    TRY(cli_require_memory(r, cli_alpha_bytes(input)));
+    TRY(cli_usual_points(r, input, weights, false, &usual));
+    TRY(cli_require_memory(r, cli_alpha_bytes(input, usual)));
     cli_lap(r, "read");
     TRY(triangulate(r, input, weights, &t, &complex));
     if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));

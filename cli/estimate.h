@@ -14,13 +14,17 @@ double cli_mesh_bytes(const brio_mesh *mesh);
 brio_status cli_delaunay_bytes(run *r, const brio_mesh *mesh, const double *weights, const brio_delaunay_options *o,
                                double *bytes);
 
-/** Estimate the commands that go beyond one triangulation; weights may be NULL.
+/** Writes how many points have as many tetrahedra as the mesh's, if each has the usual number; never fewer than there are. What
+ *  goes by the tetrahedra is estimated for so many points. Without --max-memory, unless `asked`, it is the number of points. */
+brio_status cli_usual_points(run *r, const brio_mesh *mesh, const double *weights, bool asked, size_t *points);
+
+/** Estimate the commands that go beyond one triangulation.
+ *  delaunay  of cli_delaunay_bytes.   usual  of cli_usual_points.
  *  vertices  whether the cells get vertices.   places  the points that are located, or NULL. */
 double cli_hull_bytes(const brio_mesh *mesh);
-double cli_alpha_bytes(const brio_mesh *mesh);
-brio_status cli_voronoi_bytes(run *r, const brio_mesh *mesh, const double *weights, bool vertices, double *bytes);
-brio_status cli_locate_bytes(run *r, const brio_mesh *mesh, const double *weights, const brio_mesh *places,
-                             double *bytes);
+double cli_alpha_bytes(const brio_mesh *mesh, size_t usual);
+double cli_voronoi_bytes(double delaunay, size_t usual, bool vertices);
+double cli_locate_bytes(const brio_mesh *mesh, double delaunay, const brio_mesh *places);
 
 /** Returns the estimate for `brio info`. */
 double cli_info_bytes(const brio_mesh *mesh);

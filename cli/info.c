@@ -141,22 +141,22 @@ static void report_properties(facts *f, const survey *v) {
     cli_fact_close(f);
 }
 
-/* Estimates of the commands that go by the triangulation. */
-static brio_status report_triangulations(run *r, const brio_mesh *mesh) {
+/* Estimates of the commands that go by the triangulation.   usual  of the mesh without weights. */
+static brio_status report_triangulations(run *r, const brio_mesh *mesh, size_t usual) {
     static const weights_options standard = {.exponent = NO_EXPONENT, .estimate = true};
     facts *f = &r->facts;
-    double *weights = NULL, beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh), delaunay, cells, places;
+    double *weights = NULL, beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh), delaunay, places;
     size_t n = mesh->num_vertices;
     brio_status status = BRIO_OK;
     TRY(cli_weights(r, &standard, mesh, &weights));
     TRY(cli_delaunay_bytes(r, mesh, weights, NULL, &delaunay));
-    TRY(cli_voronoi_bytes(r, mesh, weights, true, &cells));
-    TRY(cli_locate_bytes(r, mesh, weights, NULL, &places));
+    if (weights) TRY(cli_usual_points(r, mesh, weights, true, &usual));
+    places = cli_locate_bytes(mesh, delaunay, NULL);
     cli_fact_bytes(f, "delaunay", (uint64_t)delaunay);
     cli_fact_bytes(f, "plane", (uint64_t)(beside + (double)brio_estimate_delaunay2(n, weights != NULL)));
-    cli_fact_bytes(f, "voronoi", (uint64_t)cells);
+    cli_fact_bytes(f, "voronoi", (uint64_t)cli_voronoi_bytes(delaunay, usual, true));
     cli_fact_bytes(f, "hull", (uint64_t)cli_hull_bytes(mesh));
-    cli_fact_bytes(f, "alpha", (uint64_t)cli_alpha_bytes(mesh));
+    cli_fact_bytes(f, "alpha", (uint64_t)cli_alpha_bytes(mesh, usual));
     cli_fact_bytes(f, "locate", (uint64_t)places);
     cli_fact_bytes(f, "interpolate", (uint64_t)places);
 done:
@@ -165,14 +165,14 @@ done:
 }
 
 /* Estimates of surfaces and axes. */
-static brio_status report_surfaces(run *r, const brio_mesh *mesh) {
+static brio_status report_surfaces(run *r, const brio_mesh *mesh, size_t usual) {
     facts *f = &r->facts;
     double beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh);
     uint64_t surface, crust, cocone;
     brio_status status = BRIO_OK;
-    TRY(brio_estimate_labeled_delaunay(r->ctx, mesh->num_vertices, NULL, &surface));
-    TRY(brio_estimate_power_crust(r->ctx, mesh->num_vertices, NULL, &crust));
-    TRY(brio_estimate_cocone(r->ctx, mesh->num_vertices, NULL, &cocone));
+    TRY(brio_estimate_labeled_delaunay(r->ctx, usual, NULL, &surface));
+    TRY(brio_estimate_power_crust(r->ctx, usual, NULL, &crust));
+    TRY(brio_estimate_cocone(r->ctx, usual, NULL, &cocone));
     static const char *const of_poles[] = {"medial", "offset"};
     cli_fact_bytes(f, "surface", (uint64_t)(beside + (double)surface));
     for (int i = 0; i < 2; i++) cli_fact_bytes(f, of_poles[i], (uint64_t)(beside + (double)crust));
@@ -186,9 +186,11 @@ done:
 }
 
 static brio_status report_estimates(run *r, const brio_mesh *mesh) {
+    size_t usual;
     cli_fact_open(&r->facts, "estimate_bytes", FACT_OBJECT);
-    brio_status status = report_triangulations(r, mesh);
-    if (status == BRIO_OK) status = report_surfaces(r, mesh);
+    brio_status status = cli_usual_points(r, mesh, NULL, true, &usual);
+    if (status == BRIO_OK) status = report_triangulations(r, mesh, usual);
+    if (status == BRIO_OK) status = report_surfaces(r, mesh, usual);
     cli_fact_close(&r->facts);
     return status;
 }

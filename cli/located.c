@@ -6,7 +6,7 @@
 
 brio_status cli_read_located(run *r, const char *at, const weights_options *weights, located *l) {
     brio_status status = BRIO_OK;
-    double bytes;
+    double delaunay;
     if (!at) FAIL(r, BRIO_ERR_ARGUMENT, "no places: --at FILE is missing");
     if (!strcmp(at, "-") && !strcmp(r->operands[0], "-"))
         FAIL(r, BRIO_ERR_ARGUMENT, "points and places both want standard input");
@@ -14,8 +14,8 @@ brio_status cli_read_located(run *r, const char *at, const weights_options *weig
     TRY(cli_read_points(r, at, &l->at));
     if (weights) TRY(cli_weights(r, weights, l->points, &l->weights));
     if (cli_limits_memory(r)) {
-        TRY(cli_locate_bytes(r, l->points, l->weights, l->at, &bytes));
-        TRY(cli_require_memory(r, bytes));
+        TRY(cli_delaunay_bytes(r, l->points, l->weights, NULL, &delaunay));
+        TRY(cli_require_memory(r, cli_locate_bytes(l->points, delaunay, l->at)));
     }
 done:
     return status;

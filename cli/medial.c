@@ -133,8 +133,10 @@ static brio_status medial(run *r) {
     TRY(cli_read(r, r->operands[0], &input));
     TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
     uint64_t work;
+    size_t usual;
     brio_power_shape_options o = medial_options(r, labeling, by_mesh ? input : NULL);
-    status = brio_estimate_power_shape(r->ctx, input->num_vertices, &o, &work);
+    TRY(cli_usual_points(r, input, NULL, false, &usual));
+    status = brio_estimate_power_shape(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, input, work));
     status = brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
     cli_suggest_labeling(r, status, a->labeling, by_mesh);

@@ -58,7 +58,9 @@ static brio_status offset_surface(run *r, const power_crust_options *crust, cons
     o.simplify = crust->simplify;
     if (by_mesh) o.poles.solid = points;
     uint64_t work;
-    brio_status status = brio_estimate_offset_surface(r->ctx, points->num_vertices, &o, &work);
+    size_t usual;
+    brio_status status = cli_usual_points(r, points, NULL, false, &usual);
+    if (status == BRIO_OK) status = brio_estimate_offset_surface(r->ctx, usual, &o, &work);
     status = cli_require_work(r, status, points, work);
     if (status != BRIO_OK) return status;
     status = brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &found);

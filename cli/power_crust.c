@@ -89,7 +89,9 @@ brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mes
         if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
     }
     uint64_t work;
-    status = brio_estimate_power_crust(r->ctx, points->num_vertices, &o, &work);
+    size_t usual;
+    TRY(cli_usual_points(r, points, NULL, false, &usual));
+    status = brio_estimate_power_crust(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     TRY(brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, normals, stats));
     cli_report_power_crust_stages(r, a, stats);

@@ -164,7 +164,9 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     o.density = a->density || (r->common.json && a->extraction == BRIO_EXTRACTION_LABELS);
     o.extraction = (brio_extraction)a->extraction;
     uint64_t work;
-    brio_status status = brio_estimate_cocone(r->ctx, points->num_vertices, &o, &work);
+    size_t usual;
+    brio_status status = cli_usual_points(r, points, NULL, false, &usual);
+    if (status == BRIO_OK) status = brio_estimate_cocone(r->ctx, usual, &o, &work);
     status = cli_require_work(r, status, points, work);
     if (status != BRIO_OK) return status;
     status = brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
@@ -249,9 +251,11 @@ static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh *
     brio_labeled_delaunay_stats s = {.size = sizeof s};
     const arguments *a = r->arguments;
     uint64_t work;
+    size_t usual;
     uint32_t *samples = NULL;
     brio_status status = BRIO_OK;
-    status = brio_estimate_labeled_delaunay(r->ctx, points->num_vertices, &o, &work);
+    TRY(cli_usual_points(r, points, NULL, false, &usual));
+    status = brio_estimate_labeled_delaunay(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     samples = malloc((points->num_vertices + 1) * sizeof *samples);
     if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices);

@@ -66,9 +66,14 @@ static brio_status read_box(run *r, const char *text, double box[6]) {
 
 /* Refuses work over --max-memory. */
 static brio_status require_memory(run *r, const brio_mesh *mesh, const double *weights, bool vertices) {
-    double bytes;
-    brio_status status = cli_voronoi_bytes(r, mesh, weights, vertices, &bytes);
-    return status == BRIO_OK ? cli_require_memory(r, bytes) : status;
+    double delaunay;
+    size_t usual;
+    brio_status status = BRIO_OK;
+    TRY(cli_delaunay_bytes(r, mesh, weights, NULL, &delaunay));
+    TRY(cli_usual_points(r, mesh, weights, false, &usual));
+    TRY(cli_require_memory(r, cli_voronoi_bytes(delaunay, usual, vertices)));
+done:
+    return status;
 }
 
 static void report(run *r, const brio_cells *cells, const brio_delaunay_stats *s, bool weighted, bool clipped) {

@@ -86,6 +86,19 @@ done:
     return status;
 }
 
+brio_status brio_estimate_tetrahedra(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                     uint64_t *tetrahedra) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_triangulation_size size = {0};
+    *tetrahedra = 0;
+    BRIO_TRY(brio_refuse_points(ctx, points, num_points));
+    BRIO_TRY(brio_estimate_size(ctx, points, weights, num_points, &size));
+    *tetrahedra = (uint64_t)size.tetrahedra;
+done:
+    return status;
+}
+
 /* each  bytes a point of the balls and the faces. */
 static uint64_t crust_bytes(size_t num_points, double each, bool triangulate, bool simplify) {
     if (triangulate) each += TRIANGLE_BYTES_A_POINT;

@@ -3,19 +3,23 @@
  * What the triangulation is like near a point depends on the points near it, and these are triangulated as they are. A
  * random sample of all points would not do: it keeps neither the noise of a scan, nor a lattice, nor what a weight hides.
  * On exact curved surfaces the number of tetrahedra a point grows with the size of the surroundings. There it is
- * extrapolated with the logarithm of the number of points. */
+ * extrapolated with the logarithm of the number of points; on curves, where it may grow as that number does, with a power. */
 #include "estimate/triangulation_size.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/vector.h"
 #include <math.h>
 
-enum { ALL = 2048, BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400 };
+/* Chosen. MOST_TETRAHEDRA: a ball with more is made smaller. That is 32 a point of the largest. */
+enum { ALL = 2048, BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400, MOST_TETRAHEDRA = 1 << 17 };
 
 static const double USUAL = 6.8; /* tetrahedra a point of uniform points */
 /* The share of the tetrahedra a point that a ball has more than the ball of half its radius. In space the border of the
  * balls makes a share of 0.03. */
 static const double GROWS = 0.1;
+/* Chosen: the power from which on a power is extrapolated. A logarithm has less at all sizes of interest; points on a curve
+ * have 1, on two lines, too. */
+static const double POWER = 0.5;
 
 /* A set of points. */
 typedef struct {
@@ -73,6 +77,7 @@ static bool find_ball(const cloud *c, double diagonal2, size_t centre, ball *b) 
 /* What was counted at the inner points of balls: those within half of the radius. */
 typedef struct {
     double points, hidden, tetrahedra;
+    double balls, all; /* points of these balls, the outer ones included */
 } tally;
 
 /* A tetrahedron counts for each of its finite vertices with an equal share. */
@@ -86,12 +91,20 @@ static void count_inner(const brio_triangulation *t, const uint8_t *inner, tally
     }
 }
 
-/* Triangulates the points of a ball within radius2 of its centre and counts at the inner ones. */
+static brio_delaunay_options small_triangulation(void) {
+    brio_delaunay_options o = brio_delaunay_options_default();
+    o.max_tetrahedra = MOST_TETRAHEDRA;
+    return o;
+}
+
+/* Triangulates the points of a ball within radius2 of its centre and counts at the inner ones. BRIO_ERR_TOO_LARGE if there are
+ * too many tetrahedra. */
 static brio_status count_ball(const cloud *c, const ball *b, double radius2, tally *sum) {
     brio_status status = BRIO_OK;
     double *points = NULL, *weights = NULL;
     uint8_t *inner = NULL;
     brio_triangulation *t = NULL;
+    const brio_delaunay_options o = small_triangulation();
     size_t n = 0;
     BRIO_TRY(BRIO_ALLOC(c->ctx, points, 3 * b->count));
     BRIO_TRY(BRIO_ALLOC(c->ctx, weights, b->count));
@@ -104,8 +117,9 @@ static brio_status count_ball(const cloud *c, const ball *b, double radius2, tal
         weights[n] = c->weights ? c->weights[b->member[i]] : 0;
         inner[n++] = distance <= radius2 / 4;
     }
-    BRIO_TRY(brio_delaunay(c->ctx, points, c->weights ? weights : NULL, n, NULL, &t));
+    BRIO_TRY(brio_delaunay(c->ctx, points, c->weights ? weights : NULL, n, &o, &t));
     const uint32_t *representative = brio_triangulation_representatives(t);
+    sum->balls++, sum->all += (double)n;
     for (size_t i = 0; i < n; i++) {
         sum->points += inner[i];
         sum->hidden += inner[i] && representative[i] != i;
@@ -129,7 +143,8 @@ static brio_status count_surroundings(const cloud *c, tally *far, tally *near) {
     for (size_t i = 0; i < BALLS; i++) {
         BRIO_TRY(brio_progress(c->ctx, "estimate", 0));
         if (!find_ball(c, diagonal2, nth_choice(i, BALLS, c->count), b)) continue;
-        BRIO_TRY(count_ball(c, b, b->radius2, far));
+        while ((status = count_ball(c, b, b->radius2, far)) == BRIO_ERR_TOO_LARGE) b->radius2 /= 2;
+        BRIO_TRY(status);
         BRIO_TRY(count_ball(c, b, b->radius2 / 4, near));
     }
 done:
@@ -139,7 +154,8 @@ done:
 
 static brio_status size_of_all(const cloud *c, brio_triangulation_size *size) {
     brio_triangulation *t = NULL;
-    brio_status status = brio_delaunay(c->ctx, c->points, c->weights, c->count, NULL, &t);
+    const brio_delaunay_options o = small_triangulation();
+    brio_status status = brio_delaunay(c->ctx, c->points, c->weights, c->count, &o, &t);
     if (status != BRIO_OK) return status;
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
     *size = (brio_triangulation_size){(double)(s->tetrahedra + s->hull_facets), (double)s->hidden};
@@ -154,8 +170,12 @@ static void extrapolate(const cloud *c, const tally *far, const tally *near, bri
         return;
     }
     double ratio = far->tetrahedra / far->points, growth = ratio - near->tetrahedra / near->points;
-    if (growth > GROWS * ratio)
-        ratio += growth * log(points * BALLS / (4 * far->points)) / log(far->points / near->points);
+    double more = log(points * far->balls / far->all) / log(far->points / near->points);
+    double doubling = log(ratio / (ratio - growth)); /* of the ratio, from the near points to the far ones */
+    if (doubling > POWER * log(far->points / near->points))
+        ratio *= exp(doubling * more);
+    else if (growth > GROWS * ratio)
+        ratio += growth * more;
     *size = (brio_triangulation_size){points * ratio, c->weights ? points * far->hidden / far->points : 0};
 }
 
@@ -167,8 +187,11 @@ brio_status brio_estimate_size(brio_context *ctx, const double *points, const do
     const brio_bar bar = brio_progress_bar(ctx);
     ctx->threads = 1;                   /* enough for so few points */
     brio_progress_part(ctx, bar, 0, 0); /* the bar stands still */
-    brio_status status = num_points <= ALL ? size_of_all(&c, size) : count_surroundings(&c, &far, &near);
-    if (status == BRIO_OK && num_points > ALL) extrapolate(&c, &far, &near, size);
+    brio_status status = num_points <= ALL ? size_of_all(&c, size) : BRIO_ERR_TOO_LARGE;
+    if (status == BRIO_ERR_TOO_LARGE) {
+        status = count_surroundings(&c, &far, &near);
+        if (status == BRIO_OK) extrapolate(&c, &far, &near, size);
+    }
     ctx->threads = threads;
     brio_progress_part(ctx, bar, 0, 1);
     return status;

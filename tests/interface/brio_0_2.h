@@ -1881,10 +1881,17 @@ BRIO_API brio_status brio_generate_solid(brio_context *ctx, brio_solid_kind kind
 BRIO_API brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights,
                                             size_t num_points, const brio_delaunay_options *options, uint64_t *bytes);
 
+/** Estimates how many tetrahedra, infinite ones included, brio_delaunay will have for these points: 6.8 a point where they are
+ *  spread evenly or scanned, and up to as many as there are points on curves. Cost and errors as brio_estimate_delaunay. */
+BRIO_API brio_status brio_estimate_tetrahedra(brio_context *ctx, const double *points, const double *weights,
+                                              size_t num_points, uint64_t *tetrahedra);
+
 /** Returns the estimate for brio_delaunay2 and brio_delaunay2_flat of points without duplicates. */
 BRIO_API uint64_t brio_estimate_delaunay2(size_t num_points, int weighted);
 
-/** Estimates the memory of a reconstruction from num_points samples, as the functions below for other methods.
+/** Estimates the memory of a reconstruction from num_points samples, as the functions below for other methods. Samples of
+ *  6.8 tetrahedra each are assumed; where brio_estimate_tetrahedra has more, the estimate for as many samples as these are enough
+ *  for is nearer to what is needed. Where poles coincide, as those of exact cylinders and tori do, power crusts need more.
  *  options  NULL for the defaults.   Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
 BRIO_API brio_status brio_estimate_labeled_delaunay(brio_context *ctx, size_t num_points,
                                                     const brio_labeled_delaunay_options *options, uint64_t *bytes);

@@ -41,6 +41,29 @@ static void triangulations_take_what_was_estimated(void) {
     }
 }
 
+/* The estimate triangulated all of a curve, for minutes, and had half as many tetrahedra as there are. */
+static void tetrahedra_on_curves_are_estimated(void) {
+    static const brio_kind kinds[] = {BRIO_KIND_MOMENT, BRIO_KIND_TORUS, BRIO_KIND_CYLINDER, BRIO_KIND_BALL};
+    static const size_t sizes[] = {1200, 20000, 20000, 1200};
+    for (int k = 0; k < 4; k++) {
+        brio_context *ctx = new_context();
+        brio_mesh *mesh = NULL;
+        brio_triangulation *t = NULL;
+        uint64_t tetrahedra = 0;
+        EXPECT(brio_generate(ctx, kinds[k], sizes[k], NULL, &mesh) == BRIO_OK);
+        EXPECT(brio_delaunay(ctx, mesh->vertices, NULL, sizes[k], NULL, &t) == BRIO_OK);
+        size_t before = brio_context_memory(ctx);
+        EXPECT(brio_estimate_tetrahedra(ctx, mesh->vertices, NULL, sizes[k], &tetrahedra) == BRIO_OK);
+        EXPECT(brio_context_memory(ctx) == before);
+        const brio_delaunay_stats *s = brio_triangulation_stats(t);
+        double ratio = (double)tetrahedra / (double)(s->tetrahedra + s->hull_facets);
+        EXPECT(ratio > 0.8 && ratio < 1.3, "kind %d: %g", k, ratio);
+        brio_triangulation_free(t);
+        brio_mesh_free(mesh);
+        brio_context_free(ctx);
+    }
+}
+
 static void every_way_of_location_takes_what_was_estimated(void) {
     static uint32_t edges[2 * N];
     uniform_points(1, N, points);
@@ -125,6 +148,7 @@ static void estimates_can_be_cancelled(void) {
 
 int main(void) {
     RUN(triangulations_take_what_was_estimated);
+    RUN(tetrahedra_on_curves_are_estimated);
     RUN(every_way_of_location_takes_what_was_estimated);
     RUN(surfaces_take_what_was_estimated);
     RUN(wrong_arguments_are_refused);

@@ -73,6 +73,10 @@ static brio_status estimate(size_t n) {
     uint64_t bytes;
     return brio_estimate_delaunay(ctx, points, NULL, n, NULL, &bytes);
 }
+static brio_status estimate_tetrahedra(size_t n) {
+    uint64_t tetrahedra;
+    return brio_estimate_tetrahedra(ctx, points, NULL, n, &tetrahedra);
+}
 
 /* Edges were read by their number before it was held against any limit, and twice that number wrapped. */
 static brio_status edges(size_t n) {
@@ -129,6 +133,7 @@ static const struct {
     {"tetrahedra_check", tetrahedra_check},
     {"tetrahedra_check_many", tetrahedra_check_many},
     {"estimate", estimate},
+    {"estimate tetrahedra", estimate_tetrahedra},
     {"edges", edges},
     {"set_vertices", set_vertices},
     {"set_faces", set_faces},
