@@ -2,13 +2,13 @@
 #include "base/context.h"
 #include "base/kept.h"
 #include "base/memory.h"
+#include "base/scratch_file.h"
 #include "base/team.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 static void *system_alloc(size_t size, void *user) {
     (void)user;
@@ -84,7 +84,7 @@ brio_status brio_context_set_scratch(brio_context *ctx, const char *folder) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, !folder || !ctx->custom, BRIO_ERR_ARGUMENT,
                  "a scratch folder and a caller's allocator exclude each other");
-    BRIO_REQUIRE(ctx, !folder || access(folder, W_OK | X_OK) == 0, BRIO_ERR_OPEN, "%s: not a writable folder", folder);
+    if (folder) BRIO_TRY(brio_scratch_try(ctx, folder));
     brio_release(ctx, ctx->scratch);
     ctx->scratch = NULL;
     if (folder) {

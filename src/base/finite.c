@@ -33,8 +33,8 @@ void brio_count_not_finite(brio_not_finite *found, uint64_t first, const double 
 brio_status brio_refuse_counted(brio_context *ctx, const brio_not_finite *found, const char *file) {
     if (found->count == 0) return BRIO_OK;
     if (!file)
-        return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %" PRIu64 ": %s is %s (%" PRIu64 " such points in all)",
-                         found->first, found->axis, found->what, found->count);
+        return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %" PRIu64 ": %s is %s (%" PRIu64 " such point%s in all)",
+                         found->first, found->axis, found->what, found->count, found->count == 1 ? "" : "s");
     return brio_fail(ctx, BRIO_ERR_NOT_FINITE,
                      "%s: point %" PRIu64 ": %s is %s (%" PRIu64 " such point%s in all); points are counted from 0",
                      file, found->first, found->axis, found->what, found->count, found->count == 1 ? "" : "s");

@@ -90,14 +90,27 @@ static brio_status no_room(brio_context *ctx, size_t size, int error) {
                      ctx->scratch ? ctx->scratch : "scratch", size, strerror(error));
 }
 
-brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {
-    int file = open(ctx->scratch, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+/* Opens an empty file without a name. Returns its descriptor, or -1 with errno. */
+static int open_nameless(const char *folder) {
+    int file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (file < 0) {
         char name[4096];
-        snprintf(name, sizeof name, "%s/brio-XXXXXX", ctx->scratch);
+        snprintf(name, sizeof name, "%s/brio-XXXXXX", folder);
         file = mkostemp(name, O_CLOEXEC);
         if (file >= 0) unlink(name);
     }
+    return file;
+}
+
+brio_status brio_scratch_try(brio_context *ctx, const char *folder) {
+    int file = open_nameless(folder);
+    if (file < 0) return brio_fail(ctx, BRIO_ERR_OPEN, "%s: not a writable folder: %s", folder, strerror(errno));
+    close(file);
+    return BRIO_OK;
+}
+
+brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {
+    int file = open_nameless(ctx->scratch);
     if (file < 0) return no_room(ctx, size, errno);
     *out = (brio_scratch_file){.cached = file, .direct = -1};
     brio_status status = brio_scratch_grow(ctx, out, size);

@@ -12,6 +12,10 @@ typedef struct {
     size_t size;        /* bytes; the mark behind them is lost if somebody else cuts the file */
 } brio_scratch_file;
 
+/** Makes an empty file in a folder, as brio_scratch_open does, and closes it.
+ *  Returns BRIO_OK, or BRIO_ERR_OPEN if the folder takes no files. */
+brio_status brio_scratch_try(brio_context *ctx, const char *folder);
+
 /** Makes a file of `size` bytes in the context's scratch folder. Its space is allocated on disk, so that a full disk
  *  fails here.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */

@@ -209,6 +209,7 @@ static void list_all(skipping *s) {
 brio_status brio_hull_candidates(brio_context *ctx, const double *points, size_t n, uint32_t **candidate,
                                  size_t *num_candidates) {
     brio_status status = BRIO_OK;
+    const brio_bar bar = brio_progress_bar(ctx);
     skipping *s = NULL;
     *candidate = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s, 1));
@@ -220,6 +221,7 @@ brio_status brio_hull_candidates(brio_context *ctx, const double *points, size_t
         brio_for_chunks(ctx, s->parts, (size_t)s->parts, 1, find_extremes, s);
         join_extremes(s);
         BRIO_TRY(brio_progress(ctx, "skip", 0.5));
+        brio_progress_part(ctx, bar, 0.5, 1);
         BRIO_TRY(find_planes(ctx, points, &s->extreme[0], &s->planes));
     }
     if (s->planes.count > 0)
@@ -234,6 +236,7 @@ brio_status brio_hull_candidates(brio_context *ctx, const double *points, size_t
     }
     *candidate = s->candidate;
 done:
+    brio_progress_part(ctx, bar, 0, 1);
     if (s && status != BRIO_OK) brio_release(ctx, s->candidate);
     brio_release(ctx, s);
     return status;

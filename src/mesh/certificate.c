@@ -16,6 +16,7 @@
  * Threads share the work. The result does not depend on their order: a root is the first element of its set, counts
  * are integers, and areas and volumes are summed in fixed parts. */
 #include "base/float_state.h"
+#include "base/scale.h"
 #include "base/versioned.h"
 #include "base/sort.h"
 #include "base/team.h"
@@ -444,7 +445,7 @@ typedef struct {
 
 typedef struct {
     const brio_mesh *mesh;
-    double centre[3];
+    double centre[3], scale; /* the centre is scaled, too */
     measure part[PARTS];
 } measures;
 
@@ -459,14 +460,21 @@ static void box_of_part(const brio_mesh *mesh, int part, measure *m) {
         }
 }
 
-/* Adds the area and volume of a face, cut into a fan of triangles from its first corner. */
-static void measure_face(const brio_mesh *mesh, size_t f, const double *centre, measure *m) {
+static void scale_vertex(const measures *all, uint32_t vertex, double *x) {
+    for (size_t k = 0; k < 3; k++) x[k] = all->mesh->vertices[3 * (size_t)vertex + k] * all->scale;
+}
+
+/* Adds the area and volume of a face, scaled, cut into a fan of triangles from its first corner. */
+static void measure_face(const measures *all, size_t f, measure *m) {
+    const brio_mesh *mesh = all->mesh;
     const uint32_t *corners = mesh->face_vertices + mesh->face_offsets[f];
+    const double *centre = all->centre;
     uint64_t count = mesh->face_offsets[f + 1] - mesh->face_offsets[f];
     for (uint64_t i = 2; i < count; i++) {
-        const double *a = mesh->vertices + 3 * (size_t)corners[0];
-        const double *b = mesh->vertices + 3 * (size_t)corners[i - 1];
-        const double *c = mesh->vertices + 3 * (size_t)corners[i];
+        double a[3], b[3], c[3];
+        scale_vertex(all, corners[0], a);
+        scale_vertex(all, corners[i - 1], b);
+        scale_vertex(all, corners[i], c);
         double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
         double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
         m->area += brio_length(n) / 2;
@@ -486,7 +494,17 @@ static void measure_parts(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t i = begin; i < end; i++)
         for (size_t f = brio_part(num_faces, (int)i, PARTS); f < brio_part(num_faces, (int)i + 1, PARTS); f++)
-            measure_face(m->mesh, f, m->centre, &m->part[i]);
+            measure_face(m, f, &m->part[i]);
+}
+
+/* The power of two that makes the box of the used vertices about as large as 1, so that no square overflows or underflows. */
+static int exponent_of(const double low[3], const double high[3]) {
+    enum { MOST = 1000 };
+    int exponent = 0;
+    double half = 0;
+    for (int k = 0; k < 3; k++) half = fmax(half, 0.5 * high[k] - 0.5 * low[k]);
+    frexp(half, &exponent);
+    return exponent > MOST ? MOST : exponent < -MOST ? -MOST : exponent;
 }
 
 /* Sums area and volume. Volumes are relative to the centre of the box of the used vertices, so that a surface far from
@@ -496,13 +514,18 @@ static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certifi
     if (!mesh->num_faces || !mesh->face_offsets[mesh->num_faces]) return;
     int threads = brio_threads(ctx, (size_t)mesh->face_offsets[mesh->num_faces], ITEMS_A_THREAD);
     brio_for_chunks(ctx, threads, PARTS, 1, find_boxes, &m);
-    for (int k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
-        for (int i = 0; i < PARTS; i++) low = fmin(low, m.part[i].low[k]), high = fmax(high, m.part[i].high[k]);
-        m.centre[k] = 0.5 * low + 0.5 * high;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int i = 0; i < 3 * PARTS; i++) {
+        low[i % 3] = fmin(low[i % 3], m.part[i / 3].low[i % 3]);
+        high[i % 3] = fmax(high[i % 3], m.part[i / 3].high[i % 3]);
     }
+    int exponent = exponent_of(low, high);
+    m.scale = brio_power_of_two(-exponent);
+    for (int k = 0; k < 3; k++) m.centre[k] = (0.5 * low[k] + 0.5 * high[k]) * m.scale;
     brio_for_chunks(ctx, threads, PARTS, 1, measure_parts, &m);
     for (int i = 0; i < PARTS; i++) out->area += m.part[i].area, out->volume += m.part[i].volume;
+    out->area = ldexp(out->area, 2 * exponent);
+    out->volume = ldexp(out->volume, 3 * exponent);
 }
 
 brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {

@@ -83,7 +83,7 @@ brio_status brio_solid_new(brio_context *ctx, const brio_mesh *mesh, brio_solid 
     brio_status status = BRIO_OK;
     *out = (brio_solid){{0}};
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_ARGUMENT, "a mesh without faces has no inside");
+    BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
     BRIO_TRY(check_boundary(ctx, mesh));
     BRIO_TRY(brio_triangle_tree_new(ctx, mesh, &out->tree));
 done:

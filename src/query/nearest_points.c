@@ -5,10 +5,12 @@
  * are sorted. So the tree does not depend on the order of the input.
  *
  * A query lists the points it meets that are not farther than its bound (near_list.h). It enters the far half of a range
- * only when the cut is within the bound.
+ * only when the cut is within the bound. Of a range of duplicates it lists as many as are wanted: else a query among n
+ * duplicates would meet them all.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
- * 1977. */
+ * 1977.
+ * Differs from the paper: ties, and duplicates. */
 #include "query/nearest_points.h"
 #include "base/finite.h"
 #include "base/memory.h"
@@ -16,7 +18,11 @@
 #include "query/near_list.h"
 #include <string.h>
 
-enum { LEAF = BRIO_TREE_LEAF, POINTS_A_PIECE = 4096 };
+enum {
+    LEAF = BRIO_TREE_LEAF,
+    POINTS_A_PIECE = 4096,
+    DUPLICATES = 3 /* in place of an axis: the range has one position */
+};
 
 /* --- building --- */
 
@@ -58,9 +64,10 @@ static void sort_leaf(const brio_point_tree *t, size_t begin, size_t end) {
             swap(t, (ptrdiff_t)j, (ptrdiff_t)j - 1);
 }
 
+/* Returns the axis along which a range is longest, or DUPLICATES. */
 static int longest_axis(const brio_point_tree *t, size_t begin, size_t end) {
-    int axis = 0;
-    double longest = -1;
+    int axis = DUPLICATES;
+    double longest = 0;
     for (int k = 0; k < 3; k++) {
         double low = t->point[begin][k], high = low;
         for (size_t i = begin + 1; i < end; i++) {
@@ -77,7 +84,7 @@ static int longest_axis(const brio_point_tree *t, size_t begin, size_t end) {
 static void cut(const void *user, size_t begin, size_t middle, size_t end) {
     const brio_point_tree *t = user;
     t->axis[middle] = (uint8_t)longest_axis(t, begin, end);
-    select_middle(t, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
+    if (t->axis[middle] != DUPLICATES) select_middle(t, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
 }
 
 /* Builds the tree of a range. The recursion is as deep as the logarithm of the number of points. */
@@ -124,6 +131,13 @@ typedef struct {
     brio_near_list list;
 } query;
 
+/* Lists the first duplicates of a range: those behind them come after them. */
+static void look_at_duplicates(query *q, size_t begin, size_t end) {
+    if (end - begin > q->list.wanted) end = begin + q->list.wanted;
+    for (; begin + LEAF < end; begin += LEAF) brio_offer_points(&q->list, begin, begin + LEAF);
+    brio_offer_points(&q->list, begin, end);
+}
+
 /* Lists points of a range. */
 static void look(query *q, size_t begin, size_t end) {
     brio_near_list *l = &q->list;
@@ -133,6 +147,10 @@ static void look(query *q, size_t begin, size_t end) {
     }
     const brio_point_tree *t = q->tree;
     size_t middle = begin + (end - begin) / 2;
+    if (t->axis[middle] == DUPLICATES) {
+        look_at_duplicates(q, begin, end);
+        return;
+    }
     double across = l->p[t->axis[middle]] - t->point[middle][t->axis[middle]];
     if (across < 0)
         look(q, begin, middle);
@@ -165,6 +183,7 @@ static double nearest_in(const brio_point_tree *t, const double *p, size_t begin
         return best;
     }
     size_t middle = begin + (end - begin) / 2;
+    if (t->axis[middle] == DUPLICATES) return fmin(best, brio_square_distance(p, t->point[middle]));
     double across = p[t->axis[middle]] - t->point[middle][t->axis[middle]];
     bool below = across < 0;
     double square = brio_square_distance(p, t->point[middle]);

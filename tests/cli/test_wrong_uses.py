@@ -154,6 +154,7 @@ USES = [
     ("delaunay cube.xyz -o {old}.ply --threads 1.5", 1, "--threads: '1.5' is not a whole number"),
     ("delaunay cube.xyz -o {old}.ply --scratch no", 2, "no: not a writable folder"),
     ("delaunay cube.xyz -o {old}.ply --scratch cube.xyz", 2, "cube.xyz: not a writable folder"),
+    ("delaunay cube.xyz -o {old}.ply --scratch /proc", 2, "/proc: not a writable folder"),
     ("delaunay cube.xyz -o {old}.ply --weights weights.txt", 2, "weights.txt:2: ", "2 weights for 8 points"),
     ("delaunay cube.xyz -o {old}.ply --weights nan.txt", 2, "nan.txt:2: expected one finite number"),
     ("delaunay cube.xyz -o {old}.ply --weights no.txt", 2, "no.txt: No such file"),

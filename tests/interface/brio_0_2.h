@@ -76,7 +76,8 @@ BRIO_API int brio_version_number(void);
 /* Structs that grow. Structs of options, statistics and results begin with `size`, the bytes that the caller was
  * compiled with, so that later versions can append fields: the library touches no byte beyond `size`.
  *   - Options:  brio_cocone_options o = brio_cocone_options_default(); then set fields. A pointer to options may be
- *     NULL, which stands for the defaults. Other languages call brio_cocone_options_init(&o, sizeof o). *     Options that were only set to 0 are not the defaults.
+ *     NULL, which stands for the defaults. Other languages call brio_cocone_options_init(&o, sizeof o).
+ *     Options that were only set to 0 are not the defaults.
  *   - Statistics and results:  brio_cocone_stats stats = {.size = sizeof stats};   in C++:  brio_cocone_stats stats = {};
  *     stats.size = sizeof stats;
  *   - Structs that the library made (brio_mesh, brio_delaunay_stats) are as long as their `size`: a program that may run
@@ -337,7 +338,7 @@ BRIO_API brio_status brio_triangulation_check(brio_context *ctx, const brio_tria
 
 /** Checks finite tetrahedra from any source, in any order and either orientation. They pass if and only if they are a
  *  Delaunay (regular) triangulation of the points, however its ties are broken, in which every position has one index,
- *  that of a point with the greatest weight there. No tetrahedra pass for points of dimension 2 or less.
+ *  that of a point with the greatest weight there. For points of dimension 2 or less, only no tetrahedra at all pass.
  *  tetrahedra  Tetrahedron i has four indices of points at tetrahedra + stride * i: stride 4 for a packed array, 8 for
  *              the array of a brio_triangulation.
  *  canonical   receives 1 if ties are broken as brio_delaunay breaks them, so that the tetrahedra are the same up to
@@ -397,7 +398,7 @@ BRIO_API brio_status brio_locator_tetrahedra(brio_context *ctx, const brio_locat
  *  vertices at equal distances the lexicographically first ones are taken, and come first. Works in every dimension.
  *  count     at least 1.
  *  vertices  #Q by count: indices of points that are vertices, BRIO_INFINITE where there are fewer vertices.
- *  Returns also BRIO_ERR_ARGUMENT (count is 0).
+ *  Returns also BRIO_ERR_ARGUMENT (count is 0), BRIO_ERR_TOO_LARGE (count is over 2^32 - 1).
  *  Based on: [Friedman Bentley Finkel 1977]. */
 BRIO_API brio_status brio_locator_nearest(brio_context *ctx, const brio_locator *locator, const double *queries,
                                           size_t num_queries, size_t count, uint32_t *vertices);
@@ -434,7 +435,7 @@ static inline brio_interpolation brio_interpolation_default(void) {
  *  linear functions up to rounding. NATURAL weighs the natural neighbours of the query x by the volumes that the Voronoi
  *  cell of x would take from their cells. On the hull's boundary, and where rounding drowns these volumes very near it,
  *  NATURAL takes the values of LINEAR. LINEAR takes the tetrahedron that brio_locator_tetrahedra names.
- *  options  NULL is an error, because there would be no values.
+ *  options  NULL has no values, which is an error unless there are no points.
  *  results  #Q by components: NaN for queries outside the hull, and for every query if the points have dimension 2 or less.
  *  Cost: LINEAR as brio_locator_tetrahedra; NATURAL some microseconds a query, as the insertion of a point.
  *  Returns also BRIO_ERR_ARGUMENT (options out of range, no values, NATURAL of a triangulation with weights).
@@ -808,7 +809,7 @@ BRIO_API brio_status brio_mesh_carry_properties(brio_context *ctx, const brio_me
  *  dropped_components, dropped_faces  NULL, or receive what was dropped.
  *  Cost: near-linear; about 30 bytes a corner.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or the mesh has edges or tetrahedra), BRIO_ERR_NO_ANSWER (no
- *  component has so many faces), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. After a failure the mesh is as it was. */
+ *  component has so many faces; a mesh without any stays as it is), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. After a failure the mesh is as it was. */
 BRIO_API brio_status brio_mesh_keep_components(brio_mesh *mesh, int largest, size_t least_faces,
                                                size_t *dropped_components, size_t *dropped_faces);
 
@@ -1465,7 +1466,7 @@ typedef struct brio_labeled_delaunay_stats {
  *           guesses (docs/algorithms.md tells how often those of real models were wrong).
  *  samples  NULL, or room for #P: receives for each vertex the index of its sample, ascending; with options.simplify, of
  *           the sample whose vertex it was before edges collapsed.
- *  Cost: one triangulation, and the labels, about as long; 2,000 to 2,400 bytes a sample at the peak.
+ *  Cost: one triangulation, and the labels, about as long; about 1,000 bytes a sample at the peak.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or options.open leaves nothing), and as brio_delaunay.
  *  Based on: [Labatut Pons Keriven 2009], [Dey Goswami 2003], [Amenta Bern 1999]. */
 BRIO_API brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
@@ -1796,6 +1797,7 @@ typedef struct brio_convert_stats {
  *  file is in memory.
  *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
  *  properties, and "precision" if coordinates are rounded.
+ *  Progress begins anew where a text is read again because late rows lack a column.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.
  *  Returns what brio_read, brio_write, brio_outliers and brio_thin return, and BRIO_ERR_FORMAT if the input changed between

@@ -39,12 +39,20 @@ static brio_certificate certificate_of(brio_mesh *mesh) {
     return c;
 }
 
-/* The certificate of faces without positions; the genera are freed. */
-static brio_certificate certify(const char *faces) {
-    brio_certificate c = certificate_of(mesh_of(faces, NULL)), copy = c;
+/* The certificate of a mesh; the genera are freed. */
+static brio_certificate numbers_of(brio_mesh *mesh) {
+    brio_certificate c = certificate_of(mesh), copy = c;
     copy.genera = NULL;
     brio_certificate_free(&c);
     return copy;
+}
+
+static brio_certificate certify(const char *faces) {
+    return numbers_of(mesh_of(faces, NULL));
+}
+
+static brio_certificate certify_tetrahedron(const double *corners) {
+    return numbers_of(mesh_of("0 2 1,0 1 3,1 2 3,2 0 3", corners));
 }
 
 static bool is_perfect(const brio_certificate *c) {
@@ -72,6 +80,19 @@ static void tetrahedron_has_volume_of_its_orientation(void) {
     c = certificate_of(mesh_of("0 1 2,0 3 1,1 3 2,2 3 0", corners));
     EXPECT(fabs(c.volume + 1.0 / 6) < 1e-15, "%.17g", c.volume);
     brio_certificate_free(&c);
+}
+
+/* Products of large coordinates overflowed to NaN, those of small ones were lost. */
+static void area_and_volume_at_extreme_scales(void) {
+    static const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double scaled[12];
+    const brio_certificate one = certify_tetrahedron(corners);
+    for (int k = -1074; k <= 1023; k++) {
+        for (int i = 0; i < 12; i++) scaled[i] = ldexp(corners[i], k);
+        brio_certificate c = certify_tetrahedron(scaled);
+        EXPECT(c.area == ldexp(one.area, 2 * k), "2^%d: area %g", k, c.area);
+        EXPECT(c.volume == ldexp(one.volume, 3 * k), "2^%d: volume %g", k, c.volume);
+    }
 }
 
 static void cube_of_quads_has_volume_one(void) {
@@ -469,6 +490,7 @@ int main(void) {
     brio_context_new(NULL, &ctx);
     RUN(empty_mesh_is_not_closed);
     RUN(tetrahedron_has_volume_of_its_orientation);
+    RUN(area_and_volume_at_extreme_scales);
     RUN(cube_of_quads_has_volume_one);
     RUN(torus_has_genus_one);
     RUN(genera_come_largest_component_first);

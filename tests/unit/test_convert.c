@@ -58,6 +58,30 @@ static void a_file_replaced_between_two_passes_is_an_error(void) {
     }
 }
 
+static int look_forwards(const char *stage, double fraction, void *user) {
+    double *last = user;
+    EXPECT(fraction >= *last, "%s %g after %g", stage, fraction, *last);
+    *last = fraction;
+    return 0;
+}
+
+/* With points to choose and a format that is surveyed, the second half began when all was read. */
+static void progress_never_runs_backwards(void) {
+    static const char *const outputs[] = {"out.las", "out.npy", "out.ply"};
+    char from[4096];
+    put_rows("in.csv", "x,y,z,a\n", "1,2,3,4\n", ROWS);
+    strcpy(from, io_path("in.csv"));
+    for (int i = 0; i < 6; i++) {
+        brio_convert_options o = brio_convert_options_default();
+        double last = 0;
+        o.thin = i < 3 ? 0.5 : 0;
+        o.drop_outliers = i < 3 ? 8 : 0;
+        brio_context_set_progress(io_ctx, look_forwards, &last);
+        EXPECT(brio_convert(io_ctx, from, io_path(outputs[i % 3]), &o, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+        brio_context_set_progress(io_ctx, NULL, NULL);
+    }
+}
+
 /* --- a column that late rows lack --- */
 
 /* The rows of the first try stayed in the output, and all came again behind them. */
@@ -140,6 +164,7 @@ static void an_npy_field_that_is_there_twice_is_refused(void) {
 int main(void) {
     io_begin();
     RUN(a_file_replaced_between_two_passes_is_an_error);
+    RUN(progress_never_runs_backwards);
     RUN(rows_in_a_pipe_are_written_once);
     RUN(a_las_field_of_nan_alone_stays_nan);
     RUN(names_that_are_cut_stay_distinct);

@@ -262,6 +262,11 @@ static void solids_keep_the_samples(void) {
     brio_mesh_free(mesh);
     o.poles.noise = BRIO_NOISE_END;
     EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_ERR_ARGUMENT);
+    o.poles.noise = BRIO_NOISE_AUTO;
+    brio_mesh_free(solid);
+    EXPECT(brio_mesh_new(ctx, &solid) == BRIO_OK);
+    o.poles.solid = solid;
+    EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     brio_mesh_free(solid);
     brio_context_free(ctx);
 }

@@ -132,12 +132,176 @@ static void cancelled_at_each_report_everything_is_given_back(void) {
     free(p);
 }
 
+/* --- forwards --- */
+
+typedef struct {
+    double last;
+    char stage[64];
+    size_t back;
+    const char *name;
+} march;
+
+static int look_forwards(const char *stage, double fraction, void *user) {
+    march *m = user;
+    bool back = fraction < m->last;
+    if (back && !m->back) EXPECT(0, "%s: %s %g after %s %g", m->name, stage, fraction, m->stage, m->last);
+    m->back += back;
+    m->last = fraction;
+    snprintf(m->stage, sizeof m->stage, "%s", stage);
+    return 0;
+}
+
+enum { SAMPLES = 4000 };
+
+static brio_mesh *scan;
+
+static brio_status surface(brio_labeled_delaunay_options o) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_labeled_delaunay(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+static brio_status plain_surface(void) {
+    return surface(brio_labeled_delaunay_options_default());
+}
+static brio_status every_option_of_surfaces(void) {
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    o.simplify = 1, o.confidence = 1, o.open = 4, o.noise = BRIO_NOISE_SMOOTH;
+    return surface(o);
+}
+static brio_status power_crust(void) {
+    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_mesh *mesh = NULL;
+    double *normals = malloc((3 * scan->num_vertices + 1) * sizeof *normals);
+    o.simplify = 1;
+    brio_status status = brio_power_crust(ctx, scan->vertices, scan->num_vertices, &o, &mesh, normals, NULL);
+    brio_mesh_free(mesh);
+    free(normals);
+    return status;
+}
+static brio_status offset(void) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_offset_surface(ctx, scan->vertices, scan->num_vertices, 0.05, NULL, &mesh, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+static brio_status power_shape(void) {
+    brio_mesh *mesh = NULL, *crust = NULL;
+    brio_status status = brio_power_shape(ctx, scan->vertices, scan->num_vertices, NULL, &mesh, &crust, NULL);
+    brio_mesh_free(mesh);
+    brio_mesh_free(crust);
+    return status;
+}
+static brio_status cocone(bool tight, uint32_t pieces) {
+    brio_cocone_options o = brio_cocone_options_default();
+    brio_mesh *mesh = NULL;
+    o.tight = tight, o.pieces = pieces;
+    brio_status status = brio_cocone(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+static brio_status plain_cocone(void) {
+    return cocone(false, 0);
+}
+static brio_status tight_cocone(void) {
+    return cocone(true, 0);
+}
+static brio_status cocone_of_pieces(void) {
+    return cocone(false, 4);
+}
+static brio_status triangulation(void) {
+    brio_triangulation *t = NULL;
+    brio_status status = brio_delaunay(ctx, scan->vertices, NULL, scan->num_vertices, NULL, &t);
+    brio_triangulation_free(t);
+    return status;
+}
+static brio_status triangulation_by_history(void) {
+    brio_triangulation *t = NULL;
+    brio_delaunay_options o = brio_delaunay_options_default();
+    o.locate = BRIO_LOCATION_HISTORY;
+    brio_status status = brio_delaunay(ctx, scan->vertices, NULL, scan->num_vertices, &o, &t);
+    brio_triangulation_free(t);
+    return status;
+}
+static brio_status thinning(void) {
+    size_t chosen;
+    uint8_t *kept = malloc(scan->num_vertices);
+    brio_status status = brio_thin(ctx, scan->vertices, scan->num_vertices, 0.02, kept, &chosen);
+    free(kept);
+    return status;
+}
+static brio_status outliers(void) {
+    uint8_t *found = malloc(scan->num_vertices);
+    brio_status status = brio_outliers(ctx, scan->vertices, scan->num_vertices, 8, NULL, found);
+    free(found);
+    return status;
+}
+static brio_status solid(void) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_generate_solid(ctx, BRIO_SOLID_MACHINED, 1, 24, &mesh);
+    brio_mesh_free(mesh);
+    return status;
+}
+static brio_status small_scan(void) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_generate(ctx, BRIO_KIND_SCAN, 1000, NULL, &mesh);
+    brio_mesh_free(mesh);
+    return status;
+}
+static brio_status cells(void) {
+    brio_cells *out = NULL;
+    brio_cells_options o = brio_cells_options_default();
+    o.vertices = 1;
+    brio_status status = brio_voronoi_cells(ctx, NULL, scan->vertices, NULL, scan->num_vertices, &o, &out);
+    brio_cells_free(out);
+    return status;
+}
+static brio_status hull(void) {
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_convex_hull(ctx, scan->vertices, scan->num_vertices, NULL, &mesh, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+static const struct {
+    const char *name;
+    brio_status (*run)(void);
+} WAYS[] = {{"surface", plain_surface},
+            {"surface with every option", every_option_of_surfaces},
+            {"power crust", power_crust},
+            {"offset surface", offset},
+            {"power shape", power_shape},
+            {"co-cone", plain_cocone},
+            {"tight co-cone", tight_cocone},
+            {"co-cone of pieces", cocone_of_pieces},
+            {"cells", cells},
+            {"hull", hull},
+            {"triangulation", triangulation},
+            {"triangulation by history", triangulation_by_history},
+            {"thinning", thinning},
+            {"outliers", outliers},
+            {"solid", solid},
+            {"scan", small_scan}};
+
+/* A surface that is simplified began anew at the end. */
+static void progress_never_runs_backwards(void) {
+    EXPECT(brio_generate(ctx, BRIO_KIND_SCAN, SAMPLES, NULL, &scan) == BRIO_OK);
+    for (size_t i = 0; i < sizeof WAYS / sizeof *WAYS; i++) {
+        march m = {.name = WAYS[i].name};
+        brio_context_set_progress(ctx, look_forwards, &m);
+        EXPECT(WAYS[i].run() == BRIO_OK, "%s: %s", m.name, brio_message(ctx));
+        brio_context_set_progress(ctx, NULL, NULL);
+        EXPECT(!m.back, "%s: %zu steps back", m.name, m.back);
+    }
+    brio_mesh_free(scan);
+}
+
 int main(void) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
     brio_context_set_threads(ctx, 1);
     RUN(few_points_of_much_work_are_reported);
     RUN(one_insertion_of_a_huge_star_is_reported);
     RUN(cancelled_at_each_report_everything_is_given_back);
+    RUN(progress_never_runs_backwards);
     brio_context_free(ctx);
     return harness_end();
 }

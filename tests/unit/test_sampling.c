@@ -127,6 +127,21 @@ static void outliers_are_found(void) {
     brio_context_free(ctx);
 }
 
+/* A query among duplicates met them all: hours for these. */
+static void outliers_among_duplicates_cost_little(void) {
+    enum { N = 200000, STRAY = N - 1 };
+    double *points = calloc(3 * N, sizeof *points);
+    uint8_t *outlier = malloc(N);
+    brio_context *ctx = new_context();
+    sphere_points(7, 1000, points);
+    points[3 * STRAY] = 9;
+    EXPECT(brio_outliers(ctx, points, N, 8, NULL, outlier) == BRIO_OK);
+    for (size_t i = 0; i < N; i++) EXPECT(outlier[i] == (i == STRAY), "point %zu", i);
+    free(points);
+    free(outlier);
+    brio_context_free(ctx);
+}
+
 /* A set whose spacing doubles again and again has no outliers. */
 static void sparse_parts_are_no_outliers(void) {
     enum { N = 600 };
@@ -182,6 +197,7 @@ int main(void) {
     RUN(thinning_refuses);
     RUN(no_points_have_no_outliers);
     RUN(outliers_are_found);
+    RUN(outliers_among_duplicates_cost_little);
     RUN(sparse_parts_are_no_outliers);
     RUN(without_memory);
     RUN(can_be_cancelled);

@@ -219,9 +219,10 @@ done:
 static brio_status run(conversion *c) {
     brio_status status = BRIO_OK;
     const brio_sink whole = {write_whole, c};
-    bool rows = brio_row_format_of(c->format) != NULL;
+    const brio_bar bar = brio_progress_bar(c->ctx);
+    bool choose = c->options->drop_outliers || c->options->thin > 0, rows = brio_row_format_of(c->format) != NULL;
     bool again = brio_source_rereadable(c->source.path);
-    bool once = !c->options->drop_outliers && !(c->options->thin > 0) && c->format != BRIO_FORMAT_LAS &&
+    bool once = !choose && c->format != BRIO_FORMAT_LAS &&
                 (can_patch(c->to) || (rows && !brio_row_format_of(c->format)->counts));
     c->source.whole = !rows || (!again && !once);
     for (size_t absent = 0;; absent = c->source.absent.count) {
@@ -229,9 +230,12 @@ static brio_status run(conversion *c) {
         c->told = false;
         status = BRIO_OK;
         double started = brio_seconds();
-        if (c->options->drop_outliers || c->options->thin > 0) status = brio_source_choose(&c->source);
+        brio_progress_part(c->ctx, bar, 0, 0.6);
+        if (choose) status = brio_source_choose(&c->source);
+        brio_progress_part(c->ctx, bar, choose ? 0.6 : 0, 1);
         c->stats.select_seconds = brio_seconds() - started;
         if (status == BRIO_OK) status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
+        brio_progress_part(c->ctx, bar, 0, 1);
         bool taken = c->stats.points > 0 && !can_patch(c->to); /* rows that cannot be taken back */
         if (status != BRIO_ERR_FORMAT || c->source.absent.count == absent || !again || taken) return status;
         brio_release(c->ctx, c->source.chosen);

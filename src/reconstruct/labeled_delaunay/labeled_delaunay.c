@@ -277,8 +277,9 @@ static brio_status find_surface(reconstruction *r, const double *points) {
     BRIO_TRY(orient(r));
     brio_progress_part(r->ctx, bar, 0.55, 0.85);
     BRIO_TRY(label(r));
-    brio_progress_part(r->ctx, bar, 0.85, 1);
+    brio_progress_part(r->ctx, bar, 0.85, 0.95);
     BRIO_TRY(extract(r));
+    brio_progress_part(r->ctx, bar, 0.95, 1);
     if (r->options->open > 0) BRIO_TRY(leave_holes_open(r));
     if (r->stats.smoothed) BRIO_TRY(brio_smooth_surface(r->ctx, r->points, r->num_points, r->faces, r->num_faces));
     lap(r, &r->stats.noise_seconds);
@@ -309,6 +310,7 @@ brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_
     reconstruction r = {
         .ctx = ctx, .options = &o, .num_points = num_points, .graph = {.ctx = ctx}, .lap = brio_seconds()};
     brio_mesh *mesh = NULL;
+    const brio_bar bar = brio_progress_bar(ctx);
     *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_labeled_delaunay_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_labeled_delaunay_options, options, &o));
@@ -317,12 +319,15 @@ brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_
     BRIO_REQUIRE(ctx, o.open >= 0 && o.open < INFINITY, BRIO_ERR_ARGUMENT,
                  "open: %g spacings, expected 0 or a positive number", o.open);
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
+    brio_progress_part(ctx, bar, 0, o.simplify ? 0.8 : 1);
     BRIO_TRY(find_surface(&r, points));
+    brio_progress_part(ctx, bar, 0.8, 1);
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(make_mesh(&r, points, mesh, samples));
     *out = mesh;
     mesh = NULL;
 done:
+    brio_progress_part(ctx, bar, 0, 1);
     BRIO_GIVE(brio_labeled_delaunay_stats, stats, &r.stats);
     brio_mesh_free(mesh);
     release(&r);
