@@ -120,6 +120,13 @@ static void raise(module_state *state, brio_status status, const char *sentence)
     Py_DECREF(error);
 }
 
+int raise_argument(module_state *state, PyObject *sentence) {
+    const char *text = sentence ? PyUnicode_AsUTF8AndSize(sentence, NULL) : NULL;
+    if (text) raise(state, BRIO_ERR_ARGUMENT, text);
+    Py_XDECREF(sentence);
+    return -1;
+}
+
 int call_end(call *c, brio_status status) {
     int failed = status != BRIO_OK || PyErr_Occurred();
     if (failed && !PyErr_Occurred()) raise(c->state, status, brio_message(c->ctx));

@@ -220,6 +220,22 @@ static PyObject *triangulation_checksum(PyObject *module, PyObject *args) {
     return PyLong_FromUnsignedLongLong(sum);
 }
 
+/* triangulation_has_points(t, points, weights): raises an error if t was made of others. */
+static PyObject *triangulation_has_points(PyObject *module, PyObject *args) {
+    PyObject *object, *points, *weights;
+    facts f;
+    input p, w = {.held = 0};
+    int wrong = -1;
+    if (!PyArg_ParseTuple(args, "OOO", &object, &points, &weights) || look_at(state_of(module), object, &f))
+        return NULL;
+    if (input_borrow(&p, points, "points", 'd', f.plane ? f.plane->coordinates : 3)) return NULL;
+    if (!input_borrow_weights(&w, weights, p.rows)) wrong = handle_has_points(state_of(module), object, &p, &w);
+    input_close(&w);
+    input_close(&p);
+    if (wrong) return NULL;
+    Py_RETURN_NONE;
+}
+
 /* --- neighbourhoods --- */
 
 static void free_incidences(void *object) {
@@ -267,6 +283,8 @@ PyMethodDef delaunay_methods[] = {
     {"triangulation_line", triangulation_line, METH_O, "The vertices of points on a line."},
     {"triangulation_verify", triangulation_verify, METH_VARARGS,
      "triangulation_verify(t, points, weights, threads, progress): checks exactly."},
+    {"triangulation_has_points", triangulation_has_points, METH_VARARGS,
+     "triangulation_has_points(t, points, weights): raises an error if t was made of others."},
     {"triangulation_checksum", triangulation_checksum, METH_VARARGS,
      "triangulation_checksum(t, points, weights, threads, progress)"},
     {"triangulation_lists", triangulation_lists, METH_VARARGS, "triangulation_lists(t, what): offsets and items."},

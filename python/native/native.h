@@ -65,6 +65,9 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress);
 /** Ends a call. Returns 0, or -1 with an exception set if the status is an error. */
 int call_end(call *c, brio_status status);
 
+/** Sets an ArgumentError with a sentence, whose reference it takes; NULL leaves the exception that is set. Returns -1. */
+int raise_argument(module_state *state, PyObject *sentence);
+
 /* --- arrays --- */
 
 /** What a view shows: format in the notation of `struct`, sizes and strides in bytes. */
@@ -142,8 +145,9 @@ typedef struct {
 PyObject *call_end_with(call *c, brio_status status, kind what, void *object, void (*release)(void *), PyObject *base);
 /** Returns the object of a handle of that kind, or NULL with TypeError set. */
 void *handle_object(module_state *state, PyObject *object, kind kind);
-/** Returns 0, or -1 with an exception set if these copies are not of the points that a triangulation was made of. A
- *  triangulation with other points than its own would lead the library astray. */
+/** Returns 0, or -1 with an exception set if these are not the points that a triangulation was made of. A triangulation
+ *  with other points than its own would lead the library astray: what the library reads next has to be the copy that was
+ *  checked here. */
 int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights);
 extern PyType_Spec handle_spec;
 

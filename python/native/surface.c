@@ -1,5 +1,6 @@
 /* Convex hulls, surfaces of samples, medial axes, offsets, and normals of points. */
 #include "mesh.h"
+#include <limits.h>
 
 /* --- options: read from a dict, by name --- */
 
@@ -11,10 +12,17 @@ typedef struct {
     void *field;
 } option;
 
+/* Returns an int; sets OverflowError if the value is beyond ints. */
+static int as_int(PyObject *value) {
+    long number = PyLong_AsLong(value);
+    if (number < INT_MIN || number > INT_MAX) PyErr_SetNone(PyExc_OverflowError);
+    return (int)number;
+}
+
 static void set_option(const option *o, PyObject *value) {
     switch (o->type) {
     case INT:
-        *(int *)o->field = (int)PyLong_AsLong(value);
+        *(int *)o->field = as_int(value);
         break;
     case DOUBLE:
         *(double *)o->field = PyFloat_AsDouble(value);
@@ -28,8 +36,17 @@ static void set_option(const option *o, PyObject *value) {
     }
 }
 
+/* Makes an ArgumentError of the exception that a value of an option raised. Returns -1. */
+static int raise_option(module_state *state, const option *o, PyObject *value) {
+    static const char *const wanted[] = {"a whole number or a truth value is wanted", "a number is wanted",
+                                         "a whole number of at least 0 is wanted",
+                                         "a whole number from 0 to 2^64 - 1 is wanted"};
+    PyErr_Clear();
+    return raise_argument(state, PyUnicode_FromFormat("%s: %s, not %R", o->name, wanted[o->type], value));
+}
+
 /* Sets the options that the dict names. Returns 0, or -1 with an exception set; a name that is not there is an error. */
-static int set_options(const option *options, PyObject *dict) {
+static int set_options(module_state *state, const option *options, PyObject *dict) {
     PyObject *name, *value;
     Py_ssize_t at = 0;
     while (PyDict_Next(dict, &at, &name, &value)) {
@@ -40,7 +57,7 @@ static int set_options(const option *options, PyObject *dict) {
             return -1;
         }
         set_option(o, value);
-        if (PyErr_Occurred()) return -1;
+        if (PyErr_Occurred()) return raise_option(state, o, value);
     }
     return 0;
 }
@@ -86,7 +103,8 @@ static void close_surface_call(surface_call *s) {
 /* Begins the call, runs `expression` with `o`, the options that `table` names, and makes a handle of `mesh`. */
 #define RUN_SURFACE(table, expression)                                                                                 \
     do {                                                                                                               \
-        if (!set_options(table, s.options) && !call_begin(&c, state_of(module), s.threads, s.progress)) {              \
+        if (!set_options(state_of(module), table, s.options) &&                                                        \
+            !call_begin(&c, state_of(module), s.threads, s.progress)) {                                                \
             CALL(c, status, expression);                                                                               \
             result = call_end_with_mesh(&c, status, mesh);                                                             \
         }                                                                                                              \

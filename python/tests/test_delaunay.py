@@ -226,3 +226,23 @@ def test_what_is_not_offered_says_so():
     assert isinstance(brio.Voronoi(four, fallback="scipy"), spatial.Voronoi)
     assert isinstance(brio.ConvexHull(four, fallback="scipy"), spatial.ConvexHull)
     assert isinstance(brio.Delaunay(four[:, :3], fallback="scipy"), brio.Delaunay)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_arrays_are_read_only(d):
+    points = GENERATOR.random((30, d))
+    tri = brio.Delaunay(np.concatenate([points, points[:3]]), np.append(np.full(32, 1.0), 0))
+    arrays = {name: getattr(tri, name) for name in dir(tri) if not name.startswith("_")}
+    arrays["indptr"], arrays["indices"] = arrays["vertex_neighbor_vertices"]
+    arrays = {name: value for name, value in arrays.items() if isinstance(value, np.ndarray)}
+    assert {name for name, value in arrays.items() if value.flags.writeable} == {"points", "weights"}
+    assert {"duplicates", "hidden", "coplanar", "simplices", "min_bound"} < set(arrays)
+    complex = brio.alpha_complex(points)
+    assert not complex.order.flags.writeable
+
+
+def test_a_fallback_that_is_not_known():
+    for points in (GENERATOR.random((9, 2)), GENERATOR.random((9, 3)).tolist()):
+        for make in (brio.Delaunay, brio.Voronoi, brio.ConvexHull):
+            with pytest.raises(brio.ArgumentError, match="fallback"):
+                make(points, fallback="x")

@@ -102,12 +102,102 @@ def test_points_that_were_changed_are_noticed(d):
     points = GENERATOR.random((100, d))
     tri = brio.Delaunay(points)
     points[7] = 5
-    for call in (lambda: tri.find_simplex(points), tri.verify):
+    for call in (lambda: tri.find_simplex(points), tri.verify, lambda: tri.transform, lambda: tri.equations,
+                 lambda: tri.lift_points(points), lambda: tri.duplicates, lambda: brio.AlphaComplex(tri)):
         with pytest.raises(brio.ArgumentError, match="changed"):
             call()
     points[7] = np.nan
     with pytest.raises(brio.ArgumentError, match="changed"):
         tri.verify()
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_alpha_shapes_of_points_that_were_changed(d):
+    points = GENERATOR.random((100, d))
+    complex = brio.alpha_complex(points)
+    points[7] = 5
+    with pytest.raises(brio.ArgumentError, match="changed"):
+        complex.shape(complex.auto_alpha())
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_find_simplex_keeps_its_locator_when_points_change(d):
+    points = GENERATOR.random((100, d))
+    tri, queries = brio.Delaunay(points), GENERATOR.random((50, d))
+    wanted = tri.find_simplex(queries)
+    points[7] = 5
+    assert (tri.find_simplex(queries) == wanted).all()
+
+
+@pytest.mark.parametrize("interpolator", [brio.LinearNDInterpolator, brio.NaturalNeighbourInterpolator])
+@pytest.mark.parametrize("d", [2, 3])
+def test_interpolators_of_a_triangulation_with_added_points(interpolator, d):
+    tri = brio.Delaunay(GENERATOR.random((20, d)))
+    height = interpolator(tri, np.arange(20.0))
+    tri.add_points(GENERATOR.random((5, d)))
+    for fill in (np.nan, 7):
+        height.fill_value = fill
+        with pytest.raises(brio.ArgumentError, match="25 points.*20.*added"):
+            height(tri.points)
+
+
+SAMPLES = GENERATOR.normal(size=(300, 3))
+SAMPLES /= np.linalg.norm(SAMPLES, axis=1)[:, None]
+
+
+@pytest.mark.parametrize("call", [brio.reconstruct, brio.oriented_normals])
+@pytest.mark.parametrize("method", [None, 5, "magic", ["cocone"]])
+def test_methods_that_are_not_known(call, method):
+    with pytest.raises(brio.ArgumentError, match="method.*cocone"):
+        call(SAMPLES, method)
+
+
+@pytest.mark.parametrize("name,options", [
+    ("seed", {"seed": -1}), ("seed", {"seed": 2**64}), ("seed", {"seed": 1.5}), ("seed", {"seed": None}),
+    ("pieces", {"method": "cocone", "pieces": -1}), ("pieces", {"method": "cocone", "pieces": "2"}),
+    ("simplify", {"simplify": 2**32}), ("simplify", {"simplify": None}), ("open", {"open": "wide"}),
+    ("boundaries", {"method": "cocone", "boundaries": -(2**70)})])
+def test_options_out_of_range(name, options):
+    with pytest.raises(brio.ArgumentError, match="^%s: .* wanted" % name):
+        brio.reconstruct(SAMPLES, **options)
+
+
+@pytest.mark.parametrize("name,call", [
+    ("samples", lambda m: m.distance(m, samples=-1)), ("samples", lambda m: m.distance(m, samples=1e3)),
+    ("seed", lambda m: m.distance(m, seed=-1)), ("seed", lambda m: m.distance(m, seed=2**64)),
+    ("other", lambda m: m.distance(m.vertices)), ("source", lambda m: m.carry_properties(m.vertices)),
+    ("mesh", lambda m: brio.simplify(m.vertices, 5)), ("faces", lambda m: m.simplify(2**70)),
+    ("faces", lambda m: m.simplify("5")), ("least_faces", lambda m: m.keep_components(least_faces=-1)),
+    ("levels", lambda m: m.subdivide(2**40)), ("levels", lambda m: m.subdivide(None)),
+    ("neighbours", lambda m: brio.outliers(m, 2**40)), ("neighbours", lambda m: brio.outliers(m, "5")),
+    ("outliers", lambda m: brio.convert("a.ply", "b.ply", outliers=None))])
+def test_counts_out_of_range_and_what_is_no_mesh(name, call):
+    with pytest.raises(brio.ArgumentError, match="^%s: .* wanted" % name):
+        call(brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+
+
+@pytest.mark.parametrize("use", [
+    lambda m, path: m.simplify(3), lambda m, path: m.write(path), lambda m, path: m.select([0, 1]),
+    lambda m, path: m.subdivide(), lambda m, path: m.keep_components(largest=True),
+    lambda m, path: brio.Mesh(m.vertices).carry_properties(m), lambda m, path: brio.reconstruct(m)])
+@pytest.mark.parametrize("values", [np.arange(3), np.arange(5.0), 7, [[1], [2, 3]]])
+def test_properties_of_a_wrong_length(use, values, tmp_path):
+    mesh = brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+    mesh.properties["heat"] = values
+    with pytest.raises(brio.ArgumentError, match="property heat"):
+        use(mesh, tmp_path / "a.ply")
+
+
+@pytest.mark.parametrize("properties", [5, [1, 2], {5: [1, 2, 3]}, {"a": 3}])
+def test_properties_that_are_no_dict_of_arrays(properties):
+    with pytest.raises(brio.ArgumentError, match="^property"):
+        brio.Mesh(np.eye(3), properties=properties)
+
+
+def test_attributes_of_a_wrong_length_are_refused_at_once(monkeypatch):
+    monkeypatch.setattr(brio._reconstruct, "_run", None)  # no surface is made
+    with pytest.raises(brio.ArgumentError, match="attribute heat: one row a point"):
+        brio.reconstruct(SAMPLES, attributes={"heat": [1, 2]})
 
 
 def test_errors_can_be_pickled():

@@ -252,6 +252,38 @@ def test_carried_properties_keep_types_and_names():
         mesh.carry_properties(brio.Mesh(np.empty((0, 3))))
 
 
+@pytest.mark.parametrize("name", ["a.ply", "a.vtu", "a.pcd"])
+@pytest.mark.parametrize("values", [
+    np.array([2**53 + 1, 0, 1, 2], np.int64), np.array([2**64 - 1, 0, 1, 2], np.uint64), np.array([2**63 - 1, 0, 1, 2]),
+    np.array([[0, 2**60 + 1]] * 4), np.array([1, 2, 3, np.longdouble(1) / 3], np.longdouble)])
+def test_properties_that_files_would_round(values, name, tmp_path):
+    with pytest.raises(brio.ArgumentError, match="property big: files would round"):
+        brio.Mesh(CORNERS, properties={"big": values}).write(tmp_path / name)
+    assert not (tmp_path / name).exists()
+
+
+@pytest.mark.parametrize("values", [
+    np.array([2**53, -(2**53), 2**60, 3], np.int64), np.array([2**63, 2**40, 0, 2**64 - 2**11], np.uint64),
+    np.array([2**32 - 1, 0, 1, 2], np.uint32), np.array([2**31 - 1, -(2**31), 1, 2]),
+    np.array([0.1, np.nan, np.inf, 1e-320]).astype(np.longdouble), np.array([2**62, 1, 2, 3], ">i8")])
+def test_large_properties_are_written_exactly(values, tmp_path):
+    for options in {}, {"ascii": True}, {"float32": True}:
+        brio.Mesh(CORNERS, properties={"big": values}).write(tmp_path / "a.ply", **options)
+        again = brio.read(tmp_path / "a.ply").properties["big"].tolist()
+        assert all(a == b or a != a and b != b for a, b in zip(again, values.tolist(), strict=True))
+
+
+def test_properties_that_would_have_one_name_in_a_file(tmp_path):
+    with pytest.raises(brio.ArgumentError, match="a_0"):
+        brio.Mesh(CORNERS, properties={"a": np.ones((4, 2)), "a_0": np.zeros(4)}).write(tmp_path / "a.ply")
+
+
+def test_texts_of_complexes_and_interpolators():
+    assert repr(brio.alpha_complex(CORNERS)) == "<brio.AlphaComplex of 4 points: 15 simplices>"
+    text = "<brio.LinearNDInterpolator of 4 points: values of shape (2,)>"
+    assert repr(brio.LinearNDInterpolator(CORNERS, np.ones((4, 2)))) == text
+
+
 def test_attributes_with_a_name_of_the_surface(ball):
     surface = brio.reconstruct(ball, confidence=True, attributes={"confidence": np.arange(2000)})
     assert (surface.properties["input_confidence"] == surface.samples).all()

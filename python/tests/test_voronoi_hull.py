@@ -1,5 +1,8 @@
 """Diagrams and hulls: against definitions and scipy."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -116,3 +119,43 @@ def test_hull_of_a_cube_has_six_polygons():
 def test_no_hull_without_an_inside(points):
     with pytest.raises(brio.NoAnswerError):
         brio.ConvexHull(points)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_volumes_of_a_diagram_with_hidden_points(d):
+    points, weights = GENERATOR.random((300, d)), 0.03 * (d - 1) * GENERATOR.random(300)
+    tri, vor = brio.Delaunay(points, weights), brio.Voronoi(points, weights)
+    assert len(tri.hidden) > 50 and (vor.volumes[tri.hidden] == 0).all()
+    kept = np.setdiff1d(np.arange(300), tri.hidden)
+    alone = brio.Voronoi(points[kept], weights[kept])
+    assert np.allclose(vor.volumes[kept], alone.volumes, rtol=1e-9) and (vor.volumes[kept] > 0).all()
+
+
+def test_volumes_without_the_region_of_infinity():
+    points = GENERATOR.random((50, 2))
+    assert (brio.Voronoi(points, qhull_options="Qbb").volumes == brio.Voronoi(points).volumes).all()
+
+
+def test_options_of_qhull_as_bytes():
+    for options, regions in (("Qbb", 9), ("Qbb Qz", 10)):
+        for kind in (options, options.encode()):
+            assert len(brio.Voronoi(GENERATOR.random((9, 2)), qhull_options=kind).regions) == regions
+    with pytest.raises(brio.NotOfferedError, match="not offered"):
+        brio.Voronoi(np.eye(3), qhull_options=b"\xff")
+
+
+def test_texts_of_hulls_and_diagrams():
+    square = [[0, 0], [1, 0], [0, 1], [1, 1]]
+    assert repr(brio.ConvexHull(square)) == "<brio.ConvexHull of 4 points: 4 vertices, 4 simplices>"
+    assert repr(brio.Voronoi(square)) == "<brio.Voronoi of 4 points: 1 vertices, 4 ridges>"
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_arrays_of_hulls_and_diagrams_are_read_only(d):
+    points = GENERATOR.random((30, d))
+    for made in (brio.ConvexHull(points), brio.Voronoi(points)):
+        for thing in (made, copy.deepcopy(made), pickle.loads(pickle.dumps(made)), copy.copy(made)):
+            arrays = {name: getattr(thing, name) for name in dir(thing) if not name.startswith("_")}
+            arrays = {name: value for name, value in arrays.items() if isinstance(value, np.ndarray)}
+            assert [name for name, value in arrays.items() if value.flags.writeable] == ["points"] and len(arrays) > 6
+    assert points.flags.writeable

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats
+from ._arrays import Floats, frozen
 from ._calls import Progress, reporting
 from ._delaunay import Delaunay
 from ._mesh import Mesh
@@ -40,11 +40,15 @@ class AlphaComplex:
         self.values: list[Floats] = [np.asarray(view) for view in views["values"]]
         self.solid: list[Floats] = [np.asarray(view) for view in views["solid"]]
         self.gabriel: list[NDArray[np.bool_]] = [np.asarray(view) for view in views["gabriel"]]
-        self.order: NDArray[np.uint32] = np.empty(sum(len(part) for part in self.values), np.uint32)
-        _native.alpha_order(self._complex, self.order)
+        order = np.empty(sum(len(part) for part in self.values), np.uint32)
+        _native.alpha_order(self._complex, order)
+        self.order: NDArray[np.uint32] = frozen(order)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self._tri,)
+
+    def __repr__(self) -> str:
+        return f"<brio.AlphaComplex of {len(self.points)} points: {len(self.order)} simplices>"
 
     def auto_alpha(self) -> float:
         """The least alpha whose tetrahedra are one solid, or whose triangles one region, that has all vertices."""
@@ -73,6 +77,8 @@ class AlphaComplex:
         """The triangles of at most `alpha`, and their border."""
         if np.isnan(alpha):
             raise ArgumentError("alpha is NaN")
+        points = self.points.copy()  # other threads may write to the caller's array
+        _native.triangulation_has_points(self._tri._handle, points, self.weights)
         inside = self.values[2] <= alpha
         if not inside.any():
             raise NoAnswerError(f"no triangle has a value of at most alpha = {alpha:g}")
@@ -80,9 +86,9 @@ class AlphaComplex:
         is_border = (mates < 0) | ~inside[mates]
         border = np.concatenate([triangles[is_border[:, k]][:, [(k + 1) % 3, (k + 2) % 3]] for k in range(3)])
         used = np.unique(triangles)
-        place = np.zeros(len(self.points), np.uint32)
+        place = np.zeros(len(points), np.uint32)
         place[used] = np.arange(len(used), dtype=np.uint32)
-        vertices = np.column_stack([self.points[used], np.zeros(len(used))])
+        vertices = np.column_stack([points[used], np.zeros(len(used))])
         counts = {"triangles": int(inside.sum()), "vertices": len(used),
                   "uncovered": int((self.solid[0] > alpha).sum()),
                   "singular_vertices": int(((self.values[0] <= alpha) & (self.solid[0] > alpha)).sum()),

@@ -1,5 +1,6 @@
 """Arrays of the caller, as the library takes them: C-contiguous, aligned float64 is taken as it is, all else is converted."""
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -92,3 +93,25 @@ def frozen(array: NDArray[Any]) -> NDArray[Any]:
     """Makes an array read-only."""
     array.flags.writeable = False
     return array
+
+
+_OF_THE_CALLER = ("points", "weights", "box")
+
+
+def freeze_all(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Makes the arrays among an object's attributes read-only, except for those that may be the caller's."""
+    for name, value in attributes.items():
+        if isinstance(value, np.ndarray) and name not in _OF_THE_CALLER:
+            frozen(value)
+    return attributes
+
+
+def as_count(value: Any, name: str, least: int = 0, most: int = 2**31 - 1) -> int:
+    """Takes a whole number from `least` to `most`."""
+    try:
+        count = operator.index(value)
+    except TypeError as error:
+        raise ArgumentError(f"{name}: a whole number is wanted, not {value!r}") from error
+    if not least <= count <= most:
+        raise ArgumentError(f"{name}: a whole number from {least} to {most} is wanted, not {count}")
+    return count

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from . import _calls, _geometry, _native
 from ._arrays import Floats, as_queries, as_rows, as_weights, frozen
 from ._calls import Progress, reporting
+from ._scaled import shifted
 from ._scipy import other_class
 from .errors import ArgumentError
 
@@ -86,8 +87,8 @@ class Delaunay:
     _handle: Any
 
     def __new__(cls, points: Any, weights: Any = None, *, fallback: str | None = None, **options: Any) -> Any:
-        usual = type(points) is np.ndarray and points.ndim == 2 and points.shape[1] in (2, 3) and not options
-        if not usual:
+        usual = type(points) is np.ndarray and points.ndim == 2 and points.shape[1] in (2, 3)
+        if not usual or options or fallback is not None:
             wanted = ("furthest_site", "incremental", "qhull_options")
             scipys: dict[str, Any] = {key: options[key] for key in wanted if key in options}
             other = other_class("Delaunay", points, fallback, scipys)
@@ -132,11 +133,11 @@ class Delaunay:
 
     @cached_property
     def min_bound(self) -> Floats:
-        return self.points.min(axis=0)  # type: ignore[no-any-return]
+        return frozen(self.points.min(axis=0))
 
     @cached_property
     def max_bound(self) -> Floats:
-        return self.points.max(axis=0)  # type: ignore[no-any-return]
+        return frozen(self.points.max(axis=0))
 
     # --- views of what C has ---
 
@@ -157,6 +158,13 @@ class Delaunay:
 
     # --- what is computed when first asked for ---
 
+    def _unchanged_points(self) -> Floats:
+        """The points; raises ArgumentError if they were changed since the triangulation was built."""
+        state = self.__dict__  # read once: add_points in another thread replaces it
+        points: Floats = state["points"]
+        _native.triangulation_has_points(state["_handle"], points, state["weights"])
+        return points
+
     @cached_property
     def neighbors(self) -> Ints:
         out = np.empty(self.simplices.shape, np.int32)
@@ -173,24 +181,25 @@ class Delaunay:
     def vertex_neighbor_vertices(self) -> tuple[Ints, Ints]:
         if self.ndim == 3:
             offsets, items = _native.triangulation_lists(self._handle, 0)
-            return np.asarray(offsets).astype(np.int32), np.asarray(items)
+            return frozen(np.asarray(offsets).astype(np.int32)), np.asarray(items)
         edges = self.simplices[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
         return _geometry.csr(np.concatenate([edges, edges[:, ::-1]]), self.npoints)
 
     @cached_property
     def _others(self) -> NDArray[np.int64]:
         """The points that are no vertices."""
-        return np.flatnonzero(self.representatives != np.arange(self.npoints, dtype=np.uint32))
+        return frozen(np.flatnonzero(self.representatives != np.arange(self.npoints, dtype=np.uint32)))
 
     @cached_property
     def duplicates(self) -> NDArray[np.int64]:
         others: NDArray[np.int64] = self._others
-        same: NDArray[np.bool_] = (self.points[others] == self.points[self.representatives[others]]).all(axis=1)
-        return others[same]
+        points = self._unchanged_points()
+        same: NDArray[np.bool_] = (points[others] == points[self.representatives[others]]).all(axis=1)
+        return frozen(others[same])
 
     @cached_property
     def hidden(self) -> NDArray[np.int64]:
-        return np.setdiff1d(self._others, self.duplicates, assume_unique=True)
+        return frozen(np.setdiff1d(self._others, self.duplicates, assume_unique=True))
 
     @cached_property
     def coplanar(self) -> Ints:
@@ -200,34 +209,45 @@ class Delaunay:
 
     @cached_property
     def transform(self) -> Floats:
-        return frozen(_geometry.barycentric_transforms(self.points, self.simplices))
+        return frozen(_geometry.barycentric_transforms(self._unchanged_points(), self.simplices))
 
     @cached_property
-    def _lift(self) -> tuple[float, float]:
-        """scipy's: the lifted coordinate is scaled to the size of the others, with the point that it adds above all."""
-        if not self.npoints:
-            return 1.0, 0.0
-        squares = (self.points**2).sum(axis=1)
-        low, high = squares.min(), 1.1 * squares.max()
-        wide = max(np.abs(self.points).max(), (self.max_bound - self.min_bound).max())
-        scale = float(wide / (high - low)) if high > low else 1.0
-        return scale, float(-low * scale)
+    def _lift(self) -> tuple[float, float, int]:
+        """scipy's scale and shift of the lifted coordinate, of points divided by 2**exponent, and the exponent.
+
+        They give that coordinate the size of the others, with the point that scipy adds above all.
+        """
+        points = self._unchanged_points()
+        exponent = int(np.frexp(np.abs(points).max(initial=0))[1])
+        near = shifted(points, -exponent)
+        squares = (near**2).sum(axis=1)
+        low, high = squares.min(initial=np.inf), 1.1 * squares.max(initial=0)
+        scale = float(max(np.abs(near).max(), np.ptp(near, axis=0).max()) / (high - low)) if high > low else 1.0
+        return scale, float(-low * scale) if high > low else 0.0, exponent
 
     @property
     def paraboloid_scale(self) -> float:
-        return self._lift[0]
+        scale, _, exponent = self._lift
+        return float(shifted(scale, -exponent))
 
     @property
     def paraboloid_shift(self) -> float:
-        return self._lift[1]
+        _, shift, exponent = self._lift
+        return float(shifted(shift, exponent))
+
+    def _lifted(self, rows: Floats, weights: Floats | None = None) -> Floats:
+        """Returns the lifted coordinate of positions, divided by 2**self._lift[2]."""
+        scale, shift, exponent = self._lift
+        squares: Floats = (shifted(rows, -exponent) ** 2).sum(axis=1)
+        if weights is not None:
+            squares = squares - shifted(weights, -2 * exponent)
+        return squares * scale + shift
 
     @cached_property
     def equations(self) -> Floats:
-        lifted = (self.points**2).sum(axis=1)
-        if self.weights is not None:
-            lifted = lifted - self.weights
-        lifted = lifted * self.paraboloid_scale + self.paraboloid_shift
-        return frozen(_geometry.lower_planes(self.points, lifted, self.simplices))
+        points = self._unchanged_points()
+        lifted = self._lifted(points, self.weights)
+        return frozen(_geometry.lower_planes(points, lifted, self._lift[2], self.simplices))
 
     # --- checks ---
 
@@ -305,13 +325,14 @@ class Delaunay:
     def lift_points(self, x: Any) -> Floats:
         """Lifts positions of shape (..., ndim) to the paraboloid: shape (..., ndim + 1)."""
         rows, shape = as_queries(x, self.ndim)
-        z = (rows**2).sum(axis=1) * self.paraboloid_scale + self.paraboloid_shift
+        z = shifted(self._lifted(rows), self._lift[2])
         return np.column_stack([rows, z]).reshape(*shape, self.ndim + 1)
 
     def plane_distance(self, xi: Any) -> Floats:
         """Returns the distances of lifted positions, shape (..., ndim), from all simplices: shape (..., nsimplex)."""
-        lifted = self.lift_points(xi)
-        distances: Floats = lifted @ self.equations[:, :-1].T + self.equations[:, -1]
+        exponent = self._lift[2]
+        lifted, offsets = shifted(self.lift_points(xi), -exponent), shifted(self.equations[:, -1], -exponent)
+        distances: Floats = shifted(lifted @ self.equations[:, :-1].T + offsets, exponent)
         return distances
 
     # --- scipy's incremental mode ---

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _native
-from ._arrays import as_floats
+from ._arrays import as_count, as_floats
 from ._calls import Progress, reporting
 from ._mesh import Mesh
 from .errors import ArgumentError
@@ -133,11 +133,10 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     corners = None if box is None else as_floats(box, "box").ravel()
     if corners is not None and len(corners) != 6:
         raise ArgumentError(f"box: six numbers are wanted, the lower corner and the upper one, not {len(corners)}")
-    if not 0 <= outliers <= 63:
-        raise ArgumentError(f"outliers: from 1 to 63 neighbours, or 0, not {outliers}")
+    neighbours = as_count(outliers, "outliers", most=63)
     with reporting(progress) as report:
         facts = _native.convert(os.fsencode(source), os.fsencode(target), _columns(columns),
-                                (ascii, float32, compress, comment), corners, (outliers, factor, thin), threads, report)
+                                (ascii, float32, compress, comment), corners, (neighbours, factor, thin), threads, report)
     return Conversion(**facts)
 
 

@@ -5,17 +5,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import Floats
+from ._arrays import Floats, frozen
+from ._scaled import Scaled, aligned, difference, shifted
 
 # scipy's: a simplex whose matrix has a smaller reciprocal condition number has no transform.
 LEAST_RCOND = 1000 * np.finfo(np.float64).eps
 
 
-def edges_from(points: Floats, simplices: NDArray[Any], origin: int) -> Floats:
-    """Returns #S by d by d: row k of simplex s is its k-th other vertex minus the vertex `origin`."""
+def edges_from(points: Floats, simplices: NDArray[Any], origin: int) -> Scaled:
+    """Returns #S by d by d, and an exponent a simplex: row k is the simplex' k-th other vertex minus the vertex `origin`."""
     others = [k for k in range(simplices.shape[1]) if k != origin % simplices.shape[1]]
-    edges: Floats = points[simplices[:, others]] - points[simplices[:, origin]][:, None, :]
-    return edges
+    edges = difference(points[simplices[:, others]], points[simplices[:, origin]][:, None, :])
+    return aligned(edges, (1, 2))
 
 
 def cofactors(matrix: Floats) -> tuple[Floats, Floats]:
@@ -36,32 +37,37 @@ def barycentric_transforms(points: Floats, simplices: NDArray[Any]) -> Floats:
     NaN marks simplices too flat for it, by scipy's bound on the condition number.
     """
     d = points.shape[1]
-    matrix = edges_from(points, simplices, -1)  # row k: vertex k minus r, so that x - r = sum of c_k row_k
+    matrix, exponent = edges_from(points, simplices, -1)  # row k: vertex k minus r, so that x - r = sum of c_k row_k
     out = np.empty((len(simplices), d + 1, d))
     with np.errstate(all="ignore"):
         columns, det = cofactors(matrix)
         inverse = columns / det[:, None, None]
         rcond = 1 / (np.abs(matrix).sum(axis=2).max(axis=1) * np.abs(inverse).sum(axis=1).max(axis=1))
         flat = ~(rcond >= LEAST_RCOND)
-    out[:, :d] = inverse
+        out[:, :d] = shifted(inverse, -exponent[:, None, None])
     out[:, d] = points[simplices[:, -1]]
     out[flat] = np.nan
     return out
 
 
-def lower_planes(points: Floats, lifted: Floats, simplices: NDArray[Any]) -> Floats:
-    """Returns #S by d + 2: the unit normal, pointing down, and the offset of the plane through the lifted vertices."""
+def lower_planes(points: Floats, lifted: Floats, exponent: int, simplices: NDArray[Any]) -> Floats:
+    """Returns #S by d + 2: the unit normal, pointing down, and the offset of the plane through the lifted vertices.
+
+    Their last coordinates are lifted * 2**exponent.
+    """
     d = points.shape[1]
     out = np.empty((len(simplices), d + 2))
     with np.errstate(all="ignore"):
-        columns, det = cofactors(edges_from(points, simplices, -1))
-        rise = lifted[simplices[:, :-1]] - lifted[simplices[:, -1:]]
+        matrix, exponents = edges_from(points, simplices, -1)
+        columns, det = cofactors(matrix)
+        rise = shifted(lifted[simplices[:, :-1]] - lifted[simplices[:, -1:]], exponent - exponents[:, None])
         slope = np.einsum("sk,ski->si", rise, columns) / det[:, None]
         out[:, :d] = slope
         out[:, d] = -1
         out[:, : d + 1] /= np.sqrt(1 + (slope**2).sum(axis=1))[:, None]
-    last = simplices[:, -1]
-    out[:, d + 1] = -(out[:, :d] * points[last]).sum(axis=1) - out[:, d] * lifted[last]
+        last = simplices[:, -1]
+        offset = -(out[:, :d] * shifted(points, -exponent)[last]).sum(axis=1) - out[:, d] * lifted[last]
+        out[:, d + 1] = shifted(offset, exponent)
     return out
 
 
@@ -74,4 +80,4 @@ def csr(pairs: NDArray[Any], count: int) -> tuple[NDArray[np.int32], NDArray[np.
     first, second = np.divmod(keys, max(count, 1))
     offsets = np.zeros(count + 1, np.int32)
     np.cumsum(np.bincount(first, minlength=count), out=offsets[1:])
-    return offsets, second.astype(np.int32)
+    return frozen(offsets), frozen(second.astype(np.int32))

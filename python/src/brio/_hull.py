@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import Floats, as_rows
+from ._arrays import Floats, as_rows, freeze_all, frozen
 from ._calls import Progress
+from ._scaled import aligned, cross, difference, product, run_sums, shifted, split, total, units
 from ._scipy import other_class
 from .errors import NoAnswerError
 
@@ -68,8 +69,8 @@ class ConvexHull:
         other = other_class("ConvexHull", points, fallback, scipys)
         return object.__new__(cls) if other is None else other
 
-    def __init__(self, points: Any, *, incremental: bool = False, qhull_options: str | None = None, threads: int = 0,
-                 progress: bool | Progress | None = None, fallback: str | None = None) -> None:
+    def __init__(self, points: Any, *, incremental: bool = False, qhull_options: str | bytes | None = None,
+                 threads: int = 0, progress: bool | Progress | None = None, fallback: str | None = None) -> None:
         self.threads, self.progress, self._closed = threads, progress, False
         self.good = None
         self._build(as_rows(points, "points", (2, 3)))
@@ -94,6 +95,7 @@ class ConvexHull:
         else:
             self.vertices = samples[: len(np.asarray(views["vertices"]))].astype(np.int32)
             self._set_triangles()
+        freeze_all(self.__dict__)
 
     # --- in the plane ---
 
@@ -103,13 +105,11 @@ class ConvexHull:
         order = np.arange(count, dtype=np.int32)
         self.neighbors = np.stack([np.roll(order, -1), np.roll(order, 1)], axis=1)
         start, end = self.points[self.simplices[:, 0]], self.points[self.simplices[:, 1]]
-        along = end - start
-        lengths = np.hypot(along[:, 0], along[:, 1])
-        normals = np.stack([along[:, 1], -along[:, 0]], axis=1) / lengths[:, None]
-        self.equations = np.column_stack([normals, -(normals * start).sum(axis=1)])
-        self.area = float(lengths.sum())
-        a, b = start - self.points[self.vertices[0]], end - self.points[self.vertices[0]]
-        self.volume = float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2)
+        along, lengths = units(difference(end, start))
+        self._set_planes(np.stack([along[:, 1], -along[:, 0]], axis=1), start)
+        self.area = total(lengths)
+        first = self.points[self.vertices[:1]]
+        self.volume = total(cross(difference(start, first), difference(end, first)), 2)
 
     # --- in space ---
 
@@ -122,13 +122,18 @@ class ConvexHull:
         self.simplices = np.stack([corners[first], corners[first + step], corners[first + step + 1]], axis=1)
         self.neighbors = _neighbors(self.simplices)
         corner = self.points[self.simplices]
-        twice = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-        sums = np.stack([np.bincount(facet, twice[:, k]) for k in range(3)], axis=1)
-        sizes_of = np.linalg.norm(sums, axis=1)
-        normals = (sums / sizes_of[:, None])[facet]
-        self.equations = np.column_stack([normals, -(normals * corner[:, 0]).sum(axis=1)])
-        self.area = float(sizes_of.sum() / 2)
-        self.volume = float(((corner[:, 0] - self.points[self.vertices[0]]) * twice).sum() / 6)
+        twice = cross(difference(corner[:, 1], corner[:, 0]), difference(corner[:, 2], corner[:, 0]))
+        normals, twice_areas = units(run_sums(twice, np.cumsum(sizes) - sizes))
+        self._set_planes(normals[facet], corner[:, 0])
+        self.area = total(twice_areas, 2)
+        self.volume = total(product(difference(corner[:, 0], self.points[self.vertices[0]]), twice), 6)
+
+    # --- both ---
+
+    def _set_planes(self, normals: Floats, on: Floats) -> None:
+        """Sets the equations, from the normal of each plane and a point on it."""
+        near, exponent = aligned(split(on), 1)
+        self.equations = np.column_stack([normals, shifted(-(normals * near).sum(axis=1), exponent)])
 
     @property
     def polygons(self) -> list[list[int]]:
@@ -153,15 +158,15 @@ class ConvexHull:
     @cached_property
     def coplanar(self) -> Ints:
         """scipy lists points here only if Qhull is asked to: there are none."""
-        return np.empty((0, 3), np.int32)
+        return frozen(np.empty((0, 3), np.int32))
 
     @property
     def min_bound(self) -> Floats:
-        return self.points.min(axis=0)  # type: ignore[no-any-return]
+        return frozen(self.points.min(axis=0))
 
     @property
     def max_bound(self) -> Floats:
-        return self.points.max(axis=0)  # type: ignore[no-any-return]
+        return frozen(self.points.max(axis=0))
 
     def add_points(self, points: Any, restart: bool = False) -> None:
         """Adds points and builds the hull again, from all points."""
@@ -178,8 +183,14 @@ class ConvexHull:
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "progress": None}
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(freeze_all(state))
+
     def __getnewargs__(self) -> tuple[Any, ...]:
         return (self.points,)
+
+    def __repr__(self) -> str:
+        return f"<brio.ConvexHull of {self.npoints} points: {len(self.vertices)} vertices, {self.nsimplex} simplices>"
 
 
 def _neighbors(triangles: Ints) -> Ints:

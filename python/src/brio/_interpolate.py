@@ -78,6 +78,9 @@ class _Interpolator:
         ndarray, shape (...) and then that of a value
             `fill_value` outside of the hull.
         """
+        if self.tri.npoints != len(self.values):
+            raise ArgumentError(f"the triangulation has {self.tri.npoints} points, and there are values at {len(self.values)}: "
+                                "points were added to it")
         xi = coordinates(args, self.tri.ndim)
         if xi.shape[-1] != self.tri.ndim:
             raise ArgumentError(f"number of dimensions in xi does not match x: {xi.shape[-1]} and {self.tri.ndim}")
@@ -113,6 +116,9 @@ class _Interpolator:
         if not np.isnan(self.fill_value):
             result[~inside] = self.fill_value
         return result
+
+    def __repr__(self) -> str:
+        return f"<brio.{type(self).__name__} of {len(self.values)} points: values of shape {self.values_shape}>"
 
 
 class LinearNDInterpolator(_Interpolator):

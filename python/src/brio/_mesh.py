@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, as_array, as_rows, frozen
+from ._arrays import Floats, as_array, as_count, as_rows, frozen
 from ._calls import Progress, reporting
 from ._points import nearest
-from ._properties import Properties, as_property, carry, for_means, from_means, scalars
+from ._properties import Properties, as_properties, carry, for_means, from_means, scalars
 from .errors import ArgumentError
 
 Indices = NDArray[np.uint32]
@@ -121,6 +121,7 @@ class Mesh:
     """
 
     _handle: Any
+    properties: Properties
 
     def __init__(self, vertices: Any, faces: Any = None, *, tetrahedra: Any = None, edges: Any = None,
                  properties: dict[str, Any] | None = None) -> None:
@@ -133,8 +134,7 @@ class Mesh:
                 raise ArgumentError(f"{name}: there is no vertex {indices.max()}; there are {len(rows)}",
                                     np.flatnonzero(indices.ravel() >= len(rows)))
         self._take(_native.mesh(rows, offsets, corners, tets, ends, {}, None))
-        for name, values in (properties or {}).items():
-            self.properties[name] = as_property(f"property {name}", values, len(rows))
+        self.properties = as_properties({} if properties is None else properties, len(rows))
 
     @classmethod
     def _of(cls, handle: Any) -> Any:
@@ -152,7 +152,11 @@ class Mesh:
         self.tetrahedra: Indices = np.asarray(views["tetrahedra"])
         self.edges: Indices = np.asarray(views["edges"])
         self._steps: Floats = np.stack([np.asarray(views["coordinate_step"]), np.asarray(views["coordinate_origin"])])
-        self.properties: dict[str, NDArray[Any]] = {k: np.asarray(v) for k, v in views["properties"].items()}
+        self.properties = {k: np.asarray(v) for k, v in views["properties"].items()}
+
+    def _sound_properties(self) -> Properties:
+        """The properties, of which the caller may have put any into the dict."""
+        return as_properties(self.properties, len(self.vertices))
 
     @property
     def polygons(self) -> list[list[int]]:
@@ -163,7 +167,7 @@ class Mesh:
     @cached_property
     def faces(self) -> Indices:
         if len(self.face_offsets) == 1:
-            return np.empty((0, 3), np.uint32)
+            return frozen(np.empty((0, 3), np.uint32))
         sizes = np.diff(self.face_offsets).astype(np.int64)
         if (sizes == 3).all():
             return self.face_vertices.reshape(-1, 3)
@@ -209,8 +213,7 @@ class Mesh:
         >>> len(surface.simplify(500).faces)
         500
         """
-        if faces < 0:
-            raise ArgumentError(f"faces: {faces} is below 0")
+        faces = as_count(faces, "faces", most=2**63 - 1)
         with reporting(progress) as report:
             return self._changed(lambda numbered: _native.mesh_simplified(numbered, faces, tolerance, report))
 
@@ -244,7 +247,7 @@ class Mesh:
             raise ArgumentError(f"which: indices from 0 to {count - 1} are wanted, each at most once")
         place = np.full(count, -1, np.int64)
         place[chosen] = np.arange(len(chosen))
-        properties = {name: values[chosen] for name, values in self.properties.items()}
+        properties = {name: values[chosen] for name, values in self._sound_properties().items()}
         sizes = np.diff(self.face_offsets).astype(np.int64)
         corners = place[self.face_vertices]
         lost = np.bincount(np.repeat(np.arange(len(sizes)), sizes)[corners < 0], minlength=len(sizes)) > 0
@@ -285,7 +288,7 @@ class Mesh:
         >>> mesh.properties["colour"].tolist()
         [[0, 0, 255], [255, 0, 0], [0, 0, 255]]
         """
-        count = len(source.vertices)
+        count = len(as_mesh(source, "source").vertices)
         if samples is None:
             rows = nearest(source.vertices, self.vertices, threads, progress)
         else:
@@ -295,7 +298,7 @@ class Mesh:
                                     f"not {rows.dtype} of shape {rows.shape}")
             if rows.size and (rows.min() < 0 or rows.max() >= count):
                 raise ArgumentError(f"samples: indices from 0 to {count - 1} are wanted")
-        carry(source.properties, rows, self.properties)
+        carry(source._sound_properties(), rows, self.properties)
 
     def keep_components(self, *, largest: bool = False, least_faces: int = 0) -> "Mesh":
         """Drops components, sets of faces joined across edges, and the vertices that they alone use.
@@ -318,8 +321,7 @@ class Mesh:
         >>> two.keep_components(largest=True).vertices.tolist()
         [[5.0, 0.0, 0.0], [7.0, 0.0, 0.0], [5.0, 2.0, 0.0]]
         """
-        if least_faces < 0:
-            raise ArgumentError(f"least_faces: {least_faces} is below 0")
+        least_faces = as_count(least_faces, "least_faces", most=2**63 - 1)
         return self._changed(lambda numbered: _native.mesh_kept_components(numbered, largest, least_faces))
 
     def subdivide(self, levels: int = 1, *, progress: bool | Progress | None = None) -> "Mesh":
@@ -339,18 +341,20 @@ class Mesh:
         >>> len(brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).subdivide(2).faces)
         16
         """
-        handle = self._copy(for_means(self.properties, len(self.vertices)))
+        properties = self._sound_properties()
+        handle = self._copy(for_means(properties, len(self.vertices)))
         with reporting(progress) as report:
-            mesh: Mesh = Mesh._of(_native.mesh_subdivided(handle, levels, report))
-        mesh.properties = from_means(mesh.properties, self.properties)
+            mesh: Mesh = Mesh._of(_native.mesh_subdivided(handle, as_count(levels, "levels"), report))
+        mesh.properties = from_means(mesh.properties, properties)
         return mesh
 
     def _changed(self, change: Callable[[Any], Any]) -> "Mesh":
         """Returns what `change` makes of this mesh with its vertices numbered; properties follow the numbers."""
+        properties = self._sound_properties()
         numbers = {"number": np.arange(len(self.vertices), dtype=np.uint32)}
         mesh: Mesh = Mesh._of(change(self._copy(numbers)))
         rows = mesh.properties.pop("number")
-        carry(self.properties, rows, mesh.properties)
+        carry(properties, rows, mesh.properties)
         return mesh
 
     def self_intersections(self, *, threads: int = 0, progress: bool | Progress | None = None) -> int:
@@ -362,8 +366,10 @@ class Mesh:
     def distance(self, other: "Mesh", *, samples: int = 0, seed: int = 1, threads: int = 0,
                  progress: bool | Progress | None = None) -> Distance:
         """Compares two surfaces by random points on each (0: 100,000) and their exact distances from the other."""
+        there, count = as_mesh(other, "other")._handle, as_count(samples, "samples", most=2**63 - 1)
+        start = as_count(seed, "seed", most=2**64 - 1)
         with reporting(progress) as report:
-            return Distance(**_native.mesh_distance(self._handle, other._handle, samples, seed, threads, report))
+            return Distance(**_native.mesh_distance(self._handle, there, count, start, threads, report))
 
     def _copy(self, properties: Properties) -> Any:
         """Returns an object of the library with what this mesh has now."""
@@ -375,6 +381,9 @@ class Mesh:
     def write(self, path: str | os.PathLike[str], *, ascii: bool = False, float32: bool = False, compress: bool = False,
               comment: str | None = None, progress: bool | Progress | None = None) -> None:
         """Writes a file, in the format of its extension; see docs/formats.md for what each keeps.
+
+        Files take integers of at most 32 bits and doubles. Properties of other types are converted to these, or refused
+        with ArgumentError if that would change a value.
 
         Parameters
         ----------
@@ -388,7 +397,7 @@ class Mesh:
         comment : str, optional
             A line for the header.
         """
-        handle = self._copy(scalars(self.properties))
+        handle = self._copy(scalars(self._sound_properties()))
         with reporting(progress) as report:
             _native.write(os.fsencode(path), handle, (ascii, float32, compress, comment), 0, report)
 
@@ -400,7 +409,7 @@ class Mesh:
 
         if not len(self.faces):
             return trimesh.PointCloud(np.array(self.vertices))
-        attributes = {name: np.array(values) for name, values in self.properties.items()}
+        attributes = {name: np.array(values) for name, values in self._sound_properties().items()}
         return trimesh.Trimesh(np.array(self.vertices), self.faces.astype(np.int64), process=False,
                                vertex_attributes=attributes)
 
@@ -428,7 +437,7 @@ class Mesh:
             out = pyvista.PolyData(np.array(self.vertices), cells)
         else:
             out = pyvista.PolyData(np.array(self.vertices))
-        for name, values in self.properties.items():
+        for name, values in self._sound_properties().items():
             out.point_data[name] = np.array(values)
         return out
 
@@ -447,7 +456,7 @@ class Mesh:
                 cells.append((kind, rows.astype(np.int64)))
         if not cells:
             cells = [("vertex", np.arange(len(self.vertices)).reshape(-1, 1))]
-        data = {name: np.array(values) for name, values in self.properties.items()}
+        data = {name: np.array(values) for name, values in self._sound_properties().items()}
         return meshio.Mesh(np.array(self.vertices), cells, point_data=data)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -471,6 +480,12 @@ class Mesh:
         return f"<brio.{type(self).__name__}: {', '.join(parts)}>"
 
 
+def as_mesh(value: Any, name: str) -> Mesh:
+    if not isinstance(value, Mesh):
+        raise ArgumentError(f"{name}: a Mesh is wanted, not {type(value).__name__}")
+    return value
+
+
 def simplify(mesh: Mesh, faces: int = 0, *, tolerance: float = 0, progress: bool | Progress | None = None) -> Mesh:
     """Simplifies a surface of triangles: see Mesh.simplify."""
-    return mesh.simplify(faces, tolerance=tolerance, progress=progress)
+    return as_mesh(mesh, "mesh").simplify(faces, tolerance=tolerance, progress=progress)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import Floats, as_rows
+from ._arrays import Floats, as_count, as_rows
 from ._calls import Progress
 
 
@@ -85,11 +85,11 @@ def outliers(points: Any, neighbours: int = 12, *, factor: float = 3.0, threads:
     >>> np.flatnonzero(brio.outliers(points)).tolist()
     [7]
     """
-    rows = _rows(points)
+    rows, count = _rows(points), as_count(neighbours, "neighbours", 1, 63)
     out = np.zeros(len(rows), np.bool_)
 
     def call(p: Floats, w: None, t: int, report: Any) -> None:
-        _native.outliers(p, neighbours, factor, out, t, report)
+        _native.outliers(p, count, factor, out, t, report)
 
     _calls.of_points(call, rows, None, threads, progress)
     return out

@@ -1,5 +1,6 @@
 """Properties of vertices: arrays with one row a vertex."""
 
+from collections.abc import Mapping
 from math import prod
 from typing import Any
 
@@ -12,12 +13,21 @@ from .errors import ArgumentError
 Properties = dict[str, NDArray[Any]]
 
 
-def as_property(name: str, values: Any, count: int, of: str = "vertex") -> NDArray[Any]:
-    """Returns an array of one row a vertex, of any type."""
+def _rows(name: str, values: Any, count: int, of: str) -> NDArray[Any]:
     array = as_array(values, name)
     if array.ndim == 0 or len(array) != count:
-        raise ArgumentError(f"{name}: one row a {of} is wanted, {count}, not {array.shape}")
+        raise ArgumentError(f"{name}: one row a {of} is wanted, {count}, not an array of shape {array.shape}")
     return array
+
+
+def as_properties(properties: Any, count: int, what: str = "property", of: str = "vertex") -> Properties:
+    """Takes a dict of arrays of any type, each of one row a vertex."""
+    if not isinstance(properties, Mapping):
+        raise ArgumentError(f"{what}: a dict of arrays is wanted, not {type(properties).__name__}")
+    for name in properties:
+        if not isinstance(name, str):
+            raise ArgumentError(f"{what}: a name is a string, not {name!r}")
+    return {name: _rows(f"{what} {name}", values, count, of) for name, values in properties.items()}
 
 
 def carry(source: Properties, rows: NDArray[Any], to: Properties) -> None:
@@ -29,13 +39,16 @@ def carry(source: Properties, rows: NDArray[Any], to: Properties) -> None:
         to[free] = values[rows]
 
 
-def scalars(properties: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+def scalars(properties: Properties) -> Properties:
     """Properties as files take them: one number each, of a type of PLY. Rows of numbers become several properties."""
-    out: dict[str, NDArray[Any]] = {}
+    out: Properties = {}
     for name, values in properties.items():
         flat = values.reshape(len(values), prod(values.shape[1:]))
         for k in range(flat.shape[1]):
-            out[name if values.ndim == 1 else f"{name}_{k}"] = _scalar(flat[:, k], name)
+            single = name if values.ndim == 1 else f"{name}_{k}"
+            if single in out:
+                raise ArgumentError(f"properties: two of them would be {single} in a file")
+            out[single] = _scalar(flat[:, k], name)
     return out
 
 
@@ -66,13 +79,32 @@ def from_means(columns: Properties, like: Properties) -> Properties:
 
 
 def _scalar(column: NDArray[Any], name: str) -> NDArray[Any]:
+    """Returns one number a vertex, of a type that files have, with the same values."""
     if column.dtype.kind == "b":
         return np.ascontiguousarray(column, np.uint8)
-    if column.dtype.kind in "iu" and column.dtype.itemsize == 8:
-        small = np.int32 if not len(column) or (-(2**31) <= column.min() and column.max() < 2**31) else np.float64
-        return np.ascontiguousarray(column, small)
-    if column.dtype.kind == "f" and column.dtype.itemsize == 2:
-        return np.ascontiguousarray(column, np.float32)
     if column.dtype.kind not in "iuf":
         raise ArgumentError(f"property {name}: files take numbers, not {column.dtype}")
+    if column.dtype.kind == "f" and column.dtype.itemsize == 2:
+        return np.ascontiguousarray(column, np.float32)
+    if column.dtype.kind in "iu" and column.dtype.itemsize == 8:
+        return _without_loss(column, name, [np.int32, np.float64])
+    if column.dtype.itemsize > 8:
+        return _without_loss(column, name, [np.float64])
     return np.ascontiguousarray(column, column.dtype.newbyteorder("="))
+
+
+def _without_loss(column: NDArray[Any], name: str, kinds: list[Any]) -> NDArray[Any]:
+    """Returns the column in the first of these types that has all its values."""
+    with np.errstate(all="ignore"):
+        for kind in kinds:
+            smaller = column.astype(kind)
+            if _are_equal(smaller, column):
+                return smaller
+    raise ArgumentError(f"property {name}: files would round its {column.dtype}: they take integers of 32 bits, and doubles")
+
+
+def _are_equal(smaller: NDArray[Any], column: NDArray[Any]) -> bool:
+    """Whether converted numbers are what they were."""
+    if column.dtype.kind == "f":
+        return bool(np.array_equal(smaller, column, equal_nan=True))
+    return bool(smaller.tolist() == column.tolist())  # numpy would round integers to compare them with doubles

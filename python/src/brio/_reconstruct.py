@@ -6,13 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import Floats, as_rows
+from ._arrays import Floats, as_rows, frozen
 from ._calls import Progress
 from ._mesh import Mesh
 from ._points import nearest
-from ._properties import as_property, carry
+from ._properties import Properties, as_properties, carry
 from .errors import ArgumentError
 
+_METHODS = ["labeled-delaunay", "power-crust", "cocone", "tight-cocone"]
 _NOISE = {"auto": 0, "keep": 1, "smooth": 2}
 _LABELING = {"global": 0, "greedy": 1, "naive": 2, "theoretical": 3}
 _EXTRACTION = {"labels": 0, "candidates": 1, "pruned": 2, "walk": 3}
@@ -57,11 +58,19 @@ def _run(function: Any, points: Floats, options: dict[str, Any], number: float, 
     return surface
 
 
-def _split(points: Any) -> tuple[Floats, dict[str, Any]]:
+def _split(points: Any) -> tuple[Floats, Properties]:
     """Positions, and the properties of a Mesh."""
     if isinstance(points, Mesh):
-        return points.vertices, points.properties
+        return points.vertices, points._sound_properties()
     return as_rows(points, "points"), {}
+
+
+def _method(method: Any) -> str:
+    """The name of a method, with hyphens."""
+    name = method.replace("_", "-") if isinstance(method, str) else method
+    if name not in _METHODS:
+        raise ArgumentError(f"method: one of {', '.join(_METHODS)}, not {method!r}")
+    return str(name)
 
 
 def reconstruct(points: Any, method: str = "labeled-delaunay", *, attributes: dict[str, Any] | None = None,
@@ -98,32 +107,30 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, attributes: di
     >>> surface.certificate.closed, surface.certificate.genus
     (True, 0)
     """
+    name = _method(method)
     rows, carried = _split(points)
-    name = method.replace("_", "-")
+    carried = {**carried, **as_properties({} if attributes is None else attributes, len(rows), "attribute", "point")}
     if name == "labeled-delaunay":
         samples = np.empty(len(rows), np.uint32)
         surface = _run(_native.labeled_delaunay, rows, options, 0.0, samples, threads, progress)
-        surface.samples = samples[: len(surface.vertices)].astype(np.int64)
+        surface.samples = frozen(samples[: len(surface.vertices)].astype(np.int64))
     elif name == "power-crust":
         surface = _run(_native.power_crust, rows, options, 0.0, None, threads, progress)
-    elif name in ("cocone", "tight-cocone"):
+    else:
         tight = {"tight": 1} if name == "tight-cocone" else {}
         surface = _run(_native.cocone, rows, {**options, **tight}, 0.0, None, threads, progress)
-        surface.samples = np.arange(len(rows))
-    else:
-        raise ArgumentError(f"method: labeled-delaunay, power-crust, cocone or tight-cocone, not {method!r}")
-    _carry(surface, {**carried, **(attributes or {})}, threads)
+        surface.samples = frozen(np.arange(len(rows)))
+    _carry(surface, carried, threads)
     return surface
 
 
-def _carry(surface: Surface, attributes: dict[str, Any], threads: int) -> None:
+def _carry(surface: Surface, attributes: Properties, threads: int) -> None:
     """Gives the vertices the attributes of their samples."""
     if not attributes:
         return
-    arrays = {k: as_property(f"attribute {k}", v, len(surface.points), "point") for k, v in attributes.items()}
     samples = surface.samples
     rows = nearest(surface.points, surface.vertices, threads, None) if samples is None else samples
-    carry(arrays, rows, surface.properties)
+    carry(attributes, rows, surface.properties)
 
 
 def oriented_normals(points: Any, method: str = "labeled-delaunay", *, threads: int = 0,
@@ -151,7 +158,7 @@ def oriented_normals(points: Any, method: str = "labeled-delaunay", *, threads: 
     """
     rows, _ = _split(points)
     normals = np.empty((len(rows), 3))
-    if method.replace("_", "-") == "power-crust":
+    if _method(method) == "power-crust":
         _run(_native.power_crust, rows, options, 0.0, normals, threads, progress)
         return normals
     surface = reconstruct(rows, method, threads=threads, progress=progress, **options)

@@ -11,13 +11,17 @@ from .errors import ArgumentError, NotOfferedError
 _HARMLESS = {"Qbb", "Qc", "Qz", "Q12", "Qt", "Qx", "Qs", "Pp"}
 
 
+def qhull_words(options: str | bytes | None) -> list[str]:
+    """Returns the options of Qhull one by one."""
+    text = options.decode(errors="replace") if isinstance(options, bytes) else str(options or "")
+    return text.split()
+
+
 def why_not(points: Any, furthest_site: bool, qhull_options: str | bytes | None) -> str | None:
     """Returns a sentence that says what is not offered, or None."""
-    if qhull_options is not None:
-        text = qhull_options.decode() if isinstance(qhull_options, bytes) else str(qhull_options)
-        other = [option for option in text.split() if option not in _HARMLESS]
-        if other:
-            return f"Qhull's option {other[0]} is not offered: brio does not use Qhull"
+    other = [option for option in qhull_words(qhull_options) if option not in _HARMLESS]
+    if other:
+        return f"Qhull's option {other[0]} is not offered: brio does not use Qhull"
     if furthest_site:
         return "the triangulation of farthest sites is not offered"
     shape = np.shape(points) if isinstance(points, np.ndarray) else as_floats(points, "points").shape

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import Floats, as_floats, as_rows, as_weights
+from ._arrays import Floats, as_floats, as_rows, as_weights, freeze_all, frozen
 from ._calls import Progress
 from ._delaunay import Delaunay
-from ._scipy import other_class
+from ._scaled import cross, difference, run_sums, shifted
+from ._scipy import other_class, qhull_words
 from .errors import ArgumentError, NoAnswerError
 
 Ints = NDArray[np.int64]
@@ -81,10 +82,10 @@ class Voronoi:
 
     def __init__(self, points: Any, weights: Any = None, *, box: Any = None, threads: int = 0,
                  progress: bool | Progress | None = None, furthest_site: bool = False, incremental: bool = False,
-                 qhull_options: str | None = None, fallback: str | None = None) -> None:
+                 qhull_options: str | bytes | None = None, fallback: str | None = None) -> None:
         rows = as_rows(points, "points", (2, 3))
         self.threads, self.progress, self.furthest_site, self._closed = threads, progress, False, False
-        self._empty = 0 if qhull_options is not None and "Qz" not in str(qhull_options).split() else 1
+        self._empty = 1 if qhull_options is None or "Qz" in qhull_words(qhull_options) else 0
         self.box: Floats | None = None
         if box is not None:
             self.box = as_floats(box, "box").ravel()
@@ -95,6 +96,7 @@ class Voronoi:
     def _build(self, points: Floats, weights: Floats | None) -> None:
         self.points, self.weights = points, weights
         (self._build_plane if points.shape[1] == 2 else self._build_space)(points, weights)
+        freeze_all(self.__dict__)
 
     # --- in the plane: the dual of the triangulation ---
 
@@ -162,6 +164,7 @@ class Voronoi:
 
     def _set_regions(self, representatives: NDArray[Any], sites: Ints, counts: Ints, items: Ints) -> None:
         """Region 0 is empty; then come those of the sites."""
+        self._sites = sites
         region = np.full(len(self.points), -1, np.int64)
         region[sites] = np.arange(self._empty, self._empty + len(sites))
         self.point_region = region[representatives]
@@ -186,11 +189,9 @@ class Voronoi:
         out = np.zeros(len(self.points))
         if self.ndim == 3:
             out[self.cells["site"]] = self.cells["volume"]
-            return out
-        areas = _areas(self.vertices, self.region_offsets, self.region_items)
-        sites = np.unique(self.point_region, return_index=True)[1]
-        out[sites] = areas[self.point_region[sites]]
-        return out
+            return frozen(out)
+        out[self._sites] = _areas(self.vertices, self.region_offsets, self.region_items)[self._empty :]
+        return frozen(out)
 
     @property
     def ndim(self) -> int:
@@ -202,11 +203,11 @@ class Voronoi:
 
     @property
     def min_bound(self) -> Floats:
-        return self.points.min(axis=0)  # type: ignore[no-any-return]
+        return frozen(self.points.min(axis=0))
 
     @property
     def max_bound(self) -> Floats:
-        return self.points.max(axis=0)  # type: ignore[no-any-return]
+        return frozen(self.points.max(axis=0))
 
     def add_points(self, points: Any, restart: bool = False, weights: Any = None) -> None:
         """Adds points and builds the diagram again, from all points."""
@@ -230,18 +231,29 @@ class Voronoi:
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "progress": None}
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(freeze_all(state))
+
     def __getnewargs__(self) -> tuple[Any, ...]:
         return (self.points,)
 
+    def __repr__(self) -> str:
+        return f"<brio.Voronoi of {self.npoints} points: {len(self.vertices)} vertices, {len(self.ridge_points)} ridges>"
+
 
 def _areas(vertices: Floats, offsets: Ints, items: Ints) -> Floats:
-    """Areas of polygons; infinite for those with -1."""
-    region = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
-    following = np.arange(1, len(items) + 1)
-    ends = offsets[1:][np.diff(offsets) > 0] - 1
-    following[ends] = offsets[:-1][np.diff(offsets) > 0]
-    origin = vertices[items[offsets[:-1][region]]]
-    a, b = vertices[items] - origin, vertices[items[following]] - origin
-    areas: Floats = np.bincount(region, (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2, minlength=len(offsets) - 1).astype(np.float64)
-    areas[region[items < 0]] = np.inf
+    """Areas of polygons; infinite for those with -1, or with a vertex that is no double."""
+    sizes = np.diff(offsets)
+    region = np.repeat(np.arange(len(sizes)), sizes)
+    beyond = (items < 0) | ~np.isfinite(vertices[items]).all(axis=1)
+    is_open = np.bincount(region, beyond, minlength=len(sizes)) > 0
+    is_closed = ~is_open & (sizes > 0)
+    corners, sizes = vertices[items[is_closed[region]]], sizes[is_closed]
+    starts = np.cumsum(sizes) - sizes
+    following = np.arange(1, len(corners) + 1)
+    following[starts + sizes - 1] = starts
+    origin = corners[np.repeat(starts, sizes)]
+    twice, exponent = run_sums(cross(difference(corners, origin), difference(corners[following], origin)), starts)
+    areas = np.where(is_open, np.inf, 0.0)
+    areas[is_closed] = shifted(twice / 2, exponent)
     return areas
