@@ -3,6 +3,18 @@
 #include "base/team.h"
 #include <math.h>
 
+double brio_greatest(const double *x, size_t n) {
+    double most = 0;
+    for (size_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+    return most;
+}
+
+int brio_exponent(double x) {
+    int exponent = 0;
+    if (isfinite(x)) frexp(x, &exponent);
+    return exponent;
+}
+
 /* Chosen. */
 enum { NUMBERS_A_THREAD = 1 << 14 };
 

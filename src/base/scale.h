@@ -13,6 +13,12 @@ static inline double brio_power_of_two(int exponent) {
     return x;
 }
 
+/** Returns the greatest magnitude of numbers, 0 if there are none. */
+double brio_greatest(const double *x, size_t n);
+
+/** Returns the exponent of the least power of two above x: x * 2^-exponent is below 1. 0 for 0 and for what is not finite. */
+int brio_exponent(double x);
+
 /** Sets out[i] to x[i] * 2^exponent for i < n, and -0 to 0. Uses all threads. `out` may be x. */
 void brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out);
 

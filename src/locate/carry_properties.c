@@ -31,12 +31,6 @@ typedef struct {
     uint32_t *nearest; /* #V: indices of points */
 } nearest_search;
 
-static double greatest(const double *coordinates, size_t count) {
-    double most = 0;
-    for (size_t i = 0; i < 3 * count; i++) most = fmax(most, fabs(coordinates[i]));
-    return most;
-}
-
 /* Lists one index for each position, in canonical order; returns their number. */
 static size_t list_positions(uint32_t *order, const double *points, size_t count) {
     size_t distinct = 0;
@@ -94,8 +88,8 @@ static brio_status find_nearest(brio_context *ctx, const brio_mesh *points, cons
                  "no points, whose properties %zu vertices could take", mesh->num_vertices);
     BRIO_TRY(brio_refuse_points(ctx, points->vertices, points->num_vertices));
     BRIO_TRY(brio_refuse_points(ctx, mesh->vertices, mesh->num_vertices));
-    frexp(fmax(greatest(points->vertices, points->num_vertices), greatest(mesh->vertices, mesh->num_vertices)),
-          &s.exponent);
+    s.exponent = brio_exponent(fmax(brio_greatest(points->vertices, 3 * points->num_vertices),
+                                    brio_greatest(mesh->vertices, 3 * mesh->num_vertices)));
     BRIO_TRY(make_tree(&s, points));
     BRIO_TRY(search_all(&s, mesh));
 done:

@@ -500,10 +500,9 @@ static void measure_parts(void *user, size_t begin, size_t end, int thread) {
 /* The power of two that makes the box of the used vertices about as large as 1, so that no square overflows or underflows. */
 static int exponent_of(const double low[3], const double high[3]) {
     enum { MOST = 1000 };
-    int exponent = 0;
     double half = 0;
     for (int k = 0; k < 3; k++) half = fmax(half, 0.5 * high[k] - 0.5 * low[k]);
-    frexp(half, &exponent);
+    int exponent = brio_exponent(half);
     return exponent > MOST ? MOST : exponent < -MOST ? -MOST : exponent;
 }
 

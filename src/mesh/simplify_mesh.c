@@ -19,10 +19,7 @@ BRIO_OPTIONS_INIT(brio_mesh_simplify_options)
 
 /* Returns the exponent of the largest coordinate if that is out of range, or 0. */
 static int exponent_of(const brio_mesh *mesh) {
-    double most = 0;
-    int exponent;
-    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) most = fmax(most, fabs(mesh->vertices[i]));
-    frexp(most, &exponent);
+    int exponent = brio_exponent(brio_greatest(mesh->vertices, 3 * mesh->num_vertices));
     return abs(exponent) > HUGE_EXPONENT ? exponent : 0;
 }
 

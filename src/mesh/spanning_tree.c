@@ -6,6 +6,7 @@
  *
  * Based on: Kruskal. On the shortest spanning subtree of a graph and the traveling salesman problem. Proceedings of
  * the American Mathematical Society 1956. */
+#include "base/scale.h"
 #include "base/sort.h"
 #include "mesh/edge_rings.h"
 #include "mesh/spanning_subgraph.h"
@@ -121,13 +122,11 @@ done:
  * underflow. */
 static int scale_of(const brio_edges *edges, const double *points) {
     double longest = 0;
-    int exponent = 0;
     for (size_t e = 0; e < edges->count; e++) {
         const double *a = points + 3 * (size_t)edges->ends[2 * e], *b = points + 3 * (size_t)edges->ends[2 * e + 1];
         for (int k = 0; k < 3; k++) longest = fmax(longest, fabs(a[k] / 2 - b[k] / 2));
     }
-    frexp(longest, &exponent);
-    return -exponent;
+    return -brio_exponent(longest);
 }
 
 static double squared_length(const double *a, const double *b, int scale) {

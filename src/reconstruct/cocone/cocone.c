@@ -19,15 +19,6 @@ static const brio_cocone_options STANDARD = {
 
 BRIO_OPTIONS_INIT(brio_cocone_options)
 
-/* Returns the exponent of the least power of two above the magnitude of all coordinates. */
-static int exponent_of(const double *points, size_t num_points) {
-    double most = 0;
-    int exponent = 0;
-    for (size_t i = 0; i < 3 * num_points; i++) most = most < fabs(points[i]) ? fabs(points[i]) : most;
-    if (isfinite(most)) frexp(most, &exponent);
-    return exponent;
-}
-
 /* Replaces the ranks of samples by the caller's indices. */
 static brio_status name_samples(brio_context *ctx, const uint32_t *order, size_t n, brio_cocone_surface *s) {
     brio_status status = BRIO_OK;
@@ -136,7 +127,7 @@ brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_poin
     BRIO_TRY(BRIO_TAKE(ctx, brio_cocone_options, options, &o));
     BRIO_TRY(check_options(ctx, &o));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
-    const int exponent = exponent_of(points, num_points);
+    int exponent = brio_exponent(brio_greatest(points, 3 * num_points));
     BRIO_TRY(o.pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, &o, &surface)
                           : find_surface(ctx, points, num_points, exponent, &o, &surface));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));

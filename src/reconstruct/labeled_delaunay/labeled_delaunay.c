@@ -80,9 +80,7 @@ static void lap(reconstruction *r, double *seconds) {
 static brio_status take_samples(reconstruction *r, const double *points) {
     brio_status status = BRIO_OK;
     size_t n = r->num_points;
-    double most = 0;
-    for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
-    frexp(most, &r->exponent);
+    r->exponent = brio_exponent(brio_greatest(points, 3 * n));
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->points, 3 * n));
     BRIO_TRY(brio_canonical_points(r->ctx, points, n, &r->order));
     brio_copy_points(points, r->order, n, r->points);

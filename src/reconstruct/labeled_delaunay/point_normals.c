@@ -120,14 +120,13 @@ brio_status brio_point_normals(brio_context *ctx, const double *points, size_t n
                                const uint32_t *samples, double *normals) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    double *of_vertex = NULL, most = 0;
+    double *of_vertex = NULL;
     point_set s = {.ctx = ctx, .num_points = num_points, .normals = normals};
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
     BRIO_TRY(brio_vertex_normals(surface, &of_vertex));
     s.of_vertex = of_vertex;
     BRIO_TRY(list_known(&s, surface, samples));
-    for (size_t i = 0; i < 3 * num_points; i++) most = fmax(most, fabs(points[i]));
-    frexp(most, &s.exponent);
+    s.exponent = brio_exponent(brio_greatest(points, 3 * num_points));
     if (s.num_known < num_points) {
         BRIO_TRY(scale_to_one(&s, points, num_points, &s.points));
         BRIO_TRY(find_twins(&s));

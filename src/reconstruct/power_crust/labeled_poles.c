@@ -102,11 +102,9 @@ done:
 static brio_status prepare(brio_labeled_poles *l, const double *points, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     size_t n = l->num_samples;
-    double most = request->margin;
     BRIO_REQUIRE(l->ctx, n > 0, BRIO_ERR_NO_ANSWER, "no points, no surface");
     BRIO_TRY(brio_refuse_points(l->ctx, points, n)); /* before anything is read by their number */
-    for (size_t i = 0; i < 3 * n; i++) most = fmax(most, fabs(points[i]));
-    if (isfinite(most)) frexp(most, &l->exponent);
+    l->exponent = brio_exponent(fmax(request->margin, brio_greatest(points, 3 * n)));
     BRIO_TRY(take_samples(l, points));
     if (!request->representative) { /* nothing needs the caller's order any more */
         brio_release(l->ctx, l->order);
