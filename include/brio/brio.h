@@ -1002,8 +1002,8 @@ typedef struct brio_cells {
  *  end of the other; unbounded cells of points of dimension 2 or less list none.
  *  Accuracy: vertices are rounded to doubles, after an error of 2^-44 of their distance from their sites. Errors of
  *  vertices cancel in the sum of the volumes: in a region it is region_volume up to about 1e-13 relative, if all cells are
- *  there, and up to about 2^-50 times the distance from 0 to the region, divided by its side, where that is more. Compare
- *  volume_sum with region_volume to see.
+ *  there, and up to about 2^-50 times the distance from 0 or from the sites to the region, divided by its side, where that is
+ *  more. Compare volume_sum with region_volume to see; more than 1 % is BRIO_ERR_NO_ANSWER.
  *  Points of dimension 2 or less have cells too: prisms, slabs, or all of space, bounded in a region alone.
  *  t  the result of brio_delaunay for these points and weights, or NULL to compute it.
  *  points, weights, num_points, and limits as brio_delaunay.   options  NULL for the defaults.
@@ -1013,8 +1013,7 @@ typedef struct brio_cells {
  *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes take one pass over
  *  the facets, about as long as brio_delaunay.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat, unbounded, or too
- *  small or, 2^600 times, too large beside the points), and as
- *  brio_delaunay.
+ *  small or, 2^600 times, too large beside the points), BRIO_ERR_NO_ANSWER (see Accuracy), and as brio_delaunay.
  *  Based on: [Aurenhammer 1987], [Choi 2003] sections 2.1 and 2.2. */
 BRIO_API brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, const double *points,
                                         const double *weights, size_t num_points, const brio_cells_options *options,

@@ -349,6 +349,20 @@ done:
     return status;
 }
 
+/* Cells fill the region. Where it is much smaller than its distance from their sites, rounding loses more than the region is
+ * large. What doubles cannot hold is not compared. */
+static brio_status check_filled(brio_context *ctx, const brio_cells *cells) {
+    static const double MOST = 0.01; /* chosen: what is left of the accuracy of the cells is of no use */
+    brio_status status = BRIO_OK;
+    double filled = cells->volume_sum / cells->region_volume;
+    if (!cells->num_cells || !isnormal(cells->region_volume) || !isfinite(filled)) return BRIO_OK;
+    BRIO_REQUIRE(ctx, fabs(filled - 1) <= MOST, BRIO_ERR_NO_ANSWER,
+                 "the cells fill %.3g of the region: it is too small or too thin beside its distance from the points",
+                 filled);
+done:
+    return status;
+}
+
 /* --- the call --- */
 
 static void end_call(cell_call *c) {
@@ -379,6 +393,7 @@ static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *ou
     c->diagram.volumes_only = !job.areas && !job.centroids && !job.faces && !c->diagram.flat;
     BRIO_TRY(brio_diagram_fill(&c->diagram, &c->region));
     BRIO_TRY(compute(&job));
+    BRIO_TRY(check_filled(c->ctx, out));
     BRIO_TRY(brio_progress(c->ctx, "cells", 1));
 done:
     return status;

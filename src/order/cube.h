@@ -1,24 +1,26 @@
-/* The smallest cube around points, cut into a grid of cells. Coordinates are halved first, so that the side of the cube
- * cannot overflow. A coordinate that is not finite, or that was changed after the cube was found, falls in some cell. */
+/* The smallest cube around points, cut into a grid of cells. A coordinate that is not finite, or that was changed after the cube
+ * was found, falls in some cell. */
 #ifndef BRIO_ORDER_CUBE_H
 #define BRIO_ORDER_CUBE_H
 
 #include "base/context.h"
+#include "order/ruler.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
 typedef struct {
-    double low[3], high[3], scale, last;
+    double low[3], high[3];
+    brio_ruler ruler;
 } brio_cube;
 
 static inline void brio_cube_new(brio_cube *c, const double *p) {
-    for (int k = 0; k < 3; k++) c->low[k] = c->high[k] = p[k] * 0.5;
+    for (int k = 0; k < 3; k++) c->low[k] = c->high[k] = p[k];
 }
 
 static inline void brio_cube_add(brio_cube *c, const double *p) {
     for (int k = 0; k < 3; k++) {
-        double x = p[k] * 0.5;
+        double x = p[k];
         c->low[k] = x < c->low[k] ? x : c->low[k];
         c->high[k] = x > c->high[k] ? x : c->high[k];
     }
@@ -37,18 +39,12 @@ brio_cube brio_cube_of(brio_context *ctx, const double *points, const uint64_t *
 
 /** Divides each side of the cube into 2^bits cells. Returns false when the cube is a single point. */
 static inline bool brio_cube_divide(brio_cube *c, int bits) {
-    double side = fmax(c->high[0] - c->low[0], fmax(c->high[1] - c->low[1], c->high[2] - c->low[2]));
-    double cells = ldexp(1, bits);
-    c->last = cells - 1;
-    c->scale = side > 0 ? fmin(cells / side, 0x1p1000) : 0;
-    return side > 0;
+    return brio_ruler_lay(&c->ruler, c->low, c->high, 3, bits);
 }
 
 /** Returns coordinate k of the cell that holds a point of the cube; for any other point, that of some cell. */
 static inline uint32_t brio_cube_cell(const brio_cube *c, const double *p, int k) {
-    double x = (p[k] * 0.5 - c->low[k]) * c->scale;
-    x = x < c->last ? x : c->last;
-    return (uint32_t)(int64_t)(x > 0 ? x : 0);
+    return brio_ruler_cell(&c->ruler, p[k], c->low[k]);
 }
 
 #endif

@@ -6,7 +6,7 @@
  * table, here for two dimensions, where four orientations occur). */
 #include "order/plane_curve.h"
 #include "base/sort.h"
-#include <math.h>
+#include "order/ruler.h"
 
 enum { CURVE_BITS = 16, CELL_MOST = 8, GROUP = 4 };
 
@@ -51,9 +51,10 @@ static inline uint32_t key_of(const levels *l, uint32_t x, uint32_t y, int bits)
     return key;
 }
 
-/* The smallest square around points, cut into cells. Coordinates are halved first, so that the side cannot overflow. */
+/* The smallest square around points, cut into cells. */
 typedef struct {
-    double low[2], high[2], scale, last;
+    double low[2], high[2];
+    brio_ruler ruler;
 } square;
 
 typedef struct {
@@ -63,29 +64,24 @@ typedef struct {
     levels levels;
 } curve;
 
-static inline double half_of(const curve *c, uint64_t item, int k) {
-    return c->points->rows[c->points->stride * (uint32_t)item + (size_t)c->points->axis[k]] * 0.5;
+static inline double coordinate_of(const curve *c, uint64_t item, int k) {
+    return c->points->rows[c->points->stride * (uint32_t)item + (size_t)c->points->axis[k]];
 }
 
 /* Returns false when all points of the items have one place. */
 static bool find_square(const curve *c, const uint64_t *items, size_t n, int bits, square *s) {
-    for (int k = 0; k < 2; k++) s->low[k] = s->high[k] = half_of(c, items[0], k);
+    for (int k = 0; k < 2; k++) s->low[k] = s->high[k] = coordinate_of(c, items[0], k);
     for (size_t i = 1; i < n; i++)
         for (int k = 0; k < 2; k++) {
-            double x = half_of(c, items[i], k);
+            double x = coordinate_of(c, items[i], k);
             s->low[k] = x < s->low[k] ? x : s->low[k];
             s->high[k] = x > s->high[k] ? x : s->high[k];
         }
-    double side = fmax(s->high[0] - s->low[0], s->high[1] - s->low[1]), cells = ldexp(1, bits);
-    s->last = cells - 1;
-    s->scale = side > 0 ? fmin(cells / side, 0x1p1000) : 0;
-    return side > 0;
+    return brio_ruler_lay(&s->ruler, s->low, s->high, 2, bits);
 }
 
-static inline uint32_t cell_of(const square *s, double half, int k) {
-    double x = (half - s->low[k]) * s->scale;
-    x = x < s->last ? x : s->last;
-    return (uint32_t)(int64_t)(x > 0 ? x : 0);
+static inline uint32_t cell_of(const curve *c, const square *s, uint64_t item, int k) {
+    return brio_ruler_cell(&s->ruler, coordinate_of(c, item, k), s->low[k]);
 }
 
 /* Writes the keys of the items. Returns false when all their points have one place. */
@@ -93,7 +89,7 @@ static bool number_items(const curve *c, uint64_t *items, size_t n, int bits) {
     square s;
     if (!find_square(c, items, n, bits, &s)) return false;
     for (size_t i = 0; i < n; i++) {
-        uint32_t x = cell_of(&s, half_of(c, items[i], 0), 0), y = cell_of(&s, half_of(c, items[i], 1), 1);
+        uint32_t x = cell_of(c, &s, items[i], 0), y = cell_of(c, &s, items[i], 1);
         items[i] = (uint64_t)key_of(&c->levels, x, y, bits) << 32 | (uint32_t)items[i];
     }
     return true;

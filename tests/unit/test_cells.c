@@ -543,6 +543,28 @@ static void a_region_too_large_beside_the_points_is_refused(void) {
     brio_context_free(ctx);
 }
 
+/* Rounding lost more than the region was large: no cell had a volume, or all cells too much of it. */
+static void a_region_too_small_beside_its_sites_is_refused(void) {
+    enum { N = 200 };
+    double points[3 * N];
+    brio_context *ctx = new_context();
+    uniform_points(5, N, points);
+    for (size_t i = 0; i < 3 * N; i++) points[i] -= 0.5;
+    for (int exponent = 0; exponent < 100; exponent++) {
+        double s = ldexp(1, -exponent), box[6] = {-s, -s, -s, s, s, s};
+        brio_cells_options o = brio_cells_options_default();
+        brio_cells *cells = NULL;
+        o.box = box;
+        brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
+        EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && exponent > 40), "2^-%d: %s", exponent,
+               brio_message(ctx));
+        if (cells) EXPECT(near_to(cells->volume_sum, cells->region_volume, 0.01), "2^-%d", exponent);
+        EXPECT(!cells || exponent < 60, "2^-%d", exponent);
+        brio_cells_free(cells);
+    }
+    brio_context_free(ctx);
+}
+
 /* Centres beyond doubles made the volume and the areas NaN, in the other set minus infinity. */
 static void what_doubles_cannot_hold_is_infinite(void) {
     static const double points[2][36] = {
@@ -606,6 +628,27 @@ static void what_doubles_cannot_hold_is_infinite(void) {
     brio_context_free(ctx);
 }
 
+/* Small coordinates vanish when they are scaled with large ones. */
+static void normals_are_unit_vectors_between_points_of_any_sizes(void) {
+    static const double points[3][15] = {
+        {0, 0, 0, 1e-170, 0, 0, 0, 1e-170, 0, 0, 0, 1e-170, 1e170, 1e170, 1e170},
+        {0, 0, 0, 5e-324, 0, 0, 0, 5e-324, 0, 0, 0, 5e-324, 1, 1, 1},
+        {-1.7e308, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 0, 0, -1.7e308, 0, 0, 0, 1.7e308}};
+    brio_context *ctx = new_context();
+    for (size_t s = 0; s < 3; s++) {
+        brio_cells *cells = cells_of(ctx, points[s], NULL, 5, NULL, 0);
+        size_t faces = cells ? (size_t)cells->face_offsets[cells->num_cells] : 0;
+        EXPECT(faces > 0, "set %zu", s);
+        for (size_t f = 0; f < faces; f++) {
+            const double *n = cells->face_normals + 3 * f;
+            double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+            EXPECT(fabs(square - 1) < 1e-14, "set %zu, face %zu: %g %g %g", s, f, n[0], n[1], n[2]);
+        }
+        brio_cells_free(cells);
+    }
+    brio_context_free(ctx);
+}
+
 static void memory_may_run_out(void) {
     expect_clean_failures(compute_some);
 }
@@ -627,7 +670,9 @@ int main(void) {
     RUN(a_region_too_flat_for_doubles_is_refused);
     RUN(a_region_much_larger_or_smaller_than_the_points);
     RUN(a_region_too_large_beside_the_points_is_refused);
+    RUN(a_region_too_small_beside_its_sites_is_refused);
     RUN(what_doubles_cannot_hold_is_infinite);
+    RUN(normals_are_unit_vectors_between_points_of_any_sizes);
     RUN(memory_may_run_out);
     return harness_end();
 }

@@ -116,6 +116,23 @@ static void number_of_threads_does_not_matter(void) {
     brio_context_free(ctx);
 }
 
+/* Differences of 2^-1000 and less fell into few cells. */
+static void powers_of_two_do_not_change_the_order(void) {
+    static const int exponents[] = {-1074, -1030, -990, -500, 500, 1016};
+    brio_context *ctx = new_context();
+    for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
+        for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
+            brio_delaunay_options o = options_of(kind, 0);
+            integer_points(3, MOST, 100, points);
+            for (size_t i = 0; i < 3 * MOST; i++) points[i] -= 50;
+            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
+            for (size_t i = 0; i < 3 * MOST; i++) points[i] = ldexp(points[i], exponents[e]);
+            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
+            EXPECT(!memcmp(order, other, sizeof order), "order %d, 2^%d", kind, exponents[e]);
+        }
+    brio_context_free(ctx);
+}
+
 static void seed_decides_every_random_choice(void) {
     brio_context *ctx = new_context();
     uniform_points(1, MOST, points);
@@ -527,6 +544,7 @@ int main(void) {
     RUN(curve_visits_each_cell_once_in_unit_steps);
     RUN(every_order_is_a_permutation);
     RUN(number_of_threads_does_not_matter);
+    RUN(powers_of_two_do_not_change_the_order);
     RUN(seed_decides_every_random_choice);
     RUN(refused_memory_is_a_status);
     RUN(rounds_shrink_by_the_ratio);
