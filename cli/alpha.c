@@ -7,6 +7,7 @@
 #include "properties.h"
 #include "weights.h"
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,6 +45,18 @@ static brio_status read_alpha(run *r, const arguments *a, double *alpha) {
 static brio_filtration_format filtration_format(const char *path) {
     const char *dot = strrchr(path, '.');
     return dot && !strcmp(dot, ".sparse") ? BRIO_FILTRATION_RIPSER : BRIO_FILTRATION_GUDHI;
+}
+
+/* Warns of squared radii that became infinite, or too close to 0 for all bits. With weights values of 0 are usual. */
+static void warn_beyond_doubles(run *r, const brio_alpha_complex *c, bool weighted) {
+    size_t beyond = 0, total = 0;
+    for (int k = 1; k < 4; k++)
+        for (size_t i = 0; i < c->counts[k]; i++, total++) {
+            double value = c->values[k][i];
+            beyond += isinf(value) || (fabs(value) < DBL_MIN && !(weighted && value == 0));
+        }
+    if (beyond)
+        cli_warn(r, "%zu of %zu squared radii in the filtration are beyond doubles: scale the points", beyond, total);
 }
 
 static brio_status write_filtration(run *r, const char *path, const brio_alpha_complex *complex) {
@@ -126,6 +139,7 @@ static brio_status alpha(run *r) {
     TRY(cli_require_memory(r, cli_alpha_bytes(input, usual)));
     cli_lap(r, "read");
     TRY(triangulate(r, input, weights, &t, &complex));
+    if (a->filtration) warn_beyond_doubles(r, &complex, weights != NULL);
     if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));
     TRY(make_shape(r, input, &complex, value));
 done:

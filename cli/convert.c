@@ -105,6 +105,7 @@ static brio_status convert(run *r) {
     brio_read_options from = brio_read_options_default();
     brio_write_options to = brio_write_options_default();
     double moved = 0;
+    size_t merged = 0;
     brio_convert_stats stats = {.size = sizeof stats};
     facts lost = {0};
     brio_status status = BRIO_OK;
@@ -116,6 +117,7 @@ static brio_status convert(run *r) {
     o.from = &from, o.to = &to;
     o.lost = on_lost;
     o.lost_user = &lost;
+    TRY(cli_settle_conversion(r, r->operands[0], r->common.output, &o, &to, &merged));
     TRY(cli_check_interrupt(r));
     cli_interrupt_writing(strcmp(r->common.output, "-") != 0);
     status = brio_convert(r->ctx, r->operands[0], r->common.output, &o, &stats);
@@ -125,7 +127,7 @@ static brio_status convert(run *r) {
     cli_stage(r, "convert", stats.seconds - stats.select_seconds);
     report(r, &stats);
     report_lost(r, r->common.output, &lost);
-    cli_tell_moved(r, r->common.output, moved, 0);
+    cli_tell_moved(r, r->common.output, moved, merged);
 done:
     cli_facts_free(&lost);
     return status;

@@ -1,4 +1,5 @@
 /* brio voronoi: Voronoi cells of the points of a file or, with weights, power cells. */
+#include "box_error.h"
 #include "commands.h"
 #include "estimate.h"
 #include "files.h"
@@ -76,7 +77,7 @@ done:
     return status;
 }
 
-static void report(run *r, const brio_cells *cells, const brio_delaunay_stats *s, bool weighted, bool clipped) {
+static void report(run *r, const brio_cells *cells, const brio_delaunay_stats *s, bool weighted) {
     facts *f = &r->facts;
     size_t bounded = 0;
     for (size_t c = 0; c < cells->num_cells; c++) bounded += cells->bounded[c];
@@ -89,9 +90,17 @@ static void report(run *r, const brio_cells *cells, const brio_delaunay_stats *s
     cli_fact_count(f, "bounded", bounded);
     cli_fact_count(f, "faces", (size_t)cells->face_offsets[cells->num_cells]);
     cli_fact_real(f, "volume", cells->volume_sum);
-    if (!clipped) return;
-    cli_fact_real(f, "box_volume", cells->region_volume);
-    cli_fact_real(f, "box_error", fabs(cells->volume_sum / cells->region_volume - 1));
+}
+
+static brio_status report_box(run *r, const boxed_diagram *d, const brio_cells *cells) {
+    brio_status status = BRIO_OK;
+    double error;
+    if (!d->options->box) return BRIO_OK;
+    TRY(cli_box_error(r, d, cells, &error));
+    cli_fact_real(&r->facts, "box_volume", cells->region_volume);
+    cli_fact_real(&r->facts, "box_error", error);
+done:
+    return status;
 }
 
 static brio_status write_file(run *r, const char *path, const brio_cells *cells, brio_cells_format format) {
@@ -140,7 +149,8 @@ static brio_status voronoi(run *r) {
     TRY(cli_weights(r, &a->weights, mesh, &weights));
     if (cli_limits_memory(r)) TRY(require_memory(r, mesh, weights, o.vertices));
     TRY(compute(r, mesh, weights, &o, &t, &cells));
-    report(r, cells, brio_triangulation_stats(t), weighted, a->box != NULL);
+    report(r, cells, brio_triangulation_stats(t), weighted);
+    TRY(report_box(r, &(boxed_diagram){t, mesh, weights, &o}, cells));
     TRY(write_file(r, r->common.output, cells, format));
     TRY(write_file(r, a->faces, cells, BRIO_CELLS_FORMAT_FACES_CSV));
 done:

@@ -1,14 +1,16 @@
 /* The least alpha whose shape is one solid with all vertices.
  *
  * Adds the tetrahedra, or in the plane the triangles, by ascending value and joins them across facets in a union-find. Looks, where the value rises, at
- * the number of sets and of vertices met so far.
+ * the number of sets and of vertices met so far. Rounding keeps the order of values, but those beyond the normal doubles
+ * become equal. An alpha there is refused: its shape would change with the unit of the points.
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
+#include "alpha/alpha_complex.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/union_find.h"
-#include <brio/brio.h>
+#include <math.h>
 
 /* The cells are tetrahedra or triangles, as numbers: `corners` vertices and as many mates, handles 4 * cell + slot. */
 typedef struct {
@@ -74,6 +76,9 @@ brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex
         bool rises = i + 1 == n || g.value[order[i + 1]] > *alpha;
         if (rises && g.sets == 1 && g.vertices == complex->counts[0]) break;
     }
+    BRIO_REQUIRE(ctx, *alpha < INFINITY, BRIO_ERR_NO_ANSWER,
+                 "the squared radii of one solid are beyond doubles: scale the points down");
+    BRIO_TRY(brio_refuse_small_alpha(ctx, complex, *alpha));
 done:
     brio_release(ctx, order);
     brio_release(ctx, g.set);

@@ -1,4 +1,4 @@
-/* The order of the simplices of an alpha complex. */
+/* What the uses of an alpha complex share. */
 #ifndef BRIO_ALPHA_ALPHA_COMPLEX_H
 #define BRIO_ALPHA_ALPHA_COMPLEX_H
 
@@ -12,5 +12,10 @@ static inline int brio_simplex_of(const brio_alpha_complex *c, uint32_t number, 
     *row = at;
     return k;
 }
+
+/** Refuses an alpha closer to 0 than the least normal double: squared radii have few bits or none there, and those that
+ *  differ become equal. Accepts any alpha where a vertex has a value that is not so small: weights do that.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER. */
+brio_status brio_refuse_small_alpha(brio_context *ctx, const brio_alpha_complex *complex, double alpha);
 
 #endif

@@ -97,6 +97,7 @@ static brio_status make_surface(shape *s, const double *points) {
     count_all(s);
     BRIO_REQUIRE(s->ctx, s->stats.tetrahedra > 0, BRIO_ERR_NO_ANSWER,
                  "no tetrahedron has a value of at most alpha = %g", s->alpha);
+    BRIO_TRY(brio_refuse_small_alpha(s->ctx, s->complex, s->alpha));
     BRIO_TRY(list_faces(s));
     BRIO_TRY(place_vertices(s, points));
     BRIO_TRY(brio_mesh_split_sheets(s->ctx, s->mesh));

@@ -5,10 +5,13 @@
  *
  * Based on: Edelsbrunner. The union of balls and its dual shape. DCG 1995. */
 #include "alpha/simplex_values.h"
+#include "alpha/alpha_complex.h"
 #include "alpha/squared_radius.h"
 #include "base/finite.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "predicates/predicates.h"
+#include <float.h>
 #include <math.h>
 
 brio_status brio_records_take(brio_context *ctx, const double *points, int coordinates, const double *weights,
@@ -85,4 +88,13 @@ void brio_find_vertex_values(brio_alpha_complex *c, const brio_records *records,
         }
     for (size_t v = 0; v < c->counts[0]; v++)
         if (c->gabriel[0][v]) least[v] = fmin(least[v], 0 - records->of[c->simplices[0][v]][3]);
+}
+
+brio_status brio_refuse_small_alpha(brio_context *ctx, const brio_alpha_complex *c, double alpha) {
+    brio_status status = BRIO_OK;
+    if (fabs(alpha) >= DBL_MIN || brio_greatest(c->values[0], c->counts[0]) >= DBL_MIN) return BRIO_OK;
+    BRIO_REQUIRE(ctx, false, BRIO_ERR_NO_ANSWER,
+                 "squared radii of at most alpha = %g are beyond doubles: scale the points up", alpha);
+done:
+    return status;
 }

@@ -15,6 +15,20 @@ int brio_exponent(double x) {
     return exponent;
 }
 
+/* Points at the origin have no exponent. */
+int brio_usual_exponent(const double *points, size_t num_points) {
+    enum { MOST = 1000 }; /* derived: numbers below 2^MOST are finite */
+    int64_t sum = 0, counted = 0;
+    double most = 0;
+    for (size_t i = 0; i < num_points; i++) {
+        double coordinate = brio_greatest(points + 3 * i, 3);
+        if (coordinate > 0) sum += brio_exponent(coordinate), counted++;
+        most = fmax(most, coordinate);
+    }
+    int mean = counted ? (int)(sum / counted) : 0, least = brio_exponent(most) - MOST;
+    return mean < least ? least : mean;
+}
+
 /* Chosen. */
 enum { NUMBERS_A_THREAD = 1 << 14 };
 

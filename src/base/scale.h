@@ -13,11 +13,20 @@ static inline double brio_power_of_two(int exponent) {
     return x;
 }
 
+/** Returns 2^-exponent, or the closest power of two that is a normal number: it brings numbers of that exponent near 1. */
+static inline double brio_scale_to_one(int exponent) {
+    return brio_power_of_two(exponent > 1022 ? -1022 : exponent < -1022 ? 1022 : -exponent);
+}
+
 /** Returns the greatest magnitude of numbers, 0 if there are none. */
 double brio_greatest(const double *x, size_t n);
 
 /** Returns the exponent of the least power of two above x: x * 2^-exponent is below 1. 0 for 0 and for what is not finite. */
 int brio_exponent(double x);
+
+/** Returns an exponent so that usual points times 2^-exponent are near 1, and all points finite: the mean exponent of the
+ *  greatest coordinates, which a few points far out hardly change.   points  #P by 3. */
+int brio_usual_exponent(const double *points, size_t num_points);
 
 /** Sets out[i] to x[i] * 2^exponent for i < n, and -0 to 0. Uses all threads. `out` may be x. */
 void brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out);

@@ -1,6 +1,7 @@
 /* One cell: measures it, and records its faces. */
 #include "cells/cell_record.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/vector.h"
 #include <math.h>
 #include <string.h>
@@ -65,12 +66,16 @@ static brio_status add_corner(brio_cell_recorder *r, uint32_t corner) {
     return BRIO_OK;
 }
 
-/* Writes the unit vector from a site to its neighbour. */
+/* Writes the unit vector from a site to its neighbour. The caller's coordinates are subtracted: in scaled lengths, small
+ * coordinates beside large ones are 0. A difference that doubles cannot hold is one of halves. */
 static void unit_normal(const brio_diagram *d, uint32_t site, int64_t neighbour, double *n) {
-    double most = 0, length;
-    for (size_t k = 0; k < 3; k++) {
-        n[k] = d->at[3 * (size_t)neighbour + k] - d->at[3 * (size_t)site + k];
-        most = fmax(most, fabs(n[k]));
+    const double *from = d->points + 3 * (size_t)site, *to = d->points + 3 * (size_t)neighbour;
+    double most, length;
+    for (int k = 0; k < 3; k++) n[k] = to[k] - from[k];
+    most = brio_greatest(n, 3);
+    if (most == INFINITY) {
+        for (int k = 0; k < 3; k++) n[k] = to[k] / 2 - from[k] / 2;
+        most = brio_greatest(n, 3);
     }
     for (int k = 0; k < 3; k++) n[k] /= most;
     length = sqrt(brio_dot(n, n));

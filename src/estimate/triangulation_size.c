@@ -3,15 +3,25 @@
  * What the triangulation is like near a point depends on the points near it, and these are triangulated as they are. A
  * random sample of all points would not do: it keeps neither the noise of a scan, nor a lattice, nor what a weight hides.
  * On exact curved surfaces the number of tetrahedra a point grows with the size of the surroundings. There it is
- * extrapolated with the logarithm of the number of points; on curves, where it may grow as that number does, with a power. */
+ * extrapolated with the logarithm of the number of points; on curves, where it may grow as that number does, with a power.
+ *
+ * Points times a power of two have the same estimate. Distances are of points times the power of two that brings the
+ * greatest coordinate near 1: their squares would overflow or vanish. What is triangulated is times the power of two that
+ * brings its usual point near 1, where the filters of the predicates work, and weights are times the square of that. */
 #include "estimate/triangulation_size.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/scale.h"
 #include "base/vector.h"
 #include <math.h>
+#include <string.h>
 
 /* Chosen. MOST_TETRAHEDRA: a ball with more is made smaller. That is 32 a point of the largest. */
-enum { ALL = 2048, BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400, MOST_TETRAHEDRA = 1 << 17 };
+enum { BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400, MOST_TETRAHEDRA = 1 << 17 };
+/* Derived: a set that fits into one ball is triangulated once. Twelve balls that hold all of it would cost more. */
+enum { ALL = BALL_MOST };
+/* Derived: scaled weights are below 2^MOST_EXPONENT, so they are finite. */
+enum { MOST_EXPONENT = 1000 };
 
 static const double USUAL = 6.8; /* tetrahedra a point of uniform points */
 /* The share of the tetrahedra a point that a ball has more than the ball of half its radius. In space the border of the
@@ -26,8 +36,10 @@ typedef struct {
     brio_context *ctx;
     const double *points, *weights;
     size_t count;
+    double scale; /* distances are of points times this power of two */
 } cloud;
 
+/* The centre and the radius are scaled as distances are. */
 typedef struct {
     double centre[3], radius2;
     size_t count;
@@ -41,7 +53,18 @@ static size_t nth_choice(size_t i, size_t count, size_t points) {
     return at < points ? at : points - 1;
 }
 
-/* The squared diagonal of the bounding box. */
+static void scaled_point(const cloud *c, const double *p, double *scaled) {
+    for (int k = 0; k < 3; k++) scaled[k] = p[k] * c->scale;
+}
+
+/* The squared distance of point i from a place, both scaled. */
+static double squared_distance(const cloud *c, size_t i, const double *place) {
+    double p[3];
+    scaled_point(c, c->points + 3 * i, p);
+    return brio_square_distance(p, place);
+}
+
+/* The squared diagonal of the bounding box, scaled. */
 static double squared_diagonal(const cloud *c) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < c->count; i++)
@@ -49,13 +72,15 @@ static double squared_diagonal(const cloud *c) {
             double x = c->points[3 * i + (size_t)k];
             low[k] = fmin(low[k], x), high[k] = fmax(high[k], x);
         }
+    scaled_point(c, low, low);
+    scaled_point(c, high, high);
     return brio_square_distance(low, high);
 }
 
 static void gather_ball(const cloud *c, ball *b) {
     b->count = 0;
     for (size_t i = 0; i < c->count; i++)
-        if (brio_square_distance(c->points + 3 * i, b->centre) <= b->radius2) {
+        if (squared_distance(c, i, b->centre) <= b->radius2) {
             if (b->count < BALL_MOST) b->member[b->count] = (uint32_t)i;
             b->count++;
         }
@@ -64,7 +89,7 @@ static void gather_ball(const cloud *c, ball *b) {
 /* Finds a ball around a point with some hundreds or thousands of points; false when there is none. */
 static bool find_ball(const cloud *c, double diagonal2, size_t centre, ball *b) {
     enum { TRIES = 16 };
-    for (size_t k = 0; k < 3; k++) b->centre[k] = c->points[3 * centre + k];
+    scaled_point(c, c->points + 3 * centre, b->centre);
     b->radius2 = diagonal2 * BALL_AIM / (double)c->count;
     for (int i = 0; i < TRIES; i++) {
         gather_ball(c, b);
@@ -91,10 +116,24 @@ static void count_inner(const brio_triangulation *t, const uint8_t *inner, tally
     }
 }
 
-static brio_delaunay_options small_triangulation(void) {
+/* Returns the exponent of the power of two that a set is divided by: that of its usual point, or a greater one that leaves
+ * all weights finite. */
+static int exponent_of_set(const double *points, const double *weights, size_t count) {
+    int exponent = brio_usual_exponent(points, count);
+    if (!weights) return exponent;
+    int least = (brio_exponent(brio_greatest(weights, count)) - MOST_EXPONENT) / 2;
+    return exponent < least ? least : exponent;
+}
+
+/* Triangulates a small set, which it scales in place. BRIO_ERR_TOO_LARGE if there are too many tetrahedra. */
+static brio_status triangulate(brio_context *ctx, double *points, double *weights, size_t count,
+                               brio_triangulation **t) {
     brio_delaunay_options o = brio_delaunay_options_default();
+    int exponent = exponent_of_set(points, weights, count);
+    brio_scale(ctx, points, 3 * count, -exponent, points);
+    if (weights) brio_scale(ctx, weights, count, -2 * exponent, weights);
     o.max_tetrahedra = MOST_TETRAHEDRA;
-    return o;
+    return brio_delaunay(ctx, points, weights, count, &o, t);
 }
 
 /* Triangulates the points of a ball within radius2 of its centre and counts at the inner ones. BRIO_ERR_TOO_LARGE if there are
@@ -104,20 +143,18 @@ static brio_status count_ball(const cloud *c, const ball *b, double radius2, tal
     double *points = NULL, *weights = NULL;
     uint8_t *inner = NULL;
     brio_triangulation *t = NULL;
-    const brio_delaunay_options o = small_triangulation();
     size_t n = 0;
     BRIO_TRY(BRIO_ALLOC(c->ctx, points, 3 * b->count));
     BRIO_TRY(BRIO_ALLOC(c->ctx, weights, b->count));
     BRIO_TRY(BRIO_ALLOC(c->ctx, inner, b->count));
     for (size_t i = 0; i < b->count; i++) {
-        const double *p = c->points + 3 * (size_t)b->member[i];
-        double distance = brio_square_distance(p, b->centre);
+        double distance = squared_distance(c, b->member[i], b->centre);
         if (distance > radius2) continue;
-        for (size_t k = 0; k < 3; k++) points[3 * n + k] = p[k];
+        memcpy(points + 3 * n, c->points + 3 * (size_t)b->member[i], 3 * sizeof *points);
         weights[n] = c->weights ? c->weights[b->member[i]] : 0;
         inner[n++] = distance <= radius2 / 4;
     }
-    BRIO_TRY(brio_delaunay(c->ctx, points, c->weights ? weights : NULL, n, &o, &t));
+    BRIO_TRY(triangulate(c->ctx, points, c->weights ? weights : NULL, n, &t));
     const uint32_t *representative = brio_triangulation_representatives(t);
     sum->balls++, sum->all += (double)n;
     for (size_t i = 0; i < n; i++) {
@@ -153,14 +190,23 @@ done:
 }
 
 static brio_status size_of_all(const cloud *c, brio_triangulation_size *size) {
+    brio_status status = BRIO_OK;
     brio_triangulation *t = NULL;
-    const brio_delaunay_options o = small_triangulation();
-    brio_status status = brio_delaunay(c->ctx, c->points, c->weights, c->count, &o, &t);
-    if (status != BRIO_OK) return status;
+    double *points = NULL, *weights = NULL;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, points, 3 * c->count));
+    if (c->count) memcpy(points, c->points, 3 * c->count * sizeof *points);
+    if (c->weights) {
+        BRIO_TRY(BRIO_ALLOC(c->ctx, weights, c->count));
+        if (c->count) memcpy(weights, c->weights, c->count * sizeof *weights);
+    }
+    BRIO_TRY(triangulate(c->ctx, points, weights, c->count, &t));
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
     *size = (brio_triangulation_size){(double)(s->tetrahedra + s->hull_facets), (double)s->hidden};
+done:
     brio_triangulation_free(t);
-    return BRIO_OK;
+    brio_release(c->ctx, points);
+    brio_release(c->ctx, weights);
+    return status;
 }
 
 static void extrapolate(const cloud *c, const tally *far, const tally *near, brio_triangulation_size *size) {
@@ -181,7 +227,8 @@ static void extrapolate(const cloud *c, const tally *far, const tally *near, bri
 
 brio_status brio_estimate_size(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                brio_triangulation_size *size) {
-    cloud c = {ctx, points, weights, num_points};
+    const double scale = brio_scale_to_one(brio_exponent(brio_greatest(points, 3 * num_points)));
+    const cloud c = {ctx, points, weights, num_points, scale};
     tally far = {0}, near = {0};
     int threads = ctx->threads;
     const brio_bar bar = brio_progress_bar(ctx);

@@ -10,7 +10,7 @@ typedef struct {
 } brio_triangulation_size;
 
 /** Estimates the size of the Delaunay triangulation of finite points or, with weights, of the regular triangulation.
- *  Triangulates up to 2,048 points, or the surroundings of twelve points if there are more.
+ *  Triangulates up to 4,096 points, or the surroundings of twelve points if there are more tetrahedra or points.
  *  points  #P by 3.   weights  #P, or NULL.
  *  Cost: about 20,000 insertions and fifty passes over the points; one megabyte.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */

@@ -47,8 +47,7 @@ static brio_status make_tree(nearest_search *s, const brio_mesh *points) {
     size_t distinct = list_positions(s->index, points->vertices, points->num_vertices);
     BRIO_TRY(BRIO_ALLOC(s->ctx, rows, 3 * distinct));
     brio_copy_points(points->vertices, s->index, distinct, rows);
-    brio_scale(s->ctx, rows, 3 * distinct, -s->exponent, rows);
-    BRIO_TRY(brio_point_tree_new(s->ctx, rows, distinct, &s->tree));
+    BRIO_TRY(brio_point_tree_scaled(s->ctx, rows, distinct, -s->exponent, &s->tree));
 done:
     brio_release(s->ctx, rows);
     return status;

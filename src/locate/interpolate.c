@@ -1,6 +1,7 @@
 /* Interpolation of values at the vertices, at many places. */
 #include "base/float_state.h"
 #include "base/versioned.h"
+#include "base/weighted_mean.h"
 #include "locate/natural.h"
 
 typedef struct {
@@ -14,19 +15,17 @@ static const brio_interpolation STANDARD = {.size = sizeof STANDARD, .components
 
 BRIO_OPTIONS_INIT(brio_interpolation)
 
-/* Adds a share of the values at a vertex to a row. */
-static void add_share(const interpolation_job *job, uint32_t place, double share, double *row) {
-    size_t m = job->o->components;
-    const double *values = job->o->values + m * job->l->name[place];
-    for (size_t c = 0; c < m; c++) row[c] += share * values[c];
+/* Writes the mean of the values at some places to a row of the results. */
+static void write_mean(const interpolation_job *job, const uint32_t *place, const double *share, size_t count,
+                       double *row) {
+    const brio_weighted_mean m = {job->o->values, job->o->components, place, job->l->name, share, count};
+    brio_weighted_means(&m, row);
 }
 
-static void add_linear(const interpolation_job *job, const brio_holder *h, const double *x, double *row) {
-    const uint32_t *v = job->l->t.tet[h->tet].vertex;
+static void write_linear(const interpolation_job *job, const brio_holder *h, const double *x, double *row) {
     double share[4];
     brio_barycentric(job->l, h, x, share);
-    for (int i = 0; i < 4; i++)
-        if (share[i] != 0) add_share(job, v[i], share[i], row);
+    write_mean(job, job->l->t.tet[h->tet].vertex, share, 4, row);
 }
 
 /* Writes the values of a query to a row of the results. */
@@ -34,15 +33,17 @@ static brio_status find_values(const interpolation_job *job, brio_querent *q, co
                                double *row) {
     brio_natural *n = &job->natural[q->thread];
     bool natural = false;
-    for (size_t c = 0; c < job->o->components; c++) row[c] = h->tet == BRIO_INFINITE ? NAN : 0;
+    for (size_t c = 0; c < job->o->components && h->tet == BRIO_INFINITE; c++) row[c] = NAN;
     if (h->tet == BRIO_INFINITE) return BRIO_OK;
     if (job->o->method == BRIO_INTERPOLATION_NATURAL && __builtin_popcount(h->zeros) < 3 &&
         !brio_holder_on_hull(job->l, h)) {
         brio_status status = brio_natural_coordinates(n, q, h, x, &natural);
         if (status != BRIO_OK) return status;
     }
-    if (!natural) add_linear(job, h, x, row);
-    for (size_t v = 1; natural && v < n->num_vertices; v++) add_share(job, n->place[v], n->share[v], row);
+    if (natural)
+        write_mean(job, n->place + 1, n->share + 1, n->num_vertices - 1, row);
+    else
+        write_linear(job, h, x, row);
     return BRIO_OK;
 }
 

@@ -3,6 +3,7 @@
 #include "locate/locator.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/team.h"
 #include "query/nearest_points.h"
 #include "triangulation/records.h"
@@ -51,6 +52,7 @@ static brio_status sort_vertices(brio_locator *l, const brio_triangulation *t, c
     BRIO_TRY(BRIO_ALLOC(l->ctx, rows, 3 * l->num_vertices));
     BRIO_TRY(BRIO_ALLOC(l->ctx, vertex, l->num_vertices));
     list_vertices(t, record, rows, vertex);
+    l->scale = brio_scale_to_one(brio_usual_exponent(rows, l->num_vertices));
     BRIO_TRY(brio_point_tree_new(l->ctx, rows, l->num_vertices, &tree));
     BRIO_TRY(take_tree(l, &tree, vertex, record));
 done:

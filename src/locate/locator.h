@@ -25,6 +25,7 @@ struct brio_locator {
     double *most;           /* of each such place: the greatest weight in its range; NULL without weights */
     uint32_t *vertex_tet;   /* of each place; NULL without tetrahedra */
     double low[3], high[3]; /* the box of the vertices */
+    double scale;           /* a power of two that brings usual coordinates near 1, for rounded squares of distances */
     brio_filter filter;     /* for queries in that box: a thread works with its own copy */
     const brio_engine *engine;
 };

@@ -3,6 +3,8 @@
  * A search keeps the best vertices found so far in ascending order. Two vertices are compared by their rounded values
  * where the error bounds of these decide, else exactly (brio_power_compare), and by position where they are equal. The
  * far half of a range is left out only if every value there is greater than the last one kept, for all rounding errors.
+ * Rounded values are of coordinates times the locator's scale: else all would be infinite or 0 for vertices far from 1, and
+ * a search would compare all of them exactly.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  * 1977.
@@ -24,9 +26,11 @@ typedef struct {
 
 static inline brio_found evaluate(const search *s, size_t place) {
     const double *p = s->l->record[place];
-    double dx = s->x[0] - p[0], dy = s->x[1] - p[1], dz = s->x[2] - p[2], square = dx * dx + dy * dy + dz * dz;
+    double scale = s->l->scale, dx = (s->x[0] - p[0]) * scale, dy = (s->x[1] - p[1]) * scale;
+    double dz = (s->x[2] - p[2]) * scale, square = dx * dx + dy * dy + dz * dz;
     if (!s->power) return (brio_found){square, square, (uint32_t)place};
-    return (brio_found){square - p[3], square + fabs(p[3]), (uint32_t)place};
+    double weight = p[3] * scale * scale;
+    return (brio_found){square - weight, square + fabs(weight), (uint32_t)place};
 }
 
 static int compare_exactly(const search *s, uint32_t a, uint32_t b) {
@@ -56,7 +60,8 @@ static inline void offer(search *s, size_t place) {
     s->found[i] = now;
 }
 
-/* Returns whether every vertex beyond a plane at the distance `across` comes after the last one kept. */
+/* Returns whether every vertex beyond a plane at the distance `across` comes after the last one kept.
+ * across, most  scaled. */
 static inline bool is_beyond(const search *s, double across, double most) {
     if (s->size < s->wanted) return false;
     const brio_found *last = &s->found[s->size - 1];
@@ -72,7 +77,8 @@ static void look(search *s, size_t begin, size_t end) {
     }
     size_t middle = begin + (end - begin) / 2;
     int axis = l->axis[middle];
-    double across = s->x[axis] - l->record[middle][axis], most = s->power ? l->most[middle] : 0;
+    double across = (s->x[axis] - l->record[middle][axis]) * l->scale;
+    double most = s->power ? l->most[middle] * l->scale * l->scale : 0;
     if (across < 0)
         look(s, begin, middle);
     else

@@ -23,6 +23,7 @@
 #include "mesh/edge_rings.h"
 #include "base/union_find.h"
 #include "base/vector.h"
+#include "mesh/extent.h"
 #include <math.h>
 
 /* Faces, corners or vertices: a pass takes 1 to 25 ns an item. */
@@ -450,14 +451,9 @@ typedef struct {
 } measures;
 
 static void box_of_part(const brio_mesh *mesh, int part, measure *m) {
-    uint64_t corners = mesh->face_offsets[mesh->num_faces], end = brio_part(corners, part + 1, PARTS);
+    uint64_t corners = mesh->face_offsets[mesh->num_faces];
     for (int k = 0; k < 3; k++) m->low[k] = INFINITY, m->high[k] = -INFINITY;
-    for (uint64_t h = brio_part(corners, part, PARTS); h < end; h++)
-        for (int k = 0; k < 3; k++) {
-            double x = mesh->vertices[3 * (size_t)mesh->face_vertices[h] + (size_t)k];
-            if (x < m->low[k]) m->low[k] = x;
-            if (x > m->high[k]) m->high[k] = x;
-        }
+    brio_box_add_corners(mesh, brio_part(corners, part, PARTS), brio_part(corners, part + 1, PARTS), m->low, m->high);
 }
 
 static void scale_vertex(const measures *all, uint32_t vertex, double *x) {
@@ -497,15 +493,6 @@ static void measure_parts(void *user, size_t begin, size_t end, int thread) {
             measure_face(m, f, &m->part[i]);
 }
 
-/* The power of two that makes the box of the used vertices about as large as 1, so that no square overflows or underflows. */
-static int exponent_of(const double low[3], const double high[3]) {
-    enum { MOST = 1000 };
-    double half = 0;
-    for (int k = 0; k < 3; k++) half = fmax(half, 0.5 * high[k] - 0.5 * low[k]);
-    int exponent = brio_exponent(half);
-    return exponent > MOST ? MOST : exponent < -MOST ? -MOST : exponent;
-}
-
 /* Sums area and volume. Volumes are relative to the centre of the box of the used vertices, so that a surface far from
  * the origin loses no digits. */
 static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
@@ -518,7 +505,7 @@ static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certifi
         low[i % 3] = fmin(low[i % 3], m.part[i / 3].low[i % 3]);
         high[i % 3] = fmax(high[i % 3], m.part[i / 3].high[i % 3]);
     }
-    int exponent = exponent_of(low, high);
+    int exponent = brio_box_exponent(low, high); /* so that no square overflows or underflows */
     m.scale = brio_power_of_two(-exponent);
     for (int k = 0; k < 3; k++) m.centre[k] = (0.5 * low[k] + 0.5 * high[k]) * m.scale;
     brio_for_chunks(ctx, threads, PARTS, 1, measure_parts, &m);

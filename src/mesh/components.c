@@ -4,8 +4,8 @@
  * keep their order, and so do the vertices. */
 #include "base/float_state.h"
 #include "base/union_find.h"
-#include "base/vector.h"
 #include "mesh/edge_rings.h"
+#include "mesh/extent.h"
 #include <math.h>
 #include <string.h>
 
@@ -46,27 +46,27 @@ done:
     return status;
 }
 
-static double area_of(const brio_mesh *m, size_t face) {
+/* Returns the area of a face whose corners are multiplied by `scale`. */
+static double area_of(const brio_mesh *m, size_t face, double scale) {
     const double *o = m->vertices + 3 * (size_t)m->face_vertices[m->face_offsets[face]];
     double area = 0;
     for (uint64_t h = m->face_offsets[face] + 2; h < m->face_offsets[face + 1]; h++) {
-        double u[3], v[3], n[3];
-        for (int k = 0; k < 3; k++) {
-            u[k] = m->vertices[3 * (size_t)m->face_vertices[h - 1] + (size_t)k] - o[k];
-            v[k] = m->vertices[3 * (size_t)m->face_vertices[h] + (size_t)k] - o[k];
-        }
-        brio_cross(u, v, n);
-        area += 0.5 * sqrt(brio_dot(n, n));
+        double n[3];
+        brio_scaled_normal(o, m->vertices + 3 * (size_t)m->face_vertices[h - 1],
+                           m->vertices + 3 * (size_t)m->face_vertices[h], scale, n);
+        area += 0.5 * brio_length(n);
     }
     return area;
 }
 
+/* Measures the components of the surface scaled to about 1, so that areas neither overflow nor vanish. */
 static brio_status measure(sieve *s) {
     brio_status status = BRIO_ALLOC_ZERO(s->ctx, s->of, s->mesh->num_faces);
     if (status != BRIO_OK) return status;
+    double scale = brio_surface_scale(s->mesh);
     for (uint32_t f = 0; f < s->mesh->num_faces; f++) {
         component *c = &s->of[brio_find(s->parent, f)];
-        if (s->mesh->face_offsets[f + 1] > s->mesh->face_offsets[f]) c->area += area_of(s->mesh, f);
+        if (s->mesh->face_offsets[f + 1] > s->mesh->face_offsets[f]) c->area += area_of(s->mesh, f, scale);
         c->faces++;
     }
     return BRIO_OK;

@@ -5,17 +5,24 @@
  * order afterwards, so the figures do not depend on the number of threads. Both surfaces have the same number of
  * samples. So the mean, the root mean square and the 95th percentile (nearest rank) give both directions equal weight.
  *
+ * Nearest points need fourth powers of lengths, which would overflow or vanish for surfaces beyond 2^HUGE_EXPONENT or
+ * below 2^-HUGE_EXPONENT. Such surfaces are measured in a unit that is a power of two: the size of both together. The
+ * figures are those of any other size, to the last bit.
+ *
  * Based on: Cignoni, Rocchini, Scopigno. Metro: measuring error on simplified surfaces. Comput. Graph. Forum 1998. */
 #include "base/float_state.h"
 #include "base/versioned.h"
 #include "base/rng.h"
+#include "base/scale.h"
 #include "base/team.h"
-#include "base/vector.h"
 #include "mesh/closest_point.h"
 #include "mesh/edge_rings.h"
+#include "mesh/extent.h"
 #include <math.h>
+#include <stdlib.h>
 
 enum {
+    HUGE_EXPONENT = 100, /* see above */
     DEFAULT_SAMPLES = 100000,
     BATCH = 1 << 15,     /* samples between two reports of progress */
     SAMPLES_A_CHUNK = 64 /* samples that a thread takes at once; chosen */
@@ -23,11 +30,13 @@ enum {
 
 /* One of the two surfaces. */
 typedef struct {
+    double *scaled; /* the vertices, if the unit of the measurement is not that of the meshes; else NULL */
     brio_triangle_tree tree;
-    double *area_up_to; /* [t]: area of triangles 0 to t */
+    double scale;       /* makes the surface about as large as 1, so that no normal overflows or vanishes */
+    double *area_up_to; /* [t]: area of triangles 0 to t, times scale^2 */
 } surface;
 
-/* The results of the samples. */
+/* The results of the samples, in the unit of the measurement. */
 typedef struct {
     size_t samples;   /* on each surface */
     double *distance; /* 2 * samples: the samples on a, then the samples on b */
@@ -36,31 +45,52 @@ typedef struct {
 
 /* --- surfaces --- */
 
-/* Writes the normal, of length twice the area. */
-static void triangle_normal(const brio_triangle_tree *tree, size_t t, double *n) {
-    const double *a = tree->vertices + 3 * (size_t)tree->triangles[t][0];
-    const double *b = tree->vertices + 3 * (size_t)tree->triangles[t][1];
-    const double *c = tree->vertices + 3 * (size_t)tree->triangles[t][2];
-    double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    n[0] = u[1] * v[2] - u[2] * v[1];
-    n[1] = u[2] * v[0] - u[0] * v[2];
-    n[2] = u[0] * v[1] - u[1] * v[0];
+/* Returns the exponent of the size of both surfaces together, or 0 where that is an ordinary size. */
+static int exponent_of(const brio_mesh *a, const brio_mesh *b) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    if (a->num_faces) brio_box_add_corners(a, 0, a->face_offsets[a->num_faces], low, high);
+    if (b->num_faces) brio_box_add_corners(b, 0, b->face_offsets[b->num_faces], low, high);
+    int exponent = brio_box_exponent(low, high);
+    return abs(exponent) > HUGE_EXPONENT ? exponent : 0;
+}
+
+/* Writes the normal, of length twice the area, both scaled. */
+static void triangle_normal(const surface *s, size_t t, double *n) {
+    const double *vertices = s->tree.vertices;
+    const uint32_t *corner = s->tree.triangles[t];
+    brio_scaled_normal(vertices + 3 * (size_t)corner[0], vertices + 3 * (size_t)corner[1],
+                       vertices + 3 * (size_t)corner[2], s->scale, n);
 }
 
 static void surface_free(brio_context *ctx, surface *s) {
     brio_triangle_tree_free(ctx, &s->tree);
+    brio_release(ctx, s->scaled);
     brio_release(ctx, s->area_up_to);
 }
 
-static brio_status surface_new(brio_context *ctx, const brio_mesh *mesh, const char *name, surface *s) {
+/* Builds the tree of the surface, times 2^-exponent. */
+static brio_status build_tree(brio_context *ctx, const brio_mesh *mesh, int exponent, surface *s) {
+    brio_status status = BRIO_OK;
+    brio_mesh in_unit = *mesh;
+    if (exponent) {
+        BRIO_TRY(BRIO_ALLOC(ctx, s->scaled, 3 * mesh->num_vertices));
+        brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, s->scaled);
+        in_unit.vertices = s->scaled;
+    }
+    BRIO_TRY(brio_triangle_tree_new(ctx, &in_unit, &s->tree));
+    s->scale = brio_power_of_two(-brio_box_exponent(s->tree.boxes[0].low, s->tree.boxes[0].high));
+done:
+    return status;
+}
+
+static brio_status surface_new(brio_context *ctx, const brio_mesh *mesh, int exponent, const char *name, surface *s) {
     brio_status status = BRIO_OK;
     double sum = 0;
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_TRY(brio_triangle_tree_new(ctx, mesh, &s->tree));
+    BRIO_TRY(build_tree(ctx, mesh, exponent, s));
     BRIO_TRY(BRIO_ALLOC(ctx, s->area_up_to, s->tree.num_triangles));
     for (size_t t = 0; t < s->tree.num_triangles; t++) {
         double n[3];
-        triangle_normal(&s->tree, t, n);
+        triangle_normal(s, t, n);
         sum += 0.5 * brio_length(n);
         s->area_up_to[t] = sum;
     }
@@ -106,8 +136,8 @@ static void measure_sample(const surface *from, const surface *to, brio_rng rng,
     double p[3], q[3], m[3], n[3];
     size_t nearest, t = sample(from, rng, p);
     *distance = sqrt(brio_closest_point(&to->tree, p, q, &nearest));
-    triangle_normal(&from->tree, t, m);
-    triangle_normal(&to->tree, nearest, n);
+    triangle_normal(from, t, m);
+    triangle_normal(to, nearest, n);
     *cosine = normal_cosine(m, n);
 }
 
@@ -162,6 +192,7 @@ static double select_rank(double *x, ptrdiff_t count, ptrdiff_t rank) {
     return x[rank];
 }
 
+/* Writes the figures, in the unit of the measurement. */
 static void summarise(measurement *m, brio_distance *out) {
     size_t count = 2 * m->samples, normals = 0;
     double sum = 0, squares = 0, cosines = 0;
@@ -181,6 +212,24 @@ static void summarise(measurement *m, brio_distance *out) {
     out->p95 = select_rank(m->distance, (ptrdiff_t)count, (ptrdiff_t)rank);
 }
 
+static double diagonal_of(const brio_box *box) {
+    double diagonal[3] = {box->high[0] - box->low[0], box->high[1] - box->low[1], box->high[2] - box->low[2]};
+    return brio_length(diagonal);
+}
+
+/* Turns the figures into the unit of the meshes. */
+static brio_status scale_back(brio_context *ctx, int exponent, brio_distance *d) {
+    brio_status status = BRIO_OK;
+    double *const figures[] = {&d->mean, &d->rms, &d->p95, &d->hausdorff, &d->diagonal};
+    for (int i = 0; i < 5; i++) {
+        *figures[i] = ldexp(*figures[i], exponent);
+        BRIO_REQUIRE(ctx, isfinite(*figures[i]), BRIO_ERR_NO_ANSWER,
+                     "doubles cannot hold the distances: scale the meshes down");
+    }
+done:
+    return status;
+}
+
 brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples, uint64_t seed,
                                brio_distance *out) {
     BRIO_DOOR;
@@ -191,17 +240,19 @@ brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_distance, out));
     BRIO_GIVE(brio_distance, out, &found);
     BRIO_REQUIRE(ctx, m.samples <= SIZE_MAX / 4, BRIO_ERR_NO_MEMORY, "out of memory: %zu samples", m.samples);
-    BRIO_TRY(surface_new(ctx, a, "the first mesh", &surfaces[0]));
-    BRIO_TRY(surface_new(ctx, b, "the second mesh", &surfaces[1]));
+    BRIO_TRY(brio_mesh_check_faces(ctx, a));
+    BRIO_TRY(brio_mesh_check_faces(ctx, b));
+    int exponent = exponent_of(a, b);
+    BRIO_TRY(surface_new(ctx, a, exponent, "the first mesh", &surfaces[0]));
+    BRIO_TRY(surface_new(ctx, b, exponent, "the second mesh", &surfaces[1]));
     BRIO_TRY(BRIO_ALLOC(ctx, m.distance, 2 * m.samples));
     BRIO_TRY(BRIO_ALLOC(ctx, m.cosine, 2 * m.samples));
     BRIO_TRY(measure(ctx, (sampler){&surfaces[0], &surfaces[1], brio_mix(seed), 0, 0, &m}));
     BRIO_TRY(measure(ctx, (sampler){&surfaces[1], &surfaces[0], brio_mix(brio_mix(seed)), m.samples, 0, &m}));
     BRIO_TRY(brio_progress(ctx, "distance", 1));
     summarise(&m, &found);
-    const brio_box *box = &surfaces[1].tree.boxes[0];
-    double diagonal[3] = {box->high[0] - box->low[0], box->high[1] - box->low[1], box->high[2] - box->low[2]};
-    found.diagonal = brio_length(diagonal);
+    found.diagonal = diagonal_of(&surfaces[1].tree.boxes[0]);
+    BRIO_TRY(scale_back(ctx, exponent, &found));
     BRIO_GIVE(brio_distance, out, &found);
 done:
     surface_free(ctx, &surfaces[0]);

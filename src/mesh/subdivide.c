@@ -17,12 +17,17 @@
  * Differs from the paper of 1996: next to the boundary, a wing by parallelogram replaces the special cases. A vertex
  * of two neighbours, which the papers exclude, has midpoints. */
 #include "base/float_state.h"
+#include "base/scale.h"
 #include "base/team.h"
 #include "mesh/twins.h"
 #include <math.h>
 #include <string.h>
 
 enum { MOST_LEVELS = 15, HALF_EDGES_A_THREAD = 1 << 10 };
+
+/* Sums of coordinates below 2^MOST_EXPONENT stay finite: the fewer than 2^32 neighbours of a vertex add less than 2^36
+ * times the largest coordinate, and a level makes coordinates at most 4.5 times as large. */
+enum { MOST_EXPONENT = 950 };
 
 static const size_t MOST_VERTICES = UINT32_MAX - 16;
 static const size_t BATCH = (size_t)1 << 20; /* half-edges between two reports of progress */
@@ -247,6 +252,11 @@ done:
     return status;
 }
 
+/* Halves come last where the sum is finite: half of the least double is 0. */
+static double mean_of(double a, double b) {
+    return isfinite(a + b) ? (a + b) / 2 : a / 2 + b / 2;
+}
+
 /* Copies a property for the old vertices. A new vertex gets the mean of its edge's ends for floating-point types. For
  * integer types it gets the value of the first end, because labels have no mean. */
 static brio_status make_property(subdivider *s, const brio_property *property) {
@@ -260,7 +270,7 @@ static brio_status make_property(subdivider *s, const brio_property *property) {
         if (h > s->twin[h]) continue;
         uint32_t a = v[h], b = v[brio_next_corner(h)];
         char *target = data + s->edge_vertex[h] * size;
-        double mean = brio_property_value(property, a) / 2 + brio_property_value(property, b) / 2;
+        double mean = mean_of(brio_property_value(property, a), brio_property_value(property, b));
         if (property->type == BRIO_SCALAR_FLOAT64)
             memcpy(target, &mean, size);
         else if (property->type == BRIO_SCALAR_FLOAT32)
@@ -299,13 +309,10 @@ done:
 
 /* --- all levels --- */
 
-brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
-    BRIO_DOOR;
+static brio_status subdivide_levels(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
     brio_status status = BRIO_OK;
     brio_mesh *coarse = NULL, *fine = NULL;
     *out = NULL;
-    BRIO_REQUIRE(ctx, levels >= 1 && levels <= MOST_LEVELS, BRIO_ERR_ARGUMENT, "%d levels: expected 1 to %d", levels,
-                 MOST_LEVELS);
     BRIO_TRY(subdivide_once(ctx, mesh, &fine));
     for (int level = 1; level < levels; level++) {
         coarse = fine;
@@ -319,5 +326,40 @@ brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int le
 done:
     brio_mesh_free(coarse);
     brio_mesh_free(fine);
+    return status;
+}
+
+/* Subdivides a mesh whose sums of coordinates doubles cannot hold, times 2^-exponent. Factors of 2 do not change how a
+ * new vertex is rounded. Old vertices stay as they are, also those that are too small for the factor. */
+static brio_status subdivide_scaled(brio_context *ctx, const brio_mesh *mesh, int levels, int exponent,
+                                    brio_mesh **out) {
+    brio_status status = BRIO_OK;
+    brio_mesh scaled = *mesh, *fine = NULL;
+    size_t old = 3 * mesh->num_vertices;
+    scaled.vertices = NULL;
+    *out = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, scaled.vertices, old));
+    brio_scale(ctx, mesh->vertices, old, -exponent, scaled.vertices);
+    BRIO_TRY(subdivide_levels(ctx, &scaled, levels, &fine));
+    BRIO_TRY(brio_scale_vertices(ctx, fine->vertices, fine->num_vertices, exponent));
+    memcpy(fine->vertices, mesh->vertices, old * sizeof *fine->vertices);
+    *out = fine;
+    fine = NULL;
+done:
+    brio_release(ctx, scaled.vertices);
+    brio_mesh_free(fine);
+    return status;
+}
+
+brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    BRIO_REQUIRE(ctx, levels >= 1 && levels <= MOST_LEVELS, BRIO_ERR_ARGUMENT, "%d levels: expected 1 to %d", levels,
+                 MOST_LEVELS);
+    int exponent = brio_exponent(brio_greatest(mesh->vertices, 3 * mesh->num_vertices)) - MOST_EXPONENT;
+    BRIO_TRY(exponent > 0 ? subdivide_scaled(ctx, mesh, levels, exponent, out)
+                          : subdivide_levels(ctx, mesh, levels, out));
+done:
     return status;
 }

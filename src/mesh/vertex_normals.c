@@ -1,34 +1,35 @@
 /* Normals of vertices: the sum of the area vectors of the faces round each vertex. The area vector of a polygon does
  * not depend on how the polygon is cut into triangles. Faces that are nearly points or lines, whose directions are
  * noise, hardly count. Where the sum has no direction, because the faces have no area, the vertices at the same position
- * that edges of length 0 join to the vertex count as one vertex. The normal is 0 where their sum has no direction. */
+ * that edges of length 0 join to the vertex count as one vertex. The normal is 0 where their sum has no direction.
+ *
+ * The surface is scaled to about 1 meanwhile, so that its area vectors neither overflow nor vanish. */
 #include "mesh/vertex_normals.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/union_find.h"
 #include "mesh/edge_rings.h"
+#include "mesh/extent.h"
 #include <math.h>
 #include <string.h>
 
 static const char *const NAMES[3] = {"nx", "ny", "nz"};
 
-/* Writes the normal of the face, of length twice its area. */
-static void area_vector(const brio_mesh *m, size_t face, double *n) {
+/* Writes the normal of the face, of length twice its area, both scaled. */
+static void area_vector(const brio_mesh *m, size_t face, double scale, double *n) {
     const double *o = m->vertices + 3 * (size_t)m->face_vertices[m->face_offsets[face]];
     n[0] = n[1] = n[2] = 0;
     for (uint64_t h = m->face_offsets[face] + 2; h < m->face_offsets[face + 1]; h++) {
-        const double *p = m->vertices + 3 * (size_t)m->face_vertices[h - 1];
-        const double *q = m->vertices + 3 * (size_t)m->face_vertices[h];
-        double u[3], v[3];
-        for (int k = 0; k < 3; k++) u[k] = p[k] - o[k], v[k] = q[k] - o[k];
-        n[0] += u[1] * v[2] - u[2] * v[1];
-        n[1] += u[2] * v[0] - u[0] * v[2];
-        n[2] += u[0] * v[1] - u[1] * v[0];
+        double of_triangle[3];
+        brio_scaled_normal(o, m->vertices + 3 * (size_t)m->face_vertices[h - 1],
+                           m->vertices + 3 * (size_t)m->face_vertices[h], scale, of_triangle);
+        for (int k = 0; k < 3; k++) n[k] += of_triangle[k];
     }
 }
 
 static void normalise(double *n) {
     double most = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
-    if (!(most > 0) || isinf(most)) {
+    if (!(most > 0) || !brio_all_finite(n, 3)) {
         n[0] = n[1] = n[2] = 0;
         return;
     }
@@ -79,10 +80,11 @@ brio_status brio_vertex_normals(const brio_mesh *mesh, double **normals) {
     *normals = NULL;
     BRIO_TRY(brio_mesh_check_faces(mesh->context, mesh));
     BRIO_TRY(BRIO_ALLOC_ZERO(mesh->context, sum, 3 * mesh->num_vertices));
+    double scale = brio_surface_scale(mesh);
     for (size_t f = 0; f < mesh->num_faces; f++) {
         double n[3];
         if (mesh->face_offsets[f + 1] == mesh->face_offsets[f]) continue;
-        area_vector(mesh, f, n);
+        area_vector(mesh, f, scale, n);
         for (uint64_t h = mesh->face_offsets[f]; h < mesh->face_offsets[f + 1]; h++)
             for (int k = 0; k < 3; k++) sum[3 * (size_t)mesh->face_vertices[h] + k] += n[k];
     }

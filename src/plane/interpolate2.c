@@ -2,6 +2,7 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
+#include "base/weighted_mean.h"
 #include "plane/plane_natural.h"
 #include <math.h>
 
@@ -12,17 +13,16 @@ typedef struct {
     brio_plane_natural *natural; /* of each thread */
 } interpolation_job;
 
-/* Adds a share of the values at a point to a row. */
-static void add_share(const brio_interpolation *o, uint32_t point, double share, double *row) {
-    const double *values = o->values + o->components * point;
-    for (size_t c = 0; c < o->components; c++) row[c] += share * values[c];
+/* Writes the mean of the values at some points to a row of the results. */
+static void write_mean(const brio_interpolation *o, const uint32_t *point, const double *share, size_t count,
+                       double *row) {
+    brio_weighted_means(&(brio_weighted_mean){o->values, o->components, point, NULL, share, count}, row);
 }
 
-static void add_linear(const interpolation_job *job, const brio_plane_holder *h, const double *x, double *row) {
+static void write_linear(const interpolation_job *job, const brio_plane_holder *h, const double *x, double *row) {
     double share[3];
     brio_plane_barycentric(job->l, h, x, share);
-    for (int i = 0; i < 3; i++)
-        if (share[i] != 0) add_share(job->o, job->l->triangle[h->triangle].vertex[i], share[i], row);
+    write_mean(job->o, job->l->triangle[h->triangle].vertex, share, 3, row);
 }
 
 static brio_status answer_values(void *user, brio_plane_querent *q, size_t index, const double *x) {
@@ -32,15 +32,17 @@ static brio_status answer_values(void *user, brio_plane_querent *q, size_t index
     brio_plane_holder h = brio_plane_find_holder(q, x);
     double *row = job->results + o->components * index;
     bool natural = false;
-    for (size_t c = 0; c < o->components; c++) row[c] = h.triangle == BRIO_INFINITE ? NAN : 0;
+    for (size_t c = 0; c < o->components && h.triangle == BRIO_INFINITE; c++) row[c] = NAN;
     if (h.triangle == BRIO_INFINITE) return BRIO_OK;
     if (o->method == BRIO_INTERPOLATION_NATURAL && __builtin_popcount(h.zeros) < 2 &&
         !brio_plane_holder_on_hull(job->l, &h)) {
         brio_status status = brio_plane_natural_coordinates(n, q, &h, x, &natural);
         if (status != BRIO_OK) return status;
     }
-    if (!natural) add_linear(job, &h, x, row);
-    for (size_t k = 0; natural && k < n->num_points; k++) add_share(o, n->point[k], n->share[k], row);
+    if (natural)
+        write_mean(o, n->point, n->share, n->num_points, row);
+    else
+        write_linear(job, &h, x, row);
     return BRIO_OK;
 }
 

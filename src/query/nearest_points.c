@@ -15,6 +15,7 @@
 #include "base/finite.h"
 #include "base/memory.h"
 #include "base/halving.h"
+#include "base/scale.h"
 #include "query/near_list.h"
 #include <string.h>
 
@@ -100,14 +101,21 @@ static void build(const void *user, size_t begin, size_t end, int depth) {
     build(t, middle + 1, end, depth + 1);
 }
 
-brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t count, brio_point_tree *out) {
+brio_status brio_point_tree_fits(brio_context *ctx, size_t count) {
+    if (count < UINT32_MAX) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_TOO_LARGE, "%zu points, the limit is 2^32 - 2", count);
+}
+
+brio_status brio_point_tree_scaled(brio_context *ctx, const double *points, size_t count, int exponent,
+                                   brio_point_tree *out) {
     brio_status status = BRIO_OK;
     *out = (brio_point_tree){.count = count};
-    BRIO_REQUIRE(ctx, count < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu points, the limit is 2^32 - 2", count);
+    BRIO_TRY(brio_point_tree_fits(ctx, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->point, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->index, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->axis, count));
     if (count) memcpy(out->point, points, count * sizeof *out->point);
+    if (exponent) brio_scale(ctx, *out->point, 3 * count, exponent, *out->point);
     BRIO_TRY(
         brio_refuse_not_finite(ctx, *out->point, NULL, count, NULL)); /* the copy: the points may change meanwhile */
     for (size_t i = 0; i < count; i++) out->index[i] = (uint32_t)i;
@@ -115,6 +123,10 @@ brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t 
                         .count = count, .gap = 1, .least = POINTS_A_PIECE, .cut = cut, .finish = build, .user = out});
 done:
     return status;
+}
+
+brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t count, brio_point_tree *out) {
+    return brio_point_tree_scaled(ctx, points, count, 0, out);
 }
 
 void brio_point_tree_free(brio_context *ctx, brio_point_tree *tree) {

@@ -16,9 +16,18 @@ typedef struct {
     uint8_t *axis;      /* axis along which a point cuts the range whose middle it is */
 } brio_point_tree;
 
+/** Refuses more points than a tree can have. Callers that read all points before they build a tree ask first.
+ *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE. */
+brio_status brio_point_tree_fits(brio_context *ctx, size_t count);
+
 /** Builds a tree of at most 2^32 - 2 points, which it copies. The caller frees the tree, also after a failure.
  *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t count, brio_point_tree *out);
+
+/** As brio_point_tree_new, of the points times 2^exponent. Squares of distances must be neither infinite nor 0, so points
+ *  far from 1 are scaled. */
+brio_status brio_point_tree_scaled(brio_context *ctx, const double *points, size_t count, int exponent,
+                                   brio_point_tree *out);
 void brio_point_tree_free(brio_context *ctx, brio_point_tree *tree);
 
 typedef struct {

@@ -5,22 +5,29 @@
  * and not with all points, so where a scan becomes sparse by and by nothing is dropped. In space far from the scan the
  * neighbours of an outlier are outliers, too. So a point is also an outlier if the logarithm of its spacing is DEVIATIONS
  * robust standard deviations above the median of these logarithms (the median absolute deviation times 1.4826).
- * A spacing up to factor^2 times the median is always allowed by this rule.
+ * A spacing up to factor^2 times the median is always allowed by this rule. Nothing here depends on the unit, so points
+ * far from 1 are taken times a power of two: the squares of their distances would be infinite or 0.
  *
  * Based on: Breunig Kriegel Ng Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
  * Differs from the paper: mean distances instead of reachability distances, a quartile instead of a mean, and the
  * second rule. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "base/versioned.h"
 #include "query/nearest_points.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* POINTS_A_THREAD, GROUP (points between two reports of progress): chosen. */
 enum { POINTS_A_THREAD = 1 << 8, CHUNK = 1 << 10, GROUP = 1 << 16 };
+
+/* Derived: where usual coordinates are between 2^-ORDINARY and 2^ORDINARY, squares of their distances are finite, and those
+ * of distances 2^-250 times as large are normal numbers. */
+enum { ORDINARY = 256 };
 
 /* Chosen on the sets of docs/algorithms.md, with the factor. */
 static const double DEVIATIONS = 8;
@@ -38,6 +45,12 @@ typedef struct {
     uint8_t *outlier;
     size_t first; /* of the points that are being done */
 } search;
+
+/* Returns the exponent of the power of two that the points are taken times; 0 for points that are not far from 1. */
+static int scale_of(const double *points, size_t num_points) {
+    int exponent = brio_usual_exponent(points, num_points);
+    return abs(exponent) <= ORDINARY ? 0 : -exponent;
+}
 
 /* Finds the nearest points of a point of the tree, without the point itself. */
 static size_t find_near(const search *s, size_t place, brio_near_point *near) {
@@ -149,7 +162,8 @@ brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_po
     s.factor = o.factor;
     brio_progress_part(ctx, bar, 0, 0.2);
     BRIO_TRY(brio_progress(ctx, "outliers", 0));
-    BRIO_TRY(brio_point_tree_new(ctx, points, num_points, &s.tree));
+    BRIO_TRY(brio_point_tree_fits(ctx, num_points));
+    BRIO_TRY(brio_point_tree_scaled(ctx, points, num_points, scale_of(points, num_points), &s.tree));
     BRIO_TRY(BRIO_ALLOC(ctx, s.spacing, num_points + 1));
     brio_progress_part(ctx, bar, 0.2, 0.6);
     BRIO_TRY(for_all(ctx, &s, find_spacings));

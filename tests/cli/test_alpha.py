@@ -1,5 +1,7 @@
 """brio alpha: alpha shapes and the alpha filtration."""
 
+import math
+
 from brio_cli import CERTIFICATE, CliTest, COMMON_FACTS, count, CUBE, main, number
 
 
@@ -45,6 +47,32 @@ class Alpha(CliTest):
         self.facts("alpha", points, "-A", "1", "--weights", weights, "--filtration", self.path("f.txt"))
         with open(self.path("f.txt")) as lines:
             self.assertEqual(lines.readline(), "0 0 -0.25\n")
+
+    def scaled(self, path, exponent):
+        """A copy of a file of points, times 2^exponent."""
+        with open(path) as lines:
+            rows = [[math.ldexp(float(x), exponent) for x in line.split()] for line in lines if line[0] != "#"]
+        return self.xyz(f"scaled{exponent}.xyz", rows)
+
+    def test_radii_beyond_doubles_are_refused(self):
+        points, out = self.cloud("a.xyz", 300, "sphere"), self.path("out.ply")
+        usual = self.facts("alpha", points, "--alpha", "auto", "-o", out)
+        for exponent in (-500, 505):
+            facts = self.facts("alpha", self.scaled(points, exponent), "--alpha", "auto", "-o", out)
+            self.assertEqual([facts[key] for key in ("vertices", "faces", "tetrahedra")],
+                             [usual[key] for key in ("vertices", "faces", "tetrahedra")])
+            self.assertEqual(facts["alpha"], math.ldexp(usual["alpha"], 2 * exponent))
+        for exponent in (-560, -530, 515):
+            run = self.expect(3, "alpha", self.scaled(points, exponent), "--alpha", "auto", "-o", out)
+            self.assertIn("beyond doubles: scale the points", run.err)
+        self.expect(3, "alpha", self.scaled(points, -560), "--alpha", "0", "-o", out)
+
+    def test_filtration_beyond_doubles_is_warned_of(self):
+        cube = [[math.ldexp(x, 520) for x in row] for row in CUBE]
+        run = self.expect(3, "alpha", self.xyz("a.xyz", cube), "-A", "1", "--filtration", self.path("f.txt"))
+        self.assertIn("squared radii in the filtration are beyond doubles", run.err)
+        run = self.expect(0, "alpha", self.xyz("b.xyz", CUBE), "-A", "1", "--filtration", self.path("g.txt"))
+        self.assertNotIn("beyond doubles", run.err)
 
     def test_wrong_usage_and_no_answer(self):
         points = self.xyz("a.xyz", CUBE)

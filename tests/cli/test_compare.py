@@ -28,10 +28,20 @@ class Compare(CliTest):
         self.assertRegex(self.expect(3, "compare", mesh, flat).err, r"f\.off: the faces of the second mesh have area 0")
 
     def test_sizes_near_the_ends_of_doubles(self):
-        for size in (1e-90, 1e-80, 1e80):
+        """Squares of areas vanish or overflow: the figures were 6 % of the diagonal, or none."""
+        for size in (1e-300, 1e-170, 1e-90, 1e-80, 1, 1e78, 1e80, 1e150, 1e300):
             mesh = self.off("m.off", [(size * x, size * y, size * z) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
-            self.assertAlmostEqual(self.facts("check", mesh)["certificate"]["area"] / size**2, 4 * 3**0.5, places=12)
-            self.facts("compare", mesh, mesh, "--samples", "100")
+            if 1e-100 < size < 1e100:
+                area = self.facts("check", mesh)["certificate"]["area"]
+                self.assertAlmostEqual(area / size**2, 4 * 3**0.5, places=12)
+            facts = self.facts("compare", mesh, mesh, "--samples", "100")
+            self.assertAlmostEqual(facts["normal_consistency"], 1)
+            self.assertAlmostEqual(facts["diagonal"] / size, 12**0.5)
+            for distance in "mean", "rms", "p95", "hausdorff":
+                self.assertLess(facts[distance] / size, 1e-14)
+                self.assertLess(facts["percent_of_diagonal"][distance], 1e-12)
+        mesh = self.off("m.off", [(8e307 * x, 8e307 * y, 8e307 * z) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
+        self.assertIn("cannot hold the distances", self.expect(3, "compare", mesh, mesh).err)
 
 
 if __name__ == "__main__":

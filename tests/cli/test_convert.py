@@ -1,6 +1,7 @@
 """brio convert: round trips, choices among points, what is lost, memory."""
 
 import os
+import random
 import struct
 import subprocess
 import unittest
@@ -211,6 +212,81 @@ class Convert(CliTest):
             self.assertEqual(facts["points"], records)
             self.assertLess(facts["peak_bytes"], 64 << 20)
             os.remove(self.path("b." + extension))
+
+
+class SinglePrecision(CliTest):
+    """--float32 of a conversion merged points without a word, and did not give way."""
+
+    def ball(self, n, centre, radius):
+        rng = random.Random(n)
+        return [tuple(c + radius * rng.uniform(-1, 1) for c in centre) for _ in range(n)]
+
+    def coordinates(self, name):
+        """The type of x in a PLY file."""
+        with open(self.path(name), "rb") as f:
+            header = f.read().split(b"end_header")[0].decode()
+        return header.split("\nproperty ")[1].split()[0]
+
+    def gives_way(self, points, *options, why):
+        run = self.expect(0, "convert", points, self.path("out.ply"), "--float32", *options)
+        self.assertRegex(run.err, "warning: .*out.ply: in double precision: single precision " + why)
+        self.assertEqual(self.coordinates("out.ply"), "double")
+        facts = self.facts("convert", points, self.path("out.ply"), "--float32", *options)
+        self.assertIs(facts["float32"], False)
+        self.assertEqual(facts["lost"], [])
+        self.assertFalse({"moved", "merged"} & set(facts))
+
+    def stays(self, points, *options):
+        facts = self.facts("convert", points, self.path("out.ply"), "--float32", *options)
+        self.assertEqual(self.coordinates("out.ply"), "float")
+        self.assertNotIn("float32", facts)
+        return facts
+
+    def test_points_that_would_be_one_give_way(self):
+        self.gives_way(self.xyz("small.xyz", self.ball(302, (0, 0, 0), 1e-165)), why="would merge 301 of 302")
+        self.gives_way(self.xyz("far.xyz", self.ball(490, (4e6, 4e6, 4e6), 1e-3)), why="would merge 4.. of 490")
+
+    def test_points_that_would_move_over_their_neighbours_give_way(self):
+        self.gives_way(self.xyz("far.xyz", [(4e6 + 0.77 * i, 4e6, 0) for i in range(300)]), why="would move")
+
+    def test_coordinates_beyond_singles_give_way(self):
+        huge = self.xyz("huge.xyz", self.ball(50, (0, 0, 0), 1) + [(0, -1e39, 0)])
+        self.gives_way(huge, why="cannot hold -1e.39")
+        self.stays(huge, "--crop=-2,-2,-2,2,2,2")
+
+    def test_a_late_block_counts(self):
+        points = [(i % 300, i // 300, 0) for i in range(70000)] + self.ball(2000, (5e6, 5e6, 5e6), 1)
+        self.gives_way(self.xyz("late.xyz", points), why="would merge 1... of 72000")
+
+    def test_a_mesh_gives_way(self):
+        mesh = self.off("a.off", [tuple(1e-60 * x for x in p) for p in OCTAHEDRON], OCTAHEDRON_FACES)
+        self.gives_way(mesh, why="would merge 5 of 6")
+
+    def test_thinned_points_are_as_far_apart_as_asked(self):
+        points = self.xyz("far.xyz", self.ball(2000, (4e6, 4e6, 0), 3))
+        self.gives_way(points, "--thin", 0.5, why="would ")
+        facts = self.stays(points, "--thin", 2)
+        self.assertTrue(0 < facts["moved"] < 0.5 and "merged" not in facts)
+
+    def test_a_few_that_merge_are_counted(self):
+        points = self.ball(5000, (0, 0, 0), 1) + [(0.1, 0.2, 0.3), (0.1 + 1e-12, 0.2, 0.3)]
+        self.assertEqual(self.stays(self.xyz("a.xyz", points))["merged"], 1)
+
+    def test_a_stl_file_says_what_merges(self):
+        mesh = self.off("a.off", [tuple(4e6 + 1e-3 * x for x in p) for p in OCTAHEDRON], OCTAHEDRON_FACES)
+        run = self.expect(0, "convert", mesh, self.path("out.stl"))
+        self.assertRegex(run.err, "out.stl: single precision merges 5 points with others")
+
+    def test_a_pipe_is_written_and_says_how_far_points_move(self):
+        text = "".join("%r %r %r\n" % p for p in self.ball(490, (4e6, 4e6, 4e6), 1e-3)).encode()
+        run = subprocess.run([BRIO, "convert", "-", self.path("out.ply"), "--float32"], input=text, capture_output=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn(b"move points by up to", run.stderr)
+        self.assertEqual(self.coordinates("out.ply"), "float")
+
+    def test_options_that_change_nothing_are_named(self):
+        run = self.expect(0, "convert", self.xyz("a.xyz", CUBE), self.path("out.las"), "--float32")
+        self.assertIn("--float32 changes nothing in this format", run.err)
 
 
 if __name__ == "__main__":

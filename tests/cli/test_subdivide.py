@@ -13,6 +13,16 @@ class Subdivide(CliTest):
             rows = [line.split() for line in f if not line.startswith("#")]
         self.assertEqual([tuple(map(float, row)) for row in rows[2:8]], OCTAHEDRON)
 
+    def test_coordinates_near_the_end_of_doubles(self):
+        """New vertices were infinite and no numbers, in files that brio cannot read."""
+        out = self.path("s.ply")
+        mesh = self.off("m.off", [(1.5e308, 0, 0), (1.5e308, 1e308, 0), (1.4e308, 0, 1e308)], [(0, 1, 2)])
+        self.facts("subdivide", mesh, "-o", out)
+        low, high = (self.facts("info", out)["box"][end] for end in ("min", "max"))
+        self.assertTrue(all(abs(x) < 1.6e308 for x in low + high))
+        mesh = self.off("m.off", [(1.5e308, 0, 0), (-1.5e308, 1e308, 0), (1.4e308, -1.7e308, 1e308)], [(0, 1, 2)])
+        self.assertIn("doubles cannot hold vertex", self.expect(3, "subdivide", mesh, "-o", out).err)
+
     def test_subdivide_refusals(self):
         mesh, out = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES), self.path("s.ply")
         self.usage("between 1 and 15", "subdivide", mesh, "--levels", "0", "-o", out)

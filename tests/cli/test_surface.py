@@ -1,5 +1,7 @@
 """brio surface: the power crust with its labelings and outputs, the co-cones."""
 
+import math
+
 from brio_cli import CERTIFICATE, CliTest, COMMON_FACTS, count, main, number
 
 
@@ -56,6 +58,22 @@ class LabeledDelaunay(CliTest):
         facts = self.facts("surface", points, "-o", out, "--triangulate")
         self.assertEqual(facts["faces"], 2 * facts["vertices"] - 4)
         self.assertTrue({"nx", "ny", "nz"} <= set(self.facts("info", out)["properties"]))
+
+    def test_normals_in_every_unit(self):
+        """They were 0 0 0 or no numbers, or refused: "no vertex of the surface has a normal"."""
+        cloud, out, normals = self.path("a.xyz"), self.path("out.ply"), self.path("n.csv")
+        self.expect(0, "generate", "sphere", "-n", 300, "-o", cloud, "--quiet")
+        with open(cloud) as f:
+            points = [tuple(map(float, line.split())) for line in f if not line.startswith("#")]
+        seen = []
+        for exponent in (0, -900, -560, -530, 515, 1000):
+            cloud = self.xyz("s.xyz", [[math.ldexp(x, exponent) for x in p] for p in points])
+            self.facts("surface", cloud, "-o", out, "--vertex-normals", "--normals", normals)
+            with open(normals) as f:
+                seen.append([line.replace(",", " ").split()[3:] for line in f][-300:])
+            self.assertEqual(seen[-1], seen[0])
+        for p, n in zip(points, seen[0]):
+            self.assertGreater(sum(x * float(y) for x, y in zip(p, n)), 0.9)
 
     def test_an_option_of_the_power_crust_alone_chooses_it(self):
         points, out = self.cloud("a.ply", 500, "sphere"), self.path("out.ply")

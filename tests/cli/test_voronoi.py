@@ -48,6 +48,26 @@ class Voronoi(CliTest):
         self.usage("only one of", "voronoi", points, "-o", "x.csv", "--weights-mod", "-20", "--unweighted")
         self.assert_only(self.folder, "a.xyz")
 
+    def test_box_error_of_a_box_whose_volume_doubles_cannot_hold(self):
+        found = set()
+        for exponent in [-600, -360, 0, 400, 900]:
+            size = 2.0 ** exponent
+            points = self.xyz("a.xyz", [tuple(x * size for x in p) for p in LATTICE])
+            box = ",".join(repr(float(x) * size) for x in LATTICE_BOX.split(","))
+            facts, cells = self.cells(points, "--box=" + box)
+            self.assertEqual((len(cells), facts["bounded"]), (64, 64))
+            found.add(facts["box_error"])
+        self.assertEqual(len(found), 1, found)
+        self.assertLess(found.pop(), 1e-14)
+        points = self.path("w.csv")
+        with open(points, "w") as f:
+            f.write("x,y,z,weight\n")
+            f.writelines("%r,%r,%r,%r\n" % (*(x * 2.0 ** -400 for x in p), p[0] / 8 * 2.0 ** -800) for p in LATTICE)
+        box = ",".join(repr(float(x) * 2.0 ** -400) for x in LATTICE_BOX.split(","))
+        facts, _ = self.cells(points, "--box=" + box)
+        self.assertLess(facts["box_error"], 1e-14)
+        self.assertTrue(facts["weighted"])
+
     def test_cells_of_a_lattice_in_a_box(self):
         facts, cells = self.cells(self.xyz("a.xyz", LATTICE), "--box=" + LATTICE_BOX)
         self.assert_schema(facts, {**COMMON_FACTS, "cells": count, "bounded": count, "volume": number,

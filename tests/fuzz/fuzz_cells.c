@@ -73,8 +73,8 @@ static void hostile_cells(brio_context *ctx, fuzz_input *in, brio_cells_options 
     brio_status status = brio_voronoi_cells(ctx, NULL, points, weighted ? weights : NULL, n, o, &c);
     fuzz_expect_failure(status);
     FUZZ_EXPECT(status == BRIO_OK || status == BRIO_ERR_ARGUMENT || status == BRIO_ERR_NOT_FINITE ||
-                    status == BRIO_ERR_NO_ANSWER, "%s",
-                brio_message(ctx));
+                    status == BRIO_ERR_NO_ANSWER,
+                "%s", brio_message(ctx));
     if (c) expect_arrays(c, o, n);
     brio_cells_free(c);
 }

@@ -856,8 +856,8 @@ typedef struct brio_distance {
 
 /** Compares two surfaces. Takes `samples` random points of each (0: 100,000), uniform by area, and computes their exact
  *  distances from the triangles of the other surface.   out  its `size` set.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without faces, or whose faces have no area or one beyond doubles),
- *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without faces, or whose faces have no area), BRIO_ERR_NO_ANSWER (doubles
+ *  cannot hold the distances), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
                                         uint64_t seed, brio_distance *out);
 
@@ -869,7 +869,8 @@ BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, c
  *  levels  1 to 15.   out  owned by the caller.
  *  Cost: linear in the result; 64 bytes a vertex of the result and 118 a vertex of the level before.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (a face is no triangle, an edge has more than two faces or two
- *  faces that run along it in the same direction), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  faces that run along it in the same direction, doubles cannot hold a new vertex), BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Dyn Levin Gregory 1990], [Zorin Schroeder Sweldens 1996]. */
 BRIO_API brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out);
 
@@ -1130,8 +1131,10 @@ typedef struct brio_alpha_complex {
  *  smallest circumscribed sphere or, with weights, of its smallest orthosphere: the sphere of a vertex of weight w has the
  *  squared radius -w, and values may be negative. Any other simplex has the least value of the simplices that contain it.
  *  Vertices have the value 0 without weights. Values are rounded from double-doubles, to a few units in the last place
- *  except in tetrahedra too flat for those; a value that doubles cannot hold is INFINITY. Rounding leaves every value at
- *  most that of the simplices that contain the simplex. Duplicates and hidden points are in no simplex.
+ *  except in tetrahedra too flat for those; a value that doubles cannot hold is INFINITY, and one below 2^-1022, which has
+ *  fewer bits, may be 0: such values may be equal where the squared radii are not, so scale points whose radii are beyond
+ *  2^511 or below 2^-511. Rounding leaves every value at most that of the simplices that contain the simplex. Duplicates
+ *  and hidden points are in no simplex.
  *  t        the triangulation of these points and weights, of dimension 3.   weights  #P, or NULL.
  *  out      its `size` set; freed with brio_alpha_complex_free.
  *  Cost: a few times that of the triangulation, most of it with all threads. For the result and the work 48 bytes a
@@ -1165,7 +1168,8 @@ BRIO_API brio_status brio_alpha_order(brio_context *ctx, const brio_alpha_comple
 /** Finds the least alpha at which the tetrahedra of the complex are one solid, joined across facets, that has all
  *  vertices of the triangulation; in the plane, at which the triangles are one region, joined across edges. There is one:
  *  the greatest value of a tetrahedron (triangle) at the latest.
- *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (alpha is INFINITY, or alpha and the values of all vertices are closer to 0 than
+ *  2^-1022: scale the points), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha);
 
 typedef struct brio_alpha_shape_stats {
@@ -1183,7 +1187,7 @@ typedef struct brio_alpha_shape_stats {
  *  edge only, vertices are doubled. Singular simplices are counted, and are not in the mesh.
  *  points  as they were given to brio_alpha_values.   out  owned by the caller.   stats  NULL, or its `size` set.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN, or the complex is of the plane), BRIO_ERR_NO_ANSWER (no tetrahedron
- *  has a value of at most alpha), BRIO_ERR_NO_MEMORY.
+ *  has a value of at most alpha, or alpha is closer to 0 than brio_alpha_auto finds one), BRIO_ERR_NO_MEMORY.
  *  Based on: [Edelsbrunner Muecke 1994]. */
 BRIO_API brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex,
                                       double alpha, brio_mesh **out, brio_alpha_shape_stats *stats);

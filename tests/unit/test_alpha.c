@@ -292,11 +292,64 @@ static void values_beyond_doubles_are_infinite(void) {
     brio_context_free(ctx);
 }
 
+/* The counts of the shape of the least alpha, for points times 2^exponent and weights times its square. */
+static brio_status shape_at(int exponent, bool weighted, double alpha, brio_alpha_shape_stats *stats) {
+    static set s;
+    brio_mesh *m = NULL;
+    make(&s, weighted ? 6 : 2, 5);
+    for (size_t i = 0; i < 3 * N; i++) s.p[i] = ldexp(s.p[i], exponent);
+    for (size_t i = 0; i < N; i++) s.w[i] = ldexp(s.w[i], 2 * exponent);
+    EXPECT(build(&s));
+    *stats = (brio_alpha_shape_stats){.size = sizeof *stats};
+    brio_status status = isnan(alpha) ? brio_alpha_auto(s.ctx, &s.c, &alpha) : BRIO_OK;
+    if (status == BRIO_OK) status = brio_alpha_shape(s.ctx, s.p, &s.c, alpha, &m, stats);
+    if (status != BRIO_OK) EXPECT(strstr(brio_message(s.ctx), "beyond doubles: scale the points"));
+    brio_mesh_free(m);
+    drop(&s);
+    return status;
+}
+
+/* Values that became infinite or 0 were equal: the least alpha of one solid had another shape than at other scales. */
+static void shapes_are_the_same_at_every_scale_or_refused(void) {
+    static const int exponents[] = {-1000, -560, -530, -515, -505, -300, 300, 505, 509, 515, 560, 900};
+    for (int weighted = 0; weighted < 2; weighted++) {
+        brio_alpha_shape_stats usual, scaled;
+        EXPECT(shape_at(0, weighted, NAN, &usual) == BRIO_OK);
+        for (int k = 0; k < 12; k++) {
+            if (weighted && exponents[k] > 509) continue; /* the weights are infinite */
+            brio_status status = shape_at(exponents[k], weighted, NAN, &scaled);
+            bool fits = abs(exponents[k]) < 510;
+            EXPECT(status == (fits ? BRIO_OK : BRIO_ERR_NO_ANSWER), "2^%d", exponents[k]);
+            if (!fits) continue;
+            EXPECT(scaled.alpha == ldexp(usual.alpha, 2 * exponents[k]), "2^%d: %g", exponents[k], scaled.alpha);
+            EXPECT(scaled.tetrahedra == usual.tetrahedra && scaled.vertices == usual.vertices, "2^%d", exponents[k]);
+        }
+    }
+}
+
+/* Tetrahedra whose squared radii became 0 were in the shape of alpha 0. Weights make values of 0 and less right. */
+static void alpha_where_values_are_lost_is_refused(void) {
+    brio_alpha_shape_stats stats;
+    EXPECT(shape_at(-560, false, 0, &stats) == BRIO_ERR_NO_ANSWER);
+    EXPECT(shape_at(-530, false, 0x1p-1050, &stats) == BRIO_ERR_NO_ANSWER);
+    EXPECT(shape_at(-530, false, 1, &stats) == BRIO_OK && stats.uncovered == 0);
+    static set s;
+    brio_mesh *m = NULL;
+    make(&s, 4, 5);
+    for (size_t i = 0; i < N; i++) s.w[i] = 9 + 0.001 * (double)i;
+    EXPECT(build(&s));
+    EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, 0, &m, NULL) == BRIO_OK, "%s", brio_message(s.ctx));
+    brio_mesh_free(m);
+    drop(&s);
+}
+
 int main(void) {
     RUN(values_against_brute_force);
     RUN(order_is_strict);
     RUN(shapes_bound_their_tetrahedra);
     RUN(threads_change_nothing);
+    RUN(shapes_are_the_same_at_every_scale_or_refused);
+    RUN(alpha_where_values_are_lost_is_refused);
     RUN(hostile_inputs);
     RUN(values_beyond_doubles_are_infinite);
     RUN(memory_that_runs_out);

@@ -166,6 +166,24 @@ static void least_alpha_of_one_region(void) {
     }
 }
 
+/* Values that became infinite or 0 were equal: the least alpha had another region than at other scales. */
+static void the_least_alpha_is_the_same_at_every_scale_or_refused(void) {
+    static const int exponents[] = {0, -1000, -560, -530, -515, -505, 505, 509, 520, 560, 900};
+    double usual = 0, alpha = -1;
+    for (int k = 0; k < 11; k++) {
+        set s;
+        make(&s, 0, 20);
+        for (size_t i = 0; i < 2 * (size_t)N; i++) s.p[i] = ldexp(s.p[i], exponents[k]);
+        build(&s);
+        brio_status status = brio_alpha_auto(s.ctx, &s.c, &alpha);
+        bool fits = abs(exponents[k]) < 510;
+        EXPECT(status == (fits ? BRIO_OK : BRIO_ERR_NO_ANSWER), "2^%d", exponents[k]);
+        if (!k) usual = alpha;
+        if (fits) EXPECT(alpha == ldexp(usual, 2 * exponents[k]), "2^%d: %g", exponents[k], alpha);
+        drop(&s);
+    }
+}
+
 static void faces_enter_before_triangles(void) {
     set s;
     uint32_t order[8 * N];
@@ -218,6 +236,7 @@ static void memory_that_runs_out(void) {
 int main(void) {
     RUN(values_against_brute_force);
     RUN(least_alpha_of_one_region);
+    RUN(the_least_alpha_is_the_same_at_every_scale_or_refused);
     RUN(faces_enter_before_triangles);
     RUN(hostile_inputs);
     RUN(memory_that_runs_out);

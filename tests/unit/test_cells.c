@@ -630,10 +630,9 @@ static void what_doubles_cannot_hold_is_infinite(void) {
 
 /* Small coordinates vanish when they are scaled with large ones. */
 static void normals_are_unit_vectors_between_points_of_any_sizes(void) {
-    static const double points[3][15] = {
-        {0, 0, 0, 1e-170, 0, 0, 0, 1e-170, 0, 0, 0, 1e-170, 1e170, 1e170, 1e170},
-        {0, 0, 0, 5e-324, 0, 0, 0, 5e-324, 0, 0, 0, 5e-324, 1, 1, 1},
-        {-1.7e308, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 0, 0, -1.7e308, 0, 0, 0, 1.7e308}};
+    static const double points[3][15] = {{0, 0, 0, 1e-170, 0, 0, 0, 1e-170, 0, 0, 0, 1e-170, 1e170, 1e170, 1e170},
+                                         {0, 0, 0, 5e-324, 0, 0, 0, 5e-324, 0, 0, 0, 5e-324, 1, 1, 1},
+                                         {-1.7e308, 0, 0, 1.7e308, 0, 0, 0, 1.7e308, 0, 0, -1.7e308, 0, 0, 0, 1.7e308}};
     brio_context *ctx = new_context();
     for (size_t s = 0; s < 3; s++) {
         brio_cells *cells = cells_of(ctx, points[s], NULL, 5, NULL, 0);

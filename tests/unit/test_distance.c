@@ -234,10 +234,53 @@ static void surface_without_area_is_refused(void) {
     brio_mesh_free(empty);
 }
 
+/* --- sizes near the ends of doubles --- */
+
+static brio_mesh *scaled(const brio_mesh *mesh, int exponent) {
+    brio_mesh *copy = mesh_new(ctx, mesh->vertices, mesh->num_vertices, mesh->face_vertices, mesh->num_faces, 3);
+    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) copy->vertices[i] = ldexp(mesh->vertices[i], exponent);
+    return copy;
+}
+
+/* The mean was 6 % of the diagonal between a surface of size 1e-90 and itself, and no number from 1e77 on. */
+static void figures_do_not_depend_on_the_unit(void) {
+    brio_mesh *a = random_triangles(3, 60, 100), *b = random_triangles(4, 50, 80);
+    brio_distance one = distance(scaled(a, 0), scaled(b, 0), 500);
+    for (int exponent = -960; exponent <= 1020; exponent += 20) {
+        brio_distance d = distance(scaled(a, exponent), scaled(b, exponent), 500);
+        EXPECT(d.mean == ldexp(one.mean, exponent) && d.rms == ldexp(one.rms, exponent), "2^%d: %g", exponent, d.mean);
+        EXPECT(d.p95 == ldexp(one.p95, exponent) && d.hausdorff == ldexp(one.hausdorff, exponent), "2^%d", exponent);
+        EXPECT(d.normal_consistency == one.normal_consistency, "2^%d: %g", exponent, d.normal_consistency);
+        EXPECT(d.diagonal == ldexp(one.diagonal, exponent), "2^%d: %g", exponent, d.diagonal);
+        d = distance(scaled(a, exponent), scaled(a, exponent), 500);
+        EXPECT(d.hausdorff < ldexp(1e-12, exponent) && d.normal_consistency > 0.99, "2^%d: %g", exponent,
+               d.normal_consistency);
+    }
+    brio_mesh_free(a);
+    brio_mesh_free(b);
+}
+
+/* "The faces have area 0" was said of both. */
+static void tiny_surface_beside_an_ordinary_one_has_area(void) {
+    brio_distance d = distance(square(ctx, 1e-200, 0.5), square(ctx, 1, 0), 100);
+    EXPECT(d.normal_consistency == 1 && d.mean >= 0.5 && d.hausdorff < 1.5, "%g", d.mean);
+    d = distance(square(ctx, 1e200, 0), square(ctx, 1, 0), 100);
+    EXPECT(d.normal_consistency == 1 && d.hausdorff > 1e199, "%g", d.hausdorff);
+}
+
+static void distances_beyond_doubles_are_refused(void) {
+    brio_mesh *low = square(ctx, 1.7e308, -1.7e308), *high = square(ctx, 1.7e308, 1.7e308);
+    brio_distance d = {.size = sizeof d, .mean = 7};
+    EXPECT(brio_mesh_distance(ctx, low, high, 10, 1, &d) == BRIO_ERR_NO_ANSWER && d.mean == 0);
+    EXPECT(strstr(brio_message(ctx), "cannot hold") != NULL, "%s", brio_message(ctx));
+    brio_mesh_free(low);
+    brio_mesh_free(high);
+}
+
 /* --- memory and cancelling --- */
 
-static brio_status compare_squares(brio_context *context) {
-    brio_mesh *a = square(context, 1, 0), *b = square(context, 1, 1);
+static brio_status compare_squares_of(brio_context *context, double side) {
+    brio_mesh *a = square(context, side, 0), *b = square(context, side, side);
     brio_distance d = {.size = sizeof d};
     brio_status status = a && b ? brio_mesh_distance(context, a, b, 50, 1, &d) : BRIO_ERR_NO_MEMORY;
     brio_mesh_free(a);
@@ -245,8 +288,17 @@ static brio_status compare_squares(brio_context *context) {
     return status;
 }
 
+static brio_status compare_squares(brio_context *context) {
+    return compare_squares_of(context, 1);
+}
+
+static brio_status compare_tiny_squares(brio_context *context) {
+    return compare_squares_of(context, 1e-200);
+}
+
 static void no_memory_is_a_status(void) {
     expect_clean_failures(compare_squares);
+    expect_clean_failures(compare_tiny_squares);
 }
 
 static int cancel(const char *stage, double fraction, void *user) {
@@ -277,6 +329,9 @@ int main(void) {
     RUN(perpendicular_squares_have_no_common_normal);
     RUN(figures_do_not_depend_on_threads);
     RUN(surface_without_area_is_refused);
+    RUN(figures_do_not_depend_on_the_unit);
+    RUN(tiny_surface_beside_an_ordinary_one_has_area);
+    RUN(distances_beyond_doubles_are_refused);
     RUN(no_memory_is_a_status);
     RUN(cancelling_leaves_nothing);
     EXPECT(brio_context_memory(ctx) == 0);

@@ -64,6 +64,61 @@ static void tetrahedra_on_curves_are_estimated(void) {
     }
 }
 
+/* Writes points, and their weights, times 2^exponent, and the square of that. */
+static void scale_set(size_t count, int exponent, double *p, double *w) {
+    for (size_t i = 0; i < 3 * count; i++) p[i] = ldexp(points[i], exponent);
+    for (size_t i = 0; i < count; i++) w[i] = ldexp(weights[i], 2 * exponent);
+}
+
+static uint64_t tetrahedra_of(const double *p, const double *w, size_t count) {
+    brio_context *ctx = new_context();
+    uint64_t tetrahedra = 0;
+    EXPECT(brio_estimate_tetrahedra(ctx, p, w, count, &tetrahedra) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+    return tetrahedra;
+}
+
+/* Beyond 1e154 all squares were infinite, below 1e-162 all 0: the estimate was 6.8 tetrahedra a point, after many seconds
+ * of exact arithmetic. The coordinates have 20 bits, so that small ones are exact, too. */
+static void estimates_are_the_same_at_every_scale(void) {
+    static double p[3 * N], w[N];
+    static const int exponents[] = {-1050, -1000, -600, -500, -100, 100, 300, 480, 500, 600, 1023};
+    static const int weighted_exponents[] = {-500, -300, 300, 500};
+    static const size_t counts[] = {3000, 9000};
+    for (int set = 0; set < 4; set++) {
+        size_t count = counts[set % 2];
+        if (set / 2 == 0) uniform_points(1, count, points);
+        if (set / 2 == 1) clustered_points(2, count, points);
+        for (size_t i = 0; i < 3 * count; i++) points[i] = rint(points[i] * 0x1p20) * 0x1p-21;
+        integer_weights(7, count, 5, weights);
+        for (size_t i = 0; i < count; i++) weights[i] *= 0x1p-10;
+        uint64_t plain = tetrahedra_of(points, NULL, count), weighted = tetrahedra_of(points, weights, count);
+        EXPECT(plain != (uint64_t)(6.8 * (double)count) && weighted != plain);
+        for (int k = 0; k < 11; k++) {
+            scale_set(count, exponents[k], p, w);
+            EXPECT(tetrahedra_of(p, NULL, count) == plain, "set %d, 2^%d", set, exponents[k]);
+        }
+        for (int k = 0; k < 4; k++) {
+            scale_set(count, weighted_exponents[k], p, w);
+            EXPECT(tetrahedra_of(p, w, count) == weighted, "set %d, 2^%d, weighted", set, weighted_exponents[k]);
+        }
+    }
+}
+
+/* Weights and points far out stay finite where the other points are brought near 1. */
+static void estimates_of_wide_ranges(void) {
+    enum { COUNT = 3000 };
+    uniform_points(1, COUNT, points);
+    uint64_t plain = tetrahedra_of(points, NULL, COUNT);
+    for (size_t i = 0; i < 3 * COUNT; i++) points[i] = ldexp(points[i], -900);
+    for (size_t i = 0; i < COUNT; i++) weights[i] = 0x1p900;
+    EXPECT(tetrahedra_of(points, weights, COUNT) > 0);
+    points[0] = 0x1p1000;
+    uint64_t stray = tetrahedra_of(points, NULL, COUNT);
+    EXPECT(stray > plain / 2 && stray < 2 * plain, "%g", (double)stray);
+}
+
 static void every_way_of_location_takes_what_was_estimated(void) {
     static uint32_t edges[2 * N];
     uniform_points(1, N, points);
@@ -149,6 +204,8 @@ static void estimates_can_be_cancelled(void) {
 int main(void) {
     RUN(triangulations_take_what_was_estimated);
     RUN(tetrahedra_on_curves_are_estimated);
+    RUN(estimates_are_the_same_at_every_scale);
+    RUN(estimates_of_wide_ranges);
     RUN(every_way_of_location_takes_what_was_estimated);
     RUN(surfaces_take_what_was_estimated);
     RUN(wrong_arguments_are_refused);

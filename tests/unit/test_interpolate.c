@@ -169,6 +169,27 @@ static void natural_values_are_seldom_linear(void) {
     fixture_free(&f);
 }
 
+/* Values at both ends of the doubles: a constant stays, and what is linear stays linear. */
+static void means_of_values_at_the_ends_of_doubles_stay_between_them(void) {
+    static const double ends[] = {0x1p-1074, -0x1p-1074, 0x1.fffffffffffffp1023, -0x1.fffffffffffffp1023};
+    static double p[3 * N], x[3 * Q], values[5 * N], results[5 * Q];
+    uniform_points(1, N, p);
+    uniform_points(2, Q, x);
+    for (size_t i = 0; i < 5 * N; i++) values[i] = i % 5 < 4 ? ends[i % 5] : floor(p[3 * (i / 5)] * 1000) * 0x1p-1074;
+    fixture f = fixture_new(p, NULL, N);
+    for (int method = 0; method < 2; method++) {
+        EXPECT(interpolate(&f, method, values, 5, x, Q, results) == BRIO_OK);
+        for (size_t i = 0; i < Q; i++) {
+            if (isnan(results[5 * i])) continue;
+            for (size_t k = 0; k < 4; k++)
+                EXPECT(results[5 * i + k] == ends[k], "method %d: %.17g", method, results[5 * i + k]);
+            EXPECT(fabs(results[5 * i + 4] / 0x1p-1074 - x[3 * i] * 1000) <= 1.5, "method %d: %g", method,
+                   results[5 * i + 4]);
+        }
+    }
+    fixture_free(&f);
+}
+
 static void refusals(void) {
     static double p[3 * 100], w[100] = {0}, result;
     uniform_points(7, 100, p);
@@ -187,6 +208,7 @@ int main(void) {
     RUN(coordinates_are_shares_of_the_cell);
     RUN(the_centre_of_a_cube_has_eight_equal_neighbours);
     RUN(natural_values_are_seldom_linear);
+    RUN(means_of_values_at_the_ends_of_doubles_stay_between_them);
     RUN(refusals);
     return harness_end();
 }

@@ -121,6 +121,34 @@ static void grids_are_found(void) {
     brio_mesh_free(b);
 }
 
+/* A grid whose last step led to infinity, and grids that merged the points next to 0. */
+static void coordinates_at_the_ends_of_doubles_read_back(void) {
+    static const double most = 0x1.fffffffffffffp1023, least = 0x1p-1074;
+    const double cases[][3] = {{-most, most, 0},         {most, most / 3, most / 2},
+                               {-most, -1, 0},           {least, 2 * least, 4 * least},
+                               {-least, 0, 1e9 * least}, {0, 7e9 * least, 1e-310}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        brio_mesh *a = io_make(3, 0), *b = NULL;
+        brio_write_options o = brio_write_options_default();
+        double moved, step = 0, size = fmax(fabs(cases[k][0]), fmax(fabs(cases[k][1]), fabs(cases[k][2])));
+        o.moved = &moved;
+        for (size_t i = 0; i < 9; i++) a->vertices[i] = cases[k][i / 3];
+        EXPECT(brio_write(io_ctx, io_path("e.las"), a, &o) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("e.las"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+        for (size_t i = 0; b && i < 9; i++) {
+            step = b->coordinate_step[i % 3];
+            EXPECT(fabs(a->vertices[i] - b->vertices[i]) <= step, "case %zu, number %zu: %g, not %g", k, i,
+                   b->vertices[i], a->vertices[i]);
+            EXPECT(fabs(a->vertices[i]) > 1e-300 || fabs(a->vertices[i] - b->vertices[i]) <= 0.51 * step, "case %zu",
+                   k);
+        }
+        EXPECT(moved <= 2 * step && step <= fmax(1e-8 * size, 100 * least), "case %zu: step %g, moved %g", k, step,
+               moved);
+        brio_mesh_free(a);
+        brio_mesh_free(b);
+    }
+}
+
 static void expect_status(const char *name, const uint8_t *bytes, size_t size, const char *how, size_t at) {
     brio_mesh *mesh = NULL;
     io_put(name, bytes, size);
@@ -229,6 +257,7 @@ int main(void) {
     RUN(table_may_be_missing);
     RUN(written_reads_back);
     RUN(grids_are_found);
+    RUN(coordinates_at_the_ends_of_doubles_read_back);
     RUN(damaged_files_are_a_status);
     RUN(four_bytes_of_ones_make_no_wrong_symbol);
     RUN(ones_anywhere_in_a_file_are_a_status);

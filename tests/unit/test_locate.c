@@ -124,6 +124,26 @@ static void points_in_space(void) {
     check_set(&(set){"small sphere", p, NULL, 200});
 }
 
+/* Squares of distances are rounded at a scale of the locator's own: weights beyond it, and points far out, are compared
+ * exactly. */
+static void ranges_beyond_the_scale_of_a_locator(void) {
+    static const int exponents[] = {-1000, -530, -300, 300, 500, 1000};
+    static double p[3 * 100], w[100];
+    size_t usual = queries_a_set;
+    queries_a_set = 60;
+    for (int k = 0; k < 6; k++) {
+        uniform_points(1, 100, p);
+        for (int i = 0; i < 100; i++) w[i] = p[3 * i] * p[3 * i + 1] * 0.1;
+        for (int i = 0; i < 300; i++) p[i] = ldexp(p[i], exponents[k]);
+        check_set(&(set){"weights near 1", p, w, 100});
+        for (int i = 0; i < 100; i++) w[i] = ldexp(w[i], exponents[k] < 500 ? 2 * exponents[k] : 1000);
+        check_set(&(set){"weights at the scale", p, w, 100});
+        p[0] = 0x1p1023, p[7] = -0x1p1000;
+        check_set(&(set){"points far out", p, k % 2 ? w : NULL, 100});
+    }
+    queries_a_set = usual;
+}
+
 static void flat_points(void) {
     static double p[3 * 100], w[100];
     for (int dimension = 0; dimension < 3; dimension++) {
@@ -264,6 +284,7 @@ int main(int argc, char **argv) {
     if (argc > 1) return harness_end();
     RUN(small_grids);
     RUN(points_in_space);
+    RUN(ranges_beyond_the_scale_of_a_locator);
     RUN(flat_points);
     RUN(neither_threads_nor_order_change_an_answer);
     RUN(values_have_the_same_bits_in_every_order);

@@ -228,6 +228,24 @@ static void linear_functions_are_reproduced(void) {
     for_all_sets(check_linear_functions);
 }
 
+static void check_values_at_the_ends_of_doubles(const set *s) {
+    static const double ends[] = {0x1p-1074, -0x1p-1074, 0x1.fffffffffffffp1023, -0x1.fffffffffffffp1023};
+    fixture f = fixture_new(s);
+    double x[2 * QUERIES], rows[4 * QUERIES], values[4 * MOST];
+    make_queries(s, x);
+    for (size_t i = 0; i < 4 * s->n; i++) values[i] = ends[i % 4];
+    for (int method = s->weighted; method < 2; method++) {
+        EXPECT(interpolate(&f, method, values, 4, x, QUERIES, rows) == BRIO_OK, "%s", brio_message(f.ctx));
+        for (size_t i = 0; i < 4 * QUERIES; i++)
+            EXPECT(isnan(rows[i]) || rows[i] == ends[i % 4], "%s, method %d: %.17g", s->name, method, rows[i]);
+    }
+    fixture_free(&f);
+}
+
+static void means_of_values_at_the_ends_of_doubles_stay_between_them(void) {
+    for_all_sets(check_values_at_the_ends_of_doubles);
+}
+
 /* Beside the hull natural neighbours have far centres. */
 static void check_beside_the_hull(const set *s) {
     fixture f = fixture_new(s);
@@ -522,6 +540,7 @@ int main(void) {
     RUN(least_power_is_that_of_brute_force);
     RUN(answers_do_not_depend_on_the_threads);
     RUN(linear_functions_are_reproduced);
+    RUN(means_of_values_at_the_ends_of_doubles_stay_between_them);
     RUN(linear_functions_are_reproduced_beside_the_hull);
     RUN(values_at_vertices_are_exact);
     RUN(natural_neighbours_have_the_areas_of_clipping);

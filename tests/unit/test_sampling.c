@@ -127,9 +127,55 @@ static void outliers_are_found(void) {
     brio_context_free(ctx);
 }
 
-/* A query among duplicates met them all: hours for these. */
+/* Sets outlier[i] for points times 2^exponent. */
+static void find_outliers_at(const double *points, size_t n, int exponent, uint8_t *outlier) {
+    brio_context *ctx = new_context();
+    double *scaled = malloc(3 * n * sizeof *scaled);
+    for (size_t i = 0; i < 3 * n; i++) scaled[i] = ldexp(points[i], exponent);
+    EXPECT(brio_outliers(ctx, scaled, n, 8, NULL, outlier) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+    free(scaled);
+}
+
+/* Beyond 1e154 all spacings were infinite, below 1e-162 all 0: no point was an outlier, or good ones were. The coordinates
+ * have 30 bits, so that small ones are exact, too. */
+static void outliers_are_the_same_at_every_scale(void) {
+    enum { N = 1000, STRAY = 10, ALL = N + STRAY };
+    static const int exponents[] = {-1040, -1000, -600, -530, -500, -256, -100, 100, 300, 500, 515, 600, 1000, 1020};
+    double points[3 * ALL];
+    uint8_t outlier[ALL], again[ALL];
+    sphere_points(7, ALL, points);
+    for (size_t i = 3 * (size_t)N; i < 3 * (size_t)ALL; i++) points[i] *= 1.8;
+    for (size_t i = 0; i < 3 * (size_t)ALL; i++) points[i] = rint(points[i] * 0x1p30) * 0x1p-30;
+    find_outliers_at(points, ALL, 0, outlier);
+    for (size_t i = 0; i < ALL; i++) EXPECT(outlier[i] == (i >= N), "point %zu: %d", i, outlier[i]);
+    for (size_t k = 0; k < sizeof exponents / sizeof *exponents; k++) {
+        find_outliers_at(points, ALL, exponents[k], again);
+        EXPECT(!memcmp(outlier, again, ALL), "2^%d", exponents[k]);
+    }
+}
+
+/* One point far out must not make all other points coincide. */
+static void a_far_outlier_hides_no_other(void) {
+    enum { N = 1000, STRAY = 10, ALL = N + STRAY };
+    static const double far[] = {1e150, 1e300, 1e300, 1e100};
+    static const int exponents[] = {0, 0, 600, -600}; /* of the other points */
+    double points[3 * ALL];
+    uint8_t outlier[ALL];
+    for (int set = 0; set < 4; set++) {
+        sphere_points(7, ALL, points);
+        for (size_t i = 3 * (size_t)N; i < 3 * (size_t)ALL; i++) points[i] *= 1.8;
+        for (size_t i = 0; i < 3 * (size_t)ALL; i++) points[i] = ldexp(points[i], exponents[set]);
+        points[3 * (ALL - 1)] = far[set];
+        find_outliers_at(points, ALL, 0, outlier);
+        for (size_t i = 0; i < ALL; i++) EXPECT(outlier[i] == (i >= N), "set %d, point %zu: %d", set, i, outlier[i]);
+    }
+}
+
+/* A query among duplicates met them all. */
 static void outliers_among_duplicates_cost_little(void) {
-    enum { N = 200000, STRAY = N - 1 };
+    enum { N = 50000, STRAY = N - 1 };
     double *points = calloc(3 * N, sizeof *points);
     uint8_t *outlier = malloc(N);
     brio_context *ctx = new_context();
@@ -197,6 +243,8 @@ int main(void) {
     RUN(thinning_refuses);
     RUN(no_points_have_no_outliers);
     RUN(outliers_are_found);
+    RUN(outliers_are_the_same_at_every_scale);
+    RUN(a_far_outlier_hides_no_other);
     RUN(outliers_among_duplicates_cost_little);
     RUN(sparse_parts_are_no_outliers);
     RUN(without_memory);

@@ -223,6 +223,46 @@ static void boundary_has_the_four_point_rule(void) {
     brio_mesh_free(mesh);
 }
 
+/* --- coordinates near the end of doubles --- */
+
+static void scale(brio_mesh *mesh, int exponent) {
+    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) mesh->vertices[i] = ldexp(mesh->vertices[i], exponent);
+}
+
+/* A surface with all kinds of vertices, at most as large as 1. */
+static brio_mesh *rough_surface(bool closed) {
+    brio_mesh *mesh = closed ? random_surface(ctx, 1, 0.25, 5) : flat_grid(ctx, 6, 3);
+    for (size_t i = 0; i < mesh->num_vertices && !closed; i++) mesh->vertices[3 * i + 2] = sin((double)(i * i));
+    scale(mesh, -3);
+    return mesh;
+}
+
+/* New vertices were infinite or no numbers. */
+static void sums_of_large_coordinates_do_not_overflow(void) {
+    static const int exponents[] = {900, 951, 1010, 1023};
+    for (int closed = 0; closed < 2; closed++)
+        for (int i = 0; i < 4; i++) {
+            brio_mesh *mesh = rough_surface(closed), *expected = subdivide(mesh, 2);
+            scale(expected, exponents[i]);
+            scale(mesh, exponents[i]);
+            brio_mesh *fine = subdivide(mesh, 2);
+            for (size_t k = 0; k < 3 * fine->num_vertices; k++)
+                EXPECT(fine->vertices[k] == expected->vertices[k], "2^%d: %g", exponents[i], fine->vertices[k]);
+            brio_mesh_free(fine);
+            brio_mesh_free(expected);
+            brio_mesh_free(mesh);
+        }
+}
+
+static void old_vertices_stay_beside_large_ones(void) {
+    const double points[] = {1e308, 0x1p-1074, 0, -1e308, 1e-310, 1, 0, 1e308, -0.0};
+    const uint32_t face[] = {0, 1, 2};
+    brio_mesh *mesh = triangle_mesh(ctx, points, 3, face, 1), *fine = subdivide(mesh, 3);
+    EXPECT(!memcmp(fine->vertices, points, sizeof points));
+    brio_mesh_free(fine);
+    brio_mesh_free(mesh);
+}
+
 /* --- properties --- */
 
 static void properties_go_along(void) {
@@ -254,6 +294,22 @@ static void properties_go_along(void) {
     brio_mesh_free(mesh);
 }
 
+/* The mean of two values at an end of the doubles is the value. */
+static void constant_properties_stay_at_the_ends_of_doubles(void) {
+    static const double ends[] = {0x1p-1074, 0x1.fffffffffffffp1023};
+    for (int end = 0; end < 2; end++) {
+        brio_mesh *mesh = random_surface(ctx, 0, 0.3, 2);
+        double *height;
+        EXPECT(brio_mesh_add_property(mesh, "height", BRIO_SCALAR_FLOAT64, (void **)&height) == BRIO_OK);
+        for (size_t i = 0; i < mesh->num_vertices; i++) height[i] = ends[end];
+        brio_mesh *fine = subdivide(mesh, 1);
+        for (size_t i = 0; i < fine->num_vertices; i++)
+            EXPECT(brio_property_value(&fine->properties[0], i) == ends[end], "vertex %zu", i);
+        brio_mesh_free(fine);
+        brio_mesh_free(mesh);
+    }
+}
+
 /* --- refusals --- */
 
 static void expect_refusal(const brio_mesh *mesh, int levels, brio_status expected, const char *part) {
@@ -275,6 +331,10 @@ static void refusals(void) {
     brio_mesh_free(mesh);
     mesh = triangle_mesh(ctx, NULL, 5, outside, 1);
     expect_refusal(mesh, 1, BRIO_ERR_ARGUMENT, "vertex 5 of a mesh of 5");
+    brio_mesh_free(mesh);
+    const double ends[] = {1.5e308, 0, 0, -1.5e308, 1e308, 0, 1.4e308, -1.7e308, 1e308};
+    mesh = triangle_mesh(ctx, ends, 3, faces, 1);
+    expect_refusal(mesh, 1, BRIO_ERR_NO_ANSWER, "doubles cannot hold vertex");
     brio_mesh_free(mesh);
     mesh = triangle_mesh(ctx, NULL, 5, faces, 1);
     brio_context_set_memory_limit(ctx, brio_context_memory(ctx) + 200000000);
@@ -310,8 +370,23 @@ done:
     return status;
 }
 
+static brio_status two_levels_of_a_large_mesh(brio_context *failing) {
+    const double points[] = {0, 0, 0, 1e308, 0, 0, 0, 1e308, 0};
+    const uint32_t face[] = {0, 1, 2};
+    const uint64_t offsets[] = {0, 3};
+    brio_mesh *mesh = NULL, *fine = NULL;
+    brio_status status = brio_mesh_new(failing, &mesh);
+    if (status == BRIO_OK) status = brio_mesh_set_vertices(mesh, points, 3);
+    if (status == BRIO_OK) status = brio_mesh_set_faces(mesh, offsets, face, 1);
+    if (status == BRIO_OK) status = brio_mesh_subdivide(failing, mesh, 2, &fine);
+    brio_mesh_free(fine);
+    brio_mesh_free(mesh);
+    return status;
+}
+
 static void memory_fails_cleanly(void) {
     expect_clean_failures(two_levels);
+    expect_clean_failures(two_levels_of_a_large_mesh);
 }
 
 int main(void) {
@@ -327,6 +402,9 @@ int main(void) {
     RUN(vertex_of_two_neighbours_has_midpoints);
     RUN(boundary_has_the_four_point_rule);
     RUN(properties_go_along);
+    RUN(sums_of_large_coordinates_do_not_overflow);
+    RUN(old_vertices_stay_beside_large_ones);
+    RUN(constant_properties_stay_at_the_ends_of_doubles);
     RUN(refusals);
     RUN(cancelled);
     RUN(memory_fails_cleanly);

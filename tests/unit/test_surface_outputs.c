@@ -78,6 +78,18 @@ static void components_are_dropped_by_area_and_by_faces(void) {
     expect_kept(1, 4, "efghm", 4, 2);
 }
 
+/* All areas were 0, or none a number, and the component with the most faces stayed. */
+static void the_largest_component_is_found_in_every_unit(void) {
+    brio_context *ctx = context_of(1);
+    for (int exponent = -1000; exponent <= 1000; exponent += 50) {
+        brio_mesh *mesh = three_components(ctx);
+        for (int i = 0; i < 39; i++) mesh->vertices[i] = ldexp(mesh->vertices[i], exponent);
+        EXPECT(brio_mesh_keep_components(mesh, 1, 0, NULL, NULL) == BRIO_OK && mesh->num_faces == 3, "2^%d", exponent);
+        brio_mesh_free(mesh);
+    }
+    brio_context_free(ctx);
+}
+
 static void a_mesh_stays_as_it_was_where_nothing_would_be_left(void) {
     brio_context *ctx = context_of(1);
     brio_mesh *mesh = three_components(ctx);
@@ -119,6 +131,70 @@ static void points_have_the_normals_of_their_vertices_or_neighbours(void) {
     samples[0] = 0;
     EXPECT(brio_point_normals(ctx, p, MANY + 2, mesh, samples, normals) == BRIO_ERR_NO_ANSWER);
     brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
+/* Writes the normals of the vertices, and the normals that the points have by them. */
+static void find_normals(brio_context *ctx, const brio_mesh *mesh, float *of_vertices, double *of_points) {
+    static const char *const names[3] = {"nx", "ny", "nz"};
+    size_t n = mesh->num_vertices;
+    brio_mesh *copy;
+    EXPECT(brio_mesh_new(ctx, &copy) == BRIO_OK && brio_mesh_set_vertices(copy, mesh->vertices, n) == BRIO_OK);
+    EXPECT(brio_mesh_set_faces(copy, mesh->face_offsets, mesh->face_vertices, mesh->num_faces) == BRIO_OK);
+    EXPECT(brio_mesh_add_normals(copy) == BRIO_OK);
+    for (size_t k = 0; k < 3; k++)
+        memcpy(of_vertices + k * n, brio_mesh_property(copy, names[k])->data, n * sizeof *of_vertices);
+    EXPECT(brio_point_normals(ctx, copy->vertices, n, copy, NULL, of_points) == BRIO_OK, "%s", brio_message(ctx));
+    brio_mesh_free(copy);
+}
+
+/* They were 0 below 1e-160, 0 or no numbers above 1e155, and rough near these ends. */
+static void normals_are_the_same_in_every_unit(void) {
+    static double p[3 * 300], points[2][3 * 300];
+    static float vertices[2][3 * 300];
+    brio_context *ctx = context_of(1);
+    brio_mesh *mesh;
+    sphere_points(8, 300, p);
+    for (int i = 0; i < 900; i++)
+        p[i] = rint(ldexp(p[i], 20)) / (1 << 20); /* so that doubles hold them times 2^-1000 */
+    EXPECT(brio_cocone(ctx, p, 300, NULL, &mesh, NULL) == BRIO_OK && mesh->num_vertices == 300);
+    find_normals(ctx, mesh, vertices[0], points[0]);
+    for (int exponent = -1000; exponent <= 1020; exponent += 5) {
+        for (int i = 0; i < 900; i++) mesh->vertices[i] = ldexp(p[i], exponent);
+        find_normals(ctx, mesh, vertices[1], points[1]);
+        EXPECT(!memcmp(vertices[0], vertices[1], sizeof vertices[0]), "2^%d", exponent);
+        EXPECT(!memcmp(points[0], points[1], sizeof points[0]), "2^%d", exponent);
+    }
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
+/* Beside vertices that are no numbers, normals are 0. A vertex that no face uses is not part of the surface's extent. */
+static void normals_of_odd_vertices_are_0(void) {
+    const double no_numbers[][3] = {{NAN, 0, 0}, {0, NAN, NAN}, {NAN, NAN, NAN}, {INFINITY, 0, 0}, {1, 0, -INFINITY}};
+    const double p[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, -1, 0, 1e300, 1e300, -1e300};
+    const uint32_t faces[6] = {0, 1, 2, 2, 1, 3};
+    const uint64_t offsets[3] = {0, 3, 6};
+    float normals[15];
+    double of_points[15];
+    brio_context *ctx = context_of(1);
+    brio_mesh *mesh;
+    EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, p, 5) == BRIO_OK);
+    EXPECT(brio_mesh_set_faces(mesh, offsets, faces, 1) == BRIO_OK);
+    find_normals(ctx, mesh, normals, of_points);
+    EXPECT(normals[10] == 1 && normals[11] == 1 && normals[14] == 0);
+    brio_mesh_free(mesh);
+    for (size_t i = 0; i < sizeof no_numbers / sizeof *no_numbers; i++) {
+        EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, p, 5) == BRIO_OK);
+        EXPECT(brio_mesh_set_faces(mesh, offsets, faces, 2) == BRIO_OK);
+        memcpy(mesh->vertices, no_numbers[i], sizeof no_numbers[i]);
+        EXPECT(brio_mesh_add_normals(mesh) == BRIO_OK);
+        for (size_t k = 0; k < 3; k++) {
+            const float *n = brio_mesh_property(mesh, ((const char *const[]){"nx", "ny", "nz"})[k])->data;
+            EXPECT(n[0] == 0 && n[1] == 0 && n[2] == 0, "vertex %zu: %g", i, (double)n[0]);
+        }
+        brio_mesh_free(mesh);
+    }
     brio_context_free(ctx);
 }
 
@@ -368,7 +444,10 @@ static void every_failed_allocation_is_a_status(void) {
 int main(void) {
     RUN(components_are_dropped_by_area_and_by_faces);
     RUN(a_mesh_stays_as_it_was_where_nothing_would_be_left);
+    RUN(the_largest_component_is_found_in_every_unit);
     RUN(points_have_the_normals_of_their_vertices_or_neighbours);
+    RUN(normals_are_the_same_in_every_unit);
+    RUN(normals_of_odd_vertices_are_0);
     RUN(confidence_falls_with_the_evidence);
     RUN(a_hole_stays_open);
     RUN(open_surfaces_are_manifold_and_canonical);

@@ -82,6 +82,8 @@ class AlphaComplex:
         inside = self.values[2] <= alpha
         if not inside.any():
             raise NoAnswerError(f"no triangle has a value of at most alpha = {alpha:g}")
+        if max(abs(alpha), np.abs(self.values[0]).max()) < np.finfo(np.float64).tiny:  # as brio_alpha_shape
+            raise NoAnswerError(f"squared radii of at most alpha = {alpha:g} are beyond doubles: scale the points up")
         triangles, mates = self._tri.simplices[inside], self._tri.neighbors[inside]
         is_border = (mates < 0) | ~inside[mates]
         border = np.concatenate([triangles[is_border[:, k]][:, [(k + 1) % 3, (k + 2) % 3]] for k in range(3)])

@@ -5,6 +5,7 @@
  * candidate that fails behind the first block costs another pass. */
 #include "io/las/las_grid.h"
 #include "base/memory.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -63,14 +64,23 @@ static bool set_candidate(brio_las_grid *g, int axis) {
     return set_origin(g, axis, which - 2 * HALVES);
 }
 
-/* Takes a grid on which coordinates are rounded. */
+/* Returns the least power of ten by which half the width of an axis is a whole number of 32 bits. Below the powers of ten
+ * that doubles hold well it is the least double, or that times a power of two. */
+static double rounding_step(double half) {
+    double step = pow(10, ceil(log10(half / (INT32_MAX - 1))));
+    if (!(step > 0)) step = DBL_TRUE_MIN;
+    while (half / step > INT32_MAX) step *= 2;
+    return step;
+}
+
+/* Takes a grid on which coordinates are rounded. The least double as step rounds nothing. */
 static void round_axis(brio_las_grid *g, int axis) {
     double low = g->low[axis], high = g->high[axis];
-    double half = high / 2 - low / 2; /* halves, because the difference of two doubles may overflow */
+    double half = isfinite(high - low) ? (high - low) / 2 : high / 2 - low / 2;
     g->origin[axis] = low / 2 + high / 2;
-    g->step[axis] = half > 0 ? pow(10, ceil(log10(half / (INT32_MAX - 1)))) : 1;
-    if (!(g->step[axis] > 0)) g->step[axis] = 0x1p-1022;
-    g->found[axis] = g->rounds[axis] = true;
+    g->step[axis] = high > low ? rounding_step(half) : 1;
+    g->found[axis] = true;
+    g->rounds[axis] = g->step[axis] > DBL_TRUE_MIN;
 }
 
 /* Goes on to the next candidate that gives back the witnesses. */
@@ -153,8 +163,10 @@ void brio_las_grid_free(brio_context *ctx, brio_las_grid *g) {
     g->witnesses = NULL;
 }
 
+/* A whole step beside the largest double can lead to infinity: then the number nearer to the origin is taken. */
 int32_t brio_las_grid_number(const brio_las_grid *g, int axis, double x) {
-    double n = number_of(x, g->step[axis], g->origin[axis]);
+    double step = g->step[axis], origin = g->origin[axis], n = number_of(x, step, origin);
+    if (!isfinite(n * step + origin)) n -= copysign(1, n);
     return n <= INT32_MIN ? INT32_MIN : n >= INT32_MAX ? INT32_MAX : (int32_t)n;
 }
 
