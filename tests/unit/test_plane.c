@@ -306,9 +306,9 @@ static void bad_input_is_refused_with_its_place(void) {
     double p[] = {0, 0, 1, 0, 0, NAN, 1, 1}, solid[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 3, 2, 1},
            w[] = {0, 0, INFINITY};
     EXPECT(brio_delaunay2(ctx, p, NULL, 4, NULL, &t) == BRIO_ERR_NOT_FINITE && !t);
-    EXPECT(!strcmp(brio_message(ctx), "point 2: y is NaN (1 such points in all)"), "%s", brio_message(ctx));
+    EXPECT(!strcmp(brio_message(ctx), "point 2: y is NaN (1 such point in all)"), "%s", brio_message(ctx));
     EXPECT(brio_delaunay2(ctx, solid, w, 3, NULL, &t) == BRIO_ERR_NOT_FINITE && !t);
-    EXPECT(!strcmp(brio_message(ctx), "point 2: weight is infinite (1 such points in all)"), "%s", brio_message(ctx));
+    EXPECT(!strcmp(brio_message(ctx), "point 2: weight is infinite (1 such point in all)"), "%s", brio_message(ctx));
     EXPECT(brio_delaunay2_flat(ctx, solid, NULL, 5, NULL, &t) == BRIO_ERR_NO_ANSWER && !t);
     EXPECT(!strcmp(brio_message(ctx), "point 4 is off the plane of points 0, 1 and 2"), "%s", brio_message(ctx));
     brio_delaunay2_options o = brio_delaunay2_options_default();

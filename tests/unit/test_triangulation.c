@@ -329,7 +329,7 @@ static void bad_input_names_the_point(void) {
     EXPECT(!strcmp(brio_message(ctx), "point 2: y is NaN (2 such points in all)"), "%s", brio_message(ctx));
     p[7] = 0, p[11] = 1;
     EXPECT(brio_delaunay(ctx, p, w, 4, NULL, &t) == BRIO_ERR_NOT_FINITE);
-    EXPECT(!strcmp(brio_message(ctx), "point 1: weight is infinite (1 such points in all)"), "%s", brio_message(ctx));
+    EXPECT(!strcmp(brio_message(ctx), "point 1: weight is infinite (1 such point in all)"), "%s", brio_message(ctx));
     brio_delaunay_options o = brio_delaunay_options_default();
     o.round_ratio = 1;
     EXPECT(brio_delaunay(ctx, p, NULL, 4, &o, &t) == BRIO_ERR_ARGUMENT);
