@@ -27,7 +27,8 @@ static int exponent_of(const double box[6]) {
 /* Multiplies numbers by 2^exponent. Returns NULL without memory, or without numbers. */
 static double *scaled(const double *x, size_t count, int exponent) {
     double *out = x ? malloc((count + 1) * sizeof *out) : NULL;
-    for (size_t i = 0; i < count && out; i++) out[i] = ldexp(x[i], exponent);
+    if (!out) return NULL;
+    for (size_t i = 0; i < count; i++) out[i] = ldexp(x[i], exponent);
     return out;
 }
 

@@ -57,7 +57,7 @@ static brio_status offset_surface(run *r, const power_crust_options *crust, cons
     o.triangulate = crust->triangulate;
     o.simplify = crust->simplify;
     if (by_mesh) o.poles.solid = points;
-    uint64_t work;
+    uint64_t work = 0;
     size_t usual;
     brio_status status = cli_usual_points(r, points, NULL, false, &usual);
     if (status == BRIO_OK) status = brio_estimate_offset_surface(r->ctx, usual, &o, &work);

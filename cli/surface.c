@@ -163,7 +163,7 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     o.pieces = a->pieces;
     o.density = a->density || (r->common.json && a->extraction == BRIO_EXTRACTION_LABELS);
     o.extraction = (brio_extraction)a->extraction;
-    uint64_t work;
+    uint64_t work = 0;
     size_t usual;
     brio_status status = cli_usual_points(r, points, NULL, false, &usual);
     if (status == BRIO_OK) status = brio_estimate_cocone(r->ctx, usual, &o, &work);
@@ -250,7 +250,7 @@ static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh *
     brio_labeled_delaunay_options o = labeled_delaunay_options(r);
     brio_labeled_delaunay_stats s = {.size = sizeof s};
     const arguments *a = r->arguments;
-    uint64_t work;
+    uint64_t work = 0;
     size_t usual;
     uint32_t *samples = NULL;
     brio_status status = BRIO_OK;
