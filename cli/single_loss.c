@@ -36,7 +36,11 @@ static double move_of(single_loss *l, const double *x, size_t count) {
     double moved = 0;
     for (size_t i = 0; i < count; i++)
         if (fabs(x[i]) > fabs(l->largest)) l->largest = x[i];
-    for (size_t i = 0; i < count && fits(l); i++) moved = fmax(moved, fabs(x[i] - (double)(float)x[i]));
+    if (!fits(l)) return 0;
+    for (size_t i = 0; i < count; i++) {
+        double d = fabs(x[i] - (double)(float)x[i]);
+        if (d > moved) moved = d; /* with fmax, gcc 12 for aarch64 ends with an internal error */
+    }
     return moved;
 }
 

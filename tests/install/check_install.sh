@@ -1,13 +1,15 @@
 #!/bin/sh
-# check_install.sh CMAKE CC ROOT static|shared|subproject: installs the library to a folder of its own, moves that, and
-# builds and runs a program with what is found there: by CMake's find_package and by pkg-config. Or builds the program's
-# project with brio as a part of it.
+# check_install.sh CMAKE CC ROOT BUILD tested|shared|subproject: installs the library that was built and tested in BUILD, or a
+# shared one built here, to a folder of its own, moves that, and builds and runs a program with what is found there: by
+# CMake's find_package and by pkg-config. Or builds the program's project with brio as a part of it. What is built here is
+# not optimized: where files lie does not depend on that.
 set -eu
 
 cmake=$1
 cc=$2
 root=$3
-kind=$4
+build=$4
+kind=$5
 consumer=$root/tests/install
 
 folder=$(mktemp -d)
@@ -36,7 +38,7 @@ expect_output() {
 
 if [ "$kind" = subproject ]; then
     step "FetchContent"
-    "$cmake" -S "$consumer" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" -DBRIO_SOURCE="$root" >>"$folder/log" 2>&1
+    "$cmake" -S "$consumer" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Debug -DBRIO_SOURCE="$root" >>"$folder/log" 2>&1
     "$cmake" --build "$folder/build" >>"$folder/log" 2>&1
     expect_output "$folder/build/consumer"
     # nothing of brio's own is built beside the library, or installed
@@ -52,12 +54,16 @@ if [ "$kind" = subproject ]; then
     exit 0
 fi
 
-step "build and install ($kind)"
-[ "$kind" = shared ] && shared=ON || shared=OFF
-"$cmake" -S "$root" -B "$folder/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS="$shared" \
-    -DBRIO_TESTS=OFF -DCMAKE_INSTALL_PREFIX="$folder/installed" >>"$folder/log" 2>&1
-"$cmake" --build "$folder/build" >>"$folder/log" 2>&1
-"$cmake" --install "$folder/build" >>"$folder/log" 2>&1
+if [ "$kind" = shared ]; then
+    step "build"
+    build=$folder/build
+    "$cmake" -S "$root" -B "$build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Debug -DBUILD_SHARED_LIBS=ON \
+        -DBRIO_TESTS=OFF >>"$folder/log" 2>&1
+    "$cmake" --build "$build" >>"$folder/log" 2>&1
+fi
+
+step "install ($kind)"
+"$cmake" --install "$build" --prefix "$folder/installed" >>"$folder/log" 2>&1
 mv "$folder/installed" "$prefix"
 "$prefix/bin/brio" --version
 for page in man/man1/brio.1 man/man1/brio-surface.1 bash-completion/completions/brio zsh/site-functions/_brio \

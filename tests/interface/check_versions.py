@@ -33,8 +33,8 @@ def grow(header):
 
 
 def build(root, cmake, compiler, folder):
-    run(cmake, "-S", root, "-B", folder, "-DCMAKE_C_COMPILER=" + compiler, "-DCMAKE_BUILD_TYPE=Release",
-        "-DCMAKE_C_FLAGS_RELEASE=-O1 -DNDEBUG", "-DBUILD_SHARED_LIBS=ON", "-DBRIO_TESTS=OFF")
+    run(cmake, "-S", root, "-B", folder, "-DCMAKE_C_COMPILER=" + compiler, "-DCMAKE_BUILD_TYPE=Debug",
+        "-DBUILD_SHARED_LIBS=ON", "-DBRIO_TESTS=OFF")
     run(cmake, "--build", folder, "--target", "brio", "-j", "2")
     return folder / "libbrio.so"
 
