@@ -272,7 +272,7 @@ static brio_status make_watched(watch *w, uint32_t n, bool conforming) {
 static void work_between_reports_is_bounded(void) {
     for (int conforming = 0; conforming < 2; conforming++) {
         watch w = {.allowed = SIZE_MAX};
-        EXPECT(make_watched(&w, 400, conforming) == BRIO_OK);
+        EXPECT(make_watched(&w, SHORT_TESTS ? 200 : 400, conforming) == BRIO_OK);
         EXPECT(w.most <= 2 * BRIO_IMPLICIT_WORK && w.reports > 50, "%zu evaluations, %zu reports", w.most, w.reports);
     }
 }

@@ -5,11 +5,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#ifdef BRIO_SHORT_TESTS /* the thread sanitizer takes twenty times as long */
-enum { N = 12000, REPETITIONS = 8, SPARSE = 4 };
-#else
-enum { N = 40000, REPETITIONS = 20, SPARSE = 1 };
-#endif
+enum { N = SHORT_TESTS ? 12000 : 40000, REPETITIONS = SHORT_TESTS ? 8 : 20, SPARSE = SHORT_TESTS ? 4 : 1 };
 
 static double points[3 * N], weights[N];
 
@@ -64,7 +60,7 @@ static void every_number_of_threads_gives_the_same_arrays(void) {
         for (int weighted = 0; weighted < 2; weighted++) {
             brio_delaunay_stats one, many;
             uint64_t expected = fingerprint(points, weighted ? weights : NULL, n, 1, &one), deferred = 0;
-            for (int threads = 2; threads <= 8; threads += threads < 3 ? 1 : 5) {
+            for (int threads = SHORT_TESTS ? 3 : 2; threads <= 8; threads += threads < 3 ? 1 : 5) {
                 uint64_t found = fingerprint(points, weighted ? weights : NULL, n, threads, &many);
                 EXPECT(found == expected, "set %d, weighted %d, %d threads", set, weighted, threads);
                 EXPECT(many.duplicates == one.duplicates && many.hidden == one.hidden);

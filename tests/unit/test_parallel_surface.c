@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { N = 6000 };
+enum { N = 6000, MOST_THREADS = SHORT_TESTS ? 3 : 8 };
 
 static double points[3 * N];
 
@@ -73,7 +73,7 @@ static void expect_one_answer(size_t n, const brio_power_crust_options *o) {
     brio_context *ctx = new_context();
     result one, many;
     run(ctx, n, o, 1, &one);
-    for (int threads = 2; threads <= 8; threads += threads < 3 ? 1 : 5) {
+    for (int threads = SHORT_TESTS ? 3 : 2; threads <= MOST_THREADS; threads += threads < 3 ? 1 : 5) {
         run(ctx, n, o, threads, &many);
         expect_same(&one, &many, threads);
         result_free(&many);

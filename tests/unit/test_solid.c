@@ -12,7 +12,7 @@
 
 static brio_context *ctx;
 
-enum { SEEDS = 6, RESOLUTION = 48 };
+enum { SEEDS = SHORT_TESTS ? 1 : 6, RESOLUTION = 48 };
 
 /* --- trees --- */
 
@@ -304,7 +304,7 @@ static void solids_are_certified(void) {
             brio_certificate_free(&c);
             brio_mesh_free(mesh);
         }
-    EXPECT(least <= 1 && most >= 5, "genus %d to %d", (int)least, (int)most);
+    EXPECT(SHORT_TESTS || (least <= 1 && most >= 5), "genus %d to %d", (int)least, (int)most);
     EXPECT(crossed <= 60, "%d pairs of triangles cross", (int)crossed);
 }
 
