@@ -226,7 +226,7 @@ brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, co
     evaluation e = {.ctx = ctx, .num_finite = s->tetrahedra, .num_points = num_points};
     e.t = brio_tetrahedra_of(t);
     e.out = &mine;
-    brio_status size = BRIO_CHECK_RESULT(ctx, brio_alpha_complex, out);
+    brio_status size = BRIO_CHECK_OWNER(ctx, brio_alpha_complex, out, triangulation2);
     if (size != BRIO_OK) return size;
     BRIO_REQUIRE(ctx, num_points == s->points, BRIO_ERR_ARGUMENT, "the triangulation has %zu points, not %zu",
                  s->points, num_points);
@@ -242,7 +242,7 @@ done:
 }
 
 void brio_alpha_complex_free(brio_alpha_complex *c) {
-    if (!c || !c->context) return;
+    if (!c || !BRIO_OWNS(brio_alpha_complex, c, triangulation2) || !c->context) return;
     brio_release(c->context, c->simplices[0]);
     brio_release(c->context, c->values[0]);
     brio_release(c->context, c->solid[0]);

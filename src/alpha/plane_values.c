@@ -112,7 +112,7 @@ brio_status brio_alpha_values2(brio_context *ctx, const brio_triangulation2 *t, 
                     .num_finite = s->triangles,
                     .num_points = num_points,
                     .out = &mine};
-    brio_status size = BRIO_CHECK_RESULT(ctx, brio_alpha_complex, out);
+    brio_status size = BRIO_CHECK_OWNER(ctx, brio_alpha_complex, out, triangulation2);
     if (size != BRIO_OK) return size;
     BRIO_REQUIRE(ctx, num_points == s->points, BRIO_ERR_ARGUMENT, "the triangulation has %zu points, not %zu",
                  s->points, num_points);

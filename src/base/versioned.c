@@ -45,6 +45,16 @@ brio_status brio_versioned_check(brio_context *ctx, const void *given, const cha
                      size, name);
 }
 
+bool brio_versioned_reaches(const void *given, size_t least) {
+    size_t size = size_of(given);
+    return is_plausible(size) && size >= least;
+}
+
+brio_status brio_versioned_check_owner(brio_context *ctx, const void *given, size_t least, const char *name) {
+    if (brio_versioned_reaches(given, least)) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s.size is %zu: set it to sizeof(%s)", name, size_of(given), name);
+}
+
 brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine, size_t mine_size, const char *name) {
     if (!given) return BRIO_OK;
     brio_status status = brio_versioned_check(ctx, given, name);

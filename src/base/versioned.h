@@ -8,6 +8,7 @@
 #define BRIO_BASE_VERSIONED_H
 
 #include "base/context.h"
+#include <stddef.h>
 
 /** Fills the caller's struct of `size` bytes with defaults, a struct of `mine_size` bytes. Bytes beyond the library's
  *  struct become 0. The caller's field `size` becomes `size`. */
@@ -23,6 +24,13 @@ brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT if the size is impossible. */
 brio_status brio_versioned_check(brio_context *ctx, const void *given, const char *name);
 
+/** The same for a result that owns memory and is never NULL: its size must be `least` at least, so that all by which it is
+ *  freed is in it. */
+brio_status brio_versioned_check_owner(brio_context *ctx, const void *given, size_t least, const char *name);
+
+/** Returns whether the caller's struct has so many bytes, and a size that brio_versioned_check accepts. */
+bool brio_versioned_reaches(const void *given, size_t least);
+
 /** Copies a result into the caller's struct, up to the caller's size, which stays. Bytes beyond the library's struct
  *  become 0. Does nothing for NULL or a size that brio_versioned_check refuses. */
 void brio_versioned_give(void *given, const void *mine, size_t mine_size);
@@ -37,5 +45,10 @@ void brio_versioned_give(void *given, const void *mine, size_t mine_size);
 #define BRIO_TAKE(ctx, type, given, mine)   brio_versioned_take(ctx, given, mine, sizeof(type), #type)
 #define BRIO_CHECK_RESULT(ctx, type, given) brio_versioned_check(ctx, given, #type)
 #define BRIO_GIVE(type, given, mine)        brio_versioned_give(given, mine, sizeof(type))
+
+/** For a result that owns memory: `last` is the last of its fields by which it is freed. */
+#define BRIO_END_OF(type, field)                 (offsetof(type, field) + sizeof(((type *)0)->field))
+#define BRIO_CHECK_OWNER(ctx, type, given, last) brio_versioned_check_owner(ctx, given, BRIO_END_OF(type, last), #type)
+#define BRIO_OWNS(type, given, last)             brio_versioned_reaches(given, BRIO_END_OF(type, last))
 
 #endif

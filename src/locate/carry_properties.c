@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/scale.h"
 #include "base/team.h"
+#include "mesh/properties.h"
 #include "order/canonical_points.h"
 #include "query/nearest_points.h"
 #include <math.h>
@@ -107,20 +108,18 @@ static void find_name(const brio_mesh *mesh, const char *name, char out[64]) {
     for (size_t n = 2; brio_mesh_property(mesh, out); n++) brio_numbered_name(out, 64, input, n);
 }
 
-static brio_status copy_property(const brio_property *p, const uint32_t *samples, brio_mesh *mesh) {
-    size_t size = brio_scalar_size(p->type);
+/* Copies property i of the points, which may be the mesh itself: adding one then moves it. */
+static brio_status copy_property(const brio_mesh *points, size_t i, const uint32_t *samples, brio_mesh *mesh) {
     char name[64];
     void *data;
-    find_name(mesh, p->name, name);
-    brio_status status = brio_mesh_add_property(mesh, name, p->type, &data);
+    find_name(mesh, points->properties[i].name, name);
+    brio_status status = brio_mesh_add_property(mesh, name, points->properties[i].type, &data);
     if (status != BRIO_OK) return status;
+    const brio_property *p = &points->properties[i];
+    size_t size = brio_scalar_size(p->type);
     for (size_t v = 0; v < mesh->num_vertices; v++)
         memcpy((char *)data + v * size, (const char *)p->data + samples[v] * size, size);
     return BRIO_OK;
-}
-
-static void drop_properties(brio_mesh *mesh, size_t left) {
-    while (mesh->num_properties > left) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
 }
 
 static brio_status check_samples(brio_context *ctx, const uint32_t *samples, size_t num_vertices, size_t num_points) {
@@ -137,17 +136,16 @@ brio_status brio_mesh_carry_properties(brio_context *ctx, const brio_mesh *point
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     uint32_t *nearest = NULL;
-    size_t before = mesh->num_properties;
+    size_t before = mesh->num_properties, count = points->num_properties;
     if (samples) {
         BRIO_TRY(check_samples(ctx, samples, mesh->num_vertices, points->num_vertices));
     } else if (points->num_properties) {
         BRIO_TRY(BRIO_ALLOC(ctx, nearest, mesh->num_vertices));
         BRIO_TRY(find_nearest(ctx, points, mesh, nearest));
     }
-    for (size_t i = 0; i < points->num_properties; i++)
-        BRIO_TRY(copy_property(&points->properties[i], samples ? samples : nearest, mesh));
+    for (size_t i = 0; i < count; i++) BRIO_TRY(copy_property(points, i, samples ? samples : nearest, mesh));
 done:
-    if (status != BRIO_OK) drop_properties(mesh, before);
+    if (status != BRIO_OK) brio_mesh_drop_properties(mesh, before);
     brio_release(ctx, nearest);
     return status;
 }

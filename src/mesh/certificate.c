@@ -518,7 +518,7 @@ brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_certificate c = {.size = sizeof c, .self_intersections = -1, .context = ctx};
-    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_certificate, out));
+    BRIO_TRY(BRIO_CHECK_OWNER(ctx, brio_certificate, out, genera));
     BRIO_GIVE(brio_certificate, out, &(brio_certificate){0});
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     BRIO_TRY(certify_topology(ctx, mesh, &c));
@@ -530,7 +530,7 @@ done:
 }
 
 void brio_certificate_free(brio_certificate *certificate) {
-    if (!certificate || !certificate->context) return;
+    if (!certificate || !BRIO_OWNS(brio_certificate, certificate, genera) || !certificate->context) return;
     brio_release(certificate->context, certificate->genera);
     BRIO_GIVE(brio_certificate, certificate, &(brio_certificate){0});
 }

@@ -1,4 +1,5 @@
 /* The mesh handle: points, polygons or tetrahedra over them, properties of the points. */
+#include "mesh/properties.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/utf8.h"
@@ -129,6 +130,10 @@ brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scala
 done:
     brio_release(ctx, bytes);
     return status;
+}
+
+void brio_mesh_drop_properties(brio_mesh *mesh, size_t left) {
+    while (mesh->num_properties > left) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
 }
 
 const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name) {

@@ -6,10 +6,12 @@
  * The surface is scaled to about 1 meanwhile, so that its area vectors neither overflow nor vanish. */
 #include "mesh/vertex_normals.h"
 #include "base/finite.h"
+#include "base/float_state.h"
 #include "base/memory.h"
 #include "base/union_find.h"
 #include "mesh/edge_rings.h"
 #include "mesh/extent.h"
+#include "mesh/properties.h"
 #include <math.h>
 #include <string.h>
 
@@ -98,7 +100,9 @@ done:
 }
 
 brio_status brio_mesh_add_normals(brio_mesh *mesh) {
+    BRIO_DOOR;
     brio_status status = BRIO_OK;
+    size_t before = mesh->num_properties;
     double *normals = NULL;
     float *column[3];
     BRIO_TRY(brio_vertex_normals(mesh, &normals));
@@ -110,6 +114,7 @@ brio_status brio_mesh_add_normals(brio_mesh *mesh) {
     for (size_t v = 0; v < mesh->num_vertices; v++)
         for (int k = 0; k < 3; k++) column[k][v] = (float)normals[3 * v + (size_t)k];
 done:
+    if (status != BRIO_OK) brio_mesh_drop_properties(mesh, before);
     brio_release(mesh->context, normals);
     return status;
 }

@@ -7,7 +7,7 @@ import sys
 
 # Handles, settings and views: no arithmetic on doubles in them, nor in what they call.
 NO_ARITHMETIC = re.compile(r"brio_(\w+_)?(free|init|string|message|size|format_of|version|version_number)$|brio_context_|brio_triangulation2?_"
-                           r"(stats|tetrahedra|triangles|representatives|points_hash|rounds|line)$|brio_mesh_(new|set_\w+|add_\w+|property\w*)$")
+                           r"(stats|tetrahedra|triangles|representatives|points_hash|rounds|line)$|brio_mesh_(new|set_\w+|add_property|property\w*)$")
 DECLARED = re.compile(r"BRIO_API\s+[\w\s*]*?\b(brio_\w+)\s*\(")
 
 

@@ -152,6 +152,22 @@ static void what_is_wrong_is_refused(void) {
     brio_context_free(ctx);
 }
 
+/* The second property moved the mesh's, of which the loop had the first. */
+static void a_mesh_may_carry_its_own_properties(void) {
+    static double p[3 * 50];
+    brio_context *ctx = new_context();
+    uniform_points(5, 50, p);
+    brio_mesh *mesh = mesh_of(ctx, p, 50);
+    EXPECT(number_points(mesh) == BRIO_OK &&
+           brio_mesh_add_property(mesh, "second", BRIO_SCALAR_FLOAT64, NULL) == BRIO_OK);
+    EXPECT(brio_mesh_carry_properties(ctx, mesh, NULL, mesh) == BRIO_OK && mesh->num_properties == 4);
+    const brio_property *copy = brio_mesh_property(mesh, "input_number");
+    EXPECT(copy && !memcmp(copy->data, brio_mesh_property(mesh, "number")->data, 50 * sizeof(uint16_t)));
+    brio_mesh_free(mesh);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
 static brio_status carry_some(brio_context *ctx) {
     static double points[3 * 50], vertices[3 * 40];
     brio_mesh *source, *mesh;
@@ -196,6 +212,7 @@ int main(void) {
     RUN(no_name_that_is_taken_loses_a_property);
     RUN(what_is_wrong_is_refused);
     RUN(every_failing_allocation_leaves_the_mesh_as_it_was);
+    RUN(a_mesh_may_carry_its_own_properties);
     RUN(a_cancelled_call_leaves_nothing);
     return harness_end();
 }

@@ -198,6 +198,38 @@ static void normals_of_odd_vertices_are_0(void) {
     brio_context_free(ctx);
 }
 
+/* A tetrahedron, with nz already if `has_z`, is given normals. */
+static brio_status add_normals(brio_context *ctx, bool has_z) {
+    static const double p[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const uint32_t faces[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    static const uint64_t offsets[5] = {0, 3, 6, 9, 12};
+    brio_mesh *mesh;
+    brio_status status = brio_mesh_new(ctx, &mesh);
+    if (status != BRIO_OK) return status;
+    status = brio_mesh_set_vertices(mesh, p, 4);
+    if (status == BRIO_OK) status = brio_mesh_set_faces(mesh, offsets, faces, 4);
+    if (status == BRIO_OK && has_z) status = brio_mesh_add_property(mesh, "nz", BRIO_SCALAR_FLOAT32, NULL);
+    size_t before = mesh->num_properties;
+    if (status == BRIO_OK) {
+        status = brio_mesh_add_normals(mesh);
+        EXPECT(mesh->num_properties == (status == BRIO_OK ? before + 3 : before), "%zu", mesh->num_properties);
+    }
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static brio_status add_normals_to_none(brio_context *ctx) {
+    return add_normals(ctx, false);
+}
+
+/* Some of the three stayed, so that a second attempt found "two properties named nx". */
+static void normals_that_fail_leave_the_mesh_as_it_was(void) {
+    brio_context *ctx = context_of(1);
+    EXPECT(add_normals(ctx, true) == BRIO_ERR_ARGUMENT);
+    brio_context_free(ctx);
+    expect_clean_failures(add_normals_to_none);
+}
+
 /* --- options of the labeled Delaunay triangulation --- */
 
 static brio_mesh *surface_of(brio_context *ctx, const double *p, size_t n, const brio_labeled_delaunay_options *o,
@@ -448,6 +480,7 @@ int main(void) {
     RUN(points_have_the_normals_of_their_vertices_or_neighbours);
     RUN(normals_are_the_same_in_every_unit);
     RUN(normals_of_odd_vertices_are_0);
+    RUN(normals_that_fail_leave_the_mesh_as_it_was);
     RUN(confidence_falls_with_the_evidence);
     RUN(a_hole_stays_open);
     RUN(open_surfaces_are_manifold_and_canonical);

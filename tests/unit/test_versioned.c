@@ -120,6 +120,45 @@ static void sizes_that_were_not_set_are_arguments(void) {
     brio_context_free(ctx);
 }
 
+/* What such a struct owned was lost, or half a pointer was freed. */
+static void results_that_cannot_be_freed_are_refused(void) {
+    brio_context *ctx = new_context();
+    double p[3 * 40];
+    brio_mesh *mesh = NULL;
+    brio_triangulation *t = NULL;
+    uniform_points(1, 40, p);
+    EXPECT(brio_generate(ctx, BRIO_KIND_SPHERE, 10, NULL, &mesh) == BRIO_OK);
+    EXPECT(brio_delaunay(ctx, p, NULL, 40, NULL, &t) == BRIO_OK);
+    size_t before = brio_context_memory(ctx);
+    for (size_t size = sizeof size; size <= sizeof(brio_certificate) + 8; size++) {
+        union {
+            size_t size;
+            brio_certificate it;
+            unsigned char bytes[sizeof(brio_certificate) + 8];
+        } c = {.bytes = {0}};
+        c.size = size;
+        bool whole = size >= offsetof(brio_certificate, genera) + sizeof c.it.genera;
+        EXPECT(brio_mesh_certificate(ctx, mesh, &c.it) == (whole ? BRIO_OK : BRIO_ERR_ARGUMENT), "%zu", size);
+        brio_certificate_free(&c.it);
+        EXPECT(brio_context_memory(ctx) == before, "%zu", size);
+    }
+    for (size_t size = sizeof size; size <= sizeof(brio_alpha_complex) + 8; size++) {
+        union {
+            size_t size;
+            brio_alpha_complex it;
+            unsigned char bytes[sizeof(brio_alpha_complex) + 8];
+        } c = {.bytes = {0}};
+        c.size = size;
+        bool whole = size >= sizeof c.it;
+        EXPECT(brio_alpha_values(ctx, t, p, NULL, 40, &c.it) == (whole ? BRIO_OK : BRIO_ERR_ARGUMENT), "%zu", size);
+        brio_alpha_complex_free(&c.it);
+        EXPECT(brio_context_memory(ctx) == before, "%zu", size);
+    }
+    brio_triangulation_free(t);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
 /* A field that is appended begins at the old size: no struct ends with padding, which would pass for the new field. */
 #define ENDS_WITH(type, last)                                                                                          \
     _Static_assert(offsetof(type, last) + sizeof(((type *)0)->last) == sizeof(type), #type " ends with padding")
@@ -167,6 +206,7 @@ int main(void) {
     RUN(options_of_any_size_are_taken);
     RUN(results_stay_within_the_callers_size);
     RUN(sizes_that_were_not_set_are_arguments);
+    RUN(results_that_cannot_be_freed_are_refused);
     RUN(statuses_have_words_of_their_own);
     RUN(the_library_is_of_the_headers_version);
     return harness_end();

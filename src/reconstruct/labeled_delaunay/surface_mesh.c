@@ -7,6 +7,7 @@
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
 #include "base/memory.h"
 #include "base/scale.h"
+#include "mesh/properties.h"
 #include "mesh/simplify.h"
 #include <math.h>
 
@@ -65,10 +66,6 @@ static void take_faces(const filling *x) {
     s->faces = NULL;
 }
 
-static void drop_last_property(brio_mesh *mesh) {
-    brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
-}
-
 /* Collapses edges. Writes the sample of each vertex that is left. */
 static brio_status simplify(const filling *x, uint32_t *samples) {
     brio_status status = BRIO_OK;
@@ -87,8 +84,8 @@ static brio_status simplify(const filling *x, uint32_t *samples) {
                                .tolerance = COLLAPSE_TOLERANCE};
     BRIO_TRY(brio_collapse_edges(mesh->context, mesh, &o));
     for (size_t v = 0; samples && v < mesh->num_vertices; v++) samples[v] = ((uint32_t *)sample)[v];
-    drop_last_property(mesh);
-    drop_last_property(mesh);
+    brio_mesh_drop_properties(mesh, mesh->num_properties - 1);
+    brio_mesh_drop_properties(mesh, mesh->num_properties - 1);
     BRIO_TRY(brio_scale_vertices(mesh->context, mesh->vertices, mesh->num_vertices, x->s->exponent));
 done:
     return status;

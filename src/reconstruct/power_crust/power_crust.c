@@ -11,6 +11,7 @@
 #include "base/scale.h"
 #include "reconstruct/power_crust/crust_faces.h"
 #include "reconstruct/power_crust/sample_normals.h"
+#include "mesh/properties.h"
 #include "mesh/simplify.h"
 #include <math.h>
 
@@ -36,10 +37,6 @@ done:
     return status;
 }
 
-static void drop_properties(brio_mesh *mesh) {
-    while (mesh->num_properties) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
-}
-
 brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, brio_mesh *mesh, double *normals,
                             brio_power_crust_stats *stats) {
     brio_status status = BRIO_OK;
@@ -54,7 +51,7 @@ brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_option
     if (normals) BRIO_TRY(brio_sample_normals(&l->diagram, l->label, l->representative, l->order, mesh, normals));
     brio_progress_part(l->ctx, bar, FACES_SHARE, 1);
     if (o->simplify) BRIO_TRY(simplify(l, counts.faces, mesh, &stats->simplify_seconds));
-    drop_properties(mesh);
+    brio_mesh_drop_properties(mesh, 0);
     BRIO_TRY(brio_scale_vertices(l->ctx, mesh->vertices, mesh->num_vertices, l->exponent));
 done:
     brio_progress_part(l->ctx, bar, 0, 1);
