@@ -57,27 +57,11 @@ void brio_builder_stream(brio_builder *b, uint64_t announced) {
     if (b->announced) *b->announced = announced;
 }
 
-/* Hands a block to the sink, without the properties that are absent. */
-static brio_status give(brio_builder *b) {
-    brio_status status = BRIO_OK;
-    brio_mesh block = *b->mesh;
-    block.num_properties = 0;
-    BRIO_TRY(BRIO_ALLOC(b->ctx, block.properties, b->mesh->num_properties));
-    for (size_t i = 0; i < b->mesh->num_properties; i++)
-        if (!b->absent || !brio_names_have(b->absent, b->mesh->properties[i].name))
-            block.properties[block.num_properties++] = b->mesh->properties[i];
-    BRIO_TRY(b->sink->take(b->sink->user, &block));
-done:
-    brio_release(b->ctx, block.properties);
-    return status;
-}
-
-/* Hands the vertices on and begins again with none. After a vertex that is no number, or a row without a column, vertices
- * are counted only. */
+/* Hands the vertices on and begins again with none. After a vertex that is no number, vertices are counted only. */
 static brio_status hand_on(brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_count_not_finite(&b->refused, b->passed, b->mesh->vertices, NULL, b->mesh->num_vertices);
-    if (!b->refused.count && b->drop_status == BRIO_OK) BRIO_TRY(give(b));
+    if (!b->refused.count) BRIO_TRY(b->sink->take(b->sink->user, b->mesh));
     b->passed += b->mesh->num_vertices;
     b->mesh->num_vertices = 0;
 done:
@@ -140,19 +124,6 @@ brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_
     brio_release(b->ctx, p->data);
     p->data = data;
     return BRIO_OK;
-}
-
-void brio_builder_drop_property(brio_builder *b, size_t i) {
-    brio_mesh *m = b->mesh;
-    if (b->streams && b->passed) {
-        if (!brio_names_have(b->absent, m->properties[i].name) && b->drop_status != BRIO_ERR_NO_MEMORY)
-            b->drop_status = brio_names_add(b->ctx, b->absent, m->properties[i].name) == BRIO_OK ? BRIO_ERR_FORMAT
-                                                                                                 : BRIO_ERR_NO_MEMORY;
-        return;
-    }
-    brio_release(b->ctx, m->properties[i].data);
-    m->num_properties--;
-    memmove(m->properties + i, m->properties + i + 1, (m->num_properties - i) * sizeof *m->properties);
 }
 
 /* --- faces and tetrahedra --- */
@@ -291,33 +262,11 @@ brio_status brio_builder_finish(brio_builder *b) {
     if (b->streams) {
         if (b->mesh->num_vertices || !b->passed) BRIO_TRY(hand_on(b));
         BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
-        if (b->drop_status == BRIO_ERR_FORMAT)
-            return brio_fail(b->ctx, BRIO_ERR_FORMAT, "%s: a row lacks the column %s, which the rows before it have",
-                             b->name, b->absent->names[b->absent->count - 1]);
-        return b->drop_status;
+        return BRIO_OK;
     }
     BRIO_TRY(trim(b));
     BRIO_TRY(check_indices(b));
     BRIO_TRY(brio_refuse_not_finite(b->ctx, b->mesh->vertices, NULL, b->mesh->num_vertices, b->name));
 done:
     return status;
-}
-
-/* --- names --- */
-
-brio_status brio_names_add(brio_context *ctx, brio_names *names, const char *name) {
-    brio_status status = BRIO_RESERVE(ctx, names->names, names->capacity, names->count + 1);
-    if (status == BRIO_OK) strcpy(names->names[names->count++], name);
-    return status;
-}
-
-bool brio_names_have(const brio_names *names, const char *name) {
-    for (size_t i = 0; i < names->count; i++)
-        if (!strcmp(names->names[i], name)) return true;
-    return false;
-}
-
-void brio_names_free(brio_context *ctx, brio_names *names) {
-    brio_release(ctx, names->names);
-    *names = (brio_names){.names = NULL};
 }

@@ -22,12 +22,6 @@ typedef struct brio_sink {
     void *user;
 } brio_sink;
 
-/** Names of properties. */
-typedef struct brio_names {
-    char (*names)[64];
-    size_t count, capacity;
-} brio_names;
-
 #define BRIO_COUNT_UNKNOWN UINT64_MAX
 
 typedef struct brio_builder {
@@ -41,9 +35,7 @@ typedef struct brio_builder {
     bool streams;          /* whether vertices go to the sink block by block */
     uint64_t passed;       /* vertices that the sink has received */
     uint64_t *announced;   /* NULL, or receives the number of vertices that the file will have (brio_builder_stream) */
-    brio_names *absent;    /* properties that some row lacks: not shown to the sink */
     brio_not_finite refused; /* with `streams`: vertices seen that are no numbers */
-    brio_status drop_status; /* of brio_builder_drop_property */
     char version[64];        /* what the reader says of the file's version; may be empty */
 } brio_builder;
 
@@ -79,9 +71,6 @@ void brio_builder_component_name(const brio_builder *b, const char *source, uint
                                  char name[64]);
 /** Adds a property whose values are in `data`. The mesh takes the block; on failure the function frees the block. */
 brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_scalar type, void *data);
-/** Removes property i, because some row lacks it. If the sink has received vertices with it, adds the property's name to
- *  b->absent instead, and brio_builder_finish fails: the file must be read again. */
-void brio_builder_drop_property(brio_builder *b, size_t i);
 /** Appends a corner to the face under construction.   index  the file's index minus its index base. */
 brio_status brio_builder_corner(brio_builder *b, double index);
 /** Ends the face under construction. */
@@ -94,10 +83,5 @@ brio_status brio_builder_edge(brio_builder *b, const double *indices);
 /** Releases unused memory, and checks all indices and coordinates. With `streams` hands on the last block. May also
  *  return BRIO_ERR_NOT_FINITE, and what the sink returns. */
 brio_status brio_builder_finish(brio_builder *b);
-
-/** Adds a name. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
-brio_status brio_names_add(brio_context *ctx, brio_names *names, const char *name);
-bool brio_names_have(const brio_names *names, const char *name);
-void brio_names_free(brio_context *ctx, brio_names *names);
 
 #endif

@@ -207,7 +207,6 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     BRIO_TRY(check_columns(&s, job->format, job->columns));
     BRIO_TRY(brio_builder_start(&b, ctx, s.name));
     b.sink = job->sink;
-    b.absent = job->absent;
     b.announced = &job->announced;
     BRIO_TRY(read_stream(&s, &b, job->format, job->columns));
     if (job->format == BRIO_FORMAT_NODE && !job->memory && strcmp(job->path, "-") != 0)
@@ -281,9 +280,8 @@ brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_rea
     brio_status status = BRIO_OK;
     block_call c = {ctx, take, user};
     const brio_sink sink = {call, &c};
-    brio_names absent = {.names = NULL};
     brio_read_options o = STANDARD;
-    brio_read_job job = {.path = path, .sink = &sink, .absent = &absent};
+    brio_read_job job = {.path = path, .sink = &sink};
     brio_file_facts found = {.size = sizeof found};
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_file_facts, facts));
     BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
@@ -296,6 +294,5 @@ brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_rea
 done:
     BRIO_GIVE(brio_file_facts, facts, &found);
     brio_mesh_free(job.mesh);
-    brio_names_free(ctx, &absent);
     return status;
 }

@@ -15,7 +15,6 @@ typedef struct brio_read_job {
     brio_format format;       /* BRIO_FORMAT_AUTO becomes the format that was found */
     const char *columns;      /* as in brio_read_options */
     const brio_sink *sink;    /* NULL: the mesh receives everything */
-    brio_names *absent;       /* with a sink: as in brio_builder */
     uint64_t announced;       /* set before the sink's first call, as in brio_builder */
     bool streamed;            /* whether the sink received the vertices */
     brio_mesh *mesh;          /* what was read, owned by the caller, or NULL if it was streamed */

@@ -39,7 +39,7 @@ static void xyz_separators_and_comments(void) {
     expect_points("a.pts", "2\n1 2 3\n4 5 6\n", 2, 0);
     expect_points("a.pts", "# c\n 0 \n", 0, 0);
     expect_points("a.xyz", "", 0, 0);
-    expect_points("a.xyz", "+1.0 2e0 .3E1 10\n4 5 6\n", 2, 0);
+    expect_points("a.xyz", "+1.0 2e0 .3E1 10\n4 5 6\n", 2, 1);
     expect_points("a.xyz", "1 2 3 10\n4 5 6 11 12\n", 2, 1);
     expect_points("a.xyz", "1 2 3 tree 10\n4 5 6 house 11\n", 2, 1);
 }
@@ -62,7 +62,8 @@ static void xyz_names_of_columns(void) {
     EXPECT(isnan(value(m, "v", 0)) && value(m, "v", 1) == 7, "an empty field");
     brio_mesh_free(m);
     m = io_read_text("a.csv", "x,y,z,v,w\n1,2,3,7,1\n4,5,6,7\n");
-    EXPECT(m && m->num_properties == 1 && value(m, "v", 1) == 7, "a column that a row lacks");
+    EXPECT(m && m->num_properties == 2 && value(m, "v", 1) == 7, "a column that a row lacks");
+    EXPECT(value(m, "w", 0) == 1 && isnan(value(m, "w", 1)), "was dropped with all its values");
     brio_mesh_free(m);
     m = io_read_text("a.txt", "//X Y Z Intensity\n1 2 3 4\n");
     EXPECT(value(m, "Intensity", 0) == 4);

@@ -128,10 +128,9 @@ static bool can_patch(const char *path) {
     return strcmp(path, "-") != 0 && (stat(path, &facts) != 0 || S_ISREG(facts.st_mode));
 }
 
-/* Whether a pass comes first because nothing can be taken back from the output: neither the number of points nor rows with
- * a column that a later row lacks. */
+/* Whether a pass comes first because the output begins with the number of points, and its beginning cannot be written last. */
 static bool must_count(const conversion *c) {
-    return !can_patch(c->to) && (c->writer.format->counts || brio_source_may_lack_columns(&c->source));
+    return !can_patch(c->to) && c->writer.format->counts;
 }
 
 /* Goes through the points before the first one is written, as often as the format needs. */
@@ -215,32 +214,23 @@ done:
     return status;
 }
 
-/* Converts; if a column turns out to be absent, starts again without it. */
 static brio_status run(conversion *c) {
     brio_status status = BRIO_OK;
     const brio_sink whole = {write_whole, c};
     const brio_bar bar = brio_progress_bar(c->ctx);
     bool choose = c->options->drop_outliers || c->options->thin > 0, rows = brio_row_format_of(c->format) != NULL;
-    bool again = brio_source_rereadable(c->source.path);
     bool once = !choose && c->format != BRIO_FORMAT_LAS &&
                 (can_patch(c->to) || (rows && !brio_row_format_of(c->format)->counts));
-    c->source.whole = !rows || (!again && !once);
-    for (size_t absent = 0;; absent = c->source.absent.count) {
-        c->stats.points = c->counted = 0;
-        c->told = false;
-        status = BRIO_OK;
-        double started = brio_seconds();
-        brio_progress_part(c->ctx, bar, 0, 0.6);
-        if (choose) status = brio_source_choose(&c->source);
-        brio_progress_part(c->ctx, bar, choose ? 0.6 : 0, 1);
-        c->stats.select_seconds = brio_seconds() - started;
-        if (status == BRIO_OK) status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
-        brio_progress_part(c->ctx, bar, 0, 1);
-        bool taken = c->stats.points > 0 && !can_patch(c->to); /* rows that cannot be taken back */
-        if (status != BRIO_ERR_FORMAT || c->source.absent.count == absent || !again || taken) return status;
-        brio_release(c->ctx, c->source.chosen);
-        c->source.chosen = NULL;
-    }
+    c->source.whole = !rows || (!brio_source_rereadable(c->source.path) && !once);
+    double started = brio_seconds();
+    brio_progress_part(c->ctx, bar, 0, 0.6);
+    if (choose) BRIO_TRY(brio_source_choose(&c->source));
+    brio_progress_part(c->ctx, bar, choose ? 0.6 : 0, 1);
+    c->stats.select_seconds = brio_seconds() - started;
+    status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
+done:
+    brio_progress_part(c->ctx, bar, 0, 1);
+    return status;
 }
 
 brio_status brio_convert(brio_context *ctx, const char *from, const char *to, const brio_convert_options *options,

@@ -23,11 +23,6 @@ bool brio_source_rereadable(const char *path) {
     return strcmp(path, "-") != 0 && stat(path, &facts) == 0 && S_ISREG(facts.st_mode);
 }
 
-bool brio_source_may_lack_columns(const brio_source *s) {
-    brio_format format = s->job.format == BRIO_FORMAT_AUTO ? brio_format_of(s->path) : s->job.format;
-    return !s->whole && !s->job.mesh && (format == BRIO_FORMAT_AUTO || format == BRIO_FORMAT_XYZ);
-}
-
 brio_status brio_source_changed(const brio_source *s) {
     return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: the file changed while it was read", s->path);
 }
@@ -76,12 +71,10 @@ done:
     return status;
 }
 
-/* Reads the file, once more if a column turns out to be absent before anything was kept of the blocks. */
 static brio_status read_pass(pass *p) {
     brio_source *s = p->source;
     const brio_sink sink = {take_block, p};
     s->job.sink = s->whole ? NULL : &sink;
-    s->job.absent = &s->absent;
     s->points_read = 0;
     s->passes++;
     if (!is_unchanged(s)) return brio_source_changed(s);
@@ -209,6 +202,5 @@ done:
 
 void brio_source_free(brio_source *s) {
     brio_mesh_free(s->job.mesh);
-    brio_names_free(s->ctx, &s->absent);
     brio_release(s->ctx, s->chosen);
 }

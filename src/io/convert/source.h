@@ -9,9 +9,8 @@ typedef struct brio_source {
     brio_context *ctx;
     const char *path;
     const brio_convert_options *options;
-    bool whole;        /* whether the first pass keeps the file in memory */
-    brio_read_job job; /* of the last pass; job.mesh is the file in memory */
-    brio_names absent;
+    bool whole;           /* whether the first pass keeps the file in memory */
+    brio_read_job job;    /* of the last pass; job.mesh is the file in memory */
     uint64_t points_read; /* of a pass, before the choice */
     uint8_t *chosen;      /* of the points in the box: 1 for those that stay; NULL: all stay */
     uint64_t num_boxed;   /* points in the box, if `chosen` was made */
@@ -29,9 +28,6 @@ brio_status brio_source_pass(brio_source *s, const brio_sink *sink);
 
 /** Chooses points: drops outliers, then thins. Goes through the file once. */
 brio_status brio_source_choose(brio_source *s);
-
-/** Returns whether a row far behind the first ones may turn out to lack a column, so that all is read again. */
-bool brio_source_may_lack_columns(const brio_source *s);
 
 /** Returns BRIO_ERR_FORMAT: the passes found different things in the file. */
 brio_status brio_source_changed(const brio_source *s);

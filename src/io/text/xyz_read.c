@@ -21,7 +21,6 @@ typedef enum { COLUMN_IGNORED, COLUMN_AXIS, COLUMN_PROPERTY } column_role;
 typedef struct {
     column_role role;
     size_t target; /* axis, or index of the property */
-    bool missing;  /* whether some row lacks it */
 } column;
 
 typedef enum { NAMES_NONE, NAMES_COMMENT, NAMES_PLAIN, NAMES_GIVEN /* by the caller */ } names_source;
@@ -252,7 +251,7 @@ static brio_status plan_columns(xyz_reader *r) {
     size_t count = r->names.count > found ? r->names.count : found;
     BRIO_TRY(BRIO_ALLOC_ZERO(r->stream->ctx, r->columns, count));
     r->num_columns = count;
-    for (size_t k = 0; k < 3; k++) r->columns[r->axes[k]] = (column){COLUMN_AXIS, k, false};
+    for (size_t k = 0; k < 3; k++) r->columns[r->axes[k]] = (column){COLUMN_AXIS, k};
     for (size_t i = 0; i < found; i++)
         if (r->columns[i].role == COLUMN_IGNORED && is_property(r, i)) BRIO_TRY(add_property(r, i));
 done:
@@ -281,14 +280,11 @@ static brio_status read_row(xyz_reader *r) {
     BRIO_TRY(brio_builder_vertex(r->builder, point));
     brio_mesh *mesh = r->builder->mesh;
     for (size_t i = 0; i < r->num_columns; i++) {
-        column *c = &r->columns[i];
+        const column *c = &r->columns[i];
         if (c->role != COLUMN_PROPERTY) continue;
-        if (i >= r->fields.count) {
-            c->missing = true;
-            continue;
-        }
-        if (r->fields.at[i].kind == BRIO_FIELD_WORD) return bad_field(r, i);
-        ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = r->fields.at[i].value;
+        bool there = i < r->fields.count; /* programs leave out empty fields at the end */
+        if (there && r->fields.at[i].kind == BRIO_FIELD_WORD) return bad_field(r, i);
+        ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = there ? r->fields.at[i].value : NAN;
     }
 done:
     return status;
@@ -334,12 +330,6 @@ done:
     return status;
 }
 
-static void drop_missing(const xyz_reader *r) {
-    for (size_t i = r->num_columns; i-- > 0;)
-        if (r->columns[i].role == COLUMN_PROPERTY && r->columns[i].missing)
-            brio_builder_drop_property(r->builder, r->columns[i].target);
-}
-
 brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) {
     brio_status status = BRIO_OK;
     xyz_reader r = {.stream = s, .builder = b, .fields = {.stream = s}};
@@ -357,7 +347,6 @@ brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) 
     BRIO_REQUIRE(s->ctx, !r.counted || r.promised == brio_builder_count(b), BRIO_ERR_FORMAT,
                  "%s: line %zu: promises %" PRIu64 " points, %" PRIu64 " rows follow", s->name, r.count_line,
                  r.promised, brio_builder_count(b));
-    drop_missing(&r);
 done:
     brio_release(s->ctx, r.fields.at);
     brio_release(s->ctx, r.names.at);
