@@ -12,7 +12,8 @@ typedef enum {
     BRIO_PLY_COORDINATE,
     BRIO_PLY_PROPERTY,
     BRIO_PLY_FACE,
-    BRIO_PLY_TETRAHEDRON
+    BRIO_PLY_TETRAHEDRON,
+    BRIO_PLY_EDGE
 } brio_ply_role;
 
 typedef struct brio_ply_property {
@@ -20,7 +21,7 @@ typedef struct brio_ply_property {
     brio_scalar type, count_type; /* count_type: of the count of a list */
     bool list;
     brio_ply_role role;
-    size_t target; /* axis of a coordinate, or index of a property of the mesh */
+    size_t target; /* axis of a coordinate, end of an edge, or index of a property of the mesh */
     size_t offset; /* byte offset in a binary row without lists */
 } brio_ply_property;
 

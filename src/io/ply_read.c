@@ -1,8 +1,8 @@
 /* Reads PLY files: text, little and big endian.
  *
  * Each element is read in one of three ways. Binary rows of fixed size are read block by block: vertices are converted
- * column by column, and other elements are skipped. All other rows are read scalar by scalar, whatever their lists and
- * encoding.
+ * column by column, and other elements are skipped, except edges. All other rows are read scalar by scalar, whatever their
+ * lists and encoding.
  *
  * Based on: Turk. The PLY polygon file format. Stanford 1994. */
 #include "io/formats.h"
@@ -65,17 +65,29 @@ static void plan_list(brio_ply_element *e, brio_ply_role role) {
     }
 }
 
+/* Edges are read if both their ends are there. */
+static void plan_edge(brio_ply_element *e) {
+    brio_ply_property *ends[2] = {NULL, NULL};
+    for (size_t i = 0; i < e->num_properties; i++) {
+        brio_ply_property *p = &e->properties[i];
+        if (!p->list && !strcmp(p->name, "vertex1")) ends[0] = p;
+        if (!p->list && !strcmp(p->name, "vertex2")) ends[1] = p;
+    }
+    for (size_t k = 0; k < 2 && ends[0] && ends[1]; k++) ends[k]->role = BRIO_PLY_EDGE, ends[k]->target = k;
+}
+
 static bool has_role(const brio_ply_element *e, brio_ply_role role) {
     for (size_t i = 0; i < e->num_properties; i++)
         if (e->properties[i].role == role) return true;
     return false;
 }
 
-/* Returns whether the file has faces or tetrahedra. */
+/* Returns whether the file has faces, tetrahedra or edges. */
 static bool holds_cells(const brio_ply_header *header) {
     for (size_t i = 0; i < header->num_elements; i++) {
         const brio_ply_element *e = &header->elements[i];
-        if (e->count && (!strcmp(e->name, "face") || !strcmp(e->name, "tetrahedron"))) return true;
+        if (e->count && (!strcmp(e->name, "face") || !strcmp(e->name, "tetrahedron") || !strcmp(e->name, "edge")))
+            return true;
     }
     return false;
 }
@@ -99,6 +111,8 @@ static brio_status plan(ply_reader *r, brio_ply_header *header) {
         } else if (!strcmp(e->name, "tetrahedron")) {
             plan_list(e, BRIO_PLY_TETRAHEDRON);
             if (known && has_role(e, BRIO_PLY_TETRAHEDRON)) BRIO_TRY(brio_builder_expect_tetrahedra(b, e->count));
+        } else if (!strcmp(e->name, "edge")) {
+            plan_edge(e);
         }
     }
     BRIO_REQUIRE(b->ctx, vertices, BRIO_ERR_FORMAT, "%s: the header has no element vertex", b->name);
@@ -212,6 +226,8 @@ done:
 
 static brio_status read_row(ply_reader *r, const brio_ply_element *e) {
     brio_status status = BRIO_OK;
+    double ends[2];
+    bool edge = false;
     for (size_t i = 0; i < e->num_properties; i++) {
         const brio_ply_property *p = &e->properties[i];
         double value;
@@ -220,8 +236,12 @@ static brio_status read_row(ply_reader *r, const brio_ply_element *e) {
             continue;
         }
         BRIO_TRY(next_scalar(r, p->type, &value));
-        if (p->role != BRIO_PLY_SKIP) BRIO_TRY(store_scalar(r, p, value));
+        if (p->role == BRIO_PLY_EDGE)
+            ends[p->target] = value, edge = true;
+        else if (p->role != BRIO_PLY_SKIP)
+            BRIO_TRY(store_scalar(r, p, value));
     }
+    if (edge) BRIO_TRY(brio_builder_edge(r->builder, ends));
     if (r->ascii) BRIO_TRY(brio_text_row_end(&r->text));
 done:
     return status;
@@ -241,7 +261,7 @@ done:
 static brio_status read_element(ply_reader *r, const brio_ply_element *e) {
     brio_stream_element(r->stream, e->name, e->count);
     if (!e->num_properties) return BRIO_OK;
-    if (r->ascii || e->has_list) return read_rows(r, e);
+    if (r->ascii || e->has_list || has_role(e, BRIO_PLY_EDGE)) return read_rows(r, e);
     return read_blocks(r, e);
 }
 

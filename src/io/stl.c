@@ -17,6 +17,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum { HEADER = 84, COUNT_AT = 80, TRIANGLE = 50, CORNERS_AT = 12 };
 
@@ -67,7 +68,7 @@ done:
 static brio_status expect_line(brio_text *t, const char *words) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_text_next_line(t));
-    if (!t->at || strncmp(t->at, words, strlen(words)) != 0) return brio_text_expected(t, words);
+    if (!t->at || strncasecmp(t->at, words, strlen(words)) != 0) return brio_text_expected(t, words);
     t->at += strlen(words);
 done:
     return status;
@@ -91,13 +92,18 @@ static brio_status read_text(brio_stream *s, brio_builder *b, brio_weld *weld) {
     brio_status status = BRIO_OK;
     brio_text t = {s, 0, NULL};
     double corners[3][3];
+    bool ended = false;
     brio_stream_element(s, "triangle", 0);
     BRIO_TRY(expect_line(&t, "solid"));
     for (;;) {
         BRIO_TRY(brio_text_next_line(&t));
-        if (!t.at) return BRIO_OK;
-        if (!strncmp(t.at, "endsolid", 8) || !strncmp(t.at, "solid", 5)) continue;
-        if (strncmp(t.at, "facet", 5) != 0) return brio_text_expected(&t, "facet or endsolid");
+        if (!t.at && ended) return BRIO_OK;
+        bool ends = t.at && !strncasecmp(t.at, "endsolid", 8), begins = t.at && !strncasecmp(t.at, "solid", 5);
+        if (ends || begins) {
+            ended = ends;
+            continue;
+        }
+        if (!t.at || strncasecmp(t.at, "facet", 5) != 0) return brio_text_expected(&t, "facet or endsolid");
         BRIO_TRY(read_facet(&t, corners));
         BRIO_TRY(add_triangle(b, weld, corners));
         s->row++;
@@ -109,7 +115,7 @@ done:
 static bool is_text(const brio_stream *s) {
     const char *bytes = s->buffer + s->begin;
     size_t left = brio_stream_left(s);
-    if (left < 5 || memcmp(bytes, "solid", 5) != 0) return false;
+    if (left < 5 || strncasecmp(bytes, "solid", 5) != 0) return false;
     if (left < HEADER) return true;
     if (s->size != BRIO_SIZE_UNKNOWN) return s->size != HEADER + (uint64_t)TRIANGLE * brio_le32(bytes + COUNT_AT);
     return !memchr(bytes, 0, left < HEADER + TRIANGLE ? left : HEADER + TRIANGLE);

@@ -136,6 +136,34 @@ static void binary_lists_and_other_elements_are_passed_over(void) {
     brio_mesh_free(m);
 }
 
+/* The program's own files of edges lost them when they were read. */
+static void edges_come_back(void) {
+    static const double p[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const uint32_t edges[6] = {0, 1, 3, 1, 2, 0};
+    brio_mesh *mesh;
+    EXPECT(brio_mesh_new(io_ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, p, 4) == BRIO_OK);
+    EXPECT(brio_mesh_set_edges(mesh, edges, 3) == BRIO_OK);
+    for (int ascii = 0; ascii < 2; ascii++) {
+        brio_write_options o = brio_write_options_default();
+        brio_mesh *back = NULL;
+        o.ascii = ascii;
+        EXPECT(brio_write(io_ctx, io_path("e.ply"), mesh, &o) == BRIO_OK);
+        EXPECT(brio_read(io_ctx, io_path("e.ply"), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(back && back->num_edges == 3 && !memcmp(back->edges, edges, sizeof edges));
+        brio_mesh_free(back);
+    }
+    brio_mesh_free(mesh);
+    io_expect_error("r.ply",
+                    HEADER("ascii") "element vertex 1\n" XYZ "element edge 1\nproperty int vertex1\nproperty int "
+                                    "vertex2\nend_header\n1 2 3\n0 1\n",
+                    BRIO_ERR_FORMAT, "edge 0");
+    mesh = io_read_text("a.ply",
+                        HEADER("ascii") "element vertex 1\n" XYZ "element edge 1\nproperty int vertex1\nend_header\n"
+                                        "1 2 3\n0\n");
+    EXPECT(mesh && mesh->num_edges == 0, "an edge with one end is passed over");
+    brio_mesh_free(mesh);
+}
+
 static void name_does_not_matter(void) {
     brio_mesh *m = io_read_text("a.xyz", HEADER("ascii") "element vertex 1\n" XYZ "end_header\n1 2 3\n");
     EXPECT(m && m->num_vertices == 1 && m->vertices[2] == 3);
@@ -247,6 +275,7 @@ int main(void) {
     RUN(all_types_and_byte_orders);
     RUN(untidy_but_valid_text);
     RUN(binary_lists_and_other_elements_are_passed_over);
+    RUN(edges_come_back);
     RUN(name_does_not_matter);
     RUN(header_errors_name_the_line);
     RUN(false_promises_allocate_nothing);

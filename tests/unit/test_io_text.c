@@ -1,5 +1,6 @@
 /* Texts of numbers, OBJ, OFF and NODE files as others write them. */
 #include "io_files.h"
+#include <ctype.h>
 
 static void format_of_names(void) {
     EXPECT(brio_format_of("a/b.c/d.PLY") == BRIO_FORMAT_PLY && brio_format_of(".ply") == BRIO_FORMAT_PLY);
@@ -228,8 +229,28 @@ static void node_errors(void) {
     io_expect_error("b.node", "2 3 0 0\n0 0 0 0\n1 0 0 0\n", BRIO_ERR_FORMAT, "b.ele: line 2: corner 2");
 }
 
+/* A text that broke off between facets was a smaller surface, and one in a single line an empty one. */
+static void stl_ends_with_its_solid(void) {
+    static const char facet[] =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    char text[400], upper[400];
+    snprintf(text, sizeof text, "solid a\n%sendsolid a\nsolid b\n%sendsolid b\n", facet, facet);
+    for (size_t i = 0; i <= strlen(text); i++) upper[i] = (char)toupper(text[i]);
+    brio_mesh *m = io_read_text("a.stl", text), *same = io_read_text("a.stl", upper);
+    EXPECT(m && m->num_faces == 2 && same && same->num_faces == 2);
+    brio_mesh_free(m);
+    brio_mesh_free(same);
+    snprintf(text, sizeof text, "solid a\n%s", facet);
+    io_expect_error("a.stl", text, BRIO_ERR_FORMAT, "expected facet or endsolid");
+    io_expect_error(
+        "a.stl",
+        "solid a facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet endsolid\n",
+        BRIO_ERR_FORMAT, "expected facet or endsolid");
+}
+
 int main(void) {
     io_begin();
+    RUN(stl_ends_with_its_solid);
     RUN(format_of_names);
     RUN(missing_files_and_unknown_formats);
     RUN(xyz_separators_and_comments);
