@@ -126,6 +126,14 @@ static char *node_of(const char *path) {
     return name;
 }
 
+bool cli_goes_to_stdout(const char *path) {
+    struct stat file, out;
+    if (!path || !strcmp(path, "-")) return path != NULL;
+    if (stat(path, &file) != 0 || fstat(STDOUT_FILENO, &out) != 0) return false;
+    if (S_ISCHR(out.st_mode) && !isatty(STDOUT_FILENO)) return false;
+    return file.st_dev == out.st_dev && file.st_ino == out.st_ino;
+}
+
 bool cli_same_file(const char *a, const char *b) {
     if (!strcmp(a, "-") || !strcmp(b, "-")) return false;
     if (leads_to_one(a, b)) return true;

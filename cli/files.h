@@ -8,6 +8,10 @@
  *  is protected, or it is a folder. */
 brio_status cli_check_target(run *r, const char *path);
 
+/** Whether what is written to a path goes to standard output: "-", /dev/stdout, or the file that standard output leads to.
+ *  NULL is no path; /dev/null, which keeps nothing, is none either. */
+bool cli_goes_to_stdout(const char *path);
+
 /** Whether two paths name one regular file, or one that would be made: through links, and by other names of its folder.
  *  The .node and the .ele file of TetGen are one. */
 bool cli_same_file(const char *a, const char *b);

@@ -3,6 +3,7 @@
  * Finds the command, reads its options, runs it, and reports: facts to standard output (as JSON with --json), messages
  * to standard error, and the status as the exit code. */
 #include "commands.h"
+#include "files.h"
 #include "help.h"
 #include "hints.h"
 #include "interrupt.h"
@@ -55,7 +56,7 @@ static bool report(run *r, brio_status status, int code) {
         fputs("brio: out of memory for the report\n", stderr);
         return false;
     }
-    bool data_on_stdout = r->common.output && !strcmp(r->common.output, "-");
+    bool data_on_stdout = cli_goes_to_stdout(r->common.output);
     if (r->common.json)
         cli_json_write(stdout, &r->facts, name);
     else if (answered && !r->common.quiet)

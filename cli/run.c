@@ -109,8 +109,8 @@ static brio_status check_common(run *r) {
     const common_options *c = &r->common;
     if (c->threads < 0 || c->threads > MAX_THREADS)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--threads: %d is not between 0 and %d", c->threads, MAX_THREADS);
-    if (c->json && c->output && !strcmp(c->output, "-"))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--json and -o - both want standard output");
+    if (c->json && cli_goes_to_stdout(c->output))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--json and -o %s both want standard output", c->output);
     if (c->input_format && brio_format_of(c->input_format) == BRIO_FORMAT_AUTO)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--input-format: unknown format '%s'", c->input_format);
     return check_compress(r);

@@ -1,6 +1,7 @@
 """Files that are written: whole or not at all, in each format, in the place that was asked for."""
 
 import contextlib
+import json
 import os
 import resource
 import shutil
@@ -93,6 +94,19 @@ class Writing(CliTest):
         with open(out, "rb") as f:
             lines = f.read().split(b"\n")
         self.assertTrue(len(lines) == 200002 and all(line.count(b",") == 2 for line in lines[:-1]))
+
+    def test_report_keeps_away_from_data_by_any_name_of_standard_output(self):
+        points = self.xyz("a.xyz", CUBE)
+        for name in "-", "/dev/stdout", "/dev/fd/1":
+            done = subprocess.run([BRIO, "hull", points, "-o", name, "--format", "off"], stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, encoding="utf-8")
+            self.assertEqual((done.returncode, done.stdout[:3]), (0, "OFF"))
+            self.assertNotIn("volume", done.stdout)
+            self.assertIn("volume", done.stderr)
+            done = subprocess.run([BRIO, "hull", points, "-o", name, "--format", "off", "--json"],
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("both want standard output", json.loads(done.stdout)["error"])
 
     def test_reader_that_went_away(self):
         points = self.cloud("a.ply", 50000)
