@@ -28,6 +28,11 @@ class Usage(CliTest):
             self.usage("solid", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
 
 
+    def test_scan_with_noise_that_doubles_cannot_hold(self):
+        self.usage("noise", "generate", "scan", "-n", "50", "--noise", "1e308", "-o", self.path("s.ply"))
+        self.assert_only(self.folder)
+
+
 class Generate(CliTest):
     def test_facts_of_a_run(self):
         facts = self.facts("generate", "ball", "-n", "50", "-o", self.path("b.xyz"))

@@ -3,6 +3,7 @@
 #include "failing_allocator.h"
 #include "iso/iso_surface.h"
 #include "testdata/sculpture.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -204,6 +205,18 @@ static void bad_options_are_refused(void) {
     EXPECT(brio_generate(ctx, BRIO_KIND_SCAN, 5, &options, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(brio_generate(ctx, BRIO_KIND_CUBE, SIZE_MAX / 2, NULL, &mesh) == BRIO_ERR_NO_MEMORY && !mesh);
     EXPECT(brio_generate_truth(ctx, SIZE_MAX, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+}
+
+/* A finite noise whose product with the spacing overflowed gave infinite coordinates and BRIO_OK. */
+static void scan_whose_noise_overflows_is_refused(void) {
+    brio_generate_options options = {.size = sizeof options, .seed = 1, .noise = DBL_MAX, .views = 2};
+    brio_mesh *mesh;
+    EXPECT(brio_generate(ctx, BRIO_KIND_SCAN, 50, &options, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "noise 1.79769e+308"), "%s", brio_message(ctx));
+    options.noise = 1e300;
+    EXPECT(brio_generate(ctx, BRIO_KIND_SCAN, 50, &options, &mesh) == BRIO_OK && mesh->num_vertices > 0);
+    for (size_t i = 0; mesh && i < 3 * mesh->num_vertices; i++) EXPECT(isfinite(mesh->vertices[i]));
+    brio_mesh_free(mesh);
 }
 
 /* --- the sculpture --- */
@@ -433,6 +446,7 @@ int main(void) {
     RUN(grid_is_the_smallest_that_has_room);
     RUN(depth_frame_has_whole_depths_along_its_rays);
     RUN(bad_options_are_refused);
+    RUN(scan_whose_noise_overflows_is_refused);
     RUN(sculpture_function_never_exceeds_the_distance);
     RUN(truth_is_a_certified_surface_of_genus_3);
     RUN(scan_has_about_n_points_in_scan_order);
