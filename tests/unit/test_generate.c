@@ -257,6 +257,24 @@ static void truth_is_a_certified_surface_of_genus_3(void) {
 
 /* --- the scan --- */
 
+/* Grids of 1 to 3 cells have no node inside the sculpture: the closed mesh was one without faces. */
+static void truth_too_coarse_to_have_faces_is_refused(void) {
+    brio_mesh *mesh;
+    for (size_t resolution = 1; resolution < 4; resolution++) {
+        EXPECT(brio_generate_truth(ctx, resolution, &mesh) == BRIO_ERR_ARGUMENT && !mesh, "resolution %zu", resolution);
+        EXPECT(strstr(brio_message(ctx), "4 to 32768"), "%s", brio_message(ctx));
+        brio_mesh_free(mesh);
+    }
+    for (size_t resolution = 4; resolution < 40; resolution++) {
+        brio_certificate c = {.size = sizeof c};
+        EXPECT(brio_generate_truth(ctx, resolution, &mesh) == BRIO_OK);
+        EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.closed && c.manifold && c.oriented,
+               "resolution %zu", resolution);
+        brio_certificate_free(&c);
+        brio_mesh_free(mesh);
+    }
+}
+
 static void scan_has_about_n_points_in_scan_order(void) {
     static const size_t sizes[] = {300, 3000, 30000};
     for (size_t s = 0; s < 3; s++) {
@@ -447,6 +465,7 @@ int main(void) {
     RUN(depth_frame_has_whole_depths_along_its_rays);
     RUN(bad_options_are_refused);
     RUN(scan_whose_noise_overflows_is_refused);
+    RUN(truth_too_coarse_to_have_faces_is_refused);
     RUN(sculpture_function_never_exceeds_the_distance);
     RUN(truth_is_a_certified_surface_of_genus_3);
     RUN(scan_has_about_n_points_in_scan_order);
