@@ -98,6 +98,9 @@ static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--views: %d is not positive", a->views);
     if (a->noise < 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise: %g is negative", a->noise);
     if (a->truth_resolution && !a->truth) return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth-resolution goes with --truth");
+    if (a->truth_resolution && (a->truth_resolution < 4 || a->truth_resolution > 32768))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth-resolution: %llu is not between 4 and 32768",
+                        (unsigned long long)a->truth_resolution);
     TRY(cli_require_output(r, NULL, false));
     if (!a->truth) return BRIO_OK;
     TRY(cli_check_beside(r, "truth", a->truth, cli_mesh_formats));

@@ -231,8 +231,8 @@ brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, co
     BRIO_REQUIRE(ctx, num_points == s->points, BRIO_ERR_ARGUMENT, "the triangulation has %zu points, not %zu",
                  s->points, num_points);
     BRIO_REQUIRE(ctx, s->dimension == 3, BRIO_ERR_NO_ANSWER,
-                 "%zu distinct points of dimension %d have no tetrahedra, so no alpha complex", s->vertices,
-                 s->dimension);
+                 "%zu vertices (%zu points are hidden) of dimension %d have no tetrahedra, so no alpha complex",
+                 s->vertices, s->hidden, s->dimension);
     BRIO_TRY(find_values(&e, points, weights));
 done:
     if (status != BRIO_OK) brio_alpha_complex_free(&mine);

@@ -47,6 +47,14 @@ brio_status brio_refuse_not_finite(brio_context *ctx, const double *points, cons
     return brio_refuse_counted(ctx, &found, file);
 }
 
+brio_status brio_refuse_vertices(brio_context *ctx, const double *vertices, size_t n, const char *mesh) {
+    brio_not_finite found = {.count = 0};
+    brio_count_not_finite(&found, 0, vertices, NULL, n);
+    if (found.count == 0) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "vertex %" PRIu64 " of %s: %s is %s (%" PRIu64 " such %s in all)",
+                     found.first, mesh, found.axis, found.what, found.count, found.count == 1 ? "vertex" : "vertices");
+}
+
 brio_status brio_refuse_records(brio_context *ctx, const double (*record)[4], const uint32_t *order, size_t n) {
     brio_not_finite found = {.first = UINT64_MAX};
     for (size_t i = 0; i < n; i++) {

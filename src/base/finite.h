@@ -26,6 +26,11 @@ static inline bool brio_all_finite(const double *numbers, size_t count) {
     return sum == 0; /* else NaN */
 }
 
+/** Refuses vertices with a coordinate that is not finite; the message names the first such vertex and the mesh.
+ *  vertices  #V by 3.   mesh  what the mesh is called in the message, such as "the solid".
+ *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE. */
+brio_status brio_refuse_vertices(brio_context *ctx, const double *vertices, size_t num_vertices, const char *mesh);
+
 /** Refuses records, one of which is not finite, with the same message; the first of them in the input's order is named.
  *  record  num_points by 4: x, y, z, weight.   order  the index of each in the input; NULL: as they are.
  *  Returns BRIO_ERR_NOT_FINITE. */

@@ -92,6 +92,10 @@ static brio_status no_room(brio_context *ctx, size_t size, int error) {
 
 /* Opens an empty file without a name. Returns its descriptor, or -1 with errno. */
 static int open_nameless(const char *folder) {
+    if (!*folder) { /* "" and a slash would be the root folder */
+        errno = ENOENT;
+        return -1;
+    }
     int file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
     if (file < 0) {
         char name[4096];
@@ -104,7 +108,9 @@ static int open_nameless(const char *folder) {
 
 brio_status brio_scratch_try(brio_context *ctx, const char *folder) {
     int file = open_nameless(folder);
-    if (file < 0) return brio_fail(ctx, BRIO_ERR_OPEN, "%s: not a writable folder: %s", folder, strerror(errno));
+    if (file < 0)
+        return brio_fail(ctx, BRIO_ERR_OPEN, "%s: not a writable folder: %s", *folder ? folder : "\"\"",
+                         strerror(errno));
     close(file);
     return BRIO_OK;
 }

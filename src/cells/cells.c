@@ -161,7 +161,7 @@ static void take_region(const cell_call *c, exponents *e) {
     }
     take_length(e, width, true);
     take_length(e, way, false);
-    for (size_t i = 0; i < o->num_planes && o->planes; i++) {
+    for (size_t i = 0; i < o->num_planes; i++) {
         const double *plane = o->planes + 4 * i;
         take_length(e, fabs(plane[3]) / greatest(plane, 3), false);
     }
@@ -222,19 +222,32 @@ done:
     return status;
 }
 
+/* Refuses boxes and planes that are no numbers, and planes without a normal. */
+static brio_status check_region(brio_context *ctx, const brio_cells_options *o) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, o->planes || !o->num_planes, BRIO_ERR_ARGUMENT, "%zu planes, but no array of them",
+                 o->num_planes);
+    for (size_t i = 0; i < 6 && o->box; i++)
+        BRIO_REQUIRE(ctx, isfinite(o->box[i]), BRIO_ERR_ARGUMENT, "number %zu of the box is not finite", i);
+    for (size_t i = 0; i < o->num_planes; i++) {
+        BRIO_REQUIRE(ctx, brio_all_finite(o->planes + 4 * i, 4), BRIO_ERR_ARGUMENT,
+                     "plane %zu of the region is not finite", i);
+        BRIO_REQUIRE(ctx, greatest(o->planes + 4 * i, 3) > 0, BRIO_ERR_ARGUMENT,
+                     "plane %zu of the region has the normal 0", i);
+    }
+done:
+    return status;
+}
+
 /* Makes the region of the walls of the box and of the planes. */
 static brio_status make_region(cell_call *c) {
     const brio_cells_options *o = &c->options;
     brio_status status = BRIO_OK;
     size_t walls = o->box ? 6 : 0;
     double *planes = NULL;
-    BRIO_REQUIRE(c->ctx, o->planes || !o->num_planes, BRIO_ERR_ARGUMENT, "%zu planes, but no array of them",
-                 o->num_planes);
     BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, planes, 4 * (walls + o->num_planes)));
     for (size_t i = 0; i < walls; i++) {
         double at = o->box[i / 2 + 3 * (i % 2)];
-        BRIO_REQUIRE(c->ctx, isfinite(at), BRIO_ERR_ARGUMENT, "number %zu of the box is not finite",
-                     i / 2 + 3 * (i % 2));
         planes[4 * i + i / 2] = i % 2 ? 1 : -1;
         planes[4 * i + 3] = i % 2 ? at : -at;
     }
@@ -385,6 +398,7 @@ static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *ou
     job.faces = o->faces || o->vertices;
     c->diagram.ctx = c->ctx;
     c->diagram.num_points = c->num_points;
+    BRIO_TRY(check_region(c->ctx, o));
     BRIO_TRY(triangulate(c, t));
     BRIO_TRY(scale_points(c));
     BRIO_TRY(make_region(c));

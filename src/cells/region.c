@@ -5,6 +5,7 @@
 #include "cells/region.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -19,9 +20,7 @@ static brio_status take_planes(brio_context *ctx, const double *planes, const do
     for (size_t i = 0; i < r->num_planes; i++) {
         const double *from = planes + 4 * i;
         double most = fmax(fabs(from[0]), fmax(fabs(from[1]), fabs(from[2]))), n[3];
-        BRIO_REQUIRE(ctx, isfinite(from[3]) && isfinite(from[0] + from[1] + from[2]), BRIO_ERR_ARGUMENT,
-                     "plane %zu of the region is not finite", i);
-        BRIO_REQUIRE(ctx, most > 0, BRIO_ERR_ARGUMENT, "plane %zu of the region has the normal 0", i);
+        assert(isfinite(most) && most > 0 && isfinite(from[3]));
         for (int k = 0; k < 3; k++) n[k] = from[k] / most;
         double length = sqrt(brio_dot(n, n));
         for (int k = 0; k < 3; k++) r->plane[i][k] = n[k] / length;
@@ -59,9 +58,11 @@ done:
     return status;
 }
 
-/* Cuts the region out of ever larger cubes; writes its bounds. */
+/* Cuts the region out of ever larger cubes; writes its bounds. A region without an end is cut by the walls of every cube,
+ * until it is too thin beside a cube for doubles and seems to be empty. */
 static brio_status search(brio_context *ctx, brio_region *r, double low[3], double high[3]) {
     brio_status status = BRIO_OK;
+    static const char *const UNBOUNDED = "the region is unbounded, or reaches too far beside its width for doubles";
     int64_t walls = -(int64_t)r->num_planes;
     double half = 0;
     bool open = true;
@@ -70,11 +71,11 @@ static brio_status search(brio_context *ctx, brio_region *r, double low[3], doub
     for (int n = 0; open && n < MOST_DOUBLINGS; n++, half *= 4) {
         const double least[3] = {-half, -half, -half}, most[3] = {half, half, half};
         BRIO_TRY(cut_out(r, least, most));
-        BRIO_REQUIRE(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT,
-                     "the region is empty, or too small beside the points for doubles");
+        BRIO_REQUIRE(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT, "%s",
+                     n > 0 ? UNBOUNDED : "the region is empty, or too small beside the points for doubles");
         open = find_bounds(&r->shape, walls, low, high);
     }
-    BRIO_REQUIRE(ctx, !open, BRIO_ERR_ARGUMENT, "the planes of the region bound no polytope");
+    BRIO_REQUIRE(ctx, !open, BRIO_ERR_ARGUMENT, "%s", UNBOUNDED);
 done:
     return status;
 }

@@ -16,9 +16,9 @@ typedef struct brio_region {
 } brio_region;
 
 /** Makes the region.
- *  planes         num_planes by 4: normal and offset; normals need not be unit vectors.
+ *  planes         num_planes by 4, finite: normal and offset; normals are not 0 and need not be unit vectors.
  *  origin, scale  positions are taken relative to the origin, then multiplied by the scale.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a plane without a normal, the half-spaces bound no polytope, or an empty one),
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the half-spaces bound no polytope, or an empty one),
  *  BRIO_ERR_NO_MEMORY. The region is freed with brio_region_free in any case. */
 brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_planes, const double origin[3],
                             double scale, brio_region *region);

@@ -7,6 +7,7 @@
 #include "base/versioned.h"
 #include "estimate/triangulation_size.h"
 #include "order/canonical_points.h"
+#include "triangulation/triangulation.h"
 #include <math.h>
 
 /* While points are inserted: record, index in the input, representative, number in the cavity. */
@@ -77,6 +78,7 @@ brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, cons
     brio_triangulation_size size = {0};
     *bytes = 0;
     BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
+    BRIO_TRY(brio_delaunay_check_options(ctx, num_points, &o));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
     BRIO_TRY(brio_estimate_size(ctx, points, weights, num_points, &size));
     double n = (double)num_points;
@@ -153,6 +155,8 @@ brio_status brio_estimate_labeled_delaunay(brio_context *ctx, size_t num_points,
 
 uint64_t brio_estimate_mesh_subdivide(size_t num_faces, int levels) {
     BRIO_DOOR;
+    enum { MOST_LEVELS = 15 }; /* of brio_mesh_subdivide */
+    levels = levels < 1 ? 1 : levels > MOST_LEVELS ? MOST_LEVELS : levels;
     return bytes_of(ldexp((double)num_faces, 2 * levels) * SUBDIVIDE_BYTES_A_FACE);
 }
 

@@ -1,4 +1,5 @@
 /* Writes a mesh: refuses what the format cannot hold, and calls the format's writer. */
+#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
@@ -144,9 +145,11 @@ done:
     return status;
 }
 
-/* Refuses indices of vertices that there are not. */
-static brio_status check_indices(brio_context *ctx, const brio_mesh *mesh) {
+/* Refuses indices of vertices that there are not, and coordinates that are no numbers: no format that
+ * is written reads back with these. */
+static brio_status check_mesh(brio_context *ctx, const char *path, const brio_mesh *mesh) {
     brio_status status = BRIO_OK;
+    BRIO_TRY(brio_refuse_not_finite(ctx, mesh->vertices, NULL, mesh->num_vertices, path));
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     for (size_t i = 0; i < 4 * mesh->num_tetrahedra; i++)
         BRIO_REQUIRE(ctx, mesh->tetrahedra[i] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
@@ -167,7 +170,7 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     brio_format format = o.format;
     if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
     if (o.moved) *o.moved = 0;
-    BRIO_TRY(check_indices(ctx, mesh));
+    BRIO_TRY(check_mesh(ctx, path, mesh));
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
     job.expected = expected_bytes(mesh, format, o.ascii);
     job.points = mesh->num_vertices;

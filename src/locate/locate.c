@@ -26,13 +26,14 @@ brio_status brio_locator_tetrahedra(brio_context *ctx, const brio_locator *l, co
 typedef struct {
     size_t wanted;
     bool power;
-    uint32_t *vertices;
-    brio_found *found; /* of each thread, `wanted` entries */
+    uint32_t *vertices; /* of each query, `wanted` entries */
+    brio_found *found;  /* of each thread, `room` entries */
+    size_t room;        /* the most vertices that a query finds */
 } vertex_job;
 
 static brio_status answer_vertices(void *user, brio_querent *q, const brio_query_row *row) {
     const vertex_job *job = user;
-    brio_found *found = job->found + job->wanted * (size_t)q->thread;
+    brio_found *found = job->found + job->room * (size_t)q->thread;
     for (size_t c = 0; c < row->count; c++) {
         uint32_t *out = job->vertices + job->wanted * row->index[c];
         size_t count = brio_search_places(q->l, row->x[c], job->power, job->wanted, q->nearest[c], found);
@@ -50,7 +51,8 @@ static brio_status find_vertices(brio_context *ctx, const brio_locator *l, const
     BRIO_REQUIRE(ctx, job->wanted > 0, BRIO_ERR_ARGUMENT, "0 vertices of each query are wanted; at least 1");
     BRIO_REQUIRE(ctx, job->wanted <= BRIO_INFINITE, BRIO_ERR_TOO_LARGE, "%zu vertices of each query are wanted",
                  job->wanted);
-    BRIO_TRY(BRIO_ALLOC(ctx, job->found, job->wanted * (size_t)threads));
+    if (num_queries) job->room = job->wanted < l->num_vertices ? job->wanted : l->num_vertices;
+    BRIO_TRY(BRIO_ALLOC(ctx, job->found, job->room * (size_t)threads));
     BRIO_TRY(brio_answer_all(ctx, threads, &b));
 done:
     brio_release(ctx, job->found);

@@ -9,8 +9,9 @@
  * - An edge joins all its faces into one component, whatever their number. Only an edge of two faces continues a fan.
  * - A boundary loop is a set of boundary edges connected through fans and across edges of more than two faces. On a
  *   manifold a loop is a cycle. Two loops that touch where two fans share a vertex stay two.
- * - A face with fewer than three corners makes all its vertices non-manifold. A face with a vertex twice makes that
- *   vertex non-manifold.
+ * - A face with fewer than three corners makes all its vertices non-manifold, and the surface not closed: such a face
+ *   bounds nothing. A face with a vertex twice makes that vertex non-manifold.
+ * - A face that runs along an edge twice counts as the edge's two faces.
  * - An odd 2 - chi - loops, as of a Moebius strip, is rounded down.
  *
  * Threads share the work. The result does not depend on their order: a root is the first element of its set, counts
@@ -198,36 +199,40 @@ enum { SMALL = 32 }; /* most corners of a face that mark_small_face handles; cho
 
 typedef struct {
     const topology *t;
-    size_t small, bad;
+    size_t small, bad, thin; /* thin: of fewer than three corners */
 } face_count;
 
 static void mark_small_faces(void *user, size_t begin, size_t end, int thread) {
     face_count *c = user;
     const uint64_t *offsets = c->t->mesh->face_offsets;
-    size_t small = 0, bad = 0;
+    size_t small = 0, bad = 0, thin = 0;
     (void)thread;
     for (size_t f = begin; f < end; f++) {
         if (offsets[f + 1] - offsets[f] > SMALL) continue;
         small++;
+        thin += offsets[f + 1] - offsets[f] < 3;
         bad += mark_small_face(c->t, f);
     }
     add_relaxed(&c->small, small);
     add_relaxed(&c->bad, bad);
+    add_relaxed(&c->thin, thin);
 }
 
-/* Marks the vertices of degenerate faces. Counts the degenerate faces, including faces without corners. */
-static brio_status mark_degenerate_faces(const topology *t, size_t *degenerate) {
+/* Marks the vertices of degenerate faces. Counts the degenerate faces, including faces without corners, and those of fewer
+ * than three corners. */
+static brio_status mark_degenerate_faces(const topology *t, size_t *degenerate, size_t *thin) {
     brio_status status = BRIO_OK;
     const uint64_t *offsets = t->mesh->face_offsets;
     size_t num_faces = t->mesh->num_faces;
     uint32_t *last_face = NULL;
-    face_count c = {t, 0, 0};
+    face_count c = {t, 0, 0, 0};
     for_each(t, num_faces, mark_small_faces, &c);
     bool large = c.small < num_faces;
     if (large) BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, last_face, t->mesh->num_vertices));
     for (size_t f = 0; large && f < num_faces; f++)
         if (offsets[f + 1] - offsets[f] > SMALL) c.bad += mark_large_face(t, f, last_face);
     *degenerate = c.bad;
+    *thin = c.thin;
 done:
     brio_release(t->ctx, last_face);
     return status;
@@ -419,14 +424,14 @@ static brio_status certify_topology(brio_context *ctx, const brio_mesh *mesh, br
     brio_status status = BRIO_OK;
     topology t = {0};
     vertex_count nonmanifold = {&t, 0};
-    size_t degenerate_faces;
+    size_t degenerate_faces, thin_faces;
     BRIO_TRY(topology_new(ctx, mesh, &t));
-    BRIO_TRY(mark_degenerate_faces(&t, &degenerate_faces));
+    BRIO_TRY(mark_degenerate_faces(&t, &degenerate_faces, &thin_faces));
     join_across_edges(&t, out);
     BRIO_TRY(certify_components(&t, out));
     for_each(&t, mesh->num_vertices, count_nonmanifold_vertices, &nonmanifold);
     out->nonmanifold_vertices = nonmanifold.count;
-    out->closed = t.corners > 0 && !out->boundary_edges && !out->nonmanifold_edges;
+    out->closed = t.corners > 0 && !out->boundary_edges && !out->nonmanifold_edges && !thin_faces;
     out->manifold = !out->nonmanifold_edges && !out->nonmanifold_vertices && !degenerate_faces;
     out->oriented = !out->flipped_edges;
 done:

@@ -191,7 +191,8 @@ static brio_status cut_faces(brio_context *ctx, const brio_mesh *mesh, uint32_t 
     size_t n = 0;
     for (size_t f = 0; f < mesh->num_faces; f++)
         if (offsets[f + 1] - offsets[f] > 2) n += offsets[f + 1] - offsets[f] - 2;
-    BRIO_REQUIRE(ctx, n > 0, BRIO_ERR_ARGUMENT, "a mesh without faces has no surface");
+    BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_ARGUMENT, "a mesh without faces has no surface");
+    BRIO_REQUIRE(ctx, n > 0, BRIO_ERR_ARGUMENT, "no face of the mesh has three corners, so it has no surface");
     BRIO_TRY(BRIO_ALLOC(ctx, *triangles, n));
     *count = n;
     n = 0;

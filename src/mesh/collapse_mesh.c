@@ -223,8 +223,12 @@ done:
 static brio_status check_faces(brio_context *ctx, const brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    for (size_t f = 0; f < mesh->num_faces; f++)
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        const uint32_t *v = mesh->face_vertices + 3 * f;
         BRIO_REQUIRE(ctx, mesh->face_offsets[f + 1] == 3 * (f + 1), BRIO_ERR_ARGUMENT, "face %zu is not a triangle", f);
+        BRIO_REQUIRE(ctx, v[0] != v[1] && v[1] != v[2] && v[2] != v[0], BRIO_ERR_ARGUMENT,
+                     "the surface is not manifold: face %zu has vertex %u twice", f, v[0] == v[1] ? v[0] : v[2]);
+    }
 done:
     return status;
 }

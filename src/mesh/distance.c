@@ -10,6 +10,7 @@
  * figures are those of any other size, to the last bit.
  *
  * Based on: Cignoni, Rocchini, Scopigno. Metro: measuring error on simplified surfaces. Comput. Graph. Forum 1998. */
+#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/versioned.h"
 #include "base/rng.h"
@@ -242,6 +243,8 @@ brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio
     BRIO_REQUIRE(ctx, m.samples <= SIZE_MAX / 4, BRIO_ERR_NO_MEMORY, "out of memory: %zu samples", m.samples);
     BRIO_TRY(brio_mesh_check_faces(ctx, a));
     BRIO_TRY(brio_mesh_check_faces(ctx, b));
+    BRIO_TRY(brio_refuse_vertices(ctx, a->vertices, a->num_vertices, "the first mesh"));
+    BRIO_TRY(brio_refuse_vertices(ctx, b->vertices, b->num_vertices, "the second mesh"));
     int exponent = exponent_of(a, b);
     BRIO_TRY(surface_new(ctx, a, exponent, "the first mesh", &surfaces[0]));
     BRIO_TRY(surface_new(ctx, b, exponent, "the second mesh", &surfaces[1]));

@@ -46,7 +46,8 @@ done:
 static brio_status check_offsets(brio_context *ctx, const uint64_t *offsets, size_t num_faces) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, num_faces < MOST, BRIO_ERR_TOO_LARGE, "%zu faces", num_faces);
-    BRIO_REQUIRE(ctx, !num_faces || offsets[0] == 0, BRIO_ERR_ARGUMENT, "the first offset of faces is not 0");
+    if (!num_faces && !offsets) return BRIO_OK;
+    BRIO_REQUIRE(ctx, offsets[0] == 0, BRIO_ERR_ARGUMENT, "the first offset of faces is not 0");
     for (size_t f = 0; f < num_faces; f++)
         BRIO_REQUIRE(ctx, offsets[f] <= offsets[f + 1] && offsets[f + 1] < MOST, BRIO_ERR_ARGUMENT,
                      "face %zu: its offsets decrease or are too large", f);

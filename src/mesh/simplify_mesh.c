@@ -35,7 +35,7 @@ brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_me
     brio_mesh_simplify_options o = STANDARD;
     BRIO_TRY(BRIO_TAKE(ctx, brio_mesh_simplify_options, options, &o));
     BRIO_REQUIRE(ctx, o.tolerance >= 0 && o.tolerance < INFINITY, BRIO_ERR_ARGUMENT,
-                 "a tolerance of %g, expected 0 or a positive number", o.tolerance);
+                 "a tolerance of %g, expected a finite number, 0 or more", o.tolerance);
     BRIO_REQUIRE(ctx, o.target_faces > 0 || o.tolerance > 0, BRIO_ERR_ARGUMENT,
                  "neither a number of faces nor a tolerance to simplify to");
     BRIO_TRY(brio_refuse_not_finite(ctx, mesh->vertices, NULL, mesh->num_vertices, NULL));

@@ -8,6 +8,7 @@
  *
  * Based on: Edelsbrunner, Muecke. Simulation of simplicity. ACM TOG 1990 (ties). */
 #include "mesh/solid.h"
+#include "base/finite.h"
 #include "base/sort.h"
 #include "mesh/edge_rings.h"
 #include <math.h>
@@ -83,6 +84,7 @@ brio_status brio_solid_new(brio_context *ctx, const brio_mesh *mesh, brio_solid 
     brio_status status = BRIO_OK;
     *out = (brio_solid){{0}};
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the solid"));
     BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
     BRIO_TRY(check_boundary(ctx, mesh));
     BRIO_TRY(brio_triangle_tree_new(ctx, mesh, &out->tree));

@@ -144,7 +144,8 @@ static brio_status check(brio_context *ctx, int neighbours, double factor) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, neighbours >= 1 && neighbours < BRIO_MOST_NEAR, BRIO_ERR_ARGUMENT,
                  "outliers by %d neighbours, expected 1 to %d", neighbours, BRIO_MOST_NEAR - 1);
-    BRIO_REQUIRE(ctx, factor >= 1 && isfinite(factor), BRIO_ERR_ARGUMENT, "a factor of %g, expected 1 or more", factor);
+    BRIO_REQUIRE(ctx, factor >= 1 && isfinite(factor), BRIO_ERR_ARGUMENT,
+                 "a factor of %g, expected a finite number, 1 or more", factor);
 done:
     return status;
 }

@@ -19,6 +19,7 @@ static const size_t BATCH = (size_t)1 << 18; /* points between two reports of pr
 
 enum {
     DEFAULT_RESOLUTION = 160,
+    LEAST_RESOLUTION = 4, /* no node of the grids of 1 to 3 cells is inside the sculpture: their surfaces are empty */
     MOST_RESOLUTION = 1 << 15,
     POINTS_A_THREAD = 1 << 10,
     CLUSTERS = 256,
@@ -244,8 +245,9 @@ brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh 
     brio_implicit_grid grid = {.value = brio_sculpture};
     double low[3], high[3], side = 0;
     *out = NULL;
-    BRIO_REQUIRE(ctx, resolution <= MOST_RESOLUTION, BRIO_ERR_ARGUMENT, "resolution %zu: expected 0 to %d", resolution,
-                 MOST_RESOLUTION);
+    BRIO_REQUIRE(ctx, !resolution || (resolution >= LEAST_RESOLUTION && resolution <= MOST_RESOLUTION),
+                 BRIO_ERR_ARGUMENT, "resolution %zu: expected %d to %d, or 0 for %d", resolution, LEAST_RESOLUTION,
+                 MOST_RESOLUTION, DEFAULT_RESOLUTION);
     brio_sculpture_box(low, high);
     for (int k = 0; k < 3; k++) side = fmax(side, high[k] - low[k]);
     grid.cell = side / (double)(resolution ? resolution : DEFAULT_RESOLUTION);

@@ -13,6 +13,7 @@
  * Based on: Hart. Sphere tracing: a geometric method for the antialiased ray tracing of implicit surfaces. The Visual
  * Computer 1996. Marsaglia, Bray. A convenient method for generating normal variables. SIAM Review 1964. */
 #include "testdata/scan.h"
+#include "base/finite.h"
 #include "base/rng.h"
 #include "base/team.h"
 #include "base/vector.h"
@@ -223,10 +224,13 @@ static brio_status scan_block(scan *c, const sensor *e, int view, uint64_t first
     brio_for_chunks(c->ctx, brio_threads(c->ctx, pixels, RAYS_A_CHUNK), pixels, RAYS_A_CHUNK, measure_pixels,
                     &(block){c, e, view, first});
     for (uint64_t i = 0; i < end - first; i++) {
+        const double *p = c->measured + 3 * i;
         if (!c->seen[i]) continue;
+        BRIO_REQUIRE(c->ctx, brio_all_finite(p, 3), BRIO_ERR_ARGUMENT,
+                     "noise %g moves a point farther than doubles can hold", c->scanner->noise);
         BRIO_TRY(BRIO_RESERVE(c->ctx, c->points, c->point_capacity, 3 * c->count + 3));
         BRIO_TRY(BRIO_RESERVE(c->ctx, c->views, c->view_capacity, c->count + 1));
-        for (int k = 0; k < 3; k++) c->points[3 * c->count + k] = c->measured[3 * i + k];
+        for (int k = 0; k < 3; k++) c->points[3 * c->count + k] = p[k];
         c->views[c->count++] = (uint16_t)view;
     }
 done:

@@ -114,7 +114,7 @@ brio_status brio_adjacency_build(brio_context *ctx, const brio_record *record, s
     brio_tetrahedra t = {.infinite = BRIO_INFINITE, .record = record};
     uint32_t *handles = NULL, *sorted = NULL, *edges = NULL;
     size_t num_hull = 0, alone = 0;
-    BRIO_REQUIRE(ctx, n < UINT32_C(1) << 29, BRIO_ERR_TOO_LARGE, "%zu tetrahedra; at most 2^29", n);
+    BRIO_REQUIRE(ctx, n < UINT32_C(1) << 29, BRIO_ERR_TOO_LARGE, "%zu tetrahedra; at most 2^29 - 1", n);
     BRIO_TRY(BRIO_ALLOC(ctx, t.tet, n));
     BRIO_TRY(copy_positive(ctx, record, num_points, tetrahedra, t.tet));
     BRIO_TRY(BRIO_ALLOC(ctx, handles, 4 * n));

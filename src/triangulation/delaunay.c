@@ -22,12 +22,18 @@ static const brio_delaunay_options STANDARD = {
 
 BRIO_OPTIONS_INIT(brio_delaunay_options)
 
-static brio_status check_options(brio_context *ctx, size_t n, const brio_delaunay_options *o) {
+static brio_status check_count(brio_context *ctx, size_t n) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
     /* canonical_order.c numbers two buckets a record in 32 bits */
     BRIO_REQUIRE(ctx, ctx->scratch || n < (UINT32_C(1) << 31) - 16, BRIO_ERR_TOO_LARGE,
                  "%zu points; at most 2^31 - 17 without a scratch folder", n);
+done:
+    return status;
+}
+
+brio_status brio_delaunay_check_options(brio_context *ctx, size_t n, const brio_delaunay_options *o) {
+    brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
     BRIO_REQUIRE(ctx, o->round_ratio >= 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
                  "round ratio %g is not between 0 and 1", o->round_ratio);
@@ -198,7 +204,8 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     *out = NULL;
     brio_keep_begin(ctx);
     BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
-    BRIO_TRY(check_options(ctx, num_points, &o));
+    BRIO_TRY(check_count(ctx, num_points));
+    BRIO_TRY(brio_delaunay_check_options(ctx, num_points, &o));
     recorder.every = o.record_every;
     double start = brio_seconds();
     BRIO_TRY(brio_store_new(ctx, &(brio_input){points, weights, num_points}, &o, &recorder.rounds, &store));

@@ -15,4 +15,8 @@ struct brio_triangulation {
     size_t num_rounds;
 };
 
+/** Checks the options of brio_delaunay for num_points points.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_TOO_LARGE (the edges). */
+brio_status brio_delaunay_check_options(brio_context *ctx, size_t num_points, const brio_delaunay_options *options);
+
 #endif

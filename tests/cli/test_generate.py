@@ -28,6 +28,17 @@ class Usage(CliTest):
             self.usage("solid", "generate", "cube", "-n", "5", "-o", "x.xyz", *option)
 
 
+    def test_truth_without_faces_is_refused_before_the_scan_is_written(self):
+        for resolution in "1", "3", "32769":
+            self.usage("not between 4 and 32768", "generate", "scan", "-n", "50", "-o", self.path("s.ply"), "--truth",
+                       self.path("t.ply"), "--truth-resolution", resolution)
+        self.assert_only(self.folder)
+
+    def test_scan_with_noise_that_doubles_cannot_hold(self):
+        self.usage("noise", "generate", "scan", "-n", "50", "--noise", "1e308", "-o", self.path("s.ply"))
+        self.assert_only(self.folder)
+
+
 class Generate(CliTest):
     def test_facts_of_a_run(self):
         facts = self.facts("generate", "ball", "-n", "50", "-o", self.path("b.xyz"))

@@ -214,6 +214,33 @@ static void hostile_inputs(void) {
     drop(&s);
 }
 
+/* Vertices were called distinct points, though hidden points are distinct too. */
+static void messages_count_hidden_points(void) {
+    double p[10], space[15], w[5] = {0, 0, 10, 0, 0};
+    brio_context *ctx = new_context();
+    brio_triangulation2 *plane;
+    brio_triangulation *t;
+    brio_alpha_complex c = {.size = sizeof c};
+    for (int i = 0; i < 5; i++) {
+        p[2 * i] = p[2 * i + 1] = i;
+        for (int k = 0; k < 3; k++) space[3 * i + k] = i;
+    }
+    EXPECT(brio_delaunay2(ctx, p, w, 5, NULL, &plane) == BRIO_OK &&
+           brio_delaunay(ctx, space, w, 5, NULL, &t) == BRIO_OK);
+    size_t vertices[2] = {brio_triangulation2_stats(plane)->vertices, brio_triangulation_stats(t)->vertices};
+    EXPECT(vertices[0] < 5 && vertices[1] < 5);
+    for (int i = 0; i < 2; i++) {
+        char expected[80];
+        snprintf(expected, sizeof expected, "%zu vertices (%zu points are hidden)", vertices[i], 5 - vertices[i]);
+        EXPECT((i ? brio_alpha_values(ctx, t, space, w, 5, &c) : brio_alpha_values2(ctx, plane, p, w, 5, &c)) ==
+               BRIO_ERR_NO_ANSWER);
+        EXPECT(strstr(brio_message(ctx), expected), "%s", brio_message(ctx));
+    }
+    brio_triangulation2_free(plane);
+    brio_triangulation_free(t);
+    brio_context_free(ctx);
+}
+
 static brio_status run_alpha(brio_context *ctx) {
     double p[2 * 60], alpha;
     uint32_t order[8 * 60];
@@ -239,6 +266,7 @@ int main(void) {
     RUN(the_least_alpha_is_the_same_at_every_scale_or_refused);
     RUN(faces_enter_before_triangles);
     RUN(hostile_inputs);
+    RUN(messages_count_hidden_points);
     RUN(memory_that_runs_out);
     return harness_end();
 }

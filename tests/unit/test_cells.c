@@ -467,6 +467,37 @@ static void wrong_regions_are_refused(void) {
     brio_context_free(ctx);
 }
 
+static void expect_region_message(const brio_cells_options *o, const char *part) {
+    const double points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    brio_context *ctx = new_context();
+    for (size_t n = 0; n <= 4; n++) {
+        brio_cells *cells;
+        EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, n, o, &cells) == BRIO_ERR_ARGUMENT && !cells);
+        EXPECT(strstr(brio_message(ctx), part), "%zu points: %s", n, brio_message(ctx));
+    }
+    brio_context_free(ctx);
+}
+
+/* With two points or more these regions were called too large or too small, and one without an end empty. */
+static void messages_say_what_is_wrong_with_a_region(void) {
+    const double far[6] = {-INFINITY, -1, -1, 2, 2, 2}, nan[6] = {-1, -1, -1, 2, NAN, 2};
+    const double planes[8] = {1, 0, 0, 1, 0, NAN, 0, 1}, distant[4] = {0, 1, 0, INFINITY}, no_normal[4] = {0, 0, 0, 1};
+    const double endless[20] = {1, 0, 0, 1, -1, 0, 0, 0, 0, 1, 0, 1, 0, -1, 0, 0, 0, 0, 1, 1};
+    brio_cells_options o = brio_cells_options_default();
+    o.box = far;
+    expect_region_message(&o, "number 0 of the box is not finite");
+    o.box = nan;
+    expect_region_message(&o, "number 4 of the box is not finite");
+    o.box = WIDE_BOX, o.planes = planes, o.num_planes = 2;
+    expect_region_message(&o, "plane 1 of the region is not finite");
+    o.planes = distant, o.num_planes = 1;
+    expect_region_message(&o, "plane 0 of the region is not finite");
+    o.planes = no_normal;
+    expect_region_message(&o, "plane 0 of the region has the normal 0");
+    o.box = NULL, o.planes = endless, o.num_planes = 5;
+    expect_region_message(&o, "the region is unbounded");
+}
+
 static brio_status compute_some(brio_context *ctx) {
     enum { N = 60 };
     double points[3 * N];
@@ -666,6 +697,7 @@ int main(void) {
     RUN(threads_give_the_same_bits);
     RUN(powers_of_two_scale_the_cells);
     RUN(wrong_regions_are_refused);
+    RUN(messages_say_what_is_wrong_with_a_region);
     RUN(a_region_too_flat_for_doubles_is_refused);
     RUN(a_region_much_larger_or_smaller_than_the_points);
     RUN(a_region_too_large_beside_the_points_is_refused);

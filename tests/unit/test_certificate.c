@@ -223,6 +223,18 @@ static void degenerate_faces_are_not_manifold(void) {
     EXPECT(!c.manifold && c.nonmanifold_vertices == 1);
 }
 
+/* Both sides of its one edge belong to one face, which counted as two faces of the edge. */
+static void faces_of_fewer_than_three_corners_close_nothing(void) {
+    brio_certificate c = certify("0 1");
+    EXPECT(!c.closed && !c.manifold && c.boundary_edges == 0 && c.nonmanifold_edges == 0);
+    c = certify("0,0");
+    EXPECT(!c.closed && !c.manifold);
+    c = certify("0 2 1,0 1 3,1 2 3,2 0 3,4 5");
+    EXPECT(!c.closed && !c.manifold && c.components == 2);
+    c = certify("0 1 2 1"); /* a polygon with a slit, glued to itself */
+    EXPECT(c.closed && !c.manifold && c.nonmanifold_vertices == 1);
+}
+
 static void face_without_corners_is_not_manifold(void) {
     brio_mesh *mesh;
     const uint64_t offsets[2] = {0, 0};
@@ -418,7 +430,9 @@ static void compare_with_reference(const brio_mesh *mesh, uint64_t number) {
     EXPECT(c.components == components, "mesh %d: %zu, not %zu", (int)number, c.components, components);
     EXPECT(c.boundary_loops == loops, "mesh %d: %zu, not %zu", (int)number, c.boundary_loops, loops);
     EXPECT(c.genus == genus && sum == genus, "mesh %d: %d, not %d", (int)number, (int)c.genus, (int)genus);
-    EXPECT(c.closed == (!boundary && !crowded) && c.oriented == !flipped, "mesh %d", (int)number);
+    bool thin = false;
+    for (size_t f = 0; f < r.faces; f++) thin |= mesh->face_offsets[f + 1] - mesh->face_offsets[f] < 3;
+    EXPECT(c.closed == (!boundary && !crowded && !thin) && c.oriented == !flipped, "mesh %d", (int)number);
     EXPECT(c.manifold == (!crowded && !vertices), "mesh %d", (int)number);
     brio_certificate_free(&c);
 }
@@ -505,6 +519,7 @@ int main(void) {
     RUN(two_tetrahedra_on_an_edge_are_not_closed);
     RUN(flipped_face_flips_its_edges);
     RUN(degenerate_faces_are_not_manifold);
+    RUN(faces_of_fewer_than_three_corners_close_nothing);
     RUN(face_without_corners_is_not_manifold);
     RUN(unsound_faces_are_refused);
     RUN(crowded_edge_and_vertex_cost_little);

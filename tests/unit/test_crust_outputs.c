@@ -84,6 +84,21 @@ static void simplified_anything_stays_the_same_manifold(void) {
 
 /* --- open --- */
 
+/* An infinite number was taken by one reconstruction and refused by the other. */
+static void an_infinite_size_of_holes_is_refused(void) {
+    const double p[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    brio_context *ctx = new_small_context();
+    brio_power_crust_options crust = brio_power_crust_options_default();
+    brio_labeled_delaunay_options labeled = brio_labeled_delaunay_options_default();
+    brio_mesh *mesh;
+    crust.open = labeled.open = INFINITY;
+    EXPECT(brio_power_crust(ctx, p, 4, &crust, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "expected a finite number, 0 or more"), "%s", brio_message(ctx));
+    EXPECT(brio_labeled_delaunay(ctx, p, 4, &labeled, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "expected a finite number, 0 or more"), "%s", brio_message(ctx));
+    brio_context_free(ctx);
+}
+
 /* A sphere without the samples of its cap z > 0.5: closed over by default, a disk when holes stay open. */
 static void hole_of_the_samples_stays_open_on_request(void) {
     static double p[3 * 4000];
@@ -409,6 +424,7 @@ int main(void) {
     RUN(simplified_torus_is_a_quarter_and_the_same);
     RUN(simplified_anything_stays_the_same_manifold);
     RUN(hole_of_the_samples_stays_open_on_request);
+    RUN(an_infinite_size_of_holes_is_refused);
     RUN(hole_inside_the_hull_stays_open_on_request);
     RUN(open_anything_is_manifold);
     RUN(cube_comes_out_with_its_edges);

@@ -234,6 +234,32 @@ static void surface_without_area_is_refused(void) {
     brio_mesh_free(empty);
 }
 
+/* The message was "the faces of the first mesh have area nan". */
+static void surface_with_nan_is_refused(void) {
+    brio_mesh *good = square(ctx, 1, 0), *bad = square(ctx, 1, 1);
+    brio_distance d = {.size = sizeof d};
+    bad->vertices[4] = NAN;
+    EXPECT(brio_mesh_distance(ctx, bad, good, 10, 1, &d) == BRIO_ERR_NOT_FINITE);
+    EXPECT(strstr(brio_message(ctx), "vertex 1 of the first mesh: y is NaN"), "%s", brio_message(ctx));
+    bad->vertices[4] = INFINITY;
+    EXPECT(brio_mesh_distance(ctx, good, bad, 10, 1, &d) == BRIO_ERR_NOT_FINITE);
+    EXPECT(strstr(brio_message(ctx), "vertex 1 of the second mesh: y is infinite"), "%s", brio_message(ctx));
+    brio_mesh_free(good);
+    brio_mesh_free(bad);
+}
+
+/* A face of two corners counted as no face. */
+static void surface_without_triangles_says_so(void) {
+    const double vertices[] = {0, 0, 0, 1, 0, 0};
+    const uint32_t corners[] = {0, 1};
+    brio_mesh *edge = mesh_new(ctx, vertices, 2, corners, 1, 2), *plane = square(ctx, 1, 0);
+    brio_distance d = {.size = sizeof d};
+    EXPECT(brio_mesh_distance(ctx, edge, plane, 10, 1, &d) == BRIO_ERR_ARGUMENT);
+    EXPECT(strstr(brio_message(ctx), "no face of the mesh has three corners"), "%s", brio_message(ctx));
+    brio_mesh_free(edge);
+    brio_mesh_free(plane);
+}
+
 /* --- sizes near the ends of doubles --- */
 
 static brio_mesh *scaled(const brio_mesh *mesh, int exponent) {
@@ -329,6 +355,8 @@ int main(void) {
     RUN(perpendicular_squares_have_no_common_normal);
     RUN(figures_do_not_depend_on_threads);
     RUN(surface_without_area_is_refused);
+    RUN(surface_with_nan_is_refused);
+    RUN(surface_without_triangles_says_so);
     RUN(figures_do_not_depend_on_the_unit);
     RUN(tiny_surface_beside_an_ordinary_one_has_area);
     RUN(distances_beyond_doubles_are_refused);

@@ -2,6 +2,7 @@
  * room that is set aside for growth, which threads do for themselves. */
 #include "harness.h"
 #include "points.h"
+#include <limits.h>
 
 enum { N = 40000 };
 
@@ -184,6 +185,39 @@ static void wrong_arguments_are_refused(void) {
     brio_context_free(ctx);
 }
 
+/* 2 * levels overflowed. */
+static void estimates_of_levels_out_of_range_are_those_of_the_nearest_level(void) {
+    EXPECT(brio_estimate_mesh_subdivide(10, INT_MAX) == brio_estimate_mesh_subdivide(10, 15));
+    EXPECT(brio_estimate_mesh_subdivide(10, INT_MIN) == brio_estimate_mesh_subdivide(10, 1));
+    EXPECT(brio_estimate_mesh_subdivide(10, 0) == brio_estimate_mesh_subdivide(10, 1));
+    EXPECT(brio_estimate_mesh_subdivide(10, 15) > brio_estimate_mesh_subdivide(10, 14));
+}
+
+/* Memory was estimated of triangulations that brio_delaunay refuses to make. */
+static void options_that_are_refused_have_no_estimate(void) {
+    const uint32_t edge[2] = {0, 50};
+    brio_delaunay_options wrong[6];
+    brio_context *ctx = new_context();
+    uniform_points(1, 50, points);
+    for (int i = 0; i < 6; i++) wrong[i] = brio_delaunay_options_default();
+    wrong[0].order = (brio_order)99;
+    wrong[1].locate = (brio_location)-5;
+    wrong[2].round_ratio = 1;
+    wrong[3].num_edges = 1;
+    wrong[4].num_edges = 1, wrong[4].edges = edge;
+    wrong[5].max_tetrahedra = UINT32_MAX;
+    for (int i = 0; i < 6; i++) {
+        brio_triangulation *t;
+        char message[256];
+        uint64_t bytes = 77;
+        EXPECT(brio_delaunay(ctx, points, NULL, 50, &wrong[i], &t) == BRIO_ERR_ARGUMENT, "%d", i);
+        snprintf(message, sizeof message, "%s", brio_message(ctx));
+        EXPECT(brio_estimate_delaunay(ctx, points, NULL, 50, &wrong[i], &bytes) == BRIO_ERR_ARGUMENT, "%d", i);
+        EXPECT(bytes == 0 && !strcmp(brio_message(ctx), message), "%d: %s", i, brio_message(ctx));
+    }
+    brio_context_free(ctx);
+}
+
 static int cancel_at_once(const char *stage, double fraction, void *user) {
     (void)stage;
     EXPECT(fraction == 0);
@@ -209,6 +243,8 @@ int main(void) {
     RUN(every_way_of_location_takes_what_was_estimated);
     RUN(surfaces_take_what_was_estimated);
     RUN(wrong_arguments_are_refused);
+    RUN(estimates_of_levels_out_of_range_are_those_of_the_nearest_level);
+    RUN(options_that_are_refused_have_no_estimate);
     RUN(estimates_can_be_cancelled);
     return harness_end();
 }

@@ -3,6 +3,7 @@
 #include "failing_allocator.h"
 #include "iso/iso_surface.h"
 #include "testdata/sculpture.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -206,6 +207,18 @@ static void bad_options_are_refused(void) {
     EXPECT(brio_generate_truth(ctx, SIZE_MAX, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
 }
 
+/* A finite noise whose product with the spacing overflowed gave infinite coordinates and BRIO_OK. */
+static void scan_whose_noise_overflows_is_refused(void) {
+    brio_generate_options options = {.size = sizeof options, .seed = 1, .noise = DBL_MAX, .views = 2};
+    brio_mesh *mesh;
+    EXPECT(brio_generate(ctx, BRIO_KIND_SCAN, 50, &options, &mesh) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "noise 1.79769e+308"), "%s", brio_message(ctx));
+    options.noise = 1e300;
+    EXPECT(brio_generate(ctx, BRIO_KIND_SCAN, 50, &options, &mesh) == BRIO_OK && mesh->num_vertices > 0);
+    for (size_t i = 0; mesh && i < 3 * mesh->num_vertices; i++) EXPECT(isfinite(mesh->vertices[i]));
+    brio_mesh_free(mesh);
+}
+
 /* --- the sculpture --- */
 
 static void sculpture_function_never_exceeds_the_distance(void) {
@@ -243,6 +256,24 @@ static void truth_is_a_certified_surface_of_genus_3(void) {
 }
 
 /* --- the scan --- */
+
+/* Grids of 1 to 3 cells have no node inside the sculpture: the closed mesh was one without faces. */
+static void truth_too_coarse_to_have_faces_is_refused(void) {
+    brio_mesh *mesh;
+    for (size_t resolution = 1; resolution < 4; resolution++) {
+        EXPECT(brio_generate_truth(ctx, resolution, &mesh) == BRIO_ERR_ARGUMENT && !mesh, "resolution %zu", resolution);
+        EXPECT(strstr(brio_message(ctx), "4 to 32768"), "%s", brio_message(ctx));
+        brio_mesh_free(mesh);
+    }
+    for (size_t resolution = 4; resolution < 40; resolution++) {
+        brio_certificate c = {.size = sizeof c};
+        EXPECT(brio_generate_truth(ctx, resolution, &mesh) == BRIO_OK);
+        EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.closed && c.manifold && c.oriented,
+               "resolution %zu", resolution);
+        brio_certificate_free(&c);
+        brio_mesh_free(mesh);
+    }
+}
 
 static void scan_has_about_n_points_in_scan_order(void) {
     static const size_t sizes[] = {300, 3000, 30000};
@@ -433,6 +464,8 @@ int main(void) {
     RUN(grid_is_the_smallest_that_has_room);
     RUN(depth_frame_has_whole_depths_along_its_rays);
     RUN(bad_options_are_refused);
+    RUN(scan_whose_noise_overflows_is_refused);
+    RUN(truth_too_coarse_to_have_faces_is_refused);
     RUN(sculpture_function_never_exceeds_the_distance);
     RUN(truth_is_a_certified_surface_of_genus_3);
     RUN(scan_has_about_n_points_in_scan_order);

@@ -219,6 +219,31 @@ static void refuse_what_the_format_cannot_hold(void) {
     brio_mesh_free(mesh);
 }
 
+/* A LAS file had a number in the place of NaN; files of all other formats, none of which brio reads. */
+static void coordinates_that_are_no_numbers_are_refused(void) {
+    static const char *const names[] = {"n.ply", "n.xyz",  "n.csv", "n.obj", "n.off", "n.vtu",
+                                        "n.vtp", "n.node", "n.las", "n.stl", "n.npy", "n.glb"};
+    static const double wrong[] = {NAN, INFINITY, -INFINITY};
+    io_empty_folder();
+    for (size_t i = 0; i < 3 * sizeof names / sizeof *names; i++) {
+        const char *name = names[i / 3];
+        brio_mesh *mesh = io_make(10, IO_FACES | IO_SINGLE);
+        brio_write_options options = brio_write_options_default();
+        double moved = -1;
+        options.moved = &moved;
+        options.float32 = i % 2;
+        mesh->vertices[3 * 7 + 1] = wrong[i % 3];
+        mesh->vertices[3 * 8] = NAN;
+        EXPECT(brio_write(io_ctx, io_path(name), mesh, &options) == BRIO_ERR_NOT_FINITE, "%s: %g", name, wrong[i % 3]);
+        EXPECT(strstr(brio_message(io_ctx), name) && strstr(brio_message(io_ctx), "point 7: y is ") &&
+                   strstr(brio_message(io_ctx), "2 such points in all"),
+               "%s", brio_message(io_ctx));
+        EXPECT(io_count_files("n.") == 0 && moved == 0, "%s: moved %g", name, moved);
+        brio_mesh_free(mesh);
+        io_empty_folder();
+    }
+}
+
 static void full_disk_is_a_status(void) {
     if (access("/dev/full", W_OK) != 0) return;
     brio_mesh *mesh = io_make(100000, 0);
@@ -457,6 +482,7 @@ int main(void) {
     RUN(numbered_names_are_whole_characters);
     RUN(names_that_texts_take_for_something_else);
     RUN(refuse_what_the_format_cannot_hold);
+    RUN(coordinates_that_are_no_numbers_are_refused);
     RUN(full_disk_is_a_status);
     RUN(unwritable_folder_is_a_status);
     RUN(cancelled_write_leaves_the_old_file);

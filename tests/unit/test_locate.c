@@ -236,6 +236,32 @@ static void bad_input_is_refused(void) {
     brio_context_free(ctx);
 }
 
+/* Room for `count` vertices was taken though there are five, and for no query at all. */
+static void more_vertices_wanted_than_there_are_take_no_memory(void) {
+    enum { WANTED = 1 << 20 };
+    static uint32_t found[WANTED];
+    const double p[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, x[3] = {0.9, 0.9, 0.9};
+    brio_context *ctx = new_context();
+    brio_triangulation *t;
+    brio_locator *l;
+    EXPECT(brio_delaunay(ctx, p, NULL, 5, NULL, &t) == BRIO_OK && brio_locator_new(ctx, t, p, NULL, 5, &l) == BRIO_OK);
+    brio_context_set_memory_limit(ctx, brio_context_memory(ctx) + 100000);
+    EXPECT(brio_locator_nearest(ctx, l, NULL, 0, UINT32_MAX, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_locator_nearest(ctx, l, x, 1, WANTED, found) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(found[0] == 4 && found[4] != BRIO_INFINITE && found[5] == BRIO_INFINITE &&
+           found[WANTED - 1] == BRIO_INFINITE);
+    EXPECT(brio_locator_nearest(ctx, l, NULL, 0, 0, NULL) == BRIO_ERR_ARGUMENT);
+    brio_locator_free(l);
+    brio_triangulation_free(t);
+    brio_context_set_memory_limit(ctx, 0);
+    EXPECT(brio_delaunay(ctx, NULL, NULL, 0, NULL, &t) == BRIO_OK);
+    EXPECT(brio_locator_new(ctx, t, NULL, NULL, 0, &l) == BRIO_OK);
+    EXPECT(brio_locator_nearest(ctx, l, x, 1, WANTED, found) == BRIO_OK && found[0] == BRIO_INFINITE);
+    brio_locator_free(l);
+    brio_triangulation_free(t);
+    brio_context_free(ctx);
+}
+
 static brio_status query_everything(brio_context *ctx) {
     static double p[3 * 200], x[3 * 100], results[100];
     static uint32_t found[300];
@@ -289,6 +315,7 @@ int main(int argc, char **argv) {
     RUN(neither_threads_nor_order_change_an_answer);
     RUN(values_have_the_same_bits_in_every_order);
     RUN(bad_input_is_refused);
+    RUN(more_vertices_wanted_than_there_are_take_no_memory);
     RUN(memory_may_run_out_anywhere);
     return harness_end();
 }

@@ -367,6 +367,22 @@ static void open_mesh_is_no_solid(void) {
     free(c.points);
 }
 
+/* Poles were labeled by a solid with a corner that is no number. */
+static void solid_with_nan_is_refused(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_box, 0.5, 1);
+    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_mesh *crust, *box = box_mesh(ctx, false, false, 6);
+    o.poles.solid = box;
+    box->vertices[7] = NAN;
+    EXPECT(brio_power_crust(ctx, c.points, c.count, &o, &crust, NULL, NULL) == BRIO_ERR_NOT_FINITE && !crust);
+    EXPECT(strstr(brio_message(ctx), "vertex 2 of the solid: y is NaN"), "%s", brio_message(ctx));
+    brio_mesh_free(box);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
 /* Rays through corners, along edges and through the diagonals of faces. */
 static void winding_numbers_of_lattice_points_are_right(void) {
     brio_context *ctx = new_context();
@@ -532,6 +548,7 @@ int main(void) {
     RUN(points_within_a_larger_solid_have_closed_crusts);
     RUN(poles_that_are_kept_keep_what_is_theirs);
     RUN(open_mesh_is_no_solid);
+    RUN(solid_with_nan_is_refused);
     RUN(winding_numbers_of_lattice_points_are_right);
     RUN(winding_numbers_of_a_curved_mesh_are_right);
     RUN(small_inputs_have_shapes_and_closed_crusts_or_say_so);

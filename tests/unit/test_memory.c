@@ -47,6 +47,16 @@ static void size_overflow_is_a_status(void) {
     brio_context_free(ctx);
 }
 
+/* "" stood for the root folder, where root may write. */
+static void scratch_folder_without_a_name_is_refused(void) {
+    brio_context *ctx;
+    brio_context_new(NULL, &ctx);
+    EXPECT(brio_context_set_scratch(ctx, "") == BRIO_ERR_OPEN);
+    EXPECT(strstr(brio_message(ctx), "\"\": not a writable folder"), "%s", brio_message(ctx));
+    EXPECT(!ctx->scratch);
+    brio_context_free(ctx);
+}
+
 static void scratch_block_grows_and_is_not_counted(void) {
     brio_context *ctx;
     brio_context_new(NULL, &ctx);
@@ -188,6 +198,7 @@ int main(void) {
     RUN(grown_block_keeps_what_it_held);
     RUN(limit_is_a_status_and_keeps_the_block);
     RUN(size_overflow_is_a_status);
+    RUN(scratch_folder_without_a_name_is_refused);
     RUN(scratch_block_grows_and_is_not_counted);
     RUN(scratch_block_is_one_whatever_way_it_is_reached);
     return harness_end();

@@ -60,6 +60,20 @@ static void wrong_offsets_and_strides_are_refused(void) {
     brio_context_free(ctx);
 }
 
+/* The first offset was looked at only if there was a face. */
+static void offsets_of_no_faces_begin_at_0(void) {
+    const uint64_t wrong[1] = {3}, right[1] = {0};
+    brio_context *ctx = new_context();
+    brio_mesh *mesh;
+    EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK);
+    EXPECT(brio_mesh_set_faces(mesh, wrong, NULL, 0) == BRIO_ERR_ARGUMENT && !mesh->face_offsets);
+    EXPECT(brio_mesh_set_faces(mesh, right, NULL, 0) == BRIO_OK);
+    brio_mesh_free(mesh);
+    EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK && brio_mesh_set_faces(mesh, NULL, NULL, 0) == BRIO_OK);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
 /* A face of three vertices and a fourth index was written as it was. */
 static void no_file_is_written_of_indices_out_of_range(void) {
     static const char *const extensions[] = {"ply", "obj", "off", "vtu", "vtp"};
@@ -84,6 +98,7 @@ int main(void) {
     RUN(vertices_come_before_properties);
     RUN(counts_whose_bytes_wrap_are_refused);
     RUN(wrong_offsets_and_strides_are_refused);
+    RUN(offsets_of_no_faces_begin_at_0);
     RUN(no_file_is_written_of_indices_out_of_range);
     return harness_end();
 }

@@ -95,6 +95,20 @@ static void thinning_refuses(void) {
     brio_context_free(ctx);
 }
 
+/* An infinite number was said to be no number above 0, and none of 1 or more. */
+static void infinite_spacings_and_factors_are_said_to_be_infinite(void) {
+    const double point[3] = {0, 0, 0};
+    brio_context *ctx = new_context();
+    brio_outliers_options o = brio_outliers_options_default();
+    uint8_t chosen[1];
+    EXPECT(brio_thin(ctx, point, 1, INFINITY, chosen, NULL) == BRIO_ERR_ARGUMENT);
+    EXPECT(strstr(brio_message(ctx), "expected a finite number above 0"), "%s", brio_message(ctx));
+    o.factor = INFINITY;
+    EXPECT(brio_outliers(ctx, point, 1, 8, &o, chosen) == BRIO_ERR_ARGUMENT);
+    EXPECT(strstr(brio_message(ctx), "expected a finite number, 1 or more"), "%s", brio_message(ctx));
+    brio_context_free(ctx);
+}
+
 /* memcpy from NULL is undefined also for no bytes. */
 static void no_points_have_no_outliers(void) {
     brio_context *ctx = new_context();
@@ -241,6 +255,7 @@ int main(void) {
     RUN(thinned_sets_are_maximal);
     RUN(thinning_at_extreme_scales);
     RUN(thinning_refuses);
+    RUN(infinite_spacings_and_factors_are_said_to_be_infinite);
     RUN(no_points_have_no_outliers);
     RUN(outliers_are_found);
     RUN(outliers_are_the_same_at_every_scale);

@@ -382,6 +382,14 @@ static void what_is_no_manifold_is_refused(void) {
     brio_mesh_free(mesh);
 }
 
+/* A face with a vertex twice passed for a boundary and a fan, and the mesh for a manifold. */
+static void triangle_with_a_vertex_twice_is_refused(void) {
+    const uint32_t alone[] = {0, 0, 1}, in_a_surface[] = {0, 1, 2, 0, 0, 1, 0, 2, 3};
+    expect_refusal("alone", 2, alone, 1);
+    EXPECT(strstr(brio_message(ctx), "face 0 has vertex 0 twice"), "%s", brio_message(ctx));
+    expect_refusal("in a surface", 4, in_a_surface, 3);
+}
+
 static void polygons_are_refused(void) {
     const double points[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
     const uint64_t offsets[2] = {0, 4};
@@ -561,6 +569,7 @@ int main(void) {
     RUN(boundaries_stay);
     RUN(plane_is_covered_once);
     RUN(what_is_no_manifold_is_refused);
+    RUN(triangle_with_a_vertex_twice_is_refused);
     RUN(polygons_are_refused);
     RUN(mesh_of_nothing_stays_nothing);
     RUN(cancelled_work_leaves_nothing);

@@ -134,6 +134,23 @@ static void points_have_the_normals_of_their_vertices_or_neighbours(void) {
     brio_context_free(ctx);
 }
 
+/* The normals of points near a corner that is no number were none either. */
+static void a_surface_with_nan_gives_no_normals(void) {
+    double p[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 1}, normals[12];
+    const uint64_t offsets[] = {0, 3};
+    const uint32_t corners[] = {0, 1, 2};
+    brio_context *ctx = context_of(1);
+    brio_mesh *mesh;
+    EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, p, 3) == BRIO_OK);
+    EXPECT(brio_mesh_set_faces(mesh, offsets, corners, 1) == BRIO_OK);
+    EXPECT(brio_point_normals(ctx, p, 4, mesh, NULL, normals) == BRIO_OK);
+    mesh->vertices[5] = -INFINITY;
+    EXPECT(brio_point_normals(ctx, p, 4, mesh, NULL, normals) == BRIO_ERR_NOT_FINITE);
+    EXPECT(strstr(brio_message(ctx), "vertex 1 of the surface: z is infinite"), "%s", brio_message(ctx));
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
 /* Writes the normals of the vertices, and the normals that the points have by them. */
 static void find_normals(brio_context *ctx, const brio_mesh *mesh, float *of_vertices, double *of_points) {
     static const char *const names[3] = {"nx", "ny", "nz"};
@@ -478,6 +495,7 @@ int main(void) {
     RUN(a_mesh_stays_as_it_was_where_nothing_would_be_left);
     RUN(the_largest_component_is_found_in_every_unit);
     RUN(points_have_the_normals_of_their_vertices_or_neighbours);
+    RUN(a_surface_with_nan_gives_no_normals);
     RUN(normals_are_the_same_in_every_unit);
     RUN(normals_of_odd_vertices_are_0);
     RUN(normals_that_fail_leave_the_mesh_as_it_was);

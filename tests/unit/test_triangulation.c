@@ -447,6 +447,16 @@ static void check_refuses_what_is_wrong(void) {
     brio_context_free(ctx);
 }
 
+/* "536870912 tetrahedra; at most 2^29" was the message of 2^29 tetrahedra. */
+static void the_check_names_the_most_tetrahedra_it_takes(void) {
+    const double p[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const uint32_t v[4] = {0, 1, 2, 3};
+    brio_context *ctx = new_context();
+    EXPECT(brio_tetrahedra_check(ctx, p, NULL, 4, v, 4, (size_t)1 << 29, NULL) == BRIO_ERR_TOO_LARGE);
+    EXPECT(strstr(brio_message(ctx), "at most 2^29 - 1"), "%s", brio_message(ctx));
+    brio_context_free(ctx);
+}
+
 static void other_tie_breaks_pass_but_are_not_canonical(void) {
     /* a regular octahedron: three Delaunay triangulations, one of them canonical */
     const double p[18] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
@@ -575,6 +585,7 @@ int main(void) {
     RUN(every_failed_allocation_is_a_status);
     RUN(every_memory_limit_is_a_status);
     RUN(check_refuses_what_is_wrong);
+    RUN(the_check_names_the_most_tetrahedra_it_takes);
     RUN(other_tie_breaks_pass_but_are_not_canonical);
     RUN(check_refuses_space_covered_twice);
     RUN(check_refuses_two_tetrahedra_on_one_side_of_their_facet);

@@ -10,7 +10,8 @@ enum { BRIO_LAS_WITNESSES = 4096 /* chosen */ };
  *  the box of the points and tries the grid of the source. Later passes try the candidates: powers of 1/10 and of 1/2
  *  with origins that the box suggests. A candidate is taken that gives back all points of a whole pass. If there is none,
  *  the finest power of 10 is taken for which the whole numbers have 32 bits: coordinates are then rounded to the nearest
- *  multiple. All bytes 0 is the state before the first pass. */
+ *  multiple. All bytes 0 is the state before the first pass.
+ *  All coordinates are finite: brio_write and the readers refuse others. */
 typedef struct brio_las_grid {
     double step[3], origin[3]; /* the candidates of the axes that are being tried, in the end the result */
     double low[3], high[3];    /* box of the points */

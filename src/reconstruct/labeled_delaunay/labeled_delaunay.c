@@ -315,7 +315,7 @@ brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_
     BRIO_REQUIRE(ctx, (unsigned)o.noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
                  (int)o.noise);
     BRIO_REQUIRE(ctx, o.open >= 0 && o.open < INFINITY, BRIO_ERR_ARGUMENT,
-                 "open: %g spacings, expected 0 or a positive number", o.open);
+                 "open: %g spacings, expected a finite number, 0 or more", o.open);
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
     brio_progress_part(ctx, bar, 0, o.simplify ? 0.8 : 1);
     BRIO_TRY(find_surface(&r, points));

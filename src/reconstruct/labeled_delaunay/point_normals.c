@@ -3,6 +3,7 @@
  * A point that a vertex stands for takes the vertex's normal, and so do its duplicates. Every other point takes the normal
  * of the surface where the surface is nearest: the mean of the normals of a triangle's corners, weighted by how near the
  * corners are (barycentric coordinates). */
+#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/scale.h"
 #include "base/vector.h"
@@ -123,6 +124,7 @@ brio_status brio_point_normals(brio_context *ctx, const double *points, size_t n
     double *of_vertex = NULL;
     point_set s = {.ctx = ctx, .num_points = num_points, .normals = normals};
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
+    BRIO_TRY(brio_refuse_vertices(ctx, surface->vertices, surface->num_vertices, "the surface"));
     BRIO_TRY(brio_vertex_normals(surface, &of_vertex));
     s.of_vertex = of_vertex;
     BRIO_TRY(list_known(&s, surface, samples));

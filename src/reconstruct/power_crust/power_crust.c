@@ -74,7 +74,8 @@ brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_crust_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_power_crust_options, options, &o));
     BRIO_TRY(brio_pole_request_of(ctx, &o.poles, o.seed, &request));
-    BRIO_REQUIRE(ctx, o.open >= 0, BRIO_ERR_ARGUMENT, "open: %g spacings, expected 0 or a positive number", o.open);
+    BRIO_REQUIRE(ctx, o.open >= 0 && o.open < INFINITY, BRIO_ERR_ARGUMENT,
+                 "open: %g spacings, expected a finite number, 0 or more", o.open);
     request.spacing = o.open > 0 || o.simplify;
     request.representative = normals != NULL;
     BRIO_TRY(brio_mesh_new(ctx, &mesh));

@@ -208,9 +208,10 @@ done:
 static brio_status check_options(brio_context *ctx, const brio_power_shape_options *o) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, (unsigned)o->sides < BRIO_SIDES_END, BRIO_ERR_ARGUMENT, "no such side: %d", (int)o->sides);
-    BRIO_REQUIRE(ctx, o->scale >= 1 && isfinite(o->scale), BRIO_ERR_ARGUMENT, "scale %g, expected 1 or more", o->scale);
+    BRIO_REQUIRE(ctx, o->scale >= 1 && isfinite(o->scale), BRIO_ERR_ARGUMENT,
+                 "scale %g, expected a finite number, 1 or more", o->scale);
     BRIO_REQUIRE(ctx, o->redundancy >= 0 && isfinite(o->redundancy), BRIO_ERR_ARGUMENT,
-                 "redundancy %g, expected 0 or more", o->redundancy);
+                 "redundancy %g, expected a finite number, 0 or more", o->redundancy);
 done:
     return status;
 }
