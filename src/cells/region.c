@@ -5,7 +5,6 @@
 #include "cells/region.h"
 #include "base/memory.h"
 #include "base/vector.h"
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -20,7 +19,6 @@ static brio_status take_planes(brio_context *ctx, const double *planes, const do
     for (size_t i = 0; i < r->num_planes; i++) {
         const double *from = planes + 4 * i;
         double most = fmax(fabs(from[0]), fmax(fabs(from[1]), fabs(from[2]))), n[3];
-        assert(isfinite(most) && most > 0 && isfinite(from[3]));
         for (int k = 0; k < 3; k++) n[k] = from[k] / most;
         double length = sqrt(brio_dot(n, n));
         for (int k = 0; k < 3; k++) r->plane[i][k] = n[k] / length;

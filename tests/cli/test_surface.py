@@ -236,7 +236,7 @@ class PowerCrust(CliTest):
         self.assertGreater(sharp["internals"]["bad_cells"], 0)
         self.assertEqual(sharp["left_out"], 0)
         self.usage("between 0 and 1", "surface", points, "-o", out, "-R", "1")
-        self.usage("a positive number", "surface", points, "-o", out, "--open", "-1")
+        self.usage("a finite number, 0 or more", "surface", points, "-o", out, "--open", "-1")
         self.expect(6, "surface", points, "-o", out, "--normals", self.path("missing/n.ply"))
 
     def test_surface_triangulated(self):
