@@ -164,7 +164,7 @@ BRIO_API void brio_context_set_memory_limit(brio_context *ctx, size_t bytes);
  *  allocated before it is touched: a full disk or a limit on the size of files is BRIO_ERR_NO_MEMORY. NULL returns to
  *  anonymous memory. A context with a caller's allocator has no scratch folder. A mapped file whose disk fails, or that
  *  somebody cuts, raises SIGBUS where it is touched next, in any thread: the library handles no signals, the host may.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder), BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder, such as an empty name), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_context_set_scratch(brio_context *ctx, const char *folder);
 
 /** Returns the bytes that objects and running calls of this context hold now. */
@@ -398,7 +398,8 @@ BRIO_API brio_status brio_locator_tetrahedra(brio_context *ctx, const brio_locat
  *  vertices at equal distances the lexicographically first ones are taken, and come first. Works in every dimension.
  *  count     at least 1.
  *  vertices  #Q by count: indices of points that are vertices, BRIO_INFINITE where there are fewer vertices.
- *  Returns also BRIO_ERR_ARGUMENT (count is 0), BRIO_ERR_TOO_LARGE (count is over 2^32 - 1).
+ *  Returns also BRIO_ERR_ARGUMENT (count is 0), BRIO_ERR_TOO_LARGE (count is over 2^32 - 1). Each thread
+ *  takes room for `count` vertices, or all if these are fewer.
  *  Based on: [Friedman Bentley Finkel 1977]. */
 BRIO_API brio_status brio_locator_nearest(brio_context *ctx, const brio_locator *locator, const double *queries,
                                           size_t num_queries, size_t count, uint32_t *vertices);
@@ -761,7 +762,7 @@ BRIO_API void brio_mesh_free(brio_mesh *mesh);
 
 /** Copies vertices into a mesh without vertices and properties; vertices NULL sets them to 0. */
 BRIO_API brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size_t num_vertices);
-/** Copies polygons into a mesh.   offsets  #F + 1, from 0 on, not decreasing.   indices  offsets[#F]. */
+/** Copies polygons into a mesh.   offsets  #F + 1, from 0 on, not decreasing; NULL without faces.   indices  offsets[#F]. */
 BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices,
                                          size_t num_faces);
 /** Copies tetrahedra into a mesh. Tetrahedron i has four vertices at tetrahedra + stride * i: stride 4 for a packed
@@ -783,7 +784,8 @@ BRIO_API double brio_property_value(const brio_property *property, size_t i);
  *  weighted by area. A normal points to the side from which the faces are seen counterclockwise. A vertex whose
  *  faces have no area has the normal of the vertices at its position that edges join to it. A vertex without faces has the
  *  normal 0.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or the mesh has such properties), BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK; BRIO_ERR_ARGUMENT (an index out of range, or the mesh has such properties) and BRIO_ERR_NO_MEMORY, after
+ *  which the mesh is as it was. */
 BRIO_API brio_status brio_mesh_add_normals(brio_mesh *mesh);
 
 /** Gives the vertices of a mesh the properties of points, such as the colours of the samples of a surface. The values are
@@ -819,7 +821,7 @@ BRIO_API brio_status brio_mesh_keep_components(brio_mesh *mesh, int largest, siz
 typedef struct brio_certificate {
     size_t size;
     brio_context *context; /* that `genera` belongs to */
-    int closed;            /* there are faces, and every edge has two of them */
+    int closed;            /* there are faces, none of fewer than three corners, and every edge has two of them */
     int manifold;          /* no edge has more than two faces; the faces at each vertex form one fan */
     int oriented;          /* the two faces of an edge run along it in opposite directions */
     size_t components;
@@ -856,8 +858,8 @@ typedef struct brio_distance {
 
 /** Compares two surfaces. Takes `samples` random points of each (0: 100,000), uniform by area, and computes their exact
  *  distances from the triangles of the other surface.   out  its `size` set.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without faces, or whose faces have no area), BRIO_ERR_NO_ANSWER (doubles
- *  cannot hold the distances), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without triangles, or whose faces have no area), BRIO_ERR_NOT_FINITE,
+ *  BRIO_ERR_NO_ANSWER (doubles cannot hold the distances), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
                                         uint64_t seed, brio_distance *out);
 
@@ -896,8 +898,8 @@ static inline brio_mesh_simplify_options brio_mesh_simplify_options_default(void
  *  their corners breaks ties.
  *  Cost: O(n log n); 175 bytes a vertex beside the mesh, and 24 more for each vertex that is left when the last edges
  *  collapse.
- *  Returns BRIO_OK; BRIO_ERR_ARGUMENT (neither target nor tolerance, a negative one, a face is no triangle, an index is out
- *  of range, the mesh is not manifold and oriented at an edge or a vertex), BRIO_ERR_TOO_LARGE (2^32 corners) and
+ *  Returns BRIO_OK; BRIO_ERR_ARGUMENT (neither target nor tolerance, a negative one, a face is no triangle or has a vertex
+ *  twice, an index is out of range, the mesh is not manifold and oriented at an edge or a vertex), BRIO_ERR_TOO_LARGE (2^32 corners) and
  *  BRIO_ERR_NOT_FINITE, after which the mesh is
  *  what it was; BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, BRIO_ERR_NO_ANSWER (doubles cannot hold a new vertex), after which
  *  it can only be freed.
@@ -1287,7 +1289,7 @@ typedef struct brio_power_crust_options {
     int simplify; /* 1: triangles, about a quarter as many as the crust has polygons: collapses edges that are
                                 much shorter than the local spacing of the samples; the surface stays the same as a
                                 manifold; default 0 */
-    double open;  /* K > 0: leaves out the faces whose two balls intersect at an angle over pi / 4 while the
+    double open;  /* K > 0, finite: leaves out the faces whose two balls intersect at an angle over pi / 4 while the
                                 smaller ball's radius is over K local spacings, so that large holes of the samples stay
                                 open; default 0: the surface is closed */
 } brio_power_crust_options;
@@ -1417,10 +1419,11 @@ typedef struct brio_labeled_delaunay_options {
     uint64_t seed;    /* default 1 */
     brio_noise noise; /* what to do about noisy samples; default BRIO_NOISE_AUTO */
     int confidence;   /* 1: adds the vertex property "confidence"; default 0 */
-    double open;      /* K > 0: leaves out the triangles that span holes of the samples: their circles have radii over K
+    double
+        open; /* K > 0, finite: leaves out the triangles that span holes of the samples: their circles have radii over K
                          spacings of their samples, and they are joined to a triangle with a side over K spacings. The
                          surface is then manifold and oriented, with boundary; default 0: it is closed */
-    int simplify;     /* 1: collapses edges of up to four spacings while the vertices stay within a tenth of a spacing
+    int simplify; /* 1: collapses edges of up to four spacings while the vertices stay within a tenth of a spacing
                          of the planes of their triangles, until a quarter of the triangles is left; the surface stays
                          the same as a manifold; default 0 */
     int reserved_int;
@@ -1592,7 +1595,7 @@ BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const
  *  less than `spacing` from a chosen one. (Distances as computed in doubles.) No other point can be added, so the set has no
  *  holes that the points do not have. The chosen positions depend on the set of positions and the spacing only, and not on
  *  the order of the points or the number of threads; of coincident points the first one is chosen.
- *  points   #P by 3, finite.   spacing  greater than 0.
+ *  points   #P by 3, finite.   spacing  finite, greater than 0.
  *  chosen   #P: receives 1 for chosen points, 0 for others.   num_chosen  NULL, or receives their number.
  *  Cost: linear in the number of points, if cells as wide as the spacing can be numbered in 63 bits; otherwise cells are
  *  wider, and cost the square of the points chosen in them. Memory: 24 bytes a point.
@@ -1603,7 +1606,7 @@ BRIO_API brio_status brio_thin(brio_context *ctx, const double *points, size_t n
 
 typedef struct brio_outliers_options {
     size_t size;
-    double factor; /* 1 or more; default 3 */
+    double factor; /* finite, 1 or more; default 3 */
 } brio_outliers_options;
 
 BRIO_API void brio_outliers_options_init(brio_outliers_options *options, size_t size);
@@ -1747,13 +1750,14 @@ static inline brio_write_options brio_write_options_default(void) {
  *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
- *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only. In the names of properties, formats
+ *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
+ *  texts of points, LAS, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
  *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
  *  several lines becomes several comments. Of several files (.node and those beside it) none gets its name before all are
  *  complete.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, an index is out of range, or three tetrahedra
- *  whose neighbours are asked for share a facet), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
- *  BRIO_ERR_CANCELLED. */
+ *  whose neighbours are asked for share a facet), BRIO_ERR_NOT_FINITE, before a file is opened, BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);
 
@@ -1843,12 +1847,14 @@ static inline brio_generate_options brio_generate_options_default(void) {
 
 /** Makes n points of a kind; the same seed gives the same points. A scan has about n points, as many as its rays hit, and
  *  the property "view".   options  NULL for the defaults.   out  owned by the caller.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (also where noise moves points of a scan farther than doubles can hold),
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,
                                    brio_mesh **out);
 
 /** Makes the surface that BRIO_KIND_SCAN scans: a closed triangle mesh from a grid of `resolution` cells along the longest
- *  side of its box (0: 160).   Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  side of its box (4 to 32,768; 0: 160).
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out);
 
 /** Families of random solids. */
@@ -1882,7 +1888,7 @@ BRIO_API brio_status brio_generate_solid(brio_context *ctx, brio_solid_kind kind
 /** Estimates the memory of brio_delaunay for these points and the threads of the context. Triangulates the surroundings
  *  of twelve points to learn how many tetrahedra a point there are.   options  NULL for the defaults.
  *  Cost: about 20,000 insertions and fifty passes over the points.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (as brio_delaunay), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights,
                                             size_t num_points, const brio_delaunay_options *options, uint64_t *bytes);
 
@@ -1913,7 +1919,8 @@ BRIO_API brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_poi
 BRIO_API brio_status brio_estimate_cocone(brio_context *ctx, size_t num_points, const brio_cocone_options *options,
                                           uint64_t *bytes);
 
-/** Returns the estimate for brio_mesh_subdivide of a mesh of num_faces triangles. */
+/** Returns the estimate for brio_mesh_subdivide of a mesh of num_faces triangles; levels below 1 count as 1, above 15 as
+ *  15. */
 BRIO_API uint64_t brio_estimate_mesh_subdivide(size_t num_faces, int levels);
 /** Returns the estimate for a brio_iso_surface of num_vertices vertices, the map or the atoms not included. */
 BRIO_API uint64_t brio_estimate_iso_surface(size_t num_vertices);
