@@ -8,7 +8,8 @@ typedef struct arguments {
 } arguments;
 
 static const option options[] = {
-    {"samples", 0, OPTION_NATURAL, offsetof(arguments, samples), "N", "points on each surface (default 100000)", 0},
+    {"samples", 0, OPTION_NATURAL | OPTION_POSITIVE, offsetof(arguments, samples), "N",
+     "points on each surface (default 100000)", 0},
     {0},
 };
 

@@ -17,7 +17,7 @@ typedef struct arguments {
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
     {"crop", 0, OPTION_TEXT, FIELD(crop), "x0,y0,z0,x1,y1,z1", "keep the points in this box, its border included", 0},
-    {"drop-outliers", 0, OPTION_INT, FIELD(outliers), "K",
+    {"drop-outliers", 0, OPTION_INT | OPTION_POSITIVE, FIELD(outliers), "K",
      "drop points that are far from their K nearest points (8 to 16)", 0},
     {"thin", 0, OPTION_NUMBER, FIELD(thin), "S", "keep points at least S apart, all others being nearer than S to one",
      0},
@@ -81,7 +81,7 @@ static brio_status take_options(run *r, brio_convert_options *o) {
     o->crop = chosen->crop != NULL;
     if (chosen->crop) TRY(take_crop(r, chosen->crop, o->box));
     if (chosen->thin < 0) FAIL(r, BRIO_ERR_ARGUMENT, "--thin: %g is below 0", chosen->thin);
-    if (chosen->outliers < 0 || chosen->outliers > 63)
+    if (chosen->outliers > 63)
         FAIL(r, BRIO_ERR_ARGUMENT, "--drop-outliers: %d is not between 1 and 63", chosen->outliers);
     o->thin = chosen->thin;
     o->drop_outliers = chosen->outliers;

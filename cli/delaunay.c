@@ -44,7 +44,7 @@ static const option options[] = {
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "how points are inserted (the result is the same)", 0},
     {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order (default brio; for trace random)", orders},
-    {"block-size", 0, OPTION_NATURAL, FIELD(block_size), "N",
+    {"block-size", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(block_size), "N",
      "most points of an octree or k-d tree block (default 2000)", 0},
     {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R",
      "share of the points before the last round (default 1/8 for brio, else 1/2)", 0},
@@ -60,7 +60,8 @@ static const option options[] = {
      0},
     {"edges", 0, OPTION_FLAG, FIELD(edges), NULL, "-o x.node: also x.edge, their edges, with those of the hull marked",
      0},
-    {"record-every", 0, OPTION_NATURAL, FIELD(record_every), "N", "report the counters after every N insertions", 0},
+    {"record-every", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(record_every), "N",
+     "report the counters after every N insertions", 0},
     {0},
 };
 #undef FIELD

@@ -3,7 +3,6 @@
 #include "commands.h"
 #include "estimate.h"
 #include "files.h"
-#include <limits.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -11,7 +10,7 @@
 typedef struct arguments {
     uint64_t points; /* NO_COUNT: not given */
     double noise;    /* NaN: not given */
-    int views;       /* NO_VIEWS: not given */
+    int views;       /* 0: not given */
     const char *truth;
     uint64_t truth_resolution;
     int solid; /* NO_SOLID: not given */
@@ -19,7 +18,6 @@ typedef struct arguments {
 } arguments;
 
 #define NO_COUNT UINT64_MAX
-#define NO_VIEWS INT_MIN
 #define NO_SOLID (-1)
 
 static const option_choice solids[] = {{"implicit", BRIO_SOLID_IMPLICIT}, {"machined", BRIO_SOLID_MACHINED}, {NULL, 0}};
@@ -38,17 +36,18 @@ static const option options[] = {
     {"", 0, OPTION_TITLE, 0, NULL, "options", 0},
     {"points", 'n', OPTION_NATURAL, FIELD(points), "N", "number of points", 0},
     {"noise", 0, OPTION_NUMBER, FIELD(noise), "S", "scan: noise, in units of the spacing (default 0.05)", 0},
-    {"views", 0, OPTION_INT, FIELD(views), "V", "scan: number of sensor positions (default 12)", 0},
+    {"views", 0, OPTION_INT | OPTION_POSITIVE, FIELD(views), "V", "scan: number of sensor positions (default 12)", 0},
     {"truth", 0, OPTION_OUTPUT, FIELD(truth), "FILE", "scan: also write the surface that is scanned", 0},
-    {"truth-resolution", 0, OPTION_NATURAL, FIELD(truth_resolution), "R", "cells along its longest side (default 160)",
-     0},
+    {"truth-resolution", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(truth_resolution), "R",
+     "cells along its longest side (default 160)", 0},
     {"kind", 0, OPTION_CHOICE, FIELD(solid), "KIND", "solid: family (default implicit)", solids},
-    {"resolution", 0, OPTION_NATURAL, FIELD(resolution), "R", "solid: cells along its longest side (default 144)", 0},
+    {"resolution", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(resolution), "R",
+     "solid: cells along its longest side (default 144)", 0},
     {0},
 };
 #undef FIELD
 
-static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .views = NO_VIEWS, .solid = NO_SOLID};
+static const arguments defaults = {.points = NO_COUNT, .noise = NAN, .solid = NO_SOLID};
 
 #define KINDS "cube ball sphere torus cylinder grid scan clusters moment depth solid"
 #define SOLID BRIO_KIND_END /* no kind of points */
@@ -83,7 +82,7 @@ static brio_status find_kind(run *r, int *kind) {
 }
 
 static bool has_scan_options(const arguments *a) {
-    return !isnan(a->noise) || a->views != NO_VIEWS || a->truth || a->truth_resolution;
+    return !isnan(a->noise) || a->views || a->truth || a->truth_resolution;
 }
 
 static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
@@ -94,8 +93,6 @@ static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "the number of points is missing, or too large: -n N");
     if (kind != BRIO_KIND_SCAN && has_scan_options(a))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise, --views, --truth and --truth-resolution go with scan only");
-    if (a->views != NO_VIEWS && a->views < 1)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--views: %d is not positive", a->views);
     if (a->noise < 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "--noise: %g is negative", a->noise);
     if (a->truth_resolution && !a->truth) return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth-resolution goes with --truth");
     if (a->truth_resolution && (a->truth_resolution < 4 || a->truth_resolution > 32768))
@@ -129,7 +126,7 @@ static brio_status generate_points(run *r, const arguments *a, brio_kind kind) {
     TRY(cli_require_work(r, BRIO_OK, NULL, brio_estimate_generate((size_t)a->points)));
     o.seed = r->common.seed;
     if (!isnan(a->noise)) o.noise = a->noise;
-    if (a->views != NO_VIEWS) o.views = a->views;
+    if (a->views) o.views = a->views;
     TRY(brio_generate(r->ctx, kind, (size_t)a->points, &o, &mesh));
     cli_lap(r, "generate");
     cli_fact_count(&r->facts, "points", mesh->num_vertices);

@@ -14,9 +14,10 @@ typedef struct arguments {
 static const option options[] = {
     {"level", 0, OPTION_NUMBER, FIELD(level), "L", "the value on the surface; for atoms 1 is their own radius", 0},
     {"sigma", 0, OPTION_FLAG, FIELD(sigma), NULL, "the level is in standard deviations above the map's mean", 0},
-    {"resolution", 0, OPTION_NATURAL, FIELD(resolution), "R",
+    {"resolution", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(resolution), "R",
      "cells along the longest side (default the map's own, or 0.5 A for atoms)", 0},
-    {"points", 'n', OPTION_NATURAL, FIELD(vertices), "N", "choose the resolution for about N vertices", 0},
+    {"points", 'n', OPTION_NATURAL | OPTION_POSITIVE, FIELD(vertices), "N",
+     "choose the resolution for about N vertices", 0},
     {"blobbiness", 0, OPTION_NUMBER, FIELD(blobbiness), "B", "atoms: the larger, the closer to spheres (default 2)", 0},
     {"delaunay-conforming", 0, OPTION_FLAG, FIELD(conforming), NULL, "all triangles are Delaunay", 0},
     {"vertex-normals", 0, OPTION_FLAG, FIELD(vertex_normals), NULL, "give the vertices normals, as properties nx ny nz",
@@ -27,13 +28,11 @@ static const option options[] = {
 };
 #undef FIELD
 
-static const uint64_t NO_COUNT = UINT64_MAX;
-static const arguments defaults = {.level = NAN, .blobbiness = NAN, .vertices = UINT64_MAX};
+static const arguments defaults = {.level = NAN, .blobbiness = NAN};
 
 static brio_status check_arguments(run *r, const arguments *a) {
     if (isnan(a->level)) return cli_fail(r, BRIO_ERR_ARGUMENT, "the level of the surface is missing: --level L");
-    if (a->vertices == 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "-n: a surface of no points");
-    if (a->vertices != NO_COUNT && a->resolution)
+    if (a->vertices && a->resolution)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "-n chooses the resolution: give one of -n and --resolution");
     return cli_require_output(r, cli_mesh_formats, false);
 }
@@ -50,7 +49,7 @@ static brio_status iso(run *r) {
     o.conforming = a->conforming;
     o.resolution = (size_t)a->resolution;
     if (!isnan(a->blobbiness)) o.blobbiness = a->blobbiness;
-    if (a->vertices != NO_COUNT) o.vertices = (size_t)a->vertices;
+    o.vertices = (size_t)a->vertices;
     if (o.vertices) TRY(cli_require_work(r, BRIO_OK, NULL, brio_estimate_iso_surface(o.vertices)));
     TRY(brio_iso_surface(r->ctx, r->operands[0], &o, &mesh));
     cli_lap(r, "iso");

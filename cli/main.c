@@ -74,7 +74,9 @@ static void complain(const run *r, brio_status status) {
     const char *name = r->command ? r->command->name : "";
     if (!r->common.quiet) cli_notes_print(stderr, "warning", &r->warnings);
     if (status == BRIO_OK) return;
-    fprintf(stderr, "brio: %s\n", cli_message(r, status));
+    fputs("brio: ", stderr);
+    cli_print_plain(stderr, cli_message(r, status));
+    fputc('\n', stderr);
     if (!r->common.quiet) cli_notes_print(stderr, "hint", &r->hints);
     if (status == BRIO_ERR_ARGUMENT) fprintf(stderr, "brio: see 'brio %s%s--help'\n", name, *name ? " " : "");
     if (cli_exit_code(status) == 70) fputs("brio: this is a fault of brio; please report it with the input\n", stderr);

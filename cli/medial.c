@@ -23,15 +23,15 @@ static const option options[] = {
      "what tells inside from outside (default: mesh if the input has faces, else global)", cli_labelings_or_mesh},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, simplify), NULL,
      "leave out what noise and close sampling add: the same as --scale 1.1 --redundancy 0.01", 0},
-    {"scale", 0, OPTION_NUMBER, offsetof(arguments, scale), "S",
+    {"scale", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, scale), "S",
      "leave out balls that lie in another when both are scaled by S", 0},
-    {"redundancy", 0, OPTION_NUMBER, offsetof(arguments, redundancy), "E",
+    {"redundancy", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, redundancy), "E",
      "leave out balls that lie in another enlarged by E of its radius", 0},
     {"crust", 0, OPTION_OUTPUT, offsetof(arguments, crust), "FILE",
      "also write the surface of the balls: their power crust", 0},
     {"noise", 0, OPTION_CHOICE, offsetof(arguments, noise), "NAME",
      "what to do about noisy points (default auto: smooth if noise is found)", cli_noise},
-    {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, sampling_density), "R",
+    {"sampling-density", 'R', OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, sampling_density), "R",
      "discard the nearer pole of cells too wide for an R-sample, 0 < R < 1", 0},
     {"sharp", 'B', OPTION_FLAG, offsetof(arguments, sharp), NULL,
      "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0},
@@ -47,7 +47,6 @@ static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
     brio_status status = BRIO_OK;
     if (a->scale != 0 && a->scale < 1) FAIL(r, BRIO_ERR_ARGUMENT, "--scale: %g is less than 1", a->scale);
-    if (a->redundancy < 0) FAIL(r, BRIO_ERR_ARGUMENT, "--redundancy: %g is negative", a->redundancy);
     if (a->crust) TRY(cli_check_beside(r, "crust", a->crust, cli_mesh_formats));
 done:
     return status;

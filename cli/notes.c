@@ -31,15 +31,10 @@ void cli_notes_report(facts *f, const char *name, const notes *n) {
     cli_fact_close(f);
 }
 
-/* Control characters in names from files would reach the terminal. */
-static void print_plain(FILE *out, const char *text) {
-    for (; *text; text++) fputc((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text, out);
-}
-
 void cli_notes_print(FILE *out, const char *kind, const notes *n) {
     for (size_t i = 0; i < n->used; i += strlen(n->text + i) + 1) {
         fprintf(out, "brio: %s: ", kind);
-        print_plain(out, n->text + i);
+        cli_print_plain(out, n->text + i);
         fputc('\n', out);
     }
 }

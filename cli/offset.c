@@ -22,7 +22,7 @@ static const option options[] = {
      "what tells inside from outside (default: mesh if the input has faces, else global)", cli_labelings_or_mesh},
     {"noise", 0, OPTION_CHOICE, offsetof(arguments, crust.noise), "NAME",
      "what to do about noisy points (default auto: smooth if noise is found)", cli_noise},
-    {"sampling-density", 'R', OPTION_NUMBER, offsetof(arguments, crust.sampling_density), "R",
+    {"sampling-density", 'R', OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, crust.sampling_density), "R",
      "discard the nearer pole of cells too wide for an R-sample, 0 < R < 1", 0},
     {"sharp", 'B', OPTION_FLAG, offsetof(arguments, crust.sharp), NULL,
      "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0},

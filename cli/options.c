@@ -4,6 +4,7 @@
  * takes the next argument unless that looks like an option itself; negative numbers and `-` are values. The last of
  * repeated options counts. */
 #include "options.h"
+#include <ctype.h>
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -27,6 +28,7 @@ static bool wrong(option_parse *parse, const char *format, ...) {
 
 static bool parse_int(const char *text, int *value) {
     char *end;
+    if (isspace((unsigned char)*text)) return false;
     errno = 0;
     long number = strtol(text, &end, 10);
     if (end == text || *end || errno || number < INT_MIN || number > INT_MAX) return false;
@@ -36,6 +38,7 @@ static bool parse_int(const char *text, int *value) {
 
 static bool parse_number(const char *text, double *value) {
     char *end;
+    if (isspace((unsigned char)*text)) return false;
     *value = strtod(text, &end);
     return end != text && !*end && isfinite(*value);
 }
@@ -106,35 +109,43 @@ static bool is_text(option_kind kind) {
     return kind == OPTION_TEXT || kind == OPTION_INPUT || kind == OPTION_OUTPUT;
 }
 
-static bool store(option_parse *parse, const option *row, void *field, const char *text) {
+/* Reads a number; what was expected, where the text is none. `above` is whether it is more than 0. */
+static const char *parse_value(option_kind kind, const char *text, void *field, bool *above) {
     const char *expected = NULL;
-    switch (row->kind) {
-    case OPTION_TEXT:
-    case OPTION_INPUT:
-    case OPTION_OUTPUT:
-        *(const char **)field = text;
-        break;
+    *above = false;
+    switch (kind) {
     case OPTION_INT:
         expected = parse_int(text, field) ? NULL : "a whole number";
+        *above = !expected && *(const int *)field > 0;
         break;
     case OPTION_NATURAL:
         expected = parse_natural(text, field) ? NULL : "a whole number, 0 or more (above 2^53: with all its digits)";
+        *above = !expected && *(const uint64_t *)field > 0;
         break;
     case OPTION_NUMBER:
         expected = parse_number(text, field) ? NULL : "a finite number";
+        *above = !expected && *(const double *)field > 0;
         break;
     case OPTION_SIZE:
         expected = cli_parse_size(text, field) ? NULL : "a size such as 500M or 8G";
+        *above = !expected && *(const size_t *)field > 0;
         break;
-    case OPTION_CHOICE:
-        return parse_choice(parse, row, text, field);
-    case OPTION_FLAG:
-    case OPTION_TITLE:
-    case OPTION_NOTE:
-    case OPTION_END:
+    default:
         break;
     }
+    return expected;
+}
+
+static bool store(option_parse *parse, const option *row, void *field, const char *text) {
+    if (row->kind == OPTION_CHOICE) return parse_choice(parse, row, text, field);
+    if (is_text(row->kind)) {
+        *(const char **)field = text;
+        return true;
+    }
+    bool above;
+    const char *expected = parse_value(row->kind & ~OPTION_POSITIVE, text, field, &above);
     if (expected) return wrong(parse, "--%s: '%s' is not %s", row->name, text, expected);
+    if (row->kind & OPTION_POSITIVE && !above) return wrong(parse, "--%s: '%s' is not above 0", row->name, text);
     return true;
 }
 

@@ -45,7 +45,7 @@ void cli_suggest_labeling(run *r, brio_status status, int labeling, bool by_mesh
 #define POWER_CRUST_ROWS(type, field)                                                                                  \
     {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
      "what tells inside from outside (default global); the others are those of the papers", cli_labelings},            \
-    {"sampling-density", 'R', OPTION_NUMBER, offsetof(type, field.sampling_density), "R",                              \
+    {"sampling-density", 'R', OPTION_NUMBER | OPTION_POSITIVE, offsetof(type, field.sampling_density), "R",                              \
      "discard the nearer pole of cells too wide for an R-sample, 0 < R < 1", 0},                                       \
     {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \
      "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0}

@@ -53,14 +53,15 @@ static const option options[] = {
     POWER_CRUST_ROWS(arguments, crust),
     {"polygons", 0, OPTION_FLAG, FIELD(polygons), NULL, "write its polygons, not cut into triangles", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options of cocone and tight-cocone", 0},
-    {"theta", 0, OPTION_NUMBER, FIELD(theta), "ANGLE", "half the opening of the co-cones, radians (default pi/8)", 0},
+    {"theta", 0, OPTION_NUMBER | OPTION_POSITIVE, FIELD(theta), "ANGLE",
+     "half the opening of the co-cones, radians (default pi/8)", 0},
     {"boundaries", 0, OPTION_FLAG, FIELD(boundaries), NULL,
      "find the points at boundaries and leave the surface open there", 0},
     {"density", 0, OPTION_FLAG, FIELD(density), NULL,
      "estimate how densely the points sample the surface, also in properties of the vertices", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options of cocone", 0},
-    {"pieces", 0, OPTION_NATURAL, FIELD(pieces), "N", "work through about N parts one after the other, in less memory",
-     0},
+    {"pieces", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(pieces), "N",
+     "work through about N parts one after the other, in less memory", 0},
     {"extraction", 0, OPTION_CHOICE, FIELD(extraction), "NAME",
      "which candidate triangles make the surface (default labels)", extractions},
     {"labels", 0, OPTION_NOTE, 0, NULL, "those between inside and outside: a manifold", 0},
@@ -326,8 +327,7 @@ static brio_status check_arguments(run *r) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--extraction is for --method cocone without --pieces");
     if (a->polygons && a->crust.triangulate)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
-    if (a->theta < 0 || a->theta >= 1.57)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
+    if (a->theta >= 1.57) return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
     if (a->theta > 0 && a->theta < LEAST_THETA) cli_warn(r, "--theta: no guarantee holds under %g", LEAST_THETA);
     return BRIO_OK;
 }

@@ -15,8 +15,7 @@ static void write_bytes(FILE *out, uint64_t bytes) {
     fprintf(out, unit ? "%.1f %s" : "%.0f %s", number, units[unit]);
 }
 
-/* Control characters in names from files would reach the terminal. */
-static void write_plain(FILE *out, const char *text) {
+void cli_print_plain(FILE *out, const char *text) {
     for (; *text; text++) fputc((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text, out);
 }
 
@@ -41,7 +40,7 @@ static void write_value(FILE *out, const fact *f) {
     if (format_number(f, number)) fputs(number, out);
     switch (f->kind) {
     case FACT_TEXT:
-        write_plain(out, f->text);
+        cli_print_plain(out, f->text);
         break;
     case FACT_BOOL:
         fputs(f->truth ? "yes" : "no", out);
@@ -129,7 +128,7 @@ static void write_label(const writer *w, const glossary_line *line, const char *
     cli_glossary_label(line, key, label, sizeof label);
     int width = COLUMN - 2 * depth - (int)strlen(label);
     fprintf(w->out, "%*s", 2 * depth, "");
-    write_plain(w->out, label);
+    cli_print_plain(w->out, label);
     if (value) fprintf(w->out, "%*s", width > 1 ? width : 1, "");
 }
 

@@ -8,7 +8,7 @@ class Usage(CliTest):
         points = self.xyz("a.xyz", CUBE)
         self.usage("no faces", "medial", points, "-o", "x.ply", "--labeling", "mesh")
         self.usage("less than 1", "medial", points, "-o", "x.ply", "--scale", "0.5")
-        self.usage("negative", "medial", points, "-o", "x.ply", "--redundancy", "-1")
+        self.usage("not above 0", "medial", points, "-o", "x.ply", "--redundancy", "-1")
         self.usage("obj", "medial", points, "-o", "x.obj")
 
 

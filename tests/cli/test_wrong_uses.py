@@ -172,6 +172,24 @@ USES = [
     ("voronoi cube.xyz -o {new}.vtu --box 1,1,1,0,0,0", 1, "--box: x from 1 to 0 is empty"),
     ("generate cube -o {old}.ply", 1, "-n N"), ("generate cube -n 5.5 -o {old}.ply", 1, "--points: '5.5' is not a whole number"),
     ("generate cube -n 1e18 -o {old}.ply", 1, "--points: '1e18' is not a whole number", "with all its digits"),
+    # 0, where the program would take the default in its place
+    ("delaunay cube.xyz -o {old}.ply --max-memory 0", 1, "--max-memory: '0' is not above 0"),
+    ("delaunay cube.xyz -o {old}.ply --order octree --block-size 0", 1, "--block-size: '0' is not above 0"),
+    ("delaunay cube.xyz -o {old}.ply --record-every 0", 1, "--record-every: '0' is not above 0"),
+    ("surface cube.xyz -o {old}.ply --method cocone --theta 0", 1, "--theta: '0' is not above 0"),
+    ("surface cube.xyz -o {old}.ply --method cocone --theta 1e-999", 1, "--theta: '1e-999' is not above 0"),
+    ("surface cube.xyz -o {old}.ply --method cocone --pieces 0", 1, "--pieces: '0' is not above 0"),
+    ("surface cube.xyz -o {old}.ply --method power-crust -R 0", 1, "--sampling-density: '0' is not above 0"),
+    ("offset oct.off -o {old}.ply -D 1 -R -1", 1, "--sampling-density: '-1' is not above 0"),
+    ("medial oct.off -o {old}.ply --scale 0", 1, "--scale: '0' is not above 0"),
+    ("medial oct.off -o {old}.ply --redundancy -0", 1, "--redundancy: '-0' is not above 0"),
+    ("compare oct.off oct.off --samples 0", 1, "--samples: '0' is not above 0"),
+    ("convert cube.xyz {old}.ply --drop-outliers 0", 1, "--drop-outliers: '0' is not above 0"),
+    ("convert cube.xyz {old}.ply --drop-outliers 64", 1, "--drop-outliers: 64 is not between 1 and 63"),
+    ("generate scan -n 9 -o {old}.ply --views 0", 1, "--views: '0' is not above 0"),
+    ("generate solid --resolution 0 -o {old}.ply", 1, "--resolution: '0' is not above 0"),
+    ("iso cube.xyz -n 0 -o {old}.ply", 1, "--points: '0' is not above 0"),
+    ("iso cube.xyz --resolution 0 -o {old}.ply", 1, "--resolution: '0' is not above 0"),
     ("subdivide oct.off --levels 99 -o {old}.ply", 1, "--levels: 99 is not between"),
     # what has no answer
     ("surface two.xyz -o {old}.ply", 3, "two.xyz: 2 distinct points"), ("surface void.xyz -o {old}.ply", 3, "void.xyz: no points, no surface"),
@@ -243,6 +261,12 @@ class WrongUses(CliTest):
     def test_pictures_and_empty_files(self):
         self.expect_table(("info png." + e, 2, "png.%s: " % e) for e in EXTENSIONS)
         self.expect_table(("info void." + e, 2, "void.%s: " % e) for e in EXTENSIONS if e not in ("obj",))
+
+    def test_control_characters_of_a_name_do_not_reach_the_terminal(self):
+        for name in ("\x1b[31mred.xyz", "bell\x07\x7f.xyz"):
+            done = subprocess.run([BRIO, "info", name], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=self.folder)
+            self.assertEqual(done.returncode, 2)
+            self.assertRegex(done.stderr, rb"\Abrio: [ -~]+: No such file or directory\n\Z")
 
     def test_unreadable_file(self):
         if os.geteuid() == 0:

@@ -66,6 +66,13 @@ static void xyz_names_of_columns(void) {
     EXPECT(m && m->num_properties == 2 && value(m, "v", 1) == 7, "a column that a row lacks");
     EXPECT(value(m, "w", 0) == 1 && isnan(value(m, "w", 1)), "was dropped with all its values");
     brio_mesh_free(m);
+    m = io_read_text("a.csv", "x,y,z,v,kind\n1,2,3,NA,tree\n4,5,6,7,NA\n1,2,3,null,\n1,2,3,N/A,car\n");
+    EXPECT(m && m->num_properties == 1 && value(m, "v", 1) == 7, "missing numbers");
+    EXPECT(isnan(value(m, "v", 0)) && isnan(value(m, "v", 2)) && isnan(value(m, "v", 3)), "missing numbers");
+    brio_mesh_free(m);
+    m = io_read_text("a.txt", "x;y;z;v\n1,5;2;3;NA\n4;5;6;7,5\n");
+    EXPECT(m && isnan(value(m, "v", 0)) && value(m, "v", 1) == 7.5, "missing numbers beside decimal commas");
+    brio_mesh_free(m);
     m = io_read_text("a.txt", "//X Y Z Intensity\n1 2 3 4\n");
     EXPECT(value(m, "Intensity", 0) == 4);
     brio_mesh_free(m);
@@ -82,6 +89,8 @@ static void xyz_errors_name_the_line(void) {
     io_expect_error("a.xyz", "1 2 3\n4 5 6x\n", BRIO_ERR_FORMAT, "line 2: expected a number, found \"6x\"");
     io_expect_error("a.xyz", "1 two 3\n", BRIO_ERR_FORMAT, "line 1: expected a number, found \"two\"");
     io_expect_error("a.csv", "1,,3\n", BRIO_ERR_FORMAT, "line 1: column 2 is empty");
+    io_expect_error("a.csv", "1,NA,3\n", BRIO_ERR_FORMAT, "line 1: expected a number, found \"NA");
+    io_expect_error("a.csv", "1,2,3,NA\n4,5,6,tree\n", BRIO_ERR_FORMAT, "line 2: expected a number, found \"tree\"");
     io_expect_error("a.xyz", "1 2 3 4\n4 5 6 \x01\x02\n", BRIO_ERR_FORMAT, "found \"\?\?\"");
     io_expect_error("a.pts", "3\n1 2 3\n4 5 6\n", BRIO_ERR_FORMAT, "line 1: promises 3 points, 2 rows follow");
     io_expect_error("a.pts", "1\n1 2 3\n4 5 6\n", BRIO_ERR_FORMAT, "line 1: promises 1 points, 2 rows follow");

@@ -136,6 +136,14 @@ brio_status brio_fields_of_words(brio_fields *f, const char *line) {
     return split(f, line, 0, &g);
 }
 
+bool brio_field_is_missing(const brio_field *f) {
+    static const char *const marks[] = {"NA", "N/A", "n/a", "null", "NULL", "None"};
+    if (f->kind != BRIO_FIELD_WORD) return false;
+    for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
+        if (strlen(marks[i]) == f->length && !memcmp(marks[i], f->word, f->length)) return true;
+    return false;
+}
+
 /* --- decimal commas --- */
 
 /* Reads a number with one comma in the place of the point, or none of both, up to `end`. */

@@ -20,7 +20,7 @@ typedef enum { BRIO_FIELD_NUMBER, BRIO_FIELD_EMPTY, BRIO_FIELD_WORD } brio_field
 
 typedef struct brio_field {
     brio_field_kind kind;
-    double value;     /* NaN if the field is empty */
+    double value;     /* NaN if the field is no number */
     const char *word; /* its place in the line */
     size_t length;    /* of the field's characters */
 } brio_field;
@@ -44,5 +44,9 @@ brio_status brio_fields_of_words(brio_fields *f, const char *line);
  *  without it; otherwise it means nothing.
  *  Returns BRIO_OK, BRIO_ERR_FORMAT (with the line: what a comma is cannot be told), BRIO_ERR_NO_MEMORY. */
 brio_status brio_fields_of_line(brio_fields *f, const char *line, size_t columns);
+
+/** Whether a field is a word that stands for a number that is not there, as programs of statistics write it: NA, N/A, null,
+ *  None. Its value is NaN. */
+bool brio_field_is_missing(const brio_field *f);
 
 #endif

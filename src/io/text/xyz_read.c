@@ -3,8 +3,8 @@
  * A line of names before the first row, plain or as a comment, names the columns and gives the places of x, y and z;
  * names that the caller gives stand in its place. Without names the first three columns are x, y, z. Plain names that do
  * not say which are x, y and z are an error: the first column may be a number of the point. A column becomes a property
- * if the first row has a number (or nothing) in it and no row lacks it. A single number before the first row is the
- * number of rows. A ; at the start of a line begins a comment, too. */
+ * if the first row has no word in it, or one for a missing number. A single number before the first row is the number of
+ * rows. A ; at the start of a line begins a comment, too. */
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "io/formats.h"
@@ -231,7 +231,7 @@ static brio_status place_axes(xyz_reader *r) {
 static bool is_property(const xyz_reader *r, size_t i) {
     if (r->source == NAMES_GIVEN) return i < r->names.count && r->names.at[i][0];
     if (r->source == NAMES_PLAIN && i >= r->names.count) return false; /* empty: a row may end with separators */
-    return r->fields.at[i].kind != BRIO_FIELD_WORD;
+    return r->fields.at[i].kind != BRIO_FIELD_WORD || brio_field_is_missing(&r->fields.at[i]);
 }
 
 /* More columns than names: an index that has no name, or commas that do not separate, so that x, y and z are elsewhere. */
@@ -282,9 +282,10 @@ static brio_status read_row(xyz_reader *r) {
     for (size_t i = 0; i < r->num_columns; i++) {
         const column *c = &r->columns[i];
         if (c->role != COLUMN_PROPERTY) continue;
-        bool there = i < r->fields.count; /* programs leave out empty fields at the end */
-        if (there && r->fields.at[i].kind == BRIO_FIELD_WORD) return bad_field(r, i);
-        ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = there ? r->fields.at[i].value : NAN;
+        const brio_field *f =
+            i < r->fields.count ? &r->fields.at[i] : NULL; /* programs leave out empty ones at the end */
+        if (f && f->kind == BRIO_FIELD_WORD && !brio_field_is_missing(f)) return bad_field(r, i);
+        ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = f ? f->value : NAN;
     }
 done:
     return status;
