@@ -14,8 +14,8 @@ import tempfile
 BRIO = os.environ["BRIO"]
 LONG = "--long" in sys.argv
 TEAMS = (2, 3, 8) if LONG else (3,)
-MANY = 20000 if LONG else 1200
-FEW = 3000 if LONG else 400
+MANY = 4000 if LONG else 1200
+FEW = 900 if LONG else 400
 RACE = 66  # the sanitizer's exit status
 
 # Inputs, made by one thread: name, arguments.
