@@ -98,7 +98,7 @@ static bool is_one_of_1024(const uint8_t *bytes, size_t size) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     static const double levels[] = {1, 0, 0.25, -1, 1e30, 0.7, 1e-30, 3};
-    static const size_t resolutions[] = {4, 0, 1, 12};
+    static const size_t resolutions[] = {4, 0, 1, 7};
     brio_context *ctx = fuzz_context();
     fuzz_input in = {bytes, size};
     brio_iso_source from = {0};
