@@ -54,7 +54,7 @@ static int create_named(new_file *f) {
 }
 
 brio_status cli_new_file_open(run *r, const char *path, new_file *out) {
-    *out = (new_file){NULL};
+    *out = (new_file){0};
     cli_interrupt_writing(true);
     if (!find_names(path, out)) return fail(r, path);
     int file = create_nameless(out);

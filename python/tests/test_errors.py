@@ -200,6 +200,18 @@ def test_attributes_of_a_wrong_length_are_refused_at_once(monkeypatch):
         brio.reconstruct(SAMPLES, attributes={"heat": [1, 2]})
 
 
+def test_arguments_of_alpha_shapes():
+    points = np.random.default_rng(1).random((9, 3))
+    for wrong in (points, None, brio.Mesh(points)):
+        with pytest.raises(brio.ArgumentError, match="a brio.Delaunay is wanted"):
+            brio.AlphaComplex(wrong)
+    for wrong in ("auto", [1, 2], "x"):
+        with pytest.raises(brio.ArgumentError, match="alpha"):
+            brio.AlphaShape(points, wrong)
+        with pytest.raises(brio.ArgumentError, match="distance: a number is wanted"):
+            brio.offset(points, wrong)
+
+
 def test_errors_can_be_pickled():
     import pickle
 

@@ -431,6 +431,16 @@ def test_copies_and_pickles(ball):
             assert np.isclose(clone(interpolator(points, points[:, 0]))(points.mean(axis=0)), points[:, 0].mean())
 
 
+def test_arrays_of_copies_are_read_only_as_those_of_the_original(ball):
+    surface = brio.reconstruct(ball)
+    assert len(surface.faces) and len(surface.normals)
+    for clone in (copy.deepcopy, copy.copy, lambda thing: pickle.loads(pickle.dumps(thing))):
+        again = clone(surface)
+        for name in ("vertices", "faces", "normals", "samples", "face_vertices"):
+            assert (getattr(again, name) == getattr(surface, name)).all()
+            assert not getattr(again, name).flags.writeable and not getattr(surface, name).flags.writeable, name
+
+
 # --- objects of other packages ---
 
 

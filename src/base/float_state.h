@@ -11,6 +11,9 @@
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "brio is exact only without -ffast-math, -ffinite-math-only and -Ofast"
 #endif
+#if defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
+#error "brio is exact only without -funsafe-math-optimizations, -fassociative-math and -freciprocal-math"
+#endif
 #if FLT_EVAL_METHOD != 0
 #error "brio needs doubles that are evaluated as doubles (on 32-bit x86: -msse2 -mfpmath=sse)"
 #endif

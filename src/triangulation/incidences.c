@@ -9,7 +9,8 @@
 #include "base/team.h"
 #include "triangulation/triangulation.h"
 
-enum { VERTICES_A_THREAD = 1 << 12, VERTICES_A_CHUNK = 256 };
+/* VERTICES_A_THREAD, GROUP (vertices between two reports of progress): chosen. */
+enum { VERTICES_A_THREAD = 1 << 12, VERTICES_A_CHUNK = 256, GROUP = 1 << 16 };
 
 void brio_triangulation_vertex_tetrahedra(const brio_triangulation *t, uint32_t *tetrahedra) {
     BRIO_DOOR;
@@ -63,6 +64,7 @@ typedef struct {
     brio_incidences *out;
     uint64_t *key; /* of each thread, `room` keys */
     size_t room;
+    size_t first; /* vertex of the group that is done */
 } neighbour_job;
 
 /* Writes the neighbours of a point to key, in ascending order. Returns their number. */
@@ -81,14 +83,14 @@ static size_t sort_neighbours(const neighbour_job *job, size_t p, uint64_t *key)
 
 static void count_neighbours(void *user, size_t begin, size_t end, int thread) {
     const neighbour_job *job = user;
-    for (size_t p = begin; p < end; p++)
+    for (size_t p = job->first + begin; p < job->first + end; p++)
         job->out->offsets[p + 1] = sort_neighbours(job, p, job->key + job->room * (size_t)thread);
 }
 
 static void write_neighbours(void *user, size_t begin, size_t end, int thread) {
     const neighbour_job *job = user;
     uint64_t *key = job->key + job->room * (size_t)thread;
-    for (size_t p = begin; p < end; p++) {
+    for (size_t p = job->first + begin; p < job->first + end; p++) {
         size_t count = sort_neighbours(job, p, key);
         for (size_t i = 0; i < count; i++) job->out->items[job->out->offsets[p] + i] = (uint32_t)key[i];
     }
@@ -103,22 +105,39 @@ static size_t longest_list(const brio_incidences *lists) {
     return (size_t)longest;
 }
 
+/* Does all vertices, a group at a time. */
+static brio_status for_all(brio_context *ctx, neighbour_job *job, int threads, brio_part_fn part) {
+    brio_status status = BRIO_OK;
+    size_t n = job->out->count;
+    for (job->first = 0; job->first < n; job->first += GROUP) {
+        size_t count = n - job->first < GROUP ? n - job->first : GROUP;
+        brio_for_chunks(ctx, threads, count, VERTICES_A_CHUNK, part, job);
+        BRIO_TRY(brio_progress(ctx, "neighbours", (double)(job->first + count) / (double)n));
+    }
+done:
+    return status;
+}
+
 static brio_status list_neighbours(brio_context *ctx, const brio_triangulation *t, brio_incidences *out) {
     brio_status status = BRIO_OK;
     brio_incidences tets = {0};
     size_t n = t->stats.points;
     int threads = brio_threads(ctx, n, VERTICES_A_THREAD);
+    brio_bar bar = brio_progress_bar(ctx);
     neighbour_job job = {.t = t, .tets = &tets, .out = out};
     *out = (brio_incidences){.count = n, .context = ctx};
     BRIO_TRY(list_tetrahedra(ctx, t, &tets));
     job.room = 3 * longest_list(&tets);
     BRIO_TRY(BRIO_ALLOC(ctx, job.key, job.room * (size_t)threads));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->offsets, n + 1));
-    brio_for_chunks(ctx, threads, n, VERTICES_A_CHUNK, count_neighbours, &job);
+    brio_progress_part(ctx, bar, 0.1, 0.5);
+    BRIO_TRY(for_all(ctx, &job, threads, count_neighbours));
     add_up(out);
     BRIO_TRY(BRIO_ALLOC(ctx, out->items, (size_t)out->offsets[n]));
-    brio_for_chunks(ctx, threads, n, VERTICES_A_CHUNK, write_neighbours, &job);
+    brio_progress_part(ctx, bar, 0.5, 1);
+    BRIO_TRY(for_all(ctx, &job, threads, write_neighbours));
 done:
+    brio_progress_part(ctx, bar, 0, 1);
     brio_incidences_free(&tets);
     brio_release(ctx, job.key);
     if (status != BRIO_OK) brio_incidences_free(out);

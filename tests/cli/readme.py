@@ -23,6 +23,12 @@ class Readme(CliTest):
             labels = [[line.split("  ")[0] for line in lines.splitlines()] for lines in (block, text)]
             self.assertEqual(*labels)
 
+    def test_the_commands_run_one_after_the_other(self):
+        commands = re.findall(r"(?m)^    \$ brio (.*)$", README.read_text(encoding="utf-8"))
+        self.assertGreater(len(commands), 10)
+        for command in commands:
+            self.expect(0, *command.split(), "--quiet")
+
 
 if __name__ == "__main__":
     main()

@@ -54,18 +54,41 @@ if [ "$kind" = subproject ]; then
     exit 0
 fi
 
+# expect_line FILE TEXT: the file has it.
+expect_line() {
+    grep -qF -e "$2" "$1" && return
+    echo "$1 is without $2" >&2
+    exit 1
+}
+
+bin=bin
 if [ "$kind" = shared ]; then
+    step "what packagers set"
+    build=$folder/elsewhere
+    "$cmake" -S "$root" -B "$build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF \
+        -DCMAKE_C_FLAGS_RELEASE="-O1 -DFLAG_OF_THE_PACKAGER" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_UNITY_BUILD=ON \
+        -DCMAKE_INSTALL_LIBDIR=/far/lib -DCMAKE_INSTALL_INCLUDEDIR=/far/include >>"$folder/log" 2>&1
+    expect_line "$build/brio.pc" "libdir=/far/lib"
+    expect_line "$build/brio.pc" "includedir=/far/include"
+    expect_line "$build/compile_commands.json" "-O1 -DFLAG_OF_THE_PACKAGER"
+    expect_line "$build/compile_commands.json" "src/triangulation/delaunay.c"
+
     step "build"
     build=$folder/build
+    bin=libexec/tools/bin
     "$cmake" -S "$root" -B "$build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_BUILD_TYPE=Debug -DBUILD_SHARED_LIBS=ON \
-        -DBRIO_TESTS=OFF >>"$folder/log" 2>&1
+        -DCMAKE_INSTALL_BINDIR=$bin -DBRIO_TESTS=OFF >>"$folder/log" 2>&1
     "$cmake" --build "$build" >>"$folder/log" 2>&1
 fi
 
 step "install ($kind)"
 "$cmake" --install "$build" --prefix "$folder/installed" >>"$folder/log" 2>&1
 mv "$folder/installed" "$prefix"
-"$prefix/bin/brio" --version
+"$prefix/$bin/brio" --version
+[ ! -e "$prefix/brio" ] || {
+    echo "a module of Python is installed beside the library" >&2
+    exit 1
+}
 for page in man/man1/brio.1 man/man1/brio-surface.1 bash-completion/completions/brio zsh/site-functions/_brio \
     doc/brio/which-method.md doc/brio/LICENSE; do
     [ -s "$prefix/share/$page" ] || {

@@ -468,7 +468,7 @@ BRIO_API brio_status brio_triangulation_incident_tetrahedra(brio_context *ctx, c
 /** Lists the vertices that share an edge with each point, in ascending order. The lists of points that are no vertices are
  *  empty; all are if the dimension is 2 or less.
  *  Memory: 8 bytes a point and 8 an edge; meanwhile, what brio_triangulation_incident_tetrahedra takes.
- *  out  freed with brio_incidences_free.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+ *  out  freed with brio_incidences_free.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_triangulation_neighbours(brio_context *ctx, const brio_triangulation *t,
                                                    brio_incidences *out);
 
@@ -919,7 +919,7 @@ BRIO_API void brio_edges_free(brio_edges *edges);
 /** Lists the edges of a triangulation: every edge between two vertices once, as (a, b) with a < b, in lexicographic order.
  *  There are none if the dimension is 2 or less.   out  freed with brio_edges_free.
  *  Memory: as brio_triangulation_neighbours, which it calls, and 8 bytes an edge.
- *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_triangulation_edges(brio_context *ctx, const brio_triangulation *t, brio_edges *out);
 
 /** Sparse subgraphs of the edges of a mesh. */

@@ -103,7 +103,31 @@ static void grids_weighted_and_flat_points(void) {
     check(p, NULL);
 }
 
+/* The lists of many vertices are made a group at a time: no edge is lost or added between two groups. */
+static void as_many_edges_as_euler_has(void) {
+    enum { MANY = 150000 };
+    brio_context *ctx = new_context();
+    double *p = malloc(3 * MANY * sizeof *p);
+    brio_triangulation *t;
+    brio_edges edges;
+    uniform_points(3, MANY, p);
+    EXPECT(brio_delaunay(ctx, p, NULL, MANY, NULL, &t) == BRIO_OK);
+    EXPECT(brio_triangulation_edges(ctx, t, &edges) == BRIO_OK);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    size_t facets = (4 * s->tetrahedra + s->hull_facets) / 2;
+    EXPECT(edges.count == s->vertices + facets - s->tetrahedra - 1, "%zu edges", edges.count);
+    for (size_t i = 1; i < edges.count; i++) {
+        const uint32_t *a = edges.ends + 2 * i - 2, *b = a + 2;
+        EXPECT(b[0] < b[1] && b[1] < MANY && (a[0] < b[0] || (a[0] == b[0] && a[1] < b[1])), "edge %zu", i);
+    }
+    brio_edges_free(&edges);
+    brio_triangulation_free(t);
+    free(p);
+    brio_context_free(ctx);
+}
+
 int main(void) {
+    RUN(as_many_edges_as_euler_has);
     RUN(grids_weighted_and_flat_points);
     return harness_end();
 }

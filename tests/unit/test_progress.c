@@ -101,6 +101,16 @@ static brio_status make_cocone(const double *p, size_t n) {
     return status;
 }
 
+static brio_status list_edges(const double *p, size_t n) {
+    brio_triangulation *t = NULL;
+    brio_edges list = {0};
+    brio_status status = brio_delaunay(ctx, p, NULL, n, NULL, &t);
+    if (status == BRIO_OK) status = brio_triangulation_edges(ctx, t, &list);
+    brio_edges_free(&list);
+    brio_triangulation_free(t);
+    return status;
+}
+
 static void expect_cancelled_at_each_report(work_fn work, const double *p, size_t n, int threads) {
     brio_context_set_threads(ctx, threads);
     for (size_t allowed = 0;; allowed++) {
@@ -128,6 +138,7 @@ static void cancelled_at_each_report_everything_is_given_back(void) {
         expect_cancelled_at_each_report(triangulate_and_check, p, N, threads);
         expect_cancelled_at_each_report(make_power_crust, p, N, threads);
         expect_cancelled_at_each_report(make_cocone, p, N, threads);
+        expect_cancelled_at_each_report(list_edges, p, N, threads);
     }
     free(p);
 }
@@ -262,6 +273,18 @@ static brio_status hull(void) {
     brio_mesh_free(mesh);
     return status;
 }
+static brio_status edges(void) {
+    brio_triangulation *t = NULL;
+    brio_edges list = {0};
+    brio_progress_fn report = ctx->progress;
+    ctx->progress = NULL; /* another call of the library, with a bar of its own */
+    brio_status status = brio_delaunay(ctx, scan->vertices, NULL, scan->num_vertices, NULL, &t);
+    ctx->progress = report;
+    if (status == BRIO_OK) status = brio_triangulation_edges(ctx, t, &list);
+    brio_edges_free(&list);
+    brio_triangulation_free(t);
+    return status;
+}
 static const struct {
     const char *name;
     brio_status (*run)(void);
@@ -279,6 +302,7 @@ static const struct {
             {"triangulation by history", triangulation_by_history},
             {"thinning", thinning},
             {"outliers", outliers},
+            {"edges", edges},
             {"solid", solid},
             {"scan", small_scan}};
 

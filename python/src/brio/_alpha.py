@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, frozen
+from ._arrays import Floats, as_number, frozen
 from ._calls import Progress, reporting
 from ._delaunay import Delaunay
 from ._mesh import Mesh
@@ -32,6 +32,8 @@ class AlphaComplex:
     """
 
     def __init__(self, tri: Delaunay) -> None:
+        if not isinstance(tri, Delaunay):
+            raise ArgumentError(f"tri: a brio.Delaunay is wanted, not {type(tri).__name__}")
         self._tri = tri = tri._as_it_is()
         with reporting(tri.progress) as report:
             views = _native.alpha_values(tri._handle, tri.points, tri.weights, tri.threads, report)
@@ -64,9 +66,10 @@ class AlphaComplex:
 
     def shape(self, alpha: float) -> "AlphaShape":
         """The alpha shape for `alpha`, a squared radius: see AlphaShape."""
-        handle, counts = (self._in_plane if self.ndim == 2 else self._in_space)(float(alpha))
+        alpha = as_number(alpha, "alpha")
+        handle, counts = (self._in_plane if self.ndim == 2 else self._in_space)(alpha)
         shape: AlphaShape = AlphaShape._of(handle)
-        shape.alpha, shape.counts, shape.complex = float(alpha), counts, self
+        shape.alpha, shape.counts, shape.complex = alpha, counts, self
         return shape
 
     def _in_space(self, alpha: float) -> tuple[Any, dict[str, int]]:

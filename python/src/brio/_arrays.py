@@ -106,6 +106,16 @@ def freeze_all(attributes: dict[str, Any]) -> dict[str, Any]:
     return attributes
 
 
+def as_number(value: Any, name: str) -> float:
+    """Takes a number."""
+    try:
+        if not isinstance(value, str | bytes):
+            return float(value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ArgumentError(f"{name}: a number is wanted, not {value!r}") from error
+    raise ArgumentError(f"{name}: a number is wanted, not {value!r}")
+
+
 def as_count(value: Any, name: str, least: int = 0, most: int = 2**31 - 1) -> int:
     """Takes a whole number from `least` to `most`."""
     try:

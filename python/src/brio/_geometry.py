@@ -11,6 +11,9 @@ from ._scaled import Scaled, aligned, difference, shifted
 # scipy's: a simplex whose matrix has a smaller reciprocal condition number has no transform.
 LEAST_RCOND = 1000 * np.finfo(np.float64).eps
 
+# Simplices at a time: between two blocks Python looks for signals, and the arrays of one stay in the cache.
+BLOCK = 1 << 15
+
 
 def edges_from(points: Floats, simplices: NDArray[Any], origin: int) -> Scaled:
     """Returns #S by d by d, and an exponent a simplex: row k is the simplex' k-th other vertex minus the vertex `origin`."""
@@ -37,8 +40,15 @@ def barycentric_transforms(points: Floats, simplices: NDArray[Any]) -> Floats:
     NaN marks simplices too flat for it, by scipy's bound on the condition number.
     """
     d = points.shape[1]
-    matrix, exponent = edges_from(points, simplices, -1)  # row k: vertex k minus r, so that x - r = sum of c_k row_k
     out = np.empty((len(simplices), d + 1, d))
+    for first in range(0, len(simplices), BLOCK):
+        _transform(points, simplices[first : first + BLOCK], out[first : first + BLOCK])
+    return out
+
+
+def _transform(points: Floats, simplices: NDArray[Any], out: Floats) -> None:
+    d = points.shape[1]
+    matrix, exponent = edges_from(points, simplices, -1)  # row k: vertex k minus r, so that x - r = sum of c_k row_k
     with np.errstate(all="ignore"):
         columns, det = cofactors(matrix)
         inverse = columns / det[:, None, None]
@@ -47,7 +57,6 @@ def barycentric_transforms(points: Floats, simplices: NDArray[Any]) -> Floats:
         out[:, :d] = shifted(inverse, -exponent[:, None, None])
     out[:, d] = points[simplices[:, -1]]
     out[flat] = np.nan
-    return out
 
 
 def lower_planes(points: Floats, lifted: Floats, exponent: int, simplices: NDArray[Any]) -> Floats:

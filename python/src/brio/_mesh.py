@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, as_array, as_count, as_rows, frozen
+from ._arrays import Floats, as_array, as_count, as_rows, freeze_all, frozen
 from ._calls import Progress, reporting
 from ._points import nearest
 from ._properties import Properties, as_properties, carry, for_means, from_means, scalars
@@ -464,7 +464,7 @@ class Mesh:
         return {name: value for name, value in self.__dict__.items() if name != "_handle"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
+        self.__dict__.update(freeze_all(state))
         views = {name: np.ascontiguousarray(state[name])
                  for name in ("vertices", "face_offsets", "face_vertices", "tetrahedra", "edges")}
         self._handle = _native.mesh(views["vertices"], views["face_offsets"], views["face_vertices"],

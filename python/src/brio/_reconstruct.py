@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import Floats, as_rows, frozen
+from ._arrays import Floats, as_number, as_rows, frozen
 from ._calls import Progress
 from ._mesh import Mesh
 from ._points import nearest
@@ -195,7 +195,7 @@ def offset(points: Any, distance: float, *, threads: int = 0, progress: bool | P
     True
     """
     rows, _ = _split(points)
-    return _run(_native.offset_surface, rows, options, float(distance), None, threads, progress)
+    return _run(_native.offset_surface, rows, options, as_number(distance, "distance"), None, threads, progress)
 
 
 def medial_axis(points: Any, *, sides: str = "inner", threads: int = 0, progress: bool | Progress | None = None,
