@@ -200,6 +200,16 @@ def test_attributes_of_a_wrong_length_are_refused_at_once(monkeypatch):
         brio.reconstruct(SAMPLES, attributes={"heat": [1, 2]})
 
 
+def test_faces_that_are_no_indices_are_refused_before_they_are_read():
+    """Row by row, those of a huge array took all memory."""
+    huge = np.broadcast_to(0.5, (2**41, 3)), np.broadcast_to(1, (2**41, 3, 1)), np.broadcast_to("a", (2**41, 3))
+    for faces in (*huge, np.array([[0.0, 1, 2]]), np.array([0, 1, 2]), [[0, 1, 2.5]]):
+        with pytest.raises(brio.ArgumentError, match="faces: rows of indices, or a list of polygons, are wanted, not"):
+            brio.Mesh(np.zeros((3, 3)), faces)
+    for faces in ([], np.zeros((0, 3)), None, np.empty(0, object)):
+        assert len(brio.Mesh(np.zeros((3, 3)), faces).faces) == 0
+
+
 def test_arguments_of_alpha_shapes():
     points = np.random.default_rng(1).random((9, 3))
     for wrong in (points, None, brio.Mesh(points)):

@@ -74,6 +74,8 @@ def as_polygons(faces: Any) -> tuple[NDArray[np.uint64], Indices]:
     if array.ndim == 2 and array.dtype.kind in "iu":
         k = array.shape[1]
         return np.arange(0, k * len(array) + 1, k, dtype=np.uint64), as_indices(array, "faces", k).ravel()
+    if array.size and array.dtype != object:
+        raise ArgumentError(f"faces: rows of indices, or a list of polygons, are wanted, not {array.ndim} axes of {array.dtype}")
     try:
         polygons = [list(face) for face in faces]
     except TypeError as error:
