@@ -105,7 +105,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     brio_iso_surface_options o = {.size = sizeof o, .blobbiness = 2};
     uint8_t kind = fuzz_byte(&in), bits = fuzz_byte(&in);
     o.level = levels[bits & 7], o.deviations = bits >> 3 & 1, o.conforming = bits >> 4 & 1;
-    o.resolution = resolutions[bits >> 5 & 3], o.vertices = bits & 128 && is_one_of_1024(bytes, size) ? 50 : 0;
+    o.resolution = resolutions[bits >> 5 & 3];
+    o.vertices = bits & 128 && is_one_of_1024(bytes, size) ? 50 : 0;
     if (o.vertices) o.resolution = 0;
     from.is_map = kind % 4 == 1;
     brio_status status = BRIO_OK;

@@ -282,8 +282,8 @@ static brio_status read_row(xyz_reader *r) {
     for (size_t i = 0; i < r->num_columns; i++) {
         const column *c = &r->columns[i];
         if (c->role != COLUMN_PROPERTY) continue;
-        const brio_field *f =
-            i < r->fields.count ? &r->fields.at[i] : NULL; /* programs leave out empty ones at the end */
+        /* programs leave out empty fields at the end */
+        const brio_field *f = i < r->fields.count ? &r->fields.at[i] : NULL;
         if (f && f->kind == BRIO_FIELD_WORD && !brio_field_is_missing(f)) return bad_field(r, i);
         ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = f ? f->value : NAN;
     }
