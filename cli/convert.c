@@ -42,31 +42,28 @@ static brio_status take_crop(run *r, const char *text, double box[6]) {
     return BRIO_OK;
 }
 
-static void on_lost(const char *name, void *user) {
+static void on_name(const char *name, void *user) {
     cli_fact_text(user, NULL, name); /* a list until the report */
 }
 
-static void report_lost(run *r, const char *path, const facts *lost) {
-    if (lost->failed) {
-        r->facts.failed = true;
-        return;
-    }
-    cli_fact_open(&r->facts, "lost", FACT_LIST);
-    for (size_t i = 0; i < lost->count; i++) cli_fact_text(&r->facts, NULL, lost->list[i].text);
-    cli_fact_close(&r->facts);
+/* Reports names as a list, and in a warning.   warning  with the file and the names. */
+static void report_names(run *r, const char *path, const char *name, const char *warning, const facts *names) {
     size_t used = 0;
-    char names[1024] = "";
-    for (size_t i = 0; i < lost->count && used < sizeof names; i++)
-        used += (size_t)snprintf(names + used, sizeof names - used, "%s %s", i ? "," : "", lost->list[i].text);
-    if (lost->count) cli_warn(r, "%s cannot hold, or not by this name:%s", path, names);
+    char text[1024] = "";
+    r->facts.failed |= names->failed;
+    cli_fact_open(&r->facts, name, FACT_LIST);
+    for (size_t i = 0; i < names->count; i++) cli_fact_text(&r->facts, NULL, names->list[i].text);
+    cli_fact_close(&r->facts);
+    for (size_t i = 0; i < names->count && used < sizeof text; i++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s", i ? "," : "", names->list[i].text);
+    if (names->count) cli_warn(r, "%s %s:%s", path, warning, text);
 }
 
 static brio_status take_files(run *r, brio_read_options *from, brio_write_options *to) {
     const common_options *c = &r->common;
     brio_status status = cli_output_format(r, c->output, c->format, &to->format);
     if (status != BRIO_OK) return status;
-    if (c->input_format) from->format = brio_format_of(c->input_format);
-    from->columns = c->columns;
+    *from = cli_read_options(r);
     if (c->format && !strcasecmp(c->format, "csv")) to->separator = ",";
     to->ascii = c->ascii;
     to->float32 = c->float32;
@@ -107,7 +104,7 @@ static brio_status convert(run *r) {
     double moved = 0;
     size_t merged = 0;
     brio_convert_stats stats = {.size = sizeof stats};
-    facts lost = {0};
+    facts lost = {0}, renamed = {0};
     brio_status status = BRIO_OK;
     if (!r->common.output) return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: expected A B, got one file");
     TRY(cli_require_output(r, NULL, false));
@@ -115,8 +112,10 @@ static brio_status convert(run *r) {
     TRY(take_options(r, &o));
     to.moved = &moved;
     o.from = &from, o.to = &to;
-    o.lost = on_lost;
+    o.lost = on_name;
     o.lost_user = &lost;
+    o.renamed = on_name;
+    o.renamed_user = &renamed;
     TRY(cli_settle_conversion(r, r->operands[0], r->common.output, &o, &to, &merged));
     TRY(cli_check_interrupt(r));
     cli_interrupt_writing(strcmp(r->common.output, "-") != 0);
@@ -126,10 +125,13 @@ static brio_status convert(run *r) {
     cli_stage(r, "select", stats.select_seconds);
     cli_stage(r, "convert", stats.seconds - stats.select_seconds);
     report(r, &stats);
-    report_lost(r, r->common.output, &lost);
+    cli_tell_dropped(r, r->operands[0]);
+    report_names(r, r->common.output, "lost", "is without", &lost);
+    if (renamed.count) report_names(r, r->common.output, "renamed", "has other names for", &renamed);
     cli_tell_moved(r, r->common.output, moved, merged);
 done:
     cli_facts_free(&lost);
+    cli_facts_free(&renamed);
     return status;
 }
 

@@ -78,25 +78,32 @@ static bool is_gltf(const char *name) {
     return !strcasecmp(dot ? dot + 1 : name, "gltf");
 }
 
+/* Lists the extensions that are written: ".ply .xyz". */
+static void list_written(char text[256]) {
+    size_t used = 0;
+    for (int i = BRIO_FORMAT_AUTO + 1; i < BRIO_FORMAT_END; i++) {
+        const char *at = brio_format_facts((brio_format)i)->written;
+        while (*at && used < 240) {
+            size_t length = strcspn(at, " ");
+            used += (size_t)snprintf(text + used, 256 - used, "%s.%.*s", used ? " " : "", (int)length, at);
+            at += length + (at[length] == ' ');
+        }
+    }
+}
+
 brio_status cli_output_format(run *r, const char *path, const char *extension, brio_format *format) {
+    char written[256] = "";
     *format = brio_format_of(extension ? extension : path);
-    if (*format == BRIO_FORMAT_LAZ || *format == BRIO_FORMAT_PCD || *format == BRIO_FORMAT_PTX ||
-        *format == BRIO_FORMAT_E57)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD, PTX and E57 files are read, not written", path);
-    if (*format == BRIO_FORMAT_CHEMICAL || *format == BRIO_FORMAT_BNPTS || *format == BRIO_FORMAT_NPZ)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: chemical XYZ, BNPTS and NPZ files are read, not written", path);
-    if (*format == BRIO_FORMAT_GLB && is_gltf(extension ? extension : path))
+    const brio_format_info *info = brio_format_facts(*format);
+    if (info && is_gltf(extension ? extension : path))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: .gltf files are read, not written; .glb files are", path);
-    if (*format != BRIO_FORMAT_AUTO) return BRIO_OK;
-    if (extension)
-        return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--format %s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy .glb",
-                        extension);
+    if (info && !info->written[0])
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s is read, not written", path, info->name);
+    if (info) return BRIO_OK;
+    list_written(written);
+    if (extension) return cli_fail(r, BRIO_ERR_ARGUMENT, "--format %s: this version writes %s", extension, written);
     if (!strcmp(path, "-")) return cli_fail(r, BRIO_ERR_ARGUMENT, "-o - needs --format");
-    return cli_fail(r, BRIO_ERR_ARGUMENT,
-                    "%s: this version writes .ply .xyz .obj .off .vtu .vtp .node .las .stl .npy .glb; name one of "
-                    "these with --format",
-                    path);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: this version writes %s; name one of these with --format", path, written);
 }
 
 /* --- files named twice --- */

@@ -28,6 +28,7 @@ typedef struct survey {
     size_t num_ranges;
     bool failed; /* out of memory */
     brio_file_facts file;
+    facts left_out; /* the names of what is not read of the file */
 } survey;
 
 static const option options[] = {{0}};
@@ -78,21 +79,37 @@ static int take_block(const brio_mesh *block, void *user) {
     return 0;
 }
 
+static void on_left_out(const char *name, void *user) {
+    survey *v = user;
+    cli_fact_text(&v->left_out, NULL, name);
+}
+
+static void report_left_out(run *r, const survey *v) {
+    r->facts.failed |= v->left_out.failed;
+    if (!v->left_out.count) return;
+    cli_fact_open(&r->facts, "left_out", FACT_LIST);
+    for (size_t i = 0; i < v->left_out.count; i++) cli_fact_text(&r->facts, NULL, v->left_out.list[i].text);
+    cli_fact_close(&r->facts);
+}
+
 /* Reads the file in blocks, if it can be read again, or into memory. A text whose later rows lack a column goes into
  * memory, too. */
 static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
-    const char *path = r->operands[0], *extension = r->common.input_format;
-    brio_read_options how = brio_read_options_default();
+    const char *path = r->operands[0];
+    brio_read_options how = cli_read_options(r);
     struct stat kind;
     brio_status status = BRIO_ERR_FORMAT;
-    if (extension) how.format = brio_format_of(extension);
-    how.columns = r->common.columns;
+    how.left_out = on_left_out;
+    how.left_out_user = v;
     bool named = strcmp(path, "-") != 0;
     if (named && stat(path, &kind) != 0) return cli_fail(r, BRIO_ERR_OPEN, "%s: %s", path, strerror(errno));
     if (named && S_ISREG(kind.st_mode)) status = brio_read_blocks(r->ctx, path, &how, take_block, v, &v->file);
     if (v->failed) return BRIO_ERR_NO_MEMORY;
-    if (status == BRIO_OK && v->points > MOST_IN_MEMORY) return BRIO_OK;
     bool known = status == BRIO_OK;
+    if (known && v->points > MOST_IN_MEMORY) {
+        cli_tell_dropped(r, path);
+        return BRIO_OK;
+    }
     if (!known && status != BRIO_ERR_FORMAT) return status;
     TRY(cli_read(r, path, mesh));
     if (known) return BRIO_OK;
@@ -104,9 +121,10 @@ done:
 }
 
 static void report_file(facts *f, const survey *v) {
-    static const char *const names[BRIO_FORMAT_END] = {NULL,  "ply", "xyz", "obj", "off", "vtu", "node",
-                                                       "vtp", "las", "laz", "pcd", "ptx", "stl", "npy"};
-    if (names[v->file.format]) cli_fact_text(f, "format", names[v->file.format]);
+    const brio_format_info *info = brio_format_facts(v->file.format);
+    char name[16] = "";
+    if (info) snprintf(name, sizeof name, "%.*s", (int)strcspn(info->extensions, " "), info->extensions);
+    if (info) cli_fact_text(f, "format", name);
     if (v->file.version[0]) cli_fact_text(f, "version", v->file.version);
 }
 
@@ -233,9 +251,11 @@ static brio_status info(run *r) {
     report_box(f, &v);
     TRY(measure(r, mesh));
     report_properties(f, &v);
+    report_left_out(r, &v);
     if (mesh) TRY(report_estimates(r, mesh));
 done:
     brio_mesh_free(mesh);
+    cli_facts_free(&v.left_out);
     free(v.ranges);
     return status;
 }

@@ -1,20 +1,6 @@
 /* What a file's format cannot hold, said when the file has been written. */
 #include "lost.h"
 
-static bool holds_properties(brio_format format) {
-    return format != BRIO_FORMAT_OBJ && format != BRIO_FORMAT_OFF && format != BRIO_FORMAT_STL;
-}
-
-static bool holds_faces(brio_format format) {
-    return format != BRIO_FORMAT_XYZ && format != BRIO_FORMAT_NODE && format != BRIO_FORMAT_LAS &&
-           format != BRIO_FORMAT_NPY;
-}
-
-static bool holds_edges(brio_format format) {
-    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
-           format == BRIO_FORMAT_GLB;
-}
-
 /* Lists the names of the properties, the first few of them. */
 static void list_names(const brio_mesh *mesh, char text[1024]) {
     enum { MOST = 12 };
@@ -26,15 +12,16 @@ static void list_names(const brio_mesh *mesh, char text[1024]) {
 
 void cli_tell_lost(run *r, const char *path, const brio_mesh *mesh, brio_format format) {
     char names[1024];
-    if (mesh->num_faces && !holds_faces(format))
+    unsigned holds = brio_format_facts(format)->holds;
+    if (mesh->num_faces && !(holds & BRIO_HOLDS_FACES))
         cli_warn(r, "%s: without the faces, which the format cannot hold", path);
-    if (mesh->num_edges && !holds_edges(format))
+    if (mesh->num_edges && !(holds & BRIO_HOLDS_EDGES))
         cli_warn(r, "%s: without the edges, which the format cannot hold", path);
     if (!mesh->num_properties || !r->has_properties) return;
     list_names(mesh, names);
-    if (format == BRIO_FORMAT_NODE)
+    if (holds & BRIO_HOLDS_PROPERTIES && !(holds & BRIO_HOLDS_NAMES))
         cli_warn(r, "%s: without the names of the properties:%s", path, names);
-    else if (!holds_properties(format))
+    else if (!(holds & BRIO_HOLDS_PROPERTIES))
         cli_warn(r, "%s: without the properties, which the format cannot hold:%s", path, names);
 }
 

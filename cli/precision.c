@@ -18,19 +18,17 @@ brio_status cli_check_precision(run *r, const char *path, const brio_mesh *mesh)
     return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s: a STL file has no other; .ply has double precision", path, reason);
 }
 
-static bool has_both(brio_format format) {
-    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
-           format == BRIO_FORMAT_NPY;
+static bool has(brio_format format, unsigned what) {
+    return (brio_format_facts(format)->holds & what) == what;
 }
 
 /* Whether points are rounded to singles: a STL file's always, others' by choice. */
 static bool rounds(const brio_write_options *o) {
-    return o->format == BRIO_FORMAT_STL || (o->float32 && has_both(o->format));
+    return o->format == BRIO_FORMAT_STL || (o->float32 && has(o->format, BRIO_HOLDS_SINGLES | BRIO_HOLDS_DOUBLES));
 }
 
 static void tell_idle(run *r, const char *path, brio_format format) {
-    bool binary = format == BRIO_FORMAT_LAS || format == BRIO_FORMAT_NPY || format == BRIO_FORMAT_GLB;
-    cli_tell_idle(r, path, !binary, format == BRIO_FORMAT_STL || has_both(format) || format == BRIO_FORMAT_GLB);
+    cli_tell_idle(r, path, has(format, BRIO_HOLDS_TEXT), has(format, BRIO_HOLDS_SINGLES));
 }
 
 /* Takes back --float32 if the loss is harmful. Returns the number of points that merge. */

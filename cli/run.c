@@ -4,6 +4,7 @@
 #include "interrupt.h"
 #include "lost.h"
 #include "precision.h"
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,9 @@ const option cli_common_options[] = {
     {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT",
      "format of the input, where its name and content do not tell", 0},
     {"columns", 0, OPTION_TEXT, FIELD(columns), "NAMES", "columns of a text input: x,y,z,-,nx (- leaves one out)", 0},
+    {"drop-invalid", 0, OPTION_FLAG, FIELD(drop_invalid), NULL,
+     "leave out points of the input whose coordinates are not finite, instead of refusing the file", 0},
+    {"salvage", 0, OPTION_FLAG, FIELD(salvage), NULL, "of an input that ends early, keep the points that are whole", 0},
     {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
     {"float32", 0, OPTION_FLAG, FIELD(float32), NULL, "write coordinates in single precision", 0},
     {"compress", 0, OPTION_FLAG, FIELD(compress), NULL, "write arrays compressed: .vtu and .vtp", 0},
@@ -93,15 +97,12 @@ static int on_progress(const char *stage, double fraction, void *user) {
     return cli_interrupted();
 }
 
-static bool can_compress(brio_format format) {
-    return format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP;
-}
-
 static brio_status check_compress(run *r) {
     const common_options *c = &r->common;
     if (!c->compress || !c->output) return BRIO_OK;
     if (c->ascii) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress and --ascii: text is not compressed");
-    if (can_compress(brio_format_of(c->format ? c->format : c->output))) return BRIO_OK;
+    const brio_format_info *info = brio_format_facts(brio_format_of(c->format ? c->format : c->output));
+    if (info && info->holds & BRIO_HOLDS_COMPRESSED) return BRIO_OK;
     return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot be compressed; .vtu and .vtp can",
                     c->output);
 }
@@ -190,14 +191,32 @@ static uint64_t peak_bytes(void) {
 
 /* --- files --- */
 
-brio_status cli_read(run *r, const char *path, brio_mesh **out) {
-    const char *extension = r->common.input_format;
+brio_read_options cli_read_options(run *r) {
+    const common_options *c = &r->common;
     brio_read_options options = brio_read_options_default();
+    if (c->input_format) options.format = brio_format_of(c->input_format);
+    options.columns = c->columns;
+    options.drop_invalid = c->drop_invalid;
+    options.dropped = &r->dropped;
+    options.salvage = c->salvage;
+    options.missing = &r->missing;
+    r->dropped = r->missing = 0;
+    return options;
+}
+
+void cli_tell_dropped(run *r, const char *path) {
+    if (r->common.drop_invalid) cli_fact_count(&r->facts, "dropped", r->dropped);
+    if (r->dropped) cli_warn(r, "%s: left out %" PRIu64 " points that are not finite", path, r->dropped);
+    if (r->common.salvage) cli_fact_count(&r->facts, "missing", r->missing);
+    if (r->missing) cli_warn(r, "%s: ends early: %" PRIu64 " points miss", path, r->missing);
+}
+
+brio_status cli_read(run *r, const char *path, brio_mesh **out) {
+    brio_read_options options = cli_read_options(r);
     brio_status status = BRIO_OK;
-    if (extension) options.format = brio_format_of(extension);
-    options.columns = r->common.columns;
     TRY(brio_read_as(r->ctx, path, &options, out));
     TRY(cli_check_interrupt(r));
+    cli_tell_dropped(r, path);
     TRY(cli_check_precision(r, path, *out));
     r->has_properties |= (*out)->num_properties > 0;
     cli_lap(r, "read");
@@ -271,7 +290,7 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     options.float32 = r->common.float32;
     options.moved = &moved;
     TRY(cli_settle_precision(r, path, mesh, &options, &merged));
-    options.compress = r->common.compress && can_compress(options.format);
+    options.compress = r->common.compress && brio_format_facts(options.format)->holds & BRIO_HOLDS_COMPRESSED;
     options.comment = "brio " BRIO_VERSION;
     options.neighbours = r->neighbours;
     options.faces = r->faces;

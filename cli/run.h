@@ -27,7 +27,7 @@
 
 typedef struct common_options {
     const char *output, *format, *input_format, *columns, *scratch;
-    bool json, quiet, verbose, progress, ascii, float32, compress;
+    bool json, quiet, verbose, progress, ascii, float32, compress, drop_invalid, salvage;
     int threads;
     uint64_t seed;
     size_t max_memory; /* 0: no limit */
@@ -37,7 +37,8 @@ extern const option cli_common_options[];
 extern const common_options cli_common_defaults;
 
 /** Extensions of the files that hold points, meshes, or both. */
-#define CLI_INPUTS        "ply xyz pts txt csv obj off stl vtu vtp node ele las laz pcd ptx npy npz glb gltf e57 bnpts"
+#define CLI_INPUTS                                                                                                     \
+    "ply xyz pts txt csv obj off stl vtu vtp node ele las laz pcd ptx npy npz glb gltf e57 bnpts chemical extxyz"
 #define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp glb"
 #define CLI_POINT_OUTPUTS "ply xyz pts txt csv vtu vtp node las npy glb"
 
@@ -51,7 +52,8 @@ typedef struct run {
     int num_operands;
     brio_context *ctx;
     facts facts;
-    bool has_properties; /* an input's points have */
+    bool has_properties;       /* an input's points have */
+    uint64_t dropped, missing; /* of the file that was read last, as in brio_read_options */
     progress bar;
     struct {
         const char *stage;
@@ -107,6 +109,12 @@ bool cli_limits_memory(const run *r);
 /** Refuses an estimate over --max-memory. With --scratch the big arrays are not in memory and only the limit of the
  *  context holds. */
 brio_status cli_require_memory(run *r, double bytes);
+
+/** Returns what the options of the command line say about reading. The library stores the counts of points that were left out, and
+ *  that miss, in the run: cli_tell_dropped. */
+brio_read_options cli_read_options(run *r);
+/** Reports, and warns of, the points that reading left out and those that the file lacks. */
+void cli_tell_dropped(run *r, const char *path);
 
 /** Reads an input with --input-format and --columns. The time is lapped as `read`. */
 brio_status cli_read(run *r, const char *path, brio_mesh **out);

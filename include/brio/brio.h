@@ -734,6 +734,13 @@ typedef struct brio_property {
  *  one after the other: face f has the vertices face_vertices[face_offsets[f]] to face_vertices[face_offsets[f+1] - 1].
  *  Vertices at the same position stay distinct. The mesh owns all arrays; the array of an absent part is NULL. A program
  *  may change the numbers in the arrays, but neither pointers nor counts. Later versions may append fields. */
+/** Something that a file says of all its points at once. brio carries it from file to file. */
+typedef struct brio_metadata {
+    char name[64]; /* what it is, such as "crs.wkt": docs/formats.md lists the names */
+    size_t size;   /* of the bytes, which a further byte 0 follows */
+    char *bytes;
+} brio_metadata;
+
 typedef struct brio_mesh {
     size_t size; /* of the struct in the library that runs */
     brio_context *context;
@@ -750,6 +757,8 @@ typedef struct brio_mesh {
     uint32_t *edges;  /* #E by 2 */
     double coordinate_step[3];   /* of a LAS file: every coordinate is a whole number times the step, */
     double coordinate_origin[3]; /* plus the origin. brio_write keeps both. Steps are 0 if they are not known. */
+    size_t num_metadata;
+    brio_metadata *metadata; /* what the file says of all its points at once, such as their coordinate system */
 } brio_mesh;
 
 /** Makes an empty mesh. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
@@ -777,6 +786,11 @@ BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges,
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
 /** Returns the property of that name, or NULL. */
 BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);
+/** Adds metadata, or replaces that of the same name.   bytes  copied.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the name is empty, has over 63 bytes, or is no UTF-8), BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_mesh_set_metadata(brio_mesh *mesh, const char *name, const void *bytes, size_t size);
+/** Returns the metadata of that name, or NULL. */
+BRIO_API const brio_metadata *brio_mesh_metadata(const brio_mesh *mesh, const char *name);
 /** Returns scalar i of a property as a double. */
 BRIO_API double brio_property_value(const brio_property *property, size_t i);
 
@@ -1661,13 +1675,54 @@ typedef enum brio_format {
 /** Returns the format of a file name or of an extension with or without its dot; BRIO_FORMAT_AUTO if it is unknown. */
 BRIO_API brio_format brio_format_of(const char *path);
 
+/** What a format can hold, as bits of brio_format_info.holds. */
+enum {
+    BRIO_HOLDS_FACES = 1,
+    BRIO_HOLDS_TETRAHEDRA = 2,
+    BRIO_HOLDS_EDGES = 4,       /* of brio_mesh.edges */
+    BRIO_HOLDS_PROPERTIES = 8,  /* of the vertices, any of them */
+    BRIO_HOLDS_NAMES = 16,      /* the names of the properties */
+    BRIO_HOLDS_DOUBLES = 32,    /* coordinates in double precision */
+    BRIO_HOLDS_SINGLES = 64,    /* coordinates in single precision: by choice where doubles are held, too */
+    BRIO_HOLDS_TEXT = 128,      /* the file can be a text */
+    BRIO_HOLDS_BINARY = 256,    /* the file can be binary */
+    BRIO_HOLDS_COMPRESSED = 512 /* brio_write_options.compress has a meaning */
+};
+
+/** What is known of a format. */
+typedef struct brio_format_info {
+    size_t size; /* of the struct in the library that runs */
+    brio_format format;
+    const char *name; /* as messages call it, with its article: "a PLY file" */
+    const char
+        *extensions; /* that are read, without dots, blanks between them; the first one is the format's short name */
+    const char *written;      /* those of them that are written; "" if the format is read only */
+    unsigned holds;           /* BRIO_HOLDS_FACES and so on: what a file that brio writes can hold */
+    unsigned most_properties; /* in a file; 0: any number */
+} brio_format_info;
+
+/** Returns what is known of a format, valid for ever; NULL for BRIO_FORMAT_AUTO and what is no format. */
+BRIO_API const brio_format_info *brio_format_facts(brio_format format);
+
+/** Receives the name of something that a mesh or a file cannot hold, valid during the call. */
+typedef void (*brio_lost_fn)(const char *name, void *user);
+
 typedef struct brio_read_options {
     size_t size;
     brio_format format; /* default BRIO_FORMAT_AUTO */
     const char
-        *columns; /* texts of points (BRIO_FORMAT_XYZ): the names of the columns in their order, "x,y,z,-,nx"; - and
+        *columns;     /* texts of points (BRIO_FORMAT_XYZ): the names of the columns in their order, "x,y,z,-,nx"; - and
                             _ leave a column out, as it happens to columns behind the last name. x, y and z have to be
                             there. Default NULL: by the file's line of names, or else the first three */
+    int drop_invalid; /* 1: leaves out points whose coordinates are not finite, and the polygons, tetrahedra and edges
+                              that use them; default 0: such points are an error */
+    int salvage;      /* 1: of a file that ends early, keeps the points that are whole; default 0: an error.
+                              docs/formats.md lists the formats */
+    uint64_t *dropped;     /* receives the number of points that drop_invalid left out; default NULL */
+    uint64_t *missing;     /* receives the number of points that the file announces and lacks; default NULL */
+    brio_lost_fn left_out; /* called once for each part of the file that the mesh has not, such as "textures", after all
+                              has been read; docs/formats.md lists the names. Default NULL */
+    void *left_out_user;
 } brio_read_options;
 
 BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);
@@ -1761,9 +1816,6 @@ static inline brio_write_options brio_write_options_default(void) {
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);
 
-/** Receives the name of something that a file cannot hold. */
-typedef void (*brio_lost_fn)(const char *name, void *user);
-
 typedef struct brio_convert_options {
     size_t size;
     const brio_read_options *from;         /* default NULL: the defaults of reading */
@@ -1775,6 +1827,8 @@ typedef struct brio_convert_options {
     double thin;                           /* spacing of brio_thin; default 0: keeps all points */
     brio_lost_fn lost; /* default NULL: called once for each part that is lost, before the file gets its name */
     void *lost_user;
+    brio_lost_fn renamed; /* default NULL: called once for each property that has another name in the file */
+    void *renamed_user;
 } brio_convert_options;
 
 BRIO_API void brio_convert_options_init(brio_convert_options *options, size_t size);
@@ -1803,7 +1857,8 @@ typedef struct brio_convert_stats {
  *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
  *  file is in memory.
  *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, and "precision" if coordinates are rounded.
+ *  properties, the names of metadata, and "precision" if coordinates are rounded; and so is what brio does not read of the
+ *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
  *  Progress begins anew where a text is read again because late rows lack a column.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.

@@ -5,6 +5,7 @@
  * vertices as they are in the file. */
 #include "base/utf8.h"
 #include "io/builder.h"
+#include "io/filter.h"
 #include "base/memory.h"
 #include <inttypes.h>
 #include <math.h>
@@ -57,12 +58,28 @@ void brio_builder_stream(brio_builder *b, uint64_t announced) {
     if (b->announced) *b->announced = announced;
 }
 
+/* Leaves out the vertices that are not finite, with the faces, tetrahedra and edges that use them. */
+static brio_status drop_not_finite(brio_builder *b) {
+    brio_status status = BRIO_OK;
+    brio_mesh *m = b->mesh;
+    uint8_t *stays = NULL;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, stays, m->num_vertices));
+    for (size_t v = 0; v < m->num_vertices; v++) stays[v] = brio_all_finite(m->vertices + 3 * v, 3);
+    BRIO_TRY(brio_filter_mesh(b->ctx, m, stays));
+done:
+    brio_release(b->ctx, stays);
+    return status;
+}
+
 /* Hands the vertices on and begins again with none. After a vertex that is no number, vertices are counted only. */
 static brio_status hand_on(brio_builder *b) {
     brio_status status = BRIO_OK;
-    brio_count_not_finite(&b->refused, b->passed, b->mesh->vertices, NULL, b->mesh->num_vertices);
-    if (!b->refused.count) BRIO_TRY(b->sink->take(b->sink->user, b->mesh));
-    b->passed += b->mesh->num_vertices;
+    size_t count = b->mesh->num_vertices;
+    uint64_t before = b->refused.count;
+    brio_count_not_finite(&b->refused, b->passed, b->mesh->vertices, NULL, count);
+    if (b->drop_invalid && b->refused.count > before) BRIO_TRY(drop_not_finite(b));
+    if (b->drop_invalid || !b->refused.count) BRIO_TRY(b->sink->take(b->sink->user, b->mesh));
+    b->passed += count;
     b->mesh->num_vertices = 0;
 done:
     return status;
@@ -98,6 +115,18 @@ brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar
                  clean);
     BRIO_TRY(brio_mesh_add_property(b->mesh, clean, type, NULL));
     if (b->vertex_capacity) BRIO_TRY(set_vertex_capacity(b, b->vertex_capacity));
+done:
+    return status;
+}
+
+brio_status brio_builder_leave_out(brio_builder *b, const char *name) {
+    brio_status status = BRIO_OK;
+    char clean[64];
+    brio_utf8_copy(clean, sizeof clean, name);
+    for (size_t i = 0; i < b->num_left_out; i++)
+        if (!strcmp(b->left_out[i], clean)) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(b->ctx, b->left_out, b->left_out_capacity, b->num_left_out + 1));
+    memcpy(b->left_out[b->num_left_out++], clean, sizeof clean);
 done:
     return status;
 }
@@ -261,12 +290,14 @@ brio_status brio_builder_finish(brio_builder *b) {
     brio_status status = BRIO_OK;
     if (b->streams) {
         if (b->mesh->num_vertices || !b->passed) BRIO_TRY(hand_on(b));
-        BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
+        if (!b->drop_invalid) BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
         return BRIO_OK;
     }
     BRIO_TRY(trim(b));
     BRIO_TRY(check_indices(b));
-    BRIO_TRY(brio_refuse_not_finite(b->ctx, b->mesh->vertices, NULL, b->mesh->num_vertices, b->name));
+    brio_count_not_finite(&b->refused, 0, b->mesh->vertices, NULL, b->mesh->num_vertices);
+    if (!b->drop_invalid) BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
+    if (b->refused.count) BRIO_TRY(drop_not_finite(b));
 done:
     return status;
 }

@@ -35,8 +35,13 @@ typedef struct brio_builder {
     bool streams;          /* whether vertices go to the sink block by block */
     uint64_t passed;       /* vertices that the sink has received */
     uint64_t *announced;   /* NULL, or receives the number of vertices that the file will have (brio_builder_stream) */
-    brio_not_finite refused; /* with `streams`: vertices seen that are no numbers */
+    bool drop_invalid;     /* leaves out vertices that are not finite, instead of refusing the file */
+    bool salvage;          /* readers keep the whole points of a file that ends early, and say how many miss */
+    uint64_t missing;      /* points that such a file lacks */
+    brio_not_finite refused; /* vertices seen that are not finite: with `streams` or `drop_invalid` */
     char version[64];        /* what the reader says of the file's version; may be empty */
+    char (*left_out)[64];    /* names of what the file has and the mesh has not, each once: brio_builder_leave_out */
+    size_t num_left_out, left_out_capacity;
 } brio_builder;
 
 /** Makes an empty mesh. It belongs to the caller: brio_mesh_free(b->mesh), on failure too. */
@@ -60,6 +65,8 @@ brio_status brio_builder_expect_tetrahedra(brio_builder *b, uint64_t count);
 brio_status brio_builder_add_vertices(brio_builder *b, size_t count);
 /** Appends one vertex. */
 brio_status brio_builder_vertex(brio_builder *b, const double *point);
+/** Notes that a part of the file is not in the mesh, such as "textures". A name that was noted before adds nothing. */
+brio_status brio_builder_leave_out(brio_builder *b, const char *name);
 /** Adds a property. The caller sets the values of vertices that are there already. */
 brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar type);
 /** Makes a name that no property has: SOURCE, or SOURCE_2, SOURCE_3 and so on, cut in whole characters.

@@ -43,12 +43,39 @@ brio_status brio_stl_write(brio_output *out, const brio_write_job *job);
 brio_status brio_glb_write(brio_output *out, const brio_write_job *job);
 brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
 
+/** A format's row of the table in format_table.c. */
+typedef struct brio_format_row {
+    brio_format_info info;
+    bool (*starts)(const char *bytes,
+                   size_t size); /* whether the first bytes of a file are the format's; NULL: no bytes tell */
+    brio_status (*read)(brio_stream *s, brio_builder *b); /* NULL: read_columns */
+    brio_status (*read_columns)(brio_stream *s, brio_builder *b, const char *columns);
+    const struct brio_row_format *rows;                                /* NULL: not written row by row */
+    brio_status (*write)(brio_output *out, const brio_write_job *job); /* NULL: not written as a whole */
+    bool about_origin; /* single precision is that of distances from an origin, which the writer chooses */
+} brio_format_row;
+
+/** Returns the row of a format, or NULL. */
+const brio_format_row *brio_format_row_of(brio_format format);
+/** Returns whether a format holds something of `what`, bits such as BRIO_HOLDS_FACES. */
+bool brio_format_holds(brio_format format, unsigned what);
+/** Returns the format whose files begin with these bytes, or BRIO_FORMAT_AUTO. */
+brio_format brio_format_that_starts(const char *bytes, size_t size);
+/** Returns the format one of whose extensions `has` finds at a path, or BRIO_FORMAT_AUTO. */
+brio_format brio_format_with(const char *path, bool (*has)(const char *path, const char *extension));
+
+enum { BRIO_FORMAT_LIST = 256 };
+/** Lists the extensions of all formats that are read, or written: ".ply .off .vtu". */
+void brio_format_list(bool written, char text[BRIO_FORMAT_LIST]);
+
 /** Returns whether the format holds coordinates in single precision, by itself or by the options. */
 bool brio_is_single(brio_format format, const brio_write_options *options);
 
 /** Returns the greatest distance between a vertex and its coordinates in single precision. */
 double brio_moved_by_singles(const brio_mesh *m);
 
+/** Refuses formats that there are not, and those that are read only. */
+brio_status brio_check_written(brio_context *ctx, const char *path, brio_format format);
 /** Refuses more properties than readers of the format take. */
 brio_status brio_check_properties(brio_context *ctx, const char *path, brio_format format, size_t count);
 /** Refuses compression for a format that has none, and in a build without zlib. */

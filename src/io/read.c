@@ -12,18 +12,6 @@
 /* Bytes of a file in which its content may show the format. */
 enum { START = BRIO_IO_BLOCK < 4096 ? BRIO_IO_BLOCK : 4096 };
 
-static const struct {
-    const char *extension;
-    brio_format format;
-} extensions[] = {{"ply", BRIO_FORMAT_PLY},     {"xyz", BRIO_FORMAT_XYZ},           {"pts", BRIO_FORMAT_XYZ},
-                  {"txt", BRIO_FORMAT_XYZ},     {"csv", BRIO_FORMAT_XYZ},           {"obj", BRIO_FORMAT_OBJ},
-                  {"off", BRIO_FORMAT_OFF},     {"vtu", BRIO_FORMAT_VTU},           {"node", BRIO_FORMAT_NODE},
-                  {"ele", BRIO_FORMAT_NODE},    {"vtp", BRIO_FORMAT_VTP},           {"las", BRIO_FORMAT_LAS},
-                  {"laz", BRIO_FORMAT_LAZ},     {"pcd", BRIO_FORMAT_PCD},           {"ptx", BRIO_FORMAT_PTX},
-                  {"stl", BRIO_FORMAT_STL},     {"npy", BRIO_FORMAT_NPY},           {"npz", BRIO_FORMAT_NPZ},
-                  {"glb", BRIO_FORMAT_GLB},     {"gltf", BRIO_FORMAT_GLB},          {"e57", BRIO_FORMAT_E57},
-                  {"bnpts", BRIO_FORMAT_BNPTS}, {"chemical", BRIO_FORMAT_CHEMICAL}, {"extxyz", BRIO_FORMAT_CHEMICAL}};
-
 static const brio_read_options STANDARD = {.size = sizeof STANDARD, .format = BRIO_FORMAT_AUTO};
 
 BRIO_OPTIONS_INIT(brio_read_options)
@@ -41,18 +29,12 @@ static bool has_extension(const char *path, const char *wanted) {
     return stem > length && path[stem - length - 1] == '.' && !strncasecmp(path + stem - length, wanted, length);
 }
 
-brio_format brio_format_of(const char *path) {
-    const char *extension = extension_of(path);
-    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
-        if (!strcasecmp(extension, extensions[i].extension)) return extensions[i].format;
-    return BRIO_FORMAT_AUTO;
+static bool is_extension(const char *path, const char *extension) {
+    return !strcasecmp(extension_of(path), extension);
 }
 
-/* Returns the format by the extension of a file that may be compressed. */
-static brio_format format_to_read(const char *path) {
-    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
-        if (has_extension(path, extensions[i].extension)) return extensions[i].format;
-    return BRIO_FORMAT_AUTO;
+brio_format brio_format_of(const char *path) {
+    return brio_format_with(path, is_extension);
 }
 
 bool brio_is_ele(const char *path) {
@@ -88,77 +70,24 @@ static brio_status find_format(brio_stream *s, const char *path, brio_read_job *
     BRIO_TRY(brio_stream_fill(s, START));
     const char *bytes = s->buffer + s->begin;
     size_t size = brio_stream_left(s);
-    if (brio_ply_starts(bytes, size))
-        job->format = BRIO_FORMAT_PLY;
-    else if (brio_off_starts(bytes, size))
-        job->format = BRIO_FORMAT_OFF;
-    else if (brio_vtk_starts(bytes, size))
-        job->format = BRIO_FORMAT_VTU;
-    else if (brio_las_starts(bytes, size))
-        job->format = BRIO_FORMAT_LAS;
-    else if (brio_pcd_starts(bytes, size))
-        job->format = BRIO_FORMAT_PCD;
-    else if (brio_npy_starts(bytes, size))
-        job->format = BRIO_FORMAT_NPY;
-    else if (brio_glb_starts(bytes, size))
-        job->format = BRIO_FORMAT_GLB;
-    else if (brio_e57_starts(bytes, size))
-        job->format = BRIO_FORMAT_E57;
-    else if (brio_npz_starts(bytes, size))
-        job->format = BRIO_FORMAT_NPZ;
-    else
-        job->format = strcmp(path, "-") ? format_to_read(path) : BRIO_FORMAT_XYZ;
+    job->format = brio_format_that_starts(bytes, size);
+    if (job->format == BRIO_FORMAT_AUTO)
+        job->format = strcmp(path, "-") ? brio_format_with(path, has_extension) : BRIO_FORMAT_XYZ;
     bool may_be_chemical = job->format == BRIO_FORMAT_XYZ && (!strcmp(path, "-") || has_extension(path, "xyz"));
     if (may_be_chemical && !job->columns && brio_chemical_starts(bytes, size)) job->format = BRIO_FORMAT_CHEMICAL;
-    BRIO_REQUIRE(s->ctx, job->format != BRIO_FORMAT_AUTO, BRIO_ERR_FORMAT,
-                 "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .ele .las .laz .pcd "
-                 ".ptx .stl .npy .npz .glb .gltf .e57 or .bnpts",
-                 s->name);
+    if (job->format == BRIO_FORMAT_AUTO) {
+        char known[BRIO_FORMAT_LIST];
+        brio_format_list(false, known);
+        status = brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: unknown format, expected one of %s", s->name, known);
+    }
 done:
     return status;
 }
 
 static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format format, const char *columns) {
-    switch (format) {
-    case BRIO_FORMAT_PLY:
-        return brio_ply_read(s, b);
-    case BRIO_FORMAT_XYZ:
-        return brio_xyz_read(s, b, columns);
-    case BRIO_FORMAT_OBJ:
-        return brio_obj_read(s, b);
-    case BRIO_FORMAT_OFF:
-        return brio_off_read(s, b);
-    case BRIO_FORMAT_VTU:
-    case BRIO_FORMAT_VTP:
-        return brio_vtk_read(s, b);
-    case BRIO_FORMAT_NODE:
-        return brio_node_read(s, b);
-    case BRIO_FORMAT_LAS:
-    case BRIO_FORMAT_LAZ:
-        return brio_las_read(s, b);
-    case BRIO_FORMAT_PCD:
-        return brio_pcd_read(s, b);
-    case BRIO_FORMAT_PTX:
-        return brio_ptx_read(s, b);
-    case BRIO_FORMAT_STL:
-        return brio_stl_read(s, b);
-    case BRIO_FORMAT_NPY:
-        return brio_npy_read(s, b);
-    case BRIO_FORMAT_GLB:
-        return brio_glb_read(s, b);
-    case BRIO_FORMAT_E57:
-        return brio_e57_read(s, b);
-    case BRIO_FORMAT_CHEMICAL:
-        return brio_chemical_read(s, b);
-    case BRIO_FORMAT_BNPTS:
-        return brio_bnpts_read(s, b);
-    case BRIO_FORMAT_NPZ:
-        return brio_npz_read(s, b);
-    case BRIO_FORMAT_AUTO:
-    case BRIO_FORMAT_END:
-        break;
-    }
-    return brio_fail(s->ctx, BRIO_ERR_ARGUMENT, "%s: no such format: %d", s->name, (int)format);
+    const brio_format_row *row = brio_format_row_of(format);
+    if (!row) return brio_fail(s->ctx, BRIO_ERR_ARGUMENT, "%s: no such format: %d", s->name, (int)format);
+    return row->read ? row->read(s, b) : row->read_columns(s, b, columns);
 }
 
 /* Reads the tetrahedra in the .ele file beside a .node file. The file may be missing unless `asked_for` is set. */
@@ -179,7 +108,8 @@ done:
 
 /* Refuses names of columns for a format that has none. */
 static brio_status check_columns(const brio_stream *s, brio_format format, const char *columns) {
-    if (!columns || format == BRIO_FORMAT_XYZ) return BRIO_OK;
+    const brio_format_row *row = brio_format_row_of(format);
+    if (!columns || !row || row->read_columns) return BRIO_OK;
     return brio_fail(s->ctx, BRIO_ERR_ARGUMENT,
                      "%s: columns are named (--columns), but only texts of points (.xyz .pts .txt .csv) have columns",
                      s->name);
@@ -208,21 +138,52 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     BRIO_TRY(brio_builder_start(&b, ctx, s.name));
     b.sink = job->sink;
     b.announced = &job->announced;
+    b.drop_invalid = job->drop_invalid;
+    b.salvage = job->salvage;
     BRIO_TRY(read_stream(&s, &b, job->format, job->columns));
     if (job->format == BRIO_FORMAT_NODE && !job->memory && strcmp(job->path, "-") != 0)
         BRIO_TRY(read_tetrahedra(&b, job->path, tetrahedra));
     BRIO_TRY(brio_builder_finish(&b));
     BRIO_TRY(brio_progress(ctx, "read", 1));
     memcpy(job->version, b.version, sizeof job->version);
+    job->dropped = b.refused.count;
+    job->missing = b.missing;
+    brio_release(ctx, job->left_out);
+    job->left_out = b.left_out, job->num_left_out = b.num_left_out;
+    b.left_out = NULL;
     job->streamed = b.streams;
     if (b.streams) goto done;
     job->mesh = b.mesh;
     b.mesh = NULL;
 done:
     brio_mesh_free(b.mesh);
+    brio_release(ctx, b.left_out);
     brio_stream_close(&s);
     brio_release(ctx, node);
     return status;
+}
+
+void brio_read_job_free(brio_context *ctx, brio_read_job *job) {
+    brio_release(ctx, job->left_out);
+    job->left_out = NULL;
+    job->num_left_out = 0;
+}
+
+/* Makes a job of the caller's options. */
+static brio_read_job job_of(const char *path, const brio_read_options *o) {
+    return (brio_read_job){.path = path,
+                           .format = o->format,
+                           .columns = o->columns,
+                           .drop_invalid = o->drop_invalid,
+                           .salvage = o->salvage};
+}
+
+/* Tells the caller what a job found beside the mesh, and frees what the job owns. */
+static void give_findings(brio_context *ctx, const brio_read_options *o, brio_read_job *job) {
+    if (o->dropped) *o->dropped = job->dropped;
+    if (o->missing) *o->missing = job->missing;
+    for (size_t i = 0; i < job->num_left_out && o->left_out; i++) o->left_out(job->left_out[i], o->left_out_user);
+    brio_read_job_free(ctx, job);
 }
 
 brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_options *options, brio_mesh **out) {
@@ -231,8 +192,9 @@ brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_op
     brio_read_options o = STANDARD;
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
-    brio_read_job job = {.path = path, .format = o.format, .columns = o.columns};
+    brio_read_job job = job_of(path, &o);
     BRIO_TRY(brio_read_file(ctx, &job));
+    give_findings(ctx, &o, &job);
     *out = job.mesh;
 done:
     return status;
@@ -253,8 +215,10 @@ brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, 
     const brio_bytes memory = {bytes, size};
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
-    brio_read_job job = {.path = name ? name : "-", .memory = &memory, .format = o.format, .columns = o.columns};
+    brio_read_job job = job_of(name ? name : "-", &o);
+    job.memory = &memory;
     BRIO_TRY(brio_read_file(ctx, &job));
+    give_findings(ctx, &o, &job);
     *out = job.mesh;
 done:
     return status;
@@ -281,12 +245,14 @@ brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_rea
     block_call c = {ctx, take, user};
     const brio_sink sink = {call, &c};
     brio_read_options o = STANDARD;
-    brio_read_job job = {.path = path, .sink = &sink};
+    brio_read_job job = {.path = path};
     brio_file_facts found = {.size = sizeof found};
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_file_facts, facts));
     BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
-    job.format = o.format, job.columns = o.columns;
+    job = job_of(path, &o);
+    job.sink = &sink;
     BRIO_TRY(brio_read_file(ctx, &job));
+    give_findings(ctx, &o, &job);
     if (job.mesh) BRIO_TRY(call(&c, job.mesh));
     found.format = job.format;
     found.streamed = job.streamed;

@@ -14,12 +14,20 @@ typedef struct brio_read_job {
     const brio_bytes *memory; /* NULL, or what is read: the path is then only a name, "-" for none */
     brio_format format;       /* BRIO_FORMAT_AUTO becomes the format that was found */
     const char *columns;      /* as in brio_read_options */
-    const brio_sink *sink;    /* NULL: the mesh receives everything */
-    uint64_t announced;       /* set before the sink's first call, as in brio_builder */
-    bool streamed;            /* whether the sink received the vertices */
-    brio_mesh *mesh;          /* what was read, owned by the caller, or NULL if it was streamed */
+    bool drop_invalid;        /* as in brio_read_options */
+    bool salvage;
+    uint64_t dropped, missing; /* points left out, and points that a file lacks, as in brio_read_options */
+    const brio_sink *sink;     /* NULL: the mesh receives everything */
+    uint64_t announced;        /* set before the sink's first call, as in brio_builder */
+    bool streamed;             /* whether the sink received the vertices */
+    brio_mesh *mesh;           /* what was read, owned by the caller, or NULL if it was streamed */
     char version[64];
+    char (*left_out)[64]; /* names of what is in the file and not in the mesh, owned by the job: brio_read_job_free */
+    size_t num_left_out;
 } brio_read_job;
+
+/** Frees what a job owns, except its mesh. */
+void brio_read_job_free(brio_context *ctx, brio_read_job *job);
 
 /** Reads a file. On failure job->mesh is NULL.   Returns what brio_read and the sink return. */
 brio_status brio_read_file(brio_context *ctx, brio_read_job *job);

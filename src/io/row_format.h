@@ -25,7 +25,8 @@ typedef struct brio_row_format {
     /** Writes what follows the points of the last block. job->points is their number. NULL: nothing does. */
     brio_status (*end)(brio_output *out, const brio_write_job *job, void *state);
     void (*free)(brio_context *ctx, void *state);
-    /** Returns whether a reader finds property i by another name. NULL: where job->names has another one. */
+    /** Returns whether a reader finds property i by another name. NULL: job->names has the names of the file, each one
+     *  word. Otherwise there is no job->names. */
     bool (*renames)(const void *state, size_t i);
     /** Returns whether coordinates are rounded. NULL: only as the options say. */
     bool (*rounds)(const void *state);
@@ -41,6 +42,7 @@ extern const brio_row_format brio_ply_rows, brio_xyz_rows, brio_npy_rows, brio_l
 /** A file that is written block by block. */
 typedef struct brio_row_writer {
     brio_context *ctx;
+    brio_format kind;
     const brio_row_format *format;
     brio_write_job job;
     brio_output out;

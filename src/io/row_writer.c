@@ -8,18 +8,8 @@
 #include <string.h>
 
 const brio_row_format *brio_row_format_of(brio_format format) {
-    switch (format) {
-    case BRIO_FORMAT_PLY:
-        return &brio_ply_rows;
-    case BRIO_FORMAT_XYZ:
-        return &brio_xyz_rows;
-    case BRIO_FORMAT_NPY:
-        return &brio_npy_rows;
-    case BRIO_FORMAT_LAS:
-        return &brio_las_rows;
-    default:
-        return NULL;
-    }
+    const brio_format_row *row = brio_format_row_of(format);
+    return row ? row->rows : NULL;
 }
 
 /* --- what a format can hold --- */
@@ -64,9 +54,10 @@ done:
 }
 
 bool brio_is_single(brio_format format, const brio_write_options *o) {
-    bool both = format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
-                format == BRIO_FORMAT_NPY;
-    return format == BRIO_FORMAT_STL || (o->float32 && both);
+    const brio_format_row *row = brio_format_row_of(format);
+    unsigned holds = row ? row->info.holds : 0;
+    if (!(holds & BRIO_HOLDS_SINGLES) || row->about_origin) return false;
+    return o->float32 || !(holds & BRIO_HOLDS_DOUBLES);
 }
 
 double brio_moved_by_singles(const brio_mesh *m) {
@@ -91,7 +82,7 @@ done:
 /* --- the file --- */
 
 brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_format format, const brio_write_job *job) {
-    *w = (brio_row_writer){.ctx = ctx, .format = brio_row_format_of(format), .job = *job};
+    *w = (brio_row_writer){.ctx = ctx, .kind = format, .format = brio_row_format_of(format), .job = *job};
     w->out = (brio_output){.ctx = ctx, .target.folder = -1, .file = -1};
     w->surveys = w->format->survey != NULL;
     return brio_zeroed(ctx, &w->state, 1, w->format->state + 1);
@@ -122,8 +113,8 @@ uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w) {
 
 static brio_status open_output(brio_row_writer *w, const char *path) {
     brio_status status = BRIO_OK;
-    if (w->format != &brio_las_rows) BRIO_TRY(make_names(w->ctx, path, &w->job, w->format->comments));
-    if (w->format == &brio_npy_rows) BRIO_TRY(brio_check_properties(w->ctx, path, BRIO_FORMAT_NPY, w->columns));
+    if (!w->format->renames) BRIO_TRY(make_names(w->ctx, path, &w->job, w->format->comments));
+    BRIO_TRY(brio_check_properties(w->ctx, path, w->kind, w->columns));
     w->begun = true;
     BRIO_TRY(brio_output_open(&w->out, w->ctx, path, w->job.expected));
     BRIO_REQUIRE(w->ctx, !w->format->counts || w->job.points != BRIO_COUNT_UNKNOWN || brio_output_can_patch(&w->out),
@@ -137,7 +128,7 @@ brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const br
     brio_status status = BRIO_OK;
     BRIO_TRY(take_block(w, block));
     if (!w->begun) BRIO_TRY(open_output(w, path));
-    bool single = w->job.options->float32 && w->format != &brio_las_rows && w->format != &brio_xyz_rows;
+    bool single = brio_is_single(w->kind, w->job.options);
     if (single) BRIO_TRY(brio_check_single(w->ctx, path, block));
     BRIO_TRY(w->format->rows(&w->out, &w->job, w->state));
     if (w->job.options->moved && w->format->moved)

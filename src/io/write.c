@@ -18,7 +18,7 @@ brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format
                                 const brio_write_options *options) {
     brio_status status = BRIO_OK;
     if (!options->compress) return BRIO_OK;
-    BRIO_REQUIRE(ctx, format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP, BRIO_ERR_ARGUMENT,
+    BRIO_REQUIRE(ctx, brio_format_holds(format, BRIO_HOLDS_COMPRESSED), BRIO_ERR_ARGUMENT,
                  "%s: a file of this format cannot be compressed; .vtu and .vtp can", path);
     BRIO_REQUIRE(ctx, !options->ascii, BRIO_ERR_ARGUMENT, "%s: text is not compressed", path);
     BRIO_REQUIRE(ctx, brio_vtk_has_zlib(), BRIO_ERR_ARGUMENT, "%s: this brio was built without zlib, which compresses",
@@ -29,37 +29,40 @@ done:
 
 /* As many as the readers take, which must not believe every header. */
 brio_status brio_check_properties(brio_context *ctx, const char *path, brio_format format, size_t count) {
-    static const size_t most[BRIO_FORMAT_END] = {[BRIO_FORMAT_NPY] = 4093,
-                                                 [BRIO_FORMAT_VTU] = 4096,
-                                                 [BRIO_FORMAT_VTP] = 4096,
-                                                 [BRIO_FORMAT_NODE] = 4096,
-                                                 [BRIO_FORMAT_GLB] = 256};
+    const brio_format_info *info = brio_format_facts(format);
     brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, !most[format] || count <= most[format], BRIO_ERR_ARGUMENT,
-                 "%s: %zu properties; readers of this format take at most %zu", path, count, most[format]);
+    BRIO_REQUIRE(ctx, !info->most_properties || count <= info->most_properties, BRIO_ERR_ARGUMENT,
+                 "%s: %zu properties; readers of this format take at most %u", path, count, info->most_properties);
+done:
+    return status;
+}
+
+brio_status brio_check_written(brio_context *ctx, const char *path, brio_format format) {
+    const brio_format_info *info = brio_format_facts(format);
+    brio_status status = BRIO_OK;
+    if (!info) {
+        char known[BRIO_FORMAT_LIST];
+        brio_format_list(true, known);
+        return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s: unknown format, expected one of %s", path, known);
+    }
+    BRIO_REQUIRE(ctx, info->written[0], BRIO_ERR_ARGUMENT, "%s: %s is read, not written", path, info->name);
+    BRIO_REQUIRE(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
+                 "%s: .gltf files are read, not written; .glb files are", path);
 done:
     return status;
 }
 
 static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
                                const brio_write_options *options) {
-    static const char *const without_tetrahedra[BRIO_FORMAT_END] = {
-        [BRIO_FORMAT_XYZ] = "a text of points", [BRIO_FORMAT_OBJ] = "an OBJ file", [BRIO_FORMAT_OFF] = "an OFF file",
-        [BRIO_FORMAT_VTP] = "a VTP file",       [BRIO_FORMAT_LAS] = "a LAS file",  [BRIO_FORMAT_STL] = "an STL file",
-        [BRIO_FORMAT_NPY] = "an NPY file",      [BRIO_FORMAT_GLB] = "a GLB file"};
     brio_status status = BRIO_OK;
-    BRIO_REQUIRE(
-        ctx, format > BRIO_FORMAT_AUTO && format < BRIO_FORMAT_END, BRIO_ERR_ARGUMENT,
-        "%s: unknown format, expected .ply .xyz .pts .txt .csv .obj .off .vtu .vtp .node .las .stl .npy or .glb", path);
-    BRIO_REQUIRE(ctx, !m->num_tetrahedra || !without_tetrahedra[format], BRIO_ERR_ARGUMENT,
-                 "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, without_tetrahedra[format]);
+    BRIO_TRY(brio_check_written(ctx, path, format));
+    BRIO_REQUIRE(ctx, !m->num_tetrahedra || brio_format_holds(format, BRIO_HOLDS_TETRAHEDRA), BRIO_ERR_ARGUMENT,
+                 "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, brio_format_facts(format)->name);
     bool beside = options->neighbours || options->faces || options->edges;
     BRIO_REQUIRE(ctx, !beside || format == BRIO_FORMAT_NODE, BRIO_ERR_ARGUMENT,
                  "%s: neighbours, faces and edges are written beside .node only", path);
     BRIO_REQUIRE(ctx, (!m->num_tetrahedra && !beside) || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0,
                  BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
-    BRIO_REQUIRE(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
-                 "%s: .gltf files are read, not written; .glb files are", path);
     BRIO_TRY(brio_check_compress(ctx, path, format, options));
     BRIO_TRY(brio_check_properties(ctx, path, format, m->num_properties));
     if (brio_is_single(format, options)) BRIO_TRY(brio_check_single(ctx, path, m));
@@ -70,58 +73,18 @@ done:
 /* --- writing --- */
 
 static uint64_t expected_bytes(const brio_mesh *m, brio_format format, bool ascii) {
-    bool text = ascii || format == BRIO_FORMAT_XYZ || format == BRIO_FORMAT_OBJ || format == BRIO_FORMAT_OFF ||
-                format == BRIO_FORMAT_NODE;
+    bool text = ascii || !brio_format_holds(format, BRIO_HOLDS_BINARY);
     uint64_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0, scalars = 3 + m->num_properties;
     uint64_t number = text ? 18 : 8, index = text ? 7 : 4;
     return m->num_vertices * scalars * number +
            (corners + m->num_faces + 5 * m->num_tetrahedra + 2 * m->num_edges) * index;
 }
 
-static brio_status write_output(brio_output *out, const brio_write_job *job, brio_format format) {
-    switch (format) {
-    case BRIO_FORMAT_OBJ:
-        return brio_obj_write(out, job);
-    case BRIO_FORMAT_OFF:
-        return brio_off_write(out, job);
-    case BRIO_FORMAT_VTU:
-        return brio_vtu_write(out, job);
-    case BRIO_FORMAT_NODE:
-        return brio_node_write(out, job);
-    case BRIO_FORMAT_VTP:
-        return brio_vtp_write(out, job);
-    case BRIO_FORMAT_STL:
-        return brio_stl_write(out, job);
-    case BRIO_FORMAT_GLB:
-        return brio_glb_write(out, job);
-    case BRIO_FORMAT_PLY:
-    case BRIO_FORMAT_XYZ:
-    case BRIO_FORMAT_LAS:
-    case BRIO_FORMAT_NPY: /* by row_writer.c */
-        break;
-    case BRIO_FORMAT_LAZ:
-    case BRIO_FORMAT_PCD:
-    case BRIO_FORMAT_PTX:
-    case BRIO_FORMAT_E57:
-        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: LAZ, PCD, PTX and E57 files are read, not written",
-                         out->name);
-    case BRIO_FORMAT_CHEMICAL:
-    case BRIO_FORMAT_BNPTS:
-    case BRIO_FORMAT_NPZ:
-        return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: chemical XYZ, BNPTS and NPZ files are read, not written",
-                         out->name);
-    case BRIO_FORMAT_AUTO:
-    case BRIO_FORMAT_END:
-        break;
-    }
-    return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: no such format: %d", out->name, (int)format);
-}
-
 static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
     brio_status status = BRIO_OK;
     brio_output out;
     BRIO_TRY(brio_output_open(&out, ctx, path, job->expected));
-    BRIO_TRY(write_output(&out, job, format));
+    BRIO_TRY(brio_format_row_of(format)->write(&out, job));
     BRIO_TRY(brio_output_finish(&out));
     BRIO_TRY(brio_output_publish(&out));
 done:

@@ -19,6 +19,8 @@ void brio_mesh_free(brio_mesh *mesh) {
     brio_context *ctx = mesh->context;
     for (size_t i = 0; i < mesh->num_properties; i++) brio_release(ctx, mesh->properties[i].data);
     brio_release(ctx, mesh->properties);
+    for (size_t i = 0; i < mesh->num_metadata; i++) brio_release(ctx, mesh->metadata[i].bytes);
+    brio_release(ctx, mesh->metadata);
     brio_release(ctx, mesh->vertices);
     brio_release(ctx, mesh->face_offsets);
     brio_release(ctx, mesh->face_vertices);
@@ -143,6 +145,36 @@ const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name)
     for (size_t i = 0; fits && i < mesh->num_properties; i++)
         if (!strcmp(mesh->properties[i].name, clean)) return &mesh->properties[i];
     return NULL;
+}
+
+const brio_metadata *brio_mesh_metadata(const brio_mesh *mesh, const char *name) {
+    for (size_t i = 0; i < mesh->num_metadata; i++)
+        if (!strcmp(mesh->metadata[i].name, name)) return &mesh->metadata[i];
+    return NULL;
+}
+
+brio_status brio_mesh_set_metadata(brio_mesh *mesh, const char *name, const void *bytes, size_t size) {
+    brio_context *ctx = mesh->context;
+    brio_metadata r = {.size = size};
+    brio_status status = BRIO_OK;
+    size_t i = 0;
+    BRIO_REQUIRE(ctx, brio_utf8_copy(r.name, sizeof r.name, name) && name[0], BRIO_ERR_ARGUMENT,
+                 "a name of metadata of %zu bytes, expected 1 to 63 bytes of UTF-8", strlen(name));
+    BRIO_TRY(BRIO_ALLOC(ctx, r.bytes, size + 1));
+    if (size) memcpy(r.bytes, bytes, size);
+    r.bytes[size] = 0;
+    while (i < mesh->num_metadata && strcmp(mesh->metadata[i].name, r.name) != 0) i++;
+    if (i == mesh->num_metadata) {
+        BRIO_TRY(BRIO_RESIZE(ctx, mesh->metadata, mesh->num_metadata + 1));
+        mesh->num_metadata++;
+    } else {
+        brio_release(ctx, mesh->metadata[i].bytes);
+    }
+    mesh->metadata[i] = r;
+    r.bytes = NULL;
+done:
+    brio_release(ctx, r.bytes);
+    return status;
 }
 
 double brio_property_value(const brio_property *property, size_t i) {

@@ -11,7 +11,7 @@ from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
 COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide",
             "locate", "interpolate", "voronoi"]
-COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--ascii", "--float32", "--compress", "--json",
+COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate", "--plane",

@@ -126,10 +126,22 @@ class Convert(CliTest):
 
     def test_properties_that_get_another_name_or_value_are_named(self):
         a = self.file("a.csv", "x,y,z,a b,intensity,id\n1,2,3,4,0.5,344522987.5\n4,5,6,7,0.25,1e300\n")
-        self.assertEqual(self.convert(a, self.path("b.ply"))["lost"], ["a b"])
-        self.assertEqual(self.convert(a, self.path("b.las"))["lost"], ["intensity"])
+        for b, names in (("b.ply", ["a b"]), ("b.las", ["intensity"])):
+            report = self.convert(a, self.path(b))
+            self.assertEqual((report["lost"], report["renamed"]), ([], names), b)
         self.assertEqual(self.convert(a, self.path("b.glb"))["lost"], ["precision"])
         self.assertEqual(self.convert(a, self.path("b.vtu"))["lost"], [])
+
+    def test_points_that_are_not_finite_are_an_error_or_left_out_and_counted(self):
+        a = self.file("a.xyz", "0 0 0\nnan 0 0\n1 0 0\n0 inf 0\n0 1 0\n")
+        self.assertIn("2 such points", self.expect(2, "convert", a, self.path("b.ply")).err)
+        for b in ("b.ply", "b.vtu", "b.las"):
+            report = self.convert(a, self.path(b), "--drop-invalid")
+            self.assertEqual((report["points"], report["dropped"]), (3, 2), b)
+            self.assertEqual(self.facts("info", self.path(b))["points"], 3, b)
+        mesh = self.file("m.off", "OFF\n5 2 0\n0 0 0\nnan 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 2 3 4\n")
+        report = self.convert(mesh, self.path("b.ply"), "--drop-invalid")
+        self.assertEqual((report["points"], report["faces"], report["dropped"]), (4, 1, 1))
 
     def test_csv_has_commas_and_no_comment_wherever_it_goes(self):
         a = self.xyz("a.xyz", CUBE)

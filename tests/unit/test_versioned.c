@@ -180,10 +180,11 @@ ENDS_WITH(brio_labeled_delaunay_stats, simplify_seconds);
 ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
 ENDS_WITH(brio_write_options, separator);
-ENDS_WITH(brio_read_options, columns);
+ENDS_WITH(brio_read_options, left_out_user);
+ENDS_WITH(brio_convert_options, renamed_user);
 ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);
-ENDS_WITH(brio_mesh, coordinate_origin);
+ENDS_WITH(brio_mesh, metadata);
 ENDS_WITH(brio_alpha_complex, triangulation2);
 
 static void statuses_have_words_of_their_own(void) {

@@ -36,32 +36,23 @@ static void lose(const conversion *c, const char *name) {
     if (c->options->lost) c->options->lost(name, c->options->lost_user);
 }
 
-static bool holds_properties(brio_format format) {
-    return format != BRIO_FORMAT_OBJ && format != BRIO_FORMAT_OFF && format != BRIO_FORMAT_STL;
-}
-
-static bool holds_faces(brio_format format) {
-    return format != BRIO_FORMAT_XYZ && format != BRIO_FORMAT_NODE && format != BRIO_FORMAT_LAS &&
-           format != BRIO_FORMAT_NPY;
-}
-
-static bool holds_tetrahedra(brio_format format) {
-    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_NODE;
-}
-
-static bool holds_edges(brio_format format) {
-    return format == BRIO_FORMAT_PLY || format == BRIO_FORMAT_VTU || format == BRIO_FORMAT_VTP ||
-           format == BRIO_FORMAT_GLB;
+static bool holds(const conversion *c, unsigned what) {
+    return brio_format_holds(c->format, what);
 }
 
 /* Names the parts of a mesh that the format cannot hold. */
 static void name_losses(conversion *c, const brio_mesh *m) {
     if (c->told) return;
     c->told = true;
-    if (m->num_faces && !holds_faces(c->format)) lose(c, "faces");
-    if (m->num_tetrahedra && !holds_tetrahedra(c->format)) lose(c, "tetrahedra");
-    if (m->num_edges && !holds_edges(c->format)) lose(c, "edges");
-    for (size_t i = 0; i < m->num_properties && !holds_properties(c->format); i++) lose(c, m->properties[i].name);
+    if (m->num_faces && !holds(c, BRIO_HOLDS_FACES)) lose(c, "faces");
+    if (m->num_tetrahedra && !holds(c, BRIO_HOLDS_TETRAHEDRA)) lose(c, "tetrahedra");
+    if (m->num_edges && !holds(c, BRIO_HOLDS_EDGES)) lose(c, "edges");
+    for (size_t i = 0; i < m->num_properties && !holds(c, BRIO_HOLDS_PROPERTIES); i++) lose(c, m->properties[i].name);
+}
+
+/* Names what the reader passed over. */
+static void name_left_out(const conversion *c) {
+    for (size_t i = 0; i < c->source.job.num_left_out; i++) lose(c, c->source.job.left_out[i]);
 }
 
 /* GLB has no doubles and no signed integers of 32 bits. */
@@ -99,24 +90,25 @@ static brio_status write_block(void *user, const brio_mesh *block) {
     brio_mesh shown = *block;
     name_losses(c, block);
     find_rounding(c, block);
-    if (!holds_faces(c->format)) shown.num_faces = 0;
-    if (!holds_tetrahedra(c->format)) shown.num_tetrahedra = 0;
+    if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
+    if (!holds(c, BRIO_HOLDS_TETRAHEDRA)) shown.num_tetrahedra = 0;
     /* the file announces as many points as all blocks have, if every one stays */
     if (!c->writer.begun && c->writer.job.points == BRIO_COUNT_UNKNOWN) {
         if (c->source.job.mesh)
             c->writer.job.points = block->num_vertices;
-        else if (!c->options->crop && !c->source.chosen)
+        else if (!c->options->crop && !c->source.chosen && !c->source.job.drop_invalid)
             c->writer.job.points = c->source.job.announced;
     }
     bool first = !c->writer.begun;
     BRIO_TRY(brio_row_writer_write(&c->writer, c->to, &shown));
-    for (size_t i = 0; first && i < shown.num_properties; i++)
-        if (brio_row_writer_renames(&c->writer, &shown, i)) lose(c, shown.properties[i].name);
+    for (size_t i = 0; first && i < shown.num_properties && c->options->renamed; i++)
+        if (brio_row_writer_renames(&c->writer, &shown, i))
+            c->options->renamed(shown.properties[i].name, c->options->renamed_user);
     c->stats.points += block->num_vertices;
     if (c->source.job.mesh) {
         c->stats.faces = shown.num_faces;
         c->stats.tetrahedra = shown.num_tetrahedra;
-        c->stats.edges = holds_edges(c->format) ? shown.num_edges : 0;
+        c->stats.edges = holds(c, BRIO_HOLDS_EDGES) ? shown.num_edges : 0;
     }
 done:
     return status;
@@ -164,10 +156,11 @@ static brio_status stream(conversion *c) {
     BRIO_TRY(brio_source_pass(&c->source, &sink));
     if (prepared && c->writer.job.points != c->writer.points) BRIO_TRY(brio_source_changed(&c->source));
     if (c->rounded || (c->writer.format->rounds && c->writer.format->rounds(c->writer.state))) lose(c, "precision");
+    name_left_out(c);
     brio_mesh last = {.num_vertices = 0};
     if (c->source.job.mesh) last = *c->source.job.mesh;
-    if (!holds_faces(c->format)) last.num_faces = 0;
-    if (!holds_tetrahedra(c->format)) last.num_tetrahedra = 0;
+    if (!holds(c, BRIO_HOLDS_FACES)) last.num_faces = 0;
+    if (!holds(c, BRIO_HOLDS_TETRAHEDRA)) last.num_tetrahedra = 0;
     BRIO_TRY(brio_row_writer_end(&c->writer, &last));
 done:
     brio_progress_part(c->ctx, bar, 0, 1);
@@ -184,9 +177,10 @@ static brio_status write_whole(void *user, const brio_mesh *mesh) {
     name_losses(c, mesh);
     find_rounding(c, mesh);
     if (c->rounded) lose(c, "precision");
-    if (!holds_faces(c->format)) shown.num_faces = 0;
-    if (!holds_tetrahedra(c->format)) shown.num_tetrahedra = 0;
-    if (!holds_edges(c->format)) shown.num_edges = 0;
+    name_left_out(c);
+    if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
+    if (!holds(c, BRIO_HOLDS_TETRAHEDRA)) shown.num_tetrahedra = 0;
+    if (!holds(c, BRIO_HOLDS_EDGES)) shown.num_edges = 0;
     c->stats.points = shown.num_vertices;
     c->stats.faces = shown.num_faces;
     c->stats.tetrahedra = shown.num_tetrahedra;
@@ -251,12 +245,19 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));
     if (c.write.moved) *c.write.moved = 0;
     c.format = c.write.format == BRIO_FORMAT_AUTO && strcmp(to, "-") ? brio_format_of(to) : c.write.format;
+    BRIO_TRY(brio_check_written(ctx, to, c.format));
     BRIO_TRY(brio_check_compress(ctx, to, c.format, &c.write));
-    c.source.job =
-        (brio_read_job){.path = from, .format = read.format, .columns = read.columns, .announced = BRIO_COUNT_UNKNOWN};
+    c.source.job = (brio_read_job){.path = from,
+                                   .format = read.format,
+                                   .columns = read.columns,
+                                   .drop_invalid = read.drop_invalid,
+                                   .salvage = read.salvage,
+                                   .announced = BRIO_COUNT_UNKNOWN};
     BRIO_TRY(run(&c));
     c.stats.streamed = c.source.job.streamed;
     c.stats.points_read = c.source.points_read;
+    if (read.dropped) *read.dropped = c.source.job.dropped;
+    if (read.missing) *read.missing = c.source.job.missing;
     c.stats.outliers = c.source.outliers;
     c.stats.thinned = c.source.thinned;
     c.stats.passes = c.source.passes;

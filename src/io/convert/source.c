@@ -5,7 +5,7 @@
  * column is read again without the column. */
 #include "io/convert/source.h"
 #include "base/memory.h"
-#include "io/convert/filter.h"
+#include "io/filter.h"
 #include <inttypes.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -201,6 +201,7 @@ done:
 }
 
 void brio_source_free(brio_source *s) {
+    brio_read_job_free(s->ctx, &s->job);
     brio_mesh_free(s->job.mesh);
     brio_release(s->ctx, s->chosen);
 }

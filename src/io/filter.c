@@ -1,5 +1,5 @@
 /* Parts of a mesh, see filter.h. Rows that stay move to the front of their arrays. */
-#include "io/convert/filter.h"
+#include "io/filter.h"
 #include "base/memory.h"
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* Parts of a mesh. */
-#ifndef BRIO_IO_CONVERT_FILTER_H
-#define BRIO_IO_CONVERT_FILTER_H
+#ifndef BRIO_IO_FILTER_H
+#define BRIO_IO_FILTER_H
 
 #include "base/context.h"
 

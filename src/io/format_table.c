@@ -1,0 +1,140 @@
+/* What is known of each format, in one table: all that needs a format's name, its extensions, its beginning, its reader, its
+ * writer or what it can hold asks here. */
+#include "io/row_format.h"
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    POINTS = BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_NAMES,
+    BOTH_PRECISIONS = BRIO_HOLDS_DOUBLES | BRIO_HOLDS_SINGLES,
+    BOTH_FORMS = BRIO_HOLDS_TEXT | BRIO_HOLDS_BINARY
+};
+
+/* In the order in which a file's beginning is compared with theirs: a format whose beginning is looser comes later. */
+static const brio_format_row table[] = {
+    {{sizeof(brio_format_info), BRIO_FORMAT_PLY, "a PLY file", "ply", "ply",
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 0},
+     .starts = brio_ply_starts,
+     .read = brio_ply_read,
+     .rows = &brio_ply_rows},
+    {{sizeof(brio_format_info), BRIO_FORMAT_OFF, "an OFF file", "off", "off",
+      BRIO_HOLDS_FACES | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+     .starts = brio_off_starts,
+     .read = brio_off_read,
+     .write = brio_off_write},
+    {{sizeof(brio_format_info), BRIO_FORMAT_VTU, "a VTU file", "vtu", "vtu",
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS |
+          BRIO_HOLDS_COMPRESSED,
+      4096},
+     .starts = brio_vtk_starts,
+     .read = brio_vtk_read,
+     .write = brio_vtu_write},
+    {{sizeof(brio_format_info), BRIO_FORMAT_VTP, "a VTP file", "vtp", "vtp",
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, 4096},
+     .read = brio_vtk_read, /* begins as VTU */
+     .write = brio_vtp_write},
+    {{sizeof(brio_format_info), BRIO_FORMAT_LAS, "a LAS file", "las", "las", POINTS | BRIO_HOLDS_BINARY, 0},
+     .starts = brio_las_starts,
+     .read = brio_las_read,
+     .rows = &brio_las_rows},
+    {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "", POINTS | BRIO_HOLDS_BINARY, 0},
+     .read = brio_las_read}, /* begins as LAS */
+    {{sizeof(brio_format_info), BRIO_FORMAT_PCD, "a PCD file", "pcd", "",
+      POINTS | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, 0},
+     .starts = brio_pcd_starts,
+     .read = brio_pcd_read},
+    {{sizeof(brio_format_info), BRIO_FORMAT_NPY, "an NPY file", "npy", "npy",
+      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, 4093},
+     .starts = brio_npy_starts,
+     .read = brio_npy_read,
+     .rows = &brio_npy_rows},
+    {{sizeof(brio_format_info), BRIO_FORMAT_GLB, "a GLB file", "glb gltf", "glb",
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BRIO_HOLDS_SINGLES | BRIO_HOLDS_BINARY, 256},
+     .starts = brio_glb_starts,
+     .read = brio_glb_read,
+     .write = brio_glb_write,
+     .about_origin = true},
+    {{sizeof(brio_format_info), BRIO_FORMAT_E57, "an E57 file", "e57", "", POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY,
+      0},
+     .starts = brio_e57_starts,
+     .read = brio_e57_read},
+    {{sizeof(brio_format_info), BRIO_FORMAT_NPZ, "an NPZ file", "npz", "", POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY,
+      0},
+     .starts = brio_npz_starts,
+     .read = brio_npz_read},
+    {{sizeof(brio_format_info), BRIO_FORMAT_STL, "an STL file", "stl", "stl",
+      BRIO_HOLDS_FACES | BRIO_HOLDS_SINGLES | BOTH_FORMS, 0},
+     .read = brio_stl_read,
+     .write = brio_stl_write},
+    {{sizeof(brio_format_info), BRIO_FORMAT_OBJ, "an OBJ file", "obj", "obj",
+      BRIO_HOLDS_FACES | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+     .read = brio_obj_read,
+     .write = brio_obj_write},
+    {{sizeof(brio_format_info), BRIO_FORMAT_NODE, "a NODE file", "node ele", "node",
+      BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 4096},
+     .read = brio_node_read,
+     .write = brio_node_write},
+    {{sizeof(brio_format_info), BRIO_FORMAT_PTX, "a PTX file", "ptx", "", POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT,
+      0},
+     .read = brio_ptx_read},
+    {{sizeof(brio_format_info), BRIO_FORMAT_BNPTS, "a BNPTS file", "bnpts", "", BRIO_HOLDS_SINGLES | BRIO_HOLDS_BINARY,
+      0},
+     .read = brio_bnpts_read},
+    {{sizeof(brio_format_info), BRIO_FORMAT_CHEMICAL, "a chemical XYZ file", "chemical extxyz", "",
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+     .read = brio_chemical_read},
+    {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz pts txt csv", "xyz pts txt csv",
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+     .read_columns = brio_xyz_read,
+     .rows = &brio_xyz_rows}};
+
+enum { NUM_FORMATS = sizeof table / sizeof *table };
+_Static_assert(NUM_FORMATS == BRIO_FORMAT_END - 1, "each format has one row");
+
+const brio_format_row *brio_format_row_of(brio_format format) {
+    for (size_t i = 0; i < NUM_FORMATS; i++)
+        if (table[i].info.format == format) return &table[i];
+    return NULL;
+}
+
+const brio_format_info *brio_format_facts(brio_format format) {
+    const brio_format_row *row = brio_format_row_of(format);
+    return row ? &row->info : NULL;
+}
+
+bool brio_format_holds(brio_format format, unsigned what) {
+    const brio_format_row *row = brio_format_row_of(format);
+    return row && (row->info.holds & what);
+}
+
+brio_format brio_format_that_starts(const char *bytes, size_t size) {
+    for (size_t i = 0; i < NUM_FORMATS; i++)
+        if (table[i].starts && table[i].starts(bytes, size)) return table[i].info.format;
+    return BRIO_FORMAT_AUTO;
+}
+
+brio_format brio_format_with(const char *path, bool (*has)(const char *path, const char *extension)) {
+    for (size_t i = 0; i < NUM_FORMATS; i++)
+        for (const char *at = table[i].info.extensions; *at;) {
+            char extension[16];
+            size_t length = strcspn(at, " ");
+            memcpy(extension, at, length);
+            extension[length] = 0;
+            if (has(path, extension)) return table[i].info.format;
+            at += length + (at[length] == ' ');
+        }
+    return BRIO_FORMAT_AUTO;
+}
+
+void brio_format_list(bool written, char text[BRIO_FORMAT_LIST]) {
+    size_t used = 0;
+    text[0] = 0;
+    for (size_t i = 0; i < NUM_FORMATS; i++) {
+        const char *at = written ? table[i].info.written : table[i].info.extensions;
+        while (*at) {
+            size_t length = strcspn(at, " ");
+            used += (size_t)snprintf(text + used, BRIO_FORMAT_LIST - used, "%s.%.*s", used ? " " : "", (int)length, at);
+            at += length + (at[length] == ' ');
+        }
+    }
+}
