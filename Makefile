@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze
 
 all:
 	@sh scripts/setup.sh build
@@ -23,6 +23,11 @@ demo: all
 check:
 	@sh scripts/setup.sh check
 	@sh scripts/check.sh $(JOBS)
+
+# The same with all inputs, the packages, and the parallel tests with threads that give way at random: before a release.
+check-all:
+	@sh scripts/setup.sh check
+	@sh scripts/check.sh $(JOBS) all
 
 # Each fuzzer for some minutes of processor time: docs/reliability.md. FUZZ="--subjects read write" runs some of them.
 MINUTES := 1

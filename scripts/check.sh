@@ -1,25 +1,43 @@
 #!/bin/sh
-# check.sh JOBS: builds with warnings as errors and runs every test, then both again under the sanitizers,
-# and the parallel tests under the thread sanitizer.
+# check.sh JOBS [all]: builds with warnings as errors and runs every test, then both again under the sanitizers,
+# and the parallel tests under the thread sanitizer. `all`: also the tests that are too long for every change.
 #
-# The second suite runs even when the first fails. The last line is a closing line of the test runner with its numbers,
+# Each suite runs even when one before it fails. The last line is a closing line of the test runner with its numbers,
 # and that of a suite that failed if one did.
 set -u
 
 cd "$(dirname "$0")/.." || exit 1
 build_jobs=${1:-2}
+long=OFF
+third=threads
+[ "${2:-}" != all ] || long=ON third=stress
 # Few at a time, since each test has several threads or processes itself.
 test_jobs=2
 # In the build folder: what the runner printed, and what the tests did.
 log=check.log
 tests_log=Testing/Temporary/LastTest.log
 
+# A compiler cache, where there is one: tests of the installation, of the interface and of the wheel compile the library again.
+if command -v ccache >/dev/null 2>&1; then
+    export CMAKE_C_COMPILER_LAUNCHER="${CMAKE_C_COMPILER_LAUNCHER:-ccache}" CCACHE_NOHASHDIR=1
+fi
+
+# The packages of the tests come while the first suite is built.
+sh scripts/setup.sh packages &
+packages=$!
+
 suite() {
     rm -f "build-$1/$log" "build-$1/$tests_log"
     echo "== $1: build"
-    cmake --preset "$1" && cmake --build "build-$1" -j "$build_jobs" || return 1
+    started=$(date +%s)
+    cmake --preset "$1" -DBRIO_LONG=$long && cmake --build "build-$1" -j "$build_jobs" || return 1
+    built=$(date +%s)
+    wait $packages
     echo "== $1: test"
     ctest --test-dir "build-$1" -j $test_jobs --output-on-failure --no-tests=error --output-log "build-$1/$log"
+    status=$?
+    echo "== $1: $((built - started)) s to build, $(($(date +%s) - built)) s to test"
+    return $status
 }
 
 # Why tests were skipped: the runner itself does not show it.
@@ -32,7 +50,7 @@ closing_line() {
 
 passed=
 failed=
-for preset in ci sanitize threads; do
+for preset in ci sanitize $third; do
     if suite "$preset"; then passed="$preset $passed"; else failed="$preset $failed"; fi
 done
 echo

@@ -1,5 +1,6 @@
 #!/bin/sh
 # setup.sh PURPOSE: sees to the tools that building, testing or measuring needs; the purposes are those at the end of this file.
+# `check` makes the environment of the tests' Python packages, and `packages` fills it, so that this can go on beside a build.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1. For
 # `build` nothing is installed unless BRIO_SETUP is 1, as `make setup` and `make demo` set it.
 set -eu
@@ -134,6 +135,8 @@ missing_peers() {
         has groff || echo groff-base # the manual pages
         has mandoc || echo mandoc
         has zsh || echo zsh # the completion
+        has ccache || echo ccache
+        has mold || echo mold # links the tests' programs
         return 0
     fi
     [ -d /usr/include/CGAL ] || echo libcgal-dev
@@ -195,14 +198,18 @@ install_poisson() {
     has_pymeshlab || echo "setup: PyMeshLab could not be installed from PyPI: no Poisson reconstruction" >&2
 }
 
-# The Python packages of tests/requirements.txt, in an environment of the tests' own. Says so if they stay missing: the tests
-# that need them are skipped.
-install_tests_packages() {
+# An environment of the tests' own for the Python packages of tests/requirements.txt: CMake looks for its Python.
+make_tests_environment() {
     environment=out/tests-env
+    [ -x "$environment/bin/pip" ] || $python -m venv "$environment" >/dev/null 2>&1 || true
+}
+
+# The packages themselves. Says so if they stay missing: the tests that need them are skipped.
+install_tests_packages() {
+    make_tests_environment
     if ! cmp -s tests/requirements.txt "$environment/requirements.txt"; then
         echo "setup: installing tests/requirements.txt in $environment"
-        $python -m venv "$environment" >/dev/null 2>&1 &&
-            "$environment/bin/pip" install -q -r tests/requirements.txt >/dev/null 2>&1 &&
+        "$environment/bin/pip" install -q -r tests/requirements.txt >/dev/null 2>&1 &&
             cp tests/requirements.txt "$environment/requirements.txt" ||
             echo "setup: tests/requirements.txt could not be installed from PyPI: tests will be skipped" >&2
     fi
@@ -210,9 +217,13 @@ install_tests_packages() {
 
 purpose=${1:-build}
 case $purpose in
+packages)
+    install_tests_packages
+    exit 0
+    ;;
 build | check | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | thesis | machines | deb) ;;
 *)
-    echo "usage: setup.sh build|check|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|thesis|machines|deb" >&2
+    echo "usage: setup.sh build|check|packages|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|thesis|machines|deb" >&2
     exit 1
     ;;
 esac
@@ -227,7 +238,7 @@ if [ -n "$packages" ] && may_install; then
 fi
 if [ -z "$packages" ]; then
     [ "$purpose" != quality ] || install_poisson
-    [ "$purpose" != check ] || install_tests_packages
+    [ "$purpose" != check ] || make_tests_environment
     exit 0
 fi
 echo "setup: these are needed and missing: $packages" >&2

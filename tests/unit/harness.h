@@ -1,5 +1,6 @@
-/* The whole test harness: EXPECT reports and counts, RUN names a test, and main returns what `harness_end` says.
- * A program that cannot run here prints why and returns HARNESS_SKIP. */
+/* The whole test harness: a file is a SUITE, whose body runs its tests and returns what `harness_end` says; RUN names a test;
+ * EXPECT reports and counts. A suite that cannot run here prints why and returns HARNESS_SKIP.
+ * All suites are one program, since each program takes a link of the whole library: `unit_tests test_sort` runs one. */
 #ifndef BRIO_TESTS_HARNESS_H
 #define BRIO_TESTS_HARNESS_H
 
@@ -9,7 +10,7 @@
 
 enum { HARNESS_SKIP = 77 };
 
-/* Whether to take fewer inputs: under the sanitizers, which take many times as long and look for what most inputs show. */
+/* Whether to take fewer inputs, as make check does; make check-all takes all. */
 #ifdef BRIO_SHORT_TESTS
 enum { SHORT_TESTS = 1 };
 #else
@@ -17,6 +18,11 @@ enum { SHORT_TESTS = 0 };
 #endif
 
 static int harness_failures, harness_checks;
+
+/* A suite has the name of its file. argc and argv are those of a program of that name. */
+#define SUITE(name)                                                                                                    \
+    int name(int argc, char **argv);                                                                                   \
+    int name(int argc __attribute__((unused)), char **argv __attribute__((unused)))
 
 #define EXPECT(condition, ...)                                                                                         \
     do {                                                                                                               \

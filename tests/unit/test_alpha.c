@@ -343,7 +343,7 @@ static void alpha_where_values_are_lost_is_refused(void) {
     drop(&s);
 }
 
-int main(void) {
+SUITE(test_alpha) {
     RUN(values_against_brute_force);
     RUN(order_is_strict);
     RUN(shapes_bound_their_tetrahedra);

@@ -260,7 +260,7 @@ static void memory_that_runs_out(void) {
     expect_clean_failures(run_alpha);
 }
 
-int main(void) {
+SUITE(test_alpha_plane) {
     RUN(values_against_brute_force);
     RUN(least_alpha_of_one_region);
     RUN(the_least_alpha_is_the_same_at_every_scale_or_refused);

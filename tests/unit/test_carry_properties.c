@@ -206,7 +206,7 @@ static void a_cancelled_call_leaves_nothing(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_carry_properties) {
     RUN(every_vertex_takes_the_nearest_point);
     RUN(named_samples_are_copied_with_every_bit);
     RUN(no_name_that_is_taken_loses_a_property);

@@ -683,7 +683,7 @@ static void memory_may_run_out(void) {
     expect_clean_failures(compute_some);
 }
 
-int main(void) {
+SUITE(test_cells) {
     RUN(cells_equal_those_of_brute_force);
     RUN(cells_of_a_lattice_have_six_faces);
     RUN(volumes_add_up_to_the_box);

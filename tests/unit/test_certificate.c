@@ -500,7 +500,7 @@ static void no_memory_is_a_status(void) {
     expect_clean_failures(certify_tetrahedra_that_touch);
 }
 
-int main(void) {
+SUITE(test_certificate) {
     brio_context_new(NULL, &ctx);
     RUN(empty_mesh_is_not_closed);
     RUN(tetrahedron_has_volume_of_its_orientation);

@@ -239,7 +239,7 @@ static void flat_results_pass_exactly_when_all_of_them_is_right(void) {
     spoil_dimensions(0, 2, num_sets / 4, "flat results");
 }
 
-int main(int argc, char **argv) {
+SUITE(test_check_mutations) {
     if (argc > 1) num_sets = strtoull(argv[1], NULL, 10);
     if (argc > 2) first_seed = strtoull(argv[2], NULL, 10);
     RUN(the_check_accepts_what_brute_force_accepts);

@@ -136,7 +136,7 @@ static void batches_have_the_bits_of_single_centres(void) {
     use_largest_set();
 }
 
-int main(void) {
+SUITE(test_circumcentre) {
     RUN(batches_have_the_bits_of_single_centres);
     RUN(known_centres);
     RUN(order_of_the_points_does_not_matter);

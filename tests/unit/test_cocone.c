@@ -583,7 +583,7 @@ static void theory_holds_on_a_plate_of_genus_3(void) {
     check_theory(&known_plate);
 }
 
-int main(void) {
+SUITE(test_cocone) {
     RUN(small_inputs_are_manifold_oriented);
     RUN(large_noise_is_manifold_oriented);
     RUN(inputs_without_a_surface_say_so);

@@ -309,7 +309,7 @@ static void memory_fails_cleanly(void) {
     expect_clean_failures(work);
 }
 
-int main(void) {
+SUITE(test_conforming_iso) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
     brio_context_set_threads(ctx, 1);
     RUN(chains_of_every_genus);

@@ -161,7 +161,7 @@ static void an_npy_field_that_is_there_twice_is_refused(void) {
     brio_mesh_free(m);
 }
 
-int main(void) {
+SUITE(test_convert) {
     io_begin();
     RUN(a_file_replaced_between_two_passes_is_an_error);
     RUN(progress_never_runs_backwards);

@@ -259,7 +259,7 @@ static void memory_that_runs_out(void) {
     expect_clean_failures(run_hull);
 }
 
-int main(void) {
+SUITE(test_convex_hull) {
     RUN(small_sets_against_brute_force);
     RUN(delaunay_gives_the_same_polygons);
     RUN(order_and_threads_change_nothing);

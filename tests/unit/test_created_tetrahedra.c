@@ -64,7 +64,7 @@ static void moment_curves_create_no_more_than_the_square(void) {
         }
 }
 
-int main(void) {
+SUITE(test_created_tetrahedra) {
     RUN(scans_create_as_many_as_in_random_order);
     RUN(moment_curves_create_no_more_than_the_square);
     return harness_end();

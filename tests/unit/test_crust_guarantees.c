@@ -321,7 +321,7 @@ static void guarantees_hold_on_a_plate_of_genus_three(void) {
     check_halved(&known_plate);
 }
 
-int main(void) {
+SUITE(test_crust_guarantees) {
     RUN(guarantees_hold_on_a_sphere);
     RUN(guarantees_hold_on_a_torus);
     if (!SHORT_TESTS) RUN(guarantees_hold_on_a_plate_of_genus_three);

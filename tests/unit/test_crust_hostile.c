@@ -100,7 +100,7 @@ static void hostile_inputs_have_closed_surfaces_or_none(void) {
     brio_context_free(ctx);
 }
 
-int main(int argc, char **argv) {
+SUITE(test_crust_hostile) {
     if (argc > 1) num_inputs = strtoull(argv[1], NULL, 10);
     RUN(hostile_inputs_have_closed_surfaces_or_none);
     return harness_end();

@@ -420,7 +420,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(everything_small);
 }
 
-int main(void) {
+SUITE(test_crust_outputs) {
     RUN(simplified_torus_is_a_quarter_and_the_same);
     RUN(simplified_anything_stays_the_same_manifold);
     RUN(hole_of_the_samples_stays_open_on_request);

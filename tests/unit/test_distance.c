@@ -343,7 +343,7 @@ static void cancelling_leaves_nothing(void) {
     brio_mesh_free(a);
 }
 
-int main(void) {
+SUITE(test_distance) {
     brio_context_new(NULL, &ctx);
     RUN(nearest_point_of_a_triangle_is_right);
     RUN(tree_finds_what_trying_all_finds);

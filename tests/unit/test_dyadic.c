@@ -279,7 +279,7 @@ static void rounding_errs_by_no_more_than_promised(void) {
     }
 }
 
-int main(void) {
+SUITE(test_dyadic) {
     RUN(every_double_is_set_exactly);
     RUN(small_results_are_those_of_integers);
     RUN(differences_of_doubles_are_exact);

@@ -74,7 +74,7 @@ static void exactly_cospherical_points_are_ties_in_lanes_too(void) {
     }
 }
 
-int main(void) {
+SUITE(test_engine) {
     RUN(exactly_cospherical_points_are_ties_in_lanes_too);
     return harness_end();
 }

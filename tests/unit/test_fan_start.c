@@ -74,7 +74,7 @@ static void numbers_that_overflow_are_no_trouble(void) {
     EXPECT(is_turned(corner, 4));
 }
 
-int main(void) {
+SUITE(test_fan_start) {
     RUN(good_fans_stay);
     RUN(fans_start_where_no_triangle_turns_over);
     RUN(polygons_of_any_shape_keep_their_order);

@@ -172,7 +172,7 @@ static void sums_keep_their_order(void) {
     }
 }
 
-int main(void) {
+SUITE(test_float_state) {
     RUN(sums_keep_their_order);
     RUN(predicates_do_not_depend_on_the_state);
     RUN(centres_do_not_depend_on_the_state);

@@ -454,7 +454,7 @@ static void cancelling_leaves_nothing(void) {
     brio_context_set_progress(ctx, NULL, NULL);
 }
 
-int main(void) {
+SUITE(test_generate) {
     brio_context_new(NULL, &ctx);
     RUN(no_points_are_an_empty_mesh);
     RUN(point_depends_on_seed_and_index_alone);

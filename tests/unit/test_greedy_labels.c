@@ -178,7 +178,7 @@ static void greedy_labels_are_those_of_figure_3_8(void) {
            sum.sets, sum.inner, sum.confused, sum.hidden);
 }
 
-int main(void) {
+SUITE(test_greedy_labels) {
     RUN(greedy_labels_are_those_of_figure_3_8);
     return harness_end();
 }

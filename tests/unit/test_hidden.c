@@ -95,7 +95,7 @@ static void check_knows_whether_hidden_points_were_left(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_hidden) {
     RUN(only_hidden_points_lack_a_representative);
     RUN(option_means_nothing_without_weights);
     RUN(check_knows_whether_hidden_points_were_left);

@@ -162,7 +162,7 @@ static void estimates_do_not_wrap(void) {
     }
 }
 
-int main(void) {
+SUITE(test_hostile_sizes) {
     ctx = new_context();
     RUN(counts_that_no_array_has_are_refused);
     RUN(estimates_do_not_wrap);

@@ -126,7 +126,7 @@ static void as_many_edges_as_euler_has(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_incidences) {
     RUN(as_many_edges_as_euler_has);
     RUN(grids_weighted_and_flat_points);
     return harness_end();

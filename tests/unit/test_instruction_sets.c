@@ -141,7 +141,7 @@ static void the_environment_lowers_the_set(void) {
     }
 }
 
-int main(void) {
+SUITE(test_instruction_sets) {
     RUN(the_environment_lowers_the_set);
     RUN(triangulations_have_the_same_bits);
     RUN(centres_have_the_same_bits);

@@ -201,7 +201,7 @@ static void refusals(void) {
     fixture_free(&f);
 }
 
-int main(void) {
+SUITE(test_interpolate) {
     RUN(linear_functions_are_reproduced);
     RUN(queries_near_vertices);
     RUN(values_at_vertices_are_exact);

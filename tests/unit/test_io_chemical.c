@@ -166,7 +166,7 @@ static void each_allocation_fails(void) {
     expect_clean_failures(read_current);
 }
 
-int main(void) {
+SUITE(test_io_chemical) {
     io_begin();
     RUN(elements_by_symbol_label_and_number);
     RUN(points_stay_points);

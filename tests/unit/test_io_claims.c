@@ -92,7 +92,7 @@ static void claims_beyond_the_file_take_no_memory(void) {
     EXPECT(samples > 20 && read_files && refused_files);
 }
 
-int main(int argc, char **argv) {
+SUITE(test_io_claims) {
     all = argc > 1 && !strcmp(argv[1], "all");
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return 2;
     brio_context_set_threads(ctx, 1);

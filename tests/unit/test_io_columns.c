@@ -247,7 +247,7 @@ static void each_allocation_fails(void) {
     expect_clean_failures(read_by_names);
 }
 
-int main(void) {
+SUITE(test_io_columns) {
     io_begin();
     RUN(header_with_id_lat_lon_alt_read_the_id_as_x);
     RUN(names_of_surveyors_and_programs);

@@ -319,7 +319,7 @@ static void names_of_properties(void) {
     brio_mesh_free(m);
 }
 
-int main(void) {
+SUITE(test_io_e57) {
     io_begin();
     if (!e57_is_read()) {
         printf("skipped: unit.test_io_e57: brio was built without the library expat\n");

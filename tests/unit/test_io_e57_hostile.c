@@ -360,7 +360,7 @@ static void limits_and_cancellation(void) {
     EXPECT(read_right_file(io_ctx) == BRIO_OK, "%s", brio_message(io_ctx));
 }
 
-int main(void) {
+SUITE(test_io_e57_hostile) {
     io_begin();
     make_numbers();
     if (!e57_is_read()) {

@@ -226,7 +226,7 @@ static void writing_cells_and_filtrations_fails_cleanly(void) {
     brio_cells_free(c);
 }
 
-int main(void) {
+SUITE(test_io_every_point) {
     /* thousands of files are flushed, which disks take long for */
     if (access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);
     io_begin();

@@ -224,7 +224,7 @@ static void memory_of_the_parser_counts(void) {
     brio_mesh_free(m);
 }
 
-int main(void) {
+SUITE(test_io_glb) {
     io_begin();
     brio_mesh *m = NULL;
     io_put("try.gltf", "{\"asset\":{\"version\":\"2.0\"}}", 27);

@@ -156,7 +156,7 @@ static void find_lacking(void) {
     }
 }
 
-int main(void) {
+SUITE(test_io_hostile) {
     io_begin();
     find_lacking();
     RUN(every_prefix);

@@ -250,7 +250,7 @@ static void each_allocation_fails(void) {
     }
 }
 
-int main(void) {
+SUITE(test_io_las) {
     io_begin();
     RUN(fields_have_their_values);
     RUN(compressed_is_plain);

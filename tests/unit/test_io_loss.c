@@ -111,7 +111,7 @@ static void names_that_become_equal_get_numbers(void) {
     brio_mesh_free(mesh);
 }
 
-int main(void) {
+SUITE(test_io_loss) {
     io_begin();
     RUN(the_distance_that_points_move_is_the_one_that_is_read);
     RUN(the_largest_double_that_a_single_holds);

@@ -165,7 +165,7 @@ static void no_file_beside_is_opened(void) {
            brio_message(io_ctx));
 }
 
-int main(void) {
+SUITE(test_io_memory) {
     io_begin();
     RUN(written_formats_read_the_same);
     RUN(formats_that_seek_read_the_same);

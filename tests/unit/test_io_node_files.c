@@ -261,7 +261,7 @@ static void each_allocation_fails(void) {
     brio_mesh_free(m);
 }
 
-int main(void) {
+SUITE(test_io_node_files) {
     io_begin();
     RUN(against_brute_force);
     RUN(a_long_edge);

@@ -224,7 +224,7 @@ static void each_allocation_fails(void) {
     expect_clean_failures(read_current);
 }
 
-int main(void) {
+SUITE(test_io_npz) {
     io_begin();
     has_gzip = reads_packed(false);
     RUN(stored_needs_nothing);

@@ -204,7 +204,7 @@ static void ignore_the_locale(void) {
     if (!found) fprintf(stderr, "       (no locale with a decimal comma here)\n");
 }
 
-int main(void) {
+SUITE(test_io_number) {
     io_begin();
     RUN(parse_known_numbers);
     RUN(parse_random_decimals);

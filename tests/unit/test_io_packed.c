@@ -198,7 +198,7 @@ static void each_allocation_fails(void) {
     }
 }
 
-int main(void) {
+SUITE(test_io_packed) {
     io_begin();
     has_gzip = reads_packed(false);
     has_zstd = reads_packed(true);

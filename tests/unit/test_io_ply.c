@@ -269,7 +269,7 @@ static void rows_are_checked(void) {
                     "point 0: z is infinite (1 such point in all)");
 }
 
-int main(void) {
+SUITE(test_io_ply) {
     io_begin();
     RUN(false_promises_of_a_pipe);
     RUN(all_types_and_byte_orders);

@@ -289,7 +289,7 @@ static void each_allocation_fails(void) {
     }
 }
 
-int main(void) {
+SUITE(test_io_scans_hostile) {
     io_begin();
     make_samples();
     RUN(whole_files_are_read);

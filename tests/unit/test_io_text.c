@@ -257,7 +257,7 @@ static void stl_ends_with_its_solid(void) {
         BRIO_ERR_FORMAT, "expected facet or endsolid");
 }
 
-int main(void) {
+SUITE(test_io_text) {
     io_begin();
     RUN(stl_ends_with_its_solid);
     RUN(format_of_names);

@@ -299,7 +299,7 @@ static void vertices_beyond_doubles_are_no_part_of_files(void) {
     brio_cells_free(cells);
 }
 
-int main(void) {
+SUITE(test_io_vtk) {
     io_begin();
     RUN(all_parts_read_back);
     RUN(sizes_read_back);

@@ -216,7 +216,7 @@ static void as_many_cells_as_no_array_has_are_refused(void) {
                     BRIO_ERR_FORMAT, "a number NumberOfPolys, found \"18446744073709551615\"");
 }
 
-int main(void) {
+SUITE(test_io_vtk_hostile) {
     io_begin();
     RUN(errors_of_tags);
     RUN(errors_of_text);

@@ -470,7 +470,7 @@ static void numbers_from_a_pipe(void) {
     brio_mesh_free(m);
 }
 
-int main(void) {
+SUITE(test_io_write) {
     io_begin();
     RUN(ply_reads_back);
     RUN(vtu_reads_back);

@@ -200,7 +200,7 @@ static void memory_fails_cleanly(void) {
     expect_clean_failures(everything);
 }
 
-int main(void) {
+SUITE(test_known_surface) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
     brio_context_set_threads(ctx, 1);
     RUN(random_surfaces_of_genus_0_to_6);

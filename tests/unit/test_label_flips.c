@@ -439,7 +439,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(flip_and_mend);
 }
 
-int main(void) {
+SUITE(test_label_flips) {
     RUN(flips_know_the_energy);
     RUN(mending_leaves_hardly_any_singular_sample);
     RUN(small_regions_are_those_of_a_walk);

@@ -240,7 +240,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(make_surface);
 }
 
-int main(void) {
+SUITE(test_labeled_delaunay) {
     RUN(small_inputs_are_closed_manifold_oriented);
     RUN(points_without_a_surface_are_closed_manifold_oriented);
     RUN(inputs_without_a_solid_say_so);

@@ -255,7 +255,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(small_global_crust);
 }
 
-int main(void) {
+SUITE(test_labeling) {
     RUN(all_agree_on_dense_samples);
     RUN(anything_is_labeled_and_global_is_no_worse);
     RUN(shuffled_samples_give_the_same_global_labels);

@@ -79,7 +79,7 @@ static void lines_positions_and_few_points_have_no_surface(void) {
         }
 }
 
-int main(void) {
+SUITE(test_local_surface) {
     RUN(surfaces_do_not_depend_on_their_neighbours_in_a_batch);
     RUN(points_of_a_quadratic_give_it_back);
     RUN(lines_positions_and_few_points_have_no_surface);

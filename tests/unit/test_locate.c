@@ -303,7 +303,7 @@ static void check_file(const char *path) {
     brio_context_free(ctx);
 }
 
-int main(int argc, char **argv) {
+SUITE(test_locate) {
     if (argc > 1) queries_a_set = QUERIES_A_FILE;
     if (getenv("BRIO_LOCATE_QUERIES")) queries_a_set = (size_t)atol(getenv("BRIO_LOCATE_QUERIES"));
     for (int i = 1; i < argc; i++) check_file(argv[i]);

@@ -536,7 +536,7 @@ static void failed_allocations_free_everything(void) {
     for (failing_strategy = 1; failing_strategy < STRATEGIES; failing_strategy++) expect_clean_failures(triangulate);
 }
 
-int main(void) {
+SUITE(test_location) {
     RUN(every_strategy_in_every_order_gives_one_triangulation);
     RUN(strategies_count_what_they_do);
     RUN(walks_are_short);

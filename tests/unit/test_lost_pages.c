@@ -161,7 +161,7 @@ static void a_scratch_file_without_room_for_its_mapping_stays_whole(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_lost_pages) {
     RUN(pages_that_the_disk_loses_before_the_flush_fail_the_output);
     RUN(pages_that_the_disk_loses_fail_the_write_of_a_scratch_file);
     RUN(a_scratch_file_that_was_cut_is_an_error_and_no_zeros);

@@ -119,7 +119,7 @@ static void large_grids_give_one_surface(size_t least) {
     }
 }
 
-int main(int argc, char **argv) {
+SUITE(test_machined_grids) {
     RUN(grids_give_one_surface_for_every_number_of_threads);
     if (argc > 1) large_grids_give_one_surface((size_t)atol(argv[1]));
     return harness_end();

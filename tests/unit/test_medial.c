@@ -537,7 +537,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(small_shape);
 }
 
-int main(void) {
+SUITE(test_medial) {
     RUN(shape_is_the_dual_between_inner_poles);
     RUN(radii_are_distances_to_samples_and_sides_are_told);
     RUN(shuffled_samples_give_the_same_shape);

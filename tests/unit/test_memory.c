@@ -190,7 +190,7 @@ static void keeping_never_makes_the_peak_higher(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_memory) {
     RUN(released_mapping_serves_the_next_block_cleared_where_asked);
     RUN(what_is_kept_gives_way_to_the_limit);
     RUN(only_so_much_is_kept_between_calls);

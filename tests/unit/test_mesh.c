@@ -94,7 +94,7 @@ static void no_file_is_written_of_indices_out_of_range(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_mesh) {
     RUN(vertices_come_before_properties);
     RUN(counts_whose_bytes_wrap_are_refused);
     RUN(wrong_offsets_and_strides_are_refused);

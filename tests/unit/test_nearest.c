@@ -101,7 +101,7 @@ static void lists_keep_the_nearest_whatever_the_distances(void) {
     }
 }
 
-int main(void) {
+SUITE(test_nearest) {
     RUN(nearest_points_are_the_first_of_all);
     RUN(lists_keep_the_nearest_whatever_the_distances);
     return harness_end();

@@ -325,7 +325,7 @@ static void smoothing_can_be_cancelled(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_noise) {
     RUN(nearest_points_are_those_of_exhaustive_search);
     RUN(level_is_that_of_the_noise);
     RUN(no_noise_in_shapes);

@@ -280,7 +280,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(small_offset);
 }
 
-int main(void) {
+SUITE(test_offset) {
     RUN(offsets_of_sphere_are_as_far_off_as_the_square_of_the_spacing);
     RUN(offsets_of_torus_are_as_far_off_as_the_square_of_the_spacing);
     RUN(hole_of_torus_closes_when_the_offset_fills_it);

@@ -540,7 +540,7 @@ static void canonical_order_goes_by_position_alone(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_order) {
     RUN(curve_visits_each_cell_once_in_unit_steps);
     RUN(every_order_is_a_permutation);
     RUN(number_of_threads_does_not_matter);

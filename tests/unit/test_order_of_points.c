@@ -444,7 +444,7 @@ static int count_differences(long wanted, double times) {
     return all > 0;
 }
 
-int main(int argc, char **argv) {
+SUITE(test_order_of_points) {
     if (argc > 3) wanted_methods = argv[3];
     if (argc > 1) return count_differences(strtol(argv[1], NULL, 10), argc > 2 ? strtod(argv[2], NULL) : 1);
     RUN(noisy_scans_are_the_same_in_every_order);

@@ -250,7 +250,7 @@ static void watch(void) {
     alarm(SECONDS);
 }
 
-int main(void) {
+SUITE(test_parallel) {
     watch();
     RUN(every_number_of_threads_gives_the_same_arrays);
     RUN(repeated_runs_give_the_same_arrays);

@@ -75,7 +75,7 @@ static void clusters_are_the_same_by_threads(void) {
     expect_one_answer(1000);
 }
 
-int main(void) {
+SUITE(test_parallel_cocone) {
     RUN(a_torus_is_the_same_by_threads);
     RUN(a_sphere_is_the_same_by_threads);
     RUN(a_grid_is_the_same_by_threads);

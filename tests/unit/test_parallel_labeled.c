@@ -57,7 +57,7 @@ static void noise_reduced_before_the_triangulation(void) {
     noisy_samples(0.12);
 }
 
-int main(void) {
+SUITE(test_parallel_labeled) {
     RUN(clean_samples);
     RUN(noise_reduced_after_the_labels);
     RUN(noise_reduced_before_the_triangulation);

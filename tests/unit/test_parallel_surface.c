@@ -113,7 +113,7 @@ static void every_labeling_is_the_same_by_threads(void) {
     }
 }
 
-int main(void) {
+SUITE(test_parallel_surface) {
     RUN(every_number_of_threads_gives_the_same_surface);
     RUN(anything_is_the_same_by_threads);
     RUN(sphere_is_the_same_by_threads);

@@ -425,7 +425,7 @@ static void a_line_one_least_double_long_keeps_both_ends(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_plane) {
     RUN(brute_force_on_grids);
     RUN(a_line_one_least_double_long_keeps_both_ends);
     RUN(hostile_sets_pass_their_check);

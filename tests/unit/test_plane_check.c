@@ -281,7 +281,7 @@ static void the_check_passes_what_is_right(void) {
     EXPECT(passed > 2000 && failed > 8000, "%d %d", passed, failed);
 }
 
-int main(void) {
+SUITE(test_plane_check) {
     RUN(the_check_passes_what_is_right);
     return harness_end();
 }

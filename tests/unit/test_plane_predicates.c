@@ -143,7 +143,7 @@ static void every_finite_double_is_exact(void) {
     EXPECT(brio_incircle(low, high, just, under, NULL) == 1);
 }
 
-int main(void) {
+SUITE(test_plane_predicates) {
     RUN(every_four_of_a_grid);
     RUN(integers_at_every_scale);
     RUN(stages_agree_near_a_circle);

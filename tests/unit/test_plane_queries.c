@@ -535,7 +535,7 @@ static void memory_that_runs_out_is_a_status(void) {
     expect_clean_failures(line_work);
 }
 
-int main(void) {
+SUITE(test_plane_queries) {
     RUN(triangles_are_those_of_brute_force);
     RUN(least_power_is_that_of_brute_force);
     RUN(answers_do_not_depend_on_the_threads);

@@ -273,7 +273,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(settle_random_blocks);
 }
 
-int main(void) {
+SUITE(test_pole_graph) {
     RUN(edges_are_those_of_the_triangulation_and_the_samples);
     RUN(highest_priority_and_lowest_pole_come_first);
     RUN(blocks_of_a_round_are_apart);

@@ -49,7 +49,7 @@ static void freed_centres_are_computed_again_with_the_same_bits(void) {
     check_rows(uniform_points, 5);
 }
 
-int main(void) {
+SUITE(test_pole_vectors) {
     RUN(freed_centres_are_computed_again_with_the_same_bits);
     return harness_end();
 }

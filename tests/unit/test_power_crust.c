@@ -151,7 +151,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(small_crust);
 }
 
-int main(void) {
+SUITE(test_power_crust) {
     RUN(small_inputs_are_closed_manifold_oriented);
     RUN(torus_has_genus_one_and_its_volume);
     RUN(sphere_has_genus_zero_though_its_inner_poles_coincide);

@@ -182,7 +182,7 @@ static void shapes_of_any_points_have_the_euler_characteristic_of_their_solid(vo
     }
 }
 
-int main(void) {
+SUITE(test_power_shape) {
     RUN(axis_of_sphere_is_its_centre_for_any_sampling);
     RUN(axis_of_ellipsoid_is_in_proportion_to_sampling);
     RUN(axis_of_torus_is_in_proportion_to_sampling);

@@ -193,7 +193,7 @@ static void weights_move_the_boundary(void) {
     EXPECT(brio_insphere(a, b, c, d, e, lighter) == -1);
 }
 
-int main(void) {
+SUITE(test_predicates) {
     RUN(every_five_of_a_grid);
     RUN(random_small_integers_at_every_scale);
     RUN(stages_agree_near_a_sphere);

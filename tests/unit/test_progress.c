@@ -319,7 +319,7 @@ static void progress_never_runs_backwards(void) {
     brio_mesh_free(scan);
 }
 
-int main(void) {
+SUITE(test_progress) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
     brio_context_set_threads(ctx, 1);
     RUN(few_points_of_much_work_are_reported);

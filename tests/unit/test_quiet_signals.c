@@ -96,7 +96,7 @@ static void signals_of_the_caller_stay_pending(void) {
     brio_mesh_free(mesh);
 }
 
-int main(void) {
+SUITE(test_quiet_signals) {
     io_begin();
     signal(SIGPIPE, SIG_DFL);
     signal(SIGXFSZ, SIG_DFL);

@@ -133,7 +133,7 @@ static void refused_memory_is_a_status(void) {
     expect_clean_failures(record_everything);
 }
 
-int main(void) {
+SUITE(test_recorder) {
     uniform_points(1, N, points);
     for (size_t i = 0; i < N; i++) weights[i] = 1e-3 * points[(7 * i) % N];
     RUN(nothing_is_recorded_unless_asked_for);

@@ -50,7 +50,7 @@ static void the_first_of_coincident_points_becomes_the_vertex(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_represent) {
     RUN(the_first_of_coincident_points_becomes_the_vertex);
     return harness_end();
 }

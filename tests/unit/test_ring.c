@@ -141,7 +141,7 @@ static void each_edge_is_found_once(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_ring) {
     RUN(rings_are_all_tetrahedra_of_their_edge);
     RUN(each_edge_is_found_once);
     return harness_end();

@@ -251,7 +251,7 @@ static void can_be_cancelled(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_sampling) {
     RUN(thinned_sets_are_maximal);
     RUN(thinning_at_extreme_scales);
     RUN(thinning_refuses);

@@ -82,7 +82,7 @@ static void vertex_of_very_many_tetrahedra_gives_the_same_arrays(void) {
     free(p);
 }
 
-int main(void) {
+SUITE(test_scratch) {
     RUN(uniform_points_give_the_same_arrays);
     RUN(weighted_lattice_with_duplicates_gives_the_same_arrays);
     RUN(little_memory_gives_the_same_arrays);

@@ -199,7 +199,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(small_count);
 }
 
-int main(void) {
+SUITE(test_self_intersections) {
     RUN(pairs_apart_touching_and_crossing);
     RUN(one_ulp_decides);
     RUN(random_pairs_in_general_position);

@@ -557,7 +557,7 @@ static void what_is_refused_stays(void) {
     brio_mesh_free(mesh);
 }
 
-int main(void) {
+SUITE(test_simplify) {
     ctx = new_context();
     RUN(closed_surfaces_keep_components_and_genus);
     RUN(tetrahedron_is_left_alone);

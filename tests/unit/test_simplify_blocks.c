@@ -317,7 +317,7 @@ static void refused_memory_is_a_status_and_leaves_nothing(void) {
     expect_clean_failures(simplify_hills);
 }
 
-int main(void) {
+SUITE(test_simplify_blocks) {
     ctx = new_context();
     RUN(bits_are_the_same_with_every_number_of_threads);
     RUN(closed_surfaces_keep_genus_and_reach_their_number);

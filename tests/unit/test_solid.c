@@ -389,7 +389,7 @@ static void progress_ascends_and_cancelling_leaves_nothing(void) {
     brio_context_set_progress(ctx, NULL, NULL);
 }
 
-int main(void) {
+SUITE(test_solid) {
     brio_context_new(NULL, &ctx);
     RUN(blocks_have_the_values_of_their_tree);
     RUN(full_tree_is_marked);

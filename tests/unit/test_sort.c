@@ -276,7 +276,7 @@ static void refused_memory_is_a_status_and_leaves_nothing(void) {
     expect_clean_failures(sort_some_rows);
 }
 
-int main(void) {
+SUITE(test_sort) {
     RUN(pairs_are_sorted_and_stable);
     RUN(items_are_sorted_and_stable);
     RUN(keys_are_sorted);

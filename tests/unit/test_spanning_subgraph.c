@@ -432,7 +432,7 @@ static void memory_fails_cleanly(void) {
     expect_clean_failures(everything);
 }
 
-int main(void) {
+SUITE(test_spanning_subgraph) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
     RUN(tetrahedron_and_double_triangle);
     RUN(vertex_of_large_degree);

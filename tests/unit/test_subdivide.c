@@ -389,7 +389,7 @@ static void memory_fails_cleanly(void) {
     expect_clean_failures(two_levels_of_a_large_mesh);
 }
 
-int main(void) {
+SUITE(test_subdivide) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
     RUN(counts_genus_and_old_vertices);
     RUN(levels_are_repetitions);

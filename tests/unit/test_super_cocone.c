@@ -211,7 +211,7 @@ static void hopeless_inputs_say_so(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_super_cocone) {
     RUN(dense_samples_give_the_faces_of_the_whole);
     RUN(order_of_samples_and_duplicates_change_nothing);
     RUN(anything_is_manifold_oriented);

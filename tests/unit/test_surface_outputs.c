@@ -490,7 +490,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(walk);
 }
 
-int main(void) {
+SUITE(test_surface_outputs) {
     RUN(components_are_dropped_by_area_and_by_faces);
     RUN(a_mesh_stays_as_it_was_where_nothing_would_be_left);
     RUN(the_largest_component_is_found_in_every_unit);

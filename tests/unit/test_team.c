@@ -298,7 +298,7 @@ static void threads_block_signals_except_those_of_their_own_work(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_team) {
     uniform_points(1, N, set);
     RUN(refused_address_space_is_fewer_threads_or_a_status); /* first: stacks of threads that ended are kept */
     RUN(loops_do_every_index_once);

@@ -164,7 +164,7 @@ static void lemma_8_crossings_are_bounded_by_conflicts(void) {
     EXPECT(all > 200, "%zu crossings", all);
 }
 
-int main(void) {
+SUITE(test_tracing_lemmas) {
     ctx = new_context();
     if (!ctx) return HARNESS_SKIP;
     brio_context_set_threads(ctx, 1);

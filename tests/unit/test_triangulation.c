@@ -567,7 +567,7 @@ static void representatives_survive_subnormal_distances(void) {
     brio_context_free(ctx);
 }
 
-int main(void) {
+SUITE(test_triangulation) {
     RUN(small_grids_match_brute_force);
     RUN(order_shuffle_and_scale_do_not_matter);
     RUN(nothing_matters_on_a_scan_either);

@@ -119,7 +119,7 @@ static void any_number_of_threads_gives_the_same_sets(void) {
     }
 }
 
-int main(void) {
+SUITE(test_union_find) {
     RUN(sets_are_those_of_renamed_labels);
     RUN(any_number_of_threads_gives_the_same_sets);
     return harness_end();

@@ -201,7 +201,7 @@ static void the_library_is_of_the_headers_version(void) {
     EXPECT(!strcmp(brio_version(), BRIO_VERSION) && brio_version_number() == BRIO_VERSION_NUMBER);
 }
 
-int main(void) {
+SUITE(test_versioned) {
     RUN(older_callers_get_what_they_know);
     RUN(newer_callers_get_zeros);
     RUN(options_of_any_size_are_taken);

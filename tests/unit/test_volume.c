@@ -671,7 +671,7 @@ static void cancelled(void) {
     brio_context_set_progress(io_ctx, NULL, NULL);
 }
 
-int main(void) {
+SUITE(test_volume) {
     io_begin();
     RUN(map_of_every_mode_order_and_axes);
     RUN(axes_and_angles_left_zero);

@@ -51,7 +51,7 @@ static void products_are_those_of_the_compiler(void) {
 #endif
 }
 
-int main(void) {
+SUITE(test_wide) {
     RUN(products_divide_again);
     RUN(products_are_those_of_the_compiler);
     return harness_end();

@@ -283,7 +283,7 @@ static void refused_memory_is_a_status_and_leaves_nothing(void) {
     expect_clean_failures(make_zone);
 }
 
-int main(void) {
+SUITE(test_zone) {
     RUN(zones_hold_what_they_met);
     RUN(a_vertex_brings_its_whole_segment);
     RUN(a_taken_segment_is_refused_until_it_is_given_back);
