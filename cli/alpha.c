@@ -55,8 +55,7 @@ static void warn_beyond_doubles(run *r, const brio_alpha_complex *c, bool weight
             double value = c->values[k][i];
             beyond += isinf(value) || (fabs(value) < DBL_MIN && !(weighted && value == 0));
         }
-    if (beyond)
-        cli_warn(r, "%zu of %zu squared radii in the filtration are beyond doubles: scale the points", beyond, total);
+    if (beyond) cli_warn(r, WARNING_BEYOND, beyond, total);
 }
 
 static brio_status write_filtration(run *r, const char *path, const brio_alpha_complex *complex) {

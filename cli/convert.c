@@ -46,17 +46,25 @@ static void on_name(const char *name, void *user) {
     cli_fact_text(user, NULL, name); /* a list until the report */
 }
 
-/* Reports names as a list, and in a warning.   warning  with the file and the names. */
-static void report_names(run *r, const char *path, const char *name, const char *warning, const facts *names) {
+/* Reports names as a list.   text  receives them for a warning. */
+static void report_names(run *r, const char *name, const facts *names, char text[1024]) {
     size_t used = 0;
-    char text[1024] = "";
+    text[0] = 0;
     r->facts.failed |= names->failed;
     cli_fact_open(&r->facts, name, FACT_LIST);
     for (size_t i = 0; i < names->count; i++) cli_fact_text(&r->facts, NULL, names->list[i].text);
     cli_fact_close(&r->facts);
-    for (size_t i = 0; i < names->count && used < sizeof text; i++)
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s", i ? "," : "", names->list[i].text);
-    if (names->count) cli_warn(r, "%s %s:%s", path, warning, text);
+    for (size_t i = 0; i < names->count && used < 1024; i++)
+        used += (size_t)snprintf(text + used, 1024 - used, "%s %s", i ? "," : "", names->list[i].text);
+}
+
+static void report_lost(run *r, const facts *lost, const facts *renamed) {
+    char text[1024];
+    report_names(r, "lost", lost, text);
+    if (lost->count) cli_warn(r, WARNING_LOST, r->common.output, text);
+    if (!renamed->count) return;
+    report_names(r, "renamed", renamed, text);
+    cli_warn(r, WARNING_RENAMED, r->common.output, text);
 }
 
 static brio_status take_files(run *r, brio_read_options *from, brio_write_options *to) {
@@ -126,8 +134,7 @@ static brio_status convert(run *r) {
     cli_stage(r, "convert", stats.seconds - stats.select_seconds);
     report(r, &stats);
     cli_tell_dropped(r, r->operands[0]);
-    report_names(r, r->common.output, "lost", "is without", &lost);
-    if (renamed.count) report_names(r, r->common.output, "renamed", "has other names for", &renamed);
+    report_lost(r, &lost, &renamed);
     cli_tell_moved(r, r->common.output, moved, merged);
 done:
     cli_facts_free(&lost);

@@ -17,51 +17,46 @@ static void suggest_for_argument(run *r) {
     bool about_output = says(r, BRIO_ERR_ARGUMENT, "cannot hold") || says(r, BRIO_ERR_ARGUMENT, "no output") ||
                         says(r, BRIO_ERR_ARGUMENT, "this version writes");
     if (says(r, BRIO_ERR_ARGUMENT, ", got ") && r->num_operands < c->min_operands && c->examples)
-        cli_hint(r, "for example: %.*s", (int)strcspn(c->examples, "\n"), c->examples);
+        cli_hint(r, HINT_EXAMPLE, (int)strcspn(c->examples, "\n"), c->examples);
     else if (about_output && c->outputs)
-        cli_hint(r, "'brio %s' writes files with the extensions %s", c->name, c->outputs);
+        cli_hint(r, HINT_OUTPUTS, c->name, c->outputs);
 }
 
 static void suggest_for_poles(run *r) {
     if (says(r, BRIO_ERR_NO_ANSWER, "swallows"))
-        cli_hint(r, "a smaller --distance leaves something");
+        cli_hint(r, HINT_DISTANCE);
     else
-        cli_hint(r, "the points, or the mesh, must surround a solid: see what 'brio surface' makes of them first");
+        cli_hint(r, HINT_SOLID);
 }
 
 static void suggest_for_no_answer(run *r) {
-    if (is(r, "alpha"))
-        cli_hint(r, "a larger --alpha takes in more; --alpha auto finds the least with all points in one solid");
-    if (is(r, "iso")) cli_hint(r, "try another --level; with --sigma it counts in standard deviations above the mean");
-    if (is(r, "subdivide"))
-        cli_hint(r, "'brio check FILE' says what is wrong with a mesh, 'brio surface' makes one of points");
+    if (is(r, "alpha")) cli_hint(r, HINT_ALPHA);
+    if (is(r, "iso")) cli_hint(r, HINT_LEVEL);
+    if (is(r, "subdivide")) cli_hint(r, HINT_SUBDIVIDE);
     if (is(r, "medial") || is(r, "offset")) suggest_for_poles(r);
-    if (is(r, "surface") || is(r, "medial") || is(r, "offset") || is(r, "alpha"))
-        cli_hint(r, "'brio help methods' says which command and method fits which points (docs/which-method.md)");
+    if (is(r, "surface") || is(r, "medial") || is(r, "offset") || is(r, "alpha")) cli_hint(r, HINT_METHODS);
 }
 
 static void suggest_for_no_memory(run *r) {
-    if (!r->common.scratch) cli_hint(r, "--scratch DIR keeps the big arrays in files on a disk");
-    if (is(r, "surface")) cli_hint(r, "--method cocone --pieces N works through N parts, one after the other");
-    if (r->num_operands > 0 && !is(r, "generate") && !is(r, "info"))
-        cli_hint(r, "'brio info FILE' estimates what each command needs");
+    if (!r->common.scratch) cli_hint(r, HINT_SCRATCH);
+    if (is(r, "surface")) cli_hint(r, HINT_PIECES);
+    if (r->num_operands > 0 && !is(r, "generate") && !is(r, "info")) cli_hint(r, HINT_ESTIMATE);
 }
 
 static void suggest_for_check(run *r) {
     if (!is(r, "check")) return;
-    if (strstr(cli_message(r, BRIO_ERR_CHECK), "not closed")) cli_hint(r, "--open accepts a surface with a boundary");
-    cli_hint(r, "'brio check --help --verbose' explains the lines of the report");
+    if (strstr(cli_message(r, BRIO_ERR_CHECK), "not closed")) cli_hint(r, HINT_OPEN);
+    cli_hint(r, HINT_REPORT);
 }
 
 static void suggest_for_format(run *r) {
     bool unknown = says(r, BRIO_ERR_FORMAT, "unknown format");
     if (unknown && is(r, "iso"))
-        cli_hint(r, "'brio iso' reads maps and atoms; 'brio surface' makes surfaces of points");
+        cli_hint(r, HINT_ISO);
     else if (unknown && !r->common.input_format)
-        cli_hint(r, "--input-format EXT names the format of a file whose name does not tell it");
-    if (says(r, BRIO_ERR_FORMAT, "no faces") || says(r, BRIO_ERR_FORMAT, "points only"))
-        cli_hint(r, "'brio surface' makes a surface of points");
-    if (says(r, BRIO_ERR_FORMAT, "no property")) cli_hint(r, "'brio info FILE' lists the properties of the points");
+        cli_hint(r, HINT_INPUT_FORMAT);
+    if (says(r, BRIO_ERR_FORMAT, "no faces") || says(r, BRIO_ERR_FORMAT, "points only")) cli_hint(r, HINT_SURFACE);
+    if (says(r, BRIO_ERR_FORMAT, "no property")) cli_hint(r, HINT_PROPERTIES);
 }
 
 void cli_suggest(run *r, brio_status status) {

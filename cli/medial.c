@@ -103,7 +103,7 @@ static brio_status write_shape(run *r, brio_mesh *shape) {
     TRY(cli_output_format(r, r->common.output, r->common.format, &format));
     if ((format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) && shape->num_tetrahedra) {
         shape->num_tetrahedra = 0;
-        cli_warn(r, "%s: without the tetrahedra, which the format cannot hold", r->common.output);
+        cli_warn(r, WARNING_TETRAHEDRA, r->common.output);
     }
     TRY(cli_write(r, shape));
 done:

@@ -27,8 +27,7 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
 }
 
 void cli_suggest_labeling(run *r, brio_status status, int labeling, bool by_mesh) {
-    if (status == BRIO_ERR_NO_ANSWER && by_mesh && labeling == LABELS_OF_INPUT)
-        cli_hint(r, "--labeling global goes by the points of the mesh and not by its faces");
+    if (status == BRIO_ERR_NO_ANSWER && by_mesh && labeling == LABELS_OF_INPUT) cli_hint(r, HINT_LABELING);
 }
 
 brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points, const double *normals) {

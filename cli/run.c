@@ -4,7 +4,6 @@
 #include "interrupt.h"
 #include "lost.h"
 #include "precision.h"
-#include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -206,9 +205,9 @@ brio_read_options cli_read_options(run *r) {
 
 void cli_tell_dropped(run *r, const char *path) {
     if (r->common.drop_invalid) cli_fact_count(&r->facts, "dropped", r->dropped);
-    if (r->dropped) cli_warn(r, "%s: left out %" PRIu64 " points that are not finite", path, r->dropped);
+    if (r->dropped) cli_warn(r, WARNING_DROPPED, path, r->dropped);
     if (r->common.salvage) cli_fact_count(&r->facts, "missing", r->missing);
-    if (r->missing) cli_warn(r, "%s: ends early: %" PRIu64 " points miss", path, r->missing);
+    if (r->missing) cli_warn(r, WARNING_MISSING, path, r->missing);
 }
 
 brio_status cli_read(run *r, const char *path, brio_mesh **out) {

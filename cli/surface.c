@@ -149,8 +149,7 @@ static void report_density(run *r, const brio_cocone_stats *s) {
     cli_fact_count(f, "outside_guarantee", s->outside_guarantee);
     cli_fact_real(f, "outside_share", share);
     cli_fact_close(f);
-    if (share > 0)
-        cli_warn(r, "%.1f %% of the points are too far apart for the co-cone's guarantee (r over 0.08)", 100 * share);
+    if (share > 0) cli_warn(r, WARNING_DENSITY, 100 * share);
 }
 
 static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) {
@@ -192,12 +191,7 @@ static const double MANY_GUESSES = 0.02;
 
 static void report_confidence(run *r, double share) {
     cli_fact_real(&r->facts, "uncertain_share", share);
-    if (share > MANY_GUESSES)
-        cli_warn(
-            r,
-            "%.1f %% of the surface is a guess (vertices whose property confidence is under 0.7): points of an open "
-            "or flat thing, too few of them, or walls too thin for them; see 'brio help methods'",
-            100 * share);
+    if (share > MANY_GUESSES) cli_warn(r, WARNING_GUESS, 100 * share);
 }
 
 static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
@@ -328,17 +322,17 @@ static brio_status check_arguments(run *r) {
     if (a->polygons && a->crust.triangulate)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
     if (a->theta >= 1.57) return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
-    if (a->theta > 0 && a->theta < LEAST_THETA) cli_warn(r, "--theta: no guarantee holds under %g", LEAST_THETA);
+    if (a->theta > 0 && a->theta < LEAST_THETA) cli_warn(r, WARNING_THETA, LEAST_THETA);
     return BRIO_OK;
 }
 
 static void suggest(run *r, brio_status status) {
     const arguments *a = r->arguments;
     if (status != BRIO_ERR_NO_ANSWER) return;
-    if (a->crust.open > 0) cli_hint(r, "a larger --open K takes fewer gaps between points for holes");
-    if (a->components.least > 0) cli_hint(r, "a smaller --min-component N keeps more pieces");
-    if (a->method != COCONE) cli_hint(r, "--method cocone makes an open surface, where there is no inside");
-    cli_hint(r, "points in a plane, and terrain: 'brio delaunay IN --plane xy -o OUT'");
+    if (a->crust.open > 0) cli_hint(r, HINT_HOLES);
+    if (a->components.least > 0) cli_hint(r, HINT_COMPONENTS);
+    if (a->method != COCONE) cli_hint(r, HINT_COCONE);
+    cli_hint(r, HINT_PLANE);
 }
 
 static brio_status reconstruct(run *r, const brio_mesh *points, brio_mesh **result) {
