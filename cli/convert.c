@@ -10,7 +10,7 @@
 
 typedef struct arguments {
     const char *crop;
-    double thin;
+    double thin, merge; /* merge: NaN where it is not given */
     int outliers;
 } arguments;
 
@@ -21,11 +21,13 @@ static const option options[] = {
      "drop points that are far from their K nearest points (8 to 16)", 0},
     {"thin", 0, OPTION_NUMBER, FIELD(thin), "S", "keep points at least S apart, all others being nearer than S to one",
      0},
+    {"merge", 0, OPTION_NUMBER | OPTION_OPTIONAL, FIELD(merge), "[DISTANCE]",
+     "merge vertices at equal positions, or at most DISTANCE apart; drops triangles that lose a corner", 0},
     {0},
 };
 #undef FIELD
 
-static const arguments defaults = {0};
+static const arguments defaults = {.merge = NAN};
 
 static brio_status take_crop(run *r, const char *text, double box[6]) {
     const char *at = text;
@@ -88,13 +90,16 @@ static brio_status take_options(run *r, brio_convert_options *o) {
     if (chosen->thin < 0) FAIL(r, BRIO_ERR_ARGUMENT, "--thin: %g is below 0", chosen->thin);
     if (chosen->outliers > 63)
         FAIL(r, BRIO_ERR_ARGUMENT, "--drop-outliers: %d is not between 1 and 63", chosen->outliers);
+    if (chosen->merge < 0) FAIL(r, BRIO_ERR_ARGUMENT, "--merge: %g is below 0", chosen->merge);
+    o->merge = !isnan(chosen->merge);
+    if (o->merge) o->merge_distance = chosen->merge;
     o->thin = chosen->thin;
     o->drop_outliers = chosen->outliers;
 done:
     return status;
 }
 
-static void report(run *r, const brio_convert_stats *stats) {
+static void report(run *r, const brio_convert_stats *stats, bool merged) {
     facts *f = &r->facts;
     cli_fact_count(f, "points", stats->points);
     cli_fact_count(f, "faces", stats->faces);
@@ -102,6 +107,8 @@ static void report(run *r, const brio_convert_stats *stats) {
     if (stats->points_read != stats->points) cli_fact_count(f, "points_read", stats->points_read);
     if (stats->outliers) cli_fact_count(f, "outliers", stats->outliers);
     if (stats->thinned) cli_fact_count(f, "thinned", stats->thinned);
+    if (merged) cli_fact_count(f, "merged_vertices", stats->merged);
+    if (merged) cli_fact_count(f, "degenerate", stats->degenerate);
     cli_fact_bool(f, "streamed", stats->streamed);
 }
 
@@ -132,7 +139,7 @@ static brio_status convert(run *r) {
     TRY(status);
     cli_stage(r, "select", stats.select_seconds);
     cli_stage(r, "convert", stats.seconds - stats.select_seconds);
-    report(r, &stats);
+    report(r, &stats, o.merge);
     cli_tell_dropped(r, r->operands[0]);
     report_lost(r, &lost, &renamed);
     cli_tell_moved(r, r->common.output, moved, merged);
@@ -145,13 +152,15 @@ done:
 const command cli_convert = {
     .name = "convert",
     .operands = "A B",
-    .summary = "any format to any other; crops, thins, drops outliers",
+    .summary = "any format to any other; crops, thins, drops outliers, merges vertices",
     .description =
         "Points go by in blocks, so that a file of any size needs some MiB; files with faces are read as a whole. "
-        "First come the points in the box, of these those that are no outliers, of these a thinned set.",
+        "First come the points in the box, of these those that are no outliers, of these a thinned set; merging comes "
+        "last.",
     .examples =
         "brio convert scan.laz scan.ply\nevery property is kept\n"
-        "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n",
+        "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n"
+        "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n",
     .outputs = "ply xyz pts txt csv obj off stl vtu vtp node las npy glb",
     .output_optional = true,
     .group = GROUP_FILES,

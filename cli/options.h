@@ -20,7 +20,8 @@ typedef enum option_kind {
     OPTION_CHOICE,         /* int: a name from a list */
     OPTION_TITLE,          /* no option: the title, in `meaning`, of the rows up to the next one */
     OPTION_NOTE,           /* no option: what `name`, a choice of the row above, means */
-    OPTION_POSITIVE = 0x10 /* added to a kind of number: 0 and less are refused */
+    OPTION_POSITIVE = 0x10, /* added to a kind of number: 0 and less are refused */
+    OPTION_OPTIONAL = 0x20  /* added to a kind of number: may stand without a value, which is then 0 */
 } option_kind;
 
 /** A name and what it stands for. A list ends with NULL. */

@@ -208,6 +208,24 @@ done:
     return status;
 }
 
+static brio_status ignore(void *user, const brio_mesh *mesh) {
+    (void)user, (void)mesh;
+    return BRIO_OK;
+}
+
+/* Merges the vertices that stay, which are in memory afterwards. */
+static brio_status merge(conversion *c) {
+    brio_status status = BRIO_OK;
+    const brio_sink none = {ignore, NULL};
+    brio_merge_stats found = {.size = sizeof found};
+    if (!c->source.job.mesh) BRIO_TRY(brio_source_pass(&c->source, &none));
+    BRIO_TRY(brio_mesh_merge_vertices(c->source.job.mesh, c->options->merge_distance, &found));
+    c->stats.merged = found.vertices;
+    c->stats.degenerate = found.faces + found.tetrahedra + found.edges;
+done:
+    return status;
+}
+
 static brio_status run(conversion *c) {
     brio_status status = BRIO_OK;
     const brio_sink whole = {write_whole, c};
@@ -215,11 +233,12 @@ static brio_status run(conversion *c) {
     bool choose = c->options->drop_outliers || c->options->thin > 0, rows = brio_row_format_of(c->format) != NULL;
     bool once = !choose && c->format != BRIO_FORMAT_LAS &&
                 (can_patch(c->to) || (rows && !brio_row_format_of(c->format)->counts));
-    c->source.whole = !rows || (!brio_source_rereadable(c->source.path) && !once);
+    c->source.whole = !rows || c->options->merge || (!brio_source_rereadable(c->source.path) && !once);
     double started = brio_seconds();
     brio_progress_part(c->ctx, bar, 0, 0.6);
     if (choose) BRIO_TRY(brio_source_choose(&c->source));
-    brio_progress_part(c->ctx, bar, choose ? 0.6 : 0, 1);
+    if (c->options->merge) BRIO_TRY(merge(c));
+    brio_progress_part(c->ctx, bar, choose || c->options->merge ? 0.6 : 0, 1);
     c->stats.select_seconds = brio_seconds() - started;
     status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
 done:
