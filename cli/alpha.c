@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "estimate.h"
 #include "files.h"
+#include "hints.h"
 #include "interrupt.h"
 #include "properties.h"
 #include "weights.h"
@@ -137,10 +138,13 @@ static brio_status alpha(run *r) {
     TRY(cli_usual_points(r, input, weights, false, &usual));
     TRY(cli_require_memory(r, cli_alpha_bytes(input, usual)));
     cli_lap(r, "read");
-    TRY(triangulate(r, input, weights, &t, &complex));
+    status = triangulate(r, input, weights, &t, &complex);
+    cli_examine(r, status, input);
+    if (status != BRIO_OK) goto done;
     if (a->filtration) warn_beyond_doubles(r, &complex, weights != NULL);
     if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));
-    TRY(make_shape(r, input, &complex, value));
+    status = make_shape(r, input, &complex, value);
+    cli_examine(r, status, input);
 done:
     brio_alpha_complex_free(&complex);
     brio_triangulation_free(t);

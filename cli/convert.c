@@ -99,16 +99,16 @@ done:
     return status;
 }
 
-static void report(run *r, const brio_convert_stats *stats, bool merged) {
+static void report(run *r, const brio_convert_stats *stats, const brio_convert_options *o) {
     facts *f = &r->facts;
     cli_fact_count(f, "points", stats->points);
     cli_fact_count(f, "faces", stats->faces);
     if (stats->tetrahedra) cli_fact_count(f, "tetrahedra", stats->tetrahedra);
-    if (stats->points_read != stats->points) cli_fact_count(f, "points_read", stats->points_read);
-    if (stats->outliers) cli_fact_count(f, "outliers", stats->outliers);
-    if (stats->thinned) cli_fact_count(f, "thinned", stats->thinned);
-    if (merged) cli_fact_count(f, "merged_vertices", stats->merged);
-    if (merged) cli_fact_count(f, "degenerate", stats->degenerate);
+    if (stats->points_read != stats->points || o->crop) cli_fact_count(f, "points_read", stats->points_read);
+    if (o->drop_outliers) cli_fact_count(f, "outliers", stats->outliers);
+    if (o->thin > 0) cli_fact_count(f, "thinned", stats->thinned);
+    if (o->merge) cli_fact_count(f, "merged_vertices", stats->merged);
+    if (o->merge) cli_fact_count(f, "degenerate", stats->degenerate);
     cli_fact_bool(f, "streamed", stats->streamed);
 }
 
@@ -139,8 +139,8 @@ static brio_status convert(run *r) {
     TRY(status);
     cli_stage(r, "select", stats.select_seconds);
     cli_stage(r, "convert", stats.seconds - stats.select_seconds);
-    report(r, &stats, o.merge);
-    cli_tell_dropped(r, r->operands[0]);
+    report(r, &stats, &o);
+    cli_tell_input(r, r->operands[0]);
     report_lost(r, &lost, &renamed);
     cli_tell_moved(r, r->common.output, moved, merged);
 done:

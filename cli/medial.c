@@ -138,7 +138,7 @@ static brio_status medial(run *r) {
     status = brio_estimate_power_shape(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, input, work));
     status = brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
-    cli_suggest_labeling(r, status, a->labeling, by_mesh);
+    cli_suggest_labeling(r, status, input, by_mesh);
     if (status != BRIO_OK) goto done;
     report(r, &o, &s, shape);
     TRY(cli_carry_properties(r, input, NULL, shape));

@@ -10,15 +10,17 @@
 
 #define HINT_EXAMPLE      "for example: %.*s"
 #define HINT_OUTPUTS      "'brio %s' writes files with the extensions %s"
-#define HINT_DISTANCE     "a smaller --distance leaves something"
-#define HINT_SOLID        "the points, or the mesh, must surround a solid: see what 'brio surface' makes of them first"
+#define HINT_DISTANCE     "a --distance nearer to 0 leaves something"
+#define HINT_SOLID        "the points must surround a solid: see what 'brio surface' makes of them first"
 #define HINT_LABELING     "--labeling global goes by the points of the mesh and not by its faces"
 #define HINT_ALPHA        "a larger --alpha takes in more; --alpha auto finds the least with all points in one solid"
-#define HINT_LEVEL        "try another --level; with --sigma it counts in standard deviations above the mean"
-#define HINT_SUBDIVIDE    "'brio check FILE' says what is wrong with a mesh, 'brio surface' makes one of points"
+#define HINT_LEVEL        "a lower --level; with --sigma it counts in standard deviations above the mean"
+#define HINT_TRIANGLES    "'brio convert FILE OUT.stl' cuts polygons into triangles"
+#define HINT_CHECK        "'brio check FILE' says what is wrong with the mesh"
 #define HINT_METHODS      "'brio help methods' says which command and method fits which points (docs/which-method.md)"
 #define HINT_SCRATCH      "--scratch DIR keeps the big arrays in files on a disk"
-#define HINT_PIECES       "--method cocone --pieces N works through N parts, one after the other"
+#define HINT_LIMIT        "a larger --max-memory"
+#define HINT_PIECES       "--method cocone --pieces %d works through the points in parts, one after the other"
 #define HINT_ESTIMATE     "'brio info FILE' estimates what each command needs"
 #define HINT_OPEN         "--open accepts a surface with a boundary"
 #define HINT_REPORT       "'brio check --help --verbose' explains the lines of the report"
@@ -28,12 +30,16 @@
 #define HINT_PROPERTIES   "'brio info FILE' lists the properties of the points"
 #define HINT_HOLES        "a larger --open K takes fewer gaps between points for holes"
 #define HINT_COMPONENTS   "a smaller --min-component N keeps more pieces"
-#define HINT_COCONE       "--method cocone makes an open surface, where there is no inside"
-#define HINT_PLANE        "points in a plane, and terrain: 'brio delaunay IN --plane xy -o OUT'"
+#define HINT_COCONE       "--method cocone --boundaries makes an open surface, where there is no inside"
+#define HINT_PLANE        "the points lie in a plane: 'brio delaunay %s --plane %s -o OUT' makes triangles of them"
+#define HINT_LINE         "the points lie on one line: no surface passes through them"
+#define HINT_MERGE        "%zu vertices are at the positions of others: 'brio convert %s OUT --merge' makes them one"
 
 /* --- warnings --- */
 
-#define WARNING_DENSITY "%.1f %% of the points are too far apart for the co-cone's guarantee (r over 0.08)"
+#define WARNING_DENSITY                                                                                                \
+    "the points hardly show the surface (median of r %.2f; points all over a volume have 1.05): too few of them, "     \
+    "noise, or thin walls; with noise --method labeled-delaunay does better"
 #define WARNING_GUESS                                                                                                  \
     "%.1f %% of the surface is a guess (vertices whose property confidence is under 0.7): points of an open or flat "  \
     "thing, too few of them, or walls too thin for them; see 'brio help methods'"
@@ -60,5 +66,15 @@
 #define WARNING_BEYOND       "%zu of %zu squared radii in the filtration are beyond doubles: scale the points"
 #define WARNING_SET_ASIDE    "the property %s of the points is now %s"
 #define WARNING_SELF         "the surface intersects itself: %lld pairs of faces"
+#define WARNING_APART                                                                                                  \
+    "some vertices are at the positions of others, and the surface is not closed: 'brio convert %s OUT --merge' "      \
+    "joins it there"
+#define WARNING_OUTSIDE                                                                                                \
+    "%zu of %zu points are outside the box, so that their cells are cut off or empty: 'brio info %s' says where the "  \
+    "points are"
+#define WARNING_NUMBERED                                                                                               \
+    "%s: its first column numbers the rows and is read as x: --columns -,x,y,z leaves it out (names behind z keep "    \
+    "further columns)"
+#define WARNING_ROUNDED "%s: line %" PRIu64 ": a whole number beyond 2^53 is rounded (column %s; %" PRIu64 " in all)"
 
 #endif

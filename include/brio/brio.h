@@ -1603,7 +1603,9 @@ typedef struct brio_iso_surface_options {
     int deviations; /* 1: `level` counts standard deviations above the mean of the map; default 0 */
     int conforming; /* 1: every triangle is a facet of the Delaunay triangulation of the mesh's vertices, vertices at one
                           position taken as one [Attali Lachaud 2001]; default 0 */
-    double blobbiness; /* atoms: above 0 and at most 100; the larger, the closer the surface is to spheres; default 2 */
+    double
+        blobbiness; /* atoms: above 0 and at most 100; the larger, the closer the surface is to spheres; default 2, and
+                          nothing else for a map */
     size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
     size_t vertices;   /* not 0: chooses the resolution so that the mesh has about this many vertices; default 0 */
 } brio_iso_surface_options;
@@ -1729,6 +1731,16 @@ BRIO_API const brio_format_info *brio_format_facts(brio_format format);
 
 /** Receives the name of something that a mesh or a file cannot hold, valid during the call. */
 typedef void (*brio_lost_fn)(const char *name, void *user);
+/** What a reader found that the caller may not expect. */
+typedef struct brio_read_notes {
+    size_t size;
+    int numbered; /* 1: a text whose columns have no names, and whose first column, read as x, numbers the rows from 0 or 1
+                     on, as in id x y z; in any order, 4 rows at least */
+    int reserved_int;
+    uint64_t rounded;        /* whole numbers of a text that doubles do not hold (beyond 2^53) and that were rounded */
+    uint64_t rounded_line;   /* of the first of them */
+    char rounded_column[64]; /* its property, or x, y or z */
+} brio_read_notes;
 
 typedef struct brio_read_options {
     size_t size;
@@ -1746,6 +1758,7 @@ typedef struct brio_read_options {
     brio_lost_fn left_out; /* called once for each part of the file that the mesh has not, such as "textures", after all
                               has been read; docs/formats.md lists the names. Default NULL */
     void *left_out_user;
+    brio_read_notes *notes; /* default NULL, or receives what was found */
 } brio_read_options;
 
 BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);
@@ -1885,7 +1898,7 @@ typedef struct brio_convert_stats {
  *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
  *  file is in memory.
  *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, the names of metadata, and "precision" if coordinates are rounded; and so is what brio does not read of the
+ *  properties, the names of metadata, and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
  *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
  *  Progress begins anew where a text is read again because late rows lack a column.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
@@ -1991,7 +2004,7 @@ BRIO_API brio_status brio_estimate_labeled_delaunay(brio_context *ctx, size_t nu
                                                     const brio_labeled_delaunay_options *options, uint64_t *bytes);
 
 /** Estimates the memory of a reconstruction from num_points samples.   options  NULL for the defaults. Of the options,
- *  `triangulate` and `simplify` count; `pieces`, `scale` and `redundancy` do not.
+ *  `triangulate`, `simplify` and `pieces` count; `scale` and `redundancy` do not.
 *  Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
 BRIO_API brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points,
                                                const brio_power_crust_options *options, uint64_t *bytes);

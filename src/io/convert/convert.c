@@ -155,7 +155,9 @@ static brio_status stream(conversion *c) {
     brio_progress_part(c->ctx, bar, prepared ? 0.5 : 0, 1);
     BRIO_TRY(brio_source_pass(&c->source, &sink));
     if (prepared && c->writer.job.points != c->writer.points) BRIO_TRY(brio_source_changed(&c->source));
-    if (c->rounded || (c->writer.format->rounds && c->writer.format->rounds(c->writer.state))) lose(c, "precision");
+    if (c->rounded || c->source.job.notes.rounded ||
+        (c->writer.format->rounds && c->writer.format->rounds(c->writer.state)))
+        lose(c, "precision");
     name_left_out(c);
     brio_mesh last = {.num_vertices = 0};
     if (c->source.job.mesh) last = *c->source.job.mesh;
@@ -176,7 +178,7 @@ static brio_status write_whole(void *user, const brio_mesh *mesh) {
     o.format = c->format;
     name_losses(c, mesh);
     find_rounding(c, mesh);
-    if (c->rounded) lose(c, "precision");
+    if (c->rounded || c->source.job.notes.rounded) lose(c, "precision");
     name_left_out(c);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
     if (!holds(c, BRIO_HOLDS_TETRAHEDRA)) shown.num_tetrahedra = 0;
@@ -261,6 +263,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     brio_read_options read = brio_read_options_default();
     c.write = brio_write_options_default();
     if (o.from) BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, o.from, &read));
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, read.notes));
     if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));
     if (c.write.moved) *c.write.moved = 0;
     c.format = c.write.format == BRIO_FORMAT_AUTO && strcmp(to, "-") ? brio_format_of(to) : c.write.format;
@@ -281,6 +284,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     c.stats.thinned = c.source.thinned;
     c.stats.passes = c.source.passes;
     c.stats.seconds = brio_seconds() - started;
+    BRIO_GIVE(brio_read_notes, read.notes, &c.source.job.notes);
     BRIO_GIVE(brio_convert_stats, stats, &c.stats);
 done:
     brio_row_writer_free(&c.writer);
