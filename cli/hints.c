@@ -1,5 +1,5 @@
 /* What to try after a failure, by the command, the status and words of the sentence that says what is wrong. A sentence
- * that changes its words loses its hint: tests/cli/test_report.py holds each of them. */
+ * that changes its words loses its hint: tests/cli/test_hints.py holds each of them. */
 #include "hints.h"
 #include "cloud.h"
 #include <math.h>

@@ -31,38 +31,38 @@ VALUES = {
 # Lines without `brio`.
 MODES = [
     "delaunay cloud.ply", "delaunay cloud.ply -o out.node", "delaunay cloud.ply --plane xy -o out.ply",
-    "delaunay mesh.ply --locate trace", "delaunay cloud.ply --weights w.txt",
-    "surface cloud.ply", "surface cloud.ply -o out.ply", "surface cloud.ply -o out.stl", "surface cloud.ply -o out.obj",
+    "delaunay mesh.ply --locate trace",
+    "surface cloud.ply", "surface cloud.ply -o out.ply", "surface cloud.ply -o out.stl",
     "surface cloud.ply --method power-crust -o out.ply", "surface cloud.ply --method cocone -o out.ply",
-    "surface cloud.ply --method tight-cocone -o out.ply", "surface cloud.ply --method cocone --pieces 3 -o out.ply",
-    "medial cloud.ply -o out.ply", "medial cloud.ply", "hull text.csv -o out.ply", "hull text.csv",
+    "surface cloud.ply --method cocone --pieces 3 -o out.ply",
+    "medial cloud.ply -o out.ply", "medial cloud.ply", "hull text.csv",
     "alpha cloud.ply --alpha auto -o out.ply", "offset cloud.ply -D 0.1 -o out.ply", "offset cloud.ply -D 0.1",
-    "voronoi cloud.ply -o out.csv", "voronoi cloud.ply -o out.vtu", "voronoi cloud.ply",
+    "voronoi cloud.ply -o out.csv", "voronoi cloud.ply",
     "check mesh.ply", "check open.off", "check flat.node", "compare mesh.ply mesh2.ply",
     "iso ball.map --level -4 -o out.ply", "iso atoms.pdb --level 1 -o out.ply", "iso ball.map --level -4",
-    "convert cloud.ply out.xyz", "convert text.csv out.las", "info mesh.ply", "info text.csv",
-    "generate scan -n 90 -o out.ply", "generate cube -n 90 -o out.las", "generate solid --resolution 16 -o out.ply",
-    "subdivide mesh.ply -o out.ply", "subdivide mesh.ply", "locate cloud.ply --at p.csv -o out.csv",
+    "convert text.csv out.las", "info text.csv",
+    "generate scan -n 90 -o out.ply", "generate solid --resolution 16 -o out.ply",
+    "subdivide mesh.ply -o out.ply", "locate cloud.ply --at p.csv -o out.csv",
     "interpolate text.csv --at p.csv --property q -o out.csv", "interpolate text.csv --at p.csv --property q -o out.ply",
 ]
 
 IDLE = {
     # what is asked for comes anyway
-    ("convert cloud.ply out.xyz", "ascii"), ("delaunay cloud.ply -o out.node", "ascii"),
+    ("delaunay cloud.ply -o out.node", "ascii"),
     ("interpolate text.csv --at p.csv --property q -o out.csv", "ascii"), ("locate cloud.ply --at p.csv -o out.csv", "ascii"),
-    ("voronoi cloud.ply -o out.csv", "ascii"), ("surface cloud.ply -o out.obj", "ascii"),
-    ("surface cloud.ply -o out.stl", "float32"), ("surface cloud.ply -o out.obj", "vertex-normals"),
+    ("voronoi cloud.ply -o out.csv", "ascii"),
+    ("surface cloud.ply -o out.stl", "float32"),
     ("surface cloud.ply -o out.ply", "vertex-normals"), ("surface cloud.ply -o out.stl", "vertex-normals"),
-    ("surface cloud.ply -o out.ply", "triangulate"), ("surface cloud.ply", "triangulate"), ("surface cloud.ply -o out.obj", "triangulate"),
+    ("surface cloud.ply -o out.ply", "triangulate"), ("surface cloud.ply", "triangulate"),
     ("surface cloud.ply -o out.stl", "triangulate"), ("surface cloud.ply --method power-crust -o out.ply", "triangulate"),
     # a report in JSON has the density in any case
-    ("surface cloud.ply --method cocone -o out.ply", "density"), ("surface cloud.ply --method tight-cocone -o out.ply", "density"),
+    ("surface cloud.ply --method cocone -o out.ply", "density"),
     ("surface cloud.ply --method cocone --pieces 3 -o out.ply", "density"),
     # points without weights are unweighted
     ("delaunay cloud.ply", "unweighted"), ("delaunay cloud.ply -o out.node", "unweighted"),
     ("delaunay cloud.ply --plane xy -o out.ply", "unweighted"), ("delaunay mesh.ply --locate trace", "unweighted"),
     ("alpha cloud.ply --alpha auto -o out.ply", "unweighted"), ("voronoi cloud.ply", "unweighted"),
-    ("voronoi cloud.ply -o out.csv", "unweighted"), ("voronoi cloud.ply -o out.vtu", "unweighted"),
+    ("voronoi cloud.ply -o out.csv", "unweighted"),
     ("locate cloud.ply --at p.csv -o out.csv", "unweighted"), ("check flat.node", "unweighted"),
     # these surfaces are closed already
     ("check mesh.ply", "open"),
