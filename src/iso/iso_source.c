@@ -17,8 +17,8 @@ static brio_status nothing_above(brio_context *ctx, const brio_iso_source *from,
     float largest = v->values[0];
     for (size_t i = 1; i < count; i++)
         if (v->values[i] > largest) largest = v->values[i];
-    return brio_fail(ctx, BRIO_ERR_NO_ANSWER, "nothing is above the level %g: the largest value of the map is %g", level,
-                     (double)largest);
+    return brio_fail(ctx, BRIO_ERR_NO_ANSWER, "nothing is above the level %g: the largest value of the map is %g",
+                     level, (double)largest);
 }
 
 static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *o,
