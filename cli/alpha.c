@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "estimate.h"
 #include "files.h"
+#include "hints.h"
 #include "interrupt.h"
 #include "properties.h"
 #include "weights.h"
@@ -55,8 +56,7 @@ static void warn_beyond_doubles(run *r, const brio_alpha_complex *c, bool weight
             double value = c->values[k][i];
             beyond += isinf(value) || (fabs(value) < DBL_MIN && !(weighted && value == 0));
         }
-    if (beyond)
-        cli_warn(r, "%zu of %zu squared radii in the filtration are beyond doubles: scale the points", beyond, total);
+    if (beyond) cli_warn(r, WARNING_BEYOND, beyond, total);
 }
 
 static brio_status write_filtration(run *r, const char *path, const brio_alpha_complex *complex) {
@@ -138,10 +138,13 @@ static brio_status alpha(run *r) {
     TRY(cli_usual_points(r, input, weights, false, &usual));
     TRY(cli_require_memory(r, cli_alpha_bytes(input, usual)));
     cli_lap(r, "read");
-    TRY(triangulate(r, input, weights, &t, &complex));
+    status = triangulate(r, input, weights, &t, &complex);
+    cli_examine(r, status, input);
+    if (status != BRIO_OK) goto done;
     if (a->filtration) warn_beyond_doubles(r, &complex, weights != NULL);
     if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));
-    TRY(make_shape(r, input, &complex, value));
+    status = make_shape(r, input, &complex, value);
+    cli_examine(r, status, input);
 done:
     brio_alpha_complex_free(&complex);
     brio_triangulation_free(t);

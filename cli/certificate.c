@@ -1,5 +1,6 @@
 /* The certificate of a surface as facts. */
 #include "certificate.h"
+#include "hints.h"
 
 static void report_genera(facts *f, const char *name, const brio_certificate *c) {
     cli_fact_open(f, name, FACT_LIST);
@@ -62,7 +63,8 @@ brio_status cli_certify(run *r, const brio_mesh *mesh, unsigned how) {
     if (how & (CERTIFY_COUNTED | CERTIFY_EMBEDDED)) TRY(count_self_intersections(r, mesh, &c));
     report_certificate(&r->facts, &c);
     if (c.self_intersections > 0 && !(how & CERTIFY_EMBEDDED))
-        cli_warn(r, "the surface intersects itself: %lld pairs of faces", (long long)c.self_intersections);
+        cli_warn(r, WARNING_SELF, (long long)c.self_intersections);
+    if (how & CERTIFY_INPUT && how & CERTIFY_OPEN) cli_tell_apart(r, mesh, c.boundary_edges == 0);
     if (!(how & CERTIFY_ANYTHING)) status = judge(r, &c, how);
 done:
     brio_certificate_free(&c);

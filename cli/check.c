@@ -1,6 +1,7 @@
 /* brio check: the certificate of the faces of a file, the exact Delaunay check of its tetrahedra, or both. */
 #include "certificate.h"
 #include "commands.h"
+#include "hints.h"
 #include "weights.h"
 #include <stdlib.h>
 
@@ -45,6 +46,23 @@ done:
     return status;
 }
 
+/* Refuses options about what the file does not have. */
+static brio_status refuse_idle(run *r, const arguments *a, const brio_mesh *mesh) {
+    const struct {
+        const char *name, *what;
+        bool idle;
+    } given[] = {{"weights", "tetrahedra", a->weights.file && !mesh->num_tetrahedra},
+                 {"weights-mod", "tetrahedra", a->weights.exponent != NO_EXPONENT && !mesh->num_tetrahedra},
+                 {"unweighted", "tetrahedra", a->weights.unweighted && !mesh->num_tetrahedra},
+                 {"open", "faces", a->open && !mesh->num_faces},
+                 {"self-intersections", "faces", a->self_intersections && !mesh->num_faces}};
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++)
+        if (given[i].idle)
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is about %s, and %s has none", given[i].name, given[i].what,
+                            r->operands[0]);
+    return BRIO_OK;
+}
+
 static brio_status check(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *mesh = NULL;
@@ -54,12 +72,14 @@ static brio_status check(run *r) {
     TRY(cli_read(r, r->operands[0], &mesh));
     if (!mesh->num_faces && !mesh->num_tetrahedra)
         FAIL(r, BRIO_ERR_FORMAT, "%s: expected faces or tetrahedra to check, found points only", r->operands[0]);
+    TRY(refuse_idle(r, a, mesh));
     cli_fact_count(&r->facts, "vertices", mesh->num_vertices);
     cli_fact_count(&r->facts, "faces", mesh->num_faces);
     cli_fact_count(&r->facts, "tetrahedra", mesh->num_tetrahedra);
     if (mesh->num_tetrahedra) TRY(check_tetrahedra(r, a, mesh));
     unsigned how = (a->open ? CERTIFY_OPEN : 0u) | (a->self_intersections ? CERTIFY_EMBEDDED : 0u);
-    if (mesh->num_faces) TRY(blame_file(r, cli_certify(r, mesh, how)));
+    if (mesh->num_faces) status = blame_file(r, cli_certify(r, mesh, how | CERTIFY_INPUT));
+    cli_examine(r, status, mesh);
 done:
     brio_mesh_free(mesh);
     return status;

@@ -10,7 +10,7 @@
 
 typedef struct arguments {
     const char *crop;
-    double thin;
+    double thin, merge; /* merge: NaN where it is not given */
     int outliers;
 } arguments;
 
@@ -21,11 +21,13 @@ static const option options[] = {
      "drop points that are far from their K nearest points (8 to 16)", 0},
     {"thin", 0, OPTION_NUMBER, FIELD(thin), "S", "keep points at least S apart, all others being nearer than S to one",
      0},
+    {"merge", 0, OPTION_NUMBER | OPTION_OPTIONAL, FIELD(merge), "[DISTANCE]",
+     "merge vertices at equal positions, or at most DISTANCE apart; drops triangles that lose a corner", 0},
     {0},
 };
 #undef FIELD
 
-static const arguments defaults = {0};
+static const arguments defaults = {.merge = NAN};
 
 static brio_status take_crop(run *r, const char *text, double box[6]) {
     const char *at = text;
@@ -46,17 +48,25 @@ static void on_name(const char *name, void *user) {
     cli_fact_text(user, NULL, name); /* a list until the report */
 }
 
-/* Reports names as a list, and in a warning.   warning  with the file and the names. */
-static void report_names(run *r, const char *path, const char *name, const char *warning, const facts *names) {
+/* Reports names as a list.   text  receives them for a warning. */
+static void report_names(run *r, const char *name, const facts *names, char text[1024]) {
     size_t used = 0;
-    char text[1024] = "";
+    text[0] = 0;
     r->facts.failed |= names->failed;
     cli_fact_open(&r->facts, name, FACT_LIST);
     for (size_t i = 0; i < names->count; i++) cli_fact_text(&r->facts, NULL, names->list[i].text);
     cli_fact_close(&r->facts);
-    for (size_t i = 0; i < names->count && used < sizeof text; i++)
-        used += (size_t)snprintf(text + used, sizeof text - used, "%s %s", i ? "," : "", names->list[i].text);
-    if (names->count) cli_warn(r, "%s %s:%s", path, warning, text);
+    for (size_t i = 0; i < names->count && used < 1024; i++)
+        used += (size_t)snprintf(text + used, 1024 - used, "%s %s", i ? "," : "", names->list[i].text);
+}
+
+static void report_lost(run *r, const facts *lost, const facts *renamed) {
+    char text[1024];
+    report_names(r, "lost", lost, text);
+    if (lost->count) cli_warn(r, WARNING_LOST, r->common.output, text);
+    if (!renamed->count) return;
+    report_names(r, "renamed", renamed, text);
+    cli_warn(r, WARNING_RENAMED, r->common.output, text);
 }
 
 static brio_status take_files(run *r, brio_read_options *from, brio_write_options *to) {
@@ -80,20 +90,25 @@ static brio_status take_options(run *r, brio_convert_options *o) {
     if (chosen->thin < 0) FAIL(r, BRIO_ERR_ARGUMENT, "--thin: %g is below 0", chosen->thin);
     if (chosen->outliers > 63)
         FAIL(r, BRIO_ERR_ARGUMENT, "--drop-outliers: %d is not between 1 and 63", chosen->outliers);
+    if (chosen->merge < 0) FAIL(r, BRIO_ERR_ARGUMENT, "--merge: %g is below 0", chosen->merge);
+    o->merge = !isnan(chosen->merge);
+    if (o->merge) o->merge_distance = chosen->merge;
     o->thin = chosen->thin;
     o->drop_outliers = chosen->outliers;
 done:
     return status;
 }
 
-static void report(run *r, const brio_convert_stats *stats) {
+static void report(run *r, const brio_convert_stats *stats, const brio_convert_options *o) {
     facts *f = &r->facts;
     cli_fact_count(f, "points", stats->points);
     cli_fact_count(f, "faces", stats->faces);
     if (stats->tetrahedra) cli_fact_count(f, "tetrahedra", stats->tetrahedra);
-    if (stats->points_read != stats->points) cli_fact_count(f, "points_read", stats->points_read);
-    if (stats->outliers) cli_fact_count(f, "outliers", stats->outliers);
-    if (stats->thinned) cli_fact_count(f, "thinned", stats->thinned);
+    if (stats->points_read != stats->points || o->crop) cli_fact_count(f, "points_read", stats->points_read);
+    if (o->drop_outliers) cli_fact_count(f, "outliers", stats->outliers);
+    if (o->thin > 0) cli_fact_count(f, "thinned", stats->thinned);
+    if (o->merge) cli_fact_count(f, "merged_vertices", stats->merged);
+    if (o->merge) cli_fact_count(f, "degenerate", stats->degenerate);
     cli_fact_bool(f, "streamed", stats->streamed);
 }
 
@@ -124,10 +139,9 @@ static brio_status convert(run *r) {
     TRY(status);
     cli_stage(r, "select", stats.select_seconds);
     cli_stage(r, "convert", stats.seconds - stats.select_seconds);
-    report(r, &stats);
-    cli_tell_dropped(r, r->operands[0]);
-    report_names(r, r->common.output, "lost", "is without", &lost);
-    if (renamed.count) report_names(r, r->common.output, "renamed", "has other names for", &renamed);
+    report(r, &stats, &o);
+    cli_tell_input(r, r->operands[0]);
+    report_lost(r, &lost, &renamed);
     cli_tell_moved(r, r->common.output, moved, merged);
 done:
     cli_facts_free(&lost);
@@ -138,13 +152,15 @@ done:
 const command cli_convert = {
     .name = "convert",
     .operands = "A B",
-    .summary = "any format to any other; crops, thins, drops outliers",
+    .summary = "any format to any other; crops, thins, drops outliers, merges vertices",
     .description =
         "Points go by in blocks, so that a file of any size needs some MiB; files with faces are read as a whole. "
-        "First come the points in the box, of these those that are no outliers, of these a thinned set.",
+        "First come the points in the box, of these those that are no outliers, of these a thinned set; merging comes "
+        "last.",
     .examples =
         "brio convert scan.laz scan.ply\nevery property is kept\n"
-        "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n",
+        "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n"
+        "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n",
     .outputs = "ply xyz pts txt csv obj off stl vtu vtp node las npy glb",
     .output_optional = true,
     .group = GROUP_FILES,

@@ -130,6 +130,8 @@ static brio_status check_arguments(run *r, const arguments *a) {
     if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
     if (a->rounds && a->record_every) return cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --rounds and --record-every");
+    if (a->all_conflicts && a->locate != BRIO_LOCATION_HISTORY && a->locate != BRIO_LOCATION_TRACE)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--all-conflicts goes with --locate history and trace only");
     if (a->subgraph != SUBGRAPH_FITTING && !cli_needs_edges((brio_location)a->locate))
         status = cli_fail(r, BRIO_ERR_ARGUMENT, "--subgraph goes with --locate trace and neighbour only");
 done:

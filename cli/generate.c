@@ -159,7 +159,7 @@ static brio_status generate(run *r) {
     const arguments *a = r->arguments;
     int kind;
     brio_status status = BRIO_OK;
-    TRY(cli_refuse_columns(r));
+    TRY(cli_refuse_input_options(r));
     TRY(find_kind(r, &kind));
     TRY(kind == SOLID ? generate_solid(r, a) : generate_points(r, a, (brio_kind)kind));
 done:

@@ -107,7 +107,7 @@ static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
     if (v->failed) return BRIO_ERR_NO_MEMORY;
     bool known = status == BRIO_OK;
     if (known && v->points > MOST_IN_MEMORY) {
-        cli_tell_dropped(r, path);
+        cli_tell_input(r, path);
         return BRIO_OK;
     }
     if (!known && status != BRIO_ERR_FORMAT) return status;

@@ -45,7 +45,7 @@ static brio_status values_of(run *r, const brio_mesh *points, const char *name, 
         (*values)[i] = brio_property_value(property, i);
         none += !isfinite((*values)[i]);
     }
-    if (none) cli_warn(r, "%zu values of '%s' are not finite: neither are the results beside them", none, name);
+    if (none) cli_warn(r, WARNING_NOT_FINITE, none, name);
     return BRIO_OK;
 }
 
@@ -94,8 +94,7 @@ static brio_status interpolate(run *r) {
     TRY(cli_read_located(r, a->at, NULL, &l));
     TRY(values_of(r, l.points, a->property, &values));
     TRY(cli_make_locator(r, &l));
-    if (l.duplicates)
-        cli_warn(r, "%zu points are at the positions of others: the value of the first one there counts", l.duplicates);
+    if (l.duplicates) cli_warn(r, WARNING_COINCIDENT, l.duplicates);
     TRY(answer(r, &l, a, values));
 done:
     free(values);

@@ -34,7 +34,8 @@ static brio_status check_arguments(run *r, const arguments *a) {
     if (isnan(a->level)) return cli_fail(r, BRIO_ERR_ARGUMENT, "the level of the surface is missing: --level L");
     if (a->vertices && a->resolution)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "-n chooses the resolution: give one of -n and --resolution");
-    return cli_require_output(r, cli_mesh_formats, false);
+    brio_status status = cli_require_output_for(r, "vertex-normals", a->vertex_normals);
+    return status == BRIO_OK ? cli_require_output(r, cli_mesh_formats, false) : status;
 }
 
 static brio_status iso(run *r) {
@@ -42,7 +43,7 @@ static brio_status iso(run *r) {
     brio_iso_surface_options o = brio_iso_surface_options_default();
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
-    TRY(cli_refuse_columns(r));
+    TRY(cli_refuse_input_options(r));
     TRY(check_arguments(r, a));
     o.level = a->level;
     o.deviations = a->sigma;

@@ -103,7 +103,7 @@ static brio_status write_shape(run *r, brio_mesh *shape) {
     TRY(cli_output_format(r, r->common.output, r->common.format, &format));
     if ((format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) && shape->num_tetrahedra) {
         shape->num_tetrahedra = 0;
-        cli_warn(r, "%s: without the tetrahedra, which the format cannot hold", r->common.output);
+        cli_warn(r, WARNING_TETRAHEDRA, r->common.output);
     }
     TRY(cli_write(r, shape));
 done:
@@ -138,7 +138,7 @@ static brio_status medial(run *r) {
     status = brio_estimate_power_shape(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, input, work));
     status = brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
-    cli_suggest_labeling(r, status, a->labeling, by_mesh);
+    cli_suggest_labeling(r, status, input, by_mesh);
     if (status != BRIO_OK) goto done;
     report(r, &o, &s, shape);
     TRY(cli_carry_properties(r, input, NULL, shape));

@@ -4,6 +4,7 @@
 #define BRIO_CLI_NOTES_H
 
 #include "facts.h"
+#include "sentences.h"
 
 /** Sentences one after the other, each ended by a zero. Zeroed to begin with. What does not fit is left out. */
 typedef struct notes {

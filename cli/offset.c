@@ -64,7 +64,7 @@ static brio_status offset_surface(run *r, const power_crust_options *crust, cons
     status = cli_require_work(r, status, points, work);
     if (status != BRIO_OK) return status;
     status = brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &found);
-    cli_suggest_labeling(r, status, a->crust.labeling, by_mesh);
+    cli_suggest_labeling(r, status, points, by_mesh);
     if (status != BRIO_OK) return status;
     brio_power_crust_stats s = {
         .poles = found.poles, .crust_seconds = found.crust_seconds, .simplify_seconds = found.simplify_seconds};
@@ -88,6 +88,7 @@ static brio_status offset(run *r) {
     brio_status status = BRIO_OK;
     bool by_mesh;
     if (isnan(a->distance)) FAIL(r, BRIO_ERR_ARGUMENT, "no distance: --distance D is missing");
+    TRY(cli_require_output_for(r, "vertex-normals", a->vertex_normals));
     TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read(r, r->operands[0], &points));
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));

@@ -1,8 +1,8 @@
 /* The command line's options, by tables.
  *
  * One pass over the arguments: `--name value`, `--name=value`, `-x value`, `-xvalue`. An option that needs a value
- * takes the next argument unless that looks like an option itself; negative numbers and `-` are values. The last of
- * repeated options counts. */
+ * takes the next argument unless that looks like an option itself; negative numbers and `-` are values. An option that may
+ * stand without a value takes the next argument if that is a number. The last of repeated options counts. */
 #include "options.h"
 #include <ctype.h>
 #include <errno.h>
@@ -143,7 +143,7 @@ static bool store(option_parse *parse, const option *row, void *field, const cha
         return true;
     }
     bool above;
-    const char *expected = parse_value(row->kind & ~OPTION_POSITIVE, text, field, &above);
+    const char *expected = parse_value(row->kind & ~(OPTION_POSITIVE | OPTION_OPTIONAL), text, field, &above);
     if (expected) return wrong(parse, "--%s: '%s' is not %s", row->name, text, expected);
     if (row->kind & OPTION_POSITIVE && !above) return wrong(parse, "--%s: '%s' is not above 0", row->name, text);
     return true;
@@ -210,6 +210,10 @@ static bool take(option_parse *parse, int argc, char **argv, int *i) {
         if (value) return wrong(parse, "--%s takes no value", f.row->name);
         *(bool *)f.field = true;
         return true;
+    }
+    if (!value && f.row->kind & OPTION_OPTIONAL) {
+        double number;
+        value = *i + 1 < argc && parse_number(argv[*i + 1], &number) ? argv[++*i] : "0";
     }
     if (!value) {
         if (*i + 1 >= argc || looks_like_option(argv[*i + 1]))

@@ -8,19 +8,20 @@
 #include <stdio.h>
 
 typedef enum option_kind {
-    OPTION_END = 0,        /* closes a table */
-    OPTION_FLAG,           /* bool, without a value */
-    OPTION_TEXT,           /* const char *, a view of the command line */
-    OPTION_INPUT,          /* the same: a file that is read */
-    OPTION_OUTPUT,         /* the same: a file that is written */
-    OPTION_INT,            /* int */
-    OPTION_NATURAL,        /* uint64_t: 1000000, also 1e6 */
-    OPTION_NUMBER,         /* double, finite */
-    OPTION_SIZE,           /* size_t bytes: 500M, 8G, 1.5GiB */
-    OPTION_CHOICE,         /* int: a name from a list */
-    OPTION_TITLE,          /* no option: the title, in `meaning`, of the rows up to the next one */
-    OPTION_NOTE,           /* no option: what `name`, a choice of the row above, means */
-    OPTION_POSITIVE = 0x10 /* added to a kind of number: 0 and less are refused */
+    OPTION_END = 0,         /* closes a table */
+    OPTION_FLAG,            /* bool, without a value */
+    OPTION_TEXT,            /* const char *, a view of the command line */
+    OPTION_INPUT,           /* the same: a file that is read */
+    OPTION_OUTPUT,          /* the same: a file that is written */
+    OPTION_INT,             /* int */
+    OPTION_NATURAL,         /* uint64_t: 1000000, also 1e6 */
+    OPTION_NUMBER,          /* double, finite */
+    OPTION_SIZE,            /* size_t bytes: 500M, 8G, 1.5GiB */
+    OPTION_CHOICE,          /* int: a name from a list */
+    OPTION_TITLE,           /* no option: the title, in `meaning`, of the rows up to the next one */
+    OPTION_NOTE,            /* no option: what `name`, a choice of the row above, means */
+    OPTION_POSITIVE = 0x10, /* added to a kind of number: 0 and less are refused */
+    OPTION_OPTIONAL = 0x20  /* added to a kind of number: may stand without a value, which is then 0 */
 } option_kind;
 
 /** A name and what it stands for. A list ends with NULL. */

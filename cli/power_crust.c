@@ -2,8 +2,10 @@
 #include "power_crust.h"
 #include "estimate.h"
 #include "files.h"
+#include "hints.h"
 #include "properties.h"
 #include <stdlib.h>
+#include <string.h>
 
 const option_choice cli_labelings[] = {{"global", BRIO_LABELING_GLOBAL},
                                        {"greedy", BRIO_LABELING_GREEDY},
@@ -26,9 +28,10 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
     return BRIO_OK;
 }
 
-void cli_suggest_labeling(run *r, brio_status status, int labeling, bool by_mesh) {
-    if (status == BRIO_ERR_NO_ANSWER && by_mesh && labeling == LABELS_OF_INPUT)
-        cli_hint(r, "--labeling global goes by the points of the mesh and not by its faces");
+void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bool by_mesh) {
+    bool hollow = status == BRIO_ERR_NO_ANSWER && strstr(cli_message(r, status), "the mesh has no inside") != NULL;
+    cli_examine(r, status, input);
+    if (hollow && by_mesh) cli_hint(r, HINT_LABELING);
 }
 
 brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points, const double *normals) {

@@ -21,8 +21,8 @@ extern const option_choice cli_labelings_or_mesh[];
  *  asked for that are not there. */
 brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, bool *by_mesh);
 
-/** Hints what can be done where a mesh that the user did not ask to go by has no inside. */
-void cli_suggest_labeling(run *r, brio_status status, int labeling, bool by_mesh);
+/** Hints what can be done where a mesh has no inside, or points no surface.   by_mesh  whether the mesh was gone by. */
+void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bool by_mesh);
 
 /** Rows of a command's option table whose struct has power_crust_options as its member `field`: those that the labeled
  *  Delaunay triangulation has, too, and those of the power crust alone. */

@@ -37,10 +37,10 @@ static size_t settle(run *r, const char *path, const single_loss *l, brio_write_
     bool harmful = cli_single_is_harmful(l, reason);
     if (!harmful) return l->merged;
     if (o->format == BRIO_FORMAT_STL) {
-        cli_warn(r, "%s: %s", path, reason);
+        cli_warn(r, WARNING_SINGLE, path, reason);
         return l->merged;
     }
-    cli_warn(r, "%s: in double precision: %s", path, reason);
+    cli_warn(r, WARNING_DOUBLE, path, reason);
     cli_fact_bool(&r->facts, "float32", false);
     o->float32 = 0;
     return 0;
@@ -71,6 +71,6 @@ done:
 void cli_tell_moved(run *r, const char *path, double moved, size_t merged) {
     if (moved > 0) cli_fact_real(&r->facts, "moved", moved);
     if (merged) cli_fact_count(&r->facts, "merged", merged);
-    if (merged) cli_warn(r, "%s: single precision merges %zu points with others", path, merged);
-    if (moved > 0) cli_warn(r, "%s: rounded coordinates move points by up to %.3g", path, moved);
+    if (merged) cli_warn(r, WARNING_MERGED, path, merged);
+    if (moved > 0) cli_warn(r, WARNING_MOVED, path, moved);
 }

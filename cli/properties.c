@@ -27,7 +27,7 @@ void cli_set_aside(run *r, brio_mesh *mesh, const char *name) {
         if (strcmp(p->name, name) != 0) continue;
         make_free_name(mesh, name, free_name);
         memcpy(p->name, free_name, sizeof free_name);
-        cli_warn(r, "the property %s of the points is now %s", name, p->name);
+        cli_warn(r, WARNING_SET_ASIDE, name, p->name);
     }
 }
 

@@ -4,7 +4,6 @@
 #include "interrupt.h"
 #include "lost.h"
 #include "precision.h"
-#include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,15 +106,54 @@ static brio_status check_compress(run *r) {
                     c->output);
 }
 
+static bool names_output(const run *r) {
+    if (r->common.output) return true;
+    for (const option *row = r->command->options; row->kind; row++) {
+        const char *path = NULL;
+        if (row->kind == OPTION_OUTPUT) memcpy(&path, (const char *)r->arguments + row->offset, sizeof path);
+        if (path) return true;
+    }
+    return false;
+}
+
+brio_status cli_require_output_for(run *r, const char *name, bool given) {
+    if (!given || r->common.output) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: --%s needs -o FILE", name);
+}
+
+/* Options about a file that is not written are a mistake. */
+static brio_status refuse_idle(run *r) {
+    const common_options *c = &r->common;
+    bool written = names_output(r);
+    const struct {
+        const char *name;
+        bool idle;
+    } given[] = {{"format", c->format && !c->output},
+                 {"ascii", c->ascii && !written},
+                 {"float32", c->float32 && !written},
+                 {"compress", c->compress && !written}};
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        if (!given[i].idle) continue;
+        if (r->command->outputs) return cli_require_output_for(r, given[i].name, true);
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s writes no file; --%s has no meaning here", r->command->name,
+                        given[i].name);
+    }
+    return BRIO_OK;
+}
+
 static brio_status check_common(run *r) {
     const common_options *c = &r->common;
+    brio_status status = BRIO_OK;
+    TRY(refuse_idle(r));
     if (c->threads < 0 || c->threads > MAX_THREADS)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--threads: %d is not between 0 and %d", c->threads, MAX_THREADS);
     if (c->json && cli_goes_to_stdout(c->output))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--json and -o %s both want standard output", c->output);
     if (c->input_format && brio_format_of(c->input_format) == BRIO_FORMAT_AUTO)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--input-format: unknown format '%s'", c->input_format);
-    return check_compress(r);
+    status = check_compress(r);
+done:
+    return status;
 }
 
 brio_status cli_begin(run *r) {
@@ -200,15 +238,20 @@ brio_read_options cli_read_options(run *r) {
     options.dropped = &r->dropped;
     options.salvage = c->salvage;
     options.missing = &r->missing;
+    options.notes = &r->noted;
     r->dropped = r->missing = 0;
+    r->noted = (brio_read_notes){.size = sizeof r->noted};
     return options;
 }
 
-void cli_tell_dropped(run *r, const char *path) {
+void cli_tell_input(run *r, const char *path) {
+    const brio_read_notes *found = &r->noted;
+    if (found->numbered) cli_warn(r, WARNING_NUMBERED, path);
+    if (found->rounded) cli_warn(r, WARNING_ROUNDED, path, found->rounded_line, found->rounded_column, found->rounded);
     if (r->common.drop_invalid) cli_fact_count(&r->facts, "dropped", r->dropped);
-    if (r->dropped) cli_warn(r, "%s: left out %" PRIu64 " points that are not finite", path, r->dropped);
+    if (r->dropped) cli_warn(r, WARNING_DROPPED, path, r->dropped);
     if (r->common.salvage) cli_fact_count(&r->facts, "missing", r->missing);
-    if (r->missing) cli_warn(r, "%s: ends early: %" PRIu64 " points miss", path, r->missing);
+    if (r->missing) cli_warn(r, WARNING_MISSING, path, r->missing);
 }
 
 brio_status cli_read(run *r, const char *path, brio_mesh **out) {
@@ -216,7 +259,7 @@ brio_status cli_read(run *r, const char *path, brio_mesh **out) {
     brio_status status = BRIO_OK;
     TRY(brio_read_as(r->ctx, path, &options, out));
     TRY(cli_check_interrupt(r));
-    cli_tell_dropped(r, path);
+    cli_tell_input(r, path);
     TRY(cli_check_precision(r, path, *out));
     r->has_properties |= (*out)->num_properties > 0;
     cli_lap(r, "read");
@@ -224,10 +267,10 @@ done:
     return status;
 }
 
-brio_status cli_refuse_columns(run *r) {
-    if (!r->common.columns) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s reads no text of points; --columns has no meaning here",
-                    r->command->name);
+brio_status cli_refuse_input_options(run *r) {
+    if (!r->common.columns && !r->common.input_format) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s reads no points; --%s has no meaning here", r->command->name,
+                    r->common.columns ? "columns" : "input-format");
 }
 
 /* Moves the arrays into a mesh that is freed. */

@@ -54,6 +54,7 @@ typedef struct run {
     facts facts;
     bool has_properties;       /* an input's points have */
     uint64_t dropped, missing; /* of the file that was read last, as in brio_read_options */
+    brio_read_notes noted;     /* the same */
     progress bar;
     struct {
         const char *stage;
@@ -64,6 +65,7 @@ typedef struct run {
     bool neighbours, faces, edges; /* whether cli_write writes these files beside .node and .ele */
     char message[1024];            /* of a failure found here; the library's is in the context */
     notes warnings, hints;
+    bool flat; /* a failure is explained by the points: they lie in a plane or on a line */
 } run;
 
 /** Where the help lists a command. */
@@ -111,16 +113,17 @@ bool cli_limits_memory(const run *r);
 brio_status cli_require_memory(run *r, double bytes);
 
 /** Returns what the options of the command line say about reading. The library stores the counts of points that were left out, and
- *  that miss, in the run: cli_tell_dropped. */
+ *  that miss, and what else a reader found, in the run: cli_tell_input. */
 brio_read_options cli_read_options(run *r);
-/** Reports, and warns of, the points that reading left out and those that the file lacks. */
-void cli_tell_dropped(run *r, const char *path);
+/** Reports, and warns of, the points that reading left out and those that the file lacks. Warns of what else the user may
+ *  not expect (brio_read_notes). */
+void cli_tell_input(run *r, const char *path);
 
 /** Reads an input with --input-format and --columns. The time is lapped as `read`. */
 brio_status cli_read(run *r, const char *path, brio_mesh **out);
 
-/** Refuses --columns for a command that reads no text of points. */
-brio_status cli_refuse_columns(run *r);
+/** Refuses --columns and --input-format for a command that reads no points. */
+brio_status cli_refuse_input_options(run *r);
 
 /** Frees the faces, tetrahedra and edges of a mesh. */
 brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);
@@ -132,6 +135,9 @@ brio_status cli_read_points(run *r, const char *path, brio_mesh **out);
 extern const brio_format cli_mesh_formats[];
 /** Those of points with properties. */
 extern const brio_format cli_point_formats[];
+
+/** Refuses an option, where it was given, about a file that is not written. */
+brio_status cli_require_output_for(run *r, const char *option, bool given);
 
 /** Finds everything wrong with -o that can be found before the work: no output, no format, a format not among those of
  *  `formats` (ended by BRIO_FORMAT_AUTO; NULL: any), a folder that cannot be written.   optional  the command has a use

@@ -38,7 +38,7 @@ static brio_status subdivide(run *r) {
     cli_fact_integer(&r->facts, "levels", a->levels);
     cli_fact_count(&r->facts, "vertices", fine->num_vertices);
     cli_fact_count(&r->facts, "faces", fine->num_faces);
-    TRY(cli_certify(r, fine, true));
+    TRY(cli_certify(r, fine, CERTIFY_OPEN | CERTIFY_INPUT));
     TRY(cli_write(r, fine));
 done:
     brio_mesh_free(mesh);

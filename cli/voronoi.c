@@ -92,11 +92,24 @@ static void report(run *r, const brio_cells *cells, const brio_delaunay_stats *s
     cli_fact_real(f, "volume", cells->volume_sum);
 }
 
+/* Points outside are the sites of cells all the same, which seldom is what was meant. */
+static void tell_outside(run *r, const brio_mesh *mesh, const double box[6]) {
+    size_t outside = 0;
+    for (size_t i = 0; i < mesh->num_vertices; i++) {
+        const double *p = mesh->vertices + 3 * i;
+        bool inside = true;
+        for (int k = 0; k < 3; k++) inside &= p[k] >= box[k] && p[k] <= box[k + 3];
+        outside += !inside;
+    }
+    if (outside) cli_warn(r, WARNING_OUTSIDE, outside, mesh->num_vertices, r->operands[0]);
+}
+
 static brio_status report_box(run *r, const boxed_diagram *d, const brio_cells *cells) {
     brio_status status = BRIO_OK;
     double error;
     if (!d->options->box) return BRIO_OK;
     TRY(cli_box_error(r, d, cells, &error));
+    tell_outside(r, d->mesh, d->options->box);
     cli_fact_real(&r->facts, "box_volume", cells->region_volume);
     cli_fact_real(&r->facts, "box_error", error);
 done:

@@ -136,10 +136,9 @@ static void tell_weights(run *r, const weights_options *options, const brio_mesh
     bool weight = brio_mesh_property(mesh, "weight"), radius = brio_mesh_property(mesh, "radius");
     if ((!weight && !radius) || options->unweighted || options->estimate) return;
     if (options->file || options->exponent != NO_EXPONENT)
-        cli_warn(r, "--weights%s overrules the property %s of the points", options->file ? "" : "-mod",
-                 weight ? "weight" : "radius");
+        cli_warn(r, WARNING_OVERRULED, options->file ? "" : "-mod", weight ? "weight" : "radius");
     else if (!weight)
-        cli_warn(r, "the points have radii: each weighs its radius squared (--unweighted ignores the radii)");
+        cli_warn(r, WARNING_RADII);
 }
 
 brio_status cli_weights(run *r, const weights_options *options, const brio_mesh *mesh, double **weights) {

@@ -37,7 +37,7 @@ static void write_commands(FILE *out) {
 /* What stands behind an option that takes a value. */
 static void write_values(FILE *out, const command *c, const option *row) {
     const char *extensions = pages_extensions(c, row);
-    if (!row->value) return;
+    if (!row->value || row->kind & OPTION_OPTIONAL) return; /* a file may stand behind it */
     fprintf(out, "    %s:--%s", c->name, row->name);
     if (row->letter) fprintf(out, " | %s:-%c", c->name, row->letter);
     fputs(") ", out);

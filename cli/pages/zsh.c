@@ -33,7 +33,7 @@ static void put_choices(FILE *out, const option_choice *choices) {
 static void put_value(FILE *out, const command *c, const option *row) {
     if (!row->value) return;
     const char *extensions = pages_extensions(c, row);
-    fputc(':', out);
+    fputs(row->kind & OPTION_OPTIONAL ? "::" : ":", out);
     put_text(out, row->value);
     fputc(':', out);
     if (row->choices)

@@ -829,6 +829,29 @@ BRIO_API brio_status brio_mesh_carry_properties(brio_context *ctx, const brio_me
 BRIO_API brio_status brio_mesh_keep_components(brio_mesh *mesh, int largest, size_t least_faces,
                                                size_t *dropped_components, size_t *dropped_faces);
 
+/** What merging vertices changed. */
+typedef struct brio_merge_stats {
+    size_t size;
+    size_t vertices;                 /* that another one stands for */
+    size_t faces, tetrahedra, edges; /* dropped, since too few distinct corners were left */
+} brio_merge_stats;
+
+/** Merges vertices at equal positions, or near each other, in place: faces that have their vertices to themselves, as
+ *  some programs write them, then share them. Vertices at most `distance` apart become one, and so does a chain of them;
+ *  -0 equals 0. The vertex of the lexicographically least position stays, of coincident ones the first, with its position
+ *  and its properties. Vertices keep their order. The merged positions do not depend on the order of the vertices, nor on
+ *  the number of threads.
+ *  A face loses corners that equal the next one, and is dropped if fewer than three distinct corners are left. Tetrahedra
+ *  and edges with equal corners are dropped, and so are those that were given like that. Faces that become equal stay.
+ *  distance  0: equal positions only; or a normal number, at least 2^-38 times the largest coordinate. Distances are
+ *            rounded to doubles.
+ *  stats     NULL, or receives what was changed.
+ *  Cost: O(n) where few vertices are in a cube of half the distance; the number of pairs of two such cubes at most, one
+ *  beside the other. Memory: 24 bytes a vertex, and up to 64 for each distinct position or cube.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the distance, or an index out of range), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE
+ *  (2^32 corners), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. After a failure the mesh is as it was. */
+BRIO_API brio_status brio_mesh_merge_vertices(brio_mesh *mesh, double distance, brio_merge_stats *stats);
+
 /** What the connectivity of a mesh's polygons says about the surface. Vertices at the same position count as distinct.
  *  Components are sets of faces joined across edges. The genus is the sum over the components of
  *  (2 - chi - boundary loops) / 2. */
@@ -1580,7 +1603,9 @@ typedef struct brio_iso_surface_options {
     int deviations; /* 1: `level` counts standard deviations above the mean of the map; default 0 */
     int conforming; /* 1: every triangle is a facet of the Delaunay triangulation of the mesh's vertices, vertices at one
                           position taken as one [Attali Lachaud 2001]; default 0 */
-    double blobbiness; /* atoms: above 0 and at most 100; the larger, the closer the surface is to spheres; default 2 */
+    double
+        blobbiness; /* atoms: above 0 and at most 100; the larger, the closer the surface is to spheres; default 2, and
+                          nothing else for a map */
     size_t resolution; /* cells along the longest side; default 0: the map's own, or half an angstrom for atoms */
     size_t vertices;   /* not 0: chooses the resolution so that the mesh has about this many vertices; default 0 */
 } brio_iso_surface_options;
@@ -1706,6 +1731,16 @@ BRIO_API const brio_format_info *brio_format_facts(brio_format format);
 
 /** Receives the name of something that a mesh or a file cannot hold, valid during the call. */
 typedef void (*brio_lost_fn)(const char *name, void *user);
+/** What a reader found that the caller may not expect. */
+typedef struct brio_read_notes {
+    size_t size;
+    int numbered; /* 1: a text whose columns have no names, and whose first column, read as x, numbers the rows from 0 or 1
+                     on, as in id x y z; in any order, 4 rows at least */
+    int reserved_int;
+    uint64_t rounded;        /* whole numbers of a text that doubles do not hold (beyond 2^53) and that were rounded */
+    uint64_t rounded_line;   /* of the first of them */
+    char rounded_column[64]; /* its property, or x, y or z */
+} brio_read_notes;
 
 typedef struct brio_read_options {
     size_t size;
@@ -1723,6 +1758,7 @@ typedef struct brio_read_options {
     brio_lost_fn left_out; /* called once for each part of the file that the mesh has not, such as "textures", after all
                               has been read; docs/formats.md lists the names. Default NULL */
     void *left_out_user;
+    brio_read_notes *notes; /* default NULL, or receives what was found */
 } brio_read_options;
 
 BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);
@@ -1829,6 +1865,9 @@ typedef struct brio_convert_options {
     void *lost_user;
     brio_lost_fn renamed; /* default NULL: called once for each property that has another name in the file */
     void *renamed_user;
+    int merge; /* 1: brio_mesh_merge_vertices, within merge_distance; default 0 */
+    int reserved_int;
+    double merge_distance; /* default 0: equal positions only */
 } brio_convert_options;
 
 BRIO_API void brio_convert_options_init(brio_convert_options *options, size_t size);
@@ -1845,11 +1884,13 @@ typedef struct brio_convert_stats {
     int streamed;                                           /* 1: block by block; 0: the whole file was in memory */
     int passes;                                             /* how often the file was read */
     double select_seconds, seconds;                         /* finding outliers and thinning, reading included; all */
+    uint64_t merged;                                        /* vertices that others stand for, by options->merge */
+    uint64_t degenerate;                                    /* faces, tetrahedra and edges dropped by merging */
 } brio_convert_stats;
 
 /** Converts a file to another format, or chooses among its points, or both. First come the points in the box, of these
  *  those that are no outliers, of these a thinned set; the points keep their order and all properties. A polygon, tetrahedron
- *  or edge stays if all its vertices stay.
+ *  or edge stays if all its vertices stay. Merging comes last; the whole file is then in memory.
  *  Memory: files of points are converted block by block, in less than 64 MB with two threads, from LAS, LAZ, PLY, text, NPY,
  *  PCD (uncompressed) and PTX to LAS, PLY, text and NPY. The input is read twice or three times if the output must know all
  *  points before the first one (LAS; PLY and NPY into a pipe, if their number is not known), or if outliers are dropped or
@@ -1857,13 +1898,13 @@ typedef struct brio_convert_stats {
  *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
  *  file is in memory.
  *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, the names of metadata, and "precision" if coordinates are rounded; and so is what brio does not read of the
+ *  properties, the names of metadata, and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
  *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
  *  Progress begins anew where a text is read again because late rows lack a column.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.
- *  Returns what brio_read, brio_write, brio_outliers and brio_thin return, and BRIO_ERR_FORMAT if the input changed between
- *  two readings. */
+ *  Returns what brio_read, brio_write, brio_outliers, brio_thin and brio_mesh_merge_vertices return, and BRIO_ERR_FORMAT if
+ *  the input changed between two readings. */
 BRIO_API brio_status brio_convert(brio_context *ctx, const char *from, const char *to,
                                   const brio_convert_options *options, brio_convert_stats *stats);
 
@@ -1963,7 +2004,7 @@ BRIO_API brio_status brio_estimate_labeled_delaunay(brio_context *ctx, size_t nu
                                                     const brio_labeled_delaunay_options *options, uint64_t *bytes);
 
 /** Estimates the memory of a reconstruction from num_points samples.   options  NULL for the defaults. Of the options,
- *  `triangulate` and `simplify` count; `pieces`, `scale` and `redundancy` do not.
+ *  `triangulate`, `simplify` and `pieces` count; `scale` and `redundancy` do not.
 *  Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
 BRIO_API brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points,
                                                const brio_power_crust_options *options, uint64_t *bytes);

@@ -74,13 +74,14 @@ static PyObject *conversion_dict(const brio_convert_stats *s, const losses *l) {
     PyObject *lost = l->failed ? PyErr_NoMemory() : list_of(l);
     if (!lost) return NULL;
 #define COUNT(name) #name, (unsigned long long)s->name
-    return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:N,s:N}", COUNT(points_read), COUNT(points), COUNT(faces),
-                         COUNT(tetrahedra), COUNT(edges), COUNT(outliers), COUNT(thinned), "streamed",
-                         PyBool_FromLong(s->streamed), "lost", lost);
+    return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:N,s:N}", COUNT(points_read), COUNT(points),
+                         COUNT(faces), COUNT(tetrahedra), COUNT(edges), COUNT(outliers), COUNT(thinned), COUNT(merged),
+                         COUNT(degenerate), "streamed", PyBool_FromLong(s->streamed), "lost", lost);
 #undef COUNT
 }
 
-/* convert(from, to, columns or None, write options, box or None, (neighbours, factor, thin), threads, progress): a dict. */
+/* convert(from, to, columns or None, write options, box or None, (neighbours, factor, thin, merge, distance), threads,
+ * progress): a dict. */
 static PyObject *convert(PyObject *module, PyObject *args) {
     PyObject *options, *box, *progress, *result = NULL;
     brio_read_options in = brio_read_options_default();
@@ -93,8 +94,9 @@ static PyObject *convert(PyObject *module, PyObject *args) {
     call c;
     input corners = {.held = 0};
     losses lost = {NULL, 0, 0};
-    if (!PyArg_ParseTuple(args, "yyzO!O(idd)iO", &from, &to, &in.columns, &PyTuple_Type, &options, &box,
-                          &o.drop_outliers, &outliers.factor, &o.thin, &threads, &progress) ||
+    if (!PyArg_ParseTuple(args, "yyzO!O(iddpd)iO", &from, &to, &in.columns, &PyTuple_Type, &options, &box,
+                          &o.drop_outliers, &outliers.factor, &o.thin, &o.merge, &o.merge_distance, &threads,
+                          &progress) ||
         read_write_options(options, &out))
         return NULL;
     o.from = &in, o.to = &out, o.outliers = &outliers, o.lost = lose, o.lost_user = &lost;
@@ -118,6 +120,6 @@ PyMethodDef files_methods[] = {
     {"read", read_mesh, METH_VARARGS, "read(path, columns, threads, progress): a mesh."},
     {"write", write_mesh, METH_VARARGS, "write(path, mesh, (ascii, float32, compress, comment), threads, progress)"},
     {"convert", convert, METH_VARARGS,
-     "convert(from, to, columns, write options, box, (neighbours, factor, thin), threads, progress): a dict."},
+     "convert(from, to, columns, write options, box, (neighbours, factor, thin, merge, distance), threads, progress)"},
     {NULL, NULL, 0, NULL},
 };

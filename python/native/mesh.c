@@ -236,6 +236,33 @@ static PyObject *mesh_kept_components(PyObject *module, PyObject *args) {
     return call_end_with_mesh(&c, status, made);
 }
 
+/* Returns a copy whose vertices are merged, tetrahedra and edges included; it is freed if that fails. */
+static brio_status merged_vertices(brio_context *ctx, const brio_mesh *m, double distance, brio_mesh **out) {
+    brio_status status = copy_surface(ctx, m, out);
+    if (status == BRIO_OK && m->num_tetrahedra)
+        status = brio_mesh_set_tetrahedra(*out, m->tetrahedra, 4, m->num_tetrahedra);
+    if (status == BRIO_OK && m->num_edges) status = brio_mesh_set_edges(*out, m->edges, m->num_edges);
+    if (status == BRIO_OK) status = brio_mesh_merge_vertices(*out, distance, NULL);
+    if (status == BRIO_OK) return status;
+    brio_mesh_free(*out);
+    *out = NULL;
+    return status;
+}
+
+/* mesh_merged_vertices(mesh, distance, progress): a mesh of fewer vertices. */
+static PyObject *mesh_merged_vertices(PyObject *module, PyObject *args) {
+    PyObject *object, *progress;
+    double distance;
+    call c;
+    brio_mesh *made = NULL;
+    brio_status status;
+    if (!PyArg_ParseTuple(args, "OdO", &object, &distance, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), 0, progress)) return NULL;
+    CALL(c, status, merged_vertices(c.ctx, m, distance, &made));
+    return call_end_with_mesh(&c, status, made);
+}
+
 /* mesh_subdivided(mesh, levels, progress): a mesh whose triangles are cut into four, `levels` times. */
 static PyObject *mesh_subdivided(PyObject *module, PyObject *args) {
     PyObject *object, *progress;
@@ -319,6 +346,7 @@ PyMethodDef mesh_methods[] = {
     {"mesh_self_intersections", mesh_self_intersections, METH_VARARGS,
      "mesh_self_intersections(mesh, threads, progress)"},
     {"mesh_distance", mesh_distance, METH_VARARGS, "mesh_distance(a, b, samples, seed, threads, progress)"},
+    {"mesh_merged_vertices", mesh_merged_vertices, METH_VARARGS, "mesh_merged_vertices(mesh, distance, progress)"},
     {"mesh_kept_components", mesh_kept_components, METH_VARARGS, "mesh_kept_components(mesh, largest, least_faces)"},
     {"mesh_subdivided", mesh_subdivided, METH_VARARGS, "mesh_subdivided(mesh, levels, progress)"},
     {NULL, NULL, 0, NULL},

@@ -297,6 +297,33 @@ def test_simplified_meshes_keep_properties(ball):
     assert (fewer.properties["place"] == ball[fewer.properties["number"]]).all()
 
 
+def test_merged_vertices():
+    corners = CORNERS[TRIANGLES.ravel()]
+    apart = brio.Mesh(corners, np.arange(len(corners)).reshape(-1, 3), properties={"n": np.arange(len(corners))})
+    assert not apart.certificate.closed
+    whole = apart.merge_vertices()
+    assert whole.certificate.closed and len(whole.vertices) == len(CORNERS)
+    first = [np.flatnonzero((corners == v).all(axis=1))[0] for v in whole.vertices]
+    assert (np.asarray(whole.properties["n"]) == first).all()
+    moved = brio.Mesh(corners + 1e-4 * np.random.default_rng(1).random(corners.shape), apart.faces)
+    assert len(moved.merge_vertices().vertices) == len(corners) and moved.merge_vertices(0.001).certificate.closed
+    for wrong in (-1, np.nan, np.inf, "0", None):
+        with pytest.raises(brio.ArgumentError):
+            apart.merge_vertices(wrong)
+
+
+def test_conversion_merges(tmp_path):
+    corners = CORNERS[TRIANGLES.ravel()]
+    brio.Mesh(corners, np.arange(len(corners)).reshape(-1, 3)).write(tmp_path / "a.ply")
+    done = brio.convert(tmp_path / "a.ply", tmp_path / "b.ply", merge=True)
+    assert (done.points, done.merged, done.degenerate) == (len(CORNERS), len(corners) - len(CORNERS), 0)
+    assert brio.read(tmp_path / "b.ply").certificate.closed
+    assert brio.convert(tmp_path / "a.ply", tmp_path / "c.ply", merge=100.0).degenerate == len(TRIANGLES)
+    assert brio.convert(tmp_path / "a.ply", tmp_path / "d.ply").points == len(corners)
+    with pytest.raises(brio.ArgumentError):
+        brio.convert(tmp_path / "a.ply", tmp_path / "e.ply", merge=-1.0)
+
+
 def test_components_and_subdivision():
     two = brio.Mesh(np.concatenate([CORNERS, CORNERS * 3 + 9]), np.concatenate([TRIANGLES, TRIANGLES[:3] + 4]),
                     properties={"n": np.arange(8)})

@@ -135,12 +135,20 @@ brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points, cons
     return status;
 }
 
+/* The super co-cone keeps the points and the triangles of all pieces, and works on one piece of up to twice the mean size.
+ * Measured on scans of 60,000 and 200,000 points in 3 to 154 pieces, with one thread. */
+static double cocone_bytes(double points, double pieces) {
+    static const double KEPT_A_POINT = 210, A_PIECE = 180e3;
+    double whole = COCONE_BYTES_A_POINT * points;
+    return pieces < 2 ? whole : fmin(whole, KEPT_A_POINT * points + whole * 2 / pieces) + A_PIECE * pieces;
+}
+
 brio_status brio_estimate_cocone(brio_context *ctx, size_t num_points, const brio_cocone_options *options,
                                  uint64_t *bytes) {
     BRIO_DOOR;
     brio_cocone_options o = brio_cocone_options_default();
     brio_status status = BRIO_TAKE(ctx, brio_cocone_options, options, &o);
-    *bytes = status == BRIO_OK ? bytes_of(COCONE_BYTES_A_POINT * (double)num_points) : 0;
+    *bytes = status == BRIO_OK ? bytes_of(cocone_bytes((double)num_points, (double)o.pieces)) : 0;
     return status;
 }
 

@@ -42,6 +42,7 @@ typedef struct brio_builder {
     char version[64];        /* what the reader says of the file's version; may be empty */
     char (*left_out)[64];    /* names of what the file has and the mesh has not, each once: brio_builder_leave_out */
     size_t num_left_out, left_out_capacity;
+    brio_read_notes notes; /* what the reader says of the file's content; without its size */
 } brio_builder;
 
 /** Makes an empty mesh. It belongs to the caller: brio_mesh_free(b->mesh), on failure too. */

@@ -73,6 +73,8 @@ brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso
     BRIO_TRY(BRIO_TAKE(ctx, brio_iso_surface_options, options, &o));
     BRIO_TRY(check_options(ctx, &o));
     BRIO_TRY(read_source(ctx, path, &from));
+    BRIO_REQUIRE(ctx, !from.is_map || o.blobbiness == STANDARD.blobbiness, BRIO_ERR_ARGUMENT,
+                 "%s: blobbiness %g: the file is a map, and blobbiness is of atoms", path, o.blobbiness);
     BRIO_TRY(brio_iso_source_surface(ctx, &from, &o, out));
 done:
     brio_iso_source_free(ctx, &from);

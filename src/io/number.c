@@ -182,6 +182,16 @@ bool brio_parse_count(const char **text, uint64_t *value) {
     return true;
 }
 
+bool brio_is_rounded(const char *text, size_t length, double value) {
+    const char *p = text + (*text == '-' || *text == '+'), *end = text + length;
+    uint64_t digits;
+    if (!(fabs(value) >= 0x1p53) || !is_digit(*p)) return false;
+    bool held = brio_parse_count(&p, &digits);
+    if (held) return p == end && !(fabs(value) < 0x1p64 && (uint64_t)fabs(value) == digits);
+    while (is_digit(*p)) p++;
+    return p == end;
+}
+
 /* --- printing --- */
 
 static uint64_t power_of_10(int n) {

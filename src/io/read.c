@@ -151,6 +151,7 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     brio_release(ctx, job->left_out);
     job->left_out = b.left_out, job->num_left_out = b.num_left_out;
     b.left_out = NULL;
+    job->notes = b.notes;
     job->streamed = b.streams;
     if (b.streams) goto done;
     job->mesh = b.mesh;
@@ -182,6 +183,7 @@ static brio_read_job job_of(const char *path, const brio_read_options *o) {
 static void give_findings(brio_context *ctx, const brio_read_options *o, brio_read_job *job) {
     if (o->dropped) *o->dropped = job->dropped;
     if (o->missing) *o->missing = job->missing;
+    BRIO_GIVE(brio_read_notes, o->notes, &job->notes);
     for (size_t i = 0; i < job->num_left_out && o->left_out; i++) o->left_out(job->left_out[i], o->left_out_user);
     brio_read_job_free(ctx, job);
 }
@@ -192,6 +194,7 @@ brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_op
     brio_read_options o = STANDARD;
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, o.notes));
     brio_read_job job = job_of(path, &o);
     BRIO_TRY(brio_read_file(ctx, &job));
     give_findings(ctx, &o, &job);
@@ -215,6 +218,7 @@ brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, 
     const brio_bytes memory = {bytes, size};
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, o.notes));
     brio_read_job job = job_of(name ? name : "-", &o);
     job.memory = &memory;
     BRIO_TRY(brio_read_file(ctx, &job));
@@ -249,6 +253,7 @@ brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_rea
     brio_file_facts found = {.size = sizeof found};
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_file_facts, facts));
     BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, o.notes));
     job = job_of(path, &o);
     job.sink = &sink;
     BRIO_TRY(brio_read_file(ctx, &job));

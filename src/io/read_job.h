@@ -24,6 +24,7 @@ typedef struct brio_read_job {
     char version[64];
     char (*left_out)[64]; /* names of what is in the file and not in the mesh, owned by the job: brio_read_job_free */
     size_t num_left_out;
+    brio_read_notes notes; /* of brio_read_options; without their size */
 } brio_read_job;
 
 /** Frees what a job owns, except its mesh. */

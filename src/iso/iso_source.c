@@ -9,6 +9,18 @@ enum { FIRST_RESOLUTION = 100, MOST_RESOLUTION = 1 << 15, MOST_ROUNDS = 5 };
 
 static const double CLOSE_ENOUGH = 0.02; /* share of the wanted number of vertices; chosen */
 
+/* Refuses a level over all values. Those of atoms are not all known. */
+static brio_status nothing_above(brio_context *ctx, const brio_iso_source *from, double level) {
+    if (!from->is_map) return brio_fail(ctx, BRIO_ERR_NO_ANSWER, "nothing is above the level %g", level);
+    const brio_volume *v = &from->volume;
+    size_t count = (size_t)v->size[0] * v->size[1] * v->size[2];
+    float largest = v->values[0];
+    for (size_t i = 1; i < count; i++)
+        if (v->values[i] > largest) largest = v->values[i];
+    return brio_fail(ctx, BRIO_ERR_NO_ANSWER, "nothing is above the level %g: the largest value of the map is %g",
+                     level, (double)largest);
+}
+
 static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *o,
                                 size_t resolution, brio_mesh **out) {
     brio_status status = BRIO_OK;
@@ -21,7 +33,7 @@ static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, 
     if ((*out)->num_faces) return BRIO_OK;
     brio_mesh_free(*out);
     *out = NULL;
-    status = brio_fail(ctx, BRIO_ERR_NO_ANSWER, "nothing is above the level %g", o->level);
+    status = nothing_above(ctx, from, o->level);
 done:
     return status;
 }

@@ -82,6 +82,20 @@ static void components(brio_context *ctx, fuzz_input *in, brio_mesh *m) {
     FUZZ_EXPECT(expect_certificate(ctx, m).components == count - dropped[0]);
 }
 
+/* Merging a second time changes nothing, as no two positions that are left are equal. */
+static void merge(fuzz_input *in, brio_mesh *m) {
+    brio_merge_stats stats = {.size = sizeof stats};
+    double distance = fuzz_flag(in) ? (double)fuzz_below(in, 4) : 0;
+    size_t vertices = m->num_vertices, faces = m->num_faces;
+    brio_status status = brio_mesh_merge_vertices(m, distance, &stats);
+    fuzz_expect_failure(status);
+    fuzz_expect_sound(m);
+    if (status != BRIO_OK) return;
+    FUZZ_EXPECT(vertices == m->num_vertices + stats.vertices && faces == m->num_faces + stats.faces);
+    status = brio_mesh_merge_vertices(m, 0, &stats);
+    FUZZ_EXPECT(status == BRIO_OK && !stats.vertices && !stats.faces, "merged twice");
+}
+
 /* Whether two triangles have the same corners: parts of them share the ends of two edges, so that vertices do not tell the
  * edges apart. */
 static bool has_doubled_faces(const brio_mesh *m) {
@@ -132,6 +146,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     uint8_t what = fuzz_byte(&in);
     brio_mesh *m = make_mesh(ctx, &in);
     expect_certificate(ctx, m);
+    if (what >= 128) merge(&in, m);
     switch (what % 4) {
     case 0:
         simplify(ctx, &in, m);

@@ -171,6 +171,36 @@ static void surfaces_take_what_was_estimated(void) {
     brio_context_free(scanner);
 }
 
+/* An estimate that did not count the pieces refused work that has the memory, so that the advice to work in pieces failed
+ * like the work itself. */
+static void pieces_of_the_cocone_count(void) {
+    brio_context *scanner = new_context();
+    brio_mesh *scan = NULL;
+    EXPECT(brio_generate(scanner, BRIO_KIND_SCAN, 40000, NULL, &scan) == BRIO_OK);
+    const size_t pieces[] = {2, 10, 40};
+    uint64_t whole = 0, in_pieces = 0;
+    for (int i = 0; i < (SHORT_TESTS ? 1 : 3) && scan; i++) {
+        brio_context *ctx = new_context();
+        brio_cocone_options o = brio_cocone_options_default();
+        brio_mesh *mesh = NULL;
+        uint64_t bytes = 0;
+        brio_context_set_threads(ctx, 1);
+        o.pieces = pieces[i];
+        EXPECT(brio_estimate_cocone(ctx, scan->num_vertices, &o, &bytes) == BRIO_OK);
+        EXPECT(brio_cocone(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL) == BRIO_OK);
+        double ratio = (double)bytes / (double)brio_context_memory_peak(ctx);
+        EXPECT(ratio > 0.8 && ratio < 2.5, "%zu pieces: %g", pieces[i], ratio);
+        brio_mesh_free(mesh);
+        brio_context_free(ctx);
+    }
+    brio_cocone_options o = brio_cocone_options_default();
+    o.pieces = 30;
+    EXPECT(brio_estimate_cocone(scanner, 1000000, NULL, &whole) == BRIO_OK);
+    EXPECT(brio_estimate_cocone(scanner, 1000000, &o, &in_pieces) == BRIO_OK && in_pieces < whole / 2);
+    brio_mesh_free(scan);
+    brio_context_free(scanner);
+}
+
 static void wrong_arguments_are_refused(void) {
     brio_context *ctx = new_context();
     uint64_t bytes = 77;
@@ -242,6 +272,7 @@ SUITE(test_estimate) {
     RUN(estimates_of_wide_ranges);
     RUN(every_way_of_location_takes_what_was_estimated);
     RUN(surfaces_take_what_was_estimated);
+    RUN(pieces_of_the_cocone_count);
     RUN(wrong_arguments_are_refused);
     RUN(estimates_of_levels_out_of_range_are_those_of_the_nearest_level);
     RUN(options_that_are_refused_have_no_estimate);

@@ -27,6 +27,44 @@ static brio_status read_as(const char *name, const char *text, const char *colum
     return brio_read_as(io_ctx, io_path(name), &o, m);
 }
 
+/* --- what is noted --- */
+
+static brio_read_notes notes_of(const char *text, const char *columns) {
+    brio_read_notes notes = {.size = sizeof notes};
+    brio_read_options o = brio_read_options_default();
+    brio_mesh *m = NULL;
+    o.columns = columns;
+    o.notes = &notes;
+    io_put("n.xyz", text, strlen(text));
+    EXPECT(brio_read_as(io_ctx, io_path("n.xyz"), &o, &m) == BRIO_OK, "%s", brio_message(io_ctx));
+    brio_mesh_free(m);
+    return notes;
+}
+
+/* The output of voro++, id x y z, was read as coordinates without a word. */
+static void numbers_of_rows_were_read_as_x_without_a_word(void) {
+    static const char ids[] = "1 .1 .2 .3\n2 .5 .6 .1\n3 .9 .1 .7\n4 .3 .8 .9\n5 .5 .5 .5\n";
+    EXPECT(notes_of(ids, NULL).numbered && notes_of("3 0 0 1\n0 1 0 1\n2 0 1 1\n1 1 1 0\n", NULL).numbered);
+    EXPECT(!notes_of(ids, "-,x,y,z").numbered &&
+           !notes_of("x y z w\n1 0 0 1\n2 0 1 1\n3 0 0 1\n4 1 0 1\n", NULL).numbered);
+    EXPECT(!notes_of("1 0 0\n2 0 1\n3 0 0\n4 1 0\n", NULL).numbered);
+    EXPECT(!notes_of("1 0 0 1\n1 0 1 1\n4 0 0 1\n4 1 0 1\n", NULL).numbered);
+    EXPECT(!notes_of("1 0 0 1\n2 0 1 1\n3 0 0 1\n", NULL).numbered);
+}
+
+/* Numbers such as 9007199254740993 lost a bit in silence. */
+static void whole_numbers_that_doubles_do_not_hold_are_counted(void) {
+    brio_read_notes n = notes_of("x y z id\n0 0 0 7\n1 0 0 9007199254740993\n0 1 0 -36028797018963969\n", NULL);
+    EXPECT(n.rounded == 2 && n.rounded_line == 3 && !strcmp(n.rounded_column, "id"), "%s", n.rounded_column);
+    n = notes_of("0 0 0\n0 99999999999999999999999 0\n", NULL);
+    EXPECT(n.rounded == 1 && n.rounded_line == 2 && !strcmp(n.rounded_column, "y"));
+    n = notes_of("0 0 0 9007199254740992\n0 0 1 -18446744073709551616\n1 0 0 1e300\n0 1 0 9007199254740993.5\n"
+                 "18014398509481984 0 0 9007199254740991\n",
+                 NULL);
+    EXPECT(n.rounded <= 1, "%d", (int)n.rounded);
+    EXPECT(notes_of("0 0 0 9007199254740993\n", "x,y,z,-").rounded == 0);
+}
+
 /* --- names --- */
 
 static void header_with_id_lat_lon_alt_read_the_id_as_x(void) {
@@ -249,6 +287,8 @@ static void each_allocation_fails(void) {
 
 SUITE(test_io_columns) {
     io_begin();
+    RUN(numbers_of_rows_were_read_as_x_without_a_word);
+    RUN(whole_numbers_that_doubles_do_not_hold_are_counted);
     RUN(header_with_id_lat_lon_alt_read_the_id_as_x);
     RUN(names_of_surveyors_and_programs);
     RUN(names_with_marks_of_comments_are_whole);

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _native
-from ._arrays import as_count, as_floats
+from ._arrays import as_count, as_floats, as_number
 from ._calls import Progress, reporting
 from ._mesh import Mesh
 from .errors import ArgumentError
@@ -30,7 +30,9 @@ class Conversion:
         Block by block; else the whole file was in memory.
     lost : list of str
         What the other format cannot hold: "faces", "tetrahedra", "edges", names of properties, and "precision" if
-        coordinates were rounded.
+        coordinates, or whole numbers of a text, were rounded.
+    merged, degenerate : int
+        Vertices that others stand for by `merge`, and faces, tetrahedra and edges dropped by that.
     """
 
     points_read: int
@@ -42,6 +44,8 @@ class Conversion:
     thinned: int
     streamed: bool
     lost: list[str]
+    merged: int = 0
+    degenerate: int = 0
 
 
 def _columns(columns: str | Sequence[str | None] | None) -> str | None:
@@ -92,13 +96,13 @@ def write(path: Path, mesh: Any, **options: Any) -> None:
 
 
 def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] | None = None, box: Any = None,
-            outliers: int = 0, factor: float = 3.0, thin: float = 0.0, ascii: bool = False, float32: bool = False,
+            outliers: int = 0, factor: float = 3.0, thin: float = 0.0, merge: bool | float = False, ascii: bool = False, float32: bool = False,
             compress: bool = False, comment: str | None = None, threads: int = 0,
             progress: bool | Progress | None = None) -> Conversion:
     """Converts a file to another format, or chooses among its points, or both; large files block by block.
 
-    First come the points in the box, of these those that are no outliers, of these a thinned set. The points keep their
-    order and all properties. A face, tetrahedron or edge stays if all its vertices stay.
+    First come the points in the box, of these those that are no outliers, of these a thinned set; merging comes last. The
+    points keep their order and all properties. A face, tetrahedron or edge stays if all its vertices stay.
 
     Parameters
     ----------
@@ -113,6 +117,8 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
         As for outliers.
     thin : float
         The spacing; 0 keeps all points.
+    merge : bool or float
+        Merges vertices at equal positions (True), or at most this distance apart, as Mesh.merge_vertices does.
     ascii, float32, compress, comment
         As for Mesh.write.
 
@@ -134,9 +140,10 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     if corners is not None and len(corners) != 6:
         raise ArgumentError(f"box: six numbers are wanted, the lower corner and the upper one, not {len(corners)}")
     neighbours = as_count(outliers, "outliers", most=63)
+    merges, distance = (merge, 0.0) if isinstance(merge, bool) else (True, as_number(merge, "merge"))
     with reporting(progress) as report:
         facts = _native.convert(os.fsencode(source), os.fsencode(target), _columns(columns),
-                                (ascii, float32, compress, comment), corners, (neighbours, factor, thin), threads, report)
+                                (ascii, float32, compress, comment), corners, (neighbours, factor, thin, merges, distance), threads, report)
     return Conversion(**facts)
 
 

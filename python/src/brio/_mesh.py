@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, as_array, as_count, as_rows, freeze_all, frozen
+from ._arrays import Floats, as_array, as_count, as_number, as_rows, freeze_all, frozen
 from ._calls import Progress, reporting
 from ._points import nearest
 from ._properties import Properties, as_properties, carry, for_means, from_means, scalars
@@ -325,6 +325,32 @@ class Mesh:
         """
         least_faces = as_count(least_faces, "least_faces", most=2**63 - 1)
         return self._changed(lambda numbered: _native.mesh_kept_components(numbered, largest, least_faces))
+
+    def merge_vertices(self, distance: float = 0, *, progress: bool | Progress | None = None) -> "Mesh":
+        """Merges vertices at equal positions, or near each other, so that faces that meet there share them.
+
+        Of each set of merged vertices the one of the lexicographically least position stays, the first of coincident
+        ones, with its properties. Faces lose corners that are equal; faces, tetrahedra and edges with too few are dropped.
+
+        Parameters
+        ----------
+        distance : float
+            Vertices at most so far apart become one, and so does a chain of them; 0: equal positions only.
+
+        Returns
+        -------
+        Mesh
+
+        Examples
+        --------
+        >>> import brio
+        >>> apart = brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [3, 4, 5]])
+        >>> apart.merge_vertices().faces.tolist()
+        [[0, 1, 2], [1, 3, 2]]
+        """
+        distance = as_number(distance, "distance")
+        with reporting(progress) as report:
+            return self._changed(lambda numbered: _native.mesh_merged_vertices(numbered, distance, report))
 
     def subdivide(self, levels: int = 1, *, progress: bool | Progress | None = None) -> "Mesh":
         """Subdivides a surface of triangles smoothly, by the butterfly scheme: `levels` times each becomes four.

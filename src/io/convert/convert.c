@@ -155,7 +155,9 @@ static brio_status stream(conversion *c) {
     brio_progress_part(c->ctx, bar, prepared ? 0.5 : 0, 1);
     BRIO_TRY(brio_source_pass(&c->source, &sink));
     if (prepared && c->writer.job.points != c->writer.points) BRIO_TRY(brio_source_changed(&c->source));
-    if (c->rounded || (c->writer.format->rounds && c->writer.format->rounds(c->writer.state))) lose(c, "precision");
+    if (c->rounded || c->source.job.notes.rounded ||
+        (c->writer.format->rounds && c->writer.format->rounds(c->writer.state)))
+        lose(c, "precision");
     name_left_out(c);
     brio_mesh last = {.num_vertices = 0};
     if (c->source.job.mesh) last = *c->source.job.mesh;
@@ -176,7 +178,7 @@ static brio_status write_whole(void *user, const brio_mesh *mesh) {
     o.format = c->format;
     name_losses(c, mesh);
     find_rounding(c, mesh);
-    if (c->rounded) lose(c, "precision");
+    if (c->rounded || c->source.job.notes.rounded) lose(c, "precision");
     name_left_out(c);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
     if (!holds(c, BRIO_HOLDS_TETRAHEDRA)) shown.num_tetrahedra = 0;
@@ -208,6 +210,24 @@ done:
     return status;
 }
 
+static brio_status ignore(void *user, const brio_mesh *mesh) {
+    (void)user, (void)mesh;
+    return BRIO_OK;
+}
+
+/* Merges the vertices that stay, which are in memory afterwards. */
+static brio_status merge(conversion *c) {
+    brio_status status = BRIO_OK;
+    const brio_sink none = {ignore, NULL};
+    brio_merge_stats found = {.size = sizeof found};
+    if (!c->source.job.mesh) BRIO_TRY(brio_source_pass(&c->source, &none));
+    BRIO_TRY(brio_mesh_merge_vertices(c->source.job.mesh, c->options->merge_distance, &found));
+    c->stats.merged = found.vertices;
+    c->stats.degenerate = found.faces + found.tetrahedra + found.edges;
+done:
+    return status;
+}
+
 static brio_status run(conversion *c) {
     brio_status status = BRIO_OK;
     const brio_sink whole = {write_whole, c};
@@ -215,11 +235,12 @@ static brio_status run(conversion *c) {
     bool choose = c->options->drop_outliers || c->options->thin > 0, rows = brio_row_format_of(c->format) != NULL;
     bool once = !choose && c->format != BRIO_FORMAT_LAS &&
                 (can_patch(c->to) || (rows && !brio_row_format_of(c->format)->counts));
-    c->source.whole = !rows || (!brio_source_rereadable(c->source.path) && !once);
+    c->source.whole = !rows || c->options->merge || (!brio_source_rereadable(c->source.path) && !once);
     double started = brio_seconds();
     brio_progress_part(c->ctx, bar, 0, 0.6);
     if (choose) BRIO_TRY(brio_source_choose(&c->source));
-    brio_progress_part(c->ctx, bar, choose ? 0.6 : 0, 1);
+    if (c->options->merge) BRIO_TRY(merge(c));
+    brio_progress_part(c->ctx, bar, choose || c->options->merge ? 0.6 : 0, 1);
     c->stats.select_seconds = brio_seconds() - started;
     status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
 done:
@@ -242,6 +263,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     brio_read_options read = brio_read_options_default();
     c.write = brio_write_options_default();
     if (o.from) BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, o.from, &read));
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, read.notes));
     if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));
     if (c.write.moved) *c.write.moved = 0;
     c.format = c.write.format == BRIO_FORMAT_AUTO && strcmp(to, "-") ? brio_format_of(to) : c.write.format;
@@ -262,6 +284,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     c.stats.thinned = c.source.thinned;
     c.stats.passes = c.source.passes;
     c.stats.seconds = brio_seconds() - started;
+    BRIO_GIVE(brio_read_notes, read.notes, &c.source.job.notes);
     BRIO_GIVE(brio_convert_stats, stats, &c.stats);
 done:
     brio_row_writer_free(&c.writer);

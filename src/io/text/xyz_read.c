@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "io/formats.h"
+#include "io/number.h"
 #include "io/text/text_columns.h"
 #include "io/text/text_fields.h"
 #include "io/textrow.h"
@@ -46,6 +47,9 @@ typedef struct {
     size_t count_line;
     char shown[2][64]; /* the beginnings of the first lines, for messages */
     int num_shown;
+    bool may_be_numbered; /* whether x may number the rows: no names, a column that is no axis, whole numbers so far */
+    double least;         /* x of these rows */
+    uint64_t found[3], due[3]; /* sums of powers 1 to 3, modulo 2^64, of x, and of 0, 1, 2 and so on */
 } xyz_reader;
 
 /* --- messages --- */
@@ -258,6 +262,53 @@ done:
     return status;
 }
 
+/* --- what a user may not expect --- */
+
+/* Adds a row to what decides whether x numbers the rows. */
+static void count_numbered(xyz_reader *r, double x) {
+    uint64_t row = brio_builder_count(r->builder);
+    bool numbers = x >= 0 && x < BRIO_MAX_VERTICES && x == floor(x);
+    if (row == 0) {
+        r->may_be_numbered = r->source == NAMES_NONE && r->num_columns > 3;
+        r->least = x;
+    }
+    r->may_be_numbered &= numbers;
+    if (!r->may_be_numbered) return;
+    if (x < r->least) r->least = x;
+    uint64_t of_x = 1, of_row = 1;
+    for (int k = 0; k < 3; k++) {
+        of_x *= (uint64_t)x;
+        of_row *= row;
+        r->found[k] += of_x;
+        r->due[k] += of_row;
+    }
+}
+
+/* Whether x was 0 to n - 1 or 1 to n, in any order: then the sums of their first three powers are equal. Other whole
+ * numbers with such sums are possible, and rare. */
+static bool is_numbered(const xyz_reader *r) {
+    enum { FEWEST = 4 };
+    uint64_t n = brio_builder_count(r->builder), power = 1;
+    bool equal = r->may_be_numbered && n >= FEWEST && r->least <= 1;
+    for (int k = 0; k < 3 && equal; k++) {
+        power *= n;
+        equal = r->found[k] == r->due[k] + (r->least > 0 ? power : 0);
+    }
+    return equal;
+}
+
+/* Counts a whole number that was rounded.   i  column. */
+static void note_rounding(const xyz_reader *r, size_t i) {
+    const brio_field *f = &r->fields.at[i];
+    brio_read_notes *n = &r->builder->notes;
+    const column *c = &r->columns[i];
+    if (f->kind != BRIO_FIELD_NUMBER || !brio_is_rounded(f->word, f->length, f->value) || n->rounded++) return;
+    const char axis[2] = {(char)('x' + c->target), 0};
+    const char *name = c->role == COLUMN_AXIS ? axis : r->builder->mesh->properties[c->target].name;
+    n->rounded_line = r->stream->line;
+    snprintf(n->rounded_column, sizeof n->rounded_column, "%s", name);
+}
+
 /* --- rows --- */
 
 static brio_status read_point(const xyz_reader *r, double point[3]) {
@@ -277,10 +328,13 @@ static brio_status read_row(xyz_reader *r) {
     brio_status status = BRIO_OK;
     double point[3];
     BRIO_TRY(read_point(r, point));
+    count_numbered(r, point[0]);
     BRIO_TRY(brio_builder_vertex(r->builder, point));
     brio_mesh *mesh = r->builder->mesh;
     for (size_t i = 0; i < r->num_columns; i++) {
         const column *c = &r->columns[i];
+        if (i < r->fields.count && c->role != COLUMN_IGNORED && fabs(r->fields.at[i].value) >= 0x1p53)
+            note_rounding(r, i);
         if (c->role != COLUMN_PROPERTY) continue;
         /* programs leave out empty fields at the end */
         const brio_field *f = i < r->fields.count ? &r->fields.at[i] : NULL;
@@ -348,6 +402,7 @@ brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) 
     BRIO_REQUIRE(s->ctx, !r.counted || r.promised == brio_builder_count(b), BRIO_ERR_FORMAT,
                  "%s: line %zu: promises %" PRIu64 " points, %" PRIu64 " rows follow", s->name, r.count_line,
                  r.promised, brio_builder_count(b));
+    b->notes.numbered = is_numbered(&r);
 done:
     brio_release(s->ctx, r.fields.at);
     brio_release(s->ctx, r.names.at);
