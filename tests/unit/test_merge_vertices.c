@@ -205,7 +205,7 @@ static void every_failing_allocation_is_clean(void) {
     expect_clean_failures(merge_parts);
 }
 
-int main(void) {
+SUITE(test_merge_vertices) {
     RUN(sets_are_those_of_brute_force);
     RUN(the_order_of_the_vertices_does_not_matter);
     RUN(faces_share_vertices_and_degenerate_ones_go);
