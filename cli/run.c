@@ -26,7 +26,7 @@ const option cli_common_options[] = {
     {"salvage", 0, OPTION_FLAG, FIELD(salvage), NULL, "of an input that ends early, keep the points that are whole", 0},
     {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
     {"float32", 0, OPTION_FLAG, FIELD(float32), NULL, "write coordinates in single precision", 0},
-    {"compress", 0, OPTION_FLAG, FIELD(compress), NULL, "write arrays compressed: .vtu and .vtp", 0},
+    {"compress", 0, OPTION_FLAG, FIELD(compress), NULL, "write numbers compressed: .vtu, .vtp, .pcd", 0},
     {"json", 0, OPTION_FLAG, FIELD(json), NULL, "print the report as one JSON object on standard output", 0},
     {"threads", 0, OPTION_INT, FIELD(threads), "N", "threads to use (default 0: all cores)", 0},
     {"seed", 0, OPTION_NATURAL, FIELD(seed), "N", "every random choice follows from it (default 1)", 0},
@@ -102,7 +102,7 @@ static brio_status check_compress(run *r) {
     if (c->ascii) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress and --ascii: text is not compressed");
     const brio_format_info *info = brio_format_facts(brio_format_of(c->format ? c->format : c->output));
     if (info && info->holds & BRIO_HOLDS_COMPRESSED) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot be compressed; .vtu and .vtp can",
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot be compressed; .vtu, .vtp and .pcd can",
                     c->output);
 }
 
@@ -299,7 +299,8 @@ const brio_format cli_mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_F
 
 const brio_format cli_point_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_XYZ,  BRIO_FORMAT_VTU,
                                          BRIO_FORMAT_VTP, BRIO_FORMAT_NODE, BRIO_FORMAT_LAS,
-                                         BRIO_FORMAT_NPY, BRIO_FORMAT_GLB,  BRIO_FORMAT_AUTO};
+                                         BRIO_FORMAT_NPY, BRIO_FORMAT_GLB,  BRIO_FORMAT_PCD,
+                                         BRIO_FORMAT_AUTO};
 
 static brio_status check_format(run *r, const brio_format *formats, brio_format format) {
     for (; formats && *formats != format; formats++)

@@ -1677,7 +1677,7 @@ BRIO_API brio_status brio_outliers(brio_context *ctx, const double *points, size
 typedef enum brio_format {
     BRIO_FORMAT_AUTO = 0,
     BRIO_FORMAT_PLY = 1,
-    BRIO_FORMAT_XYZ = 2, /* .xyz .pts .txt .csv */
+    BRIO_FORMAT_XYZ = 2, /* .xyz .pts .txt .csv .asc .xyzrgb .xyzn .tsv .dat */
     BRIO_FORMAT_OBJ = 3,
     BRIO_FORMAT_OFF = 4,
     BRIO_FORMAT_VTU = 5,
@@ -1685,7 +1685,7 @@ typedef enum brio_format {
     BRIO_FORMAT_VTP = 7,
     BRIO_FORMAT_LAS = 8,       /* versions 1.0 to 1.4, point formats 0 to 10 without waveforms */
     BRIO_FORMAT_LAZ = 9,       /* read, not written */
-    BRIO_FORMAT_PCD = 10,      /* read, not written */
+    BRIO_FORMAT_PCD = 10,
     BRIO_FORMAT_PTX = 11,      /* read, not written */
     BRIO_FORMAT_STL = 12,      /* corners at the same position become one vertex */
     BRIO_FORMAT_NPY = 13,      /* NumPy: an array of rows of coordinates, or of records with names */
@@ -1711,7 +1711,9 @@ enum {
     BRIO_HOLDS_SINGLES = 64,    /* coordinates in single precision: by choice where doubles are held, too */
     BRIO_HOLDS_TEXT = 128,      /* the file can be a text */
     BRIO_HOLDS_BINARY = 256,    /* the file can be binary */
-    BRIO_HOLDS_COMPRESSED = 512 /* brio_write_options.compress has a meaning */
+    BRIO_HOLDS_COMPRESSED = 512, /* brio_write_options.compress has a meaning */
+    BRIO_HOLDS_COLOURS = 1024,   /* red, green and blue, though not all properties */
+    BRIO_HOLDS_NORMALS = 2048    /* nx, ny and nz, though not all properties */
 };
 
 /** What is known of a format. */
@@ -1828,6 +1830,7 @@ typedef struct brio_write_options {
     const char
         *separator; /* XYZ: "," or " " between numbers; with "," there is no comment; default NULL: by the name, ","
                               for .csv */
+    int *colours_rounded; /* receives 1 if the file's colours have fewer steps than the mesh's, else 0; default NULL */
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);

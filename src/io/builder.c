@@ -5,6 +5,7 @@
  * vertices as they are in the file. */
 #include "base/utf8.h"
 #include "io/builder.h"
+#include "io/colour.h"
 #include "io/filter.h"
 #include "base/memory.h"
 #include <inttypes.h>
@@ -76,6 +77,7 @@ static brio_status hand_on(brio_builder *b) {
     brio_status status = BRIO_OK;
     size_t count = b->mesh->num_vertices;
     uint64_t before = b->refused.count;
+    if (!b->passed) brio_colour_name(b->mesh);
     brio_count_not_finite(&b->refused, b->passed, b->mesh->vertices, NULL, count);
     if (b->drop_invalid && b->refused.count > before) BRIO_TRY(drop_not_finite(b));
     if (b->drop_invalid || !b->refused.count) BRIO_TRY(b->sink->take(b->sink->user, b->mesh));
@@ -293,6 +295,7 @@ brio_status brio_builder_finish(brio_builder *b) {
         if (!b->drop_invalid) BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
         return BRIO_OK;
     }
+    brio_colour_name(b->mesh);
     BRIO_TRY(trim(b));
     BRIO_TRY(check_indices(b));
     brio_count_not_finite(&b->refused, 0, b->mesh->vertices, NULL, b->mesh->num_vertices);

@@ -16,7 +16,8 @@ static const brio_format_row table[] = {
       POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 0},
      .starts = brio_ply_starts,
      .read = brio_ply_read,
-     .rows = &brio_ply_rows},
+     .rows = &brio_ply_rows,
+     .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_OFF, "an OFF file", "off", "off",
       BRIO_HOLDS_FACES | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .starts = brio_off_starts,
@@ -28,21 +29,26 @@ static const brio_format_row table[] = {
       4096},
      .starts = brio_vtk_starts,
      .read = brio_vtk_read,
-     .write = brio_vtu_write},
+     .write = brio_vtu_write,
+     .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTP, "a VTP file", "vtp", "vtp",
       POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, 4096},
      .read = brio_vtk_read, /* begins as VTU */
-     .write = brio_vtp_write},
+     .write = brio_vtp_write,
+     .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_LAS, "a LAS file", "las", "las", POINTS | BRIO_HOLDS_BINARY, 0},
      .starts = brio_las_starts,
      .read = brio_las_read,
-     .rows = &brio_las_rows},
+     .rows = &brio_las_rows,
+     .colours = BRIO_COLOURS_16},
     {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "", POINTS | BRIO_HOLDS_BINARY, 0},
      .read = brio_las_read}, /* begins as LAS */
-    {{sizeof(brio_format_info), BRIO_FORMAT_PCD, "a PCD file", "pcd", "",
+    {{sizeof(brio_format_info), BRIO_FORMAT_PCD, "a PCD file", "pcd", "pcd",
       POINTS | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, 0},
      .starts = brio_pcd_starts,
-     .read = brio_pcd_read},
+     .read = brio_pcd_read,
+     .rows = &brio_pcd_rows,
+     .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_NPY, "an NPY file", "npy", "npy",
       POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, 4093},
      .starts = brio_npy_starts,
@@ -53,7 +59,8 @@ static const brio_format_row table[] = {
      .starts = brio_glb_starts,
      .read = brio_glb_read,
      .write = brio_glb_write,
-     .about_origin = true},
+     .about_origin = true,
+     .colours = BRIO_COLOURS_NORMALIZED},
     {{sizeof(brio_format_info), BRIO_FORMAT_E57, "an E57 file", "e57", "", POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY,
       0},
      .starts = brio_e57_starts,
@@ -67,9 +74,10 @@ static const brio_format_row table[] = {
      .read = brio_stl_read,
      .write = brio_stl_write},
     {{sizeof(brio_format_info), BRIO_FORMAT_OBJ, "an OBJ file", "obj", "obj",
-      BRIO_HOLDS_FACES | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_FACES | BRIO_HOLDS_COLOURS | BRIO_HOLDS_NORMALS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .read = brio_obj_read,
-     .write = brio_obj_write},
+     .write = brio_obj_write,
+     .colours = BRIO_COLOURS_UNIT},
     {{sizeof(brio_format_info), BRIO_FORMAT_NODE, "a NODE file", "node ele", "node",
       BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 4096},
      .read = brio_node_read,
@@ -83,7 +91,8 @@ static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_CHEMICAL, "a chemical XYZ file", "chemical extxyz", "",
       POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .read = brio_chemical_read},
-    {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz pts txt csv", "xyz pts txt csv",
+    {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz pts txt csv asc xyzrgb xyzn tsv dat",
+      "xyz pts txt csv asc xyzrgb xyzn tsv",
       POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .read_columns = brio_xyz_read,
      .rows = &brio_xyz_rows}};
@@ -105,6 +114,15 @@ const brio_format_info *brio_format_facts(brio_format format) {
 bool brio_format_holds(brio_format format, unsigned what) {
     const brio_format_row *row = brio_format_row_of(format);
     return row && (row->info.holds & what);
+}
+
+bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i) {
+    brio_channels colour = brio_colour_of(m), normal = brio_normal_of(m);
+    const brio_property *p = &m->properties[i];
+    if (brio_format_holds(format, BRIO_HOLDS_PROPERTIES)) return true;
+    if (colour.count > 3) colour.count = 3;
+    return (brio_format_holds(format, BRIO_HOLDS_COLOURS) && brio_channels_have(&colour, p)) ||
+           (brio_format_holds(format, BRIO_HOLDS_NORMALS) && brio_channels_have(&normal, p));
 }
 
 brio_format brio_format_that_starts(const char *bytes, size_t size) {

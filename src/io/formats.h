@@ -4,6 +4,7 @@
 #define BRIO_IO_FORMATS_H
 
 #include "io/builder.h"
+#include "io/colour.h"
 #include "io/output.h"
 #include "io/stream.h"
 
@@ -53,12 +54,15 @@ typedef struct brio_format_row {
     const struct brio_row_format *rows;                                /* NULL: not written row by row */
     brio_status (*write)(brio_output *out, const brio_write_job *job); /* NULL: not written as a whole */
     bool about_origin; /* single precision is that of distances from an origin, which the writer chooses */
+    brio_colours colours; /* how a file that is written has colours */
 } brio_format_row;
 
 /** Returns the row of a format, or NULL. */
 const brio_format_row *brio_format_row_of(brio_format format);
 /** Returns whether a format holds something of `what`, bits such as BRIO_HOLDS_FACES. */
 bool brio_format_holds(brio_format format, unsigned what);
+/** Returns whether a format holds property i of a mesh, by a name of its own for colours and normals. */
+bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i);
 /** Returns the format whose files begin with these bytes, or BRIO_FORMAT_AUTO. */
 brio_format brio_format_that_starts(const char *bytes, size_t size);
 /** Returns the format one of whose extensions `has` finds at a path, or BRIO_FORMAT_AUTO. */

@@ -1,11 +1,17 @@
-/* OFF, the Object File Format of Geomview, as text. Reads OFF and its variants with normals (N), colours (C) and
- * texture coordinates (ST) of the vertices, which become properties. Skips colours of faces.
+/* OFF, the Object File Format of Geomview. Reads OFF and its variants with normals (N), colours (C) and texture coordinates
+ * (ST) of the vertices, which become properties, as text and binary. Skips colours of faces, and says so.
+ *
+ * A binary file has the keyword and BINARY in its first line. Behind it are integers and floats of 32 bits, the most
+ * significant byte first, in the order of the text; a vertex's colour is four floats, and behind the corners of a face is
+ * the number of its colour's floats.
  *
  * Based on: Phillips et al. Geomview manual, section 4.2.5. The Geometry Center 1992. */
 #include "base/memory.h"
 #include "io/formats.h"
+#include "io/little_endian.h"
 #include "io/number.h"
 #include "io/textrow.h"
+#include <math.h>
 #include <string.h>
 
 enum { MAX_EXTRA = 9 }; /* three for the normal, four for the colour, two for the texture */
@@ -15,24 +21,23 @@ typedef struct {
     size_t num_extra; /* numbers behind the coordinates of a vertex */
 } off_kind;
 
-/* Reads the keyword at p. Returns the place behind it, or NULL if there is none. */
+/* Reads the keyword at p, whose letters may come in any order. Returns the place behind it, or NULL if there is none. */
 static const char *scan_keyword(const char *p, off_kind *kind) {
     *kind = (off_kind){.num_extra = 0};
-    if (!strncmp(p, "ST", 2)) {
-        kind->texture = true;
-        p += 2;
-    }
-    if (*p == 'C') {
-        kind->colour = true;
-        p++;
-    }
-    if (*p == 'N') {
-        kind->normal = true;
-        p++;
+    for (;;) {
+        if (!kind->texture && !strncmp(p, "ST", 2))
+            kind->texture = true, p += 2;
+        else if (!kind->colour && *p == 'C')
+            kind->colour = true, p++;
+        else if (!kind->normal && *p == 'N')
+            kind->normal = true, p++;
+        else
+            break;
     }
     if (strncmp(p, "OFF", 3) != 0) return NULL;
     p += 3;
-    return !*p || brio_is_blank(*p) || *p == '#' ? p : NULL;
+    /* some collections have the counts at the keyword: OFF490 518 0 */
+    return !*p || brio_is_blank(*p) || *p == '#' || (*p >= '0' && *p <= '9') ? p : NULL;
 }
 
 bool brio_off_starts(const char *bytes, size_t size) {
@@ -42,8 +47,8 @@ bool brio_off_starts(const char *bytes, size_t size) {
     return scan_keyword(start, &kind) != NULL;
 }
 
-/* Reads the keyword, which a file named .off may lack. */
-static brio_status read_keyword(brio_text *t, off_kind *kind) {
+/* Reads the keyword, which a file named .off may lack, and finds out whether binary numbers follow its line. */
+static brio_status read_keyword(brio_text *t, off_kind *kind, bool *binary) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_text_next_line(t));
     if (!t->at) return brio_text_expected(t, "OFF");
@@ -51,8 +56,7 @@ static brio_status read_keyword(brio_text *t, off_kind *kind) {
     if (!behind && (t->at[0] < '0' || t->at[0] > '9' || strstr(t->at, "OFF")))
         return brio_text_expected(t, "OFF, COFF, NOFF, STOFF or a combination of these, in three dimensions");
     if (behind) t->at += behind - t->at;
-    if (brio_text_more(t) && !strncmp(t->at, "BINARY", 6))
-        return brio_text_expected(t, "a text; binary OFF is not read");
+    *binary = brio_text_more(t) && !strncmp(t->at, "BINARY", 6);
 done:
     return status;
 }
@@ -91,15 +95,38 @@ done:
     return status;
 }
 
+static bool are_bytes(const double *values, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!(values[i] >= 0 && values[i] <= 255) || values[i] != floor(values[i])) return false;
+    return true;
+}
+
+/* Plans properties for what a plain OFF file has behind the coordinates of the first vertex: three or four bytes are a
+ * colour. */
+static brio_status plan_plain(brio_builder *b, off_kind *kind, const double *extra, size_t found) {
+    static const char *const colour[] = {"red", "green", "blue", "alpha"};
+    brio_status status = BRIO_OK;
+    if ((found != 3 && found != 4) || !are_bytes(extra, found)) return BRIO_OK;
+    for (size_t i = 0; i < found; i++) BRIO_TRY(brio_builder_property(b, colour[i], BRIO_SCALAR_FLOAT64));
+    kind->colour = true;
+    kind->num_extra = found;
+done:
+    return status;
+}
+
 static brio_status read_vertex(brio_text *t, brio_builder *b, off_kind *kind) {
     brio_status status = BRIO_OK;
     double point[3], extra[MAX_EXTRA];
     size_t found = 0;
     for (int k = 0; k < 3; k++) BRIO_TRY(brio_text_number(t, &point[k]));
-    /* plain OFF files with colours behind the coordinates are common: their extra numbers are skipped */
+    /* plain OFF files with colours behind the coordinates are common */
     bool kept = kind->normal || kind->colour || kind->texture;
-    while (kept && found < MAX_EXTRA && brio_text_more(t)) BRIO_TRY(brio_text_number(t, &extra[found++]));
+    while (found < MAX_EXTRA && brio_text_more(t)) BRIO_TRY(brio_text_number(t, &extra[found++]));
+    if (!kept && t->stream->row == 0) BRIO_TRY(plan_plain(b, kind, extra, found));
     if (kept && t->stream->row == 0) BRIO_TRY(plan_extra(t, b, kind, found));
+    kept = kind->normal || kind->colour || kind->texture;
+    if (!kept && found) BRIO_TRY(brio_builder_leave_out(b, "numbers behind the coordinates"));
+    if (!kept) found = 0;
     BRIO_REQUIRE(b->ctx, found == kind->num_extra, BRIO_ERR_FORMAT,
                  "%s: line %zu: %zu numbers behind the coordinates, expected %zu as for the first vertex", b->name,
                  t->stream->line, found, kind->num_extra);
@@ -121,7 +148,85 @@ static brio_status read_face(brio_text *t, brio_builder *b) {
         BRIO_TRY(brio_builder_corner(b, index));
     }
     BRIO_TRY(brio_builder_face(b));
+    if (brio_text_more(t)) BRIO_TRY(brio_builder_leave_out(b, "colours of faces"));
     t->at = NULL; /* the rest of the line is the colour of the face */
+done:
+    return status;
+}
+
+/* --- binary --- */
+
+static brio_status take_word(brio_stream *s, uint32_t *word) {
+    const char *bytes = NULL;
+    brio_status status = brio_stream_take(s, sizeof *word, &bytes);
+    if (status == BRIO_OK) *word = __builtin_bswap32(brio_le32(bytes));
+    return status;
+}
+
+static brio_status take_real(brio_stream *s, double *value) {
+    uint32_t bits = 0;
+    float single;
+    brio_status status = take_word(s, &bits);
+    memcpy(&single, &bits, sizeof single);
+    *value = (double)single;
+    return status;
+}
+
+static brio_status plan_binary(brio_builder *b, off_kind *kind) {
+    static const char *const names[MAX_EXTRA] = {"nx", "ny", "nz", "red", "green", "blue", "alpha", "s", "t"};
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < MAX_EXTRA; i++) {
+        if (!(i < 3 ? kind->normal : i < 7 ? kind->colour : kind->texture)) continue;
+        BRIO_TRY(brio_builder_property(b, names[i], BRIO_SCALAR_FLOAT32));
+        kind->num_extra++;
+    }
+done:
+    return status;
+}
+
+static brio_status read_binary_vertex(brio_stream *s, brio_builder *b, const off_kind *kind) {
+    brio_status status = BRIO_OK;
+    double point[3], extra;
+    for (int k = 0; k < 3; k++) BRIO_TRY(take_real(s, &point[k]));
+    BRIO_TRY(brio_builder_vertex(b, point));
+    for (size_t i = 0; i < kind->num_extra; i++) {
+        BRIO_TRY(take_real(s, &extra));
+        ((float *)b->mesh->properties[i].data)[b->mesh->num_vertices - 1] = (float)extra;
+    }
+done:
+    return status;
+}
+
+static brio_status read_binary_face(brio_stream *s, brio_builder *b) {
+    brio_status status = BRIO_OK;
+    uint32_t corners, index, colours;
+    BRIO_TRY(take_word(s, &corners));
+    BRIO_TRY(brio_stream_expect(s, corners, sizeof index, "the number of corners"));
+    for (uint32_t i = 0; i < corners; i++) {
+        BRIO_TRY(take_word(s, &index));
+        BRIO_TRY(brio_builder_corner(b, index));
+    }
+    BRIO_TRY(brio_builder_face(b));
+    BRIO_TRY(take_word(s, &colours));
+    if (colours) BRIO_TRY(brio_builder_leave_out(b, "colours of faces"));
+    BRIO_TRY(brio_stream_skip(s, sizeof(float) * (uint64_t)colours));
+done:
+    return status;
+}
+
+static brio_status read_binary(brio_stream *s, brio_builder *b, off_kind *kind) {
+    brio_status status = BRIO_OK;
+    uint32_t vertices, faces, edges;
+    BRIO_TRY(take_word(s, &vertices));
+    BRIO_TRY(take_word(s, &faces));
+    BRIO_TRY(take_word(s, &edges));
+    BRIO_TRY(plan_binary(b, kind));
+    BRIO_TRY(brio_stream_expect(s, vertices, (3 + kind->num_extra) * sizeof(float), "the number of vertices"));
+    BRIO_TRY(brio_stream_expect(s, faces, 2 * sizeof(uint32_t), "the number of faces"));
+    brio_stream_element(s, "vertex", vertices);
+    for (; s->row < vertices; s->row++) BRIO_TRY(read_binary_vertex(s, b, kind));
+    brio_stream_element(s, "face", faces);
+    for (; s->row < faces; s->row++) BRIO_TRY(read_binary_face(s, b));
 done:
     return status;
 }
@@ -131,7 +236,9 @@ brio_status brio_off_read(brio_stream *s, brio_builder *b) {
     brio_text t = {s, '#', NULL};
     off_kind kind = {.num_extra = 0};
     uint64_t vertices, faces;
-    BRIO_TRY(read_keyword(&t, &kind));
+    bool binary = false;
+    BRIO_TRY(read_keyword(&t, &kind, &binary));
+    if (binary) return read_binary(s, b, &kind);
     BRIO_TRY(read_counts(&t, &vertices, &faces));
     brio_stream_element(s, "vertex", vertices);
     for (; s->row < vertices; s->row++) BRIO_TRY(read_vertex(&t, b, &kind));

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "io/number.h"
 #include "io/textrow.h"
+#include <ctype.h>
 #include <inttypes.h>
 #include <string.h>
 
@@ -43,11 +44,12 @@ done:
 
 /* Reads SIZE or COUNT: a number for each field. */
 static brio_status read_counts(brio_stream *s, brio_pcd_header *h, char *line, bool sizes) {
-    const char *expected = sizes ? "a size 1, 2, 4 or 8 for each field" : "a count 1 to 4096 for each field";
+    const char *expected = sizes ? "a size 1, 2, 4 or 8 for each field" : "a count 0 to 4096 for each field";
     for (size_t i = 0; i < h->num_fields; i++) {
         uint64_t value;
-        if (!next_count(&line, &value) || !value || value > (sizes ? 8 : BRIO_PCD_MOST_NUMBERS) ||
-            (sizes && (value & (value - 1))))
+        /* of a field of no numbers, which drivers of lidars write, there is nothing */
+        if (!next_count(&line, &value) || value > (sizes ? 8 : BRIO_PCD_MOST_NUMBERS) ||
+            (sizes && (!value || (value & (value - 1)))))
             return bad_line(s, expected);
         *(sizes ? &h->fields[i].size : &h->fields[i].count) = (unsigned)value;
     }
@@ -57,8 +59,8 @@ static brio_status read_counts(brio_stream *s, brio_pcd_header *h, char *line, b
 static brio_status read_types(brio_stream *s, brio_pcd_header *h, char *line) {
     for (size_t i = 0; i < h->num_fields; i++) {
         const char *word = next_word(&line);
-        if (!word || strlen(word) != 1 || !strchr("IUF", *word)) return bad_line(s, "a type I, U or F for each field");
-        h->fields[i].type = *word;
+        if (!word || strlen(word) != 1 || !strchr("IUFiuf", *word)) return bad_line(s, "a type I, U or F for each field");
+        h->fields[i].type = (char)toupper((unsigned char)*word);
     }
     return next_word(&line) ? bad_line(s, "a type I, U or F for each field") : BRIO_OK;
 }
@@ -74,6 +76,17 @@ static brio_status read_data(brio_stream *s, brio_pcd_header *h, char *line) {
     return bad_line(s, "DATA ascii, binary or binary_compressed");
 }
 
+/* Whoever has no viewpoint writes the origin, unturned. */
+static brio_status read_viewpoint(brio_pcd_header *h, char *line) {
+    static const double usual[7] = {0, 0, 0, 1, 0, 0, 0};
+    for (int i = 0; i < 7; i++) {
+        const char *word = next_word(&line);
+        double value;
+        if (word && brio_parse_number(&word, &value)) h->placed |= value != usual[i];
+    }
+    return BRIO_OK;
+}
+
 typedef struct {
     uint64_t width, height, points;
     bool has_width, has_points;
@@ -81,7 +94,8 @@ typedef struct {
 
 static brio_status read_line(brio_stream *s, brio_pcd_header *h, char *line, pcd_size *size, bool *end) {
     const char *key = next_word(&line);
-    if (!key || *key == '#' || !strcmp(key, "VERSION") || !strcmp(key, "VIEWPOINT")) return BRIO_OK;
+    if (!key || *key == '#' || !strcmp(key, "VERSION")) return BRIO_OK;
+    if (!strcmp(key, "VIEWPOINT")) return read_viewpoint(h, line);
     if (!strcmp(key, "FIELDS") || !strcmp(key, "COLUMNS")) return read_fields(s, h, line);
     bool of_fields = !strcmp(key, "SIZE") || !strcmp(key, "COUNT") || !strcmp(key, "TYPE");
     if (of_fields && !h->num_fields) return bad_line(s, "FIELDS before this line");
@@ -110,6 +124,7 @@ static brio_status finish(brio_stream *s, brio_pcd_header *h, const pcd_size *si
     BRIO_REQUIRE(s->ctx, !size->has_points || !size->has_width || size->points == h->points, BRIO_ERR_FORMAT,
                  "%s: %" PRIu64 " points, WIDTH times HEIGHT is %" PRIu64, s->name, size->points, h->points);
     if (size->has_points) h->points = size->points;
+    h->height = size->height;
     for (size_t i = 0; i < h->num_fields; i++) {
         brio_pcd_field *f = &h->fields[i];
         f->at = h->record;

@@ -19,7 +19,8 @@ typedef struct brio_pcd_field {
 typedef struct brio_pcd_header {
     brio_pcd_field *fields;
     size_t num_fields, capacity;
-    uint64_t points;
+    uint64_t points, height; /* height: rows of the image that the points are */
+    bool placed;             /* whether the viewpoint is another than the origin, unturned */
     size_t record, numbers; /* bytes and numbers of a point */
     brio_pcd_data data;
 } brio_pcd_header;

@@ -27,7 +27,8 @@ typedef struct {
     size_t *roles;       /* of each number of a point */
     double *values;      /* of one point */
     size_t first_colour; /* the property red, behind which are green, blue and alpha */
-    bool has_alpha;
+    bool has_colour, has_alpha;
+    bool rounded; /* whether an integer of 64 bits is beyond 2^53 */
 } pcd_reader;
 
 bool brio_pcd_starts(const char *bytes, size_t size) {
@@ -52,26 +53,40 @@ static brio_status plan_colour(pcd_reader *r, const brio_pcd_field *f, size_t *r
     brio_status status = BRIO_OK;
     r->first_colour = r->builder->mesh->num_properties;
     r->has_alpha = f->name[3] == 'a';
+    r->has_colour = true;
     *role = COLOUR;
     for (int i = 0; i < 3 + r->has_alpha; i++) BRIO_TRY(brio_builder_property(r->builder, names[i], BRIO_SCALAR_UINT8));
 done:
     return status;
 }
 
+/* Returns the axis of a field whose name is one of three letters, "xyz" or "XYZ", or -1. */
+static int axis_of(const brio_pcd_field *f, const char *letters) {
+    const char *at = f->name[0] && !f->name[1] && f->count == 1 ? strchr(letters, f->name[0]) : NULL;
+    return at ? (int)(at - letters) : -1;
+}
+
+/* Returns the letters of the axes: capitals where no field has a small one. */
+static const char *letters_of(const brio_pcd_header *h) {
+    for (size_t i = 0; i < h->num_fields; i++)
+        if (axis_of(&h->fields[i], "xyz") >= 0) return "xyz";
+    return "XYZ";
+}
+
 static brio_status plan_field(pcd_reader *r, const brio_pcd_field *f, size_t *roles, unsigned *axes) {
     brio_status status = BRIO_OK;
-    int axis = f->name[0] >= 'x' && f->name[0] <= 'z' && !f->name[1] && f->count == 1 ? f->name[0] - 'x' : -1;
+    int axis = axis_of(f, letters_of(r->header));
     if (axis >= 0 && !(*axes & 1u << axis)) {
         *axes |= 1u << axis;
         roles[0] = AXIS + (size_t)axis;
         return BRIO_OK;
     }
-    if (is_colour(f)) return plan_colour(r, f, roles);
+    if (is_colour(f) && !r->has_colour) return plan_colour(r, f, roles);
     for (unsigned i = 0; i < f->count && strcmp(f->name, "_") != 0; i++) {
         char name[64];
         brio_builder_component_name(r->builder, f->name, i, f->count, name);
         roles[i] = PROPERTY + r->builder->mesh->num_properties;
-        BRIO_TRY(brio_builder_property(r->builder, f->count > 1 ? name : f->name, type_of(f)));
+        BRIO_TRY(brio_builder_property(r->builder, name, type_of(f)));
     }
 done:
     return status;
@@ -126,10 +141,10 @@ done:
 }
 
 /* Returns the number at an address; a packed colour as the integer that it is. */
-static double load(const char *bytes, const brio_pcd_field *f) {
-    if (is_colour(f)) return brio_le32(bytes);
-    if (f->type != 'F' && f->size == 8)
-        return f->type == 'U' ? (double)brio_le64(bytes) : (double)(int64_t)brio_le64(bytes);
+static double load(const char *bytes, const brio_pcd_field *f, size_t role) {
+    if (role == COLOUR) return brio_le32(bytes);
+    if (f->type == 'U' && f->size == 8) return (double)brio_le64(bytes);
+    if (f->type == 'I' && f->size == 8) return (double)(int64_t)brio_le64(bytes);
     return brio_scalar_load(bytes, type_of(f), !brio_host_is_little());
 }
 
@@ -137,10 +152,14 @@ static double load(const char *bytes, const brio_pcd_field *f) {
  * columns, of which each has all points, the fields of n points begin at n times their places. */
 static void load_point(pcd_reader *r, const char *bytes, size_t points, size_t place) {
     double *value = r->values;
+    const size_t *role = r->roles;
     for (size_t i = 0; i < r->header->num_fields; i++) {
         const brio_pcd_field *f = &r->header->fields[i];
         const char *at = bytes + points * f->at + place * f->size * f->count;
-        for (unsigned j = 0; j < f->count; j++) *value++ = load(at + j * f->size, f);
+        for (unsigned j = 0; j < f->count; j++, role++, value++) {
+            *value = load(at + j * f->size, f, *role);
+            if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) > 0x1p53;
+        }
     }
 }
 
@@ -173,8 +192,12 @@ static brio_status read_compressed(pcd_reader *r) {
     BRIO_REQUIRE(s->ctx, size / BRIO_LZF_MOST_RATIO <= compressed, BRIO_ERR_FORMAT,
                  "%s: byte %" PRIu64 ": %zu bytes cannot hold %zu", s->name, at, compressed, size);
     BRIO_TRY(BRIO_ALLOC(s->ctx, plain, size + 1));
-    BRIO_REQUIRE(s->ctx, brio_lzf_decompress((const uint8_t *)bytes, compressed, plain, size), BRIO_ERR_FORMAT,
-                 "%s: byte %" PRIu64 ": the compressed data are damaged", s->name, at + 8);
+    /* data that compression would not make smaller are stored as they are by some writers */
+    if (!brio_lzf_decompress((const uint8_t *)bytes, compressed, plain, size)) {
+        BRIO_REQUIRE(s->ctx, compressed == size, BRIO_ERR_FORMAT,
+                     "%s: byte %" PRIu64 ": the compressed data are damaged", s->name, at + 8);
+        memcpy(plain, bytes, size);
+    }
     for (; s->row < r->header->points; s->row++) {
         load_point(r, (char *)plain, (size_t)r->header->points, (size_t)s->row);
         BRIO_TRY(add_point(r));
@@ -202,9 +225,11 @@ static brio_status read_text(pcd_reader *r) {
             const brio_pcd_field *f = &r->header->fields[i];
             for (unsigned j = 0; j < f->count; j++, value++) {
                 BRIO_TRY(brio_text_number(&text, value));
-                if (is_colour(f) && f->type == 'F') *value = unpacked(*value);
-                if (is_colour(f) && !(*value >= 0 && *value <= UINT32_MAX))
+                bool colour = r->roles[value - r->values] == COLOUR;
+                if (colour && f->type == 'F') *value = unpacked(*value);
+                if (colour && !(*value >= 0 && *value <= UINT32_MAX))
                     return brio_text_expected(&text, "a packed colour before this place");
+                if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) > 0x1p53;
             }
         }
         BRIO_TRY(brio_text_row_end(&text));
@@ -244,6 +269,9 @@ brio_status brio_pcd_read(brio_stream *s, brio_builder *b) {
         BRIO_TRY(read_text(&r));
     else
         BRIO_TRY(header.data == BRIO_PCD_BINARY ? read_binary(&r) : read_compressed(&r));
+    if (r.rounded) BRIO_TRY(brio_builder_leave_out(b, "integers beyond 2^53"));
+    if (header.placed) BRIO_TRY(brio_builder_leave_out(b, "viewpoint"));
+    if (header.height > 1) BRIO_TRY(brio_builder_leave_out(b, "order in rows"));
 done:
     brio_release(s->ctx, r.roles);
     brio_release(s->ctx, r.values);

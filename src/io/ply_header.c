@@ -11,6 +11,7 @@
 #include "io/textrow.h"
 #include <inttypes.h>
 #include <string.h>
+#include <strings.h>
 
 /* The words of a line that are stored; no valid line has as many. */
 enum { MAX_WORDS = 6 };
@@ -101,6 +102,7 @@ static brio_status read_line(brio_stream *s, brio_ply_header *header, char *line
     char *words[MAX_WORDS];
     size_t count = split(line, words);
     const char *key = count ? words[0] : "";
+    if (!strcmp(key, "comment") && count > 1) header->textures |= !strcasecmp(words[1], "TextureFile");
     if (!*key || !strcmp(key, "comment") || !strcmp(key, "obj_info")) return BRIO_OK;
     if (!strcmp(key, "end_header")) {
         *end = true;
@@ -134,7 +136,7 @@ brio_status brio_ply_header_read(brio_stream *s, brio_ply_header *header) {
     bool format = false, end = false;
     *header = (brio_ply_header){.num_elements = 0};
     BRIO_TRY(brio_stream_line(s, &line));
-    if (!line || strcmp(line, "ply") != 0) {
+    if (!line || strncmp(line, "ply", 3) != 0 || *brio_skip_blanks(line + 3)) {
         s->line = 1;
         return bad_line(s, "ply");
     }

@@ -12,6 +12,7 @@ typedef enum {
     BRIO_PLY_COORDINATE,
     BRIO_PLY_PROPERTY,
     BRIO_PLY_FACE,
+    BRIO_PLY_STRIP,
     BRIO_PLY_TETRAHEDRON,
     BRIO_PLY_EDGE
 } brio_ply_role;
@@ -38,6 +39,7 @@ typedef struct brio_ply_header {
     brio_ply_encoding encoding;
     brio_ply_element *elements;
     size_t num_elements, element_capacity;
+    bool textures; /* whether a comment names a file with a texture */
 } brio_ply_header;
 
 /** Returns PLY's name of a scalar type. */

@@ -10,9 +10,16 @@
 #include "io/scalar.h"
 #include "io/textrow.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { BLOCK_BYTES = 1 << 16 }; /* chosen: a block of rows and its result fit in the cache */
+
+/* The last two corners of a strip of triangles, and how many it has. */
+typedef struct {
+    double before, last;
+    uint64_t corners;
+} strip;
 
 typedef struct {
     brio_stream *stream;
@@ -22,21 +29,31 @@ typedef struct {
 } ply_reader;
 
 bool brio_ply_starts(const char *bytes, size_t size) {
-    return size >= 4 && !memcmp(bytes, "ply", 3) && (bytes[3] == '\n' || bytes[3] == '\r');
+    return size >= 4 && !memcmp(bytes, "ply", 3) && brio_is_blank(bytes[3]);
 }
 
 /* --- what becomes of the properties --- */
 
-static int axis_of(const char *name) {
-    return name[0] >= 'x' && name[0] <= 'z' && !name[1] ? name[0] - 'x' : -1;
+/* Returns the axis of a name that is one of three letters, "xyz" or "XYZ", or -1. */
+static int axis_of(const char *name, const char *letters) {
+    const char *at = name[0] && !name[1] ? strchr(letters, name[0]) : NULL;
+    return at ? (int)(at - letters) : -1;
+}
+
+/* Returns the letters of the axes: capitals where no property has a small one. */
+static const char *letters_of(const brio_ply_element *e) {
+    for (size_t i = 0; i < e->num_properties; i++)
+        if (axis_of(e->properties[i].name, "xyz") >= 0) return "xyz";
+    return "XYZ";
 }
 
 static brio_status plan_vertex(brio_builder *b, brio_ply_element *e) {
     brio_status status = BRIO_OK;
     unsigned seen = 0;
+    const char *letters = letters_of(e);
     for (size_t i = 0; i < e->num_properties; i++) {
         brio_ply_property *p = &e->properties[i];
-        int axis = axis_of(p->name);
+        int axis = axis_of(p->name, letters);
         if (p->list) continue;
         if (axis >= 0) {
             BRIO_REQUIRE(b->ctx, !(seen & 1u << axis), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name,
@@ -86,10 +103,29 @@ static bool has_role(const brio_ply_element *e, brio_ply_role role) {
 static bool holds_cells(const brio_ply_header *header) {
     for (size_t i = 0; i < header->num_elements; i++) {
         const brio_ply_element *e = &header->elements[i];
-        if (e->count && (!strcmp(e->name, "face") || !strcmp(e->name, "tetrahedron") || !strcmp(e->name, "edge")))
+        if (e->count && (!strcmp(e->name, "face") || !strcmp(e->name, "tristrips") || !strcmp(e->name, "tetrahedron") ||
+                         !strcmp(e->name, "edge")))
             return true;
     }
     return false;
+}
+
+/* Names what is not read of an element: all of it, or some of its properties. */
+static brio_status name_left_out(brio_builder *b, const brio_ply_element *e) {
+    brio_status status = BRIO_OK;
+    bool used = false, vertices = !strcmp(e->name, "vertex");
+    for (size_t i = 0; i < e->num_properties; i++) used |= e->properties[i].role != BRIO_PLY_SKIP;
+    if (!e->count || !e->num_properties) return BRIO_OK;
+    if (!used) return brio_builder_leave_out(b, e->name);
+    for (size_t i = 0; i < e->num_properties; i++) {
+        const brio_ply_property *p = &e->properties[i];
+        char name[64 + 4 + 64 + 2];
+        if (p->role != BRIO_PLY_SKIP) continue;
+        snprintf(name, sizeof name, vertices ? "%s" : "%s of %s", p->name, e->name);
+        BRIO_TRY(brio_builder_leave_out(b, name));
+    }
+done:
+    return status;
 }
 
 static brio_status plan(ply_reader *r, brio_ply_header *header) {
@@ -108,13 +144,17 @@ static brio_status plan(ply_reader *r, brio_ply_header *header) {
         } else if (!strcmp(e->name, "face")) {
             plan_list(e, BRIO_PLY_FACE);
             if (known && has_role(e, BRIO_PLY_FACE)) BRIO_TRY(brio_builder_expect_faces(b, e->count));
+        } else if (!strcmp(e->name, "tristrips")) {
+            plan_list(e, BRIO_PLY_STRIP);
         } else if (!strcmp(e->name, "tetrahedron")) {
             plan_list(e, BRIO_PLY_TETRAHEDRON);
             if (known && has_role(e, BRIO_PLY_TETRAHEDRON)) BRIO_TRY(brio_builder_expect_tetrahedra(b, e->count));
         } else if (!strcmp(e->name, "edge")) {
             plan_edge(e);
         }
+        BRIO_TRY(name_left_out(b, e));
     }
+    if (header->textures) BRIO_TRY(brio_builder_leave_out(b, "textures"));
     BRIO_REQUIRE(b->ctx, vertices, BRIO_ERR_FORMAT, "%s: the header has no element vertex", b->name);
 done:
     return status;
@@ -203,10 +243,32 @@ static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, doubl
                      (size_t)r->stream->row, p->name, value, brio_ply_type_name(p->type));
 }
 
+/* Adds a corner to a strip, and the triangle that the corner ends: every second one is turned round. A negative number
+ * begins another strip, and two equal corners join parts of one: a triangle with such corners is none. */
+static brio_status add_strip_corner(brio_builder *b, strip *s, double corner) {
+    brio_status status = BRIO_OK;
+    if (corner < 0) {
+        s->corners = 0;
+        return BRIO_OK;
+    }
+    bool turned = s->corners & 1, flat = corner == s->last || corner == s->before || s->before == s->last;
+    if (s->corners++ >= 2 && !flat) {
+        BRIO_TRY(brio_builder_corner(b, turned ? s->last : s->before));
+        BRIO_TRY(brio_builder_corner(b, turned ? s->before : s->last));
+        BRIO_TRY(brio_builder_corner(b, corner));
+        BRIO_TRY(brio_builder_face(b));
+    }
+    s->before = s->last;
+    s->last = corner;
+done:
+    return status;
+}
+
 static brio_status read_list(ply_reader *r, const brio_ply_property *p) {
     brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     double count, item, corners[4];
+    strip triangles = {-1, -1, 0};
     BRIO_TRY(next_scalar(r, p->count_type, &count));
     BRIO_REQUIRE(s->ctx, count >= 0 && count < 0x1p53 && count == floor(count), BRIO_ERR_FORMAT,
                  "%s: %s %zu (counted from 0): a list of %.17g numbers", s->name, s->element, (size_t)s->row, count);
@@ -216,6 +278,7 @@ static brio_status read_list(ply_reader *r, const brio_ply_property *p) {
     for (uint64_t i = 0; i < items; i++) {
         BRIO_TRY(next_scalar(r, p->type, &item));
         if (p->role == BRIO_PLY_FACE) BRIO_TRY(brio_builder_corner(r->builder, item));
+        if (p->role == BRIO_PLY_STRIP) BRIO_TRY(add_strip_corner(r->builder, &triangles, item));
         if (p->role == BRIO_PLY_TETRAHEDRON) corners[i] = item;
     }
     if (p->role == BRIO_PLY_FACE) BRIO_TRY(brio_builder_face(r->builder));

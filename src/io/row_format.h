@@ -37,7 +37,7 @@ typedef struct brio_row_format {
 /** Returns the functions of a format, or NULL if the format needs the whole mesh. */
 const brio_row_format *brio_row_format_of(brio_format format);
 
-extern const brio_row_format brio_ply_rows, brio_xyz_rows, brio_npy_rows, brio_las_rows;
+extern const brio_row_format brio_ply_rows, brio_xyz_rows, brio_npy_rows, brio_las_rows, brio_pcd_rows;
 
 /** A file that is written block by block. */
 typedef struct brio_row_writer {
@@ -47,6 +47,7 @@ typedef struct brio_row_writer {
     brio_write_job job;
     brio_output out;
     void *state;
+    brio_colour_plan colours;
     bool surveys; /* whether all blocks must be shown (again) before the first one is written */
     bool begun;   /* whether the output was opened */
     bool shown;   /* whether a block was seen, which has `columns` properties */
@@ -56,6 +57,11 @@ typedef struct brio_row_writer {
 
 /** Begins a writer.   job  without mesh and names; its options stay valid.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_format format, const brio_write_job *job);
+/** Returns whether the depth of colours shows only in all blocks: then brio_row_writer_look has to see them all before
+ *  anything else, or the first block decides. */
+bool brio_row_writer_is_open(const brio_row_writer *w, const brio_mesh *block);
+void brio_row_writer_look(brio_row_writer *w, const brio_mesh *block);
+void brio_row_writer_end_look(brio_row_writer *w);
 /** Shows a block before the writing begins. */
 brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block);
 /** Ends a pass over all blocks. w->surveys says whether another one is needed. */

@@ -85,6 +85,7 @@ brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_form
     *w = (brio_row_writer){.ctx = ctx, .kind = format, .format = brio_row_format_of(format), .job = *job};
     w->out = (brio_output){.ctx = ctx, .target.folder = -1, .file = -1};
     w->surveys = w->format->survey != NULL;
+    w->colours.to = brio_format_row_of(format)->colours;
     return brio_zeroed(ctx, &w->state, 1, w->format->state + 1);
 }
 
@@ -98,9 +99,27 @@ static brio_status take_block(brio_row_writer *w, const brio_mesh *block) {
                      block->num_properties);
 }
 
+bool brio_row_writer_is_open(const brio_row_writer *w, const brio_mesh *block) {
+    return brio_colour_is_open(&w->colours, block);
+}
+
+void brio_row_writer_look(brio_row_writer *w, const brio_mesh *block) {
+    brio_colour_look(&w->colours, block);
+}
+
+void brio_row_writer_end_look(brio_row_writer *w) {
+    w->colours.looked = true;
+}
+
 brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block) {
-    brio_status status = take_block(w, block);
-    return status == BRIO_OK ? w->format->survey(w->ctx, &w->job, w->state) : status;
+    brio_status status = BRIO_OK;
+    brio_mesh shown;
+    BRIO_TRY(brio_colour_show(w->ctx, &w->colours, block, &shown));
+    BRIO_TRY(take_block(w, &shown));
+    BRIO_TRY(w->format->survey(w->ctx, &w->job, w->state));
+done:
+    brio_colour_free(w->ctx, block, &shown);
+    return status;
 }
 
 void brio_row_writer_end_survey(brio_row_writer *w) {
@@ -124,7 +143,8 @@ done:
     return status;
 }
 
-brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const brio_mesh *block) {
+/* Writes a block whose colours are those of the format. */
+static brio_status write_shown(brio_row_writer *w, const char *path, const brio_mesh *block) {
     brio_status status = BRIO_OK;
     BRIO_TRY(take_block(w, block));
     if (!w->begun) BRIO_TRY(open_output(w, path));
@@ -137,6 +157,17 @@ brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const br
         *w->job.options->moved = fmax(*w->job.options->moved, brio_moved_by_singles(block));
     w->points += block->num_vertices;
 done:
+    return status;
+}
+
+brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const brio_mesh *block) {
+    brio_status status = BRIO_OK;
+    brio_mesh shown;
+    BRIO_TRY(brio_colour_show(w->ctx, &w->colours, block, &shown));
+    BRIO_TRY(write_shown(w, path, &shown));
+    if (w->job.options->colours_rounded) *w->job.options->colours_rounded = brio_colour_lost(&w->colours);
+done:
+    brio_colour_free(w->ctx, block, &shown);
     return status;
 }
 

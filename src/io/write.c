@@ -19,9 +19,10 @@ brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format
     brio_status status = BRIO_OK;
     if (!options->compress) return BRIO_OK;
     BRIO_REQUIRE(ctx, brio_format_holds(format, BRIO_HOLDS_COMPRESSED), BRIO_ERR_ARGUMENT,
-                 "%s: a file of this format cannot be compressed; .vtu and .vtp can", path);
+                 "%s: a file of this format cannot be compressed; .vtu, .vtp and .pcd can", path);
     BRIO_REQUIRE(ctx, !options->ascii, BRIO_ERR_ARGUMENT, "%s: text is not compressed", path);
-    BRIO_REQUIRE(ctx, brio_vtk_has_zlib(), BRIO_ERR_ARGUMENT, "%s: this brio was built without zlib, which compresses",
+    BRIO_REQUIRE(ctx, format == BRIO_FORMAT_PCD || brio_vtk_has_zlib(), BRIO_ERR_ARGUMENT,
+                 "%s: this brio was built without zlib, which compresses",
                  path);
 done:
     return status;
@@ -82,13 +83,21 @@ static uint64_t expected_bytes(const brio_mesh *m, brio_format format, bool asci
 
 static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
     brio_status status = BRIO_OK;
-    brio_output out;
+    const brio_format_row *row = brio_format_row_of(format);
+    brio_colour_plan colours = {.to = row->colours};
+    brio_write_job of_shown = *job;
+    brio_output out = {.ctx = ctx, .target.folder = -1, .file = -1};
+    brio_mesh shown;
+    BRIO_TRY(brio_colour_show(ctx, &colours, job->mesh, &shown));
+    of_shown.mesh = &shown;
     BRIO_TRY(brio_output_open(&out, ctx, path, job->expected));
-    BRIO_TRY(brio_format_row_of(format)->write(&out, job));
+    BRIO_TRY(row->write(&out, &of_shown));
+    if (job->options->colours_rounded) *job->options->colours_rounded = brio_colour_lost(&colours);
     BRIO_TRY(brio_output_finish(&out));
     BRIO_TRY(brio_output_publish(&out));
 done:
     brio_output_close(&out);
+    brio_colour_free(ctx, job->mesh, &shown);
     return status;
 }
 
@@ -133,6 +142,7 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     brio_format format = o.format;
     if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
     if (o.moved) *o.moved = 0;
+    if (o.colours_rounded) *o.colours_rounded = 0;
     BRIO_TRY(check_mesh(ctx, path, mesh));
     BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
     job.expected = expected_bytes(mesh, format, o.ascii);

@@ -25,6 +25,8 @@ typedef struct {
     brio_source source;
     brio_row_writer writer;
     bool told;    /* whether the losses of the parts were named */
+    bool open;    /* whether a pass ended because the depth of colours was not known */
+    int dulled;   /* whether colours lost steps */
     bool rounded; /* whether single precision rounded a coordinate */
     uint64_t counted;
     brio_convert_stats stats;
@@ -47,7 +49,8 @@ static void name_losses(conversion *c, const brio_mesh *m) {
     if (m->num_faces && !holds(c, BRIO_HOLDS_FACES)) lose(c, "faces");
     if (m->num_tetrahedra && !holds(c, BRIO_HOLDS_TETRAHEDRA)) lose(c, "tetrahedra");
     if (m->num_edges && !holds(c, BRIO_HOLDS_EDGES)) lose(c, "edges");
-    for (size_t i = 0; i < m->num_properties && !holds(c, BRIO_HOLDS_PROPERTIES); i++) lose(c, m->properties[i].name);
+    for (size_t i = 0; i < m->num_properties; i++)
+        if (!brio_format_holds_property(c->format, m, i)) lose(c, m->properties[i].name);
 }
 
 /* Names what the reader passed over. */
@@ -66,16 +69,31 @@ static bool rounds_property(const conversion *c, const brio_mesh *m, const brio_
 }
 
 static void find_rounding(conversion *c, const brio_mesh *m) {
-    for (size_t i = 0; i < m->num_properties && !c->rounded; i++) c->rounded = rounds_property(c, m, &m->properties[i]);
+    brio_channels colour = brio_colour_of(m);
+    for (size_t i = 0; i < m->num_properties && !c->rounded; i++)
+        c->rounded = !brio_channels_have(&colour, &m->properties[i]) && rounds_property(c, m, &m->properties[i]);
     for (size_t i = 0; i < 3 * m->num_vertices && !c->rounded && brio_is_single(c->format, &c->write); i++)
         c->rounded = fabs(m->vertices[i]) <= 0x1.ffffffp127 && (double)(float)m->vertices[i] != m->vertices[i];
 }
 
 /* --- passes --- */
 
+/* Ends a pass at once if the depth of colours shows only in all blocks, which can be read again. */
+static brio_status refuse_open(conversion *c, const brio_mesh *block) {
+    c->open = !c->source.job.mesh && brio_source_rereadable(c->source.path) && brio_row_writer_is_open(&c->writer, block);
+    return c->open ? BRIO_ERR_CANCELLED : BRIO_OK;
+}
+
+static brio_status look(void *user, const brio_mesh *block) {
+    conversion *c = user;
+    brio_row_writer_look(&c->writer, block);
+    return BRIO_OK;
+}
+
 static brio_status survey(void *user, const brio_mesh *block) {
     conversion *c = user;
-    return brio_row_writer_survey(&c->writer, block);
+    brio_status status = refuse_open(c, block);
+    return status == BRIO_OK ? brio_row_writer_survey(&c->writer, block) : status;
 }
 
 static brio_status count(void *user, const brio_mesh *block) {
@@ -88,6 +106,7 @@ static brio_status write_block(void *user, const brio_mesh *block) {
     conversion *c = user;
     brio_status status = BRIO_OK;
     brio_mesh shown = *block;
+    BRIO_TRY(refuse_open(c, block));
     name_losses(c, block);
     find_rounding(c, block);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
@@ -125,13 +144,28 @@ static bool must_count(const conversion *c) {
     return !can_patch(c->to) && c->writer.format->counts;
 }
 
+/* Goes through the points. A pass that ends at its first block because the depth of colours is open is followed by one that
+ * looks at them all, and does not count. */
+static brio_status go_through(conversion *c, const brio_sink *sink) {
+    brio_status status = brio_source_pass(&c->source, sink);
+    const brio_sink looks = {look, c};
+    if (!c->open) return status;
+    c->open = false;
+    c->source.passes--;
+    BRIO_TRY(brio_source_pass(&c->source, &looks));
+    brio_row_writer_end_look(&c->writer);
+    BRIO_TRY(brio_source_pass(&c->source, sink));
+done:
+    return status;
+}
+
 /* Goes through the points before the first one is written, as often as the format needs. */
 static brio_status prepare(conversion *c, brio_bar bar) {
     brio_status status = BRIO_OK;
     const brio_sink surveys = {survey, c}, counts = {count, c};
     brio_progress_part(c->ctx, bar, 0, 0.5);
     while (c->writer.surveys) {
-        BRIO_TRY(brio_source_pass(&c->source, &surveys));
+        BRIO_TRY(go_through(c, &surveys));
         brio_row_writer_end_survey(&c->writer);
         c->writer.job.points = brio_row_writer_surveyed_points(&c->writer);
     }
@@ -153,11 +187,12 @@ static brio_status stream(conversion *c) {
     bool prepared = c->writer.surveys || must_count(c);
     if (prepared) BRIO_TRY(prepare(c, bar));
     brio_progress_part(c->ctx, bar, prepared ? 0.5 : 0, 1);
-    BRIO_TRY(brio_source_pass(&c->source, &sink));
+    BRIO_TRY(go_through(c, &sink));
     if (prepared && c->writer.job.points != c->writer.points) BRIO_TRY(brio_source_changed(&c->source));
     if (c->rounded || c->source.job.notes.rounded ||
         (c->writer.format->rounds && c->writer.format->rounds(c->writer.state)))
         lose(c, "precision");
+    if (c->dulled) lose(c, "colour depth");
     name_left_out(c);
     brio_mesh last = {.num_vertices = 0};
     if (c->source.job.mesh) last = *c->source.job.mesh;
@@ -173,12 +208,18 @@ done:
 
 static brio_status write_whole(void *user, const brio_mesh *mesh) {
     conversion *c = user;
-    brio_mesh shown = *mesh;
+    brio_status status = BRIO_OK;
+    brio_colour_plan colours = {.to = brio_format_row_of(c->format)->colours};
+    brio_mesh shown;
     brio_write_options o = c->write;
     o.format = c->format;
+    BRIO_TRY(brio_colour_show(c->ctx, &colours, mesh, &shown));
+    c->dulled = brio_colour_lost(&colours);
+    o.colours_rounded = NULL;
     name_losses(c, mesh);
     find_rounding(c, mesh);
     if (c->rounded || c->source.job.notes.rounded) lose(c, "precision");
+    if (c->dulled) lose(c, "colour depth");
     name_left_out(c);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
     if (!holds(c, BRIO_HOLDS_TETRAHEDRA)) shown.num_tetrahedra = 0;
@@ -187,7 +228,10 @@ static brio_status write_whole(void *user, const brio_mesh *mesh) {
     c->stats.faces = shown.num_faces;
     c->stats.tetrahedra = shown.num_tetrahedra;
     c->stats.edges = shown.num_edges;
-    return brio_write(c->ctx, c->to, &shown, &o);
+    BRIO_TRY(brio_write(c->ctx, c->to, &shown, &o));
+done:
+    brio_colour_free(c->ctx, mesh, &shown);
+    return status;
 }
 
 /* --- the whole --- */
@@ -266,6 +310,8 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, read.notes));
     if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));
     if (c.write.moved) *c.write.moved = 0;
+    int *rounded = c.write.colours_rounded;
+    c.write.colours_rounded = &c.dulled;
     c.format = c.write.format == BRIO_FORMAT_AUTO && strcmp(to, "-") ? brio_format_of(to) : c.write.format;
     BRIO_TRY(brio_check_written(ctx, to, c.format));
     BRIO_TRY(brio_check_compress(ctx, to, c.format, &c.write));
@@ -276,6 +322,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
                                    .salvage = read.salvage,
                                    .announced = BRIO_COUNT_UNKNOWN};
     BRIO_TRY(run(&c));
+    if (rounded) *rounded = c.dulled;
     c.stats.streamed = c.source.job.streamed;
     c.stats.points_read = c.source.points_read;
     if (read.dropped) *read.dropped = c.source.job.dropped;
