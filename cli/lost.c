@@ -1,13 +1,34 @@
 /* What a file's format cannot hold, said when the file has been written. */
 #include "lost.h"
+#include <string.h>
 
-/* Lists the names of the properties, the first few of them. */
-static void list_names(const brio_mesh *mesh, char text[1024]) {
+/* Whether a property is one of three that a mesh has all, and a format has a place for. */
+static bool is_held(const brio_mesh *mesh, const char *name, unsigned holds) {
+    static const struct {
+        unsigned what;
+        const char *names[3];
+    } groups[] = {{BRIO_HOLDS_COLOURS, {"red", "green", "blue"}}, {BRIO_HOLDS_NORMALS, {"nx", "ny", "nz"}}};
+    for (size_t g = 0; g < sizeof groups / sizeof *groups; g++) {
+        bool all = holds & groups[g].what, one = false;
+        for (int k = 0; k < 3; k++) {
+            all = all && brio_mesh_property(mesh, groups[g].names[k]);
+            one |= !strcmp(name, groups[g].names[k]);
+        }
+        if (all && one) return true;
+    }
+    return false;
+}
+
+/* Lists the names of the properties that a format does not hold, the first few of them. Returns how many there are. */
+static size_t list_names(const brio_mesh *mesh, unsigned holds, char text[1024]) {
     enum { MOST = 12 };
-    size_t used = 0;
-    for (size_t i = 0; i < mesh->num_properties && i < MOST; i++)
-        used += (size_t)snprintf(text + used, 1024 - used, " %s", mesh->properties[i].name);
-    if (mesh->num_properties > MOST) snprintf(text + used, 1024 - used, " ...");
+    size_t used = 0, count = 0;
+    for (size_t i = 0; i < mesh->num_properties; i++) {
+        if (is_held(mesh, mesh->properties[i].name, holds)) continue;
+        if (count++ < MOST) used += (size_t)snprintf(text + used, 1024 - used, " %s", mesh->properties[i].name);
+    }
+    if (count > MOST) snprintf(text + used, 1024 - used, " ...");
+    return count;
 }
 
 void cli_tell_lost(run *r, const char *path, const brio_mesh *mesh, brio_format format) {
@@ -16,7 +37,7 @@ void cli_tell_lost(run *r, const char *path, const brio_mesh *mesh, brio_format 
     if (mesh->num_faces && !(holds & BRIO_HOLDS_FACES)) cli_warn(r, WARNING_FACES, path);
     if (mesh->num_edges && !(holds & BRIO_HOLDS_EDGES)) cli_warn(r, WARNING_EDGES, path);
     if (!mesh->num_properties || !r->has_properties) return;
-    list_names(mesh, names);
+    if (!list_names(mesh, holds, names)) return;
     if (holds & BRIO_HOLDS_PROPERTIES && !(holds & BRIO_HOLDS_NAMES))
         cli_warn(r, WARNING_NAMES, path, names);
     else if (!(holds & BRIO_HOLDS_PROPERTIES))

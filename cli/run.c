@@ -327,12 +327,14 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     brio_write_options options = brio_write_options_default();
     brio_status status = BRIO_OK;
     double moved = 0;
+    int rounded = 0;
     size_t merged = 0;
     TRY(cli_output_format(r, path, extension, &options.format));
     if (extension && !strcasecmp(extension, "csv")) options.separator = ",";
     options.ascii = r->common.ascii;
     options.float32 = r->common.float32;
     options.moved = &moved;
+    options.colours_rounded = &rounded;
     TRY(cli_settle_precision(r, path, mesh, &options, &merged));
     options.compress = r->common.compress && brio_format_facts(options.format)->holds & BRIO_HOLDS_COMPRESSED;
     options.comment = "brio " BRIO_VERSION;
@@ -347,6 +349,7 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     if (status != BRIO_OK) goto done;
     cli_tell_moved(r, path, moved, merged);
     cli_tell_lost(r, path, mesh, options.format);
+    if (rounded) cli_warn(r, "%s: the colours have fewer steps than those of the input", path);
 done:
     return status;
 }

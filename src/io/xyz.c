@@ -1,4 +1,4 @@
-/* Writes points as rows of numbers: .xyz .pts .txt .csv. A line of names comes first. */
+/* Writes points as rows of numbers: .xyz .pts .txt .csv .asc .tsv. A line of names comes first. */
 #include "io/row_format.h"
 #include <string.h>
 #include <strings.h>
@@ -6,13 +6,14 @@
 static char separator_of(const brio_output *out, const brio_write_job *job) {
     size_t length = strlen(out->name);
     if (job->options->separator) return job->options->separator[0];
-    return length >= 4 && !strcasecmp(out->name + length - 4, ".csv") ? ',' : ' ';
+    const char *extension = length >= 4 ? out->name + length - 4 : "";
+    return !strcasecmp(extension, ".csv") ? ',' : !strcasecmp(extension, ".tsv") ? '\t' : ' ';
 }
 
 static brio_status write_names(brio_output *out, const brio_write_job *job, char separator) {
     brio_status status = BRIO_OK;
     /* spreadsheets read a line that begins with # as data, so that CSV has no comment */
-    BRIO_TRY(brio_output_format(out, "%sx%cy%cz", separator == ',' ? "" : "# ", separator, separator));
+    BRIO_TRY(brio_output_format(out, "%sx%cy%cz", separator == ' ' ? "# " : "", separator, separator));
     for (size_t i = 0; i < job->mesh->num_properties; i++)
         BRIO_TRY(brio_output_format(out, "%c%s", separator, job->names[i]));
     BRIO_TRY(brio_output_string(out, "\n"));

@@ -56,6 +56,18 @@ static const char *skip_word(const char *p, bool (*ends)(const char *)) {
     return p;
 }
 
+/* Reads a number in quotes at p, or nothing in quotes. Returns the place behind the closing quote, or NULL. */
+static const char *scan_quoted(const char *p, brio_field *field) {
+    const char *end = skip_blanks(p + 1);
+    bool number = brio_parse_number(&end, &field->value);
+    end = skip_blanks(end);
+    if (*end != '"' || !ends_field(end + 1)) return NULL;
+    field->kind = number ? BRIO_FIELD_NUMBER : BRIO_FIELD_EMPTY;
+    field->length = (size_t)(end + 1 - p);
+    if (!number) field->value = (double)NAN;
+    return end + 1;
+}
+
 /* Reads the field at p, which is neither a blank nor the end of the line. Returns the place behind the field. */
 static const char *scan_field(const char *p, brio_field *field) {
     const char *end = p;
@@ -65,6 +77,8 @@ static const char *scan_field(const char *p, brio_field *field) {
         field->length = (size_t)(end - p);
         return end;
     }
+    end = *p == '"' ? scan_quoted(p, field) : NULL;
+    if (end) return end;
     *field = (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0};
     if (*p == ',' || *p == ';') return p;
     field->kind = BRIO_FIELD_WORD;
@@ -82,7 +96,7 @@ static void record_gap(gaps *g, const brio_field *field, const char *end, const 
         g->tight |= separator == end && is_digit(end[1]);
     } else if (*separator == ';') {
         g->other = true;
-    } else if (is_digit(*separator) || *separator == '-' || *separator == '+' || *separator == '.') {
+    } else if (is_digit(*separator) || *separator == '"' || *separator == '-' || *separator == '+' || *separator == '.') {
         g->other = true;
     }
 }

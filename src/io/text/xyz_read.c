@@ -1,21 +1,29 @@
-/* Reads points as rows of numbers: .xyz .pts .txt .csv.
+/* Reads points as rows of numbers: .xyz .pts .txt .csv .asc .xyzrgb .xyzn .tsv .dat.
  *
  * A line of names before the first row, plain or as a comment, names the columns and gives the places of x, y and z;
  * names that the caller gives stand in its place. Without names the first three columns are x, y, z. Plain names that do
  * not say which are x, y and z are an error: the first column may be a number of the point. A column becomes a property
  * if the first row has no word in it, or one for a missing number. A single number before the first row is the number of
- * rows. A ; at the start of a line begins a comment, too. */
+ * rows; another one behind these rows is that of a further block. A ; at the start of a line begins a comment, too.
+ *
+ * Columns without names have those that the extension gives them: .pts has an intensity, a colour, or both, .xyzrgb a
+ * colour, .xyzn a normal. A line "sep=;" comes first where Excel is told the separator. Where single tabs separate the names,
+ * two tabs in a row have an empty field between them. The points3D.txt of COLMAP has columns behind those that its comment
+ * names, which are left out. */
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "io/formats.h"
 #include "io/number.h"
 #include "io/text/text_columns.h"
 #include "io/text/text_fields.h"
+#include "io/number.h"
 #include "io/textrow.h"
+#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 typedef enum { COLUMN_IGNORED, COLUMN_AXIS, COLUMN_PROPERTY } column_role;
 
@@ -45,6 +53,8 @@ typedef struct {
     bool counted;   /* whether the first line announced a number of rows */
     uint64_t promised;
     size_t count_line;
+    bool tabs;         /* whether every tab separates two fields */
+    bool tracks;       /* whether columns without names follow the named ones */
     char shown[2][64]; /* the beginnings of the first lines, for messages */
     int num_shown;
     bool may_be_numbered; /* whether x may number the rows: no names, a column that is no axis, whole numbers so far */
@@ -133,6 +143,13 @@ static bool are_first(const size_t axes[3]) {
     return axes[0] == 0 && axes[1] == 1 && axes[2] == 2;
 }
 
+/* Returns how many columns of points3D.txt have names: what follows is a list of images. */
+static size_t find_tracks(const xyz_reader *r) {
+    for (size_t i = 0; i < r->fields.count; i++)
+        if (!strncmp(r->fields.at[i].word, "TRACK[]", 7)) return i;
+    return r->fields.count;
+}
+
 /* Reads a comment before the first row as a line of names if x, y and z, or angles, are among its words. Behind x, y and z
  * a number is a name, too. */
 static brio_status try_comment(xyz_reader *r, const char *comment) {
@@ -141,12 +158,15 @@ static brio_status try_comment(xyz_reader *r, const char *comment) {
     size_t axes[3];
     if (r->num_columns || r->source > NAMES_COMMENT) return BRIO_OK;
     BRIO_TRY(brio_fields_of_words(&r->fields, comment + strspn(comment, "#/;% \t")));
+    size_t all = r->fields.count;
+    r->fields.count = find_tracks(r);
     BRIO_TRY(try_names(r, &result, axes));
     bool words = count_words(r) == r->fields.count;
     if (!words && (result != BRIO_AXES_FOUND || !are_first(axes))) return BRIO_OK;
     bool clear = result == BRIO_AXES_FOUND || result == BRIO_AXES_ANGLES;
     bool first = result == BRIO_AXES_SEVERAL && r->source == NAMES_NONE;
     if (clear || first) keep_tried_names(r, NAMES_COMMENT);
+    if (clear || first) r->tracks = r->fields.count < all;
 done:
     return status;
 }
@@ -185,6 +205,7 @@ static void first_three(size_t axes[3]) {
  * would be the first columns anyway, or columns that are not there. */
 static brio_status place_by_comment(xyz_reader *r, brio_axes_result result) {
     size_t found = r->fields.count, count = r->names.count, *axes = r->axes;
+    if (r->tracks && count <= found && result == BRIO_AXES_FOUND) return BRIO_OK;
     if (count == found && result == BRIO_AXES_ANGLES) return unclear_columns(r, angles_are_no_lengths);
     if (count == found && result == BRIO_AXES_SEVERAL) return unclear_columns(r, several_columns);
     if (count == found) return BRIO_OK;
@@ -235,7 +256,17 @@ static brio_status place_axes(xyz_reader *r) {
 static bool is_property(const xyz_reader *r, size_t i) {
     if (r->source == NAMES_GIVEN) return i < r->names.count && r->names.at[i][0];
     if (r->source == NAMES_PLAIN && i >= r->names.count) return false; /* empty: a row may end with separators */
+    if (r->source == NAMES_COMMENT && r->tracks && i >= r->names.count) return false;
     return r->fields.at[i].kind != BRIO_FIELD_WORD || brio_field_is_missing(&r->fields.at[i]);
+}
+
+/* Names a column of words, which is passed over. Columns that the caller leaves out need no name. */
+static brio_status name_left_out(xyz_reader *r, size_t i) {
+    char name[64];
+    if (r->source == NAMES_GIVEN || r->fields.at[i].kind != BRIO_FIELD_WORD) return BRIO_OK;
+    snprintf(name, sizeof name, "column%zu", i + 1);
+    bool named = i < r->names.count && r->names.at[i][0];
+    return brio_builder_leave_out(r->builder, named ? r->names.at[i] : name);
 }
 
 /* More columns than names: an index that has no name, or commas that do not separate, so that x, y and z are elsewhere. */
@@ -247,17 +278,65 @@ static brio_status refuse_nameless(const xyz_reader *r) {
                      r->stream->name, r->stream->line, found, r->name_line, names);
 }
 
+/* Whether a file's name, perhaps with .gz or .zst behind it, has an extension. */
+static bool has_extension(const char *name, const char *extension) {
+    size_t length = strlen(extension);
+    for (const char *at = name; (at = strchr(at, '.')); at++) {
+        const char *behind = at + length;
+        if (!strncasecmp(at, extension, length) && (!*behind || !strcasecmp(behind, ".gz") || !strcasecmp(behind, ".zst") ||
+                                                    !strncasecmp(behind, ".gz,", 4) || !strncasecmp(behind, ".zst,", 5)))
+            return true;
+    }
+    return false;
+}
+
+/* Whether three fields of the first row are bytes. */
+static bool are_bytes(const brio_field *f) {
+    for (int k = 0; k < 3; k++)
+        if (f[k].kind != BRIO_FIELD_NUMBER || !(f[k].value >= 0 && f[k].value <= 255) || f[k].value != floor(f[k].value))
+            return false;
+    return true;
+}
+
+/* Gives columns without names those that the extension tells. */
+static brio_status name_by_extension(xyz_reader *r) {
+    static const char intensity[][64] = {"", "", "", "intensity"}, both[][64] = {"", "", "", "intensity", "red", "green",
+                                                                                 "blue"},
+                      colour[][64] = {"", "", "", "red", "green", "blue"}, normal[][64] = {"", "", "", "nx", "ny", "nz"};
+    brio_status status = BRIO_OK;
+    size_t found = r->fields.count;
+    const char(*names)[64] = NULL, *file = r->stream->name;
+    if (has_extension(file, ".pts") && found == 4) names = intensity;
+    if (has_extension(file, ".pts") && found == 6 && are_bytes(r->fields.at + 3)) names = colour;
+    if (has_extension(file, ".pts") && found == 7 && are_bytes(r->fields.at + 4)) names = both;
+    if (has_extension(file, ".xyzrgb") && found == 6) names = colour;
+    if (has_extension(file, ".xyzn") && found == 6) names = normal;
+    if (r->source != NAMES_NONE || !names) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(r->stream->ctx, r->names.at, r->names.capacity, found));
+    memcpy(r->names.at, names, found * sizeof *names);
+    r->names.count = found;
+done:
+    return status;
+}
+
 static brio_status plan_columns(xyz_reader *r) {
     brio_status status = BRIO_OK;
     size_t found = r->fields.count;
     BRIO_TRY(refuse_nameless(r));
     BRIO_TRY(place_axes(r));
+    BRIO_TRY(name_by_extension(r));
+    if (r->tracks && found > r->names.count) BRIO_TRY(brio_builder_leave_out(r->builder, "tracks"));
     size_t count = r->names.count > found ? r->names.count : found;
     BRIO_TRY(BRIO_ALLOC_ZERO(r->stream->ctx, r->columns, count));
     r->num_columns = count;
     for (size_t k = 0; k < 3; k++) r->columns[r->axes[k]] = (column){COLUMN_AXIS, k};
-    for (size_t i = 0; i < found; i++)
-        if (r->columns[i].role == COLUMN_IGNORED && is_property(r, i)) BRIO_TRY(add_property(r, i));
+    for (size_t i = 0; i < found; i++) {
+        if (r->columns[i].role != COLUMN_IGNORED) continue;
+        if (is_property(r, i))
+            BRIO_TRY(add_property(r, i));
+        else
+            BRIO_TRY(name_left_out(r, i));
+    }
 done:
     return status;
 }
@@ -311,6 +390,16 @@ static void note_rounding(const xyz_reader *r, size_t i) {
 
 /* --- rows --- */
 
+/* Whether a field is a whole number with more bits than a double has. */
+static bool loses_bits(const brio_field *f) {
+    uint64_t exact;
+    const char *digits = f->word + (*f->word == '-' || *f->word == '+');
+    if (f->kind != BRIO_FIELD_NUMBER || !(fabs(f->value) > 0x1p53)) return false;
+    size_t length = strspn(digits, "0123456789");
+    if (!length || digits + length < f->word + f->length) return false;
+    return !brio_parse_count(&digits, &exact) || fabs(f->value) >= 0x1p64 || (uint64_t)fabs(f->value) != exact;
+}
+
 static brio_status read_point(const xyz_reader *r, double point[3]) {
     brio_stream *s = r->stream;
     for (int k = 0; k < 3; k++) {
@@ -322,6 +411,12 @@ static brio_status read_point(const xyz_reader *r, double point[3]) {
         point[k] = r->fields.at[i].value;
     }
     return BRIO_OK;
+}
+
+static brio_status name_rounded(const xyz_reader *r, const char *property) {
+    char name[64 + 16];
+    snprintf(name, sizeof name, "digits of %s", property);
+    return brio_builder_leave_out(r->builder, name);
 }
 
 static brio_status read_row(xyz_reader *r) {
@@ -339,6 +434,7 @@ static brio_status read_row(xyz_reader *r) {
         /* programs leave out empty fields at the end */
         const brio_field *f = i < r->fields.count ? &r->fields.at[i] : NULL;
         if (f && f->kind == BRIO_FIELD_WORD && !brio_field_is_missing(f)) return bad_field(r, i);
+        if (f && loses_bits(f)) BRIO_TRY(name_rounded(r, mesh->properties[c->target].name));
         ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = f ? f->value : NAN;
     }
 done:
@@ -372,14 +468,51 @@ done:
     return status;
 }
 
-static brio_status read_line(xyz_reader *r, const char *line) {
+/* Whether the line is the one that tells Excel the separator; other separators than those that are known are refused. */
+static brio_status read_separator(const xyz_reader *r, const char *line, bool *is_one) {
+    line += *line == '"';
+    *is_one = r->stream->line == 1 && !strncasecmp(line, "sep=", 4);
+    if (!*is_one || (line[4] && strchr(",;\t ", line[4]))) return BRIO_OK;
+    return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT, "%s: line 1: the separator %.1s, expected a comma, semicolon or tab",
+                     r->stream->name, line + 4);
+}
+
+/* Whether a line before the first row has words between single tabs. */
+static bool has_single_tabs(const char *line) {
+    size_t tabs = 0, letters = 0;
+    for (; *line; line++) {
+        if (*line == ',' || *line == ';' || (*line == '\t' && line[1] == '\t')) return false;
+        tabs += *line == '\t';
+        letters += isalpha((unsigned char)*line) != 0;
+    }
+    return tabs >= 2 && letters;
+}
+
+/* Begins another block of a file whose blocks have their numbers of rows before them. */
+static bool begins_block(xyz_reader *r) {
+    const brio_field *f = r->fields.at;
+    bool whole = r->fields.count == 1 && f->kind == BRIO_FIELD_NUMBER && f->value >= 0 && f->value < 0x1p53 &&
+                 f->value == floor(f->value);
+    if (!r->counted || !whole || r->promised != brio_builder_count(r->builder)) return false;
+    r->promised += (uint64_t)f->value;
+    return true;
+}
+
+static brio_status read_line(xyz_reader *r, char *line) {
     brio_status status = BRIO_OK;
-    while (brio_is_blank(*line)) line++;
+    bool separator;
+    if (!r->num_columns && r->source == NAMES_NONE) r->tabs |= has_single_tabs(line);
+    while (brio_is_blank(*line) && !(r->tabs && *line == '\t')) line++;
     if (!*line) return BRIO_OK;
     if (r->num_shown < 2) show_line(r, line);
+    BRIO_TRY(read_separator(r, line, &separator));
+    if (separator) return BRIO_OK;
     if (*line == ';' || brio_starts_comment(line)) return try_comment(r, line);
+    if (r->tabs)
+        for (char *tab = line; (tab = strchr(tab, '\t'));) *tab = ';';
     size_t columns = r->num_columns ? r->num_columns : r->source > NAMES_COMMENT ? r->names.count : 0;
     BRIO_TRY(brio_fields_of_line(&r->fields, line, columns));
+    if (r->num_columns && begins_block(r)) return BRIO_OK;
     BRIO_TRY(r->num_columns ? read_row(r) : read_first(r));
 done:
     return status;

@@ -200,6 +200,24 @@ static void fill_property(void *user, uint64_t first, size_t count, void *to) {
     memcpy(to, (const char *)p->data + first * size, count * size);
 }
 
+/* Numbers of colours: those of a point come one after the other. */
+static void fill_colours(void *user, uint64_t first, size_t count, void *to) {
+    const brio_channels *colour = user;
+    for (size_t i = 0; i < count; i++) {
+        uint64_t point = (first + i) / (uint64_t)colour->count;
+        int channel = (int)((first + i) % (uint64_t)colour->count);
+        ((uint8_t *)to)[i] = ((const uint8_t *)colour->of[channel]->data)[point];
+    }
+}
+
+/* Returns the colour of bytes that becomes one array, unless its name is taken. */
+static brio_channels colour_of(const brio_mesh *m) {
+    brio_channels colour = brio_colour_of(m);
+    bool taken = brio_mesh_property(m, "RGB") || brio_mesh_property(m, "RGBA");
+    if (colour.count && (taken || colour.of[0]->type != BRIO_SCALAR_UINT8)) colour.count = 0;
+    return colour;
+}
+
 static bool is_taken(char (*names)[64], size_t count, const char *name) {
     for (size_t i = 0; i < count; i++)
         if (!strcmp(names[i], name)) return true;
@@ -230,8 +248,16 @@ brio_status brio_vtk_write_points(brio_vtk_writer *w) {
         w, &(brio_vtk_source){"Points", type, 3, 3 * (uint64_t)m->num_vertices, fill_coordinates, w}));
     BRIO_TRY(brio_output_string(w->out, "</Points>\n<PointData>\n"));
     BRIO_TRY(make_names(w));
+    w->colour = colour_of(m);
     for (size_t i = 0; i < m->num_properties; i++) {
         brio_property *p = &m->properties[i];
+        bool first = w->colour.count && p == w->colour.of[0];
+        const char *name = w->colour.count == 4 ? "RGBA" : "RGB";
+        if (first)
+            BRIO_TRY(brio_vtk_write_array(w, &(brio_vtk_source){name, BRIO_SCALAR_UINT8, w->colour.count,
+                                                                (uint64_t)w->colour.count * m->num_vertices,
+                                                                fill_colours, &w->colour}));
+        if (brio_channels_have(&w->colour, p)) continue;
         BRIO_TRY(
             brio_vtk_write_array(w, &(brio_vtk_source){w->names[i], p->type, 1, m->num_vertices, fill_property, p}));
     }

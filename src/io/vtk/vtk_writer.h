@@ -39,6 +39,7 @@ typedef struct brio_vtk_writer {
     size_t num_appended, appended_capacity;
     char *part;        /* numbers on their way to the output */
     char (*names)[64]; /* of the properties, as XML has them */
+    brio_channels colour; /* that are written as one array, as programs of VTK show them; count 0: none */
     brio_bar bar;
     uint64_t compressed; /* bytes that have been compressed */
 } brio_vtk_writer;
