@@ -179,8 +179,9 @@ static double target_white(const brio_colour_plan *plan, brio_scalar from, brio_
         *type = BRIO_SCALAR_UINT16;
         return from == *type ? 0 : WORD;
     case BRIO_COLOURS_UNIT:
-        *type = from == BRIO_SCALAR_FLOAT64 && plan->white == UNIT && plan->to == BRIO_COLOURS_UNIT ? from
-                                                                                                  : BRIO_SCALAR_FLOAT32;
+        *type = from == BRIO_SCALAR_FLOAT64 && plan->white == UNIT && plan->to == BRIO_COLOURS_UNIT
+                    ? from
+                    : BRIO_SCALAR_FLOAT32;
         return from == *type && plan->white == UNIT ? 0 : UNIT;
     case BRIO_COLOURS_AS_THEY_ARE:
     case BRIO_COLOURS_NORMALIZED:
@@ -213,10 +214,11 @@ static brio_status check_guess(brio_context *ctx, brio_colour_plan *plan, const 
     double guess = plan->white;
     if (!plan->guessed || !c.count) return BRIO_OK;
     brio_colour_look(plan, m);
-    BRIO_REQUIRE(ctx, seen_white(plan, c.of[0]->type) == guess, BRIO_ERR_FORMAT,
-                 "the colours of the first points seemed to have a white of %g, but one further on is %g: such an input "
-                 "has to be a file, which can be read twice",
-                 guess, plan->most > guess ? plan->most : plan->least);
+    BRIO_REQUIRE(
+        ctx, seen_white(plan, c.of[0]->type) == guess, BRIO_ERR_FORMAT,
+        "the colours of the first points seemed to have a white of %g, but one further on is %g: such an input "
+        "has to be a file, which can be read twice",
+        guess, plan->most > guess ? plan->most : plan->least);
 done:
     return status;
 }

@@ -41,8 +41,9 @@ typedef struct brio_colour_plan {
     bool guessed; /* whether it was found in the first of several blocks */
     double white; /* of the file that is read; 0: its numbers are no colours */
     double least, most;
-    bool fraction;                           /* least, most, fraction: of the values seen */
-    bool off_steps_257, off_steps_256, lost; /* values of 16 bits that are no bytes times 257, 256; other values rounded */
+    bool fraction; /* least, most, fraction: of the values seen */
+    bool off_steps_257, off_steps_256,
+        lost; /* values of 16 bits that are no bytes times 257, 256; other values rounded */
 } brio_colour_plan;
 
 /** Returns whether the depth of a mesh's colours shows only in all values of the file, and is not known yet. */

@@ -92,8 +92,7 @@ static const brio_format_row table[] = {
       POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .read = brio_chemical_read},
     {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz pts txt csv asc xyzrgb xyzn tsv dat",
-      "xyz pts txt csv asc xyzrgb xyzn tsv",
-      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      "xyz pts txt csv asc xyzrgb xyzn tsv", POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .read_columns = brio_xyz_read,
      .rows = &brio_xyz_rows}};
 

@@ -128,7 +128,10 @@ static brio_status end_colours(obj_reader *r) {
 }
 
 static int digit_of(char c) {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
 }
 
 /* Takes the entries of a comment #MRGB: eight digits each, of mask, red, green and blue. */
@@ -299,11 +302,20 @@ static bool is_statement(const char *at, const char *key) {
 
 /* Names a statement that is not read. */
 static brio_status name_left_out(obj_reader *r) {
-    static const char *const known[][2] = {
-        {"vt", "texture coordinates"}, {"l", "lines"}, {"usemtl", "materials"}, {"mtllib", "materials"},
-        {"usemap", "textures"}, {"maplib", "textures"}, {"g", "groups"}, {"o", "objects"}, {"s", "smoothing groups"},
-        {"mg", "merging groups"}, {"vp", "free-form geometry"}, {"curv", "free-form geometry"},
-        {"curv2", "free-form geometry"}, {"surf", "free-form geometry"}};
+    static const char *const known[][2] = {{"vt", "texture coordinates"},
+                                           {"l", "lines"},
+                                           {"usemtl", "materials"},
+                                           {"mtllib", "materials"},
+                                           {"usemap", "textures"},
+                                           {"maplib", "textures"},
+                                           {"g", "groups"},
+                                           {"o", "objects"},
+                                           {"s", "smoothing groups"},
+                                           {"mg", "merging groups"},
+                                           {"vp", "free-form geometry"},
+                                           {"curv", "free-form geometry"},
+                                           {"curv2", "free-form geometry"},
+                                           {"surf", "free-form geometry"}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (is_statement(r->text.at, known[i][0])) {
             /* "s off", "s 0" and "g" of no name say that there is none */

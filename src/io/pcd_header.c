@@ -59,7 +59,8 @@ static brio_status read_counts(brio_stream *s, brio_pcd_header *h, char *line, b
 static brio_status read_types(brio_stream *s, brio_pcd_header *h, char *line) {
     for (size_t i = 0; i < h->num_fields; i++) {
         const char *word = next_word(&line);
-        if (!word || strlen(word) != 1 || !strchr("IUFiuf", *word)) return bad_line(s, "a type I, U or F for each field");
+        if (!word || strlen(word) != 1 || !strchr("IUFiuf", *word))
+            return bad_line(s, "a type I, U or F for each field");
         h->fields[i].type = (char)toupper((unsigned char)*word);
     }
     return next_word(&line) ? bad_line(s, "a type I, U or F for each field") : BRIO_OK;

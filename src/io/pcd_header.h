@@ -21,7 +21,7 @@ typedef struct brio_pcd_header {
     size_t num_fields, capacity;
     uint64_t points, height; /* height: rows of the image that the points are */
     bool placed;             /* whether the viewpoint is another than the origin, unturned */
-    size_t record, numbers; /* bytes and numbers of a point */
+    size_t record, numbers;  /* bytes and numbers of a point */
     brio_pcd_data data;
 } brio_pcd_header;
 

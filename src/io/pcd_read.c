@@ -158,7 +158,7 @@ static void load_point(pcd_reader *r, const char *bytes, size_t points, size_t p
         const char *at = bytes + points * f->at + place * f->size * f->count;
         for (unsigned j = 0; j < f->count; j++, role++, value++) {
             *value = load(at + j * f->size, f, *role);
-            if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) > 0x1p53;
+            if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) >= 0x1p53;
         }
     }
 }
@@ -229,7 +229,7 @@ static brio_status read_text(pcd_reader *r) {
                 if (colour && f->type == 'F') *value = unpacked(*value);
                 if (colour && !(*value >= 0 && *value <= UINT32_MAX))
                     return brio_text_expected(&text, "a packed colour before this place");
-                if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) > 0x1p53;
+                if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) >= 0x1p53;
             }
         }
         BRIO_TRY(brio_text_row_end(&text));

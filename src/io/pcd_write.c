@@ -57,8 +57,7 @@ static brio_status plan(brio_output *out, const brio_write_job *job, pcd_writer 
     const brio_mesh *m = job->mesh;
     w->colour = byte_colour_of(m);
     BRIO_TRY(BRIO_ALLOC_ZERO(out->ctx, w->fields, AXES + m->num_properties));
-    for (size_t k = 0; k < AXES; k++)
-        add_field(w, (pcd_field){FIELD_AXIS, k, job->options->float32 ? 4 : 8, NULL, 0});
+    for (size_t k = 0; k < AXES; k++) add_field(w, (pcd_field){FIELD_AXIS, k, job->options->float32 ? 4 : 8, NULL, 0});
     for (size_t i = 0; i < m->num_properties; i++) {
         const brio_property *p = &m->properties[i];
         if (w->colour.count && p == w->colour.of[0]) add_field(w, (pcd_field){FIELD_COLOUR, 0, 4, NULL, 0});
@@ -241,7 +240,8 @@ static brio_status write_compressed(brio_output *out, const pcd_writer *w) {
     for (size_t i = 0; i < w->num_fields && w->rows; at += w->rows * w->fields[i++].size)
         memcpy(plain + at, w->fields[i].column, w->rows * w->fields[i].size);
     packed = brio_lzf_compress(plain, size, bytes, table);
-    BRIO_REQUIRE(out->ctx, packed <= UINT32_MAX, BRIO_ERR_ARGUMENT, "%s: compressed data hold 4 GiB at most", out->name);
+    BRIO_REQUIRE(out->ctx, packed <= UINT32_MAX, BRIO_ERR_ARGUMENT, "%s: compressed data hold 4 GiB at most",
+                 out->name);
     brio_put_le32(sizes, (uint32_t)packed);
     brio_put_le32(sizes + 4, (uint32_t)size);
     BRIO_TRY(brio_output_bytes(out, sizes, sizeof sizes));

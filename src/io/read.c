@@ -113,9 +113,10 @@ done:
 static brio_status check_columns(const brio_stream *s, brio_format format, const char *columns) {
     const brio_format_row *row = brio_format_row_of(format);
     if (!columns || !row || row->read_columns) return BRIO_OK;
-    return brio_fail(s->ctx, BRIO_ERR_ARGUMENT,
-                     "%s: columns are named (--columns), but only texts of points (.xyz .pts .txt .csv) have columns",
-                     s->name);
+    return brio_fail(
+        s->ctx, BRIO_ERR_ARGUMENT,
+        "%s: columns are named (--columns), but only texts of points (.xyz .pts .txt .csv .asc .tsv) have columns",
+        s->name);
 }
 
 /* Opens a file, or memory under its name.   path  of the file to open, which is not always the job's own. */

@@ -22,8 +22,7 @@ brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format
                  "%s: a file of this format cannot be compressed; .vtu, .vtp and .pcd can", path);
     BRIO_REQUIRE(ctx, !options->ascii, BRIO_ERR_ARGUMENT, "%s: text is not compressed", path);
     BRIO_REQUIRE(ctx, format == BRIO_FORMAT_PCD || brio_vtk_has_zlib(), BRIO_ERR_ARGUMENT,
-                 "%s: this brio was built without zlib, which compresses",
-                 path);
+                 "%s: this brio was built without zlib, which compresses", path);
 done:
     return status;
 }

@@ -80,7 +80,8 @@ static void find_rounding(conversion *c, const brio_mesh *m) {
 
 /* Ends a pass at once if the depth of colours shows only in all blocks, which can be read again. */
 static brio_status refuse_open(conversion *c, const brio_mesh *block) {
-    c->open = !c->source.job.mesh && brio_source_rereadable(c->source.path) && brio_row_writer_is_open(&c->writer, block);
+    c->open =
+        !c->source.job.mesh && brio_source_rereadable(c->source.path) && brio_row_writer_is_open(&c->writer, block);
     return c->open ? BRIO_ERR_CANCELLED : BRIO_OK;
 }
 

@@ -96,7 +96,8 @@ static void record_gap(gaps *g, const brio_field *field, const char *end, const 
         g->tight |= separator == end && is_digit(end[1]);
     } else if (*separator == ';') {
         g->other = true;
-    } else if (is_digit(*separator) || *separator == '"' || *separator == '-' || *separator == '+' || *separator == '.') {
+    } else if (is_digit(*separator) || *separator == '"' || *separator == '-' || *separator == '+' ||
+               *separator == '.') {
         g->other = true;
     }
 }

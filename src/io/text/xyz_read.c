@@ -283,8 +283,9 @@ static bool has_extension(const char *name, const char *extension) {
     size_t length = strlen(extension);
     for (const char *at = name; (at = strchr(at, '.')); at++) {
         const char *behind = at + length;
-        if (!strncasecmp(at, extension, length) && (!*behind || !strcasecmp(behind, ".gz") || !strcasecmp(behind, ".zst") ||
-                                                    !strncasecmp(behind, ".gz,", 4) || !strncasecmp(behind, ".zst,", 5)))
+        if (!strncasecmp(at, extension, length) &&
+            (!*behind || !strcasecmp(behind, ".gz") || !strcasecmp(behind, ".zst") || !strncasecmp(behind, ".gz,", 4) ||
+             !strncasecmp(behind, ".zst,", 5)))
             return true;
     }
     return false;
@@ -293,16 +294,18 @@ static bool has_extension(const char *name, const char *extension) {
 /* Whether three fields of the first row are bytes. */
 static bool are_bytes(const brio_field *f) {
     for (int k = 0; k < 3; k++)
-        if (f[k].kind != BRIO_FIELD_NUMBER || !(f[k].value >= 0 && f[k].value <= 255) || f[k].value != floor(f[k].value))
+        if (f[k].kind != BRIO_FIELD_NUMBER || !(f[k].value >= 0 && f[k].value <= 255) ||
+            f[k].value != floor(f[k].value))
             return false;
     return true;
 }
 
 /* Gives columns without names those that the extension tells. */
 static brio_status name_by_extension(xyz_reader *r) {
-    static const char intensity[][64] = {"", "", "", "intensity"}, both[][64] = {"", "", "", "intensity", "red", "green",
-                                                                                 "blue"},
-                      colour[][64] = {"", "", "", "red", "green", "blue"}, normal[][64] = {"", "", "", "nx", "ny", "nz"};
+    static const char intensity[][64] = {"", "", "", "intensity"},
+                      both[][64] = {"", "", "", "intensity", "red", "green", "blue"},
+                      colour[][64] = {"", "", "", "red", "green", "blue"},
+                      normal[][64] = {"", "", "", "nx", "ny", "nz"};
     brio_status status = BRIO_OK;
     size_t found = r->fields.count;
     const char(*names)[64] = NULL, *file = r->stream->name;
@@ -394,7 +397,7 @@ static void note_rounding(const xyz_reader *r, size_t i) {
 static bool loses_bits(const brio_field *f) {
     uint64_t exact;
     const char *digits = f->word + (*f->word == '-' || *f->word == '+');
-    if (f->kind != BRIO_FIELD_NUMBER || !(fabs(f->value) > 0x1p53)) return false;
+    if (f->kind != BRIO_FIELD_NUMBER || fabs(f->value) < 0x1p53) return false;
     size_t length = strspn(digits, "0123456789");
     if (!length || digits + length < f->word + f->length) return false;
     return !brio_parse_count(&digits, &exact) || fabs(f->value) >= 0x1p64 || (uint64_t)fabs(f->value) != exact;
@@ -473,8 +476,8 @@ static brio_status read_separator(const xyz_reader *r, const char *line, bool *i
     line += *line == '"';
     *is_one = r->stream->line == 1 && !strncasecmp(line, "sep=", 4);
     if (!*is_one || (line[4] && strchr(",;\t ", line[4]))) return BRIO_OK;
-    return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT, "%s: line 1: the separator %.1s, expected a comma, semicolon or tab",
-                     r->stream->name, line + 4);
+    return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT,
+                     "%s: line 1: the separator %.1s, expected a comma, semicolon or tab", r->stream->name, line + 4);
 }
 
 /* Whether a line before the first row has words between single tabs. */

@@ -37,8 +37,8 @@ typedef struct brio_vtk_writer {
     uint64_t offset;  /* of the next array in the appended data */
     brio_vtk_appended *appended;
     size_t num_appended, appended_capacity;
-    char *part;        /* numbers on their way to the output */
-    char (*names)[64]; /* of the properties, as XML has them */
+    char *part;           /* numbers on their way to the output */
+    char (*names)[64];    /* of the properties, as XML has them */
     brio_channels colour; /* that are written as one array, as programs of VTK show them; count 0: none */
     brio_bar bar;
     uint64_t compressed; /* bytes that have been compressed */
