@@ -255,6 +255,53 @@ class Formats(LossTest):
         self.assertTrue(all(value >= 0 for value in columns["heat"]))
 
 
+class Everything(LossTest):
+    """A file with everything that its format allows: what is not in the mesh is named."""
+
+    PLY = ("ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 4\nproperty float x\nproperty float y\n"
+           "property float z\nproperty uchar red\nproperty list uchar int near\nelement face 1\n"
+           "property list uchar int vertex_indices\nproperty uchar flags\nproperty list uchar float texcoord\n"
+           "element tristrips 1\nproperty list int int vertex_indices\nelement tetrahedron 1\n"
+           "property list uchar int vertex_indices\nproperty int region\nelement edge 1\nproperty int vertex1\n"
+           "property int vertex2\nproperty uchar crease\nelement camera 1\nproperty float view_px\nend_header\n"
+           "0 0 0 1 1 1\n1 0 0 2 0\n0 1 0 3 0\n0 0 1 4 0\n3 0 2 1 5 2 0.5 0.5\n3 0 1 3\n4 0 1 2 3 9\n0 1 1\n0.5\n")
+    OBJ = ("mtllib a.mtl\no thing\ng part\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 0 0 1 1 1 1 0.5\nvt 0 0\n"
+           "vn 0 0 1\nvn 0 1 0\nvp 0.5\nusemtl m\ns 1\nf 1/1/1 2/1/1 3/1/1\nf 1/1/2 2/1/2 4/1/2\nl 1 2\n"
+           "#MRGB ff336699ffff0000ff00ff00ff4080bf\n")
+    OFF = "STCNOFF\n3 1 0\n" + "0 0 0 0 0 1 255 0 0 255 0.5 0.5\n" * 3 + "3 0 1 2 255 0 0\n"
+    PCD = ("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb normal_x normal_y normal_z stamp _\nSIZE 4 4 4 4 4 4 4 8 1\n"
+           "TYPE F F F U F F F U U\nCOUNT 1 1 1 1 1 1 1 1 4\nWIDTH 1\nHEIGHT 2\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 2\n"
+           "DATA ascii\n0 0 0 255 0 0 1 9007199254740993 1 1 1 1\n1 0 0 255 0 0 1 2 0 0 0 0\n")
+    XYZ = "# x y z R G B Nx Ny Nz Intensity id label\n0 0 0 1 2 3 0 0 1 0.5 9007199254740993 wall\n"
+    # format: the file, what stays as properties, what is named as left out
+    FILES = {
+        "ply": (PLY, ["red"], ["near", "textures", "flags of face", "texcoord of face", "region of tetrahedron",
+                               "crease of edge", "camera"]),
+        "obj": (OBJ, ["red", "green", "blue"],
+                ["alpha", "materials", "objects", "groups", "texture coordinates", "free-form geometry", "smoothing groups",
+                 "lines", "#MRGB", "normals of corners"]),
+        "off": (OFF, "nx ny nz red green blue alpha s t".split(), ["colours of faces"]),
+        "pcd": (PCD, "red green blue nx ny nz stamp".split(), ["integers beyond 2^53", "viewpoint", "order in rows"]),
+        "xyz": (XYZ, "red green blue nx ny nz intensity id".split(), ["label", "digits of id"])}
+
+    def test_what_is_not_read_is_named(self):
+        for extension, (content, kept, left_out) in self.FILES.items():
+            name = self.file("all." + extension, content)
+            facts = self.facts("info", name)
+            self.assertEqual(list(facts["properties"]), kept, extension)
+            self.assertEqual(sorted(facts["left_out"]), sorted(left_out), extension)
+            run = self.facts("convert", name, self.path("out.ply"), "--quiet")
+            self.assertEqual(sorted(set(run["lost"]) - {"colour depth"}), sorted(left_out), extension)
+
+    def test_what_a_writer_changes_is_named(self):
+        quads = self.off("a.off", CUBES[:4], [(0, 1, 3, 2)])
+        for extension in ["stl", "glb"]:
+            lost = self.facts("convert", quads, self.path("out." + extension))["lost"]
+            self.assertEqual(lost, ["polygons of more than three corners"])
+        points = self.ply("b.ply", [(0, 0, 0, 5)], [("int", "heat")])
+        self.assertEqual(self.facts("convert", points, self.path("out.node"))["lost"], ["names of properties"])
+
+
 class Values(LossTest):
     """Values that interpolation leaves out, or that spoil those beside them."""
 

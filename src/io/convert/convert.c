@@ -42,6 +42,14 @@ static bool holds(const conversion *c, unsigned what) {
     return brio_format_holds(c->format, what);
 }
 
+/* STL and GLB have triangles only: other polygons are cut into them, and those of fewer corners are left out. */
+static bool cuts_polygons(const conversion *c, const brio_mesh *m) {
+    bool triangles = c->format == BRIO_FORMAT_STL || c->format == BRIO_FORMAT_GLB;
+    for (size_t f = 0; triangles && f < m->num_faces; f++)
+        if (m->face_offsets[f + 1] - m->face_offsets[f] != 3) return true;
+    return false;
+}
+
 /* Names the parts of a mesh that the format cannot hold. */
 static void name_losses(conversion *c, const brio_mesh *m) {
     if (c->told) return;
@@ -49,6 +57,9 @@ static void name_losses(conversion *c, const brio_mesh *m) {
     if (m->num_faces && !holds(c, BRIO_HOLDS_FACES)) lose(c, "faces");
     if (m->num_tetrahedra && !holds(c, BRIO_HOLDS_TETRAHEDRA)) lose(c, "tetrahedra");
     if (m->num_edges && !holds(c, BRIO_HOLDS_EDGES)) lose(c, "edges");
+    if (cuts_polygons(c, m)) lose(c, "polygons of more than three corners");
+    bool nameless = holds(c, BRIO_HOLDS_PROPERTIES) && !holds(c, BRIO_HOLDS_NAMES);
+    if (m->num_properties && nameless) lose(c, "names of properties");
     for (size_t i = 0; i < m->num_properties; i++)
         if (!brio_format_holds_property(c->format, m, i)) lose(c, m->properties[i].name);
 }
