@@ -86,7 +86,7 @@ class Texts(DialectTest):
 
     def test_whole_numbers_beyond_the_bits_of_a_double_are_named(self):
         text = "x,y,z,id\n1,2,3,%d\n"
-        self.assertEqual(self.convert("a.csv", text % (2**53 + 1))[2]["lost"], ["digits of id"])
+        self.assertEqual(self.convert("a.csv", text % (2**53 + 1))[2]["lost"], ["precision"])
         self.assertEqual(self.convert("b.csv", text % 2**60)[2]["lost"], [])
 
     def test_atoms_have_a_true_hint(self):

@@ -393,16 +393,6 @@ static void note_rounding(const xyz_reader *r, size_t i) {
 
 /* --- rows --- */
 
-/* Whether a field is a whole number with more bits than a double has. */
-static bool loses_bits(const brio_field *f) {
-    uint64_t exact;
-    const char *digits = f->word + (*f->word == '-' || *f->word == '+');
-    if (f->kind != BRIO_FIELD_NUMBER || fabs(f->value) < 0x1p53) return false;
-    size_t length = strspn(digits, "0123456789");
-    if (!length || digits + length < f->word + f->length) return false;
-    return !brio_parse_count(&digits, &exact) || fabs(f->value) >= 0x1p64 || (uint64_t)fabs(f->value) != exact;
-}
-
 static brio_status read_point(const xyz_reader *r, double point[3]) {
     brio_stream *s = r->stream;
     for (int k = 0; k < 3; k++) {
@@ -414,12 +404,6 @@ static brio_status read_point(const xyz_reader *r, double point[3]) {
         point[k] = r->fields.at[i].value;
     }
     return BRIO_OK;
-}
-
-static brio_status name_rounded(const xyz_reader *r, const char *property) {
-    char name[64 + 16];
-    snprintf(name, sizeof name, "digits of %s", property);
-    return brio_builder_leave_out(r->builder, name);
 }
 
 static brio_status read_row(xyz_reader *r) {
@@ -437,7 +421,6 @@ static brio_status read_row(xyz_reader *r) {
         /* programs leave out empty fields at the end */
         const brio_field *f = i < r->fields.count ? &r->fields.at[i] : NULL;
         if (f && f->kind == BRIO_FIELD_WORD && !brio_field_is_missing(f)) return bad_field(r, i);
-        if (f && loses_bits(f)) BRIO_TRY(name_rounded(r, mesh->properties[c->target].name));
         ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = f ? f->value : NAN;
     }
 done:
