@@ -427,7 +427,7 @@ static void the_walk_finds_dense_surfaces(void) {
 static void the_walk_ends_on_anything(void) {
     double p[3 * 60];
     brio_context *ctx = context_of(1);
-    for (uint64_t trial = 0; trial < 2000; trial++) {
+    for (uint64_t trial = 0; trial < (SHORT_TESTS ? 500 : 2000); trial++) {
         size_t n = 5 + trial % 50;
         brio_cocone_stats s;
         if (trial % 2)
