@@ -268,9 +268,14 @@ done:
 }
 
 brio_status cli_refuse_input_options(run *r) {
-    if (!r->common.columns && !r->common.input_format) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s reads no points; --%s has no meaning here", r->command->name,
-                    r->common.columns ? "columns" : "input-format");
+    const common_options *c = &r->common;
+    const char *given = c->columns        ? "columns"
+                        : c->input_format ? "input-format"
+                        : c->drop_invalid ? "drop-invalid"
+                        : c->salvage      ? "salvage"
+                                          : NULL;
+    if (!given) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s reads no points; --%s has no meaning here", r->command->name, given);
 }
 
 /* Moves the arrays into a mesh that is freed. */

@@ -123,7 +123,7 @@ void cli_tell_input(run *r, const char *path);
 /** Reads an input with --input-format and --columns. The time is lapped as `read`. */
 brio_status cli_read(run *r, const char *path, brio_mesh **out);
 
-/** Refuses --columns and --input-format for a command that reads no points. */
+/** Refuses --columns and the other options about reading points for a command that reads none. */
 brio_status cli_refuse_input_options(run *r);
 
 /** Frees the faces, tetrahedra and edges of a mesh. */

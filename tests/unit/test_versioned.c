@@ -114,6 +114,7 @@ static void sizes_that_were_not_set_are_arguments(void) {
         EXPECT(brio_read_as(ctx, "no.ply", &(brio_read_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_certificate(ctx, mesh, &(brio_certificate){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_distance(ctx, mesh, mesh, 9, 1, &(brio_distance){.size = size}) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_mesh_merge_vertices(mesh, 0, &(brio_merge_stats){.size = size}) == BRIO_ERR_ARGUMENT);
     }
     brio_mesh_free(mesh);
     EXPECT(brio_context_memory(ctx) == 0);
@@ -181,6 +182,9 @@ ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
 ENDS_WITH(brio_write_options, colours_rounded);
 ENDS_WITH(brio_read_options, notes);
+ENDS_WITH(brio_read_notes, rounded_column);
+ENDS_WITH(brio_merge_stats, edges);
+ENDS_WITH(brio_convert_stats, degenerate);
 ENDS_WITH(brio_convert_options, merge_distance);
 ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);
