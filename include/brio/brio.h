@@ -1843,7 +1843,8 @@ static inline brio_write_options brio_write_options_default(void) {
 /** Writes a mesh. Writes a temporary file beside the target, flushes it, and renames it to the target, so that no
  *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
- *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
+ *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a descriptor
+ *  of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The process
  *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
  *  texts of points, LAS, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
  *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
