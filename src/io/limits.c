@@ -31,12 +31,13 @@ brio_status brio_limit_levels(brio_context *ctx, const char *name, const char *w
                      BRIO_MOST_LEVELS);
 }
 
-static uint64_t most_made(uint64_t by) {
-    return by < (UINT64_MAX - BRIO_MOST_MADE) / BRIO_MADE_BY_ONE ? BRIO_MOST_MADE + BRIO_MADE_BY_ONE * by : UINT64_MAX;
+/* Returns most + factor * by. */
+static uint64_t sum_of(uint64_t most, uint64_t factor, uint64_t by) {
+    return by < (UINT64_MAX - most) / factor ? most + factor * by : UINT64_MAX;
 }
 
 brio_status brio_limit_lacking(brio_context *ctx, const char *name, size_t line, uint64_t lacking, uint64_t there) {
-    if (lacking <= most_made(there)) return BRIO_OK;
+    if (lacking <= sum_of(BRIO_MOST_LACKING, BRIO_LACKING_BY_ONE, there)) return BRIO_OK;
     return brio_fail(ctx, BRIO_ERR_FORMAT,
                      "%s: line %zu: up to here rows lack %" PRIu64 " numbers of their columns and have %" PRIu64
                      ": the first row has far more columns than most",
@@ -45,8 +46,9 @@ brio_status brio_limit_lacking(brio_context *ctx, const char *name, size_t line,
 
 brio_status brio_limit_expansion(brio_context *ctx, const char *name, const char *what, uint64_t numbers,
                                  uint64_t bytes) {
-    if (numbers <= most_made(bytes)) return BRIO_OK;
+    uint64_t most = sum_of(BRIO_MOST_EXPANDED, BRIO_EXPANDED_BY_ONE, bytes);
+    if (numbers <= most) return BRIO_OK;
     return brio_fail(ctx, BRIO_ERR_FORMAT,
                      "%s: %s would be %" PRIu64 " numbers from %" PRIu64 " bytes, expected at most %" PRIu64, name,
-                     what, numbers, bytes, most_made(bytes));
+                     what, numbers, bytes, most);
 }

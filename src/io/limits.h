@@ -14,8 +14,11 @@ enum {
     BRIO_MOST_NUMBERS = 4096, /* of a row of any kind, coordinates included; also properties of a point, without them */
     BRIO_MOST_ELEMENTS = 256, /* kinds of rows that a header declares */
     BRIO_MOST_LEVELS = 64,    /* of texts that nest */
-    BRIO_MOST_MADE = 1 << 24, /* numbers that have no bytes in the file, beside BRIO_MADE_BY_ONE for each that has */
-    BRIO_MADE_BY_ONE = 64
+    BRIO_MOST_LACKING =
+        1 << 23, /* numbers that rows of a text lack, beside BRIO_LACKING_BY_ONE for each that is there */
+    BRIO_LACKING_BY_ONE = 64,
+    BRIO_MOST_EXPANDED = 1 << 26, /* numbers of meshes shown many times, beside BRIO_EXPANDED_BY_ONE for each byte */
+    BRIO_EXPANDED_BY_ONE = 256
 };
 
 /** Refuses rows of more numbers than BRIO_MOST_NUMBERS.

@@ -53,7 +53,7 @@ class Limits(CliTest):
         run = self.expect(2, "info", path, "--json")
         facts = json.loads(run.text)
         self.assertRegex(facts["error"], message)
-        self.assertLess(facts.get("peak_bytes", 0), 256 << 20)
+        self.assertLess(facts.get("peak_bytes", 0), 128 << 20)
         self.expect(2, "convert", path, self.path("out.ply"))
 
     def read(self, name, content, points):
@@ -75,7 +75,7 @@ class Limits(CliTest):
 
     def test_few_wide_rows_among_many_short_ones(self):
         """606 kB became 4.4 GB."""
-        self.refused("a.xyz", "1 2 3 " + "4 " * 3000 + "\n" + "1 2 3\n" * 100000, "rows lack [0-9]{8} numbers")
+        self.refused("a.xyz", "1 2 3 " + "4 " * 3000 + "\n" + "1 2 3\n" * 100000, "rows lack [0-9]{7,8} numbers")
         self.read("b.xyz", "1 2 3" + " 4" * 60 + "\n" + "1 2 3\n" * 100000, 100001)
         self.read("c.xyz", "1 2 3 " + "4 " * 3000 + "\n" + "1 2 3\n" * 300, 301)
 
@@ -102,7 +102,7 @@ class Limits(CliTest):
     def test_instances_of_gltf(self):
         """794 kB asked for 29 GB; 10,000 nodes of 10,000 primitives for 1e8 triangles."""
         self.refused("a.glb", glb(12000, 1, 100000), "would be 4800000000 numbers from [0-9]+ bytes, expected at most")
-        self.refused("b.glb", glb(3000, 3000, 2), "would be [0-9]+ numbers")
+        self.refused("b.glb", glb(5000, 5000, 2), "would be [0-9]+ numbers")
         self.read("c.glb", glb(1000, 1, 100), 100000)
 
     def test_levels_of_json(self):
