@@ -1035,8 +1035,9 @@ typedef struct brio_cells {
  *  cells of vertices on the convex hull are unbounded.
  *  Faces: two cells share a face if they meet in a polygon; cells that meet in an edge or a point, as many cells of a
  *  lattice do, share none. This is decided exactly. A face can have a computed area of 0 if it is too small for doubles.
- *  In a region, a cell that lies outside has the volume 0 and no faces. What the walls cut off is decided by rounded
- *  coordinates.
+ *  In a region, a cell that lies outside has the volume 0 and no faces. What the walls cut off is decided exactly, too: two
+ *  cells share a face if a part of it with an area is in the region, and a face that lies in a wall is the wall's. Of a
+ *  region of planes that are no box, which corners it has is decided by rounded coordinates.
  *  Vertices: a vertex at the centre of tetrahedra is listed once, however many tetrahedra share it; a vertex that
  *  clipping made belongs to one cell. An unbounded face lists its finite vertices in order, from the end of one ray to the
  *  end of the other; unbounded cells of points of dimension 2 or less list none.
