@@ -7,7 +7,6 @@
 #include <string.h>
 #include <strings.h>
 
-
 static const char *const point_names[] = {"points", "vertices",    "verts",  "xyz",   "positions", "position",
                                           "pos",    "coordinates", "coords", "nodes", NULL};
 
