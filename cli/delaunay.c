@@ -1,6 +1,7 @@
 /* brio delaunay: tetrahedra, or with --plane triangles, of the points of a file, weighted or not. */
 #include "commands.h"
 #include "estimate.h"
+#include "files.h"
 #include "mesh_edges.h"
 #include "plane.h"
 #include "properties.h"
@@ -73,10 +74,6 @@ static const arguments defaults = {.weights.exponent = NO_EXPONENT,
                                    .round_ratio = NAN};
 static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE, BRIO_FORMAT_AUTO};
 
-static bool is_standard_output(const run *r) {
-    return r->common.output && !strcmp(r->common.output, "-");
-}
-
 static brio_order insertion_order(const arguments *a) {
     if (a->order != FITTING_ORDER) return (brio_order)a->order;
     return a->locate == (int)BRIO_LOCATION_TRACE ? BRIO_ORDER_RANDOM : BRIO_ORDER_BRIO;
@@ -127,8 +124,10 @@ static brio_status check_arguments(run *r, const arguments *a) {
     TRY(check_beside_node(r, a));
     if (a->plane != NO_PLANE) return check_plane(r, a);
     TRY(cli_require_output(r, formats, true));
-    if (is_standard_output(r) && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
+    const char *output = r->common.output;
+    if (output && cli_is_single(output) && r->common.format && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele",
+                        strcmp(output, "-") ? output : "standard output");
     if (a->rounds && a->record_every) return cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --rounds and --record-every");
     if (a->all_conflicts && a->locate != BRIO_LOCATION_HISTORY && a->locate != BRIO_LOCATION_TRACE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--all-conflicts goes with --locate history and trace only");

@@ -71,7 +71,4 @@ void cli_json_write(FILE *out, const facts *f, const char *command);
 /** Aligned lines for people.   verbose  shows every fact. */
 void cli_text_write(FILE *out, const facts *f, const char *command, bool verbose);
 
-/** Prints a text with '?' for control characters: those in names of files would reach the terminal. */
-void cli_print_plain(FILE *out, const char *text);
-
 #endif

@@ -2,14 +2,16 @@
  * writer checks again, since the file system may change meanwhile. */
 #include "files.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
-enum { MOST_LINKS = 40 };
+enum { MOST_LINKS = 40, PROCESSES = 0x9fa0 /* PROC_SUPER_MAGIC, the type of the process file system */ };
 
 static brio_status check_folder(run *r, const char *path) {
     char *folder = strdup(path);
@@ -24,13 +26,24 @@ static brio_status check_folder(run *r, const char *path) {
     return status;
 }
 
+/* Whether a path is a link of the process file system. It leads to an open file; what it says is no path. */
+static bool leads_to_open_file(char *path) {
+    struct statfs info;
+    char *slash = strrchr(path, '/');
+    if (!slash) return statfs(".", &info) == 0 && info.f_type == PROCESSES;
+    *slash = 0;
+    bool found = statfs(slash > path ? path : "/", &info) == 0 && info.f_type == PROCESSES;
+    *slash = '/';
+    return found;
+}
+
 /* The path that a chain of symbolic links leads to, to be freed; a file need not be there. NULL without memory, and of
  * more links than the system follows. */
 static char *follow_links(const char *path) {
     char link[PATH_MAX], *at = strdup(path);
     for (int links = 0; at && links <= MOST_LINKS; links++) {
         ssize_t length = readlink(at, link, sizeof link - 1);
-        if (length < 0) return at;
+        if (length < 0 || leads_to_open_file(at)) return at;
         link[length] = 0;
         char *slash = link[0] == '/' ? NULL : strrchr(at, '/'), *next = NULL;
         size_t folder = slash ? (size_t)(slash - at) + 1 : 0;
@@ -58,11 +71,43 @@ static bool is_one_new_file(const char *a, const char *b) {
     return of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
 }
 
+/* Returns the descriptor whose link is `name` in a folder of the process file system. */
+static int descriptor_of(const char *path, const char *name) {
+    struct stat named, open;
+    char *end;
+    long number = strtol(name, &end, 10);
+    if (end == name || *end || number < 0 || number > INT_MAX) return -1;
+    if (stat(path, &named) != 0 || fstat((int)number, &open) != 0) return -1;
+    return named.st_dev == open.st_dev && named.st_ino == open.st_ino ? (int)number : -1;
+}
+
+int cli_open_descriptor(const char *path) {
+    char *at = follow_links(path);
+    const char *slash = at ? strrchr(at, '/') : NULL;
+    int found = at && leads_to_open_file(at) ? descriptor_of(at, slash ? slash + 1 : at) : -1;
+    free(at);
+    return found;
+}
+
+bool cli_is_single(const char *path) {
+    struct stat info;
+    if (!strcmp(path, "-") || cli_open_descriptor(path) >= 0) return true;
+    return stat(path, &info) == 0 && (S_ISCHR(info.st_mode) || S_ISBLK(info.st_mode));
+}
+
+static brio_status check_descriptor(run *r, const char *path, int descriptor) {
+    int flags = fcntl(descriptor, F_GETFL);
+    if (flags >= 0 && (flags & O_ACCMODE) != O_RDONLY) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_WRITE, "%s: not open for writing", path);
+}
+
 /* A new file is written beside an old one and renamed over it: that takes a writable folder, the one that symbolic links lead
- * to. Pipes and devices are written directly. */
+ * to. Pipes, devices and open descriptors are written directly. */
 brio_status cli_check_target(run *r, const char *path) {
     struct stat info;
     bool exists = stat(path, &info) == 0;
+    int descriptor = exists ? cli_open_descriptor(path) : -1;
+    if (descriptor >= 0) return check_descriptor(r, path, descriptor);
     if (!exists && errno == ELOOP) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
     if (exists && S_ISDIR(info.st_mode)) return cli_fail(r, BRIO_ERR_WRITE, "%s: is a folder", path);
     if (exists && access(path, W_OK) != 0) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
@@ -108,11 +153,14 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
 
 /* --- files named twice --- */
 
-/* Whether two paths lead to one regular file, through links and folders by any name; devices may be named twice. */
+/* Whether two paths lead to one regular file or one pipe, through links and folders by any name; devices may be named
+ * twice. */
 static bool leads_to_one(const char *a, const char *b) {
     struct stat of_a, of_b;
     bool has_a = stat(a, &of_a) == 0, has_b = stat(b, &of_b) == 0;
-    if (has_a && has_b) return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+    if (has_a && has_b)
+        return (S_ISREG(of_a.st_mode) || S_ISFIFO(of_a.st_mode)) && of_a.st_dev == of_b.st_dev &&
+               of_a.st_ino == of_b.st_ino;
     if (has_a || has_b) return false;
     char *end_a = follow_links(a), *end_b = follow_links(b);
     bool same = end_a && end_b && is_one_new_file(end_a, end_b);
@@ -158,6 +206,22 @@ typedef struct {
     bool written;
 } named_file;
 
+static bool find_info(const named_file *f, struct stat *info) {
+    if (strcmp(f->path, "-")) return stat(f->path, info) == 0;
+    return fstat(f->written ? STDOUT_FILENO : STDIN_FILENO, info) == 0;
+}
+
+/* Whether a standard stream is the other file. Of a file that is read as standard input the output replaces the name
+ * only; a pipe would wait for what the run itself writes into it. */
+static bool is_one_stream(const named_file *a, const named_file *b) {
+    struct stat of_a, of_b;
+    const named_file *input = a->written ? b : a;
+    if (a->written == b->written || (strcmp(a->path, "-") && strcmp(b->path, "-"))) return false;
+    if (!find_info(a, &of_a) || !find_info(b, &of_b)) return false;
+    if (of_a.st_dev != of_b.st_dev || of_a.st_ino != of_b.st_ino) return false;
+    return S_ISFIFO(of_a.st_mode) || (S_ISREG(of_a.st_mode) && strcmp(input->path, "-") != 0);
+}
+
 enum { MOST_NAMED = 16 };
 
 static size_t name_options(const option *rows, const void *values, named_file *files, size_t count) {
@@ -194,7 +258,8 @@ brio_status cli_check_named_twice(run *r) {
         files[count++] = (named_file){r->operands[i], NULL, false};
     for (size_t i = 0; i < count; i++)
         for (size_t j = 0; j < i; j++)
-            if ((files[i].written || files[j].written) && cli_same_file(files[i].path, files[j].path))
+            if ((files[i].written || files[j].written) &&
+                (cli_same_file(files[i].path, files[j].path) || is_one_stream(&files[i], &files[j])))
                 return refuse_pair(r, &files[i], &files[j]);
     return BRIO_OK;
 }
@@ -202,7 +267,7 @@ brio_status cli_check_named_twice(run *r) {
 brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats) {
     brio_format format;
     brio_status status = BRIO_OK;
-    if (!strcmp(path, "-")) FAIL(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name);
+    if (cli_goes_to_stdout(path)) FAIL(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name);
     if (formats) TRY(cli_output_format(r, path, NULL, &format));
     for (; formats && *formats != format; formats++)
         if (*formats == BRIO_FORMAT_AUTO)

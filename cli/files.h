@@ -8,11 +8,19 @@
  *  is protected, or it is a folder. */
 brio_status cli_check_target(run *r, const char *path);
 
+/** The open descriptor that a path leads to, such as 7 for /dev/fd/7 and /proc/self/fd/7; -1 for other paths, and for
+ *  "-". */
+int cli_open_descriptor(const char *path);
+
+/** Whether a path names one stream, beside which there are no other files: "-", an open descriptor, a device. */
+bool cli_is_single(const char *path);
+
 /** Whether what is written to a path goes to standard output: "-", /dev/stdout, or the file that standard output leads to.
  *  NULL is no path; /dev/null, which keeps nothing, is none either. */
 bool cli_goes_to_stdout(const char *path);
 
-/** Whether two paths name one regular file, or one that would be made: through links, and by other names of its folder.
+/** Whether two paths name one regular file or pipe, or one that would be made: through links, and by other names of its
+ *  folder.
  *  The .node and the .ele file of TetGen are one. */
 bool cli_same_file(const char *a, const char *b);
 

@@ -1,6 +1,7 @@
 /* Signals as a flag that the work reads now and then. The flags, and what is said of scratch files, are the only global
  * state of the program: a signal handler can reach nothing else. */
 #include "interrupt.h"
+#include "plain.h"
 #include <signal.h>
 #include <stddef.h>
 #include <string.h>
@@ -13,7 +14,7 @@ enum { SECONDS_BETWEEN = 1, NO_MEMORY = 4 /* exit code */ };
 #define LOST "a scratch file was cut from outside, or its disk failed"
 
 static struct {
-    const char *folder;
+    char folder[512]; /* as it can be shown */
     bool json;
 } scratch;
 
@@ -57,18 +58,18 @@ static void on_lost_page(int number, siginfo_t *facts, void *context) {
 
 void cli_interrupt_scratch(const char *folder, bool json) {
     struct sigaction action = {.sa_sigaction = on_lost_page, .sa_flags = SA_SIGINFO};
-    scratch.folder = folder;
+    cli_copy_plain(scratch.folder, sizeof scratch.folder, folder);
     scratch.json = json;
     sigemptyset(&action.sa_mask);
     sigaction(SIGBUS, &action, NULL);
 }
 
 void cli_interrupt_install(void) {
-    struct sigaction hangup;
-    handle(SIGINT, on_signal);
-    handle(SIGTERM, on_signal);
+    static const int stops[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction given;
+    for (size_t i = 0; i < sizeof stops / sizeof *stops; i++)
+        if (sigaction(stops[i], NULL, &given) == 0 && given.sa_handler != SIG_IGN) handle(stops[i], on_signal);
     handle(SIGALRM, on_alarm);
-    if (sigaction(SIGHUP, NULL, &hangup) == 0 && hangup.sa_handler != SIG_IGN) handle(SIGHUP, on_signal);
     handle(SIGPIPE, SIG_IGN);
     handle(SIGXFSZ, SIG_IGN);
 }

@@ -6,7 +6,8 @@
  * A signal ends a call of the system that waits, of a pipe for example. One that comes just before such a call would be
  * missed by the call: after the first signal an alarm each second ends what waits.
  *
- * SIGINT and SIGTERM are caught always, SIGHUP unless it is ignored (nohup). SIGPIPE and SIGXFSZ are ignored, so that a
+ * SIGINT, SIGTERM and SIGHUP are caught unless the caller had them ignored: a shell script does that for SIGINT of what it
+ * starts in the background, nohup for SIGHUP. SIGPIPE and SIGXFSZ are ignored, so that a
  * reader that went away and a limit on the file size are errors of writing. */
 #ifndef BRIO_CLI_INTERRUPT_H
 #define BRIO_CLI_INTERRUPT_H

@@ -2,6 +2,7 @@
  * always valid UTF-8, whatever bytes a file's name is made of. */
 #include "facts.h"
 #include "glossary.h"
+#include "plain.h"
 #include <stdlib.h>
 
 void cli_format_real(double real, char text[32]) {
@@ -11,31 +12,16 @@ void cli_format_real(double real, char text[32]) {
     }
 }
 
-/* Length of the well-formed UTF-8 sequence at s, 0 when there is none (Unicode 15, table 3-7). */
-static int sequence_length(const unsigned char *s) {
-    int length = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : s[0] < 0xf5 ? 4 : 0;
-    for (int i = 1; i < length; i++)
-        if ((s[i] & 0xc0) != 0x80) return 0;
-    bool overlong = (s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xf0 && s[1] < 0x90);
-    bool surrogate = s[0] == 0xed && s[1] > 0x9f, beyond = s[0] == 0xf4 && s[1] > 0x8f;
-    return length > 1 && (overlong || surrogate || beyond) ? 0 : length;
-}
-
 static void write_string(FILE *out, const char *text) {
     fputc('"', out);
-    for (const unsigned char *s = (const unsigned char *)text; *s;) {
-        int length = sequence_length(s);
-        if (length == 0) {
-            fputs("\\ufffd", out);
-            length = 1;
-        } else if (*s == '"' || *s == '\\') {
-            fprintf(out, "\\%c", *s);
-        } else if (*s < 0x20 || *s == 0x7f) {
-            fprintf(out, "\\u%04x", *s);
-        } else {
-            fwrite(s, 1, (size_t)length, out);
-        }
-        s += length;
+    for (size_t length; *text; text += length) {
+        uint32_t character = cli_character(text, &length);
+        if (character == NO_CHARACTER || cli_is_control(character))
+            fprintf(out, "\\u%04x", (unsigned)character);
+        else if (*text == '"' || *text == '\\')
+            fprintf(out, "\\%c", *text);
+        else
+            fwrite(text, 1, length, out);
     }
     fputc('"', out);
 }

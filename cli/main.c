@@ -7,6 +7,7 @@
 #include "help.h"
 #include "hints.h"
 #include "interrupt.h"
+#include "plain.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>

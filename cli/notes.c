@@ -1,5 +1,6 @@
 /* Warnings and hints of a run. */
 #include "notes.h"
+#include "plain.h"
 #include "run.h"
 #include <stdarg.h>
 #include <string.h>

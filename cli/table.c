@@ -7,6 +7,7 @@
 #include "lost.h"
 #include "new_file.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -103,9 +104,11 @@ done:
     return status;
 }
 
-/* Pipes and devices are written in place. */
-static brio_status write_in_place(run *r, const char *path, const table *t) {
-    FILE *file = fopen(path, "w");
+/* Pipes, devices and open descriptors are written in place. A descriptor that is open keeps its place. */
+static brio_status write_in_place(run *r, const char *path, int descriptor, const table *t) {
+    int own = descriptor >= 0 ? fcntl(descriptor, F_DUPFD_CLOEXEC, 0) : -1;
+    FILE *file = own >= 0 ? fdopen(own, "w") : descriptor < 0 ? fopen(path, "w") : NULL;
+    if (!file && own >= 0) close(own);
     if (!file) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
     brio_status status = write_rows(r, file, t);
     if (fclose(file) != 0 && status == BRIO_OK) status = cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
@@ -119,10 +122,11 @@ brio_status cli_write_table(run *r, const table *t) {
     if (!path) return BRIO_OK;
     cli_tell_idle(r, path, cli_is_table(r, "csv"), false);
     TRY(cli_check_interrupt(r));
+    int descriptor = cli_open_descriptor(path);
     if (!strcmp(path, "-"))
         status = write_rows(r, stdout, t);
-    else if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-        status = write_in_place(r, path, t);
+    else if (descriptor >= 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode)))
+        status = write_in_place(r, path, descriptor, t);
     else
         status = write_file(r, path, t);
     cli_lap(r, "write");

@@ -2,6 +2,7 @@
  * tables. The glossary says in which order lines stand, what they are called, and which ones only --verbose shows. */
 #include "facts.h"
 #include "glossary.h"
+#include "plain.h"
 #include <string.h>
 
 static void write_bytes(FILE *out, uint64_t bytes) {
@@ -13,10 +14,6 @@ static void write_bytes(FILE *out, uint64_t bytes) {
         unit++;
     }
     fprintf(out, unit ? "%.1f %s" : "%.0f %s", number, units[unit]);
-}
-
-void cli_print_plain(FILE *out, const char *text) {
-    for (; *text; text++) fputc((unsigned char)*text < 0x20 || *text == 0x7f ? '?' : *text, out);
 }
 
 /* False when the fact is no number. */
@@ -79,7 +76,8 @@ static size_t write_row(FILE *out, const facts *f, size_t i, bool names) {
         const fact *item = &f->list[i];
         int width = (int)strlen(item->name) > PLACES ? (int)strlen(item->name) : PLACES;
         if (!names) format_number(item, number);
-        fprintf(out, " %*s", width, names ? item->name : number);
+        fprintf(out, " %*s", width - (names ? (int)strlen(item->name) : 0), names ? "" : number);
+        if (names) cli_print_plain(out, item->name);
     }
     return i;
 }

@@ -1035,8 +1035,9 @@ typedef struct brio_cells {
  *  cells of vertices on the convex hull are unbounded.
  *  Faces: two cells share a face if they meet in a polygon; cells that meet in an edge or a point, as many cells of a
  *  lattice do, share none. This is decided exactly. A face can have a computed area of 0 if it is too small for doubles.
- *  In a region, a cell that lies outside has the volume 0 and no faces. What the walls cut off is decided by rounded
- *  coordinates.
+ *  In a region, a cell that lies outside has the volume 0 and no faces. What the walls cut off is decided exactly, too: two
+ *  cells share a face if a part of it with an area is in the region, and a face that lies in a wall is the wall's. Of a
+ *  region of planes that are no box, which corners it has is decided by rounded coordinates.
  *  Vertices: a vertex at the centre of tetrahedra is listed once, however many tetrahedra share it; a vertex that
  *  clipping made belongs to one cell. An unbounded face lists its finite vertices in order, from the end of one ray to the
  *  end of the other; unbounded cells of points of dimension 2 or less list none.
@@ -1843,7 +1844,8 @@ static inline brio_write_options brio_write_options_default(void) {
 /** Writes a mesh. Writes a temporary file beside the target, flushes it, and renames it to the target, so that no
  *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
- *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. The process
+ *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a descriptor
+ *  of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The process
  *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
  *  texts of points, LAS, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
  *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of

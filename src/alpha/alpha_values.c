@@ -21,7 +21,11 @@
 #include "triangulation/view.h"
 #include <math.h>
 
-enum { CHUNK = 1 << 11, TETS_A_THREAD = 1 << 12 };
+enum {
+    CHUNK = 1 << 11,
+    TETS_A_THREAD = 1 << 12,
+    SLICE = 1 << 17 /* simplices between two looks at cancelling; chosen */
+};
 
 /* Where a simplex was found: the tetrahedron and the slots of an edge, or a facet handle. */
 typedef struct {
@@ -155,6 +159,8 @@ static brio_status list_edges(const evaluation *e, edge_place **out, size_t *cou
     size_t capacity = 0;
     *count = 0;
     for (uint32_t tet = 0; tet < e->num_finite; tet++) {
+        if (tet % SLICE == 0)
+            BRIO_TRY(brio_progress(e->ctx, "values", 0.1 + 0.1 * ((double)tet / (double)e->num_finite)));
         BRIO_TRY(BRIO_RESERVE(e->ctx, *out, capacity, *count + 6));
         for (uint8_t i = 0; i < 4; i++)
             for (uint8_t j = (uint8_t)(i + 1); j < 4; j++)
@@ -176,15 +182,37 @@ static size_t number_vertices(const evaluation *e, uint32_t *place) {
 
 /* --- all of it --- */
 
+/* A loop of a slice of the simplices. */
+typedef struct {
+    evaluation *e;
+    brio_part_fn body;
+    size_t first;
+} slice;
+
+static void work_on_slice(void *user, size_t begin, size_t end, int thread) {
+    const slice *s = user;
+    s->body(s->e, s->first + begin, s->first + end, thread);
+}
+
+/* Finds values of n simplices, and reports progress between slices: the part from `from` to `to` of the bar. */
+static brio_status find_all(evaluation *e, brio_part_fn body, size_t n, double from, double to) {
+    brio_status status = BRIO_OK;
+    int threads = brio_threads(e->ctx, e->num_finite, TETS_A_THREAD);
+    for (size_t first = 0; first < n; first += SLICE) {
+        slice s = {e, body, first};
+        brio_for_chunks(e->ctx, threads, n - first < SLICE ? n - first : SLICE, CHUNK, work_on_slice, &s);
+        BRIO_TRY(brio_progress(e->ctx, "values", from + (to - from) * ((double)first / (double)n)));
+    }
+done:
+    return status;
+}
+
 static brio_status evaluate(evaluation *e, const uint32_t *place) {
     brio_status status = BRIO_OK;
     brio_alpha_complex *c = e->out;
-    int threads = brio_threads(e->ctx, e->num_finite, TETS_A_THREAD);
-    brio_for_chunks(e->ctx, threads, c->counts[3], CHUNK, find_tetrahedra, e);
-    BRIO_TRY(brio_progress(e->ctx, "values", 0.4));
-    brio_for_chunks(e->ctx, threads, c->counts[2], CHUNK, find_facets, e);
-    BRIO_TRY(brio_progress(e->ctx, "values", 0.7));
-    brio_for_chunks(e->ctx, threads, c->counts[1], CHUNK, find_edges, e);
+    BRIO_TRY(find_all(e, find_tetrahedra, c->counts[3], 0.2, 0.4));
+    BRIO_TRY(find_all(e, find_facets, c->counts[2], 0.4, 0.7));
+    BRIO_TRY(find_all(e, find_edges, c->counts[1], 0.7, 1));
     for (size_t n = 0; n < 2 * c->counts[1]; n++) /* every vertex has edges */
         c->simplices[0][place[c->simplices[1][n]]] = c->simplices[1][n];
     brio_find_vertex_values(c, &e->records, place);

@@ -156,8 +156,10 @@ static brio_status record_face(const brio_cell_job *job, brio_cell_recorder *r, 
     else
         memcpy(normal, job->region->plane[-1 - face->neighbour], sizeof normal);
     BRIO_TRY(begin_face(r, face->neighbour, in_lengths(job->d, area, 2), normal));
+    size_t apart = 0;
+    for (size_t c = face->begin; c < face->end; c++) apart += !is_repeated(&r->shape, face, c);
     for (size_t c = face->begin; c < face->end && job->vertices; c++) {
-        if (is_repeated(&r->shape, face, c)) continue;
+        if (apart > 2 && is_repeated(&r->shape, face, c)) continue; /* a polygon has three corners */
         BRIO_TRY(corner_of(job, r, r->shape.faces.corner[c], num_own, &corner));
         BRIO_TRY(add_corner(r, corner));
     }
@@ -178,7 +180,8 @@ static brio_status record_shape(const brio_cell_job *job, brio_cell_recorder *r)
         double vector[3], area;
         brio_polyhedron_area(p, &p->faces.list[f], vector);
         area = sqrt(brio_dot(vector, vector));
-        if (!(area > 0)) continue;
+        if (p->faces.list[f].flat) continue;
+        if (!(area >= 0)) area = 0; /* of corners that doubles cannot tell apart */
         n.area += area;
         if (job->faces) BRIO_TRY(record_face(job, r, &p->faces.list[f], area, &num_own));
     }

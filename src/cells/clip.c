@@ -2,8 +2,10 @@
  *
  * A cell whose vertices are all near the region is taken as it is and cut by the walls. A cell with vertices far away or
  * at infinity starts from the region instead, and is cut by the planes of its faces: then nothing far away is computed.
- * Both ways cut by the same planes; faces without area were dropped before, exactly. */
+ * Both ways cut by the same planes; faces without area were dropped before, exactly. Which vertices a plane cuts off is
+ * exact, too (exact_side.h): of a face whose area is lost in rounding, the polyhedron still knows that it has one. */
 #include "cells/clip.h"
+#include "cells/exact_side.h"
 #include "base/vector.h"
 #include <string.h>
 
@@ -42,7 +44,9 @@ static brio_status vertex_of(brio_star_cell *c, brio_polyhedron *p, uint32_t nam
     *vertex = (uint32_t)p->num_vertices;
     c->slot[at][0] = name;
     c->slot[at][1] = *vertex + 1;
-    return brio_polyhedron_add_vertex(p, from, name);
+    brio_exact_vertex exact = {.orientation = 1}; /* tetrahedra are positive */
+    for (int k = 0; k < 3; k++) exact.plane[k] = brio_plane_of_tetrahedron(name, k);
+    return brio_polyhedron_add_vertex(p, from, name, &exact);
 }
 
 /* Fills the polyhedron with the bounded cell as it is. */
@@ -68,8 +72,14 @@ done:
 
 brio_status brio_clip_cell(brio_star_cell *c, const brio_region *region, brio_polyhedron *p) {
     const double *site = c->d->at + 3 * (size_t)c->site;
+    const brio_exact_planes planes = {c->d, region, c->site};
+    const brio_judge judge = {brio_exact_orientation, brio_exact_side, &planes};
     brio_status status = BRIO_OK;
-    if (c->place == BRIO_PLACE_FAR) return cut_from_region(c, region, p);
+    p->judge = &judge;
+    if (c->place == BRIO_PLACE_FAR) {
+        status = cut_from_region(c, region, p);
+        goto done;
+    }
     BRIO_TRY(take_cell(c, p));
     for (size_t i = 0; i < region->num_planes && p->faces.count; i++) {
         double plane[4];
@@ -78,5 +88,6 @@ brio_status brio_clip_cell(brio_star_cell *c, const brio_region *region, brio_po
         BRIO_TRY(brio_polyhedron_cut(p, plane, -1 - (int64_t)i));
     }
 done:
+    p->judge = NULL;
     return status;
 }

@@ -4,12 +4,14 @@
  * count as under it. Each face keeps its corners under the plane; where an edge passes the plane, the two faces of the
  * edge share one new vertex. Every new vertex ends the cut of one of its faces and begins that of the other, so the cuts
  * join to cycles, which are the new face. Rounding can move a vertex from one side of a plane to the other, but never
- * opens the polyhedron; it can make faces without area.
+ * opens the polyhedron; it can make faces without area. With a judge, exact signs decide, and heights only say where an
+ * edge passes the plane.
  *
  * Based on: Sutherland, Hodgman. Reentrant polygon clipping. CACM 1974. */
 #include "cells/polyhedron.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -29,6 +31,7 @@ void brio_polyhedron_free(brio_polyhedron *p) {
     free_faces(p->ctx, &p->kept);
     brio_release(p->ctx, p->x);
     brio_release(p->ctx, p->name);
+    brio_release(p->ctx, p->exact);
     brio_release(p->ctx, p->height);
     brio_release(p->ctx, p->after);
     brio_release(p->ctx, p->cut);
@@ -37,11 +40,14 @@ void brio_polyhedron_free(brio_polyhedron *p) {
 
 /* --- filling --- */
 
-brio_status brio_polyhedron_add_vertex(brio_polyhedron *p, const double x[3], uint32_t name) {
+brio_status brio_polyhedron_add_vertex(brio_polyhedron *p, const double x[3], uint32_t name,
+                                       const brio_exact_vertex *exact) {
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->x, p->x_capacity, p->num_vertices + 1));
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->name, p->name_capacity, p->num_vertices + 1));
+    BRIO_TRY(BRIO_RESERVE(p->ctx, p->exact, p->exact_capacity, p->num_vertices + 1));
     memcpy(p->x[p->num_vertices], x, sizeof *p->x);
+    if (exact) p->exact[p->num_vertices] = *exact;
     p->name[p->num_vertices++] = name;
 done:
     return status;
@@ -49,7 +55,7 @@ done:
 
 static brio_status begin_face(brio_context *ctx, brio_faces *f, int64_t neighbour) {
     brio_status status = BRIO_RESERVE(ctx, f->list, f->capacity, f->count + 1);
-    if (status == BRIO_OK) f->list[f->count++] = (brio_face){neighbour, f->num_corners, f->num_corners};
+    if (status == BRIO_OK) f->list[f->count++] = (brio_face){neighbour, false, f->num_corners, f->num_corners};
     return status;
 }
 
@@ -77,7 +83,9 @@ brio_status brio_polyhedron_set_box(brio_polyhedron *p, const double low[3], con
     brio_polyhedron_clear(p);
     for (int v = 0; v < 8; v++) {
         double x[3] = {v & 1 ? high[0] : low[0], v & 2 ? high[1] : low[1], v & 4 ? high[2] : low[2]};
-        BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME));
+        const brio_exact_vertex walls = {{v & 1 ? -2 : -1, v & 2 ? -4 : -3, v & 4 ? -6 : -5},
+                                         (v & 1) ^ (v >> 1 & 1) ^ (v >> 2) ? 1 : -1};
+        BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &walls));
     }
     for (int f = 0; f < 6; f++) {
         BRIO_TRY(brio_polyhedron_add_face(p, -1 - f));
@@ -93,7 +101,7 @@ brio_status brio_polyhedron_copy(brio_polyhedron *p, const brio_polyhedron *from
     brio_polyhedron_clear(p);
     for (size_t v = 0; v < from->num_vertices; v++) {
         double x[3] = {from->x[v][0] - origin[0], from->x[v][1] - origin[1], from->x[v][2] - origin[2]};
-        BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME));
+        BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &from->exact[v]));
     }
     for (size_t i = 0; i < f->count; i++) {
         const brio_face *face = &f->list[i];
@@ -106,12 +114,22 @@ done:
 
 /* --- cutting --- */
 
+/* Gives a height the sign that the judge says. */
+static double judged(const brio_polyhedron *p, size_t v, double height, int64_t plane) {
+    const brio_exact_vertex *e = &p->exact[v];
+    int side = p->judge->side(p->judge->user, e->plane, e->orientation, plane);
+    if (side == 0) return 0;
+    return side > 0 ? fmax(height, DBL_MIN) : fmin(height, -DBL_MIN);
+}
+
 /* Computes the heights of all vertices over a plane. The height of a vertex that was cut off before is NaN. Returns 1
  * if a vertex is over the plane and one under it, 0 if none is over it, -1 if none is under it. */
-static int find_heights(brio_polyhedron *p, const double plane[4]) {
+static int find_heights(brio_polyhedron *p, const double plane[4], int64_t neighbour) {
     bool over = false, under = false;
     for (size_t v = 0; v < p->num_vertices; v++) {
-        p->height[v] = brio_dot(plane, p->x[v]) - plane[3];
+        bool dropped = isnan(p->x[v][0]);
+        p->height[v] = dropped ? (double)NAN : brio_dot(plane, p->x[v]) - plane[3];
+        if (p->judge && !dropped) p->height[v] = judged(p, v, p->height[v], neighbour);
         over |= p->height[v] > 0;
         under |= p->height[v] < 0;
         p->after[v] = NONE;
@@ -119,15 +137,21 @@ static int find_heights(brio_polyhedron *p, const double plane[4]) {
     return !over ? 0 : under ? 1 : -1;
 }
 
-/* Finds or makes the vertex where the edge between `in` and `out` passes the plane. */
-static brio_status cut_edge(brio_polyhedron *p, uint32_t in, uint32_t out, uint32_t *vertex) {
+/* Finds or makes the vertex where the edge between `in` and `out` passes the plane. The edge is of two faces, which ask one
+ * after the other.   planes  the neighbours of the face that asks, and of the plane */
+static brio_status cut_edge(brio_polyhedron *p, uint32_t in, uint32_t out, const int64_t planes[2], uint32_t *vertex) {
     brio_status status = BRIO_OK;
     for (size_t i = p->num_cut; i-- > 0;)
-        if (p->cut[i].in == in && p->cut[i].out == out) return *vertex = p->cut[i].vertex, BRIO_OK;
+        if (p->cut[i].in == in && p->cut[i].out == out) {
+            *vertex = p->cut[i].vertex;
+            p->exact[*vertex].plane[2] = planes[0];
+            return BRIO_OK;
+        }
+    const brio_exact_vertex exact = {{planes[0], planes[1], planes[0]}, 0};
     double x[3], share = p->height[in] / (p->height[in] - p->height[out]);
     for (int k = 0; k < 3; k++) x[k] = p->x[in][k] + share * (p->x[out][k] - p->x[in][k]);
     *vertex = (uint32_t)p->num_vertices;
-    BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME));
+    BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &exact));
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->cut, p->cut_capacity, p->num_cut + 1));
@@ -140,17 +164,20 @@ done:
 
 /* Adds to `kept` what a face has under the plane, or nothing. The new face runs along the cut of this face the other way:
  * from where the cycle of corners comes back under the plane to where it left. */
-static brio_status keep_face(brio_polyhedron *p, const brio_face *face) {
+static brio_status keep_face(brio_polyhedron *p, const brio_face *face, int64_t neighbour) {
     const uint32_t *corner = p->faces.corner;
+    const int64_t planes[2] = {face->neighbour, neighbour};
+    bool under = false;
     brio_status status = BRIO_OK;
     uint32_t left = NONE, back = NONE, between;
     BRIO_TRY(begin_face(p->ctx, &p->kept, face->neighbour));
     for (size_t c = face->begin; c < face->end; c++) {
         uint32_t u = corner[c], v = corner[c + 1 < face->end ? c + 1 : face->begin];
         bool over = p->height[u] > 0, next_over = p->height[v] > 0;
+        under |= p->height[u] < 0;
         if (!over) BRIO_TRY(add_corner(p->ctx, &p->kept, u));
         if (over == next_over) continue;
-        BRIO_TRY(over ? cut_edge(p, v, u, &between) : cut_edge(p, u, v, &between));
+        BRIO_TRY(over ? cut_edge(p, v, u, planes, &between) : cut_edge(p, u, v, planes, &between));
         BRIO_TRY(add_corner(p->ctx, &p->kept, between));
         if (!over)
             left = between;
@@ -160,7 +187,9 @@ static brio_status keep_face(brio_polyhedron *p, const brio_face *face) {
             p->after[between] = left;
     }
     if (back != NONE) p->after[back] = left;
-    if (p->kept.list[p->kept.count - 1].begin == p->kept.num_corners) p->kept.count--;
+    brio_face *kept = &p->kept.list[p->kept.count - 1];
+    kept->flat = p->judge && (face->flat || !under);
+    if (kept->begin == p->kept.num_corners) p->kept.count--;
 done:
     return status;
 }
@@ -188,15 +217,35 @@ done:
     return status;
 }
 
+/* Finds what the new vertices are exactly, now that both faces of their edges are known. */
+static void orient_cut(brio_polyhedron *p) {
+    for (size_t i = 0; i < p->num_cut && p->judge; i++) {
+        brio_exact_vertex *e = &p->exact[p->cut[i].vertex];
+        e->orientation = p->judge->orientation(p->judge->user, e->plane);
+    }
+}
+
+/* A face that lies in a plane under which all else is becomes the plane's. */
+static void take_face_in_plane(brio_polyhedron *p, int64_t neighbour) {
+    for (size_t i = 0; i < p->faces.count; i++) {
+        brio_face *face = &p->faces.list[i];
+        bool on = !face->flat;
+        for (size_t c = face->begin; c < face->end; c++) on &= p->height[p->faces.corner[c]] == 0;
+        if (on && face->neighbour >= 0 && neighbour < 0) face->neighbour = neighbour;
+    }
+}
+
 brio_status brio_polyhedron_cut(brio_polyhedron *p, const double plane[4], int64_t neighbour) {
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
-    int side = find_heights(p, plane);
+    int side = find_heights(p, plane, neighbour);
     if (side < 0) p->faces.count = p->faces.num_corners = 0;
+    if (side == 0 && p->judge) take_face_in_plane(p, neighbour);
     if (side <= 0) return BRIO_OK;
     p->kept.count = p->kept.num_corners = p->num_cut = 0;
-    for (size_t f = 0; f < p->faces.count; f++) BRIO_TRY(keep_face(p, &p->faces.list[f]));
+    for (size_t f = 0; f < p->faces.count; f++) BRIO_TRY(keep_face(p, &p->faces.list[f], neighbour));
+    orient_cut(p);
     BRIO_TRY(close_cut(p, neighbour));
     drop_vertices(p);
     brio_faces old = p->faces;

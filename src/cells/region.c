@@ -16,13 +16,19 @@ static brio_status take_planes(brio_context *ctx, const double *planes, const do
                                brio_region *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, r->plane, r->num_planes));
+    BRIO_TRY(BRIO_ALLOC(ctx, r->given, r->num_planes));
+    BRIO_TRY(BRIO_ALLOC(ctx, r->terms, r->num_planes));
+    memcpy(r->given, planes, r->num_planes * sizeof *r->given);
     for (size_t i = 0; i < r->num_planes; i++) {
         const double *from = planes + 4 * i;
+        double terms = fabs(from[3]);
+        for (int k = 0; k < 3; k++) terms += fabs(from[k] * origin[k]);
         double most = fmax(fabs(from[0]), fmax(fabs(from[1]), fabs(from[2]))), n[3];
         for (int k = 0; k < 3; k++) n[k] = from[k] / most;
         double length = sqrt(brio_dot(n, n));
         for (int k = 0; k < 3; k++) r->plane[i][k] = n[k] / length;
         r->plane[i][3] = (from[3] - brio_dot(from, origin)) / most / length * scale;
+        r->terms[i] = terms / most / length * scale;
         BRIO_REQUIRE(ctx, isfinite(r->plane[i][3]), BRIO_ERR_ARGUMENT, "plane %zu of the region is too far", i);
     }
 done:
@@ -86,6 +92,41 @@ static bool is_box(const brio_region *r) {
     return r->num_planes == 6;
 }
 
+static double determinant(const brio_region *r, const int64_t walls[3]) {
+    double cross[3];
+    brio_cross(r->plane[-1 - walls[0]], r->plane[-1 - walls[1]], cross);
+    return brio_dot(cross, r->plane[-1 - walls[2]]);
+}
+
+/* Adds a wall to those of a corner. Of all walls that meet there, three that are far from dependent stay. */
+static void add_wall(const brio_region *r, brio_exact_vertex *e, int64_t wall) {
+    int known = 0;
+    int64_t best[3];
+    while (known < 3 && e->plane[known]) known++;
+    memcpy(best, e->plane, sizeof best);
+    if (known < 3) best[known] = wall;
+    double most = known == 3 ? fabs(determinant(r, e->plane)) : 0;
+    for (int k = 0; k < 3 && known == 3; k++) {
+        int64_t other[3] = {e->plane[0], e->plane[1], e->plane[2]};
+        other[k] = wall;
+        double size = fabs(determinant(r, other));
+        if (size > most) memcpy(best, other, sizeof best);
+        most = fmax(most, size);
+    }
+    memcpy(e->plane, best, sizeof best);
+    if (known >= 2) e->orientation = determinant(r, e->plane) > 0 ? 1 : -1;
+}
+
+/* Says of each corner in which walls it lies. */
+static void name_corners(brio_region *r) {
+    brio_polyhedron *p = &r->shape;
+    const brio_faces *f = &p->faces;
+    for (size_t v = 0; v < p->num_vertices; v++) p->exact[v] = (brio_exact_vertex){{0, 0, 0}, 0};
+    for (size_t i = 0; i < f->count; i++)
+        for (size_t c = f->list[i].begin; c < f->list[i].end; c++)
+            add_wall(r, &p->exact[f->corner[c]], f->list[i].neighbour);
+}
+
 /* Returns the volume of the polytope, from pyramids with their apex in its middle. */
 static double volume_of(const brio_region *r) {
     const brio_faces *f = &r->shape.faces;
@@ -125,6 +166,7 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
         /* so flat that rounding leaves a wall of the box */
         BRIO_REQUIRE(ctx, !find_bounds(&r->shape, -(int64_t)num_planes, found[0], found[1]), BRIO_ERR_ARGUMENT,
                      "the region is too flat");
+        name_corners(r);
     }
     for (int k = 0; k < 3; k++) {
         r->middle[k] = low[k] / 2 + high[k] / 2;
@@ -140,6 +182,8 @@ done:
 void brio_region_free(brio_region *r) {
     if (!r->num_planes) return;
     brio_release(r->shape.ctx, r->plane);
+    brio_release(r->shape.ctx, r->given);
+    brio_release(r->shape.ctx, r->terms);
     brio_polyhedron_free(&r->shape);
     r->num_planes = 0;
 }

@@ -7,7 +7,9 @@
 typedef struct brio_region {
     size_t num_planes;     /* 0: no region, nothing is clipped */
     double (*plane)[4];    /* unit outward normal n and offset d: inside is n . x <= d. Wall i is neighbour -1 - i. */
-    brio_polyhedron shape; /* the polytope, relative to 0 */
+    double (*given)[4];    /* normals and offsets as the caller gave them, before origin and scale */
+    double *terms;         /* the sum of the absolute terms of each plane[3], which bounds its rounding */
+    brio_polyhedron shape; /* the polytope, relative to 0; its vertices know three of their walls */
     bool box;              /* whether the region is a box: then low and high are its corners */
     double low[3], high[3];
     double middle[3]; /* of the polytope's bounding box */

@@ -8,6 +8,7 @@
 #include "io/colour.h"
 #include "io/filter.h"
 #include "base/memory.h"
+#include "mesh/properties.h"
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -106,6 +107,33 @@ brio_status brio_builder_vertex(brio_builder *b, const double *point) {
     return status;
 }
 
+/* Returns the slot of a name, or the empty one where it belongs. */
+static uint16_t *slot_of(brio_builder *b, const char *name) {
+    brio_names *n = &b->names;
+    uint32_t hash = 2166136261u; /* FNV-1a */
+    for (const char *c = name; *c; c++) hash = (hash ^ (unsigned char)*c) * 16777619u;
+    size_t at = (hash ^ hash >> 15) % BRIO_NAME_SLOTS;
+    while (n->slot[at] && strcmp(b->mesh->properties[n->slot[at] - 1].name, name) != 0) at = (at + 1) % BRIO_NAME_SLOTS;
+    return &n->slot[at];
+}
+
+/* Puts properties in the slots that were added since. */
+static void note_names(brio_builder *b) {
+    brio_names *n = &b->names;
+    if (n->count > b->mesh->num_properties) *n = (brio_names){.count = 0};
+    while (n->count < b->mesh->num_properties && n->count < BRIO_MOST_NUMBERS) {
+        uint16_t *slot = slot_of(b, b->mesh->properties[n->count].name);
+        n->next[n->count++] = 2;
+        *slot = (uint16_t)n->count;
+    }
+}
+
+bool brio_builder_has(brio_builder *b, const char *name) {
+    char clean[64];
+    note_names(b);
+    return brio_utf8_copy(clean, sizeof clean, name) && *slot_of(b, clean);
+}
+
 brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar type) {
     brio_status status = BRIO_OK;
     char clean[64];
@@ -113,10 +141,11 @@ brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar
     BRIO_REQUIRE(b->ctx, length > 0 && length < sizeof clean, BRIO_ERR_FORMAT,
                  "%s: a property name of %zu characters, expected 1 to 63", b->name, length);
     brio_utf8_copy(clean, sizeof clean, name); /* Latin-1 may be longer then: the end is cut */
-    BRIO_REQUIRE(b->ctx, !brio_mesh_property(b->mesh, clean), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name,
-                 clean);
-    BRIO_TRY(brio_mesh_add_property(b->mesh, clean, type, NULL));
-    if (b->vertex_capacity) BRIO_TRY(set_vertex_capacity(b, b->vertex_capacity));
+    BRIO_REQUIRE(b->ctx, !brio_builder_has(b, clean), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name, clean);
+    BRIO_TRY(brio_limit_numbers(b->ctx, b->name, 0, b->mesh->num_properties + 1));
+    BRIO_TRY(brio_mesh_append_property(b->mesh, clean, type));
+    brio_property *p = &b->mesh->properties[b->mesh->num_properties - 1];
+    if (b->vertex_capacity) BRIO_TRY(brio_resize_to(b->ctx, &p->data, b->vertex_capacity, brio_scalar_size(type)));
 done:
     return status;
 }
@@ -133,13 +162,14 @@ done:
     return status;
 }
 
-void brio_builder_new_name(const brio_builder *b, const char *source, char name[64]) {
+void brio_builder_new_name(brio_builder *b, const char *source, char name[64]) {
     brio_utf8_copy(name, 64, source);
-    for (size_t n = 2; brio_mesh_property(b->mesh, name); n++) brio_numbered_name(name, 64, source, n);
+    note_names(b);
+    uint16_t taken = *slot_of(b, name);
+    while (*slot_of(b, name)) brio_numbered_name(name, 64, source, b->names.next[taken - 1]++);
 }
 
-void brio_builder_component_name(const brio_builder *b, const char *source, uint64_t which, uint64_t count,
-                                 char name[64]) {
+void brio_builder_component_name(brio_builder *b, const char *source, uint64_t which, uint64_t count, char name[64]) {
     char part[64];
     if (count > 1) brio_numbered_name(part, sizeof part, source, which);
     brio_builder_new_name(b, count > 1 ? part : source, name);

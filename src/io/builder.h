@@ -12,6 +12,7 @@
 
 #include "base/finite.h"
 #include "io/blocks.h"
+#include "io/limits.h"
 
 #define BRIO_MAX_VERTICES ((uint64_t)UINT32_MAX - 16)
 
@@ -23,6 +24,15 @@ typedef struct brio_sink {
 } brio_sink;
 
 #define BRIO_COUNT_UNKNOWN UINT64_MAX
+
+enum { BRIO_NAME_SLOTS = 2 * BRIO_MOST_NUMBERS };
+
+/** The names of the properties, so that a new one is compared with few of them. Slots hold one more than the property's
+ *  number, 0 if they are empty; `next` is the number by which the next name like that of the property differs. */
+typedef struct brio_names {
+    uint16_t slot[BRIO_NAME_SLOTS], next[BRIO_MOST_NUMBERS];
+    size_t count; /* properties that are in the slots */
+} brio_names;
 
 typedef struct brio_builder {
     brio_context *ctx;
@@ -40,7 +50,8 @@ typedef struct brio_builder {
     uint64_t missing;      /* points that such a file lacks */
     brio_not_finite refused; /* vertices seen that are not finite: with `streams` or `drop_invalid` */
     char version[64];        /* what the reader says of the file's version; may be empty */
-    char (*left_out)[64];    /* names of what the file has and the mesh has not, each once: brio_builder_leave_out */
+    brio_names names;
+    char (*left_out)[64]; /* names of what the file has and the mesh has not, each once: brio_builder_leave_out */
     size_t num_left_out, left_out_capacity;
     brio_read_notes notes; /* what the reader says of the file's content; without its size */
 } brio_builder;
@@ -68,15 +79,17 @@ brio_status brio_builder_add_vertices(brio_builder *b, size_t count);
 brio_status brio_builder_vertex(brio_builder *b, const double *point);
 /** Notes that a part of the file is not in the mesh, such as "textures". A name that was noted before adds nothing. */
 brio_status brio_builder_leave_out(brio_builder *b, const char *name);
-/** Adds a property. The caller sets the values of vertices that are there already. */
+/** Returns whether a property has the name. */
+bool brio_builder_has(brio_builder *b, const char *name);
+
+/** Adds a property, one of at most BRIO_MOST_NUMBERS. The caller sets the values of vertices that are there already. */
 brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar type);
 /** Makes a name that no property has: SOURCE, or SOURCE_2, SOURCE_3 and so on, cut in whole characters.
  *  source  any bytes; those that are no UTF-8 are taken for Latin-1 */
-void brio_builder_new_name(const brio_builder *b, const char *source, char name[64]);
+void brio_builder_new_name(brio_builder *b, const char *source, char name[64]);
 /** Makes the name of number `which` of the `count` numbers that SOURCE is the name of: as above, of SOURCE_WHICH if there
  *  are several. */
-void brio_builder_component_name(const brio_builder *b, const char *source, uint64_t which, uint64_t count,
-                                 char name[64]);
+void brio_builder_component_name(brio_builder *b, const char *source, uint64_t which, uint64_t count, char name[64]);
 /** Adds a property whose values are in `data`. The mesh takes the block; on failure the function frees the block. */
 brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_scalar type, void *data);
 /** Appends a corner to the face under construction.   index  the file's index minus its index base. */

@@ -13,7 +13,8 @@ enum {
 /* In the order in which a file's beginning is compared with theirs: a format whose beginning is looser comes later. */
 static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_PLY, "a PLY file", "ply", "ply",
-      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 0},
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS,
+      BRIO_MOST_NUMBERS - 3},
      .starts = brio_ply_starts,
      .read = brio_ply_read,
      .rows = &brio_ply_rows,
@@ -26,13 +27,14 @@ static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_VTU, "a VTU file", "vtu", "vtu",
       POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS |
           BRIO_HOLDS_COMPRESSED,
-      4096},
+      BRIO_MOST_NUMBERS},
      .starts = brio_vtk_starts,
      .read = brio_vtk_read,
      .write = brio_vtu_write,
      .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTP, "a VTP file", "vtp", "vtp",
-      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, 4096},
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED,
+      BRIO_MOST_NUMBERS},
      .read = brio_vtk_read, /* begins as VTU */
      .write = brio_vtp_write,
      .colours = BRIO_COLOURS_8},
@@ -44,13 +46,13 @@ static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "", POINTS | BRIO_HOLDS_BINARY, 0},
      .read = brio_las_read}, /* begins as LAS */
     {{sizeof(brio_format_info), BRIO_FORMAT_PCD, "a PCD file", "pcd", "pcd",
-      POINTS | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, 0},
+      POINTS | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS - 3},
      .starts = brio_pcd_starts,
      .read = brio_pcd_read,
      .rows = &brio_pcd_rows,
      .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_NPY, "an NPY file", "npy", "npy",
-      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, 4093},
+      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, BRIO_MOST_NUMBERS - 3},
      .starts = brio_npy_starts,
      .read = brio_npy_read,
      .rows = &brio_npy_rows},
@@ -79,7 +81,7 @@ static const brio_format_row table[] = {
      .write = brio_obj_write,
      .colours = BRIO_COLOURS_UNIT},
     {{sizeof(brio_format_info), BRIO_FORMAT_NODE, "a NODE file", "node ele", "node",
-      BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 4096},
+      BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS},
      .read = brio_node_read,
      .write = brio_node_write},
     {{sizeof(brio_format_info), BRIO_FORMAT_PTX, "a PTX file", "ptx", "", POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT,
@@ -92,7 +94,7 @@ static const brio_format_row table[] = {
       POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .read = brio_chemical_read},
     {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz pts txt csv asc xyzrgb xyzn tsv dat",
-      "xyz pts txt csv asc xyzrgb xyzn tsv", POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      "xyz pts txt csv asc xyzrgb xyzn tsv", POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS - 3},
      .read_columns = brio_xyz_read,
      .rows = &brio_xyz_rows}};
 

@@ -15,8 +15,6 @@
 
 static const char marker_name[] = "boundary_marker";
 
-enum { MAX_ATTRIBUTES = 4096 }; /* chosen: no file has more; limits what a false header can request */
-
 /* Reads the numbers in the first line of a file. Numbers that are missing become 0. */
 static brio_status read_header(brio_text *t, uint64_t *counts, size_t num_counts) {
     brio_status status = BRIO_OK;
@@ -55,9 +53,9 @@ done:
 static brio_status plan_node(brio_builder *b, const uint64_t *counts) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(b->ctx, counts[1] == 3, BRIO_ERR_FORMAT, "%s: %" PRIu64 " dimensions, expected 3", b->name, counts[1]);
-    BRIO_REQUIRE(b->ctx, counts[2] <= MAX_ATTRIBUTES && counts[3] <= 1, BRIO_ERR_FORMAT,
+    BRIO_REQUIRE(b->ctx, counts[2] <= BRIO_MOST_NUMBERS && counts[3] <= 1, BRIO_ERR_FORMAT,
                  "%s: %" PRIu64 " attributes and %" PRIu64 " markers, expected up to %d and 1", b->name, counts[2],
-                 counts[3], MAX_ATTRIBUTES);
+                 counts[3], BRIO_MOST_NUMBERS);
     for (uint64_t i = 0; i < counts[2]; i++) {
         char name[64];
         snprintf(name, sizeof name, "attribute%" PRIu64, i + 1);

@@ -3,6 +3,7 @@
  * Based on: NumPy enhancement proposal 1: a simple file format for NumPy arrays. 2007. */
 #include "io/npy_header.h"
 #include "base/memory.h"
+#include "io/limits.h"
 #include "io/little_endian.h"
 #include "io/number.h"
 #include "io/scalar.h"
@@ -11,7 +12,7 @@
 #include <string.h>
 
 /* Chosen: the longest header, and the most numbers of a row. */
-enum { MOST_HEADER = 1 << 20, MOST_COLUMNS = 4096 };
+enum { MOST_HEADER = 1 << 20 };
 
 typedef struct {
     brio_stream *stream;
@@ -98,7 +99,7 @@ static brio_status add_field(parser *p, brio_npy_header *h, const char *name, co
     brio_npy_field found;
     if (!find_type(type, &found))
         return expected(p, "a type < > or | with b1 i1 u1 i2 u2 i4 u4 i8 u8 f4 or f8 before here");
-    if (h->num_fields == MOST_COLUMNS) return expected(p, "at most 4096 numbers in a row");
+    if (h->num_fields == BRIO_MOST_NUMBERS) return expected(p, "at most 4096 numbers in a row");
     BRIO_TRY(BRIO_RESERVE(p->stream->ctx, h->fields, h->capacity, h->num_fields + 1));
     brio_npy_field *f = &h->fields[h->num_fields++];
     *f = found;
@@ -174,7 +175,7 @@ static brio_status skip_value(parser *p) {
 static brio_status make_columns(parser *p, brio_npy_header *h, const char *type, const uint64_t *shape,
                                 size_t dimensions) {
     brio_status status = BRIO_OK;
-    if (dimensions != 2 || shape[1] < 3 || shape[1] > MOST_COLUMNS)
+    if (dimensions != 2 || shape[1] < 3 || shape[1] > BRIO_MOST_NUMBERS)
         return expected(p, "before here the shape (rows, columns) with 3 to 4096 columns");
     for (uint64_t i = 0; i < shape[1]; i++) {
         char name[64];

@@ -1,6 +1,6 @@
 /* Buffered output to a file that appears only when it is complete.
  *
- * target.c finds the file. A target that is no regular file is written in place. The reader of a pipe may never be
+ * target.c finds the file. A target that is no regular file, or is open already, is written in place. The reader of a pipe may never be
  * ready: such an output waits in wait.h, where the caller can cancel. */
 #define _GNU_SOURCE
 #include "io/output.h"
@@ -22,6 +22,17 @@ enum { BLOCK = BRIO_IO_BLOCK };
 
 static brio_status fail(brio_output *out) {
     return brio_fail(out->ctx, BRIO_ERR_WRITE, "%s: %s", out->name, strerror(errno));
+}
+
+/* Takes a descriptor that is open. Its flags and its place stay as they are, because other processes share them. */
+static brio_status take_descriptor(brio_output *out, int descriptor) {
+    struct stat facts;
+    int flags = fcntl(descriptor, F_GETFL);
+    if (flags >= 0 && (flags & O_ACCMODE) == O_RDONLY) errno = EBADF;
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) return fail(out);
+    out->file = descriptor;
+    out->waits = fstat(descriptor, &facts) == 0 && !S_ISREG(facts.st_mode);
+    return BRIO_OK;
 }
 
 /* Opens a FIFO, and waits here for a reader. The system's own wait could only be ended by a signal. */
@@ -47,15 +58,6 @@ static brio_status open_special(brio_output *out, const char *path, const struct
     return out->owned ? BRIO_OK : fail(out);
 }
 
-/* Finds whether the target's name leads to the file that the path opened. It does not if the file has no name any more,
- * as can happen with /dev/stdout. */
-static brio_status find_named(brio_output *out, const struct stat *facts, bool *named) {
-    struct stat found;
-    bool exists = fstatat(out->target.folder, out->target.name, &found, 0) == 0;
-    *named = exists && found.st_ino == facts->st_ino && found.st_dev == facts->st_dev;
-    return exists || errno == ENOENT ? BRIO_OK : fail(out);
-}
-
 /* Looks at the file that a path too long for one call leads to: only a file can be replaced. */
 static brio_status check_far(brio_output *out) {
     const brio_target *t = &out->target;
@@ -66,20 +68,23 @@ static brio_status check_far(brio_output *out) {
     return fail(out);
 }
 
-/* Opens a file. Symbolic links stay; the file that they lead to is replaced. */
+/* Opens a file. Symbolic links stay; the file that they lead to is replaced. A file that is reached through an open
+ * descriptor is not: its name may be another's, and others go on to write into it. What a descriptor of another process
+ * has open is written at its end. */
 static brio_status open_file(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
     struct stat old;
-    bool exists = stat(path, &old) == 0, named = true, far = !exists && errno == ENAMETOOLONG;
+    bool exists = stat(path, &old) == 0, far = !exists && errno == ENAMETOOLONG;
     if (!exists && errno != ENOENT && !far) return fail(out);
+    BRIO_TRY(brio_target_find(&out->target, out->ctx, path, out->name));
+    int descriptor = brio_target_descriptor(&out->target);
+    if (descriptor >= 0) return take_descriptor(out, descriptor);
     if (exists && !S_ISREG(old.st_mode)) return open_special(out, path, &old);
     /* a rename does not check whether the old file may be written */
     if (exists && access(path, W_OK) != 0) return fail(out);
-    BRIO_TRY(brio_target_find(&out->target, out->ctx, path, out->name));
-    if (exists) BRIO_TRY(find_named(out, &old, &named));
     if (far) BRIO_TRY(check_far(out));
-    if (!named) {
-        out->file = open(path, O_WRONLY | O_CLOEXEC | O_TRUNC);
+    if (brio_target_is_open_file(&out->target)) {
+        out->file = open(path, O_WRONLY | O_CLOEXEC | O_APPEND);
         if (out->file < 0) return fail(out);
     } else {
         BRIO_TRY(brio_target_create(&out->target, out->ctx, out->name, &out->file));
@@ -89,25 +94,21 @@ done:
     return status;
 }
 
-/* Opens standard output. Its flags stay as they are, because other processes share them. */
-static void open_standard(brio_output *out) {
-    struct stat facts;
-    out->file = STDOUT_FILENO;
-    out->waits = fstat(out->file, &facts) == 0 && !S_ISREG(facts.st_mode);
-}
-
 brio_status brio_output_open(brio_output *out, brio_context *ctx, const char *path, uint64_t expected) {
     brio_status status = BRIO_OK;
     bool standard = !strcmp(path, "-");
     *out = (brio_output){
         .ctx = ctx, .name = standard ? "standard output" : path, .target.folder = -1, .file = -1, .expected = expected};
     BRIO_TRY(BRIO_ALLOC(ctx, out->buffer, BLOCK));
-    if (standard)
-        open_standard(out);
-    else
-        BRIO_TRY(open_file(out, path));
+    BRIO_TRY(standard ? take_descriptor(out, STDOUT_FILENO) : open_file(out, path));
 done:
     return status;
+}
+
+bool brio_output_is_single(brio_context *ctx, const char *path) {
+    struct stat facts;
+    if (brio_open_descriptor(ctx, path) >= 0) return true;
+    return stat(path, &facts) == 0 && (S_ISCHR(facts.st_mode) || S_ISBLK(facts.st_mode));
 }
 
 static double share_written(const brio_output *out) {

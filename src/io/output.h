@@ -1,6 +1,7 @@
 /* Buffered output to a file that appears only when it is complete. The output is written to a file without a name in
  * the target's folder, flushed to the disk and named (target.h). A target that is no regular file (standard output, a
- * device, a pipe) is written directly.
+ * device, a pipe) is written directly, and so is a descriptor that is open (/dev/stdout, /dev/fd/7) whatever it leads
+ * to.
  *
  * All functions that return a status return BRIO_OK, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
 #ifndef BRIO_IO_OUTPUT_H
@@ -29,6 +30,9 @@ typedef struct brio_output {
 /** Opens an output; "-" is standard output. Call brio_output_close even if this fails.
  *  expected  an estimate of all bytes, for progress. */
 brio_status brio_output_open(brio_output *out, brio_context *ctx, const char *path, uint64_t expected);
+
+/** Returns whether a path names one open descriptor or device: there are no files beside it. */
+bool brio_output_is_single(brio_context *ctx, const char *path);
 
 /** Returns the number of bytes that were given to the output. */
 static inline uint64_t brio_output_offset(const brio_output *out) {

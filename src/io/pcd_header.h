@@ -2,9 +2,10 @@
 #ifndef BRIO_IO_PCD_HEADER_H
 #define BRIO_IO_PCD_HEADER_H
 
+#include "io/limits.h"
 #include "io/stream.h"
 
-enum { BRIO_PCD_MOST_NUMBERS = 4096 /* of a point; chosen: limits what a false header can request */ };
+enum { BRIO_PCD_MOST_NUMBERS = BRIO_MOST_NUMBERS /* of a point */ };
 
 typedef enum { BRIO_PCD_ASCII, BRIO_PCD_BINARY, BRIO_PCD_COMPRESSED } brio_pcd_data;
 

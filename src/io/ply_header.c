@@ -6,6 +6,7 @@
  * Based on: Turk. The PLY polygon file format. Stanford 1994. */
 #include "io/ply_header.h"
 #include "base/memory.h"
+#include "io/limits.h"
 #include "io/number.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
@@ -68,6 +69,7 @@ static brio_status read_element(brio_stream *s, brio_ply_header *header, char **
     const char *digits = count == 3 ? words[2] : "";
     if (count != 3 || !brio_parse_count(&digits, &element.count) || *digits) return bad_line(s, "element NAME COUNT");
     BRIO_TRY(copy_name(s, element.name, words[1]));
+    BRIO_TRY(brio_limit_elements(s->ctx, s->name, s->line, header->num_elements + 1));
     for (size_t i = 0; i < header->num_elements; i++)
         BRIO_REQUIRE(s->ctx, strcmp(header->elements[i].name, element.name) != 0, BRIO_ERR_FORMAT,
                      "%s: line %zu: a second element %s", s->name, s->line, brio_excerpt_of(element.name).text);
@@ -88,6 +90,7 @@ static brio_status read_property(brio_stream *s, brio_ply_header *header, char *
         return bad_line(s, "a type char uchar short ushort int uint float double, or int8 uint8 ... float64");
     BRIO_TRY(copy_name(s, p.name, words[count - 1]));
     brio_ply_element *e = &header->elements[header->num_elements - 1];
+    BRIO_TRY(brio_limit_numbers(s->ctx, s->name, s->line, e->num_properties + 1));
     p.offset = e->row_size;
     e->row_size += brio_scalar_size(p.count_type);
     e->has_list |= p.list;

@@ -15,15 +15,18 @@
 #include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #define OPEN_FILE "/proc/self/fd/%d" /* the name of an open file */
 
 enum { NAME_TRIES = 100, MOST_LINKS = 40 /* as many as Linux follows */, PATH_BYTES = 32 };
 enum { NAME_BYTES = BRIO_NAME_IN_TEMPORARY + 32, EXCHANGE = 2 /* RENAME_EXCHANGE, which not all C libraries know */ };
+enum { PROCESSES = 0x9fa0 /* PROC_SUPER_MAGIC, the type of the process file system */ };
 
 static brio_status fail(brio_context *ctx, const char *shown, int error) {
     return brio_fail(ctx, BRIO_ERR_WRITE, "%s: %s", shown, strerror(error));
@@ -63,6 +66,11 @@ done:
     return status;
 }
 
+static bool is_of_processes(int folder) {
+    struct statfs facts;
+    return fstatfs(folder, &facts) == 0 && facts.f_type == PROCESSES;
+}
+
 brio_status brio_target_find(brio_target *target, brio_context *ctx, const char *path, const char *shown) {
     brio_status status = BRIO_OK;
     char link[PATH_MAX];
@@ -70,6 +78,7 @@ brio_status brio_target_find(brio_target *target, brio_context *ctx, const char 
     BRIO_TRY(step_to(target, ctx, path, shown));
     for (int links = 0;; links++) {
         ssize_t length = readlinkat(target->folder, target->name, link, sizeof link - 1);
+        if (length >= 0 && is_of_processes(target->folder)) return BRIO_OK;
         if (length < 0) return errno == EINVAL || errno == ENOENT ? BRIO_OK : fail(ctx, shown, errno);
         if (links == MOST_LINKS) return fail(ctx, shown, ELOOP);
         link[length] = 0;
@@ -77,6 +86,29 @@ brio_status brio_target_find(brio_target *target, brio_context *ctx, const char 
     }
 done:
     return status;
+}
+
+bool brio_target_is_open_file(const brio_target *target) {
+    char link[1];
+    return is_of_processes(target->folder) && readlinkat(target->folder, target->name, link, sizeof link) >= 0;
+}
+
+int brio_target_descriptor(const brio_target *target) {
+    struct stat named, open;
+    char *end;
+    if (!brio_target_is_open_file(target)) return -1;
+    long number = strtol(target->name, &end, 10);
+    if (*end || number < 0 || number > INT_MAX) return -1;
+    if (fstatat(target->folder, target->name, &named, 0) != 0 || fstat((int)number, &open) != 0) return -1;
+    return named.st_dev == open.st_dev && named.st_ino == open.st_ino ? (int)number : -1;
+}
+
+int brio_open_descriptor(brio_context *ctx, const char *path) {
+    brio_target target;
+    if (!strcmp(path, "-")) return STDOUT_FILENO;
+    int found = brio_target_find(&target, ctx, path, path) == BRIO_OK ? brio_target_descriptor(&target) : -1;
+    brio_target_close(&target, ctx);
+    return found;
 }
 
 /* --- the new file --- */

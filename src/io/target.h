@@ -24,11 +24,23 @@ typedef struct brio_target {
 enum { BRIO_NAME_IN_TEMPORARY = 100 }; /* the temporary name begins with at most this many bytes of the name; chosen */
 
 /** Follows a path through symbolic links to a folder and a name. The file need not exist: if a link leads to no file,
- *  the target is the name that the link leads to.
+ *  the target is the name that the link leads to. Links of the process file system are not followed: what they say is no
+ *  path, and the file that they lead to is open already.
  *  shown   the path as the caller gave it, for the message.
  *  target  closed with brio_target_close, on failure too.
  *  On failure errno gives the reason, such as a missing folder or a loop of links. */
 brio_status brio_target_find(brio_target *target, brio_context *ctx, const char *path, const char *shown);
+
+/** Returns the descriptor of this process that a target leads to, such as 1 for /dev/stdout, 7 for /dev/fd/7 and
+ *  /proc/self/fd/7; -1 for other targets. What the descriptor has open may be a file, a pipe or a socket. */
+int brio_target_descriptor(const brio_target *target);
+
+/** Returns whether a target is a link of the process file system: to an open file, not to a name that can be replaced. */
+bool brio_target_is_open_file(const brio_target *target);
+
+/** Returns the open descriptor that a path of an output leads to: that of standard output for "-", that of
+ *  brio_target_descriptor otherwise, or -1. */
+int brio_open_descriptor(brio_context *ctx, const char *path);
 
 /** Makes the new file. The file has the permissions of the file that it will replace, and its owner and group if
  *  the system allows that.

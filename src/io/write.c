@@ -61,8 +61,9 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
     bool beside = options->neighbours || options->faces || options->edges;
     BRIO_REQUIRE(ctx, !beside || format == BRIO_FORMAT_NODE, BRIO_ERR_ARGUMENT,
                  "%s: neighbours, faces and edges are written beside .node only", path);
-    BRIO_REQUIRE(ctx, (!m->num_tetrahedra && !beside) || format != BRIO_FORMAT_NODE || strcmp(path, "-") != 0,
-                 BRIO_ERR_ARGUMENT, "standard output cannot hold the two files .node and .ele");
+    BRIO_REQUIRE(
+        ctx, (!m->num_tetrahedra && !beside) || format != BRIO_FORMAT_NODE || !brio_output_is_single(ctx, path),
+        BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele", strcmp(path, "-") ? path : "standard output");
     BRIO_TRY(brio_check_compress(ctx, path, format, options));
     BRIO_TRY(brio_check_properties(ctx, path, format, m->num_properties));
     if (brio_is_single(format, options)) BRIO_TRY(brio_check_single(ctx, path, m));
@@ -149,7 +150,7 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     if (o.moved && brio_is_single(format, &o)) *o.moved = brio_moved_by_singles(mesh);
     if (brio_row_format_of(format))
         BRIO_TRY(write_rows(ctx, path, &job, format));
-    else if (format == BRIO_FORMAT_NODE && strcmp(path, "-") != 0)
+    else if (format == BRIO_FORMAT_NODE && !brio_output_is_single(ctx, path))
         BRIO_TRY(brio_node_write_files(ctx, path, &job, job.expected));
     else
         BRIO_TRY(write_one(ctx, path, &job, format));

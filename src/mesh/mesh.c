@@ -115,7 +115,7 @@ size_t brio_scalar_size(brio_scalar type) {
     return (unsigned)type < BRIO_SCALAR_END ? sizes[type] : 0;
 }
 
-brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data) {
+brio_status brio_mesh_append_property(brio_mesh *mesh, const char *name, brio_scalar type) {
     brio_context *ctx = mesh->context;
     brio_property p = {.type = type};
     brio_status status = BRIO_OK;
@@ -123,15 +123,22 @@ brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scala
     BRIO_REQUIRE(ctx, brio_scalar_size(type), BRIO_ERR_ARGUMENT, "property %s: no such scalar type", name);
     BRIO_REQUIRE(ctx, brio_utf8_copy(p.name, sizeof p.name, name) && name[0], BRIO_ERR_ARGUMENT,
                  "a property name of %zu bytes, expected 1 to 63 bytes of UTF-8", strlen(name));
-    BRIO_REQUIRE(ctx, !brio_mesh_property(mesh, name), BRIO_ERR_ARGUMENT, "two properties named %s", p.name);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, bytes, mesh->num_vertices * brio_scalar_size(type)));
     p.data = bytes;
     BRIO_TRY(BRIO_RESIZE(ctx, mesh->properties, mesh->num_properties + 1));
     mesh->properties[mesh->num_properties++] = p;
-    if (data) *data = bytes;
     bytes = NULL;
 done:
     brio_release(ctx, bytes);
+    return status;
+}
+
+brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(mesh->context, !brio_mesh_property(mesh, name), BRIO_ERR_ARGUMENT, "two properties named %s", name);
+    BRIO_TRY(brio_mesh_append_property(mesh, name, type));
+    if (data) *data = mesh->properties[mesh->num_properties - 1].data;
+done:
     return status;
 }
 

@@ -30,7 +30,7 @@ enum { MOST_LEVELS = 15, HALF_EDGES_A_THREAD = 1 << 10 };
 enum { MOST_EXPONENT = 950 };
 
 static const size_t MOST_VERTICES = UINT32_MAX - 16;
-static const size_t BATCH = (size_t)1 << 20; /* half-edges between two reports of progress */
+static const size_t BATCH = (size_t)1 << 20; /* half-edges or vertices between two reports of progress */
 static const double PI = 3.14159265358979323846;
 
 /* The kind of a corner's vertex: with six triangles all round; at the boundary; with another number of triangles all
@@ -45,6 +45,12 @@ typedef struct {
     uint8_t *kind;         /* kind of each corner's vertex */
     size_t from;           /* first half-edge of the batch in work */
 } subdivider;
+
+/* Reports progress of a level once in BATCH rounds of a loop: the loop is the part from `from` to `to` of the level. */
+static inline brio_status report(brio_context *ctx, size_t i, size_t n, double from, double to) {
+    if (i % BATCH) return BRIO_OK;
+    return brio_progress(ctx, "subdivide", from + (to - from) * ((double)i / (double)n));
+}
 
 /* --- neighbourhoods --- */
 
@@ -65,19 +71,24 @@ static uint32_t count_round(const subdivider *s, uint32_t corner) {
 
 /* Finds the kind of each corner's vertex. Walks left from every boundary corner first: a walk to the left from another
  * corner may miss some corners. */
-static void find_kinds(subdivider *s) {
+static brio_status find_kinds(brio_context *ctx, subdivider *s) {
+    brio_status status = BRIO_OK;
     const uint8_t unknown = UINT8_MAX;
     size_t corners = 3 * s->mesh->num_faces;
     memset(s->kind, unknown, corners);
     for (uint32_t c = 0; c < corners; c++) {
+        BRIO_TRY(report(ctx, c, corners, 0.2, 0.25));
         if (s->twin[c] != BRIO_NO_HALF_EDGE) continue;
         for (uint32_t at = c; at != BRIO_NO_HALF_EDGE; at = left_of(s, at)) s->kind[at] = BOUNDARY;
     }
     for (uint32_t c = 0; c < corners; c++) {
+        BRIO_TRY(report(ctx, c, corners, 0.25, 0.4));
         if (s->kind[c] != unknown) continue;
         uint8_t kind = count_round(s, c) == 6 ? REGULAR : EXTRAORDINARY;
         for (uint32_t at = c; s->kind[at] == unknown; at = left_of(s, at)) s->kind[at] = kind;
     }
+done:
+    return status;
 }
 
 static const double *position(const subdivider *s, uint32_t corner) {
@@ -190,13 +201,18 @@ static void place_round(subdivider *s, uint32_t start) {
 static brio_status number_edges(brio_context *ctx, subdivider *s, size_t *count) {
     brio_status status = BRIO_OK;
     size_t next = s->mesh->num_vertices, corners = 3 * s->mesh->num_faces;
-    for (uint32_t h = 0; h < corners; h++) next += h < s->twin[h];
+    for (uint32_t h = 0; h < corners; h++) {
+        BRIO_TRY(report(ctx, h, corners, 0, 0.1));
+        next += h < s->twin[h];
+    }
     BRIO_REQUIRE(ctx, next <= MOST_VERTICES && 4 * s->mesh->num_faces < UINT32_MAX / 3, BRIO_ERR_TOO_LARGE,
                  "the subdivided mesh has %zu vertices and %zu faces, more than 32-bit indices can name", next,
                  4 * s->mesh->num_faces);
     next = s->mesh->num_vertices;
-    for (uint32_t h = 0; h < corners; h++)
+    for (uint32_t h = 0; h < corners; h++) {
+        BRIO_TRY(report(ctx, h, corners, 0.1, 0.2));
         s->edge_vertex[h] = h < s->twin[h] ? (uint32_t)next++ : s->edge_vertex[s->twin[h]];
+    }
     *count = next;
 done:
     return status;
@@ -225,9 +241,10 @@ static brio_status place_vertices(brio_context *ctx, subdivider *s) {
     for (s->from = 0; s->from < corners; s->from += BATCH) {
         size_t count = corners - s->from < BATCH ? corners - s->from : BATCH;
         brio_for(ctx, brio_threads(ctx, count, HALF_EDGES_A_THREAD), count, place_part, s);
-        BRIO_TRY(brio_progress(ctx, "subdivide", (double)(s->from + count) / (double)corners));
+        BRIO_TRY(brio_progress(ctx, "subdivide", 0.4 + 0.2 * ((double)(s->from + count) / (double)corners)));
     }
     for (uint32_t c = 0; c < corners; c++) {
+        BRIO_TRY(report(ctx, c, corners, 0.6, 0.7));
         if (s->kind[c] != EXTRAORDINARY) continue;
         place_round(s, c);
         for (uint32_t at = c; s->kind[at] == EXTRAORDINARY; at = left_of(s, at)) s->kind[at] = PLACED;
@@ -243,6 +260,7 @@ static brio_status make_faces(brio_context *ctx, subdivider *s) {
     BRIO_TRY(BRIO_ALLOC(ctx, s->fine->face_vertices, 12 * faces));
     for (size_t f = 0; f <= 4 * faces; f++) s->fine->face_offsets[f] = 3 * f;
     for (size_t f = 0; f < faces; f++) {
+        BRIO_TRY(report(ctx, f, faces, 0.7, 0.8));
         const uint32_t *v = s->mesh->face_vertices + 3 * f, *e = s->edge_vertex + 3 * f;
         const uint32_t four[12] = {v[0], e[0], e[2], e[0], v[1], e[1], e[2], e[1], v[2], e[0], e[1], e[2]};
         memcpy(s->fine->face_vertices + 12 * f, four, sizeof four);
@@ -259,14 +277,17 @@ static double mean_of(double a, double b) {
 
 /* Copies a property for the old vertices. A new vertex gets the mean of its edge's ends for floating-point types. For
  * integer types it gets the value of the first end, because labels have no mean. */
-static brio_status make_property(subdivider *s, const brio_property *property) {
+static brio_status make_property(brio_context *ctx, subdivider *s, size_t number) {
     brio_status status = BRIO_OK;
+    const brio_property *property = &s->mesh->properties[number];
     const uint32_t *v = s->mesh->face_vertices;
-    size_t size = brio_scalar_size(property->type);
+    size_t size = brio_scalar_size(property->type), corners = 3 * s->mesh->num_faces;
+    double share = 0.2 / (double)s->mesh->num_properties, from = 0.8 + share * (double)number;
     char *data;
     BRIO_TRY(brio_mesh_add_property(s->fine, property->name, property->type, (void **)&data));
     memcpy(data, property->data, s->mesh->num_vertices * size);
-    for (uint32_t h = 0; h < 3 * s->mesh->num_faces; h++) {
+    for (uint32_t h = 0; h < corners; h++) {
+        BRIO_TRY(report(ctx, h, corners, from, from + share));
         if (h > s->twin[h]) continue;
         uint32_t a = v[h], b = v[brio_next_corner(h)];
         char *target = data + s->edge_vertex[h] * size;
@@ -293,10 +314,10 @@ static brio_status subdivide_once(brio_context *ctx, const brio_mesh *mesh, brio
     BRIO_TRY(number_edges(ctx, &s, &count));
     BRIO_TRY(brio_mesh_new(ctx, &s.fine));
     BRIO_TRY(brio_mesh_set_vertices(s.fine, NULL, count));
-    find_kinds(&s);
+    BRIO_TRY(find_kinds(ctx, &s));
     BRIO_TRY(place_vertices(ctx, &s));
     BRIO_TRY(make_faces(ctx, &s));
-    for (size_t i = 0; i < mesh->num_properties; i++) BRIO_TRY(make_property(&s, &mesh->properties[i]));
+    for (size_t i = 0; i < mesh->num_properties; i++) BRIO_TRY(make_property(ctx, &s, i));
     *out = s.fine;
     s.fine = NULL;
 done:
@@ -309,21 +330,24 @@ done:
 
 /* --- all levels --- */
 
+/* A level is four times the work of the level before, and has its share of the progress bar. */
 static brio_status subdivide_levels(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
     brio_status status = BRIO_OK;
     brio_mesh *coarse = NULL, *fine = NULL;
+    const brio_bar bar = brio_progress_bar(ctx);
     *out = NULL;
-    BRIO_TRY(subdivide_once(ctx, mesh, &fine));
-    for (int level = 1; level < levels; level++) {
+    for (int level = 0; level < levels; level++) {
+        brio_progress_part(ctx, bar, level ? ldexp(1, 2 * (level - levels)) : 0, ldexp(1, 2 * (level + 1 - levels)));
         coarse = fine;
         fine = NULL;
-        BRIO_TRY(subdivide_once(ctx, coarse, &fine));
+        BRIO_TRY(subdivide_once(ctx, level ? coarse : mesh, &fine));
         brio_mesh_free(coarse);
         coarse = NULL;
     }
     *out = fine;
     fine = NULL;
 done:
+    brio_progress_part(ctx, bar, 0, 1);
     brio_mesh_free(coarse);
     brio_mesh_free(fine);
     return status;
@@ -357,6 +381,9 @@ brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int le
     *out = NULL;
     BRIO_REQUIRE(ctx, levels >= 1 && levels <= MOST_LEVELS, BRIO_ERR_ARGUMENT, "%d levels: expected 1 to %d", levels,
                  MOST_LEVELS);
+    double faces = ldexp((double)mesh->num_faces, 2 * levels);
+    BRIO_REQUIRE(ctx, faces < (double)(UINT32_MAX / 3), BRIO_ERR_TOO_LARGE,
+                 "%d levels make %.0f faces of %zu, more than 32-bit indices can name", levels, faces, mesh->num_faces);
     int exponent = brio_exponent(brio_greatest(mesh->vertices, 3 * mesh->num_vertices)) - MOST_EXPONENT;
     BRIO_TRY(exponent > 0 ? subdivide_scaled(ctx, mesh, levels, exponent, out)
                           : subdivide_levels(ctx, mesh, levels, out));

@@ -155,9 +155,8 @@ class Convert(CliTest):
         self.assertEqual(self.expect(0, "convert", a, "-", "--format", "csv").out, expected)
 
     def test_more_properties_than_readers_take_are_refused(self):
-        for count, extension in ((257, "glb"), (4094, "npy"), (4097, "vtu")):
-            names = ",".join("p%d" % i for i in range(count))
-            a = self.file("a.csv", "x,y,z,%s\n1,2,3%s\n" % (names, ",1" * count))
+        for count, extension in ((257, "glb"), (4094, "npy"), (4094, "ply"), (4094, "csv")):
+            a = self.file("a.node", "1 3 %d 0\n0 1 2 3%s\n" % (count, " 1" * count))
             b = self.path("b." + extension)
             self.usage("%d properties" % count, "convert", a, b)
             self.assertFalse(os.path.exists(b))

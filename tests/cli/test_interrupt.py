@@ -127,6 +127,18 @@ class Interrupt(CliTest):
             shutil.copyfileobj(source, sink)
         self.assertEqual((first.wait(timeout=60), last.wait(timeout=60)), (0, 0))
 
+    def test_signals_that_the_caller_ignored_stay_ignored(self):
+        """A script's `brio ... &` ended at the Ctrl-C that was meant for another program."""
+        for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP:
+            process = self.start("delaunay", "-", "--input-format", "xyz", "--quiet", stdin=subprocess.PIPE,
+                                 preexec_fn=lambda: signal.signal(number, signal.SIG_IGN))
+            time.sleep(0.3)
+            process.send_signal(number)
+            time.sleep(0.2)
+            process.stdin.write(b"".join(b"%d %d %d\n" % point for point in CUBE))
+            process.stdin.close()
+            self.assertEqual(process.wait(timeout=30), 0, number)
+
     def test_json_of_an_interrupted_run(self):
         process = self.start("delaunay", self.cloud("a.ply", 400000), "--json", "--progress")
         self.assertTrue(self.wait_for_stage(process, ["insert", "order"]))

@@ -108,6 +108,71 @@ class Writing(CliTest):
             self.assertEqual(done.returncode, 1)
             self.assertIn("both want standard output", json.loads(done.stdout)["error"])
 
+    def through_descriptor(self, name, *arguments, mode="ab"):
+        """What stands in a file when a command wrote to the open descriptor by a name such as /dev/fd/%d."""
+        with open(self.path("old.txt"), "wb") as f:
+            f.write(b"OLD\n")
+        with open(self.path("old.txt"), mode) as f:
+            f.seek(0, os.SEEK_END)
+            keep = os.dup(f.fileno())
+            self.addCleanup(os.close, keep)
+            line = [BRIO, *map(str, arguments), "--quiet"]
+            line = [a.replace("OUT", name % keep) for a in line]
+            done = subprocess.run(line, pass_fds=[keep], stderr=subprocess.PIPE, cwd=self.folder, timeout=60)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            os.write(keep, b"AFTER\n")
+        with open(self.path("old.txt"), "rb") as f:
+            return f.read()
+
+    def test_open_descriptors_are_written_at_their_place(self):
+        """Each of these names replaced the file that the descriptor had open: what stood there was lost."""
+        points = self.xyz("a.xyz", CUBE)
+        writers = [("convert", points, "OUT", "--format", "xyz"), ("delaunay", points, "-o", "OUT", "--format", "ply"),
+                   ("locate", points, "--at", points, "-o", "OUT", "--format", "csv"),
+                   ("voronoi", points, "-o", "/dev/null", "--format", "csv", "--faces", "OUT"),
+                   ("alpha", points, "--alpha", "auto", "--filtration", "OUT"),
+                   ("hull", points, "-o", "OUT", "--format", "off")]
+        for name in "/dev/fd/%d", "/proc/self/fd/%d", "/proc/thread-self/fd/%d":
+            for arguments in writers:
+                for mode in "ab", "r+b":
+                    content = self.through_descriptor(name, *arguments, mode=mode)
+                    self.assertRegex(content, rb"(?s)\AOLD\n.{20,}AFTER\n\Z", (name, arguments))
+        self.assert_only(self.folder, "a.xyz", "old.txt")
+
+    def test_standard_streams_by_name_keep_what_stands_there(self):
+        points = self.xyz("a.xyz", CUBE)
+        for stream, name in (1, "/dev/stdout"), (2, "/dev/stderr"):
+            with open(self.path("log.txt"), "wb") as log:
+                log.write(b"BEFORE\n")
+                log.flush()
+                how = {"stdout": log} if stream == 1 else {"stderr": log}
+                subprocess.run([BRIO, "convert", points, "-o", name, "--format", "xyz", "--quiet"], check=True, **how)
+                log.write(b"AFTER\n")
+            with open(self.path("log.txt"), "rb") as log:
+                self.assertRegex(log.read(), rb"(?s)\ABEFORE\n#.*1 1 1\nAFTER\n\Z")
+
+    def test_descriptor_of_another_process_is_written_at_its_end(self):
+        with open(self.path("log.txt"), "wb") as log:
+            log.write(b"BEFORE\n")
+            log.flush()
+            name = "/proc/%d/fd/%d" % (os.getpid(), log.fileno())
+            self.expect(0, "convert", self.xyz("a.xyz", CUBE), "-o", name, "--format", "xyz")
+        with open(self.path("log.txt"), "rb") as log:
+            self.assertRegex(log.read(), rb"(?s)\ABEFORE\n#.*1 1 1\n\Z")
+
+    def test_descriptor_that_cannot_be_written_is_told_before_the_work(self):
+        with open(self.xyz("a.xyz", CUBE)) as f:
+            done = subprocess.run([BRIO, "hull", "missing.xyz", "-o", "/dev/stdin", "--format", "off"], stdin=f,
+                                  stderr=subprocess.PIPE, encoding="utf-8")
+        self.assertEqual((done.returncode, done.stderr.count("not open for writing")), (6, 1))
+
+    def test_streams_and_devices_have_no_files_beside_them(self):
+        """-o /dev/null --format node made /dev/null.ele."""
+        points = self.xyz("a.xyz", CUBE)
+        for name in "-", "/dev/stdout", "/dev/null":
+            self.usage("cannot hold the two files", "delaunay", points, "-o", name, "--format", "node")
+        self.assertFalse(os.path.exists("/dev/null.ele"))
+
     def test_reader_that_went_away(self):
         points = self.cloud("a.ply", 50000)
         process = subprocess.Popen([BRIO, "delaunay", points, "-o", "-", "--format", "ply"], stdout=subprocess.PIPE,

@@ -1,6 +1,9 @@
 """Standard input and standard output in place of files."""
 
-from brio_cli import CliTest, main
+import os
+import subprocess
+
+from brio_cli import BRIO, CliTest, main
 
 
 class Pipes(CliTest):
@@ -20,6 +23,28 @@ class Pipes(CliTest):
         solid = self.expect(0, "delaunay", "-", "--input-format", "xyz", "-o", "-", "--format", "ply", stdin=made.out)
         self.assertTrue(solid.out.startswith(b"ply\n"))
         self.assertTrue(self.facts("check", "-", "--input-format", "ply", stdin=solid.out)["verified"])
+
+    def test_one_pipe_as_input_and_output_is_refused(self):
+        """The run waited for ever, for what it would write itself."""
+        pipe = self.path("pipe")
+        os.mkfifo(pipe)
+        held = os.open(pipe, os.O_RDWR)
+        self.addCleanup(os.close, held)
+        formats = ["--input-format", "xyz", "--format", "ply"]
+        self.usage("the input and -o name the same file", "surface", pipe, "-o", pipe, *formats)
+        self.usage("the input and -o name the same file", "convert", pipe, pipe, *formats)
+        for names in ("-", pipe), (pipe, "-"), ("-", "-"), ("/dev/stdin", pipe):
+            done = subprocess.run([BRIO, "convert", *names, *formats], stdin=held, stdout=held, stderr=subprocess.PIPE,
+                                  timeout=60)
+            self.assertEqual(done.returncode, 1, names)
+            self.assertIn(b"name the same file", done.stderr)
+
+    def test_file_appended_to_itself_is_refused(self):
+        points = self.xyz("a.xyz", [(0, 0, 0), (1, 0, 0)])
+        with open(points, "ab") as f:
+            done = subprocess.run([BRIO, "convert", points, "-", "--format", "xyz"], stdout=f, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(b"name the same file", done.stderr)
 
     def test_quiet_chain_says_nothing(self):
         made = self.expect(0, "generate", "grid", "-n", "8", "-o", "-", "--format", "xyz", "--quiet")

@@ -33,6 +33,12 @@ class Subdivide(CliTest):
         self.expect(4, "subdivide", mesh, "--levels", "15", "-o", out, "--max-memory", "100M")
         self.assert_only(self.folder, "m.off", "p.xyz", "q.off")
 
+    def test_levels_that_no_index_can_number_are_refused_with_the_number(self):
+        """1.6e12 faces were begun."""
+        solid = self.off("a.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        run = self.expect(4, "subdivide", solid, "--levels", 14, "-o", self.path("b.ply"))
+        self.assertIn("14 levels make 2147483648 faces of 8", run.err)
+
 
 if __name__ == "__main__":
     main()

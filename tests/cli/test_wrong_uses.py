@@ -268,6 +268,24 @@ class WrongUses(CliTest):
             self.assertEqual(done.returncode, 2)
             self.assertRegex(done.stderr, rb"\Abrio: [ -~]+: No such file or directory\n\Z")
 
+    def test_no_control_character_of_any_text_reaches_the_terminal(self):
+        """U+009B, one character that begins a command of terminals, went through; wrong bytes, too."""
+        names = ["\u009b31mred", "\u0085", "a\u202eb", "\u2066x", "\x1b[31mred"]
+        shown = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+        for i, name in enumerate(names):
+            with open(self.path("names.csv"), "w", encoding="utf-8") as f:
+                f.write("x,y,z,%s\n1,2,3,4\n" % name)
+            for line in (["info", "names.csv"], ["convert", "names.csv", "p.obj"], ["info", "none" + name],
+                         ["delaunay", "names.csv", "-o", name + "/x.ply"], ["hull", name], [name],
+                         ["info", "names.csv", "--" + name], ["delaunay", "names.csv", "--scratch", name]):
+                for json in [], ["--json"]:
+                    done = subprocess.run([BRIO, *line, *json], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                          cwd=self.folder)
+                    for text in done.stdout, done.stderr:
+                        self.assertIsNone(shown.search(text.decode("utf-8")), line)
+        done = subprocess.run([BRIO, "info", b"\x9b31m\xff"], stderr=subprocess.PIPE, cwd=self.folder)
+        self.assertRegex(done.stderr, rb"\Abrio: \?31m\?: No such")
+
     def test_unreadable_file(self):
         if os.geteuid() == 0:
             self.skipTest("root may read every file")

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static const brio_convert_options STANDARD = {.size = sizeof STANDARD};
 
@@ -146,14 +147,14 @@ done:
 }
 
 /* Whether the output is a new file, of which the beginning can be written last. */
-static bool can_patch(const char *path) {
+static bool can_patch(brio_context *ctx, const char *path) {
     struct stat facts;
-    return strcmp(path, "-") != 0 && (stat(path, &facts) != 0 || S_ISREG(facts.st_mode));
+    return brio_open_descriptor(ctx, path) < 0 && (stat(path, &facts) != 0 || S_ISREG(facts.st_mode));
 }
 
 /* Whether a pass comes first because the output begins with the number of points, and its beginning cannot be written last. */
 static bool must_count(const conversion *c) {
-    return !can_patch(c->to) && c->writer.format->counts;
+    return !can_patch(c->ctx, c->to) && c->writer.format->counts;
 }
 
 /* Goes through the points. A pass that ends at its first block because the depth of colours is open is followed by one that
@@ -248,6 +249,15 @@ done:
 
 /* --- the whole --- */
 
+/* Whether input and output are one file, or one FIFO, from which the conversion would wait for what it writes. */
+static bool is_one_file(const conversion *c) {
+    struct stat a, b;
+    int from = strcmp(c->source.path, "-") ? stat(c->source.path, &a) : fstat(STDIN_FILENO, &a);
+    int to = strcmp(c->to, "-") ? stat(c->to, &b) : fstat(STDOUT_FILENO, &b);
+    if (from != 0 || to != 0 || a.st_dev != b.st_dev || a.st_ino != b.st_ino) return false;
+    return S_ISFIFO(a.st_mode) || (S_ISREG(a.st_mode) && strcmp(c->source.path, "-") != 0);
+}
+
 static brio_status check(conversion *c) {
     brio_status status = BRIO_OK;
     const brio_convert_options *o = c->options;
@@ -258,10 +268,7 @@ static brio_status check(conversion *c) {
     for (int k = 0; k < 3 && o->crop; k++)
         BRIO_REQUIRE(c->ctx, o->box[k] <= o->box[k + 3], BRIO_ERR_ARGUMENT, "a box from %g to %g along %c", o->box[k],
                      o->box[k + 3], "xyz"[k]);
-    struct stat a, b;
-    bool known = strcmp(from, "-") != 0 && strcmp(c->to, "-") != 0 && stat(from, &a) == 0 && stat(c->to, &b) == 0;
-    BRIO_REQUIRE(c->ctx, !known || !S_ISREG(a.st_mode) || a.st_dev != b.st_dev || a.st_ino != b.st_ino,
-                 BRIO_ERR_ARGUMENT, "%s and %s are the same file", from, c->to);
+    BRIO_REQUIRE(c->ctx, !is_one_file(c), BRIO_ERR_ARGUMENT, "%s and %s are the same file", from, c->to);
 done:
     return status;
 }
@@ -290,7 +297,7 @@ static brio_status run(conversion *c) {
     const brio_bar bar = brio_progress_bar(c->ctx);
     bool choose = c->options->drop_outliers || c->options->thin > 0, rows = brio_row_format_of(c->format) != NULL;
     bool once = !choose && c->format != BRIO_FORMAT_LAS &&
-                (can_patch(c->to) || (rows && !brio_row_format_of(c->format)->counts));
+                (can_patch(c->ctx, c->to) || (rows && !brio_row_format_of(c->format)->counts));
     c->source.whole = !rows || c->options->merge || (!brio_source_rereadable(c->source.path) && !once);
     double started = brio_seconds();
     brio_progress_part(c->ctx, bar, 0, 0.6);

@@ -11,6 +11,7 @@ typedef struct brio_glb_file {
     brio_glb_scene scene;
     char *binary; /* NULL: there is none */
     uint64_t binary_size;
+    uint64_t bytes; /* of JSON and binary data together */
 } brio_glb_file;
 
 /* Rows of numbers, all of which lie in a buffer. */

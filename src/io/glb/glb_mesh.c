@@ -243,37 +243,66 @@ done:
     return status;
 }
 
+/* What a mesh is made into at each of its places. */
+typedef struct {
+    bool noted;
+    uint64_t vertices, corners;
+} made;
+
 /* Notes the primitives of a mesh, once. */
-static brio_status note_mesh(builder *b, uint32_t number, bool *noted) {
+static brio_status note_mesh(builder *b, uint32_t number, made *m) {
     brio_status status = BRIO_OK;
-    const brio_glb_mesh *mesh = &b->file->scene.meshes[number];
-    if (noted[number]) return BRIO_OK;
-    noted[number] = true;
+    const brio_glb_scene *s = &b->file->scene;
+    const brio_glb_mesh *mesh = &s->meshes[number];
+    const brio_glb_primitive *p = s->primitives + mesh->primitive;
+    brio_glb_column positions;
+    if (m->noted) return BRIO_OK;
+    m->noted = true;
     for (size_t i = 0; i < mesh->primitives; i++) {
-        b->primitive = &b->file->scene.primitives[mesh->primitive + i];
+        b->primitive = &p[i];
         BRIO_TRY(note_primitive(b));
+        BRIO_TRY(positions_of(b, &positions));
+        if (i == 0 || !same_attributes(b->file, &p[i - 1], &p[i])) m->vertices += positions.count;
+        m->corners += p[i].indices < s->num_accessors ? s->accessors[p[i].indices].count : positions.count;
     }
 done:
     return status;
+}
+
+/* Refuses a scene that shows meshes, or accessors, so often that a small file becomes a huge mesh. Counts of accessors are
+ * at most the bytes of the file, so that the sums are far from an overflow until the limit ends them. */
+static brio_status check_expansion(const builder *b, const brio_glb_instance *instances, size_t count,
+                                   const made *meshes) {
+    const brio_glb_file *file = b->file;
+    uint64_t numbers = 0;
+    for (size_t i = 0; i < count; i++) {
+        const made *m = &meshes[instances[i].mesh];
+        uint64_t more = 0;
+        if (__builtin_mul_overflow(m->vertices, 3 + b->num_properties, &more) ||
+            __builtin_add_overflow(more, m->corners, &more) || __builtin_add_overflow(numbers, more, &numbers))
+            numbers = UINT64_MAX;
+    }
+    return brio_limit_expansion(file->ctx, file->name, "the meshes at all their places", numbers, file->bytes);
 }
 
 brio_status brio_glb_add_scene(const brio_glb_file *file, brio_builder *out) {
     brio_status status = BRIO_OK;
     brio_glb_instance *instances = NULL;
     builder *b = NULL;
-    bool *noted = NULL;
+    made *meshes = NULL;
     size_t count = 0;
     BRIO_TRY(brio_glb_instances(file, &instances, &count));
     BRIO_TRY(BRIO_ALLOC_ZERO(file->ctx, b, 1));
     b->file = file;
     b->builder = out;
-    BRIO_TRY(BRIO_ALLOC_ZERO(file->ctx, noted, file->scene.num_meshes));
-    for (size_t i = 0; i < count; i++) BRIO_TRY(note_mesh(b, instances[i].mesh, noted));
+    BRIO_TRY(BRIO_ALLOC_ZERO(file->ctx, meshes, file->scene.num_meshes));
+    for (size_t i = 0; i < count; i++) BRIO_TRY(note_mesh(b, instances[i].mesh, &meshes[instances[i].mesh]));
+    BRIO_TRY(check_expansion(b, instances, count, meshes));
     BRIO_TRY(make_properties(b));
     for (size_t i = 0; i < count; i++) BRIO_TRY(add_instance(b, &instances[i]));
 done:
     brio_release(file->ctx, instances);
-    brio_release(file->ctx, noted);
+    brio_release(file->ctx, meshes);
     brio_release(file->ctx, b);
     return status;
 }

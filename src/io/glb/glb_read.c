@@ -82,6 +82,7 @@ brio_status brio_glb_read(brio_stream *s, brio_builder *b) {
     else
         BRIO_TRY(read_block(s, UINT64_MAX, &json, &size));
     BRIO_TRY(brio_glb_scene_read(s->ctx, s->name, json, (size_t)size, &file.scene));
+    file.bytes = size + file.binary_size;
     BRIO_TRY(brio_glb_add_scene(&file, b));
 done:
     brio_glb_scene_free(s->ctx, &file.scene);

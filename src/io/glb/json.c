@@ -8,11 +8,12 @@
 #ifdef BRIO_HAS_CJSON
 #include "io/glb/json.h"
 #include "base/memory.h"
+#include "io/limits.h"
 #include <cjson/cJSON.h>
 #include <errno.h>
 
 /* BLOCK: bytes of malloc for a block of its own. Both chosen. */
-enum { MOST_LEVELS = 64, BLOCK = 32 };
+enum { BLOCK = 32 };
 
 typedef struct {
     size_t values, levels;
@@ -43,8 +44,7 @@ brio_status brio_json_parse(brio_json_document *d, const char *text, size_t size
     char *reserve = NULL;
     const char *end = NULL;
     extent e = look_over(text, size);
-    BRIO_REQUIRE(d->ctx, e.levels <= MOST_LEVELS, BRIO_ERR_FORMAT, "%s: the JSON has %zu levels, the most are %d",
-                 d->name, e.levels, MOST_LEVELS);
+    BRIO_TRY(brio_limit_levels(d->ctx, d->name, "the JSON", e.levels));
     /* a value, its key and its string, which together are no longer than the text */
     BRIO_TRY(BRIO_ALLOC(d->ctx, reserve, e.values * (sizeof(cJSON) + 3 * BLOCK) + size));
     d->reserve = reserve;

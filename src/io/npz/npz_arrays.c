@@ -1,12 +1,11 @@
 /* Finds out which arrays of an NPZ file are points, properties, triangles and tetrahedra, by their names and shapes. */
 #include "io/npz/npz_arrays.h"
 #include "base/memory.h"
+#include "io/limits.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-
-enum { MOST_COLUMNS = 4096 /* of an array that becomes properties; chosen: as an NPY file */ };
 
 static const char *const point_names[] = {"points", "vertices",    "verts",  "xyz",   "positions", "position",
                                           "pos",    "coordinates", "coords", "nodes", NULL};
@@ -54,7 +53,7 @@ static bool is_whole(const brio_npz_array *a) {
 static bool may_be_points(const brio_npz_array *a) {
     const brio_npy_array *h = &a->header;
     if (h->records) return h->dimensions == 1;
-    return h->known && h->dimensions == 2 && h->shape[1] >= 3 && h->shape[1] <= MOST_COLUMNS;
+    return h->known && h->dimensions == 2 && h->shape[1] >= 3 && h->shape[1] <= BRIO_MOST_NUMBERS;
 }
 
 static bool has_name(const brio_npz_array *a, const char *const *names) {
@@ -129,12 +128,12 @@ static brio_npz_use use_of(const brio_npz *n, const brio_npz_array *a) {
     static const char *const tetrahedra[] = {"tetrahedra", "tetras", "tets", "tetra", NULL};
     static const char *const either[] = {"simplices", "cells", "elements", NULL};
     const brio_npy_array *h = &a->header;
-    bool rows_of_indices = is_whole(a) && h->dimensions == 2 && h->shape[1] >= 3 && h->shape[1] <= MOST_COLUMNS;
+    bool rows_of_indices = is_whole(a) && h->dimensions == 2 && h->shape[1] >= 3 && h->shape[1] <= BRIO_MOST_NUMBERS;
     if (rows_of_indices && has_name(a, faces)) return BRIO_NPZ_FACES;
     if (rows_of_indices && h->shape[1] == 4 && (has_name(a, tetrahedra) || has_name(a, either)))
         return BRIO_NPZ_TETRAHEDRA;
     if (rows_of_indices && h->shape[1] == 3 && has_name(a, either)) return BRIO_NPZ_FACES;
-    bool fits = h->known && (h->dimensions == 1 || (h->dimensions == 2 && h->shape[1] <= MOST_COLUMNS));
+    bool fits = h->known && (h->dimensions == 1 || (h->dimensions == 2 && h->shape[1] <= BRIO_MOST_NUMBERS));
     bool coordinate = strlen(a->name) == 1 && strchr("xyzXYZ", a->name[0]);
     return fits && a->name[0] && !coordinate && h->shape[0] == n->rows ? BRIO_NPZ_PROPERTY : BRIO_NPZ_LEFT_OUT;
 }

@@ -4,6 +4,7 @@
  * Based on: PKWARE. .ZIP file format specification, version 6.3.10. 2022. */
 #include "io/npz/zip.h"
 #include "base/memory.h"
+#include "base/sort.h"
 #include "io/little_endian.h"
 #include "io/unpack.h"
 #include <inttypes.h>
@@ -117,6 +118,34 @@ static size_t read_entry(const uint8_t *p, size_t left, brio_zip_entry *e) {
     return ENTRY + name + extra + comment;
 }
 
+static int compare_places(uint32_t a, uint32_t b, const void *user) {
+    const brio_zip_entry *e = user;
+    return e[a].header < e[b].header ? -1 : e[a].header > e[b].header;
+}
+
+/* Refuses entries that share bytes: a small archive would be as many arrays as its table has lines. */
+static brio_status refuse_overlaps(const brio_zip *z) {
+    brio_status status = BRIO_OK;
+    const brio_stream *s = z->stream;
+    const brio_zip_entry *e = z->entries;
+    uint32_t *order = NULL;
+    BRIO_REQUIRE(s->ctx, z->num_entries < UINT32_MAX, BRIO_ERR_FORMAT, "%s: %zu entries of the archive", s->name,
+                 z->num_entries);
+    BRIO_TRY(BRIO_ALLOC(s->ctx, order, z->num_entries));
+    for (size_t i = 0; i < z->num_entries; i++) order[i] = (uint32_t)i;
+    brio_sort_indices(order, z->num_entries, compare_places, e);
+    for (size_t i = 1; i < z->num_entries; i++) {
+        const brio_zip_entry *a = &e[order[i - 1]], *b = &e[order[i]];
+        uint64_t room = b->header - a->header;
+        BRIO_REQUIRE(s->ctx, room >= OWN_HEADER && a->packed <= room - OWN_HEADER, BRIO_ERR_FORMAT,
+                     "%s: byte %" PRIu64 ": the entries %s and %s of the archive overlap", s->name, b->header, a->name,
+                     b->name);
+    }
+done:
+    brio_release(s->ctx, order);
+    return status;
+}
+
 brio_status brio_zip_open(brio_zip *z, brio_stream *s) {
     brio_status status = BRIO_OK;
     uint64_t bytes = 0, count = 0;
@@ -133,6 +162,7 @@ brio_status brio_zip_open(brio_zip *z, brio_stream *s) {
         at += length;
     }
     z->num_entries = (size_t)count;
+    BRIO_TRY(refuse_overlaps(z));
 done:
     brio_release(s->ctx, table);
     return status;

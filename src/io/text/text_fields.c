@@ -1,6 +1,7 @@
 /* Splits a line into fields, and finds out whether its commas are decimal. */
 #include "io/text/text_fields.h"
 #include "base/memory.h"
+#include "io/limits.h"
 #include "io/number.h"
 #include "io/textrow.h"
 #include <math.h>
@@ -38,8 +39,19 @@ static bool ends_word(const char *p) {
     return !*p || brio_is_blank(*p) || *p == ';' || brio_starts_comment(p);
 }
 
+/* Makes room for one more field of a row. */
+static brio_status room(brio_fields *f) {
+    brio_status status = BRIO_OK;
+    if (f->count < f->capacity) return BRIO_OK;
+    BRIO_TRY(brio_limit_numbers(f->stream->ctx, f->stream->name, f->stream->line, f->count + 1));
+    BRIO_TRY(BRIO_RESERVE(f->stream->ctx, f->at, f->capacity, f->count + 1));
+    if (f->capacity > BRIO_MOST_NUMBERS) f->capacity = BRIO_MOST_NUMBERS; /* so that the next one too many comes here */
+done:
+    return status;
+}
+
 static brio_status add_field(brio_fields *f, brio_field field) {
-    brio_status status = BRIO_RESERVE(f->stream->ctx, f->at, f->capacity, f->count + 1);
+    brio_status status = room(f);
     if (status == BRIO_OK) f->at[f->count++] = field;
     return status;
 }
@@ -102,6 +114,11 @@ static void record_gap(gaps *g, const brio_field *field, const char *end, const 
     }
 }
 
+static bool has_separator(const char *p, const char *end) {
+    while (p < end && *p != ',' && *p != ';') p++;
+    return p < end;
+}
+
 /* Joins words that neither a comma nor a semicolon separates, in a line that has some; to a word also a number, as in
  * "A 1", if there are semicolons. */
 static void join_words(brio_fields *f) {
@@ -112,7 +129,7 @@ static void join_words(brio_fields *f) {
         brio_field *here = &f->at[i], *last = kept ? &f->at[kept - 1] : NULL;
         const char *gap = last ? last->word + last->length : NULL;
         bool fits = here->kind == BRIO_FIELD_WORD || (numbers && here->kind == BRIO_FIELD_NUMBER);
-        bool joined = last && last->kind == BRIO_FIELD_WORD && fits && strcspn(gap, ",;") >= (size_t)(here->word - gap);
+        bool joined = last && last->kind == BRIO_FIELD_WORD && fits && !has_separator(gap, here->word);
         if (joined)
             last->length = (size_t)(here->word - last->word) + here->length;
         else
@@ -127,12 +144,14 @@ static bool is_unit(const brio_fields *f, const char *p) {
     return word && *p == '%' && (p[1] == ',' || p[1] == ';' || (!p[1] && strpbrk(f->at[0].word, ",;")));
 }
 
-static brio_status split(brio_fields *f, const char *p, size_t columns, gaps *g) {
+/* prose  whether words after BRIO_MOST_NUMBERS are left out, as in a long comment; otherwise they are an error. */
+static brio_status split(brio_fields *f, const char *p, size_t columns, bool prose, gaps *g) {
     brio_status status = BRIO_OK;
     bool comma = false;
     f->count = 0;
     for (p = skip_blanks(p); *p && (!brio_starts_comment(p) || is_unit(f, p));) {
-        if (f->count == f->capacity) BRIO_TRY(BRIO_RESERVE(f->stream->ctx, f->at, f->capacity, f->count + 1));
+        if (prose && f->count == BRIO_MOST_NUMBERS) break;
+        BRIO_TRY(room(f));
         brio_field *field = &f->at[f->count++];
         const char *end = scan_field(p, field);
         p = skip_blanks(end);
@@ -148,7 +167,7 @@ done:
 
 brio_status brio_fields_of_words(brio_fields *f, const char *line) {
     gaps g = {0};
-    return split(f, line, 0, &g);
+    return split(f, line, 0, true, &g);
 }
 
 bool brio_field_is_missing(const brio_field *f) {
@@ -278,7 +297,7 @@ brio_status brio_fields_of_line(brio_fields *f, const char *line, size_t columns
     brio_status status = BRIO_OK;
     gaps g = {0};
     if (f->comma == BRIO_COMMA_DECIMAL) return split_decimal(f, line, columns);
-    BRIO_TRY(split(f, line, columns, &g));
+    BRIO_TRY(split(f, line, columns, false, &g));
     if (g.tight && g.other) {
         brio_comma comma = judge(line);
         if (comma == BRIO_COMMA_UNKNOWN) return unclear(f, line);

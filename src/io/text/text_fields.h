@@ -36,13 +36,15 @@ typedef struct brio_fields {
     bool seen_numbers; /* whether a line with numbers has been read */
 } brio_fields;
 
-/** Splits a line of words: a comma separates, and nothing is decided. The fields point into the line.
+/** Splits a line of words: a comma separates, and nothing is decided. The fields point into the line. Words after
+ *  BRIO_MOST_NUMBERS are left out.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_fields_of_words(brio_fields *f, const char *line);
 
 /** Splits a line. A comma at its end is followed by an empty field if the line would have fewer than `columns` fields
  *  without it; otherwise it means nothing.
- *  Returns BRIO_OK, BRIO_ERR_FORMAT (with the line: what a comma is cannot be told), BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_FORMAT (with the line: what a comma is cannot be told; more fields than
+ *  BRIO_MOST_NUMBERS), BRIO_ERR_NO_MEMORY. */
 brio_status brio_fields_of_line(brio_fields *f, const char *line, size_t columns);
 
 /** Whether a field is a word that stands for a number that is not there, as programs of statistics write it: NA, N/A, null,

@@ -13,6 +13,7 @@
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "io/formats.h"
+#include "io/limits.h"
 #include "io/number.h"
 #include "io/text/text_columns.h"
 #include "io/text/text_fields.h"
@@ -53,9 +54,10 @@ typedef struct {
     bool counted;   /* whether the first line announced a number of rows */
     uint64_t promised;
     size_t count_line;
-    bool tabs;         /* whether every tab separates two fields */
-    bool tracks;       /* whether columns without names follow the named ones */
-    char shown[2][64]; /* the beginnings of the first lines, for messages */
+    bool tabs;               /* whether every tab separates two fields */
+    bool tracks;             /* whether columns without names follow the named ones */
+    uint64_t there, lacking; /* fields of all rows, and columns that rows lack */
+    char shown[2][64];       /* the beginnings of the first lines, for messages */
     int num_shown;
     bool may_be_numbered; /* whether x may number the rows: no names, a column that is no axis, whole numbers so far */
     double least;         /* x of these rows */
@@ -191,7 +193,7 @@ static brio_status add_property(xyz_reader *r, size_t i) {
     if (i < r->names.count) strcpy(name, r->names.at[i]);
     bool axis = strlen(name) == 1 && strchr("xyzXYZ", name[0]);
     snprintf(plain, sizeof plain, "column%zu", i + 1);
-    if (!name[0] || axis || brio_mesh_property(r->builder->mesh, name)) brio_builder_new_name(r->builder, plain, name);
+    if (!name[0] || axis || brio_builder_has(r->builder, name)) brio_builder_new_name(r->builder, plain, name);
     r->columns[i].role = COLUMN_PROPERTY;
     r->columns[i].target = r->builder->mesh->num_properties;
     return brio_builder_property(r->builder, name, BRIO_SCALAR_FLOAT64);
@@ -413,6 +415,9 @@ static brio_status read_row(xyz_reader *r) {
     count_numbered(r, point[0]);
     BRIO_TRY(brio_builder_vertex(r->builder, point));
     brio_mesh *mesh = r->builder->mesh;
+    r->there += r->fields.count;
+    if (r->fields.count < r->num_columns) r->lacking += r->num_columns - r->fields.count;
+    BRIO_TRY(brio_limit_lacking(r->stream->ctx, r->stream->name, r->stream->line, r->lacking, r->there));
     for (size_t i = 0; i < r->num_columns; i++) {
         const column *c = &r->columns[i];
         if (i < r->fields.count && c->role != COLUMN_IGNORED && fabs(r->fields.at[i].value) >= 0x1p53)

@@ -12,7 +12,7 @@
 #include <strings.h>
 
 /* CHUNK: bytes decoded at a time. All chosen. */
-enum { CHUNK = 1 << 16, MOST_COMPONENTS = 16, MOST_COLUMNS = 4096 };
+enum { CHUNK = 1 << 16, MOST_COMPONENTS = 16 };
 
 bool brio_vtk_is_kept(const brio_vtk_array *array) {
     return array->name[0] && array->components > 0 && array->components <= MOST_COMPONENTS;
@@ -30,8 +30,8 @@ static brio_vtk_column *find(const brio_vtk_point_data *data, const brio_vtk_arr
 static brio_status add_columns(brio_vtk_point_data *data, const brio_vtk_decoder *d) {
     brio_status status = BRIO_OK;
     const brio_vtk_array *a = d->array;
-    BRIO_REQUIRE(d->stream->ctx, data->num_columns + a->components <= MOST_COLUMNS, BRIO_ERR_FORMAT,
-                 "%s: more than %d numbers a point", d->stream->name, MOST_COLUMNS);
+    BRIO_REQUIRE(d->stream->ctx, data->num_columns + a->components <= BRIO_MOST_NUMBERS, BRIO_ERR_FORMAT,
+                 "%s: more than %d numbers a point", d->stream->name, BRIO_MOST_NUMBERS);
     BRIO_TRY(BRIO_RESERVE(d->stream->ctx, data->columns, data->capacity, data->num_columns + a->components));
     for (uint64_t k = 0; k < a->components; k++) {
         brio_vtk_column *c = &data->columns[data->num_columns++];
@@ -126,7 +126,7 @@ static bool is_colour(const brio_vtk_column *c) {
 }
 
 /* Chooses the name of a property: that of the column, or with _2, _3, ... behind it where that is taken. */
-static void choose_name(const brio_builder *b, const brio_vtk_column *c, char name[64]) {
+static void choose_name(brio_builder *b, const brio_vtk_column *c, char name[64]) {
     static const char *const normal[] = {"nx", "ny", "nz"}, *const colour[] = {"red", "green", "blue", "alpha"};
     if (c->components == 3 && !strcmp(c->source, "Normals"))
         brio_builder_new_name(b, normal[c->component], name);
