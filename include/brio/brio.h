@@ -1658,9 +1658,10 @@ static inline brio_outliers_options brio_outliers_options_default(void) {
 /** Finds outliers. The spacing of a point is its mean distance to its nearest points, `neighbours` of them. A point is an
  *  outlier if its spacing is more than `factor` times the lower quartile of the spacings of these points, or if it is far
  *  beyond the spacings of all points: in logarithms 8 robust standard deviations above their median, and more than factor^2
- *  times the median. So where points become sparse by and by none is an outlier. More than `neighbours` stray points that
- *  are close together are not found. Which positions are outliers does not depend on the order of the points or the
- *  number of threads.
+ *  times the median. Spacings that rounding alone tells apart count as equal, and so do those that only the rounding of the
+ *  coordinates to doubles tells apart. So where points become sparse by and by none is an outlier. More than `neighbours`
+ *  stray points that are close together are not found. Which positions are outliers does not depend on the order of the
+ *  points or the number of threads.
  *  points   #P by 3, finite.   neighbours  1 to 63; 8 to 16 are usual.
  *  outlier  #P: receives 1 for outliers, 0 for others.
  *  Cost: O(n log n). Memory: 45 bytes a point.
