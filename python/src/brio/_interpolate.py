@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, as_floats, as_values
+from ._arrays import Floats, as_floats, as_threads, as_values
 from ._delaunay import Delaunay
 from .errors import ArgumentError
 
@@ -41,7 +41,7 @@ class _Interpolator:
 
     def __init__(self, points: Any, values: Any, fill_value: complex = np.nan, rescale: bool = False, *,
                  threads: int = 0) -> None:
-        self.threads = threads
+        self.threads = as_threads(threads)
         self.offset: Floats | None = None
         self.scale: Floats | None = None
         if isinstance(points, Delaunay):
