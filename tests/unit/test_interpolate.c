@@ -1,5 +1,6 @@
 /* Interpolation: what Sibson's coordinates must satisfy, and their volumes against counted random points. */
 #include "harness.h"
+#include "base/vector.h"
 #include "points.h"
 
 enum { N = 500, Q = 2000 };
@@ -79,6 +80,37 @@ static void linear_functions_are_reproduced(void) {
     integer_points(5, N, 7, p);
     for (size_t i = 0; i < 3 * Q; i++) x[i] = floor(12 * fabs(x[i])) / 2;
     expect_linear_functions("grid, ties", p, N, x, Q);
+}
+
+/* In a tetrahedron that is flat up to rounding the volumes of its parts mean nothing: values were NaN, or of anywhere. */
+static void linear_functions_in_slivers(void) {
+    enum { SIDE = 4, SLIVERS = 3000 };
+    double p[3 * SIDE * SIDE * SIDE], values[SIDE * SIDE * SIDE], x[3 * SLIVERS], found[SLIVERS];
+    const double c = cos(0.1), s = sin(0.1), angles[3][3] = {{c * c, s, -c * s}, {-s * c, c, s * s}, {s, 0, c}};
+    size_t inside = 0, n = 0;
+    brio_rng rng = brio_rng_new(9);
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++, n++) {
+        const double grid[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+        for (int k = 0; k < 3; k++) p[3 * i + k] = brio_dot(grid, angles[k]);
+        values[i] = p[3 * i] + 2 * p[3 * i + 1] + 3 * p[3 * i + 2];
+    }
+    for (int q = 0; q < SLIVERS; q++) { /* on the sides of the turned box */
+        double place[3] = {3 * brio_rng_double(&rng), 3 * brio_rng_double(&rng), 3 * brio_rng_double(&rng)};
+        place[q % 3] = q / 3 % 2 ? 3 : 0;
+        for (int k = 0; k < 3; k++) x[3 * q + k] = brio_dot(place, angles[k]);
+    }
+    fixture f = fixture_new(p, NULL, n);
+    for (int method = 0; method < 2; method++) {
+        EXPECT(interpolate(&f, method, values, 1, x, SLIVERS, found) == BRIO_OK);
+        for (int q = 0; q < SLIVERS; q++) {
+            if (isnan(found[q])) continue; /* outside by rounding */
+            inside++;
+            double wanted = x[3 * q] + 2 * x[3 * q + 1] + 3 * x[3 * q + 2];
+            EXPECT(fabs(found[q] - wanted) < 1e-12, "method %d, place %d: %g, %g", method, q, found[q], wanted);
+        }
+    }
+    EXPECT(inside > SLIVERS / 2, "%zu", inside);
+    fixture_free(&f);
 }
 
 static void queries_near_vertices(void) {
@@ -203,6 +235,7 @@ static void refusals(void) {
 
 SUITE(test_interpolate) {
     RUN(linear_functions_are_reproduced);
+    RUN(linear_functions_in_slivers);
     RUN(queries_near_vertices);
     RUN(values_at_vertices_are_exact);
     RUN(coordinates_are_shares_of_the_cell);

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._arrays import Floats, as_floats, as_threads, as_values
-from ._delaunay import Delaunay
+from ._delaunay import Delaunay, as_tolerance
+from ._tolerance import coordinates as barycentric
+from ._tolerance import find_within
 from .errors import ArgumentError
 
 _NATURAL, _LINEAR = 0, 1
@@ -40,8 +42,9 @@ class _Interpolator:
     _method = _LINEAR
 
     def __init__(self, points: Any, values: Any, fill_value: complex = np.nan, rescale: bool = False, *,
-                 threads: int = 0) -> None:
+                 tol: float | None = None, threads: int = 0) -> None:
         self.threads = as_threads(threads)
+        self.tol = as_tolerance(tol)
         self.offset: Floats | None = None
         self.scale: Floats | None = None
         if isinstance(points, Delaunay):
@@ -87,19 +90,30 @@ class _Interpolator:
         rows = np.ascontiguousarray(xi.reshape(-1, self.tri.ndim))
         if self.offset is not None and self.scale is not None:
             rows = (rows - self.offset) / self.scale
-        finite: NDArray[np.bool_] = np.asarray(np.isfinite(rows).all(axis=1))
+        finite = np.flatnonzero(np.isfinite(rows).all(axis=1))
         out = np.full((len(rows), self.values.shape[1]), np.nan)
-        inside = finite.copy()
-        if finite.all():
-            self._interpolate(rows, out)
-        else:
-            some = np.empty((int(finite.sum()), out.shape[1]))
-            self._interpolate(rows[finite], some)
-            out[finite] = some
-        if not np.isnan(self.fill_value):
-            inside[finite] = self.tri.find_simplex(rows[finite]) >= 0
-            out[~inside] = np.nan
+        inside = np.zeros(len(rows), np.bool_)
+        found = np.empty((len(finite), out.shape[1]))
+        near = rows if len(finite) == len(rows) else rows[finite]
+        self._interpolate(near, found)
+        inside[finite] = self._fill_beside(near, found)
+        out[finite] = found
         return self._shaped(out, inside).reshape(xi.shape[:-1] + self.values_shape)
+
+    def _fill_beside(self, rows: Floats, out: Floats) -> NDArray[np.bool_]:
+        """Interpolates at positions that are outside of the hull within the tolerance; returns which positions are inside."""
+        inside = np.ones(len(rows), np.bool_)
+        maybe = np.flatnonzero(np.isnan(out).any(axis=1)) if out.shape[1] else np.arange(len(rows))
+        outside = maybe[self.tri._find(rows[maybe], 0) < 0]
+        inside[outside] = False
+        if self.tol and len(outside):
+            simplex = find_within(self.tri, rows[outside], self.tol)
+            near, simplex = outside[simplex >= 0], simplex[simplex >= 0]
+            if len(near):
+                shares = barycentric(self.tri, simplex, rows[near])
+                out[near] = np.einsum("qk,qkc->qc", shares, self.values[self.tri.representatives[self.tri.simplices[simplex]]])
+                inside[near] = True
+        return inside
 
     def _interpolate(self, rows: Floats, out: Floats) -> None:
         if not self.values.shape[1]:  # the library takes no values of 0 numbers
@@ -133,6 +147,8 @@ class LinearNDInterpolator(_Interpolator):
         For positions outside of the hull.
     rescale : bool
         Scales the points to a unit box first.
+    tol : float, optional
+        As for Delaunay.find_simplex: positions that are outside of the hull by rounding are inside. With 0 the hull is exact.
     threads : int
 
     Examples
@@ -151,7 +167,7 @@ class NaturalNeighbourInterpolator(_Interpolator):
 
     Parameters
     ----------
-    points, values, fill_value, rescale, threads
+    points, values, fill_value, rescale, tol, threads
         As for LinearNDInterpolator; a Delaunay must have no weights.
 
     Examples
@@ -165,7 +181,7 @@ class NaturalNeighbourInterpolator(_Interpolator):
     _method = _NATURAL
 
     def __init__(self, points: Any, values: Any, fill_value: complex = np.nan, rescale: bool = False, *,
-                 threads: int = 0) -> None:
+                 tol: float | None = None, threads: int = 0) -> None:
         if isinstance(points, Delaunay) and points.weights is not None:
             raise ArgumentError("natural neighbours are those of points without weights")
-        super().__init__(points, values, fill_value, rescale, threads=threads)
+        super().__init__(points, values, fill_value, rescale, tol=tol, threads=threads)
