@@ -599,7 +599,7 @@ BRIO_API brio_status brio_delaunay2_flat(brio_context *ctx, const double *points
 /** A plane of space with two coordinates: those of p are the products of p - origin with the axes. */
 typedef struct brio_plane_frame {
     size_t size;
-    int dimension;     /* of the points it was made of: -1 (none), 0, 1 (axis[1] is 0), 2, or 3 for points off the plane */
+    int dimension; /* of the points it was made of: -1 (none), 0, 1 (axis[1] is 0), 2, or 3 for points off the plane */
     double origin[3];  /* 0 where two coordinates of space are taken as they are */
     double axis[2][3]; /* unit vectors, orthogonal */
     double thickness;  /* the greatest distance of a point from the plane, or from the line */
@@ -613,7 +613,8 @@ typedef struct brio_plane_frame {
  *  Cost: O(n), for points off a plane O(n log n). Memory: 24 bytes a point, for points off a plane 44.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the size was not set), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY.
  *  Based on: [Pearson 1901]. */
-BRIO_API brio_status brio_plane_fit(brio_context *ctx, const double *points, size_t num_points, brio_plane_frame *frame);
+BRIO_API brio_status brio_plane_fit(brio_context *ctx, const double *points, size_t num_points,
+                                    brio_plane_frame *frame);
 
 /** Writes the coordinates of points in the plane, or of their projections to it.   points  #P by 3.   out  #P by 2. */
 BRIO_API void brio_plane_project(const brio_plane_frame *frame, const double *points, size_t num_points, double *out);
@@ -1789,6 +1790,8 @@ typedef struct brio_read_options {
                               has been read; docs/formats.md lists the names. Default NULL */
     void *left_out_user;
     brio_read_notes *notes; /* default NULL, or receives what was found */
+    int flat; /* texts of points, 1: data over a map. Names of columns that have x and y and no height mean that z is 0, and so
+                 do rows of two numbers without names; default 0: z has to be there */
 } brio_read_options;
 
 BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);

@@ -181,6 +181,7 @@ done:
 }
 
 void brio_plane_project(const brio_plane_frame *frame, const double *points, size_t num_points, double *out) {
+    BRIO_DOOR;
     double offset[3];
     for (size_t i = 0; i < num_points; i++) {
         subtract(points + 3 * i, frame->origin, offset);

@@ -18,6 +18,7 @@ from .errors import *  # noqa: F403
 __all__ = [
     "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Delaunay", "Distance",
     "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "SphericalVoronoi", "Surface",
-    "Voronoi", "__version__", "alpha_complex", "build_info", "convert", "errors", "griddata", "medial_axis", "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "thin", "write",
+    "Voronoi", "__version__", "alpha_complex", "build_info", "convert", "errors", "griddata", "medial_axis",
+    "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "thin", "write",
     *errors.__all__,
 ]

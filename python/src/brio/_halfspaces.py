@@ -78,7 +78,8 @@ class HalfspaceIntersection:
         rows = as_rows(halfspaces, "halfspaces", (3, 4))
         inside = as_floats(interior_point, "interior_point")
         if inside.shape != (rows.shape[1] - 1,):
-            raise ArgumentError(f"interior_point: an array of shape ({rows.shape[1] - 1},) is wanted, not of shape {inside.shape}")
+            raise ArgumentError(f"interior_point: an array of shape ({rows.shape[1] - 1},) is wanted, "
+                                f"not of shape {inside.shape}")
         self._build(rows.copy(), inside.copy())
 
     def _build(self, halfspaces: Floats, inside: Floats) -> None:
