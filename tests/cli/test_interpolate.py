@@ -47,7 +47,7 @@ class Interpolate(CliTest):
     def test_planes_by_name(self):
         tilted = "x,y,z,t\n0,0,5,10\n1,0,6,20\n0,1,9,30\n1,1,7,40\n"
         self.assertEqual(self.map_values(tilted, "x,y,z\n0.5,0.5,0\n", "--plane", "xy"), [25])
-        for plane, order in (("xy", (0, 1, 2)), ("xz", (0, 2, 1)), ("zx", (0, 2, 1)), ("yz", (2, 0, 1))):
+        for plane, order in (("xy", (0, 1, 2)), ("xz", (0, 2, 1)), ("zx", (0, 2, 1)), ("yz", (1, 2, 0))):
             def row(u, v, w, *more):
                 return ",".join(str((u, v, w)[order.index(k)]) for k in range(3)) + "".join(",%g" % m for m in more)
             stations = "x,y,z,t\n" + "".join(row(u, v, u * v + 3, 10 + 10 * u + 20 * v) + "\n" for u in (0, 1) for v in (0, 1))
