@@ -1,6 +1,7 @@
 /* What `brio locate` and `brio interpolate` share: see located.h. */
 #include "located.h"
 #include "estimate.h"
+#include "sentences.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +14,7 @@ brio_status cli_read_located(run *r, const char *at, const weights_options *weig
     if (!at) FAIL(r, BRIO_ERR_ARGUMENT, "no places: --at FILE is missing");
     if (!strcmp(at, "-") && !strcmp(r->operands[0], "-"))
         FAIL(r, BRIO_ERR_ARGUMENT, "points and places both want standard input");
-    r->flat = plane != LOCATED_SPACE;
+    r->over_map = plane != LOCATED_SPACE;
     TRY(cli_read_points(r, r->operands[0], &l->points));
     TRY(cli_read_points(r, at, &l->at));
     if (weights) TRY(cli_weights(r, weights, l->points, &l->weights));
@@ -76,8 +77,8 @@ brio_status cli_make_locator(run *r, int plane, bool own_plane, located *l) {
     TRY(brio_delaunay(r->ctx, l->points->vertices, l->weights, count, &o, &t));
     cli_lap(r, "delaunay");
     int dimension = brio_triangulation_stats(t)->dimension;
-    if (dimension == 2) cli_warn(r, "the points are in a plane: places are projected to it");
-    if (dimension == 1) cli_warn(r, "the points are on a line: places are projected to it");
+    if (dimension == 2) cli_warn(r, WARNING_IN_PLANE);
+    if (dimension == 1) cli_warn(r, WARNING_ON_LINE);
     if (dimension == 2 && own_plane) {
         brio_triangulation_free(t);
         return make_in_plane(r, LOCATED_FIT, l);

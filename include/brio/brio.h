@@ -371,7 +371,8 @@ typedef struct brio_locator brio_locator;
  *  out  owned by the caller, freed with brio_locator_free; NULL on error. Several threads, each with a context of its
  *       own, may query one locator.
  *  Memory: 32 bytes a tetrahedron, 41 a vertex, 8 more a vertex with weights: about 260 bytes a vertex for evenly spread
- *  points. Before the tetrahedra are copied, 60 bytes a vertex and 32 a point.
+ *  points. Before the tetrahedra are copied, 60 bytes a vertex and 32 a point. Of points in a plane or on a line, up to the
+ *  rounding of their coordinates, also a brio_locator2; meanwhile 130 bytes a point more.
  *  Cost: O(n log n).
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation), BRIO_ERR_NOT_FINITE,
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
