@@ -72,7 +72,7 @@ const glossary_line cli_glossary[] = {
      STYLE_PLAIN},
     {TRIANGULATIONS " hull", NULL, "dimension", NULL,
      "3; of points in one plane 2, on one line 1, at one position 0, of no points -1", LINE_PLAIN, STYLE_PLAIN},
-    {"delaunay", NULL, "triangles", NULL, "triangles (--plane)", LINE_PLAIN, STYLE_PLAIN},
+    {"delaunay locate interpolate", NULL, "triangles", NULL, "triangles (--plane)", LINE_PLAIN, STYLE_PLAIN},
     {"delaunay", NULL, "hull_edges", NULL, "edges of the convex hull (--plane)", LINE_PLAIN, STYLE_PLAIN},
     {"medial", NULL, "edges", NULL, "edges between balls", LINE_PLAIN, STYLE_PLAIN},
     {"medial", NULL, "triangles", NULL, "triangles of three balls", LINE_PLAIN, STYLE_PLAIN},

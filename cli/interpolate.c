@@ -9,7 +9,7 @@
 
 typedef struct arguments {
     const char *at, *property;
-    int method;
+    int method, plane;
 } arguments;
 
 static const option_choice methods[] = {
@@ -21,10 +21,11 @@ static const option options[] = {
      0},
     {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME",
      "by natural neighbours (default natural), or linear in each tetrahedron", methods},
+    LOCATED_PLANE_ROW(arguments, plane),
     {0},
 };
 
-static const arguments defaults = {0};
+static const arguments defaults = {.plane = LOCATED_SPACE};
 
 static bool wants_table(const run *r) {
     return cli_is_table(r, "csv") || cli_is_table(r, "npy");
@@ -38,12 +39,13 @@ static brio_status check_arguments(run *r, const arguments *a) {
 static brio_status values_of(run *r, const brio_mesh *points, const char *name, double **values) {
     const brio_property *property = brio_mesh_property(points, name);
     if (!property) return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have no property '%s'", r->operands[0], name);
-    *values = malloc((points->num_vertices + 1) * sizeof **values);
+    *values = malloc((2 * points->num_vertices + 1) * sizeof **values);
     if (!*values) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu values", points->num_vertices);
     size_t none = 0;
     for (size_t i = 0; i < points->num_vertices; i++) {
-        (*values)[i] = brio_property_value(property, i);
-        none += !isfinite((*values)[i]);
+        (*values)[2 * i] = brio_property_value(property, i);
+        (*values)[2 * i + 1] = 1; /* NaN in the results outside of the hull alone */
+        none += !isfinite((*values)[2 * i]);
     }
     if (none) cli_warn(r, WARNING_NOT_FINITE, none, name);
     return BRIO_OK;
@@ -69,19 +71,25 @@ static brio_status answer(run *r, const located *l, const arguments *a, const do
     brio_interpolation o = brio_interpolation_default();
     double *results = NULL;
     size_t inside = 0, count = l->at->num_vertices;
-    uint32_t *tetrahedra = malloc((count + 1) * sizeof *tetrahedra);
-    if (!tetrahedra) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu places", count);
+    double *found = malloc((2 * count + 1) * sizeof *found);
+    if (!found) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu places", count);
     o.method = (brio_interpolation_method)a->method;
     o.values = values;
+    o.components = 2;
     TRY(add_results(r, l->at, a, &results));
-    TRY(brio_locator_interpolate(r->ctx, l->locator, l->at->vertices, count, &o, results));
-    TRY(brio_locator_tetrahedra(r->ctx, l->locator, l->at->vertices, count, tetrahedra));
+    if (l->plane)
+        TRY(brio_locator2_interpolate(r->ctx, l->plane, l->places, count, &o, found));
+    else
+        TRY(brio_locator_interpolate(r->ctx, l->locator, l->at->vertices, count, &o, found));
     cli_lap(r, "interpolate");
-    for (size_t i = 0; i < count; i++) inside += tetrahedra[i] != BRIO_INFINITE;
+    for (size_t i = 0; i < count; i++) {
+        results[i] = found[2 * i];
+        inside += !isnan(found[2 * i + 1]);
+    }
     cli_report_inside(r, inside, count);
     TRY(write_results(r, l, a, results));
 done:
-    free(tetrahedra);
+    free(found);
     return status;
 }
 
@@ -91,9 +99,9 @@ static brio_status interpolate(run *r) {
     double *values = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a));
-    TRY(cli_read_located(r, a->at, NULL, &l));
+    TRY(cli_read_located(r, a->at, NULL, a->plane, &l));
     TRY(values_of(r, l.points, a->property, &values));
-    TRY(cli_make_locator(r, &l));
+    TRY(cli_make_locator(r, a->plane, false, &l));
     if (l.duplicates) cli_warn(r, WARNING_COINCIDENT, l.duplicates);
     TRY(answer(r, &l, a, values));
 done:
@@ -107,7 +115,9 @@ const command cli_interpolate = {
     .operands = "IN",
     .summary = "values of a property of points, at other places",
     .examples =
-        "brio interpolate stations.csv --at places.xyz --property temperature -o values.csv\nby natural neighbours\n",
+        "brio interpolate stations.csv --at places.xyz --property temperature -o values.csv\nby natural neighbours\n"
+        "brio interpolate stations.csv --at places.csv --plane xy --property depth -o values.csv\nover a map: columns "
+        "x, y, depth\n",
     .outputs = CLI_POINT_OUTPUTS,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,

@@ -234,6 +234,7 @@ brio_read_options cli_read_options(run *r) {
     brio_read_options options = brio_read_options_default();
     if (c->input_format) options.format = brio_format_of(c->input_format);
     options.columns = c->columns;
+    options.flat = r->over_map;
     options.drop_invalid = c->drop_invalid;
     options.dropped = &r->dropped;
     options.salvage = c->salvage;

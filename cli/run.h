@@ -53,6 +53,7 @@ typedef struct run {
     int num_operands;
     brio_context *ctx;
     facts facts;
+    bool over_map;             /* texts of points may have no z, which then is 0 */
     bool has_properties;       /* an input's points have */
     uint64_t dropped, missing; /* of the file that was read last, as in brio_read_options */
     brio_read_notes noted;     /* the same */

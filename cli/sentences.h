@@ -63,6 +63,8 @@
 #define WARNING_IDLE_FLOAT32 "%s: --float32 changes nothing in this format"
 #define WARNING_NOT_FINITE   "%zu values of '%s' are not finite: neither are the results beside them"
 #define WARNING_COINCIDENT   "%zu points are at the positions of others: the value of the first one there counts"
+#define WARNING_IN_PLANE     "the points are in a plane: places are projected to it"
+#define WARNING_ON_LINE      "the points are on a line: places are projected to it"
 #define WARNING_BEYOND       "%zu of %zu squared radii in the filtration are beyond doubles: scale the points"
 #define WARNING_SET_ASIDE    "the property %s of the points is now %s"
 #define WARNING_SELF         "the surface intersects itself: %lld pairs of faces"

@@ -371,7 +371,8 @@ typedef struct brio_locator brio_locator;
  *  out  owned by the caller, freed with brio_locator_free; NULL on error. Several threads, each with a context of its
  *       own, may query one locator.
  *  Memory: 32 bytes a tetrahedron, 41 a vertex, 8 more a vertex with weights: about 260 bytes a vertex for evenly spread
- *  points. Before the tetrahedra are copied, 60 bytes a vertex and 32 a point.
+ *  points. Before the tetrahedra are copied, 60 bytes a vertex and 32 a point. Of points in a plane or on a line, up to the
+ *  rounding of their coordinates, also a brio_locator2; meanwhile 130 bytes a point more.
  *  Cost: O(n log n).
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation), BRIO_ERR_NOT_FINITE,
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
@@ -436,10 +437,14 @@ static inline brio_interpolation brio_interpolation_default(void) {
  *  linear functions up to rounding. NATURAL weighs the natural neighbours of the query x by the volumes that the Voronoi
  *  cell of x would take from their cells. On the hull's boundary, and where rounding drowns these volumes very near it,
  *  NATURAL takes the values of LINEAR. LINEAR takes the tetrahedron that brio_locator_tetrahedra names.
+ *  Points in a plane or on a line, up to the rounding of their coordinates (brio_plane_fit), are interpolated there, as by
+ *  brio_locator2_interpolate: queries are projected to it.
  *  options  NULL has no values, which is an error unless there are no points.
- *  results  #Q by components: NaN for queries outside the hull, and for every query if the points have dimension 2 or less.
- *  Cost: LINEAR as brio_locator_tetrahedra; NATURAL some microseconds a query, as the insertion of a point.
- *  Returns also BRIO_ERR_ARGUMENT (options out of range, no values, NATURAL of a triangulation with weights).
+ *  results  #Q by components: NaN for queries outside the hull, and for every query if there are no points.
+ *  Cost: LINEAR as brio_locator_tetrahedra; NATURAL some microseconds a query, as the insertion of a point. In a plane, 16
+ *  bytes a query.
+ *  Returns also BRIO_ERR_ARGUMENT (options out of range, no values, NATURAL of a triangulation with weights), and
+ *  BRIO_ERR_NO_ANSWER if all points are at one position.
  *  Based on: [Sibson 1980], [Sibson 1981], [Ledoux Gold 2005]. */
 BRIO_API brio_status brio_locator_interpolate(brio_context *ctx, const brio_locator *locator, const double *queries,
                                               size_t num_queries, const brio_interpolation *options, double *results);
@@ -592,6 +597,29 @@ BRIO_API brio_status brio_delaunay2_flat(brio_context *ctx, const double *points
                                          size_t num_points, const brio_delaunay2_options *options,
                                          brio_triangulation2 **out);
 
+/** A plane of space with two coordinates: those of p are the products of p - origin with the axes. */
+typedef struct brio_plane_frame {
+    size_t size;
+    int dimension; /* of the points it was made of: -1 (none), 0, 1 (axis[1] is 0), 2, or 3 for points off the plane */
+    double origin[3];  /* 0 where two coordinates of space are taken as they are */
+    double axis[2][3]; /* unit vectors, orthogonal */
+    double thickness;  /* the greatest distance of a point from the plane, or from the line */
+} brio_plane_frame;
+
+/** Finds the plane of points in space: the one that they are in, up to 2^-49 of the greatest coordinate, or that of least
+ *  squares of their distances. Points on a line and at one position, up to the same rounding, are of dimension 1 and 0. Does
+ *  not depend on the order of the points. In a plane of constant z the coordinates are x and y, of constant x or y the two
+ *  after it, cyclically, exactly.
+ *  points  #P by 3.   frame  its size is set.
+ *  Cost: O(n), for points off a plane O(n log n). Memory: 24 bytes a point, for points off a plane 44.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the size was not set), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY.
+ *  Based on: [Pearson 1901]. */
+BRIO_API brio_status brio_plane_fit(brio_context *ctx, const double *points, size_t num_points,
+                                    brio_plane_frame *frame);
+
+/** Writes the coordinates of points in the plane, or of their projections to it.   points  #P by 3.   out  #P by 2. */
+BRIO_API void brio_plane_project(const brio_plane_frame *frame, const double *points, size_t num_points, double *out);
+
 /** Frees a triangulation of the plane; NULL is accepted. */
 BRIO_API void brio_triangulation2_free(brio_triangulation2 *t);
 
@@ -667,8 +695,11 @@ BRIO_API brio_status brio_locator2_least_power(brio_context *ctx, const brio_loc
 
 /** Interpolates values at the vertices, at each query, as brio_locator_interpolate does: NATURAL weighs the natural
  *  neighbours of the query x by the areas that the Voronoi cell of x would take from their cells.
- *  results  #Q by components: NaN for queries outside the hull, and for every query if the points have dimension 1 or less.
- *  Returns also BRIO_ERR_ARGUMENT (options out of range, no values, NATURAL of a triangulation with weights).
+ *  Points on a line, up to the rounding of their coordinates, are interpolated linearly along the line: queries are projected
+ *  to it.
+ *  results  #Q by components: NaN for queries outside the hull, and for every query if there are no points.
+ *  Returns also BRIO_ERR_ARGUMENT (options out of range, no values, NATURAL of a triangulation with weights), and
+ *  BRIO_ERR_NO_ANSWER if all points are at one position.
  *  Based on: [Sibson 1980], [Sibson 1981]. */
 BRIO_API brio_status brio_locator2_interpolate(brio_context *ctx, const brio_locator2 *locator, const double *queries,
                                                size_t num_queries, const brio_interpolation *options, double *results);
@@ -1659,9 +1690,10 @@ static inline brio_outliers_options brio_outliers_options_default(void) {
 /** Finds outliers. The spacing of a point is its mean distance to its nearest points, `neighbours` of them. A point is an
  *  outlier if its spacing is more than `factor` times the lower quartile of the spacings of these points, or if it is far
  *  beyond the spacings of all points: in logarithms 8 robust standard deviations above their median, and more than factor^2
- *  times the median. So where points become sparse by and by none is an outlier. More than `neighbours` stray points that
- *  are close together are not found. Which positions are outliers does not depend on the order of the points or the
- *  number of threads.
+ *  times the median. Spacings that rounding alone tells apart count as equal, and so do those that only the rounding of the
+ *  coordinates to doubles tells apart. So where points become sparse by and by none is an outlier. More than `neighbours`
+ *  stray points that are close together are not found. Which positions are outliers does not depend on the order of the
+ *  points or the number of threads.
  *  points   #P by 3, finite.   neighbours  1 to 63; 8 to 16 are usual.
  *  outlier  #P: receives 1 for outliers, 0 for others.
  *  Cost: O(n log n). Memory: 45 bytes a point.
@@ -1762,6 +1794,8 @@ typedef struct brio_read_options {
                               has been read; docs/formats.md lists the names. Default NULL */
     void *left_out_user;
     brio_read_notes *notes; /* default NULL, or receives what was found */
+    int flat; /* texts of points, 1: data over a map. Names of columns that have x and y and no height mean that z is 0, and so
+                 do rows of two numbers without names; default 0: z has to be there */
 } brio_read_options;
 
 BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);

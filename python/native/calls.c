@@ -7,6 +7,7 @@
  * The library calls back often. Every LOOK seconds the module takes the interpreter's lock, looks for signals, and calls
  * the user's function. */
 #include "native.h"
+#include <string.h>
 #include <time.h>
 
 static const double LOOK = 0.02;
@@ -105,6 +106,8 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
         PyErr_SetString(PyExc_TypeError, "progress must be a function of the stage and of the share that is done");
         return -1;
     }
+    if (threads < 0)
+        return raise_argument(state, PyUnicode_FromFormat("threads: 0 or more are wanted, not %d", threads));
     *c = (call){.state = state, .progress = progress, .looked = seconds()};
     if (!(c->context = context_take(state))) return -1;
     c->ctx = c->context->ctx;
@@ -113,23 +116,29 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
     return 0;
 }
 
-static void raise(module_state *state, brio_status status, const char *sentence) {
-    PyObject *error = PyObject_CallFunction(state->make_error, "is", (int)status, sentence);
+/* Sets the exception of a status and a sentence, whose reference it takes; NULL leaves the exception that is set. */
+static void raise(module_state *state, brio_status status, PyObject *sentence) {
+    PyObject *error = sentence ? PyObject_CallFunction(state->make_error, "iO", (int)status, sentence) : NULL;
+    Py_XDECREF(sentence);
     if (!error) return;
     PyErr_SetObject((PyObject *)Py_TYPE(error), error);
     Py_DECREF(error);
 }
 
+/* The sentence of a failed call. It may have the bytes of a path, which need not be UTF-8: these are shown as \\xff. */
+static PyObject *sentence_of(const call *c) {
+    const char *text = brio_message(c->ctx);
+    return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "backslashreplace");
+}
+
 int raise_argument(module_state *state, PyObject *sentence) {
-    const char *text = sentence ? PyUnicode_AsUTF8AndSize(sentence, NULL) : NULL;
-    if (text) raise(state, BRIO_ERR_ARGUMENT, text);
-    Py_XDECREF(sentence);
+    raise(state, BRIO_ERR_ARGUMENT, sentence);
     return -1;
 }
 
 int call_end(call *c, brio_status status) {
     int failed = status != BRIO_OK || PyErr_Occurred();
-    if (failed && !PyErr_Occurred()) raise(c->state, status, brio_message(c->ctx));
+    if (failed && !PyErr_Occurred()) raise(c->state, status, sentence_of(c));
     brio_context_set_progress(c->ctx, NULL, NULL);
     context_give(c->state, c->context);
     return failed ? -1 : 0;
@@ -198,8 +207,8 @@ int handle_has_points(module_state *state, PyObject *object, const input *points
     uint64_t own =
         h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t) : brio_triangulation_points_hash(t);
     if (own == brio_points_hash(points->data, weights->data, points->rows, (int)points->columns)) return 0;
-    raise(state, BRIO_ERR_ARGUMENT, "the points are not those of the triangulation: they were changed since");
-    return -1;
+    return raise_argument(state, PyUnicode_FromString("the points are not those of the triangulation: they were changed "
+                                                      "since"));
 }
 
 static PyType_Slot handle_slots[] = {

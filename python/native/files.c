@@ -2,16 +2,27 @@
 #include "mesh.h"
 #include <string.h>
 
-/* read(path, columns or None, threads, progress): a mesh. The path is bytes. */
+/* Sets the format of a name or an extension, unless it is NULL. Returns 0, or -1 with an exception set. */
+static int read_format(module_state *state, const char *name, brio_format *format) {
+    if (!name) return 0;
+    *format = brio_format_of(name);
+    if (*format != BRIO_FORMAT_AUTO) return 0;
+    return raise_argument(state, PyUnicode_FromFormat("format: the extension of a format is wanted, such as \"ply\" or "
+                                                      "\"xyz\", not \"%s\"",
+                                                      name));
+}
+
+/* read(path, format or None, columns or None, threads, progress): a mesh. The path is bytes. */
 static PyObject *read_mesh(PyObject *module, PyObject *args) {
     PyObject *progress;
     brio_read_options o = brio_read_options_default();
-    const char *path;
+    const char *path, *format;
     int threads;
     call c;
     brio_status status;
     brio_mesh *made = NULL;
-    if (!PyArg_ParseTuple(args, "yziO", &path, &o.columns, &threads, &progress)) return NULL;
+    if (!PyArg_ParseTuple(args, "yzziO", &path, &format, &o.columns, &threads, &progress)) return NULL;
+    if (read_format(state_of(module), format, &o.format)) return NULL;
     if (call_begin(&c, state_of(module), threads, progress)) return NULL;
     CALL(c, status, brio_read_as(c.ctx, path, &o, &made));
     return call_end_with_mesh(&c, status, made);
@@ -117,7 +128,7 @@ static PyObject *convert(PyObject *module, PyObject *args) {
 }
 
 PyMethodDef files_methods[] = {
-    {"read", read_mesh, METH_VARARGS, "read(path, columns, threads, progress): a mesh."},
+    {"read", read_mesh, METH_VARARGS, "read(path, format, columns, threads, progress): a mesh."},
     {"write", write_mesh, METH_VARARGS, "write(path, mesh, (ascii, float32, compress, comment), threads, progress)"},
     {"convert", convert, METH_VARARGS,
      "convert(from, to, columns, write options, box, (neighbours, factor, thin, merge, distance), threads, progress)"},

@@ -149,6 +149,71 @@ def test_find_simplex_with_a_tolerance():
     assert tri.find_simplex([0.5, -1e-9]) == -1
     assert tri.find_simplex([0.5, -1e-9], tol=1e-8) == 0
     assert tri.find_simplex([0.5, -1e-3], tol=1e-8) == -1
+    assert tri.find_simplex([0.5, -1e-14]) == 0 and tri.find_simplex([0.5, -1e-14], tol=0) == -1
+    for wrong in (-1e-9, np.nan, np.inf, "a", [1, 2]):
+        with pytest.raises(brio.ArgumentError, match="tol"):
+            tri.find_simplex([0.5, 0.5], tol=wrong)
+
+
+def turned_grid(n, d, generator):
+    """A turned grid, and places on the border of its hull, off by rounding."""
+    points = grid(n, d).astype(float)
+    turn, _ = np.linalg.qr(generator.normal(size=(d, d)))
+    sides = generator.random((100, d)) * (n - 1)
+    sides[np.arange(100), generator.integers(0, d, 100)] = generator.integers(0, 2, 100) * (n - 1)
+    move = generator.normal(size=d)
+    return points @ turn + move, sides @ turn + move
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("exponent", [0, -900, 800])
+def test_tolerance_at_hulls_of_slivers(d, exponent):
+    """No tolerance reached the simplices behind the slivers of such hulls."""
+    generator, outside = np.random.default_rng(7), 0
+    for n in (2, 3, 4, 5):
+        points, sides = (np.ldexp(x, exponent) for x in turned_grid(n, d, generator))
+        tri = brio.Delaunay(points)
+        outside += (tri.find_simplex(sides, tol=0) < 0).sum()
+        for tol in (None, 1e-12, 1e-6, 0.1):
+            found = tri.find_simplex(sides, tol=tol)
+            assert (found >= 0).all()
+        shares = barycentric_of(tri, found, sides)
+        assert (shares[~np.isnan(shares).any(axis=1)] >= -0.1**0.5).all()
+    assert outside > 50
+
+
+def barycentric_of(tri, simplices, queries):
+    transform = tri.transform[simplices]
+    part = np.einsum("qij,qj->qi", transform[:, :-1], queries - transform[:, -1])
+    return np.column_stack([part, 1 - part.sum(axis=1)])
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("tol", [1e-9, 1e-3, 0.1, 1.0])
+def test_tolerance_against_all_simplices(d, tol):
+    tri = brio.Delaunay(GENERATOR.random((40, d)))
+    queries = GENERATOR.random((400, d)) * 1.6 - 0.3
+    queries[:40] = tri.points[tri.convex_hull[GENERATOR.integers(0, len(tri.convex_hull), 40)]].mean(axis=1) * (1 + tol / 10)
+    found = tri.find_simplex(queries, tol=tol)
+    every = np.array([barycentric_of(tri, np.arange(tri.nsimplex), np.tile(q, (tri.nsimplex, 1))).min(axis=1) for q in queries])
+    at_hull = (tri.neighbors < 0).any(axis=1)
+    within = np.where(at_hull, every, -np.inf).max(axis=1)
+    exact = tri.find_simplex(queries, tol=0)
+    assert (found[exact >= 0] == exact[exact >= 0]).all()
+    others = exact < 0
+    assert (found[within >= -tol] >= 0).all()
+    chosen = every[np.flatnonzero(others & (found >= 0)), found[others & (found >= 0)]]
+    assert (chosen >= -tol).all()
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_tolerance_as_in_scipy(d):
+    spatial = pytest.importorskip("scipy.spatial")
+    points = GENERATOR.random((60, d))
+    queries = GENERATOR.random((2000, d)) * 1.4 - 0.2
+    ours, theirs = brio.Delaunay(points), spatial.Delaunay(points)
+    for tol in (None, 1e-9, 1e-3):
+        assert ((ours.find_simplex(queries, tol=tol) < 0) == (theirs.find_simplex(queries, tol=tol) < 0)).all()
 
 
 def test_threads_and_order_do_not_matter():

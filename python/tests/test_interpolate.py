@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import brio
+from test_delaunay import turned_grid
 
 GENERATOR = np.random.default_rng(3)
 BOTH = [brio.LinearNDInterpolator, brio.NaturalNeighbourInterpolator]
@@ -118,3 +119,27 @@ def test_same_as_scipy(d):
     mine = brio.LinearNDInterpolator(points, values)(queries)
     theirs = interpolate.LinearNDInterpolator(points, values)(queries)
     assert np.allclose(mine, theirs, equal_nan=True)
+
+
+@pytest.mark.parametrize("interpolator", BOTH)
+@pytest.mark.parametrize("d", [2, 3])
+def test_places_on_the_sides_of_a_turned_grid(interpolator, d):
+    """NaN where rounding put a place outside; wrong values in slivers at the hull."""
+    generator = np.random.default_rng(8)
+    slope = np.arange(1.0, d + 1)
+    for n in (2, 3, 4, 5):
+        points, sides = turned_grid(n, d, generator)
+        height = interpolator(points, points @ slope)
+        assert np.allclose(height(sides), sides @ slope, rtol=0, atol=1e-12)
+        exact = interpolator(points, points @ slope, tol=0)
+        outside = brio.Delaunay(points).find_simplex(sides, tol=0) < 0
+        assert (np.isnan(exact(sides)) == outside).all() and outside.any()
+        assert np.allclose(exact(sides)[~outside], sides[~outside] @ slope, rtol=0, atol=1e-12)
+        filled = interpolator(points, points @ slope, fill_value=-99)
+        assert np.allclose(filled(sides), sides @ slope, rtol=0, atol=1e-12) and filled(np.full(d, 99.0)) == -99
+
+
+@pytest.mark.parametrize("tol", [-1, np.nan, "x"])
+def test_tolerances_that_are_none(tol):
+    with pytest.raises(brio.ArgumentError, match="tol"):
+        brio.LinearNDInterpolator(np.eye(3), [1, 2, 3], tol=tol)

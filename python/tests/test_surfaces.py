@@ -2,6 +2,8 @@
 
 import copy
 import pickle
+import sys
+import types
 
 import numpy as np
 import pytest
@@ -373,6 +375,24 @@ def test_columns_of_texts(tmp_path):
         brio.read(tmp_path / "a.ply", columns="x,y,z")
 
 
+def test_formats_by_name(tmp_path):
+    path = tmp_path / "stations.of-1987"
+    path.write_text("1 2 3 4\n5 6 7 8\n")
+    with pytest.raises(brio.FormatError):
+        brio.read(path)
+    for name in ("xyz", ".XYZ", "txt"):
+        assert brio.read(path, format=name).vertices.tolist() == [[1, 2, 3], [5, 6, 7]]
+    assert brio.read(path, format="csv", columns=["-", "x", "y", "z"]).vertices.tolist() == [[2, 3, 4], [6, 7, 8]]
+    for wrong in ("", "tiff", 5, b"xyz"):
+        with pytest.raises(brio.ArgumentError, match="format"):
+            brio.read(path, format=wrong)
+    with pytest.raises(brio.FormatError):
+        brio.read(path, format="ply")
+    for wrong in (5, [5], ["x,y", "z"], b"x,y,z"):
+        with pytest.raises(brio.ArgumentError, match="columns"):
+            brio.read(path, format="xyz", columns=wrong)
+
+
 def test_conversion(tmp_path):
     points = np.concatenate([GENERATOR.random((2000, 3)), [[9, 9, 9]]])
     brio.Mesh(points, [[0, 1, 2]], properties={"heat": np.arange(2001, dtype=np.float32)}).write(tmp_path / "a.ply")
@@ -475,6 +495,88 @@ def test_objects_of_trimesh():
     pytest.importorskip("trimesh")
     assert brio.Mesh(CORNERS, TRIANGLES).to_trimesh().is_watertight
     assert len(brio.Mesh(CORNERS).to_trimesh().vertices) == 4
+
+
+COLORS = np.array([[51, 102, 153], [255, 0, 0], [0, 255, 0], [64, 128, 191]])
+NORMALS = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0], [0, 0.6, 0.8]], np.float32)
+
+
+def coloured(kind=np.uint8, scale=1, names=("red", "green", "blue"), faces=TRIANGLES):
+    channels = (COLORS * scale).astype(kind)
+    return brio.Mesh(CORNERS, faces, properties={**dict(zip(names, channels.T)), **dict(zip(("nx", "ny", "nz"), NORMALS.T))})
+
+
+@pytest.mark.parametrize("mesh", [
+    coloured(), coloured(np.uint16, 257), coloured(np.uint16), coloured(np.int32), coloured(np.float32, 1 / 255),
+    coloured(names=("Red", "GREEN", "blue")), coloured(names=("r", "g", "b")),
+    coloured(names=("diffuse_red", "diffuse_green", "diffuse_blue")),
+    brio.Mesh(CORNERS, TRIANGLES, properties={"colour": COLORS.astype(np.uint8), "normals": NORMALS}),
+    brio.Mesh(CORNERS, TRIANGLES, properties={"rgba": np.insert(COLORS, 3, 255, 1).astype(np.uint8), "normals": NORMALS})])
+def test_colours_and_normals_for_other_packages(mesh, stub_of_open3d):
+    """They were lost."""
+    trimesh = pytest.importorskip("trimesh")
+    cloud = brio.Mesh(mesh.vertices, properties=mesh.properties)
+    solid = mesh.to_trimesh()
+    assert solid.visual.kind == "vertex" and (solid.visual.vertex_colors[:, :3] == COLORS).all()
+    assert np.allclose(solid.vertex_normals, NORMALS) and set(mesh.properties) <= set(solid.vertex_attributes)
+    points = cloud.to_trimesh()
+    assert isinstance(points, trimesh.PointCloud) and (np.asarray(points.colors)[:, :3] == COLORS).all()
+    assert set(points.metadata) >= set(mesh.properties)
+    for made, colors in ((mesh.to_open3d(), "vertex_colors"), (cloud.to_open3d(), "colors")):
+        assert np.allclose(getattr(made, colors), COLORS / 255)
+        assert np.allclose(made.vertex_normals if made.is_mesh else made.normals, NORMALS)
+
+
+def test_meshes_without_colours_for_other_packages(stub_of_open3d):
+    trimesh = pytest.importorskip("trimesh")
+    plain = brio.Mesh(CORNERS, TRIANGLES, properties={"red": [1, 2, 3, 4]})
+    assert plain.vertex_colors() is None and plain.to_trimesh().visual.kind != "vertex"
+    assert np.allclose(plain.to_open3d().vertex_normals, plain.normals) and plain.to_open3d().vertex_colors is None
+    cloud = brio.Mesh(CORNERS).to_open3d()
+    assert cloud.colors is None and cloud.normals is None and isinstance(brio.Mesh(CORNERS).to_trimesh(), trimesh.PointCloud)
+
+
+def test_opacity_of_colours():
+    properties = dict(zip(("red", "green", "blue", "alpha"), np.array([[0, 51, 255, 102]] * 4, np.uint8).T))
+    assert np.allclose(brio.Mesh(CORNERS, properties=properties).vertex_colors(), [0, 0.2, 1, 0.4])
+
+
+@pytest.fixture
+def stub_of_open3d(monkeypatch):
+    """The part of Open3D that Mesh.to_open3d uses, where it is not installed: types and shapes as Open3D asks for them."""
+    try:
+        import open3d  # noqa: F401
+    except ImportError:
+        pass
+    else:
+        pytest.skip("open3d is here: test_colours_of_open3d uses it")
+
+    def vectors(kind):
+        def take(array):
+            assert array.dtype == kind and array.ndim == 2 and array.shape[1] == 3 and array.flags.c_contiguous
+            return array
+        return take
+
+    def shape(is_mesh, names):
+        class Shape:
+            def __init__(self, *parts):
+                self.parts, self.is_mesh = parts, is_mesh
+                for name in names:
+                    setattr(self, name, None)
+        return Shape
+
+    stub = types.ModuleType("open3d")
+    stub.utility = types.SimpleNamespace(Vector3dVector=vectors(np.float64), Vector3iVector=vectors(np.int32))
+    stub.geometry = types.SimpleNamespace(PointCloud=shape(False, ["colors", "normals"]),
+                                          TriangleMesh=shape(True, ["vertex_colors", "vertex_normals"]))
+    monkeypatch.setitem(sys.modules, "open3d", stub)
+
+
+def test_colours_of_open3d():
+    pytest.importorskip("open3d")
+    mesh, cloud = coloured().to_open3d(), coloured(faces=None).to_open3d()
+    assert np.allclose(np.asarray(mesh.vertex_colors), COLORS / 255) and np.allclose(np.asarray(cloud.colors), COLORS / 255)
+    assert np.allclose(np.asarray(mesh.vertex_normals), NORMALS) and np.allclose(np.asarray(cloud.normals), NORMALS)
 
 
 def test_objects_of_meshio():

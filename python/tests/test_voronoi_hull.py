@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import brio
+from test_interpolate import area, clip
 
 GENERATOR = np.random.default_rng(2)
 
@@ -74,8 +75,59 @@ def test_cells_in_a_box_fill_it():
     points = GENERATOR.random((500, 3))
     vor = brio.Voronoi(points, box=[[0, 0, 0], [1, 1, 1]])
     assert np.isclose(vor.volumes.sum(), 1) and (vor.volumes > 0).all()
-    with pytest.raises(brio.ArgumentError, match="box"):
-        brio.Voronoi(points[:, :2].copy(), box=[0, 0, 1, 1])
+
+
+def cell_in(points, weights, k, low, high):
+    """The power cell of point k in a rectangle, by clipping."""
+    polygon = np.array([low, [high[0], low[1]], high, [low[0], high[1]]], float)
+    for j in range(len(points)):
+        if j != k:
+            limit = points[j] @ points[j] - points[k] @ points[k] - weights[j] + weights[k]
+            polygon = clip(polygon, 2 * (points[j] - points[k]), limit)
+    return polygon
+
+
+GRID = np.array([[x, y] for x in range(4) for y in range(4)], float)
+
+
+@pytest.mark.parametrize("points", [GENERATOR.random((40, 2)), GRID, GRID @ [[3, 4], [-4, 3]] / 5, GRID[:4], GRID[:1],
+                                    np.concatenate([GRID, GRID[:3]]), GENERATOR.random((40, 2)) * 10 - 5])
+@pytest.mark.parametrize("box", [[[0, 0], [1, 1]], [[-0.5, -0.5], [3.5, 3.5]], [[-9, 0.25], [9, 0.75]], [[7, 7], [8, 9]]])
+@pytest.mark.parametrize("weighted", [False, True])
+def test_cells_in_a_box_of_the_plane(points, box, weighted):
+    weights = GENERATOR.random(len(points)) * 0.1 if weighted else np.zeros(len(points))
+    low, high = np.array(box, float)
+    vor = brio.Voronoi(points, weights if weighted else None, box=box)
+    wanted = np.array([area(cell_in(points, weights, k, low, high)) for k in range(len(points))])
+    own = np.zeros(len(points), bool)
+    own[np.unique(brio.Delaunay(points, weights if weighted else None).representatives)] = True
+    assert np.allclose(vor.volumes, np.where(own, wanted, 0), atol=1e-9)
+    assert np.isclose(vor.volumes.sum(), np.prod(high - low))
+    assert ((vor.vertices >= low - 1e-12) & (vor.vertices <= high + 1e-12)).all()
+    for (p, q), ends in zip(vor.ridge_points.tolist(), vor.ridge_vertices):
+        powers = [((vor.vertices[ends] - points[s]) ** 2).sum(axis=1) - weights[s] for s in (p, q)]
+        assert np.allclose(*powers, atol=1e-9)
+        for site in (p, q):  # the ridge is an edge of both regions
+            region = vor.regions[vor.point_region[site]]
+            assert set(ends) <= set(region) and abs(region.index(ends[0]) - region.index(ends[1])) in (1, len(region) - 1)
+    regions = [r for r in vor.regions if r]
+    edges = sum(len(r) for r in regions) - len(vor.ridge_points)
+    assert len(vor.vertices) - edges + len(regions) == 1  # Euler: the box is filled, and cells share their vertices
+
+
+@pytest.mark.parametrize("exponent", [-900, -400, 400, 900])
+def test_cells_in_a_box_of_the_plane_at_every_scale(exponent):
+    points = GENERATOR.random((30, 2))
+    near, far = (brio.Voronoi(np.ldexp(points, e), box=np.ldexp([[0.0, 0], [1, 1]], e)) for e in (0, exponent))
+    assert (np.ldexp(near.vertices, exponent) == far.vertices).all() and near.regions == far.regions
+
+
+def test_a_box_of_the_plane_stays_when_points_are_added():
+    vor = brio.Voronoi(GRID[:8], box=[0, 0, 3, 3])
+    vor.add_points(GRID[8:])
+    assert np.isclose(vor.volumes.sum(), 9) and vor.regions == brio.Voronoi(GRID, box=[0, 0, 3, 3]).regions
+    with pytest.raises(brio.ArgumentError):
+        brio.Voronoi(GRID, box=[3, 3, 0, 0])
 
 
 def test_no_diagram_of_points_on_a_line():

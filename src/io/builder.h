@@ -45,6 +45,7 @@ typedef struct brio_builder {
     bool streams;          /* whether vertices go to the sink block by block */
     uint64_t passed;       /* vertices that the sink has received */
     uint64_t *announced;   /* NULL, or receives the number of vertices that the file will have (brio_builder_stream) */
+    bool flat;             /* texts of points may have no z, which then is 0 */
     bool drop_invalid;     /* leaves out vertices that are not finite, instead of refusing the file */
     bool salvage;          /* readers keep the whole points of a file that ends early, and say how many miss */
     uint64_t missing;      /* points that such a file lacks */

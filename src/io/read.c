@@ -142,6 +142,7 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     BRIO_TRY(brio_builder_start(&b, ctx, s.name));
     b.sink = job->sink;
     b.announced = &job->announced;
+    b.flat = job->flat;
     b.drop_invalid = job->drop_invalid;
     b.salvage = job->salvage;
     BRIO_TRY(read_stream(&s, &b, job->format, job->columns));
@@ -179,6 +180,7 @@ static brio_read_job job_of(const char *path, const brio_read_options *o) {
     return (brio_read_job){.path = path,
                            .format = o->format,
                            .columns = o->columns,
+                           .flat = o->flat,
                            .drop_invalid = o->drop_invalid,
                            .salvage = o->salvage};
 }

@@ -14,6 +14,7 @@ typedef struct brio_read_job {
     const brio_bytes *memory; /* NULL, or what is read: the path is then only a name, "-" for none */
     brio_format format;       /* BRIO_FORMAT_AUTO becomes the format that was found */
     const char *columns;      /* as in brio_read_options */
+    bool flat;                /* as in brio_read_options */
     bool drop_invalid;        /* as in brio_read_options */
     bool salvage;
     uint64_t dropped, missing; /* points left out, and points that a file lacks, as in brio_read_options */

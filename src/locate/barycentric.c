@@ -2,9 +2,11 @@
  * the facets, divided by their sum. Coordinates are relative to the query.
  *
  * A flat tetrahedron makes the volumes inexact. So the shares are refined: while the shares do not reproduce the query,
- * the shares of the residual are taken off. After that linear functions are reproduced almost to the rounding of their
+ * the shares of the residual are taken off. Where that does not reproduce the query, the tetrahedron is flat up to rounding,
+ * and its faces take its place (base/flat_shares.h). So linear functions are reproduced almost to the rounding of their
  * values, whatever the shape. */
 #include "locate/barycentric.h"
+#include "base/flat_shares.h"
 #include "base/scale.h"
 #include "base/vector.h"
 
@@ -75,4 +77,6 @@ void brio_barycentric(const brio_locator *l, const brio_holder *h, const double 
         for (int i = 0; i < 4 && solved; i++) share[i] += more[i];
     }
     normalize(h->zeros, share);
+    if (!brio_shares_hold((const double(*)[3])row, 4, share))
+        brio_flat_shares((const double(*)[3])row, 4, h->zeros, share);
 }

@@ -69,6 +69,20 @@ done:
     return status;
 }
 
+/* Interpolates in the plane of the points, at the projections of the queries. */
+static brio_status interpolate_flat(brio_context *ctx, const brio_locator *l, const double *queries, size_t num_queries,
+                                    const brio_interpolation *o, double *results) {
+    brio_status status = BRIO_OK;
+    double *places = NULL;
+    BRIO_TRY(brio_refuse_queries(ctx, queries, num_queries));
+    BRIO_TRY(BRIO_ALLOC(ctx, places, 2 * num_queries));
+    brio_plane_project(&l->frame, queries, num_queries, places);
+    BRIO_TRY(brio_locator2_interpolate(ctx, l->flat, places, num_queries, o, results));
+done:
+    brio_release(ctx, places);
+    return status;
+}
+
 brio_status brio_locator_interpolate(brio_context *ctx, const brio_locator *l, const double *queries,
                                      size_t num_queries, const brio_interpolation *options, double *results) {
     BRIO_DOOR;
@@ -78,6 +92,7 @@ brio_status brio_locator_interpolate(brio_context *ctx, const brio_locator *l, c
     interpolation_job job = {.o = &o, .l = l, .results = results};
     BRIO_TRY(BRIO_TAKE(ctx, brio_interpolation, options, &o));
     BRIO_TRY(check_options(ctx, l, &o));
+    if (l->flat) return interpolate_flat(ctx, l, queries, num_queries, &o, results);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, job.natural, (size_t)threads));
     for (int i = 0; i < threads; i++) job.natural[i].ctx = ctx;
     BRIO_TRY(brio_answer_all(ctx, threads,

@@ -5,6 +5,8 @@
 #include "base/memory.h"
 #include "base/scale.h"
 #include "base/team.h"
+#include "base/vector.h"
+#include "plane/plane_frame.h"
 #include "query/nearest_points.h"
 #include "triangulation/records.h"
 #include "triangulation/triangulation.h"
@@ -129,6 +131,54 @@ done:
     return status;
 }
 
+/* --- points in a plane --- */
+
+/* Whether all tetrahedra may be flat up to the rounding of coordinates: brio_plane_fit then decides. In usual triangulations
+ * one of the first is not. */
+static bool may_be_flat(const brio_locator *l, const brio_triangulation *t, const brio_record *record) {
+    double greatest = 0;
+    for (int k = 0; k < 3; k++) greatest = fmax(greatest, fmax(fabs(l->low[k]), fabs(l->high[k])));
+    for (size_t i = 0; i < l->num_finite; i++) {
+        const uint32_t *v = t->tet[i].vertex;
+        double edge[3][3], normal[3], square = 0;
+        for (int j = 0; j < 3; j++) {
+            for (int k = 0; k < 3; k++) edge[j][k] = record[v[j + 1]][k] / greatest - record[v[0]][k] / greatest;
+            square = fmax(square, brio_dot(edge[j], edge[j]));
+        }
+        brio_cross(edge[0], edge[1], normal);
+        if (fabs(brio_dot(normal, edge[2])) > 4 * BRIO_FLAT_ROUNDING * square) return false;
+    }
+    return true;
+}
+
+/* Makes the locator of points that are in a plane, in the coordinates of the plane. */
+static brio_status make_flat(brio_locator *l, const brio_triangulation *whole, const brio_record *record) {
+    brio_status status = BRIO_OK;
+    double *points = NULL, *places = NULL, *weights = NULL;
+    brio_triangulation2 *t = NULL;
+    size_t n = l->num_points;
+    if (!may_be_flat(l, whole, record)) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(l->ctx, points, 3 * n));
+    BRIO_TRY(BRIO_ALLOC(l->ctx, places, 2 * n));
+    if (l->weighted) BRIO_TRY(BRIO_ALLOC(l->ctx, weights, n));
+    for (size_t i = 0; i < n; i++) {
+        memcpy(points + 3 * i, record[i], 3 * sizeof *points);
+        if (weights) weights[i] = record[i][3];
+    }
+    l->frame.size = sizeof l->frame;
+    BRIO_TRY(brio_plane_fit(l->ctx, points, n, &l->frame));
+    if (l->frame.dimension == 3) goto done;
+    brio_plane_project(&l->frame, points, n, places);
+    BRIO_TRY(brio_delaunay2(l->ctx, places, weights, n, NULL, &t));
+    BRIO_TRY(brio_locator2_new(l->ctx, t, places, weights, n, &l->flat));
+done:
+    brio_triangulation2_free(t);
+    brio_release(l->ctx, points);
+    brio_release(l->ctx, places);
+    brio_release(l->ctx, weights);
+    return status;
+}
+
 /* --- the object --- */
 
 /* Copies the points, which must be those of the triangulation: with others a walk might not end. Another thread of the
@@ -152,13 +202,14 @@ static brio_status fill(brio_locator *l, const brio_triangulation *t, const brio
     BRIO_TRY(copy_points(l->ctx, t, in, &record));
     BRIO_TRY(brio_progress(l->ctx, "locator", 0));
     BRIO_TRY(sort_vertices(l, t, (const brio_record *)record));
+    find_box(l);
+    BRIO_TRY(make_flat(l, t, (const brio_record *)record));
     brio_release(l->ctx, record);
     record = NULL;
     if (l->weighted) {
         BRIO_TRY(BRIO_ALLOC(l->ctx, l->most, l->num_vertices));
         find_most(l, 0, l->num_vertices);
     }
-    find_box(l);
     BRIO_TRY(brio_progress(l->ctx, "locator", 0.5));
     BRIO_TRY(take_tetrahedra(l, t));
     BRIO_TRY(brio_progress(l->ctx, "locator", 1));
@@ -197,5 +248,6 @@ void brio_locator_free(brio_locator *l) {
     brio_release(l->ctx, l->most);
     brio_release(l->ctx, l->vertex_tet);
     brio_release(l->ctx, l->t.tet);
+    brio_locator2_free(l->flat);
     brio_release(l->ctx, l);
 }

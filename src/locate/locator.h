@@ -28,6 +28,8 @@ struct brio_locator {
     double scale;           /* a power of two that brings usual coordinates near 1, for rounded squares of distances */
     brio_filter filter;     /* for queries in that box: a thread works with its own copy */
     const brio_engine *engine;
+    brio_plane_frame frame; /* of points in a plane up to rounding, and their locator there; else NULL */
+    brio_locator2 *flat;
 };
 
 /** Whether x is in the box of the vertices, where the locator's filter holds. */

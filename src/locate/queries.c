@@ -15,7 +15,7 @@ int brio_query_threads(brio_context *ctx, size_t count) {
     return brio_threads(ctx, count < BLOCK ? count : BLOCK, QUERIES_A_THREAD);
 }
 
-static brio_status refuse_not_finite(brio_context *ctx, const double *queries, size_t count) {
+brio_status brio_refuse_queries(brio_context *ctx, const double *queries, size_t count) {
     for (size_t i = 0; i < count; i++) {
         const double x[3] = {queries[3 * i], queries[3 * i + 1], queries[3 * i + 2]};
         if (brio_all_finite(x, 3)) continue;
@@ -100,7 +100,7 @@ brio_status brio_answer_all(brio_context *ctx, int threads, const brio_query_bat
     brio_status status = BRIO_OK;
     uint64_t *items = NULL, *spare = NULL;
     size_t most = b->count < BLOCK ? b->count : BLOCK;
-    BRIO_TRY(refuse_not_finite(ctx, b->queries, b->count));
+    BRIO_TRY(brio_refuse_queries(ctx, b->queries, b->count));
     if (most >= FEWEST_SORTED) {
         BRIO_TRY(BRIO_ALLOC(ctx, items, most));
         BRIO_TRY(BRIO_ALLOC(ctx, spare, most));

@@ -39,6 +39,9 @@ typedef struct {
 /** Returns the number of threads for this many queries: brio_answer_all uses thread numbers below it. */
 int brio_query_threads(brio_context *ctx, size_t count);
 
+/** Returns BRIO_OK, or BRIO_ERR_NOT_FINITE and names the first query that is not finite.   queries  #Q by 3. */
+brio_status brio_refuse_queries(brio_context *ctx, const double *queries, size_t count);
+
 /** Calls `answer` for rows that have every query once, in any order and from several threads.
  *  threads  what brio_query_threads returned.   Needs 16 bytes of workspace a query, for 2^20 queries at most.
  *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE (before any call), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, and what `answer`

@@ -25,13 +25,52 @@ static void write_linear(const interpolation_job *job, const brio_plane_holder *
     write_mean(job->o, job->l->triangle[h->triangle].vertex, share, 3, row);
 }
 
+/* --- on a line --- */
+
+/* Returns the place of the projection of x along the line, in units of its length, from the first vertex on. */
+static double along_line(const brio_locator2 *l, const double *x) {
+    const double *a = l->record[l->line[0]], *b = l->record[l->line[l->num_line - 1]];
+    double most = fmax(fabs(b[0] / 2 - a[0] / 2), fabs(b[1] / 2 - a[1] / 2));
+    double u = (b[0] / 2 - a[0] / 2) / most, v = (b[1] / 2 - a[1] / 2) / most;
+    return ((x[0] / 2 - a[0] / 2) / most * u + (x[1] / 2 - a[1] / 2) / most * v) / (u * u + v * v);
+}
+
+/* Writes the mean of the two vertices that the projection of x is between. */
+static void write_on_line(const interpolation_job *job, const double *x, double *row) {
+    const brio_locator2 *l = job->l;
+    double place = along_line(l, x), share[2];
+    size_t low = 0, high = l->num_line - 1;
+    if (!(place >= 0 && place <= along_line(l, l->record[l->line[high]]))) {
+        for (size_t c = 0; c < job->o->components; c++) row[c] = NAN;
+        return;
+    }
+    while (low + 1 < high) {
+        size_t middle = low + (high - low) / 2;
+        if (along_line(l, l->record[l->line[middle]]) <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    double begin = along_line(l, l->record[l->line[low]]), end = along_line(l, l->record[l->line[high]]);
+    share[1] = end > begin ? (place - begin) / (end - begin) : 0;
+    share[1] = share[1] > 0 ? share[1] < 1 ? share[1] : 1 : 0;
+    share[0] = 1 - share[1];
+    write_mean(job->o, l->line + low, share, 2, row);
+}
+
+/* --- in triangles --- */
+
 static brio_status answer_values(void *user, brio_plane_querent *q, size_t index, const double *x) {
     const interpolation_job *job = user;
     const brio_interpolation *o = job->o;
     brio_plane_natural *n = &job->natural[q->thread];
-    brio_plane_holder h = brio_plane_find_holder(q, x);
     double *row = job->results + o->components * index;
     bool natural = false;
+    if (job->l->num_line) {
+        write_on_line(job, x, row);
+        return BRIO_OK;
+    }
+    brio_plane_holder h = brio_plane_find_holder(q, x);
     for (size_t c = 0; c < o->components && h.triangle == BRIO_INFINITE; c++) row[c] = NAN;
     if (h.triangle == BRIO_INFINITE) return BRIO_OK;
     if (o->method == BRIO_INTERPOLATION_NATURAL && __builtin_popcount(h.zeros) < 2 &&
@@ -54,6 +93,8 @@ static brio_status check_options(brio_context *ctx, const brio_locator2 *l, cons
     BRIO_REQUIRE(ctx, o->values || !l->num_points, BRIO_ERR_ARGUMENT, "there are no values to interpolate");
     BRIO_REQUIRE(ctx, o->method != BRIO_INTERPOLATION_NATURAL || !l->weighted, BRIO_ERR_ARGUMENT,
                  "natural neighbour interpolation is for triangulations without weights");
+    BRIO_REQUIRE(ctx, l->num_line != 1, BRIO_ERR_NO_ANSWER,
+                 "all points are at one position: there is nothing to interpolate between");
 done:
     return status;
 }

@@ -5,6 +5,8 @@
 #include "plane/locator2.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/sort.h"
+#include "plane/plane_frame.h"
 #include "plane/plane_points.h"
 #include <math.h>
 #include <string.h>
@@ -69,6 +71,47 @@ static brio_status take_line(brio_locator2 *l, const brio_triangulation2 *t) {
     return BRIO_OK;
 }
 
+/* --- points on a line up to rounding --- */
+
+/* Whether all triangles are flat up to the rounding of coordinates. In usual triangulations the first one is not. */
+static bool is_line(const brio_locator2 *l) {
+    double greatest = 0;
+    for (int k = 0; k < 2; k++) greatest = fmax(greatest, fmax(fabs(l->low[k]), fabs(l->high[k])));
+    for (size_t t = 0; t < l->num_finite; t++) {
+        double edge[3][2], longest = 0;
+        for (int i = 0; i < 3; i++) {
+            const double *a = l->record[l->triangle[t].vertex[i]], *b = l->record[l->triangle[t].vertex[(i + 1) % 3]];
+            for (int k = 0; k < 2; k++) edge[i][k] = b[k] / greatest - a[k] / greatest;
+            longest = fmax(longest, hypot(edge[i][0], edge[i][1]));
+        }
+        if (fabs(edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0]) > BRIO_FLAT_ROUNDING * longest) return false;
+    }
+    return true;
+}
+
+static int compare_places(uint32_t a, uint32_t b, const void *along) {
+    const double *x = along;
+    return x[a] != x[b] ? (x[a] > x[b]) - (x[a] < x[b]) : (a > b) - (a < b);
+}
+
+/* Lists the vertices along the coordinate of the greater extent. */
+static brio_status line_up(brio_locator2 *l, const brio_triangulation2 *t) {
+    brio_status status = BRIO_OK;
+    double *along = NULL;
+    if (!l->num_finite || !is_line(l)) return BRIO_OK;
+    int k = l->high[1] - l->low[1] > l->high[0] - l->low[0];
+    BRIO_TRY(BRIO_ALLOC(l->ctx, along, l->num_points));
+    BRIO_TRY(BRIO_ALLOC(l->ctx, l->line, t->stats.vertices));
+    for (size_t p = 0; p < l->num_points; p++) {
+        along[p] = l->record[p][k];
+        if (t->representative[p] == p) l->line[l->num_line++] = (uint32_t)p;
+    }
+    brio_sort_indices(l->line, l->num_line, compare_places, along);
+done:
+    brio_release(l->ctx, along);
+    return status;
+}
+
 brio_status brio_locator2_new(brio_context *ctx, const brio_triangulation2 *t, const double *points,
                               const double *weights, size_t num_points, brio_locator2 **out) {
     BRIO_DOOR;
@@ -85,6 +128,7 @@ brio_status brio_locator2_new(brio_context *ctx, const brio_triangulation2 *t, c
     BRIO_TRY(brio_plane_take_points(ctx, t, &given, &l->record));
     BRIO_TRY(take_triangles(l, t));
     BRIO_TRY(take_line(l, t));
+    BRIO_TRY(line_up(l, t));
     *out = l;
     l = NULL;
 done:

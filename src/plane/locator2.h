@@ -21,8 +21,8 @@ struct brio_locator2 {
     uint32_t *start;           /* side by side squares, row after row; NULL without triangles */
     size_t side;
     double low[2], high[2], scale[2]; /* of the grid: the box of the points; squares per unit of length */
-    uint32_t *line;                   /* the vertices of points on a line or at one place, in lexicographic order */
-    size_t num_line;
+    uint32_t *line;  /* the vertices of points on a line or at one place, up to rounding, in the order along the line */
+    size_t num_line; /* 0 for other points. With triangles, these are flat up to rounding. */
     brio_plane_filter filter; /* for queries in the box: a thread works with its own copy */
 };
 

@@ -1,6 +1,7 @@
 /* Coordinates of a query in the triangle that holds it: areas divided by their sum, and refined while they do not reproduce
  * the query, as in locate/barycentric.c, where the reasons stand. */
 #include "plane/plane_barycentric.h"
+#include "base/flat_shares.h"
 #include "base/scale.h"
 #include <math.h>
 
@@ -63,4 +64,7 @@ void brio_plane_barycentric(const brio_locator2 *l, const brio_plane_holder *h, 
         for (int i = 0; i < 3 && solved; i++) share[i] += more[i];
     }
     normalize(h->zeros, share);
+    double offset[3][3] = {{row[0][0], row[0][1]}, {row[1][0], row[1][1]}, {row[2][0], row[2][1]}};
+    if (!brio_shares_hold((const double(*)[3])offset, 3, share))
+        brio_flat_shares((const double(*)[3])offset, 3, h->zeros, share);
 }

@@ -8,6 +8,11 @@
  * A spacing up to factor^2 times the median is always allowed by this rule. Nothing here depends on the unit, so points
  * far from 1 are taken times a power of two: the squares of their distances would be infinite or 0.
  *
+ * Spacings are rounded, and so are the coordinates that a file gives. Spacings that are equal but for that must not stand
+ * out from each other. So each spacing is taken as an interval (`slack_of`): a point is an outlier only if the low end of its
+ * spacing is above a threshold that was made of high ends. Logarithms are those of spacings divided by their median: they
+ * are the same at every scale by a power of two.
+ *
  * Based on: Breunig Kriegel Ng Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
  * Differs from the paper: mean distances instead of reachability distances, a quartile instead of a mean, and the
  * second rule. */
@@ -31,6 +36,9 @@ enum { ORDINARY = 256 };
 
 /* Chosen on the sets of docs/algorithms.md, with the factor. */
 static const double DEVIATIONS = 8;
+
+/* Half a unit in the last place of 1. */
+static const double ROUNDING = 0x1p-53;
 
 static const brio_outliers_options STANDARD = {.size = sizeof STANDARD, .factor = 3};
 
@@ -59,6 +67,24 @@ static size_t find_near(const search *s, size_t place, brio_near_point *near) {
     for (size_t i = 0; i < found; i++)
         if (near[i].place != place) near[kept++] = near[i];
     return kept < s->neighbours ? kept : s->neighbours;
+}
+
+/* Returns how far the spacing of a point may be from that of the points before they were rounded to doubles. Derived: a
+ * squared distance is rounded by 5 units of ROUNDING at most, a root by 4, a sum of k roots by k + 4, their mean by k + 5.
+ * Both ends of a distance may be rounded by ROUNDING times their coordinates, along three axes: by 4 times that in all. The
+ * neighbours' coordinates exceed those of the point by k spacings at most. */
+static double slack_of(const search *s, size_t place) {
+    const double *p = s->tree.point[place];
+    double greatest = fmax(fabs(p[0]), fmax(fabs(p[1]), fabs(p[2])));
+    return ROUNDING * ((double)(5 * s->neighbours + 8) * s->spacing[place] + 4 * greatest);
+}
+
+static double low_spacing(const search *s, size_t place) {
+    return s->spacing[place] < INFINITY ? s->spacing[place] - slack_of(s, place) : INFINITY;
+}
+
+static double high_spacing(const search *s, size_t place) {
+    return s->spacing[place] + slack_of(s, place);
 }
 
 static void find_spacings(void *user, size_t begin, size_t end, int thread) {
@@ -91,9 +117,9 @@ static void judge(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t i = s->first + begin; i < s->first + end; i++) {
         size_t found = find_near(s, i, near);
-        for (size_t j = 0; j < found; j++) spacings[j] = s->spacing[near[j].place];
-        bool stands_out = found && s->spacing[i] > s->factor * lower_quartile(spacings, found);
-        s->outlier[s->tree.index[i]] = stands_out || s->spacing[i] > s->most;
+        for (size_t j = 0; j < found; j++) spacings[j] = high_spacing(s, near[j].place);
+        bool stands_out = found && low_spacing(s, i) > s->factor * lower_quartile(spacings, found);
+        s->outlier[s->tree.index[i]] = stands_out || low_spacing(s, i) > s->most;
     }
 }
 
@@ -115,13 +141,13 @@ static brio_status find_most(brio_context *ctx, search *s) {
     s->most = INFINITY;
     BRIO_TRY(BRIO_ALLOC(ctx, keys, s->tree.count + 1));
     for (size_t i = 0; i < s->tree.count; i++)
-        if (s->spacing[i] > 0) keys[count++] = brio_double_key(s->spacing[i]);
+        if (s->spacing[i] > 0) keys[count++] = brio_double_key(high_spacing(s, i));
     if (!count) goto done;
-    double middle = log(median_of(keys, count));
+    double middle = median_of(keys, count);
     count = 0;
     for (size_t i = 0; i < s->tree.count; i++)
-        if (s->spacing[i] > 0) keys[count++] = brio_double_key(fabs(log(s->spacing[i]) - middle));
-    s->most = exp(middle + fmax(DEVIATIONS * 1.4826 * median_of(keys, count), 2 * log(s->factor)));
+        if (s->spacing[i] > 0) keys[count++] = brio_double_key(fabs(log(high_spacing(s, i) / middle)));
+    s->most = middle * exp(fmax(DEVIATIONS * 1.4826 * median_of(keys, count), 2 * log(s->factor)));
 done:
     brio_release(ctx, keys);
     return status;

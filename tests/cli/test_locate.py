@@ -39,10 +39,23 @@ class Locate(CliTest):
         numbers = [int(x) for row in text.split()[1:] for x in row.split(",")]
         self.assertEqual(list(struct.unpack("<8q", data)), numbers)
 
-    def test_points_in_a_plane_have_no_tetrahedra(self):
-        facts = self.facts("locate", self.xyz("p.xyz", CUBE[::2]), "--at", self.xyz("q.xyz", PLACES), "-o",
-                           self.path("a.csv"))
-        self.assertEqual((facts["inside"], facts["outside"]), (0, 4))
+    def test_points_in_a_plane_have_triangles(self):
+        """All places were outside, with exit 0."""
+        square = self.xyz("p.xyz", [(x, y, 0) for x in (0, 1) for y in (0, 1)])
+        for more in [], ["--plane", "xy"], ["--plane", "fit"]:
+            facts = self.facts("locate", square, "--at", self.xyz("q.xyz", PLACES), "-o", self.path("a.csv"), *more)
+            self.assertEqual((facts["inside"], facts["outside"], facts["triangles"]), (3, 1, 2))
+            with open(self.path("a.csv"), encoding="utf-8") as f:
+                rows = f.read().split()
+            self.assertEqual(rows[0], "triangle,vertex")
+            self.assertEqual([int(row.split(",")[0]) < 0 for row in rows[1:]], [False, False, True, False])
+            self.assertEqual([int(row.split(",")[1]) for row in rows[1:]][1:], [3, 2, 0])
+
+    def test_points_on_a_line_have_nearest_vertices_alone(self):
+        line = self.xyz("p.xyz", [(0, 0, 0), (1, 2, 3), (2, 4, 6)])
+        run = self.expect(0, "locate", line, "--at", self.xyz("q.xyz", PLACES), "-o", "-", "--format", "csv")
+        self.assertEqual(run.text.split()[1:], ["-1,0", "-1,0", "-1,0", "-1,0"])
+        self.assertIn("on a line", run.err)
 
     def test_wrong_usage(self):
         points = self.xyz("p.xyz", CUBE)

@@ -1,5 +1,6 @@
 /* Interpolation: what Sibson's coordinates must satisfy, and their volumes against counted random points. */
 #include "harness.h"
+#include "base/vector.h"
 #include "points.h"
 
 enum { N = 500, Q = 2000 };
@@ -79,6 +80,37 @@ static void linear_functions_are_reproduced(void) {
     integer_points(5, N, 7, p);
     for (size_t i = 0; i < 3 * Q; i++) x[i] = floor(12 * fabs(x[i])) / 2;
     expect_linear_functions("grid, ties", p, N, x, Q);
+}
+
+/* In a tetrahedron that is flat up to rounding the volumes of its parts mean nothing: values were NaN, or of anywhere. */
+static void linear_functions_in_slivers(void) {
+    enum { SIDE = 4, SLIVERS = 3000 };
+    double p[3 * SIDE * SIDE * SIDE], values[SIDE * SIDE * SIDE], x[3 * SLIVERS], found[SLIVERS];
+    const double c = cos(0.1), s = sin(0.1), angles[3][3] = {{c * c, s, -c * s}, {-s * c, c, s * s}, {s, 0, c}};
+    size_t inside = 0, n = 0;
+    brio_rng rng = brio_rng_new(9);
+    for (int i = 0; i < SIDE * SIDE * SIDE; i++, n++) {
+        const double grid[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+        for (int k = 0; k < 3; k++) p[3 * i + k] = brio_dot(grid, angles[k]);
+        values[i] = p[3 * i] + 2 * p[3 * i + 1] + 3 * p[3 * i + 2];
+    }
+    for (int q = 0; q < SLIVERS; q++) { /* on the sides of the turned box */
+        double place[3] = {3 * brio_rng_double(&rng), 3 * brio_rng_double(&rng), 3 * brio_rng_double(&rng)};
+        place[q % 3] = q / 3 % 2 ? 3 : 0;
+        for (int k = 0; k < 3; k++) x[3 * q + k] = brio_dot(place, angles[k]);
+    }
+    fixture f = fixture_new(p, NULL, n);
+    for (int method = 0; method < 2; method++) {
+        EXPECT(interpolate(&f, method, values, 1, x, SLIVERS, found) == BRIO_OK);
+        for (int q = 0; q < SLIVERS; q++) {
+            if (isnan(found[q])) continue; /* outside by rounding */
+            inside++;
+            double wanted = x[3 * q] + 2 * x[3 * q + 1] + 3 * x[3 * q + 2];
+            EXPECT(fabs(found[q] - wanted) < 1e-12, "method %d, place %d: %g, %g", method, q, found[q], wanted);
+        }
+    }
+    EXPECT(inside > SLIVERS / 2, "%zu", inside);
+    fixture_free(&f);
 }
 
 static void queries_near_vertices(void) {
@@ -190,6 +222,86 @@ static void means_of_values_at_the_ends_of_doubles_stay_between_them(void) {
     fixture_free(&f);
 }
 
+/* Points of a plane were answered NaN. Planes of decimals: up to rounding, but not exactly, the points are in the plane. */
+static void points_in_a_plane_are_interpolated_in_it(void) {
+    enum { SIDE = 7, POINTS = SIDE * SIDE, PLACES = 500 };
+    static const double axes[][2][3] = {{{1, 0, 0}, {0, 1, 0}},   {{0, 1, 0}, {0, 0, 1}},
+                                        {{1, 0, 0}, {0, 0, 1}},   {{0.1, 0.2, 0.3}, {0.7, -0.1, 0.2}},
+                                        {{1, 1, 0}, {0, 0.3, 1}}, {{1e200, 0, 2e200}, {0, 1e200, 1e200}}};
+    brio_rng rng = brio_rng_new(4);
+    for (size_t a = 0; a < sizeof axes / sizeof *axes; a++) {
+        double p[3 * POINTS], x[3 * PLACES], values[POINTS], rows[PLACES], wanted[PLACES], normal[3];
+        brio_cross(axes[a][0], axes[a][1], normal);
+        for (int i = 0; i < POINTS; i++) {
+            int u = i % SIDE, v = i / SIDE;
+            for (int k = 0; k < 3; k++) p[3 * i + k] = u * axes[a][0][k] + v * axes[a][1][k];
+            values[i] = 2 * u - v;
+        }
+        for (int q = 0; q < PLACES; q++) {
+            double u = 0.01 + 5.98 * brio_rng_double(&rng), v = 0.01 + 5.98 * brio_rng_double(&rng), off = q % 3;
+            for (int k = 0; k < 3; k++)
+                x[3 * q + k] = u * axes[a][0][k] + v * axes[a][1][k] + (fabs(normal[k]) < 1e100 ? off * normal[k] : 0);
+            wanted[q] = 2 * u - v;
+        }
+        fixture f = fixture_new(p, NULL, POINTS);
+        for (int method = 0; method < 2; method++) {
+            EXPECT(interpolate(&f, method, values, 1, x, PLACES, rows) == BRIO_OK, "%s", brio_message(f.ctx));
+            for (int q = 0; q < PLACES; q++)
+                EXPECT(fabs(rows[q] - wanted[q]) < 1e-10, "plane %zu, place %d: %g, not %g", a, q, rows[q], wanted[q]);
+        }
+        x[4] = NAN;
+        EXPECT(interpolate(&f, 0, values, 1, x, PLACES, rows) == BRIO_ERR_NOT_FINITE);
+        EXPECT(strstr(brio_message(f.ctx), "query 1") != NULL, "%s", brio_message(f.ctx));
+        fixture_free(&f);
+    }
+}
+
+static void points_of_a_line_and_of_one_position(void) {
+    const double p[] = {0, 0, 0, 0.1, 0.2, 0.3, 0.2, 0.4, 0.6, 0.7, 1.4, 2.1}, values[] = {0, 1, 2, 7};
+    const double x[] = {0.15, 0.3, 0.45, 0.5, 1, 1.5, 1, 2, 3};
+    double rows[3];
+    fixture f = fixture_new(p, NULL, 4), one = fixture_new(p, NULL, 1);
+    for (int method = 0; method < 2; method++) {
+        EXPECT(interpolate(&f, method, values, 1, x, 3, rows) == BRIO_OK, "%s", brio_message(f.ctx));
+        EXPECT(fabs(rows[0] - 1.5) < 1e-12 && fabs(rows[1] - 5) < 1e-12 && isnan(rows[2]), "%g %g %g", rows[0], rows[1],
+               rows[2]);
+        EXPECT(interpolate(&one, method, values, 1, x, 3, rows) == BRIO_ERR_NO_ANSWER);
+    }
+    fixture_free(&f);
+    fixture_free(&one);
+}
+
+/* The frame is that of the points, in any order, and of least squares where they are in no plane. */
+static void planes_of_points(void) {
+    enum { POINTS = 300 };
+    double p[3 * POINTS], turned[3 * POINTS];
+    brio_context *ctx = new_context();
+    brio_plane_frame f = {.size = sizeof f}, g = {.size = sizeof g};
+    uniform_points(6, POINTS, p);
+    for (int i = 0; i < POINTS; i++) p[3 * i + 2] = 0.5 * p[3 * i] + 2 + 0.01 * (p[3 * i + 2] - 0.5);
+    for (int i = 0; i < POINTS; i++) memcpy(turned + 3 * i, p + 3 * (POINTS - 1 - i), 3 * sizeof *p);
+    EXPECT(brio_plane_fit(ctx, p, POINTS, &f) == BRIO_OK && brio_plane_fit(ctx, turned, POINTS, &g) == BRIO_OK);
+    EXPECT(!memcmp(&f, &g, sizeof f) && f.dimension == 3 && f.thickness < 0.006 && f.thickness > 0.003, "%g",
+           f.thickness);
+    EXPECT(fabs(brio_dot(f.axis[0], f.axis[1])) < 1e-15);
+    double normal[3];
+    brio_cross(f.axis[0], f.axis[1], normal);
+    EXPECT(fabs(normal[0] / normal[2] + 0.5) < 0.01 && fabs(normal[1] / normal[2]) < 0.01, "%g %g", normal[0],
+           normal[2]);
+    for (int i = 0; i < POINTS; i++) p[3 * i + 1] = 7;
+    EXPECT(brio_plane_fit(ctx, p, POINTS, &f) == BRIO_OK && f.dimension == 2);
+    brio_plane_project(&f, p, POINTS, turned);
+    for (int i = 0; i < POINTS; i++) EXPECT(turned[2 * i] == p[3 * i + 2] && turned[2 * i + 1] == p[3 * i]);
+    EXPECT(brio_plane_fit(ctx, p, 1, &f) == BRIO_OK && f.dimension == 0);
+    EXPECT(brio_plane_fit(ctx, p, 2, &f) == BRIO_OK && f.dimension == 1);
+    EXPECT(brio_plane_fit(ctx, NULL, 0, &f) == BRIO_OK && f.dimension == -1);
+    p[5] = INFINITY;
+    EXPECT(brio_plane_fit(ctx, p, POINTS, &f) == BRIO_ERR_NOT_FINITE);
+    brio_plane_frame unset = {0};
+    EXPECT(brio_plane_fit(ctx, p, 1, &unset) == BRIO_ERR_ARGUMENT);
+    brio_context_free(ctx);
+}
+
 static void refusals(void) {
     static double p[3 * 100], w[100] = {0}, result;
     uniform_points(7, 100, p);
@@ -203,12 +315,16 @@ static void refusals(void) {
 
 SUITE(test_interpolate) {
     RUN(linear_functions_are_reproduced);
+    RUN(linear_functions_in_slivers);
     RUN(queries_near_vertices);
     RUN(values_at_vertices_are_exact);
     RUN(coordinates_are_shares_of_the_cell);
     RUN(the_centre_of_a_cube_has_eight_equal_neighbours);
     RUN(natural_values_are_seldom_linear);
     RUN(means_of_values_at_the_ends_of_doubles_stay_between_them);
+    RUN(points_in_a_plane_are_interpolated_in_it);
+    RUN(points_of_a_line_and_of_one_position);
+    RUN(planes_of_points);
     RUN(refusals);
     return harness_end();
 }

@@ -208,6 +208,10 @@ static void check_linear_functions(const set *s) {
         values[3 * i] = 1;
         for (size_t k = 0; k < 2; k++) most = fmax(most, fabs(values[3 * i + 1 + k] = s->p[2 * i + k]));
     }
+    if (brio_triangulation2_stats(f.t)->dimension < 2) { /* points_on_a_line_are_interpolated_along_it */
+        fixture_free(&f);
+        return;
+    }
     EXPECT(brio_locator2_triangles(f.ctx, f.l, x, QUERIES, found) == BRIO_OK);
     for (int method = s->weighted; method < 2; method++) {
         EXPECT(interpolate(&f, method, values, 3, x, QUERIES, rows) == BRIO_OK, "%s", brio_message(f.ctx));
@@ -234,6 +238,10 @@ static void check_values_at_the_ends_of_doubles(const set *s) {
     double x[2 * QUERIES], rows[4 * QUERIES], values[4 * MOST];
     make_queries(s, x);
     for (size_t i = 0; i < 4 * s->n; i++) values[i] = ends[i % 4];
+    if (brio_triangulation2_stats(f.t)->dimension < 2) { /* points_on_a_line_are_interpolated_along_it */
+        fixture_free(&f);
+        return;
+    }
     for (int method = s->weighted; method < 2; method++) {
         EXPECT(interpolate(&f, method, values, 4, x, QUERIES, rows) == BRIO_OK, "%s", brio_message(f.ctx));
         for (size_t i = 0; i < 4 * QUERIES; i++)
@@ -278,12 +286,15 @@ static void check_values_at_vertices(const set *s) {
     double values[MOST], rows[MOST];
     const uint32_t *representative = brio_triangulation2_representatives(f.t);
     for (size_t i = 0; i < s->n; i++) values[i] = sin((double)i);
+    if (brio_triangulation2_stats(f.t)->dimension < 2) { /* points_on_a_line_are_interpolated_along_it */
+        fixture_free(&f);
+        return;
+    }
     for (int method = s->weighted; method < 2; method++) {
         EXPECT(interpolate(&f, method, values, 1, s->p, s->n, rows) == BRIO_OK);
-        bool solid = brio_triangulation2_stats(f.t)->dimension == 2;
         for (size_t i = 0; i < s->n && !s->weighted; i++)
-            EXPECT(solid ? rows[i] == values[representative[i]] : isnan(rows[i]), "%s: point %zu", s->name, i);
-        for (size_t i = 0; i < s->n && s->weighted && solid; i++)
+            EXPECT(rows[i] == values[representative[i]], "%s: point %zu", s->name, i);
+        for (size_t i = 0; i < s->n && s->weighted; i++)
             if (representative[i] == i) EXPECT(rows[i] == values[i], "%s: point %zu", s->name, i);
     }
     fixture_free(&f);
@@ -358,6 +369,49 @@ static void expect_sibson(set *s) {
             EXPECT(fabs(rows[s->n * i + p] - share[p]) < 1e-9, "%s: query %zu: point %zu has %.12g, not %.12g", s->name,
                    i, p, rows[s->n * i + p], share[p]);
     }
+    fixture_free(&f);
+}
+
+/* Points of a line were answered NaN. Directions of decimals: up to rounding, but not exactly, the points are on a line. */
+static void points_on_a_line_are_interpolated_along_it(void) {
+    static const double way[][2] = {{1, 0},       {0, 1},         {2, 1},           {0.1, 0.3},
+                                    {-0.7, 1e-9}, {3e300, 1e300}, {1e-300, -3e-300}};
+    enum { POINTS = 12 };
+    for (size_t w = 0; w < sizeof way / sizeof *way; w++)
+        for (int method = 0; method < 2; method++) {
+            set s = {.name = "line", .n = POINTS};
+            double values[POINTS], x[2 * POINTS + 4], rows[POINTS + 2];
+            for (size_t i = 0; i < POINTS; i++) {
+                double place = (double)(i * 7 % POINTS);
+                for (int k = 0; k < 2; k++) s.p[2 * i + k] = way[w][k] * place;
+                values[i] = 3 * place + 1;
+                double side = 0.25 + (double)(i % 3); /* places off the line are projected */
+                x[2 * i] = (place > 0 ? place - 0.5 : 0) * way[w][0] - side * way[w][1];
+                x[2 * i + 1] = (place > 0 ? place - 0.5 : 0) * way[w][1] + side * way[w][0];
+            }
+            for (int k = 0; k < 2; k++)
+                x[2 * POINTS + k] = -0.01 * way[w][k], x[2 * POINTS + 2 + k] = 11.01 * way[w][k];
+            fixture f = fixture_new(&s);
+            EXPECT(interpolate(&f, method, values, 1, x, POINTS + 2, rows) == BRIO_OK, "%s", brio_message(f.ctx));
+            for (size_t i = 0; i < POINTS; i++) {
+                double place = (double)(i * 7 % POINTS), wanted = 3 * (place > 0 ? place - 0.5 : 0) + 1;
+                EXPECT(fabs(rows[i] - wanted) < 1e-12 || (place == 0 && isnan(rows[i])), "way %zu, place %g: %g", w,
+                       place, rows[i]);
+            }
+            EXPECT(isnan(rows[POINTS]) && isnan(rows[POINTS + 1]), "beyond the ends: %g %g", rows[POINTS],
+                   rows[POINTS + 1]);
+            EXPECT(interpolate(&f, method, values, 1, s.p, POINTS, rows) == BRIO_OK);
+            for (size_t i = 0; i < POINTS; i++) EXPECT(rows[i] == values[i], "way %zu, point %zu: %g", w, i, rows[i]);
+            fixture_free(&f);
+        }
+}
+
+static void one_position_has_nothing_to_interpolate(void) {
+    set s = {.name = "one position", .n = 3, .p = {1, 2, 1, 2, 1, 2}};
+    double values[3] = {1, 2, 3}, row;
+    fixture f = fixture_new(&s);
+    EXPECT(interpolate(&f, 0, values, 1, s.p, 1, &row) == BRIO_ERR_NO_ANSWER);
+    EXPECT(strstr(brio_message(f.ctx), "one position") != NULL, "%s", brio_message(f.ctx));
     fixture_free(&f);
 }
 
@@ -543,6 +597,8 @@ SUITE(test_plane_queries) {
     RUN(means_of_values_at_the_ends_of_doubles_stay_between_them);
     RUN(linear_functions_are_reproduced_beside_the_hull);
     RUN(values_at_vertices_are_exact);
+    RUN(points_on_a_line_are_interpolated_along_it);
+    RUN(one_position_has_nothing_to_interpolate);
     RUN(natural_neighbours_have_the_areas_of_clipping);
     RUN(diagrams_are_dual);
     RUN(grid_has_square_regions);

@@ -152,6 +152,52 @@ static void find_outliers_at(const double *points, size_t n, int exponent, uint8
     free(scaled);
 }
 
+/* Counts the outliers of the grid of `side`^3 points of that spacing, moved by `shift`. */
+static size_t count_grid_outliers(int side, double spacing, double shift, int neighbours) {
+    brio_context *ctx = new_context();
+    brio_outliers_options o = brio_outliers_options_default();
+    double points[3 * 125];
+    uint8_t outlier[125];
+    size_t n = 0, count = 0;
+    o.factor = 1;
+    for (int i = 0; i < side * side * side; i++, n++) {
+        points[3 * n] = i % side * spacing + shift;
+        points[3 * n + 1] = i / side % side * spacing + shift;
+        points[3 * n + 2] = i / side / side * spacing + shift;
+    }
+    EXPECT(brio_outliers(ctx, points, n, neighbours, &o, outlier) == BRIO_OK, "%s", brio_message(ctx));
+    for (size_t i = 0; i < n; i++) count += outlier[i];
+    brio_context_free(ctx);
+    return count;
+}
+
+/* With factor 1 points of equal spacings were outliers of each other: two points for 415 of 1,000 distances, and all corners
+ * of a cube for some sizes. Spacings were equal to their threshold, or above it by a rounding. */
+static void equal_spacings_are_no_outliers(void) {
+    for (int k = 1; k <= 1000; k++) {
+        double spacings[] = {k, 0.1 * k, ldexp(k, -700), ldexp(0.1 * k, 900)};
+        for (int s = 0; s < 4; s++) {
+            EXPECT(count_grid_outliers(2, spacings[s], 0, 3) == 0, "the cube of side %g", spacings[s]);
+            EXPECT(count_grid_outliers(4, spacings[s], 0, 3) == 0, "the grid of spacing %g", spacings[s]);
+            EXPECT(count_grid_outliers(3, spacings[s], 1e6 * spacings[s], 3) == 0, "the grid far away, %g",
+                   spacings[s]);
+        }
+    }
+}
+
+/* A spacing that is larger by more than rounding is above the threshold still. */
+static void unequal_spacings_are_outliers_by_factor_1(void) {
+    brio_context *ctx = new_context();
+    brio_outliers_options o = brio_outliers_options_default();
+    const double points[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 3 + 1e-12, 0, 0};
+    uint8_t outlier[4];
+    o.factor = 1;
+    EXPECT(brio_outliers(ctx, points, 4, 1, &o, outlier) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(!outlier[0] && !outlier[1] && !outlier[2] && outlier[3], "%d %d %d %d", outlier[0], outlier[1], outlier[2],
+           outlier[3]);
+    brio_context_free(ctx);
+}
+
 /* Beyond 1e154 all spacings were infinite, below 1e-162 all 0: no point was an outlier, or good ones were. The coordinates
  * have 30 bits, so that small ones are exact, too. */
 static void outliers_are_the_same_at_every_scale(void) {
@@ -259,6 +305,8 @@ SUITE(test_sampling) {
     RUN(no_points_have_no_outliers);
     RUN(outliers_are_found);
     RUN(outliers_are_the_same_at_every_scale);
+    RUN(equal_spacings_are_no_outliers);
+    RUN(unequal_spacings_are_outliers_by_factor_1);
     RUN(a_far_outlier_hides_no_other);
     RUN(outliers_among_duplicates_cost_little);
     RUN(sparse_parts_are_no_outliers);

@@ -4,18 +4,21 @@ from . import errors
 from ._alpha import AlphaComplex, AlphaShape, alpha_complex
 from ._delaunay import Delaunay
 from ._files import Conversion, build_info, convert, read, write
+from ._halfspaces import HalfspaceIntersection
 from ._hull import ConvexHull
-from ._interpolate import LinearNDInterpolator, NaturalNeighbourInterpolator
+from ._interpolate import LinearNDInterpolator, NaturalNeighbourInterpolator, griddata
 from ._mesh import Certificate, Distance, Mesh, simplify
 from ._points import outliers, thin
 from ._reconstruct import Surface, medial_axis, offset, oriented_normals, reconstruct
+from ._spherical import SphericalVoronoi
 from ._version import __version__
 from ._voronoi import Voronoi
 from .errors import *  # noqa: F403
 
 __all__ = [
-    "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Delaunay", "Distance", "LinearNDInterpolator",
-    "Mesh", "NaturalNeighbourInterpolator", "Surface", "Voronoi", "__version__", "alpha_complex", "build_info", "convert",
-    "errors", "medial_axis", "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "thin", "write",
+    "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Delaunay", "Distance",
+    "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "SphericalVoronoi", "Surface",
+    "Voronoi", "__version__", "alpha_complex", "build_info", "convert", "errors", "griddata", "medial_axis",
+    "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "thin", "write",
     *errors.__all__,
 ]

@@ -1,6 +1,7 @@
 """Arrays of the caller, as the library takes them: C-contiguous, aligned float64 is taken as it is, all else is converted."""
 
 import operator
+import os
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,23 @@ from .errors import ArgumentError
 Floats = NDArray[np.float64]
 
 
-def _taken(values: Any) -> NDArray[Any]:
+_MOST_EXACT = 2**53  # all integers up to here are doubles
+
+
+def refuse_masked(values: Any, name: str) -> None:
+    """Refuses masked arrays, also in lists: numpy would take the numbers under the mask."""
     if isinstance(values, np.ma.MaskedArray):
-        raise ArgumentError("masked arrays are not taken: leave the masked rows out")
+        raise ArgumentError(f"{name}: masked arrays are not taken: leave the masked rows out")
+    if not isinstance(values, list | tuple):
+        return
+    kinds = set(map(type, values))
+    if any(issubclass(kind, list | tuple | np.ma.MaskedArray) for kind in kinds):
+        for value in values:
+            refuse_masked(value, name)
+
+
+def _taken(values: Any, name: str) -> NDArray[Any]:
+    refuse_masked(values, name)
     if hasattr(values, "detach"):  # a tensor, maybe one that records gradients, maybe on another device
         values = values.detach()
         values = values.cpu() if hasattr(values, "cpu") else values
@@ -25,21 +40,33 @@ def _taken(values: Any) -> NDArray[Any]:
 def as_array(values: Any, name: str) -> NDArray[Any]:
     """Takes arrays, lists, DataFrames, tensors, and what speaks DLPack."""
     try:
-        return _taken(values)
+        return _taken(values, name)
     except ArgumentError:
         raise
     except (TypeError, ValueError, OverflowError, BufferError, RuntimeError) as error:
         raise ArgumentError(f"{name}: not an array: {error}") from error
 
 
+def _refuse_rounded(array: NDArray[Any], floats: NDArray[Any], name: str) -> None:
+    """Refuses integers that doubles cannot hold: as coordinates they would move in silence."""
+    if not (array.dtype.kind in "iu" and array.dtype.itemsize == 8) and array.dtype.kind != "O":
+        return
+    for place in np.flatnonzero(np.abs(floats) >= _MOST_EXACT):
+        value = array.ravel()[place]
+        if isinstance(value, int | np.integer) and int(value) != int(floats.ravel()[place]):
+            raise ArgumentError(f"{name}: the integer {value} is no double: the nearest is {floats.ravel()[place]:.0f}")
+
+
 def _converted(values: Any, name: str, kinds: str) -> NDArray[Any]:
     """Returns a C-contiguous, aligned array of float64, or of complex128 where `kinds` has c."""
     try:
-        array = _taken(values)
+        array = _taken(values, name)
         if array.dtype.kind not in kinds:
             raise ArgumentError(f"{name}: numbers are wanted, not {array.dtype}")
         wanted = np.complex128 if array.dtype.kind == "c" else np.float64
-        return np.require(array, wanted, ["C", "A"]).reshape(array.shape)
+        out = np.require(array, wanted, ["C", "A"]).reshape(array.shape)
+        _refuse_rounded(array, out, name)
+        return out
     except ArgumentError:
         raise
     except (TypeError, ValueError, OverflowError, BufferError, RuntimeError) as error:
@@ -76,6 +103,41 @@ def as_weights(weights: Any, count: int) -> Floats | None:
     if array.shape != (count,):
         raise ArgumentError(f"weights: an array of shape ({count},) is wanted, one a point, not of shape {array.shape}")
     return array
+
+
+def as_box(box: Any, ndim: int) -> Floats:
+    """Returns low and high corner as one array of 2 ndim numbers."""
+    array = as_floats(box, "box")
+    if array.shape not in ((2, ndim), (2 * ndim,)):
+        hint = f"; an array of {ndim} pairs is taken transposed: box.T" if array.shape == (ndim, 2) else ""
+        raise ArgumentError(f"box: the low corner and the high one are wanted, in an array of shape (2, {ndim}) or "
+                            f"({2 * ndim},), not of shape {array.shape}{hint}")
+    return array.reshape(2 * ndim)
+
+
+def as_threads(threads: Any) -> int:
+    """Takes a number of threads; 0 is one for each processor."""
+    return as_count(threads, "threads")
+
+
+def as_text(value: Any, name: str) -> str:
+    """Takes a string that C can have."""
+    if not isinstance(value, str):
+        raise ArgumentError(f"{name}: a string is wanted, not {value!r}")
+    if "\0" in value or any("\ud800" <= letter <= "\udfff" for letter in value):
+        raise ArgumentError(f"{name}: text without the character 0 and without surrogates is wanted, not {value!r}")
+    return value
+
+
+def as_path(path: Any) -> bytes:
+    """Takes a path as the system has it."""
+    try:
+        name = os.fsencode(path)
+    except (TypeError, UnicodeEncodeError) as error:
+        raise ArgumentError(f"path: the name of a file is wanted, not {path!r}") from error
+    if b"\0" in name:
+        raise ArgumentError(f"path: a name without the character 0 is wanted, not {path!r}")
+    return name
 
 
 def as_queries(xi: Any, columns: int) -> tuple[Floats, tuple[int, ...]]:

@@ -7,15 +7,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _geometry, _native
-from ._arrays import Floats, as_queries, as_rows, as_weights, frozen
+from ._arrays import Floats, as_number, as_queries, as_rows, as_weights, frozen
 from ._calls import Progress, reporting
 from ._scaled import shifted
 from ._scipy import other_class
+from ._tolerance import STANDARD, border, core, find_within
 from .errors import ArgumentError
 
 Ints = NDArray[np.int32]
 _SIMPLICES, _MATES, _HULL, _HULL_MATES, _REPRESENTATIVES = range(5)
 _FIND_SIMPLEX, _FIND_LEAST_POWER, _FIND_NEAREST = range(3)
+
+
+def as_tolerance(tol: Any) -> float:
+    """Takes a tolerance of barycentric coordinates; None is scipy's."""
+    number = STANDARD if tol is None else as_number(tol, "tol")
+    if not 0 <= number < np.inf:
+        raise ArgumentError(f"tol: a finite number, 0 or more, is wanted, not {tol!r}")
+    return number
 
 
 class Delaunay:
@@ -283,26 +292,41 @@ class Delaunay:
         ----------
         xi : array_like, shape (..., ndim)
         bruteforce : bool
-            Taken for scipy's sake: the answers are exact in any case.
+            Taken for scipy's sake: all simplices are found that are there in any case.
         tol : float, optional
-            Positions outside of the hull count as inside a simplex at the hull if no barycentric coordinate is below
-            -tol there. The default is the exact answer.
+            A position outside of the hull counts as inside a simplex at the hull if no barycentric coordinate is below
+            -tol there. Where that simplex is too flat to have a `transform`, its neighbours count, and their coordinate
+            towards it may be -sqrt(tol). The default is scipy's, 100 units in the last place of 1. With 0 the answers are
+            exact.
 
         Returns
         -------
         ndarray of int32, shape (...)
-            The simplex of lowest index whose closure holds the position; -1 outside of the hull.
+            The simplex of lowest index whose closure holds the position, exactly; outside of the hull one within the
+            tolerance, or -1.
         """
         rows, shape = as_queries(xi, self.ndim)
+        return self._find(rows, as_tolerance(tol)).reshape(shape)
+
+    def _find(self, rows: Floats, tol: float) -> Ints:
         finite = np.isfinite(rows).all(axis=1)
         if finite.all():
             out = self._locate(rows)
         else:
             out = np.full(len(rows), -1, np.int32)
             out[finite] = self._locate(rows[finite])
-        if tol and tol > 0:
-            self._find_within(rows, finite & (out < 0), tol, out)
-        return out.reshape(shape)
+        outside = np.flatnonzero(finite & (out < 0))
+        if tol and len(outside):
+            out[outside] = find_within(self, rows[outside], tol)
+        return out
+
+    @cached_property
+    def _core(self) -> tuple[int, Floats, float, float]:
+        return core(self)
+
+    @cached_property
+    def _border(self) -> tuple[Ints, Floats, NDArray[np.bool_]]:
+        return border(self)
 
     def _locate(self, rows: Floats) -> Ints:
         out = np.empty(len(rows), np.int32)
@@ -311,16 +335,6 @@ class Delaunay:
         else:
             _native.locate(self._locator, rows, _FIND_SIMPLEX, out, self.threads, None)
         return out
-
-    def _find_within(self, rows: Floats, wanted: NDArray[np.bool_], tol: float, out: Ints) -> None:
-        """Looks for positions beside the simplices at the hull."""
-        border = np.flatnonzero((self.neighbors < 0).any(axis=1))
-        inverse, origin = self.transform[border, :-1], self.transform[border, -1]
-        for query in np.flatnonzero(wanted):
-            part = np.einsum("sij,sj->si", inverse, rows[query] - origin)
-            least = np.minimum(part.min(axis=1), 1 - part.sum(axis=1))
-            if len(least) and np.nanmax(least, initial=-np.inf) >= -tol:
-                out[query] = border[np.nanargmax(least)]
 
     def lift_points(self, x: Any) -> Floats:
         """Lifts positions of shape (..., ndim) to the paraboloid: shape (..., ndim + 1)."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _native
-from ._arrays import as_count, as_floats, as_number
+from ._arrays import as_box, as_count, as_number, as_path, as_text
 from ._calls import Progress, reporting
 from ._mesh import Mesh
 from .errors import ArgumentError
@@ -49,18 +49,30 @@ class Conversion:
 
 
 def _columns(columns: str | Sequence[str | None] | None) -> str | None:
-    if columns is None or isinstance(columns, str):
-        return columns
-    return ",".join("-" if name is None else name for name in columns)
+    if columns is None:
+        return None
+    if isinstance(columns, str):
+        return as_text(columns, "columns")
+    try:
+        names = ["-" if name is None else as_text(name, "columns") for name in columns]
+    except TypeError as error:
+        raise ArgumentError(f"columns: a list of names is wanted, not {columns!r}") from error
+    for name in names:
+        if "," in name:
+            raise ArgumentError(f"columns: a name without commas is wanted, not {name!r}")
+    return ",".join(names)
 
 
-def read(path: Path, *, columns: str | Sequence[str | None] | None = None, threads: int = 0,
+def read(path: Path, *, format: str | None = None, columns: str | Sequence[str | None] | None = None, threads: int = 0,
          progress: bool | Progress | None = None) -> Mesh:
     """Reads a file of points or of a mesh: PLY, XYZ, OBJ, OFF, VTU, LAS, LAZ, PCD, STL, NPY and others.
 
     Parameters
     ----------
     path : str or path
+    format : str, optional
+        The extension of a format, such as "ply", for a file with another name; the default is by the name, and by the
+        content where it tells the format.
     columns : sequence of str, optional
         The names of the columns of a text of points, in their order: "x", "y" and "z" have to be there; None or "-"
         leaves a column out, as it happens to columns behind the last name. "x,y,z,-,nx" says the same. The default is the
@@ -84,9 +96,15 @@ def read(path: Path, *, columns: str | Sequence[str | None] | None = None, threa
     >>> scan = brio.read(path, columns=[None, "heat", "x", "y", "z"])
     >>> scan.vertices.tolist(), scan.properties["heat"].tolist()
     ([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [100.0, 200.0])
+    >>> path = os.path.join(tempfile.mkdtemp(), "stations.dat")
+    >>> with open(path, "w") as file:
+    ...     _ = file.write("1 2 3\\n")
+    >>> brio.read(path, format="xyz").vertices.tolist()
+    [[1.0, 2.0, 3.0]]
     """
+    name = None if format is None else as_text(format, "format")
     with reporting(progress) as report:
-        mesh: Mesh = Mesh._of(_native.read(os.fsencode(path), _columns(columns), threads, report))
+        mesh: Mesh = Mesh._of(_native.read(as_path(path), name, _columns(columns), threads, report))
     return mesh
 
 
@@ -109,7 +127,7 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     source, target : str or path
     columns
         As for read.
-    box : array_like of 6 numbers, optional
+    box : array_like, shape (2, 3) or (6,), optional
         The lower corner and the upper one; its border belongs to it.
     outliers : int
         The neighbours by which outliers judges; 0 keeps outliers.
@@ -136,14 +154,14 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     >>> done.points_read, done.points, done.lost
     (3, 2, [])
     """
-    corners = None if box is None else as_floats(box, "box").ravel()
-    if corners is not None and len(corners) != 6:
-        raise ArgumentError(f"box: six numbers are wanted, the lower corner and the upper one, not {len(corners)}")
+    corners = None if box is None else as_box(box, 3)
+    comment = None if comment is None else as_text(comment, "comment")
     neighbours = as_count(outliers, "outliers", most=63)
     merges, distance = (merge, 0.0) if isinstance(merge, bool) else (True, as_number(merge, "merge"))
     with reporting(progress) as report:
-        facts = _native.convert(os.fsencode(source), os.fsencode(target), _columns(columns),
-                                (ascii, float32, compress, comment), corners, (neighbours, factor, thin, merges, distance), threads, report)
+        choice = neighbours, as_number(factor, "factor"), as_number(thin, "thin"), merges, distance
+        facts = _native.convert(as_path(source), as_path(target), _columns(columns),
+                                (ascii, float32, compress, comment), corners, choice, threads, report)
     return Conversion(**facts)
 
 

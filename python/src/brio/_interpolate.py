@@ -7,9 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, as_floats, as_values
-from ._delaunay import Delaunay
-from .errors import ArgumentError
+from ._arrays import Floats, as_floats, as_threads, as_values
+from ._delaunay import Delaunay, as_tolerance
+from ._tolerance import coordinates as barycentric
+from ._tolerance import find_within
+from ._points import nearest
+from .errors import ArgumentError, NoAnswerError, NotOfferedError
 
 _NATURAL, _LINEAR = 0, 1
 
@@ -40,8 +43,9 @@ class _Interpolator:
     _method = _LINEAR
 
     def __init__(self, points: Any, values: Any, fill_value: complex = np.nan, rescale: bool = False, *,
-                 threads: int = 0) -> None:
-        self.threads = threads
+                 tol: float | None = None, threads: int = 0) -> None:
+        self.threads = as_threads(threads)
+        self.tol = as_tolerance(tol)
         self.offset: Floats | None = None
         self.scale: Floats | None = None
         if isinstance(points, Delaunay):
@@ -87,19 +91,30 @@ class _Interpolator:
         rows = np.ascontiguousarray(xi.reshape(-1, self.tri.ndim))
         if self.offset is not None and self.scale is not None:
             rows = (rows - self.offset) / self.scale
-        finite: NDArray[np.bool_] = np.asarray(np.isfinite(rows).all(axis=1))
+        finite = np.flatnonzero(np.isfinite(rows).all(axis=1))
         out = np.full((len(rows), self.values.shape[1]), np.nan)
-        inside = finite.copy()
-        if finite.all():
-            self._interpolate(rows, out)
-        else:
-            some = np.empty((int(finite.sum()), out.shape[1]))
-            self._interpolate(rows[finite], some)
-            out[finite] = some
-        if not np.isnan(self.fill_value):
-            inside[finite] = self.tri.find_simplex(rows[finite]) >= 0
-            out[~inside] = np.nan
+        inside = np.zeros(len(rows), np.bool_)
+        found = np.empty((len(finite), out.shape[1]))
+        near = rows if len(finite) == len(rows) else rows[finite]
+        self._interpolate(near, found)
+        inside[finite] = self._fill_beside(near, found)
+        out[finite] = found
         return self._shaped(out, inside).reshape(xi.shape[:-1] + self.values_shape)
+
+    def _fill_beside(self, rows: Floats, out: Floats) -> NDArray[np.bool_]:
+        """Interpolates at positions that are outside of the hull within the tolerance; returns which positions are inside."""
+        inside = np.ones(len(rows), np.bool_)
+        maybe = np.flatnonzero(np.isnan(out).any(axis=1)) if out.shape[1] else np.arange(len(rows))
+        outside = maybe[self.tri._find(rows[maybe], 0) < 0]
+        inside[outside] = False
+        if self.tol and len(outside):
+            simplex = find_within(self.tri, rows[outside], self.tol)
+            near, simplex = outside[simplex >= 0], simplex[simplex >= 0]
+            if len(near):
+                shares = barycentric(self.tri, simplex, rows[near])
+                out[near] = np.einsum("qk,qkc->qc", shares, self.values[self.tri.representatives[self.tri.simplices[simplex]]])
+                inside[near] = True
+        return inside
 
     def _interpolate(self, rows: Floats, out: Floats) -> None:
         if not self.values.shape[1]:  # the library takes no values of 0 numbers
@@ -133,6 +148,8 @@ class LinearNDInterpolator(_Interpolator):
         For positions outside of the hull.
     rescale : bool
         Scales the points to a unit box first.
+    tol : float, optional
+        As for Delaunay.find_simplex: positions that are outside of the hull by rounding are inside. With 0 the hull is exact.
     threads : int
 
     Examples
@@ -151,7 +168,7 @@ class NaturalNeighbourInterpolator(_Interpolator):
 
     Parameters
     ----------
-    points, values, fill_value, rescale, threads
+    points, values, fill_value, rescale, tol, threads
         As for LinearNDInterpolator; a Delaunay must have no weights.
 
     Examples
@@ -165,7 +182,116 @@ class NaturalNeighbourInterpolator(_Interpolator):
     _method = _NATURAL
 
     def __init__(self, points: Any, values: Any, fill_value: complex = np.nan, rescale: bool = False, *,
-                 threads: int = 0) -> None:
+                 tol: float | None = None, threads: int = 0) -> None:
         if isinstance(points, Delaunay) and points.weights is not None:
             raise ArgumentError("natural neighbours are those of points without weights")
-        super().__init__(points, values, fill_value, rescale, threads=threads)
+        super().__init__(points, values, fill_value, rescale, tol=tol, threads=threads)
+
+
+def _in_order(points: Floats, values: NDArray[Any]) -> tuple[Floats, NDArray[Any]]:
+    order = np.argsort(points[:, 0], kind="stable")
+    return points[order, 0], values[order]
+
+
+def _linear_on_line(points: Floats, values: NDArray[Any], xi: Floats, fill_value: complex) -> NDArray[Any]:
+    places, rows = _in_order(points, values)
+    if len(places) < 2:
+        raise NoAnswerError("linear interpolation needs two points at least")
+    last = np.clip(np.searchsorted(places, xi, side="left"), 1, len(places) - 1)
+    begin, end = places[last - 1], places[last]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(end > begin, (xi - begin) / (end - begin), 0.0)
+    share = share.reshape(xi.shape + (1,) * (rows.ndim - 1))
+    out: NDArray[Any] = np.asarray((1 - share) * rows[last - 1] + share * rows[last])
+    out[~((xi >= places[0]) & (xi <= places[-1]))] = fill_value
+    return out
+
+
+def _nearest_on_line(points: Floats, values: NDArray[Any], xi: Floats) -> NDArray[Any]:
+    places, rows = _in_order(points, values)
+    out: NDArray[Any] = rows[np.searchsorted((places[1:] + places[:-1]) / 2, xi, side="left")]
+    return out
+
+
+def _nearest_values(points: Floats, values: NDArray[Any], xi: Floats, rescale: bool, threads: int) -> NDArray[Any]:
+    """The values at the nearest points; NaN at positions that are not finite."""
+    if not len(points):
+        raise NoAnswerError("there are no points, and so no nearest one")
+    rows = xi.reshape(-1, points.shape[1])
+    if rescale:
+        scale = np.ptp(points, axis=0)
+        scale[~(scale > 0)] = 1
+        points, rows = points / scale, rows / scale
+    space, places = np.zeros((len(points), 3)), np.zeros((len(rows), 3))
+    space[:, : points.shape[1]], places[:, : points.shape[1]] = points, rows
+    finite = np.isfinite(places).all(axis=1)
+    index = np.zeros(len(places), np.int64)
+    index[finite] = nearest(space, places[finite], threads, None)
+    out: NDArray[Any] = values[index]
+    if not finite.all():
+        out = out.astype(np.result_type(out.dtype, np.float64))
+        out[~finite] = np.nan
+    return out.reshape(xi.shape[:-1] + values.shape[1:])
+
+
+def griddata(points: Any, values: Any, xi: Any, method: str = "linear", fill_value: complex = np.nan, rescale: bool = False, *,
+             tol: float | None = None, threads: int = 0, fallback: str | None = None) -> NDArray[Any]:
+    """Interpolates values at scattered points of one, two or three coordinates, at other positions, as scipy's griddata.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, ndim) or (n,); or a tuple of arrays of coordinates
+    values : array_like, shape (n, ...)
+        Real or complex.
+    xi : array_like, shape (..., ndim); or a tuple of arrays of coordinates, such as those of a grid
+    method : "linear", "nearest" or "natural"
+        "natural" is not scipy's: Sibson's interpolation, in the plane and in space. scipy's "cubic" is not offered.
+    fill_value, rescale, tol
+        As for LinearNDInterpolator; with "nearest" all positions have a value.
+    threads : int
+    fallback : "scipy", optional
+        Asks scipy for methods and dimensions that brio does not offer.
+
+    Returns
+    -------
+    ndarray, of the shape of the positions and then that of a value
+
+    Examples
+    --------
+    >>> import brio, numpy as np
+    >>> x, y = np.mgrid[0:1:3j, 0:1:3j]
+    >>> brio.griddata([[0, 0], [1, 0], [0, 1], [1, 1]], [0, 1, 1, 2], (x, y)).tolist()
+    [[0.0, 0.5, 1.0], [0.5, 1.0, 1.5], [1.0, 1.5, 2.0]]
+    """
+    if fallback not in (None, "scipy"):
+        raise ArgumentError(f'fallback: None or "scipy", not {fallback!r}')
+    rows = coordinates(points)
+    if rows.ndim != 2:
+        raise ArgumentError(f"points: rows of coordinates are wanted, not an array of shape {rows.shape}")
+    ndim = rows.shape[1]
+    offered = ("linear", "nearest") if ndim == 1 else ("linear", "nearest", "natural") if ndim in (2, 3) else ()
+    if method not in offered:
+        if fallback == "scipy":
+            import scipy.interpolate
+
+            other: NDArray[Any] = scipy.interpolate.griddata(points, values, xi, method, fill_value, rescale)
+            return other
+        if method not in ("linear", "nearest", "natural", "cubic"):
+            raise ArgumentError(f"method: one of linear, nearest and natural is wanted, not {method!r}")
+        raise NotOfferedError(f"interpolation by {method!r} of points of {ndim} coordinates is not offered; "
+                              'fallback="scipy" asks scipy for it')
+    if ndim > 1 and method != "nearest":
+        kind = LinearNDInterpolator if method == "linear" else NaturalNeighbourInterpolator
+        return kind(rows, values, fill_value, rescale, tol=tol, threads=threads)(xi)
+    if not np.isfinite(rows).all():
+        raise ArgumentError("points: there are coordinates that are not finite")
+    array = as_values(values, "values")
+    if array.ndim == 0 or len(array) != len(rows):
+        raise ArgumentError(f"values: one row a point is wanted: {len(rows)}, not an array of shape {array.shape}")
+    if ndim > 1:
+        places = coordinates(xi, ndim)
+        if places.shape[-1] != ndim:
+            raise ArgumentError(f"number of dimensions in xi does not match x: {places.shape[-1]} and {ndim}")
+        return _nearest_values(rows, array, places, rescale, as_threads(threads))
+    line = as_floats(xi[0] if isinstance(xi, tuple) and len(xi) == 1 else xi, "xi")
+    return _nearest_on_line(rows, array, line) if method == "nearest" else _linear_on_line(rows, array, line, fill_value)

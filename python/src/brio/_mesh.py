@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, as_array, as_count, as_number, as_rows, freeze_all, frozen
+from ._arrays import (Floats, as_array, as_count, as_number, as_path, as_rows, as_text, freeze_all, frozen,
+                      refuse_masked)
 from ._calls import Progress, reporting
 from ._points import nearest
-from ._properties import Properties, as_properties, carry, for_means, from_means, scalars
+from ._properties import (Properties, as_properties, carry, colors_of, for_means, from_means, normals_of,
+                          scalars)
 from .errors import ArgumentError
 
 Indices = NDArray[np.uint32]
@@ -67,6 +69,7 @@ def as_indices(values: Any, name: str, columns: int) -> Indices:
 
 def as_polygons(faces: Any) -> tuple[NDArray[np.uint64], Indices]:
     """Returns offsets and corners of triangles, of rows of k corners, or of a list of polygons."""
+    refuse_masked(faces, "faces")
     try:
         array = as_array(faces, "faces")
     except ValueError:  # polygons of several sizes
@@ -426,31 +429,71 @@ class Mesh:
             A line for the header.
         """
         handle = self._copy(scalars(self._sound_properties()))
+        comment = None if comment is None else as_text(comment, "comment")
         with reporting(progress) as report:
-            _native.write(os.fsencode(path), handle, (ascii, float32, compress, comment), 0, report)
+            _native.write(as_path(path), handle, (ascii, float32, compress, comment), 0, report)
 
     # --- for other packages, none of which is needed otherwise ---
 
     def to_trimesh(self) -> Any:
-        """Returns a trimesh.Trimesh or, without faces, a trimesh.PointCloud."""
+        """Returns a trimesh.Trimesh or, without faces, a trimesh.PointCloud.
+
+        Colours (see `vertex_colors`) become the colours of its vertices. A Trimesh has the normals of the properties nx, ny
+        and nz, and the properties as `vertex_attributes`; a PointCloud has the properties in its `metadata`.
+        """
         import trimesh
 
+        colors = self.vertex_colors()
+        shown = None if colors is None else np.rint(255 * colors).astype(np.uint8)
+        properties = {name: np.array(values) for name, values in self._sound_properties().items()}
         if not len(self.faces):
-            return trimesh.PointCloud(np.array(self.vertices))
-        attributes = {name: np.array(values) for name, values in self._sound_properties().items()}
-        return trimesh.Trimesh(np.array(self.vertices), self.faces.astype(np.int64), process=False,
-                               vertex_attributes=attributes)
+            return trimesh.PointCloud(np.array(self.vertices), colors=shown, metadata=properties)
+        return trimesh.Trimesh(np.array(self.vertices), self.faces.astype(np.int64), process=False, vertex_colors=shown,
+                               vertex_normals=normals_of(self._sound_properties()), vertex_attributes=properties)
 
     def to_open3d(self) -> Any:
-        """Returns an open3d.geometry.TriangleMesh or, without faces, a PointCloud."""
+        """Returns an open3d.geometry.TriangleMesh or, without faces, a PointCloud.
+
+        Colours (see `vertex_colors`) come along, without the opacity, which Open3D does not have. Normals are those of the
+        properties nx, ny and nz; a mesh without these gets those of its faces.
+        """
         import open3d
 
-        vertices = open3d.utility.Vector3dVector(np.array(self.vertices))
+        rows = open3d.utility.Vector3dVector
+        given, colors = normals_of(self._sound_properties()), self.vertex_colors()
+        vertices = rows(np.array(self.vertices))
         if not len(self.faces):
-            return open3d.geometry.PointCloud(vertices)
+            cloud = open3d.geometry.PointCloud(vertices)
+            if given is not None:
+                cloud.normals = rows(given)
+            if colors is not None:
+                cloud.colors = rows(np.ascontiguousarray(colors[:, :3]))
+            return cloud
         mesh = open3d.geometry.TriangleMesh(vertices, open3d.utility.Vector3iVector(self.faces.astype(np.int32)))
-        mesh.vertex_normals = open3d.utility.Vector3dVector(np.array(self.normals))
+        mesh.vertex_normals = rows(np.array(self.normals) if given is None else given)
+        if colors is not None:
+            mesh.vertex_colors = rows(np.ascontiguousarray(colors[:, :3]))
         return mesh
+
+    def vertex_colors(self) -> Floats | None:
+        """Returns the colours of the vertices, from 0 to 1, or None.
+
+        They are the properties red, green and blue, and alpha if it is there, or one property color, colour, rgb or rgba of
+        rows of 3 or 4 numbers; capitals do not matter. Unsigned integers of 8 and 16 bits are parts of 255 and of 65535.
+        Integers of more than 8 bits that are all at most 255 are parts of 255, as many LAS files have them. Floating-point
+        numbers are taken as they are.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, 3) or (n, 4), or None
+
+        Examples
+        --------
+        >>> import brio, numpy as np
+        >>> brio.Mesh([[0, 0, 0]], properties={"red": [51], "green": [0], "blue": [255]}).vertex_colors().tolist()
+        [[0.2, 0.0, 1.0]]
+        """
+        return colors_of(self._sound_properties())
 
     def to_pyvista(self) -> Any:
         """Returns a pyvista.UnstructuredGrid of tetrahedra if there are some, else a pyvista.PolyData."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import as_array
+from ._arrays import as_array, as_text
 from .errors import ArgumentError
 
 Properties = dict[str, NDArray[Any]]
@@ -25,8 +25,7 @@ def as_properties(properties: Any, count: int, what: str = "property", of: str =
     if not isinstance(properties, Mapping):
         raise ArgumentError(f"{what}: a dict of arrays is wanted, not {type(properties).__name__}")
     for name in properties:
-        if not isinstance(name, str):
-            raise ArgumentError(f"{what}: a name is a string, not {name!r}")
+        as_text(name, f"{what}: its name")
     return {name: _rows(f"{what} {name}", values, count, of) for name, values in properties.items()}
 
 
@@ -76,6 +75,61 @@ def from_means(columns: Properties, like: Properties) -> Properties:
         else:
             out[name] = values[rows]
     return out
+
+
+# --- colours and normals ---
+
+_COLORS = (("red", "green", "blue", "alpha"), ("r", "g", "b", "a"), ("diffuse_red", "diffuse_green", "diffuse_blue", "alpha"))
+_COLOR_ROWS = ("color", "colour", "colors", "colours", "rgb", "rgba")
+_NORMALS = ("nx", "ny", "nz")
+_NORMAL_ROWS = ("normal", "normals")
+
+
+def _stacked(properties: Properties, names: tuple[str, ...]) -> NDArray[Any] | None:
+    """Returns properties of one number each as columns, if all are there; their names in any case."""
+    lower = {name.lower(): values for name, values in properties.items()}
+    found = [lower[name] for name in names if name in lower and lower[name].ndim == 1]
+    return np.stack(found, axis=1) if len(found) == len(names) else None
+
+
+def _rows_of(properties: Properties, names: tuple[str, ...], columns: tuple[int, ...]) -> NDArray[Any] | None:
+    for name, values in properties.items():
+        if name.lower() in names and values.ndim == 2 and values.shape[1] in columns:
+            return values
+    return None
+
+
+def _numbers(rows: NDArray[Any] | None) -> NDArray[Any] | None:
+    return rows if rows is not None and rows.dtype.kind in "iuf" else None
+
+
+def colors_of(properties: Properties) -> NDArray[np.float64] | None:
+    """Returns colours as rows of 3 or 4 numbers from 0 to 1, or None."""
+    rows = None
+    for names in _COLORS:
+        if rows is None:
+            rows = _numbers(_stacked(properties, names))
+        if rows is None:
+            rows = _numbers(_stacked(properties, names[:3]))
+    if rows is None:
+        rows = _numbers(_rows_of(properties, _COLOR_ROWS, (3, 4)))
+    if rows is None:
+        return None
+    floats = rows.astype(np.float64)
+    if rows.dtype.kind != "f":
+        floats /= 255 if rows.dtype.itemsize == 1 or floats.max(initial=0) <= 255 else 65535
+    return np.clip(np.nan_to_num(floats), 0, 1)
+
+
+def normals_of(properties: Properties) -> NDArray[np.float64] | None:
+    """Returns the normals among properties, as rows, or None."""
+    rows = _numbers(_stacked(properties, _NORMALS))
+    if rows is None:
+        rows = _numbers(_rows_of(properties, _NORMAL_ROWS, (3,)))
+    return None if rows is None else np.ascontiguousarray(rows, np.float64)
+
+
+# --- numbers as files have them ---
 
 
 def _scalar(column: NDArray[Any], name: str) -> NDArray[Any]:

@@ -30,8 +30,12 @@ def why_not(points: Any, furthest_site: bool, qhull_options: str | bytes | None)
     return None
 
 
-def other_class(name: str, points: Any, fallback: str | None, options: dict[str, Any]) -> Any:
-    """Returns scipy's object if brio does not offer what is asked for and `fallback` is "scipy"; None if brio does."""
+def other_class(name: str, points: Any, fallback: str | None, options: dict[str, Any],
+                arguments: tuple[Any, ...] | None = None) -> Any:
+    """Returns scipy's object if brio does not offer what is asked for and `fallback` is "scipy"; None if brio does.
+
+    It is made of `arguments`, or else of the points.
+    """
     if fallback not in (None, "scipy"):
         raise ArgumentError(f'fallback: None or "scipy", not {fallback!r}')
     reason = why_not(points, options.get("furthest_site", False), options.get("qhull_options"))
@@ -41,4 +45,4 @@ def other_class(name: str, points: Any, fallback: str | None, options: dict[str,
         raise NotOfferedError(f'{reason}; fallback="scipy" asks scipy for it')
     import scipy.spatial
 
-    return getattr(scipy.spatial, name)(points, **options)
+    return getattr(scipy.spatial, name)(*((points,) if arguments is None else arguments), **options)

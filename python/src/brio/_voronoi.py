@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import Floats, as_floats, as_rows, as_weights, freeze_all, frozen
+from ._arrays import Floats, as_box, as_rows, as_weights, freeze_all, frozen
 from ._calls import Progress
 from ._delaunay import Delaunay
 from ._scaled import cross, difference, run_sums, shifted
@@ -34,8 +34,8 @@ class Voronoi:
     ----------
     points : array_like, shape (n, 2) or (n, 3)
     weights : array_like, shape (n,), optional
-    box : array_like, shape (2, 3) or (6,), optional
-        Low and high corner of a box that clips the cells; in space only.
+    box : array_like, shape (2, ndim) or (2 ndim,), optional
+        Low and high corner of a box that clips the cells.
     threads, progress, incremental, furthest_site, qhull_options, fallback
         As for Delaunay.
 
@@ -88,14 +88,15 @@ class Voronoi:
         self._empty = 1 if qhull_options is None or "Qz" in qhull_words(qhull_options) else 0
         self.box: Floats | None = None
         if box is not None:
-            self.box = as_floats(box, "box").ravel()
-            if rows.shape[1] == 2 or self.box.shape != (6,):
-                raise ArgumentError("box: low and high corner, 6 numbers, of points in space")
+            self.box = as_box(box, rows.shape[1])
         self._build(rows, as_weights(weights, len(rows)))
 
     def _build(self, points: Floats, weights: Floats | None) -> None:
         self.points, self.weights = points, weights
-        (self._build_plane if points.shape[1] == 2 else self._build_space)(points, weights)
+        build = self._build_space
+        if points.shape[1] == 2:
+            build = self._build_plane if self.box is None else self._build_rectangle
+        build(points, weights)
         freeze_all(self.__dict__)
 
     # --- in the plane: the dual of the triangulation ---
@@ -122,16 +123,53 @@ class Voronoi:
         self.ridge_items = np.stack([there[wanted], here[wanted]], axis=1).ravel()
         self.ridge_offsets = 2 * np.arange(len(self.ridge_points) + 1)
 
+    # --- in the plane, within a box: the bottoms of prisms ---
+
+    def _build_rectangle(self, points: Floats, weights: Floats | None) -> None:
+        """Takes the cells of the points at z = 0 in a box of both signs of z: each is a prism over the cell in the plane."""
+        corners = np.asarray(self.box).reshape(2, 2)
+        exponent = int(np.frexp(np.abs(corners).max())[1])  # by this power of two no volume leaves the range of doubles
+        flat = np.column_stack([shifted(points, -exponent), np.zeros(len(points))])
+        box = np.column_stack([shifted(corners, -exponent), [-1.0, 1.0]]).ravel()
+        heavy = None if weights is None else shifted(weights, -2 * exponent)
+        tri, c = self._cells_of(flat, heavy, box)
+        sites = c["site"].astype(np.int64)
+        owner = np.repeat(sites, np.diff(c["face_offsets"]).astype(np.int64))
+        low = c["vertices"][c["face_vertices"], 2] < 0
+        begin, end = _bottom_edges(c["corner_offsets"].astype(np.int64), c["face_vertices"].astype(np.int64), low)
+        sides = np.flatnonzero((begin >= 0) & (c["face_neighbours"] >= 0))
+        pairs = np.stack([owner[sides], c["face_neighbours"][sides]], axis=1)
+        same = _joined(pairs, begin[sides], end[sides], len(c["vertices"]))
+        bottoms = c["face_neighbours"] == -5
+        counts = np.diff(c["corner_offsets"]).astype(np.int64)
+        corners, sizes = _distinct_rounds(same[c["face_vertices"][np.repeat(bottoms, counts)]], counts[bottoms])
+        used, items = np.unique(corners, return_inverse=True)
+        place = np.full(len(same), -1, np.int64)
+        place[used] = np.arange(len(used))
+        self.vertices = shifted(c["vertices"][used, :2], exponent)
+        ends = place[same[np.stack([begin[sides], end[sides]], axis=1)]]
+        wanted = (pairs[:, 0] < pairs[:, 1]) & (ends[:, 0] != ends[:, 1])
+        self.ridge_points = pairs[wanted].astype(np.int32)
+        self.ridge_items = ends[wanted].ravel()
+        self.ridge_offsets = 2 * np.arange(len(self.ridge_points) + 1)
+        of_site = np.zeros(len(self.points), np.int64)
+        of_site[owner[bottoms]] = sizes
+        self._set_regions(tri.representatives, sites, of_site[sites], _reversed_runs(items.ravel(), sizes))
+
     # --- in space: the library's cells ---
 
-    def _build_space(self, points: Floats, weights: Floats | None) -> None:
+    def _cells_of(self, points: Floats, weights: Floats | None, box: Floats | None) -> tuple[Delaunay, dict[str, Any]]:
+        """Returns a triangulation of points in space and the library's cells."""
         tri = Delaunay(points, weights, threads=self.threads, progress=self.progress)
 
         def cells(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
-            return _native.cells(tri._handle, p, w, self.box, None, threads, report)
+            return _native.cells(tri._handle, p, w, box, None, threads, report)
 
         raw = _calls.of_points(cells, points, weights, self.threads, self.progress)
-        self.cells = {name: part if isinstance(part, float) else np.asarray(part) for name, part in raw.items()}
+        return tri, {name: part if isinstance(part, float) else np.asarray(part) for name, part in raw.items()}
+
+    def _build_space(self, points: Floats, weights: Floats | None) -> None:
+        tri, self.cells = self._cells_of(points, weights, self.box)
         c = self.cells
         self.vertices = c["vertices"]
         corners = np.diff(c["corner_offsets"]).astype(np.int64)
@@ -239,6 +277,59 @@ class Voronoi:
 
     def __repr__(self) -> str:
         return f"<brio.Voronoi of {self.npoints} points: {len(self.vertices)} vertices, {len(self.ridge_points)} ridges>"
+
+
+def _bottom_edges(offsets: Ints, corners: Ints, low: NDArray[np.bool_]) -> tuple[Ints, Ints]:
+    """Returns, for each face, the two low corners that follow each other, or -1: a side of a prism has one such pair."""
+    sizes = np.diff(offsets)
+    face = np.repeat(np.arange(len(sizes)), sizes)
+    following = np.arange(1, len(corners) + 1)
+    ends = offsets[1:][sizes > 0]
+    following[ends - 1] = offsets[:-1][sizes > 0]
+    here = np.flatnonzero(low & low[following])
+    begin, end = np.full(len(sizes), -1, np.int64), np.full(len(sizes), -1, np.int64)
+    begin[face[here]], end[face[here]] = corners[here], corners[following[here]]
+    return begin, end
+
+
+def _joined(pairs: Ints, begin: Ints, end: Ints, count: int) -> Ints:
+    """Returns for each of `count` corners the first corner of its vertex: a side that two cells share ends at two vertices.
+
+    Cells have corners of their own. The corner where a side begins in one cell is where it ends in the other one. A side
+    that only one of the two cells has is so short that rounding made a point of it in the other one: its ends are one vertex.
+    """
+    width = int(pairs.max(initial=0)) + 1
+    there, back = pairs[:, 0] * width + pairs[:, 1], pairs[:, 1] * width + pairs[:, 0]
+    order = np.argsort(there)
+    place = np.searchsorted(there, back, sorter=order)
+    mate = order[np.minimum(place, max(len(order) - 1, 0))]
+    both = there[mate] == back if len(order) else np.zeros(0, np.bool_)
+    a = np.concatenate([begin[both], end[both], begin[~both]])
+    b = np.concatenate([end[mate[both]], begin[mate[both]], end[~both]])
+    first = np.arange(count)
+    while (first[a] != first[b]).any():  # as often as half a vertex has cells, three or four almost always
+        least = np.minimum(first[a], first[b])
+        np.minimum.at(first, a, least)
+        np.minimum.at(first, b, least)
+    return first
+
+
+def _distinct_rounds(items: Ints, sizes: Ints) -> tuple[Ints, Ints]:
+    """Leaves out of runs, each taken as a round, what is equal to the one before it; returns items and sizes."""
+    ends = np.cumsum(sizes)
+    before = np.arange(-1, len(items) - 1)
+    before[(ends - sizes)[sizes > 0]] = ends[sizes > 0] - 1
+    kept = items != items[before]
+    run = np.repeat(np.arange(len(sizes)), sizes)
+    return items[kept], np.bincount(run[kept], minlength=len(sizes))
+
+
+def _reversed_runs(items: Ints, sizes: Ints) -> Ints:
+    """Returns runs one after the other, each backwards."""
+    ends = np.cumsum(sizes)
+    run = np.repeat(np.arange(len(sizes)), sizes)
+    out: Ints = items[(ends - 1)[run] - (np.arange(len(items)) - (ends - sizes)[run])]
+    return out
 
 
 def _areas(vertices: Floats, offsets: Ints, items: Ints) -> Floats:

@@ -1,5 +1,5 @@
-"""run_scipys_tests.py [--write TABLE]: runs the tests of the installed scipy for Delaunay, Voronoi, ConvexHull and linear
-interpolation with brio's classes in place of scipy's.
+"""run_scipys_tests.py [--write TABLE]: runs the tests of the installed scipy for Delaunay, Voronoi, ConvexHull, halfspaces,
+spheres, linear interpolation and griddata with brio's names in place of scipy's. QhullError is NoAnswerError there.
 
 Each test passes, or fails because of something that brio does not offer (NotOfferedError says what), or for a reason of
 reasons.tsv. Any other failure is one of brio, and so is a test of reasons.tsv that passes. --write writes the table of all
@@ -14,9 +14,12 @@ import types
 import warnings
 
 HERE = pathlib.Path(__file__).parent
-MODULES = {"scipy.spatial.tests.test_qhull": "spatial", "scipy.interpolate.tests.test_interpnd": "interpolate"}
+MODULES = {"scipy.spatial.tests.test_qhull": "spatial", "scipy.spatial.tests.test_spherical_voronoi": "sphere",
+           "scipy.interpolate.tests.test_interpnd": "interpolate", "scipy.interpolate.tests.test_ndgriddata": "griddata"}
+# What each module of tests is given in place of scipy's names, besides what `qhull` and `interpnd` have.
+NAMES = ["Delaunay", "Voronoi", "ConvexHull", "HalfspaceIntersection", "SphericalVoronoi", "LinearNDInterpolator", "griddata"]
 # Classes of scipy that have no counterpart here.
-ABSENT = {"Test_Qhull": "Qhull's own interface", "Test_HalfspaceIntersection": "no HalfspaceIntersection",
+ABSENT = {"Test_Qhull": "Qhull's own interface", "TestNearestNDInterpolator": "no NearestNDInterpolator",
           "TestEstimateGradients2DGlobal": "no CloughTocher2DInterpolator",
           "TestCloughTocher2DInterpolator": "no CloughTocher2DInterpolator"}
 
@@ -47,17 +50,19 @@ class Plugin:
     def pytest_collection_modifyitems(self, items):
         import brio
 
-        classes = {name: getattr(brio, name) for name in ("Delaunay", "Voronoi", "ConvexHull", "LinearNDInterpolator")}
+        classes = {name: getattr(brio, name) for name in NAMES}
+        classes["QhullError"] = brio.NoAnswerError
         for item in items:
             module = item.module
             if module.__name__ in self.patched:
                 continue
             self.patched.add(module.__name__)
-            module.qhull = Replaced(module.qhull, classes)
-            if hasattr(module, "interpnd"):
-                module.interpnd = Replaced(module.interpnd, classes)
-            if hasattr(module, "Voronoi"):
-                module.Voronoi = brio.Voronoi
+            for name in ("qhull", "interpnd"):
+                if hasattr(module, name):
+                    setattr(module, name, Replaced(getattr(module, name), classes))
+            for name in NAMES:
+                if hasattr(module, name):
+                    setattr(module, name, classes[name])
         items[:] = [item for item in items if class_of(item) not in ABSENT]
 
     def pytest_runtest_makereport(self, item, call):
@@ -73,7 +78,7 @@ def run():
 
     root = pathlib.Path(scipy.__file__).parent
     plugin = Plugin()
-    paths = [str(root / "spatial/tests/test_qhull.py"), str(root / "interpolate/tests/test_interpnd.py")]
+    paths = [str(root.joinpath(*name.split(".")[1:])) + ".py" for name in MODULES]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         pytest.main(["-q", "-p", "no:cacheprovider", "--tb=no", "--no-header", "-c", str(HERE / "pytest.ini"),
@@ -105,8 +110,8 @@ def judge(outcomes, reasons):
 def table(rows, version):
     counts = collections.Counter(outcome.partition(":")[0] for _, outcome in rows)
     lines = ["# scipy's own tests, run with brio's classes", "",
-             "Of scipy %s: `scipy/spatial/tests/test_qhull.py` and `scipy/interpolate/tests/test_interpnd.py`, with" % version,
-             "`Delaunay`, `Voronoi`, `ConvexHull` and `LinearNDInterpolator` replaced. Written by",
+             "Of scipy %s: %s, with" % (version, ", ".join("`%s.py`" % name.replace(".", "/") for name in MODULES)),
+             "%s replaced. Written by" % ", ".join("`%s`" % name for name in NAMES),
              "`python/tests/scipys/run_scipys_tests.py --write docs/python/scipy-tests.md`; `make check` runs the same tests",
              "and holds every outcome against this page.", "",
              "%d tests: %s." % (len(rows), ", ".join("%d %s" % (n, what) for what, n in sorted(counts.items()))), "",

@@ -337,6 +337,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     c.source.job = (brio_read_job){.path = from,
                                    .format = read.format,
                                    .columns = read.columns,
+                                   .flat = read.flat,
                                    .drop_invalid = read.drop_invalid,
                                    .salvage = read.salvage,
                                    .announced = BRIO_COUNT_UNKNOWN};

@@ -94,6 +94,21 @@ brio_axes_result brio_axes_of_names(const char (*names)[64], size_t count, size_
     return BRIO_AXES_FOUND;
 }
 
+brio_axes_result brio_pair_of_names(const char (*names)[64], size_t count, size_t axes[2]) {
+    int columns[NAMES], found[2] = {NONE, NONE};
+    find_known(names, count, columns);
+    for (int i = 0; i < PAIRS && found[0] == NONE; i++) {
+        if (columns[2 * i] == NONE || columns[2 * i + 1] == NONE) continue;
+        found[0] = columns[2 * i], found[1] = columns[2 * i + 1];
+    }
+    if (found[0] == NONE) return BRIO_AXES_UNKNOWN;
+    for (int k = 0; k < 2; k++) {
+        if (found[k] == SEVERAL) return BRIO_AXES_SEVERAL;
+        axes[k] = (size_t)found[k];
+    }
+    return BRIO_AXES_FOUND;
+}
+
 /* --- names that the caller gives --- */
 
 static brio_status take_name(brio_context *ctx, const char *columns, const char *word, size_t length, char name[64]) {
@@ -111,9 +126,10 @@ done:
     return status;
 }
 
-static brio_status check_names(brio_context *ctx, const char *columns, const char (*names)[64], size_t count) {
+static brio_status check_names(brio_context *ctx, const char *columns, bool flat, const char (*names)[64],
+                               size_t count) {
     brio_status status = BRIO_OK;
-    unsigned axes = 0;
+    unsigned axes = flat ? 4 : 0;
     for (size_t i = 0; i < count; i++) {
         for (size_t k = 0; k < i && names[i][0]; k++)
             BRIO_REQUIRE(ctx, strcmp(names[i], names[k]) != 0, BRIO_ERR_ARGUMENT, "columns \"%s\": %s is there twice",
@@ -126,7 +142,7 @@ done:
     return status;
 }
 
-brio_status brio_columns_parse(brio_context *ctx, const char *columns, char (**names)[64], size_t *count) {
+brio_status brio_columns_parse(brio_context *ctx, const char *columns, bool flat, char (**names)[64], size_t *count) {
     brio_status status = BRIO_OK;
     char(*list)[64] = NULL;
     size_t n = 1;
@@ -138,7 +154,7 @@ brio_status brio_columns_parse(brio_context *ctx, const char *columns, char (**n
         BRIO_TRY(take_name(ctx, columns, word, length, list[i]));
         word += length + 1;
     }
-    BRIO_TRY(check_names(ctx, columns, (const char(*)[64])list, n));
+    BRIO_TRY(check_names(ctx, columns, flat, (const char(*)[64])list, n));
     *names = list;
     *count = n;
     list = NULL;

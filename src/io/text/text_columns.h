@@ -17,10 +17,13 @@ typedef enum {
  *  axes  receives the columns; set only with BRIO_AXES_FOUND. */
 brio_axes_result brio_axes_of_names(const char (*names)[64], size_t count, size_t axes[3]);
 
+/** Finds x and y among names that have no height, for BRIO_AXES_UNKNOWN of brio_axes_of_names.   axes  2. */
+brio_axes_result brio_pair_of_names(const char (*names)[64], size_t count, size_t axes[2]);
+
 /** Reads the names that the caller gives to the columns: "x,y,z,-,nx"; - and _ become empty names.
- *  names  owned by the caller (brio_release).
+ *  flat   z need not be there.   names  owned by the caller (brio_release).
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (x, y or z is missing; a name is there twice, or longer than 63 characters),
  *  BRIO_ERR_NO_MEMORY. */
-brio_status brio_columns_parse(brio_context *ctx, const char *columns, char (**names)[64], size_t *count);
+brio_status brio_columns_parse(brio_context *ctx, const char *columns, bool flat, char (**names)[64], size_t *count);
 
 #endif

@@ -17,10 +17,10 @@
 #include "io/number.h"
 #include "io/text/text_columns.h"
 #include "io/text/text_fields.h"
-#include "io/number.h"
 #include "io/textrow.h"
 #include <ctype.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -50,7 +50,7 @@ typedef struct {
     bool header_passed; /* names are given, and the file's own line of names was passed over */
     column *columns;
     size_t num_columns;
-    size_t axes[3]; /* columns of x, y, z */
+    size_t axes[3]; /* columns of x, y, z; NO_COLUMN for the z of a flat text */
     bool counted;   /* whether the first line announced a number of rows */
     uint64_t promised;
     size_t count_line;
@@ -63,6 +63,8 @@ typedef struct {
     double least;         /* x of these rows */
     uint64_t found[3], due[3]; /* sums of powers 1 to 3, modulo 2^64, of x, and of 0, 1, 2 and so on */
 } xyz_reader;
+
+enum { NO_COLUMN = INT_MAX };
 
 /* --- messages --- */
 
@@ -115,6 +117,16 @@ static void copy_name(char name[64], const brio_field *f) {
     brio_utf8_copy(name, 64, bytes);
 }
 
+/* Finds x, y and z among names. Those of a flat text may have no height. */
+static brio_axes_result axes_of(const xyz_reader *r, const name_list *list, size_t axes[3]) {
+    const char(*names)[64] = (const char(*)[64])list->at;
+    brio_axes_result result = brio_axes_of_names(names, list->count, axes);
+    if (result != BRIO_AXES_UNKNOWN || !r->builder->flat) return result;
+    result = brio_pair_of_names(names, list->count, axes);
+    axes[2] = NO_COLUMN;
+    return result;
+}
+
 /* Takes the fields as names for a try. */
 static brio_status try_names(xyz_reader *r, brio_axes_result *result, size_t axes[3]) {
     brio_status status = BRIO_OK;
@@ -122,7 +134,7 @@ static brio_status try_names(xyz_reader *r, brio_axes_result *result, size_t axe
     BRIO_TRY(BRIO_RESERVE(r->stream->ctx, t->at, t->capacity, r->fields.count));
     t->count = r->fields.count;
     for (size_t i = 0; i < t->count; i++) copy_name(t->at[i], &r->fields.at[i]);
-    *result = brio_axes_of_names((const char(*)[64])t->at, t->count, axes);
+    *result = axes_of(r, t, axes);
 done:
     return status;
 }
@@ -211,7 +223,7 @@ static brio_status place_by_comment(xyz_reader *r, brio_axes_result result) {
     if (count == found && result == BRIO_AXES_ANGLES) return unclear_columns(r, angles_are_no_lengths);
     if (count == found && result == BRIO_AXES_SEVERAL) return unclear_columns(r, several_columns);
     if (count == found) return BRIO_OK;
-    bool there = axes[0] < found && axes[1] < found && axes[2] < found;
+    bool there = axes[0] < found && axes[1] < found && (axes[2] < found || axes[2] == NO_COLUMN);
     if (result == BRIO_AXES_FOUND && there && !are_first(axes))
         return unclear_columns(r, "a comment names columns, but not as many as there are");
     r->names.count = 0;
@@ -239,6 +251,7 @@ static brio_status place_as_given(xyz_reader *r) {
     if (r->fields.count < r->names.count)
         return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: %zu columns, but %zu are named (--columns)", s->name,
                          s->line, r->fields.count, r->names.count);
+    r->axes[2] = NO_COLUMN;
     for (size_t i = 0; i < r->names.count; i++) {
         const char *name = r->names.at[i];
         if (name[0] >= 'x' && name[0] <= 'z' && !name[1]) r->axes[name[0] - 'x'] = i;
@@ -249,8 +262,9 @@ static brio_status place_as_given(xyz_reader *r) {
 static brio_status place_axes(xyz_reader *r) {
     if (r->source == NAMES_GIVEN) return place_as_given(r);
     first_three(r->axes);
+    if (r->source == NAMES_NONE && r->fields.count == 2) r->axes[2] = NO_COLUMN; /* of a flat text */
     if (r->source == NAMES_NONE) return BRIO_OK;
-    brio_axes_result result = brio_axes_of_names((const char(*)[64])r->names.at, r->names.count, r->axes);
+    brio_axes_result result = axes_of(r, &r->names, r->axes);
     return r->source == NAMES_COMMENT ? place_by_comment(r, result) : place_by_names(r, result);
 }
 
@@ -334,7 +348,8 @@ static brio_status plan_columns(xyz_reader *r) {
     size_t count = r->names.count > found ? r->names.count : found;
     BRIO_TRY(BRIO_ALLOC_ZERO(r->stream->ctx, r->columns, count));
     r->num_columns = count;
-    for (size_t k = 0; k < 3; k++) r->columns[r->axes[k]] = (column){COLUMN_AXIS, k};
+    for (size_t k = 0; k < 3; k++)
+        if (r->axes[k] != NO_COLUMN) r->columns[r->axes[k]] = (column){COLUMN_AXIS, k};
     for (size_t i = 0; i < found; i++) {
         if (r->columns[i].role != COLUMN_IGNORED) continue;
         if (is_property(r, i))
@@ -399,6 +414,10 @@ static brio_status read_point(const xyz_reader *r, double point[3]) {
     brio_stream *s = r->stream;
     for (int k = 0; k < 3; k++) {
         size_t i = r->axes[k];
+        if (i == NO_COLUMN) {
+            point[k] = 0;
+            continue;
+        }
         if (i >= r->fields.count)
             return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: expected %s numbers, found %zu", s->name, s->line,
                              i < 3 ? "3" : "more", r->fields.count);
@@ -445,8 +464,9 @@ static brio_status read_first(xyz_reader *r) {
         r->count_line = s->line;
         return BRIO_OK;
     }
-    BRIO_REQUIRE(s->ctx, r->fields.count >= 3, BRIO_ERR_FORMAT, "%s: line %zu: expected 3 numbers, found %zu", s->name,
-                 s->line, r->fields.count - count_words(r));
+    size_t least = r->builder->flat ? 2 : 3;
+    BRIO_REQUIRE(s->ctx, r->fields.count >= least, BRIO_ERR_FORMAT, "%s: line %zu: expected %zu numbers, found %zu",
+                 s->name, s->line, least, r->fields.count - count_words(r));
     BRIO_TRY(try_plain_names(r, &are_names));
     if (are_names && r->source == NAMES_GIVEN)
         r->header_passed = true;
@@ -515,7 +535,7 @@ brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) 
     char *line;
     brio_builder_stream(b, BRIO_COUNT_UNKNOWN);
     if (columns) {
-        BRIO_TRY(brio_columns_parse(s->ctx, columns, &r.names.at, &r.names.count));
+        BRIO_TRY(brio_columns_parse(s->ctx, columns, b->flat, &r.names.at, &r.names.count));
         r.source = NAMES_GIVEN;
     }
     for (;;) {
