@@ -1464,6 +1464,12 @@ typedef struct brio_labeled_delaunay_options {
                          of the planes of their triangles, until a quarter of the triangles is left; the surface stays
                          the same as a manifold; default 0 */
     int reserved_int;
+    /* Evidence of the side from which the points were seen, which is outside; NULL: none. See brio_labeled_delaunay. */
+    const double *normals;     /* #P by 3, of any length; where one is 0 or not finite nothing is known */
+    const double *origins;     /* num_origins by 3: places of scanners */
+    size_t num_origins;        /* default 0 */
+    const uint32_t *origin_of; /* #P: the row of `origins` of each point; beyond num_origins: not known. NULL: all points have
+                                  the one row that there is, or as many rows as points, row p for point p */
 } brio_labeled_delaunay_options;
 
 BRIO_API void brio_labeled_delaunay_options_init(brio_labeled_delaunay_options *options, size_t size);
@@ -1491,6 +1497,10 @@ typedef struct brio_labeled_delaunay_stats {
     size_t left_out;         /* triangles that the option `open` left out */
     double uncertain_share;  /* with options.confidence: the share of the vertices whose confidence is under 0.7 */
     double simplify_seconds; /* for the mesh, and for its simplification */
+    unsigned evidence;       /* bits 1: normals, 2: origins were of use; 0: the orientation is a guess */
+    unsigned reserved;
+    size_t told;      /* samples of which evidence tells the outside */
+    double agreement; /* the share of these whose side in the result is what evidence tells */
 } brio_labeled_delaunay_stats;
 
 /** Reconstructs a closed surface from samples: the boundary of the Delaunay tetrahedra that are labeled inner. A sample

@@ -23,6 +23,7 @@
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "reconstruct/cocone/sample_orientation.h"
+#include "reconstruct/labeled_delaunay/evidence.h"
 #include "reconstruct/labeled_delaunay/open_holes.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
@@ -61,6 +62,7 @@ typedef struct {
     brio_triangulation *delaunay;
     brio_pole_vectors dual;
     uint8_t *turned;       /* #P */
+    float *own;            /* #P, or NULL: what evidence tells of the samples */
     brio_vote_graph graph; /* until the surface is found */
     uint8_t *label;        /* #T and #P */
     uint32_t *faces;       /* #F by 3 */
@@ -108,12 +110,17 @@ static brio_status orient(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_cocones cocones = {0};
     size_t candidates;
+    const brio_labeled_delaunay_options *o = r->options;
+    brio_evidence evidence = {o->normals, o->origins, o->origin_of, o->num_origins, r->order, r->exponent};
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->spacing, r->num_points));
     BRIO_TRY(brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing));
     BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
     brio_cocones_select(r->ctx, &cocones, &candidates);
     BRIO_TRY(brio_orient_samples(r->ctx, &cocones, &r->turned));
+    BRIO_TRY(brio_weigh_evidence(r->ctx, &evidence, &cocones, &r->own, &r->stats.evidence));
+    for (size_t p = 0; p < r->num_points && r->own; p++)
+        if (r->own[p] != 0) r->turned[p] = r->own[p] < 0;
     lap(r, &r->stats.poles_seconds);
 done:
     brio_cocones_free(r->ctx, &cocones);
@@ -147,21 +154,43 @@ done:
     return status;
 }
 
+/* Counts the samples on which evidence tells something, and those whose labels agree with it. */
+static void count_agreement(reconstruction *r) {
+    size_t agree = 0;
+    for (size_t p = 0; p < r->num_points && r->own; p++) {
+        r->stats.told += r->own[p] != 0;
+        agree += r->own[p] != 0 && (r->own[p] < 0) == r->turned[p];
+    }
+    r->stats.agreement = r->stats.told ? (double)agree / (double)r->stats.told : 0;
+}
+
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
     size_t num_tets = r->dual.t.count;
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, num_tets + r->num_points));
-    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, &r->graph));
+    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, r->own, &r->graph));
     BRIO_TRY(brio_vote_labels(&r->graph, r->turned, r->label, &r->stats.undecided));
     r->stats.energy = brio_vote_energy(&r->graph, r->label);
     lap(r, &r->stats.labels_seconds);
     BRIO_TRY(drop_specks(r));
     BRIO_TRY(mend(r));
     for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
+    count_agreement(r);
     lap(r, &r->stats.manifold_seconds);
     if (!r->options->confidence) brio_vote_graph_free(&r->graph);
 done:
     return status;
+}
+
+/* Leaves out the facets between infinite tetrahedra: there the surface is open. */
+static void drop_infinite(const reconstruction *r, brio_facets *boundary) {
+    size_t count = 0;
+    for (size_t n = 0; n < boundary->count; n++) {
+        uint32_t facet = boundary->facet[n], mate = *brio_mate(&r->dual.t, facet);
+        if (brio_tet_of(facet) < r->dual.num_finite || brio_tet_of(mate) < r->dual.num_finite)
+            boundary->facet[count++] = facet;
+    }
+    boundary->count = count;
 }
 
 /* Lists the boundary facets counterclockwise as seen from their outer tetrahedra. */
@@ -181,12 +210,13 @@ static brio_status extract(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_facets boundary = {0};
     size_t changed = 0;
-    brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = true, .label = r->label};
+    brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = !r->own, .label = r->label};
     BRIO_TRY(brio_make_manifold(r->ctx, &labels, &boundary, &changed));
     r->stats.relabeled += changed;
     BRIO_TRY(drop_specks(r));
     brio_release(r->ctx, boundary.facet);
     BRIO_TRY(brio_boundary_facets(r->ctx, &labels, &boundary));
+    drop_infinite(r, &boundary);
     BRIO_REQUIRE(r->ctx, boundary.count > 0, BRIO_ERR_NO_ANSWER, "no inside found");
     BRIO_TRY(list_faces(r, &boundary));
     if (r->options->confidence) {
@@ -294,6 +324,7 @@ static void release(reconstruction *r) {
     brio_release(r->ctx, r->points);
     brio_release(r->ctx, r->spacing);
     brio_release(r->ctx, r->turned);
+    brio_release(r->ctx, r->own);
     brio_release(r->ctx, r->label);
     brio_release(r->ctx, r->faces);
     brio_release(r->ctx, r->confidence);
