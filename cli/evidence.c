@@ -101,7 +101,7 @@ done:
     return status;
 }
 
-brio_status cli_find_evidence(run *r, const evidence_options *options, const brio_mesh *points, evidence *out) {
+brio_status cli_find_evidence(run *r, const evidence_options *options, brio_mesh *points, evidence *out) {
     brio_status status = BRIO_OK;
     *out = (evidence){0};
     if (!options->ignore_normals) TRY(take_normals(r, points, out));
@@ -109,6 +109,7 @@ brio_status cli_find_evidence(run *r, const evidence_options *options, const bri
         TRY(take_from(r, options->from, out));
     else if (!options->ignore_origins)
         TRY(take_origins(r, points, out));
+    for (int k = 0; k < 3 && r->added_origins; k++) brio_mesh_remove_property(points, ORIGINS[k]);
 done:
     return status;
 }

@@ -30,9 +30,10 @@ typedef struct evidence {
 /** BRIO_ERR_ARGUMENT when --from is no place. */
 brio_status cli_check_evidence(run *r, const evidence_options *options);
 
-/** Takes the evidence of points from their properties and from the options.
+/** Takes the evidence of points from their properties and from the options. Places of scanners that the reader added as
+ *  properties are then removed.
  *  out  freed with cli_evidence_free, on failure too. */
-brio_status cli_find_evidence(run *r, const evidence_options *options, const brio_mesh *points, evidence *out);
+brio_status cli_find_evidence(run *r, const evidence_options *options, brio_mesh *points, evidence *out);
 void cli_evidence_free(evidence *e);
 
 #endif

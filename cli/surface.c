@@ -262,7 +262,7 @@ static brio_labeled_delaunay_options labeled_delaunay_options(const run *r) {
 }
 
 /* open  set to true if the surface ends where the points do. */
-static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh **surface, bool *open) {
+static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surface, bool *open) {
     brio_labeled_delaunay_options o = labeled_delaunay_options(r);
     brio_labeled_delaunay_stats s = {.size = sizeof s};
     const arguments *a = r->arguments;
@@ -387,7 +387,7 @@ static void suggest(run *r, brio_status status, const brio_mesh *points) {
     if (a->method != COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
 }
 
-static brio_status reconstruct(run *r, const brio_mesh *points, brio_mesh **result, bool *open) {
+static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, bool *open) {
     switch (method_of(r->arguments)) {
     case POWER_CRUST:
         return power_crust(r, points, result);
@@ -407,6 +407,7 @@ static brio_status surface(run *r) {
     TRY(cli_check_evidence(r, &a->evidence));
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
+    r->wants_origins = method_of(a) == LABELED_DELAUNAY && !a->evidence.ignore_origins && !a->evidence.from;
     TRY(cli_read_points(r, r->operands[0], &points));
     if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
     bool open = a->method == COCONE || a->crust.open > 0;

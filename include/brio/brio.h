@@ -784,6 +784,8 @@ BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges,
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has a property of that name, the name is empty or has over 63 bytes, or
  *  there is no such type), BRIO_ERR_NO_MEMORY. Names are UTF-8: in one that is not, other bytes are taken for Latin-1. */
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
+/** Removes the property of that name, if there is one. */
+BRIO_API void brio_mesh_remove_property(brio_mesh *mesh, const char *name);
 /** Returns the property of that name, or NULL. */
 BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);
 /** Adds metadata, or replaces that of the same name.   bytes  copied.
@@ -1769,6 +1771,9 @@ typedef struct brio_read_options {
                               has been read; docs/formats.md lists the names. Default NULL */
     void *left_out_user;
     brio_read_notes *notes; /* default NULL, or receives what was found */
+    int *origins; /* not NULL: adds the places of the scanners as properties x_origin, y_origin, z_origin (float64) of their
+                     points, NaN where a place is not known, and receives 1; receives 0 if the file has such properties
+                     or tells no place. docs/formats.md tells when PTX, E57 and PCD files do. Default NULL */
 } brio_read_options;
 
 BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);

@@ -25,6 +25,7 @@
 #include "reconstruct/cocone/sample_orientation.h"
 #include "reconstruct/labeled_delaunay/evidence.h"
 #include "reconstruct/labeled_delaunay/open_holes.h"
+#include "reconstruct/labeled_delaunay/rim_axes.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
 #include "reconstruct/labeled_delaunay/vote_confidence.h"
@@ -118,6 +119,7 @@ static brio_status orient(reconstruction *r) {
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
     brio_cocones_select(r->ctx, &cocones, &candidates);
     BRIO_TRY(brio_orient_samples(r->ctx, &cocones, &r->turned));
+    if (o->normals || o->origins) BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
     BRIO_TRY(brio_weigh_evidence(r->ctx, &evidence, &cocones, &r->own, &r->stats.evidence));
     for (size_t p = 0; p < r->num_points && r->own; p++)
         if (r->own[p] != 0) r->turned[p] = r->own[p] < 0;
