@@ -109,6 +109,11 @@ brio_status cli_find_evidence(run *r, const evidence_options *options, brio_mesh
         TRY(take_from(r, options->from, out));
     else if (!options->ignore_origins)
         TRY(take_origins(r, points, out));
+    out->taken = brio_evidence_default();
+    out->taken.normals = out->normals;
+    out->taken.origins = out->origins;
+    out->taken.num_origins = out->num_origins;
+    out->taken.origin_of = out->origin_of;
     for (int k = 0; k < 3 && r->added_origins; k++) brio_mesh_remove_property(points, ORIGINS[k]);
 done:
     return status;

@@ -20,11 +20,12 @@ typedef struct evidence_options {
      "do not use the scanners' places in the file", 0}
 /* clang-format on */
 
-/** Arrays as brio_labeled_delaunay_options has them. */
+/** Arrays of the evidence, and the same as the library takes it. */
 typedef struct evidence {
     double *normals, *origins;
     uint32_t *origin_of;
     size_t num_origins;
+    brio_evidence taken;
 } evidence;
 
 /** BRIO_ERR_ARGUMENT when --from is no place. */

@@ -53,7 +53,7 @@ static const option options[] = {
      "count the pairs of faces that run through each other", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay and power-crust", 0},
     SOLID_ROWS(arguments, crust),
-    {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay, cocone and tight-cocone", 0},
     EVIDENCE_ROWS(arguments, evidence),
     {"", 0, OPTION_TITLE, 0, NULL, "options of power-crust (each of them chooses it)", 0},
     POWER_CRUST_ROWS(arguments, crust),
@@ -164,7 +164,7 @@ static void report_density(run *r, const brio_cocone_stats *s) {
     if (s->r_median > MOST_R) cli_warn(r, WARNING_DENSITY, s->r_median);
 }
 
-static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) {
+static brio_status cocone(run *r, brio_mesh *points, brio_mesh **surface) {
     const arguments *a = r->arguments;
     brio_cocone_options o = brio_cocone_options_default();
     brio_cocone_stats s = {.size = sizeof s};
@@ -177,23 +177,25 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     o.extraction = (brio_extraction)a->extraction;
     uint64_t work = 0;
     size_t usual;
+    evidence e = {0};
     brio_status status = cli_usual_points(r, points, NULL, false, &usual);
     if (status == BRIO_OK) status = brio_estimate_cocone(r->ctx, usual, &o, &work);
-    status = cli_require_work(r, status, points, work);
-    if (status != BRIO_OK) return status;
-    status = brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
-    if (status != BRIO_OK) return status;
+    TRY(cli_require_work(r, status, points, work));
+    TRY(cli_find_evidence(r, &a->evidence, points, &e));
+    if (a->pieces <= 1) o.evidence = &e.taken;
+    TRY(brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
     cli_stage(r, "delaunay", s.delaunay_seconds);
     cli_stage(r, "poles", s.poles_seconds);
     cli_stage(r, "candidates", s.candidates_seconds);
     cli_stage(r, "label", s.labels_seconds);
     cli_stage(r, "manifold", s.manifold_seconds);
     cli_stage(r, "density", s.density_seconds);
-    status = complete(r, points, NULL, s.samples, *surface);
-    if (status != BRIO_OK) return status;
+    TRY(complete(r, points, NULL, s.samples, *surface));
     report_cocone(r, &s);
     if (o.density) report_density(r, &s);
-    return BRIO_OK;
+done:
+    cli_evidence_free(&e);
+    return status;
 }
 
 /* --- the labeled Delaunay triangulation --- */
@@ -277,10 +279,7 @@ static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surfa
     samples = malloc((points->num_vertices + 1) * sizeof *samples);
     if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices);
     TRY(cli_find_evidence(r, &a->evidence, points, &e));
-    o.normals = e.normals;
-    o.origins = e.origins;
-    o.num_origins = e.num_origins;
-    o.origin_of = e.origin_of;
+    o.evidence = &e.taken;
     TRY(brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, samples, &s));
     report_labeled_delaunay_stages(r, &s);
     if (a->crust.normals) TRY(normals_of_points(r, a->crust.normals, points, *surface, samples));
@@ -315,7 +314,8 @@ static brio_status check_method(run *r) {
     enum {
         SOLIDS = 1 << LABELED_DELAUNAY | 1 << POWER_CRUST,
         CRUST = 1 << POWER_CRUST,
-        COCONES = 1 << COCONE | 1 << TIGHT_COCONE
+        COCONES = 1 << COCONE | 1 << TIGHT_COCONE,
+        SIDED = 1 << LABELED_DELAUNAY | COCONES
     };
     const method_option given[] = {{"theta", a->theta != 0, COCONES},
                                    {"boundaries", a->boundaries, COCONES},
@@ -331,9 +331,9 @@ static brio_status check_method(run *r) {
                                    {"simplify", a->crust.simplify, SOLIDS},
                                    {"open", a->crust.open != 0, SOLIDS},
                                    {"normals", a->crust.normals != NULL, SOLIDS},
-                                   {"from", a->evidence.from != NULL, 1 << LABELED_DELAUNAY},
-                                   {"ignore-normals", a->evidence.ignore_normals, 1 << LABELED_DELAUNAY},
-                                   {"ignore-origins", a->evidence.ignore_origins, 1 << LABELED_DELAUNAY}};
+                                   {"from", a->evidence.from != NULL, SIDED},
+                                   {"ignore-normals", a->evidence.ignore_normals, SIDED},
+                                   {"ignore-origins", a->evidence.ignore_origins, SIDED}};
     for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
         char names[128] = "";
         if (!given[i].given || given[i].methods >> method_of(a) & 1) continue;
@@ -407,7 +407,7 @@ static brio_status surface(run *r) {
     TRY(cli_check_evidence(r, &a->evidence));
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
-    r->wants_origins = method_of(a) == LABELED_DELAUNAY && !a->evidence.ignore_origins && !a->evidence.from;
+    r->wants_origins = method_of(a) != POWER_CRUST && !a->evidence.ignore_origins && !a->evidence.from;
     TRY(cli_read_points(r, r->operands[0], &points));
     if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
     bool open = a->method == COCONE || a->crust.open > 0;

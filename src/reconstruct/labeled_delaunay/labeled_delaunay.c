@@ -22,10 +22,10 @@
 #include "order/canonical_points.h"
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
+#include "reconstruct/cocone/rim_axes.h"
+#include "reconstruct/cocone/sample_evidence.h"
 #include "reconstruct/cocone/sample_orientation.h"
-#include "reconstruct/labeled_delaunay/evidence.h"
 #include "reconstruct/labeled_delaunay/open_holes.h"
-#include "reconstruct/labeled_delaunay/rim_axes.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
 #include "reconstruct/labeled_delaunay/vote_confidence.h"
@@ -63,7 +63,8 @@ typedef struct {
     brio_triangulation *delaunay;
     brio_pole_vectors dual;
     uint8_t *turned;       /* #P */
-    float *own;            /* #P, or NULL: what evidence tells of the samples */
+    brio_sample_evidence evidence;
+    float *own;            /* #P, or NULL: what evidence tells of the samples, in BRIO_VOTE_UNIT */
     brio_vote_graph graph; /* until the surface is found */
     uint8_t *label;        /* #T and #P */
     uint32_t *faces;       /* #F by 3 */
@@ -111,18 +112,17 @@ static brio_status orient(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_cocones cocones = {0};
     size_t candidates;
-    const brio_labeled_delaunay_options *o = r->options;
-    brio_evidence evidence = {o->normals, o->origins, o->origin_of, o->num_origins, r->order, r->exponent};
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->spacing, r->num_points));
     BRIO_TRY(brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing));
     BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
     brio_cocones_select(r->ctx, &cocones, &candidates);
     BRIO_TRY(brio_orient_samples(r->ctx, &cocones, &r->turned));
-    if (o->normals || o->origins) BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
-    BRIO_TRY(brio_weigh_evidence(r->ctx, &evidence, &cocones, &r->own, &r->stats.evidence));
-    for (size_t p = 0; p < r->num_points && r->own; p++)
-        if (r->own[p] != 0) r->turned[p] = r->own[p] < 0;
+    r->evidence.order = r->order;
+    r->evidence.exponent = r->exponent;
+    if (brio_has_evidence(&r->evidence)) BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
+    BRIO_TRY(brio_orient_by_evidence(r->ctx, &r->evidence, &cocones, r->turned, &r->own, &r->stats.evidence));
+    for (size_t p = 0; p < r->num_points && r->own; p++) r->own[p] *= (float)BRIO_VOTE_UNIT;
     lap(r, &r->stats.poles_seconds);
 done:
     brio_cocones_free(r->ctx, &cocones);
@@ -156,16 +156,6 @@ done:
     return status;
 }
 
-/* Counts the samples on which evidence tells something, and those whose labels agree with it. */
-static void count_agreement(reconstruction *r) {
-    size_t agree = 0;
-    for (size_t p = 0; p < r->num_points && r->own; p++) {
-        r->stats.told += r->own[p] != 0;
-        agree += r->own[p] != 0 && (r->own[p] < 0) == r->turned[p];
-    }
-    r->stats.agreement = r->stats.told ? (double)agree / (double)r->stats.told : 0;
-}
-
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
     size_t num_tets = r->dual.t.count;
@@ -177,7 +167,7 @@ static brio_status label(reconstruction *r) {
     BRIO_TRY(drop_specks(r));
     BRIO_TRY(mend(r));
     for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
-    count_agreement(r);
+    r->stats.agreement = brio_evidence_agreement(r->own, r->turned, r->num_points, &r->stats.told);
     lap(r, &r->stats.manifold_seconds);
     if (!r->options->confidence) brio_vote_graph_free(&r->graph);
 done:
@@ -349,6 +339,7 @@ brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_
                  (int)o.noise);
     BRIO_REQUIRE(ctx, o.open >= 0 && o.open < INFINITY, BRIO_ERR_ARGUMENT,
                  "open: %g spacings, expected a finite number, 0 or more", o.open);
+    BRIO_TRY(brio_take_evidence(ctx, o.evidence, num_points, &r.evidence));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
     brio_progress_part(ctx, bar, 0, o.simplify ? 0.8 : 1);
     BRIO_TRY(find_surface(&r, points));

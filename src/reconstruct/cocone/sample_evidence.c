@@ -12,11 +12,11 @@
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009.
  * Differs from the paper: scanners vote on the sides of samples, and these on tetrahedra. Lines of sight through
  *                         tetrahedra gain nothing beside that. */
-#include "reconstruct/labeled_delaunay/evidence.h"
+#include "reconstruct/cocone/sample_evidence.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/vector.h"
-#include "reconstruct/labeled_delaunay/vote_graph.h"
+#include "base/versioned.h"
 #include <math.h>
 
 /* CLASSES: of |cosine|. FEW: pairs of a class that tell its rate. All chosen. */
@@ -28,8 +28,25 @@ static const double PARALLEL = 0.5;
 /* In log-odds: evidence under LEAST in the mean is drawn by lot; MOST is the largest weight of a sample. Chosen. */
 static const double LEAST = 0.3, MOST = 6;
 
+static const brio_evidence STANDARD = {.size = sizeof STANDARD};
+
+BRIO_OPTIONS_INIT(brio_evidence)
+
+brio_status brio_take_evidence(brio_context *ctx, const brio_evidence *given, size_t num_points,
+                               brio_sample_evidence *out) {
+    brio_status status = BRIO_OK;
+    out->given = STANDARD;
+    if (given) BRIO_TRY(BRIO_TAKE(ctx, brio_evidence, given, &out->given));
+    const brio_evidence *e = &out->given;
+    BRIO_REQUIRE(ctx, !e->origins || e->origin_of || e->num_origins == 1 || e->num_origins == num_points,
+                 BRIO_ERR_ARGUMENT, "%zu places of scanners for %zu points: which saw which?", e->num_origins,
+                 num_points);
+done:
+    return status;
+}
+
 typedef struct {
-    const brio_evidence *e;
+    const brio_sample_evidence *e;
     const brio_cocones *c;
     unsigned kind;
     float *cosine; /* #P: between the direction of the evidence and the axis; 0 where nothing is known */
@@ -45,16 +62,17 @@ static int class_of(float cosine) {
 
 /* Writes the direction that the evidence of a sample gives; zero where there is none. */
 static void direction(const weighing *w, size_t p, double to[3]) {
-    const brio_evidence *e = w->e;
+    const brio_sample_evidence *e = w->e;
+    const brio_evidence *given = &e->given;
     size_t point = e->order[p];
     const double *x = w->c->dual->points + 3 * p;
     to[0] = to[1] = to[2] = 0;
     if (w->kind == BRIO_EVIDENCE_NORMALS) {
-        for (size_t k = 0; k < 3; k++) to[k] = e->normals[3 * point + k];
+        for (size_t k = 0; k < 3; k++) to[k] = given->normals[3 * point + k];
         return;
     }
-    size_t at = e->origin_of ? e->origin_of[point] : e->num_origins == 1 ? 0 : point;
-    for (size_t k = 0; k < 3 && at < e->num_origins; k++) to[k] = ldexp(e->origins[3 * at + k], -e->exponent) - x[k];
+    size_t at = given->origin_of ? given->origin_of[point] : given->num_origins == 1 ? 0 : point;
+    for (size_t k = 0; k < 3 && at < given->num_origins; k++) to[k] = ldexp(given->origins[3 * at + k], -e->exponent) - x[k];
 }
 
 static void find_cosines(void *user, size_t begin, size_t end, int thread) {
@@ -117,12 +135,12 @@ static void add_weights(void *user, size_t begin, size_t end, int thread) {
     const weighing *w = user;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        double weight = BRIO_VOTE_UNIT * w->weight[class_of(w->cosine[p])];
+        double weight = w->weight[class_of(w->cosine[p])];
         if (w->cosine[p] != 0) w->own[p] += (float)(w->cosine[p] > 0 ? weight : -weight);
     }
 }
 
-brio_status brio_weigh_evidence(brio_context *ctx, const brio_evidence *e, const brio_cocones *c, float **own,
+brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c, float **own,
                                 unsigned *used) {
     brio_status status = BRIO_OK;
     size_t n = c->dual->num_points, tets = c->dual->t.count;
@@ -130,11 +148,12 @@ brio_status brio_weigh_evidence(brio_context *ctx, const brio_evidence *e, const
     weighing w = {.e = e, .c = c};
     *own = NULL;
     *used = 0;
-    if (!e->normals && !e->origins) return BRIO_OK;
+    const brio_evidence *given = &e->given;
+    if (!brio_has_evidence(e)) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, w.cosine, n));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, w.own, n));
     for (unsigned kind = BRIO_EVIDENCE_NORMALS; kind <= BRIO_EVIDENCE_ORIGINS; kind <<= 1) {
-        if (!(kind == BRIO_EVIDENCE_NORMALS ? e->normals : e->origins)) continue;
+        if (!(kind == BRIO_EVIDENCE_NORMALS ? given->normals : given->origins)) continue;
         w.kind = kind;
         for (int i = 0; i < CLASSES; i++) w.agree[i] = w.pairs[i] = 0;
         brio_for(ctx, threads, n, find_cosines, &w);
@@ -145,7 +164,29 @@ brio_status brio_weigh_evidence(brio_context *ctx, const brio_evidence *e, const
     }
 done:
     brio_release(ctx, w.cosine);
-    if (status != BRIO_OK || !*used) brio_release(ctx, w.own);
-    else *own = w.own;
+    if (status == BRIO_OK && *used)
+        *own = w.own;
+    else
+        brio_release(ctx, w.own);
     return status;
+}
+
+brio_status brio_orient_by_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c,
+                                    uint8_t *turned, float **own, unsigned *used) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_weigh_evidence(ctx, e, c, own, used));
+    for (size_t p = 0; p < c->dual->num_points && *own; p++)
+        if ((*own)[p] != 0) turned[p] = (*own)[p] < 0;
+done:
+    return status;
+}
+
+double brio_evidence_agreement(const float *own, const uint8_t *turned, size_t num_points, size_t *told) {
+    size_t agree = 0;
+    *told = 0;
+    for (size_t p = 0; p < num_points && own; p++) {
+        *told += own[p] != 0;
+        agree += own[p] != 0 && (own[p] < 0) == turned[p];
+    }
+    return *told ? (double)agree / (double)*told : 0;
 }

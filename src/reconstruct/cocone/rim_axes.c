@@ -6,7 +6,7 @@
  * Elsewhere, as at the edges of solids, the axis stays.
  *
  * Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH 1992. */
-#include "reconstruct/labeled_delaunay/rim_axes.h"
+#include "reconstruct/cocone/rim_axes.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/vector.h"
