@@ -212,7 +212,7 @@ static void report_confidence(run *r, double share) {
 static void report_orientation(run *r, const brio_labeled_delaunay_stats *s) {
     static const char *const by[] = {"guess", "normals", "scanner", "evidence"};
     cli_fact_text(&r->facts, "orientation", by[s->evidence & 3]);
-    if (s->evidence) cli_fact_real(&r->facts, "agreement", 100 * s->agreement);
+    if (s->evidence) cli_fact_real(&r->facts, "agreement", s->agreement);
 }
 
 static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {

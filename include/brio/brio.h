@@ -1459,10 +1459,12 @@ BRIO_API brio_status brio_power_shape(brio_context *ctx, const double *points, s
  *  often neighbours agree is measured, and evidence drawn by lot weighs nothing. The arrays are not kept. */
 typedef struct brio_evidence {
     size_t size;
-    const double *normals;     /* #P by 3, of any length, default NULL: none. Where one is 0 or not finite nothing is known */
-    const double *origins;     /* num_origins by 3, places of scanners, default NULL: none. Not finite: not known */
-    size_t num_origins;        /* default 0 */
-    const uint32_t *origin_of; /* #P: the row of `origins` of each point; from num_origins on: not known. Default NULL: there
+    const double
+        *normals; /* #P by 3, of any length, default NULL: none. Where one is 0 or not finite nothing is known */
+    const double *origins; /* num_origins by 3, places of scanners, default NULL: none. Not finite: not known */
+    size_t num_origins;    /* default 0 */
+    const uint32_t
+        *origin_of; /* #P: the row of `origins` of each point; from num_origins on: not known. Default NULL: there
                                   is one row for all points, or row p for point p */
 } brio_evidence;
 
@@ -1517,7 +1519,7 @@ typedef struct brio_labeled_delaunay_stats {
     size_t left_out;         /* triangles that the option `open` left out */
     double uncertain_share;  /* with options.confidence: the share of the vertices whose confidence is under 0.7 */
     double simplify_seconds; /* for the mesh, and for its simplification */
-    unsigned evidence;       /* bits BRIO_EVIDENCE_NORMALS, BRIO_EVIDENCE_ORIGINS: what was of use; 0: inside and outside
+    unsigned evidence; /* bits BRIO_EVIDENCE_NORMALS, BRIO_EVIDENCE_ORIGINS: what was of use; 0: inside and outside
                                 are a guess */
     unsigned reserved;
     size_t told;      /* samples of which evidence tells the outside */
@@ -1580,7 +1582,8 @@ typedef struct brio_cocone_options {
                        and matches the surfaces at the seams; not with `tight`; default 0: one piece */
     brio_extraction extraction; /* default BRIO_EXTRACTION_LABELS; the others not with `tight` or `pieces` */
     int reserved_int;
-    const brio_evidence *evidence; /* of the side from which the points were seen; not with `pieces`; default NULL: none */
+    const brio_evidence
+        *evidence; /* of the side from which the points were seen; not with `pieces`; default NULL: none */
 } brio_cocone_options;
 
 BRIO_API void brio_cocone_options_init(brio_cocone_options *options, size_t size);

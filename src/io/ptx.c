@@ -10,7 +10,14 @@
 #include <inttypes.h>
 #include <math.h>
 
-enum { SCANNER = 12 /* numbers of position and axes */, PLACE = 3 /* the position */, MATRIX = 16, LEAST = 3, INTENSITY = 4, COLOURS = 7 };
+enum {
+    SCANNER = 12 /* numbers of position and axes */,
+    PLACE = 3 /* the position */,
+    MATRIX = 16,
+    LEAST = 3,
+    INTENSITY = 4,
+    COLOURS = 7
+};
 
 typedef struct {
     brio_text text;

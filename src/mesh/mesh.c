@@ -140,6 +140,7 @@ void brio_mesh_drop_properties(brio_mesh *mesh, size_t left) {
 }
 
 void brio_mesh_remove_property(brio_mesh *mesh, const char *name) {
+    BRIO_DOOR;
     size_t kept = 0;
     for (size_t i = 0; i < mesh->num_properties; i++) {
         if (strcmp(mesh->properties[i].name, name) != 0)

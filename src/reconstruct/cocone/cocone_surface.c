@@ -139,8 +139,13 @@ brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, si
                                      const brio_cocone_options *options, const brio_sample_evidence *evidence,
                                      brio_cocone_surface *out) {
     brio_status status = BRIO_OK;
-    reconstruction r = {
-        .ctx = ctx, .options = options, .evidence = evidence, .points = points, .num_points = num_points, .out = out, .lap = brio_seconds()};
+    reconstruction r = {.ctx = ctx,
+                        .options = options,
+                        .evidence = evidence,
+                        .points = points,
+                        .num_points = num_points,
+                        .out = out,
+                        .lap = brio_seconds()};
     const brio_bar bar = brio_progress_bar(ctx);
     *out = (brio_cocone_surface){0};
     brio_progress_part(ctx, bar, 0, 0.5);

@@ -72,7 +72,8 @@ static void direction(const weighing *w, size_t p, double to[3]) {
         return;
     }
     size_t at = given->origin_of ? given->origin_of[point] : given->num_origins == 1 ? 0 : point;
-    for (size_t k = 0; k < 3 && at < given->num_origins; k++) to[k] = ldexp(given->origins[3 * at + k], -e->exponent) - x[k];
+    for (size_t k = 0; k < 3 && at < given->num_origins; k++)
+        to[k] = ldexp(given->origins[3 * at + k], -e->exponent) - x[k];
 }
 
 static void find_cosines(void *user, size_t begin, size_t end, int thread) {
@@ -107,8 +108,7 @@ static void count_pairs(void *user, size_t begin, size_t end, int thread) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i);
             const uint32_t *v = t->tet[tet].vertex;
             if (!brio_is_candidate(w->c, facet) || *brio_mate(t, facet) < facet) continue;
-            for (int k = 0; k < 3; k++)
-                count_pair(w, v[BRIO_FACET[i][k]], v[BRIO_FACET[i][(k + 1) % 3]], agree, pairs);
+            for (int k = 0; k < 3; k++) count_pair(w, v[BRIO_FACET[i][k]], v[BRIO_FACET[i][(k + 1) % 3]], agree, pairs);
         }
     for (int i = 0; i < CLASSES; i++) {
         __atomic_fetch_add(&w->agree[i], agree[i], __ATOMIC_RELAXED);
@@ -149,7 +149,7 @@ brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e
     *own = NULL;
     *used = 0;
     const brio_evidence *given = &e->given;
-    if (!brio_has_evidence(e)) return BRIO_OK;
+    if (!given->normals && !given->origins) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, w.cosine, n));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, w.own, n));
     for (unsigned kind = BRIO_EVIDENCE_NORMALS; kind <= BRIO_EVIDENCE_ORIGINS; kind <<= 1) {

@@ -31,11 +31,6 @@ brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e
 brio_status brio_orient_by_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c,
                                     uint8_t *turned, float **own, unsigned *used);
 
-/** Returns whether there is any evidence, right or wrong. */
-static inline bool brio_has_evidence(const brio_sample_evidence *e) {
-    return e->given.normals || e->given.origins;
-}
-
 /** Returns the share of the samples with evidence whose axes have the signs that it tells.   told  receives their number. */
 double brio_evidence_agreement(const float *own, const uint8_t *turned, size_t num_points, size_t *told);
 

@@ -62,7 +62,7 @@ typedef struct {
     double left;     /* the noise that the triangulated samples have */
     brio_triangulation *delaunay;
     brio_pole_vectors dual;
-    uint8_t *turned;       /* #P */
+    uint8_t *turned; /* #P */
     brio_sample_evidence evidence;
     float *own;            /* #P, or NULL: what evidence tells of the samples, in BRIO_VOTE_UNIT */
     brio_vote_graph graph; /* until the surface is found */
@@ -107,6 +107,23 @@ done:
     return status;
 }
 
+/* Lets evidence sign the axes, if it tells anything. At the rims of sheets axes change then. */
+static brio_status orient_by_evidence(reconstruction *r, const brio_cocones *cocones) {
+    brio_status status = BRIO_OK;
+    unsigned *used = &r->stats.evidence;
+    r->evidence.order = r->order;
+    r->evidence.exponent = r->exponent;
+    BRIO_TRY(brio_weigh_evidence(r->ctx, &r->evidence, cocones, &r->own, used));
+    if (!r->own) return BRIO_OK;
+    brio_release(r->ctx, r->own);
+    r->own = NULL;
+    BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
+    BRIO_TRY(brio_orient_by_evidence(r->ctx, &r->evidence, cocones, r->turned, &r->own, used));
+    for (size_t p = 0; p < r->num_points && r->own; p++) r->own[p] *= (float)BRIO_VOTE_UNIT;
+done:
+    return status;
+}
+
 /* Finds the axes of the samples, and whether they point outwards as far as the co-cones tell. */
 static brio_status orient(reconstruction *r) {
     brio_status status = BRIO_OK;
@@ -118,11 +135,7 @@ static brio_status orient(reconstruction *r) {
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
     brio_cocones_select(r->ctx, &cocones, &candidates);
     BRIO_TRY(brio_orient_samples(r->ctx, &cocones, &r->turned));
-    r->evidence.order = r->order;
-    r->evidence.exponent = r->exponent;
-    if (brio_has_evidence(&r->evidence)) BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
-    BRIO_TRY(brio_orient_by_evidence(r->ctx, &r->evidence, &cocones, r->turned, &r->own, &r->stats.evidence));
-    for (size_t p = 0; p < r->num_points && r->own; p++) r->own[p] *= (float)BRIO_VOTE_UNIT;
+    BRIO_TRY(orient_by_evidence(r, &cocones));
     lap(r, &r->stats.poles_seconds);
 done:
     brio_cocones_free(r->ctx, &cocones);

@@ -190,8 +190,7 @@ brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, cons
     size_t size = dual->t.count, hull = size - dual->num_finite;
     builder b = {.g = out, .dual = dual, .spacing = spacing, .noise = noise};
     int threads = brio_threads(ctx, size, TETS_A_THREAD);
-    *out = (brio_vote_graph){
-        .ctx = ctx, .dual = dual, .num_free = own ? size : dual->num_finite, .own = own};
+    *out = (brio_vote_graph){.ctx = ctx, .dual = dual, .num_free = own ? size : dual->num_finite, .own = own};
     BRIO_TRY(BRIO_ALLOC(ctx, out->vote, size));
     brio_for(ctx, threads, size, find_cosines, &b);
     brio_pole_vectors_drop(ctx, dual);
@@ -244,7 +243,8 @@ static void sum_parts(void *user, size_t begin, size_t end, int thread) {
         for (size_t tet = brio_part(size, (int)i, PARTS); tet < brio_part(size, (int)i + 1, PARTS); tet++)
             e->part[i] += violated_at(e->g, e->label, (uint32_t)tet);
         for (size_t p = brio_part(samples, (int)i, PARTS); e->g->own && p < brio_part(samples, (int)i + 1, PARTS); p++)
-            if ((e->g->own[p] < 0) == (e->label[size + p] == BRIO_LABEL_OUTER)) e->part[i] += fabs((double)e->g->own[p]);
+            if ((e->g->own[p] < 0) == (e->label[size + p] == BRIO_LABEL_OUTER))
+                e->part[i] += fabs((double)e->g->own[p]);
     }
 }
 

@@ -14,8 +14,8 @@
 typedef struct {
     brio_context *ctx;
     const brio_pole_vectors *dual;
-    size_t num_free;  /* tetrahedra below this have labels to be found: the finite ones, or all; others are outer */
-    const float *own; /* #P, or NULL: what evidence wants for the samples: weights for outer */
+    size_t num_free;   /* tetrahedra below this have labels to be found: the finite ones, or all; others are outer */
+    const float *own;  /* #P, or NULL: what evidence wants for the samples: weights for outer */
     float (*vote)[4];  /* #T by 4: of the edge from a tetrahedron to the sample in slot i; 0 for the infinite vertex */
     float (*facet)[4]; /* #T by 4: of the edge across facet i, at both ends; 0 between infinite tetrahedra */
     size_t *first;     /* #P + 1 */
