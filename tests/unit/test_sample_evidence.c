@@ -148,7 +148,7 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(make_surface);
 }
 
-int main(void) {
+SUITE(test_sample_evidence) {
     make_room();
     RUN(a_room_looks_inwards);
     RUN(a_co_cone_looks_inwards);

@@ -122,12 +122,24 @@ static double log_odds(uint64_t agree, uint64_t pairs) {
     return fmin(log(rate / (1 - rate)), MOST);
 }
 
+/* Returns whether most directions are steep: normals that do not go with the shape, such as one normal for all points, are
+ * not. Half of the directions drawn by lot are. */
+static bool is_steep(const weighing *w) {
+    size_t told = 0, steep = 0;
+    for (size_t p = 0; p < w->c->dual->num_points; p++) {
+        told += w->cosine[p] != 0;
+        steep += fabsf(w->cosine[p]) >= 0.5f;
+    }
+    return 3 * steep >= 2 * told;
+}
+
 /* Weighs the classes. Returns whether the evidence tells anything. */
 static bool weigh_classes(weighing *w) {
     uint64_t agree = 0, pairs = 0;
     for (int i = 0; i < CLASSES; i++) agree += w->agree[i], pairs += w->pairs[i];
     for (int i = 0; i < CLASSES; i++)
         w->weight[i] = w->pairs[i] < FEW ? log_odds(agree, pairs) : log_odds(w->agree[i], w->pairs[i]);
+    if (w->kind == BRIO_EVIDENCE_NORMALS && !is_steep(w)) return false;
     return log_odds(agree, pairs) >= LEAST;
 }
 
