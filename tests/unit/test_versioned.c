@@ -182,7 +182,7 @@ ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
 ENDS_WITH(brio_write_options, separator);
 ENDS_WITH(brio_read_options, origins);
-ENDS_WITH(brio_convert_options, renamed_user);
+ENDS_WITH(brio_convert_options, merge_distance);
 ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, metadata);
