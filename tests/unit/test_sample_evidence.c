@@ -42,7 +42,7 @@ static double volume_of(brio_context *ctx, const brio_evidence *e, brio_labeled_
     o.evidence = e;
     EXPECT(brio_labeled_delaunay(ctx, room, MANY, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
-    EXPECT(c.manifold && c.oriented);
+    EXPECT(c.manifold && c.oriented && c.closed, "closed %d", c.closed);
     double volume = c.volume;
     brio_certificate_free(&c);
     brio_mesh_free(mesh);

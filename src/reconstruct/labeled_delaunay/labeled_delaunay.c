@@ -25,6 +25,7 @@
 #include "reconstruct/cocone/rim_axes.h"
 #include "reconstruct/cocone/sample_evidence.h"
 #include "reconstruct/cocone/sample_orientation.h"
+#include "reconstruct/labeled_delaunay/hull_patches.h"
 #include "reconstruct/labeled_delaunay/open_holes.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
@@ -177,6 +178,7 @@ static brio_status label(reconstruction *r) {
     BRIO_TRY(brio_vote_labels(&r->graph, r->turned, r->label, &r->stats.undecided));
     r->stats.energy = brio_vote_energy(&r->graph, r->label);
     lap(r, &r->stats.labels_seconds);
+    if (r->own) BRIO_TRY(brio_drop_hull_patches(r->ctx, &r->dual, r->label));
     BRIO_TRY(drop_specks(r));
     BRIO_TRY(mend(r));
     for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
