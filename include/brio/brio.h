@@ -1794,9 +1794,9 @@ typedef struct brio_read_options {
                               has been read; docs/formats.md lists the names. Default NULL */
     void *left_out_user;
     brio_read_notes *notes; /* default NULL, or receives what was found */
-    int *origins; /* not NULL: adds the places of the scanners as properties x_origin, y_origin, z_origin (float64) of their
-                     points, NaN where a place is not known, and receives 1; receives 0 if the file has such properties
-                     or tells no place. docs/formats.md tells when PTX, E57 and PCD files do. Default NULL */
+    int *origins; /* default NULL. Else adds the places of the scanners as properties x_origin, y_origin, z_origin
+                     (float64) of their points, NaN where a place is not known, and receives 1; receives 0 if the file has
+                     such properties or tells no place. docs/formats.md tells when PTX, E57 and PCD files do */
 } brio_read_options;
 
 BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);
