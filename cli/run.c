@@ -240,6 +240,7 @@ brio_read_options cli_read_options(run *r) {
     options.salvage = c->salvage;
     options.missing = &r->missing;
     options.notes = &r->noted;
+    options.origins = r->wants_origins ? &r->added_origins : NULL;
     r->dropped = r->missing = 0;
     r->noted = (brio_read_notes){.size = sizeof r->noted};
     return options;

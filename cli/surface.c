@@ -2,6 +2,7 @@
 #include "certificate.h"
 #include "commands.h"
 #include "estimate.h"
+#include "evidence.h"
 #include "files.h"
 #include "hints.h"
 #include "power_crust.h"
@@ -22,6 +23,7 @@ typedef struct arguments {
     uint64_t pieces;
     int extraction;
     component_options components;
+    evidence_options evidence;
 } arguments;
 
 static const option_choice methods[] = {{"labeled-delaunay", LABELED_DELAUNAY},
@@ -51,6 +53,8 @@ static const option options[] = {
      "count the pairs of faces that run through each other", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay and power-crust", 0},
     SOLID_ROWS(arguments, crust),
+    {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay, cocone and tight-cocone", 0},
+    EVIDENCE_ROWS(arguments, evidence),
     {"", 0, OPTION_TITLE, 0, NULL, "options of power-crust (each of them chooses it)", 0},
     POWER_CRUST_ROWS(arguments, crust),
     {"polygons", 0, OPTION_FLAG, FIELD(polygons), NULL, "write its polygons, not cut into triangles", 0},
@@ -160,7 +164,7 @@ static void report_density(run *r, const brio_cocone_stats *s) {
     if (s->r_median > MOST_R) cli_warn(r, WARNING_DENSITY, s->r_median);
 }
 
-static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) {
+static brio_status cocone(run *r, brio_mesh *points, brio_mesh **surface) {
     const arguments *a = r->arguments;
     brio_cocone_options o = brio_cocone_options_default();
     brio_cocone_stats s = {.size = sizeof s};
@@ -173,23 +177,25 @@ static brio_status cocone(run *r, const brio_mesh *points, brio_mesh **surface) 
     o.extraction = (brio_extraction)a->extraction;
     uint64_t work = 0;
     size_t usual;
+    evidence e = {0};
     brio_status status = cli_usual_points(r, points, NULL, false, &usual);
     if (status == BRIO_OK) status = brio_estimate_cocone(r->ctx, usual, &o, &work);
-    status = cli_require_work(r, status, points, work);
-    if (status != BRIO_OK) return status;
-    status = brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
-    if (status != BRIO_OK) return status;
+    TRY(cli_require_work(r, status, points, work));
+    TRY(cli_find_evidence(r, &a->evidence, points, &e));
+    if (a->pieces <= 1) o.evidence = &e.taken;
+    TRY(brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
     cli_stage(r, "delaunay", s.delaunay_seconds);
     cli_stage(r, "poles", s.poles_seconds);
     cli_stage(r, "candidates", s.candidates_seconds);
     cli_stage(r, "label", s.labels_seconds);
     cli_stage(r, "manifold", s.manifold_seconds);
     cli_stage(r, "density", s.density_seconds);
-    status = complete(r, points, NULL, s.samples, *surface);
-    if (status != BRIO_OK) return status;
+    TRY(complete(r, points, NULL, s.samples, *surface));
     report_cocone(r, &s);
     if (o.density) report_density(r, &s);
-    return BRIO_OK;
+done:
+    cli_evidence_free(&e);
+    return status;
 }
 
 /* --- the labeled Delaunay triangulation --- */
@@ -200,6 +206,13 @@ static const double MANY_GUESSES = 0.02;
 static void report_confidence(run *r, double share) {
     cli_fact_real(&r->facts, "uncertain_share", share);
     if (share > MANY_GUESSES) cli_warn(r, WARNING_GUESS, 100 * share);
+}
+
+/* What tells the outside, and how well it agrees with the result. */
+static void report_orientation(run *r, const brio_labeled_delaunay_stats *s) {
+    static const char *const by[] = {"guess", "normals", "scanner", "evidence"};
+    cli_fact_text(&r->facts, "orientation", by[s->evidence & 3]);
+    if (s->evidence) cli_fact_real(&r->facts, "agreement", s->agreement);
 }
 
 static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
@@ -214,6 +227,7 @@ static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s
     if (a->crust.open > 0) cli_fact_count(f, "left_out", s->left_out);
     cli_fact_real(f, "energy", s->energy);
     report_confidence(r, s->uncertain_share);
+    report_orientation(r, s);
 }
 
 static void report_labeled_delaunay_stages(run *r, const brio_labeled_delaunay_stats *s) {
@@ -249,25 +263,31 @@ static brio_labeled_delaunay_options labeled_delaunay_options(const run *r) {
     return o;
 }
 
-static brio_status labeled_delaunay(run *r, const brio_mesh *points, brio_mesh **surface) {
+/* open  set to true if the surface ends where the points do. */
+static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surface, bool *open) {
     brio_labeled_delaunay_options o = labeled_delaunay_options(r);
     brio_labeled_delaunay_stats s = {.size = sizeof s};
     const arguments *a = r->arguments;
     uint64_t work = 0;
     size_t usual;
     uint32_t *samples = NULL;
+    evidence e = {0};
     brio_status status = BRIO_OK;
     TRY(cli_usual_points(r, points, NULL, false, &usual));
     status = brio_estimate_labeled_delaunay(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     samples = malloc((points->num_vertices + 1) * sizeof *samples);
     if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices);
+    TRY(cli_find_evidence(r, &a->evidence, points, &e));
+    o.evidence = &e.taken;
     TRY(brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, samples, &s));
     report_labeled_delaunay_stages(r, &s);
     if (a->crust.normals) TRY(normals_of_points(r, a->crust.normals, points, *surface, samples));
     TRY(complete(r, points, samples, s.samples, *surface));
     report_labeled_delaunay(r, &s);
+    *open |= s.evidence != 0;
 done:
+    cli_evidence_free(&e);
     free(samples);
     return status;
 }
@@ -294,7 +314,8 @@ static brio_status check_method(run *r) {
     enum {
         SOLIDS = 1 << LABELED_DELAUNAY | 1 << POWER_CRUST,
         CRUST = 1 << POWER_CRUST,
-        COCONES = 1 << COCONE | 1 << TIGHT_COCONE
+        COCONES = 1 << COCONE | 1 << TIGHT_COCONE,
+        SIDED = 1 << LABELED_DELAUNAY | COCONES
     };
     const method_option given[] = {{"theta", a->theta != 0, COCONES},
                                    {"boundaries", a->boundaries, COCONES},
@@ -309,7 +330,10 @@ static brio_status check_method(run *r) {
                                    {"noise", a->crust.noise != 0, SOLIDS},
                                    {"simplify", a->crust.simplify, SOLIDS},
                                    {"open", a->crust.open != 0, SOLIDS},
-                                   {"normals", a->crust.normals != NULL, SOLIDS}};
+                                   {"normals", a->crust.normals != NULL, SOLIDS},
+                                   {"from", a->evidence.from != NULL, SIDED},
+                                   {"ignore-normals", a->evidence.ignore_normals, SIDED},
+                                   {"ignore-origins", a->evidence.ignore_origins, SIDED}};
     for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
         char names[128] = "";
         if (!given[i].given || given[i].methods >> method_of(a) & 1) continue;
@@ -363,12 +387,12 @@ static void suggest(run *r, brio_status status, const brio_mesh *points) {
     if (a->method != COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
 }
 
-static brio_status reconstruct(run *r, const brio_mesh *points, brio_mesh **result) {
+static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, bool *open) {
     switch (method_of(r->arguments)) {
     case POWER_CRUST:
         return power_crust(r, points, result);
     case LABELED_DELAUNAY:
-        return labeled_delaunay(r, points, result);
+        return labeled_delaunay(r, points, result, open);
     default:
         return cocone(r, points, result);
     }
@@ -380,18 +404,21 @@ static brio_status surface(run *r) {
     brio_status status = BRIO_OK;
     TRY(check_arguments(r));
     TRY(cli_require_output_for(r, "vertex-normals", a->vertex_normals));
+    TRY(cli_check_evidence(r, &a->evidence));
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
+    r->wants_origins = method_of(a) != POWER_CRUST && !a->evidence.ignore_origins && !a->evidence.from;
     TRY(cli_read_points(r, r->operands[0], &points));
     if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
-    status = reconstruct(r, points, &result);
+    bool open = a->method == COCONE || a->crust.open > 0;
+    status = reconstruct(r, points, &result, &open);
     suggest(r, status, points);
     if (status != BRIO_OK) goto done;
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
     brio_mesh_free(points);
     points = NULL;
-    unsigned how = a->method == COCONE || a->crust.open > 0 ? CERTIFY_OPEN : 0u;
+    unsigned how = open ? CERTIFY_OPEN : 0u;
     if (a->extraction != BRIO_EXTRACTION_LABELS) how |= CERTIFY_ANYTHING;
     TRY(cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u)));
     TRY(cli_write(r, result));

@@ -815,6 +815,8 @@ BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges,
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has a property of that name, the name is empty or has over 63 bytes, or
  *  there is no such type), BRIO_ERR_NO_MEMORY. Names are UTF-8: in one that is not, other bytes are taken for Latin-1. */
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
+/** Removes the property of that name, if there is one. */
+BRIO_API void brio_mesh_remove_property(brio_mesh *mesh, const char *name);
 /** Returns the property of that name, or NULL. */
 BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);
 /** Adds metadata, or replaces that of the same name.   bytes  copied.
@@ -1380,8 +1382,10 @@ typedef struct brio_power_crust_stats {
 
 /** Reconstructs a closed surface from samples: the power crust. Its faces are the faces of the power diagram of the polar
  *  balls between a cell of an inner pole and a cell of an outer pole, as polygons seen counterclockwise from outside.
+ *  With evidence, samples vote for the sides that it tells, the outside need not be beyond the hull, as in a scan of a
+ *  room, and the surface ends at the hull where what is outside changes there.
  *  Guarantees: for every input that has an inside, the mesh is closed, manifold and oriented as a combinatorial object
- *  (with the option `open`: manifold and oriented). On a dense sample of a smooth closed surface the power crust is
+ *  (with the option `open`, or with evidence that is of use: manifold and oriented). On a dense sample of a smooth closed surface the power crust is
  *  homeomorphic and close to the surface (appendix B of [Choi 2003]).
  *  Vertices that only rounding keeps apart from a sample are at the sample, and the faces between them have no area.
  *  Does not guarantee: triangular faces, faces above a least size, freedom from self-intersections. Faces cross each other
@@ -1483,6 +1487,29 @@ BRIO_API brio_status brio_power_shape(brio_context *ctx, const double *points, s
                                       const brio_power_shape_options *options, brio_mesh **shape, brio_mesh **crust,
                                       brio_power_shape_stats *stats);
 
+/** Evidence of the side from which points were seen: that is outside. It is weighed, so that a part of it may be wrong: how
+ *  often neighbours agree is measured, and evidence drawn by lot weighs nothing. The arrays are not kept. */
+typedef struct brio_evidence {
+    size_t size;
+    const double
+        *normals; /* #P by 3, of any length, default NULL: none. Where one is 0 or not finite nothing is known */
+    const double *origins; /* num_origins by 3, places of scanners, default NULL: none. Not finite: not known */
+    size_t num_origins;    /* default 0 */
+    const uint32_t
+        *origin_of; /* #P: the row of `origins` of each point; from num_origins on: not known. Default NULL: there
+                                  is one row for all points, or row p for point p */
+} brio_evidence;
+
+BRIO_API void brio_evidence_init(brio_evidence *evidence, size_t size);
+static inline brio_evidence brio_evidence_default(void) {
+    brio_evidence evidence;
+    brio_evidence_init(&evidence, sizeof evidence);
+    return evidence;
+}
+
+/** Kinds of evidence, as bits. */
+enum { BRIO_EVIDENCE_NORMALS = 1, BRIO_EVIDENCE_ORIGINS = 2 };
+
 typedef struct brio_labeled_delaunay_options {
     size_t size;
     uint64_t seed;    /* default 1 */
@@ -1496,6 +1523,7 @@ typedef struct brio_labeled_delaunay_options {
                          of the planes of their triangles, until a quarter of the triangles is left; the surface stays
                          the same as a manifold; default 0 */
     int reserved_int;
+    const brio_evidence *evidence; /* of the side from which the points were seen; default NULL: none */
 } brio_labeled_delaunay_options;
 
 BRIO_API void brio_labeled_delaunay_options_init(brio_labeled_delaunay_options *options, size_t size);
@@ -1523,6 +1551,11 @@ typedef struct brio_labeled_delaunay_stats {
     size_t left_out;         /* triangles that the option `open` left out */
     double uncertain_share;  /* with options.confidence: the share of the vertices whose confidence is under 0.7 */
     double simplify_seconds; /* for the mesh, and for its simplification */
+    unsigned evidence; /* bits BRIO_EVIDENCE_NORMALS, BRIO_EVIDENCE_ORIGINS: what was of use; 0: inside and outside
+                                are a guess */
+    unsigned reserved;
+    size_t told;      /* samples of which evidence tells the outside */
+    double agreement; /* the share of these whose side in the result is what evidence tells */
 } brio_labeled_delaunay_stats;
 
 /** Reconstructs a closed surface from samples: the boundary of the Delaunay tetrahedra that are labeled inner. A sample
@@ -1581,6 +1614,8 @@ typedef struct brio_cocone_options {
                        and matches the surfaces at the seams; not with `tight`; default 0: one piece */
     brio_extraction extraction; /* default BRIO_EXTRACTION_LABELS; the others not with `tight` or `pieces` */
     int reserved_int;
+    const brio_evidence
+        *evidence; /* of the side from which the points were seen; not with `pieces`; default NULL: none */
 } brio_cocone_options;
 
 BRIO_API void brio_cocone_options_init(brio_cocone_options *options, size_t size);
@@ -1796,6 +1831,10 @@ typedef struct brio_read_options {
     brio_read_notes *notes; /* default NULL, or receives what was found */
     int flat; /* texts of points, 1: data over a map. Names of columns that have x and y and no height mean that z is 0, and so
                  do rows of two numbers without names; default 0: z has to be there */
+    int reserved_int;
+    int *origins; /* default NULL. Else adds the places of the scanners as properties x_origin, y_origin, z_origin
+                     (float64) of their points, NaN where a place is not known, and receives 1; receives 0 if the file has
+                     such properties or tells no place. docs/formats.md tells when PTX, E57 and PCD files do */
 } brio_read_options;
 
 BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);

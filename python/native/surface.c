@@ -110,8 +110,42 @@ static void close_surface_call(surface_call *s) {
         }                                                                                                              \
     } while (0)
 
+/* The arrays of a brio_evidence. */
+typedef struct {
+    input normals, origins;
+    brio_evidence taken;
+} evidence_input;
+
+/* Opens an array that the options name, and takes it out of them. Returns 1, 0 if it is not there, or -1. */
+static int open_evidence_array(input *in, PyObject *options, const char *name) {
+    PyObject *array = PyDict_GetItemString(options, name);
+    if (!array) return 0;
+    if (input_open(in, array, name, 'd', 3)) return -1;
+    return PyDict_DelItemString(options, name) ? -1 : 1;
+}
+
+/* Opens the options normals and origins: a row for each of so many points; of origins maybe one row for all. */
+static int open_evidence(evidence_input *e, PyObject *options, size_t rows) {
+    int normals, origins;
+    *e = (evidence_input){.taken = brio_evidence_default()};
+    if ((normals = open_evidence_array(&e->normals, options, "normals")) < 0) return -1;
+    if (normals && input_has_rows(&e->normals, "normals", rows)) return -1;
+    if ((origins = open_evidence_array(&e->origins, options, "origins")) < 0) return -1;
+    if (origins && e->origins.rows != 1 && input_has_rows(&e->origins, "origins", rows)) return -1;
+    e->taken.normals = normals ? e->normals.data : NULL;
+    e->taken.origins = origins ? e->origins.data : NULL;
+    e->taken.num_origins = origins ? e->origins.rows : 0;
+    return 0;
+}
+
+static void close_evidence(evidence_input *e) {
+    input_close(&e->normals);
+    input_close(&e->origins);
+}
+
 static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
     surface_call s;
+    evidence_input e = {.taken = {0}};
     call c;
     brio_status status;
     brio_mesh *mesh = NULL;
@@ -120,8 +154,10 @@ static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
     const option table[] = {
         {"seed", SEED, &o.seed},   {"noise", INT, &o.noise},       {"confidence", INT, &o.confidence},
         {"open", DOUBLE, &o.open}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, input_open, 'I', 0))
+    o.evidence = &e.taken;
+    if (!open_surface_call(&s, args, input_open, 'I', 0) && !open_evidence(&e, s.options, s.p.rows))
         RUN_SURFACE(table, brio_labeled_delaunay(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
+    close_evidence(&e);
     close_surface_call(&s);
     return result;
 }
@@ -179,6 +215,7 @@ static PyObject *power_shape(PyObject *module, PyObject *args) {
 
 static PyObject *cocone(PyObject *module, PyObject *args) {
     surface_call s;
+    evidence_input e = {.taken = {0}};
     call c;
     brio_status status;
     brio_mesh *mesh = NULL;
@@ -192,8 +229,11 @@ static PyObject *cocone(PyObject *module, PyObject *args) {
                             {"pieces", SIZE, &o.pieces},
                             {"extraction", INT, &o.extraction},
                             {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, input_open, 'd', 3))
+    if (!open_surface_call(&s, args, input_open, 'd', 3) && !open_evidence(&e, s.options, s.p.rows)) {
+        if (e.taken.normals || e.taken.origins) o.evidence = &e.taken;
         RUN_SURFACE(table, brio_cocone(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
+    }
+    close_evidence(&e);
     close_surface_call(&s);
     return result;
 }

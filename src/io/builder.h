@@ -50,6 +50,9 @@ typedef struct brio_builder {
     bool salvage;          /* readers keep the whole points of a file that ends early, and say how many miss */
     uint64_t missing;      /* points that such a file lacks */
     brio_not_finite refused; /* vertices seen that are not finite: with `streams` or `drop_invalid` */
+    bool origins;            /* the caller wants the places of scanners as properties (origins.h) */
+    bool has_origins;        /* the properties are there, */
+    size_t first_origin;     /* from this one on */
     char version[64];        /* what the reader says of the file's version; may be empty */
     brio_names names;
     char (*left_out)[64]; /* names of what the file has and the mesh has not, each once: brio_builder_leave_out */

@@ -93,6 +93,16 @@ typedef struct {
     bool has_width, has_points;
 } pcd_size;
 
+/* Reads the numbers of a viewpoint. What is no viewpoint is no reason to refuse the points. */
+static brio_status read_viewpoint(brio_pcd_header *h, char *line) {
+    int count = 0;
+    const char *word;
+    while (count < 7 && (word = next_word(&line)) != NULL)
+        if (!brio_parse_number(&word, &h->viewpoint[count++])) return BRIO_OK;
+    h->has_place = count == 7;
+    return BRIO_OK;
+}
+
 static brio_status read_line(brio_stream *s, brio_pcd_header *h, char *line, pcd_size *size, bool *end) {
     const char *key = next_word(&line);
     if (!key || *key == '#' || !strcmp(key, "VERSION")) return BRIO_OK;
@@ -126,6 +136,8 @@ static brio_status finish(brio_stream *s, brio_pcd_header *h, const pcd_size *si
                  "%s: %" PRIu64 " points, WIDTH times HEIGHT is %" PRIu64, s->name, size->points, h->points);
     if (size->has_points) h->points = size->points;
     h->height = size->height;
+    static const double nowhere[7] = {0, 0, 0, 1, 0, 0, 0};
+    h->has_place &= size->height > 1 || memcmp(h->viewpoint, nowhere, sizeof nowhere) != 0;
     for (size_t i = 0; i < h->num_fields; i++) {
         brio_pcd_field *f = &h->fields[i];
         f->at = h->record;

@@ -24,6 +24,9 @@ typedef struct brio_pcd_header {
     bool placed;             /* whether the viewpoint is another than the origin, unturned */
     size_t record, numbers;  /* bytes and numbers of a point */
     brio_pcd_data data;
+    double viewpoint[7]; /* the scanner's place and its rotation, a quaternion w, x, y, z */
+    bool has_place; /* whether that tells the place: many programs write 0 0 0 1 0 0 0 where they do not know it, which
+                            is then a place only of clouds with rows and columns, as one sensor sees them */
 } brio_pcd_header;
 
 /** Reads the header up to the line DATA. Call brio_pcd_header_free even if this fails.

@@ -9,6 +9,7 @@
 #include "io/formats.h"
 #include "io/little_endian.h"
 #include "io/lzf.h"
+#include "io/origins.h"
 #include "io/pcd_header.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
@@ -102,6 +103,7 @@ static brio_status plan(pcd_reader *r) {
         BRIO_TRY(plan_field(r, &r->header->fields[i], r->roles + number, &axes));
     BRIO_REQUIRE(r->stream->ctx, axes == 7, BRIO_ERR_FORMAT, "%s: the points have no field %c", r->stream->name,
                  "xyxzxyx"[axes]);
+    if (r->header->has_place) BRIO_TRY(brio_plan_origins(r->builder));
 done:
     return status;
 }
@@ -135,6 +137,7 @@ static brio_status add_point(pcd_reader *r) {
         if (r->roles[i] >= AXIS && r->roles[i] < PROPERTY && !isfinite(r->values[i])) return BRIO_OK;
     BRIO_TRY(brio_builder_add_vertices(r->builder, 1));
     size_t v = r->builder->mesh->num_vertices - 1;
+    brio_set_origins(r->builder, v, r->header->viewpoint);
     for (size_t i = 0; i < r->header->numbers; i++) BRIO_TRY(store(r, v, r->roles[i], r->values[i]));
 done:
     return status;

@@ -5,16 +5,24 @@
  *
  * Based on: Leica Geosystems. Description of the PTX format. */
 #include "io/formats.h"
+#include "io/origins.h"
 #include "io/textrow.h"
 #include <inttypes.h>
 #include <math.h>
 
-enum { SCANNER = 12 /* numbers of position and axes */, MATRIX = 16, LEAST = 3, INTENSITY = 4, COLOURS = 7 };
+enum {
+    SCANNER = 12 /* numbers of position and axes */,
+    PLACE = 3 /* the position */,
+    MATRIX = 16,
+    LEAST = 3,
+    INTENSITY = 4,
+    COLOURS = 7
+};
 
 typedef struct {
     brio_text text;
     brio_builder *builder;
-    double matrix[MATRIX];
+    double matrix[MATRIX], place[PLACE];
     int columns; /* numbers of a point: 3, 4 or 7; 0 before the first point */
 } ptx_reader;
 
@@ -24,8 +32,10 @@ static brio_status read_scan_header(ptx_reader *r, uint64_t *points) {
     double ignored;
     BRIO_TRY(brio_text_count(&r->text, "the number of columns", UINT32_MAX, &columns));
     BRIO_TRY(brio_text_count(&r->text, "the number of rows", UINT32_MAX, &rows));
-    for (int i = 0; i < SCANNER; i++) BRIO_TRY(brio_text_number(&r->text, &ignored));
+    for (int i = 0; i < SCANNER; i++) BRIO_TRY(brio_text_number(&r->text, i < PLACE ? &r->place[i] : &ignored));
     for (int i = 0; i < MATRIX; i++) BRIO_TRY(brio_text_number(&r->text, &r->matrix[i]));
+    if (r->place[0] == 0 && r->place[1] == 0 && r->place[2] == 0)
+        for (int k = 0; k < PLACE; k++) r->place[k] = r->matrix[12 + k]; /* some programs write the place there only */
     BRIO_TRY(brio_text_row_end(&r->text));
     *points = columns * rows;
 done:
@@ -46,6 +56,7 @@ static brio_status plan(ptx_reader *r, int columns) {
     if (columns >= INTENSITY) BRIO_TRY(brio_builder_property(r->builder, "intensity", BRIO_SCALAR_FLOAT32));
     for (int i = 0; i < 3 && columns == COLOURS; i++)
         BRIO_TRY(brio_builder_property(r->builder, colours[i], BRIO_SCALAR_UINT8));
+    BRIO_TRY(brio_plan_origins(r->builder));
 done:
     return status;
 }
@@ -61,6 +72,7 @@ static brio_status add_point(ptx_reader *r, const double *values) {
     BRIO_TRY(brio_builder_vertex(r->builder, point));
     brio_mesh *m = r->builder->mesh;
     size_t v = m->num_vertices - 1;
+    brio_set_origins(r->builder, v, r->place);
     if (r->columns >= INTENSITY) ((float *)m->properties[0].data)[v] = (float)values[3];
     for (int i = 0; i < 3 && r->columns == COLOURS; i++) {
         double colour = values[4 + i];

@@ -145,6 +145,7 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     b.flat = job->flat;
     b.drop_invalid = job->drop_invalid;
     b.salvage = job->salvage;
+    b.origins = job->origins;
     BRIO_TRY(read_stream(&s, &b, job->format, job->columns));
     if (job->format == BRIO_FORMAT_NODE && !job->memory && strcmp(job->path, "-") != 0)
         BRIO_TRY(read_tetrahedra(&b, job->path, tetrahedra));
@@ -153,6 +154,7 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     memcpy(job->version, b.version, sizeof job->version);
     job->dropped = b.refused.count;
     job->missing = b.missing;
+    job->origins = b.has_origins;
     brio_release(ctx, job->left_out);
     job->left_out = b.left_out, job->num_left_out = b.num_left_out;
     b.left_out = NULL;
@@ -182,7 +184,8 @@ static brio_read_job job_of(const char *path, const brio_read_options *o) {
                            .columns = o->columns,
                            .flat = o->flat,
                            .drop_invalid = o->drop_invalid,
-                           .salvage = o->salvage};
+                           .salvage = o->salvage,
+                           .origins = o->origins != NULL};
 }
 
 /* Tells the caller what a job found beside the mesh, and frees what the job owns. */
@@ -190,6 +193,7 @@ static void give_findings(brio_context *ctx, const brio_read_options *o, brio_re
     if (o->dropped) *o->dropped = job->dropped;
     if (o->missing) *o->missing = job->missing;
     BRIO_GIVE(brio_read_notes, o->notes, &job->notes);
+    if (o->origins) *o->origins = job->origins;
     for (size_t i = 0; i < job->num_left_out && o->left_out; i++) o->left_out(job->left_out[i], o->left_out_user);
     brio_read_job_free(ctx, job);
 }

@@ -146,6 +146,18 @@ void brio_mesh_drop_properties(brio_mesh *mesh, size_t left) {
     while (mesh->num_properties > left) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
 }
 
+void brio_mesh_remove_property(brio_mesh *mesh, const char *name) {
+    BRIO_DOOR;
+    size_t kept = 0;
+    for (size_t i = 0; i < mesh->num_properties; i++) {
+        if (strcmp(mesh->properties[i].name, name) != 0)
+            mesh->properties[kept++] = mesh->properties[i];
+        else
+            brio_release(mesh->context, mesh->properties[i].data);
+    }
+    mesh->num_properties = kept;
+}
+
 const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name) {
     char clean[64];
     bool fits = brio_utf8_copy(clean, sizeof clean, name);

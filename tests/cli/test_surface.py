@@ -37,6 +37,92 @@ class NoAnswer(CliTest):
         self.expect(3, "surface", points, "-o", self.path("out.ply"))
 
 
+class Evidence(CliTest):
+    """A sheet that bounds nothing, seen from above or from below: its faces look where the scanner stands."""
+
+    SHEET = [(0.3 * i - 1.6, 0.3 * j - 1.6, -0.3 * math.exp(-(i - 5) ** 2 / 9 - (j - 5) ** 2 / 9))
+             for i in range(12) for j in range(12)]
+
+    def rows(self, text):
+        return "".join(f"{x:.4f} {y:.4f} {z:.5f}{text}\n" for x, y, z in self.SHEET)
+
+    def up_share(self, facts_of, *arguments):
+        """The share of the area that looks up, and the facts."""
+        out = self.path("out.obj")
+        facts = self.facts("surface", *arguments, "-o", out)
+        for key, value in facts_of.items():
+            self.assertEqual(facts[key], value, arguments)
+        vertices, up, area = [], 0.0, 0.0
+        with open(out) as file:
+            lines = file.read().splitlines()
+        for line in lines:
+            words = line.split()
+            if words[:1] == ["v"]:
+                vertices.append([float(w) for w in words[1:4]])
+            elif words[:1] == ["f"]:
+                a, b, c = (vertices[int(w.split("/")[0]) - 1] for w in words[1:4])
+                height = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+                up, area = up + max(height, 0), area + abs(height)
+        return up / area
+
+    def faces_look(self, up, facts_of, *arguments):
+        self.assertAlmostEqual(self.up_share(facts_of, *arguments), 1.0 if up else 0.0, 9, arguments)
+
+    def test_scanner_of_a_pcd_file(self):
+        for height in (5, -5):
+            head = ("# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 144\nHEIGHT 1\n"
+                    f"VIEWPOINT 0 0 {height} 1 0 0 0\nPOINTS 144\nDATA ascii\n")
+            points = self.file("a.pcd", head + self.rows(""))
+            self.faces_look(height > 0, {"orientation": "scanner", "agreement": 1}, points)
+
+    def test_scanner_of_a_ptx_file(self):
+        for place in ("0 0 5", "0 0 -5"):
+            for position in (place, "0 0 0"):  # programs that write the place into the matrix alone
+                head = f"12\n12\n{position}\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n{place} 1\n"
+                moved = "".join(f"{x} {y} {z - float(place.split()[2])}\n" for x, y, z in self.SHEET)
+                self.faces_look("-" not in place, {"orientation": "scanner"}, self.file("a.ptx", head + moved))
+
+    def test_normals_and_origins_of_points(self):
+        for up in (1, -1):
+            normals = self.file("n.xyz", "# x y z nx ny nz\n" + self.rows(f" 0 0 {up}"))
+            origins = self.file("o.xyz", "# x y z x_origin y_origin z_origin\n" + self.rows(f" 0 0 {9 * up}"))
+            self.faces_look(up > 0, {"orientation": "normals"}, normals)
+            self.faces_look(up > 0, {"orientation": "scanner"}, origins)
+
+    def test_a_place_on_the_command_line_is_stronger_than_the_file(self):
+        origins = self.file("o.xyz", "# x y z x_origin y_origin z_origin\n" + self.rows(" 0 0 9"))
+        self.faces_look(False, {"orientation": "scanner"}, origins, "--from", "0,0,-9")
+
+    def test_evidence_that_is_ignored(self):
+        points = self.file("n.xyz", "# x y z nx ny nz x_origin y_origin z_origin\n" + self.rows(" 0 0 1 0 0 9"))
+        self.faces_look(True, {"orientation": "evidence"}, points)
+        self.faces_look(True, {"orientation": "scanner"}, points, "--ignore-normals")
+        self.faces_look(True, {"orientation": "normals"}, points, "--ignore-origins")
+        facts = self.facts("surface", points, "--ignore-origins", "--ignore-normals", "-o", self.path("out.ply"))
+        self.assertEqual(facts["orientation"], "guess")
+        self.assertTrue(facts["certificate"]["closed"])
+
+    def test_a_place_that_a_pcd_file_does_not_know(self):
+        head = ("# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH %d\nHEIGHT %d\n"
+                "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 144\nDATA ascii\n")
+        for width, height, told in ((144, 1, "guess"), (12, 12, "scanner")):
+            points = self.file("a.pcd", head % (width, height) + "".join(
+                f"{x} {y} {z + 3}\n" for x, y, z in self.SHEET))
+            self.assertEqual(self.facts("surface", points, "-o", self.path("o.ply"))["orientation"], told)
+
+    def test_places_that_readers_add_are_no_properties_of_the_surface(self):
+        head = "12\n12\n0 0 5\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+        out = self.path("out.ply")
+        self.facts("surface", self.file("a.ptx", head + self.rows("")), "-o", out)
+        with open(out, "rb") as file:
+            self.assertNotIn(b"x_origin", file.read())
+
+    def test_a_place_that_is_none(self):
+        for place in ("1,2", "1,2,x", "1,2,3,4", "1,2,inf"):
+            self.usage("--from", "surface", "a.xyz", "-o", "x.ply", "--from", place)
+        self.usage("exclude", "surface", "a.xyz", "-o", "x.ply", "--from", "1,2,3", "--ignore-origins")
+
+
 class LabeledDelaunay(CliTest):
     def test_facts_of_a_run(self):
         points = self.cloud("a.ply", 2000, "sphere")
@@ -45,7 +131,7 @@ class LabeledDelaunay(CliTest):
         counts = "samples vertices faces".split()
         internals = {key: count for key in "unused undecided specks relabeled handles".split()}
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "noise": number,
-                                   "smoothed": bool, "uncertain_share": number,
+                                   "smoothed": bool, "uncertain_share": number, "orientation": str,
                                    "internals": {**internals, "energy": number},
                                    "certificate": CERTIFICATE, "seconds": seconds})
         self.assertEqual((facts["method"], facts["samples"], facts["internals"]["unused"]), ("labeled-delaunay", 2000, 0))

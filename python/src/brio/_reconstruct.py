@@ -73,8 +73,26 @@ def _method(method: Any) -> str:
     return str(name)
 
 
-def reconstruct(points: Any, method: str = "labeled-delaunay", *, attributes: dict[str, Any] | None = None,
-                threads: int = 0, progress: bool | Progress | None = None, **options: Any) -> Surface:
+def _evidence(method: str, options: dict[str, Any], properties: Properties, normals: Any,
+              origins: Any) -> dict[str, Floats]:
+    """What tells the outside, as options of the module."""
+    out: dict[str, Floats] = {}
+    takes = method != "power-crust" and not options.get("pieces", 0) > 1
+    for name, given, columns in (("normals", normals, ("nx", "ny", "nz")),
+                                 ("origins", origins, ("x_origin", "y_origin", "z_origin"))):
+        if given is None and takes and all(c in properties for c in columns):
+            given = np.stack([np.asarray(properties[c], np.float64) for c in columns], 1)
+        if given is None or given is False:
+            continue
+        if not takes:
+            raise ArgumentError(f"{name}: {method} takes none" + (" in pieces" if method != "power-crust" else ""))
+        out[name] = as_rows(np.atleast_2d(np.asarray(given, np.float64)), name)
+    return out
+
+
+def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any = None, origins: Any = None,
+                attributes: dict[str, Any] | None = None, threads: int = 0, progress: bool | Progress | None = None,
+                **options: Any) -> Surface:
     """Reconstructs a surface from samples of it.
 
     Parameters
@@ -88,6 +106,12 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, attributes: di
         "cocone": triangles of the samples, maybe open; options `theta`, `boundaries`, `density`, `pieces`,
         `extraction`, `seed`. "tight-cocone": the same, closed.
         The options are those of ``brio.h``.
+    normals : array_like, shape (n, 3), or False, optional
+        Normals of the samples, which point outwards; some may be wrong or 0. By default the properties nx, ny, nz of a
+        Mesh, if it has them; False: none. Not for "power-crust", which takes none.
+    origins : array_like, shape (n, 3) or (3,), or False, optional
+        The place of the scanner that saw each sample, or all of them: outside is on its side. By default the properties
+        x_origin, y_origin, z_origin of a Mesh; False: none. Not for "power-crust".
     attributes : dict of arrays, optional
         Each with one row a point; carried to the vertices as properties. Those of a Mesh are carried anyway. A vertex that
         is no sample has the attributes of the nearest one. A name that the surface has becomes input_NAME.
@@ -109,6 +133,7 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, attributes: di
     """
     name = _method(method)
     rows, carried = _split(points)
+    options = {**options, **_evidence(name, options, carried, normals, origins)}
     carried = {**carried, **as_properties({} if attributes is None else attributes, len(rows), "attribute", "point")}
     if name == "labeled-delaunay":
         samples = np.empty(len(rows), np.uint32)

@@ -10,6 +10,7 @@
 #include "io/e57/e57_plan.h"
 #include "io/e57/e57_section.h"
 #include "io/formats.h"
+#include "io/origins.h"
 #include "io/scalar.h"
 #include <inttypes.h>
 #include <math.h>
@@ -120,6 +121,8 @@ static brio_status read_scan(e57_reader *r, size_t scan) {
     if (r->plan.spherical[scan]) brio_e57_from_spherical(points, m->num_vertices - r->first);
     brio_e57_move(&pose, points, m->num_vertices - r->first);
     brio_e57_turn_normals(&pose, m, r->first);
+    bool known = pose.turns || pose.moves || r->plan.spherical[scan];
+    brio_set_origins(r->builder, r->first, known ? pose.translation : NULL);
 done:
     brio_release(r->builder->ctx, r->decoders);
     brio_release(r->builder->ctx, r->invalid);
@@ -134,6 +137,7 @@ brio_status brio_e57_read(brio_stream *s, brio_builder *b) {
     BRIO_TRY(brio_e57_pages_open(&r.pages, s));
     BRIO_TRY(brio_e57_xml_read(&r.pages, &r.scans));
     BRIO_TRY(brio_e57_plan_make(&r.plan, b, &r.scans));
+    BRIO_TRY(brio_plan_origins(b));
     BRIO_TRY(open_sections(&r));
     r.pages.reports = true;
     for (size_t i = 0; i < r.scans.num_scans; i++) BRIO_TRY(read_scan(&r, i));

@@ -51,7 +51,9 @@ static brio_status find_surface(brio_context *ctx, const double *points, size_t 
     BRIO_TRY(brio_canonical_points(ctx, points, num_points, &order));
     brio_copy_points(points, order, num_points, scaled);
     brio_scale(ctx, scaled, 3 * num_points, -exponent, scaled);
-    BRIO_TRY(brio_cocone_surface_find(ctx, scaled, num_points, options, surface));
+    brio_sample_evidence evidence = {.order = order, .exponent = exponent};
+    BRIO_TRY(brio_take_evidence(ctx, options->evidence, num_points, &evidence));
+    BRIO_TRY(brio_cocone_surface_find(ctx, scaled, num_points, options, &evidence, surface));
     BRIO_TRY(name_samples(ctx, order, num_points, surface));
 done:
     brio_release(ctx, scaled);
@@ -109,6 +111,7 @@ static brio_status check_options(brio_context *ctx, const brio_cocone_options *o
                  (int)o->extraction);
     BRIO_REQUIRE(ctx, o->extraction == BRIO_EXTRACTION_LABELS || (!o->tight && o->pieces <= 1), BRIO_ERR_ARGUMENT,
                  "candidates, pruned and walk are extractions of the co-cone in one piece");
+    BRIO_REQUIRE(ctx, !o->evidence || o->pieces <= 1, BRIO_ERR_ARGUMENT, "evidence is for a co-cone in one piece");
     BRIO_REQUIRE(ctx, !o->tight || o->pieces <= 1, BRIO_ERR_ARGUMENT,
                  "the tight co-cone cannot be found in pieces: what is outside only the whole tells");
 done:

@@ -23,6 +23,7 @@
 typedef struct {
     brio_context *ctx;
     const brio_cocone_options *options;
+    const brio_sample_evidence *evidence; /* or NULL */
     const double *points;
     size_t num_points;
     brio_cocone_surface *out;
@@ -77,7 +78,10 @@ done:
 
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
+    float *own = NULL;
+    unsigned used;
     BRIO_TRY(brio_orient_samples(r->ctx, &r->cocones, &r->turned));
+    if (r->evidence) BRIO_TRY(brio_orient_by_evidence(r->ctx, r->evidence, &r->cocones, r->turned, &own, &used));
     r->labels = (brio_tet_labels){
         .cocones = &r->cocones, .dual = &r->dual, .turned = r->turned, .watertight = r->options->tight};
     BRIO_TRY(brio_tet_labels_vote(r->ctx, &r->labels));
@@ -86,6 +90,7 @@ static brio_status label(reconstruction *r) {
     BRIO_TRY(brio_flatten(r->ctx, &r->labels));
     lap(r, &r->out->stats.labels_seconds);
 done:
+    brio_release(r->ctx, own);
     return status;
 }
 
@@ -131,10 +136,16 @@ static void release(reconstruction *r) {
 }
 
 brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, size_t num_points,
-                                     const brio_cocone_options *options, brio_cocone_surface *out) {
+                                     const brio_cocone_options *options, const brio_sample_evidence *evidence,
+                                     brio_cocone_surface *out) {
     brio_status status = BRIO_OK;
-    reconstruction r = {
-        .ctx = ctx, .options = options, .points = points, .num_points = num_points, .out = out, .lap = brio_seconds()};
+    reconstruction r = {.ctx = ctx,
+                        .options = options,
+                        .evidence = evidence,
+                        .points = points,
+                        .num_points = num_points,
+                        .out = out,
+                        .lap = brio_seconds()};
     const brio_bar bar = brio_progress_bar(ctx);
     *out = (brio_cocone_surface){0};
     brio_progress_part(ctx, bar, 0, 0.5);

@@ -2,7 +2,7 @@
 #ifndef BRIO_RECONSTRUCT_COCONE_SURFACE_H
 #define BRIO_RECONSTRUCT_COCONE_SURFACE_H
 
-#include "base/context.h"
+#include "reconstruct/cocone/sample_evidence.h"
 
 /** Triangles of samples, and what was found out about the samples. */
 typedef struct {
@@ -15,11 +15,13 @@ typedef struct {
 } brio_cocone_surface;
 
 /** Finds the co-cone or, with options.tight, the tight co-cone.
- *  points  #P by 3, coordinates of at most 1, none -0.
+ *  points    #P by 3, coordinates of at most 1, none -0.
+ *  evidence  NULL: none.
  *  out     overwritten; freed with brio_cocone_surface_free, on failure too.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER, and what brio_delaunay returns. */
 brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, size_t num_points,
-                                     const brio_cocone_options *options, brio_cocone_surface *out);
+                                     const brio_cocone_options *options, const brio_sample_evidence *evidence,
+                                     brio_cocone_surface *out);
 
 void brio_cocone_surface_free(brio_context *ctx, brio_cocone_surface *surface);
 

@@ -12,7 +12,7 @@ static void sum_votes(void *user, size_t begin, size_t end, int thread) {
     brio_label_flips *f = user;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        int64_t outer = 0;
+        int64_t outer = brio_vote_of(brio_own_vote(f->g, p));
         for (size_t i = f->g->first[p]; i < f->g->first[p + 1]; i++) {
             uint32_t entry = f->g->star[i];
             int64_t weight = brio_vote_of(brio_star_vote(f->g, entry));

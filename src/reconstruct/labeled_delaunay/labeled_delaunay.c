@@ -22,7 +22,10 @@
 #include "order/canonical_points.h"
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
+#include "reconstruct/cocone/rim_axes.h"
+#include "reconstruct/cocone/sample_evidence.h"
 #include "reconstruct/cocone/sample_orientation.h"
+#include "reconstruct/labeled_delaunay/hull_patches.h"
 #include "reconstruct/labeled_delaunay/open_holes.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
@@ -60,7 +63,9 @@ typedef struct {
     double left;     /* the noise that the triangulated samples have */
     brio_triangulation *delaunay;
     brio_pole_vectors dual;
-    uint8_t *turned;       /* #P */
+    uint8_t *turned; /* #P */
+    brio_sample_evidence evidence;
+    float *own;            /* #P, or NULL: what evidence tells of the samples, in BRIO_VOTE_UNIT */
     brio_vote_graph graph; /* until the surface is found */
     uint8_t *label;        /* #T and #P */
     uint32_t *faces;       /* #F by 3 */
@@ -103,6 +108,23 @@ done:
     return status;
 }
 
+/* Lets evidence sign the axes, if it tells anything. At the rims of sheets axes change then. */
+static brio_status orient_by_evidence(reconstruction *r, const brio_cocones *cocones) {
+    brio_status status = BRIO_OK;
+    unsigned *used = &r->stats.evidence;
+    r->evidence.order = r->order;
+    r->evidence.exponent = r->exponent;
+    BRIO_TRY(brio_weigh_evidence(r->ctx, &r->evidence, cocones, &r->own, used));
+    if (!r->own) return BRIO_OK;
+    brio_release(r->ctx, r->own);
+    r->own = NULL;
+    BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
+    BRIO_TRY(brio_orient_by_evidence(r->ctx, &r->evidence, cocones, r->turned, &r->own, used));
+    for (size_t p = 0; p < r->num_points && r->own; p++) r->own[p] *= (float)BRIO_VOTE_UNIT;
+done:
+    return status;
+}
+
 /* Finds the axes of the samples, and whether they point outwards as far as the co-cones tell. */
 static brio_status orient(reconstruction *r) {
     brio_status status = BRIO_OK;
@@ -114,6 +136,7 @@ static brio_status orient(reconstruction *r) {
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
     brio_cocones_select(r->ctx, &cocones, &candidates);
     BRIO_TRY(brio_orient_samples(r->ctx, &cocones, &r->turned));
+    BRIO_TRY(orient_by_evidence(r, &cocones));
     lap(r, &r->stats.poles_seconds);
 done:
     brio_cocones_free(r->ctx, &cocones);
@@ -151,17 +174,30 @@ static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
     size_t num_tets = r->dual.t.count;
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, num_tets + r->num_points));
-    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, &r->graph));
+    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, r->own, &r->graph));
     BRIO_TRY(brio_vote_labels(&r->graph, r->turned, r->label, &r->stats.undecided));
     r->stats.energy = brio_vote_energy(&r->graph, r->label);
     lap(r, &r->stats.labels_seconds);
+    if (r->own) BRIO_TRY(brio_drop_hull_patches(r->ctx, &r->dual, r->label));
     BRIO_TRY(drop_specks(r));
     BRIO_TRY(mend(r));
     for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
+    r->stats.agreement = brio_evidence_agreement(r->own, r->turned, r->num_points, &r->stats.told);
     lap(r, &r->stats.manifold_seconds);
     if (!r->options->confidence) brio_vote_graph_free(&r->graph);
 done:
     return status;
+}
+
+/* Leaves out the facets between infinite tetrahedra: there the surface is open. */
+static void drop_infinite(const reconstruction *r, brio_facets *boundary) {
+    size_t count = 0;
+    for (size_t n = 0; n < boundary->count; n++) {
+        uint32_t facet = boundary->facet[n], mate = *brio_mate(&r->dual.t, facet);
+        if (brio_tet_of(facet) < r->dual.num_finite || brio_tet_of(mate) < r->dual.num_finite)
+            boundary->facet[count++] = facet;
+    }
+    boundary->count = count;
 }
 
 /* Lists the boundary facets counterclockwise as seen from their outer tetrahedra. */
@@ -181,12 +217,13 @@ static brio_status extract(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_facets boundary = {0};
     size_t changed = 0;
-    brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = true, .label = r->label};
+    brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = !r->own, .label = r->label};
     BRIO_TRY(brio_make_manifold(r->ctx, &labels, &boundary, &changed));
     r->stats.relabeled += changed;
     BRIO_TRY(drop_specks(r));
     brio_release(r->ctx, boundary.facet);
     BRIO_TRY(brio_boundary_facets(r->ctx, &labels, &boundary));
+    drop_infinite(r, &boundary);
     BRIO_REQUIRE(r->ctx, boundary.count > 0, BRIO_ERR_NO_ANSWER, "no inside found");
     BRIO_TRY(list_faces(r, &boundary));
     if (r->options->confidence) {
@@ -294,6 +331,7 @@ static void release(reconstruction *r) {
     brio_release(r->ctx, r->points);
     brio_release(r->ctx, r->spacing);
     brio_release(r->ctx, r->turned);
+    brio_release(r->ctx, r->own);
     brio_release(r->ctx, r->label);
     brio_release(r->ctx, r->faces);
     brio_release(r->ctx, r->confidence);
@@ -316,6 +354,7 @@ brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_
                  (int)o.noise);
     BRIO_REQUIRE(ctx, o.open >= 0 && o.open < INFINITY, BRIO_ERR_ARGUMENT,
                  "open: %g spacings, expected a finite number, 0 or more", o.open);
+    BRIO_TRY(brio_take_evidence(ctx, o.evidence, num_points, &r.evidence));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
     brio_progress_part(ctx, bar, 0, o.simplify ? 0.8 : 1);
     BRIO_TRY(find_surface(&r, points));

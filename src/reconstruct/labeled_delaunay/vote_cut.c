@@ -18,7 +18,7 @@ void brio_vote_cut_free(brio_vote_cut *c) {
 
 /* Returns whether a tetrahedron takes part. */
 static bool is_in(const brio_vote_cut *c, uint32_t tet) {
-    return tet < c->g->dual->num_finite && (!c->open || c->open[tet]);
+    return tet < c->g->num_free && (!c->open || c->open[tet]);
 }
 
 static uint32_t tet_at(const brio_vote_cut *c, size_t i) {
@@ -27,13 +27,13 @@ static uint32_t tet_at(const brio_vote_cut *c, size_t i) {
 
 static brio_status list_open(brio_vote_cut *c, size_t *count) {
     brio_status status = BRIO_OK;
-    size_t finite = c->g->dual->num_finite;
-    *count = finite;
+    size_t all = c->g->num_free;
+    *count = all;
     if (!c->open) return BRIO_OK;
     *count = 0;
-    for (size_t tet = 0; tet < finite; tet++) *count += c->open[tet] != 0;
+    for (size_t tet = 0; tet < all; tet++) *count += c->open[tet] != 0;
     BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->list, *count));
-    for (size_t tet = 0, i = 0; tet < finite; tet++)
+    for (size_t tet = 0, i = 0; tet < all; tet++)
         if (c->open[tet]) c->list[i++] = (uint32_t)tet;
 done:
     return status;
@@ -89,7 +89,8 @@ static void sum_votes(void *user, size_t begin, size_t end, int thread) {
         for (int k = 0; k < 4; k++) {
             uint32_t other = brio_tet_of(tet->mate[k]);
             int32_t vote = whole(g->vote[v][k]);
-            outer += sample[tet->vertex[k]] == BRIO_LABEL_OUTER ? vote : -vote;
+            if (tet->vertex[k] != g->dual->t.infinite)
+                outer += sample[tet->vertex[k]] == BRIO_LABEL_OUTER ? vote : -vote;
             if (is_in(t->c, other)) continue;
             outer += t->label[other] == BRIO_LABEL_OUTER ? whole(g->facet[v][k]) : -whole(g->facet[v][k]);
         }
@@ -104,7 +105,7 @@ void brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uin
     brio_for(ctx, brio_threads(ctx, c->flow.num_open, TETS_A_THREAD), c->flow.num_open, sum_votes, &t);
     brio_tet_flow_run(&c->flow);
     if (out != label)
-        for (size_t tet = 0; tet < c->g->dual->num_finite; tet++) out[tet] = label[tet];
+        for (size_t tet = 0; tet < c->g->num_free; tet++) out[tet] = label[tet];
     for (size_t i = 0; i < c->flow.num_open; i++) {
         uint32_t tet = tet_at(c, i);
         out[tet] = c->flow.side[tet] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;

@@ -9,22 +9,23 @@
 typedef struct {
     const brio_vote_graph *g;
     const uint8_t *open; /* #T, or NULL */
-    uint32_t *list;      /* the open finite tetrahedra, or NULL */
+    uint32_t *list;      /* the open tetrahedra, or NULL */
     brio_tet_flow flow;
     int32_t *wanted; /* #T: the weight of what wants an open tetrahedron outer, less of what wants it inner, in the last
                         cut */
 } brio_vote_cut;
 
 /** g     kept.
- *  open  #T, kept: 0 for tetrahedra that keep their labels in all cuts; NULL: all are open.
+ *  open  #T, kept: 0 for tetrahedra that keep their labels in all cuts; NULL: all are open. Those from
+ *        g->num_free on are never open.
  *  out   freed with brio_vote_cut_free, on failure too. */
 brio_status brio_vote_cut_new(const brio_vote_graph *g, const uint8_t *open, brio_vote_cut *out);
 void brio_vote_cut_free(brio_vote_cut *c);
 
-/** Finds the labels of least energy of open finite tetrahedra; of all such labels those with the fewest inner ones.
+/** Finds the labels of least energy of open tetrahedra; of all such labels those with the fewest inner ones.
  *  bias   log-odds that are added to the votes of every open tetrahedron for outer; not over 100.
  *  label  #nodes of the graph.
- *  out    #T, written for finite tetrahedra; may be `label`. */
+ *  out    #T, written for tetrahedra below g->num_free; may be `label`. */
 void brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out);
 
 #endif

@@ -185,12 +185,12 @@ done:
 }
 
 brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, const double *spacing, double noise,
-                                brio_vote_graph *out) {
+                                const float *own, brio_vote_graph *out) {
     brio_status status = BRIO_OK;
     size_t size = dual->t.count, hull = size - dual->num_finite;
     builder b = {.g = out, .dual = dual, .spacing = spacing, .noise = noise};
     int threads = brio_threads(ctx, size, TETS_A_THREAD);
-    *out = (brio_vote_graph){.ctx = ctx, .dual = dual};
+    *out = (brio_vote_graph){.ctx = ctx, .dual = dual, .num_free = own ? size : dual->num_finite, .own = own};
     BRIO_TRY(BRIO_ALLOC(ctx, out->vote, size));
     brio_for(ctx, threads, size, find_cosines, &b);
     brio_pole_vectors_drop(ctx, dual);
@@ -236,12 +236,15 @@ typedef struct {
 
 static void sum_parts(void *user, size_t begin, size_t end, int thread) {
     energy *e = user;
-    size_t size = e->g->dual->t.count;
+    size_t size = e->g->dual->t.count, samples = e->g->dual->num_points;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         e->part[i] = 0;
         for (size_t tet = brio_part(size, (int)i, PARTS); tet < brio_part(size, (int)i + 1, PARTS); tet++)
             e->part[i] += violated_at(e->g, e->label, (uint32_t)tet);
+        for (size_t p = brio_part(samples, (int)i, PARTS); e->g->own && p < brio_part(samples, (int)i + 1, PARTS); p++)
+            if ((e->g->own[p] < 0) == (e->label[size + p] == BRIO_LABEL_OUTER))
+                e->part[i] += fabs((double)e->g->own[p]);
     }
 }
 

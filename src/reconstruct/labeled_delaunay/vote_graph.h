@@ -14,6 +14,8 @@
 typedef struct {
     brio_context *ctx;
     const brio_pole_vectors *dual;
+    size_t num_free;   /* tetrahedra below this have labels to be found: the finite ones, or all; others are outer */
+    const float *own;  /* #P, or NULL: what evidence wants for the samples: weights for outer */
     float (*vote)[4];  /* #T by 4: of the edge from a tetrahedron to the sample in slot i; 0 for the infinite vertex */
     float (*facet)[4]; /* #T by 4: of the edge across facet i, at both ends; 0 between infinite tetrahedra */
     size_t *first;     /* #P + 1 */
@@ -21,16 +23,23 @@ typedef struct {
                           in ascending order */
 } brio_vote_graph;
 
+/** Returns what evidence wants for a sample: the weight for outer, negative for inner, or 0. */
+static inline float brio_own_vote(const brio_vote_graph *g, size_t sample) {
+    return g->own ? g->own[sample] : 0;
+}
+
 /** Builds the graph. A tetrahedron and a sample of it share an edge: its weight is the log-odds that the tetrahedron is
  *  on the side to which the sample's axis points (vote_weight.h). Two neighbours share an edge that wants one label: its
  *  weight is the area of their facet.
  *  dual     kept: it must outlive the graph. Its centres, planes and poles are freed (brio_pole_vectors_drop).
  *  spacing  #P: of the samples.
  *  noise    of the samples, as brio_least_noise finds it.
+ *  own      #P, kept, or NULL: what evidence wants for the samples. With evidence the infinite tetrahedra have labels to
+ *           be found, too: scans of rooms are seen from inside.
  *  out      freed with brio_vote_graph_free, on failure too.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, const double *spacing, double noise,
-                                brio_vote_graph *out);
+                                const float *own, brio_vote_graph *out);
 void brio_vote_graph_free(brio_vote_graph *g);
 
 /** Return what the sample of an entry of `star` votes for, and its tetrahedron. */

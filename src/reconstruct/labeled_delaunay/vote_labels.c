@@ -35,8 +35,8 @@ typedef struct {
 /* Returns the sum of the weights of a sample's votes for outer, less those for inner.   all  receives the sum of their
  * magnitudes. */
 static double tally(const voting *v, size_t sample, double *all) {
-    double outer = 0;
-    *all = 0;
+    double outer = (double)brio_own_vote(v->g, sample);
+    *all = fabs(outer);
     for (size_t i = v->g->first[sample]; i < v->g->first[sample + 1]; i++) {
         double weight = (double)brio_star_vote(v->g, v->g->star[i]);
         outer += v->label[brio_star_tet(v->g->star[i])] == BRIO_LABEL_OUTER ? weight : -weight;
@@ -113,7 +113,7 @@ static brio_status settle_contested(const voting *v, size_t *undecided) {
     BRIO_TRY(brio_vote_region_new(v->g, v->fixed, v->label, &r));
     brio_signed_graph signs = brio_vote_region_signs(&r);
     BRIO_TRY(brio_lower_energy(&signs, r.fixed, &descent, r.label));
-    for (size_t i = 0; i < r.count; i++) v->label[r.node[i]] = r.label[i];
+    for (size_t i = 0; i < r.num_nodes; i++) v->label[r.node[i]] = r.label[i];
     *undecided = descent.undecided;
 done:
     brio_vote_region_free(&r);

@@ -4,7 +4,7 @@
 
 #include "reconstruct/labeled_delaunay/vote_graph.h"
 
-/** Finds labels of low energy. Infinite tetrahedra are outer.
+/** Finds labels of low energy. Tetrahedra from g->num_free on are outer.
  *  turned     #P: 1 where the axis of a sample points inwards, a first guess.
  *  label      #nodes of the graph, written.
  *  undecided  receives the nodes that the last roof duality did not decide.

@@ -22,6 +22,7 @@ static void list_edges(const brio_vote_graph *g, uint32_t node, brio_signed_edge
         uint32_t p = node - num_tets;
         for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
             edges[count++] = (brio_signed_edge){brio_star_tet(g->star[i]), brio_star_vote(g, g->star[i])};
+        if (g->own) edges[count] = (brio_signed_edge){num_tets + (uint32_t)g->dual->num_points, g->own[p]};
         return;
     }
     const brio_tetrahedron *t = &g->dual->t.tet[node];
@@ -29,10 +30,11 @@ static void list_edges(const brio_vote_graph *g, uint32_t node, brio_signed_edge
     for (int i = 0; i < 4; i++) edges[count++] = (brio_signed_edge){brio_tet_of(t->mate[i]), g->facet[node][i]};
 }
 
-/* Returns the number of edges of a free node: tetrahedra are free only if they are finite. */
+/* Returns the number of edges of a free node: tetrahedra are free only if they are finite. Where there is evidence, samples
+ * have an edge to it. */
 static size_t num_edges(const brio_vote_graph *g, uint32_t node) {
     size_t num_tets = g->dual->t.count;
-    return node < num_tets ? EDGES : g->first[node - num_tets + 1] - g->first[node - num_tets];
+    return node < num_tets ? EDGES : g->first[node - num_tets + 1] - g->first[node - num_tets] + (g->own != NULL);
 }
 
 /* Marks the nodes of the region, and returns a bound of their edges. */
@@ -59,6 +61,8 @@ static void number_nodes(const copier *c) {
     size_t nodes = c->g->dual->t.count + c->g->dual->num_points;
     for (size_t node = 0; node < nodes; node++)
         if (c->number[node]) c->number[node] = (uint32_t)++c->out->count;
+    c->out->num_nodes = c->out->count;
+    if (c->g->own) c->number[nodes] = (uint32_t)++c->out->count;
 }
 
 static void place(const brio_vote_graph *g, uint32_t node, double at[3]) {
@@ -80,7 +84,8 @@ static void list_nodes(const copier *c) {
         r->first[count++] = edges;
         if (!c->fixed[node]) edges += num_edges(c->g, node);
     }
-    r->first[count] = edges;
+    for (size_t i = count; i <= r->count; i++) r->first[i] = edges;
+    if (r->count > r->num_nodes) r->fixed[r->num_nodes] = 1, r->label[r->num_nodes] = BRIO_LABEL_OUTER;
 }
 
 static void copy_nodes(void *user, size_t begin, size_t end, int thread) {
@@ -103,7 +108,7 @@ brio_status brio_vote_region_new(const brio_vote_graph *g, const uint8_t *fixed,
     brio_status status = BRIO_OK;
     copier c = {.g = g, .fixed = fixed, .label = label, .out = out};
     *out = (brio_vote_region){.ctx = g->ctx};
-    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, c.number, g->dual->t.count + g->dual->num_points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, c.number, g->dual->t.count + g->dual->num_points + 1));
     size_t bound = mark(&c);
     number_nodes(&c);
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->node, out->count));
@@ -113,7 +118,7 @@ brio_status brio_vote_region_new(const brio_vote_graph *g, const uint8_t *fixed,
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->first, out->count + 1));
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->edge, bound));
     list_nodes(&c);
-    brio_for(g->ctx, brio_threads(g->ctx, out->count, NODES_A_THREAD), out->count, copy_nodes, &c);
+    brio_for(g->ctx, brio_threads(g->ctx, out->num_nodes, NODES_A_THREAD), out->num_nodes, copy_nodes, &c);
 done:
     brio_release(g->ctx, c.number);
     return status;

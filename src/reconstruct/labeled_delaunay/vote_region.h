@@ -9,8 +9,8 @@
  *  here. */
 typedef struct {
     brio_context *ctx;
-    size_t count;
-    uint32_t *node; /* of the graph of votes */
+    size_t count, num_nodes; /* the last node, if there is one more, is the evidence: outer for good */
+    uint32_t *node;          /* #nodes: of the graph of votes */
     uint8_t *fixed, *label;
     size_t *first;
     brio_signed_edge *edge;

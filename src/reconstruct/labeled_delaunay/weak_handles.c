@@ -47,7 +47,7 @@ typedef struct {
 static void open_doubtful(search *s) {
     const brio_vote_graph *g = s->f->g;
     for (size_t p = 0; p < s->f->num_samples; p++) {
-        int64_t all = 0, outer = llabs(s->f->outer[p]);
+        int64_t all = llabs(brio_vote_of(brio_own_vote(g, p))), outer = llabs(s->f->outer[p]);
         for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
             all += llabs(brio_vote_of(brio_star_vote(g, g->star[i])));
         if ((double)(all - outer) <= 2 * DOUBT * (double)all) continue;

@@ -1,0 +1,204 @@
+/* What files know of the side from which samples were seen, as log-odds that the axis of a sample points outwards.
+ *
+ * A sample knows the axis of its surface up to sign, better than a normal that was estimated. A normal, or the direction
+ * from the sample to its scanner, tells the sign. How often it is right is not known, but can be measured: two samples at
+ * an edge of a candidate have axes whose signs are known relative to each other. If each tells its sign rightly with
+ * probability r, the two agree with probability A = r^2 + (1 - r)^2, so r = (1 + sqrt(2 A - 1)) / 2. Flat views tell
+ * less than steep ones, above all in noise, so r is measured for each class of the cosine between direction and axis. Signs
+ * that are drawn by lot have A = 1/2 and weigh nothing.
+ *
+ * What A does not see are signs that are all wrong together. They turn the surface over: it is what they say.
+ *
+ * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009.
+ * Differs from the paper: scanners vote on the sides of samples, and these on tetrahedra. Lines of sight through
+ *                         tetrahedra gain nothing beside that. */
+#include "reconstruct/cocone/sample_evidence.h"
+#include "base/memory.h"
+#include "base/team.h"
+#include "base/vector.h"
+#include "base/versioned.h"
+#include <math.h>
+
+/* CLASSES: of |cosine|. FEW: pairs of a class that tell its rate. All chosen. */
+enum { CLASSES = 8, FEW = 64, SAMPLES_A_THREAD = 1 << 12, TETS_A_THREAD = 1 << 12 };
+
+/* Axes within 60 degrees of each other, up to sign, have signs relative to each other. Chosen. */
+static const double PARALLEL = 0.5;
+
+/* In log-odds: evidence under LEAST in the mean is drawn by lot; MOST is the largest weight of a sample. Chosen. */
+static const double LEAST = 0.3, MOST = 6;
+
+static const brio_evidence STANDARD = {.size = sizeof STANDARD};
+
+BRIO_OPTIONS_INIT(brio_evidence)
+
+brio_status brio_take_evidence(brio_context *ctx, const brio_evidence *given, size_t num_points,
+                               brio_sample_evidence *out) {
+    brio_status status = BRIO_OK;
+    out->given = STANDARD;
+    if (given) BRIO_TRY(BRIO_TAKE(ctx, brio_evidence, given, &out->given));
+    const brio_evidence *e = &out->given;
+    BRIO_REQUIRE(ctx, !e->origins || e->origin_of || e->num_origins == 1 || e->num_origins == num_points,
+                 BRIO_ERR_ARGUMENT, "%zu places of scanners for %zu points: which saw which?", e->num_origins,
+                 num_points);
+done:
+    return status;
+}
+
+typedef struct {
+    const brio_sample_evidence *e;
+    const brio_cocones *c;
+    unsigned kind;
+    float *cosine; /* #P: between the direction of the evidence and the axis; 0 where nothing is known */
+    uint64_t agree[CLASSES], pairs[CLASSES];
+    double weight[CLASSES];
+    float *own;
+} weighing;
+
+static int class_of(float cosine) {
+    int class = (int)(fabsf(cosine) * CLASSES);
+    return class < CLASSES ? class : CLASSES - 1;
+}
+
+/* Writes the direction that the evidence of a sample gives; zero where there is none. */
+static void direction(const weighing *w, size_t p, double to[3]) {
+    const brio_sample_evidence *e = w->e;
+    const brio_evidence *given = &e->given;
+    size_t point = e->order[p];
+    const double *x = w->c->dual->points + 3 * p;
+    to[0] = to[1] = to[2] = 0;
+    if (w->kind == BRIO_EVIDENCE_NORMALS) {
+        for (size_t k = 0; k < 3; k++) to[k] = given->normals[3 * point + k];
+        return;
+    }
+    size_t at = given->origin_of ? given->origin_of[point] : given->num_origins == 1 ? 0 : point;
+    for (size_t k = 0; k < 3 && at < given->num_origins; k++)
+        to[k] = ldexp(given->origins[3 * at + k], -e->exponent) - x[k];
+}
+
+static void find_cosines(void *user, size_t begin, size_t end, int thread) {
+    const weighing *w = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
+        double to[3], length;
+        direction(w, p, to);
+        length = hypot(hypot(to[0], to[1]), to[2]);
+        double cosine = brio_dot(to, w->c->dual->plane + 4 * p) / length;
+        w->cosine[p] = length > 0 && fabs(cosine) <= 2 ? (float)cosine : 0;
+    }
+}
+
+/* Counts a pair of samples, if both see the surface about as steeply. */
+static void count_pair(const weighing *w, uint32_t p, uint32_t q, uint64_t *agree, uint64_t *pairs) {
+    const double *plane = w->c->dual->plane;
+    double parallel = brio_dot(plane + 4 * (size_t)p, plane + 4 * (size_t)q);
+    int class = class_of(w->cosine[p]);
+    if (w->cosine[p] == 0 || w->cosine[q] == 0 || class != class_of(w->cosine[q]) || fabs(parallel) < PARALLEL) return;
+    pairs[class]++;
+    agree[class] += ((w->cosine[p] < 0) == (w->cosine[q] < 0)) == (parallel > 0);
+}
+
+static void count_pairs(void *user, size_t begin, size_t end, int thread) {
+    weighing *w = user;
+    const brio_tetrahedra *t = &w->c->dual->t;
+    uint64_t agree[CLASSES] = {0}, pairs[CLASSES] = {0};
+    (void)thread;
+    for (size_t tet = begin; tet < end; tet++)
+        for (int i = 0; w->c->candidates[tet] && i < 4; i++) {
+            uint32_t facet = brio_facet_of((uint32_t)tet, i);
+            const uint32_t *v = t->tet[tet].vertex;
+            if (!brio_is_candidate(w->c, facet) || *brio_mate(t, facet) < facet) continue;
+            for (int k = 0; k < 3; k++) count_pair(w, v[BRIO_FACET[i][k]], v[BRIO_FACET[i][(k + 1) % 3]], agree, pairs);
+        }
+    for (int i = 0; i < CLASSES; i++) {
+        __atomic_fetch_add(&w->agree[i], agree[i], __ATOMIC_RELAXED);
+        __atomic_fetch_add(&w->pairs[i], pairs[i], __ATOMIC_RELAXED);
+    }
+}
+
+/* Returns the log-odds that a sign is right, if of so many pairs so many agree. */
+static double log_odds(uint64_t agree, uint64_t pairs) {
+    double excess = 2 * (double)(agree + 1) / (double)(pairs + 2) - 1, rate = (1 + sqrt(excess > 0 ? excess : 0)) / 2;
+    return fmin(log(rate / (1 - rate)), MOST);
+}
+
+/* Returns whether most directions are steep: normals that do not go with the shape, such as one normal for all points, are
+ * not. Half of the directions drawn by lot are. */
+static bool is_steep(const weighing *w) {
+    size_t told = 0, steep = 0;
+    for (size_t p = 0; p < w->c->dual->num_points; p++) {
+        told += w->cosine[p] != 0;
+        steep += fabsf(w->cosine[p]) >= 0.5f;
+    }
+    return 3 * steep >= 2 * told;
+}
+
+/* Weighs the classes. Returns whether the evidence tells anything. */
+static bool weigh_classes(weighing *w) {
+    uint64_t agree = 0, pairs = 0;
+    for (int i = 0; i < CLASSES; i++) agree += w->agree[i], pairs += w->pairs[i];
+    for (int i = 0; i < CLASSES; i++)
+        w->weight[i] = w->pairs[i] < FEW ? log_odds(agree, pairs) : log_odds(w->agree[i], w->pairs[i]);
+    if (w->kind == BRIO_EVIDENCE_NORMALS && !is_steep(w)) return false;
+    return log_odds(agree, pairs) >= LEAST;
+}
+
+static void add_weights(void *user, size_t begin, size_t end, int thread) {
+    const weighing *w = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
+        double weight = w->weight[class_of(w->cosine[p])];
+        if (w->cosine[p] != 0) w->own[p] += (float)(w->cosine[p] > 0 ? weight : -weight);
+    }
+}
+
+brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c, float **own,
+                                unsigned *used) {
+    brio_status status = BRIO_OK;
+    size_t n = c->dual->num_points, tets = c->dual->t.count;
+    int threads = brio_threads(ctx, n, SAMPLES_A_THREAD);
+    weighing w = {.e = e, .c = c};
+    *own = NULL;
+    *used = 0;
+    const brio_evidence *given = &e->given;
+    if (!given->normals && !given->origins) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, w.cosine, n));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, w.own, n));
+    for (unsigned kind = BRIO_EVIDENCE_NORMALS; kind <= BRIO_EVIDENCE_ORIGINS; kind <<= 1) {
+        if (!(kind == BRIO_EVIDENCE_NORMALS ? given->normals : given->origins)) continue;
+        w.kind = kind;
+        for (int i = 0; i < CLASSES; i++) w.agree[i] = w.pairs[i] = 0;
+        brio_for(ctx, threads, n, find_cosines, &w);
+        brio_for(ctx, brio_threads(ctx, tets, TETS_A_THREAD), tets, count_pairs, &w);
+        if (!weigh_classes(&w)) continue;
+        brio_for(ctx, threads, n, add_weights, &w);
+        *used |= kind;
+    }
+done:
+    brio_release(ctx, w.cosine);
+    if (status == BRIO_OK && *used)
+        *own = w.own;
+    else
+        brio_release(ctx, w.own);
+    return status;
+}
+
+brio_status brio_orient_by_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c,
+                                    uint8_t *turned, float **own, unsigned *used) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_weigh_evidence(ctx, e, c, own, used));
+    for (size_t p = 0; p < c->dual->num_points && *own; p++)
+        if ((*own)[p] != 0) turned[p] = (*own)[p] < 0;
+done:
+    return status;
+}
+
+double brio_evidence_agreement(const float *own, const uint8_t *turned, size_t num_points, size_t *told) {
+    size_t agree = 0;
+    *told = 0;
+    for (size_t p = 0; p < num_points && own; p++) {
+        *told += own[p] != 0;
+        agree += own[p] != 0 && (own[p] < 0) == turned[p];
+    }
+    return *told ? (double)agree / (double)*told : 0;
+}

@@ -1,0 +1,160 @@
+/* Evidence of scanners and normals: it decides what points alone cannot, wrong parts of it lose, and none changes nothing. */
+#include "base/rng.h"
+#include "failing_allocator.h"
+#include "harness.h"
+#include "points.h"
+#include "same_faces.h"
+#include <math.h>
+#include <string.h>
+
+enum { MANY = 3000 };
+
+/* A room seen from inside: points on the walls of a box, with normals into the room. */
+static double room[3 * MANY], inwards[3 * MANY];
+
+static void make_room(void) {
+    const double size[3] = {5, 4, 3};
+    brio_rng rng = brio_rng_new(7);
+    for (size_t p = 0; p < MANY; p++) {
+        size_t wall = p % 6, axis = wall % 3;
+        for (size_t k = 0; k < 3; k++) {
+            room[3 * p + k] = k == axis ? (wall < 3 ? 0 : size[k]) : size[k] * brio_rng_double(&rng);
+            inwards[3 * p + k] = k != axis ? 0 : wall < 3 ? 1 : -1;
+        }
+    }
+}
+
+/* Turns about so many normals of 100 over. */
+static void flip(unsigned percent, double *normals) {
+    brio_rng rng = brio_rng_new(11);
+    memcpy(normals, inwards, sizeof inwards);
+    for (size_t p = 0; p < MANY; p++) {
+        bool turn = brio_rng_double(&rng) * 100 < percent;
+        for (size_t k = 0; k < 3 && turn; k++) normals[3 * p + k] = -normals[3 * p + k];
+    }
+}
+
+/* Makes the surface of the room and returns its volume: negative if its faces look inwards. */
+static double volume_of(brio_context *ctx, const brio_evidence *e, brio_labeled_delaunay_stats *s) {
+    brio_mesh *mesh;
+    brio_certificate c = {.size = sizeof c};
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    o.evidence = e;
+    EXPECT(brio_labeled_delaunay(ctx, room, MANY, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
+    EXPECT(c.manifold && c.oriented && c.closed, "closed %d", c.closed);
+    double volume = c.volume;
+    brio_certificate_free(&c);
+    brio_mesh_free(mesh);
+    return volume;
+}
+
+static void a_room_looks_inwards(void) {
+    static const double middle[3] = {2.5, 2, 1.5};
+    brio_context *ctx = new_context();
+    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    brio_evidence normals = brio_evidence_default(), scanner = normals;
+    normals.normals = inwards;
+    scanner.origins = middle, scanner.num_origins = 1;
+    EXPECT(volume_of(ctx, NULL, &s) > 57 && s.evidence == 0 && s.told == 0);
+    EXPECT(volume_of(ctx, &normals, &s) < -57 && s.evidence == BRIO_EVIDENCE_NORMALS && s.agreement > 0.99);
+    EXPECT(volume_of(ctx, &scanner, &s) < -57 && s.evidence == BRIO_EVIDENCE_ORIGINS && s.agreement > 0.99);
+    EXPECT(s.told > MANY * 9 / 10);
+    brio_context_free(ctx);
+}
+
+static void a_co_cone_looks_inwards(void) {
+    brio_context *ctx = new_context();
+    brio_mesh *mesh;
+    brio_certificate c = {.size = sizeof c};
+    brio_cocone_options o = brio_cocone_options_default();
+    brio_evidence e = brio_evidence_default();
+    e.normals = inwards;
+    o.evidence = &e;
+    EXPECT(brio_cocone(ctx, room, MANY, &o, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.volume < -55, "%g", c.volume);
+    brio_certificate_free(&c);
+    brio_mesh_free(mesh);
+    o.pieces = 2;
+    EXPECT(brio_cocone(ctx, room, MANY, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT);
+    brio_context_free(ctx);
+}
+
+static void wrong_normals_lose_to_the_rest(void) {
+    static double normals[3 * MANY];
+    brio_context *ctx = new_context();
+    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    brio_evidence e = brio_evidence_default();
+    e.normals = normals;
+    flip(10, normals);
+    EXPECT(volume_of(ctx, &e, &s) < -57 && s.agreement > 0.87 && s.agreement < 0.93, "%g", s.agreement);
+    flip(25, normals);
+    EXPECT(volume_of(ctx, &e, &s) < -57 && s.agreement > 0.70 && s.agreement < 0.80, "%g", s.agreement);
+    brio_context_free(ctx);
+}
+
+static void normals_drawn_by_lot_change_nothing(void) {
+    static double normals[3 * MANY];
+    brio_context *ctx = new_context();
+    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    brio_evidence e = brio_evidence_default();
+    e.normals = normals;
+    double without = volume_of(ctx, NULL, &s);
+    flip(50, normals);
+    EXPECT(volume_of(ctx, &e, &s) == without && s.evidence == 0 && s.told == 0);
+    memset(normals, 0, sizeof normals); /* nothing is known */
+    EXPECT(volume_of(ctx, &e, &s) > 57 && s.evidence == 0);
+    brio_context_free(ctx);
+}
+
+static void places_by_table_by_point_and_alone_are_the_same(void) {
+    static const double places[6] = {100, 100, 100, 2.5, 2, 1.5};
+    static double each[3 * MANY];
+    static uint32_t of[MANY];
+    brio_context *ctx = new_context();
+    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    brio_evidence table = brio_evidence_default(), alone = table, by_point = table;
+    for (size_t p = 0; p < MANY; p++) {
+        of[p] = 1;
+        memcpy(each + 3 * p, places + 3, 3 * sizeof *each);
+    }
+    table.origins = places, table.num_origins = 2, table.origin_of = of;
+    alone.origins = places + 3, alone.num_origins = 1;
+    by_point.origins = each, by_point.num_origins = MANY;
+    double volume = volume_of(ctx, &table, &s);
+    EXPECT(volume < -57 && volume_of(ctx, &alone, &s) == volume && volume_of(ctx, &by_point, &s) == volume);
+    for (size_t p = 0; p < MANY; p++) of[p] = UINT32_MAX;
+    EXPECT(volume_of(ctx, &table, &s) > 57 && s.evidence == 0);
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_mesh *mesh;
+    table.origin_of = NULL; /* two places for many points */
+    o.evidence = &table;
+    EXPECT(brio_labeled_delaunay(ctx, room, MANY, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    brio_context_free(ctx);
+}
+
+static brio_status make_surface(brio_context *ctx) {
+    brio_mesh *mesh;
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_evidence e = brio_evidence_default();
+    e.normals = inwards;
+    o.evidence = &e;
+    brio_status status = brio_labeled_delaunay(ctx, room, 300, &o, &mesh, NULL, NULL);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void every_failed_allocation_is_a_status(void) {
+    expect_clean_failures(make_surface);
+}
+
+SUITE(test_sample_evidence) {
+    make_room();
+    RUN(a_room_looks_inwards);
+    RUN(a_co_cone_looks_inwards);
+    RUN(wrong_normals_lose_to_the_rest);
+    RUN(normals_drawn_by_lot_change_nothing);
+    RUN(places_by_table_by_point_and_alone_are_the_same);
+    RUN(every_failed_allocation_is_a_status);
+    return harness_end();
+}
