@@ -77,17 +77,6 @@ static brio_status read_data(brio_stream *s, brio_pcd_header *h, char *line) {
     return bad_line(s, "DATA ascii, binary or binary_compressed");
 }
 
-/* Whoever has no viewpoint writes the origin, unturned. */
-static brio_status read_viewpoint(brio_pcd_header *h, char *line) {
-    static const double usual[7] = {0, 0, 0, 1, 0, 0, 0};
-    for (int i = 0; i < 7; i++) {
-        const char *word = next_word(&line);
-        double value;
-        if (word && brio_parse_number(&word, &value)) h->placed |= value != usual[i];
-    }
-    return BRIO_OK;
-}
-
 typedef struct {
     uint64_t width, height, points;
     bool has_width, has_points;
@@ -137,7 +126,8 @@ static brio_status finish(brio_stream *s, brio_pcd_header *h, const pcd_size *si
     if (size->has_points) h->points = size->points;
     h->height = size->height;
     static const double nowhere[7] = {0, 0, 0, 1, 0, 0, 0};
-    h->has_place &= size->height > 1 || memcmp(h->viewpoint, nowhere, sizeof nowhere) != 0;
+    h->placed = h->has_place && memcmp(h->viewpoint, nowhere, sizeof nowhere) != 0;
+    h->has_place &= size->height > 1 || h->placed;
     for (size_t i = 0; i < h->num_fields; i++) {
         brio_pcd_field *f = &h->fields[i];
         f->at = h->record;
