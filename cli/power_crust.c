@@ -4,6 +4,8 @@
 #include "files.h"
 #include "hints.h"
 #include "properties.h"
+#include <string.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -72,13 +74,31 @@ brio_pole_options cli_pole_options(const power_crust_options *a) {
     return o;
 }
 
-static brio_power_crust_options library_options(const run *r, const power_crust_options *a) {
+brio_status cli_read_open(run *r, const power_crust_options *a, double *spacings) {
+    char *end = NULL;
+    *spacings = a->closed ? 0 : NAN;
+    if (!a->open) return BRIO_OK;
+    if (a->closed) return cli_fail(r, BRIO_ERR_ARGUMENT, "--open and --closed exclude each other");
+    if (!strcmp(a->open, "auto")) return BRIO_OK;
+    *spacings = strtod(a->open, &end);
+    if (end == a->open || *end || !isfinite(*spacings) || *spacings < 0)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--open: expected auto or a finite number, 0 or more, got '%s'", a->open);
+    return BRIO_OK;
+}
+
+/* Returns the number of --open, 0 where there is none. */
+static double open_of(run *r, const power_crust_options *a) {
+    double spacings;
+    return cli_read_open(r, a, &spacings) == BRIO_OK && spacings > 0 ? spacings : 0;
+}
+
+static brio_power_crust_options library_options(run *r, const power_crust_options *a) {
     brio_power_crust_options o = brio_power_crust_options_default();
     o.seed = r->common.seed;
     o.poles = cli_pole_options(a);
     o.triangulate = a->triangulate;
     o.simplify = a->simplify;
-    o.open = a->open;
+    o.open = open_of(r, a);
     return o;
 }
 
@@ -127,5 +147,5 @@ void cli_report_power_crust(run *r, const power_crust_options *a, const brio_pow
         cli_fact_count(f, "toggled", s->poles.toggled);
     }
     if (a->sharp || a->sampling_density > 0) cli_fact_count(f, "bad_cells", s->poles.bad_cells);
-    if (a->open > 0) cli_fact_count(f, "left_out", s->left_out);
+    if (open_of(r, a) > 0) cli_fact_count(f, "left_out", s->left_out);
 }

@@ -6,8 +6,9 @@
 
 typedef struct power_crust_options {
     int labeling, noise;
-    double sampling_density, open;
-    bool sharp, triangulate, simplify;
+    double sampling_density;
+    bool sharp, triangulate, simplify, closed;
+    const char *open;    /* auto, or a number, or NULL: as given */
     const char *normals; /* file, or NULL */
 } power_crust_options;
 
@@ -33,8 +34,11 @@ void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bo
     {"auto", 0, OPTION_NOTE, 0, NULL, "smooth if noise is found", 0},                                                  \
     {"keep", 0, OPTION_NOTE, 0, NULL, "leave the vertices on the points", 0},                                          \
     {"smooth", 0, OPTION_NOTE, 0, NULL, "smooth whatever is found", 0},                                                \
-    {"open", 0, OPTION_NUMBER, offsetof(type, field.open), "K",                                                        \
-     "leave holes open whose radii are over K point spacings (default: close all)", 0},                                \
+    {"open", 0, OPTION_TEXT, offsetof(type, field.open), "K|auto",                                                     \
+     "leave holes open whose radii are over K point spacings; auto, the default of labeled-delaunay: where the points "\
+     "end", 0},                                                                                                        \
+    {"closed", 0, OPTION_FLAG, offsetof(type, field.closed), NULL,                                                     \
+     "close all holes, also where the points end; the default of power-crust", 0},                                     \
     {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
      "a quarter as many faces, as far as the shape allows; triangles", 0},                                             \
     {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
@@ -50,6 +54,10 @@ void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bo
     {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \
      "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0}
 /* clang-format on */
+
+/** Sets *spacings to the number of --open: NaN for auto, or where nothing was given; 0 for --closed.
+ *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT. */
+brio_status cli_read_open(run *r, const power_crust_options *options, double *spacings);
 
 /** The options of the poles as the library has them, without a solid. */
 brio_pole_options cli_pole_options(const power_crust_options *options);

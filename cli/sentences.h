@@ -43,6 +43,10 @@
 #define WARNING_GUESS                                                                                                  \
     "%.1f %% of the surface is a guess (vertices whose property confidence is under 0.7): points of an open or flat "  \
     "thing, too few of them, or walls too thin for them; see 'brio help methods'"
+#define WARNING_BRIDGES                                                                                                \
+    "%.1f %% of the area spans gaps between the points, where nothing was seen: %zu bridges, the largest at %g %g "    \
+    "%g, "                                                                                                             \
+    "%g across; --open auto leaves out what was not seen"
 #define WARNING_THETA        "--theta: no guarantee holds under %g"
 #define WARNING_LOST         "%s is without:%s"
 #define WARNING_RENAMED      "%s has other names for:%s"

@@ -8,6 +8,7 @@
 #include "power_crust.h"
 #include "properties.h"
 #include "surface_extras.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,8 +42,8 @@ static const option_choice extractions[] = {{"labels", BRIO_EXTRACTION_LABELS},
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
     {"method", 0, OPTION_CHOICE, FIELD(method), "NAME", "how to reconstruct (default labeled-delaunay)", methods},
-    {"labeled-delaunay", 0, OPTION_NOTE, 0, NULL, "closed, also from noisy points; the one that is right most often",
-     0},
+    {"labeled-delaunay", 0, OPTION_NOTE, 0, NULL,
+     "also from noisy points; open where they end (--closed: closed); the one that is right most often", 0},
     {"power-crust", 0, OPTION_NOTE, 0, NULL, "closed; sharp edges without points on them (--sharp)", 0},
     {"cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; with --boundaries open where they end", 0},
     {"tight-cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; closed", 0},
@@ -215,8 +216,27 @@ static void report_orientation(run *r, const brio_labeled_delaunay_stats *s) {
     if (s->evidence) cli_fact_real(&r->facts, "agreement", s->agreement);
 }
 
+/* Over this share of bridges the user is told. As for guesses. */
+static void report_unseen(run *r, const brio_labeled_delaunay_stats *s) {
+    facts *f = &r->facts;
+    cli_fact_count(f, "strays", s->strays);
+    cli_fact_count(f, "holes", s->holes);
+    if (s->holes) cli_fact_count(f, "left_out", s->left_out);
+    cli_fact_open(f, "bridges", FACT_OBJECT);
+    cli_fact_count(f, "number", s->bridges);
+    cli_fact_real(f, "area_share", s->bridge_share);
+    cli_fact_real(f, "largest_radius", s->bridge_radius);
+    cli_fact_open(f, "largest_centre", FACT_LIST);
+    for (int k = 0; k < 3; k++) cli_fact_real(f, NULL, s->bridge_centre[k]);
+    cli_fact_close(f);
+    cli_fact_close(f);
+    cli_fact_real(f, "far_area_percent", 100 * s->far_share);
+    if (s->bridge_share > MANY_GUESSES)
+        cli_warn(r, WARNING_BRIDGES, 100 * s->bridge_share, s->bridges, s->bridge_centre[0], s->bridge_centre[1],
+                 s->bridge_centre[2], 2 * s->bridge_radius);
+}
+
 static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
-    const arguments *a = r->arguments;
     facts *f = &r->facts;
     cli_report_noise(r, s->noise, s->smoothed);
     cli_fact_count(f, "unused", s->unused);
@@ -224,7 +244,7 @@ static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s
     cli_fact_count(f, "specks", s->specks);
     cli_fact_count(f, "relabeled", s->relabeled);
     cli_fact_count(f, "handles", s->handles);
-    if (a->crust.open > 0) cli_fact_count(f, "left_out", s->left_out);
+    report_unseen(r, s);
     cli_fact_real(f, "energy", s->energy);
     report_confidence(r, s->uncertain_share);
     report_orientation(r, s);
@@ -237,6 +257,7 @@ static void report_labeled_delaunay_stages(run *r, const brio_labeled_delaunay_s
     cli_stage(r, "poles", s->poles_seconds);
     cli_stage(r, "label", s->labels_seconds);
     cli_stage(r, "manifold", s->manifold_seconds);
+    cli_stage(r, "open", s->open_seconds);
     if (a->crust.simplify) cli_stage(r, "simplify", s->simplify_seconds);
 }
 
@@ -252,13 +273,18 @@ done:
     return status;
 }
 
-static brio_labeled_delaunay_options labeled_delaunay_options(const run *r) {
+static brio_labeled_delaunay_options labeled_delaunay_options(run *r) {
     const arguments *a = r->arguments;
     brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
     o.seed = r->common.seed;
     o.noise = (brio_noise)a->crust.noise;
     o.confidence = 1;
-    o.open = a->crust.open;
+    double spacings = NAN;
+    (void)cli_read_open(r, &a->crust, &spacings); /* check_arguments has read it before */
+    if (isnan(spacings))
+        o.holes = BRIO_HOLES_AUTO;
+    else
+        o.open = spacings;
     o.simplify = a->crust.simplify;
     return o;
 }
@@ -278,14 +304,15 @@ static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surfa
     TRY(cli_require_work(r, status, points, work));
     samples = malloc((points->num_vertices + 1) * sizeof *samples);
     if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices);
-    TRY(cli_find_evidence(r, &a->evidence, points, &e));
-    o.evidence = &e.taken;
+    bool closed = o.holes == BRIO_HOLES_CLOSED && o.open <= 0;
+    if (!closed) TRY(cli_find_evidence(r, &a->evidence, points, &e)); /* by evidence a surface may end at the hull */
+    if (!closed) o.evidence = &e.taken;
     TRY(brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, samples, &s));
     report_labeled_delaunay_stages(r, &s);
     if (a->crust.normals) TRY(normals_of_points(r, a->crust.normals, points, *surface, samples));
     TRY(complete(r, points, samples, s.samples, *surface));
     report_labeled_delaunay(r, &s);
-    *open |= s.evidence != 0;
+    *open |= !closed;
 done:
     cli_evidence_free(&e);
     free(samples);
@@ -329,7 +356,8 @@ static brio_status check_method(run *r) {
                                    {"triangulate", a->crust.triangulate, SOLIDS},
                                    {"noise", a->crust.noise != 0, SOLIDS},
                                    {"simplify", a->crust.simplify, SOLIDS},
-                                   {"open", a->crust.open != 0, SOLIDS},
+                                   {"open", a->crust.open != NULL, SOLIDS},
+                                   {"closed", a->crust.closed, SOLIDS | 1 << TIGHT_COCONE},
                                    {"normals", a->crust.normals != NULL, SOLIDS},
                                    {"from", a->evidence.from != NULL, SIDED},
                                    {"ignore-normals", a->evidence.ignore_normals, SIDED},
@@ -349,13 +377,19 @@ static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
     brio_status status = check_method(r);
     if (status != BRIO_OK) return status;
+    double spacings;
+    TRY(cli_read_open(r, &a->crust, &spacings));
+    if (a->crust.open && isnan(spacings) && method_of(a) == POWER_CRUST)
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--open auto is for --method labeled-delaunay, and the method is power-crust");
     if (a->extraction != BRIO_EXTRACTION_LABELS && a->pieces > 1)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--extraction is for --method cocone without --pieces");
     if (a->polygons && a->crust.triangulate)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
     if (a->theta >= 1.57) return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
     if (a->theta > 0 && a->theta < LEAST_THETA) cli_warn(r, WARNING_THETA, LEAST_THETA);
-    return BRIO_OK;
+done:
+    return status;
 }
 
 /* Hints to work in pieces, if that meets the limit of memory. */
@@ -410,7 +444,7 @@ static brio_status surface(run *r) {
     r->wants_origins = method_of(a) != POWER_CRUST && !a->evidence.ignore_origins && !a->evidence.from;
     TRY(cli_read_points(r, r->operands[0], &points));
     if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
-    bool open = a->method == COCONE || a->crust.open > 0;
+    bool open = a->method == COCONE || (a->crust.open && method_of(a) == POWER_CRUST);
     status = reconstruct(r, points, &result, &open);
     suggest(r, status, points);
     if (status != BRIO_OK) goto done;
@@ -433,10 +467,12 @@ const command cli_surface = {
     .operands = "IN",
     .summary = "surface through points, with a certificate of what it is",
     .description =
-        "The default method needs no parameters and no normals: points all over a closed object give a closed surface. "
+        "The default method needs no parameters and no normals: points all over a closed object give a closed surface, "
+        "others a surface that ends where they end. "
         "Other points: brio help methods. The certificate in the report says what the surface is, whatever the method.",
     .examples = "brio surface scan.ply -o surface.ply\nthe usual way\n"
                 "brio surface part.xyz --method cocone --boundaries -o shell.ply\nan open surface\n"
+                "brio surface scan.ply --closed -o solid.stl\nwithout holes, as a printer needs it\n"
                 "brio surface scan.las --open 5 --keep-largest -o surface.ply\nleaves holes over 5 point spacings "
                 "open, drops crumbs\n",
     .outputs = CLI_MESH_OUTPUTS,

@@ -1510,19 +1510,26 @@ static inline brio_evidence brio_evidence_default(void) {
 /** Kinds of evidence, as bits. */
 enum { BRIO_EVIDENCE_NORMALS = 1, BRIO_EVIDENCE_ORIGINS = 2 };
 
+/** What becomes of holes of the samples: places where a surface goes on and no sample shows it. */
+typedef enum brio_holes {
+    BRIO_HOLES_CLOSED = 0, /* all are filled: the surface is closed */
+    BRIO_HOLES_AUTO = 1, /* filled where the samples round a hole make it likely that the surface goes on, else open */
+    BRIO_HOLES_END
+} brio_holes;
+
 typedef struct brio_labeled_delaunay_options {
     size_t size;
     uint64_t seed;    /* default 1 */
     brio_noise noise; /* what to do about noisy samples; default BRIO_NOISE_AUTO */
     int confidence;   /* 1: adds the vertex property "confidence"; default 0 */
     double
-        open; /* K > 0, finite: leaves out the triangles that span holes of the samples: their circles have radii over K
-                         spacings of their samples, and they are joined to a triangle with a side over K spacings. The
-                         surface is then manifold and oriented, with boundary; default 0: it is closed */
-    int simplify; /* 1: collapses edges of up to four spacings while the vertices stay within a tenth of a spacing
+        open; /* K > 0, finite: leaves open the holes that have an empty circle along the surface whose radius is over
+                         K spacings (the median distance from a vertex to its nearest neighbour), whatever `holes` is. The
+                         surface is then manifold and oriented, with boundary; default 0: `holes` decides */
+    int simplify;     /* 1: collapses edges of up to four spacings while the vertices stay within a tenth of a spacing
                          of the planes of their triangles, until a quarter of the triangles is left; the surface stays
                          the same as a manifold; default 0 */
-    int reserved_int;
+    brio_holes holes; /* default BRIO_HOLES_CLOSED */
     const brio_evidence *evidence; /* of the side from which the points were seen; default NULL: none */
 } brio_labeled_delaunay_options;
 
@@ -1536,7 +1543,7 @@ static inline brio_labeled_delaunay_options brio_labeled_delaunay_options_defaul
 /** What the labeled Delaunay triangulation counts. */
 typedef struct brio_labeled_delaunay_stats {
     size_t size;
-    size_t samples;   /* distinct positions */
+    size_t samples;   /* distinct positions, without strays */
     size_t unused;    /* samples on no triangle of the surface */
     size_t undecided; /* samples and tetrahedra that the last roof duality did not decide */
     size_t specks;    /* regions, inner or outer, that were dropped: of under 30 triangles of 40,000, of under 42 of
@@ -1548,21 +1555,29 @@ typedef struct brio_labeled_delaunay_stats {
     double noise;     /* AUTO: the standard deviation of the noise found, in spacings of the samples; 0: none */
     size_t smoothed;  /* 1: the samples were smoothed */
     double noise_seconds, delaunay_seconds, poles_seconds, labels_seconds, manifold_seconds;
-    size_t left_out;         /* triangles that the option `open` left out */
+    size_t left_out;         /* triangles that holes left open, or crumbs between them, had */
     double uncertain_share;  /* with options.confidence: the share of the vertices whose confidence is under 0.7 */
     double simplify_seconds; /* for the mesh, and for its simplification */
     unsigned evidence; /* bits BRIO_EVIDENCE_NORMALS, BRIO_EVIDENCE_ORIGINS: what was of use; 0: inside and outside
                                 are a guess */
     unsigned reserved;
-    size_t told;      /* samples of which evidence tells the outside */
-    double agreement; /* the share of these whose side in the result is what evidence tells */
+    size_t told;          /* samples of which evidence tells the outside */
+    double agreement;     /* the share of these whose side in the result is what evidence tells */
+    size_t strays;        /* samples that lie alone, far from all others: left out, unless noise is BRIO_NOISE_KEEP */
+    size_t holes;         /* left open */
+    size_t bridges;       /* gaps of the samples that the surface spans: triangles several times larger than usual */
+    double bridge_share;  /* of the area of the surface: that of the bridges */
+    double bridge_radius; /* of the largest bridge, by area: the radius of its widest circle, and where that is; 0: */
+    double bridge_centre[3]; /* there is none */
+    double far_share; /* of the area: what is farther than five usual radii of circles round it from all samples */
+    double open_seconds;
 } brio_labeled_delaunay_stats;
 
-/** Reconstructs a closed surface from samples: the boundary of the Delaunay tetrahedra that are labeled inner. A sample
+/** Reconstructs a surface from samples: the boundary of the Delaunay tetrahedra that are labeled inner. A sample
  *  votes on the sides of the tetrahedra in its Voronoi cell, with log-odds that were measured on generated solids; the
  *  labels are those of low energy, votes and area together.
  *  Guarantees: for every input that has an inside, the mesh is closed, manifold and oriented as a combinatorial object
- *  (with the option `open`: manifold and oriented).
+ *  (with the options `open` and `holes`: manifold and oriented, with boundary where samples are missing).
  *  Does not guarantee: the right topology where walls or gaps are under two spacings of the samples, freedom from
  *  self-intersections, that every sample is used.
  *  points   #P by 3.   options  NULL for the defaults.   stats  NULL, or its `size` set.
@@ -1575,7 +1590,7 @@ typedef struct brio_labeled_delaunay_stats {
  *  samples  NULL, or room for #P: receives for each vertex the index of its sample, ascending; with options.simplify, of
  *           the sample whose vertex it was before edges collapsed.
  *  Cost: one triangulation, and the labels, about as long; about 1,000 bytes a sample at the peak.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or options.open leaves nothing), and as brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, or all of the surface spans holes), and as brio_delaunay.
  *  Based on: [Labatut Pons Keriven 2009], [Dey Goswami 2003], [Amenta Bern 1999]. */
 BRIO_API brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
                                            const brio_labeled_delaunay_options *options, brio_mesh **out,

@@ -153,7 +153,8 @@ static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
     brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
     const option table[] = {
         {"seed", SEED, &o.seed},   {"noise", INT, &o.noise},       {"confidence", INT, &o.confidence},
-        {"open", DOUBLE, &o.open}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
+        {"open", DOUBLE, &o.open}, {"simplify", INT, &o.simplify}, {"holes", INT, &o.holes},
+        {NULL, INT, NULL}};
     o.evidence = &e.taken;
     if (!open_surface_call(&s, args, input_open, 'I', 0) && !open_evidence(&e, s.options, s.p.rows))
         RUN_SURFACE(table, brio_labeled_delaunay(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));

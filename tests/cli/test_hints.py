@@ -118,6 +118,7 @@ ROWS = {
                         [Silent("surface dense.ply --method cocone --density -o out.ply"),
                          Silent("surface sparse.ply --method labeled-delaunay -o out.ply")]),
     "WARNING_GUESS": ("surface cube.ply -o out.ply", 0, ["help methods", "alpha cube.ply --alpha auto -o out.ply"]),
+    "WARNING_BRIDGES": ("surface half.xyz --closed -o out.ply", 0, [Silent("surface half.xyz --open auto -o out.ply")]),
     "WARNING_THETA": ("surface scan.ply --method cocone --theta 0.1 -o out.ply", 0,
                       [Silent("surface scan.ply --method cocone --theta 0.3 -o out.ply")]),
     "WARNING_LOST": ("convert values.ply out.off", 0, [Silent("convert values.ply out.ply")]),
@@ -240,6 +241,7 @@ class Hints(CliTest):
         self.off("far.off", [(4100000.456 + 0.1 * x, 5100000.1 + 0.1 * y, z / 10) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
         for name, size in ("vast.off", 1e308), ("vast2.off", 1.5e308):
             self.off(name, [[size * x for x in p] for p in OCTAHEDRON], OCTAHEDRON_FACES)
+        self.xyz("half.xyz", [p for p in self.sphere(2000) if p[2] > 0])
         self.xyz("vast.xyz", [[1.79e308 * x for x in p] for p in self.sphere(300)])
         self.xyz("pair.xyz", [(i % 40, i // 40, i * i % 7) for i in range(3000)] + [(0.3, 0.3, 0.3), (0.3 + 1e-12, 0.3, 0.3)])
         self.ball_map("ball.map", 12)

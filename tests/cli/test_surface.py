@@ -127,11 +127,14 @@ class LabeledDelaunay(CliTest):
     def test_facts_of_a_run(self):
         points = self.cloud("a.ply", 2000, "sphere")
         facts = self.facts("surface", points, "-o", self.path("out.ply"))
-        seconds = {key: number for key in "read noise delaunay poles label manifold certify write total".split()}
+        seconds = {key: number for key in "read noise delaunay poles label manifold open certify write total".split()}
         counts = "samples vertices faces".split()
         internals = {key: count for key in "unused undecided specks relabeled handles".split()}
         self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str, "noise": number,
                                    "smoothed": bool, "uncertain_share": number, "orientation": str,
+                                   "strays": count, "holes": count, "far_area_percent": number,
+                                   "bridges": {"number": count, "area_share": number, "largest_radius": number,
+                                               "largest_centre": list},
                                    "internals": {**internals, "energy": number},
                                    "certificate": CERTIFICATE, "seconds": seconds})
         self.assertEqual((facts["method"], facts["samples"], facts["internals"]["unused"]), ("labeled-delaunay", 2000, 0))
@@ -231,8 +234,60 @@ class LabeledDelaunay(CliTest):
         self.assertEqual((facts["method"], c["closed"], c["manifold"], c["boundary_loops"]),
                          ("labeled-delaunay", False, True, 1))
         self.assertGreater(facts["left_out"], 0)
-        self.assertTrue(self.facts("surface", points, "-o", out)["certificate"]["closed"])
+        self.assertTrue(self.facts("surface", points, "-o", out, "--closed")["certificate"]["closed"])
+        self.assertTrue(self.facts("surface", points, "-o", out, "--open", "0")["certificate"]["closed"])
         self.expect(3, "surface", points, "-o", out, "--open", "0.001")
+
+    def test_a_surface_ends_where_the_points_end(self):
+        points, out = self.hemisphere("a.xyz"), self.path("out.ply")
+        for how in [[], ["--open", "auto"]]:
+            facts = self.facts("surface", points, "-o", out, *how)
+            c = facts["certificate"]
+            self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["boundary_loops"]), (False, True, True, 1))
+            self.assertEqual((facts["holes"], facts["bridges"]["number"]), (1, 0))
+            self.assertLess(abs(c["area"] - 6.283), 0.2)
+            self.assertNotIn("warnings", facts)
+
+    def test_a_closed_surface_names_its_bridges(self):
+        points, out = self.hemisphere("a.xyz"), self.path("out.ply")
+        facts = self.facts("surface", points, "-o", out, "--closed")
+        b = facts["bridges"]
+        self.assertTrue(facts["certificate"]["closed"])
+        self.assertEqual((facts["holes"], b["number"]), (0, 1))
+        self.assertLess(abs(b["area_share"] - 1 / 3), 0.04)
+        self.assertLess(abs(b["largest_radius"] - 1), 0.05)
+        self.assertLess(abs(b["largest_centre"][2]), 0.05)
+        self.assertGreater(facts["far_area_percent"], 20)
+        self.assertTrue(any("spans gaps between the points" in text for text in facts["warnings"]))
+
+    def test_a_pipe_has_two_rims(self):
+        rows = [(math.cos(a), math.sin(a), 4 * j / 59) for a in (2 * math.pi * i / 79 for i in range(79)) for j in range(60)]
+        c = self.facts("surface", self.xyz("a.xyz", rows), "-o", self.path("out.ply"))["certificate"]
+        self.assertEqual((c["boundary_loops"], c["components"]), (2, 1))
+        self.assertLess(abs(c["area"] - 25.13), 0.1)
+
+    def test_random_points_of_a_closed_surface_stay_closed(self):
+        for n in (500, 2000, 20000):
+            facts = self.facts("surface", self.cloud("a.ply", n, "sphere"), "-o", self.path("out.ply"))
+            self.assertEqual((facts["certificate"]["closed"], facts["strays"]), (True, 0))
+
+    def test_strays_are_found(self):
+        points = self.hemisphere("a.xyz")
+        with open(points) as f:
+            rows = [tuple(map(float, line.split())) for line in f]
+        strays = [(math.sin(7 * i) * 1.9, math.cos(5 * i) * 1.9, -1 + 0.08 * i) for i in range(30)]
+        facts = self.facts("surface", self.xyz("b.xyz", rows + strays), "-o", self.path("out.ply"))
+        self.assertTrue(10 <= facts["strays"] <= 30, facts["strays"])
+        self.assertLess(abs(facts["certificate"]["area"] - 6.283), 0.3)
+        kept = self.facts("surface", self.xyz("b.xyz", rows + strays), "-o", self.path("out.ply"), "--noise", "keep")
+        self.assertEqual(kept["strays"], 0)
+
+    def hemisphere(self, name):
+        golden = math.pi * (1 + 5 ** 0.5)
+        rows = [(math.cos(golden * k) * math.sqrt(1 - (1 - k / 2000) ** 2),
+                 math.sin(golden * k) * math.sqrt(1 - (1 - k / 2000) ** 2), 1 - k / 2000)
+                for k in (i + 0.5 for i in range(2000))]
+        return self.xyz(name, rows)
 
     def test_components(self):
         points = self.cloud("a.xyz", 2000, "sphere")
@@ -323,6 +378,9 @@ class PowerCrust(CliTest):
         self.assertEqual(sharp["left_out"], 0)
         self.usage("between 0 and 1", "surface", points, "-o", out, "-R", "1")
         self.usage("a finite number, 0 or more", "surface", points, "-o", out, "--open", "-1")
+        self.usage("auto or a finite number", "surface", points, "-o", out, "--open", "wide")
+        self.usage("exclude each other", "surface", points, "-o", out, "--open", "4", "--closed")
+        self.usage("--open auto is for", "surface", points, "-o", out, "--open", "auto", "--sharp")
         self.expect(6, "surface", points, "-o", out, "--normals", self.path("missing/n.ply"))
 
     def test_surface_triangulated(self):

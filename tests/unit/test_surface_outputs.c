@@ -323,6 +323,28 @@ static void a_hole_stays_open(void) {
     brio_context_free(ctx);
 }
 
+/* By default the library closes all holes, and says what it bridged; BRIO_HOLES_AUTO leaves open what chance does not
+ * explain. */
+static void holes_open_where_the_samples_end(void) {
+    static double p[3 * MANY];
+    size_t n = sphere_below(0, 4, MANY, p);
+    brio_context *ctx = context_of(1);
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_labeled_delaunay_stats s;
+    brio_mesh *mesh = surface_of(ctx, p, n, &o, NULL, &s);
+    EXPECT(certificate_of(ctx, mesh).closed && s.holes == 0 && s.bridges >= 1 && s.bridge_share > 0.25, "%g",
+           s.bridge_share);
+    brio_mesh_free(mesh);
+    o.holes = BRIO_HOLES_AUTO;
+    mesh = surface_of(ctx, p, n, &o, NULL, &s);
+    brio_certificate c = certificate_of(ctx, mesh);
+    EXPECT(c.manifold && c.oriented && !c.closed && c.components == 1 && s.holes >= 1 && s.bridge_share < 0.01);
+    brio_mesh_free(mesh);
+    o.holes = BRIO_HOLES_END;
+    EXPECT(brio_labeled_delaunay(ctx, p, n, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    brio_context_free(ctx);
+}
+
 /* Whatever is left out, the rest is a manifold, and does not depend on the order of the points. */
 static void open_surfaces_are_manifold_and_canonical(void) {
     static double p[3 * MANY], q[3 * MANY];
@@ -501,6 +523,7 @@ SUITE(test_surface_outputs) {
     RUN(normals_that_fail_leave_the_mesh_as_it_was);
     RUN(confidence_falls_with_the_evidence);
     RUN(a_hole_stays_open);
+    RUN(holes_open_where_the_samples_end);
     RUN(open_surfaces_are_manifold_and_canonical);
     RUN(a_simplified_surface_stays_the_surface);
     RUN(the_walk_finds_dense_surfaces);

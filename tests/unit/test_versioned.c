@@ -177,7 +177,7 @@ ENDS_WITH(brio_power_shape_options, redundancy);
 ENDS_WITH(brio_power_shape_stats, shape_seconds);
 ENDS_WITH(brio_cocone_options, evidence);
 ENDS_WITH(brio_labeled_delaunay_options, evidence);
-ENDS_WITH(brio_labeled_delaunay_stats, agreement);
+ENDS_WITH(brio_labeled_delaunay_stats, open_seconds);
 ENDS_WITH(brio_evidence, origin_of);
 ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);

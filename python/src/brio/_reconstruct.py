@@ -90,6 +90,13 @@ def _evidence(method: str, options: dict[str, Any], properties: Properties, norm
     return out
 
 
+def _holes(options: dict[str, Any]) -> dict[str, Any]:
+    """The options of the library for `open`: "auto" is none of its numbers."""
+    if options.get("open", "auto") != "auto":
+        return options
+    return {**{name: value for name, value in options.items() if name != "open"}, "holes": 1}
+
+
 def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any = None, origins: Any = None,
                 attributes: dict[str, Any] | None = None, threads: int = 0, progress: bool | Progress | None = None,
                 **options: Any) -> Surface:
@@ -99,8 +106,9 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
     ----------
     points : array_like, shape (n, 3), or Mesh
     method : str
-        "labeled-delaunay" (default): a closed, manifold, oriented surface of triangles of the samples; options `noise`
-        ("auto", "keep", "smooth"), `open`, `confidence`, `simplify`, `seed`.
+        "labeled-delaunay" (default): a manifold, oriented surface of triangles of the samples; options `noise`
+        ("auto", "keep", "smooth"), `open`, `confidence`, `simplify`, `seed`. `open`: "auto" (default) leaves holes open
+        where the samples end, 0 closes all, K > 0 leaves those open whose radii are over K spacings.
         "power-crust": closed, manifold, oriented, of polygons; options `noise`, `open`, `sharp`, `sampling_density`,
         `labeling`, `triangulate`, `simplify`, `seed`.
         "cocone": triangles of the samples, maybe open; options `theta`, `boundaries`, `density`, `pieces`,
@@ -137,7 +145,7 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
     carried = {**carried, **as_properties({} if attributes is None else attributes, len(rows), "attribute", "point")}
     if name == "labeled-delaunay":
         samples = np.empty(len(rows), np.uint32)
-        surface = _run(_native.labeled_delaunay, rows, options, 0.0, samples, threads, progress)
+        surface = _run(_native.labeled_delaunay, rows, _holes(options), 0.0, samples, threads, progress)
         surface.samples = frozen(samples[: len(surface.vertices)].astype(np.int64))
     elif name == "power-crust":
         surface = _run(_native.power_crust, rows, options, 0.0, None, threads, progress)

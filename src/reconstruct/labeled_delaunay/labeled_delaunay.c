@@ -1,13 +1,14 @@
 /* The labeled Delaunay triangulation: the surface between its inner and its outer tetrahedra.
  *
  *   1. The samples in canonical order, scaled by a power of two to coordinates of at most 1.
- *   2. Their Delaunay triangulation, the axis of each sample, the spacing of the samples.
+ *   2. Their Delaunay triangulation, without strays (stray_samples.c); the axis of each sample, the spacing of the samples.
  *   3. A first orientation of the samples: whether their axes point outwards.
  *   4. Labels of samples and tetrahedra of low energy: each sample votes on the side of its tetrahedra, and the area of the
  *      surface is weighed against the votes (vote_graph.c).
  *   5. Regions of a few tetrahedra are dropped. Labels change where the boundary is not one fan, at the least cost in
  *      energy (mending.c), and where little evidence holds a handle (weak_handles.c).
- *   6. On request, the confidence of each sample, from the votes; holes of the samples are left open.
+ *   6. On request, the confidence of each sample, from the votes. What of the surface the samples do not show, and on
+ *      request holes that stay open (open_surface/).
  *   7. The vertices of noisy samples are smoothed along the surface. On request, edges collapse.
  *
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009.
@@ -26,14 +27,15 @@
 #include "reconstruct/cocone/sample_evidence.h"
 #include "reconstruct/cocone/sample_orientation.h"
 #include "reconstruct/labeled_delaunay/hull_patches.h"
-#include "reconstruct/labeled_delaunay/open_holes.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
+#include "reconstruct/labeled_delaunay/stray_samples.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
 #include "reconstruct/labeled_delaunay/vote_confidence.h"
 #include "reconstruct/labeled_delaunay/vote_labels.h"
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "reconstruct/noise/sample_noise.h"
 #include "reconstruct/noise/smooth_surface.h"
+#include "reconstruct/open_surface/open_surface.h"
 #include <math.h>
 
 static const brio_labeled_delaunay_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
@@ -55,6 +57,7 @@ static const double THETA = 0.39269908169872414;
 typedef struct {
     brio_context *ctx;
     const brio_labeled_delaunay_options *options;
+    size_t given; /* points of the caller */
     size_t num_points;
     uint32_t *order; /* #P: the caller's index of each sample */
     int exponent;    /* coordinates are scaled by 2^-exponent */
@@ -108,6 +111,38 @@ done:
     return status;
 }
 
+static brio_status measure_spacing(reconstruction *r) {
+    if (!r->spacing) {
+        brio_status status = BRIO_ALLOC(r->ctx, r->spacing, r->num_points);
+        if (status != BRIO_OK) return status;
+    }
+    return brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing);
+}
+
+/* Takes the strays out of the samples, and triangulates the others again. */
+static brio_status drop_strays(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    uint8_t *stray = NULL;
+    size_t kept = 0;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, stray, r->num_points));
+    BRIO_TRY(brio_find_strays(r->ctx, r->delaunay, r->points, r->num_points, r->spacing, stray));
+    for (size_t p = 0; p < r->num_points; p++) r->stats.strays += stray[p];
+    if (!r->stats.strays) goto done;
+    for (size_t p = 0; p < r->num_points; p++) {
+        if (stray[p]) continue;
+        for (size_t k = 0; k < 3; k++) r->points[3 * kept + k] = r->points[3 * p + k];
+        r->order[kept++] = r->order[p];
+    }
+    r->num_points = kept;
+    brio_triangulation_free(r->delaunay);
+    r->delaunay = NULL;
+    BRIO_TRY(triangulate(r));
+    BRIO_TRY(measure_spacing(r));
+done:
+    brio_release(r->ctx, stray);
+    return status;
+}
+
 /* Lets evidence sign the axes, if it tells anything. At the rims of sheets axes change then. */
 static brio_status orient_by_evidence(reconstruction *r, const brio_cocones *cocones) {
     brio_status status = BRIO_OK;
@@ -130,8 +165,6 @@ static brio_status orient(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_cocones cocones = {0};
     size_t candidates;
-    BRIO_TRY(BRIO_ALLOC(r->ctx, r->spacing, r->num_points));
-    BRIO_TRY(brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing));
     BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
     brio_cocones_select(r->ctx, &cocones, &candidates);
@@ -237,14 +270,25 @@ done:
     return status;
 }
 
-static brio_status leave_holes_open(reconstruction *r) {
+/* Finds what the samples do not show, and leaves holes open on request. */
+static brio_status open_surface(reconstruction *r) {
     brio_status status = BRIO_OK;
+    const brio_labeled_delaunay_options *o = r->options;
     size_t before = r->num_faces;
-    brio_hole_rule rule = {r->points, r->spacing, r->num_points, r->options->open};
-    BRIO_TRY(brio_leave_holes_open(r->ctx, &rule, r->faces, &r->num_faces));
+    brio_unseen u;
+    brio_sample_points samples = {r->ctx, r->points, r->num_points};
+    brio_hole_rule rule = {.choice = o->holes == BRIO_HOLES_AUTO ? BRIO_HOLES_SEEN : BRIO_HOLES_FILL};
+    if (o->open > 0) rule = (brio_hole_rule){BRIO_HOLES_WIDER, o->open};
+    BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &u));
     r->stats.left_out = before - r->num_faces;
+    r->stats.holes = u.holes;
+    r->stats.bridges = u.bridges;
+    r->stats.bridge_share = u.bridge_share;
+    r->stats.far_share = u.far_share;
+    r->stats.bridge_radius = ldexp(u.largest_radius, r->exponent);
+    for (size_t k = 0; k < 3; k++) r->stats.bridge_centre[k] = ldexp(u.largest_centre[k], r->exponent);
     BRIO_REQUIRE(r->ctx, r->num_faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all triangles span holes");
-    lap(r, &r->stats.manifold_seconds);
+    lap(r, &r->stats.open_seconds);
 done:
     return status;
 }
@@ -263,7 +307,8 @@ static double share_of_guesses(const brio_mesh *mesh) {
 static brio_status make_mesh(reconstruction *r, const double *points, brio_mesh *mesh, uint32_t *samples) {
     brio_status status = BRIO_OK;
     size_t used = 0;
-    brio_sample_surface s = {.num_points = r->num_points,
+    brio_sample_surface s = {.num_points = r->given,
+                             .num_samples = r->num_points,
                              .points = points,
                              .order = r->order,
                              .placed = r->points,
@@ -308,6 +353,8 @@ static brio_status find_surface(reconstruction *r, const double *points) {
     BRIO_TRY(treat_noise(r));
     brio_progress_part(r->ctx, bar, 0, 0.4);
     BRIO_TRY(triangulate(r));
+    BRIO_TRY(measure_spacing(r));
+    if (r->options->noise != BRIO_NOISE_KEEP) BRIO_TRY(drop_strays(r));
     brio_progress_part(r->ctx, bar, 0.4, 0.55);
     BRIO_TRY(orient(r));
     brio_progress_part(r->ctx, bar, 0.55, 0.85);
@@ -315,7 +362,7 @@ static brio_status find_surface(reconstruction *r, const double *points) {
     brio_progress_part(r->ctx, bar, 0.85, 0.95);
     BRIO_TRY(extract(r));
     brio_progress_part(r->ctx, bar, 0.95, 1);
-    if (r->options->open > 0) BRIO_TRY(leave_holes_open(r));
+    BRIO_TRY(open_surface(r));
     if (r->stats.smoothed) BRIO_TRY(brio_smooth_surface(r->ctx, r->points, r->num_points, r->faces, r->num_faces));
     lap(r, &r->stats.noise_seconds);
 done:
@@ -343,8 +390,12 @@ brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_labeled_delaunay_options o = STANDARD;
-    reconstruction r = {
-        .ctx = ctx, .options = &o, .num_points = num_points, .graph = {.ctx = ctx}, .lap = brio_seconds()};
+    reconstruction r = {.ctx = ctx,
+                        .options = &o,
+                        .given = num_points,
+                        .num_points = num_points,
+                        .graph = {.ctx = ctx},
+                        .lap = brio_seconds()};
     brio_mesh *mesh = NULL;
     const brio_bar bar = brio_progress_bar(ctx);
     *out = NULL;
@@ -352,6 +403,8 @@ brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_
     BRIO_TRY(BRIO_TAKE(ctx, brio_labeled_delaunay_options, options, &o));
     BRIO_REQUIRE(ctx, (unsigned)o.noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
                  (int)o.noise);
+    BRIO_REQUIRE(ctx, (unsigned)o.holes < BRIO_HOLES_END, BRIO_ERR_ARGUMENT, "no such way with holes: %d",
+                 (int)o.holes);
     BRIO_REQUIRE(ctx, o.open >= 0 && o.open < INFINITY, BRIO_ERR_ARGUMENT,
                  "open: %g spacings, expected a finite number, 0 or more", o.open);
     BRIO_TRY(brio_take_evidence(ctx, o.evidence, num_points, &r.evidence));

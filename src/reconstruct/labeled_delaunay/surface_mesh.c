@@ -27,7 +27,7 @@ typedef struct {
 static size_t number_vertices(const filling *x) {
     const brio_sample_surface *s = x->s;
     uint32_t used = 0;
-    for (uint32_t i = 0; i < s->num_points; i++) x->rank[s->order[i]] = i;
+    for (uint32_t i = 0; i < s->num_samples; i++) x->rank[s->order[i]] = i;
     for (size_t c = 0; c < 3 * s->num_faces; c++) x->vertex[s->order[s->faces[c]]] = 1;
     for (size_t p = 0; p < s->num_points; p++)
         if (x->vertex[p]) x->vertex[p] = ++used;

@@ -6,14 +6,15 @@
 
 /** A surface whose vertices are samples. The struct owns nothing but the faces. */
 typedef struct {
-    size_t num_points;
+    size_t num_points;     /* of the caller */
+    size_t num_samples;    /* at most #P */
     const double *points;  /* #P by 3: the caller's */
-    const uint32_t *order; /* #P: the caller's index of each sample */
-    const double *placed;  /* #P by 3: the samples in order, times 2^-exponent */
+    const uint32_t *order; /* #S: the caller's index of each sample */
+    const double *placed;  /* #S by 3: the samples in order, times 2^-exponent */
     int exponent;
     bool moved;              /* whether the samples in `placed` are elsewhere than the caller's points */
-    const double *spacing;   /* #P: in order, of the unit of `placed` */
-    const float *confidence; /* #P: in order, or NULL */
+    const double *spacing;   /* #S: in order, of the unit of `placed` */
+    const float *confidence; /* #S: in order, or NULL */
     bool simplify;           /* whether edges are collapsed */
     uint32_t *faces;         /* #F by 3; the mesh takes them */
     size_t num_faces;

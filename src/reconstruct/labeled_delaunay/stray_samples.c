@@ -1,0 +1,108 @@
+/* Samples that lie alone, far from every surface: dust in the air, reflections, points between an edge and what is behind.
+ *
+ * A scanner's spacing grows with the distance from it, and slowly: by a few hundredths of the way from one place to
+ * another. So the sampling round a sample allows it a spacing of
+ *
+ *     min over all samples q of (spacing of q + GROWTH * distance to q),
+ *
+ * measured along Delaunay edges. Where two scans overlap the spacing jumps, but a sample of the coarser one still has
+ * neighbours at its own spacing, on both sides along a surface. A sample is a stray if even its second nearest sample is
+ * LONELY times as far away as that. The second, because strays come in pairs by chance. Where over MANY of the samples are
+ * SUSPECT times as far, a scan has strays, and LIKELY is enough.
+ *
+ * If over MOST of the samples were strays, there would be no surface for them to be far from: then none is.
+ *
+ * Based on: Breunig, Kriegel, Ng, Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
+ * Differs from the paper: the density compared with is the highest in reach, not the mean of the neighbours, which among
+ *                         strays are strays. */
+#include "reconstruct/labeled_delaunay/stray_samples.h"
+#include "base/memory.h"
+#include "base/vector.h"
+#include <math.h>
+
+/* Chosen on scans with and without strays, of models that nothing else was measured on, and on random samples of closed
+ * models: LONELY has none of the latter, SUSPECT one in 3,000. */
+static const double GROWTH = 0.05, LONELY = 12, SUSPECT = 7, LIKELY = 4, MANY = 0.003, MOST = 0.05;
+
+/* Chosen. SWEEPS: growth passes along most edges in the first two. */
+enum { SWEEPS = 8 };
+
+typedef struct {
+    double first, second; /* squared distances of the nearest two samples, from `nearest` and another one */
+    uint32_t nearest;
+} pair;
+
+typedef struct {
+    const brio_tetrahedron *tet;
+    size_t num_tets, num_points;
+    const double *points;
+    pair *near;      /* #P */
+    double *allowed; /* #P */
+} search;
+
+static void offer(pair *p, uint32_t q, double square) {
+    if (q == p->nearest) return;
+    if (square < p->first)
+        p->second = p->first, p->first = square, p->nearest = q;
+    else if (square < p->second)
+        p->second = square;
+}
+
+/* Limits the spacing at q by that at p. Returns whether that changed it. */
+static bool limit(const search *s, uint32_t p, uint32_t q, double square) {
+    double more = s->allowed[q] - s->allowed[p];
+    if (more <= 0 || more * more <= GROWTH * GROWTH * square) return false;
+    s->allowed[q] = s->allowed[p] + GROWTH * sqrt(square);
+    return true;
+}
+
+/* Passes over the edges of all tetrahedra, each edge as often as it has tetrahedra. Returns whether a limit changed. */
+static bool sweep(const search *s, bool backwards, bool first) {
+    bool changed = false;
+    for (size_t n = 0; n < s->num_tets; n++) {
+        const uint32_t *v = s->tet[backwards ? s->num_tets - 1 - n : n].vertex;
+        for (int j = 1; j < 4; j++)
+            for (int k = 0; k < j; k++) {
+                if (v[j] >= s->num_points || v[k] >= s->num_points) continue;
+                double square = brio_square_distance(s->points + 3 * (size_t)v[j], s->points + 3 * (size_t)v[k]);
+                changed |= limit(s, v[j], v[k], square) | limit(s, v[k], v[j], square);
+                if (!first) continue;
+                offer(&s->near[v[j]], v[k], square);
+                offer(&s->near[v[k]], v[j], square);
+            }
+    }
+    return changed;
+}
+
+/* Marks the samples whose second nearest sample is over `times` as far away as is allowed. Returns their number. */
+static size_t mark(const search *s, double times, uint8_t *stray) {
+    size_t count = 0;
+    for (size_t p = 0; p < s->num_points; p++)
+        count += stray[p] = s->near[p].second < INFINITY && sqrt(s->near[p].second) > times * s->allowed[p];
+    return count;
+}
+
+brio_status brio_find_strays(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_points,
+                             const double *spacing, uint8_t *stray) {
+    brio_status status = BRIO_OK;
+    search s = {.tet = brio_triangulation_tetrahedra(t),
+                .num_tets = brio_triangulation_stats(t)->tetrahedra,
+                .num_points = num_points,
+                .points = points};
+    size_t vertices = brio_triangulation_stats(t)->vertices;
+    BRIO_TRY(BRIO_ALLOC(ctx, s.near, num_points));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.allowed, num_points));
+    for (size_t p = 0; p < num_points; p++) {
+        s.near[p] = (pair){INFINITY, INFINITY, UINT32_MAX};
+        s.allowed[p] = spacing[p];
+    }
+    for (int n = 0; n < SWEEPS; n++)
+        if (!sweep(&s, n % 2 == 1, n == 0)) break;
+    bool many = (double)mark(&s, SUSPECT, stray) > MANY * (double)vertices;
+    size_t count = mark(&s, many ? LIKELY : LONELY, stray);
+    if ((double)count > MOST * (double)vertices) mark(&s, INFINITY, stray);
+done:
+    brio_release(ctx, s.near);
+    brio_release(ctx, s.allowed);
+    return status;
+}

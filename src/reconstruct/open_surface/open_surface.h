@@ -1,0 +1,32 @@
+/* A closed surface, opened where the samples end. */
+#ifndef BRIO_RECONSTRUCT_OPEN_SURFACE_H
+#define BRIO_RECONSTRUCT_OPEN_SURFACE_H
+
+#include "reconstruct/open_surface/hole_cut.h"
+
+/** The samples that the surface goes through. */
+typedef struct {
+    brio_context *ctx;
+    const double *points; /* #P by 3 */
+    size_t num_points;
+} brio_sample_points;
+
+/** What of a surface the samples do not show. */
+typedef struct {
+    size_t holes;             /* left open */
+    size_t bridges;           /* filled, though samples of a surface would hardly leave such gaps */
+    double bridge_share;      /* of the area: that of the bridges */
+    double largest_radius;    /* of the widest circle of the bridge of the largest area; 0 if there is none */
+    double largest_centre[3]; /* the centroid of that circle's triangle */
+    double far_share;         /* of the area: what is over five usual radii away from the samples of its triangle */
+} brio_unseen;
+
+/** Finds what of a manifold no sample shows, and removes the triangles that span holes that stay open. What is left
+ *  is a manifold with boundary, maybe empty.
+ *  faces      *num_faces by 3, read and written: Delaunay triangles of the points.
+ *  rule       its radius is in spacings: the median distance from a vertex to its nearest neighbour.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
+brio_status brio_open_surface(const brio_sample_points *points, const brio_hole_rule *rule, uint32_t *faces,
+                              size_t *num_faces, brio_unseen *unseen);
+
+#endif

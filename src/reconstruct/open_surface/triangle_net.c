@@ -1,0 +1,37 @@
+/* Triangles of samples and their neighbours: the half-edges of a mesh without vertices of its own. */
+#include "reconstruct/open_surface/triangle_net.h"
+#include "base/vector.h"
+#include "mesh/twins.h"
+
+brio_status brio_triangle_net_new(brio_context *ctx, const double *points, size_t num_points, const uint32_t *faces,
+                                  size_t num_faces, brio_triangle_net *out) {
+    brio_status status = BRIO_OK;
+    brio_mesh mesh = {.context = ctx, .num_vertices = num_points, .num_faces = num_faces};
+    uint32_t *corners = NULL;
+    *out = (brio_triangle_net){ctx, points, num_points, faces, num_faces, NULL};
+    BRIO_TRY(BRIO_ALLOC(ctx, mesh.face_offsets, num_faces + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, corners, 3 * num_faces));
+    for (size_t f = 0; f <= num_faces; f++) mesh.face_offsets[f] = 3 * f;
+    for (size_t h = 0; h < 3 * num_faces; h++) corners[h] = faces[h];
+    mesh.face_vertices = corners;
+    BRIO_TRY(brio_mesh_twins(ctx, &mesh, &out->twin));
+done:
+    brio_release(ctx, mesh.face_offsets);
+    brio_release(ctx, corners);
+    return status;
+}
+
+void brio_triangle_net_free(brio_triangle_net *n) {
+    brio_release(n->ctx, n->twin);
+    n->twin = NULL;
+}
+
+void brio_net_normal(const brio_triangle_net *n, size_t face, double normal[3]) {
+    const double *o = brio_net_corner(n, 3 * face), *p = brio_net_corner(n, 3 * face + 1),
+                 *q = brio_net_corner(n, 3 * face + 2);
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) u[k] = p[k] - o[k], v[k] = q[k] - o[k];
+    brio_cross(u, v, normal);
+    double length = brio_length(normal);
+    for (int k = 0; k < 3; k++) normal[k] = length > 0 ? normal[k] / length : 0;
+}

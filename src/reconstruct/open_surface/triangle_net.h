@@ -1,0 +1,37 @@
+/* Triangles of samples and their neighbours. */
+#ifndef BRIO_RECONSTRUCT_TRIANGLE_NET_H
+#define BRIO_RECONSTRUCT_TRIANGLE_NET_H
+
+#include "mesh/twins.h"
+
+/** A manifold of triangles whose vertices are samples. Half-edges are those of mesh/twins.h. */
+typedef struct {
+    brio_context *ctx;
+    const double *points; /* #P by 3 */
+    size_t num_points;
+    const uint32_t *faces; /* #F by 3 */
+    size_t num_faces;
+    uint32_t *twin; /* 3 #F */
+} brio_triangle_net;
+
+/** Links the triangles across their edges.
+ *  points, faces  kept: they must outlive the net.
+ *  out            freed with brio_triangle_net_free, on failure too.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
+brio_status brio_triangle_net_new(brio_context *ctx, const double *points, size_t num_points, const uint32_t *faces,
+                                  size_t num_faces, brio_triangle_net *out);
+void brio_triangle_net_free(brio_triangle_net *n);
+
+static inline const double *brio_net_corner(const brio_triangle_net *n, size_t half_edge) {
+    return n->points + 3 * (size_t)n->faces[half_edge];
+}
+
+/** Returns whether a triangle is on the other side of a half-edge's edge. */
+static inline bool brio_net_has_twin(const brio_triangle_net *n, size_t half_edge) {
+    return n->twin[half_edge] != BRIO_NO_HALF_EDGE;
+}
+
+/** Writes the unit normal of a triangle, 0 if its corners are collinear. */
+void brio_net_normal(const brio_triangle_net *n, size_t face, double normal[3]);
+
+#endif
