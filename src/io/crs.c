@@ -88,17 +88,22 @@ typedef struct {
     size_t size;
 } span;
 
+bool brio_record_next(const brio_metadata *records, size_t *at, const char **header, size_t *size) {
+    if (records->size - *at < BRIO_RECORD_HEADER) return false;
+    *header = records->bytes + *at;
+    uint64_t bytes = brio_le64(*header + BRIO_RECORD_SIZE), room = records->size - *at - BRIO_RECORD_HEADER;
+    if (bytes > room) return false;
+    *size = (size_t)bytes;
+    *at += BRIO_RECORD_HEADER + *size;
+    return true;
+}
+
 /* Finds the record of an id, the last one if there are several. */
 static span record_of(const brio_metadata *records, unsigned id) {
     span found = {NULL, 0};
-    for (size_t at = 0; records->size - at >= BRIO_RECORD_HEADER;) {
-        const char *header = records->bytes + at;
-        uint64_t size = brio_le64(header + BRIO_RECORD_SIZE);
-        at += BRIO_RECORD_HEADER;
-        if (size > records->size - at) break;
-        if (brio_le16(header + BRIO_RECORD_ID) == id) found = (span){records->bytes + at, (size_t)size};
-        at += (size_t)size;
-    }
+    const char *header = NULL;
+    for (size_t at = 0, size = 0; brio_record_next(records, &at, &header, &size);)
+        if (brio_le16(header + BRIO_RECORD_ID) == id) found = (span){header + BRIO_RECORD_HEADER, size};
     return found;
 }
 

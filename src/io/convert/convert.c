@@ -51,6 +51,20 @@ static bool cuts_polygons(const conversion *c, const brio_mesh *m) {
     return false;
 }
 
+/* Names the metadata that the format does not keep. A coordinate system is one thing, in whatever form; the depth of
+ * colours is that of their numbers. */
+static void name_metadata(const conversion *c, const brio_mesh *m) {
+    bool has_system = false, keeps_system = false;
+    for (size_t i = 0; i < m->num_metadata; i++) {
+        const char *name = m->metadata[i].name;
+        bool kept = brio_format_keeps(c->format, name), system = !strncmp(name, "crs.", 4);
+        has_system |= system;
+        keeps_system |= kept && (!strcmp(name, "crs.wkt") || !strcmp(name, "crs.geokeys"));
+        if (!kept && !system && strncmp(name, "colour.", 7) != 0) lose(c, name);
+    }
+    if (has_system && !keeps_system) lose(c, "crs");
+}
+
 /* Names the parts of a mesh that the format cannot hold. */
 static void name_losses(conversion *c, const brio_mesh *m) {
     if (c->told) return;
@@ -63,6 +77,7 @@ static void name_losses(conversion *c, const brio_mesh *m) {
     if (m->num_properties && nameless) lose(c, "names of properties");
     for (size_t i = 0; i < m->num_properties; i++)
         if (!brio_format_holds_property(c->format, m, i)) lose(c, m->properties[i].name);
+    name_metadata(c, m);
 }
 
 /* Names what the reader passed over. */
@@ -295,17 +310,17 @@ static brio_status run(conversion *c) {
     brio_status status = BRIO_OK;
     const brio_sink whole = {write_whole, c};
     const brio_bar bar = brio_progress_bar(c->ctx);
-    bool choose = c->options->drop_outliers || c->options->thin > 0, rows = brio_row_format_of(c->format) != NULL;
-    bool once = !choose && c->format != BRIO_FORMAT_LAS &&
-                (can_patch(c->ctx, c->to) || (rows && !brio_row_format_of(c->format)->counts));
-    c->source.whole = !rows || c->options->merge || (!brio_source_rereadable(c->source.path) && !once);
+    bool choose = c->options->drop_outliers || c->options->thin > 0;
+    const brio_row_format *format = brio_row_format_of(c->format);
+    bool once = !choose && !(format && format->survey) && (can_patch(c->ctx, c->to) || (format && !format->counts));
+    c->source.whole = !format || c->options->merge || (!brio_source_rereadable(c->source.path) && !once);
     double started = brio_seconds();
     brio_progress_part(c->ctx, bar, 0, 0.6);
     if (choose) BRIO_TRY(brio_source_choose(&c->source));
     if (c->options->merge) BRIO_TRY(merge(c));
     brio_progress_part(c->ctx, bar, choose || c->options->merge ? 0.6 : 0, 1);
     c->stats.select_seconds = brio_seconds() - started;
-    status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
+    status = format ? stream(c) : brio_source_pass(&c->source, &whole);
 done:
     brio_progress_part(c->ctx, bar, 0, 1);
     return status;

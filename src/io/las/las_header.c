@@ -96,7 +96,8 @@ static brio_status give_facts(brio_mesh *mesh, const char *bytes) {
         BRIO_TRY(brio_mesh_set_metadata(mesh, "las.date", text, used));
     }
     used = 0;
-    for (int i = 0; i < 16; i++) used += (size_t)snprintf(text + used, sizeof text - used, "%02x", (uint8_t)bytes[8 + i]);
+    for (int i = 0; i < 16; i++)
+        used += (size_t)snprintf(text + used, sizeof text - used, "%02x", (uint8_t)bytes[8 + i]);
     if (memcmp(bytes + 8, no_project, sizeof no_project))
         BRIO_TRY(brio_mesh_set_metadata(mesh, "las.project", text, used));
     if (encoding & STANDARD_TIME) BRIO_TRY(brio_mesh_set_metadata(mesh, "las.gps_time", "standard", 8));

@@ -45,10 +45,10 @@ typedef struct brio_las_header {
     uint64_t num_points;
     uint64_t data; /* the byte at which the points begin */
     double scale[3], offset[3];
-    double time_shift;      /* to be added to times, so that they are adjusted standard GPS times */
-    uint64_t late;          /* the first byte of the records behind the points */
-    uint32_t num_late;      /* how many these are */
-    bool late_pending;      /* whether they are still to be read: in a pipe they come last */
+    double time_shift; /* to be added to times, so that they are adjusted standard GPS times */
+    uint64_t late;     /* the first byte of the records behind the points */
+    uint32_t num_late; /* how many these are */
+    bool late_pending; /* whether they are still to be read: in a pipe they come last */
     bool compressed;
     bool chunked;       /* compressed: in chunks */
     uint32_t chunk;     /* points of a chunk, or UINT32_MAX if their numbers differ */

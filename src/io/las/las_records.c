@@ -21,7 +21,8 @@ static bool is_record(const char *header, const char *user, unsigned first, unsi
     return !strncmp(header + BRIO_RECORD_USER, user, 16) && id >= first && id <= last;
 }
 
-static brio_status keep(brio_context *ctx, brio_las_records *records, const char *header, const char *bytes, size_t size) {
+static brio_status keep(brio_context *ctx, brio_las_records *records, const char *header, const char *bytes,
+                        size_t size) {
     brio_status status = BRIO_OK;
     size_t need = records->size + BRIO_RECORD_HEADER + size;
     BRIO_TRY(BRIO_RESERVE(ctx, records->bytes, records->capacity, need));
@@ -136,8 +137,7 @@ static brio_status read_late(brio_stream *s, brio_builder *b, brio_las_header *h
     memcpy(header, bytes, sizeof header);
     *at += sizeof header;
     uint64_t size = brio_le64(header + BRIO_RECORD_SIZE);
-    if (dropped(header))
-        BRIO_TRY(brio_builder_leave_out(b, dropped(header)));
+    if (dropped(header)) BRIO_TRY(brio_builder_leave_out(b, dropped(header)));
     *ended = !has(s, *at, size);
     if (*ended && !dropped(header)) BRIO_TRY(leave_out(b, header, ", which ends early"));
     if (*ended || dropped(header)) goto done;

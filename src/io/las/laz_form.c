@@ -71,8 +71,8 @@ done:
 
 brio_status brio_laz_form_read(brio_stream *s, brio_las_header *h, const char *bytes, size_t size) {
     brio_status status = BRIO_OK;
-    BRIO_REQUIRE(s->ctx, size >= HEAD, BRIO_ERR_FORMAT, "%s: LASzip's record has %zu bytes, expected %d or more", s->name,
-                 size, (int)HEAD);
+    BRIO_REQUIRE(s->ctx, size >= HEAD, BRIO_ERR_FORMAT, "%s: LASzip's record has %zu bytes, expected %d or more",
+                 s->name, size, (int)HEAD);
     unsigned compressor = brio_le16(bytes), coder = brio_le16(bytes + 2);
     size_t count = brio_le16(bytes + 32);
     BRIO_REQUIRE(s->ctx,

@@ -30,10 +30,10 @@ typedef struct {
 typedef struct {
     const uint8_t *bytes;
     size_t size;
-    size_t first, points; /* its points in the block of the mesh */
+    size_t first, points;  /* its points in the block of the mesh */
     bool damaged, missing; /* missing: the file ends within the chunk, of which nothing can be decoded */
-    size_t at;    /* damaged: the first of the points decoded together that is */
-    uint64_t row; /* its first point in the file */
+    size_t at;             /* damaged: the first of the points decoded together that is */
+    uint64_t row;          /* its first point in the file */
 } loaded_chunk;
 
 typedef struct {
@@ -267,7 +267,8 @@ brio_status brio_laz_read(brio_stream *s, brio_builder *b, const brio_las_header
     if (h->chunked && h->num_points) {
         BRIO_TRY(brio_stream_take(s, 8, &bytes));
         status = brio_laz_table_read(s, h, brio_le64(bytes), &chunks, &count);
-        if (status != BRIO_ERR_FORMAT || !b->salvage) BRIO_TRY(status); /* a file that ends early may do so in its table */
+        if (status != BRIO_ERR_FORMAT || !b->salvage)
+            BRIO_TRY(status); /* a file that ends early may do so in its table */
     }
     BRIO_TRY(chunks ? read_with_table(&r, chunks, count) : read_without_table(&r));
     b->missing = h->num_points - s->row;
