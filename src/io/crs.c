@@ -135,6 +135,10 @@ static void read_keys(const brio_metadata *records, char code[TEXT], char name[T
     if (!system) system = key_of(keys, GEOGRAPHIC);
     for (size_t i = 0; i < sizeof citations / sizeof *citations && !name[0]; i++)
         copy_text(keys, texts, citations[i], name);
+    if (!name[0] && texts.size && texts.size < TEXT) { /* a text that no key names */
+        memcpy(name, texts.bytes, texts.size);
+        name[strcspn(name, "|")] = 0;
+    }
     if (!system || system >= USERS_OWN) return;
     int length = snprintf(code, TEXT, "EPSG:%u", system);
     if (heights && heights < USERS_OWN) snprintf(code + length, TEXT - (size_t)length, "+%u", heights);

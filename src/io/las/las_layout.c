@@ -5,8 +5,6 @@
  * with _2, _3 and so on behind it where a reader of LAS has a field of that name, or another extra number has it. Numbers
  * that were scaled, or had 64 bits, in the LAS file they come from are so again if that gives back all their values.
  *
- * Colours of 8 bits are multiplied by 257: LAS has 16 bits.
- *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
 #include "io/las/las_layout.h"
 #include "base/memory.h"
@@ -17,7 +15,7 @@
 #include <strings.h>
 
 enum { LATE = 4 /* place of the first format of version 1.4 in the list of formats */, MOST_EXTRAS = 340 };
-enum { UINT64 = 7, INT64 = 8, SINGLE = 9 /* types of extra bytes */, WIDEN = 257 };
+enum { UINT64 = 7, INT64 = 8, SINGLE = 9 /* types of extra bytes */ };
 
 /* The names that readers give to fields of any format: an extra number of such a name would be a second one. */
 static const char *const reserved[] = {"X",
@@ -169,16 +167,6 @@ static unsigned choose_format(const brio_las_layout *l, const brio_mesh *m, bool
     return best;
 }
 
-/* Whether red, green and blue are all there, of 8 bits. */
-static bool has_bytes_for_colours(const brio_mesh *m) {
-    static const char *const names[] = {"red", "green", "blue"};
-    for (int k = 0; k < 3; k++) {
-        const brio_property *p = brio_mesh_property(m, names[k]);
-        if (!p || p->type != BRIO_SCALAR_UINT8) return false;
-    }
-    return true;
-}
-
 /* --- extra numbers --- */
 
 static bool is_taken(const brio_las_layout *l, size_t count, const char *name) {
@@ -211,7 +199,6 @@ brio_status brio_las_layout_make(brio_context *ctx, brio_las_layout *l, const ch
                                  bool late) {
     brio_status status = BRIO_OK;
     brio_las_field fields[BRIO_LAS_FIELDS];
-    bool bytes = has_bytes_for_colours(m);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, l->places, m->num_properties + 1));
     l->format = choose_format(l, m, late);
     l->record = brio_las_record_bytes(l->format);
@@ -225,13 +212,8 @@ brio_status brio_las_layout_make(brio_context *ctx, brio_las_layout *l, const ch
             place_extra(l, m, i);
             continue;
         }
-        bool colour = !strcmp(own, "red") || !strcmp(own, "green") || !strcmp(own, "blue");
-        l->places[i] = (brio_las_place){.at = f->at,
-                                        .type = f->type,
-                                        .shift = f->shift,
-                                        .bits = f->bits,
-                                        .renamed = strcmp(own, f->name) != 0,
-                                        .widened = bytes && colour};
+        l->places[i] = (brio_las_place){
+            .at = f->at, .type = f->type, .shift = f->shift, .bits = f->bits, .renamed = strcmp(own, f->name) != 0};
     }
 done:
     return status;
@@ -301,5 +283,5 @@ void brio_las_put(const brio_las_place *place, const brio_property *property, si
     else if (place->raw)
         put_raw(place, x, bytes);
     else
-        put_number(bytes, place->type, place->widened ? WIDEN * x : x);
+        put_number(bytes, place->type, x);
 }

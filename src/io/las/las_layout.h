@@ -11,7 +11,6 @@ typedef struct brio_las_place {
     uint8_t shift, bits;
     bool extra;                   /* behind the fields of the format */
     bool renamed;                 /* whether a reader finds another name */
-    bool widened;                 /* a colour of 8 bits, which becomes one of 16 */
     unsigned raw;                 /* the type of an extra number that is scaled or has 64 bits, or 0 */
     double scale, offset;         /* raw: of the number */
     char name[BRIO_LAS_NAME + 1]; /* extra: in the file */
