@@ -256,19 +256,19 @@ class Las(CliTest):
     # --- files that are damaged, or of other programs
 
     def test_a_file_that_ends_early(self):
-        whole = las(n=100000, form=3, rgb=lambda i: (i % 65536, 9, 9))
+        whole = las(n=60000, form=3, rgb=lambda i: (i % 65536, 9, 9))
         self.file("a.las", whole)
         self.convert("a.las", "a.laz")
         with open(self.path("a.laz"), "rb") as f:
             packed = f.read()
-        for name, data, least in (("b.las", whole[:-50], 99998), ("b.laz", packed[:-200], 50001), ("c.laz", packed[:-3], 99990)):
+        for name, data, least in (("b.las", whole[:-50], 59998), ("b.laz", packed[:-200], 50001), ("c.laz", packed[:-3], 59990)):
             self.file(name, data)
             self.expect(2, "convert", self.path(name), self.path("d.las"))
             report = self.convert(name, "d.las", "--salvage")
             self.assertGreaterEqual(report["points"], least, name)
-            self.assertEqual(report["points"] + report.get("missing", 0), 100000, name)
+            self.assertEqual(report["points"] + report.get("missing", 0), 60000, name)
             columns = self.columns("d.las")
-            self.assertEqual(columns["red"], [i % 65536 for i in range(report["points"])], name)
+            self.assertEqual(columns["red"], list(range(report["points"])), name)
 
     def test_laszip_1_is_called_so(self):
         self.make("a.las")
@@ -280,7 +280,7 @@ class Las(CliTest):
         self.bad_input("compressed by LASzip 1", "info", self.path("b.laz"))
 
     def test_compressed_into_a_pipe(self):
-        self.make("a.las", n=120000, form=7, minor=4)
+        self.make("a.las", n=60000, form=7, minor=4)
         self.convert("a.las", "b.laz")
         piped = self.expect(0, "convert", self.path("a.las"), "-o", "-", "--format", "laz").out
         self.file("c.laz", piped)
@@ -304,8 +304,8 @@ class Las(CliTest):
         if not os.path.exists(os.path.join(folder, "repro", "reports", "chunk0.laz")):
             self.skipTest("skipped: no files of shared/repro")
         at = lambda *name: os.path.join(folder, "repro", *name)
-        with open(self.path("a.las"), "wb") as f:
-            f.write(open(at("reports", "two_extra_vlrs.las"), "rb").read())
+        with open(at("reports", "two_extra_vlrs.las"), "rb") as f:
+            self.file("a.las", f.read())
         columns = self.columns("a.las")
         self.assertEqual((columns["deviation"], columns["confidence"]), ([3840, 1], [6, 2]))
         self.facts("convert", at("reports", "chunk0.laz"), self.path("b.las"))
