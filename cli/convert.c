@@ -9,7 +9,7 @@
 #include <strings.h>
 
 typedef struct arguments {
-    const char *crop;
+    const char *crop, *crs;
     double thin, merge; /* merge: NaN where it is not given */
     int outliers;
 } arguments;
@@ -17,6 +17,8 @@ typedef struct arguments {
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
     {"crop", 0, OPTION_TEXT, FIELD(crop), "x0,y0,z0,x1,y1,z1", "keep the points in this box, its border included", 0},
+    {"crs", 0, OPTION_OUTPUT, FIELD(crs), "FILE",
+     "also write the coordinate system to a file .prj, as well-known text (LAS, LAZ)", 0},
     {"drop-outliers", 0, OPTION_INT | OPTION_POSITIVE, FIELD(outliers), "K",
      "drop points that are far from their K nearest points (8 to 16)", 0},
     {"thin", 0, OPTION_NUMBER, FIELD(thin), "S", "keep points at least S apart, all others being nearer than S to one",
@@ -94,6 +96,8 @@ static brio_status take_options(run *r, brio_convert_options *o) {
     o->merge = !isnan(chosen->merge);
     if (o->merge) o->merge_distance = chosen->merge;
     o->thin = chosen->thin;
+    o->crs = chosen->crs;
+    if (o->crs) TRY(cli_check_target(r, o->crs));
     o->drop_outliers = chosen->outliers;
 done:
     return status;
@@ -161,7 +165,7 @@ const command cli_convert = {
         "brio convert scan.laz scan.ply\nevery property is kept\n"
         "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n"
         "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n",
-    .outputs = "ply xyz pts txt csv asc tsv obj off stl vtu vtp node las pcd npy glb",
+    .outputs = "ply xyz pts txt csv asc tsv obj off stl vtu vtp node las laz pcd npy glb",
     .output_optional = true,
     .group = GROUP_FILES,
     .min_operands = 1,

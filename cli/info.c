@@ -28,7 +28,8 @@ typedef struct survey {
     size_t num_ranges;
     bool failed; /* out of memory */
     brio_file_facts file;
-    facts left_out; /* the names of what is not read of the file */
+    facts left_out;      /* the names of what is not read of the file */
+    facts crs, metadata; /* what the file says of all its points: of their coordinate system; everything else */
 } survey;
 
 static const option options[] = {{0}};
@@ -52,6 +53,20 @@ static int take_properties(survey *v, const brio_mesh *block) {
     return 0;
 }
 
+/* A text that people can read, or else how many bytes there are. */
+static void take_metadata(survey *v, const brio_mesh *block) {
+    for (size_t i = 0; i < block->num_metadata; i++) {
+        const brio_metadata *m = &block->metadata[i];
+        bool system = !strncmp(m->name, "crs.", 4), text = strlen(m->bytes) == m->size;
+        facts *to = system ? &v->crs : &v->metadata;
+        for (size_t k = 0; k < m->size; k++) text &= (unsigned char)m->bytes[k] >= ' ' || strchr("\t\r\n", m->bytes[k]);
+        if (text)
+            cli_fact_text(to, m->name + (system ? 4 : 0), m->bytes);
+        else
+            cli_fact_bytes(to, m->name + (system ? 4 : 0), m->size);
+    }
+}
+
 static void widen(property_range *range, double x) {
     bool none = range->low > range->high;
     if (x != x) return;
@@ -62,6 +77,7 @@ static void widen(property_range *range, double x) {
 static int take_block(const brio_mesh *block, void *user) {
     survey *v = user;
     double low[3], high[3];
+    if (!v->ranges) take_metadata(v, block);
     if (!v->ranges && take_properties(v, block)) return v->failed = true;
     if (block->num_vertices) cli_cloud_box(block->vertices, block->num_vertices, low, high);
     for (int k = 0; k < 3 && block->num_vertices; k++) {
@@ -92,6 +108,27 @@ static void report_left_out(run *r, const survey *v) {
     cli_fact_close(&r->facts);
 }
 
+static void report_metadata(run *r, const char *name, const facts *metadata) {
+    r->facts.failed |= metadata->failed;
+    if (!metadata->count) return;
+    cli_fact_open(&r->facts, name, FACT_OBJECT);
+    for (size_t i = 0; i < metadata->count; i++) {
+        const fact *f = &metadata->list[i];
+        if (f->kind == FACT_TEXT)
+            cli_fact_text(&r->facts, f->name, f->text);
+        else
+            cli_fact_bytes(&r->facts, f->name, f->count);
+    }
+    cli_fact_close(&r->facts);
+}
+
+static void free_survey(survey *v) {
+    cli_facts_free(&v->left_out);
+    cli_facts_free(&v->crs);
+    cli_facts_free(&v->metadata);
+    free(v->ranges);
+}
+
 /* Reads the file in blocks, if it can be read again, or into memory. A text whose later rows lack a column goes into
  * memory, too. */
 static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
@@ -113,7 +150,7 @@ static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
     if (!known && status != BRIO_ERR_FORMAT) return status;
     TRY(cli_read(r, path, mesh));
     if (known) return BRIO_OK;
-    free(v->ranges);
+    free_survey(v);
     *v = (survey){.file.size = sizeof v->file};
     if (take_block(*mesh, v)) return BRIO_ERR_NO_MEMORY;
 done:
@@ -251,12 +288,13 @@ static brio_status info(run *r) {
     report_box(f, &v);
     TRY(measure(r, mesh));
     report_properties(f, &v);
+    report_metadata(r, "crs", &v.crs);
+    report_metadata(r, "metadata", &v.metadata);
     report_left_out(r, &v);
     if (mesh) TRY(report_estimates(r, mesh));
 done:
     brio_mesh_free(mesh);
-    cli_facts_free(&v.left_out);
-    free(v.ranges);
+    free_survey(&v);
     return status;
 }
 

@@ -1766,8 +1766,8 @@ typedef enum brio_format {
     BRIO_FORMAT_VTU = 5,
     BRIO_FORMAT_NODE = 6, /* TetGen's .node, with .ele beside it */
     BRIO_FORMAT_VTP = 7,
-    BRIO_FORMAT_LAS = 8, /* versions 1.0 to 1.4, point formats 0 to 10 without waveforms */
-    BRIO_FORMAT_LAZ = 9, /* read, not written */
+    BRIO_FORMAT_LAS = 8, /* versions 1.0 to 1.5, point formats 0 to 10 without waveforms */
+    BRIO_FORMAT_LAZ = 9, /* LAS, compressed as by LASzip; written in formats 0 to 3 and 6 to 8 */
     BRIO_FORMAT_PCD = 10,
     BRIO_FORMAT_PTX = 11,      /* read, not written */
     BRIO_FORMAT_STL = 12,      /* corners at the same position become one vertex */
@@ -1935,7 +1935,7 @@ static inline brio_write_options brio_write_options_default(void) {
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a descriptor
  *  of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The process
  *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
- *  texts of points, LAS, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
+ *  texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
  *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
  *  several lines becomes several comments. Of several files (.node and those beside it) none gets its name before all are
  *  complete.
@@ -1961,6 +1961,7 @@ typedef struct brio_convert_options {
     int merge; /* 1: brio_mesh_merge_vertices, within merge_distance; default 0 */
     int reserved_int;
     double merge_distance; /* default 0: equal positions only */
+    const char *crs; /* default NULL: a file that receives the coordinate system as well-known text, such as scan.prj */
 } brio_convert_options;
 
 BRIO_API void brio_convert_options_init(brio_convert_options *options, size_t size);
@@ -1985,14 +1986,15 @@ typedef struct brio_convert_stats {
  *  those that are no outliers, of these a thinned set; the points keep their order and all properties. A polygon, tetrahedron
  *  or edge stays if all its vertices stay. Merging comes last; the whole file is then in memory.
  *  Memory: files of points are converted block by block, in less than 64 MB with two threads, from LAS, LAZ, PLY, text, NPY,
- *  PCD (uncompressed) and PTX to LAS, PLY, text and NPY. The input is read twice or three times if the output must know all
- *  points before the first one (LAS; PLY and NPY into a pipe, if their number is not known), or if outliers are dropped or
+ *  PCD (uncompressed) and PTX to LAS, LAZ, PLY, text and NPY. The input is read twice or three times if the output must know all
+ *  points before the first one (LAS and LAZ; PLY and NPY into a pipe, if their number is not known), or if outliers are dropped or
  *  points are thinned. Outliers and thinning need the coordinates in memory: 24 bytes a point, and what brio_outliers and
  *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
  *  file is in memory.
  *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, the names of metadata, and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
+ *  properties, the names of metadata ("crs" for a coordinate system), and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
  *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
+ *  With options->crs an input without a coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written.
  *  Progress begins anew where a text is read again because late rows lack a column.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.

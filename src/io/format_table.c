@@ -42,9 +42,13 @@ static const brio_format_row table[] = {
      .starts = brio_las_starts,
      .read = brio_las_read,
      .rows = &brio_las_rows,
-     .colours = BRIO_COLOURS_16},
-    {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "", POINTS | BRIO_HOLDS_BINARY, 0},
-     .read = brio_las_read}, /* begins as LAS */
+     .colours = BRIO_COLOURS_16,
+     .keeps = "crs. las."},
+    {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "laz", POINTS | BRIO_HOLDS_BINARY, 0},
+     .read = brio_las_read, /* begins as LAS */
+     .rows = &brio_laz_rows,
+     .colours = BRIO_COLOURS_16,
+     .keeps = "crs. las."},
     {{sizeof(brio_format_info), BRIO_FORMAT_PCD, "a PCD file", "pcd", "pcd",
       POINTS | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS - 3},
      .starts = brio_pcd_starts,
@@ -124,6 +128,16 @@ bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i
     if (colour.count > 3) colour.count = 3;
     return (brio_format_holds(format, BRIO_HOLDS_COLOURS) && brio_channels_have(&colour, p)) ||
            (brio_format_holds(format, BRIO_HOLDS_NORMALS) && brio_channels_have(&normal, p));
+}
+
+bool brio_format_keeps(brio_format format, const char *metadata) {
+    const brio_format_row *row = brio_format_row_of(format);
+    for (const char *at = row && row->keeps ? row->keeps : ""; *at;) {
+        size_t length = strcspn(at, " ");
+        if (!strncmp(at, metadata, length)) return true;
+        at += length + (at[length] == ' ');
+    }
+    return false;
 }
 
 brio_format brio_format_that_starts(const char *bytes, size_t size) {

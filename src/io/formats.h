@@ -55,6 +55,7 @@ typedef struct brio_format_row {
     brio_status (*write)(brio_output *out, const brio_write_job *job); /* NULL: not written as a whole */
     bool about_origin;    /* single precision is that of distances from an origin, which the writer chooses */
     brio_colours colours; /* how a file that is written has colours */
+    const char *keeps;    /* NULL, or how the names of the metadata begin that the writer keeps: "crs. las." */
 } brio_format_row;
 
 /** Returns the row of a format, or NULL. */
@@ -63,6 +64,8 @@ const brio_format_row *brio_format_row_of(brio_format format);
 bool brio_format_holds(brio_format format, unsigned what);
 /** Returns whether a format holds property i of a mesh, by a name of its own for colours and normals. */
 bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i);
+/** Returns whether the writer of a format keeps the metadata of a name. */
+bool brio_format_keeps(brio_format format, const char *metadata);
 /** Returns the format whose files begin with these bytes, or BRIO_FORMAT_AUTO. */
 brio_format brio_format_that_starts(const char *bytes, size_t size);
 /** Returns the format one of whose extensions `has` finds at a path, or BRIO_FORMAT_AUTO. */

@@ -63,6 +63,12 @@ brio_status brio_stream_open_memory(brio_stream *s, brio_context *ctx, const cha
     return start(s);
 }
 
+brio_status brio_stream_open_again(brio_stream *s, brio_stream *other) {
+    *s = (brio_stream){.ctx = other->ctx, .name = other->name, .file = -1, .outer = other, .size = other->size};
+    s->part_left = other->size;
+    return start(s);
+}
+
 void brio_stream_close(brio_stream *s) {
     brio_unpack_end(s);
     if (s->owned) close(s->file);
@@ -180,6 +186,7 @@ brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_
         memcpy(bytes, s->memory + offset, size);
         return BRIO_OK;
     }
+    if (s->outer) return brio_stream_peek(s->outer, s->part_at - s->base - s->end + offset, bytes, size);
     off_t here = lseek(s->file, 0, SEEK_CUR);
     BRIO_REQUIRE(s->ctx, here >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
     uint64_t start = (uint64_t)here - s->base - s->end;

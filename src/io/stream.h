@@ -41,6 +41,9 @@ brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path
  *  if this fails.   name  for messages. */
 brio_status brio_stream_open_memory(brio_stream *s, brio_context *ctx, const char *name, const void *bytes,
                                     size_t size);
+/** Opens the bytes of another stream once more, from their front. The other stream's size is known and its bytes are not
+ *  compressed; it must stay open and not move meanwhile. Call brio_stream_close even if this fails. */
+brio_status brio_stream_open_again(brio_stream *s, brio_stream *other);
 void brio_stream_close(brio_stream *s);
 
 /** Reads bytes of the file itself, which may be compressed: at most `room`, 0 at the end. For unpack.c. */
@@ -69,7 +72,8 @@ brio_status brio_stream_line(brio_stream *s, char **line);
  *  buffer then has all of it and nothing may be taken before. Does nothing for a regular file and for memory. */
 brio_status brio_stream_hold(brio_stream *s);
 
-/** Copies bytes from any place of a regular file, of memory, or of a stream that brio_stream_hold read, without moving it.
+/** Copies bytes from any place of a regular file, of memory, of a stream that brio_stream_hold read, or of a part that is not
+ *  compressed, without moving it.
  *  Fails if the file ends before. */
 brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_t size);
 

@@ -120,6 +120,8 @@ class LasTest(ForeignTest):
         for name in las.point_format.dimension_names:
             if name in FLAGS:
                 self.expect_equal(las[name], points["classification_flags"] >> FLAGS.index(name) & 1, f"{what}: {name}")
+            elif name in ("red", "green", "blue"):  # the points come by PLY, whose colours have 8 bits
+                self.expect_equal(las[name] >> 8, points[name], f"{what}: {name}")
             elif name not in "XYZ":
                 self.expect_equal(las[name], points[name], f"{what}: {name}")
 
@@ -146,6 +148,67 @@ class LasTest(ForeignTest):
                                  capture_output=True, check=False)
             self.assertEqual(run.returncode, 0, run.stderr.decode())
             self.expect_points(las, self.read(self.path("pipe.ply")), f"pipe, format {form}")
+
+    def test_written(self):
+        """What brio writes as LAS and as LAZ is the same to every decoder."""
+        import laspy
+        backends = [laspy.LazBackend.Lazrs, laspy.LazBackend.LazrsParallel]
+        if not missing("laszip"):
+            backends.append(laspy.LazBackend.Laszip)
+        for form in (0, 1, 2, 3, 6, 7, 8):
+            las = self.make(form, 120000)
+            las.write(self.path("a.las"))
+            self.convert(self.path("a.las"), self.path("b.las"))
+            self.convert(self.path("a.las"), self.path("b.laz"))
+            plain = laspy.read(self.path("b.las"))
+            for name in las.point_format.dimension_names:
+                self.expect_equal(las[name], plain[name], f"format {form}: {name}")
+            for backend in backends:
+                packed = laspy.read(self.path("b.laz"), laz_backend=backend)
+                self.assertEqual(packed.header.point_format, plain.header.point_format)
+                for name in plain.point_format.dimension_names:
+                    self.expect_equal(plain[name], packed[name], f"format {form}, {backend}: {name}")
+            self.expect_points(las, self.read(self.path("b.laz")), f"format {form}")
+
+    def test_names_of_all_fields_are_opened(self):
+        """Properties with the names of laspy's own fields, whose values fit none of them."""
+        import laspy
+        names = {"X", "Y", "Z"}
+        for form in range(11):
+            names |= set(laspy.PointFormat(form).dimension_names)
+        names -= {"red", "green", "blue"}  # which are colours whatever their values
+        names = sorted(names | {"Intensity", "bit_fields", "raw_classification", "x_t", "a" * 40, "a" * 41, "\u03bc" * 20})
+        with open(self.path("a.ply"), "w") as file:
+            file.write("ply\nformat ascii 1.0\nelement vertex 5\n")
+            file.writelines(f"property double {name}\n" for name in ["x", "y", "z"] + names)
+            file.write("end_header\n")
+            file.writelines("%d 0 0 %s\n" % (i, " ".join(["%.2f" % (i + 0.25)] * len(names))) for i in range(5))
+        for target in ("b.las", "b.laz"):
+            self.convert(self.path("a.ply"), self.path(target))
+            las = laspy.read(self.path(target))
+            extra = list(las.point_format.extra_dimension_names)
+            self.assertEqual(len(set(extra)), len(names) - ("gps_time" in names))
+            for name in extra:
+                self.expect_equal(las[name], numpy.arange(5) + 0.25, name)
+
+    def test_what_stands_beside_the_points(self):
+        import laspy
+        wkt = 'PROJCS["own",GEOGCS["base"],UNIT["m",1],AUTHORITY["EPSG","32633"]]'
+        las = self.make(7, 1000)
+        las.header.system_identifier, las.header.generating_software = "OWN", "own 1"
+        las.header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
+        las.header.global_encoding.wkt = True
+        las.header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(wkt))
+        las.evlrs = laspy.vlrs.vlrlist.VLRList([laspy.VLR("own", 5, "note", bytes(70000))])
+        las.write(self.path("a.las"))
+        for target in ("b.las", "b.laz"):
+            self.convert(self.path("a.las"), self.path(target))
+            read = laspy.read(self.path(target))
+            self.assertEqual(read.vlrs.get("WktCoordinateSystemVlr")[0].string, wkt)
+            self.assertEqual([(v.user_id, v.record_id, len(v.record_data)) for v in read.evlrs], [("own", 5, 70000)])
+            self.assertEqual((read.header.system_identifier, read.header.generating_software), ("OWN", "own 1"))
+            self.assertEqual(read.header.global_encoding.value & 17, 17)
+            self.assertEqual(read.header.creation_date, las.header.creation_date)
 
     def test_chunks_of_different_sizes(self):
         import io

@@ -186,7 +186,7 @@ ENDS_WITH(brio_read_options, origins);
 ENDS_WITH(brio_read_notes, rounded_column);
 ENDS_WITH(brio_merge_stats, edges);
 ENDS_WITH(brio_convert_stats, degenerate);
-ENDS_WITH(brio_convert_options, merge_distance);
+ENDS_WITH(brio_convert_options, crs);
 ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, metadata);

@@ -25,10 +25,11 @@ typedef struct {
     brio_format format;
     brio_source source;
     brio_row_writer writer;
-    bool told;    /* whether the losses of the parts were named */
-    bool open;    /* whether a pass ended because the depth of colours was not known */
-    int dulled;   /* whether colours lost steps */
-    bool rounded; /* whether single precision rounded a coordinate */
+    brio_output crs; /* the coordinate system, if it is asked for; crs.name is NULL until it is written */
+    bool told;       /* whether the losses of the parts were named */
+    bool open;       /* whether a pass ended because the depth of colours was not known */
+    int dulled;      /* whether colours lost steps */
+    bool rounded;    /* whether single precision rounded a coordinate */
     uint64_t counted;
     brio_convert_stats stats;
 } conversion;
@@ -51,6 +52,35 @@ static bool cuts_polygons(const conversion *c, const brio_mesh *m) {
     return false;
 }
 
+/* Names the metadata that the format does not keep. A coordinate system is one thing, in whatever form; the depth of
+ * colours is that of their numbers. */
+static void name_metadata(const conversion *c, const brio_mesh *m) {
+    bool has_system = false, keeps_system = false;
+    for (size_t i = 0; i < m->num_metadata; i++) {
+        const char *name = m->metadata[i].name;
+        bool kept = brio_format_keeps(c->format, name), system = !strncmp(name, "crs.", 4);
+        has_system |= system;
+        keeps_system |= kept && (!strcmp(name, "crs.wkt") || !strcmp(name, "crs.geokeys"));
+        if (!kept && !system && strncmp(name, "colour.", 7) != 0) lose(c, name);
+    }
+    if (has_system && !keeps_system && !c->options->crs) lose(c, "crs");
+}
+
+/* Writes the coordinate system to its file, which has no name yet. */
+static brio_status write_crs(conversion *c, const brio_mesh *m) {
+    brio_status status = BRIO_OK;
+    const brio_metadata *text = brio_mesh_metadata(m, "crs.wkt"), *code = brio_mesh_metadata(m, "crs.code");
+    if (!c->options->crs || c->crs.name) return BRIO_OK;
+    BRIO_REQUIRE(c->ctx, text, BRIO_ERR_NO_ANSWER,
+                 "%s: no coordinate system as well-known text, which %s is to have%s%s", c->source.path,
+                 c->options->crs, code ? "; its code is " : "", code ? code->bytes : "");
+    BRIO_TRY(brio_output_open(&c->crs, c->ctx, c->options->crs, BRIO_NO_PROGRESS));
+    BRIO_TRY(brio_output_bytes(&c->crs, text->bytes, text->size));
+    BRIO_TRY(brio_output_finish(&c->crs));
+done:
+    return status;
+}
+
 /* Names the parts of a mesh that the format cannot hold. */
 static void name_losses(conversion *c, const brio_mesh *m) {
     if (c->told) return;
@@ -63,6 +93,7 @@ static void name_losses(conversion *c, const brio_mesh *m) {
     if (m->num_properties && nameless) lose(c, "names of properties");
     for (size_t i = 0; i < m->num_properties; i++)
         if (!brio_format_holds_property(c->format, m, i)) lose(c, m->properties[i].name);
+    name_metadata(c, m);
 }
 
 /* Names what the reader passed over. */
@@ -120,6 +151,7 @@ static brio_status write_block(void *user, const brio_mesh *block) {
     brio_status status = BRIO_OK;
     brio_mesh shown = *block;
     BRIO_TRY(refuse_open(c, block));
+    BRIO_TRY(write_crs(c, block));
     name_losses(c, block);
     find_rounding(c, block);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
@@ -229,6 +261,7 @@ static brio_status write_whole(void *user, const brio_mesh *mesh) {
     BRIO_TRY(brio_colour_show(c->ctx, &colours, mesh, &shown));
     c->dulled = brio_colour_lost(&colours);
     o.colours_rounded = NULL;
+    BRIO_TRY(write_crs(c, mesh));
     name_losses(c, mesh);
     find_rounding(c, mesh);
     if (c->rounded || c->source.job.notes.rounded) lose(c, "precision");
@@ -295,17 +328,17 @@ static brio_status run(conversion *c) {
     brio_status status = BRIO_OK;
     const brio_sink whole = {write_whole, c};
     const brio_bar bar = brio_progress_bar(c->ctx);
-    bool choose = c->options->drop_outliers || c->options->thin > 0, rows = brio_row_format_of(c->format) != NULL;
-    bool once = !choose && c->format != BRIO_FORMAT_LAS &&
-                (can_patch(c->ctx, c->to) || (rows && !brio_row_format_of(c->format)->counts));
-    c->source.whole = !rows || c->options->merge || (!brio_source_rereadable(c->source.path) && !once);
+    bool choose = c->options->drop_outliers || c->options->thin > 0;
+    const brio_row_format *format = brio_row_format_of(c->format);
+    bool once = !choose && !(format && format->survey) && (can_patch(c->ctx, c->to) || (format && !format->counts));
+    c->source.whole = !format || c->options->merge || (!brio_source_rereadable(c->source.path) && !once);
     double started = brio_seconds();
     brio_progress_part(c->ctx, bar, 0, 0.6);
     if (choose) BRIO_TRY(brio_source_choose(&c->source));
     if (c->options->merge) BRIO_TRY(merge(c));
     brio_progress_part(c->ctx, bar, choose || c->options->merge ? 0.6 : 0, 1);
     c->stats.select_seconds = brio_seconds() - started;
-    status = rows ? stream(c) : brio_source_pass(&c->source, &whole);
+    status = format ? stream(c) : brio_source_pass(&c->source, &whole);
 done:
     brio_progress_part(c->ctx, bar, 0, 1);
     return status;
@@ -319,6 +352,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     conversion c = {.ctx = ctx, .to = to, .options = &o, .stats = {.size = sizeof c.stats}};
     c.source = (brio_source){.ctx = ctx, .path = from, .options = &o};
     c.writer = (brio_row_writer){.ctx = ctx};
+    c.crs = (brio_output){.ctx = ctx, .target.folder = -1, .file = -1};
     double started = brio_seconds();
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_convert_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_convert_options, options, &o));
@@ -343,6 +377,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
                                    .announced = BRIO_COUNT_UNKNOWN};
     BRIO_TRY(run(&c));
     if (rounded) *rounded = c.dulled;
+    if (c.crs.name) BRIO_TRY(brio_output_publish(&c.crs));
     c.stats.streamed = c.source.job.streamed;
     c.stats.points_read = c.source.points_read;
     if (read.dropped) *read.dropped = c.source.job.dropped;
@@ -354,6 +389,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     BRIO_GIVE(brio_read_notes, read.notes, &c.source.job.notes);
     BRIO_GIVE(brio_convert_stats, stats, &c.stats);
 done:
+    if (c.crs.name) brio_output_close(&c.crs);
     brio_row_writer_free(&c.writer);
     brio_source_free(&c.source);
     return status;

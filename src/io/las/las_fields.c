@@ -15,6 +15,8 @@
 #define I16 BRIO_SCALAR_INT16
 #define F64 BRIO_SCALAR_FLOAT64
 
+enum { UINT64 = 7, INT64 = 8, DOUBLE = 10 /* types of extra bytes */ };
+
 /* Formats 0 to 5, and 6 to 10. */
 static const brio_las_field early[] = {
     {"intensity", U16, 12, 0, 0},           {"return_number", U8, 14, 0, 3},       {"number_of_returns", U8, 14, 3, 3},
@@ -46,27 +48,47 @@ size_t brio_las_fields_of(unsigned format, brio_las_field *fields) {
 
 /* --- the plan --- */
 
-static brio_status plan_fields(brio_las_plan *plan, brio_builder *b, const brio_las_header *h) {
+bool brio_las_has_colours(unsigned format) {
+    return places[format].colour;
+}
+
+/* Adds the property of a field. Times of version 1.5 are moved to where all versions count from. */
+static brio_status plan_field(brio_las_plan *plan, brio_builder *b, const brio_las_header *h, const brio_las_field *f) {
+    bool moved = h->time_shift != 0 && f->type == F64;
+    plan->columns[plan->num_columns++] = (brio_las_column){.property = b->mesh->num_properties,
+                                                           .at = f->at,
+                                                           .extra = moved ? DOUBLE : 0,
+                                                           .type = f->type,
+                                                           .shift = f->shift,
+                                                           .bits = f->bits,
+                                                           .scale = 1,
+                                                           .offset = h->time_shift};
+    return brio_builder_property(b, f->name, f->type);
+}
+
+/* Keeps a description that says more than a name and a type. */
+static brio_status keep_description(brio_las_plan *plan, brio_las_records *kept, const brio_las_extra *e,
+                                    const char *name) {
     brio_status status = BRIO_OK;
-    brio_las_field fields[BRIO_LAS_FIELDS];
-    size_t count = brio_las_fields_of(h->format, fields);
-    for (size_t i = 0; i < count; i++) {
-        const brio_las_field *f = &fields[i];
-        plan->columns[plan->num_columns++] = (brio_las_column){
-            .property = b->mesh->num_properties, .at = f->at, .type = f->type, .shift = f->shift, .bits = f->bits};
-        BRIO_TRY(brio_builder_property(b, f->name, f->type));
-    }
+    bool more = (uint8_t)e->description[BRIO_EXTRA_OPTIONS] & BRIO_EXTRA_ALL_OPTIONS;
+    if (!more && !e->description[BRIO_EXTRA_TEXT] && e->type != UINT64 && e->type != INT64) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(plan->ctx, kept->bytes, kept->capacity, kept->size + BRIO_LAS_EXTRA_ENTRY));
+    memset(kept->bytes + kept->size, 0, 64);
+    memcpy(kept->bytes + kept->size, name, strlen(name));
+    memcpy(kept->bytes + kept->size + 64, e->description, BRIO_LAS_EXTRA);
+    kept->size += BRIO_LAS_EXTRA_ENTRY;
 done:
     return status;
 }
 
 /* Plans an extra number. A name that the format has already, or another extra number, gets "_2", "_3", ... behind
  * it. Numbers that are scaled, or have 64 bits, become doubles. */
-static brio_status plan_extra(brio_las_plan *plan, brio_builder *b, const brio_las_header *h, const brio_las_extra *e) {
+static brio_status plan_extra(brio_las_plan *plan, brio_builder *b, const brio_las_header *h, const brio_las_extra *e,
+                              brio_las_records *kept) {
     static const brio_scalar types[] = {
         F64, U8, I8, U16, I16, BRIO_SCALAR_UINT32, BRIO_SCALAR_INT32, F64, F64, BRIO_SCALAR_FLOAT32, F64};
     brio_status status = BRIO_OK;
-    bool wide = e->scaled || e->type == 7 || e->type == 8;
+    bool wide = e->scaled || e->type == UINT64 || e->type == INT64;
     brio_las_column c = {.property = b->mesh->num_properties,
                          .at = brio_las_record_bytes(h->format) + e->at,
                          .extra = wide ? e->type : 0,
@@ -77,24 +99,46 @@ static brio_status plan_extra(brio_las_plan *plan, brio_builder *b, const brio_l
     brio_builder_new_name(b, e->name, name);
     BRIO_TRY(brio_builder_property(b, name, c.type));
     plan->columns[plan->num_columns++] = c;
+    BRIO_TRY(keep_description(plan, kept, e, name));
 done:
     return status;
+}
+
+static brio_status begin_plan(brio_las_plan *plan, const brio_builder *b, const brio_las_header *h) {
+    *plan = (brio_las_plan){.ctx = b->ctx, .record = h->record, .rounded = plan->rounded};
+    memcpy(plan->scale, h->scale, sizeof plan->scale);
+    memcpy(plan->offset, h->offset, sizeof plan->offset);
+    return BRIO_ALLOC(b->ctx, plan->columns, BRIO_LAS_FIELDS + h->num_extras);
 }
 
 brio_status brio_las_plan_make(brio_las_plan *plan, brio_builder *b, const brio_las_header *h) {
     brio_status status = BRIO_OK;
-    *plan = (brio_las_plan){.record = h->record};
-    memcpy(plan->scale, h->scale, sizeof plan->scale);
-    memcpy(plan->offset, h->offset, sizeof plan->offset);
-    BRIO_TRY(BRIO_ALLOC(b->ctx, plan->columns, BRIO_LAS_FIELDS + h->num_extras));
-    BRIO_TRY(plan_fields(plan, b, h));
-    for (size_t i = 0; i < h->num_extras; i++) BRIO_TRY(plan_extra(plan, b, h, &h->extras[i]));
+    brio_las_field fields[BRIO_LAS_FIELDS];
+    brio_las_records kept = {.bytes = NULL};
+    size_t count = brio_las_fields_of(h->format, fields);
+    BRIO_TRY(begin_plan(plan, b, h));
+    for (size_t i = 0; i < count; i++) BRIO_TRY(plan_field(plan, b, h, &fields[i]));
+    for (size_t i = 0; i < h->num_extras; i++) BRIO_TRY(plan_extra(plan, b, h, &h->extras[i], &kept));
+    if (kept.size) BRIO_TRY(brio_mesh_set_metadata(b->mesh, "las.extras", kept.bytes, kept.size));
+done:
+    brio_release(b->ctx, kept.bytes);
+    return status;
+}
+
+brio_status brio_las_plan_colours(brio_las_plan *plan, brio_builder *b, const brio_las_header *h) {
+    brio_status status = BRIO_OK;
+    brio_las_field fields[BRIO_LAS_FIELDS];
+    size_t count = brio_las_fields_of(h->format, fields);
+    BRIO_TRY(begin_plan(plan, b, h));
+    for (size_t i = 0; i < count; i++)
+        if (fields[i].at >= places[h->format].colour && fields[i].at < places[h->format].colour + 6)
+            BRIO_TRY(plan_field(plan, b, h, &fields[i]));
 done:
     return status;
 }
 
-void brio_las_plan_free(brio_context *ctx, brio_las_plan *plan) {
-    brio_release(ctx, plan->columns);
+void brio_las_plan_free(brio_las_plan *plan) {
+    brio_release(plan->ctx, plan->columns);
     plan->columns = NULL;
 }
 
@@ -122,14 +166,28 @@ static double extra_value(const char *bytes, unsigned type) {
                                         [5] = BRIO_SCALAR_UINT32,
                                         [6] = BRIO_SCALAR_INT32,
                                         [9] = BRIO_SCALAR_FLOAT32,
-                                        [10] = F64};
-    if (type == 7) return (double)brio_le64(bytes);
-    if (type == 8) return (double)(int64_t)brio_le64(bytes);
+                                        [DOUBLE] = F64};
+    if (type == UINT64) return (double)brio_le64(bytes);
+    if (type == INT64) return (double)(int64_t)brio_le64(bytes);
     return brio_scalar_load(bytes, types[type], !brio_host_is_little());
 }
 
-static void store_extra(double *target, const char *bytes, size_t count, size_t record, const brio_las_column *c) {
-    for (size_t i = 0; i < count; i++, bytes += record) target[i] = extra_value(bytes, c->extra) * c->scale + c->offset;
+/* Whether an integer of 64 bits is no double. */
+static bool is_rounded(const char *bytes, unsigned type) {
+    uint64_t size = brio_le64(bytes);
+    if (type == INT64 && size >> 63) size = -size;
+    double x = (double)size;
+    return x >= 0x1p64 || (uint64_t)x != size;
+}
+
+static void store_extra(const brio_las_plan *plan, double *target, const char *bytes, size_t count,
+                        const brio_las_column *c) {
+    bool whole = c->extra == UINT64 || c->extra == INT64, rounded = false;
+    for (size_t i = 0; i < count; i++, bytes += plan->record) {
+        target[i] = extra_value(bytes, c->extra) * c->scale + c->offset;
+        rounded |= whole && is_rounded(bytes, c->extra);
+    }
+    if (rounded) atomic_store_explicit(plan->rounded, true, memory_order_relaxed);
 }
 
 void brio_las_store(const brio_las_plan *plan, const brio_mesh *mesh, const char *records, size_t first, size_t count) {
@@ -141,7 +199,7 @@ void brio_las_store(const brio_las_plan *plan, const brio_mesh *mesh, const char
         if (c->bits)
             store_bits((uint8_t *)target, records + c->at, count, plan->record, c);
         else if (c->extra)
-            store_extra((double *)(void *)target, records + c->at, count, plan->record, c);
+            store_extra(plan, (double *)(void *)target, records + c->at, count, c);
         else
             brio_scalar_gather(target, records + c->at, count, plan->record, size, !brio_host_is_little());
     }

@@ -4,6 +4,7 @@
 
 #include "io/builder.h"
 #include "io/las/las_header.h"
+#include <stdatomic.h>
 
 /** A field of a format. */
 typedef struct brio_las_field {
@@ -30,16 +31,27 @@ typedef struct brio_las_column {
 } brio_las_column;
 
 typedef struct brio_las_plan {
+    brio_context *ctx;
     size_t record;
     double scale[3], offset[3];
     brio_las_column *columns;
     size_t num_columns;
+    atomic_bool *rounded; /* becomes true where an integer of 64 bits is no double */
 } brio_las_plan;
 
-/** Adds the properties of a file to the mesh under construction. Call brio_las_plan_free even if this fails.
+/** Entries of the metadata "las.extras": the name of a property, and the description that its extra bytes had. */
+enum { BRIO_LAS_EXTRA_ENTRY = 64 + BRIO_LAS_EXTRA };
+
+/** Adds the properties of a file to the mesh under construction, and the metadata "las.extras" if descriptions say more than
+ *  name and type. Call brio_las_plan_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY. */
 brio_status brio_las_plan_make(brio_las_plan *plan, brio_builder *b, const brio_las_header *h);
-void brio_las_plan_free(brio_context *ctx, brio_las_plan *plan);
+/** Adds red, green and blue alone, of a format that has them. */
+brio_status brio_las_plan_colours(brio_las_plan *plan, brio_builder *b, const brio_las_header *h);
+void brio_las_plan_free(brio_las_plan *plan);
+
+/** Returns whether a format has colours. */
+bool brio_las_has_colours(unsigned format);
 
 /** Stores the coordinates and properties of `count` records as those of the mesh's vertices from `first` on. Threads
  *  may call this together for different vertices. */

@@ -50,6 +50,19 @@ typedef struct brio_laz_point10 {
     brio_laz_integer intensity, source, dx, dy, z;
 } brio_laz_point10;
 
+/** The attributes that changed, as the first symbol of a point says it. */
+enum {
+    BRIO_LAZ_SOURCE_CHANGED = 1,
+    BRIO_LAZ_USER_DATA_CHANGED = 2,
+    BRIO_LAZ_ANGLE_CHANGED = 4,
+    BRIO_LAZ_CLASS_CHANGED = 8,
+    BRIO_LAZ_INTENSITY_CHANGED = 16,
+    BRIO_LAZ_FLAGS_CHANGED = 32
+};
+
+/** Returns the context of a return, by the byte of its number and the number of returns. */
+uint32_t brio_laz_return_context10(uint8_t flags);
+
 void brio_laz_point10_begin(brio_laz_point10 *p, const uint8_t *first);
 void brio_laz_point10_next(brio_laz_point10 *p, brio_laz_coder *c, brio_laz_arena *arena, uint8_t *row);
 
@@ -66,6 +79,32 @@ typedef struct brio_laz_time {
 } brio_laz_time;
 
 void brio_laz_time_begin(brio_laz_time *t, uint64_t first);
+
+/* Symbols of a multiple: 0 something else than a multiple, 1 to MOST_STEPS the multiple, above MOST_STEPS negative ones down
+ * to LEAST_STEPS. Behind these come the symbols of a new time and of the other sequences. */
+enum {
+    BRIO_LAZ_MOST_STEPS = 500,
+    BRIO_LAZ_LEAST_STEPS = -10,
+    BRIO_LAZ_NEW_TIME = BRIO_LAZ_MOST_STEPS - BRIO_LAZ_LEAST_STEPS + 1
+};
+
+/* Contexts of the difference of times. */
+enum {
+    BRIO_LAZ_FROM_ZERO,
+    BRIO_LAZ_FROM_STEP,
+    BRIO_LAZ_FROM_SMALL,
+    BRIO_LAZ_FROM_LARGE,
+    BRIO_LAZ_FROM_MOST,
+    BRIO_LAZ_FROM_NEGATIVE,
+    BRIO_LAZ_FROM_LEAST,
+    BRIO_LAZ_FROM_NOTHING,
+    BRIO_LAZ_FROM_TIME
+};
+
+/** Returns the context of the difference to a multiple, by its symbol. */
+uint32_t brio_laz_steps_context(uint32_t symbol);
+/** Replaces the step after several extreme multiples one after the other. */
+void brio_laz_time_step(brio_laz_time *t, int32_t difference, uint32_t context);
 
 /** Decodes the next time.   may_stay  1 in formats 0 to 5, where a symbol says that the time stays; 0 in the layers. */
 uint64_t brio_laz_time_next(brio_laz_time *t, brio_laz_coder *c, brio_laz_arena *arena, uint32_t may_stay);
@@ -117,6 +156,35 @@ typedef struct brio_laz_point14 {
     brio_laz_channel channels[4];
     uint32_t channel; /* the current one */
 } brio_laz_point14;
+
+/** What changed, as the first symbol of a point says it. */
+enum {
+    BRIO_LAZ_RETURN_14 = 3, /* 0: the same; 1: the next; 2: the one before; 3: another one */
+    BRIO_LAZ_RETURNS_14 = 1 << 2,
+    BRIO_LAZ_ANGLE_14 = 1 << 3,
+    BRIO_LAZ_TIME_14 = 1 << 4,
+    BRIO_LAZ_SOURCE_14 = 1 << 5,
+    BRIO_LAZ_CHANNEL_14 = 1 << 6
+};
+
+/** Where the bytes of the attributes are. */
+enum {
+    BRIO_LAZ_AT_INTENSITY = 12,
+    BRIO_LAZ_AT_RETURNS = 14,
+    BRIO_LAZ_AT_FLAGS = 15,
+    BRIO_LAZ_AT_CLASSIFICATION = 16,
+    BRIO_LAZ_AT_USER_DATA = 17,
+    BRIO_LAZ_AT_SCAN_ANGLE = 18,
+    BRIO_LAZ_AT_SOURCE = 20,
+    BRIO_LAZ_AT_TIME = 22
+};
+
+/** Returns the context of the steps in x and y, by the byte of the returns. */
+uint32_t brio_laz_return_context14(uint8_t returns);
+/** Returns the place of a return in its pulse: bit 0: the first one, bit 1: the last one. */
+uint32_t brio_laz_place14(uint8_t returns);
+/** Begins a channel with the point that was the last one before it. */
+void brio_laz_channel_begin(brio_laz_channel *h, const uint8_t *first);
 
 void brio_laz_point14_begin(brio_laz_point14 *p, const uint8_t *first);
 

@@ -6,14 +6,16 @@
 #include "io/las/laz_items.h"
 #include "io/little_endian.h"
 
-enum { POINT_SOURCE = 1, USER_DATA = 2, SCAN_ANGLE = 4, CLASSIFICATION = 8, INTENSITY = 16, FLAGS = 32 };
-
 /* The context of a return: by the number of returns and the number of this one. Pairs that no scanner makes, which are
  * in files all the same, have contexts, too. */
 static const uint8_t return_context[8][8] = {{15, 14, 13, 12, 11, 10, 9, 8},  {14, 0, 1, 3, 6, 10, 10, 9},
                                              {13, 1, 2, 4, 7, 11, 11, 10},    {12, 3, 4, 5, 8, 12, 12, 11},
                                              {11, 6, 7, 8, 9, 13, 13, 12},    {10, 10, 11, 12, 13, 14, 14, 13},
                                              {9, 10, 11, 12, 13, 14, 15, 14}, {8, 9, 10, 11, 12, 13, 14, 15}};
+
+uint32_t brio_laz_return_context10(uint8_t flags) {
+    return return_context[flags >> 3 & 7][flags & 7];
+}
 
 void brio_laz_point10_begin(brio_laz_point10 *p, const uint8_t *first) {
     memcpy(p->last, first, sizeof p->last);
@@ -29,17 +31,18 @@ static void next_byte(brio_laz_coder *c, brio_laz_arena *arena, brio_laz_model *
 static void next_attributes(brio_laz_point10 *p, brio_laz_coder *c, brio_laz_arena *arena, uint32_t changed,
                             uint32_t returns) {
     uint8_t *last = p->last;
-    if (changed & INTENSITY)
+    if (changed & BRIO_LAZ_INTENSITY_CHANGED)
         p->intensities[returns] =
             brio_laz_int16(c, arena, &p->intensity, p->intensities[returns], returns < 3 ? returns : 3);
     brio_put_le16(last + 12, p->intensities[returns]);
-    if (changed & CLASSIFICATION) next_byte(c, arena, p->classification, last + 15);
-    if (changed & SCAN_ANGLE) {
+    if (changed & BRIO_LAZ_CLASS_CHANGED) next_byte(c, arena, p->classification, last + 15);
+    if (changed & BRIO_LAZ_ANGLE_CHANGED) {
         uint32_t direction = last[14] >> 6 & 1;
         last[16] = (uint8_t)(last[16] + brio_laz_symbol(c, arena, &p->scan_angle[direction], 256));
     }
-    if (changed & USER_DATA) next_byte(c, arena, p->user_data, last + 17);
-    if (changed & POINT_SOURCE) brio_put_le16(last + 18, brio_laz_int16(c, arena, &p->source, brio_le16(last + 18), 0));
+    if (changed & BRIO_LAZ_USER_DATA_CHANGED) next_byte(c, arena, p->user_data, last + 17);
+    if (changed & BRIO_LAZ_SOURCE_CHANGED)
+        brio_put_le16(last + 18, brio_laz_int16(c, arena, &p->source, brio_le16(last + 18), 0));
 }
 
 static uint32_t at_most(uint32_t bits, uint32_t most) {
@@ -60,8 +63,8 @@ static void next_position(brio_laz_point10 *p, brio_laz_coder *c, brio_laz_arena
 
 void brio_laz_point10_next(brio_laz_point10 *p, brio_laz_coder *c, brio_laz_arena *arena, uint8_t *row) {
     uint32_t changed = brio_laz_symbol(c, arena, &p->changed, 64);
-    if (changed & FLAGS) next_byte(c, arena, p->flags, p->last + 14);
-    uint32_t returns = return_context[p->last[14] >> 3 & 7][p->last[14] & 7];
+    if (changed & BRIO_LAZ_FLAGS_CHANGED) next_byte(c, arena, p->flags, p->last + 14);
+    uint32_t returns = brio_laz_return_context10(p->last[14]);
     if (changed) next_attributes(p, c, arena, changed, returns);
     next_position(p, c, arena, returns);
     memcpy(row, p->last, sizeof p->last);

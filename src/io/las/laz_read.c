@@ -30,10 +30,10 @@ typedef struct {
 typedef struct {
     const uint8_t *bytes;
     size_t size;
-    size_t first, points; /* its points in the block of the mesh */
-    bool damaged;
-    size_t at;    /* damaged: the first of the points decoded together that is */
-    uint64_t row; /* its first point in the file */
+    size_t first, points;  /* its points in the block of the mesh */
+    bool damaged, missing; /* missing: the file ends within the chunk, of which nothing can be decoded */
+    size_t at;             /* damaged: the first of the points decoded together that is */
+    uint64_t row;          /* its first point in the file */
 } loaded_chunk;
 
 typedef struct {
@@ -93,6 +93,18 @@ static void decode_chunk(const laz_reader *r, const worker *w, loaded_chunk *c) 
         brio_las_store(r->plan, r->builder->mesh, (char *)w->rows, c->first + c->at, rows);
         c->at += rows;
     }
+}
+
+/* Decodes the points of a chunk that is cut off, one by one, and keeps those that are whole. */
+static void salvage_chunk(laz_reader *r, loaded_chunk *c) {
+    const worker *w = r->workers;
+    bool whole = brio_laz_begin(w->decoder, c->bytes, c->size);
+    for (c->at = 0; whole && c->at < c->points; c->at += whole) {
+        whole = brio_laz_next(w->decoder, w->rows, 1);
+        if (whole) brio_las_store(r->plan, r->builder->mesh, (char *)w->rows, c->first + c->at, 1);
+    }
+    r->builder->mesh->num_vertices = c->first + c->at;
+    r->stream->row += c->at;
 }
 
 static brio_status damaged(const laz_reader *r, const loaded_chunk *c, uint64_t offset) {
@@ -184,13 +196,15 @@ static brio_status next_layers(laz_reader *r, loaded_chunk *c) {
     uint32_t points = 0;
     BRIO_TRY(gather(s, brio_laz_layers_head(form)));
     uint64_t size = brio_laz_layers_bytes(form, (uint8_t *)s->buffer + s->begin, brio_stream_left(s), &points);
-    if (!size) return brio_stream_truncated(s);
+    c->missing = !size;
+    if (c->missing) return r->builder->salvage ? BRIO_OK : brio_stream_truncated(s);
     bool fits = r->header->chunk == UINT32_MAX ? points && points <= c->points : points == c->points;
     BRIO_REQUIRE(s->ctx, fits, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": a chunk of %" PRIu32 " points, expected %s%zu",
                  s->name, brio_stream_offset(s), points, r->header->chunk == UINT32_MAX ? "1 to " : "", c->points);
     c->points = points;
     BRIO_TRY(gather(s, size));
-    if (brio_stream_left(s) < size) return brio_stream_truncated(s);
+    c->missing = brio_stream_left(s) < size;
+    if (c->missing) return r->builder->salvage ? BRIO_OK : brio_stream_truncated(s);
     BRIO_TRY(check_points(r, points, size));
     BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
     c->first = r->builder->mesh->num_vertices - c->points;
@@ -234,6 +248,8 @@ static brio_status read_without_table(laz_reader *r) {
         loaded_chunk c = {.row = s->row, .points = (size_t)(h->num_points - s->row)};
         if (fixed && c.points > h->chunk) c.points = h->chunk;
         BRIO_TRY(h->form.layered ? next_layers(r, &c) : next_stream(r, &c));
+        if (c.damaged && r->builder->salvage && s->ended) salvage_chunk(r, &c);
+        if (c.missing || (c.damaged && r->builder->salvage && s->ended)) break;
         if (c.damaged) return damaged(r, &c, brio_stream_offset(s));
         s->begin += c.size;
         s->row += c.points;
@@ -250,9 +266,12 @@ brio_status brio_laz_read(brio_stream *s, brio_builder *b, const brio_las_header
     const char *bytes = NULL;
     if (h->chunked && h->num_points) {
         BRIO_TRY(brio_stream_take(s, 8, &bytes));
-        BRIO_TRY(brio_laz_table_read(s, h, brio_le64(bytes), &chunks, &count));
+        status = brio_laz_table_read(s, h, brio_le64(bytes), &chunks, &count);
+        if (status != BRIO_ERR_FORMAT || !b->salvage)
+            BRIO_TRY(status); /* a file that ends early may do so in its table */
     }
     BRIO_TRY(chunks ? read_with_table(&r, chunks, count) : read_without_table(&r));
+    b->missing = h->num_points - s->row;
 done:
     free_workers(&r);
     brio_release(s->ctx, chunks);
