@@ -355,7 +355,7 @@ static brio_status write_file(run *r, const char *path, const char *extension, c
     if (status != BRIO_OK) goto done;
     cli_tell_moved(r, path, moved, merged);
     cli_tell_lost(r, path, mesh, options.format);
-    if (rounded) cli_warn(r, "%s: the colours have fewer steps than those of the input", path);
+    if (rounded) cli_warn(r, WARNING_COLOURS, path);
 done:
     return status;
 }

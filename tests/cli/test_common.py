@@ -18,7 +18,7 @@ OWN_OPTIONS = {
                  "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify", "--neighbors", "--faces",
                  "--edges"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
-                "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
+                "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--from", "--ignore-normals", "--ignore-origins", "--normals",
                 "--vertex-normals", "--self-intersections", "--polygons", "--extraction", "--keep-largest", "--min-component"],
     "medial": ["--sides", "--labeling", "--noise", "--simplify", "--scale", "--redundancy", "--crust",
                "--sampling-density", "--sharp"],
@@ -33,9 +33,9 @@ OWN_OPTIONS = {
             "--vertex-normals", "--self-intersections"],
     "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--kind", "--resolution"],
     "subdivide": ["--levels"],
-    "locate": ["--at", "--weights", "--weights-mod", "--unweighted"],
+    "locate": ["--at", "--plane", "--weights", "--weights-mod", "--unweighted"],
     "voronoi": ["--weights", "--weights-mod", "--unweighted", "--box", "--faces"],
-    "interpolate": ["--at", "--property", "--method"],
+    "interpolate": ["--at", "--plane", "--property", "--method"],
 }
 
 
@@ -118,7 +118,7 @@ class Usage(CliTest):
         self.usage("cannot hold", "delaunay", "missing.xyz", "-o", "out.off")
 
     def test_formats_that_are_only_read_are_refused_before_the_input_is_read(self):
-        for name in ["out.laz", "out.pcd", "out.ptx", "out.e57"]:
+        for name in ["out.npz", "out.bnpts"]:
             self.usage("read, not written", "interpolate", "missing.xyz", "--at", "b", "--property", "p", "-o", name)
             self.usage("read, not written", "generate", "cube", "-n", "9", "-o", name)
 

@@ -150,8 +150,9 @@ ROWS = {
     "WARNING_BEYOND": ("alpha tiny.xyz --alpha 1 --filtration out.txt -o out.ply", 0,
                        [Silent("alpha few.xyz --alpha auto --filtration out.txt -o out.ply")]),
     "WARNING_SET_ASIDE": ("interpolate values.csv --at values.csv --property q -o out.ply", 0, ["info out.ply"]),
-    "WARNING_SELF": ("surface noisy.ply --self-intersections -o out.ply", 0,
+    "WARNING_SELF": ("surface noisy.ply --self-intersections --closed -o out.ply", 0,
                      [Ends(5, "intersects itself", "check out.ply --self-intersections")]),
+    "WARNING_COLOURS": ("surface deep.ply -o out.ply", 0, [Silent("surface deep.ply -o out.glb")]),
     "WARNING_APART": ("check apart.off --open", 0, ["{hint}", Silent("check out.ply --open")]),
     "WARNING_OUTSIDE": ("voronoi few.xyz --box 0,0,0,0.2,1,1 -o out.csv", 0,
                         ["{hint}", Silent("voronoi few.xyz --box 0,0,0,1,1,1 -o out.csv")]),
@@ -245,6 +246,12 @@ class Hints(CliTest):
         self.xyz("vast.xyz", [[1.79e308 * x for x in p] for p in self.sphere(300)])
         self.xyz("pair.xyz", [(i % 40, i // 40, i * i % 7) for i in range(3000)] + [(0.3, 0.3, 0.3), (0.3 + 1e-12, 0.3, 0.3)])
         self.ball_map("ball.map", 12)
+        self.expect(0, "convert", "ball.ply", "ball.xyz", "--quiet")
+        with open(self.path("ball.xyz"), encoding="utf-8") as f:
+            rows = [line for line in f if line[0] not in "#x"]
+        self.file("deep.ply", "ply\nformat ascii 1.0\nelement vertex %d\n" % len(rows) + "".join(
+            "property %s\n" % p for p in ("double x", "double y", "double z", "ushort red", "ushort green", "ushort blue"))
+            + "end_header\n" + "".join("%s %d 1 65535\n" % (row.strip(), i) for i, row in enumerate(rows)))
         self.file("words.doc", "one two\n"), self.file("w.txt", "".join("%d\n" % (i % 3) for i in range(8)))
         corners = ["%d,%d,%d" % p for p in CUBE]
         for name, value in [("values", str), ("missing", lambda i: "NA" if i == 3 else str(i))]:

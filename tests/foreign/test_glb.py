@@ -121,13 +121,14 @@ class MadeTest(GlbTest):
                     self.expect_equal(mesh["vertex"][name], values[:, i], name)
                     self.assertEqual(mesh["vertex"][name].dtype, values.dtype)
             self.assertEqual(len(mesh["vertex"].dtype.names), 10)
-            # of two primitives with colours of two types
+            # of two primitives with colours of two types, as the bytes that PLY has
             maker.primitives.append({"attributes": {"POSITION": maker.add(at), "COLOR_0": maker.add(rgba)}, "mode": 0})
             getattr(maker, path[2:])(self.path(path))
             mesh = self.read_mesh(path)
-            self.expect_equal(mesh["vertex"]["green"][n:], rgba[:, 1], "green")
-            self.assertTrue(numpy.allclose(mesh["vertex"]["green"][:n], rgb[:, 1] / 255))
-            self.expect_equal(mesh["vertex"]["alpha"], numpy.concatenate([numpy.ones(n), rgba[:, 3]]), "alpha")
+            byte = lambda share: numpy.rint(255 * share.astype(float)).astype("u1")
+            self.expect_equal(mesh["vertex"]["green"][n:], byte(rgba[:, 1]), "green")
+            self.expect_equal(mesh["vertex"]["green"][:n], rgb[:, 1], "green")
+            self.expect_equal(mesh["vertex"]["alpha"], byte(numpy.concatenate([numpy.ones(n), rgba[:, 3]])), "alpha")
             self.expect_equal(mesh["vertex"]["RING"][n:], numpy.zeros(n), "RING")
 
     def test_quantized(self):

@@ -109,7 +109,7 @@ static void untidy_but_valid_text(void) {
                  "0 0 0 1 10\r\n1 3 7 8 9 0\r\n1 20\r\n0 1 5 1 0 30\r\n 1e1\t0\t1.5 0.1 255 \r\n5 0 1 2 3 -1");
     if (!m) return;
     EXPECT(m->num_vertices == 4 && m->vertices[3] == 1 && m->vertices[9] == 10 && m->vertices[11] == 0.1);
-    EXPECT(m->num_faces == 2 && m->face_offsets[2] == 7 && m->face_vertices[3] == 3);
+    EXPECT(m->num_faces == 4 && m->face_offsets[2] == 7 && m->face_offsets[4] == 13 && m->face_vertices[3] == 3);
     EXPECT(m->num_properties == 1 && brio_property_value(m->properties, 3) == 255);
     brio_mesh_free(m);
 }
