@@ -150,7 +150,7 @@ ROWS = {
     "WARNING_BEYOND": ("alpha tiny.xyz --alpha 1 --filtration out.txt -o out.ply", 0,
                        [Silent("alpha few.xyz --alpha auto --filtration out.txt -o out.ply")]),
     "WARNING_SET_ASIDE": ("interpolate values.csv --at values.csv --property q -o out.ply", 0, ["info out.ply"]),
-    "WARNING_SELF": ("surface noisy.ply --self-intersections -o out.ply", 0,
+    "WARNING_SELF": ("surface noisy.ply --closed --self-intersections -o out.ply", 0,
                      [Ends(5, "intersects itself", "check out.ply --self-intersections")]),
     "WARNING_APART": ("check apart.off --open", 0, ["{hint}", Silent("check out.ply --open")]),
     "WARNING_OUTSIDE": ("voronoi few.xyz --box 0,0,0,0.2,1,1 -o out.csv", 0,
