@@ -150,7 +150,7 @@ ROWS = {
     "WARNING_BEYOND": ("alpha tiny.xyz --alpha 1 --filtration out.txt -o out.ply", 0,
                        [Silent("alpha few.xyz --alpha auto --filtration out.txt -o out.ply")]),
     "WARNING_SET_ASIDE": ("interpolate values.csv --at values.csv --property q -o out.ply", 0, ["info out.ply"]),
-    "WARNING_SELF": ("surface noisy.ply --self-intersections --closed -o out.ply", 0,
+    "WARNING_SELF": ("surface noisy.ply --closed --self-intersections -o out.ply", 0,
                      [Ends(5, "intersects itself", "check out.ply --self-intersections")]),
     "WARNING_COLOURS": ("surface deep.ply -o out.ply", 0, [Silent("surface deep.ply -o out.glb")]),
     "WARNING_APART": ("check apart.off --open", 0, ["{hint}", Silent("check out.ply --open")]),

@@ -64,8 +64,19 @@ IDLE = {
     ("alpha cloud.ply --alpha auto -o out.ply", "unweighted"), ("voronoi cloud.ply", "unweighted"),
     ("voronoi cloud.ply -o out.csv", "unweighted"),
     ("locate cloud.ply --at p.csv -o out.csv", "unweighted"), ("check flat.node", "unweighted"),
-    # these surfaces are closed already
+    # these surfaces are closed already, and these points know no normals and no places of scanners
     ("check mesh.ply", "open"),
+    ("surface cloud.ply", "open"), ("surface cloud.ply", "closed"),
+    ("surface cloud.ply", "ignore-normals"), ("surface cloud.ply", "ignore-origins"),
+    ("surface cloud.ply -o out.ply", "open"), ("surface cloud.ply -o out.ply", "closed"),
+    ("surface cloud.ply -o out.ply", "ignore-normals"), ("surface cloud.ply -o out.ply", "ignore-origins"),
+    ("surface cloud.ply -o out.stl", "open"), ("surface cloud.ply -o out.stl", "closed"),
+    ("surface cloud.ply -o out.stl", "ignore-normals"), ("surface cloud.ply -o out.stl", "ignore-origins"),
+    ("surface cloud.ply --method power-crust -o out.ply", "closed"),
+    ("surface cloud.ply --method cocone -o out.ply", "ignore-normals"),
+    ("surface cloud.ply --method cocone -o out.ply", "ignore-origins"),
+    ("surface cloud.ply --method cocone --pieces 3 -o out.ply", "ignore-normals"),
+    ("surface cloud.ply --method cocone --pieces 3 -o out.ply", "ignore-origins"),
 }
 
 

@@ -355,7 +355,7 @@ static void open_surfaces_are_manifold_and_canonical(void) {
     brio_labeled_delaunay_stats s;
     size_t left_out = 0;
     for (int trial = 0; trial < 8; trial++) {
-        o.open = 0.5 + 0.25 * trial;
+        o.open = 1.5 + 0.25 * trial;
         o.noise = BRIO_NOISE_KEEP;
         if (trial % 2)
             uniform_points((uint64_t)trial, MANY, p);

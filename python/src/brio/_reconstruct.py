@@ -77,7 +77,8 @@ def _evidence(method: str, options: dict[str, Any], properties: Properties, norm
               origins: Any) -> dict[str, Floats]:
     """What tells the outside, as options of the module."""
     out: dict[str, Floats] = {}
-    takes = method != "power-crust" and not options.get("pieces", 0) > 1
+    pieces = options.get("pieces", 0)
+    takes = method != "power-crust" and not (isinstance(pieces, int) and pieces > 1)
     for name, given, columns in (("normals", normals, ("nx", "ny", "nz")),
                                  ("origins", origins, ("x_origin", "y_origin", "z_origin"))):
         if given is None and takes and all(c in properties for c in columns):
