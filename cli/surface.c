@@ -439,8 +439,8 @@ static brio_status surface(run *r) {
     TRY(check_arguments(r));
     TRY(cli_require_output_for(r, "vertex-normals", a->vertex_normals));
     TRY(cli_check_evidence(r, &a->evidence));
-    if (a->evidence.from && (a->closed || a->pieces > 1))
-        FAIL(r, BRIO_ERR_ARGUMENT, "--from and --%s exclude each other", a->closed ? "closed" : "pieces");
+    if (a->evidence.from && (a->crust.closed || a->pieces > 1))
+        FAIL(r, BRIO_ERR_ARGUMENT, "--from and --%s exclude each other", a->crust.closed ? "closed" : "pieces");
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
     r->wants_origins = method_of(a) != POWER_CRUST && !a->evidence.ignore_origins && !a->evidence.from;
