@@ -1363,6 +1363,32 @@ BRIO_API brio_status brio_offset_surface(brio_context *ctx, const double *points
                                          const brio_offset_surface_options *options, brio_mesh **out,
                                          brio_offset_surface_stats *stats);
 
+typedef struct brio_mesh_offset_options {
+    size_t size;
+    double error; /* most distance of the result from the exact offset, in the unit of the mesh, less than the offset's
+                        distance; default 0: a hundredth of it */
+} brio_mesh_offset_options;
+
+BRIO_API void brio_mesh_offset_options_init(brio_mesh_offset_options *options, size_t size);
+static inline brio_mesh_offset_options brio_mesh_offset_options_default(void) {
+    brio_mesh_offset_options options;
+    brio_mesh_offset_options_init(&options, sizeof options);
+    return options;
+}
+
+typedef struct brio_mesh_offset_stats {
+    size_t size;
+    size_t samples; /* points of the exact offset that were found */
+    size_t rounds;  /* triangulations of them */
+    size_t faults;  /* triangles for which the bound is not proven */
+    double error;   /* proven: no place of the result is farther from the offset */
+} brio_mesh_offset_stats;
+
+/** Computes the offset of the solid that a closed mesh bounds. */
+BRIO_API brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double distance,
+                                      const brio_mesh_offset_options *options, brio_mesh **out,
+                                      brio_mesh_offset_stats *stats);
+
 /** Sides of a surface. */
 typedef enum brio_sides { BRIO_SIDES_INNER = 0, BRIO_SIDES_OUTER = 1, BRIO_SIDES_BOTH = 2, BRIO_SIDES_END } brio_sides;
 

@@ -55,8 +55,8 @@ static void box_add_point(brio_box *box, const double *p) {
 static double box_distance(const brio_box *box, const double *p) {
     double square = 0;
     for (int k = 0; k < 3; k++) {
-        double d = fmax(fmax(box->low[k] - p[k], p[k] - box->high[k]), 0);
-        square += d * d;
+        double below = box->low[k] - p[k], above = p[k] - box->high[k], d = below > above ? below : above;
+        if (d > 0) square += d * d;
     }
     return square;
 }
@@ -265,7 +265,8 @@ void brio_triangle_tree_free(brio_context *ctx, brio_triangle_tree *tree) {
 /* Writes the point of segment ab nearest to p; a may equal b. */
 static void closest_on_segment(const double *a, const double *b, const double *p, double *closest) {
     double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    double length = brio_dot(u, u), t = length > 0 ? fmin(fmax(brio_dot(w, u) / length, 0), 1) : 0;
+    double length = brio_dot(u, u), t = length > 0 ? brio_dot(w, u) / length : 0;
+    t = t > 0 ? t < 1 ? t : 1 : 0;
     for (int k = 0; k < 3; k++) closest[k] = t < 1 ? a[k] + t * u[k] : b[k];
 }
 
@@ -291,6 +292,16 @@ static void closest_on_triangle(const double *a, const double *b, const double *
     if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
 }
 
+void brio_closest_on_corners(const double *const corners[3], const double *p, double *closest) {
+    closest_on_triangle(corners[0], corners[1], corners[2], p, closest);
+}
+
+void brio_closest_on_triangle(const brio_triangle_tree *tree, size_t triangle, const double *p, double *closest) {
+    const uint32_t *c = tree->triangles[triangle];
+    closest_on_triangle(tree->vertices + 3 * (size_t)c[0], tree->vertices + 3 * (size_t)c[1],
+                        tree->vertices + 3 * (size_t)c[2], p, closest);
+}
+
 /* --- searching --- */
 
 typedef struct {
@@ -306,13 +317,12 @@ static visit visit_child(const brio_triangle_tree *tree, const visit *parent, in
     return child;
 }
 
-double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle) {
+double brio_closest_within(const brio_triangle_tree *tree, const double *p, double bound, double *closest,
+                           size_t *triangle) {
     visit stack[MOST_LEVELS];
     int depth = 0;
-    double best = INFINITY, q[3];
-    stack[depth++] = (visit){0, 0, tree->num_triangles, 0};
-    *triangle = 0;
-    memcpy(closest, tree->vertices + 3 * (size_t)tree->triangles[0][0], 3 * sizeof *closest);
+    double best = bound, q[3];
+    stack[depth++] = (visit){0, 0, tree->num_triangles, box_distance(&tree->boxes[0], p)};
     while (depth > 0) {
         visit v = stack[--depth];
         if (v.distance >= best) continue;
@@ -324,9 +334,7 @@ double brio_closest_point(const brio_triangle_tree *tree, const double *p, doubl
             continue;
         }
         for (size_t t = v.low; t < v.high; t++) {
-            const uint32_t *c = tree->triangles[t];
-            closest_on_triangle(tree->vertices + 3 * (size_t)c[0], tree->vertices + 3 * (size_t)c[1],
-                                tree->vertices + 3 * (size_t)c[2], p, q);
+            brio_closest_on_triangle(tree, t, p, q);
             double distance = brio_square_distance(p, q);
             if (distance >= best) continue;
             best = distance;
@@ -334,5 +342,11 @@ double brio_closest_point(const brio_triangle_tree *tree, const double *p, doubl
             memcpy(closest, q, sizeof q);
         }
     }
-    return best;
+    return best < bound ? best : INFINITY;
+}
+
+double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle) {
+    *triangle = 0;
+    memcpy(closest, tree->vertices + 3 * (size_t)tree->triangles[0][0], 3 * sizeof *closest);
+    return brio_closest_within(tree, p, INFINITY, closest, triangle);
 }

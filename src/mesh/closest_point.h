@@ -37,4 +37,13 @@ void brio_triangle_tree_free(brio_context *ctx, brio_triangle_tree *tree);
  *  square of the distance. */
 double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle);
 
+/** Does what brio_closest_point does for points whose squared distance is below `bound`. Returns INFINITY, and writes
+ *  nothing, where there is none; a smaller bound is faster. */
+double brio_closest_within(const brio_triangle_tree *tree, const double *p, double bound, double *closest,
+                           size_t *triangle);
+
+/** Write the point of one triangle nearest to p; the triangle may be degenerate. */
+void brio_closest_on_triangle(const brio_triangle_tree *tree, size_t triangle, const double *p, double *closest);
+void brio_closest_on_corners(const double *const corners[3], const double *p, double *closest);
+
 #endif
