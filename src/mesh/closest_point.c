@@ -5,7 +5,8 @@
  * than the best point found. So the answer is exact for every tree.
  *
  * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980
- * (boxes). Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). */
+ * (boxes). Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). Ericson. Real-time collision detection.
+ * 2005, section 5.1.5 (triangles). */
 #include "mesh/closest_point.h"
 #include "base/rng.h"
 #include "base/team.h"
@@ -265,31 +266,48 @@ void brio_triangle_tree_free(brio_context *ctx, brio_triangle_tree *tree) {
 /* Writes the point of segment ab nearest to p; a may equal b. */
 static void closest_on_segment(const double *a, const double *b, const double *p, double *closest) {
     double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    double length = brio_dot(u, u), t = length > 0 ? brio_dot(w, u) / length : 0;
-    t = t > 0 ? t < 1 ? t : 1 : 0;
+    double length = brio_dot(u, u), t = length > 0 ? fmin(fmax(brio_dot(w, u) / length, 0), 1) : 0;
     for (int k = 0; k < 3; k++) closest[k] = t < 1 ? a[k] + t * u[k] : b[k];
 }
 
-/* Returns whether the foot of p in the plane of triangle (a, a+u, a+v) lies in the triangle; if so, writes the foot. */
-static bool closest_inside(const double *a, const double *u, const double *v, const double *p, double *closest) {
-    double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    double uu = brio_dot(u, u), uv = brio_dot(u, v), vv = brio_dot(v, v), wu = brio_dot(w, u), wv = brio_dot(w, v);
-    double determinant = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
-    if (!(determinant > 0 && s >= 0 && t >= 0 && s + t <= determinant)) return false;
-    for (int k = 0; k < 3; k++) closest[k] = a[k] + s / determinant * u[k] + t / determinant * v[k];
-    return true;
-}
-
-/* Writes the point of triangle abc nearest to p; the triangle may be degenerate. */
-static void closest_on_triangle(const double *a, const double *b, const double *c, const double *p, double *closest) {
-    double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    if (closest_inside(a, u, v, p, closest)) return;
+/* Writes the nearest point of the sides of a triangle, which may be degenerate. */
+static void closest_on_sides(const double *a, const double *b, const double *c, const double *p, double *closest) {
     double other[3];
     closest_on_segment(a, b, p, closest);
     closest_on_segment(b, c, p, other);
     if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
     closest_on_segment(c, a, p, other);
     if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
+}
+
+static void walk_along(const double *a, const double *u, double x, double *closest) {
+    for (int k = 0; k < 3; k++) closest[k] = a[k] + x * u[k];
+}
+
+/* Writes the point of triangle abc nearest to p. The signs of products of the sides with the ways to p tell whether it is a
+ * corner, on a side, or inside. Triangles without area have sides only. */
+static void closest_on_triangle(const double *a, const double *b, const double *c, const double *p, double *closest) {
+    double u[3], v[3], w[3];
+    for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], w[k] = p[k] - a[k];
+    double uu = brio_dot(u, u), uv = brio_dot(u, v), vv = brio_dot(v, v), wu = brio_dot(w, u), wv = brio_dot(w, v);
+    double determinant = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
+    double bu = wu - uu, bv = wv - uv, cu = wu - uv, cv = wv - vv; /* of p - b and p - c with u and v */
+    if (!(determinant > 0))
+        closest_on_sides(a, b, c, p, closest);
+    else if (s >= 0 && t >= 0 && s + t <= determinant)
+        for (int k = 0; k < 3; k++) closest[k] = a[k] + s / determinant * u[k] + t / determinant * v[k];
+    else if (wu <= 0 && wv <= 0)
+        memcpy(closest, a, 3 * sizeof *closest);
+    else if (bu >= 0 && bv <= bu)
+        memcpy(closest, b, 3 * sizeof *closest);
+    else if (cv >= 0 && cu <= cv)
+        memcpy(closest, c, 3 * sizeof *closest);
+    else if (t <= 0 && wu >= 0 && bu <= 0)
+        walk_along(a, u, wu / uu, closest);
+    else if (s <= 0 && wv >= 0 && cv <= 0)
+        walk_along(a, v, wv / vv, closest);
+    else
+        closest_on_sides(a, b, c, p, closest);
 }
 
 void brio_closest_on_corners(const double *const corners[3], const double *p, double *closest) {

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 1 << 13, CELLS_A_CHUNK = 32, MOST_LEVELS = 30, MOST_CELLS = 1 << 23 /* chosen */ };
+enum { BATCH = 1 << 13, CELLS_A_CHUNK = 32, MOST_LEVELS = 30, MOST_CELLS = 1 << 20 /* chosen */ };
 enum { EMPTY, CROSSED, MISSED };
 
 static const double MOST_APART = 2; /* of the error: between a point of the offset and the surface; chosen */
@@ -108,7 +108,7 @@ done:
     return status;
 }
 
-brio_status brio_offset_catch(brio_offset_work *w, double spacing, size_t *added) {
+brio_status brio_offset_catch(brio_offset_work *w, double spacing, double *reached, size_t *added) {
     brio_status status = BRIO_OK;
     brio_triangle_tree tree = {0};
     const brio_box *box = &w->field.solid->tree.boxes[0];
@@ -125,6 +125,7 @@ brio_status brio_offset_catch(brio_offset_work *w, double spacing, size_t *added
     if (w->num_triangles) BRIO_TRY(tree_of(w, &tree));
     n.surface = w->num_triangles ? &tree : NULL;
     for (int level = 0; level < MOST_LEVELS && !n.last; level++) {
+        *reached = n.side;
         n.last = n.side <= spacing || n.count > MOST_CELLS;
         BRIO_TRY(look(&n));
     }

@@ -21,6 +21,7 @@ enum { BATCH = 1 << 15, TETS_A_CHUNK = 128 };
 enum { COVERED = 1, CERTAIN = 2 }; /* bits of a label */
 
 static const double FINE = 0.5;  /* of the distance: side of the smallest part of a facet that is looked at; chosen */
+static const double CLEAR = 0.5; /* of the error: from the offset, where there is no doubt about a place; chosen */
 static const double BIAS = 0.05; /* of the error: what is so close to the offset is of the solid; chosen */
 
 /* The facets of a positive tetrahedron, counterclockwise seen from outside; facet i is opposite to vertex i. */
@@ -34,51 +35,63 @@ typedef struct {
     size_t first; /* of the batch */
 } labeler;
 
-/* Returns whether some place of a triangle is farther from the surface than the offset and the error. Looks at places
- * half an offset's distance apart, but not where no place can be: the distance from one triangle of the surface is a convex
- * function. */
-static bool is_free_somewhere(const brio_offset_work *w, const double *const corner[3]) {
+/* The least and the greatest height over the offset that were found: negative heights are covered. */
+typedef struct {
+    double least, greatest;
+} heights;
+
+static void look_at(const brio_offset_work *w, const double *const facet[3], const double share[3], heights *h) {
+    double p[3], nearest[3];
+    size_t triangle;
+    for (int k = 0; k < 3; k++) p[k] = share[0] * facet[0][k] + share[1] * facet[1][k] + share[2] * facet[2][k];
+    double height = sqrt(brio_closest_point(&w->field.solid->tree, p, nearest, &triangle)) - w->field.distance;
+    h->least = fmin(h->least, height);
+    h->greatest = fmax(h->greatest, height);
+}
+
+/* Looks at the heights of a triangle at places half an offset's distance apart, but not where none can be over `most`: the
+ * distance from one triangle of the surface is a convex function. */
+static void look_above(const brio_offset_work *w, const double *const corner[3], double most, heights *h) {
     const brio_triangle_tree *tree = &w->field.solid->tree;
-    double most = w->field.distance + w->error, centroid[3], nearest[3], middle[3], square = 0, side = 0;
+    double centroid[3], nearest[3], middle[3], square = 0, side = 0;
     size_t triangle;
     int longest = 0;
     for (int k = 0; k < 3; k++) centroid[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
-    if (brio_closest_point(tree, centroid, nearest, &triangle) > most * most) return true;
+    double height = sqrt(brio_closest_point(tree, centroid, nearest, &triangle)) - w->field.distance;
+    h->greatest = fmax(h->greatest, height);
     for (int c = 0; c < 3; c++) {
         brio_closest_on_triangle(tree, triangle, corner[c], nearest);
         square = fmax(square, brio_square_distance(corner[c], nearest));
         double length = brio_square_distance(corner[c], corner[(c + 1) % 3]);
         if (length > side) side = length, longest = c;
     }
-    if (square <= most * most || side < FINE * FINE * w->field.distance * w->field.distance) return false;
+    if (h->greatest > most || sqrt(square) - w->field.distance <= most ||
+        side < FINE * FINE * w->field.distance * w->field.distance)
+        return;
     const double *a = corner[longest], *b = corner[(longest + 1) % 3], *c = corner[(longest + 2) % 3];
     for (int k = 0; k < 3; k++) middle[k] = 0.5 * (a[k] + b[k]);
-    return is_free_somewhere(w, (const double *const[3]){a, middle, c}) ||
-           is_free_somewhere(w, (const double *const[3]){middle, b, c});
+    look_above(w, (const double *const[3]){a, middle, c}, most, h);
+    look_above(w, (const double *const[3]){middle, b, c}, most, h);
 }
 
-/* Returns the label of a tetrahedron whose centroid is within the error of the offset: that of places of its facets that
- * are farther from the offset. Of small ones, some places tell. */
+/* Looks at a facet: at a small one where the surface is tested, at a large one everywhere. */
+static void look_at_facet(const brio_offset_work *w, const double *const facet[3], heights *h) {
+    double d = w->field.distance, clear = CLEAR * w->error, size = 0, at[3];
+    for (int i = 0; i < BRIO_OFFSET_PLACES; i++) look_at(w, facet, brio_offset_places[i], h);
+    for (int c = 0; c < 3; c++) size = fmax(size, brio_square_distance(facet[c], facet[(c + 1) % 3]));
+    if (size < d * d) return;
+    double least = sqrt(brio_triangle_distance(&w->field.solid->tree, facet, (d - clear) * (d - clear), at));
+    h->least = fmin(h->least, least - d);
+    look_above(w, facet, clear, h);
+}
+
+/* Returns the label of a tetrahedron whose centroid is close to the offset: that of the place of its facets farthest from the
+ * offset. */
 static uint8_t label_of_thin(const brio_offset_work *w, const double *const corner[4], double height) {
-    const brio_triangle_tree *tree = &w->field.solid->tree;
-    double least = w->field.distance - w->error, most = w->field.distance + w->error, size = 0, at[3];
-    bool covered = false, is_free = false;
-    size_t triangle;
+    heights h = {0, 0};
     for (int i = 0; i < 4; i++)
-        for (int j = 0; j < i; j++) {
-            size = fmax(size, brio_square_distance(corner[i], corner[j]));
-            for (int k = 0; k < 3; k++) at[k] = 0.5 * (corner[i][k] + corner[j][k]);
-            double d = sqrt(brio_closest_point(tree, at, (double[3]){0}, &triangle));
-            covered |= d < least;
-            is_free |= d > most;
-        }
-    bool small = size < w->field.distance * w->field.distance;
-    for (int i = 0; i < 4 && !small && !(covered && is_free); i++) {
-        const double *const facet[3] = {corner[FACET[i][0]], corner[FACET[i][1]], corner[FACET[i][2]]};
-        covered = covered || brio_triangle_distance(tree, facet, least * least, at) < INFINITY;
-        is_free = is_free || is_free_somewhere(w, facet);
-    }
-    if (covered != is_free) return covered ? COVERED | CERTAIN : CERTAIN;
+        look_at_facet(w, (const double *const[3]){corner[FACET[i][0]], corner[FACET[i][1]], corner[FACET[i][2]]}, &h);
+    if (fmax(h.greatest, -h.least) > CLEAR * w->error) return h.greatest < -h.least ? COVERED | CERTAIN : CERTAIN;
     return height < (w->field.inwards ? -BIAS : BIAS) * w->error ? COVERED : 0;
 }
 
@@ -92,16 +105,19 @@ static uint8_t label_of(const brio_offset_work *w, const uint32_t *v) {
         corner[i] = w->points + 3 * (size_t)v[i];
         for (int k = 0; k < 3; k++) centroid[k] += corner[i][k] / 4;
     }
-    double far = f->distance + w->error;
+    double far = f->distance + CLEAR * w->error;
     double d = sqrt(brio_closest_within(&f->solid->tree, centroid, far * far, nearest, &triangle));
-    if (d < f->distance - w->error || brio_offset_is_beyond(f, centroid)) return COVERED | CERTAIN;
+    if (d < f->distance - CLEAR * w->error || brio_offset_is_beyond(f, centroid)) return COVERED | CERTAIN;
     return d >= far ? CERTAIN : label_of_thin(w, corner, d - f->distance);
 }
 
 static void label_part(void *user, size_t begin, size_t end, int thread) {
     const labeler *l = user;
     (void)thread;
-    for (size_t i = l->first + begin; i < l->first + end; i++) l->label[i] = label_of(l->w, l->tet[i].vertex);
+    for (size_t i = l->first + begin; i < l->first + end; i++) {
+        const uint8_t *known = brio_seen_find(&l->w->labels, l->tet[i].vertex);
+        l->label[i] = known ? *known : label_of(l->w, l->tet[i].vertex);
+    }
 }
 
 static brio_status label_all(labeler *l) {
@@ -112,6 +128,16 @@ static brio_status label_all(labeler *l) {
         BRIO_TRY(brio_offset_progress(l->w));
         brio_for_chunks(ctx, brio_threads(ctx, count, TETS_A_CHUNK), count, TETS_A_CHUNK, label_part, l);
     }
+done:
+    return status;
+}
+
+/* Keeps the labels for the next round. */
+static brio_status remember(labeler *l, size_t finite) {
+    brio_status status = BRIO_OK;
+    brio_seen_free(l->w->ctx, &l->w->labels);
+    BRIO_TRY(brio_seen_new(l->w->ctx, finite, &l->w->labels));
+    for (size_t i = 0; i < finite; i++) brio_seen_add(&l->w->labels, l->tet[i].vertex, l->label[i]);
 done:
     return status;
 }
@@ -191,6 +217,7 @@ brio_status brio_offset_connect(brio_offset_work *w) {
     l.count = stats->tetrahedra + stats->hull_facets;
     BRIO_TRY(BRIO_ALLOC(w->ctx, l.label, l.count));
     BRIO_TRY(label_all(&l));
+    BRIO_TRY(remember(&l, stats->tetrahedra));
     BRIO_TRY(turn_specks(&l, COVERED));
     BRIO_TRY(turn_specks(&l, 0));
     BRIO_TRY(take_boundary(&l));

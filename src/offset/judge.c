@@ -33,6 +33,10 @@ typedef struct {
 
 typedef void (*judge_fn)(const judge *j, const double *const corner[3], double *bound, double *place);
 
+const double brio_offset_places[BRIO_OFFSET_PLACES][3] = {
+    {1. / 3, 1. / 3, 1. / 3}, {0.5, 0.5, 0},   {0, 0.5, 0.5},  {0.5, 0, 0.5},
+    {0.6, 0.2, 0.2},          {0.2, 0.6, 0.2}, {0.2, 0.2, 0.6}};
+
 static double distance_of(const judge *j, const double *p) {
     double nearest[3];
     size_t triangle;
@@ -42,13 +46,11 @@ static double distance_of(const judge *j, const double *p) {
 /* --- the test --- */
 
 static void test_triangle(const judge *j, const double *const corner[3], double *bound, double *place) {
-    static const double share[7][3] = {{1. / 3, 1. / 3, 1. / 3}, {0.5, 0.5, 0},   {0, 0.5, 0.5},  {0.5, 0, 0.5},
-                                       {0.6, 0.2, 0.2},          {0.2, 0.6, 0.2}, {0.2, 0.2, 0.6}};
     *bound = 0;
-    for (int i = 0; i < 7; i++) {
+    for (int i = 0; i < BRIO_OFFSET_PLACES; i++) {
+        const double *share = brio_offset_places[i];
         double p[3];
-        for (int k = 0; k < 3; k++)
-            p[k] = share[i][0] * corner[0][k] + share[i][1] * corner[1][k] + share[i][2] * corner[2][k];
+        for (int k = 0; k < 3; k++) p[k] = share[0] * corner[0][k] + share[1] * corner[1][k] + share[2] * corner[2][k];
         double off = fabs(distance_of(j, p) - j->w->field.distance);
         if (off <= *bound) continue;
         *bound = off;
@@ -105,7 +107,46 @@ static void prove_triangle(const judge *j, const double *const corner[3], double
 typedef struct {
     judge j;
     judge_fn judge;
+    uint8_t kind; /* what a triangle has passed then: 1 the test, 2 the proof */
 } pass;
+
+/* Writes the set by which a triangle is remembered. */
+static void set_of(const brio_offset_work *w, size_t triangle, uint32_t set[4]) {
+    memcpy(set, w->triangles[triangle], 3 * sizeof *set);
+    set[3] = BRIO_SEEN_NONE - 1;
+}
+
+static bool has_passed(const pass *p, size_t triangle) {
+    uint32_t set[4];
+    set_of(p->j.w, triangle, set);
+    const uint8_t *known = brio_seen_find(&p->j.w->passed, set);
+    return known && *known >= p->kind;
+}
+
+/* Keeps what passed for the next round, with what passed before and is still there. */
+static brio_status remember(const pass *p) {
+    brio_status status = BRIO_OK;
+    brio_offset_work *w = p->j.w;
+    brio_seen next = {0};
+    size_t fault = 0;
+    BRIO_TRY(brio_seen_new(w->ctx, w->num_triangles, &next));
+    for (size_t i = 0; i < w->num_triangles; i++) {
+        uint32_t set[4];
+        if (fault < w->num_faults && w->faults[fault].triangle == i) {
+            fault++;
+            continue;
+        }
+        set_of(w, i, set);
+        const uint8_t *known = brio_seen_find(&w->passed, set);
+        if (!brio_seen_find(&next, set)) brio_seen_add(&next, set, known && *known > p->kind ? *known : p->kind);
+    }
+    brio_seen_free(w->ctx, &w->passed);
+    w->passed = next;
+    return BRIO_OK;
+done:
+    brio_seen_free(w->ctx, &next);
+    return status;
+}
 
 static void judge_part(void *user, size_t begin, size_t end, int thread) {
     const pass *p = user;
@@ -113,17 +154,20 @@ static void judge_part(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         const double *corner[3];
+        if (has_passed(p, p->j.first + i)) {
+            p->j.bound[i] = 0;
+            continue;
+        }
         for (int c = 0; c < 3; c++) corner[c] = w->points + 3 * (size_t)w->triangles[p->j.first + i][c];
         p->judge(&p->j, corner, &p->j.bound[i], p->j.place[i]);
     }
 }
 
-static brio_status judge_all(brio_offset_work *w, judge_fn fn, double *worst) {
+static brio_status judge_all(brio_offset_work *w, judge_fn fn, uint8_t kind) {
     brio_status status = BRIO_OK;
-    pass p = {{.w = w}, fn};
+    pass p = {{.w = w}, fn, kind};
     size_t n = w->num_triangles;
     w->num_faults = 0;
-    *worst = 0;
     BRIO_TRY(BRIO_ALLOC(w->ctx, p.j.bound, BATCH));
     BRIO_TRY(BRIO_ALLOC(w->ctx, p.j.place, BATCH));
     for (; p.j.first < n; p.j.first += BATCH) {
@@ -132,14 +176,14 @@ static brio_status judge_all(brio_offset_work *w, judge_fn fn, double *worst) {
         brio_for_chunks(w->ctx, brio_threads(w->ctx, count, TRIANGLES_A_CHUNK), count, TRIANGLES_A_CHUNK, judge_part,
                         &p);
         for (size_t i = 0; i < count; i++) {
-            *worst = fmax(*worst, p.j.bound[i]);
             if (p.j.bound[i] <= w->error * (1 + PROOF_SHARE)) continue;
-            brio_offset_fault fault = {.triangle = (uint32_t)(p.j.first + i)};
+            brio_offset_fault fault = {.triangle = (uint32_t)(p.j.first + i), .bound = p.j.bound[i]};
             memcpy(fault.place, p.j.place[i], sizeof fault.place);
             BRIO_TRY(BRIO_RESERVE(w->ctx, w->faults, w->fault_capacity, w->num_faults + 1));
             w->faults[w->num_faults++] = fault;
         }
     }
+    BRIO_TRY(remember(&p));
 done:
     brio_release(w->ctx, p.j.bound);
     brio_release(w->ctx, p.j.place);
@@ -147,10 +191,9 @@ done:
 }
 
 brio_status brio_offset_test(brio_offset_work *w) {
-    double worst;
-    return judge_all(w, test_triangle, &worst);
+    return judge_all(w, test_triangle, 1);
 }
 
 brio_status brio_offset_prove(brio_offset_work *w) {
-    return judge_all(w, prove_triangle, &w->worst);
+    return judge_all(w, prove_triangle, 2);
 }

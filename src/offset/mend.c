@@ -11,7 +11,8 @@ enum { BATCH = 1 << 12, FAULTS_A_CHUNK = 16, OTHERS = 5 /* places of a triangle 
 enum { NOTHING, SMOOTH, CREASE }; /* kinds of samples */
 
 static const double APART = 0.7; /* of a sample's distance from the earlier ones: from those of its round; chosen */
-static const double NEAR = 0.5;  /* of the distance from a fault to a crease: from the crease's sample to the earlier ones;
+static const double NEAR =
+    0.5; /* of the distance from a fault to a crease: from the crease's sample to the earlier ones;
                                     chosen: where they are nearer, the crease is not what is missing */
 static const double LEAST = 0.1; /* of the error: between samples; chosen */
 

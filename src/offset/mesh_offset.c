@@ -10,19 +10,19 @@
  *
  * Based on: Boissonnat, Oudot. Provably good sampling and meshing of surfaces. Graphical Models 2005. Chen, Panozzo, Dou,
  * Chen, Liu. Half-space power diagrams and discrete surface offsets. IEEE TVCG 2019 (what an offset has to keep). */
+#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/scale.h"
 #include "base/versioned.h"
+#include "mesh/edge_rings.h"
 #include "mesh/extent.h"
 #include "mesh/split_vertices.h"
 #include "offset/work.h"
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
-    MOST_IDLE = 8, /* rounds with neither fewer faults nor many more samples; chosen */
+    MOST_IDLE = 10, /* rounds with neither fewer faults nor many more samples; chosen */
     COARSEST = 16 /* cells of the first net along the longest side; chosen */,
     MOST_CATCHES = 3
 };
@@ -32,6 +32,9 @@ static const double GROWTH = 1.05;         /* of the number of samples, that is 
 static const double FINEST = 0.5;          /* spacing of the last net, in distances; chosen */
 static const double LEAST_ERROR = 0x1p-38; /* of the greatest coordinate: what doubles can tell */
 
+static const double FARTHEST = 0x1p30; /* of the size: where an offset hardly differs from a point's; chosen */
+#define SWALLOWED "the offset by %g swallows the whole object: no inside is left"
+
 static const brio_mesh_offset_options STANDARD = {.size = sizeof STANDARD};
 
 BRIO_OPTIONS_INIT(brio_mesh_offset_options)
@@ -40,6 +43,8 @@ void brio_offset_work_free(brio_offset_work *w) {
     brio_release(w->ctx, w->points);
     brio_release(w->ctx, w->triangles);
     brio_release(w->ctx, w->faults);
+    brio_seen_free(w->ctx, &w->labels);
+    brio_seen_free(w->ctx, &w->passed);
 }
 
 brio_status brio_offset_progress(brio_offset_work *w) {
@@ -63,21 +68,15 @@ static brio_status refine(brio_offset_work *w, size_t *rounds) {
         size_t added;
         BRIO_TRY(brio_offset_connect(w));
         BRIO_TRY(brio_offset_test(w));
-        if (!w->num_faults) BRIO_TRY(brio_offset_prove(w));
+        if (!w->num_faults) {
+            BRIO_TRY(brio_offset_prove(w));
+            least = SIZE_MAX;
+        }
         if (w->num_triangles) w->share = fmax(w->share, 0.9 * (1 - (double)w->num_faults / (double)w->num_triangles));
-        if (getenv("OFFSET_DEBUG"))
-            fprintf(stderr, "round %zu: %zu points %zu triangles %zu faults worst %g\n", *rounds, w->num_points,
-                    w->num_triangles, w->num_faults, w->worst / w->error);
         if (!w->num_faults) return BRIO_OK;
         idle = w->num_faults < least || (double)w->num_points > GROWTH * (double)points ? 0 : idle + 1;
         if (!idle) points = w->num_points, least = w->num_faults;
         BRIO_TRY(brio_offset_mend(w, &added));
-        if (getenv("OFFSET_DEBUG") && (!added || idle > 6 || (*rounds == 11 && getenv("OFFSET_DUMP")))) for (size_t i = 0; i < w->num_faults && i < (getenv("OFFSET_DUMP") ? 400 : 4); i++) { double q[3]; size_t t; const double *x = w->faults[i].place;
-            double d = sqrt(brio_closest_point(&w->field.solid->tree, x, q, &t));
-            fprintf(stderr, "  fault at %.9g %.9g %.9g d/D-1 %g\n", x[0], x[1], x[2], d / w->field.distance - 1);
-            for (int c = 0; c < 3; c++) { const double *v = w->points + 3 * (size_t)w->triangles[w->faults[i].triangle][c]; d = sqrt(brio_closest_point(&w->field.solid->tree, v, q, &t)); fprintf(stderr, "     %u: %.9g %.9g %.9g %g\n", w->triangles[w->faults[i].triangle][c], v[0], v[1], v[2], d / w->field.distance - 1);}
-            for (size_t j = w->num_points - added; j < w->num_points; j++) fprintf(stderr, "   new %.9g %.9g %.9g\n", w->points[3*j], w->points[3*j+1], w->points[3*j+2]);
-        }
         if (!added) return BRIO_OK;
     }
 done:
@@ -89,16 +88,16 @@ static brio_status make(brio_offset_work *w, size_t *rounds) {
     const brio_box *box = &w->field.solid->tree.boxes[0];
     double size = 0, finest = FINEST * w->field.distance;
     for (int k = 0; k < 3; k++) size = fmax(size, box->high[k] - box->low[k]);
+    if (!w->field.inwards) size += 2 * w->field.distance;
     BRIO_TRY(brio_offset_seed(w));
     BRIO_TRY(refine(w, rounds));
-    for (double spacing = size / COARSEST;; spacing *= 0.5) {
+    for (double spacing = size / COARSEST, reached = 0;; spacing *= 0.5) {
         size_t added = 1;
         for (int i = 0; i < MOST_CATCHES && added; i++) {
-            BRIO_TRY(brio_offset_catch(w, spacing, &added));
-            if (getenv("OFFSET_DEBUG")) fprintf(stderr, "catch %g: %zu\n", spacing, added);
+            BRIO_TRY(brio_offset_catch(w, spacing, &reached, &added));
             if (added) BRIO_TRY(refine(w, rounds));
         }
-        if (spacing <= finest) break;
+        if (spacing <= finest || reached > spacing) break;
     }
 done:
     return status;
@@ -121,10 +120,18 @@ done:
     return status;
 }
 
+/* Returns the longest side of the box of the vertices that faces use. */
+static double size_of(const brio_mesh *mesh) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0;
+    if (mesh->num_faces) brio_box_add_corners(mesh, 0, mesh->face_offsets[mesh->num_faces], low, high);
+    for (int k = 0; k < 3; k++) size = fmax(size, high[k] - low[k]);
+    return size;
+}
+
 /* Checks the distance against the size of the mesh, and settles the error. */
 static brio_status settle(brio_context *ctx, const brio_mesh *mesh, double distance, brio_mesh_offset_options *o) {
     brio_status status = BRIO_OK;
-    double most = brio_greatest(mesh->vertices, 3 * mesh->num_vertices);
+    double most = brio_greatest(mesh->vertices, 3 * mesh->num_vertices), size = size_of(mesh);
     BRIO_REQUIRE(ctx, isfinite(distance) && distance != 0, BRIO_ERR_ARGUMENT,
                  "the distance of an offset of a mesh is a finite number and not 0");
     BRIO_REQUIRE(ctx, isfinite(o->error) && o->error >= 0, BRIO_ERR_ARGUMENT,
@@ -132,6 +139,9 @@ static brio_status settle(brio_context *ctx, const brio_mesh *mesh, double dista
     if (o->error == 0) o->error = USUAL_ERROR * fabs(distance);
     BRIO_REQUIRE(ctx, o->error < fabs(distance), BRIO_ERR_ARGUMENT,
                  "the error %g of an offset is not less than its distance %g", o->error, fabs(distance));
+    BRIO_REQUIRE(ctx, -distance <= size, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
+    BRIO_REQUIRE(ctx, distance <= FARTHEST * size, BRIO_ERR_ARGUMENT,
+                 "the distance %g of the offset is more than 2^30 times the size %g of the mesh", distance, size);
     most = fmax(most, fabs(distance));
     BRIO_REQUIRE(ctx, o->error > LEAST_ERROR * most, BRIO_ERR_ARGUMENT,
                  "an error of %g is too small for doubles at coordinates of %g", o->error, most);
@@ -152,6 +162,8 @@ brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double di
     *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_mesh_offset_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_mesh_offset_options, options, &o));
+    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
     BRIO_TRY(settle(ctx, mesh, distance, &o));
     int exponent = brio_exponent(fmax(brio_greatest(mesh->vertices, 3 * mesh->num_vertices), fabs(distance)));
     BRIO_TRY(BRIO_ALLOC(ctx, vertices, 3 * mesh->num_vertices));
@@ -161,12 +173,12 @@ brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double di
     w.field = (brio_offset_field){&solid, ldexp(fabs(distance), -exponent), distance < 0};
     w.error = ldexp(o.error, -exponent);
     BRIO_TRY(make(&w, &s.rounds));
-    BRIO_REQUIRE(ctx, w.num_triangles > 0, BRIO_ERR_NO_ANSWER,
-                 "the offset by %g swallows the whole object: no inside is left", distance);
+    BRIO_REQUIRE(ctx, w.num_triangles > 0, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
     BRIO_TRY(give(&w, exponent, out));
     s.samples = w.num_points;
     s.faults = w.num_faults;
-    s.error = ldexp(w.worst, exponent);
+    s.error = o.error;
+    for (size_t i = 0; i < w.num_faults; i++) s.error = fmax(s.error, ldexp(w.faults[i].bound, exponent));
     BRIO_GIVE(brio_mesh_offset_stats, stats, &s);
 done:
     brio_offset_work_free(&w);

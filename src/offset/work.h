@@ -4,10 +4,12 @@
 
 #include "base/memory.h"
 #include "offset/field.h"
+#include "offset/seen.h"
 
 /** A place of the surface through the samples that is farther from the offset than allowed. */
 typedef struct brio_offset_fault {
     double place[3];
+    double bound;      /* on the distance from the offset in the triangle */
     uint32_t triangle; /* that the place is in */
 } brio_offset_fault;
 
@@ -17,12 +19,12 @@ typedef struct brio_offset_work {
     double error;   /* most distance allowed between the surface and the offset */
     double *points; /* #n by 3, on the offset up to a small share of the error */
     size_t num_points, point_capacity;
-    uint32_t (
-        *triangles)[3]; /* the surface: indices of points, counterclockwise seen from outside the result's solid */
+    uint32_t (*triangles)[3]; /* the surface: points, counterclockwise seen from outside of the solid that it bounds */
     size_t num_triangles;
+    brio_seen labels; /* of the tetrahedra of the last round */
+    brio_seen passed; /* triangles of the last round that passed: 1 the test, 2 the proof */
     brio_offset_fault *faults;
     size_t num_faults, fault_capacity;
-    double worst;           /* bound on the distance of the surface from the offset, once it is proven */
     double share;           /* of the work that is done, for the progress bar */
     brio_progress_fn outer; /* the callback of the caller, while a triangulation reports to another */
     void *outer_user;
@@ -30,6 +32,10 @@ typedef struct brio_offset_work {
 
 /** Samples are on the offset up to this share of the error. Chosen. */
 #define BRIO_OFFSET_TOLERANCE 0.02
+
+/** Places of a triangle where it is tested, as shares of its corners. Chosen. */
+enum { BRIO_OFFSET_PLACES = 7 };
+extern const double brio_offset_places[BRIO_OFFSET_PLACES][3];
 
 void brio_offset_work_free(brio_offset_work *w);
 
@@ -39,8 +45,8 @@ brio_status brio_offset_progress(brio_offset_work *w);
 /** Adds a sample. */
 brio_status brio_offset_add(brio_offset_work *w, const double *p);
 
-/** Adds the points of the offset over the corners of the faces; where none of a face's corners has one, over its centroid. Points that
- *  lie close together are thinned out. */
+/** Adds the points of the offset over the corners of the faces; where none of a face's corners has one, over its centroid.
+ *  Points that lie close together are thinned out. */
 brio_status brio_offset_seed(brio_offset_work *w);
 
 /** Makes the surface through the samples: the boundary of the tetrahedra of their Delaunay triangulation that are
@@ -50,14 +56,15 @@ brio_status brio_offset_connect(brio_offset_work *w);
 /** Lists faults of the surface's triangles, found at seven places of each. */
 brio_status brio_offset_test(brio_offset_work *w);
 
-/** Proves for every place of the surface that its distance from the offset is at most the error, or lists faults. Sets
- *  w->worst. */
+/** Proves for every place of the surface that its distance from the offset is at most the error, or lists faults. */
 brio_status brio_offset_prove(brio_offset_work *w);
 
 /** Adds samples where the faults are. *added  how many. */
 brio_status brio_offset_mend(brio_offset_work *w, size_t *added);
 
-/** Adds points of the offset that are farther from the surface than twice the error, of a net of points about `spacing` apart. */
-brio_status brio_offset_catch(brio_offset_work *w, double spacing, size_t *added);
+/** Adds points of the offset that are farther from the surface than twice the error, of a net of points about `spacing`
+ *  apart.   reached  the spacing of the net, larger than `spacing` where a net of that would have too many points.
+ *  added  how many. */
+brio_status brio_offset_catch(brio_offset_work *w, double spacing, double *reached, size_t *added);
 
 #endif
