@@ -3,6 +3,7 @@
 #include "estimate.h"
 #include "files.h"
 #include "properties.h"
+#include <string.h>
 #include <stdlib.h>
 
 const option_choice cli_labelings[] = {{"global", BRIO_LABELING_GLOBAL},
@@ -27,7 +28,8 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
 }
 
 void cli_suggest_labeling(run *r, brio_status status, int labeling, bool by_mesh) {
-    if (status == BRIO_ERR_NO_ANSWER && by_mesh && labeling == LABELS_OF_INPUT)
+    bool is_open = status == BRIO_ERR_NO_ANSWER && strstr(cli_message(r, status), "the mesh has no inside");
+    if (is_open && by_mesh && labeling == LABELS_OF_INPUT)
         cli_hint(r, "--labeling global goes by the points of the mesh and not by its faces");
 }
 

@@ -11,6 +11,7 @@
 #include "base/rng.h"
 #include "base/team.h"
 #include "base/vector.h"
+#include "mesh/cut_polygon.h"
 #include <math.h>
 #include <string.h>
 
@@ -185,25 +186,30 @@ static void build_tree(brio_context *ctx, builder *b) {
     for (size_t node = nodes - 1; node-- > 0;) join_children(b, node);
 }
 
-/* Cuts each face into a fan of triangles. */
 static brio_status cut_faces(brio_context *ctx, const brio_mesh *mesh, uint32_t (**triangles)[3], size_t *count) {
     brio_status status = BRIO_OK;
     const uint64_t *offsets = mesh->face_offsets;
-    size_t n = 0;
-    for (size_t f = 0; f < mesh->num_faces; f++)
-        if (offsets[f + 1] - offsets[f] > 2) n += offsets[f + 1] - offsets[f] - 2;
+    uint32_t *room = NULL;
+    size_t n = 0, most = 0;
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        size_t corners = (size_t)(offsets[f + 1] - offsets[f]);
+        if (corners > 2) n += corners - 2;
+        if (corners > most) most = corners;
+    }
     BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_ARGUMENT, "a mesh without faces has no surface");
     BRIO_REQUIRE(ctx, n > 0, BRIO_ERR_ARGUMENT, "no face of the mesh has three corners, so it has no surface");
     BRIO_TRY(BRIO_ALLOC(ctx, *triangles, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, room, most));
     *count = n;
     n = 0;
-    for (size_t f = 0; f < mesh->num_faces; f++)
-        for (uint64_t h = offsets[f] + 2; h < offsets[f + 1]; h++, n++) {
-            (*triangles)[n][0] = mesh->face_vertices[offsets[f]];
-            (*triangles)[n][1] = mesh->face_vertices[h - 1];
-            (*triangles)[n][2] = mesh->face_vertices[h];
-        }
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        size_t corners = (size_t)(offsets[f + 1] - offsets[f]);
+        if (corners < 3) continue;
+        brio_cut_polygon(mesh->vertices, mesh->face_vertices + offsets[f], corners, room, *triangles + n);
+        n += corners - 2;
+    }
 done:
+    brio_release(ctx, room);
     return status;
 }
 

@@ -8,7 +8,7 @@ typedef struct brio_box {
     double low[3], high[3];
 } brio_box;
 
-/** The faces of a mesh, cut into fans of triangles from their first corners, in a hierarchy of boxes.
+/** The faces of a mesh, cut into triangles (brio_cut_polygon), in a hierarchy of boxes.
  *
  *  I1. The hierarchy is a binary tree over the sequence of triangles. A node is a range of the sequence. Its children
  *  are the two halves of the range, the lower one shorter by at most 1. A range of at most BRIO_LEAF_TRIANGLES is a

@@ -21,7 +21,8 @@ enum { BATCH = 1 << 15, TETS_A_CHUNK = 128 };
 enum { COVERED = 1, CERTAIN = 2 }; /* bits of a label */
 
 static const double FINE = 0.5;  /* of the distance: side of the smallest part of a facet that is looked at; chosen */
-static const double CLEAR = 0.5; /* of the error: from the offset, where there is no doubt about a place; chosen */
+static const double CLEAR = 0.5; /* of the error: from the offset, where a place of a facet decides; chosen */
+static const double SURE = 2;    /* of the error: from the offset, where a centroid is no matter of doubt; chosen */
 static const double BIAS = 0.05; /* of the error: what is so close to the offset is of the solid; chosen */
 
 /* The facets of a positive tetrahedron, counterclockwise seen from outside; facet i is opposite to vertex i. */
@@ -40,13 +41,19 @@ typedef struct {
     double least, greatest;
 } heights;
 
+/* Adds the height of a place whose distance from the surface is known. */
+static void add_height(const brio_offset_work *w, const double *p, double distance, heights *h) {
+    double height = distance - w->field.distance;
+    if (height > CLEAR * w->error && brio_offset_is_beyond(&w->field, p)) height = -distance - w->field.distance;
+    h->least = fmin(h->least, height);
+    h->greatest = fmax(h->greatest, height);
+}
+
 static void look_at(const brio_offset_work *w, const double *const facet[3], const double share[3], heights *h) {
     double p[3], nearest[3];
     size_t triangle;
     for (int k = 0; k < 3; k++) p[k] = share[0] * facet[0][k] + share[1] * facet[1][k] + share[2] * facet[2][k];
-    double height = sqrt(brio_closest_point(&w->field.solid->tree, p, nearest, &triangle)) - w->field.distance;
-    h->least = fmin(h->least, height);
-    h->greatest = fmax(h->greatest, height);
+    add_height(w, p, sqrt(brio_closest_point(&w->field.solid->tree, p, nearest, &triangle)), h);
 }
 
 /* Looks at the heights of a triangle at places half an offset's distance apart, but not where none can be over `most`: the
@@ -57,8 +64,7 @@ static void look_above(const brio_offset_work *w, const double *const corner[3],
     size_t triangle;
     int longest = 0;
     for (int k = 0; k < 3; k++) centroid[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
-    double height = sqrt(brio_closest_point(tree, centroid, nearest, &triangle)) - w->field.distance;
-    h->greatest = fmax(h->greatest, height);
+    add_height(w, centroid, sqrt(brio_closest_point(tree, centroid, nearest, &triangle)), h);
     for (int c = 0; c < 3; c++) {
         brio_closest_on_triangle(tree, triangle, corner[c], nearest);
         square = fmax(square, brio_square_distance(corner[c], nearest));
@@ -105,9 +111,9 @@ static uint8_t label_of(const brio_offset_work *w, const uint32_t *v) {
         corner[i] = w->points + 3 * (size_t)v[i];
         for (int k = 0; k < 3; k++) centroid[k] += corner[i][k] / 4;
     }
-    double far = f->distance + CLEAR * w->error;
+    double far = f->distance + SURE * w->error;
     double d = sqrt(brio_closest_within(&f->solid->tree, centroid, far * far, nearest, &triangle));
-    if (d < f->distance - CLEAR * w->error || brio_offset_is_beyond(f, centroid)) return COVERED | CERTAIN;
+    if (d < f->distance - SURE * w->error || brio_offset_is_beyond(f, centroid)) return COVERED | CERTAIN;
     return d >= far ? CERTAIN : label_of_thin(w, corner, d - f->distance);
 }
 

@@ -22,12 +22,14 @@
 #include <string.h>
 
 enum {
-    MOST_IDLE = 10, /* rounds with neither fewer faults nor many more samples; chosen */
+    FEW_IDLE = 3,
+    MOST_IDLE = 12, /* rounds with neither fewer faults nor many more samples; chosen */
     COARSEST = 16 /* cells of the first net along the longest side; chosen */,
     MOST_CATCHES = 3
 };
 
 static const double USUAL_ERROR = 0.01;    /* of the distance */
+static const double AIM = 0.75;            /* of the error, for samples: so what stays a fault is within it; chosen */
 static const double GROWTH = 1.05;         /* of the number of samples, that is many more; chosen */
 static const double FINEST = 0.5;          /* spacing of the last net, in distances; chosen */
 static const double LEAST_ERROR = 0x1p-38; /* of the greatest coordinate: what doubles can tell */
@@ -60,25 +62,37 @@ done:
     return status;
 }
 
-/* Adds samples until the surface through them is proven to be within the error, or nothing more can be added. */
+/* Returns the largest of the bounds that are proven for the triangles. */
+static double worst_of(const brio_offset_work *w) {
+    double worst = w->error;
+    for (size_t i = 0; i < w->num_faults; i++) worst = fmax(worst, w->faults[i].bound);
+    return worst;
+}
+
+/* Tests the surface and, when it passes or `prove` is set, proves its bound. */
+static brio_status judge(brio_offset_work *w, bool prove) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_offset_test(w));
+    if (!w->num_faults || prove) BRIO_TRY(brio_offset_prove(w));
+    if (w->num_triangles) w->share = fmax(w->share, 0.9 * (1 - (double)w->num_faults / (double)w->num_triangles));
+done:
+    return status;
+}
+
+/* Adds samples until the surface through them is proven to be within the error, or nothing more helps. */
 static brio_status refine(brio_offset_work *w, size_t *rounds) {
     brio_status status = BRIO_OK;
-    size_t least = SIZE_MAX, points = 0, idle = 0;
-    for (; idle < MOST_IDLE; ++*rounds) {
-        size_t added;
+    size_t least = SIZE_MAX, points = 0, added = 1;
+    for (int idle = 0; added && idle < MOST_IDLE; ++*rounds) {
         BRIO_TRY(brio_offset_connect(w));
-        BRIO_TRY(brio_offset_test(w));
-        if (!w->num_faults) {
-            BRIO_TRY(brio_offset_prove(w));
-            least = SIZE_MAX;
-        }
-        if (w->num_triangles) w->share = fmax(w->share, 0.9 * (1 - (double)w->num_faults / (double)w->num_triangles));
+        BRIO_TRY(judge(w, idle >= FEW_IDLE));
+        if (idle >= FEW_IDLE && worst_of(w) <= w->error / AIM) return BRIO_OK;
         if (!w->num_faults) return BRIO_OK;
         idle = w->num_faults < least || (double)w->num_points > GROWTH * (double)points ? 0 : idle + 1;
         if (!idle) points = w->num_points, least = w->num_faults;
         BRIO_TRY(brio_offset_mend(w, &added));
-        if (!added) return BRIO_OK;
     }
+    BRIO_TRY(brio_offset_prove(w));
 done:
     return status;
 }
@@ -128,9 +142,13 @@ static double size_of(const brio_mesh *mesh) {
     return size;
 }
 
-/* Checks the distance against the size of the mesh, and settles the error. */
-static brio_status settle(brio_context *ctx, const brio_mesh *mesh, double distance, brio_mesh_offset_options *o) {
+brio_status brio_offset_settle(brio_context *ctx, const brio_mesh *mesh, double distance,
+                               const brio_mesh_offset_options *options, brio_mesh_offset_options *o) {
     brio_status status = BRIO_OK;
+    *o = STANDARD;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_mesh_offset_options, options, o));
+    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
     double most = brio_greatest(mesh->vertices, 3 * mesh->num_vertices), size = size_of(mesh);
     BRIO_REQUIRE(ctx, isfinite(distance) && distance != 0, BRIO_ERR_ARGUMENT,
                  "the distance of an offset of a mesh is a finite number and not 0");
@@ -139,8 +157,9 @@ static brio_status settle(brio_context *ctx, const brio_mesh *mesh, double dista
     if (o->error == 0) o->error = USUAL_ERROR * fabs(distance);
     BRIO_REQUIRE(ctx, o->error < fabs(distance), BRIO_ERR_ARGUMENT,
                  "the error %g of an offset is not less than its distance %g", o->error, fabs(distance));
+    BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
     BRIO_REQUIRE(ctx, -distance <= size, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
-    BRIO_REQUIRE(ctx, distance <= FARTHEST * size, BRIO_ERR_ARGUMENT,
+    BRIO_REQUIRE(ctx, distance / FARTHEST <= size, BRIO_ERR_ARGUMENT,
                  "the distance %g of the offset is more than 2^30 times the size %g of the mesh", distance, size);
     most = fmax(most, fabs(distance));
     BRIO_REQUIRE(ctx, o->error > LEAST_ERROR * most, BRIO_ERR_ARGUMENT,
@@ -153,7 +172,7 @@ brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double di
                              const brio_mesh_offset_options *options, brio_mesh **out, brio_mesh_offset_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_mesh_offset_options o = STANDARD;
+    brio_mesh_offset_options o;
     brio_mesh_offset_stats s = {0};
     brio_solid solid = {{0}};
     brio_mesh scaled = *mesh;
@@ -161,24 +180,19 @@ brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double di
     brio_offset_work w = {.ctx = ctx};
     *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_mesh_offset_stats, stats));
-    BRIO_TRY(BRIO_TAKE(ctx, brio_mesh_offset_options, options, &o));
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
-    BRIO_TRY(settle(ctx, mesh, distance, &o));
+    BRIO_TRY(brio_offset_settle(ctx, mesh, distance, options, &o));
     int exponent = brio_exponent(fmax(brio_greatest(mesh->vertices, 3 * mesh->num_vertices), fabs(distance)));
     BRIO_TRY(BRIO_ALLOC(ctx, vertices, 3 * mesh->num_vertices));
     brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, vertices);
     scaled.vertices = vertices;
     BRIO_TRY(brio_solid_new(ctx, &scaled, &solid));
     w.field = (brio_offset_field){&solid, ldexp(fabs(distance), -exponent), distance < 0};
-    w.error = ldexp(o.error, -exponent);
+    w.error = ldexp(AIM * o.error, -exponent);
     BRIO_TRY(make(&w, &s.rounds));
     BRIO_REQUIRE(ctx, w.num_triangles > 0, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
     BRIO_TRY(give(&w, exponent, out));
     s.samples = w.num_points;
-    s.faults = w.num_faults;
-    s.error = o.error;
-    for (size_t i = 0; i < w.num_faults; i++) s.error = fmax(s.error, ldexp(w.faults[i].bound, exponent));
+    s.error = ldexp(worst_of(&w), exponent);
     BRIO_GIVE(brio_mesh_offset_stats, stats, &s);
 done:
     brio_offset_work_free(&w);

@@ -37,6 +37,10 @@ typedef struct brio_offset_work {
 enum { BRIO_OFFSET_PLACES = 7 };
 extern const double brio_offset_places[BRIO_OFFSET_PLACES][3];
 
+/** Checks what the caller of brio_mesh_offset passes, and writes the options with the error settled. */
+brio_status brio_offset_settle(brio_context *ctx, const brio_mesh *mesh, double distance,
+                               const brio_mesh_offset_options *options, brio_mesh_offset_options *settled);
+
 void brio_offset_work_free(brio_offset_work *w);
 
 /** Reports progress; the share done so far. */
