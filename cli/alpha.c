@@ -133,7 +133,7 @@ static brio_status alpha(run *r) {
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(cli_require_output(r, cli_mesh_formats, a->filtration != NULL));
     if (a->filtration) TRY(cli_check_beside(r, "filtration", a->filtration, NULL));
-    TRY(cli_read_points(r, r->operands[0], &input));
+    TRY(cli_read_samples(r, r->operands[0], &input));
     TRY(cli_weights(r, &a->weights, input, &weights));
     TRY(cli_usual_points(r, input, weights, false, &usual));
     TRY(cli_require_memory(r, cli_alpha_bytes(input, usual)));

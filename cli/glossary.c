@@ -210,6 +210,11 @@ const glossary_line cli_glossary[] = {
      STYLE_PLAIN},
     {"delaunay", NULL, "subgraph", NULL,
      "edges of the mesh that were gone along: which, how many, the most at a vertex", LINE_PLAIN, STYLE_PLAIN},
+    {"offset", NULL, "proven_error", "error", "proven: no place of the surface is farther from the exact offset",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"offset", NULL, "rounds", NULL, "triangulations of the samples, each with more of them", LINE_INTERNAL,
+     STYLE_PLAIN},
+    {"medial", NULL, "spacing", NULL, "no place of the mesh is farther from a sample", LINE_PLAIN, STYLE_PLAIN},
     {"delaunay", NULL, "rounds", NULL,
      "the counters at the ends of rounds (--rounds), or now and then (--record-every)", LINE_PLAIN, STYLE_PLAIN},
 

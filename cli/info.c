@@ -228,9 +228,9 @@ static brio_status report_surfaces(run *r, const brio_mesh *mesh, size_t usual) 
     TRY(brio_estimate_labeled_delaunay(r->ctx, usual, NULL, &surface));
     TRY(brio_estimate_power_crust(r->ctx, usual, NULL, &crust));
     TRY(brio_estimate_cocone(r->ctx, usual, NULL, &cocone));
-    static const char *const of_poles[] = {"medial", "offset"};
     cli_fact_bytes(f, "surface", (uint64_t)(beside + (double)surface));
-    for (int i = 0; i < 2; i++) cli_fact_bytes(f, of_poles[i], (uint64_t)(beside + (double)crust));
+    cli_fact_bytes(f, "medial", (uint64_t)(beside + (double)crust));
+    cli_fact_bytes(f, "offset", (uint64_t)(beside + (double)crust));
     cli_fact_bytes(f, "cocone", (uint64_t)(beside + (double)cocone));
     if (mesh->num_faces) {
         double subdivide = (double)brio_estimate_mesh_subdivide(mesh->num_faces, 1);

@@ -5,10 +5,11 @@
 #include "files.h"
 #include "power_crust.h"
 #include "properties.h"
+#include <math.h>
 
 typedef struct arguments {
     int labeling, sides, noise;
-    double sampling_density, scale, redundancy; /* the last two: 0 where they are not given */
+    double sampling_density, spacing, scale, redundancy; /* the last three: 0 where they are not given */
     bool sharp, simplify;
     const char *crust; /* file, or NULL */
 } arguments;
@@ -21,6 +22,8 @@ static const option options[] = {
      "the side of the surface whose axis is wanted (default inner)", sides},
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, labeling), "NAME",
      "what tells inside from outside (default: mesh if the input has faces, else global)", cli_labelings_or_mesh},
+    {"spacing", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, spacing), "S",
+     "of a closed mesh: no place of a face is farther from a sample (default: a hundredth of the mesh's diagonal)", 0},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, simplify), NULL,
      "leave out what noise and close sampling add: the same as --scale 1.1 --redundancy 0.01", 0},
     {"scale", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, scale), "S",
@@ -40,6 +43,7 @@ static const option options[] = {
 
 static const arguments defaults = {.labeling = LABELS_OF_INPUT};
 static const double SCALE = 1.1, REDUNDANCY = 0.01; /* of --simplify */
+static const double SPACING = 0.01;                 /* of samples, in diagonals of the mesh; chosen */
 static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU, BRIO_FORMAT_XYZ,
                                       BRIO_FORMAT_AUTO};
 
@@ -66,6 +70,29 @@ static brio_power_shape_options medial_options(const run *r, int labeling, const
     if (a->scale != 0) o.scale = a->scale;
     if (a->redundancy > 0) o.redundancy = a->redundancy;
     return o;
+}
+
+/* Returns the spacing of samples that fits the size of the mesh. */
+static double usual_spacing(const brio_mesh *mesh) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, diagonal = 0;
+    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) {
+        low[i % 3] = fmin(low[i % 3], mesh->vertices[i]);
+        high[i % 3] = fmax(high[i % 3], mesh->vertices[i]);
+    }
+    for (int k = 0; k < 3; k++) diagonal = hypot(diagonal, high[k] - low[k]);
+    return SPACING * diagonal;
+}
+
+/* Samples the faces of the mesh, so that it may be as coarse as it likes. */
+static brio_status sample_faces(run *r, const brio_mesh *mesh, brio_mesh **samples) {
+    const arguments *a = r->arguments;
+    brio_status status = BRIO_OK;
+    double spacing = a->spacing > 0 ? a->spacing : usual_spacing(mesh);
+    TRY(brio_mesh_samples(r->ctx, mesh, spacing, samples));
+    cli_lap(r, "sample");
+    cli_fact_real(&r->facts, "spacing", spacing);
+done:
+    return status;
 }
 
 static void report(run *r, const brio_power_shape_options *o, const brio_power_shape_stats *s, const brio_mesh *shape) {
@@ -122,7 +149,7 @@ done:
 
 static brio_status medial(run *r) {
     const arguments *a = r->arguments;
-    brio_mesh *input = NULL, *shape = NULL, *crust = NULL;
+    brio_mesh *input = NULL, *samples = NULL, *shape = NULL, *crust = NULL;
     brio_power_shape_stats s = {.size = sizeof s};
     brio_status status = BRIO_OK;
     int labeling = a->labeling;
@@ -134,11 +161,15 @@ static brio_status medial(run *r) {
     uint64_t work;
     size_t usual;
     brio_power_shape_options o = medial_options(r, labeling, by_mesh ? input : NULL);
-    TRY(cli_usual_points(r, input, NULL, false, &usual));
+    if (a->spacing > 0 && !by_mesh)
+        FAIL(r, BRIO_ERR_ARGUMENT, "--spacing is for closed meshes: the points are samples already");
+    if (by_mesh) TRY(sample_faces(r, input, &samples));
+    const brio_mesh *points = by_mesh ? samples : input;
+    TRY(cli_usual_points(r, points, NULL, false, &usual));
     status = brio_estimate_power_shape(r->ctx, usual, &o, &work);
-    TRY(cli_require_work(r, status, input, work));
-    status = brio_power_shape(r->ctx, input->vertices, input->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
-    cli_suggest_labeling(r, status, input, by_mesh);
+    TRY(cli_require_work(r, status, points, work));
+    status = brio_power_shape(r->ctx, points->vertices, points->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
+    cli_suggest_labeling(r, status, points, by_mesh);
     if (status != BRIO_OK) goto done;
     report(r, &o, &s, shape);
     TRY(cli_carry_properties(r, input, NULL, shape));
@@ -150,6 +181,7 @@ static brio_status medial(run *r) {
     TRY(write_shape(r, shape));
 done:
     brio_mesh_free(input);
+    brio_mesh_free(samples);
     brio_mesh_free(shape);
     brio_mesh_free(crust);
     return status;
@@ -160,7 +192,8 @@ const command cli_medial = {
     .operands = "IN",
     .summary = "medial axis of the solid that points, or a closed mesh, bound",
     .description = "The balls of the power shape, each a vertex with the property radius, and how they are joined. A "
-                   "mesh with faces says itself what is inside; of points the labeling finds it.",
+                   "mesh with faces says itself what is inside, and its faces are sampled; of points the labeling "
+                   "finds the inside.",
     .examples = "brio medial scan.ply -o axis.vtp --simplify\nthe axis without what noise adds\n"
                 "brio medial mesh.off -o axis.ply --sides both\nof a closed mesh, inside and outside\n",
     .outputs = "ply vtp vtu xyz",

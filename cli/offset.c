@@ -1,14 +1,15 @@
-/* brio offset: the surface at a distance from the one through the points of a file, or from a closed mesh, with its
- * certificate. */
+/* brio offset: the surface at a distance from the one through the points of a file, or from the faces of a closed mesh, with
+ * its certificate. */
 #include "certificate.h"
 #include "commands.h"
 #include "estimate.h"
 #include "power_crust.h"
 #include "properties.h"
+#include "sentences.h"
 #include <math.h>
 
 typedef struct arguments {
-    double distance;
+    double distance, error; /* error: 0 where it is not given */
     power_crust_options crust;
     bool vertex_normals, self_intersections;
 } arguments;
@@ -16,6 +17,8 @@ typedef struct arguments {
 static const option options[] = {
     {"distance", 'D', OPTION_NUMBER, offsetof(arguments, distance), "D",
      "how far, in the unit of the points: outwards when positive", 0},
+    {"error", 'E', OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, error), "E",
+     "of a closed mesh: most distance from the exact offset (default: a hundredth of D)", 0},
     {"triangulate", 0, OPTION_FLAG, offsetof(arguments, crust.triangulate), NULL, "cut the polygons into triangles", 0},
     {"simplify", 0, OPTION_FLAG, offsetof(arguments, crust.simplify), NULL, "a quarter as many faces, triangles", 0},
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, crust.labeling), "NAME",
@@ -35,37 +38,29 @@ static const option options[] = {
 
 static const arguments defaults = {.distance = NAN, .crust.labeling = LABELS_OF_INPUT};
 
-/* What there is to count when the labels are known. */
-static void report_by_mesh(run *r, const brio_power_crust_stats *s) {
-    facts *f = &r->facts;
-    cli_report_noise(r, s->poles.noise, s->poles.smoothed);
-    cli_fact_count(f, "poles", s->poles.poles);
-    cli_fact_count(f, "hidden_poles", s->poles.hidden_poles);
-    cli_fact_count(f, "inner", s->poles.inner);
-    cli_fact_count(f, "outer", s->poles.outer);
-    cli_fact_text(f, "labeling", "mesh");
-}
-
-static brio_status offset_surface(run *r, const power_crust_options *crust, const brio_mesh *points, bool by_mesh,
-                                  brio_mesh **surface) {
+/* The power crust of the points. */
+static brio_status offset_points(run *r, const power_crust_options *crust, const brio_mesh *points,
+                                 brio_mesh **surface) {
     const arguments *a = r->arguments;
     brio_offset_surface_options o = brio_offset_surface_options_default();
     brio_offset_surface_stats found = {.size = sizeof found};
     facts *f = &r->facts;
+    brio_status status = BRIO_OK;
+    if (a->error > 0)
+        FAIL(r, BRIO_ERR_ARGUMENT,
+             "--error is for closed meshes: the error of an offset of points is that of the points");
     o.seed = r->common.seed;
     o.poles = cli_pole_options(crust);
     o.triangulate = crust->triangulate;
     o.simplify = crust->simplify;
-    if (by_mesh) o.poles.solid = points;
     uint64_t work = 0;
     size_t usual;
-    brio_status status = cli_usual_points(r, points, NULL, false, &usual);
-    if (status == BRIO_OK) status = brio_estimate_offset_surface(r->ctx, usual, &o, &work);
-    status = cli_require_work(r, status, points, work);
-    if (status != BRIO_OK) return status;
+    TRY(cli_usual_points(r, points, NULL, false, &usual));
+    status = brio_estimate_offset_surface(r->ctx, usual, &o, &work);
+    TRY(cli_require_work(r, status, points, work));
     status = brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &found);
-    cli_suggest_labeling(r, status, points, by_mesh);
-    if (status != BRIO_OK) return status;
+    cli_suggest_labeling(r, status, points, false);
+    TRY(status);
     brio_power_crust_stats s = {
         .poles = found.poles, .crust_seconds = found.crust_seconds, .simplify_seconds = found.simplify_seconds};
     cli_report_power_crust_stages(r, crust, &s);
@@ -74,11 +69,53 @@ static brio_status offset_surface(run *r, const power_crust_options *crust, cons
     cli_fact_count(f, "samples", s.poles.samples);
     cli_fact_count(f, "vertices", (*surface)->num_vertices);
     cli_fact_count(f, "faces", (*surface)->num_faces);
-    if (by_mesh)
-        report_by_mesh(r, &s);
-    else
-        cli_report_power_crust(r, crust, &s);
-    return BRIO_OK;
+    cli_report_power_crust(r, crust, &s);
+done:
+    return status;
+}
+
+/* Options that say how a surface goes through points mean nothing for a mesh, whose faces are the surface. */
+static brio_status refuse_options_of_points(run *r) {
+    const power_crust_options *crust = &((const arguments *)r->arguments)->crust;
+    const char *name = crust->sharp                  ? "sharp"
+                       : crust->sampling_density > 0 ? "sampling-density"
+                       : crust->noise                ? "noise"
+                       : crust->simplify             ? "simplify"
+                                                     : NULL;
+    if (!name) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT,
+                    "--%s is for points: %s has faces, which count (--labeling global goes by its points)", name,
+                    r->operands[0]);
+}
+
+/* The offset of the solid that the faces bound. */
+static brio_status offset_mesh(run *r, const brio_mesh *mesh, brio_mesh **surface) {
+    const arguments *a = r->arguments;
+    brio_mesh_offset_options o = brio_mesh_offset_options_default();
+    brio_mesh_offset_stats s = {.size = sizeof s};
+    facts *f = &r->facts;
+    uint64_t work = 0;
+    brio_status status = BRIO_OK;
+    o.error = a->error;
+    TRY(refuse_options_of_points(r));
+    status = brio_estimate_mesh_offset(r->ctx, mesh, a->distance, &o, &work);
+    TRY(cli_require_work(r, status, mesh, work));
+    status = brio_mesh_offset(r->ctx, mesh, a->distance, &o, surface, &s);
+    cli_suggest_labeling(r, status, mesh, a->crust.labeling == LABELS_OF_INPUT);
+    TRY(status);
+    cli_lap(r, "offset");
+    double asked = o.error > 0 ? o.error : 0.01 * fabs(a->distance);
+    cli_fact_text(f, "method", "mesh");
+    cli_fact_real(f, "distance", a->distance);
+    cli_fact_real(f, "proven_error", s.error);
+    cli_fact_count(f, "samples", s.samples);
+    cli_fact_count(f, "rounds", s.rounds);
+    cli_fact_count(f, "vertices", (*surface)->num_vertices);
+    cli_fact_count(f, "faces", (*surface)->num_faces);
+    cli_fact_text(f, "labeling", "mesh");
+    if (s.error > asked) cli_warn(r, WARNING_PROVEN, s.error, asked);
+done:
+    return status;
 }
 
 static brio_status offset(run *r) {
@@ -92,7 +129,7 @@ static brio_status offset(run *r) {
     TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read(r, r->operands[0], &points));
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));
-    TRY(offset_surface(r, &crust, points, by_mesh, &surface));
+    TRY(by_mesh ? offset_mesh(r, points, &surface) : offset_points(r, &crust, points, &surface));
     TRY(cli_check_interrupt(r));
     if (a->vertex_normals) TRY(brio_mesh_add_normals(surface));
     TRY(cli_carry_properties(r, points, NULL, surface));
@@ -110,8 +147,14 @@ const command cli_offset = {
     .name = "offset",
     .operands = "IN",
     .summary = "surface at a distance from that of points, or from a closed mesh",
-    .examples = "brio offset scan.ply --distance 0.1 -o thicker.ply\n0.1 farther out\n"
-                "brio offset mesh.ply --distance -0.1 -o thinner.ply\n0.1 farther in\n",
+    .description =
+        "Of a closed mesh the faces count: the offset is round about their convex edges and sharp in their concave "
+        "ones outwards, the other way round inwards, and as close to the exact one as --error says. Of points "
+        "it is the power crust of larger or smaller balls.",
+    .examples =
+        "brio offset scan.ply --distance 0.1 -o thicker.ply\n0.1 farther out\n"
+        "brio offset mesh.ply --distance -0.1 -o thinner.ply\n0.1 farther in\n"
+        "brio offset mesh.ply --distance 2 --error 0.001 -o far.ply\na thousandth of the unit from the exact offset\n",
     .outputs = CLI_MESH_OUTPUTS,
     .group = GROUP_SURFACES,
     .min_operands = 1,

@@ -4,7 +4,6 @@
 #include "files.h"
 #include "hints.h"
 #include "properties.h"
-#include <string.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -301,6 +301,14 @@ brio_status cli_read_points(run *r, const char *path, brio_mesh **out) {
     return status == BRIO_OK ? cli_drop_connectivity(r, *out) : status;
 }
 
+brio_status cli_read_samples(run *r, const char *path, brio_mesh **out) {
+    brio_status status = cli_read(r, path, out);
+    if (status != BRIO_OK) return status;
+    size_t faces = (*out)->num_faces;
+    if (faces) cli_warn(r, WARNING_CONNECTED, path, faces, faces == 1 ? "" : "s", r->command->name);
+    return cli_drop_connectivity(r, *out);
+}
+
 const brio_format cli_mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
                                         BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_GLB, BRIO_FORMAT_AUTO};
 

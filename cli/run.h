@@ -135,6 +135,9 @@ brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);
 /** Reads for a command that goes by the points alone: faces and tetrahedra of the file are dropped. */
 brio_status cli_read_points(run *r, const char *path, brio_mesh **out);
 
+/** The same for a command that makes a surface of the points: warns where the file has one already. */
+brio_status cli_read_samples(run *r, const char *path, brio_mesh **out);
+
 /** The formats of surfaces; BRIO_FORMAT_AUTO ends the list. */
 extern const brio_format cli_mesh_formats[];
 /** Those of points with properties. */

@@ -57,6 +57,8 @@
 #define WARNING_TETRAHEDRA   "%s: without the tetrahedra, which the format cannot hold"
 #define WARNING_SINGLE       "%s: %s"
 #define WARNING_DOUBLE       "%s: in double precision: %s"
+#define WARNING_PROVEN       "the surface is proven to be within %g of the offset, not within %g"
+#define WARNING_CONNECTED    "%s has %zu face%s, which do not count: 'brio %s' makes a surface of the points alone"
 #define WARNING_COLOURS      "%s: the colours have fewer steps than those of the input"
 #define WARNING_MERGED       "%s: single precision merges %zu points with others"
 #define WARNING_MOVED        "%s: rounded coordinates move points by up to %.3g"

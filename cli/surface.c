@@ -444,7 +444,7 @@ static brio_status surface(run *r) {
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
     r->wants_origins = method_of(a) != POWER_CRUST && !a->evidence.ignore_origins && !a->evidence.from;
-    TRY(cli_read_points(r, r->operands[0], &points));
+    TRY(cli_read_samples(r, r->operands[0], &points));
     if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
     bool open = a->method == COCONE || (a->crust.open && method_of(a) == POWER_CRUST);
     status = reconstruct(r, points, &result, &open);

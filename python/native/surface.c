@@ -256,6 +256,57 @@ static PyObject *convex_hull(PyObject *module, PyObject *args) {
     return result;
 }
 
+/* --- closed meshes --- */
+
+/* mesh_offset(mesh, distance, error, threads, progress): a mesh. */
+static PyObject *mesh_offset(PyObject *module, PyObject *args) {
+    PyObject *object, *progress;
+    double distance;
+    int threads;
+    call c;
+    brio_mesh *made = NULL;
+    brio_status status;
+    brio_mesh_offset_options o = brio_mesh_offset_options_default();
+    if (!PyArg_ParseTuple(args, "OddiO", &object, &distance, &o.error, &threads, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_mesh_offset(c.ctx, m, distance, &o, &made, NULL));
+    return call_end_with_mesh(&c, status, made);
+}
+
+/* The power shape of samples of a mesh's faces, whose labels the mesh gives. */
+static brio_status shape_of_mesh(brio_context *ctx, const brio_mesh *m, double spacing, brio_power_shape_options *o,
+                                 brio_mesh **out) {
+    brio_mesh *samples = NULL;
+    brio_status status = brio_mesh_samples(ctx, m, spacing, &samples);
+    o->poles.solid = m;
+    if (status == BRIO_OK) status = brio_power_shape(ctx, samples->vertices, samples->num_vertices, o, out, NULL, NULL);
+    brio_mesh_free(samples);
+    return status;
+}
+
+/* mesh_shape(mesh, spacing, options, threads, progress): a mesh. */
+static PyObject *mesh_shape(PyObject *module, PyObject *args) {
+    PyObject *object, *options, *progress;
+    double spacing;
+    int threads;
+    call c;
+    brio_mesh *made = NULL;
+    brio_status status;
+    brio_power_shape_options o = brio_power_shape_options_default();
+    const option table[] = {POLE_OPTIONS(o),
+                            {"sides", INT, &o.sides},
+                            {"scale", DOUBLE, &o.scale},
+                            {"redundancy", DOUBLE, &o.redundancy},
+                            {NULL, INT, NULL}};
+    if (!PyArg_ParseTuple(args, "OdO!iO", &object, &spacing, &PyDict_Type, &options, &threads, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (!m || set_options(state_of(module), table, options) || call_begin(&c, state_of(module), threads, progress))
+        return NULL;
+    CALL(c, status, shape_of_mesh(c.ctx, m, spacing, &o, &made));
+    return call_end_with_mesh(&c, status, made);
+}
+
 /* --- normals --- */
 
 /* point_normals(points, mesh, samples or None, out, threads, progress) */
@@ -293,6 +344,8 @@ PyMethodDef surface_methods[] = {
     SURFACE(power_shape, "a mesh."),
     SURFACE(cocone, "a mesh."),
     SURFACE(convex_hull, "a mesh; out: the point of each vertex."),
+    {"mesh_offset", mesh_offset, METH_VARARGS, "mesh_offset(mesh, distance, error, threads, progress)"},
+    {"mesh_shape", mesh_shape, METH_VARARGS, "mesh_shape(mesh, spacing, options, threads, progress)"},
     {"point_normals", point_normals, METH_VARARGS, "point_normals(points, mesh, samples, out, threads, progress)"},
     {NULL, NULL, 0, NULL},
 };

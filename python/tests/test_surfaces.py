@@ -106,6 +106,39 @@ def test_offset_and_medial_axis(ball):
     assert (axis.properties["side"] == -1).all()
 
 
+def prism():
+    """A closed 32-gon prism of radius 1 and height 2."""
+    n = 32
+    angle = 2 * np.pi * np.arange(n) / n
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    points = np.concatenate([np.insert(ring, 2, z, axis=1) for z in (-1, 1)] + [[[0, 0, -1], [0, 0, 1]]])
+    i, j = np.arange(n), (np.arange(n) + 1) % n
+    low, high = np.full(n, 2 * n), np.full(n, 2 * n + 1)
+    return brio.Mesh(points, np.concatenate([np.stack(t, axis=1) for t in (
+        (i, j, n + j), (i, n + j, n + i), (low, j, i), (high, n + i, n + j))]))
+
+
+def test_offset_of_a_mesh_goes_by_its_faces():
+    for distance, volume in [(0.1, 8.287357), (-0.1, 4.546175)]:
+        surface = brio.offset(prism(), distance)
+        assert surface.certificate.closed and abs(surface.certificate.volume / volume - 1) < 5e-4
+    finer = brio.offset(prism(), 0.1, error=0.0002)
+    assert len(finer.vertices) > len(brio.offset(prism(), 0.1).vertices)
+    with pytest.raises(brio.errors.ArgumentError):
+        brio.offset(prism(), 0.1, sharp=True)
+    with pytest.raises(brio.errors.ArgumentError):
+        brio.offset(prism().vertices, 0.1, error=0.001)
+
+
+def test_medial_axis_of_a_mesh_samples_its_faces():
+    axis = brio.medial_axis(prism(), spacing=0.1)
+    radius = np.linalg.norm(axis.vertices[:, :2], axis=1)
+    assert len(axis.vertices) > 1000 and radius.max() < 1 and np.abs(axis.vertices[:, 2]).max() < 1
+    assert 0.9 < axis.properties["radius"].max() < 1.01
+    with pytest.raises(brio.errors.ArgumentError):
+        brio.medial_axis(prism().vertices, spacing=0.1)
+
+
 def test_simplification(ball):
     surface = brio.reconstruct(ball)
     fewer = brio.simplify(surface, len(surface.faces) // 4)

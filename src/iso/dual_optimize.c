@@ -13,7 +13,7 @@
  * Differs from the paper: Newton steps find the zero set; a vertex starts from the mean of its dual vertices in place
  * of a separate resampling; moves that turn triangles over are taken back. */
 #include "iso/dual_optimize.h"
-#include "base/rotate.h"
+#include "base/least_squares.h"
 #include "base/team.h"
 #include "base/vector.h"
 #include "mesh/twins.h"
@@ -22,7 +22,6 @@
 
 enum {
     NEWTON_STEPS = 4,
-    JACOBI_SWEEPS = 5 /* to all digits */,
     MOST_REPAIRS = 12,
     MOST_SWEEPS = 4,
     ITEMS_A_THREAD = 1 << 8,
@@ -92,29 +91,6 @@ static void project(const optimizer *o, double *p, double *normal) {
     if (!normalise(normal)) normal[0] = normal[1] = normal[2] = 0;
 }
 
-/* --- least squares --- */
-
-static const int AT[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}; /* of a symmetric matrix (xx, xy, xz, yy, yz, zz) */
-
-/* Solves A x = b in the directions of A's large eigenvalues; x is 0 in the others. */
-static void solve_determined(const double *m, const double *b, double *x) {
-    double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, most = 0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) a[i][j] = m[AT[i][j]];
-    for (int sweep = 0; sweep < JACOBI_SWEEPS; sweep++) {
-        brio_rotate(a, v, 0, 1);
-        brio_rotate(a, v, 0, 2);
-        brio_rotate(a, v, 1, 2);
-    }
-    for (int i = 0; i < 3; i++) most = fmax(most, a[i][i]);
-    x[0] = x[1] = x[2] = 0;
-    for (int i = 0; i < 3; i++) {
-        if (!(a[i][i] > DETERMINED * most)) continue;
-        double along = (v[0][i] * b[0] + v[1][i] * b[1] + v[2][i] * b[2]) / a[i][i];
-        for (int k = 0; k < 3; k++) x[k] += along * v[k][i];
-    }
-}
-
 /* --- dual and primal vertices --- */
 
 static const double *corner_of(const optimizer *o, size_t f, int i) {
@@ -171,12 +147,9 @@ static void place_primal(void *user, size_t begin, size_t end, int thread) {
         for (uint64_t i = o->start[v]; i < o->start[v + 1]; i++) {
             const double *d = o->dual + 6 * (size_t)o->incident[i], *n = d + 3;
             double height = n[0] * (d[0] - mean[0]) + n[1] * (d[1] - mean[1]) + n[2] * (d[2] - mean[2]);
-            for (int k = 0; k < 3; k++) {
-                b[k] += height * n[k];
-                for (int j = k; j < 3; j++) a[AT[k][j]] += n[k] * n[j];
-            }
+            brio_add_equation(n, height, a, b);
         }
-        solve_determined(a, b, x);
+        brio_solve_determined(a, b, DETERMINED, x);
         double length = sqrt(brio_dot(x, x)), limit = LONGEST_MOVE * o->grid->cell;
         for (int k = 0; k < 3; k++) p[k] = mean[k] + (length > limit ? limit / length : 1) * x[k];
         project(o, p, NULL);

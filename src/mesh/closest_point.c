@@ -5,11 +5,13 @@
  * than the best point found. So the answer is exact for every tree.
  *
  * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980
- * (boxes). Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). */
+ * (boxes). Hoare. Algorithm 65: find. Communications of the ACM 1961 (medians). Ericson. Real-time collision detection.
+ * 2005, section 5.1.5 (triangles). */
 #include "mesh/closest_point.h"
 #include "base/rng.h"
 #include "base/team.h"
 #include "base/vector.h"
+#include "mesh/cut_polygon.h"
 #include <math.h>
 #include <string.h>
 
@@ -55,8 +57,8 @@ static void box_add_point(brio_box *box, const double *p) {
 static double box_distance(const brio_box *box, const double *p) {
     double square = 0;
     for (int k = 0; k < 3; k++) {
-        double d = fmax(fmax(box->low[k] - p[k], p[k] - box->high[k]), 0);
-        square += d * d;
+        double below = box->low[k] - p[k], above = p[k] - box->high[k], d = below > above ? below : above;
+        if (d > 0) square += d * d;
     }
     return square;
 }
@@ -184,25 +186,30 @@ static void build_tree(brio_context *ctx, builder *b) {
     for (size_t node = nodes - 1; node-- > 0;) join_children(b, node);
 }
 
-/* Cuts each face into a fan of triangles. */
 static brio_status cut_faces(brio_context *ctx, const brio_mesh *mesh, uint32_t (**triangles)[3], size_t *count) {
     brio_status status = BRIO_OK;
     const uint64_t *offsets = mesh->face_offsets;
-    size_t n = 0;
-    for (size_t f = 0; f < mesh->num_faces; f++)
-        if (offsets[f + 1] - offsets[f] > 2) n += offsets[f + 1] - offsets[f] - 2;
+    uint32_t *room = NULL;
+    size_t n = 0, most = 0;
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        size_t corners = (size_t)(offsets[f + 1] - offsets[f]);
+        if (corners > 2) n += corners - 2;
+        if (corners > most) most = corners;
+    }
     BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_ARGUMENT, "a mesh without faces has no surface");
     BRIO_REQUIRE(ctx, n > 0, BRIO_ERR_ARGUMENT, "no face of the mesh has three corners, so it has no surface");
     BRIO_TRY(BRIO_ALLOC(ctx, *triangles, n));
+    BRIO_TRY(BRIO_ALLOC(ctx, room, most));
     *count = n;
     n = 0;
-    for (size_t f = 0; f < mesh->num_faces; f++)
-        for (uint64_t h = offsets[f] + 2; h < offsets[f + 1]; h++, n++) {
-            (*triangles)[n][0] = mesh->face_vertices[offsets[f]];
-            (*triangles)[n][1] = mesh->face_vertices[h - 1];
-            (*triangles)[n][2] = mesh->face_vertices[h];
-        }
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        size_t corners = (size_t)(offsets[f + 1] - offsets[f]);
+        if (corners < 3) continue;
+        brio_cut_polygon(mesh->vertices, mesh->face_vertices + offsets[f], corners, room, *triangles + n);
+        n += corners - 2;
+    }
 done:
+    brio_release(ctx, room);
     return status;
 }
 
@@ -269,26 +276,54 @@ static void closest_on_segment(const double *a, const double *b, const double *p
     for (int k = 0; k < 3; k++) closest[k] = t < 1 ? a[k] + t * u[k] : b[k];
 }
 
-/* Returns whether the foot of p in the plane of triangle (a, a+u, a+v) lies in the triangle; if so, writes the foot. */
-static bool closest_inside(const double *a, const double *u, const double *v, const double *p, double *closest) {
-    double w[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    double uu = brio_dot(u, u), uv = brio_dot(u, v), vv = brio_dot(v, v), wu = brio_dot(w, u), wv = brio_dot(w, v);
-    double determinant = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
-    if (!(determinant > 0 && s >= 0 && t >= 0 && s + t <= determinant)) return false;
-    for (int k = 0; k < 3; k++) closest[k] = a[k] + s / determinant * u[k] + t / determinant * v[k];
-    return true;
-}
-
-/* Writes the point of triangle abc nearest to p; the triangle may be degenerate. */
-static void closest_on_triangle(const double *a, const double *b, const double *c, const double *p, double *closest) {
-    double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    if (closest_inside(a, u, v, p, closest)) return;
+/* Writes the nearest point of the sides of a triangle, which may be degenerate. */
+static void closest_on_sides(const double *a, const double *b, const double *c, const double *p, double *closest) {
     double other[3];
     closest_on_segment(a, b, p, closest);
     closest_on_segment(b, c, p, other);
     if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
     closest_on_segment(c, a, p, other);
     if (brio_square_distance(p, other) < brio_square_distance(p, closest)) memcpy(closest, other, sizeof other);
+}
+
+static void walk_along(const double *a, const double *u, double x, double *closest) {
+    for (int k = 0; k < 3; k++) closest[k] = a[k] + x * u[k];
+}
+
+/* Writes the point of triangle abc nearest to p. The signs of products of the sides with the ways to p tell whether it is a
+ * corner, on a side, or inside. Triangles without area have sides only. */
+static void closest_on_triangle(const double *a, const double *b, const double *c, const double *p, double *closest) {
+    double u[3], v[3], w[3];
+    for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], w[k] = p[k] - a[k];
+    double uu = brio_dot(u, u), uv = brio_dot(u, v), vv = brio_dot(v, v), wu = brio_dot(w, u), wv = brio_dot(w, v);
+    double determinant = uu * vv - uv * uv, s = vv * wu - uv * wv, t = uu * wv - uv * wu;
+    double bu = wu - uu, bv = wv - uv, cu = wu - uv, cv = wv - vv; /* of p - b and p - c with u and v */
+    if (!(determinant > 0))
+        closest_on_sides(a, b, c, p, closest);
+    else if (s >= 0 && t >= 0 && s + t <= determinant)
+        for (int k = 0; k < 3; k++) closest[k] = a[k] + s / determinant * u[k] + t / determinant * v[k];
+    else if (wu <= 0 && wv <= 0)
+        memcpy(closest, a, 3 * sizeof *closest);
+    else if (bu >= 0 && bv <= bu)
+        memcpy(closest, b, 3 * sizeof *closest);
+    else if (cv >= 0 && cu <= cv)
+        memcpy(closest, c, 3 * sizeof *closest);
+    else if (t <= 0 && wu >= 0 && bu <= 0)
+        walk_along(a, u, wu / uu, closest);
+    else if (s <= 0 && wv >= 0 && cv <= 0)
+        walk_along(a, v, wv / vv, closest);
+    else
+        closest_on_sides(a, b, c, p, closest);
+}
+
+void brio_closest_on_corners(const double *const corners[3], const double *p, double *closest) {
+    closest_on_triangle(corners[0], corners[1], corners[2], p, closest);
+}
+
+void brio_closest_on_triangle(const brio_triangle_tree *tree, size_t triangle, const double *p, double *closest) {
+    const uint32_t *c = tree->triangles[triangle];
+    closest_on_triangle(tree->vertices + 3 * (size_t)c[0], tree->vertices + 3 * (size_t)c[1],
+                        tree->vertices + 3 * (size_t)c[2], p, closest);
 }
 
 /* --- searching --- */
@@ -306,13 +341,12 @@ static visit visit_child(const brio_triangle_tree *tree, const visit *parent, in
     return child;
 }
 
-double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle) {
+double brio_closest_within(const brio_triangle_tree *tree, const double *p, double bound, double *closest,
+                           size_t *triangle) {
     visit stack[MOST_LEVELS];
     int depth = 0;
-    double best = INFINITY, q[3];
-    stack[depth++] = (visit){0, 0, tree->num_triangles, 0};
-    *triangle = 0;
-    memcpy(closest, tree->vertices + 3 * (size_t)tree->triangles[0][0], 3 * sizeof *closest);
+    double best = bound, q[3];
+    stack[depth++] = (visit){0, 0, tree->num_triangles, box_distance(&tree->boxes[0], p)};
     while (depth > 0) {
         visit v = stack[--depth];
         if (v.distance >= best) continue;
@@ -324,9 +358,7 @@ double brio_closest_point(const brio_triangle_tree *tree, const double *p, doubl
             continue;
         }
         for (size_t t = v.low; t < v.high; t++) {
-            const uint32_t *c = tree->triangles[t];
-            closest_on_triangle(tree->vertices + 3 * (size_t)c[0], tree->vertices + 3 * (size_t)c[1],
-                                tree->vertices + 3 * (size_t)c[2], p, q);
+            brio_closest_on_triangle(tree, t, p, q);
             double distance = brio_square_distance(p, q);
             if (distance >= best) continue;
             best = distance;
@@ -334,5 +366,11 @@ double brio_closest_point(const brio_triangle_tree *tree, const double *p, doubl
             memcpy(closest, q, sizeof q);
         }
     }
-    return best;
+    return best < bound ? best : INFINITY;
+}
+
+double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle) {
+    *triangle = 0;
+    memcpy(closest, tree->vertices + 3 * (size_t)tree->triangles[0][0], 3 * sizeof *closest);
+    return brio_closest_within(tree, p, INFINITY, closest, triangle);
 }

@@ -8,7 +8,7 @@ typedef struct brio_box {
     double low[3], high[3];
 } brio_box;
 
-/** The faces of a mesh, cut into fans of triangles from their first corners, in a hierarchy of boxes.
+/** The faces of a mesh, cut into triangles (brio_cut_polygon), in a hierarchy of boxes.
  *
  *  I1. The hierarchy is a binary tree over the sequence of triangles. A node is a range of the sequence. Its children
  *  are the two halves of the range, the lower one shorter by at most 1. A range of at most BRIO_LEAF_TRIANGLES is a
@@ -36,5 +36,14 @@ void brio_triangle_tree_free(brio_context *ctx, brio_triangle_tree *tree);
 /** Finds the point of the triangles nearest to p, and the index of a triangle that holds this point. Returns the
  *  square of the distance. */
 double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle);
+
+/** Does what brio_closest_point does for points whose squared distance is below `bound`. Returns INFINITY, and writes
+ *  nothing, where there is none; a smaller bound is faster. */
+double brio_closest_within(const brio_triangle_tree *tree, const double *p, double bound, double *closest,
+                           size_t *triangle);
+
+/** Write the point of one triangle nearest to p; the triangle may be degenerate. */
+void brio_closest_on_triangle(const brio_triangle_tree *tree, size_t triangle, const double *p, double *closest);
+void brio_closest_on_corners(const double *const corners[3], const double *p, double *closest);
 
 #endif

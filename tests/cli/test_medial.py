@@ -45,6 +45,17 @@ class Facts(CliTest):
         self.assertEqual(facts["labeling"], "mesh")
         self.assertEqual(self.facts("medial", mesh, "-o", out, "--labeling", "global")["labeling"], "global")
 
+    def test_faces_of_a_mesh_are_sampled(self):
+        """An octahedron has six vertices; its medial axis has more."""
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        facts = self.facts("medial", mesh, "-o", self.path("out.ply"))
+        self.assertGreater(facts["samples"], 5000)
+        self.assertAlmostEqual(facts["spacing"], 0.01 * 12 ** 0.5, delta=1e-9)
+        coarse = self.facts("medial", mesh, "-o", self.path("out.ply"), "--spacing", "0.2")
+        self.assertLess(coarse["samples"], 1000)
+        points = self.cloud("torus.ply", 500, "torus")
+        self.usage("--spacing is for closed meshes", "medial", points, "-o", self.path("out.ply"), "--spacing", "0.1")
+
     def test_medial_facts_without_an_output(self):
         facts = self.facts("medial", self.cloud("torus.ply", 500, "torus"))
         self.assertEqual(facts["vertices"] - facts["edges"] + facts["triangles"] - facts["tetrahedra"], 0)

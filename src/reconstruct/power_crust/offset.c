@@ -9,13 +9,17 @@
  *                         outer ball through one vanishes. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/versioned.h"
 #include "reconstruct/power_crust/power_crust.h"
+#include <float.h>
 #include <math.h>
 
 static const double POLES_SHARE = 0.6; /* of the progress bar */
 static const double MOVE_SHARE = 0.75; /* of the bar of what follows */
 static const double MARGIN = 4;        /* of the bounding points, in distances */
+static const double FARTHEST = 0x1p60; /* of the greatest coordinate: where doubles tell nothing of the points; chosen */
+#define SWALLOWED "the offset by %g swallows the whole object: no inside is left"
 
 static const brio_offset_surface_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
 
@@ -56,6 +60,10 @@ static brio_status find_balls(brio_labeled_poles *l, const double *points, size_
     brio_status status = BRIO_OK;
     brio_pole_request request;
     BRIO_REQUIRE(l->ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
+    double most = fmin(brio_greatest(points, 3 * num_points), DBL_MAX * 0x1p-64);
+    BRIO_REQUIRE(l->ctx, num_points == 0 || distance <= FARTHEST * most, BRIO_ERR_ARGUMENT,
+                 "the distance %g of the offset is more than 2^60 times the greatest coordinate %g", distance, most);
+    BRIO_REQUIRE(l->ctx, num_points == 0 || -distance <= FARTHEST * most, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
     BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->seed, &request));
     request.spacing = o->simplify;
     request.margin = MARGIN * fabs(distance);
@@ -75,7 +83,7 @@ static brio_status make_offset(brio_labeled_poles *l, double distance, const bri
     if (status == BRIO_OK) status = brio_make_crust(l, &crust, mesh, NULL, stats);
     brio_progress_part(l->ctx, bar, 0, 1);
     if (status == BRIO_ERR_NO_ANSWER && distance < 0)
-        return brio_fail(l->ctx, status, "the offset by %g swallows the whole object: no inside is left", distance);
+        return brio_fail(l->ctx, status, SWALLOWED, distance);
     return status;
 }
 

@@ -1,0 +1,234 @@
+/* The surface through samples of an offset: the boundary between the tetrahedra of their Delaunay triangulation that are
+ * covered and those that are free. It is closed and does not cross itself, whatever the samples are.
+ *
+ * A tetrahedron is what its centroid is. Between samples of one sheet are tetrahedra so flat that rounding decides; they
+ * are of the solid that the offset bounds, so that all samples are on the surface. Sets of tetrahedra, joined across facets, all of whose centroids are within the error of the offset,
+ * take the other label, so that no specks of the size of the error appear.
+ *
+ * Based on: Boissonnat, Oudot. Provably good sampling and meshing of surfaces. Graphical Models 2005 (the surface as part
+ * of the Delaunay triangulation of points on it, refined where it is wrong).
+ * Differs from the paper: tetrahedra are labeled, in place of Voronoi edges intersected, so that any number of samples gives
+ * a closed surface. */
+#include "base/team.h"
+#include "base/union_find.h"
+#include "base/vector.h"
+#include "mesh/triangle_distance.h"
+#include "offset/work.h"
+#include <math.h>
+#include <string.h>
+
+enum { BATCH = 1 << 15, TETS_A_CHUNK = 128 };
+enum { COVERED = 1, CERTAIN = 2 }; /* bits of a label */
+
+static const double FINE = 0.5;  /* of the distance: side of the smallest part of a facet that is looked at; chosen */
+static const double CLEAR = 0.5; /* of the error: from the offset, where a place of a facet decides; chosen */
+static const double SURE = 2;    /* of the error: from the offset, where a centroid is no matter of doubt; chosen */
+static const double BIAS = 0.05; /* of the error: what is so close to the offset is of the solid; chosen */
+
+/* The facets of a positive tetrahedron, counterclockwise seen from outside; facet i is opposite to vertex i. */
+static const uint8_t FACET[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+typedef struct {
+    brio_offset_work *w;
+    const brio_tetrahedron *tet;
+    size_t count; /* finite and infinite ones */
+    uint8_t *label;
+    size_t first; /* of the batch */
+} labeler;
+
+/* The least and the greatest height over the offset that were found: negative heights are covered. */
+typedef struct {
+    double least, greatest;
+} heights;
+
+/* Adds the height of a place whose distance from the surface is known. */
+static void add_height(const brio_offset_work *w, const double *p, double distance, heights *h) {
+    double height = distance - w->field.distance;
+    if (height > CLEAR * w->error && brio_offset_is_beyond(&w->field, p)) height = -distance - w->field.distance;
+    h->least = fmin(h->least, height);
+    h->greatest = fmax(h->greatest, height);
+}
+
+static void look_at(const brio_offset_work *w, const double *const facet[3], const double share[3], heights *h) {
+    double p[3], nearest[3];
+    size_t triangle;
+    for (int k = 0; k < 3; k++) p[k] = share[0] * facet[0][k] + share[1] * facet[1][k] + share[2] * facet[2][k];
+    add_height(w, p, sqrt(brio_closest_point(&w->field.solid->tree, p, nearest, &triangle)), h);
+}
+
+/* Looks at the heights of a triangle at places half an offset's distance apart, but not where none can be over `most`: the
+ * distance from one triangle of the surface is a convex function. */
+static void look_above(const brio_offset_work *w, const double *const corner[3], double most, heights *h) {
+    const brio_triangle_tree *tree = &w->field.solid->tree;
+    double centroid[3], nearest[3], middle[3], square = 0, side = 0;
+    size_t triangle;
+    int longest = 0;
+    for (int k = 0; k < 3; k++) centroid[k] = (corner[0][k] + corner[1][k] + corner[2][k]) / 3;
+    add_height(w, centroid, sqrt(brio_closest_point(tree, centroid, nearest, &triangle)), h);
+    for (int c = 0; c < 3; c++) {
+        brio_closest_on_triangle(tree, triangle, corner[c], nearest);
+        square = fmax(square, brio_square_distance(corner[c], nearest));
+        double length = brio_square_distance(corner[c], corner[(c + 1) % 3]);
+        if (length > side) side = length, longest = c;
+    }
+    if (h->greatest > most || sqrt(square) - w->field.distance <= most ||
+        side < FINE * FINE * w->field.distance * w->field.distance)
+        return;
+    const double *a = corner[longest], *b = corner[(longest + 1) % 3], *c = corner[(longest + 2) % 3];
+    for (int k = 0; k < 3; k++) middle[k] = 0.5 * (a[k] + b[k]);
+    look_above(w, (const double *const[3]){a, middle, c}, most, h);
+    look_above(w, (const double *const[3]){middle, b, c}, most, h);
+}
+
+/* Looks at a facet: at a small one where the surface is tested, at a large one everywhere. */
+static void look_at_facet(const brio_offset_work *w, const double *const facet[3], heights *h) {
+    double d = w->field.distance, clear = CLEAR * w->error, size = 0, at[3];
+    for (int i = 0; i < BRIO_OFFSET_PLACES; i++) look_at(w, facet, brio_offset_places[i], h);
+    for (int c = 0; c < 3; c++) size = fmax(size, brio_square_distance(facet[c], facet[(c + 1) % 3]));
+    if (size < d * d) return;
+    double least = sqrt(brio_triangle_distance(&w->field.solid->tree, facet, (d - clear) * (d - clear), at));
+    h->least = fmin(h->least, least - d);
+    look_above(w, facet, clear, h);
+}
+
+/* Returns the label of a tetrahedron whose centroid is close to the offset: that of the place of its facets farthest from the
+ * offset. */
+static uint8_t label_of_thin(const brio_offset_work *w, const double *const corner[4], double height) {
+    heights h = {0, 0};
+    for (int i = 0; i < 4; i++)
+        look_at_facet(w, (const double *const[3]){corner[FACET[i][0]], corner[FACET[i][1]], corner[FACET[i][2]]}, &h);
+    if (fmax(h.greatest, -h.least) > CLEAR * w->error) return h.greatest < -h.least ? COVERED | CERTAIN : CERTAIN;
+    return height < (w->field.inwards ? -BIAS : BIAS) * w->error ? COVERED : 0;
+}
+
+static uint8_t label_of(const brio_offset_work *w, const uint32_t *v) {
+    const brio_offset_field *f = &w->field;
+    double centroid[3] = {0, 0, 0}, nearest[3];
+    const double *corner[4];
+    size_t triangle;
+    if (v[3] == BRIO_INFINITE) return f->inwards ? COVERED | CERTAIN : CERTAIN;
+    for (int i = 0; i < 4; i++) {
+        corner[i] = w->points + 3 * (size_t)v[i];
+        for (int k = 0; k < 3; k++) centroid[k] += corner[i][k] / 4;
+    }
+    double far = f->distance + SURE * w->error;
+    double d = sqrt(brio_closest_within(&f->solid->tree, centroid, far * far, nearest, &triangle));
+    if (d < f->distance - SURE * w->error || brio_offset_is_beyond(f, centroid)) return COVERED | CERTAIN;
+    return d >= far ? CERTAIN : label_of_thin(w, corner, d - f->distance);
+}
+
+static void label_part(void *user, size_t begin, size_t end, int thread) {
+    const labeler *l = user;
+    (void)thread;
+    for (size_t i = l->first + begin; i < l->first + end; i++) {
+        const uint8_t *known = brio_seen_find(&l->w->labels, l->tet[i].vertex);
+        l->label[i] = known ? *known : label_of(l->w, l->tet[i].vertex);
+    }
+}
+
+static brio_status label_all(labeler *l) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = l->w->ctx;
+    for (l->first = 0; l->first < l->count; l->first += BATCH) {
+        size_t count = l->count - l->first < BATCH ? l->count - l->first : BATCH;
+        BRIO_TRY(brio_offset_progress(l->w));
+        brio_for_chunks(ctx, brio_threads(ctx, count, TETS_A_CHUNK), count, TETS_A_CHUNK, label_part, l);
+    }
+done:
+    return status;
+}
+
+/* Keeps the labels for the next round. */
+static brio_status remember(labeler *l, size_t finite) {
+    brio_status status = BRIO_OK;
+    brio_seen_free(l->w->ctx, &l->w->labels);
+    BRIO_TRY(brio_seen_new(l->w->ctx, finite, &l->w->labels));
+    for (size_t i = 0; i < finite; i++) brio_seen_add(&l->w->labels, l->tet[i].vertex, l->label[i]);
+done:
+    return status;
+}
+
+/* Gives sets of tetrahedra of one label without a certain one the other label. */
+static brio_status turn_specks(labeler *l, unsigned covered) {
+    brio_status status = BRIO_OK;
+    uint32_t *parent = NULL;
+    uint8_t *certain = NULL;
+    BRIO_TRY(BRIO_ALLOC(l->w->ctx, parent, l->count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(l->w->ctx, certain, l->count));
+    for (size_t i = 0; i < l->count; i++) parent[i] = (uint32_t)i;
+    for (size_t i = 0; i < l->count; i++)
+        for (int f = 0; f < 4; f++) {
+            size_t j = l->tet[i].mate[f] / 4;
+            if (j < i && (l->label[i] & COVERED) == covered && (l->label[j] & COVERED) == covered)
+                brio_unite(parent, (uint32_t)i, (uint32_t)j, true);
+        }
+    for (size_t i = 0; i < l->count; i++)
+        if (l->label[i] & CERTAIN) certain[brio_find(parent, (uint32_t)i)] = 1;
+    for (size_t i = 0; i < l->count; i++)
+        if ((l->label[i] & COVERED) == covered && !certain[brio_find(parent, (uint32_t)i)]) l->label[i] ^= COVERED;
+done:
+    brio_release(l->w->ctx, parent);
+    brio_release(l->w->ctx, certain);
+    return status;
+}
+
+/* Lists the facets between tetrahedra of the solid and others. */
+static brio_status take_boundary(const labeler *l) {
+    brio_status status = BRIO_OK;
+    brio_offset_work *w = l->w;
+    unsigned solid = w->field.inwards ? 0 : COVERED;
+    size_t n = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        if (pass) BRIO_TRY(BRIO_ALLOC(w->ctx, w->triangles, n));
+        n = 0;
+        for (size_t i = 0; i < l->count; i++)
+            for (int f = 0; f < 4 && (l->label[i] & COVERED) == solid; f++) {
+                if ((l->label[l->tet[i].mate[f] / 4] & COVERED) == solid) continue;
+                for (int c = 0; pass && c < 3; c++) w->triangles[n][c] = l->tet[i].vertex[FACET[f][c]];
+                n++;
+            }
+    }
+    w->num_triangles = n;
+done:
+    return status;
+}
+
+/* The triangulation is a part of the work whose stages are not the caller's. */
+static int pass_progress_on(const char *stage, double fraction, void *user) {
+    const brio_offset_work *w = user;
+    (void)stage, (void)fraction;
+    return w->outer ? w->outer("offset", w->share, w->outer_user) : 0;
+}
+
+static brio_status triangulate(brio_offset_work *w, brio_triangulation **out) {
+    w->outer = w->ctx->progress;
+    w->outer_user = w->ctx->progress_user;
+    brio_context_set_progress(w->ctx, w->outer ? pass_progress_on : NULL, w);
+    brio_status status = brio_delaunay(w->ctx, w->points, NULL, w->num_points, NULL, out);
+    brio_context_set_progress(w->ctx, w->outer, w->outer_user);
+    return status;
+}
+
+brio_status brio_offset_connect(brio_offset_work *w) {
+    brio_status status = BRIO_OK;
+    brio_triangulation *t = NULL;
+    labeler l = {.w = w};
+    brio_release(w->ctx, w->triangles);
+    w->triangles = NULL;
+    w->num_triangles = 0;
+    BRIO_TRY(triangulate(w, &t));
+    const brio_delaunay_stats *stats = brio_triangulation_stats(t);
+    if (stats->dimension < 3) goto done;
+    l.tet = brio_triangulation_tetrahedra(t);
+    l.count = stats->tetrahedra + stats->hull_facets;
+    BRIO_TRY(BRIO_ALLOC(w->ctx, l.label, l.count));
+    BRIO_TRY(label_all(&l));
+    BRIO_TRY(remember(&l, stats->tetrahedra));
+    BRIO_TRY(turn_specks(&l, COVERED));
+    BRIO_TRY(turn_specks(&l, 0));
+    BRIO_TRY(take_boundary(&l));
+done:
+    brio_release(w->ctx, l.label);
+    brio_triangulation_free(t);
+    return status;
+}
