@@ -70,10 +70,21 @@ static void store_doubles(char *to, size_t stride, const brio_e57_code *code, co
     }
 }
 
+/* Stores whether values are not 0, of any kind. */
+static void store_tests(char *to, size_t stride, const brio_e57_code *code, const uint64_t *numbers, size_t count) {
+    double values[BLOCK];
+    store_doubles((char *)values, sizeof *values, code, numbers, count);
+    for (size_t i = 0; i < count; i++) to[i * stride] = values[i] != 0;
+}
+
 /* Stores integers in a type that holds them, and floats in their own type. */
 static void store(const brio_e57_decoder *d, char *to, const uint64_t *numbers, size_t count) {
     int64_t least = d->code.least;
     size_t stride = d->stride;
+    if (d->tests) {
+        store_tests(to, stride, &d->code, numbers, count);
+        return;
+    }
     switch (d->type) {
     case BRIO_SCALAR_INT8:
     case BRIO_SCALAR_UINT8:
