@@ -12,6 +12,7 @@ typedef struct brio_npy_field {
     size_t at; /* byte in a record */
     int axis;  /* set by the reader, with the property */
     size_t property;
+    bool rounded; /* set by the reader: whether an integer is beyond 2^53, where doubles have gaps */
 } brio_npy_field;
 
 typedef struct brio_npy_header {
@@ -20,6 +21,8 @@ typedef struct brio_npy_header {
     size_t record;
     uint64_t rows;
     bool fortran;
+    char (*passed)[64]; /* names of fields that are no numbers, such as words: they are in the records, not in `fields` */
+    size_t num_passed, passed_capacity;
 } brio_npy_header;
 
 /** Any array: of points or not. */

@@ -93,6 +93,10 @@ static brio_status open_blocks(brio_vtk_decoder *d, uint64_t *bytes) {
     uint64_t packed = 0, most;
     b->next = 0;
     b->open = false;
+    BRIO_REQUIRE(d->stream->ctx, !strcmp(d->header->compressor, "vtkZLibDataCompressor"), BRIO_ERR_FORMAT,
+                 "%s: the arrays are compressed by %s; expected vtkZLibDataCompressor or none: write the file again "
+                 "with one of these",
+                 d->stream->name, brio_excerpt_of(d->header->compressor).text);
     BRIO_TRY(brio_vtk_inflate_begin(d->stream->ctx, d->stream->name, &d->zlib));
     BRIO_TRY(take_word(d, &b->count));
     BRIO_TRY(take_word(d, &b->block_size));

@@ -15,7 +15,8 @@
 enum { CHUNK = 1 << 16, MOST_COMPONENTS = 16 };
 
 bool brio_vtk_is_kept(const brio_vtk_array *array) {
-    return array->name[0] && array->components > 0 && array->components <= MOST_COMPONENTS;
+    return array->type < BRIO_VTK_TYPE_END && array->name[0] && array->components > 0 &&
+           array->components <= MOST_COMPONENTS;
 }
 
 /* --- columns --- */
@@ -85,13 +86,13 @@ done:
     return status;
 }
 
-brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_vtk_decoder *d, uint64_t bytes,
+brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_builder *b, brio_vtk_decoder *d, uint64_t bytes,
                                      const brio_vtk_piece *piece) {
     brio_status status = BRIO_OK;
     brio_vtk_column *columns = find(data, d->array);
     size_t row = (size_t)d->array->components * brio_vtk_type_size(d->array->type), got;
     uint64_t rows = piece->num_points, end = piece->first_point + rows;
-    if (!columns && piece->first_point) return BRIO_OK;
+    if (!columns && piece->first_point) return brio_builder_leave_out(b, d->array->name);
     if (!columns) BRIO_TRY(add_columns(data, d));
     if (!columns) columns = &data->columns[data->num_columns - d->array->components];
     if (columns->components != d->array->components || columns->file_type != d->array->type) return BRIO_OK;
@@ -141,7 +142,10 @@ brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *
     char name[64];
     for (size_t i = 0; i < data->num_columns; i++) {
         brio_vtk_column *c = &data->columns[i];
-        if (c->rows != b->mesh->num_vertices) continue;
+        if (c->rows != b->mesh->num_vertices) {
+            BRIO_TRY(brio_builder_leave_out(b, c->source));
+            continue;
+        }
         choose_name(b, c, name);
         void *block = c->data;
         c->data = NULL;

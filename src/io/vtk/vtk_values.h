@@ -42,9 +42,9 @@ typedef struct brio_vtk_point_data {
     char *chunk; /* rows of an array */
 } brio_vtk_point_data;
 
-/** Reads an array of point data, which is open, of a piece. An array that not all pieces before had is passed over.
+/** Reads an array of point data, which is open, of a piece. An array that not all pieces before had is left out.
  *  bytes  its size, from brio_vtk_decoder_open. */
-brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_vtk_decoder *d, uint64_t bytes,
+brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_builder *b, brio_vtk_decoder *d, uint64_t bytes,
                                      const brio_vtk_piece *piece);
 /** Makes properties of the columns that all points have. */
 brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *b);
