@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* All chosen. */
-enum { FIRST_CAPACITY = 64, LARGE = 1 << 22, MOST_LEFT_OUT = 1000 };
+enum { FIRST_CAPACITY = 64, LARGE = 1 << 22, MOST_LEFT_OUT = 200 };
 
 static size_t grown(size_t capacity, size_t need) {
     size_t target = capacity + (capacity < LARGE ? capacity / 2 : capacity / 8);
