@@ -11,7 +11,6 @@
 #include "io/rows.h"
 #include "io/scalar.h"
 #include <inttypes.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -53,7 +52,7 @@ done:
 
 static void store(const brio_mesh *m, brio_npy_field *f, size_t v, const char *bytes) {
     double value = brio_npy_load(f, bytes);
-    f->rounded |= f->wide && fabs(value) > 0x1p53;
+    f->rounded |= brio_npy_is_rounded(f, bytes);
     if (f->axis >= 0) {
         m->vertices[3 * v + (size_t)f->axis] = value;
         return;

@@ -88,10 +88,21 @@ size_t brio_npy_size(const brio_npy_field *f) {
     return f->wide ? 8 : brio_scalar_size(f->type);
 }
 
+static uint64_t wide_bits(const brio_npy_field *f, const char *bytes) {
+    return f->big ? __builtin_bswap64(brio_le64(bytes)) : brio_le64(bytes);
+}
+
+bool brio_npy_is_rounded(const brio_npy_field *f, const char *bytes) {
+    if (!f->wide) return false;
+    uint64_t bits = wide_bits(f, bytes);
+    if (f->type != BRIO_SCALAR_UINT32 && bits >> 63) bits = 0 - bits;
+    double value = (double)bits;
+    return value >= 0x1p64 || (uint64_t)value != bits;
+}
+
 double brio_npy_load(const brio_npy_field *f, const char *bytes) {
     if (!f->wide) return brio_scalar_load(bytes, f->type, f->big == brio_host_is_little());
-    uint64_t bits = brio_le64(bytes);
-    if (f->big) bits = __builtin_bswap64(bits);
+    uint64_t bits = wide_bits(f, bytes);
     return f->type == BRIO_SCALAR_UINT32 ? (double)bits : (double)(int64_t)bits;
 }
 

@@ -41,6 +41,8 @@ brio_status brio_npy_array_read(brio_stream *s, brio_npy_array *array);
 /** Returns the bytes of an element, and the element at an address as a double. */
 size_t brio_npy_size(const brio_npy_field *f);
 double brio_npy_load(const brio_npy_field *f, const char *bytes);
+/** Returns whether the element is an integer that no double has. */
+bool brio_npy_is_rounded(const brio_npy_field *f, const char *bytes);
 
 /** Reads the header of points. Call brio_npy_header_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
