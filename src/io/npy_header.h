@@ -21,7 +21,8 @@ typedef struct brio_npy_header {
     size_t record;
     uint64_t rows;
     bool fortran;
-    char (*passed)[64]; /* names of fields that are no numbers, such as words: they are in the records, not in `fields` */
+    char (
+        *passed)[64]; /* names of fields that are no numbers, such as words: they are in the records, not in `fields` */
     size_t num_passed, passed_capacity;
 } brio_npy_header;
 

@@ -1,5 +1,6 @@
 """Files with everything that their format allows, for formats that are no text."""
 
+import io
 import json
 import struct
 import zipfile
@@ -89,14 +90,16 @@ def npy_of_everything():
     return npy(descr, (1,), struct.pack("<3d8s3BQq", 1, 2, 3, b"a\0\0\0b\0\0\0", 4, 5, 6, 2**53 + 1, 7))
 
 
-def npz_of_everything(path):
-    with zipfile.ZipFile(path, "w") as f:
+def npz_of_everything():
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as f:
         f.writestr("points.npy", npy("<f8", (2, 3), doubles(*range(6))))
         f.writestr("heat.npy", npy("<f4", (2,), struct.pack("<2f", 1, 2)))
         f.writestr("id.npy", npy("<i8", (2,), struct.pack("<2q", 1, 2**60 + 1)))
         f.writestr("words.npy", npy("<U1", (2,), b"a\0\0\0b\0\0\0"))
         f.writestr("other.npy", npy("<f8", (5,), doubles(*range(5))))
         f.writestr("notes.txt", "not an array")
+    return out.getvalue()
 
 
 def gltf(uri, size, **more):

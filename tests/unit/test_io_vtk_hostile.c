@@ -16,8 +16,11 @@ static void errors_of_tags(void) {
     io_expect_error("a.vtu", "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\">", BRIO_ERR_FORMAT,
                     "UnstructuredGrid or PolyData");
     io_expect_error("a.vtu", "<VTKFile type=\"PolyData\">", BRIO_ERR_FORMAT, "byte_order");
-    io_expect_error("a.vtu", VTU_TAG " compressor=\"vtkLZ4DataCompressor\">", BRIO_ERR_FORMAT,
-                    "compressed by vtkLZ4DataCompressor");
+    io_expect_error("a.vtu",
+                    VTU_TAG " compressor=\"vtkLZ4DataCompressor\"><Piece NumberOfPoints=\"1\" "
+                            "NumberOfCells=\"0\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+                            "format=\"binary\">AAAA</DataArray>",
+                    BRIO_ERR_FORMAT, "compressed by vtkLZ4DataCompressor");
     io_expect_error("a.vtu", VTU_TAG "><Piece NumberOfPoints=\"x\" NumberOfCells=\"0\">", BRIO_ERR_FORMAT,
                     "a number NumberOfPoints, found \"x\"");
     io_expect_error("a.vtu", VTU_TAG "><Piece NumberOfPoints=\"1\">", BRIO_ERR_FORMAT, "a number NumberOfCells");

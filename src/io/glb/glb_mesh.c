@@ -125,7 +125,8 @@ static brio_status note_primitive(builder *b) {
         bool normal = !strcmp(a[i].name, "NORMAL"), colour = !strcmp(a[i].name, "COLOR_0");
         bool own = a[i].name[0] == '_' && a[i].name[1];
         if (!normal && !colour && !own) {
-            if (strcmp(a[i].name, "POSITION") != 0) BRIO_TRY(brio_builder_leave_out(b->builder, name_of_other(a[i].name)));
+            if (strcmp(a[i].name, "POSITION") != 0)
+                BRIO_TRY(brio_builder_leave_out(b->builder, name_of_other(a[i].name)));
             continue;
         }
         BRIO_TRY(brio_glb_column_of(b->file, a[i].accessor, a[i].name, &c));

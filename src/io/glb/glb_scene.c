@@ -332,8 +332,9 @@ done:
 
 /* Notes the lists of the root that become nothing. */
 static brio_status note_left_out(const reader *r) {
-    static const char *const lists[][2] = {{"materials", "materials"},   {"textures", "textures"}, {"images", "textures"},
-                                           {"animations", "animations"}, {"skins", "skins"},       {"cameras", "cameras"}};
+    static const char *const lists[][2] = {{"materials", "materials"}, {"textures", "textures"},
+                                           {"images", "textures"},     {"animations", "animations"},
+                                           {"skins", "skins"},         {"cameras", "cameras"}};
     static const char *const named[] = {"nodes", "meshes"};
     brio_status status = BRIO_OK;
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)

@@ -64,9 +64,10 @@ static void set_section(brio_vtk_header *h, const char *tag) {
     static const struct {
         const char *name;
         brio_vtk_section section;
-    } sections[] = {{"Points", BRIO_VTK_POINTS}, {"PointData", BRIO_VTK_POINT_DATA}, {"Cells", BRIO_VTK_CELLS},
-                    {"Lines", BRIO_VTK_LINES},   {"Strips", BRIO_VTK_STRIPS},        {"Polys", BRIO_VTK_POLYS},
-                    {"Verts", BRIO_VTK_OTHER},   {"CellData", BRIO_VTK_CELL_DATA},   {"FieldData", BRIO_VTK_FIELD_DATA}};
+    } sections[] = {
+        {"Points", BRIO_VTK_POINTS}, {"PointData", BRIO_VTK_POINT_DATA}, {"Cells", BRIO_VTK_CELLS},
+        {"Lines", BRIO_VTK_LINES},   {"Strips", BRIO_VTK_STRIPS},        {"Polys", BRIO_VTK_POLYS},
+        {"Verts", BRIO_VTK_OTHER},   {"CellData", BRIO_VTK_CELL_DATA},   {"FieldData", BRIO_VTK_FIELD_DATA}};
     for (size_t i = 0; i < sizeof sections / sizeof *sections; i++) {
         bool ends = tag[0] == '/' && brio_xml_is(tag + 1, sections[i].name);
         if (ends || brio_xml_is(tag, sections[i].name))

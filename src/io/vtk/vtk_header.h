@@ -46,7 +46,7 @@ typedef struct brio_vtk_header {
     bool swap;       /* whether the arrays are in the other byte order than this machine's */
     bool compressed; /* whether arrays that are no text are compressed, and by what */
     char compressor[BRIO_XML_VALUE];
-    size_t word;     /* bytes of the numbers in front of an array */
+    size_t word; /* bytes of the numbers in front of an array */
     brio_vtk_piece *pieces;
     size_t num_pieces, piece_capacity;
     brio_vtk_section section;

@@ -161,9 +161,8 @@ done:
 
 /* Notes an array that becomes nothing. */
 static brio_status note_left_out(vtk_reader *r, const brio_vtk_array *a) {
-    static const char *const whose[BRIO_VTK_SECTION_END] = {[BRIO_VTK_CELL_DATA] = " of cells",
-                                                            [BRIO_VTK_FIELD_DATA] = " of the file",
-                                                            [BRIO_VTK_POINT_DATA] = ""};
+    static const char *const whose[BRIO_VTK_SECTION_END] = {
+        [BRIO_VTK_CELL_DATA] = " of cells", [BRIO_VTK_FIELD_DATA] = " of the file", [BRIO_VTK_POINT_DATA] = ""};
     char name[BRIO_XML_VALUE + 16];
     if (!whose[a->section]) return BRIO_OK;
     snprintf(name, sizeof name, "%s%s", a->name[0] ? a->name : "array without a name", whose[a->section]);
