@@ -116,6 +116,17 @@ done:
     return status;
 }
 
+brio_status brio_vtk_keep_array(brio_vtk_point_data *data, brio_stream *s, const brio_vtk_array *array,
+                                const brio_vtk_values *values) {
+    brio_status status = BRIO_OK;
+    const brio_vtk_decoder d = {.stream = s, .array = array};
+    BRIO_TRY(add_columns(data, &d));
+    BRIO_TRY(append(&data->columns[data->num_columns - array->components], &d, values->bytes,
+                    (size_t)(values->count / array->components)));
+done:
+    return status;
+}
+
 /* --- properties --- */
 
 static bool is_colour(const brio_vtk_column *c) {

@@ -46,6 +46,9 @@ typedef struct brio_vtk_point_data {
  *  bytes  its size, from brio_vtk_decoder_open. */
 brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_builder *b, brio_vtk_decoder *d, uint64_t bytes,
                                      const brio_vtk_piece *piece);
+/** Keeps an array of all points that was read already.   values  `components` numbers for each point. */
+brio_status brio_vtk_keep_array(brio_vtk_point_data *data, brio_stream *s, const brio_vtk_array *array,
+                                const brio_vtk_values *values);
 /** Makes properties of the columns that all points have. */
 brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *b);
 void brio_vtk_point_data_free(brio_context *ctx, brio_vtk_point_data *data);
