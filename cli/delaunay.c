@@ -298,7 +298,7 @@ const command cli_delaunay = {
         "brio delaunay points.xyz --verify\nchecks the result exactly; writes nothing\n"
         "brio delaunay lidar.las --plane xy -o terrain.ply\ntriangles over the ground: terrain\n"
         "brio delaunay atoms.xyz --weights radii2.txt -o regular.vtu\nregular triangulation, one weight a line\n",
-    .outputs = "vtu ply node",
+    .outputs = "vtu vtk ply node",
     .output_optional = true,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,

@@ -163,7 +163,7 @@ const command cli_medial = {
                    "mesh with faces says itself what is inside; of points the labeling finds it.",
     .examples = "brio medial scan.ply -o axis.vtp --simplify\nthe axis without what noise adds\n"
                 "brio medial mesh.off -o axis.ply --sides both\nof a closed mesh, inside and outside\n",
-    .outputs = "ply vtp vtu xyz",
+    .outputs = "ply vtp vtu vtk xyz",
     .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,

@@ -167,6 +167,43 @@ class Vtk(FormsTest):
         self.bad_input("compressed by vtkLZ4DataCompressor", "info",
                        self.file("b.vtp", named.replace('format="ascii"', 'format="binary"')))
 
+    def test_legacy_cells_of_both_kinds(self):
+        lists = {b"VERTICES": [[0], [1, 2]], b"LINES": [[0, 1, 2]], b"POLYGONS": [[0, 1, 2], [1, 2, 3]],
+                 b"TRIANGLE_STRIPS": [[0, 1, 2, 3]]}
+        for fifth, version in [(False, b"2.0"), (False, b"4.2"), (True, b"5.1")]:
+            cells = b"".join(whole_files.legacy_lists(name, cells, fifth) for name, cells in lists.items())
+            name = self.file("a.vtk", whole_files.legacy(version, whole_files.LEGACY_POINTS + cells))
+            run = self.facts("convert", name, self.path("out.vtk"), "--ascii")
+            self.assertEqual((run["points"], run["faces"], run["lost"]), (4, 4, []))
+            with open(self.path("out.vtk")) as f:
+                text = f.read()
+            cells = text.split("CELLS 6 22\n")[1].split("\n\n")[0].split("\n")
+            self.assertEqual(cells, ["3 0 1 2", "3 1 3 2", "3 0 1 2", "3 1 2 3", "2 0 1", "2 1 2"])
+
+    def test_legacy_files_that_lie(self):
+        points, lists = whole_files.LEGACY_POINTS, whole_files.legacy_lists
+        for data, message in [(b"POINTS 99999999 float\n", "the file"), (points + b"POLYGONS 9 3\n", "at least one number"),
+                              (points + lists(b"POLYGONS", [[0, 1, 9]], False), "point 9, expected one of the 4"),
+                              (points + b"POLYGONS 1 4\n" + struct.pack(">4i", 9, 0, 1, 2), "does not end within the list"),
+                              (points + b"POLYGONS 1 4\n" + struct.pack(">4i", 2, 0, 1, 2), "1 cells of 3 numbers"),
+                              (points + points, "one list of points"), (b"", "POINTS"), (points + b"THINGS 3\n", "a keyword")]:
+            self.bad_input(message, "info", self.file("a.vtk", whole_files.legacy(b"3.0", data)))
+        self.bad_input("a version from", "info", self.file("a.vtk", whole_files.legacy(b"6.0", points)))
+        self.bad_input("POLYDATA or UNSTRUCTURED_GRID", "info",
+                       self.file("a.vtk", whole_files.legacy(b"3.0", points, "STRUCTURED_POINTS")))
+
+    def test_legacy_files_keep_what_is_written(self):
+        points = self.file("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
+                           "property double z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty float nx\n"
+                           "property float ny\nproperty float nz\nproperty uint heat\nend_header\n500000.123 1 2 1 2 3 0 0 1 4000000000\n"
+                           "4 5 6 255 0 9 0 1 0 1\n7 8 9 0 0 0 1 0 0 2\n")
+        for options in [[], ["--ascii"]]:
+            self.assertEqual(self.facts("convert", points, self.path("out.vtk"), *options)["lost"], [])
+            self.expect(0, "convert", self.path("out.vtk"), self.path("back.ply"), "--ascii")
+            self.expect(0, "convert", points, self.path("same.ply"), "--ascii")
+            with open(self.path("back.ply")) as back, open(self.path("same.ply")) as same:
+                self.assertEqual(back.read(), same.read())
+
 
 if __name__ == "__main__":
     main()

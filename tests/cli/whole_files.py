@@ -162,3 +162,32 @@ def vtu_of_everything():
     """A vertex, a triangle, a tetrahedron, a pyramid, and a quadratic triangle."""
     return vtk_xml("UnstructuredGrid", 'NumberOfCells="5"',
                    vtk_lists("Cells", "0  0 1 2  0 1 2 3  0 1 2 3 4  0 1 2 3 4 0", "1 4 8 13 19", "1 5 10 14 22"))
+
+
+def vtk_of_everything():
+    """A vertex, a triangle, a tetrahedron, a pyramid, and a quadratic triangle, as text of version 3."""
+    return ("# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nFIELD FieldData 1\ntime 1 1 int\n3\n"
+            "METADATA\nINFORMATION 0\n\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\nCELLS 5 24\n1 0\n3 0 1 2\n4 0 1 2 3\n"
+            "5 0 1 2 3 4\n6 0 1 2 3 4 0\nCELL_TYPES 5\n1 5 10 14 22\nCELL_DATA 5\nSCALARS area float\nLOOKUP_TABLE default\n"
+            "1 2 3 4 5\nPOINT_DATA 5\nSCALARS heat short 1\nLOOKUP_TABLE colours\n1 2 3 4 5\nLOOKUP_TABLE colours 1\n0 0 0 1\n"
+            "NORMALS n float\n" + "0 0 1\n" * 5 + "VECTORS my%20flow float\n" + "1 2 3\n" * 5 + "COLOR_SCALARS c 3\n" + "0 0.5 1\n" * 5 +
+            "TEXTURE_COORDINATES t 2 float\n" + "0 1 " * 5 + "\nFIELD FieldData 3\nlabel 1 5 string\na\nb c\n\nd\ne\n"
+            "on 1 5 bit\n1 0 1 0 1\nwide 17 5 float\n" + "0 " * 85 + "\n")
+
+
+def legacy(version, data, kind="POLYDATA"):
+    return b"# vtk DataFile Version %s\ntitle\nBINARY\nDATASET %s\n" % (version, kind.encode()) + data
+
+
+LEGACY_POINTS = b"POINTS 4 float\n" + struct.pack(">12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1) + b"\n"
+
+
+def legacy_lists(name, lists, fifth):
+    """Cells as a list with counts, or as offsets and corners."""
+    corners = [corner for cell in lists for corner in cell]
+    if not fifth:
+        numbers = [number for cell in lists for number in [len(cell)] + cell]
+        return b"%s %d %d\n" % (name, len(lists), len(numbers)) + struct.pack(">%di" % len(numbers), *numbers) + b"\n"
+    ends = [sum(map(len, lists[:i])) for i in range(len(lists) + 1)]
+    return (b"%s %d %d\nOFFSETS vtktypeint64\n" % (name, len(ends), len(corners)) + struct.pack(">%dq" % len(ends), *ends) +
+            b"\nCONNECTIVITY vtktypeint64\n" + struct.pack(">%dq" % len(corners), *corners) + b"\n")
