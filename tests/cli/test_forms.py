@@ -120,6 +120,14 @@ class NumPy(FormsTest):
             descr = [(n, "<f8") for n in "xyz"] + [("id", "<u8")]
             content = whole_files.npy(descr, (1,), doubles(1, 2, 3) + struct.pack("<Q", value))
             self.assertEqual(self.rows(content, "a.npy")[2]["lost"], lost, value)
+            array = '<DataArray type="UInt64" Name="id" format="ascii">%d</DataArray>' % value
+            name = self.file("a.vtp", '<VTKFile type="PolyData" byte_order="LittleEndian"><PolyData><Piece NumberOfPoints="1">'
+                             '<PointData>%s</PointData><Points><DataArray type="Int8" NumberOfComponents="3" format="ascii">1 2 3'
+                             '</DataArray></Points></Piece></PolyData></VTKFile>' % array)
+            self.assertEqual(self.facts("info", name).get("left_out", []), lost, value)
+            field = ("id", 'type="Integer" minimum="0"', struct.pack("<Q", value % 2**63) * 2)
+            facts = self.facts("info", self.file("a.e57", whole_files.e57(whole_files.e57_axes() + [field], 2)))
+            self.assertEqual(facts.get("left_out", []), lost, value)
 
 
 class BesideTheFile(FormsTest):

@@ -137,6 +137,8 @@ static brio_status decode_scan(e57_reader *r, size_t scan) {
         aim(r, role, &r->decoders[i]);
     }
     BRIO_TRY(brio_e57_section_read(&r->pages, &r->sections[scan], fields, r->decoders, s->num_fields));
+    for (size_t i = 0; i < s->num_fields; i++)
+        if (r->decoders[i].rounded) BRIO_TRY(brio_builder_leave_out(r->builder, "integers beyond 2^53"));
 done:
     return status;
 }

@@ -271,7 +271,7 @@ static brio_status read_roots(reader *r) {
     r->list = "scenes";
     r->item = 0;
     BRIO_TRY(whole(r, r->root, "scene", 0, &number));
-    if (brio_json_next(scene)) BRIO_TRY(brio_builder_leave_out(r->builder, "other scenes"));
+    if (scene && brio_json_next(scene)) BRIO_TRY(brio_builder_leave_out(r->builder, "other scenes"));
     for (; scene && number; number--) scene = brio_json_next(scene);
     const brio_json *nodes = brio_json_get(scene, "nodes"), *item = brio_json_first(nodes);
     BRIO_TRY(BRIO_ALLOC(r->ctx, s->roots, scene ? length_of(nodes) : s->num_nodes));

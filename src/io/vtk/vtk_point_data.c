@@ -46,13 +46,24 @@ done:
 
 /* --- reading --- */
 
-static void convert_wide(char *to, const char *from, size_t rows, const brio_vtk_decoder *d) {
+/* Returns whether no double has an integer. */
+static bool is_rounded(uint64_t raw, bool is_signed) {
+    uint64_t size = is_signed && raw >> 63 ? 0 - raw : raw;
+    double value = (double)size;
+    return value >= 0x1p64 || (uint64_t)value != size;
+}
+
+/* Converts integers of 64 bits. Returns whether one of them was rounded. */
+static bool convert_wide(char *to, const char *from, size_t rows, const brio_vtk_decoder *d) {
+    bool rounded = false, is_signed = d->array->type == BRIO_VTK_INT64;
     for (size_t i = 0; i < rows; i++) {
         uint64_t raw;
         brio_scalar_gather(&raw, from + i * d->array->components * sizeof raw, 1, 0, sizeof raw, d->swap);
-        double value = d->array->type == BRIO_VTK_INT64 ? (double)(int64_t)raw : (double)raw;
+        double value = is_signed ? (double)(int64_t)raw : (double)raw;
+        rounded |= is_rounded(raw, is_signed);
         memcpy(to + i * sizeof value, &value, sizeof value);
     }
+    return rounded;
 }
 
 static brio_status append(brio_vtk_column *columns, const brio_vtk_decoder *d, const char *chunk, size_t rows) {
@@ -65,7 +76,7 @@ static brio_status append(brio_vtk_column *columns, const brio_vtk_decoder *d, c
         if (d->array->type < BRIO_SCALAR_END)
             brio_scalar_gather(to, chunk + k * size, rows, row, size, d->swap);
         else
-            convert_wide(to, chunk + k * size, rows, d);
+            c->rounded |= convert_wide(to, chunk + k * size, rows, d);
         c->rows += rows;
     }
 done:
@@ -157,6 +168,7 @@ brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *
             BRIO_TRY(brio_builder_leave_out(b, c->source));
             continue;
         }
+        if (c->rounded) BRIO_TRY(brio_builder_leave_out(b, "integers beyond 2^53"));
         choose_name(b, c, name);
         void *block = c->data;
         c->data = NULL;

@@ -34,6 +34,7 @@ typedef struct brio_vtk_column {
     char *data;
     uint64_t rows;
     size_t capacity; /* bytes */
+    bool rounded;    /* whether an integer is one that no double has */
 } brio_vtk_column;
 
 typedef struct brio_vtk_point_data {
