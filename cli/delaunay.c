@@ -72,7 +72,8 @@ static const arguments defaults = {.weights.exponent = NO_EXPONENT,
                                    .subgraph = SUBGRAPH_FITTING,
                                    .plane = NO_PLANE,
                                    .round_ratio = NAN};
-static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE, BRIO_FORMAT_AUTO};
+static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_VTK, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE,
+                                      BRIO_FORMAT_AUTO};
 
 static brio_order insertion_order(const arguments *a) {
     if (a->order != FITTING_ORDER) return (brio_order)a->order;

@@ -40,8 +40,8 @@ static const option options[] = {
 
 static const arguments defaults = {.labeling = LABELS_OF_INPUT};
 static const double SCALE = 1.1, REDUNDANCY = 0.01; /* of --simplify */
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU, BRIO_FORMAT_XYZ,
-                                      BRIO_FORMAT_AUTO};
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU,
+                                      BRIO_FORMAT_VTK, BRIO_FORMAT_XYZ, BRIO_FORMAT_AUTO};
 
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
