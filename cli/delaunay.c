@@ -72,7 +72,8 @@ static const arguments defaults = {.weights.exponent = NO_EXPONENT,
                                    .subgraph = SUBGRAPH_FITTING,
                                    .plane = NO_PLANE,
                                    .round_ratio = NAN};
-static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE, BRIO_FORMAT_AUTO};
+static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_VTK, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE,
+                                      BRIO_FORMAT_AUTO};
 
 static brio_order insertion_order(const arguments *a) {
     if (a->order != FITTING_ORDER) return (brio_order)a->order;
@@ -298,7 +299,7 @@ const command cli_delaunay = {
         "brio delaunay points.xyz --verify\nchecks the result exactly; writes nothing\n"
         "brio delaunay lidar.las --plane xy -o terrain.ply\ntriangles over the ground: terrain\n"
         "brio delaunay atoms.xyz --weights radii2.txt -o regular.vtu\nregular triangulation, one weight a line\n",
-    .outputs = "vtu ply node",
+    .outputs = "vtu vtk ply node",
     .output_optional = true,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,

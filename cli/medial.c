@@ -44,8 +44,8 @@ static const option options[] = {
 static const arguments defaults = {.labeling = LABELS_OF_INPUT};
 static const double SCALE = 1.1, REDUNDANCY = 0.01; /* of --simplify */
 static const double SPACING = 0.01;                 /* of samples, in diagonals of the mesh; chosen */
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU, BRIO_FORMAT_XYZ,
-                                      BRIO_FORMAT_AUTO};
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU,
+                                      BRIO_FORMAT_VTK, BRIO_FORMAT_XYZ, BRIO_FORMAT_AUTO};
 
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
@@ -196,7 +196,7 @@ const command cli_medial = {
                    "finds the inside.",
     .examples = "brio medial scan.ply -o axis.vtp --simplify\nthe axis without what noise adds\n"
                 "brio medial mesh.off -o axis.ply --sides both\nof a closed mesh, inside and outside\n",
-    .outputs = "ply vtp vtu xyz",
+    .outputs = "ply vtp vtu vtk xyz",
     .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,

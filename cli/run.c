@@ -309,12 +309,13 @@ brio_status cli_read_samples(run *r, const char *path, brio_mesh **out) {
     return cli_drop_connectivity(r, *out);
 }
 
-const brio_format cli_mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF, BRIO_FORMAT_STL,
-                                        BRIO_FORMAT_VTU, BRIO_FORMAT_VTP, BRIO_FORMAT_GLB, BRIO_FORMAT_AUTO};
+const brio_format cli_mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+                                        BRIO_FORMAT_STL, BRIO_FORMAT_VTU, BRIO_FORMAT_VTP,
+                                        BRIO_FORMAT_VTK, BRIO_FORMAT_GLB, BRIO_FORMAT_AUTO};
 
-const brio_format cli_point_formats[] = {BRIO_FORMAT_PLY,  BRIO_FORMAT_XYZ, BRIO_FORMAT_VTU, BRIO_FORMAT_VTP,
-                                         BRIO_FORMAT_NODE, BRIO_FORMAT_LAS, BRIO_FORMAT_LAZ, BRIO_FORMAT_NPY,
-                                         BRIO_FORMAT_GLB,  BRIO_FORMAT_PCD, BRIO_FORMAT_AUTO};
+const brio_format cli_point_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_XYZ,  BRIO_FORMAT_VTU, BRIO_FORMAT_VTK,
+                                         BRIO_FORMAT_VTP, BRIO_FORMAT_NODE, BRIO_FORMAT_LAS, BRIO_FORMAT_LAZ,
+                                         BRIO_FORMAT_NPY, BRIO_FORMAT_GLB,  BRIO_FORMAT_PCD, BRIO_FORMAT_AUTO};
 
 static brio_status check_format(run *r, const brio_format *formats, brio_format format) {
     for (; formats && *formats != format; formats++)

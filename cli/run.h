@@ -38,10 +38,11 @@ extern const common_options cli_common_defaults;
 
 /** Extensions of the files that hold points, meshes, or both. */
 #define CLI_INPUTS                                                                                                     \
-    "ply xyz pts txt csv asc xyzrgb xyzn tsv dat obj off stl vtu vtp node ele las laz pcd ptx npy npz glb gltf e57 "   \
+    "ply xyz pts txt csv asc xyzrgb xyzn tsv dat obj off stl vtu vtp vtk node ele las laz pcd ptx npy npz glb gltf "   \
+    "e57 "                                                                                                             \
     "bnpts chemical extxyz"
-#define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp glb"
-#define CLI_POINT_OUTPUTS "ply xyz pts txt csv asc tsv vtu vtp node las laz pcd npy glb"
+#define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp vtk glb"
+#define CLI_POINT_OUTPUTS "ply xyz pts txt csv asc tsv vtu vtp vtk node las laz pcd npy glb"
 
 enum { MAX_STAGES = 16 };
 

@@ -1834,6 +1834,7 @@ typedef enum brio_format {
     BRIO_FORMAT_CHEMICAL = 16, /* .xyz with element symbols or atomic numbers: read, not written */
     BRIO_FORMAT_BNPTS = 17,    /* oriented points of Kazhdan's Poisson programs: read, not written */
     BRIO_FORMAT_NPZ = 18,      /* NumPy's zip of arrays: read, not written */
+    BRIO_FORMAT_VTK = 19,      /* VTK's legacy files of polygonal data and unstructured grids */
     BRIO_FORMAT_END
 } brio_format;
 

@@ -13,8 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Both chosen. */
-enum { FIRST_CAPACITY = 64, LARGE = 1 << 22 };
+/* All chosen. */
+enum { FIRST_CAPACITY = 64, LARGE = 1 << 22, MOST_LEFT_OUT = 200 };
 
 static size_t grown(size_t capacity, size_t need) {
     size_t target = capacity + (capacity < LARGE ? capacity / 2 : capacity / 8);
@@ -153,7 +153,7 @@ done:
 brio_status brio_builder_leave_out(brio_builder *b, const char *name) {
     brio_status status = BRIO_OK;
     char clean[64];
-    brio_utf8_copy(clean, sizeof clean, name);
+    brio_utf8_copy(clean, sizeof clean, b->num_left_out < MOST_LEFT_OUT ? name : "others");
     for (size_t i = 0; i < b->num_left_out; i++)
         if (!strcmp(b->left_out[i], clean)) return BRIO_OK;
     BRIO_TRY(BRIO_RESERVE(b->ctx, b->left_out, b->left_out_capacity, b->num_left_out + 1));

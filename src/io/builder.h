@@ -81,7 +81,8 @@ brio_status brio_builder_expect_tetrahedra(brio_builder *b, uint64_t count);
 brio_status brio_builder_add_vertices(brio_builder *b, size_t count);
 /** Appends one vertex. */
 brio_status brio_builder_vertex(brio_builder *b, const double *point);
-/** Notes that a part of the file is not in the mesh, such as "textures". A name that was noted before adds nothing. */
+/** Notes that a part of the file is not in the mesh, such as "textures". A name that was noted before adds nothing, and
+ *  behind the 200th all are "others". */
 brio_status brio_builder_leave_out(brio_builder *b, const char *name);
 /** Returns whether a property has the name. */
 bool brio_builder_has(brio_builder *b, const char *name);

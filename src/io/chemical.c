@@ -159,6 +159,7 @@ static brio_status add_entry(chemical_reader *r, const char *name, char type, ui
     if (count == 3 && type == 'R' && is_one_of(name, positions)) {
         for (size_t k = 0; k < 3; k++) BRIO_TRY(add_column(r, ROLE_AXIS, k));
     } else if (type == 'S') {
+        BRIO_TRY(brio_builder_leave_out(r->builder, name));
         for (uint64_t i = 0; i < count; i++) BRIO_TRY(add_column(r, ROLE_LEFT_OUT, 0));
     } else {
         role what = type == 'R' ? ROLE_NUMBER : type == 'I' ? ROLE_INTEGER : ROLE_LOGICAL;
@@ -200,11 +201,29 @@ done:
     return status;
 }
 
+/* Returns whether a comment has more than its word of properties, which may be NULL. */
+static bool has_more(const char *comment, const char *properties) {
+    while (*comment) {
+        if (comment == properties) {
+            bool quoted = comment[strlen("Properties=")] == '"';
+            comment += strlen("Properties=") + quoted;
+            comment += strcspn(comment, quoted ? "\"" : " \t");
+            comment += *comment == '"';
+        } else if (!ends_word(*comment)) {
+            return true;
+        } else {
+            comment++;
+        }
+    }
+    return false;
+}
+
 static brio_status plan(chemical_reader *r, const char *comment) {
     brio_status status = BRIO_OK;
     const char *properties = strstr(comment, "Properties=");
     BRIO_TRY(brio_builder_property(r->builder, "atomic_number", BRIO_SCALAR_UINT8));
     BRIO_TRY(brio_builder_property(r->builder, "radius", BRIO_SCALAR_FLOAT64));
+    if (has_more(comment, properties)) BRIO_TRY(brio_builder_leave_out(r->builder, "comment"));
     if (properties) {
         properties += strlen("Properties=");
         return parse_properties(r, properties + (*properties == '"'));
@@ -228,6 +247,7 @@ static brio_status plan_more(chemical_reader *r, const char *p) {
         const char *end = p;
         bool number = brio_parse_number(&end, &value) && ends_word(*end);
         snprintf(name, sizeof name, "column%zu", i + 1);
+        if (i >= 4 && !number) BRIO_TRY(brio_builder_leave_out(r->builder, name));
         if (i >= 4) BRIO_TRY(number ? add_property_columns(r, name, ROLE_NUMBER, 1) : add_column(r, ROLE_LEFT_OUT, 0));
         while (!ends_word(*p)) p++;
     }
@@ -312,6 +332,7 @@ static brio_status check_end(chemical_reader *r) {
     BRIO_TRY(brio_text_next_line(t));
     if (t->at && !is_count(t->at))
         return brio_text_expected(t, "the end of the file, or the number of atoms of a next frame");
+    if (t->at) BRIO_TRY(brio_builder_leave_out(r->builder, "further frames"));
 done:
     return status;
 }

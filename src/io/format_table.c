@@ -38,6 +38,12 @@ static const brio_format_row table[] = {
      .read = brio_vtk_read, /* begins as VTU */
      .write = brio_vtp_write,
      .colours = BRIO_COLOURS_8},
+    {{sizeof(brio_format_info), BRIO_FORMAT_VTK, "a legacy VTK file", "vtk", "vtk",
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 4096},
+     .starts = brio_vtk_legacy_starts,
+     .read = brio_vtk_legacy_read,
+     .write = brio_vtk_legacy_write,
+     .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_LAS, "a LAS file", "las", "las", POINTS | BRIO_HOLDS_BINARY, 0},
      .starts = brio_las_starts,
      .read = brio_las_read,

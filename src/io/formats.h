@@ -21,6 +21,7 @@ brio_status brio_ply_read(brio_stream *s, brio_builder *b);
 brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns);
 brio_status brio_obj_read(brio_stream *s, brio_builder *b);
 brio_status brio_off_read(brio_stream *s, brio_builder *b);
+brio_status brio_vtk_legacy_read(brio_stream *s, brio_builder *b);
 brio_status brio_vtk_read(brio_stream *s, brio_builder *b); /* VTU and VTP */
 brio_status brio_node_read(brio_stream *s, brio_builder *b);
 brio_status brio_las_read(brio_stream *s, brio_builder *b); /* LAZ, too */
@@ -41,6 +42,7 @@ brio_status brio_vtu_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
 brio_status brio_node_write(brio_output *out, const brio_write_job *job);
 brio_status brio_stl_write(brio_output *out, const brio_write_job *job);
+brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job);
 brio_status brio_glb_write(brio_output *out, const brio_write_job *job);
 brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
 
@@ -96,6 +98,7 @@ brio_status brio_check_single(brio_context *ctx, const char *path, const brio_me
 bool brio_ply_starts(const char *bytes, size_t size);
 bool brio_off_starts(const char *bytes, size_t size);
 bool brio_vtk_starts(const char *bytes, size_t size);
+bool brio_vtk_legacy_starts(const char *bytes, size_t size);
 bool brio_las_starts(const char *bytes, size_t size);
 bool brio_pcd_starts(const char *bytes, size_t size);
 bool brio_npy_starts(const char *bytes, size_t size);

@@ -1,7 +1,7 @@
 /* NPY files of NumPy: an array of rows, or of records with names.
  *
- * Rows have three or more numbers: x, y, z, and properties column4, column5, ... Records have fields x, y, z, all other
- * fields are properties. Integers of 64 bits become doubles. An array in Fortran's order is one column after the other.
+ * Rows have three or more numbers: x, y, z, and properties column4, column5, ... Records have fields x, y, z or X, Y, Z, or
+ * one field of three numbers such as xyz; all other fields of numbers are properties. Integers of 64 bits become doubles. An array in Fortran's order is one column after the other.
  *
  * Based on: NumPy enhancement proposal 1: a simple file format for NumPy arrays. 2007. */
 #include "base/memory.h"
@@ -21,13 +21,21 @@ bool brio_npy_starts(const char *bytes, size_t size) {
 
 /* --- reading --- */
 
+/* The letters of the coordinates' fields: PDAL writes X, Y, Z. */
+static const char *letters_of(const brio_npy_header *h) {
+    for (size_t i = 0; i < h->num_fields; i++)
+        if (h->fields[i].name[0] >= 'x' && h->fields[i].name[0] <= 'z' && !h->fields[i].name[1]) return "xyz";
+    return "XYZ";
+}
+
 static brio_status plan(brio_builder *b, brio_npy_header *h) {
     brio_status status = BRIO_OK;
+    const char *letters = letters_of(h);
     unsigned axes = 0;
     for (size_t i = 0; i < h->num_fields; i++) {
         brio_npy_field *f = &h->fields[i];
-        bool axis = f->name[0] >= 'x' && f->name[0] <= 'z' && !f->name[1];
-        f->axis = axis ? f->name[0] - 'x' : -1;
+        bool axis = f->name[0] >= letters[0] && f->name[0] <= letters[2] && !f->name[1];
+        f->axis = axis ? f->name[0] - letters[0] : -1;
         f->property = b->mesh->num_properties;
         BRIO_REQUIRE(b->ctx, !axis || !(axes & 1u << f->axis), BRIO_ERR_FORMAT, "%s: two fields named %s", b->name,
                      f->name);
@@ -36,13 +44,15 @@ static brio_status plan(brio_builder *b, brio_npy_header *h) {
         else
             BRIO_TRY(brio_builder_property(b, f->name, f->wide ? BRIO_SCALAR_FLOAT64 : f->type));
     }
+    for (size_t i = 0; i < h->num_passed; i++) BRIO_TRY(brio_builder_leave_out(b, h->passed[i]));
     BRIO_REQUIRE(b->ctx, axes == 7, BRIO_ERR_FORMAT, "%s: the records have no field %c", b->name, "xyxzxyx"[axes]);
 done:
     return status;
 }
 
-static void store(const brio_mesh *m, const brio_npy_field *f, size_t v, const char *bytes) {
+static void store(const brio_mesh *m, brio_npy_field *f, size_t v, const char *bytes) {
     double value = brio_npy_load(f, bytes);
+    f->rounded |= brio_npy_is_rounded(f, bytes);
     if (f->axis >= 0) {
         m->vertices[3 * v + (size_t)f->axis] = value;
         return;
@@ -51,7 +61,7 @@ static void store(const brio_mesh *m, const brio_npy_field *f, size_t v, const c
     brio_scalar_store((char *)p->data + v * brio_scalar_size(p->type), p->type, value);
 }
 
-static brio_status read_rows(brio_stream *s, brio_builder *b, const brio_npy_header *h) {
+static brio_status read_rows(brio_stream *s, brio_builder *b, brio_npy_header *h) {
     brio_status status = BRIO_OK;
     const char *bytes = NULL;
     for (; s->row < h->rows; s->row++) {
@@ -64,7 +74,7 @@ done:
     return status;
 }
 
-static brio_status read_columns(brio_stream *s, brio_builder *b, const brio_npy_header *h) {
+static brio_status read_columns(brio_stream *s, brio_builder *b, brio_npy_header *h) {
     brio_status status = BRIO_OK;
     const char *bytes = NULL;
     for (size_t i = 0; i < h->num_fields; i++)
@@ -89,6 +99,8 @@ brio_status brio_npy_read(brio_stream *s, brio_builder *b) {
     if (s->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(brio_builder_expect_vertices(b, h.rows));
     brio_stream_element(s, "row", h.rows);
     BRIO_TRY(h.fortran ? read_columns(s, b, &h) : read_rows(s, b, &h));
+    for (size_t i = 0; i < h.num_fields; i++)
+        if (h.fields[i].rounded) BRIO_TRY(brio_builder_leave_out(b, "integers beyond 2^53"));
 done:
     brio_npy_header_free(s->ctx, &h);
     return status;

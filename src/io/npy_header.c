@@ -5,14 +5,16 @@
 #include "base/memory.h"
 #include "io/limits.h"
 #include "io/little_endian.h"
+#include "base/utf8.h"
 #include "io/number.h"
 #include "io/scalar.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
-/* Chosen: the longest header, and the most numbers of a row. */
-enum { MOST_HEADER = 1 << 20 };
+/* Chosen: the longest header, and the longest row, whatever it has beside numbers. */
+enum { MOST_HEADER = 1 << 20, MOST_RECORD = 1 << 24 };
 
 typedef struct {
     brio_stream *stream;
@@ -86,10 +88,21 @@ size_t brio_npy_size(const brio_npy_field *f) {
     return f->wide ? 8 : brio_scalar_size(f->type);
 }
 
+static uint64_t wide_bits(const brio_npy_field *f, const char *bytes) {
+    return f->big ? __builtin_bswap64(brio_le64(bytes)) : brio_le64(bytes);
+}
+
+bool brio_npy_is_rounded(const brio_npy_field *f, const char *bytes) {
+    if (!f->wide) return false;
+    uint64_t bits = wide_bits(f, bytes);
+    if (f->type != BRIO_SCALAR_UINT32 && bits >> 63) bits = 0 - bits;
+    double value = (double)bits;
+    return value >= 0x1p64 || (uint64_t)value != bits;
+}
+
 double brio_npy_load(const brio_npy_field *f, const char *bytes) {
     if (!f->wide) return brio_scalar_load(bytes, f->type, f->big == brio_host_is_little());
-    uint64_t bits = brio_le64(bytes);
-    if (f->big) bits = __builtin_bswap64(bits);
+    uint64_t bits = wide_bits(f, bytes);
     return f->type == BRIO_SCALAR_UINT32 ? (double)bits : (double)(int64_t)bits;
 }
 
@@ -110,24 +123,82 @@ done:
     return status;
 }
 
+/* The bytes of a type that is no number of a property, such as <U8, |S4, <M8[ns] or <f2; 0 if they are not known. */
+static size_t size_of_other(const char *type) {
+    const char *digits = type + 2;
+    uint64_t count;
+    if (!type[0] || !strchr("<>|=", type[0]) || !type[1] || !strchr("SaUVMmfciu", type[1])) return 0;
+    if (!brio_parse_count(&digits, &count) || count > MOST_HEADER) return 0;
+    return (size_t)(type[1] == 'U' ? 4 * count : count);
+}
+
+/* Passes over a field that is no number. Padding has no name, and is not missed. */
+static brio_status pass_field(parser *p, brio_npy_header *h, const char *name, size_t bytes) {
+    brio_status status = BRIO_OK;
+    h->record += bytes;
+    if (h->record > MOST_RECORD) return expected(p, "before here records of at most 2^24 bytes");
+    if (!name[0]) return BRIO_OK;
+    if (h->num_passed == BRIO_MOST_NUMBERS) return expected(p, "at most 4096 fields of words");
+    BRIO_TRY(BRIO_RESERVE(p->stream->ctx, h->passed, h->passed_capacity, h->num_passed + 1));
+    memcpy(h->passed[h->num_passed++], name, sizeof *h->passed);
+done:
+    return status;
+}
+
+/* Adds the numbers of a field that is an array: x, y and z of positions, otherwise NAME_0, NAME_1, ... */
+static brio_status add_array(parser *p, brio_npy_header *h, const char *name, const char *type, uint64_t count) {
+    static const char *const positions[] = {"points", "vertices", "xyz", "positions", "position", "coordinates"};
+    brio_status status = BRIO_OK;
+    bool position = false;
+    for (size_t i = 0; i < sizeof positions / sizeof *positions; i++)
+        position |= count == 3 && !strcasecmp(name, positions[i]);
+    for (uint64_t k = 0; k < count; k++) {
+        char part[64] = {"xyz"[k % 3]};
+        if (!position && count > 1) brio_numbered_name(part, sizeof part, name, (size_t)k);
+        BRIO_TRY(add_field(p, h, position || count > 1 ? part : name, type));
+    }
+done:
+    return status;
+}
+
+/* Reads the shape of a field, (3,), (2, 2) or 3, as the number of its elements. */
+static brio_status take_elements(parser *p, uint64_t *count) {
+    uint64_t length;
+    bool several = take(p, '(');
+    take(p, ' ');
+    for (*count = 1; !take(p, ')'); take(p, ','), take(p, ' ')) {
+        if (!brio_parse_count(&p->at, &length) || length > MOST_HEADER) return expected(p, "a length of a dimension");
+        *count *= length;
+        if (*count > MOST_HEADER) return expected(p, "before here fewer elements of a field");
+        if (!several) break;
+    }
+    return BRIO_OK;
+}
+
 /* Reads [('x', '<f8'), ...]. Names are Latin-1 in versions 1.0 and 2.0, UTF-8 in 3.0 and as brio 0.1 wrote them: builder.h takes
- * either. A field without a name is padding in NumPy, which writes it as bytes '|V4'. */
+ * either. A field without a name is padding in NumPy, which writes it as bytes '|V4'. A field with a title has both as a pair. */
 static brio_status take_records(parser *p, brio_npy_header *h) {
     brio_status status = BRIO_OK;
     char name[64], type[64];
-    uint64_t bytes;
+    brio_npy_field number;
     while (!take(p, ']')) {
+        uint64_t count = 1;
         if (!take(p, '(')) return expected(p, "( or ] in the list of fields");
+        bool titled = take(p, '(');
         BRIO_TRY(take_string(p, name));
         if (!take(p, ',')) return expected(p, "a comma");
+        if (titled) BRIO_TRY(take_string(p, name));
+        if (titled && !(take(p, ')') && take(p, ','))) return expected(p, ") and a comma behind title and name");
         BRIO_TRY(take_string(p, type));
-        if (!take(p, ')')) return expected(p, ") behind the type: fields of several numbers are not read");
+        if (take(p, ',')) BRIO_TRY(take_elements(p, &count));
+        if (!take(p, ')')) return expected(p, ") behind the type and the shape of a field");
         take(p, ',');
-        const char *digits = type + 2;
-        if (!strncmp(type, "|V", 2) && brio_parse_count(&digits, &bytes) && bytes < MOST_HEADER)
-            h->record += (size_t)bytes;
+        if (find_type(type, &number))
+            BRIO_TRY(add_array(p, h, name, type, count));
+        else if (size_of_other(type))
+            BRIO_TRY(pass_field(p, h, name, size_of_other(type) * (size_t)count));
         else
-            BRIO_TRY(add_field(p, h, name, type));
+            return expected(p, "before here a type < > or | with b1 i1 u1 i2 u2 i4 u4 i8 u8 f4 f8, or of words");
     }
 done:
     return status;
@@ -292,5 +363,7 @@ done:
 
 void brio_npy_header_free(brio_context *ctx, brio_npy_header *h) {
     brio_release(ctx, h->fields);
+    brio_release(ctx, h->passed);
     h->fields = NULL;
+    h->passed = NULL;
 }

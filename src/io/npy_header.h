@@ -12,6 +12,7 @@ typedef struct brio_npy_field {
     size_t at; /* byte in a record */
     int axis;  /* set by the reader, with the property */
     size_t property;
+    bool rounded; /* set by the reader: whether an integer is beyond 2^53, where doubles have gaps */
 } brio_npy_field;
 
 typedef struct brio_npy_header {
@@ -20,6 +21,9 @@ typedef struct brio_npy_header {
     size_t record;
     uint64_t rows;
     bool fortran;
+    char (
+        *passed)[64]; /* names of fields that are no numbers, such as words: they are in the records, not in `fields` */
+    size_t num_passed, passed_capacity;
 } brio_npy_header;
 
 /** Any array: of points or not. */
@@ -38,6 +42,8 @@ brio_status brio_npy_array_read(brio_stream *s, brio_npy_array *array);
 /** Returns the bytes of an element, and the element at an address as a double. */
 size_t brio_npy_size(const brio_npy_field *f);
 double brio_npy_load(const brio_npy_field *f, const char *bytes);
+/** Returns whether the element is an integer that no double has. */
+bool brio_npy_is_rounded(const brio_npy_field *f, const char *bytes);
 
 /** Reads the header of points. Call brio_npy_header_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */

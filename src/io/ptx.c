@@ -37,6 +37,9 @@ static brio_status read_scan_header(ptx_reader *r, uint64_t *points) {
     if (r->place[0] == 0 && r->place[1] == 0 && r->place[2] == 0)
         for (int k = 0; k < PLACE; k++) r->place[k] = r->matrix[12 + k]; /* some programs write the place there only */
     BRIO_TRY(brio_text_row_end(&r->text));
+    if (columns > 1 && rows > 1) BRIO_TRY(brio_builder_leave_out(r->builder, "order in rows"));
+    for (int i = 0; i < MATRIX; i++)
+        if (r->matrix[i] != (i % 5 == 0)) BRIO_TRY(brio_builder_leave_out(r->builder, "poses"));
     *points = columns * rows;
 done:
     return status;

@@ -1,7 +1,7 @@
 /* STL files: triangles as text or binary.
  *
- * The format has no vertices, only corners: corners at the same position become one vertex. Normals and attributes are
- * passed over. Written are single-precision coordinates and the normals of the triangles; polygons of more corners are
+ * The format has no vertices, only corners: corners at the same position become one vertex. Normals are passed
+ * over, since they follow from the corners. Written are single-precision coordinates and the normals of the triangles; polygons of more corners are
  * cut into triangles from their first corner.
  *
  * A binary file may begin with the word "solid", too: what decides is whether its size is that of the triangles that it
@@ -19,7 +19,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { HEADER = 84, COUNT_AT = 80, TRIANGLE = 50, CORNERS_AT = 12 };
+enum { HEADER = 84, COUNT_AT = 80, TRIANGLE = 50, CORNERS_AT = 12, ATTRIBUTE_AT = 48 };
 
 /* --- reading --- */
 
@@ -51,6 +51,7 @@ static brio_status read_binary(brio_stream *s, brio_builder *b, brio_weld *weld)
     brio_stream_element(s, "triangle", count);
     for (; s->row < count; s->row++) {
         BRIO_TRY(brio_stream_take(s, TRIANGLE, &bytes));
+        if (brio_le16(bytes + ATTRIBUTE_AT)) BRIO_TRY(brio_builder_leave_out(b, "attributes of faces"));
         brio_scalar_convert_triples(corners[0], bytes + CORNERS_AT, 3, CORNERS_AT, BRIO_SCALAR_FLOAT32,
                                     !brio_host_is_little());
         BRIO_TRY(add_triangle(b, weld, corners));
@@ -74,6 +75,12 @@ done:
     return status;
 }
 
+/* Notes that a solid has a name, which is the rest of its first line. The writer below knows no other than brio. */
+static brio_status note_name(brio_builder *b, const brio_text *t) {
+    const char *at = brio_skip_blanks(t->at);
+    return *at && strcmp(at, "brio") != 0 ? brio_builder_leave_out(b, "names of solids") : BRIO_OK;
+}
+
 static brio_status read_facet(brio_text *t, double corners[3][3]) {
     brio_status status = BRIO_OK;
     BRIO_TRY(expect_line(t, "outer loop"));
@@ -95,12 +102,15 @@ static brio_status read_text(brio_stream *s, brio_builder *b, brio_weld *weld) {
     bool ended = false;
     brio_stream_element(s, "triangle", 0);
     BRIO_TRY(expect_line(&t, "solid"));
+    BRIO_TRY(note_name(b, &t));
     for (;;) {
         BRIO_TRY(brio_text_next_line(&t));
         if (!t.at && ended) return BRIO_OK;
         bool ends = t.at && !strncasecmp(t.at, "endsolid", 8), begins = t.at && !strncasecmp(t.at, "solid", 5);
         if (ends || begins) {
             ended = ends;
+            if (begins) t.at += strlen("solid");
+            if (begins) BRIO_TRY(note_name(b, &t));
             continue;
         }
         if (!t.at || strncasecmp(t.at, "facet", 5) != 0) return brio_text_expected(&t, "facet or endsolid");

@@ -2,8 +2,10 @@
 
 import math
 import os
+import re
 import struct
 
+import whole_files
 from brio_cli import CliTest, main
 
 CUBES = [(x, y, z) for x in range(4) for y in range(4) for z in range(4)]
@@ -273,6 +275,7 @@ class Everything(LossTest):
            "TYPE F F F U F F F U U\nCOUNT 1 1 1 1 1 1 1 1 4\nWIDTH 1\nHEIGHT 2\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 2\n"
            "DATA ascii\n0 0 0 255 0 0 1 9007199254740993 1 1 1 1\n1 0 0 255 0 0 1 2 0 0 0 0\n")
     XYZ = "# x y z R G B Nx Ny Nz Intensity id label\n0 0 0 1 2 3 0 0 1 0.5 9007199254740993 wall\n"
+    VTK = ["time of the file", "wide", "label", "area of cells"]
     # format: the file, what stays as properties, what is named as left out
     FILES = {
         "ply": (PLY, ["red"], ["near", "textures", "flags of face", "texcoord of face", "region of tetrahedron",
@@ -282,14 +285,45 @@ class Everything(LossTest):
                  "lines", "#MRGB", "normals of corners"]),
         "off": (OFF, "nx ny nz red green blue alpha s t".split(), ["colours of faces"]),
         "pcd": (PCD, "red green blue nx ny nz stamp".split(), ["integers beyond 2^53", "viewpoint", "order in rows"]),
-        "xyz": (XYZ, "red green blue nx ny nz intensity id".split(), ["label"])}
+        "xyz": (XYZ, "red green blue nx ny nz intensity id".split(), ["label"]),
+        "e57": (whole_files.e57_of_everything(), "intensity red green blue row_index".split(),
+                ["images", "date of the file", "names of scans", "descriptions of scans", "sensors", "elements of extensions",
+                 "weather", "times", "groups of points", "spherical coordinates", "own:label", "poses"]),
+        "npy": (whole_files.npy_of_everything(), "red green blue id".split(), ["label", "time", "integers beyond 2^53"]),
+        "npz": (whole_files.npz_of_everything(), ["heat", "id"],
+                ["integers beyond 2^53", "words", "other", "files that are no arrays"]),
+        "glb": (whole_files.glb_of_everything(), "nx ny nz HEAT3_0 HEAT3_1 HEAT3_2 red green blue".split(),
+                ["other scenes", "materials", "textures", "animations", "skins", "cameras", "lights",
+                 "names of nodes and meshes", "morph targets", "texture coordinates", "further colours", "tangents"]),
+        "vtp": (whole_files.vtp_of_everything(), "red green blue nx ny nz heat".split(), VTK),
+        "vtu": (whole_files.vtu_of_everything(), "red green blue nx ny nz heat".split(),
+                VTK + ["cells of other types", "curved sides of cells"]),
+        "vtk": (whole_files.vtk_of_everything(), "heat|nx|ny|nz|my flow_0|my flow_1|my flow_2|red|green|blue|t_0|t_1".split("|"),
+                ["time of the file", "area of cells", "tables of colours", "label", "on", "wide", "cells of other types",
+                 "curved sides of cells"]),
+        "stl": (whole_files.stl_of_everything(), [], ["attributes of faces"]),
+        "ptx": ("2\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n" + "1 0 0 0.5 1 2 3\n" * 4,
+                "intensity red green blue".split(), ["order in rows", "poses"]),
+        "node": ("2 3 1 1\n1 0 0 0 5 1\n2 1 0 0 6 0\n", ["attribute1", "boundary_marker"], []),
+        "bnpts": (struct.pack("<6f", 1, 2, 3, 0, 0, 1), ["nx", "ny", "nz"], []),
+        "extxyz": ('1\nLattice="1 0 0 0 1 0 0 0 1" Properties=species:S:1:pos:R:3:name:S:1:charge:R:1 energy=2\nH 0 0 0 one 1.5\n',
+                   ["atomic_number", "radius", "charge"], ["name", "comment"])}
+    # what has another extension, but is the same; and formats whose own tests have such files
+    SAME = {"gltf": "glb", "ele": "node", "chemical": "extxyz", "pts": "xyz", "txt": "xyz", "csv": "xyz", "asc": "xyz",
+            "xyzrgb": "xyz", "xyzn": "xyz", "tsv": "xyz", "dat": "xyz"}
+    ELSEWHERE = {"las", "laz"}
+
+    def test_there_is_a_file_for_every_format(self):
+        text = self.expect(0, "info", "--help").text
+        read = set(re.findall(r"\.(\w+)", text.split("reads:")[1].split("\n\n")[0]))
+        self.assertEqual(read - self.ELSEWHERE, set(self.FILES) | set(self.SAME))
 
     def test_what_is_not_read_is_named(self):
         for extension, (content, kept, left_out) in self.FILES.items():
             name = self.file("all." + extension, content)
             facts = self.facts("info", name)
             self.assertEqual(list(facts["properties"]), kept, extension)
-            self.assertEqual(sorted(facts["left_out"]), sorted(left_out), extension)
+            self.assertEqual(sorted(facts.get("left_out", [])), sorted(left_out), extension)
             run = self.facts("convert", name, self.path("out.ply"), "--quiet")
             self.assertEqual(sorted(set(run["lost"]) - {"colour depth", "precision"}), sorted(left_out), extension)
 

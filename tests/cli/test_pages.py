@@ -86,7 +86,7 @@ class Bash(PagesTest):
         self.assertEqual(self.complete("surface", "a.ply", "--method", "="), names)
         self.assertEqual(self.complete("medial", "--sides", "o"), ["outer"])
         self.assertEqual(self.complete("generate", "so"), ["solid"])
-        self.assertEqual(self.complete("alpha", "x.ply", "--format", "vt"), ["vtp", "vtu"])
+        self.assertEqual(self.complete("alpha", "x.ply", "--format", "vt"), ["vtk", "vtp", "vtu"])
         self.assertEqual(self.complete("surface", "--theta", ""), [])
 
     def test_files_by_extension(self):

@@ -135,6 +135,47 @@ class VtkTest(VtkFileTest):
                     writer.Write()
                     self.check(self.read_mesh("a." + extension), kept, f"{extension} {real} {what}")
 
+    def test_legacy_read(self):
+        from vtk import vtkPolyDataWriter, vtkUnstructuredGridWriter
+        for make, kind in ((self.poly_data, vtkPolyDataWriter), (self.grid, vtkUnstructuredGridWriter)):
+            for real, mode, version in itertools.product(("f4", "f8"), ("ASCII", "Binary"), (42, 51)):
+                grid, kept = make(1000, real)
+                writer = kind()
+                writer.SetInputData(grid)
+                getattr(writer, "SetFileTypeTo" + mode)()
+                writer.SetFileVersion(version)
+                writer.SetFileName(self.path("a.vtk"))
+                writer.Write()
+                if mode == "Binary":
+                    self.check(self.read_mesh("a.vtk"), kept, f"{real} {version}")
+                else:  # VTK writes fewer digits than the numbers have
+                    mesh = self.read_mesh("a.vtk")
+                    self.assertTrue(numpy.allclose(ply_mesh.points(mesh), kept["points"]))
+                    self.expect_column(mesh, "e", kept["e"])
+                    self.assertEqual(mesh.get("face", []), kept["faces"], version)
+
+    def test_legacy_write(self):
+        from vtk import vtkUnstructuredGridReader
+        from vtk.util.numpy_support import vtk_to_numpy
+        columns = self.random.standard_normal((300, 4))
+        numpy.savetxt(self.path("a.csv"), columns, "%.17g", ",", header="x,y,z,h", comments="")
+        for command, kind, options in itertools.product(("delaunay", "hull"), (10, 5), ([], ["--ascii"])):
+            if (command == "delaunay") != (kind == 10):
+                continue
+            self.brio(command, self.path("a.csv"), "-o", self.path("b.vtk"), *options)
+            self.brio(command, self.path("a.csv"), "-o", self.path("b.vtu"), *options)
+            reader = vtkUnstructuredGridReader()
+            reader.SetFileName(self.path("b.vtk"))
+            reader.ReadAllFieldsOn()
+            reader.Update()
+            found, expected = reader.GetOutput(), self.read_by_vtk("b.vtu")
+            self.expect_equal(vtk_to_numpy(found.GetPoints().GetData()), vtk_to_numpy(expected.GetPoints().GetData()), command)
+            self.expect_equal(vtk_to_numpy(found.GetPointData().GetArray("h")),
+                              vtk_to_numpy(expected.GetPointData().GetArray("h")), command)
+            self.assertEqual({found.GetCellType(i) for i in range(found.GetNumberOfCells())}, {kind})
+            self.expect_equal(vtk_to_numpy(found.GetCells().GetConnectivityArray()),
+                              vtk_to_numpy(expected.GetCells().GetConnectivityArray()), command)
+
     def test_pieces(self):
         """What VTK reads of a file of several pieces."""
         from vtk import vtkXMLPolyDataReader
@@ -268,6 +309,13 @@ class MeshioVtuTest(VtkFileTest):
             self.assertEqual(found["face"], [[0, 1, 2], [0, 1, 2, 3]])
             self.assertEqual(found["tetrahedron"], self.CELLS["tetra"])
             self.assertEqual(ply_mesh.edges(found), [[4, 5]])
+        for form, binary in itertools.product(("vtk42", "vtk51"), (False, True)):
+            meshio.write(self.path("a.vtk"), mesh, file_format=form, binary=binary)
+            found = self.read_mesh("a.vtk")
+            self.assertTrue(numpy.allclose(ply_mesh.points(found), points), form)
+            self.assertTrue(numpy.allclose(found["vertex"]["vector_2"], points[:, 2] * 3), form)
+            self.assertEqual(found["face"], [[0, 1, 2], [0, 1, 2, 3]])
+            self.assertEqual(found["tetrahedron"], self.CELLS["tetra"])
         meshio.vtu.write(self.path("a.vtu"), mesh, compression="lzma")
         self.refused("a.vtu", "vtkLZMADataCompressor")
 
@@ -281,6 +329,13 @@ class MeshioVtuTest(VtkFileTest):
             self.expect_equal(found.points, columns[:, :3], way)
             self.expect_equal(found.point_data["h"].ravel(), columns[:, 3], way)
             self.assertEqual(list(found.cells_dict), ["tetra"])
+            if way == "compressed":
+                continue
+            self.brio("convert", self.path("b.vtu"), "-o", self.path("b.vtk"), *options)
+            legacy = meshio.read(self.path("b.vtk"))
+            self.expect_equal(legacy.points, found.points, way)
+            self.expect_equal(legacy.point_data["h"].ravel(), columns[:, 3], way)
+            self.expect_equal(legacy.cells_dict["tetra"], found.cells_dict["tetra"], way)
 
 
 if __name__ == "__main__":

@@ -175,8 +175,14 @@ static void poses_turn_and_move(void) {
     m = e57_read_right("a.e57");
     EXPECT(m && io_same_bytes(m->vertices, (double[]){0.1, 1e-300, -0.0}, 24), "the identity changes nothing");
     brio_mesh_free(m);
-    e57_write_scan("a.e57", fields, 3, 1, POSE("0", "0", "0", "0", ""));
-    e57_refused("a.e57", BRIO_ERR_FORMAT, "scan 0 (counted from 0): the quaternion 0 0 0 0 is no rotation");
+    e57_write_scan("a.e57", fields, 3, 1, POSE("0", "0", "0", "0", "<x>10</x>"));
+    m = e57_read_right("a.e57");
+    expect_point(m, 0, 10.1, 0, 0, 1e-14);
+    brio_mesh_free(m);
+    e57_write_scan("a.e57", fields, 3, 1, POSE("0", "0", "0", "1e200", ""));
+    m = e57_read_right("a.e57");
+    expect_point(m, 0, -0.1, 0, 0, 1e-14);
+    brio_mesh_free(m);
     e57_write_scan("a.e57", fields, 3, 1, POSE("1", "nan", "0", "0", ""));
     e57_refused("a.e57", BRIO_ERR_FORMAT, "expected a finite number");
     e57_write_scan("a.e57", fields, 3, 1, POSE("1", "0", "0", "0", "<x>1 2</x>"));

@@ -16,8 +16,11 @@ static void errors_of_tags(void) {
     io_expect_error("a.vtu", "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\">", BRIO_ERR_FORMAT,
                     "UnstructuredGrid or PolyData");
     io_expect_error("a.vtu", "<VTKFile type=\"PolyData\">", BRIO_ERR_FORMAT, "byte_order");
-    io_expect_error("a.vtu", VTU_TAG " compressor=\"vtkLZ4DataCompressor\">", BRIO_ERR_FORMAT,
-                    "compressed by vtkLZ4DataCompressor");
+    io_expect_error("a.vtu",
+                    VTU_TAG " compressor=\"vtkLZ4DataCompressor\"><Piece NumberOfPoints=\"1\" "
+                            "NumberOfCells=\"0\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+                            "format=\"binary\">AAAA</DataArray>",
+                    BRIO_ERR_FORMAT, "compressed by vtkLZ4DataCompressor");
     io_expect_error("a.vtu", VTU_TAG "><Piece NumberOfPoints=\"x\" NumberOfCells=\"0\">", BRIO_ERR_FORMAT,
                     "a number NumberOfPoints, found \"x\"");
     io_expect_error("a.vtu", VTU_TAG "><Piece NumberOfPoints=\"1\">", BRIO_ERR_FORMAT, "a number NumberOfCells");
@@ -216,6 +219,60 @@ static void as_many_cells_as_no_array_has_are_refused(void) {
                     BRIO_ERR_FORMAT, "a number NumberOfPolys, found \"18446744073709551615\"");
 }
 
+static const char legacy_text[] =
+    "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n"
+    "LINES 1 3\n2 0 1\nPOINT_DATA 3\nSCALARS a%20b short\nLOOKUP_TABLE t\n1 2 3\nFIELD f 1\nlabel 1 3 "
+    "string\na\nb\nc\n";
+
+#define TEXT(text)                                                                                                     \
+    { text, sizeof text - 1 }
+
+/* A grid in binary, with what is passed over: texts with their lengths, and bits. */
+static size_t make_legacy(char *to) {
+    static const char start[] = "# vtk DataFile Version 5.1\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n";
+    static const uint8_t points[36] = {[12] = 0x3f, [13] = 0x80, [28] = 0x3f, [29] = 0x80};
+    static const uint8_t offsets[16] = {[15] = 3}, corners[24] = {[15] = 1, [23] = 2}, types[4] = {[3] = 5};
+    const struct {
+        const void *bytes;
+        size_t size;
+    } parts[] = {{start, sizeof start - 1},
+                 {points, sizeof points},
+                 TEXT("\nCELLS 2 3\nOFFSETS vtktypeint64\n"),
+                 {offsets, sizeof offsets},
+                 TEXT("\nCONNECTIVITY vtktypeint64\n"),
+                 {corners, sizeof corners},
+                 TEXT("\nCELL_TYPES 1\n"),
+                 {types, sizeof types},
+                 TEXT("\nPOINT_DATA 3\nFIELD f 2\nlabel 1 3 string\n"),
+                 TEXT("\xc1x\xc2yz\xc0\n"),
+                 TEXT("on 1 3 bit\n\xa0\n")};
+    size_t size = 0;
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        memcpy(to + size, parts[i].bytes, parts[i].size);
+        size += parts[i].size;
+    }
+    return size;
+}
+
+static void every_prefix_and_changed_byte_of_legacy_files(void) {
+    uint64_t state = 5;
+    for (int k = 0; k < 2; k++) {
+        char bytes[1024];
+        size_t size = k ? make_legacy(bytes) : sizeof legacy_text - 1;
+        if (!k) memcpy(bytes, legacy_text, size);
+        brio_mesh *m = io_expect_sane("a.vtk", bytes, size, "whole", 0);
+        EXPECT(m && m->num_vertices == 3 && m->num_faces == 1, "form %d", k);
+        brio_mesh_free(m);
+        for (size_t n = 0; n < size; n++) brio_mesh_free(io_expect_sane("a.vtk", bytes, n, "prefix", n));
+        for (size_t i = 0; i < 8 * size; i++) {
+            char old = bytes[i / 8];
+            bytes[i / 8] = i % 2 ? (char)(old ^ 1 << io_random(&state) % 8) : (char)io_random(&state);
+            brio_mesh_free(io_expect_sane("a.vtk", bytes, size, "byte", i));
+            bytes[i / 8] = old;
+        }
+    }
+}
+
 SUITE(test_io_vtk_hostile) {
     io_begin();
     RUN(errors_of_tags);
@@ -226,5 +283,6 @@ SUITE(test_io_vtk_hostile) {
     RUN(errors_of_cells);
     RUN(as_many_cells_as_no_array_has_are_refused);
     RUN(bomb_is_held_against_the_limit);
+    RUN(every_prefix_and_changed_byte_of_legacy_files);
     return io_end();
 }

@@ -70,10 +70,21 @@ static void store_doubles(char *to, size_t stride, const brio_e57_code *code, co
     }
 }
 
+/* Stores whether values are not 0, of any kind. */
+static void store_tests(char *to, size_t stride, const brio_e57_code *code, const uint64_t *numbers, size_t count) {
+    double values[BLOCK] = {0};
+    store_doubles((char *)values, sizeof *values, code, numbers, count);
+    for (size_t i = 0; i < count; i++) to[i * stride] = values[i] != 0;
+}
+
 /* Stores integers in a type that holds them, and floats in their own type. */
 static void store(const brio_e57_decoder *d, char *to, const uint64_t *numbers, size_t count) {
     int64_t least = d->code.least;
     size_t stride = d->stride;
+    if (d->tests) {
+        store_tests(to, stride, &d->code, numbers, count);
+        return;
+    }
     switch (d->type) {
     case BRIO_SCALAR_INT8:
     case BRIO_SCALAR_UINT8:
@@ -94,7 +105,19 @@ static void store(const brio_e57_decoder *d, char *to, const uint64_t *numbers, 
     }
 }
 
+/* Returns whether no double has one of the integers. */
+static bool some_are_rounded(const brio_e57_code *code, const uint64_t *numbers, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        int64_t value = integer_of(numbers[i], code->least);
+        uint64_t size = value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+        if ((uint64_t)(double)size != size) return true; /* at most 2^63, so that the way back is defined */
+    }
+    return false;
+}
+
 static void put(brio_e57_decoder *d, const uint64_t *numbers, size_t count) {
+    if (d->target && d->type == BRIO_SCALAR_FLOAT64 && d->code.kind == BRIO_E57_INTEGER)
+        d->rounded |= some_are_rounded(&d->code, numbers, count);
     if (d->target) store(d, d->target + d->done * d->stride, numbers, count);
     d->done += count;
 }

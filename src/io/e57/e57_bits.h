@@ -24,8 +24,10 @@ typedef struct brio_e57_code {
 typedef struct brio_e57_decoder {
     brio_e57_code code;
     brio_scalar type; /* of the target */
+    bool tests;       /* stores 1 for each value that is not 0, in place of the value; the type is UINT8 */
     char *target;     /* NULL: values are passed over */
     size_t stride;    /* bytes */
+    bool rounded;     /* whether an integer was one that no double has */
     uint64_t done, count;
     uint64_t carry; /* the first `carried` bits of a number whose rest is not there yet */
     unsigned carried;

@@ -9,10 +9,12 @@
 #include <math.h>
 #include <string.h>
 
-bool brio_e57_pose_make(brio_e57_pose *pose, const brio_e57_scan *scan) {
-    const double *q = scan->rotation, *t = scan->translation;
+void brio_e57_pose_make(brio_e57_pose *pose, const brio_e57_scan *scan) {
+    const double *t = scan->translation;
+    double q[4] = {1, 0, 0, 0}, largest = 0;
+    for (int k = 0; k < 4; k++) largest = fmax(largest, fabs(scan->rotation[k]));
+    for (int k = 0; k < 4 && largest > 0; k++) q[k] = scan->rotation[k] / largest; /* no square is too large then */
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!(length > 0) || !isfinite(length)) return false;
     double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
     *pose = (brio_e57_pose){.matrix = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
                                        2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
@@ -20,7 +22,6 @@ bool brio_e57_pose_make(brio_e57_pose *pose, const brio_e57_scan *scan) {
                             .turns = x != 0 || y != 0 || z != 0,
                             .moves = t[0] != 0 || t[1] != 0 || t[2] != 0};
     memcpy(pose->translation, t, sizeof pose->translation);
-    return true;
 }
 
 void brio_e57_from_spherical(double *points, size_t num_points) {

@@ -9,8 +9,8 @@ typedef struct brio_e57_pose {
     bool turns, moves; /* whether it does anything */
 } brio_e57_pose;
 
-/** Makes the pose of a scan. Returns false if its quaternion is 0 or not finite. */
-bool brio_e57_pose_make(brio_e57_pose *pose, const brio_e57_scan *scan);
+/** Makes the pose of a scan, whose numbers are finite. A quaternion of 0, which some programs write, is no turn. */
+void brio_e57_pose_make(brio_e57_pose *pose, const brio_e57_scan *scan);
 
 /** Turns range, azimuth and elevation into x, y, z.   points  #P by 3, changed in place. */
 void brio_e57_from_spherical(double *points, size_t num_points);

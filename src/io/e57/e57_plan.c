@@ -147,11 +147,7 @@ static brio_status plan_axes(planner *l, size_t scan) {
                  "sphericalRange, Azimuth and Elevation",
                  l->builder->name, scan);
     for (uint32_t k = 0; k < 3; k++) l->plan->roles[found[k] - l->scans->fields] = BRIO_E57_AXIS + k;
-    if (!found[3]) return BRIO_OK;
-    BRIO_REQUIRE(l->builder->ctx, found[3]->code.kind == BRIO_E57_INTEGER && found[3]->code.bits <= 8, BRIO_ERR_FORMAT,
-                 "%s: scan %zu (counted from 0): %s, expected integers of at most 8 bits", l->builder->name, scan,
-                 found[3]->name);
-    l->plan->roles[found[3] - l->scans->fields] = BRIO_E57_INVALID;
+    if (found[3]) l->plan->roles[found[3] - l->scans->fields] = BRIO_E57_INVALID;
 done:
     return status;
 }
@@ -166,7 +162,14 @@ static brio_status plan_scan(planner *l, size_t scan) {
     BRIO_TRY(plan_axes(l, scan));
     for (size_t i = s->first_field; i < s->first_field + s->num_fields; i++) {
         const brio_e57_field *field = &l->scans->fields[i];
-        if (!field->text && !is_coordinate(field->name)) BRIO_TRY(plan_column(l, scan, field, &l->plan->roles[i]));
+        bool other = !strncmp(field->name, l->plan->spherical[scan] ? "cartesian" : "spherical", 9);
+        if (field->text)
+            BRIO_TRY(brio_builder_leave_out(l->builder, field->name));
+        else if (other)
+            BRIO_TRY(brio_builder_leave_out(l->builder, l->plan->spherical[scan] ? "cartesian coordinates"
+                                                                                 : "spherical coordinates"));
+        else if (!is_coordinate(field->name))
+            BRIO_TRY(plan_column(l, scan, field, &l->plan->roles[i]));
     }
 done:
     return status;

@@ -14,6 +14,7 @@ static const char *find(const char *const *attributes, const char *name) {
     return NULL;
 }
 
+/* Some programs write 0.0 for 0. */
 static bool take_integer(const char *const *attributes, const char *name, int64_t *value, char *reason) {
     const char *text = find(attributes, name), *at = text;
     uint64_t size;
@@ -22,6 +23,12 @@ static bool take_integer(const char *const *attributes, const char *name, int64_
     at += *at == '-' || *at == '+';
     if (brio_parse_count(&at, &size) && !*at && size <= (uint64_t)INT64_MAX + negative) {
         *value = (int64_t)(negative ? 0 - size : size);
+        return true;
+    }
+    double real;
+    at = text;
+    if (brio_parse_number(&at, &real) && !*at && real == floor(real) && real >= -0x1p63 && real < 0x1p63) {
+        *value = (int64_t)real;
         return true;
     }
     snprintf(reason, BRIO_E57_REASON, "%s \"%.64s\", expected a whole number of 64 bits", name, text);

@@ -14,6 +14,7 @@
 #include "io/scalar.h"
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct {
@@ -31,6 +32,39 @@ bool brio_e57_starts(const char *bytes, size_t size) {
     return size >= 8 && !memcmp(bytes, "ASTM-E57", 8);
 }
 
+static int compare_places(const void *a, const void *b) {
+    uint64_t i = *(const uint64_t *)a, j = *(const uint64_t *)b;
+    return (i > j) - (i < j);
+}
+
+/* Ends the sections whose length is not known at the next section behind them, or at the XML section, or at the file's end. */
+static brio_status end_sections(e57_reader *r) {
+    brio_status status = BRIO_OK;
+    size_t count = 0, num_scans = r->scans.num_scans;
+    uint64_t *places = NULL;
+    BRIO_TRY(BRIO_ALLOC(r->builder->ctx, places, num_scans + 1));
+    for (size_t i = 0; i < num_scans; i++)
+        if (r->scans.scans[i].records) places[count++] = r->sections[i].begin;
+    places[count++] = r->pages.xml;
+    qsort(places, count, sizeof *places, compare_places);
+    for (size_t i = 0; i < num_scans; i++) {
+        brio_e57_section *s = &r->sections[i];
+        if (!s->endless) continue;
+        size_t low = 0, high = count;
+        while (low < high) {
+            size_t middle = (low + high) / 2;
+            if (places[middle] > s->begin)
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        s->end = low < count ? places[low] : brio_e57_size(&r->pages);
+    }
+done:
+    brio_release(r->builder->ctx, places);
+    return status;
+}
+
 /* Finds and checks all sections, and makes room for their points. Sections may not lie upon one another: together they
  * are not longer than the file. */
 static brio_status open_sections(e57_reader *r) {
@@ -38,8 +72,11 @@ static brio_status open_sections(e57_reader *r) {
     brio_context *ctx = r->builder->ctx;
     uint64_t points = 0, bytes = 0;
     BRIO_TRY(BRIO_ALLOC(ctx, r->sections, r->scans.num_scans));
-    for (size_t i = 0; i < r->scans.num_scans; i++) {
+    for (size_t i = 0; i < r->scans.num_scans; i++)
         BRIO_TRY(brio_e57_section_open(&r->pages, &r->scans, i, &r->sections[i]));
+    BRIO_TRY(end_sections(r));
+    for (size_t i = 0; i < r->scans.num_scans; i++) {
+        BRIO_TRY(brio_e57_section_check(&r->pages, &r->scans, &r->sections[i]));
         points += r->scans.scans[i].records;
         bytes += r->sections[i].end - r->sections[i].begin;
         BRIO_REQUIRE(ctx, bytes <= brio_e57_size(&r->pages), BRIO_ERR_FORMAT,
@@ -63,6 +100,7 @@ static void aim(e57_reader *r, uint32_t role, brio_e57_decoder *d) {
         d->target = (char *)p->data + r->first * d->stride;
     } else if (role == BRIO_E57_INVALID) {
         d->type = BRIO_SCALAR_UINT8;
+        d->tests = true;
         d->stride = 1;
         d->target = (char *)r->invalid;
     } else if (role >= BRIO_E57_AXIS) {
@@ -99,6 +137,8 @@ static brio_status decode_scan(e57_reader *r, size_t scan) {
         aim(r, role, &r->decoders[i]);
     }
     BRIO_TRY(brio_e57_section_read(&r->pages, &r->sections[scan], fields, r->decoders, s->num_fields));
+    for (size_t i = 0; i < s->num_fields; i++)
+        if (r->decoders[i].rounded) BRIO_TRY(brio_builder_leave_out(r->builder, "integers beyond 2^53"));
 done:
     return status;
 }
@@ -109,9 +149,8 @@ static brio_status read_scan(e57_reader *r, size_t scan) {
     const brio_e57_scan *s = &r->scans.scans[scan];
     brio_e57_pose pose;
     if (!s->records) return BRIO_OK;
-    BRIO_REQUIRE(r->builder->ctx, brio_e57_pose_make(&pose, s), BRIO_ERR_FORMAT,
-                 "%s: scan %zu (counted from 0): the quaternion %g %g %g %g is no rotation", r->builder->name, scan,
-                 s->rotation[0], s->rotation[1], s->rotation[2], s->rotation[3]);
+    brio_e57_pose_make(&pose, s);
+    if (pose.turns || pose.moves) BRIO_TRY(brio_builder_leave_out(r->builder, "poses"));
     r->first = m->num_vertices;
     BRIO_TRY(brio_builder_add_vertices(r->builder, (size_t)s->records));
     BRIO_TRY(decode_scan(r, scan));
@@ -135,7 +174,7 @@ brio_status brio_e57_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     e57_reader r = {.builder = b};
     BRIO_TRY(brio_e57_pages_open(&r.pages, s));
-    BRIO_TRY(brio_e57_xml_read(&r.pages, &r.scans));
+    BRIO_TRY(brio_e57_xml_read(&r.pages, b, &r.scans));
     BRIO_TRY(brio_e57_plan_make(&r.plan, b, &r.scans));
     BRIO_TRY(brio_plan_origins(b));
     BRIO_TRY(open_sections(&r));

@@ -12,11 +12,14 @@
 enum { SECTION_HEADER = 32, POINTS_SECTION = 1 };
 enum { INDEX_PACKET = 0, DATA_PACKET = 1, EMPTY_PACKET = 2, PACKET_HEADER = 4, DATA_HEADER = 6 };
 
-static brio_status check_size(const brio_e57_pages *p, const brio_e57_scans *scans, const brio_e57_section *s,
-                              uint64_t bytes) {
+brio_status brio_e57_section_check(const brio_e57_pages *p, const brio_e57_scans *scans, const brio_e57_section *s) {
     brio_status status = BRIO_OK;
     const brio_e57_scan *scan = &scans->scans[s->scan];
-    uint64_t bits = 0, need;
+    uint64_t bits = 0, need, bytes = s->end - s->data;
+    if (!scan->records) return BRIO_OK;
+    BRIO_REQUIRE(p->stream->ctx, s->data >= s->begin + SECTION_HEADER && s->data <= s->end, BRIO_ERR_FORMAT,
+                 "%s: byte %" PRIu64 ": packets from byte %" PRIu64 " on, outside of their section", p->stream->name,
+                 scan->section + 16, brio_e57_physical(s->data));
     for (size_t i = 0; i < scan->num_fields; i++) bits += scans->fields[scan->first_field + i].code.bits;
     if (!bits) bits = 1; /* points that are all the same one; a packet is not worth more of them than of others */
     if (__builtin_mul_overflow(bits, scan->records, &need)) need = UINT64_MAX;
@@ -42,15 +45,12 @@ brio_status brio_e57_section_open(brio_e57_pages *p, const brio_e57_scans *scans
     BRIO_REQUIRE(s->ctx, id == POINTS_SECTION, BRIO_ERR_FORMAT,
                  "%s: byte %" PRIu64 ": a section of the kind %u, expected points (%d)", s->name, at, id,
                  POINTS_SECTION);
-    BRIO_REQUIRE(s->ctx, length >= SECTION_HEADER && length <= brio_e57_size(p) - out->begin, BRIO_ERR_FORMAT,
-                 "%s: byte %" PRIu64 ": a section of %" PRIu64 " bytes, expected %d to %" PRIu64, s->name, at + 8,
-                 length, SECTION_HEADER, brio_e57_size(p) - out->begin);
+    out->endless = length == 0 || length == SECTION_HEADER;
+    BRIO_REQUIRE(s->ctx, out->endless || (length > SECTION_HEADER && length <= brio_e57_size(p) - out->begin),
+                 BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": a section of %" PRIu64 " bytes, expected %d to %" PRIu64,
+                 s->name, at + 8, length, SECTION_HEADER, brio_e57_size(p) - out->begin);
     out->end = out->begin + length;
     BRIO_TRY(brio_e57_logical(p, "the packets of a scan", data, &out->data));
-    BRIO_REQUIRE(s->ctx, out->data >= out->begin + SECTION_HEADER && out->data <= out->end, BRIO_ERR_FORMAT,
-                 "%s: byte %" PRIu64 ": packets from byte %" PRIu64 " on, outside of their section", s->name, at + 16,
-                 data);
-    BRIO_TRY(check_size(p, scans, out, out->end - out->data));
 done:
     return status;
 }

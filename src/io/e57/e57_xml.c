@@ -36,6 +36,7 @@ typedef enum {
     ROTATION,
     TRANSLATION,
     NUMBER, /* an element whose text is a number of the pose */
+    SYSTEM, /* the text of the coordinate system */
     POINTS,
     PROTOTYPE,
     FIELD,
@@ -48,17 +49,53 @@ static const struct {
     place inside;
     const char *name; /* NULL: any */
     place is;
-} tree[] = {{OUTSIDE, "e57Root", ROOT}, {ROOT, "data3D", DATA3D},     {DATA3D, NULL, SCAN},
-            {SCAN, "pose", POSE},       {POSE, "rotation", ROTATION}, {POSE, "translation", TRANSLATION},
-            {ROTATION, "w", NUMBER},    {ROTATION, "x", NUMBER},      {ROTATION, "y", NUMBER},
-            {ROTATION, "z", NUMBER},    {TRANSLATION, "x", NUMBER},   {TRANSLATION, "y", NUMBER},
-            {TRANSLATION, "z", NUMBER}, {SCAN, "points", POINTS},     {POINTS, "prototype", PROTOTYPE},
-            {PROTOTYPE, NULL, FIELD},   {POINTS, "codecs", CODECS},   {CODECS, NULL, CODEC},
-            {CODEC, NULL, CODEC_PART}};
+} tree[] = {{OUTSIDE, "e57Root", ROOT},
+            {ROOT, "data3D", DATA3D},
+            {DATA3D, NULL, SCAN},
+            {SCAN, "pose", POSE},
+            {POSE, "rotation", ROTATION},
+            {POSE, "translation", TRANSLATION},
+            {ROTATION, "w", NUMBER},
+            {ROTATION, "x", NUMBER},
+            {ROTATION, "y", NUMBER},
+            {ROTATION, "z", NUMBER},
+            {TRANSLATION, "x", NUMBER},
+            {TRANSLATION, "y", NUMBER},
+            {TRANSLATION, "z", NUMBER},
+            {SCAN, "points", POINTS},
+            {POINTS, "prototype", PROTOTYPE},
+            {PROTOTYPE, NULL, FIELD},
+            {POINTS, "codecs", CODECS},
+            {CODECS, NULL, CODEC},
+            {CODEC, NULL, CODEC_PART},
+            {ROOT, "coordinateMetadata", SYSTEM}};
 enum { DEEPEST = 8 };
+
+/* Elements that the mesh has no place for, and what they are called. Those that follow from the points are not among them,
+ * nor are marks such as guid. */
+static const struct {
+    place inside;
+    const char *name, *what;
+} passed_over[] = {{ROOT, "images2D", "images"},
+                   {ROOT, "creationDateTime", "date of the file"},
+                   {SCAN, "name", "names of scans"},
+                   {SCAN, "description", "descriptions of scans"},
+                   {SCAN, "sensorVendor", "sensors"},
+                   {SCAN, "sensorModel", "sensors"},
+                   {SCAN, "sensorSerialNumber", "sensors"},
+                   {SCAN, "sensorHardwareVersion", "sensors"},
+                   {SCAN, "sensorSoftwareVersion", "sensors"},
+                   {SCAN, "sensorFirmwareVersion", "sensors"},
+                   {SCAN, "temperature", "weather"},
+                   {SCAN, "relativeHumidity", "weather"},
+                   {SCAN, "atmosphericPressure", "weather"},
+                   {SCAN, "acquisitionStart", "times"},
+                   {SCAN, "acquisitionEnd", "times"},
+                   {SCAN, "pointGroupingSchemes", "groups of points"}};
 
 typedef struct {
     brio_context *ctx;
+    brio_builder *builder;
     const char *name; /* of the file */
     XML_Parser parser;
     brio_e57_scans *scans;
@@ -69,6 +106,9 @@ typedef struct {
     double *number; /* receives the text of NUMBER */
     char text[TEXT];
     size_t length;
+    const char *pending; /* what the element that is passed over is called, once it has any content */
+    char *system;
+    size_t system_length, system_capacity;
 } xml_reader;
 
 /* --- failures --- */
@@ -176,6 +216,38 @@ static void begin_codec_part(xml_reader *r, const char *name) {
         REFUSE(r, "the codec %s is not known, expected bitPackCodec", name);
 }
 
+/* --- what is passed over --- */
+
+static const char *name_of_passed(place inside, const char *name) {
+    for (size_t i = 0; i < sizeof passed_over / sizeof *passed_over; i++)
+        if (passed_over[i].inside == inside && !strcmp(passed_over[i].name, name)) return passed_over[i].what;
+    return inside == ROOT || inside == SCAN ? strchr(name, ':') ? "elements of extensions" : NULL : NULL;
+}
+
+/* Notes the element that is passed over: it has an element or a text. */
+static void note_content(xml_reader *r) {
+    brio_status status = r->pending ? brio_builder_leave_out(r->builder, r->pending) : BRIO_OK;
+    r->pending = NULL;
+    if (status != BRIO_OK) fail(r, status);
+}
+
+static void take_system(xml_reader *r, const XML_Char *text, size_t length) {
+    brio_status status = BRIO_RESERVE(r->ctx, r->system, r->system_capacity, r->system_length + length);
+    if (status != BRIO_OK) {
+        fail(r, status);
+        return;
+    }
+    memcpy(r->system + r->system_length, text, length);
+    r->system_length += length;
+}
+
+static void end_system(xml_reader *r) {
+    brio_status status = BRIO_OK;
+    while (r->system_length && strchr(" \t\r\n", r->system[r->system_length - 1])) r->system_length--;
+    if (r->system_length) status = brio_mesh_set_metadata(r->builder->mesh, "crs.wkt", r->system, r->system_length);
+    if (status != BRIO_OK) fail(r, status);
+}
+
 /* --- expat's events --- */
 
 static void XMLCALL on_start(void *user, const XML_Char *full, const XML_Char **attributes) {
@@ -188,7 +260,9 @@ static void XMLCALL on_start(void *user, const XML_Char *full, const XML_Char **
         REFUSE(r, "the element %s, expected e57Root", name);
         return;
     }
+    note_content(r);
     if (is == OUTSIDE) {
+        if (!r->skipped) r->pending = name_of_passed(inside, name);
         if (++r->skipped > NESTED) REFUSE(r, "elements nested more than %d deep", NESTED);
         return;
     }
@@ -218,14 +292,19 @@ static void XMLCALL on_end(void *user, const XML_Char *name) {
     if (r->status != BRIO_OK) return;
     if (r->skipped) {
         r->skipped--;
+        r->pending = NULL;
         return;
     }
     if (r->path[r->depth] == NUMBER) end_number(r);
+    if (r->path[r->depth] == SYSTEM) end_system(r);
     r->depth--;
 }
 
 static void XMLCALL on_text(void *user, const XML_Char *text, int length) {
     xml_reader *r = user;
+    for (int i = 0; i < length && r->pending && r->status == BRIO_OK; i++)
+        if (!strchr(" \t\r\n", text[i])) note_content(r);
+    if (!r->skipped && r->path[r->depth] == SYSTEM && r->status == BRIO_OK) take_system(r, text, (size_t)length);
     if (r->skipped || r->path[r->depth] != NUMBER) return;
     for (int i = 0; i < length && r->length < TEXT - 1; i++) r->text[r->length++] = text[i];
 }
@@ -280,14 +359,34 @@ static brio_status stopped(const xml_reader *r) {
                      (unsigned long)XML_GetCurrentColumnNumber(r->parser), XML_ErrorString(error));
 }
 
+/* Some programs fill the section with zero bytes, which are no XML: finds its length without them. */
+static brio_status measure(brio_e57_pages *p, uint64_t *length) {
+    brio_status status = BRIO_OK;
+    *length = p->xml_length;
+    while (*length) {
+        const char *bytes = NULL;
+        size_t size = *length < PART ? (size_t)*length : PART;
+        BRIO_TRY(brio_e57_take(p, p->xml + *length - size, size, &bytes));
+        size_t used = size;
+        while (used && !bytes[used - 1]) used--;
+        *length -= size - used;
+        if (used) break;
+    }
+    BRIO_REQUIRE(p->stream->ctx, *length, BRIO_ERR_FORMAT, "%s: the XML section is empty", p->stream->name);
+done:
+    return status;
+}
+
 static brio_status parse(xml_reader *r, brio_e57_pages *p) {
     brio_status status = BRIO_OK;
-    for (uint64_t at = 0; at < p->xml_length;) {
+    uint64_t length = 0;
+    BRIO_TRY(measure(p, &length));
+    for (uint64_t at = 0; at < length;) {
         const char *bytes = NULL;
-        size_t size = p->xml_length - at < PART ? (size_t)(p->xml_length - at) : PART;
+        size_t size = length - at < PART ? (size_t)(length - at) : PART;
         BRIO_TRY(brio_e57_take(p, p->xml + at, size, &bytes));
         at += size;
-        if (XML_Parse(r->parser, bytes, (int)size, at == p->xml_length) != XML_STATUS_OK) return stopped(r);
+        if (XML_Parse(r->parser, bytes, (int)size, at == length) != XML_STATUS_OK) return stopped(r);
         XML_Index done = XML_GetCurrentByteIndex(r->parser);
         BRIO_REQUIRE(r->ctx, done < 0 || at - (uint64_t)done <= TAG, BRIO_ERR_FORMAT,
                      "%s: XML section, line %lu: a tag or comment of more than %d bytes", r->name,
@@ -297,10 +396,10 @@ done:
     return status;
 }
 
-brio_status brio_e57_xml_read(brio_e57_pages *p, brio_e57_scans *out) {
+brio_status brio_e57_xml_read(brio_e57_pages *p, brio_builder *b, brio_e57_scans *out) {
     brio_status status = BRIO_OK;
     brio_context *ctx = p->stream->ctx, *before = running;
-    xml_reader r = {.ctx = ctx, .name = p->stream->name, .scans = out};
+    xml_reader r = {.ctx = ctx, .builder = b, .name = p->stream->name, .scans = out};
     *out = (brio_e57_scans){.scans = NULL};
     running = ctx;
     BRIO_REQUIRE(ctx, p->xml_length && p->xml_length <= LONGEST, BRIO_ERR_FORMAT,
@@ -310,13 +409,15 @@ brio_status brio_e57_xml_read(brio_e57_pages *p, brio_e57_scans *out) {
     BRIO_TRY(parse(&r, p));
 done:
     if (r.parser) XML_ParserFree(r.parser);
+    brio_release(ctx, r.system);
     running = before;
     return status;
 }
 
 #else
 
-brio_status brio_e57_xml_read(brio_e57_pages *p, brio_e57_scans *out) {
+brio_status brio_e57_xml_read(brio_e57_pages *p, brio_builder *b, brio_e57_scans *out) {
+    (void)b;
     *out = (brio_e57_scans){.scans = NULL};
     return brio_fail(p->stream->ctx, BRIO_ERR_FORMAT,
                      "%s: this build of brio cannot read E57 files: it was built without the library expat",

@@ -2,6 +2,7 @@
 #ifndef BRIO_IO_E57_XML_H
 #define BRIO_IO_E57_XML_H
 
+#include "io/builder.h"
 #include "io/e57/e57_bits.h"
 #include "io/e57/e57_pages.h"
 
@@ -28,9 +29,10 @@ typedef struct brio_e57_scans {
     size_t num_scans, scan_capacity, num_fields, field_capacity;
 } brio_e57_scans;
 
-/** Reads the XML section. Call brio_e57_scans_free even if this fails.
+/** Reads the XML section. What it has besides points is noted in the builder; a coordinate system becomes the metadata
+ *  crs.wkt of its mesh. Call brio_e57_scans_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
-brio_status brio_e57_xml_read(brio_e57_pages *p, brio_e57_scans *out);
+brio_status brio_e57_xml_read(brio_e57_pages *p, brio_builder *b, brio_e57_scans *out);
 void brio_e57_scans_free(brio_context *ctx, brio_e57_scans *scans);
 
 #endif

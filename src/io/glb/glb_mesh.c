@@ -102,16 +102,33 @@ done:
     return status;
 }
 
+/* What an attribute that becomes no property is called. */
+static const char *name_of_other(const char *attribute) {
+    static const char *const names[][2] = {{"TEXCOORD_", "texture coordinates"},
+                                           {"COLOR_", "further colours"},
+                                           {"TANGENT", "tangents"},
+                                           {"JOINTS_", "skins"},
+                                           {"WEIGHTS_", "skins"}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (!strncmp(attribute, names[i][0], strlen(names[i][0]))) return names[i][1];
+    return attribute[0] ? attribute : "attribute without a name";
+}
+
 /* Notes the attributes of a primitive that become properties. */
 static brio_status note_primitive(builder *b) {
     brio_status status = BRIO_OK;
     brio_glb_column positions, c;
     const brio_glb_attribute *a = b->file->scene.attributes + b->primitive->attribute;
     BRIO_TRY(positions_of(b, &positions));
+    if (b->primitive->targets) BRIO_TRY(brio_builder_leave_out(b->builder, "morph targets"));
     for (size_t i = 0; i < b->primitive->attributes; i++) {
         bool normal = !strcmp(a[i].name, "NORMAL"), colour = !strcmp(a[i].name, "COLOR_0");
         bool own = a[i].name[0] == '_' && a[i].name[1];
-        if (!normal && !colour && !own) continue;
+        if (!normal && !colour && !own) {
+            if (strcmp(a[i].name, "POSITION") != 0)
+                BRIO_TRY(brio_builder_leave_out(b->builder, name_of_other(a[i].name)));
+            continue;
+        }
         BRIO_TRY(brio_glb_column_of(b->file, a[i].accessor, a[i].name, &c));
         BRIO_REQUIRE(b->file->ctx,
                      c.count >= positions.count && (!normal || c.components == 3) && (!colour || c.components >= 3),

@@ -1,4 +1,4 @@
-/* Reads glTF 2.0: GLB, a container of JSON and binary data, and .gltf, whose JSON holds its data.
+/* Reads glTF 2.0: GLB, a container of JSON and binary data, and .gltf, whose data are in the JSON or in files beside it.
  *
  * The chunks are read into memory; what they hold is looked at afterwards.
  *
@@ -81,8 +81,10 @@ brio_status brio_glb_read(brio_stream *s, brio_builder *b) {
         BRIO_TRY(read_container(s, &file, &json, &size));
     else
         BRIO_TRY(read_block(s, UINT64_MAX, &json, &size));
-    BRIO_TRY(brio_glb_scene_read(s->ctx, s->name, json, (size_t)size, &file.scene));
+    BRIO_TRY(brio_glb_scene_read(b, s->owned, json, (size_t)size, &file.scene));
     file.bytes = size + file.binary_size;
+    for (size_t i = 0; i < file.scene.num_buffers; i++)
+        if (file.scene.buffers[i].bytes) file.bytes += file.scene.buffers[i].size;
     BRIO_TRY(brio_glb_add_scene(&file, b));
 done:
     brio_glb_scene_free(s->ctx, &file.scene);

@@ -21,16 +21,16 @@ void brio_glb_scene_free(brio_context *ctx, brio_glb_scene *scene) {
 
 #ifndef BRIO_HAS_CJSON
 
-brio_status brio_glb_scene_read(brio_context *ctx, const char *name, const char *text, size_t size,
-                                brio_glb_scene *scene) {
-    (void)text, (void)size, (void)scene;
-    return brio_fail(ctx, BRIO_ERR_FORMAT, "%s: this brio was built without cJSON, which reads glTF files", name);
+brio_status brio_glb_scene_read(brio_builder *b, bool on_disk, const char *text, size_t size, brio_glb_scene *scene) {
+    (void)on_disk, (void)text, (void)size, (void)scene;
+    return brio_fail(b->ctx, BRIO_ERR_FORMAT, "%s: this brio was built without cJSON, which reads glTF files", b->name);
 }
 
 #else
 #include "io/base64.h"
+#include "io/glb/glb_uri.h"
 #include "io/glb/json.h"
-#include "io/textrow.h"
+#include "io/limits.h"
 #include <math.h>
 #include <string.h>
 
@@ -39,7 +39,10 @@ brio_status brio_glb_scene_read(brio_context *ctx, const char *name, const char 
 
 typedef struct {
     brio_context *ctx;
+    brio_builder *builder;
     const char *name;
+    bool on_disk;
+    size_t files; /* buffers in other files */
     const brio_json *root;
     brio_glb_scene *scene;
     size_t attribute_capacity, primitive_capacity, child_capacity;
@@ -90,14 +93,15 @@ static brio_status numbers(const reader *r, const brio_json *object, const char 
 
 /* --- buffers, views, accessors --- */
 
-static brio_status read_uri(const reader *r, const char *uri, brio_glb_buffer *buffer) {
+static brio_status read_uri(reader *r, const char *uri, brio_glb_buffer *buffer) {
     brio_status status = BRIO_OK;
     static const char mark[] = ";base64,";
     const char *data = !strncmp(uri, "data:", 5) ? strstr(uri, mark) : NULL;
     size_t size = 0;
-    BRIO_REQUIRE(r->ctx, data, BRIO_ERR_FORMAT,
-                 "%s: buffers[%zu] is in another file, %s: expected a .glb, which holds its data, or data in the JSON",
-                 r->name, r->item, brio_excerpt_of(uri).text);
+    if (!data) {
+        BRIO_TRY(brio_limit_elements(r->ctx, r->name, 0, ++r->files));
+        return brio_glb_load(r->ctx, r->name, r->on_disk, uri, r->item, buffer);
+    }
     data += strlen(mark);
     BRIO_TRY(BRIO_ALLOC(r->ctx, buffer->bytes, strlen(data) / 4 * 3));
     if (!brio_base64_decode(data, strlen(data), (uint8_t *)buffer->bytes, &size)) return bad(r, "uri", "base64");
@@ -185,6 +189,7 @@ static brio_status read_primitive(reader *r, const brio_json *item) {
     p.mode = (brio_glb_mode)mode;
     BRIO_TRY(index_of(r, item, "indices", &p.indices));
     p.draco = brio_json_get(brio_json_get(item, "extensions"), "KHR_draco_mesh_compression") != NULL;
+    p.targets = brio_json_first(brio_json_get(item, "targets")) != NULL;
     BRIO_TRY(read_attributes(r, brio_json_get(item, "attributes"), &p));
     BRIO_TRY(BRIO_RESERVE(r->ctx, r->scene->primitives, r->primitive_capacity, r->scene->num_primitives + 1));
     r->scene->primitives[r->scene->num_primitives++] = p;
@@ -266,6 +271,7 @@ static brio_status read_roots(reader *r) {
     r->list = "scenes";
     r->item = 0;
     BRIO_TRY(whole(r, r->root, "scene", 0, &number));
+    if (scene && brio_json_next(scene)) BRIO_TRY(brio_builder_leave_out(r->builder, "other scenes"));
     for (; scene && number; number--) scene = brio_json_next(scene);
     const brio_json *nodes = brio_json_get(scene, "nodes"), *item = brio_json_first(nodes);
     BRIO_TRY(BRIO_ALLOC(r->ctx, s->roots, scene ? length_of(nodes) : s->num_nodes));
@@ -324,6 +330,27 @@ done:
     return status;
 }
 
+/* Notes the lists of the root that become nothing. */
+static brio_status note_left_out(const reader *r) {
+    static const char *const lists[][2] = {{"materials", "materials"}, {"textures", "textures"},
+                                           {"images", "textures"},     {"animations", "animations"},
+                                           {"skins", "skins"},         {"cameras", "cameras"}};
+    static const char *const named[] = {"nodes", "meshes"};
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+        if (brio_json_first(brio_json_get(r->root, lists[i][0])))
+            BRIO_TRY(brio_builder_leave_out(r->builder, lists[i][1]));
+    if (brio_json_get(brio_json_get(r->root, "extensions"), "KHR_lights_punctual"))
+        BRIO_TRY(brio_builder_leave_out(r->builder, "lights"));
+    for (size_t i = 0; i < sizeof named / sizeof *named; i++) {
+        const brio_json *item = brio_json_first(brio_json_get(r->root, named[i]));
+        while (item && !brio_json_get(item, "name")) item = brio_json_next(item);
+        if (item) BRIO_TRY(brio_builder_leave_out(r->builder, "names of nodes and meshes"));
+    }
+done:
+    return status;
+}
+
 /* Room in the lists that others point into by a first item and a count, so that none of them is NULL. */
 static brio_status begin_lists(reader *r) {
     brio_status status = BRIO_OK;
@@ -334,10 +361,12 @@ done:
     return status;
 }
 
-brio_status brio_glb_scene_read(brio_context *ctx, const char *name, const char *text, size_t size, brio_glb_scene *s) {
+brio_status brio_glb_scene_read(brio_builder *b, bool on_disk, const char *text, size_t size, brio_glb_scene *s) {
     brio_status status = BRIO_OK;
+    brio_context *ctx = b->ctx;
+    const char *name = b->name;
     brio_json_document document = {.ctx = ctx, .name = name};
-    reader r = {.ctx = ctx, .name = name, .scene = s};
+    reader r = {.ctx = ctx, .builder = b, .name = name, .on_disk = on_disk, .scene = s};
     BRIO_TRY(brio_json_parse(&document, text, size));
     r.root = document.root;
     const char *version = brio_json_string(brio_json_get(brio_json_get(r.root, "asset"), "version"));
@@ -350,6 +379,7 @@ brio_status brio_glb_scene_read(brio_context *ctx, const char *name, const char 
     BRIO_TRY(read_list(&r, "meshes", &s->meshes, &s->num_meshes, read_mesh, sizeof *s->meshes));
     BRIO_TRY(read_list(&r, "nodes", &s->nodes, &s->num_nodes, read_node, sizeof *s->nodes));
     BRIO_TRY(read_roots(&r));
+    BRIO_TRY(note_left_out(&r));
 done:
     brio_json_free(&document);
     return status;

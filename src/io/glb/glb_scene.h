@@ -3,7 +3,7 @@
 #ifndef BRIO_IO_GLB_SCENE_H
 #define BRIO_IO_GLB_SCENE_H
 
-#include "base/context.h"
+#include "io/builder.h"
 
 #define BRIO_GLB_NONE UINT32_MAX /* no index */
 
@@ -30,7 +30,7 @@ typedef enum {
 
 typedef struct brio_glb_buffer {
     uint64_t size; /* as the JSON says */
-    char *bytes;   /* decoded from the JSON, or NULL: the binary chunk */
+    char *bytes;   /* decoded from the JSON or read from another file; NULL: the binary chunk */
 } brio_glb_buffer;
 
 typedef struct brio_glb_view {
@@ -57,6 +57,7 @@ typedef struct brio_glb_primitive {
     uint32_t indices;             /* accessor, or BRIO_GLB_NONE */
     size_t attribute, attributes; /* from and how many */
     bool draco;                   /* compressed by Draco */
+    bool targets;                 /* has morph targets */
 } brio_glb_primitive;
 
 typedef struct brio_glb_mesh {
@@ -83,14 +84,13 @@ typedef struct brio_glb_scene {
         num_roots;
 } brio_glb_scene;
 
-/** Reads the JSON of a file.
- *  name   of the file, for messages.
- *  text   `size` bytes and a 0 behind them.
+/** Reads the JSON of a file. What the mesh of the builder has no place for is noted there.
+ *  on_disk  whether the builder's name is that of a file, beside which others may be.
+ *  text     `size` bytes and a 0 behind them.
  *  scene  {0}; call brio_glb_scene_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_FORMAT (the message names the place in the JSON; or brio was built without a library of
  *  JSON), BRIO_ERR_NO_MEMORY. */
-brio_status brio_glb_scene_read(brio_context *ctx, const char *name, const char *text, size_t size,
-                                brio_glb_scene *scene);
+brio_status brio_glb_scene_read(brio_builder *b, bool on_disk, const char *text, size_t size, brio_glb_scene *scene);
 void brio_glb_scene_free(brio_context *ctx, brio_glb_scene *scene);
 
 #endif

@@ -70,6 +70,8 @@ static brio_status read_numbers(npz_reader *r, const brio_npz_array *a, brio_str
         for (uint64_t j = 0; j < inner; j++) {
             BRIO_TRY(brio_stream_take(s, size, &bytes));
             double value = brio_npy_load(&h->element, bytes);
+            if (brio_npy_is_rounded(&h->element, bytes))
+                BRIO_TRY(brio_builder_leave_out(r->builder, "integers beyond 2^53"));
             BRIO_TRY(h->fortran ? put(r, a, j, s->row, value) : put(r, a, s->row, j, value));
         }
 done:
@@ -167,6 +169,10 @@ brio_status brio_npz_read(brio_stream *s, brio_builder *b) {
     for (int use = BRIO_NPZ_POINTS; use <= BRIO_NPZ_TETRAHEDRA; use++)
         for (size_t i = 0; i < r.npz.num_arrays; i++)
             if ((int)r.npz.arrays[i].use == use) BRIO_TRY(read_array(&r, &r.npz.arrays[i]));
+    if (r.npz.num_arrays < r.npz.zip.num_entries) BRIO_TRY(brio_builder_leave_out(b, "files that are no arrays"));
+    for (size_t i = 0; i < r.npz.num_arrays; i++)
+        if (r.npz.arrays[i].use == BRIO_NPZ_LEFT_OUT)
+            BRIO_TRY(brio_builder_leave_out(b, r.npz.arrays[i].name[0] ? r.npz.arrays[i].name : "arrays"));
 done:
     brio_npz_close(&r.npz);
     return status;

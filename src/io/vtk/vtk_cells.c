@@ -11,6 +11,8 @@
 
 /* Types of cells of VTK. */
 enum {
+    VERTEX = 1,
+    POLY_VERTEX = 2,
     LINE = 3,
     POLY_LINE = 4,
     TRIANGLE = 5,
@@ -142,14 +144,21 @@ static brio_status add_typed(const cell *c, int type) {
     case QUAD:
         return add_face(c, NULL, c->count);
     case QUADRATIC_TRIANGLE:
+        BRIO_TRY(brio_builder_leave_out(c->builder, "curved sides of cells"));
         return add_face(c, NULL, 3);
     case QUADRATIC_QUAD:
+        BRIO_TRY(brio_builder_leave_out(c->builder, "curved sides of cells"));
         return add_face(c, NULL, 4);
-    case TETRAHEDRON:
     case QUADRATIC_TETRAHEDRON:
+        BRIO_TRY(brio_builder_leave_out(c->builder, "curved sides of cells"));
         return add_tetrahedron(c);
+    case TETRAHEDRON:
+        return add_tetrahedron(c);
+    case VERTEX:
+    case POLY_VERTEX:
+        break; /* points are there without */
     default:
-        break;
+        return brio_builder_leave_out(c->builder, "cells of other types");
     }
 done:
     return status;

@@ -93,6 +93,10 @@ static brio_status open_blocks(brio_vtk_decoder *d, uint64_t *bytes) {
     uint64_t packed = 0, most;
     b->next = 0;
     b->open = false;
+    BRIO_REQUIRE(d->stream->ctx, !strcmp(d->header->compressor, "vtkZLibDataCompressor"), BRIO_ERR_FORMAT,
+                 "%s: the arrays are compressed by %s; expected vtkZLibDataCompressor or none: write the file again "
+                 "with one of these",
+                 d->stream->name, brio_excerpt_of(d->header->compressor).text);
     BRIO_TRY(brio_vtk_inflate_begin(d->stream->ctx, d->stream->name, &d->zlib));
     BRIO_TRY(take_word(d, &b->count));
     BRIO_TRY(take_word(d, &b->block_size));
@@ -233,7 +237,7 @@ static bool parse_wide(const char *word, int type, void *to) {
     return true;
 }
 
-static bool parse(const char *word, int type, void *to) {
+bool brio_vtk_parse(const char *word, int type, void *to) {
     const char *p = word;
     double value;
     if (type >= BRIO_SCALAR_END) return parse_wide(word, type, to);
@@ -247,7 +251,7 @@ static brio_status take_text(brio_vtk_decoder *d, char *to, size_t size, size_t 
     for (*got = 0; *got + number <= size; *got += number) {
         BRIO_TRY(next_word(d->stream, word, &length));
         if (!length) return BRIO_OK;
-        BRIO_REQUIRE(d->stream->ctx, parse(word, d->array->type, to + *got), BRIO_ERR_FORMAT,
+        BRIO_REQUIRE(d->stream->ctx, brio_vtk_parse(word, d->array->type, to + *got), BRIO_ERR_FORMAT,
                      "%s: byte %" PRIu64 ": array %s: expected a number of type %s, found \"%s\"", d->stream->name,
                      brio_stream_offset(d->stream), d->array->name, brio_vtk_type_name(d->array->type),
                      brio_excerpt_of(word).text);

@@ -43,6 +43,9 @@ brio_status brio_vtk_decoder_open(brio_vtk_decoder *d, const brio_vtk_array *arr
  *  got  receives their number, less than `size` only at the end of the array. */
 brio_status brio_vtk_decoder_take(brio_vtk_decoder *d, void *to, size_t size, size_t *got);
 
+/** Reads a number of a type of arrays from a word. Returns false if it is none, or the type cannot hold it. */
+bool brio_vtk_parse(const char *word, int type, void *to);
+
 void brio_vtk_decoder_free(brio_vtk_decoder *d);
 
 #endif

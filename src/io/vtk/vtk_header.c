@@ -18,16 +18,6 @@ const char *brio_vtk_type_name(int type) {
     return type_names[type];
 }
 
-static brio_status read_compressor(brio_stream *s, brio_vtk_header *h, const char *tag) {
-    char value[BRIO_XML_VALUE];
-    h->compressed = brio_xml_attribute(tag, "compressor", value) && value[0];
-    if (!h->compressed || !strcmp(value, "vtkZLibDataCompressor")) return BRIO_OK;
-    return brio_fail(s->ctx, BRIO_ERR_FORMAT,
-                     "%s: the arrays are compressed by %s; expected vtkZLibDataCompressor or none: write the file "
-                     "again with one of these",
-                     s->name, value);
-}
-
 static brio_status read_file_tag(brio_stream *s, brio_vtk_header *h, const char *tag) {
     h->polygonal = brio_xml_attribute_is(tag, "type", "PolyData");
     if (!h->polygonal && !brio_xml_attribute_is(tag, "type", "UnstructuredGrid"))
@@ -38,7 +28,8 @@ static brio_status read_file_tag(brio_stream *s, brio_vtk_header *h, const char 
     h->known = true;
     h->swap = little != brio_host_is_little();
     h->word = brio_xml_attribute_is(tag, "header_type", "UInt64") ? 8 : 4;
-    return read_compressor(s, h, tag);
+    h->compressed = brio_xml_attribute(tag, "compressor", h->compressor) && h->compressor[0];
+    return BRIO_OK;
 }
 
 static brio_status read_piece(brio_stream *s, brio_vtk_header *h, const char *tag) {
@@ -73,9 +64,10 @@ static void set_section(brio_vtk_header *h, const char *tag) {
     static const struct {
         const char *name;
         brio_vtk_section section;
-    } sections[] = {{"Points", BRIO_VTK_POINTS}, {"PointData", BRIO_VTK_POINT_DATA}, {"Cells", BRIO_VTK_CELLS},
-                    {"Lines", BRIO_VTK_LINES},   {"Strips", BRIO_VTK_STRIPS},        {"Polys", BRIO_VTK_POLYS},
-                    {"Verts", BRIO_VTK_OTHER},   {"CellData", BRIO_VTK_OTHER},       {"FieldData", BRIO_VTK_OTHER}};
+    } sections[] = {
+        {"Points", BRIO_VTK_POINTS}, {"PointData", BRIO_VTK_POINT_DATA}, {"Cells", BRIO_VTK_CELLS},
+        {"Lines", BRIO_VTK_LINES},   {"Strips", BRIO_VTK_STRIPS},        {"Polys", BRIO_VTK_POLYS},
+        {"Verts", BRIO_VTK_OTHER},   {"CellData", BRIO_VTK_CELL_DATA},   {"FieldData", BRIO_VTK_FIELD_DATA}};
     for (size_t i = 0; i < sizeof sections / sizeof *sections; i++) {
         bool ends = tag[0] == '/' && brio_xml_is(tag + 1, sections[i].name);
         if (ends || brio_xml_is(tag, sections[i].name))
@@ -102,12 +94,13 @@ brio_status brio_vtk_header_array(brio_stream *s, const brio_vtk_header *h, cons
     brio_status status = BRIO_OK;
     char value[BRIO_XML_VALUE];
     *a = (brio_vtk_array){.section = h->section, .components = 1, .empty = brio_xml_is_empty(tag)};
-    if (h->section == BRIO_VTK_OTHER) return BRIO_OK;
+    if (!brio_xml_attribute(tag, "Name", a->name)) a->name[0] = 0;
+    if (h->section < BRIO_VTK_POINTS) return BRIO_OK;
     if (!h->num_pieces) return brio_xml_bad(s, "Piece before DataArray");
     a->piece = h->num_pieces - 1;
     while (a->type < BRIO_VTK_TYPE_END && !brio_xml_attribute_is(tag, "type", type_names[a->type])) a->type++;
+    if (a->type == BRIO_VTK_TYPE_END && h->section == BRIO_VTK_POINT_DATA) return BRIO_OK; /* words, or bits */
     if (a->type == BRIO_VTK_TYPE_END) return brio_xml_bad(s, "a DataArray of type Int8 to UInt64, Float32 or Float64");
-    if (!brio_xml_attribute(tag, "Name", a->name)) a->name[0] = 0;
     if (brio_xml_attribute(tag, "NumberOfComponents", value))
         BRIO_TRY(brio_xml_count(s, tag, "NumberOfComponents", &a->components));
     BRIO_TRY(read_encoding(s, tag, a));

@@ -11,6 +11,8 @@ enum { BRIO_VTK_INT64 = BRIO_SCALAR_END, BRIO_VTK_UINT64, BRIO_VTK_TYPE_END };
 /* Where an array is. VTU has CELLS; VTP has LINES, STRIPS and POLYS. */
 typedef enum {
     BRIO_VTK_OTHER,
+    BRIO_VTK_CELL_DATA, /* passed over, as FIELD_DATA */
+    BRIO_VTK_FIELD_DATA,
     BRIO_VTK_POINTS,
     BRIO_VTK_POINT_DATA,
     BRIO_VTK_CELLS,
@@ -42,8 +44,9 @@ typedef struct brio_vtk_header {
     bool known;      /* whether the tag VTKFile was read */
     bool polygonal;  /* PolyData, otherwise UnstructuredGrid */
     bool swap;       /* whether the arrays are in the other byte order than this machine's */
-    bool compressed; /* whether arrays are compressed by zlib */
-    size_t word;     /* bytes of the numbers in front of an array */
+    bool compressed; /* whether arrays that are no text are compressed, and by what */
+    char compressor[BRIO_XML_VALUE];
+    size_t word; /* bytes of the numbers in front of an array */
     brio_vtk_piece *pieces;
     size_t num_pieces, piece_capacity;
     brio_vtk_section section;

@@ -15,7 +15,8 @@
 enum { CHUNK = 1 << 16, MOST_COMPONENTS = 16 };
 
 bool brio_vtk_is_kept(const brio_vtk_array *array) {
-    return array->name[0] && array->components > 0 && array->components <= MOST_COMPONENTS;
+    return array->type < BRIO_VTK_TYPE_END && array->name[0] && array->components > 0 &&
+           array->components <= MOST_COMPONENTS;
 }
 
 /* --- columns --- */
@@ -45,13 +46,24 @@ done:
 
 /* --- reading --- */
 
-static void convert_wide(char *to, const char *from, size_t rows, const brio_vtk_decoder *d) {
+/* Returns whether no double has an integer. */
+static bool is_rounded(uint64_t raw, bool is_signed) {
+    uint64_t size = is_signed && raw >> 63 ? 0 - raw : raw;
+    double value = (double)size;
+    return value >= 0x1p64 || (uint64_t)value != size;
+}
+
+/* Converts integers of 64 bits. Returns whether one of them was rounded. */
+static bool convert_wide(char *to, const char *from, size_t rows, const brio_vtk_decoder *d) {
+    bool rounded = false, is_signed = d->array->type == BRIO_VTK_INT64;
     for (size_t i = 0; i < rows; i++) {
         uint64_t raw;
         brio_scalar_gather(&raw, from + i * d->array->components * sizeof raw, 1, 0, sizeof raw, d->swap);
-        double value = d->array->type == BRIO_VTK_INT64 ? (double)(int64_t)raw : (double)raw;
+        double value = is_signed ? (double)(int64_t)raw : (double)raw;
+        rounded |= is_rounded(raw, is_signed);
         memcpy(to + i * sizeof value, &value, sizeof value);
     }
+    return rounded;
 }
 
 static brio_status append(brio_vtk_column *columns, const brio_vtk_decoder *d, const char *chunk, size_t rows) {
@@ -64,7 +76,7 @@ static brio_status append(brio_vtk_column *columns, const brio_vtk_decoder *d, c
         if (d->array->type < BRIO_SCALAR_END)
             brio_scalar_gather(to, chunk + k * size, rows, row, size, d->swap);
         else
-            convert_wide(to, chunk + k * size, rows, d);
+            c->rounded |= convert_wide(to, chunk + k * size, rows, d);
         c->rows += rows;
     }
 done:
@@ -85,13 +97,13 @@ done:
     return status;
 }
 
-brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_vtk_decoder *d, uint64_t bytes,
+brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_builder *b, brio_vtk_decoder *d, uint64_t bytes,
                                      const brio_vtk_piece *piece) {
     brio_status status = BRIO_OK;
     brio_vtk_column *columns = find(data, d->array);
     size_t row = (size_t)d->array->components * brio_vtk_type_size(d->array->type), got;
     uint64_t rows = piece->num_points, end = piece->first_point + rows;
-    if (!columns && piece->first_point) return BRIO_OK;
+    if (!columns && piece->first_point) return brio_builder_leave_out(b, d->array->name);
     if (!columns) BRIO_TRY(add_columns(data, d));
     if (!columns) columns = &data->columns[data->num_columns - d->array->components];
     if (columns->components != d->array->components || columns->file_type != d->array->type) return BRIO_OK;
@@ -111,6 +123,17 @@ brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_vtk_decoder
         d->stream->row = columns->rows - piece->first_point;
     }
     if (columns->rows != end) return brio_vtk_bad_rows(d, columns->rows - piece->first_point, rows);
+done:
+    return status;
+}
+
+brio_status brio_vtk_keep_array(brio_vtk_point_data *data, brio_stream *s, const brio_vtk_array *array,
+                                const brio_vtk_values *values) {
+    brio_status status = BRIO_OK;
+    const brio_vtk_decoder d = {.stream = s, .array = array};
+    BRIO_TRY(add_columns(data, &d));
+    BRIO_TRY(append(&data->columns[data->num_columns - array->components], &d, values->bytes,
+                    (size_t)(values->count / array->components)));
 done:
     return status;
 }
@@ -141,7 +164,11 @@ brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *
     char name[64];
     for (size_t i = 0; i < data->num_columns; i++) {
         brio_vtk_column *c = &data->columns[i];
-        if (c->rows != b->mesh->num_vertices) continue;
+        if (c->rows != b->mesh->num_vertices) {
+            BRIO_TRY(brio_builder_leave_out(b, c->source));
+            continue;
+        }
+        if (c->rounded) BRIO_TRY(brio_builder_leave_out(b, "integers beyond 2^53"));
         choose_name(b, c, name);
         void *block = c->data;
         c->data = NULL;

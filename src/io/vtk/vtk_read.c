@@ -11,6 +11,7 @@
 #include "io/scalar.h"
 #include "io/vtk/vtk_cells.h"
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Rows of points decoded at a time. Chosen. */
@@ -133,7 +134,7 @@ done:
 /* --- arrays --- */
 
 static bool is_kept(const brio_vtk_array *a) {
-    if (a->section == BRIO_VTK_OTHER) return false;
+    if (a->section < BRIO_VTK_POINTS) return false;
     if (a->section == BRIO_VTK_POINTS) return true;
     if (a->section == BRIO_VTK_POINT_DATA) return brio_vtk_is_kept(a);
     return a->components == 1 && (!strcmp(a->name, "connectivity") || !strcmp(a->name, "offsets") ||
@@ -150,7 +151,7 @@ static brio_status read_array(vtk_reader *r, const brio_vtk_array *a, brio_vtk_e
     if (a->section == BRIO_VTK_POINTS)
         BRIO_TRY(read_points(r, bytes, piece));
     else if (a->section == BRIO_VTK_POINT_DATA)
-        BRIO_TRY(brio_vtk_read_point_data(&r->point_data, &r->decoder, bytes, piece));
+        BRIO_TRY(brio_vtk_read_point_data(&r->point_data, r->builder, &r->decoder, bytes, piece));
     else
         BRIO_TRY(read_cells(r, bytes, a));
 done:
@@ -158,11 +159,21 @@ done:
     return status;
 }
 
+/* Notes an array that becomes nothing. */
+static brio_status note_left_out(vtk_reader *r, const brio_vtk_array *a) {
+    static const char *const whose[BRIO_VTK_SECTION_END] = {
+        [BRIO_VTK_CELL_DATA] = " of cells", [BRIO_VTK_FIELD_DATA] = " of the file", [BRIO_VTK_POINT_DATA] = ""};
+    char name[BRIO_XML_VALUE + 16];
+    if (!whose[a->section]) return BRIO_OK;
+    snprintf(name, sizeof name, "%s%s", a->name[0] ? a->name : "array without a name", whose[a->section]);
+    return brio_builder_leave_out(r->builder, name);
+}
+
 static brio_status take_array(vtk_reader *r, const char *tag) {
     brio_status status = BRIO_OK;
     brio_vtk_array a;
     BRIO_TRY(brio_vtk_header_array(r->stream, &r->header, tag, &a));
-    if (!is_kept(&a)) return BRIO_OK;
+    if (!is_kept(&a)) return note_left_out(r, &a);
     if (!a.appended) return read_array(r, &a, a.encoding);
     BRIO_TRY(BRIO_RESERVE(r->stream->ctx, r->appended, r->appended_capacity, r->num_appended + 1));
     r->appended[r->num_appended++] = a;
@@ -218,7 +229,7 @@ static brio_status read_file(vtk_reader *r) {
     const char *tag;
     for (;;) {
         BRIO_TRY(brio_xml_next_tag(r->stream, r->header.known ? "a tag /VTKFile" : "a tag VTKFile", &tag));
-        if (brio_xml_is(tag, "DataArray")) {
+        if (brio_xml_is(tag, "DataArray") || brio_xml_is(tag, "Array")) { /* Array: of words */
             BRIO_TRY(take_array(r, tag));
         } else if (brio_xml_is(tag, "AppendedData")) {
             if (r->num_appended) return begin_appended(r, tag);

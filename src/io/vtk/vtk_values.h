@@ -34,6 +34,7 @@ typedef struct brio_vtk_column {
     char *data;
     uint64_t rows;
     size_t capacity; /* bytes */
+    bool rounded;    /* whether an integer is one that no double has */
 } brio_vtk_column;
 
 typedef struct brio_vtk_point_data {
@@ -42,10 +43,13 @@ typedef struct brio_vtk_point_data {
     char *chunk; /* rows of an array */
 } brio_vtk_point_data;
 
-/** Reads an array of point data, which is open, of a piece. An array that not all pieces before had is passed over.
+/** Reads an array of point data, which is open, of a piece. An array that not all pieces before had is left out.
  *  bytes  its size, from brio_vtk_decoder_open. */
-brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_vtk_decoder *d, uint64_t bytes,
+brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_builder *b, brio_vtk_decoder *d, uint64_t bytes,
                                      const brio_vtk_piece *piece);
+/** Keeps an array of all points that was read already.   values  `components` numbers for each point. */
+brio_status brio_vtk_keep_array(brio_vtk_point_data *data, brio_stream *s, const brio_vtk_array *array,
+                                const brio_vtk_values *values);
 /** Makes properties of the columns that all points have. */
 brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *b);
 void brio_vtk_point_data_free(brio_context *ctx, brio_vtk_point_data *data);

@@ -1,0 +1,187 @@
+/* Writes VTK's legacy file of an unstructured grid, binary or as text, of version 3.0, which all programs of VTK read: points,
+ * tetrahedra, polygons and edges as cells (without any of them a vertex cell for each point), and properties as a field.
+ *
+ * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+#include "io/formats.h"
+#include "io/scalar.h"
+#include <inttypes.h>
+#include <string.h>
+
+/* Types of cells. */
+enum { VERTEX = 1, LINE = 3, TRIANGLE = 5, POLYGON = 7, QUAD = 9, TETRAHEDRON = 10 };
+
+typedef struct {
+    brio_output *out;
+    const brio_mesh *mesh;
+    bool text, single;
+    uint64_t num_verts, num_cells;
+} legacy_writer;
+
+/* --- numbers --- */
+
+/* Writes scalar i of an array.   before  what stands before it in a text. */
+static brio_status put(const legacy_writer *w, char before, const brio_property *array, size_t i) {
+    char bytes[8];
+    size_t size = brio_scalar_size(array->type);
+    if (w->text) return brio_output_scalar(w->out, before, array, i);
+    brio_scalar_gather(bytes, (const char *)array->data + i * size, 1, size, size, brio_host_is_little());
+    return brio_output_bytes(w->out, bytes, size);
+}
+
+static brio_status put_integer(const legacy_writer *w, char before, uint64_t number) {
+    int32_t value = (int32_t)number;
+    return put(w, before, &(brio_property){.type = BRIO_SCALAR_INT32, .data = &value}, 0);
+}
+
+/* --- cells --- */
+
+static brio_status put_cell(const legacy_writer *w, const uint32_t *corners, uint64_t count) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(put_integer(w, 0, count));
+    for (uint64_t i = 0; i < count; i++) BRIO_TRY(put_integer(w, ' ', corners[i]));
+    if (w->text) BRIO_TRY(brio_output_string(w->out, "\n"));
+done:
+    return status;
+}
+
+static brio_status put_cells(const legacy_writer *w) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = w->mesh;
+    for (size_t t = 0; t < m->num_tetrahedra; t++) BRIO_TRY(put_cell(w, m->tetrahedra + 4 * t, 4));
+    for (size_t f = 0; f < m->num_faces; f++)
+        BRIO_TRY(put_cell(w, m->face_vertices + m->face_offsets[f], m->face_offsets[f + 1] - m->face_offsets[f]));
+    for (size_t e = 0; e < m->num_edges; e++) BRIO_TRY(put_cell(w, m->edges + 2 * e, 2));
+    for (uint32_t v = 0; v < w->num_verts; v++) BRIO_TRY(put_cell(w, &v, 1));
+done:
+    return status;
+}
+
+static brio_status put_types(const legacy_writer *w) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = w->mesh;
+    const char *end = w->text ? "\n" : "";
+    for (uint64_t i = 0; i < w->num_cells; i++) {
+        uint64_t f = i - m->num_tetrahedra;
+        int type = i < m->num_tetrahedra ? TETRAHEDRON : w->num_verts ? VERTEX : LINE;
+        if (i >= m->num_tetrahedra && f < m->num_faces) {
+            uint64_t corners = m->face_offsets[f + 1] - m->face_offsets[f];
+            type = corners == 3 ? TRIANGLE : corners == 4 ? QUAD : POLYGON;
+        }
+        BRIO_TRY(put_integer(w, 0, (uint64_t)type));
+        BRIO_TRY(brio_output_string(w->out, end));
+    }
+done:
+    return status;
+}
+
+/* --- properties --- */
+
+/* Writes the line of an array. In a name %20 stands for a blank. */
+static brio_status put_array_line(const legacy_writer *w, const char *name, int components, brio_scalar type) {
+    static const char *const types[] = {[BRIO_SCALAR_INT8] = "char",     [BRIO_SCALAR_UINT8] = "unsigned_char",
+                                        [BRIO_SCALAR_INT16] = "short",   [BRIO_SCALAR_UINT16] = "unsigned_short",
+                                        [BRIO_SCALAR_INT32] = "int",     [BRIO_SCALAR_UINT32] = "unsigned_int",
+                                        [BRIO_SCALAR_FLOAT32] = "float", [BRIO_SCALAR_FLOAT64] = "double"};
+    brio_status status = BRIO_OK;
+    for (; *name; name++) {
+        unsigned char c = (unsigned char)*name;
+        if (c <= ' ' || c == '%' || c == '"' || c > 126)
+            BRIO_TRY(brio_output_format(w->out, "%%%02X", c));
+        else
+            BRIO_TRY(brio_output_bytes(w->out, name, 1));
+    }
+    BRIO_TRY(brio_output_format(w->out, " %d %zu %s\n", components, w->mesh->num_vertices, types[type]));
+done:
+    return status;
+}
+
+/* Writes properties as one array.   name  NULL: that of the property. */
+static brio_status put_array(const legacy_writer *w, const char *name, const brio_property *const *of, int count) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(put_array_line(w, name ? name : of[0]->name, count, of[0]->type));
+    for (size_t v = 0; v < w->mesh->num_vertices; v++) {
+        for (int k = 0; k < count; k++) BRIO_TRY(put(w, k ? ' ' : 0, of[k], v));
+        if (w->text) BRIO_TRY(brio_output_string(w->out, "\n"));
+    }
+    BRIO_TRY(brio_output_string(w->out, "\n"));
+done:
+    return status;
+}
+
+/* Colours of bytes and normals are one array each, unless its name is taken. */
+static brio_status put_properties(const legacy_writer *w) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = w->mesh;
+    brio_channels colour = brio_colour_of(m), normal = brio_normal_of(m);
+    const char *name = colour.count == 4 ? "RGBA" : "RGB";
+    if (colour.count && (colour.of[0]->type != BRIO_SCALAR_UINT8 || brio_mesh_property(m, name))) colour.count = 0;
+    if (brio_mesh_property(m, "Normals")) normal.count = 0;
+    size_t arrays =
+        m->num_properties + 2 - (size_t)(colour.count ? colour.count : 1) - (size_t)(normal.count ? normal.count : 1);
+    if (!m->num_properties) return BRIO_OK;
+    BRIO_TRY(brio_output_format(w->out, "POINT_DATA %zu\nFIELD FieldData %zu\n", m->num_vertices, arrays));
+    for (size_t i = 0; i < m->num_properties; i++) {
+        const brio_property *p = &m->properties[i];
+        if (colour.count && p == colour.of[0])
+            BRIO_TRY(put_array(w, name, colour.of, colour.count));
+        else if (normal.count && p == normal.of[0])
+            BRIO_TRY(put_array(w, "Normals", normal.of, normal.count));
+        else if (!brio_channels_have(&colour, p) && !brio_channels_have(&normal, p))
+            BRIO_TRY(put_array(w, NULL, &p, 1));
+    }
+done:
+    return status;
+}
+
+/* --- the file --- */
+
+static brio_status put_points(const legacy_writer *w) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = w->mesh;
+    BRIO_TRY(brio_output_format(w->out, "POINTS %zu %s\n", m->num_vertices, w->single ? "float" : "double"));
+    for (size_t i = 0; i < 3 * m->num_vertices; i++) {
+        float single = w->single ? (float)m->vertices[i] : 0;
+        double wide = m->vertices[i];
+        brio_property number = {.type = w->single ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_FLOAT64,
+                                .data = w->single ? (void *)&single : (void *)&wide};
+        BRIO_TRY(put(w, i % 3 ? ' ' : i ? '\n' : 0, &number, 0));
+    }
+    BRIO_TRY(brio_output_string(w->out, "\n"));
+done:
+    return status;
+}
+
+/* The title is one line of at most 255 characters. */
+static brio_status put_header(const legacy_writer *w, const char *comment) {
+    brio_status status = BRIO_OK;
+    size_t length = comment ? strcspn(comment, "\r\n") : 0;
+    BRIO_TRY(brio_output_string(w->out, "# vtk DataFile Version 3.0\n"));
+    BRIO_TRY(brio_output_bytes(w->out, length ? comment : "brio", length ? (length < 255 ? length : 255) : 4));
+    BRIO_TRY(brio_output_format(w->out, "\n%s\nDATASET UNSTRUCTURED_GRID\n", w->text ? "ASCII" : "BINARY"));
+done:
+    return status;
+}
+
+brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
+    legacy_writer w = {.out = out, .mesh = m, .text = job->options->ascii, .single = job->options->float32};
+    uint64_t corners = (m->num_faces ? m->face_offsets[m->num_faces] : 0) + 4 * (uint64_t)m->num_tetrahedra +
+                       2 * (uint64_t)m->num_edges;
+    w.num_verts = m->num_faces || m->num_edges || m->num_tetrahedra ? 0 : m->num_vertices;
+    w.num_cells = m->num_faces + m->num_edges + m->num_tetrahedra + w.num_verts;
+    uint64_t numbers = corners + w.num_verts + w.num_cells;
+    BRIO_REQUIRE(out->ctx, numbers <= INT32_MAX && m->num_vertices <= INT32_MAX, BRIO_ERR_ARGUMENT,
+                 "%s: cells of %" PRIu64 " numbers, a VTK file has at most %d: write .vtu", out->name, numbers,
+                 INT32_MAX);
+    BRIO_TRY(put_header(&w, job->options->comment));
+    BRIO_TRY(put_points(&w));
+    BRIO_TRY(brio_output_format(out, "CELLS %" PRIu64 " %" PRIu64 "\n", w.num_cells, numbers));
+    BRIO_TRY(put_cells(&w));
+    BRIO_TRY(brio_output_format(out, "\nCELL_TYPES %" PRIu64 "\n", w.num_cells));
+    BRIO_TRY(put_types(&w));
+    BRIO_TRY(brio_output_string(out, "\n"));
+    BRIO_TRY(put_properties(&w));
+done:
+    return status;
+}
