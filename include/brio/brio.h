@@ -1439,7 +1439,8 @@ BRIO_API brio_status brio_offset_surface(brio_context *ctx, const double *points
 
 typedef struct brio_mesh_offset_options {
     size_t size;
-    double error; /* most distance of the result from the exact offset, in the unit of the mesh, above 0 and less than the
+    double
+        error; /* most distance of the result from the exact offset, in the unit of the mesh, above 0 and less than the
                         offset's distance; default 0: a hundredth of that */
 } brio_mesh_offset_options;
 
@@ -1454,7 +1455,8 @@ typedef struct brio_mesh_offset_stats {
     size_t size;
     size_t samples; /* points of the exact offset that were found */
     size_t rounds;  /* in which they were triangulated */
-    double error;   /* as it is proven: no place of the result is nearer to the mesh, or farther from it, than the distance by
+    double
+        error; /* as it is proven: no place of the result is nearer to the mesh, or farther from it, than the distance by
                           more than this. At most the error asked for, but where the surface could not be mended. */
 } brio_mesh_offset_stats;
 

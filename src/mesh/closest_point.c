@@ -346,7 +346,7 @@ double brio_closest_within(const brio_triangle_tree *tree, const double *p, doub
     visit stack[MOST_LEVELS];
     int depth = 0;
     double best = bound, q[3];
-    stack[depth++] = (visit){0, 0, tree->num_triangles, box_distance(&tree->boxes[0], p)};
+    stack[depth++] = (visit){0, 0, tree->num_triangles, 0};
     while (depth > 0) {
         visit v = stack[--depth];
         if (v.distance >= best) continue;

@@ -139,7 +139,7 @@ class Voronoi:
         begin, end = _bottom_edges(c["corner_offsets"].astype(np.int64), c["face_vertices"].astype(np.int64), low)
         sides = np.flatnonzero((begin >= 0) & (c["face_neighbours"] >= 0))
         pairs = np.stack([owner[sides], c["face_neighbours"][sides]], axis=1)
-        same = _joined(pairs, begin[sides], end[sides], len(c["vertices"]))
+        same = _joined(pairs, begin[sides], end[sides], c["vertices"])
         bottoms = c["face_neighbours"] == -5
         counts = np.diff(c["corner_offsets"]).astype(np.int64)
         corners, sizes = _distinct_rounds(same[c["face_vertices"][np.repeat(bottoms, counts)]], counts[bottoms])
@@ -292,20 +292,23 @@ def _bottom_edges(offsets: Ints, corners: Ints, low: NDArray[np.bool_]) -> tuple
     return begin, end
 
 
-def _joined(pairs: Ints, begin: Ints, end: Ints, count: int) -> Ints:
-    """Returns for each of `count` corners the first corner of its vertex: a side that two cells share ends at two vertices.
+def _joined(pairs: Ints, begin: Ints, end: Ints, vertices: Floats) -> Ints:
+    """Returns for each corner the first corner of its vertex: a side that two cells share ends at two vertices.
 
     Cells have corners of their own. The corner where a side begins in one cell is where it ends in the other one. A side
     that only one of the two cells has is so short that rounding made a point of it in the other one: its ends are one vertex.
+    So are corners of equal coordinates: a bottom has one of them where a short side has two.
     """
+    count = len(vertices)
     width = int(pairs.max(initial=0)) + 1
     there, back = pairs[:, 0] * width + pairs[:, 1], pairs[:, 1] * width + pairs[:, 0]
     order = np.argsort(there)
     place = np.searchsorted(there, back, sorter=order)
     mate = order[np.minimum(place, max(len(order) - 1, 0))]
     both = there[mate] == back if len(order) else np.zeros(0, np.bool_)
-    a = np.concatenate([begin[both], end[both], begin[~both]])
-    b = np.concatenate([end[mate[both]], begin[mate[both]], end[~both]])
+    _, equal, of_class = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
+    a = np.concatenate([begin[both], end[both], begin[~both], np.arange(count)])
+    b = np.concatenate([end[mate[both]], begin[mate[both]], end[~both], equal[of_class.ravel()]])
     first = np.arange(count)
     while (first[a] != first[b]).any():  # as often as half a vertex has cells, three or four almost always
         least = np.minimum(first[a], first[b])

@@ -18,7 +18,8 @@
 static const double POLES_SHARE = 0.6; /* of the progress bar */
 static const double MOVE_SHARE = 0.75; /* of the bar of what follows */
 static const double MARGIN = 4;        /* of the bounding points, in distances */
-static const double FARTHEST = 0x1p60; /* of the greatest coordinate: where doubles tell nothing of the points; chosen */
+static const double FARTHEST =
+    0x1p60; /* of the greatest coordinate: where doubles tell nothing of the points; chosen */
 #define SWALLOWED "the offset by %g swallows the whole object: no inside is left"
 
 static const brio_offset_surface_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
@@ -60,6 +61,7 @@ static brio_status find_balls(brio_labeled_poles *l, const double *points, size_
     brio_status status = BRIO_OK;
     brio_pole_request request;
     BRIO_REQUIRE(l->ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
+    BRIO_REQUIRE(l->ctx, num_points < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", num_points);
     double most = fmin(brio_greatest(points, 3 * num_points), DBL_MAX * 0x1p-64);
     BRIO_REQUIRE(l->ctx, num_points == 0 || distance <= FARTHEST * most, BRIO_ERR_ARGUMENT,
                  "the distance %g of the offset is more than 2^60 times the greatest coordinate %g", distance, most);
@@ -82,8 +84,7 @@ static brio_status make_offset(brio_labeled_poles *l, double distance, const bri
     brio_progress_part(l->ctx, bar, MOVE_SHARE, 1);
     if (status == BRIO_OK) status = brio_make_crust(l, &crust, mesh, NULL, stats);
     brio_progress_part(l->ctx, bar, 0, 1);
-    if (status == BRIO_ERR_NO_ANSWER && distance < 0)
-        return brio_fail(l->ctx, status, SWALLOWED, distance);
+    if (status == BRIO_ERR_NO_ANSWER && distance < 0) return brio_fail(l->ctx, status, SWALLOWED, distance);
     return status;
 }
 
