@@ -1439,7 +1439,8 @@ BRIO_API brio_status brio_offset_surface(brio_context *ctx, const double *points
 
 typedef struct brio_mesh_offset_options {
     size_t size;
-    double error; /* most distance of the result from the exact offset, in the unit of the mesh, above 0 and less than the
+    double
+        error; /* most distance of the result from the exact offset, in the unit of the mesh, above 0 and less than the
                         offset's distance; default 0: a hundredth of that */
 } brio_mesh_offset_options;
 
@@ -1454,7 +1455,8 @@ typedef struct brio_mesh_offset_stats {
     size_t size;
     size_t samples; /* points of the exact offset that were found */
     size_t rounds;  /* in which they were triangulated */
-    double error;   /* as it is proven: no place of the result is nearer to the mesh, or farther from it, than the distance by
+    double
+        error; /* as it is proven: no place of the result is nearer to the mesh, or farther from it, than the distance by
                           more than this. At most the error asked for, but where the surface could not be mended. */
 } brio_mesh_offset_stats;
 
@@ -1462,7 +1464,7 @@ typedef struct brio_mesh_offset_stats {
  *  most so far from the solid, round about its convex edges and corners and sharp over concave ones; for a negative distance
  *  the boundary of the points of the solid that are at least so far from its surface, sharp at convex edges and round about
  *  concave ones. The faces count, not the vertices: the mesh may be as coarse as it likes. Parts of an offset that meet are
- *  merged; parts of the solid that are too thin vanish.
+ *  merged; parts of the solid that are too thin vanish, and so do small ones of the offset thinner than twice the error.
  *  Guarantees: closed, manifold, oriented, and free of self-intersections; the vertices are on the exact offset, up to a
  *  fiftieth of the error; the whole surface is within stats.error of it, which is proven for every triangle. The other way
  *  round, no point of a net on the exact offset, half a distance wide, is farther than twice the error from the result. The

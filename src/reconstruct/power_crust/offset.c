@@ -18,7 +18,8 @@
 static const double POLES_SHARE = 0.6; /* of the progress bar */
 static const double MOVE_SHARE = 0.75; /* of the bar of what follows */
 static const double MARGIN = 4;        /* of the bounding points, in distances */
-static const double FARTHEST = 0x1p60; /* of the greatest coordinate: where doubles tell nothing of the points; chosen */
+static const double FARTHEST =
+    0x1p60; /* of the greatest coordinate: where doubles tell nothing of the points; chosen */
 #define SWALLOWED "the offset by %g swallows the whole object: no inside is left"
 
 static const brio_offset_surface_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
@@ -82,8 +83,7 @@ static brio_status make_offset(brio_labeled_poles *l, double distance, const bri
     brio_progress_part(l->ctx, bar, MOVE_SHARE, 1);
     if (status == BRIO_OK) status = brio_make_crust(l, &crust, mesh, NULL, stats);
     brio_progress_part(l->ctx, bar, 0, 1);
-    if (status == BRIO_ERR_NO_ANSWER && distance < 0)
-        return brio_fail(l->ctx, status, SWALLOWED, distance);
+    if (status == BRIO_ERR_NO_ANSWER && distance < 0) return brio_fail(l->ctx, status, SWALLOWED, distance);
     return status;
 }
 
