@@ -1464,7 +1464,7 @@ typedef struct brio_mesh_offset_stats {
  *  most so far from the solid, round about its convex edges and corners and sharp over concave ones; for a negative distance
  *  the boundary of the points of the solid that are at least so far from its surface, sharp at convex edges and round about
  *  concave ones. The faces count, not the vertices: the mesh may be as coarse as it likes. Parts of an offset that meet are
- *  merged; parts of the solid that are too thin vanish.
+ *  merged; parts of the solid that are too thin vanish, and so do small ones of the offset thinner than twice the error.
  *  Guarantees: closed, manifold, oriented, and free of self-intersections; the vertices are on the exact offset, up to a
  *  fiftieth of the error; the whole surface is within stats.error of it, which is proven for every triangle. The other way
  *  round, no point of a net on the exact offset, half a distance wide, is farther than twice the error from the result. The

@@ -2,8 +2,8 @@
  * covered and those that are free. It is closed and does not cross itself, whatever the samples are.
  *
  * A tetrahedron is what its centroid is. Between samples of one sheet are tetrahedra so flat that rounding decides; they
- * are of the solid that the offset bounds, so that all samples are on the surface. Sets of tetrahedra, joined across facets, all of whose centroids are within the error of the offset,
- * take the other label, so that no specks of the size of the error appear.
+ * are of the solid that the offset bounds, so that all samples are on the surface. Specks take the other label: sets of
+ * tetrahedra, joined across facets, all of whose centroids are close to the offset, and small ones thinner than the error.
  *
  * Based on: Boissonnat, Oudot. Provably good sampling and meshing of surfaces. Graphical Models 2005 (the surface as part
  * of the Delaunay triangulation of points on it, refined where it is wrong).
@@ -17,12 +17,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 1 << 15, TETS_A_CHUNK = 128 };
+enum { BATCH = 1 << 15, TETS_A_CHUNK = 128, FEW = 64 /* tetrahedra of a speck; chosen */ };
 enum { COVERED = 1, CERTAIN = 2 }; /* bits of a label */
 
 static const double FINE = 0.5;  /* of the distance: side of the smallest part of a facet that is looked at; chosen */
 static const double CLEAR = 0.5; /* of the error: from the offset, where a place of a facet decides; chosen */
 static const double SURE = 2;    /* of the error: from the offset, where a centroid is no matter of doubt; chosen */
+static const double THIN = 2.7;  /* of the error: three times the volume over the area of a speck; chosen */
 static const double BIAS = 0.05; /* of the error: what is so close to the offset is of the solid; chosen */
 
 /* The facets of a positive tetrahedron, counterclockwise seen from outside; facet i is opposite to vertex i. */
@@ -148,13 +149,60 @@ done:
     return status;
 }
 
-/* Gives sets of tetrahedra of one label without a certain one the other label. */
+/* A set of tetrahedra of one label, joined across facets. */
+typedef struct {
+    double volume, area; /* six times the volume; twice the area of the facets to the other label */
+    uint32_t count;
+    bool certain; /* there is a certain one */
+} part;
+
+/* Returns twice the area of a facet. */
+static double area_of(const brio_offset_work *w, const uint32_t *v, int facet) {
+    double u[3], t[3], n[3];
+    const double *a = w->points + 3 * (size_t)v[FACET[facet][0]];
+    for (int k = 0; k < 3; k++) {
+        u[k] = w->points[3 * (size_t)v[FACET[facet][1]] + (size_t)k] - a[k];
+        t[k] = w->points[3 * (size_t)v[FACET[facet][2]] + (size_t)k] - a[k];
+    }
+    brio_cross(u, t, n);
+    return brio_length(n);
+}
+
+static double volume_of(const brio_offset_work *w, const uint32_t *v) {
+    double e[3][3], n[3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            e[i][k] = w->points[3 * (size_t)v[i + 1] + (size_t)k] - w->points[3 * (size_t)v[0] + (size_t)k];
+    brio_cross(e[0], e[1], n);
+    return fabs(brio_dot(n, e[2]));
+}
+
+/* Adds a tetrahedron to its part. */
+static void add_to_part(const labeler *l, size_t i, part *p) {
+    p->count++;
+    p->certain |= (l->label[i] & CERTAIN) != 0;
+    if (l->tet[i].vertex[3] == BRIO_INFINITE) {
+        p->volume = INFINITY;
+        return;
+    }
+    p->volume += volume_of(l->w, l->tet[i].vertex);
+    for (int f = 0; f < 4; f++)
+        if ((l->label[l->tet[i].mate[f] / 4] ^ l->label[i]) & COVERED) p->area += area_of(l->w, l->tet[i].vertex, f);
+}
+
+/* Returns whether a part is none of the offset: nothing in it is certain, or it is of few tetrahedra and thinner than the
+ * error. (The radius of a ball is three times its volume over its area.) */
+static bool is_speck(const brio_offset_work *w, const part *p) {
+    return !p->certain || (p->count <= FEW && p->volume < THIN * w->error * p->area);
+}
+
+/* Gives specks of one label the other label. */
 static brio_status turn_specks(labeler *l, unsigned covered) {
     brio_status status = BRIO_OK;
     uint32_t *parent = NULL;
-    uint8_t *certain = NULL;
+    part *parts = NULL;
     BRIO_TRY(BRIO_ALLOC(l->w->ctx, parent, l->count));
-    BRIO_TRY(BRIO_ALLOC_ZERO(l->w->ctx, certain, l->count));
+    BRIO_TRY(BRIO_ALLOC_ZERO(l->w->ctx, parts, l->count));
     for (size_t i = 0; i < l->count; i++) parent[i] = (uint32_t)i;
     for (size_t i = 0; i < l->count; i++)
         for (int f = 0; f < 4; f++) {
@@ -163,12 +211,13 @@ static brio_status turn_specks(labeler *l, unsigned covered) {
                 brio_unite(parent, (uint32_t)i, (uint32_t)j, true);
         }
     for (size_t i = 0; i < l->count; i++)
-        if (l->label[i] & CERTAIN) certain[brio_find(parent, (uint32_t)i)] = 1;
+        if ((l->label[i] & COVERED) == covered) add_to_part(l, i, &parts[brio_find(parent, (uint32_t)i)]);
     for (size_t i = 0; i < l->count; i++)
-        if ((l->label[i] & COVERED) == covered && !certain[brio_find(parent, (uint32_t)i)]) l->label[i] ^= COVERED;
+        if ((l->label[i] & COVERED) == covered && is_speck(l->w, &parts[brio_find(parent, (uint32_t)i)]))
+            l->label[i] ^= COVERED;
 done:
     brio_release(l->w->ctx, parent);
-    brio_release(l->w->ctx, certain);
+    brio_release(l->w->ctx, parts);
     return status;
 }
 
