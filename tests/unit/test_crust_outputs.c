@@ -336,6 +336,7 @@ static void dome_whose_inner_poles_are_beyond_its_box_has_an_inside(void) {
     EXPECT(brio_power_crust(ctx, p, N, NULL, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.closed && c.genus == 0 && c.components == 1);
     EXPECT(fabs(c.volume - 1.0621) < 0.03, "%g", c.volume);
+    brio_certificate_free(&c);
     brio_mesh_free(mesh);
     brio_context_free(ctx);
 }
