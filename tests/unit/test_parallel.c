@@ -5,7 +5,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
-enum { N = SHORT_TESTS ? 12000 : 40000, REPETITIONS = SHORT_TESTS ? 8 : 20, SPARSE = SHORT_TESTS ? 4 : 1 };
+enum { N = SHORT_TESTS ? 12000 : 40000, REPETITIONS = SHORT_TESTS ? 4 : 20, SPARSE = SHORT_TESTS ? 4 : 1 };
 
 static double points[3 * N], weights[N];
 
