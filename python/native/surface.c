@@ -124,7 +124,7 @@ static int open_evidence_array(input *in, PyObject *options, const char *name) {
     return PyDict_DelItemString(options, name) ? -1 : 1;
 }
 
-/* Opens the options normals and origins: a row for each of so many points; of origins maybe one row for all. */
+/* Opens the options normals and origins: one row a point; origins may also be one row for all points. */
 static int open_evidence(evidence_input *e, PyObject *options, size_t rows) {
     int normals, origins;
     *e = (evidence_input){.taken = brio_evidence_default()};

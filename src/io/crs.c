@@ -41,7 +41,7 @@ static bool is_word(const char *at, const char *word) {
     return !strncmp(at, word, length) && (at[length] == '[' || at[length] == '(');
 }
 
-/* Copies the code of the system between two brackets: of its own AUTHORITY[...] or ID[...], not of one of its parts. */
+/* Copies the code of the system between two brackets: from the AUTHORITY[...] or ID[...] of the whole system, not of one of its parts. */
 static bool copy_code(const char *open, const char *end, char text[TEXT]) {
     char authority[TEXT];
     int depth = 0;

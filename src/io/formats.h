@@ -64,7 +64,7 @@ typedef struct brio_format_row {
 const brio_format_row *brio_format_row_of(brio_format format);
 /** Returns whether a format holds something of `what`, bits such as BRIO_HOLDS_FACES. */
 bool brio_format_holds(brio_format format, unsigned what);
-/** Returns whether a format holds property i of a mesh, by a name of its own for colours and normals. */
+/** Returns whether a format holds property i of a mesh, under the name that the format has for colours and normals. */
 bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i);
 /** Returns whether the writer of a format keeps the metadata of a name. */
 bool brio_format_keeps(brio_format format, const char *metadata);

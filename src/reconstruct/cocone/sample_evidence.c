@@ -116,7 +116,7 @@ static void count_pairs(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* Returns the log-odds that a sign is right, if of so many pairs so many agree. */
+/* Returns the log-odds that a sign is right, if `agree` of `pairs` pairs agree. */
 static double log_odds(uint64_t agree, uint64_t pairs) {
     double excess = 2 * (double)(agree + 1) / (double)(pairs + 2) - 1, rate = (1 + sqrt(excess > 0 ? excess : 0)) / 2;
     return fmin(log(rate / (1 - rate)), MOST);

@@ -7,8 +7,8 @@
  *      At the rim of a hole, at least a quarter of the angle belongs to triangles that samples carry.
  *   2. A size is not larger than the 0.7 quantile of the sizes of its neighbours: samples with holes all round them, and
  *      strays, take the size of the surface that they hang on.
- *   3. Along an edge a size grows by at most GROWTH times its length: the far end of a membrane, where no surface is, has no
- *      size of its own to excuse it.
+ *   3. Along an edge a size grows by at most GROWTH times its length: the far end of a membrane, where no surface is, is not
+ *      excused by sizes that only the membrane has.
  *   4. A triangle's usual radius is the middle of the sizes of its three samples.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (empty balls along the surface measure the

@@ -1,4 +1,4 @@
-/* Triangles of samples and their neighbours: the half-edges of a mesh without vertices of its own. */
+/* Triangles of samples and their neighbours: the half-edges of a mesh whose vertices are the samples. */
 #include "reconstruct/open_surface/triangle_net.h"
 #include "base/vector.h"
 #include "mesh/twins.h"
