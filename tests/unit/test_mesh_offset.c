@@ -9,6 +9,8 @@
 
 #define PI 3.141592653589793
 
+enum { UNKNOWN = -1 };
+
 /* --- solids --- */
 
 static brio_mesh *mesh_of(brio_context *ctx, const double *vertices, size_t count, const uint64_t *offsets,
@@ -113,8 +115,8 @@ static void expect_sound(brio_context *ctx, const brio_mesh *mesh, size_t compon
     int64_t pairs = -1;
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented, "%s", what);
-    EXPECT(c.components == components && c.genus == genus, "%s: %zu components, genus %lld", what, c.components,
-           (long long)c.genus);
+    EXPECT(genus == UNKNOWN || (c.components == components && c.genus == genus), "%s: %zu components, genus %lld", what,
+           c.components, (long long)c.genus);
     EXPECT(brio_mesh_self_intersections(ctx, mesh, &pairs) == BRIO_OK && pairs == 0, "%s: %lld pairs cross", what,
            (long long)pairs);
     brio_certificate_free(&c);
@@ -182,10 +184,9 @@ static double missed(const brio_mesh *solid_mesh, const brio_mesh *mesh, double 
 }
 
 /* volume  exact, or 0: not known. */
-static void expect_offset(brio_mesh *(*make)(brio_context *), double distance, double volume, int64_t genus,
-                          const char *name) {
-    brio_context *ctx = new_context();
-    brio_mesh *mesh = make(ctx), *out = NULL;
+static void expect_offset_of(brio_context *ctx, const brio_mesh *mesh, double distance, double volume, int64_t genus,
+                             const char *name) {
+    brio_mesh *out = NULL;
     brio_mesh_offset_stats s = {.size = sizeof s};
     double most, mean, size = fabs(distance);
     EXPECT(brio_mesh_offset(ctx, mesh, distance, NULL, &out, &s) == BRIO_OK, "%s: %s", name, brio_message(ctx));
@@ -206,8 +207,15 @@ static void expect_offset(brio_mesh *(*make)(brio_context *), double distance, d
         if (volume > 0)
             EXPECT(fabs(got - volume) <= 0.005 * volume, "%s by %g: volume %g, not %g", name, distance, got, volume);
     }
-    brio_mesh_free(mesh);
     brio_mesh_free(out);
+}
+
+static void expect_offset(brio_mesh *(*make)(brio_context *), double distance, double volume, int64_t genus,
+                          const char *name) {
+    brio_context *ctx = new_context();
+    brio_mesh *mesh = make(ctx);
+    expect_offset_of(ctx, mesh, distance, volume, genus, name);
+    brio_mesh_free(mesh);
     brio_context_free(ctx);
 }
 
@@ -258,6 +266,32 @@ static void sphere_and_torus_of_many_faces(void) {
     expect_offset(sphere, -0.2, 0, 0, "sphere");
     expect_offset(torus_64, 0.1, 0, 1, "torus");
     expect_offset(torus_64, -0.1, 0, 1, "torus");
+}
+
+/* Machined parts with holes, of sharp edges and long triangles, where their files are there. */
+static void machined_parts(void) {
+    static const struct {
+        const char *name;
+        int64_t genus[2]; /* of the offsets by 0.03 and by -0.02 */
+    } parts[] = {{"anchor", {4, 4}}, {"knot1", {UNKNOWN, 1}}};
+    const char *folders[] = {getenv("BRIO_SHARED"), "../shared", "../../shared", "../../../shared"};
+    for (int i = 0; i < 2; i++) {
+        brio_context *ctx = new_context();
+        brio_mesh *mesh = NULL;
+        for (int j = 0; j < 4 && !mesh; j++) {
+            char path[4096];
+            snprintf(path, sizeof path, "%s/data/corpus/%s.ply", folders[j] ? folders[j] : ".", parts[i].name);
+            if (brio_read(ctx, path, BRIO_FORMAT_AUTO, &mesh) != BRIO_OK) mesh = NULL;
+        }
+        if (mesh) {
+            expect_offset_of(ctx, mesh, 0.03, 0, parts[i].genus[0], parts[i].name);
+            expect_offset_of(ctx, mesh, -0.02, 0, parts[i].genus[1], parts[i].name);
+        } else {
+            printf("skipped: no %s.ply\n", parts[i].name);
+        }
+        brio_mesh_free(mesh);
+        brio_context_free(ctx);
+    }
 }
 
 static void hole_of_a_torus_closes(void) {
@@ -443,6 +477,7 @@ SUITE(test_mesh_offset) {
     RUN(prism_of_32_sides);
     RUN(l_shape_is_sharp_in_its_concave_edge_outside);
     RUN(sphere_and_torus_of_many_faces);
+    if (!SHORT_TESTS) RUN(machined_parts);
     RUN(hole_of_a_torus_closes);
     RUN(solids_that_meet_are_merged);
     RUN(clockwise_faces_bound_the_same_solid);
