@@ -8,7 +8,7 @@
  * A spacing up to factor^2 times the median is always allowed by this rule. Nothing here depends on the unit, so points
  * far from 1 are taken times a power of two: the squares of their distances would be infinite or 0.
  *
- * Spacings are rounded, and so are the coordinates that a file gives. Spacings that are equal but for that must not stand
+ * Spacings are rounded, and so are the coordinates that a file gives. Spacings that differ by rounding alone must not stand
  * out from each other. So each spacing is taken as an interval (`slack_of`): a point is an outlier only if the low end of its
  * spacing is above a threshold that was made of high ends. Logarithms are those of spacings divided by their median: they
  * are the same at every scale by a power of two.
