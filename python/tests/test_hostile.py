@@ -106,13 +106,16 @@ print(sum(outcomes.values()), outcomes)
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_hostile_calls(alone, seed):
-    calls = 2500 if os.environ.get("BRIO_LONG") else 600
+    calls = 2500 if os.environ.get("BRIO_LONG") else 400
     out = alone(HOSTILE, str(seed), str(calls), timeout=300)
     assert out.startswith("%d " % calls) and "SystemError" not in out
 
 
+# Seconds of changes, for each of the programs below.
+CHANGED_SECONDS = "3" if os.environ.get("BRIO_LONG") else "0.5"
+
 CHANGED = r"""
-import threading, time
+import sys, threading, time
 import numpy as np
 import brio
 
@@ -132,7 +135,7 @@ for d in 2, 3:
         points, stop = np.random.default_rng(2).random((n, d)), False
         thread = threading.Thread(target=change, args=(points,))
         thread.start()
-        end = time.monotonic() + 1.5
+        end = time.monotonic() + float(sys.argv[1])
         while time.monotonic() < end:
             tri = brio.Delaunay(points)
             for call in (lambda: tri.find_simplex(points), tri.verify, lambda: brio.ConvexHull(points),
@@ -149,11 +152,11 @@ print(fine > 0, refused > 0)
 
 
 def test_arrays_that_another_thread_changes(alone):
-    assert alone(CHANGED).split() == ["True", "True"]
+    assert alone(CHANGED, CHANGED_SECONDS).split() == ["True", "True"]
 
 
 CHANGED_HULL = r"""
-import threading, time
+import sys, threading, time
 import numpy as np
 import brio
 
@@ -171,7 +174,7 @@ def change():
 
 thread = threading.Thread(target=change)
 thread.start()
-made, end = 0, time.monotonic() + 4
+made, end = 0, time.monotonic() + float(sys.argv[1])
 while time.monotonic() < end:
     try:
         hull = brio.ConvexHull(points, threads=2)
@@ -186,7 +189,7 @@ print(made > 0, np.array_equal(brio.ConvexHull(points).vertices, brio.ConvexHull
 
 
 def test_hulls_of_points_that_another_thread_changes(alone):
-    assert alone(CHANGED_HULL).split() == ["True", "True"]
+    assert alone(CHANGED_HULL, CHANGED_SECONDS).split() == ["True", "True"]
 
 
 def test_hulls_without_a_copy_of_the_points(alone):

@@ -26,7 +26,7 @@ def described(name, kind, options=0, scale=(), offset=(), text=""):
 def las(n=4, form=0, minor=2, vlrs=(), evlrs=(), extra=lambda i: b"", encoding=0, rgb=lambda i: (0, 0, 0), gps=float,
         shift=0, system=b"", software=b"", date=(0, 0), wave=False):
     """A LAS file whose points i are scattered, in centimetres at the size of UTM."""
-    size, rows = RECORDS[form] + len(extra(0)), b""
+    size, rows = RECORDS[form] + len(extra(0)), []
     for i in range(n):
         if form < 6:
             row = struct.pack("<iiiHBBbBH", i, i * 7919 % 10007, i * 31 % 977, 10 * i & 65535, 9, 2, -3, 5, 7)
@@ -34,7 +34,8 @@ def las(n=4, form=0, minor=2, vlrs=(), evlrs=(), extra=lambda i: b"", encoding=0
         else:
             row = struct.pack("<iiiHBBBBhHd", i, i * 7919 % 10007, i * 31 % 977, 10 * i & 65535, 17, 0, 2, 5, -30, 7, gps(i))
         row += struct.pack("<HHH", *rgb(i)) if form in (2, 3, 7, 8) else b""
-        rows += (row + bytes(29) if form == 4 else row) + extra(i)
+        rows.append((row + bytes(29) if form == 4 else row) + extra(i))
+    rows = b"".join(rows)
     head, body = HEADERS[minor], b"".join(vlrs)
     start = head + len(body)
     h = struct.pack("<4sHH16sBB32s32sHHHIIBHI5I", b"LASF", 0, encoding, bytes(16), 1, minor, system, software, *date,

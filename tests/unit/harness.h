@@ -17,6 +17,13 @@ enum { SHORT_TESTS = 1 };
 enum { SHORT_TESTS = 0 };
 #endif
 
+/* Whether to take fewer still, as make check does under the sanitizers, where all takes several times as long. */
+#if defined(BRIO_SHORT_TESTS) && defined(BRIO_SLOW_BUILD)
+enum { BRIEF_TESTS = 1 };
+#else
+enum { BRIEF_TESTS = 0 };
+#endif
+
 static int harness_failures, harness_checks;
 
 /* A suite has the name of its file. argc and argv are those of a program of that name. */

@@ -97,7 +97,7 @@ static void cells_equal_those_of_brute_force(void) {
 /* --- lattices --- */
 
 static void cells_of_a_lattice_have_six_faces(void) {
-    enum { SIDE = 50, N = SIDE * SIDE * SIDE };
+    enum { SIDE = SHORT_TESTS ? 20 : 50, N = SIDE * SIDE * SIDE };
     brio_context *ctx = new_context();
     double *points = malloc(3 * N * sizeof *points), box[6] = {-0.5, -0.5, -0.5, SIDE - 0.5, SIDE - 0.5, SIDE - 0.5};
     for (size_t i = 0; i < N; i++) {
@@ -128,7 +128,11 @@ static void volumes_add_up_to_the_box(void) {
     for (int kind = 0; kind < BRIO_KIND_END; kind++)
         for (int weighted = 0; weighted < 2; weighted++) {
             brio_mesh *m;
-            EXPECT(brio_generate(ctx, (brio_kind)kind, kind == BRIO_KIND_MOMENT ? 200 : 3000, NULL, &m) == BRIO_OK);
+            EXPECT(brio_generate(ctx, (brio_kind)kind,
+                                 kind == BRIO_KIND_MOMENT ? 200
+                                 : BRIEF_TESTS            ? 800
+                                                          : 3000,
+                                 NULL, &m) == BRIO_OK);
             double box[6], *weights = malloc(m->num_vertices * sizeof *weights);
             for (int k = 0; k < 3; k++) {
                 double low = INFINITY, high = -INFINITY;

@@ -4,7 +4,7 @@
 #include "points.h"
 #include "scenes.h"
 
-static size_t num_sets = 12000;
+static size_t num_sets = BRIEF_TESTS ? 4000 : 12000;
 static uint64_t first_seed = 1;
 
 enum { SETS_A_SCENE = 200, RESULTS_A_SCENE = 200 };

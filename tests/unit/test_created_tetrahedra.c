@@ -29,6 +29,8 @@ static double created_a_point(brio_kind kind, size_t n, brio_order order, double
     return created;
 }
 
+enum { LARGE = SHORT_TESTS ? 8000 : 16000 };
+
 static double mean_created(size_t n, brio_order order, double ratio) {
     double sum = 0;
     for (uint64_t seed = 1; seed <= SEEDS; seed++) sum += created_a_point(BRIO_KIND_SCAN, n, order, ratio, seed);
@@ -39,7 +41,7 @@ static double mean_created(size_t n, brio_order order, double ratio) {
 static void scans_create_as_many_as_in_random_order(void) {
     double random[2], brio[2];
     for (int i = 0; i < 2; i++) {
-        size_t n = i ? 16000 : 4000;
+        size_t n = i ? LARGE : LARGE / 4;
         random[i] = mean_created(n, BRIO_ORDER_RANDOM, 0);
         for (size_t k = 0; k < sizeof BRIOS / sizeof *BRIOS; k++) {
             brio[i] = mean_created(n, BRIOS[k], 0.5);
@@ -50,7 +52,7 @@ static void scans_create_as_many_as_in_random_order(void) {
         EXPECT(brio[i] < 1.1 * random[i], "default rounds: %g, %g in random order", brio[i], random[i]);
     }
     EXPECT(random[1] < 1.1 * random[0] && brio[1] < 1.1 * brio[0], "%g, then %g a point", brio[0], brio[1]);
-    double curve = mean_created(16000, BRIO_ORDER_HILBERT, 0);
+    double curve = mean_created(LARGE, BRIO_ORDER_HILBERT, 0);
     EXPECT(curve > 1.3 * random[1], "%g along the curve, %g in random order", curve, random[1]);
 }
 

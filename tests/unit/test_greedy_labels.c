@@ -161,7 +161,7 @@ static void compare_labels(const double *points, size_t n, const char *name, tot
 static void greedy_labels_are_those_of_figure_3_8(void) {
     static double p[3 * 200];
     totals sum = {0};
-    for (uint64_t trial = 0; trial < 250; trial++) {
+    for (uint64_t trial = 0; trial < 250; trial += BRIEF_TESTS ? 3 : 1) {
         size_t n = 10 + trial % 191;
         uniform_points(trial, n, p);
         compare_labels(p, n, "uniform", &sum);
@@ -174,8 +174,8 @@ static void greedy_labels_are_those_of_figure_3_8(void) {
         sphere_points(trial, n, p);
         compare_labels(p, n, "sphere", &sum);
     }
-    EXPECT(sum.sets > 1000 && sum.inner > 10000 && sum.confused > 10000 && sum.hidden > 100, "%zu %zu %zu %zu",
-           sum.sets, sum.inner, sum.confused, sum.hidden);
+    EXPECT(sum.sets > (BRIEF_TESTS ? 300 : 1000) && sum.inner > 3000 && sum.confused > 3000 && sum.hidden > 100,
+           "%zu %zu %zu %zu", sum.sets, sum.inner, sum.confused, sum.hidden);
 }
 
 SUITE(test_greedy_labels) {

@@ -9,7 +9,7 @@
 #include <pthread.h>
 #include <string.h>
 
-enum { N = 200, QUERIES = 100, CALLS = 40, WRITES = 2000 };
+enum { N = 200, QUERIES = 100, CALLS = BRIEF_TESTS ? 10 : 40, WRITES = BRIEF_TESTS ? 500 : 2000 };
 
 /* What is changed: rows of three numbers, weights, and what they were. */
 static struct {
@@ -339,9 +339,9 @@ static void by_a_callback(void) {
     brio_context *ctx = new_context();
     brio_context_set_threads(ctx, 1);
     for (size_t which = 0; which < NUM_CALLS; which++)
-        for (size_t wild = 0; wild < WILDS; wild += SHORT_TESTS ? 3 : 1) {
+        for (size_t wild = 0; wild < WILDS; wild += BRIEF_TESTS ? 9 : SHORT_TESTS ? 3 : 1) {
             change c = {-1, WILD[wild], 0, NULL};
-            for (int k = 0; c.left < 0; k += SHORT_TESTS ? 3 : 1) {
+            for (int k = 0; c.left < 0; k += BRIEF_TESTS ? 7 : SHORT_TESTS ? 3 : 1) {
                 c.left = k, c.stage = NULL, c.rows = ROWS[(wild + (size_t)k) % (sizeof ROWS / sizeof *ROWS)];
                 brio_context_set_progress(ctx, change_now, &c);
                 begin(which);

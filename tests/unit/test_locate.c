@@ -6,7 +6,7 @@
 
 enum { MOST = 1200, QUERIES_A_FILE = 60 };
 
-static size_t queries_a_set = 600;
+static size_t queries_a_set = BRIEF_TESTS ? 120 : 600;
 
 /* --- queries that make ties --- */
 
@@ -130,7 +130,7 @@ static void ranges_beyond_the_scale_of_a_locator(void) {
     static const int exponents[] = {-1000, -530, -300, 300, 500, 1000};
     static double p[3 * 100], w[100];
     size_t usual = queries_a_set;
-    queries_a_set = 60;
+    queries_a_set = BRIEF_TESTS ? 15 : 60;
     for (int k = 0; k < 6; k++) {
         uniform_points(1, 100, p);
         for (int i = 0; i < 100; i++) w[i] = p[3 * i] * p[3 * i + 1] * 0.1;

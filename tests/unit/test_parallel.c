@@ -5,7 +5,18 @@
 #include <pthread.h>
 #include <unistd.h>
 
-enum { N = SHORT_TESTS ? 12000 : 40000, REPETITIONS = SHORT_TESTS ? 4 : 20, SPARSE = SHORT_TESTS ? 4 : 1 };
+enum {
+    N = SHORT_TESTS ? 12000 : 40000,
+    REPETITIONS = BRIEF_TESTS   ? 2
+                  : SHORT_TESTS ? 4
+                                : 20,
+    SPARSE = BRIEF_TESTS   ? 12
+             : SHORT_TESTS ? 4
+                           : 1,
+    LEAST_THREADS = BRIEF_TESTS   ? 8
+                    : SHORT_TESTS ? 3
+                                  : 2
+};
 
 static double points[3 * N], weights[N];
 
@@ -57,10 +68,10 @@ static void every_number_of_threads_gives_the_same_arrays(void) {
     for (int set = 0; set < 6; set++) {
         make_set(set);
         size_t n = set == 4 ? N / 2 : N;
-        for (int weighted = 0; weighted < 2; weighted++) {
+        for (int weighted = BRIEF_TESTS ? set % 2 : 0; weighted < 2; weighted += BRIEF_TESTS ? 2 : 1) {
             brio_delaunay_stats one, many;
             uint64_t expected = fingerprint(points, weighted ? weights : NULL, n, 1, &one), deferred = 0;
-            for (int threads = SHORT_TESTS ? 3 : 2; threads <= 8; threads += threads < 3 ? 1 : 5) {
+            for (int threads = LEAST_THREADS; threads <= 8; threads += threads < 3 ? 1 : 5) {
                 uint64_t found = fingerprint(points, weighted ? weights : NULL, n, threads, &many);
                 EXPECT(found == expected, "set %d, weighted %d, %d threads", set, weighted, threads);
                 EXPECT(many.duplicates == one.duplicates && many.hidden == one.hidden);
@@ -147,7 +158,7 @@ static void cancelled_threads_free_everything(void) {
 static void memory_running_out_in_a_thread_is_a_status(void) {
     make_set(0);
     int refused = 0, done = 0;
-    for (size_t limit = (size_t)100 * N; limit < (size_t)3200 * N; limit += limit / 6) {
+    for (size_t limit = (size_t)100 * N; limit < (size_t)3200 * N; limit += limit / (BRIEF_TESTS ? 3 : 6)) {
         brio_context *ctx = new_context();
         brio_triangulation *t;
         brio_context_set_threads(ctx, 4);

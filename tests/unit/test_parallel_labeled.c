@@ -5,7 +5,7 @@
 #include "same_faces.h"
 #include <string.h>
 
-enum { MANY = 6000 };
+enum { MANY = BRIEF_TESTS ? 3500 : 6000, MOST_THREADS = BRIEF_TESTS ? 3 : 5 };
 
 static brio_mesh *surface_of(const double *p, int threads) {
     brio_context *ctx = new_context();
@@ -24,7 +24,7 @@ static void free_surface(brio_mesh *mesh) {
 
 static void expect_the_surface_of_one_thread(const double *p) {
     brio_mesh *one = surface_of(p, 1);
-    for (int threads = 2; threads < 6; threads++) {
+    for (int threads = BRIEF_TESTS ? 3 : 2; threads <= MOST_THREADS; threads++) {
         brio_mesh *more = surface_of(p, threads);
         expect_same_faces(one, NULL, more);
         EXPECT(one->num_vertices == more->num_vertices &&

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { N = 6000, MOST_THREADS = SHORT_TESTS ? 3 : 8 };
+enum { N = BRIEF_TESTS ? 2500 : 6000, MOST_THREADS = SHORT_TESTS ? 3 : 8 };
 
 static double points[3 * N];
 

@@ -126,7 +126,7 @@ static void expect_cancelled_at_each_report(work_fn work, const double *p, size_
 }
 
 static void cancelled_at_each_report_everything_is_given_back(void) {
-    enum { N = 1200 };
+    enum { N = BRIEF_TESTS ? 600 : 1200 };
     double *p = malloc(3 * N * sizeof *p);
     uniform_points(6, N, p);
     for (size_t i = 0; i < N; i++) {

@@ -235,7 +235,7 @@ static void a_far_outlier_hides_no_other(void) {
 
 /* A query among duplicates met them all. */
 static void outliers_among_duplicates_cost_little(void) {
-    enum { N = SHORT_TESTS ? 12000 : 50000, STRAY = N - 1 };
+    enum { N = BRIEF_TESTS ? 4000 : SHORT_TESTS ? 12000 : 50000, STRAY = N - 1 };
     double *points = calloc(3 * N, sizeof *points);
     uint8_t *outlier = malloc(N);
     brio_context *ctx = new_context();

@@ -354,7 +354,7 @@ static void open_surfaces_are_manifold_and_canonical(void) {
     brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
     brio_labeled_delaunay_stats s;
     size_t left_out = 0;
-    for (int trial = 0; trial < 8; trial++) {
+    for (int trial = 0; trial < 8; trial += BRIEF_TESTS ? 3 : 1) {
         o.open = 1.5 + 0.25 * trial;
         o.noise = BRIO_NOISE_KEEP;
         if (trial % 2)
@@ -449,7 +449,7 @@ static void the_walk_finds_dense_surfaces(void) {
 static void the_walk_ends_on_anything(void) {
     double p[3 * 60];
     brio_context *ctx = context_of(1);
-    for (uint64_t trial = 0; trial < (SHORT_TESTS ? 500 : 2000); trial++) {
+    for (uint64_t trial = 0; trial < (BRIEF_TESTS ? 250 : SHORT_TESTS ? 500 : 2000); trial++) {
         size_t n = 5 + trial % 50;
         brio_cocone_stats s;
         if (trial % 2)

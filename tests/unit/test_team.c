@@ -80,7 +80,7 @@ static void impossible_numbers_of_threads_are_bounded(void) {
 
 /* --- barriers --- */
 
-enum { STEPS = 200, MOST_MEMBERS = 64 };
+enum { STEPS = BRIEF_TESTS ? 80 : 200, MOST_MEMBERS = 64 };
 
 typedef struct {
     int step[MOST_MEMBERS];
