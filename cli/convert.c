@@ -165,7 +165,7 @@ const command cli_convert = {
         "brio convert scan.laz scan.ply\nevery property is kept\n"
         "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n"
         "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n",
-    .outputs = "ply xyz pts txt csv asc tsv obj off stl vtu vtp vtk node las laz pcd npy glb",
+    .outputs = "ply xyz pts txt csv asc tsv obj off stl vtu vtp vtk node las laz pcd npy glb e57 ptx",
     .output_optional = true,
     .group = GROUP_FILES,
     .min_operands = 1,

@@ -1828,11 +1828,11 @@ typedef enum brio_format {
     BRIO_FORMAT_LAS = 8, /* versions 1.0 to 1.5, point formats 0 to 10 without waveforms */
     BRIO_FORMAT_LAZ = 9, /* LAS, compressed as by LASzip; written in formats 0 to 3 and 6 to 8 */
     BRIO_FORMAT_PCD = 10,
-    BRIO_FORMAT_PTX = 11,      /* read, not written */
+    BRIO_FORMAT_PTX = 11,
     BRIO_FORMAT_STL = 12,      /* corners at the same position become one vertex */
     BRIO_FORMAT_NPY = 13,      /* NumPy: an array of rows of coordinates, or of records with names */
     BRIO_FORMAT_GLB = 14,      /* glTF 2.0: .glb; .gltf is read, not written. Single precision about an origin */
-    BRIO_FORMAT_E57 = 15,      /* read, not written; where brio was built with the library expat */
+    BRIO_FORMAT_E57 = 15,      /* read where brio was built with the library expat; written to files, not to pipes */
     BRIO_FORMAT_CHEMICAL = 16, /* .xyz with element symbols or atomic numbers: read, not written */
     BRIO_FORMAT_BNPTS = 17,    /* oriented points of Kazhdan's Poisson programs: read, not written */
     BRIO_FORMAT_NPZ = 18,      /* NumPy's zip of arrays: read, not written */
@@ -1856,7 +1856,8 @@ enum {
     BRIO_HOLDS_BINARY = 256,     /* the file can be binary */
     BRIO_HOLDS_COMPRESSED = 512, /* brio_write_options.compress has a meaning */
     BRIO_HOLDS_COLOURS = 1024,   /* red, green and blue, though not all properties */
-    BRIO_HOLDS_NORMALS = 2048    /* nx, ny and nz, though not all properties */
+    BRIO_HOLDS_NORMALS = 2048,   /* nx, ny and nz, though not all properties */
+    BRIO_HOLDS_INTENSITY = 4096  /* intensity, though not all properties */
 };
 
 /** What is known of a format. */

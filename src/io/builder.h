@@ -53,6 +53,7 @@ typedef struct brio_builder {
     bool origins;            /* the caller wants the places of scanners as properties (origins.h) */
     bool has_origins;        /* the properties are there, */
     size_t first_origin;     /* from this one on */
+    bool scans;              /* the caller wants the places in the grids of scans as properties, too */
     char version[64];        /* what the reader says of the file's version; may be empty */
     brio_names names;
     char (*left_out)[64]; /* names of what the file has and the mesh has not, each once: brio_builder_leave_out */

@@ -171,6 +171,7 @@ static double target_white(const brio_colour_plan *plan, brio_scalar from, brio_
     if (plan->white == 0) return 0;
     if (to == BRIO_COLOURS_NORMALIZED)
         to = plan->white == BYTE ? BRIO_COLOURS_8 : plan->white == WORD ? BRIO_COLOURS_16 : BRIO_COLOURS_UNIT;
+    if (to == BRIO_COLOURS_8_OR_16) to = plan->white == WORD ? BRIO_COLOURS_16 : BRIO_COLOURS_8;
     switch (to) {
     case BRIO_COLOURS_8:
         *type = BRIO_SCALAR_UINT8;
@@ -184,6 +185,7 @@ static double target_white(const brio_colour_plan *plan, brio_scalar from, brio_
                     : BRIO_SCALAR_FLOAT32;
         return from == *type && plan->white == UNIT ? 0 : UNIT;
     case BRIO_COLOURS_AS_THEY_ARE:
+    case BRIO_COLOURS_8_OR_16:
     case BRIO_COLOURS_NORMALIZED:
         break;
     }

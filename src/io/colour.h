@@ -29,6 +29,7 @@ typedef enum {
     BRIO_COLOURS_AS_THEY_ARE, /* numbers of any type */
     BRIO_COLOURS_8,           /* bytes */
     BRIO_COLOURS_16,          /* uint16 */
+    BRIO_COLOURS_8_OR_16,     /* bytes, or uint16 where the file that is read has 16 bits */
     BRIO_COLOURS_UNIT,        /* floating-point numbers from 0 to 1 */
     BRIO_COLOURS_NORMALIZED   /* bytes, uint16, or float32 from 0 to 1 */
 } brio_colours;

@@ -73,10 +73,14 @@ static const brio_format_row table[] = {
      .write = brio_glb_write,
      .about_origin = true,
      .colours = BRIO_COLOURS_NORMALIZED},
-    {{sizeof(brio_format_info), BRIO_FORMAT_E57, "an E57 file", "e57", "", POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY,
-      0},
+    {{sizeof(brio_format_info), BRIO_FORMAT_E57, "an E57 file", "e57", "e57",
+      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, 252},
      .starts = brio_e57_starts,
-     .read = brio_e57_read},
+     .read = brio_e57_read,
+     .rows = &brio_e57_rows,
+     .colours = BRIO_COLOURS_8_OR_16,
+     .scans = true,
+     .keeps = "crs.wkt"},
     {{sizeof(brio_format_info), BRIO_FORMAT_NPZ, "an NPZ file", "npz", "", POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY,
       0},
      .starts = brio_npz_starts,
@@ -94,9 +98,12 @@ static const brio_format_row table[] = {
       BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS},
      .read = brio_node_read,
      .write = brio_node_write},
-    {{sizeof(brio_format_info), BRIO_FORMAT_PTX, "a PTX file", "ptx", "", POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT,
-      0},
-     .read = brio_ptx_read},
+    {{sizeof(brio_format_info), BRIO_FORMAT_PTX, "a PTX file", "ptx", "ptx",
+      BRIO_HOLDS_COLOURS | BRIO_HOLDS_INTENSITY | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+     .read = brio_ptx_read,
+     .rows = &brio_ptx_rows,
+     .colours = BRIO_COLOURS_8,
+     .scans = true},
     {{sizeof(brio_format_info), BRIO_FORMAT_BNPTS, "a BNPTS file", "bnpts", "", BRIO_HOLDS_SINGLES | BRIO_HOLDS_BINARY,
       0},
      .read = brio_bnpts_read},
@@ -132,6 +139,7 @@ bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i
     const brio_property *p = &m->properties[i];
     if (brio_format_holds(format, BRIO_HOLDS_PROPERTIES)) return true;
     if (colour.count > 3) colour.count = 3;
+    if (brio_format_holds(format, BRIO_HOLDS_INTENSITY) && !strcmp(p->name, "intensity")) return true;
     return (brio_format_holds(format, BRIO_HOLDS_COLOURS) && brio_channels_have(&colour, p)) ||
            (brio_format_holds(format, BRIO_HOLDS_NORMALS) && brio_channels_have(&normal, p));
 }

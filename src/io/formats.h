@@ -57,6 +57,7 @@ typedef struct brio_format_row {
     brio_status (*write)(brio_output *out, const brio_write_job *job); /* NULL: not written as a whole */
     bool about_origin;    /* single precision is that of distances from an origin, which the writer chooses */
     brio_colours colours; /* how a file that is written has colours */
+    bool scans;           /* whether the writer makes scans (scans.h): the reader then tells places and grids */
     const char *keeps;    /* NULL, or how the names of the metadata begin that the writer keeps: "crs. las." */
 } brio_format_row;
 

@@ -1,7 +1,8 @@
 /* Reads PTX files: scans as grids of rows, each scan with its own position.
  *
  * A scan begins with the numbers of columns and rows, the scanner's position and axes, and a matrix of 4 by 4 by which a
- * row (x, y, z, 1) is multiplied. A point at the origin is a place without a return and is left out.
+ * row (x, y, z, 1) is multiplied. A point at the origin is a place without a return and is left out. Points go column by
+ * column.
  *
  * Based on: Leica Geosystems. Description of the PTX format. */
 #include "io/formats.h"
@@ -9,6 +10,7 @@
 #include "io/textrow.h"
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 enum {
     SCANNER = 12 /* numbers of position and axes */,
@@ -24,12 +26,17 @@ typedef struct {
     brio_builder *builder;
     double matrix[MATRIX], place[PLACE];
     int columns; /* numbers of a point: 3, 4 or 7; 0 before the first point */
+    uint64_t rows;            /* of the scan's grid */
+    size_t first_place;       /* builder->scans: the property column_index, which row_index follows */
+    bool begun, has_places;   /* whether a scan came before; builder->scans: whether these properties are there */
 } ptx_reader;
 
 static brio_status read_scan_header(ptx_reader *r, uint64_t *points) {
     brio_status status = BRIO_OK;
     uint64_t columns, rows;
-    double ignored;
+    double ignored, before[PLACE];
+    brio_builder *b = r->builder;
+    memcpy(before, r->place, sizeof before);
     BRIO_TRY(brio_text_count(&r->text, "the number of columns", UINT32_MAX, &columns));
     BRIO_TRY(brio_text_count(&r->text, "the number of rows", UINT32_MAX, &rows));
     for (int i = 0; i < SCANNER; i++) BRIO_TRY(brio_text_number(&r->text, i < PLACE ? &r->place[i] : &ignored));
@@ -37,9 +44,15 @@ static brio_status read_scan_header(ptx_reader *r, uint64_t *points) {
     if (r->place[0] == 0 && r->place[1] == 0 && r->place[2] == 0)
         for (int k = 0; k < PLACE; k++) r->place[k] = r->matrix[12 + k]; /* some programs write the place there only */
     BRIO_TRY(brio_text_row_end(&r->text));
-    if (columns > 1 && rows > 1) BRIO_TRY(brio_builder_leave_out(r->builder, "order in rows"));
-    for (int i = 0; i < MATRIX; i++)
-        if (r->matrix[i] != (i % 5 == 0)) BRIO_TRY(brio_builder_leave_out(r->builder, "poses"));
+    if (columns > 1 && rows > 1 && !b->scans) BRIO_TRY(brio_builder_leave_out(b, "order in rows"));
+    for (int i = 0; i < MATRIX; i++) {
+        bool moves = i >= MATRIX - 4 && i < MATRIX - 1;
+        if (r->matrix[i] != (i % 5 == 0) && !(moves && b->scans))
+            BRIO_TRY(brio_builder_leave_out(b, b->scans ? "turns of scanners" : "poses"));
+    }
+    if (r->begun && (!b->scans || !memcmp(before, r->place, sizeof before))) BRIO_TRY(brio_builder_leave_out(b, "scans"));
+    r->begun = true;
+    r->rows = rows;
     *points = columns * rows;
 done:
     return status;
@@ -60,6 +73,11 @@ static brio_status plan(ptx_reader *r, int columns) {
     for (int i = 0; i < 3 && columns == COLOURS; i++)
         BRIO_TRY(brio_builder_property(r->builder, colours[i], BRIO_SCALAR_UINT8));
     BRIO_TRY(brio_plan_origins(r->builder));
+    if (!r->builder->scans) return BRIO_OK;
+    r->first_place = r->builder->mesh->num_properties;
+    BRIO_TRY(brio_builder_property(r->builder, "column_index", BRIO_SCALAR_UINT32));
+    BRIO_TRY(brio_builder_property(r->builder, "row_index", BRIO_SCALAR_UINT32));
+    r->has_places = true;
 done:
     return status;
 }
@@ -76,6 +94,10 @@ static brio_status add_point(ptx_reader *r, const double *values) {
     brio_mesh *m = r->builder->mesh;
     size_t v = m->num_vertices - 1;
     brio_set_origins(r->builder, v, r->place);
+    if (r->has_places) {
+        ((uint32_t *)m->properties[r->first_place].data)[v] = (uint32_t)(s->row / r->rows);
+        ((uint32_t *)m->properties[r->first_place + 1].data)[v] = (uint32_t)(s->row % r->rows);
+    }
     if (r->columns >= INTENSITY) ((float *)m->properties[0].data)[v] = (float)values[3];
     for (int i = 0; i < 3 && r->columns == COLOURS; i++) {
         double colour = values[4 + i];

@@ -145,7 +145,8 @@ brio_status brio_read_file(brio_context *ctx, brio_read_job *job) {
     b.flat = job->flat;
     b.drop_invalid = job->drop_invalid;
     b.salvage = job->salvage;
-    b.origins = job->origins;
+    b.origins = job->origins || job->scans;
+    b.scans = job->scans;
     BRIO_TRY(read_stream(&s, &b, job->format, job->columns));
     if (job->format == BRIO_FORMAT_NODE && !job->memory && strcmp(job->path, "-") != 0)
         BRIO_TRY(read_tetrahedra(&b, job->path, tetrahedra));

@@ -18,6 +18,7 @@ typedef struct brio_read_job {
     bool drop_invalid;        /* as in brio_read_options */
     bool salvage;
     bool origins;              /* in: whether they are wanted; out: whether they were added */
+    bool scans;                /* in: whether places of scanners and in their grids are wanted */
     uint64_t dropped, missing; /* points left out, and points that a file lacks, as in brio_read_options */
     const brio_sink *sink;     /* NULL: the mesh receives everything */
     uint64_t announced;        /* set before the sink's first call, as in brio_builder */

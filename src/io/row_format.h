@@ -28,6 +28,8 @@ typedef struct brio_row_format {
     /** Returns whether a reader finds property i by another name. NULL: job->names has the names of the file, each one
      *  word. Otherwise there is no job->names. */
     bool (*renames)(const void *state, size_t i);
+    /** Returns whether the file has no place for property i. NULL: what the table of formats says. */
+    bool (*lacks)(const void *state, size_t i);
     /** Returns whether coordinates are rounded. NULL: only as the options say. */
     bool (*rounds)(const void *state);
     /** Returns how far a vertex of a block is at most from where a reader finds it. NULL: as the options say. */
@@ -37,7 +39,8 @@ typedef struct brio_row_format {
 /** Returns the functions of a format, or NULL if the format needs the whole mesh. */
 const brio_row_format *brio_row_format_of(brio_format format);
 
-extern const brio_row_format brio_ply_rows, brio_xyz_rows, brio_npy_rows, brio_las_rows, brio_laz_rows, brio_pcd_rows;
+extern const brio_row_format brio_ply_rows, brio_xyz_rows, brio_npy_rows, brio_las_rows, brio_laz_rows, brio_pcd_rows,
+    brio_e57_rows, brio_ptx_rows;
 
 /** A file that is written block by block. */
 typedef struct brio_row_writer {

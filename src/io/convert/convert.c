@@ -81,6 +81,20 @@ done:
     return status;
 }
 
+/* Whether the writer knows best which properties have a place. */
+static bool asks_writer(const conversion *c) {
+    return c->writer.format && c->writer.format->lacks;
+}
+
+/* Names the properties that have no place in the file, or another name there. */
+static void name_properties(const conversion *c, const brio_mesh *m) {
+    for (size_t i = 0; i < m->num_properties; i++) {
+        if (asks_writer(c) && c->writer.format->lacks(c->writer.state, i)) lose(c, m->properties[i].name);
+        if (c->options->renamed && brio_row_writer_renames(&c->writer, m, i))
+            c->options->renamed(m->properties[i].name, c->options->renamed_user);
+    }
+}
+
 /* Names the parts of a mesh that the format cannot hold. */
 static void name_losses(conversion *c, const brio_mesh *m) {
     if (c->told) return;
@@ -91,7 +105,7 @@ static void name_losses(conversion *c, const brio_mesh *m) {
     if (cuts_polygons(c, m)) lose(c, "polygons of more than three corners");
     bool nameless = holds(c, BRIO_HOLDS_PROPERTIES) && !holds(c, BRIO_HOLDS_NAMES);
     if (m->num_properties && nameless) lose(c, "names of properties");
-    for (size_t i = 0; i < m->num_properties; i++)
+    for (size_t i = 0; i < m->num_properties && !asks_writer(c); i++)
         if (!brio_format_holds_property(c->format, m, i)) lose(c, m->properties[i].name);
     name_metadata(c, m);
 }
@@ -165,9 +179,7 @@ static brio_status write_block(void *user, const brio_mesh *block) {
     }
     bool first = !c->writer.begun;
     BRIO_TRY(brio_row_writer_write(&c->writer, c->to, &shown));
-    for (size_t i = 0; first && i < shown.num_properties && c->options->renamed; i++)
-        if (brio_row_writer_renames(&c->writer, &shown, i))
-            c->options->renamed(shown.properties[i].name, c->options->renamed_user);
+    if (first) name_properties(c, &shown);
     c->stats.points += block->num_vertices;
     if (c->source.job.mesh) {
         c->stats.faces = shown.num_faces;
@@ -374,6 +386,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
                                    .flat = read.flat,
                                    .drop_invalid = read.drop_invalid,
                                    .salvage = read.salvage,
+                                   .scans = brio_format_row_of(c.format)->scans,
                                    .announced = BRIO_COUNT_UNKNOWN};
     BRIO_TRY(run(&c));
     if (rounded) *rounded = c.dulled;

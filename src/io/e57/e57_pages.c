@@ -22,7 +22,10 @@ enum { HEADER = 48 /* bytes */, TABLES = 8 };
 
 /* --- checksum --- */
 
-static void make_table(uint32_t (*table)[256]) {
+brio_status brio_e57_checksum_table(brio_context *ctx, uint32_t (**out)[256]) {
+    brio_status status = BRIO_ALLOC(ctx, *out, TABLES);
+    if (status != BRIO_OK) return status;
+    uint32_t(*table)[256] = *out;
     for (uint32_t i = 0; i < 256; i++) {
         uint32_t rest = i;
         for (int bit = 0; bit < 8; bit++) rest = rest >> 1 ^ (rest & 1 ? POLYNOMIAL : 0);
@@ -30,10 +33,12 @@ static void make_table(uint32_t (*table)[256]) {
     }
     for (int k = 1; k < TABLES; k++)
         for (int i = 0; i < 256; i++) table[k][i] = table[k - 1][i] >> 8 ^ table[0][table[k - 1][i] & 255];
+    return BRIO_OK;
 }
 
-/* The checksum of a page's content, whose size is no multiple of eight. */
-static uint32_t checksum(uint32_t (*const table)[256], const uint8_t *bytes) {
+/* The content's size is no multiple of eight. */
+uint32_t brio_e57_checksum(uint32_t (*const table)[256], const char *page) {
+    const uint8_t *bytes = (const uint8_t *)page;
     uint32_t rest = UINT32_MAX;
     size_t i = 0;
     for (; i + 8 <= BRIO_E57_CONTENT; i += 8) {
@@ -72,7 +77,7 @@ static brio_status add_page(brio_e57_pages *p, const char *page) {
     brio_status status = BRIO_OK;
     const uint8_t *stored = (const uint8_t *)page + BRIO_E57_CONTENT;
     uint32_t expected = (uint32_t)stored[0] << 24 | (uint32_t)stored[1] << 16 | (uint32_t)stored[2] << 8 | stored[3];
-    uint32_t found = checksum(p->table, (const uint8_t *)page);
+    uint32_t found = brio_e57_checksum(p->table, page);
     BRIO_REQUIRE(p->stream->ctx, found == expected, BRIO_ERR_FORMAT,
                  "%s: the page at byte %" PRIu64 " is damaged: its checksum is %08" PRIx32 ", expected %08" PRIx32,
                  p->stream->name, brio_e57_physical(p->first + p->size), found, expected);
@@ -170,8 +175,7 @@ brio_status brio_e57_pages_open(brio_e57_pages *p, brio_stream *s) {
     BRIO_REQUIRE(s->ctx, s->size >= HEADER, BRIO_ERR_FORMAT,
                  "%s: ends at byte %" PRIu64 ", the header of an E57 file has %d bytes", s->name, s->size, HEADER);
     BRIO_TRY(read_header(p));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, p->table, TABLES));
-    make_table(p->table);
+    BRIO_TRY(brio_e57_checksum_table(s->ctx, &p->table));
     BRIO_TRY(BRIO_ALLOC(s->ctx, p->raw, BATCH * BRIO_E57_PAGE));
     BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, p->window, WINDOW * BRIO_E57_CONTENT + BRIO_E57_SLACK));
 done:

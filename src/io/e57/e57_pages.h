@@ -28,6 +28,11 @@ typedef struct brio_e57_pages {
     bool reports;             /* whether the place of the window is the share of the work that is done */
 } brio_e57_pages;
 
+/** Makes the tables of the checksum.   out  owned by the caller (brio_release). */
+brio_status brio_e57_checksum_table(brio_context *ctx, uint32_t (**out)[256]);
+/** Returns the CRC-32C of a page's content. */
+uint32_t brio_e57_checksum(uint32_t (*const table)[256], const char *page);
+
 /** Reads the header of a file. Refuses input that is no regular file: the header names places behind all others. Call
  *  brio_e57_pages_close even if this fails. */
 brio_status brio_e57_pages_open(brio_e57_pages *p, brio_stream *s);

@@ -32,7 +32,7 @@ typedef struct {
 
 static bool is_taken(const planner *l, const char *name) {
     static const char *const others[] = {"x", "y", "z", "scan"};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    for (size_t i = 0; i < (l->plan->has_scan ? 4 : 3); i++)
         if (!strcmp(name, others[i])) return true;
     for (size_t i = 0; i < l->num_columns; i++)
         if (!strcmp(name, l->columns[i].name)) return true;
@@ -40,13 +40,14 @@ static bool is_taken(const planner *l, const char *name) {
 }
 
 /* Turns rowIndex into row_index, prefix:someName into prefix_some_name, and names colours and normals as other formats
- * do. A name that is taken gets _2 behind it. */
+ * do. Names of brio's own extension are those of properties. A name that is taken gets _2 behind it. */
 static void make_name(const planner *l, const char *source, char name[BRIO_E57_NAME]) {
     static const char *const known[][2] = {{"colorRed", "red"},   {"colorGreen", "green"}, {"colorBlue", "blue"},
                                            {"nor:normalX", "nx"}, {"nor:normalY", "ny"},   {"nor:normalZ", "nz"}};
+    bool own = !strncmp(source, "brio:", 5);
     size_t n = 0;
-    for (const char *c = source; *c && n + brio_utf8_length(c) < BRIO_E57_NAME - 4; c++) {
-        bool upper = *c >= 'A' && *c <= 'Z';
+    for (const char *c = own ? source + 5 : source; *c && n + brio_utf8_length(c) < BRIO_E57_NAME - 4; c++) {
+        bool upper = !own && *c >= 'A' && *c <= 'Z';
         if (upper && n && name[n - 1] != '_') name[n++] = '_';
         name[n++] = *c == ':' ? '_' : upper ? (char)(*c - 'A' + 'a') : *c;
     }
