@@ -220,6 +220,7 @@ static brio_status write_packet(e57_writer *w, const brio_mesh *m, const brio_sc
         const field *f = &w->fields[i];
         size_t length = count * size_of(f);
         brio_put_le16(w->packet + DATA_HEADER + 2 * i, (uint16_t)length);
+        if (!count) continue;
         if (f->axis)
             encode_axis(w, m, part, f, w->packet + at);
         else if (!f->valid)
@@ -460,6 +461,7 @@ static brio_status end(brio_output *out, const brio_write_job *job, void *state)
     w->pen.out = out;
     if (!w->scans.points) {
         BRIO_TRY(begin_scan(out, w));
+        BRIO_TRY(write_packet(w, job->mesh, &(brio_scan_part){.scan = w->scans.list})); /* readers expect one */
         BRIO_TRY(end_scan(w));
     }
     assert(w->num_written == w->scans.count);
