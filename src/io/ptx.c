@@ -25,10 +25,10 @@ typedef struct {
     brio_text text;
     brio_builder *builder;
     double matrix[MATRIX], place[PLACE];
-    int columns; /* numbers of a point: 3, 4 or 7; 0 before the first point */
-    uint64_t rows;            /* of the scan's grid */
-    size_t first_place;       /* builder->scans: the property column_index, which row_index follows */
-    bool begun, has_places;   /* whether a scan came before; builder->scans: whether these properties are there */
+    int columns;            /* numbers of a point: 3, 4 or 7; 0 before the first point */
+    uint64_t rows;          /* of the scan's grid */
+    size_t first_place;     /* builder->scans: the property column_index, which row_index follows */
+    bool begun, has_places; /* whether a scan came before; builder->scans: whether these properties are there */
 } ptx_reader;
 
 static brio_status read_scan_header(ptx_reader *r, uint64_t *points) {
@@ -50,7 +50,8 @@ static brio_status read_scan_header(ptx_reader *r, uint64_t *points) {
         if (r->matrix[i] != (i % 5 == 0) && !(moves && b->scans))
             BRIO_TRY(brio_builder_leave_out(b, b->scans ? "turns of scanners" : "poses"));
     }
-    if (r->begun && (!b->scans || !memcmp(before, r->place, sizeof before))) BRIO_TRY(brio_builder_leave_out(b, "scans"));
+    if (r->begun && (!b->scans || !memcmp(before, r->place, sizeof before)))
+        BRIO_TRY(brio_builder_leave_out(b, "scans"));
     r->begun = true;
     r->rows = rows;
     *points = columns * rows;

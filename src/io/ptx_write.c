@@ -97,7 +97,8 @@ done:
 /* Writes lines for cells without a point, up to a cell. */
 static brio_status fill_to(brio_output *out, ptx_writer *w, uint64_t cell) {
     brio_status status = BRIO_OK;
-    for (; w->cell < cell; w->cell++) BRIO_TRY(brio_output_string(out, w->has_colours ? "0 0 0 0.5 0 0 0\n" : "0 0 0 0.5\n"));
+    for (; w->cell < cell; w->cell++)
+        BRIO_TRY(brio_output_string(out, w->has_colours ? "0 0 0 0.5 0 0 0\n" : "0 0 0 0.5\n"));
 done:
     return status;
 }
@@ -135,8 +136,8 @@ static brio_status write_part(brio_output *out, ptx_writer *w, const brio_mesh *
     }
     for (size_t v = part->first; v < part->end; v++) {
         if (grid)
-            BRIO_TRY(fill_to(out, w, (uint64_t)brio_property_value(column, v) * scan->rows +
-                                         (uint64_t)brio_property_value(row, v)));
+            BRIO_TRY(fill_to(
+                out, w, (uint64_t)brio_property_value(column, v) * scan->rows + (uint64_t)brio_property_value(row, v)));
         BRIO_TRY(write_point(out, w, m, scan, v));
     }
     if (part->ends && grid) BRIO_TRY(fill_to(out, w, scan->columns * scan->rows));

@@ -19,13 +19,13 @@ typedef struct brio_scan {
 typedef struct brio_scans {
     brio_scan *list; /* one at least, once brio_scans_settle was called */
     size_t count, capacity;
-    uint64_t points;     /* of all scans */
-    bool split;          /* whether scans and places are those of the points; otherwise there is one scan without a place */
-    bool numbered;       /* whether the property scan is the number of the scan, so that nobody has to store it */
-    double number;       /* the property scan of the last point */
-    double last[3];      /* the place of the last point */
-    size_t current;      /* writing: the scan of the next point, of which */
-    uint64_t done;       /* so many were written */
+    uint64_t points; /* of all scans */
+    bool split;      /* whether scans and places are those of the points; otherwise there is one scan without a place */
+    bool numbered;   /* whether the property scan is the number of the scan, so that nobody has to store it */
+    double number;   /* the property scan of the last point */
+    double last[3];  /* the place of the last point */
+    size_t current;  /* writing: the scan of the next point, of which */
+    uint64_t done;   /* so many were written */
 } brio_scans;
 
 /** Takes note of a block.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */

@@ -29,7 +29,8 @@ typedef struct {
     bool told;       /* whether the losses of the parts were named */
     bool open;       /* whether a pass ended because the depth of colours was not known */
     int dulled;      /* whether colours lost steps */
-    bool rounded;    /* whether single precision rounded a coordinate */
+    bool rounded;    /* whether a number was rounded */
+    double moved;    /* how far a coordinate was */
     uint64_t counted;
     brio_convert_stats stats;
 } conversion;
@@ -131,6 +132,12 @@ static void find_rounding(conversion *c, const brio_mesh *m) {
         c->rounded = !brio_channels_have(&colour, &m->properties[i]) && rounds_property(c, m, &m->properties[i]);
     for (size_t i = 0; i < 3 * m->num_vertices && !c->rounded && brio_is_single(c->format, &c->write); i++)
         c->rounded = fabs(m->vertices[i]) <= 0x1.ffffffp127 && (double)(float)m->vertices[i] != m->vertices[i];
+}
+
+/* Names what was rounded. */
+static void name_rounding(const conversion *c) {
+    if (c->rounded || c->moved > 0 || c->source.job.notes.rounded) lose(c, "precision");
+    if (c->dulled) lose(c, "colour depth");
 }
 
 /* --- passes --- */
@@ -246,10 +253,8 @@ static brio_status stream(conversion *c) {
     brio_progress_part(c->ctx, bar, prepared ? 0.5 : 0, 1);
     BRIO_TRY(go_through(c, &sink));
     if (prepared && c->writer.job.points != c->writer.points) BRIO_TRY(brio_source_changed(&c->source));
-    if (c->rounded || c->source.job.notes.rounded ||
-        (c->writer.format->rounds && c->writer.format->rounds(c->writer.state)))
-        lose(c, "precision");
-    if (c->dulled) lose(c, "colour depth");
+    c->rounded |= c->writer.format->rounds && c->writer.format->rounds(c->writer.state);
+    name_rounding(c);
     name_left_out(c);
     brio_mesh last = {.num_vertices = 0};
     if (c->source.job.mesh) last = *c->source.job.mesh;
@@ -276,9 +281,6 @@ static brio_status write_whole(void *user, const brio_mesh *mesh) {
     BRIO_TRY(write_crs(c, mesh));
     name_losses(c, mesh);
     find_rounding(c, mesh);
-    if (c->rounded || c->source.job.notes.rounded) lose(c, "precision");
-    if (c->dulled) lose(c, "colour depth");
-    name_left_out(c);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
     if (!holds(c, BRIO_HOLDS_TETRAHEDRA)) shown.num_tetrahedra = 0;
     if (!holds(c, BRIO_HOLDS_EDGES)) shown.num_edges = 0;
@@ -287,6 +289,8 @@ static brio_status write_whole(void *user, const brio_mesh *mesh) {
     c->stats.tetrahedra = shown.num_tetrahedra;
     c->stats.edges = shown.num_edges;
     BRIO_TRY(brio_write(c->ctx, c->to, &shown, &o));
+    name_rounding(c);
+    name_left_out(c);
 done:
     brio_colour_free(c->ctx, mesh, &shown);
     return status;
@@ -374,7 +378,8 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     if (o.from) BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, o.from, &read));
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, read.notes));
     if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));
-    if (c.write.moved) *c.write.moved = 0;
+    double *moved = c.write.moved;
+    c.write.moved = &c.moved;
     int *rounded = c.write.colours_rounded;
     c.write.colours_rounded = &c.dulled;
     c.format = c.write.format == BRIO_FORMAT_AUTO && strcmp(to, "-") ? brio_format_of(to) : c.write.format;
@@ -390,6 +395,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
                                    .announced = BRIO_COUNT_UNKNOWN};
     BRIO_TRY(run(&c));
     if (rounded) *rounded = c.dulled;
+    if (moved) *moved = c.moved;
     if (c.crs.name) BRIO_TRY(brio_output_publish(&c.crs));
     c.stats.streamed = c.source.job.streamed;
     c.stats.points_read = c.source.points_read;

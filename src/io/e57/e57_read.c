@@ -151,8 +151,7 @@ static brio_status read_scan(e57_reader *r, size_t scan) {
     if (!s->records) return BRIO_OK;
     brio_e57_pose_make(&pose, s);
     if (pose.turns && r->builder->has_origins) BRIO_TRY(brio_builder_leave_out(r->builder, "turns of scanners"));
-    if ((pose.turns || pose.moves) && !r->builder->has_origins)
-        BRIO_TRY(brio_builder_leave_out(r->builder, "poses"));
+    if ((pose.turns || pose.moves) && !r->builder->has_origins) BRIO_TRY(brio_builder_leave_out(r->builder, "poses"));
     r->first = m->num_vertices;
     BRIO_TRY(brio_builder_add_vertices(r->builder, (size_t)s->records));
     BRIO_TRY(decode_scan(r, scan));

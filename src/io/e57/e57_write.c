@@ -23,9 +23,9 @@
 
 enum { SECTION_HEADER = 32, DATA_HEADER = 6, PACKET = 65536, FILE_HEADER = 48, AXES = 3 };
 
-#define E57_NAMES "http://www.astm.org/COMMIT/E57/2010-e57-v1.0"
+#define E57_NAMES    "http://www.astm.org/COMMIT/E57/2010-e57-v1.0"
 #define NORMAL_NAMES "http://www.libe57.org/E57_NOR_surface_normals.txt"
-#define OWN_NAMES "urn:brio:e57:properties" /* of all properties that the format has no field for */
+#define OWN_NAMES    "urn:brio:e57:properties" /* of all properties that the format has no field for */
 
 /* A field of the prototype: a coordinate, a property, or `valid`: cartesianInvalidState, which is 0 of all points, has no
  * bits, and is there because pye57 reads no scan without it. */
@@ -38,8 +38,8 @@ typedef struct {
 
 /* What the XML section says of a scan that is written. */
 typedef struct {
-    uint64_t section; /* physical offset */
-    uint64_t sum;     /* of the checksums up to it */
+    uint64_t section;                          /* physical offset */
+    uint64_t sum;                              /* of the checksums up to it */
     double low[AXES], high[AXES], least, most; /* of the coordinates in the scan, and of the intensity */
 } written;
 
@@ -61,12 +61,18 @@ typedef struct {
 static const struct {
     const char *property, *element;
     bool whole;
-} known[] = {{"intensity", "intensity", false},       {"row_index", "rowIndex", true},
-             {"column_index", "columnIndex", true},   {"return_index", "returnIndex", true},
-             {"return_count", "returnCount", true},   {"time_stamp", "timeStamp", false},
-             {"red", "colorRed", false},              {"green", "colorGreen", false},
-             {"blue", "colorBlue", false},            {"nx", "nor:normalX", false},
-             {"ny", "nor:normalY", false},            {"nz", "nor:normalZ", false}};
+} known[] = {{"intensity", "intensity", false},
+             {"row_index", "rowIndex", true},
+             {"column_index", "columnIndex", true},
+             {"return_index", "returnIndex", true},
+             {"return_count", "returnCount", true},
+             {"time_stamp", "timeStamp", false},
+             {"red", "colorRed", false},
+             {"green", "colorGreen", false},
+             {"blue", "colorBlue", false},
+             {"nx", "nor:normalX", false},
+             {"ny", "nor:normalY", false},
+             {"nz", "nor:normalZ", false}};
 
 static bool is_real(brio_scalar type) {
     return type == BRIO_SCALAR_FLOAT32 || type == BRIO_SCALAR_FLOAT64;
@@ -361,7 +367,7 @@ done:
 static brio_status put_field(brio_e57_pen *p, const field *f) {
     static const struct {
         double least, most;
-    } ranges[BRIO_SCALAR_END] = {[BRIO_SCALAR_INT8] = {INT8_MIN, INT8_MAX},   [BRIO_SCALAR_UINT8] = {0, UINT8_MAX},
+    } ranges[BRIO_SCALAR_END] = {[BRIO_SCALAR_INT8] = {INT8_MIN, INT8_MAX},    [BRIO_SCALAR_UINT8] = {0, UINT8_MAX},
                                  [BRIO_SCALAR_INT16] = {INT16_MIN, INT16_MAX}, [BRIO_SCALAR_UINT16] = {0, UINT16_MAX},
                                  [BRIO_SCALAR_INT32] = {INT32_MIN, INT32_MAX}, [BRIO_SCALAR_UINT32] = {0, UINT32_MAX}};
     if (f->valid) return brio_e57_put_text(p, "<%s type=\"Integer\" minimum=\"0\" maximum=\"0\"/>\n", f->element);
@@ -394,8 +400,8 @@ done:
 static brio_status put_xml(e57_writer *w, const brio_write_job *job) {
     brio_status status = BRIO_OK;
     brio_e57_pen *p = &w->pen;
-    BRIO_TRY(brio_e57_put_text(p, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" xmlns=\"%s\"",
-                               E57_NAMES));
+    BRIO_TRY(brio_e57_put_text(
+        p, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" xmlns=\"%s\"", E57_NAMES));
     BRIO_TRY(brio_e57_put_text(p, " xmlns:nor=\"%s\" xmlns:brio=\"%s\">\n", NORMAL_NAMES, OWN_NAMES));
     BRIO_TRY(brio_e57_put_text(p, "<formatName type=\"String\">ASTM E57 3D Imaging Data File</formatName>\n"));
     BRIO_TRY(put_guid(p, p->sum, 0));
@@ -411,7 +417,8 @@ static brio_status put_xml(e57_writer *w, const brio_write_job *job) {
     }
     BRIO_TRY(brio_e57_put_text(p, "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n"));
     for (size_t i = 0; i < w->scans.count; i++) BRIO_TRY(put_scan(w, i));
-    BRIO_TRY(brio_e57_put_text(p, "</data3D>\n<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n</e57Root>\n"));
+    BRIO_TRY(
+        brio_e57_put_text(p, "</data3D>\n<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n</e57Root>\n"));
 done:
     return status;
 }
@@ -467,7 +474,8 @@ static brio_status end(brio_output *out, const brio_write_job *job, void *state)
     assert(w->num_written == w->scans.count);
     uint64_t xml = brio_e57_pen_offset(&w->pen);
     BRIO_TRY(put_xml(w, job));
-    uint64_t length = brio_e57_pen_offset(&w->pen) - xml, pages = (xml + length + BRIO_E57_CONTENT - 1) / BRIO_E57_CONTENT;
+    uint64_t length = brio_e57_pen_offset(&w->pen) - xml,
+             pages = (xml + length + BRIO_E57_CONTENT - 1) / BRIO_E57_CONTENT;
     brio_put_le64(header + 16, pages * BRIO_E57_PAGE);
     brio_put_le64(header + 24, brio_e57_physical(xml));
     brio_put_le64(header + 32, length);
