@@ -5,46 +5,11 @@ import struct
 import subprocess
 
 from brio_cli import BRIO, CliTest, main
+from whole_files import described, las, vlr
 
-RECORDS = {0: 20, 1: 28, 2: 26, 3: 34, 4: 57, 6: 30, 7: 36, 8: 38}
-HEADERS = {2: 227, 3: 235, 4: 375, 5: 393}
 WKT = 'PROJCS["own zone",GEOGCS["base",AUTHORITY["EPSG","4326"]],UNIT["m",1],AUTHORITY["EPSG","32633"]]'
 KEYS = struct.pack("<12H", 1, 1, 0, 2, 3072, 0, 1, 25832, 1026, 34737, 9, 0)
 TYPES = "xBbHhIiQqfd"  # of extra bytes, by their number
-
-
-def vlr(user, ident, data, late=False):
-    return struct.pack("<H16sH" + ("Q" if late else "H") + "32s", 0, user.encode(), ident, len(data), b"text") + data
-
-
-def described(name, kind, options=0, scale=(), offset=(), text=""):
-    triple = lambda values: struct.pack("<3d", *(tuple(values) + (0, 0, 0))[:3])
-    return (struct.pack("<2xBB32s4x72x", kind, options, name.encode()) + triple(scale) + triple(offset) +
-            struct.pack("<32s", text.encode()))
-
-
-def las(n=4, form=0, minor=2, vlrs=(), evlrs=(), extra=lambda i: b"", encoding=0, rgb=lambda i: (0, 0, 0), gps=float,
-        shift=0, system=b"", software=b"", date=(0, 0), wave=False):
-    """A LAS file whose points i are scattered, in centimetres at the size of UTM."""
-    size, rows = RECORDS[form] + len(extra(0)), []
-    for i in range(n):
-        if form < 6:
-            row = struct.pack("<iiiHBBbBH", i, i * 7919 % 10007, i * 31 % 977, 10 * i & 65535, 9, 2, -3, 5, 7)
-            row += struct.pack("<d", gps(i)) if form in (1, 3, 4) else b""
-        else:
-            row = struct.pack("<iiiHBBBBhHd", i, i * 7919 % 10007, i * 31 % 977, 10 * i & 65535, 17, 0, 2, 5, -30, 7, gps(i))
-        row += struct.pack("<HHH", *rgb(i)) if form in (2, 3, 7, 8) else b""
-        rows.append((row + bytes(29) if form == 4 else row) + extra(i))
-    rows = b"".join(rows)
-    head, body = HEADERS[minor], b"".join(vlrs)
-    start = head + len(body)
-    h = struct.pack("<4sHH16sBB32s32sHHHIIBHI5I", b"LASF", 0, encoding, bytes(16), 1, minor, system, software, *date,
-                    head, start, len(vlrs), form, size, n if form < 6 else 0, 0, 0, 0, 0, 0)
-    h += struct.pack("<12d", 0.01, 0.01, 0.01, 500000, 5000000, 0, *[0] * 6)
-    h += struct.pack("<Q", 0) if minor >= 3 else b""
-    h += struct.pack("<QIQ15Q", start + len(rows), len(evlrs), n, *[0] * 15) if minor >= 4 else b""
-    h += struct.pack("<ddH", 0, 0, shift) if minor >= 5 else b""
-    return h + body + rows + b"".join(evlrs)
 
 
 class Las(CliTest):

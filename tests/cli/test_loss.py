@@ -276,7 +276,10 @@ class Everything(LossTest):
            "DATA ascii\n0 0 0 255 0 0 1 9007199254740993 1 1 1 1\n1 0 0 255 0 0 1 2 0 0 0 0\n")
     XYZ = "# x y z R G B Nx Ny Nz Intensity id label\n0 0 0 1 2 3 0 0 1 0.5 9007199254740993 wall\n"
     VTK = ["time of the file", "wide", "label", "area of cells"]
-    # format: the file, what stays as properties, what is named as left out
+    LAS = ["intensity", "return_number", "number_of_returns", "scan_direction_flag", "edge_of_flight_line", "classification",
+           "classification_flags", "scan_angle_rank", "user_data", "point_source_id", "gps_time"]
+    METADATA = ["crs"] + ["las." + name for name in "records system software date gps_time returns extras".split()]
+    # format: the file, what stays as properties, what is named as left out, metadata that PLY has no place for
     FILES = {
         "ply": (PLY, ["red"], ["near", "textures", "flags of face", "texcoord of face", "region of tetrahedron",
                                "crease of edge", "camera"]),
@@ -289,6 +292,12 @@ class Everything(LossTest):
         "e57": (whole_files.e57_of_everything(), "intensity red green blue row_index".split(),
                 ["images", "date of the file", "names of scans", "descriptions of scans", "sensors", "elements of extensions",
                  "weather", "times", "groups of points", "spherical coordinates", "own:label", "poses"]),
+        "las": (whole_files.las_of_everything(), LAS + ["wide", "large"],
+                ["waveforms", "COPC index", "LAStools index", "odd (extra bytes of a reserved type)",
+                 "blob (extra bytes without a type)", "extra bytes that nothing describes",
+                 "last digits of integers of 64 bits"],
+                METADATA),
+        "laz": (None, LAS + ["wide", "large"], ["COPC index"], METADATA),
         "npy": (whole_files.npy_of_everything(), "red green blue id".split(), ["label", "time", "integers beyond 2^53"]),
         "npz": (whole_files.npz_of_everything(), ["heat", "id"],
                 ["integers beyond 2^53", "words", "other", "files that are no arrays"]),
@@ -311,21 +320,26 @@ class Everything(LossTest):
     # what has another extension, but is the same; and formats whose own tests have such files
     SAME = {"gltf": "glb", "ele": "node", "chemical": "extxyz", "pts": "xyz", "txt": "xyz", "csv": "xyz", "asc": "xyz",
             "xyzrgb": "xyz", "xyzn": "xyz", "tsv": "xyz", "dat": "xyz"}
-    ELSEWHERE = {"las", "laz"}
 
     def test_there_is_a_file_for_every_format(self):
         text = self.expect(0, "info", "--help").text
         read = set(re.findall(r"\.(\w+)", text.split("reads:")[1].split("\n\n")[0]))
-        self.assertEqual(read - self.ELSEWHERE, set(self.FILES) | set(self.SAME))
+        self.assertEqual(read, set(self.FILES) | set(self.SAME))
+
+    def compressed(self):
+        """The LAS file as LAZ, which brio writes without waveforms, with an index."""
+        self.expect(0, "convert", self.path("all.las"), self.path("made.laz"), "--quiet")
+        with open(self.path("made.laz"), "rb") as f:
+            return whole_files.with_index(f.read())
 
     def test_what_is_not_read_is_named(self):
-        for extension, (content, kept, left_out) in self.FILES.items():
-            name = self.file("all." + extension, content)
+        for extension, (content, kept, left_out, *metadata) in self.FILES.items():
+            name = self.file("all." + extension, content or self.compressed())
             facts = self.facts("info", name)
             self.assertEqual(list(facts["properties"]), kept, extension)
             self.assertEqual(sorted(facts.get("left_out", [])), sorted(left_out), extension)
             run = self.facts("convert", name, self.path("out.ply"), "--quiet")
-            self.assertEqual(sorted(set(run["lost"]) - {"colour depth", "precision"}), sorted(left_out), extension)
+            self.assertEqual(sorted(set(run["lost"]) - {"colour depth", "precision"}), sorted(sum(metadata, left_out)), extension)
 
     def test_what_a_writer_changes_is_named(self):
         quads = self.off("a.off", CUBES[:4], [(0, 1, 3, 2)])
