@@ -7,6 +7,7 @@
  * Based on: Si. TetGen user's manual, section 5.2. WIAS 2015. */
 #include "base/memory.h"
 #include "io/formats.h"
+#include "io/salvage.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
 #include <inttypes.h>
@@ -92,11 +93,17 @@ brio_status brio_node_read(brio_stream *s, brio_builder *b) {
     BRIO_TRY(read_header(&t, counts, 4));
     BRIO_TRY(plan_node(b, counts));
     /* each number has a blank or the line's end behind it, except the last one */
-    BRIO_TRY(brio_stream_expect(s, counts[0], 2 * (4 + counts[2] + counts[3]) - 1, "the number of points"));
+    if (!b->salvage)
+        BRIO_TRY(brio_stream_expect(s, counts[0], 2 * (4 + counts[2] + counts[3]) - 1, "the number of points"));
     brio_stream_element(s, "point", counts[0]);
     BRIO_TRY(find_base(&t, &b->index_base));
-    for (; s->row < counts[0]; s->row++) BRIO_TRY(read_node_row(&t, b));
-    BRIO_TRY(brio_text_end(&t));
+    for (; s->row < counts[0]; s->row++) {
+        uint64_t before = brio_builder_count(b);
+        status = read_node_row(&t, b);
+        if (brio_salvage(b, s, before, true, &status)) break;
+        BRIO_TRY(status);
+    }
+    if (!s->salvaged) BRIO_TRY(brio_text_end(&t));
 done:
     return status;
 }

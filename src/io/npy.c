@@ -9,6 +9,7 @@
 #include "io/npy_header.h"
 #include "io/row_format.h"
 #include "io/rows.h"
+#include "io/salvage.h"
 #include "io/scalar.h"
 #include <inttypes.h>
 #include <stdarg.h>
@@ -65,7 +66,9 @@ static brio_status read_rows(brio_stream *s, brio_builder *b, brio_npy_header *h
     brio_status status = BRIO_OK;
     const char *bytes = NULL;
     for (; s->row < h->rows; s->row++) {
-        BRIO_TRY(brio_stream_take(s, h->record, &bytes));
+        status = brio_stream_take(s, h->record, &bytes);
+        if (brio_salvage(b, s, brio_builder_count(b), true, &status)) break;
+        BRIO_TRY(status);
         BRIO_TRY(brio_builder_add_vertices(b, 1));
         for (size_t i = 0; i < h->num_fields; i++)
             store(b->mesh, &h->fields[i], b->mesh->num_vertices - 1, bytes + h->fields[i].at);
@@ -91,12 +94,13 @@ brio_status brio_npy_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_npy_header h;
     BRIO_TRY(brio_npy_header_read(s, &h));
-    BRIO_TRY(brio_stream_expect(s, h.rows, h.record, "the header"));
-    if (!h.fortran) brio_builder_stream(b, h.rows);
+    bool salvages = b->salvage && !h.fortran; /* columns that end early leave no row whole */
+    if (!salvages) BRIO_TRY(brio_stream_expect(s, h.rows, h.record, "the header"));
+    if (!h.fortran) brio_builder_stream(b, salvages ? BRIO_COUNT_UNKNOWN : h.rows);
     BRIO_REQUIRE(b->ctx, b->streams || h.rows <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
                  "%s: %" PRIu64 " points, the most are %" PRIu64, b->name, h.rows, BRIO_MAX_VERTICES);
     BRIO_TRY(plan(b, &h));
-    if (s->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(brio_builder_expect_vertices(b, h.rows));
+    if (s->size != BRIO_SIZE_UNKNOWN && !salvages) BRIO_TRY(brio_builder_expect_vertices(b, h.rows));
     brio_stream_element(s, "row", h.rows);
     BRIO_TRY(h.fortran ? read_columns(s, b, &h) : read_rows(s, b, &h));
     for (size_t i = 0; i < h.num_fields; i++)

@@ -10,6 +10,7 @@
 #include "io/formats.h"
 #include "io/little_endian.h"
 #include "io/number.h"
+#include "io/salvage.h"
 #include "io/textrow.h"
 #include <math.h>
 #include <string.h>
@@ -61,7 +62,7 @@ done:
     return status;
 }
 
-static brio_status read_counts(brio_text *t, uint64_t *vertices, uint64_t *faces) {
+static brio_status read_counts(brio_text *t, bool salvages, uint64_t *vertices, uint64_t *faces) {
     brio_status status = BRIO_OK;
     brio_stream *s = t->stream;
     uint64_t edges;
@@ -70,6 +71,7 @@ static brio_status read_counts(brio_text *t, uint64_t *vertices, uint64_t *faces
     BRIO_TRY(brio_text_count(t, "the number of faces", UINT64_MAX >> 1, faces));
     if (brio_text_more(t)) BRIO_TRY(brio_text_count(t, "the number of edges", UINT64_MAX >> 1, &edges));
     BRIO_TRY(brio_text_row_end(t));
+    if (salvages) return BRIO_OK;
     /* a vertex has at least "0 0 0" and a line's end, except the last one; a face has at least "0" */
     BRIO_TRY(brio_stream_expect(s, *vertices, 5, "the number of vertices"));
     BRIO_TRY(brio_stream_expect(s, *faces, 1, "the number of faces"));
@@ -239,12 +241,23 @@ brio_status brio_off_read(brio_stream *s, brio_builder *b) {
     bool binary = false;
     BRIO_TRY(read_keyword(&t, &kind, &binary));
     if (binary) return read_binary(s, b, &kind);
-    BRIO_TRY(read_counts(&t, &vertices, &faces));
+    BRIO_TRY(read_counts(&t, b->salvage, &vertices, &faces));
     brio_stream_element(s, "vertex", vertices);
-    for (; s->row < vertices; s->row++) BRIO_TRY(read_vertex(&t, b, &kind));
+    for (; s->row < vertices; s->row++) {
+        uint64_t before = brio_builder_count(b);
+        status = read_vertex(&t, b, &kind);
+        if (brio_salvage(b, s, before, true, &status)) t.at = NULL;
+        if (s->salvaged) break;
+        BRIO_TRY(status);
+    }
     brio_stream_element(s, "face", faces);
-    for (; s->row < faces; s->row++) BRIO_TRY(read_face(&t, b));
-    BRIO_TRY(brio_text_end(&t));
+    for (; s->row < faces; s->row++) {
+        status = read_face(&t, b);
+        if (brio_salvage(b, s, brio_builder_count(b), false, &status)) break;
+        BRIO_TRY(status);
+    }
+    BRIO_TRY(status);
+    if (!s->salvaged) BRIO_TRY(brio_text_end(&t));
 done:
     return status;
 }

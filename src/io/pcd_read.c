@@ -11,6 +11,7 @@
 #include "io/lzf.h"
 #include "io/origins.h"
 #include "io/pcd_header.h"
+#include "io/salvage.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
 #include <inttypes.h>
@@ -171,7 +172,9 @@ static brio_status read_binary(pcd_reader *r) {
     brio_stream *s = r->stream;
     const char *bytes = NULL;
     for (; s->row < r->header->points; s->row++) {
-        BRIO_TRY(brio_stream_take(s, r->header->record, &bytes));
+        status = brio_stream_take(s, r->header->record, &bytes);
+        if (brio_salvage(r->builder, s, brio_builder_count(r->builder), true, &status)) break;
+        BRIO_TRY(status);
         load_point(r, bytes, 1, 0);
         BRIO_TRY(add_point(r));
     }
@@ -218,38 +221,48 @@ static double unpacked(double value) {
     return bits;
 }
 
+static brio_status read_text_row(pcd_reader *r, brio_text *text) {
+    brio_status status = BRIO_OK;
+    double *value = r->values;
+    for (size_t i = 0; i < r->header->num_fields; i++) {
+        const brio_pcd_field *f = &r->header->fields[i];
+        for (unsigned j = 0; j < f->count; j++, value++) {
+            BRIO_TRY(brio_text_number(text, value));
+            bool colour = r->roles[value - r->values] == COLOUR;
+            if (colour && f->type == 'F') *value = unpacked(*value);
+            if (colour && !(*value >= 0 && *value <= UINT32_MAX))
+                return brio_text_expected(text, "a packed colour before this place");
+            if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) >= 0x1p53;
+        }
+    }
+    BRIO_TRY(brio_text_row_end(text));
+    BRIO_TRY(add_point(r));
+done:
+    return status;
+}
+
 static brio_status read_text(pcd_reader *r) {
     brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     brio_text text = {s, 0, NULL};
     for (; s->row < r->header->points; s->row++) {
-        double *value = r->values;
-        for (size_t i = 0; i < r->header->num_fields; i++) {
-            const brio_pcd_field *f = &r->header->fields[i];
-            for (unsigned j = 0; j < f->count; j++, value++) {
-                BRIO_TRY(brio_text_number(&text, value));
-                bool colour = r->roles[value - r->values] == COLOUR;
-                if (colour && f->type == 'F') *value = unpacked(*value);
-                if (colour && !(*value >= 0 && *value <= UINT32_MAX))
-                    return brio_text_expected(&text, "a packed colour before this place");
-                if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) >= 0x1p53;
-            }
-        }
-        BRIO_TRY(brio_text_row_end(&text));
-        BRIO_TRY(add_point(r));
+        uint64_t before = brio_builder_count(r->builder);
+        status = read_text_row(r, &text);
+        if (brio_salvage(r->builder, s, before, true, &status)) break;
+        BRIO_TRY(status);
     }
-    BRIO_TRY(brio_text_end(&text));
+    if (!s->salvaged) BRIO_TRY(brio_text_end(&text));
 done:
     return status;
 }
 
 /* Checks the header's number of points against the bytes that are there. Each number of a text has another character
  * behind it, except the last one. Compressed data tell their size themselves, in 32 bits. */
-static brio_status check_points(brio_stream *s, const brio_pcd_header *h, bool streams) {
+static brio_status check_points(brio_stream *s, const brio_pcd_header *h, bool streams, bool salvages) {
     brio_status status = BRIO_OK;
     bool compressed = h->data == BRIO_PCD_COMPRESSED;
     uint64_t least = h->data == BRIO_PCD_ASCII ? 2 * h->numbers - 1 : h->record;
-    if (!compressed) BRIO_TRY(brio_stream_expect(s, h->points, least, "the header"));
+    if (!compressed && !salvages) BRIO_TRY(brio_stream_expect(s, h->points, least, "the header"));
     BRIO_REQUIRE(s->ctx, !compressed || h->points <= UINT32_MAX / least, BRIO_ERR_FORMAT,
                  "%s: the header announces %" PRIu64 " points of %" PRIu64 " bytes, compressed data hold 4 GiB at most",
                  s->name, h->points, least);
@@ -265,7 +278,7 @@ brio_status brio_pcd_read(brio_stream *s, brio_builder *b) {
     pcd_reader r = {.stream = s, .builder = b, .header = &header};
     BRIO_TRY(brio_pcd_header_read(s, &header));
     brio_builder_stream(b, BRIO_COUNT_UNKNOWN);
-    BRIO_TRY(check_points(s, &header, b->streams));
+    BRIO_TRY(check_points(s, &header, b->streams, b->salvage));
     BRIO_TRY(plan(&r));
     brio_stream_element(s, "point", header.points);
     if (header.data == BRIO_PCD_ASCII)

@@ -133,7 +133,7 @@ static brio_status check_promise(brio_stream *s, const brio_ply_header *header) 
     return brio_stream_expect(s, bytes, 1, "the header");
 }
 
-brio_status brio_ply_header_read(brio_stream *s, brio_ply_header *header) {
+brio_status brio_ply_header_read(brio_stream *s, bool may_end_early, brio_ply_header *header) {
     brio_status status = BRIO_OK;
     char *line;
     bool format = false, end = false;
@@ -148,7 +148,7 @@ brio_status brio_ply_header_read(brio_stream *s, brio_ply_header *header) {
         if (!line) return bad_line(s, "end_header behind this line");
         BRIO_TRY(read_line(s, header, line, &format, &end));
     }
-    BRIO_TRY(check_promise(s, header));
+    if (!may_end_early) BRIO_TRY(check_promise(s, header));
 done:
     return status;
 }

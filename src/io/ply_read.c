@@ -7,6 +7,7 @@
  * Based on: Turk. The PLY polygon file format. Stanford 1994. */
 #include "io/formats.h"
 #include "io/ply_header.h"
+#include "io/salvage.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
 #include <math.h>
@@ -131,12 +132,12 @@ done:
 static brio_status plan(ply_reader *r, brio_ply_header *header) {
     brio_status status = BRIO_OK;
     brio_builder *b = r->builder;
-    bool known = r->stream->size != BRIO_SIZE_UNKNOWN, vertices = false;
+    bool known = r->stream->size != BRIO_SIZE_UNKNOWN && !b->salvage, vertices = false;
     for (size_t i = 0; i < header->num_elements; i++) {
         brio_ply_element *e = &header->elements[i];
         if (!strcmp(e->name, "vertex")) {
             vertices = true;
-            if (!holds_cells(header)) brio_builder_stream(b, e->count);
+            if (!holds_cells(header)) brio_builder_stream(b, b->salvage ? BRIO_COUNT_UNKNOWN : e->count);
             BRIO_REQUIRE(b->ctx, b->streams || e->count <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
                          "%s: %zu points, the most are %zu", b->name, (size_t)e->count, (size_t)BRIO_MAX_VERTICES);
             BRIO_TRY(plan_vertex(b, e));
@@ -206,7 +207,11 @@ static brio_status read_blocks(ply_reader *r, const brio_ply_element *e) {
         size_t rows = brio_stream_left(s) / e->row_size;
         if (rows > most) rows = most;
         if (rows > e->count - s->row) rows = (size_t)(e->count - s->row);
-        if (!rows) return brio_stream_truncated(s);
+        if (!rows) {
+            status = brio_stream_truncated(s);
+            brio_salvage(r->builder, s, brio_builder_count(r->builder), vertices, &status);
+            return status;
+        }
         if (vertices) {
             BRIO_TRY(brio_builder_add_vertices(r->builder, rows));
             convert_vertices(r, e, s->buffer + s->begin, r->builder->mesh->num_vertices - rows, rows);
@@ -314,8 +319,12 @@ static brio_status read_rows(ply_reader *r, const brio_ply_element *e) {
     brio_status status = BRIO_OK;
     bool vertices = has_role(e, BRIO_PLY_COORDINATE);
     for (; r->stream->row < e->count; r->stream->row++) {
+        uint64_t before = brio_builder_count(r->builder);
         if (vertices) BRIO_TRY(brio_builder_add_vertices(r->builder, 1));
-        BRIO_TRY(read_row(r, e));
+        status = read_row(r, e);
+        if (brio_salvage(r->builder, r->stream, before, vertices, &status)) r->text.at = NULL;
+        if (r->stream->salvaged) break;
+        BRIO_TRY(status);
     }
 done:
     return status;
@@ -331,12 +340,12 @@ static brio_status read_element(ply_reader *r, const brio_ply_element *e) {
 brio_status brio_ply_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_ply_header header;
-    BRIO_TRY(brio_ply_header_read(s, &header));
+    BRIO_TRY(brio_ply_header_read(s, b->salvage, &header));
     ply_reader r = {s, b, {s, 0, NULL}, header.encoding == BRIO_PLY_ASCII, false};
     r.swap = !r.ascii && (header.encoding == BRIO_PLY_LITTLE) != brio_host_is_little();
     BRIO_TRY(plan(&r, &header));
     for (size_t i = 0; i < header.num_elements; i++) BRIO_TRY(read_element(&r, &header.elements[i]));
-    if (r.ascii) BRIO_TRY(brio_text_end(&r.text));
+    if (r.ascii && !s->salvaged) BRIO_TRY(brio_text_end(&r.text));
 done:
     brio_ply_header_free(b->ctx, &header);
     return status;

@@ -7,6 +7,7 @@
  * Based on: Leica Geosystems. Description of the PTX format. */
 #include "io/formats.h"
 #include "io/origins.h"
+#include "io/salvage.h"
 #include "io/textrow.h"
 #include <inttypes.h>
 #include <math.h>
@@ -126,14 +127,21 @@ done:
 brio_status brio_ptx_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     ptx_reader r = {.text = {s, 0, NULL}, .builder = b};
-    uint64_t points;
+    uint64_t points = 0;
     brio_builder_stream(b, BRIO_COUNT_UNKNOWN);
     do {
         brio_stream_element(s, "scan's header", 1);
-        BRIO_TRY(read_scan_header(&r, &points));
-        BRIO_TRY(brio_stream_expect(s, points, 2 * LEAST - 1, "the scan's header"));
+        status = read_scan_header(&r, &points);
+        if (r.begun && brio_salvage(b, s, brio_builder_count(b), false, &status)) return status;
+        BRIO_TRY(status);
+        if (!b->salvage) BRIO_TRY(brio_stream_expect(s, points, 2 * LEAST - 1, "the scan's header"));
         brio_stream_element(s, "point", points);
-        for (; s->row < points; s->row++) BRIO_TRY(read_point(&r));
+        for (; s->row < points; s->row++) {
+            uint64_t before = brio_builder_count(b);
+            status = read_point(&r);
+            if (brio_salvage(b, s, before, true, &status)) return BRIO_OK;
+            BRIO_TRY(status);
+        }
         BRIO_TRY(brio_text_next_line(&r.text));
     } while (r.text.at);
 done:

@@ -230,7 +230,8 @@ brio_status brio_stream_line(brio_stream *s, char **line) {
     BRIO_TRY(line_length(s, &length));
     if (!length && !brio_stream_left(s)) return BRIO_OK;
     char *text = s->buffer + s->begin;
-    s->begin += length + (length < brio_stream_left(s));
+    s->unended = length == brio_stream_left(s);
+    s->begin += length + !s->unended;
     s->line++;
     BRIO_REQUIRE(s->ctx, !length || !memchr(text, 0, length), BRIO_ERR_FORMAT,
                  "%s: line %zu: holds a byte 0: not a text", s->name, s->line);
@@ -250,6 +251,7 @@ void brio_stream_element(brio_stream *s, const char *element, uint64_t rows) {
 }
 
 brio_status brio_stream_truncated(brio_stream *s) {
+    s->truncated = true;
     return brio_fail(s->ctx, BRIO_ERR_FORMAT,
                      "%s: ends at byte %" PRIu64 " in %s %" PRIu64 " (counted from 0) of %" PRIu64, s->name,
                      s->base + s->end, s->element ? s->element : "row", s->row, s->rows);

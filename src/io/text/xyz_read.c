@@ -15,6 +15,7 @@
 #include "io/formats.h"
 #include "io/limits.h"
 #include "io/number.h"
+#include "io/salvage.h"
 #include "io/text/text_columns.h"
 #include "io/text/text_fields.h"
 #include "io/textrow.h"
@@ -529,6 +530,11 @@ done:
     return status;
 }
 
+/* Whether the last line has no end, and fewer fields than the rows before. */
+static bool is_short(const xyz_reader *r) {
+    return r->builder->salvage && r->stream->unended && r->num_columns && r->fields.count < r->num_columns;
+}
+
 brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) {
     brio_status status = BRIO_OK;
     xyz_reader r = {.stream = s, .builder = b, .fields = {.stream = s}};
@@ -541,9 +547,15 @@ brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns) 
     for (;;) {
         BRIO_TRY(brio_stream_line(s, &line));
         if (!line) break;
-        BRIO_TRY(read_line(&r, line));
+        uint64_t before = brio_builder_count(b);
+        s->row = before, s->rows = r.counted ? r.promised : before + 1;
+        status = read_line(&r, line);
+        if (is_short(&r)) status = brio_stream_truncated(s);
+        if (brio_salvage(b, s, before, true, &status)) break;
+        BRIO_TRY(status);
     }
-    BRIO_REQUIRE(s->ctx, !r.counted || r.promised == brio_builder_count(b), BRIO_ERR_FORMAT,
+    if (b->salvage && r.counted && r.promised > brio_builder_count(b)) b->missing = r.promised - brio_builder_count(b);
+    BRIO_REQUIRE(s->ctx, !r.counted || r.promised == brio_builder_count(b) + b->missing, BRIO_ERR_FORMAT,
                  "%s: line %zu: promises %" PRIu64 " points, %" PRIu64 " rows follow", s->name, r.count_line,
                  r.promised, brio_builder_count(b));
     b->notes.numbered = is_numbered(&r);
