@@ -98,9 +98,11 @@ brio_status brio_check_single(brio_context *ctx, const char *path, const brio_me
 /** Return whether the first bytes of a file are those of a format. */
 bool brio_ply_starts(const char *bytes, size_t size);
 bool brio_off_starts(const char *bytes, size_t size);
-bool brio_vtk_starts(const char *bytes, size_t size);
+bool brio_vtu_starts(const char *bytes, size_t size); /* VTP, too */
+bool brio_vtp_starts(const char *bytes, size_t size);
 bool brio_vtk_legacy_starts(const char *bytes, size_t size);
-bool brio_las_starts(const char *bytes, size_t size);
+bool brio_las_starts(const char *bytes, size_t size); /* LAZ, too */
+bool brio_laz_starts(const char *bytes, size_t size);
 bool brio_pcd_starts(const char *bytes, size_t size);
 bool brio_npy_starts(const char *bytes, size_t size);
 bool brio_glb_starts(const char *bytes, size_t size);

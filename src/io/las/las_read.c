@@ -15,6 +15,11 @@
 /* Both chosen: a block fits in the second-level cache, and a thread's part is worth waking it. */
 enum { BLOCK_BYTES = 1 << 16, LEAST_ROWS = 1 << 12 };
 
+bool brio_laz_starts(const char *bytes, size_t size) {
+    enum { POINT_FORMAT = 104, COMPRESSED = 0xc0 };
+    return brio_las_starts(bytes, size) && size > POINT_FORMAT && (bytes[POINT_FORMAT] & COMPRESSED);
+}
+
 bool brio_las_starts(const char *bytes, size_t size) {
     return size >= 4 && !memcmp(bytes, "LASF", 4);
 }

@@ -402,7 +402,11 @@ static void note_rounding(const xyz_reader *r, size_t i) {
     const brio_field *f = &r->fields.at[i];
     brio_read_notes *n = &r->builder->notes;
     const column *c = &r->columns[i];
-    if (f->kind != BRIO_FIELD_NUMBER || !brio_is_rounded(f->word, f->length, f->value) || n->rounded++) return;
+    const char *word = f->word, *end = word + f->length;
+    if (*word == '"') /* blanks may stand between the quotes and the number */
+        for (word++, end--; word < end && (brio_is_blank(*word) || brio_is_blank(end[-1]));)
+            brio_is_blank(*word) ? (void)word++ : (void)end--;
+    if (f->kind != BRIO_FIELD_NUMBER || !brio_is_rounded(word, (size_t)(end - word), f->value) || n->rounded++) return;
     const char axis[2] = {(char)('x' + c->target), 0};
     const char *name = c->role == COLUMN_AXIS ? axis : r->builder->mesh->properties[c->target].name;
     n->rounded_line = r->stream->line;

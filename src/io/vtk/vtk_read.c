@@ -31,10 +31,22 @@ typedef struct {
     char *rows;      /* of points */
 } vtk_reader;
 
-bool brio_vtk_starts(const char *bytes, size_t size) {
+/* Returns the tag VTKFile of a file that begins with it, or with the line that all XML may begin with; or NULL. */
+static const char *root_of(const char *bytes, size_t size) {
     static const char xml[] = "<?xml", file[] = "<VTKFile";
-    if (size >= strlen(xml) && !memcmp(bytes, xml, strlen(xml))) return memmem(bytes, size, file, strlen(file)) != NULL;
-    return size >= strlen(file) && !memcmp(bytes, file, strlen(file));
+    if (size >= strlen(xml) && !memcmp(bytes, xml, strlen(xml))) return memmem(bytes, size, file, strlen(file));
+    return size >= strlen(file) && !memcmp(bytes, file, strlen(file)) ? bytes : NULL;
+}
+
+bool brio_vtu_starts(const char *bytes, size_t size) {
+    return root_of(bytes, size) != NULL;
+}
+
+bool brio_vtp_starts(const char *bytes, size_t size) {
+    static const char kind[] = "PolyData";
+    const char *root = root_of(bytes, size);
+    const char *end = root ? memchr(root, '>', size - (size_t)(root - bytes)) : NULL;
+    return end && memmem(root, (size_t)(end - root), kind, strlen(kind));
 }
 
 /* --- points --- */
