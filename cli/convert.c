@@ -12,13 +12,16 @@ typedef struct arguments {
     const char *crop, *crs;
     double thin, merge; /* merge: NaN where it is not given */
     int outliers;
+    bool crs_comment;
 } arguments;
 
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
     {"crop", 0, OPTION_TEXT, FIELD(crop), "x0,y0,z0,x1,y1,z1", "keep the points in this box, its border included", 0},
-    {"crs", 0, OPTION_OUTPUT, FIELD(crs), "FILE",
-     "also write the coordinate system to a file .prj, as well-known text (LAS, LAZ)", 0},
+    {"crs", 0, OPTION_OUTPUT, FIELD(crs), "FILE", "also write the coordinate system to a file .prj, as well-known text",
+     0},
+    {"crs-comment", 0, OPTION_FLAG, FIELD(crs_comment), NULL,
+     "write the coordinate system into the comments of a PLY file, as text or as its code", 0},
     {"drop-outliers", 0, OPTION_INT | OPTION_POSITIVE, FIELD(outliers), "K",
      "drop points that are far from their K nearest points (8 to 16)", 0},
     {"thin", 0, OPTION_NUMBER, FIELD(thin), "S", "keep points at least S apart, all others being nearer than S to one",
@@ -81,6 +84,9 @@ static brio_status take_files(run *r, brio_read_options *from, brio_write_option
     to->float32 = c->float32;
     to->compress = c->compress;
     to->comment = "brio " BRIO_VERSION;
+    to->crs_comment = ((const arguments *)r->arguments)->crs_comment;
+    if (to->crs_comment && to->format != BRIO_FORMAT_PLY)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: --crs-comment writes comments of PLY files only", c->output);
     return BRIO_OK;
 }
 

@@ -1981,6 +1981,7 @@ typedef struct brio_write_options {
         *separator; /* XYZ: "," or " " between numbers; with "," there is no comment; default NULL: by the name, ","
                               for .csv */
     int *colours_rounded; /* receives 1 if the file's colours have fewer steps than the mesh's, else 0; default NULL */
+    int crs_comment;      /* PLY, 1: the metadata crs.wkt, or without it crs.code, as comments "crs TEXT"; default 0 */
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);

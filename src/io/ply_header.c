@@ -100,9 +100,24 @@ done:
     return status;
 }
 
+/* Keeps the text of a comment that is a part of the coordinate system. */
+static brio_status keep_crs(brio_stream *s, brio_ply_header *header, const char *line) {
+    brio_status status = BRIO_OK;
+    static const char begins[] = "comment crs ";
+    if (strncmp(line, begins, strlen(begins)) != 0) return BRIO_OK;
+    size_t length = strlen(line) - strlen(begins);
+    BRIO_TRY(BRIO_RESERVE(s->ctx, header->crs, header->crs_capacity, header->crs_length + length + 1));
+    strcpy(header->crs + header->crs_length, line + strlen(begins));
+    header->crs_length += length;
+done:
+    return status;
+}
+
 /* Reads one line between the first and the last line of the header. */
 static brio_status read_line(brio_stream *s, brio_ply_header *header, char *line, bool *format, bool *end) {
     char *words[MAX_WORDS];
+    brio_status status = keep_crs(s, header, line);
+    if (status != BRIO_OK) return status;
     size_t count = split(line, words);
     const char *key = count ? words[0] : "";
     if (!strcmp(key, "comment") && count > 1) header->textures |= !strcasecmp(words[1], "TextureFile");
@@ -156,5 +171,6 @@ done:
 void brio_ply_header_free(brio_context *ctx, brio_ply_header *header) {
     for (size_t i = 0; i < header->num_elements; i++) brio_release(ctx, header->elements[i].properties);
     brio_release(ctx, header->elements);
+    brio_release(ctx, header->crs);
     *header = (brio_ply_header){.num_elements = 0};
 }

@@ -40,6 +40,8 @@ typedef struct brio_ply_header {
     brio_ply_element *elements;
     size_t num_elements, element_capacity;
     bool textures; /* whether a comment names a file with a texture */
+    char *crs;     /* NULL, or the text of all comments that begin with crs */
+    size_t crs_length, crs_capacity;
 } brio_ply_header;
 
 /** Returns PLY's name of a scalar type. */

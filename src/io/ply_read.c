@@ -5,6 +5,7 @@
  * lists and encoding.
  *
  * Based on: Turk. The PLY polygon file format. Stanford 1994. */
+#include "io/crs.h"
 #include "io/formats.h"
 #include "io/ply_header.h"
 #include "io/salvage.h"
@@ -129,6 +130,17 @@ done:
     return status;
 }
 
+/* Takes the coordinate system from the comments: well-known text, or a code. */
+static brio_status take_crs(brio_builder *b, const char *text) {
+    brio_status status = BRIO_OK;
+    if (!strncmp(text, "EPSG:", 5)) return brio_mesh_set_metadata(b->mesh, "crs.code", text, strlen(text));
+    if (!strchr(text, '[')) return BRIO_OK;
+    BRIO_TRY(brio_mesh_set_metadata(b->mesh, "crs.wkt", text, strlen(text)));
+    BRIO_TRY(brio_crs_describe(b->mesh));
+done:
+    return status;
+}
+
 static brio_status plan(ply_reader *r, brio_ply_header *header) {
     brio_status status = BRIO_OK;
     brio_builder *b = r->builder;
@@ -155,6 +167,7 @@ static brio_status plan(ply_reader *r, brio_ply_header *header) {
         }
         BRIO_TRY(name_left_out(b, e));
     }
+    if (header->crs) BRIO_TRY(take_crs(b, header->crs));
     if (header->textures) BRIO_TRY(brio_builder_leave_out(b, "textures"));
     BRIO_REQUIRE(b->ctx, vertices, BRIO_ERR_FORMAT, "%s: the header has no element vertex", b->name);
 done:

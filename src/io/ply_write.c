@@ -10,6 +10,7 @@
 #include "io/row_format.h"
 #include "io/rows.h"
 #include "io/scalar.h"
+#include "io/textrow.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -48,6 +49,29 @@ static brio_status write_count(brio_output *out, const brio_write_job *job, ply_
     return brio_output_string(out, text);
 }
 
+/* Writes the coordinate system as comments of at most CRS_LINE bytes, which readers with short lines take. No line ends with
+ * a blank, which some of them drop. */
+static brio_status write_crs(brio_output *out, const brio_mesh *m) {
+    enum { CRS_LINE = 200 };
+    brio_status status = BRIO_OK;
+    const brio_metadata *crs = brio_mesh_metadata(m, "crs.wkt");
+    if (!crs) crs = brio_mesh_metadata(m, "crs.code");
+    for (size_t at = 0, end; crs && at < crs->size; at = end) {
+        BRIO_TRY(brio_output_string(out, "comment crs "));
+        end = crs->size - at < CRS_LINE ? crs->size : at + CRS_LINE;
+        while (end < crs->size && end > at + 1 &&
+               (brio_is_blank(crs->bytes[end - 1]) || (crs->bytes[end] & 0xc0) == 0x80))
+            end--;
+        for (; at < end; at++) {
+            char c = (unsigned char)crs->bytes[at] < ' ' ? ' ' : crs->bytes[at];
+            BRIO_TRY(brio_output_bytes(out, &c, 1));
+        }
+        BRIO_TRY(brio_output_string(out, "\n"));
+    }
+done:
+    return status;
+}
+
 static brio_status write_header(brio_output *out, const brio_write_job *job, ply_writer *w) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
@@ -55,6 +79,7 @@ static brio_status write_header(brio_output *out, const brio_write_job *job, ply
     const char *index = m->num_vertices > INT32_MAX ? "uint" : "int";
     BRIO_TRY(brio_output_format(out, "ply\nformat %s 1.0\n", job->options->ascii ? "ascii" : binary));
     BRIO_TRY(brio_output_comment(out, "comment ", job->options->comment));
+    if (job->options->crs_comment) BRIO_TRY(write_crs(out, m));
     BRIO_TRY(write_count(out, job, w));
     for (int k = 0; k < 3; k++)
         BRIO_TRY(brio_output_format(out, "property %s %c\n", job->options->float32 ? "float" : "double", "xyz"[k]));

@@ -88,6 +88,9 @@ class Texts(DialectTest):
         text = "x,y,z,id\n1,2,3,%d\n"
         self.assertEqual(self.convert("a.csv", text % (2**53 + 1))[2]["lost"], ["precision"])
         self.assertEqual(self.convert("b.csv", text % 2**60)[2]["lost"], [])
+        for quoted in ['"%d"', '" -%d "']:  # numbers in quotes were rounded without a word
+            self.assertEqual(self.convert("c.csv", text.replace("%d", quoted) % (2**53 + 1))[2]["lost"], ["precision"])
+            self.assertEqual(self.convert("d.csv", text.replace("%d", quoted) % 2**60)[2]["lost"], [])
 
     def test_atoms_have_a_true_hint(self):
         pdb = "ATOM      1  C   ALA A   1       0.000   0.000   0.000  1.00  0.00           C\n"

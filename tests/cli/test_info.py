@@ -45,6 +45,15 @@ class Info(CliTest):
         self.assertEqual((facts["format"], facts["version"]), ("las", "1.2, point format 0"))
         self.assertEqual(len(facts["coordinate_step"]), 3)
 
+    def test_formats_that_begin_alike_have_their_names(self):
+        """A VTP file was called vtu, and LAZ las."""
+        for name in ["a.vtp", "a.vtu", "a.vtk", "a.las", "a.laz"]:
+            self.expect(0, "generate", "cube", "-n", 9, "-o", self.path(name))
+            self.assertEqual(self.facts("info", self.path(name))["format"], name[2:])
+            with open(self.path(name), "rb") as f:
+                self.file("nameless", f.read())
+            self.assertEqual(self.facts("info", self.path("nameless"))["format"], name[2:])
+
 
 if __name__ == "__main__":
     main()

@@ -157,6 +157,25 @@ class Las(CliTest):
                                      capture_output=True, check=True)
             self.assertIn(b'"lost": ["records behind the points of a pipe"]' if late else b'"lost": ["crs"]', run.stdout)
 
+    def test_a_coordinate_system_in_the_comments_of_ply(self):
+        long = WKT[:-1] + "".join(',AXIS["axis %d \u00e4  of  blanks",EAST]' % i for i in range(40)) + "]"
+        for wkt in (WKT, long):
+            self.make("a.las", minor=4, form=6, encoding=16, vlrs=[vlr("LASF_Projection", 2112, wkt.encode() + b"\0")])
+            for options in ([], ["--ascii"]):
+                self.assertEqual(self.convert("a.las", "b.ply", "--crs-comment", *options)["lost"], [])
+                with open(self.path("b.ply"), "rb") as f:
+                    lines = f.read().split(b"end_header")[0].split(b"\n")
+                self.assertLess(max(map(len, lines)), 220)
+                self.assertEqual(self.convert("b.ply", "c.las")["lost"], [])
+                self.assertEqual(self.records("c.las")[0][2].rstrip(b"\0").decode(), wkt)
+        self.make("k.las", vlrs=[vlr("LASF_Projection", 34735, KEYS)])
+        self.assertEqual(self.convert("k.las", "k.ply", "--crs-comment")["lost"], [])
+        self.assertEqual(self.facts("info", self.path("k.ply"))["crs"], {"code": "EPSG:25832"})
+        self.usage("comments of PLY files only", "convert", self.path("k.las"), self.path("k.npy"), "--crs-comment")
+        self.file("o.ply", "ply\nformat ascii 1.0\ncomment crs of mine\nelement vertex 0\nproperty float x\nproperty float y\n"
+                           "property float z\nend_header\n")
+        self.assertNotIn("crs", self.facts("info", self.path("o.ply")))
+
     def test_waveforms_and_indices_are_named(self):
         self.make("a.las", form=4, minor=3, vlrs=[vlr("LASF_Spec", 100, bytes(26))])
         self.assertEqual(self.convert("a.las", "b.las")["lost"], ["waveforms"])

@@ -64,7 +64,9 @@ static void name_metadata(const conversion *c, const brio_mesh *m) {
         keeps_system |= kept && (!strcmp(name, "crs.wkt") || !strcmp(name, "crs.geokeys"));
         if (!kept && !system && strncmp(name, "colour.", 7) != 0) lose(c, name);
     }
-    if (has_system && !keeps_system && !c->options->crs) lose(c, "crs");
+    bool in_comment = c->format == BRIO_FORMAT_PLY && c->write.crs_comment &&
+                      (brio_mesh_metadata(m, "crs.wkt") || brio_mesh_metadata(m, "crs.code"));
+    if (has_system && !keeps_system && !in_comment && !c->options->crs) lose(c, "crs");
 }
 
 /* Writes the coordinate system to its file, which has no name yet. */
