@@ -4,6 +4,7 @@ import os
 import struct
 
 from brio_cli import CliTest, main
+from whole_files import described, las, vlr
 
 SHARED = os.path.join(os.environ.get("BRIO_SHARED", ""), "repro")
 FOUR = [(0, 0, 0), (2, 0, 0), (0, 3, 0), (0, 0, 4)]
@@ -226,6 +227,98 @@ class Pcd(DialectTest):
     def test_a_pipe_as_output(self):
         run = self.expect(0, "convert", self.file("a.xyz", ROWS), "-o", "-", "--format", "pcd", "--ascii")
         self.expect_four("b.pcd", run.out)
+
+
+class Trackers(DialectTest):
+    """Files that the public trackers of laspy, pylas, plyfile's readers, PCL, meshio, trimesh and assimp tell of."""
+
+    PLY = "ply\nformat ascii 1.0\nelement vertex 4\n%sproperty float x\nproperty float y\nproperty float z\n%send_header\n"
+    VTU = ('<VTKFile type="UnstructuredGrid"><UnstructuredGrid>%s</UnstructuredGrid></VTKFile>')
+    PIECE = ('<Piece NumberOfPoints="4" NumberOfCells="1"><Points><DataArray type="Float32" NumberOfComponents="3" '
+             'format="ascii">0 0 0 2 0 0 0 3 0 0 0 4</DataArray></Points><Cells><DataArray type="Int32" Name="connectivity" '
+             'format="ascii">0 1 2 3</DataArray><DataArray type="Int32" Name="offsets" format="ascii">4</DataArray>'
+             '<DataArray type="UInt8" Name="types" format="ascii">6</DataArray></Cells></Piece>')
+    VTK = "# vtk DataFile Version %s\nvtk output\nASCII\nDATASET %s\nPOINTS 4 float\n0 0 0 2 0 0 0 3 0\n0 0 4\n%s"
+
+    def faces(self, name, content):
+        return self.facts("convert", self.file(name, content), self.path("out.ply"), "--quiet")["faces"]
+
+    def test_comments_of_ply(self):
+        # assimp, CloudCompare: a comment between an element and its properties, and comments without a word
+        self.expect_four("a.ply", self.PLY % ("comment Points\ncomment\n", "obj_info\n") + ROWS)
+
+    def test_elements_behind_the_vertices(self):
+        # PCL, miniply: a camera, whose row has no line feed; elements of one program; an element without properties
+        camera = "element camera 1\nproperty float view_px\nproperty int viewportx\nelement nothing 3\n"
+        self.assertEqual(self.expect_four("a.ply", self.PLY % ("", camera) + ROWS + "0.5 640")[2]["lost"], ["camera"])
+
+    def test_bytes_behind_the_announced_rows(self):
+        # trimesh: a binary file that is longer than its header says
+        head = (self.PLY % ("", "")).replace("ascii", "binary_little_endian").encode()
+        self.expect_four("a.ply", head + b"".join(struct.pack("<3f", *p) for p in FOUR) + b"\n\0\0")
+
+    def test_a_last_row_that_lacks_a_colour(self):
+        # PCL: the last row of a depth camera's file
+        head = (self.PLY % ("", "property uchar red\nproperty uchar green\n")).replace("vertex 4", "vertex 2")
+        name = self.file("a.ply", head + "1 2 3 4 5 \n509.09079 -291.39304 -1129.5593 212 ")
+        self.bad_input("ends at byte", "info", name)
+        facts = self.facts("info", name, "--salvage")
+        self.assertEqual((facts["points"], facts["missing"]), (1, 1))
+
+    def test_an_index_that_is_no_number(self):
+        # trimesh: the last face of a file has NaN
+        self.bad_input("face 0 .*: nan is not the index", "info", self.file(
+            "a.ply", self.PLY % ("", "element face 1\nproperty list uchar int vertex_index\n") + ROWS + "3 0 1 nan\n"))
+
+    def test_headers_of_las_that_are_short_or_contradict_the_points(self):
+        # LAStools: versions 1.3 and 1.4 with the header of 1.2; laspy, pylas: records longer or shorter than what is described
+        for minor in (3, 4):
+            content = bytearray(las(form=1))
+            content[25] = minor
+            self.assertEqual(len(self.convert("a.las", bytes(content))[1]), 4)
+        facts = self.convert("b.las", las(form=6, minor=4, extra=lambda i: struct.pack("<I", i)))[2]
+        self.assertIn("extra bytes that nothing describes", facts["lost"])
+        both = vlr("LASF_Spec", 4, described("Amplitude", 3) + described("Reflectance", 4))
+        facts = self.convert("c.las", las(form=3, vlrs=[both]))[2]
+        self.assertIn("Amplitude (not in the records)", facts["lost"])
+        # rlas: names and texts without the 0 at their end; the working group: a count of points of versions before 1.4, too
+        whole = vlr("LASF_Spec", 4, described("n" * 32, 9, text="d" * 32))
+        content = bytearray(las(form=6, minor=4, extra=lambda i: struct.pack("<f", i), vlrs=[whole]))
+        content[107:111] = struct.pack("<I", 4)
+        self.assertEqual(self.columns("d.las", bytes(content))["n" * 32], (0, 1, 2, 3))
+
+    def test_a_las_file_with_fewer_points_than_announced(self):
+        # laspy, twice
+        name = self.file("a.las", las(n=100)[:-500])
+        self.bad_input("the header promises", "info", name)
+        facts = self.facts("info", name, "--salvage")
+        self.assertEqual((facts["points"], facts["missing"]), (75, 25))
+
+    def test_pcd_whose_first_number_is_a_word_of_the_header(self):
+        # PCL: the float 13.26593 has the bytes of DATA
+        head = Pcd.HEADER % ("x y z", "4 4 4", "F F F", "1 1 1", "binary")
+        content = head.encode() + b"DATA" + struct.pack("<11f", *range(11))
+        self.assertEqual(self.convert("a.pcd", content)[1][0], (struct.unpack("<f", b"DATA")[0], 0, 1))
+
+    def test_pcd_headers_that_lack_a_column(self):
+        # Livox's tools
+        head = (Pcd.HEADER % ("x y z intensity class", "4 4 4 4", "F F F F", "1 1 1 1", "ascii"))
+        self.bad_input("expected a size .* for each field", "info", self.file("a.pcd", head + "1 2 3 4 5\n"))
+
+    def test_sections_of_legacy_vtk(self):
+        # meshio, vtkio: METADATA, OFFSETS and CONNECTIVITY of version 5, polygons, strips; lines that end as on Windows
+        metadata = "\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 4\n\n"
+        new = "POLYGONS 3 6\nOFFSETS vtktypeint64\n0 3 6\nCONNECTIVITY vtktypeint64\n0 1 2 0 1 3\n"
+        for kind, rest, faces in [("POLYDATA", new, 2), ("POLYDATA", "TRIANGLE_STRIPS 1 5\n4 0 1 2 3\n", 2),
+                                  ("UNSTRUCTURED_GRID", metadata + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n", 1)]:
+            text = self.VTK % ("5.1" if rest is new else "4.2", kind, rest)
+            self.assertEqual(self.faces("a.vtk", text), faces, rest)
+            self.assertEqual(self.faces("b.vtk", text.replace("\n", "\r\n")), faces, rest)
+
+    def test_vtu_of_few_attributes_strips_and_pieces(self):
+        # meshio: no version, and no order of bytes, which text has not; a strip; more than one piece
+        self.assertEqual(self.faces("a.vtu", self.VTU % self.PIECE), 2)
+        self.assertEqual(self.faces("b.vtu", self.VTU % (self.PIECE * 3)), 6)
 
 
 class Colours(DialectTest):

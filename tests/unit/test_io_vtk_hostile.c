@@ -15,7 +15,7 @@ static void errors_of_tags(void) {
     io_expect_error("a.vtu", "", BRIO_ERR_FORMAT, "a tag VTKFile");
     io_expect_error("a.vtu", "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\">", BRIO_ERR_FORMAT,
                     "UnstructuredGrid or PolyData");
-    io_expect_error("a.vtu", "<VTKFile type=\"PolyData\">", BRIO_ERR_FORMAT, "byte_order");
+    io_expect_error("a.vtu", "<VTKFile type=\"PolyData\" byte_order=\"Middle\">", BRIO_ERR_FORMAT, "byte_order");
     io_expect_error("a.vtu",
                     VTU_TAG " compressor=\"vtkLZ4DataCompressor\"><Piece NumberOfPoints=\"1\" "
                             "NumberOfCells=\"0\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
