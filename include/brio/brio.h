@@ -2048,8 +2048,8 @@ typedef struct brio_convert_stats {
  *  those that are no outliers, of these a thinned set; the points keep their order and all properties. A polygon, tetrahedron
  *  or edge stays if all its vertices stay. Merging comes last; the whole file is then in memory.
  *  Memory: files of points are converted block by block, in less than 64 MB with two threads, from LAS, LAZ, PLY, text, NPY,
- *  PCD (uncompressed) and PTX to LAS, LAZ, PLY, text and NPY. The input is read twice or three times if the output must know all
- *  points before the first one (LAS and LAZ; PLY and NPY into a pipe, if their number is not known), or if outliers are dropped or
+ *  PCD (uncompressed) and PTX to LAS, LAZ, PLY, text, NPY, PCD, E57 and PTX. The input is read twice or three times if the output
+ *  must know all points before the first one (LAS, LAZ, E57 and PTX; PLY and NPY into a pipe, if their number is not known), or if outliers are dropped or
  *  points are thinned. Outliers and thinning need the coordinates in memory: 24 bytes a point, and what brio_outliers and
  *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
  *  file is in memory.

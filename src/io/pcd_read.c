@@ -286,7 +286,10 @@ brio_status brio_pcd_read(brio_stream *s, brio_builder *b) {
     else
         BRIO_TRY(header.data == BRIO_PCD_BINARY ? read_binary(&r) : read_compressed(&r));
     if (r.rounded) BRIO_TRY(brio_builder_leave_out(b, "integers beyond 2^53"));
-    if (header.placed) BRIO_TRY(brio_builder_leave_out(b, "viewpoint"));
+    const double *turn = header.viewpoint + 3;
+    bool turns = turn[0] != 1 || turn[1] != 0 || turn[2] != 0 || turn[3] != 0;
+    if (header.placed && !b->has_origins) BRIO_TRY(brio_builder_leave_out(b, "viewpoint"));
+    if (header.placed && b->has_origins && turns) BRIO_TRY(brio_builder_leave_out(b, "turns of scanners"));
     if (header.height > 1) BRIO_TRY(brio_builder_leave_out(b, "order in rows"));
 done:
     brio_release(s->ctx, r.roles);

@@ -24,8 +24,8 @@ typedef struct brio_scans {
     bool numbered;   /* whether the property scan is the number of the scan, so that nobody has to store it */
     double number;   /* the property scan of the last point */
     double last[3];  /* the place of the last point */
-    size_t current;  /* writing: the scan of the next point, of which */
-    uint64_t done;   /* so many were written */
+    size_t current;  /* writing: the scan of the next point */
+    uint64_t done;   /* writing: points of that scan that were written */
 } brio_scans;
 
 /** Takes note of a block.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */

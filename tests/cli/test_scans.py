@@ -168,6 +168,14 @@ class Written(ScansTest):
             x = self.rows(name)[1][0][0]
             self.assertTrue(0 < abs(x - 0.1) <= facts["moved"] < 1e-6)
 
+    def test_the_viewpoint_of_a_pcd_file(self):
+        head = ("VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nVIEWPOINT 1 2 3 %s\nPOINTS 1\n"
+                "DATA ascii\n4 5 6\n")
+        for turn, lost in [("1 0 0 0", []), ("0 1 0 0", ["turns of scanners"])]:
+            self.assertEqual(self.convert(self.file("a.pcd", head % turn), "a.e57")["lost"], lost)
+            self.assertEqual(read_e57(self.path("a.e57"))[1][0][1]["cartesianX"], [3])
+            self.assertEqual(self.convert(self.path("a.pcd"), "a.ply")["lost"], ["viewpoint"])
+
     def test_no_points(self):
         for name in ["a.e57", "a.ptx"]:
             self.convert(self.file("a.xyz", ""), name)

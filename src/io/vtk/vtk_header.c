@@ -25,8 +25,7 @@ static brio_status read_file_tag(brio_stream *s, brio_vtk_header *h, const char 
     char order[BRIO_XML_VALUE];
     bool told = brio_xml_attribute(tag, "byte_order", order); /* programs that write text leave it out */
     bool little = !told || !strcmp(order, "LittleEndian");
-    if (!little && strcmp(order, "BigEndian") != 0)
-        return brio_xml_bad(s, "byte_order LittleEndian or BigEndian");
+    if (!little && strcmp(order, "BigEndian") != 0) return brio_xml_bad(s, "byte_order LittleEndian or BigEndian");
     h->known = true;
     h->swap = little != brio_host_is_little();
     h->word = brio_xml_attribute_is(tag, "header_type", "UInt64") ? 8 : 4;
