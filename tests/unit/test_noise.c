@@ -4,6 +4,7 @@
 #include "query/nearest_points.h"
 #include "points.h"
 #include "reconstruct/noise/sample_noise.h"
+#include "reconstruct/noise/smooth_surface.h"
 
 enum { N = 3000 };
 static const double SPHERE_AREA = 12.566370614359172, TORUS_AREA = 15.791367041742973;
@@ -325,7 +326,55 @@ static void smoothing_can_be_cancelled(void) {
     brio_context_free(ctx);
 }
 
+/* A limb as thin as the rings of neighbours are wide: a tube with few vertices round it, and noise. */
+enum { ROUND = 10, LONG = 60 };
+
+static double radial(const double *p, const double *d) {
+    return p[0] * d[0] + p[1] * d[1];
+}
+
+static double facing(const double *points, const uint32_t *v) {
+    double u[3], w[3], n[3], centre[2] = {0, 0};
+    for (int k = 0; k < 3; k++) {
+        u[k] = points[3 * v[1] + k] - points[3 * v[0] + k];
+        w[k] = points[3 * v[2] + k] - points[3 * v[0] + k];
+    }
+    n[0] = u[1] * w[2] - u[2] * w[1], n[1] = u[2] * w[0] - u[0] * w[2];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 2; k++) centre[k] += points[3 * v[i] + k];
+    return radial(centre, n);
+}
+
+static void a_limb_is_not_turned_inside_out_by_smoothing(void) {
+    static double p[3 * ROUND * LONG];
+    static uint32_t faces[6 * ROUND * (LONG - 1)];
+    size_t num_faces = 0, turned = 0;
+    double unit = 2 * sin(3.141592653589793 / ROUND), sum = 0; /* of a tube of radius 1, the spacing round it */
+    brio_context *ctx = new_context();
+    brio_rng rng = brio_rng_new(5);
+    for (uint32_t i = 0; i < LONG; i++)
+        for (uint32_t j = 0; j < ROUND; j++) {
+            double *x = p + 3 * (ROUND * i + j), a = 6.283185307179586 * (j + 0.5 * (i % 2)) / ROUND;
+            double radius = 1 + 0.3 * unit * (brio_rng_double(&rng) - 0.5);
+            x[0] = radius * cos(a), x[1] = radius * sin(a), x[2] = unit * i;
+            if (i == LONG - 1) continue;
+            uint32_t next = (j + 1) % ROUND, low = ROUND * i, high = low + ROUND, lean = i % 2 ? next : j;
+            const uint32_t f[6] = {low + j,    low + next, high + lean, high + j, i % 2 ? low + j : low + next,
+                                   high + next};
+            memcpy(faces + 3 * num_faces, f, sizeof f), num_faces += 2;
+        }
+    for (size_t f = 0; f < num_faces; f++) EXPECT(facing(p, faces + 3 * f) > 0);
+    EXPECT(brio_smooth_surface(ctx, p, ROUND * LONG, faces, num_faces) == BRIO_OK);
+    for (size_t f = 0; f < num_faces; f++) turned += facing(p, faces + 3 * f) <= 0;
+    for (size_t v = 0; v < ROUND * LONG; v++) sum += hypot(p[3 * v], p[3 * v + 1]);
+    EXPECT(turned == 0, "%zu", turned);
+    EXPECT(fabs(sum / (ROUND * LONG) - 1) < 0.1, "%g", sum / (ROUND * LONG));
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
 SUITE(test_noise) {
+    RUN(a_limb_is_not_turned_inside_out_by_smoothing);
     RUN(nearest_points_are_those_of_exhaustive_search);
     RUN(level_is_that_of_the_noise);
     RUN(no_noise_in_shapes);

@@ -15,14 +15,12 @@
  *           sampling). */
 #include "reconstruct/open_surface/face_sizes.h"
 #include "base/memory.h"
-#include "base/places.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "base/vector.h"
 #include "mesh/twins.h"
 #include "reconstruct/cocone/triangle.h"
 #include <math.h>
-#include <string.h>
 
 /* Chosen on scans of models that nothing else was measured on. */
 static const double LOWER = 0.25, AMONG_NEIGHBOURS = 0.7, GROWTH = 0.35;
@@ -33,9 +31,9 @@ enum { SWEEPS = 16, ITEMS_A_THREAD = 1 << 12 };
 typedef struct {
     const brio_triangle_net *net;
     double *radius, *usual; /* #F */
-    size_t *first;      /* #P + 1: the half-edges that start at p are leaving[first[p]] to leaving[first[p + 1] - 1] */
-    uint32_t *leaving;  /* 3 #F */
-    double *own, *size; /* #P: after step 1, after step 2 */
+    size_t *first;          /* #P + 1, as brio_net_leaving lists them; sorted here */
+    uint32_t *leaving;      /* 3 #F */
+    double *own, *size;     /* #P: after step 1, after step 2 */
 } sizing;
 
 static void measure_radii(void *user, size_t begin, size_t end, int thread) {
@@ -44,22 +42,6 @@ static void measure_radii(void *user, size_t begin, size_t end, int thread) {
     for (size_t f = begin; f < end; f++)
         s->radius[f] = sqrt(brio_circle_square(brio_net_corner(s->net, 3 * f), brio_net_corner(s->net, 3 * f + 1),
                                                brio_net_corner(s->net, 3 * f + 2)));
-}
-
-static brio_status list_half_edges(sizing *s) {
-    brio_status status = BRIO_OK;
-    const brio_triangle_net *n = s->net;
-    size_t *place = NULL;
-    BRIO_TRY(BRIO_ALLOC_ZERO(n->ctx, place, n->num_points));
-    BRIO_TRY(BRIO_ALLOC(n->ctx, s->first, n->num_points + 1));
-    BRIO_TRY(BRIO_ALLOC(n->ctx, s->leaving, 3 * n->num_faces));
-    for (size_t h = 0; h < 3 * n->num_faces; h++) place[n->faces[h]]++;
-    s->first[n->num_points] = brio_counts_to_places(place, 1, n->num_points, 0);
-    memcpy(s->first, place, n->num_points * sizeof *place);
-    for (size_t h = 0; h < 3 * n->num_faces; h++) s->leaving[place[n->faces[h]]++] = (uint32_t)h;
-done:
-    brio_release(n->ctx, place);
-    return status;
 }
 
 /* Returns the angle of a triangle at the start of a half-edge. */
@@ -148,7 +130,7 @@ brio_status brio_face_sizes(const brio_triangle_net *n, double *radius, double *
     sizing s = {.net = n, .radius = radius, .usual = usual};
     int by_faces = brio_threads(n->ctx, n->num_faces, ITEMS_A_THREAD),
         by_points = brio_threads(n->ctx, n->num_points, ITEMS_A_THREAD);
-    BRIO_TRY(list_half_edges(&s));
+    BRIO_TRY(brio_net_leaving(n, &s.first, &s.leaving));
     BRIO_TRY(BRIO_ALLOC(n->ctx, s.own, n->num_points));
     BRIO_TRY(BRIO_ALLOC(n->ctx, s.size, n->num_points));
     brio_for(n->ctx, by_faces, n->num_faces, measure_radii, &s);

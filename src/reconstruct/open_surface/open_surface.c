@@ -115,9 +115,11 @@ static size_t move_faces(const uint8_t *part, uint32_t *faces, size_t num_faces)
     return kept;
 }
 
-static bool is_any_open(const brio_hole_list *holes) {
+static bool is_any_open(const brio_triangle_net *n, const brio_hole_list *holes) {
     for (size_t i = 0; i < holes->count; i++)
         if (holes->hole[i].open) return true;
+    for (size_t h = 0; h < 3 * n->num_faces; h++)
+        if (!brio_net_has_twin(n, h)) return true;
     return false;
 }
 
@@ -137,7 +139,7 @@ brio_status brio_open_surface(const brio_sample_points *points, const brio_hole_
     if (rule->choice == BRIO_HOLES_WIDER) BRIO_TRY(find_spacing(&net, &spacing));
     brio_hole_rule scaled = {rule->choice, rule->most * spacing};
     BRIO_TRY(brio_cut_holes(&net, radius, usual, &scaled, part, &holes));
-    if (is_any_open(&holes)) {
+    if (is_any_open(&net, &holes)) {
         BRIO_TRY(brio_drop_small_pieces(&net, part));
         BRIO_TRY(brio_keep_single_fans(&net, part));
     }

@@ -4,7 +4,7 @@
 
 #include "reconstruct/open_surface/hole_cut.h"
 
-/** Lets triangles go until those that stay make one fan at each sample: a part of a closed manifold is then a manifold
+/** Lets triangles go until those that stay make one fan at each sample: a part of a manifold is then a manifold
  *  with boundary.
  *  part  #F, read and written: a brio_triangle_part.
  *  The result does not depend on the order of the faces. Among fans of one length at a sample, the numbers of the samples

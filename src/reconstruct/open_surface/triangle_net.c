@@ -1,7 +1,9 @@
 /* Triangles of samples and their neighbours: the half-edges of a mesh whose vertices are the samples. */
 #include "reconstruct/open_surface/triangle_net.h"
+#include "base/places.h"
 #include "base/vector.h"
 #include "mesh/twins.h"
+#include <string.h>
 
 brio_status brio_triangle_net_new(brio_context *ctx, const double *points, size_t num_points, const uint32_t *faces,
                                   size_t num_faces, brio_triangle_net *out) {
@@ -24,6 +26,22 @@ done:
 void brio_triangle_net_free(brio_triangle_net *n) {
     brio_release(n->ctx, n->twin);
     n->twin = NULL;
+}
+
+brio_status brio_net_leaving(const brio_triangle_net *n, size_t **first, uint32_t **leaving) {
+    brio_status status = BRIO_OK;
+    size_t *place = NULL;
+    *first = NULL, *leaving = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(n->ctx, place, n->num_points));
+    BRIO_TRY(BRIO_ALLOC(n->ctx, *first, n->num_points + 1));
+    BRIO_TRY(BRIO_ALLOC(n->ctx, *leaving, 3 * n->num_faces));
+    for (size_t h = 0; h < 3 * n->num_faces; h++) place[n->faces[h]]++;
+    (*first)[n->num_points] = brio_counts_to_places(place, 1, n->num_points, 0);
+    memcpy(*first, place, n->num_points * sizeof *place);
+    for (size_t h = 0; h < 3 * n->num_faces; h++) (*leaving)[place[n->faces[h]]++] = (uint32_t)h;
+done:
+    brio_release(n->ctx, place);
+    return status;
 }
 
 void brio_net_normal(const brio_triangle_net *n, size_t face, double normal[3]) {

@@ -26,6 +26,12 @@ static inline const double *brio_net_corner(const brio_triangle_net *n, size_t h
     return n->points + 3 * (size_t)n->faces[half_edge];
 }
 
+/** Lists the half-edges that start at each sample.
+ *  first    #P + 1, written: those of sample p are leaving[first[p]] to leaving[first[p + 1] - 1], in ascending order.
+ *  leaving  3 #F, written.
+ *  The caller frees both with brio_release, on failure too. Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+brio_status brio_net_leaving(const brio_triangle_net *n, size_t **first, uint32_t **leaving);
+
 /** Returns whether a triangle is on the other side of a half-edge's edge. */
 static inline bool brio_net_has_twin(const brio_triangle_net *n, size_t half_edge) {
     return n->twin[half_edge] != BRIO_NO_HALF_EDGE;
