@@ -15,7 +15,7 @@ COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
-                 "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify", "--neighbors", "--faces",
+                 "--first-conflict", "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--page-size", "--cache-size", "--verify", "--neighbors", "--faces",
                  "--edges"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
