@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MESHES         "surface hull alpha offset iso generate subdivide medial check"
+#define MESHES         "surface hull alpha offset iso generate subdivide medial check restricted"
 #define TRIANGULATIONS "delaunay voronoi"
 #define POLES          "surface medial offset"
 
@@ -29,6 +29,27 @@ const glossary_line cli_glossary[] = {
      "distinct positions among the points of the input", LINE_PLAIN, STYLE_PLAIN},
     {"iso", NULL, "points", NULL, "the same as vertices", LINE_JSON, STYLE_PLAIN},
     {"info generate convert", NULL, "points", NULL, "points in the file", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "points", NULL, "samples, duplicates included", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "closed_ball", NULL,
+     "whether each cell, facet and edge of the Voronoi diagram meets the surface in a disk, an arc, a point, or not at "
+     "all",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "homeomorphic", NULL, "whether the triangles are proven homeomorphic to the surface",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "voronoi_cells", NULL, "Voronoi cells that meet the surface", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "voronoi_facets", NULL, "Voronoi facets that meet it", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "voronoi_edges", NULL, "Voronoi edges that meet it, a triangle each", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "bad_cells", NULL, "cells that meet it in something else than one disk", LINE_PLAIN,
+     STYLE_PLAIN},
+    {"restricted", NULL, "bad_facets", NULL, "facets that meet it in something else than one arc", LINE_PLAIN,
+     STYLE_PLAIN},
+    {"restricted", NULL, "bad_edges", NULL, "edges that meet it in more than one point", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "crossings", NULL, "points where edges of the Voronoi diagram meet the surface", LINE_VERBOSE,
+     STYLE_PLAIN},
+    {"restricted", NULL, "exact_calls", NULL, "signs that floating-point arithmetic did not settle", LINE_VERBOSE,
+     STYLE_PLAIN},
+    {"restricted", NULL, "ties", NULL, "signs that were 0: the surface was moved by an infinitely small vector",
+     LINE_VERBOSE, STYLE_PLAIN},
     {TRIANGULATIONS " locate interpolate", NULL, "points", NULL, "points of the input, duplicates included", LINE_PLAIN,
      STYLE_PLAIN},
     {TRIANGULATIONS, NULL, "duplicates", NULL, "points at the position of another point; that one stands for them",

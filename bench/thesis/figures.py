@@ -20,6 +20,7 @@ PROJECT = 'Goal of this project, not of the thesis'
 MODEL = 'Model of this project, for a question that the thesis leaves open'
 HALF_AN_HOUR = 1800
 PAGE = 4096
+COUNTED = 50000  # points whose page touches are counted
 KINDS = ('uniform', 'clusters', 'sphere', 'torus', 'scan', 'grid', 'lidar')
 
 
@@ -108,8 +109,7 @@ def figures(uniform, memory, copies, headline_copies):
             '10 M points in half an hour on a workstation of 864 MHz and 512 MB; time grows linearly.',
             lambda r: copies_scale(r, 4, HALF_AN_HOUR)),
         Figure('5.7', 'history', 'size of the history DAG on B-1', [
-            run('BRIO', 'b1', 'brio-octree', 'history'), run('octree', 'b1', 'octree', 'history'),  # one path: the same DAG
-            run('random', 'b1', 'random', 'history')],
+            hull('BRIO', 'b1', 'brio-octree'), hull('octree', 'b1', 'octree'), hull('random', 'b1', 'random')],
             'BRIO creates a slightly smaller history DAG than the octree order.', history_sizes),
         Figure('5.8', 'time', 'hull on B-1: octree order and BRIO', [
             hull('BRIO, free', 'b1', 'brio-octree'), hull('octree, free', 'b1', 'octree', clock='BRIO, free'),
@@ -130,5 +130,5 @@ def figures(uniform, memory, copies, headline_copies):
             run(f'{size} points', 'happy-1', 'brio-octree', options=('--block-size', str(size)))
             for size in (250, 500, 1000, 2000, 3000, 4000, 6000, 8000)],
             'A few thousand points a block; the exact size does not seem to make much difference.', block_sizes),
-        *[f for kind in KINDS for f in pages(kind, uniform // 20)],
+        *[f for kind in KINDS for f in pages(kind, COUNTED)],
     ]

@@ -176,7 +176,9 @@ def main():
                 a.flush(), b.flush()
 
             for f in figures.figures(2000000 // o.shrink, o.memory, o.copies, o.headline):
-                if o.only and f.name not in o.only: continue
+                if o.only and f.name not in o.only:
+                    if o.report: found.append((f, {}))  # the page has all figures
+                    continue
                 found.append((f, bench.figure(f, write)))
                 plot.draw(*found[-1], o.out)
                 report.write(f'{o.out}/thesis-experiments.md', report.facts(bench, found), '')

@@ -160,7 +160,7 @@ def thrashing(label, r):
 
 def thrash_in_turn(results):
     """Whether all runs are near-linear, then thrash, each at more points than the one before it."""
-    if len(results) < 3: return missing(results, *results) if results else (None, 'Nothing was run')
+    if any(p not in results for p in PROGRAMS): return missing(results, *PROGRAMS)
     told = [thrashing(k, r) for k, r in results.items()]
     words, starts = '. '.join(w for w, _, _ in told), [at for _, at, _ in told]
     calm = [k for k, s in zip(results, starts) if s is None]
@@ -248,7 +248,7 @@ def faster(results, fast, slow, slightly=False, not_before=False):
     ratio = b['wall'] / a['wall']
     more, free = without_a_limit(results, fast, slow)
     words = f'{outcome(fast, a)}, {outcome(slow, b)}: {ratio:.2f} times' + more
-    if not_before and free is None: return None, words
+    if not_before and ratio >= NOISE and free is None: return None, words
     if not_before and ratio >= NOISE and free > 1: return False, words + f'. {fast} is faster without a limit, too'
     if ratio >= NOISE: return (not slightly or ratio <= SLIGHTLY), words
     words += f'. {fast}: {an_insertion(a)}; {slow}: {an_insertion(b)}'

@@ -1191,6 +1191,44 @@ BRIO_API brio_status brio_convex_hull(brio_context *ctx, const double *points, s
                                       brio_convex_hull_stats *stats);
 
 /* ------------------------------------------------------------------------------------------------------------------
+ * Restricted Delaunay triangulation
+ */
+
+/** What was found of the Voronoi diagram of the samples on the surface. */
+typedef struct brio_restricted_stats {
+    size_t size;
+    size_t cells, facets, edges;             /* of the Voronoi diagram that meet the surface */
+    size_t bad_cells, bad_facets, bad_edges; /* those that meet it in no closed ball: not in one disk, arc, or point */
+    size_t crossings;                        /* points where the surface meets edges of the Voronoi diagram */
+    uint64_t exact_calls, ties; /* signs that floating-point arithmetic did not settle; those that were 0 */
+    int closed_ball;            /* 1: all cells, facets and edges that meet the surface meet it in a closed ball */
+    int reserved_int;
+    double delaunay_seconds, cut_seconds;
+} brio_restricted_stats;
+
+/** Computes the restricted Delaunay triangulation of samples on a known surface: the Delaunay triangles whose Voronoi edges
+ *  meet the surface. Which cells, facets and edges of the Voronoi diagram do is decided exactly.
+ *  Guarantees: if stats->closed_ball is 1, the triangles are homeomorphic to the surface [Edelsbrunner Shah 1997]. That is a
+ *  proof for these samples and this mesh; it asks for no bound on the density. If it is 0, they may still be.
+ *  Ties are decided as if the surface were moved by (e, e^2, e^3) for an infinitely small e > 0, and the samples by less, as
+ *  brio_delaunay does. So the answer is that for a surface and samples as near as one likes to these.
+ *  Does not guarantee: that the samples are an r-sample. A mesh has local feature size 0 at its edges, so no finite set is an
+ *  r-sample of it. The samples need not lie on the surface.
+ *  points   #P by 3: the samples.   surface  triangles that form a closed manifold; it may cross itself, and have any number
+ *  of components.
+ *  out      owned by the caller, NULL on error. Its vertices are the samples, with the same indices, also those that no
+ *           triangle uses. Each triangle is oriented as the face that its Voronoi edge meets. The property "closed_ball" is 1
+ *           at a sample whose cell, and all whose facets and edges, meet the surface in closed balls or not at all.
+ *  stats    NULL, or its `size` set.
+ *  Cost: one triangulation; then, for each face of the surface and each cell that it meets, a test of the Voronoi edges of that
+ *  cell, mostly in doubles. Memory: 60 bytes a face and 40 a piece of one, beside the triangulation and 60 bytes a tetrahedron.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the surface is not closed, no manifold, or not of triangles), BRIO_ERR_NO_ANSWER (the
+ *  samples are in a plane), and as brio_delaunay.
+ *  Based on: [Edelsbrunner Shah 1997], [Choi 2003] section 2.7. */
+BRIO_API brio_status brio_restricted_delaunay(brio_context *ctx, const double *points, size_t num_points,
+                                              const brio_mesh *surface, brio_mesh **out, brio_restricted_stats *stats);
+
+/* ------------------------------------------------------------------------------------------------------------------
  * Alpha complexes and alpha shapes
  *
  * Alpha is a squared radius, as in the papers, GUDHI and CGAL. Programs that take a radius (PyVista's delaunay_3d, Open3D,

@@ -191,6 +191,7 @@ ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, metadata);
 ENDS_WITH(brio_alpha_complex, triangulation2);
+ENDS_WITH(brio_restricted_stats, cut_seconds);
 
 static void statuses_have_words_of_their_own(void) {
     static const brio_status all[] = {BRIO_OK,        BRIO_ERR_ARGUMENT,  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_ANSWER,
