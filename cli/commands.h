@@ -11,6 +11,7 @@
     X(hull)                                                                                                            \
     X(alpha)                                                                                                           \
     X(offset)                                                                                                          \
+    X(restricted)                                                                                                      \
     X(voronoi)                                                                                                         \
     X(check)                                                                                                           \
     X(compare)                                                                                                         \

@@ -16,7 +16,8 @@ typedef struct arguments {
     int order, locate, subgraph, plane;
     double round_ratio;                /* NaN: not given */
     uint64_t block_size, record_every; /* 0: not given */
-    bool all_conflicts, rounds, verify, neighbours, faces, edges;
+    size_t page_size, cache_size;      /* 0: not given */
+    bool first_conflict, all_conflicts, rounds, verify, neighbours, faces, edges;
 } arguments;
 
 enum { FITTING_ORDER = BRIO_ORDER_END }; /* random for a trace, else BRIO */
@@ -50,6 +51,8 @@ static const option options[] = {
     {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R",
      "share of the points before the last round (default 1/8 for brio, else 1/2)", 0},
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron (default walk)", locations},
+    {"first-conflict", 0, OPTION_FLAG, FIELD(first_conflict), NULL,
+     "history, trace: search depth first for a conflict, as the program hull, not along one path", 0},
     {"all-conflicts", 0, OPTION_FLAG, FIELD(all_conflicts), NULL, "history, trace: follow all conflicts, not one path",
      0},
     {"subgraph", 0, OPTION_CHOICE, FIELD(subgraph), "NAME",
@@ -63,6 +66,10 @@ static const option options[] = {
      0},
     {"record-every", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(record_every), "N",
      "report the counters after every N insertions", 0},
+    {"page-size", 0, OPTION_SIZE | OPTION_POSITIVE, FIELD(page_size), "SIZE",
+     "count touches of pages of that size, a power of two, with one thread", 0},
+    {"cache-size", 0, OPTION_SIZE | OPTION_POSITIVE, FIELD(cache_size), "SIZE",
+     "of the cache in which --page-size counts faults (default one page)", 0},
     {0},
 };
 #undef FIELD
@@ -96,7 +103,7 @@ static brio_status check_order(run *r, const arguments *a) {
 /* Refuses options of tetrahedra. */
 static brio_status check_plane(run *r, const arguments *a) {
     bool three = a->order != FITTING_ORDER || a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds ||
-                 a->record_every || a->subgraph != SUBGRAPH_FITTING;
+                 a->first_conflict || a->record_every || a->page_size || a->subgraph != SUBGRAPH_FITTING;
     if (three)
         return cli_fail(
             r, BRIO_ERR_ARGUMENT,
@@ -130,8 +137,16 @@ static brio_status check_arguments(run *r, const arguments *a) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele",
                         strcmp(output, "-") ? output : "standard output");
     if (a->rounds && a->record_every) return cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --rounds and --record-every");
-    if (a->all_conflicts && a->locate != BRIO_LOCATION_HISTORY && a->locate != BRIO_LOCATION_TRACE)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--all-conflicts goes with --locate history and trace only");
+    if (a->all_conflicts && a->first_conflict)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --first-conflict and --all-conflicts");
+    if ((a->all_conflicts || a->first_conflict) && a->locate != BRIO_LOCATION_HISTORY &&
+        a->locate != BRIO_LOCATION_TRACE)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s goes with --locate history and trace only",
+                        a->all_conflicts ? "all-conflicts" : "first-conflict");
+    if (a->page_size & (a->page_size - 1) || (a->page_size && a->page_size < 64))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--page-size: %zu bytes are no power of two from 64 on", a->page_size);
+    if (a->cache_size && !a->page_size)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--cache-size goes with --page-size only");
     if (a->subgraph != SUBGRAPH_FITTING && !cli_needs_edges((brio_location)a->locate))
         status = cli_fail(r, BRIO_ERR_ARGUMENT, "--subgraph goes with --locate trace and neighbour only");
 done:
@@ -142,7 +157,10 @@ static brio_delaunay_options library_options(const run *r, const arguments *a, c
     brio_delaunay_options o = brio_delaunay_options_default();
     o.order = insertion_order(a);
     o.locate = (brio_location)a->locate;
+    o.first_conflict = a->first_conflict;
     o.all_conflicts = a->all_conflicts;
+    o.page_bytes = a->page_size;
+    o.cache_bytes = a->cache_size;
     o.edges = edges->ends;
     o.num_edges = edges->count;
     o.seed = r->common.seed;
@@ -208,11 +226,30 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     cli_fact_count(f, "serial", s->serial);
     cli_fact_count(f, "history", s->history);
     cli_fact_count(f, "history_tests", s->history_tests);
+    cli_fact_count(f, "history_conflicts", s->history_conflicts);
     cli_fact_count(f, "trace_intersections", s->trace_intersections);
     return BRIO_OK;
 }
 
-static void report_rounds(facts *f, const brio_triangulation *t) {
+static void report_pages(facts *f, const brio_triangulation *t) {
+    size_t count;
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    const uint64_t *faults = brio_triangulation_cache_faults(t, &count);
+    if (!faults) return;
+    cli_fact_count(f, "pages", s->pages);
+    cli_fact_count(f, "page_touches", s->page_touches);
+    cli_fact_count(f, "page_faults", s->page_faults);
+    cli_fact_open(f, "caches", FACT_LIST);
+    for (size_t i = 0; i < count; i++) {
+        cli_fact_open(f, NULL, FACT_OBJECT);
+        cli_fact_count(f, "cache_pages", (uint64_t)1 << i);
+        cli_fact_count(f, "page_faults", faults[i]);
+        cli_fact_close(f);
+    }
+    cli_fact_close(f);
+}
+
+static void report_rounds(facts *f, const brio_triangulation *t, bool pages) {
     size_t count;
     const brio_round *round = brio_triangulation_rounds(t, &count);
     if (!round) return;
@@ -226,6 +263,9 @@ static void report_rounds(facts *f, const brio_triangulation *t) {
         cli_fact_count(f, "walk_steps", round[i].walk_steps);
         cli_fact_count(f, "insphere_calls", round[i].insphere_calls);
         cli_fact_count(f, "history", round[i].history);
+        if (pages) cli_fact_count(f, "pages", round[i].pages);
+        if (pages) cli_fact_count(f, "page_touches", round[i].page_touches);
+        if (pages) cli_fact_count(f, "page_faults", round[i].page_faults);
         cli_fact_seconds(f, "locate_seconds", round[i].locate_seconds);
         cli_fact_seconds(f, "seconds", round[i].seconds);
         cli_fact_close(f);
@@ -276,7 +316,8 @@ static brio_status delaunay(run *r) {
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));
     TRY(report_stats(r, mesh, t, weighted));
-    report_rounds(&r->facts, t);
+    report_pages(&r->facts, t);
+    report_rounds(&r->facts, t, a->page_size > 0);
     if (a->verify) TRY(verify(r, mesh, weights, t));
     if (r->common.output) TRY(write_output(r, mesh, weights, &t));
 done:

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MESHES         "surface hull alpha offset iso generate subdivide medial check"
+#define MESHES         "surface hull alpha offset iso generate subdivide medial check restricted"
 #define TRIANGULATIONS "delaunay voronoi"
 #define POLES          "surface medial offset"
 
@@ -29,6 +29,27 @@ const glossary_line cli_glossary[] = {
      "distinct positions among the points of the input", LINE_PLAIN, STYLE_PLAIN},
     {"iso", NULL, "points", NULL, "the same as vertices", LINE_JSON, STYLE_PLAIN},
     {"info generate convert", NULL, "points", NULL, "points in the file", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "points", NULL, "samples, duplicates included", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "closed_ball", NULL,
+     "whether each cell, facet and edge of the Voronoi diagram meets the surface in a disk, an arc, a point, or not at "
+     "all",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "homeomorphic", NULL, "whether the triangles are proven homeomorphic to the surface",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "voronoi_cells", NULL, "Voronoi cells that meet the surface", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "voronoi_facets", NULL, "Voronoi facets that meet it", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "voronoi_edges", NULL, "Voronoi edges that meet it, a triangle each", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "bad_cells", NULL, "cells that meet it in something else than one disk", LINE_PLAIN,
+     STYLE_PLAIN},
+    {"restricted", NULL, "bad_facets", NULL, "facets that meet it in something else than one arc", LINE_PLAIN,
+     STYLE_PLAIN},
+    {"restricted", NULL, "bad_edges", NULL, "edges that meet it in more than one point", LINE_PLAIN, STYLE_PLAIN},
+    {"restricted", NULL, "crossings", NULL, "points where edges of the Voronoi diagram meet the surface", LINE_VERBOSE,
+     STYLE_PLAIN},
+    {"restricted", NULL, "exact_calls", NULL, "signs that floating-point arithmetic did not settle", LINE_VERBOSE,
+     STYLE_PLAIN},
+    {"restricted", NULL, "ties", NULL, "signs that were 0: the surface was moved by an infinitely small vector",
+     LINE_VERBOSE, STYLE_PLAIN},
     {TRIANGULATIONS " locate interpolate", NULL, "points", NULL, "points of the input, duplicates included", LINE_PLAIN,
      STYLE_PLAIN},
     {TRIANGULATIONS, NULL, "duplicates", NULL, "points at the position of another point; that one stands for them",
@@ -215,6 +236,14 @@ const glossary_line cli_glossary[] = {
     {"offset", NULL, "rounds", NULL, "triangulations of the samples, each with more of them", LINE_INTERNAL,
      STYLE_PLAIN},
     {"medial", NULL, "spacing", NULL, "no place of the mesh is farther from a sample", LINE_PLAIN, STYLE_PLAIN},
+    {"delaunay", NULL, "pages", NULL, "pages of points, tetrahedra and history that were touched (--page-size)",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"delaunay", NULL, "page_touches", NULL, "how often, the same page again and again included", LINE_PLAIN,
+     STYLE_PLAIN},
+    {"delaunay", NULL, "page_faults", NULL, "those of a page that the cache did not have (--cache-size)", LINE_PLAIN,
+     STYLE_PLAIN},
+    {"delaunay", NULL, "caches", NULL, "faults in caches of 1, 2, 4, ... pages that drop the page least recently used",
+     LINE_PLAIN, STYLE_PLAIN},
     {"delaunay", NULL, "rounds", NULL,
      "the counters at the ends of rounds (--rounds), or now and then (--record-every)", LINE_PLAIN, STYLE_PLAIN},
 
@@ -245,6 +274,8 @@ const glossary_line cli_glossary[] = {
     {"delaunay", NULL, "history", NULL, "nodes of the history DAG (--locate history, trace)", LINE_INTERNAL,
      STYLE_PLAIN},
     {"delaunay", NULL, "history_tests", NULL, "nodes of it that searches looked at", LINE_INTERNAL, STYLE_PLAIN},
+    {"delaunay", NULL, "history_conflicts", NULL,
+     "those in conflict with the point (--first-conflict, --all-conflicts)", LINE_INTERNAL, STYLE_PLAIN},
     {"delaunay", NULL, "trace_intersections", NULL, "tetrahedra entered along the edges of the mesh (--locate trace)",
      LINE_INTERNAL, STYLE_PLAIN},
     {"surface", NULL, "unused", NULL, "points that are no vertex of the surface", LINE_INTERNAL, STYLE_PLAIN},

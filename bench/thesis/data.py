@@ -1,4 +1,5 @@
-"""The thesis' class of data: raw scans, in translated copies, and a molecular iso-surface refined by subdivision."""
+"""The thesis' class of data: raw scans, in translated copies, and molecular iso-surfaces, one of them refined by subdivision;
+and the kinds of points that chapter 5.8 asks for."""
 import os
 import subprocess
 import sys
@@ -44,21 +45,41 @@ class Data:
     def _call(self, *arguments):
         subprocess.run([self.brio, *arguments, '--quiet'], check=True)
 
+    def _dragon(self):
+        real = os.path.join(SHARED, 'scan', 'dragon_raw.ply')
+        if os.path.exists(real): return read_points(real)[::self.shrink]
+        return self._scan()
+
+    def _lidar(self, n):
+        """Points of an airborne scan, in its own sequence; lines over hills stand in."""
+        real = os.path.join(SHARED, 'lidar', 'autzen.ply')
+        if os.path.exists(real):
+            points = read_points(real)
+            return points[:n] - points[0]
+        i, rng = np.arange(n), np.random.default_rng(8)
+        a_line = int(np.sqrt(n))
+        x, y = (i // a_line + 0.1 * rng.random(n)) / a_line, (i % a_line + 0.1 * rng.random(n)) / a_line
+        return np.column_stack([x, y, 0.05 * np.sin(9 * x) * np.cos(7 * y) + 0.02 * (rng.random(n) < 0.1) * rng.random(n)])
+
+    def _mtd(self, path):
+        """An iso-surface of MTD's size."""
+        volume, mesh = os.path.join(SHARED, 'volume', '3ek3-2fofc.map'), path + '.mesh.ply'
+        self._call('iso', volume, '--sigma', '--level', '1', '-n', str(185000 // self.shrink), '-o', mesh)
+        write_copies(read_points(mesh), 1, path)
+        os.remove(mesh)
+
     def _surface(self, path, levels):
-        """An iso-surface of about an eighth of MTD's density, so that one level of subdivision gives B-1's size."""
+        """An iso-surface that one level of subdivision brings to B-1's size."""
         level0, volume = os.path.join(self.folder, 'iso.ply'), os.path.join(SHARED, 'volume', '3ek3-2fofc.map')
         if not os.path.exists(level0):
             self._call('iso', volume, '--sigma', '--level', '1', '-n', str(131000 // self.shrink), '-o', level0)
-        if levels == 0:
-            write_copies(read_points(level0), 1, path)
-            return
         fine = path + '.fine.ply'
         self._call('subdivide', level0, '--levels', str(levels), '-o', fine)
         write_copies(read_points(fine), 1, path)
         os.remove(fine)
 
     def path(self, name):
-        """happy-COPIES, part-K (every Kth point of happy), mtd, b1, b2, or uniform-N."""
+        """happy-COPIES, part-K (every Kth point of happy), dragon, mtd, b1, b2, or KIND-N with KIND of figures.KINDS."""
         if name in self.made: return self.made[name]
         path = os.path.join(self.folder, name + '.ply')
         kind, _, number = name.partition('-')
@@ -68,8 +89,16 @@ class Data:
             write_copies(self._scan()[::int(number)], 1, path)
         elif kind == 'uniform':
             self._call('generate', 'cube', '-n', number, '-o', path)
+        elif kind == 'lidar':
+            write_copies(self._lidar(int(number)), 1, path)
+        elif number:
+            self._call('generate', kind, '-n', number, '-o', path)
+        elif kind == 'dragon':
+            write_copies(self._dragon(), 1, path)
+        elif kind == 'mtd':
+            self._mtd(path)
         else:
-            self._surface(path, {'mtd': 0, 'b1': 1, 'b2': 2}[name])
+            self._surface(path, {'b1': 1, 'b2': 2}[name])
         self.made[name] = path
         return path
 

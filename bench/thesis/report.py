@@ -1,10 +1,13 @@
-"""The report: each claim of the thesis beside what was found here."""
+"""The report: each claim of the thesis beside what was found here. It is made of results that are kept beside it, so that a
+change of a sentence, or of a verdict, needs no new runs, and so that a test can tell whether it is what would be written."""
+import json
 import os
 import platform
 import shutil
 import subprocess
+import figures
 import plot
-from verdicts import FINISHES, LINEAR, NEARLY
+from verdicts import (ABOUT, FINISHES, LINEAR, LOCATION, NEARLY, NOISE, SLIGHTLY, SLOWER, TENTH, WASTED)
 
 
 def _machine():
@@ -25,35 +28,90 @@ WORDS = {True: 'holds', False: 'does not hold', None: 'not shown'}
 HEAD = '''# The experiments of the thesis
 
 Written by `make thesis` (bench/thesis): chapters 4 and 5 of [Choi 2003] with the strategies of this program in place of
-the programs that were compared there. hull is `--locate history
---all-conflicts`, CGAL `hierarchy`, pyramid `jump`, its simplified form `walk`; a BRIO is `--order brio-octree`, pure
-locality `octree`; the first three sections take the tuned `brio`. Each run has one thread. Times are seconds of reading, order and insertion, the sort of the result included.
+the programs that were compared there. hull is `--locate history --first-conflict`, CGAL `hierarchy`, pyramid `jump`, its
+simplified form `walk`; a BRIO is `--order brio-octree`, pure locality `octree`; the first three sections take the tuned
+`brio`. Each run has one thread. Times are seconds of reading, order and insertion, the sort of the result included.
+
+What differs still: the programs there had storage of their own, here all share one; iso-surfaces are those of marching
+tetrahedra, which have more vertices than those of marching cubes, so the level of detail is chosen for the number of points;
+the raw scan has 1,099,005 points here, 2,643,633 there.
 
 Memory is held by a memory cgroup, which counts the pages of scratch and input files too; arrays are in scratch files
 then. Limits are shares of what the same work takes without one. A run is stopped after {patience:g} times the first
 limited run of its figure, in the headline at {finishes} times its time without a limit, beyond which it does not count as
-finished. *Not shown* is what was stopped, or left out, too early to tell; a run that was stopped after it had taken longer
-than a claim asks for does tell.
+finished. *Not shown* is what was stopped, or left out, too early to tell.
+
+The sections on page faults need no cgroup: the program counts the pages of its points, tetrahedra and history that an
+insertion touches, {page} bytes each, in a cache that drops the page least recently used. These counts are the same on every
+machine.
 
 Rules of the verdicts: growth is linear when the time a point differs by {linear:g} times at most, near-linear up to
-{nearly:g} times. Sizes differ from the thesis': each section names both, as far as the thesis says them.
+{nearly:g} times. A run thrashes from where a point takes {slower} times what one took early on; a run that was stopped does
+not thrash by that alone. "About" is within {about:.0%}, "a tenth of the points" between {tenth[0]:.0%} and {tenth[1]:.0%}, "slightly"
+by {slightly:g} times at most; ratios under {noise:g} say nothing. A search is wasted that saves at most {wasted:.0%} of the
+steps. A share of the time from {location[0]:.0%} to {location[1]:.0%} is significant, but not overwhelming. Sizes differ from
+the thesis': each section names both, as far as the thesis says them.
 
 {machine}, commit {commit}; {size}; {minutes:.0f} minutes in all.
 '''
+
+
+def facts(bench, found):
+    """All that a report is made of, as JSON can hold it."""
+    o = bench.options
+    return {'machine': _machine(), 'commit': bench.commit, 'shrink': o.shrink, 'memory': o.memory, 'copies': o.copies,
+            'headline': o.headline, 'patience': o.patience, 'minutes': round(bench.minutes()), 'no_limits': bench.no_limits,
+            'left_out': bench.left_out, 'figures': {f.name: {k: _slim(r) for k, r in results.items()} for f, results in found}}
+
+
+ROUND = ('points', 'tetrahedra', 'seconds', 'locate_seconds', 'history', 'pages')
+
+
+def _slim(r):
+    """A result without what no verdict and no table asks for; curves of at most 100 points."""
+    kept = dict(r)
+    every = len(r['rounds']) // 60 + 1
+    kept['rounds'] = [{k: x[k] for k in ROUND if k in x} for x in r['rounds'][::every]]
+    every = len(r['curve']) // 100 + 1
+    kept['curve'] = [[p, round(s, 3)] for p, s in r['curve'][:-1:every] + r['curve'][-1:]]
+    return kept
+
+
+def figures_of(facts):
+    return figures.figures(2000000 // facts['shrink'], facts['memory'], facts['copies'], facts['headline'])
 
 
 def _row(label, r):
     memory = f'{r["memory"] / 2**20:.0f}' if r['memory'] else ''
     wall = f'{r["wall"]:.1f}' + ('' if r['status'] == 'done' else f' ({r["status"]} at {r["reached"]} %)')
     numbers = [f'{r[k]:,}' if k in r and r[k] != '' else '' for k in ('tetrahedra', 'created', 'destroyed', 'history')]
+    numbers.append(f'{r["history_tests"] / r["vertices"]:.1f}' if r.get('history_tests') else '')
     return f'| {label} | {r["points"]:,} | {memory} | {wall} | ' + ' | '.join(numbers) + ' |\n'
+
+
+TABLE = ('\n| run | points | memory, MiB | seconds | tetrahedra | created | destroyed | history | tests in it a point |\n'
+         '|---|--:|--:|--:|--:|--:|--:|--:|--:|\n')
+SHARES = (2, 4, 8, 16, 32)
+
+
+def _page_row(label, r):
+    """Faults a point in caches of the largest powers of two within shares of the pages."""
+    each = []
+    for share in SHARES:
+        fit = [c['page_faults'] for c in r['caches'] if c['cache_pages'] * share <= r['pages']]
+        each.append(f'{fit[-1] / r["points"]:.2f}')
+    return f'| {label} | {r["points"]:,} | {r["pages"]:,} | {r["page_touches"] / r["points"]:.0f} | ' + ' | '.join(each) + ' |\n'
+
+
+PAGES = ('\n| run | points | pages | touches a point | ' + ' | '.join(f'faults in 1/{s}' for s in SHARES) + ' |\n'
+         '|---|--:|--:|--:|' + '--:|' * len(SHARES) + '\n')
 
 
 def _thesis_size(name):
     """Points of the thesis' set that stands behind one of ours, or None."""
     kind, _, number = name.partition('-')
     if kind == 'happy': return int(number) * 2643633
-    return {'mtd': 185000, 'b1': 525296}.get(kind)
+    return {'dragon': 1700000, 'mtd': 185000, 'b1': 525296, 'b2': 2000000}.get(kind)
 
 
 def _sizes(g, results):
@@ -64,38 +122,65 @@ def _sizes(g, results):
     return f'\nSizes: {"; ".join(words)}.\n' if words and g.whose == 'Thesis' else ''
 
 
-def _section(f, g, results, verdict, images):
-    holds, words = verdict
+def verdict_of(g, results):
+    return g.verdict(results) if results else (None, 'Left out')
+
+
+def _section(f, g, results, images):
+    holds, words = verdict_of(g, results)
     f.write(f'\n## {g.name}: {g.title}\n\n{g.whose}: {g.claim}\n\nHere: **{WORDS[holds]}**. {words}.\n')
     if not results: return
     f.write(_sizes(g, results))
-    f.write('\n| run | points | memory, MiB | seconds | tetrahedra | created | destroyed | history |\n'
-            '|---|--:|--:|--:|--:|--:|--:|--:|\n')
-    for label, r in results.items(): f.write(_row(label, r))
-    if images is not None: f.write(f'\n![{g.title}]({images}figure-{g.name}.svg)\n')
+    if g.kind == 'pages':
+        f.write(PAGES)
+        for label, r in results.items():
+            if r['status'] == 'done': f.write(_page_row(label, r))
+    elif g.kind != 'none':
+        f.write(TABLE)
+        for label, r in results.items(): f.write(_row(label, r))
+    if plot.is_drawn(g, results): f.write(f'\n![{g.title}]({images}figure-{g.name}.svg)\n')
 
 
-def write(path, found, bench, images):
+def write(path, facts, images):
     """The report, with its plots in a folder beside it: images, '' or 'folder/'."""
-    o = bench.options
-    verdicts = {g.name: g.verdict(results) if results else (None, 'Left out') for g, results in found}
+    found = [(g, facts['figures'][g.name]) for g in figures_of(facts) if g.name in facts['figures']]
     with open(path, 'w') as f:
-        size = 'all points' if o.shrink == 1 else f'every {o.shrink}th point'
-        f.write(HEAD.format(patience=o.patience, finishes=FINISHES, linear=LINEAR, nearly=NEARLY, machine=_machine(), commit=bench.commit, size=size,
-                            minutes=bench.minutes()))
-        if bench.no_limits: f.write(f'\nRuns with little memory were left out: {bench.no_limits}.\n')
-        if bench.left_out: f.write(f'\nLeft out, the time being over: {"; ".join(bench.left_out)}.\n')
+        size = 'all points' if facts['shrink'] == 1 else f'every {facts["shrink"]}th point'
+        f.write(HEAD.format(patience=facts['patience'], finishes=FINISHES, linear=LINEAR, nearly=NEARLY, slower=SLOWER, about=ABOUT,
+                            tenth=TENTH, slightly=SLIGHTLY, noise=NOISE, wasted=WASTED, location=LOCATION, page=figures.PAGE,
+                            size=size, **{k: facts[k] for k in ('machine', 'commit', 'minutes')}))
+        if facts['no_limits']: f.write(f'\nRuns with little memory were left out: {facts["no_limits"]}.\n')
+        if facts['left_out']: f.write(f'\nLeft out, the time being over: {"; ".join(facts["left_out"])}.\n')
         f.write('\n| figure | claim | here |\n|---|---|---|\n')
-        for g, _ in found: f.write(f'| {g.name} | {"" if g.whose == "Thesis" else g.whose + ": "}{g.claim} | {WORDS[verdicts[g.name][0]]} |\n')
         for g, results in found:
-            drawn = os.path.exists(plot.path(g, o.out))
-            _section(f, g, results, verdicts[g.name], images if drawn else None)
+            whose = '' if g.whose == 'Thesis' else g.whose + ': '
+            f.write(f'| {g.name} | {whose}{g.claim} | {WORDS[verdict_of(g, results)[0]]} |\n')
+        for g, results in found: _section(f, g, results, images)
 
 
-def publish(path, found, bench):
-    """The report elsewhere, with the plots in images/thesis beside it."""
+def keep(path, facts):
+    """Results a line a run, which shows what a new run changed."""
+    head = {k: v for k, v in facts.items() if k != 'figures'}
+    with open(path, 'w') as f:
+        f.write(json.dumps(head)[:-1] + ', "figures": {\n')
+        f.write(',\n'.join(f'{json.dumps(name)}: {{\n' + ',\n'.join(
+            f'{json.dumps(label)}: {json.dumps(r)}' for label, r in results.items()) + '}'
+            for name, results in facts['figures'].items()))
+        f.write('}}\n')
+
+
+def kept(path):
+    with open(path) as f: return json.load(f)
+
+
+def publish(path, facts, drawn):
+    """The report elsewhere, with its results beside it and the plots, from the folder `drawn` if there is one, in
+    images/thesis."""
     folder = os.path.join(os.path.dirname(path) or '.', 'images', 'thesis')
-    os.makedirs(folder, exist_ok=True)
-    for g, _ in found:
-        if os.path.exists(plot.path(g, bench.options.out)): shutil.copy(plot.path(g, bench.options.out), folder)
-    write(path, found, bench, 'images/thesis/')
+    if drawn:
+        os.makedirs(folder, exist_ok=True)
+        for old in os.listdir(folder): os.remove(os.path.join(folder, old))
+        for g in figures_of(facts):
+            if os.path.exists(plot.path(g, drawn)): shutil.copy(plot.path(g, drawn), folder)
+        keep(os.path.splitext(path)[0] + '.json', facts)
+    write(path, facts, 'images/thesis/')

@@ -5,7 +5,7 @@ Every run is one process. Runs that name a share of memory have their arrays in 
 memory cgroup (root, v1 or v2). Where none can be made those runs are left out, and the report says so. A run over its
 time is stopped, and counts as stopped, with the share of its points that it had inserted. OUT/runs.csv has a line a run,
 OUT/curves.csv the course of each, OUT/figure-*.svg the plots, OUT/thesis-experiments.md the claims of the thesis beside
-what was found."""
+what was found. Runs that count page touches need no cgroup."""
 import argparse
 import csv
 import json
@@ -26,14 +26,16 @@ import verdicts
 
 LEAST_MEMORY = 12 << 20  # below, the program itself hardly fits
 COLUMNS = ['figure', 'label', 'set', 'points', 'order_name', 'locate', 'memory', 'status', 'reached', 'wall', 'order',
-           'insert', 'peak_bytes', 'vertices', 'tetrahedra', 'created', 'destroyed', 'walk_steps', 'history']
+           'insert', 'peak_bytes', 'vertices', 'tetrahedra', 'created', 'destroyed', 'walk_steps', 'history', 'history_tests', 'pages',
+           'page_touches']
 
 
 def options_of_call():
     a = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     a.add_argument('brio')
     a.add_argument('--out', default='out/thesis', help='folder of the results (default out/thesis)')
-    a.add_argument('--report', help='also write the report there')
+    a.add_argument('--report', help='also write the report there, its results (.json) and plots beside it')
+    a.add_argument('--again', action='store_true', help='write REPORT again from its results, without any runs')
     a.add_argument('--scratch', help='folder of the data and the scratch files (default: OUT)')
     a.add_argument('--full', action='store_true', help='full sizes (default: a fourth)')
     a.add_argument('--shrink', type=int, help='every so manieth point only')
@@ -45,6 +47,7 @@ def options_of_call():
     a.add_argument('--patience', type=float, default=6, metavar='X',
                    help='most time of a limited run, as a multiple of the first one of its figure (default 6)')
     o = a.parse_args()
+    if o.again and not o.report: a.error('--again goes with --report')
     o.shrink = o.shrink or (1 if o.full else 4)
     o.copies = o.copies or ([1, 2, 4, 10] if o.full else [1, 2, 4])
     o.headline = o.headline or ([10, 20] if o.full else [5, 10])
@@ -70,7 +73,7 @@ class Bench:
         points = self.data.points(r.set)
         return [os.path.abspath(self.options.brio), 'delaunay', self.data.path(r.set), '--json', '--threads', '1',
                 '--order', r.order, '--locate', r.locate, *r.options, *(
-                    [] if r.share else ['--record-every', str(max(1, points // 40))])]
+                    [] if r.share or '--rounds' in r.options else ['--record-every', str(max(1, points // 40))])]
 
     def without_limit(self, name, locate):
         """What a BRIO takes without a limit."""
@@ -117,7 +120,7 @@ class Bench:
         if done.code == 0:
             facts = json.loads(done.out)
             counts = {**facts, **facts['internals']}
-            result.update({k: counts[k] for k in COLUMNS if k in counts}, rounds=facts.get('rounds', []))
+            result.update({k: counts[k] for k in COLUMNS if k in counts}, rounds=facts.get('rounds', []), caches=facts.get('caches', []))
             result.update(order=facts['seconds']['order'], insert=facts['seconds']['insert'], reached=100,
                           wall=facts['seconds']['read'] + facts['seconds']['order'] + facts['seconds']['insert'])
             if not memory and r.order.startswith('brio'): self.free[r.set, r.locate] = result
@@ -152,6 +155,7 @@ class Bench:
 
 def main():
     o = options_of_call()
+    if o.again: return report.publish(o.report, report.kept(os.path.splitext(o.report)[0] + '.json'), None)
     bench = Bench(o)
     plot.clear(o.out)
     if bench.no_limits: print(f'{bench.no_limits}: the runs with little memory are left out')
@@ -172,11 +176,13 @@ def main():
                 a.flush(), b.flush()
 
             for f in figures.figures(2000000 // o.shrink, o.memory, o.copies, o.headline):
-                if o.only and f.name not in o.only: continue
+                if o.only and f.name not in o.only:
+                    if o.report: found.append((f, {}))  # the page has all figures
+                    continue
                 found.append((f, bench.figure(f, write)))
                 plot.draw(*found[-1], o.out)
-                report.write(f'{o.out}/thesis-experiments.md', found, bench, '')
-        if o.report: report.publish(o.report, found, bench)
+                report.write(f'{o.out}/thesis-experiments.md', report.facts(bench, found), '')
+        if o.report: report.publish(o.report, report.facts(bench, found), o.out)
     finally:
         bench.close()
 

@@ -231,10 +231,15 @@ typedef struct brio_delaunay_options {
                                 default 0: no entries */
     const uint32_t *edges;   /* TRACE and NEIGHBOUR: num_edges pairs of indices of points; default NULL */
     size_t num_edges;
-    int leave_hidden; /* 1 leaves hidden points without a representative: BRIO_INFINITE stands in the array. Where
+    int leave_hidden;   /* 1 leaves hidden points without a representative: BRIO_INFINITE stands in the array. Where
                          weights hide most points, this saves up to two fifths of the time, and takes 6 to 12 bytes a
                          point when the insertion is over. Default 0 */
-    int reserved_int;
+    int first_conflict; /* HISTORY and TRACE: 1 searches depth first through conflicts, up to the first one that is alive,
+                           as the program hull of Clarkson does; default 0. Not with all_conflicts */
+    uint64_t
+        page_bytes; /* counts page touches of so large pages, a power of two from 64 on, with one thread; default 0:
+                             none are counted */
+    uint64_t cache_bytes; /* of the cache for page_faults; default 0: of one page */
 } brio_delaunay_options;
 
 /** record_every: one entry at the end of each round; in orders without rounds after 4,096 points, 8,192, and so on. */
@@ -262,6 +267,12 @@ typedef struct brio_delaunay_stats {
     uint64_t trace_intersections; /* tetrahedra entered while edges were traced */
     double locate_seconds;        /* of the insertion: point location, extrapolated from every 64th one; 1 thread */
     double order_seconds, insert_seconds; /* insert_seconds includes the canonical sort of the result */
+    uint64_t history_conflicts; /* of the history_tests with first_conflict or all_conflicts: nodes in conflict */
+    /* With page_bytes: pages of the records, of the tetrahedra and of the history; how often one was touched; and how often
+     * the cache, which drops the page that was least recently used, did not have it. An insertion touches what its
+     * location comes to, what it tests in conflict, what lies behind that, and what it writes. These depend on the
+     * sequence of insertions alone, not on the machine. */
+    uint64_t pages, page_touches, page_faults;
 } brio_delaunay_stats;
 
 /** Counters at a moment of the insertion. They count from the start, as those of brio_delaunay_stats. */
@@ -269,9 +280,10 @@ typedef struct brio_round {
     size_t points;     /* inserted so far */
     size_t tetrahedra; /* at that moment, infinite ones included */
     uint64_t created, destroyed, walk_steps, insphere_calls, history;
-    double locate_seconds; /* as in brio_delaunay_stats */
-    double seconds;        /* since the insertion began */
-    uint64_t reserved[4];
+    double locate_seconds;                     /* as in brio_delaunay_stats */
+    double seconds;                            /* since the insertion began */
+    uint64_t pages, page_touches, page_faults; /* with page_bytes */
+    uint64_t reserved[1];
 } brio_round;
 
 typedef struct brio_triangulation brio_triangulation;
@@ -303,6 +315,12 @@ BRIO_API const brio_delaunay_stats *brio_triangulation_stats(const brio_triangul
  *  threads down, because these insert together only what lies between two records. The view is valid until the
  *  triangulation is freed. */
 BRIO_API const brio_round *brio_triangulation_rounds(const brio_triangulation *t, size_t *count);
+
+/** Returns the page faults of the insertion in caches of 1, 2, 4, ... pages that drop the page least recently used: *count
+ *  entries, the last one for the first cache that holds all pages. NULL and 0 without page_bytes. Pages and faults are those
+ *  of brio_delaunay_stats. The view is valid until the triangulation is freed.
+ *  Based on: [Mattson Gecsei Slutz Traiger 1970]. */
+BRIO_API const uint64_t *brio_triangulation_cache_faults(const brio_triangulation *t, size_t *count);
 
 /** Returns the tetrahedra + hull_facets tetrahedra, finite ones first. A finite tetrahedron is positive. An infinite
  *  tetrahedron (a, b, c, BRIO_INFINITE) has the hull facet abc, and (a, b, c, x) is positive for x outside the hull. The
@@ -1173,6 +1191,44 @@ BRIO_API brio_status brio_convex_hull(brio_context *ctx, const double *points, s
                                       brio_convex_hull_stats *stats);
 
 /* ------------------------------------------------------------------------------------------------------------------
+ * Restricted Delaunay triangulation
+ */
+
+/** What was found of the Voronoi diagram of the samples on the surface. */
+typedef struct brio_restricted_stats {
+    size_t size;
+    size_t cells, facets, edges;             /* of the Voronoi diagram that meet the surface */
+    size_t bad_cells, bad_facets, bad_edges; /* those that meet it in no closed ball: not in one disk, arc, or point */
+    size_t crossings;                        /* points where the surface meets edges of the Voronoi diagram */
+    uint64_t exact_calls, ties; /* signs that floating-point arithmetic did not settle; those that were 0 */
+    int closed_ball;            /* 1: all cells, facets and edges that meet the surface meet it in a closed ball */
+    int reserved_int;
+    double delaunay_seconds, cut_seconds;
+} brio_restricted_stats;
+
+/** Computes the restricted Delaunay triangulation of samples on a known surface: the Delaunay triangles whose Voronoi edges
+ *  meet the surface. Which cells, facets and edges of the Voronoi diagram do is decided exactly.
+ *  Guarantees: if stats->closed_ball is 1, the triangles are homeomorphic to the surface [Edelsbrunner Shah 1997]. That is a
+ *  proof for these samples and this mesh; it asks for no bound on the density. If it is 0, they may still be.
+ *  Ties are decided as if the surface were moved by (e, e^2, e^3) for an infinitely small e > 0, and the samples by less, as
+ *  brio_delaunay does. So the answer is that for a surface and samples as near as one likes to these.
+ *  Does not guarantee: that the samples are an r-sample. A mesh has local feature size 0 at its edges, so no finite set is an
+ *  r-sample of it. The samples need not lie on the surface.
+ *  points   #P by 3: the samples.   surface  triangles that form a closed manifold; it may cross itself, and have any number
+ *  of components.
+ *  out      owned by the caller, NULL on error. Its vertices are the samples, with the same indices, also those that no
+ *           triangle uses. Each triangle is oriented as the face that its Voronoi edge meets. The property "closed_ball" is 1
+ *           at a sample whose cell, and all whose facets and edges, meet the surface in closed balls or not at all.
+ *  stats    NULL, or its `size` set.
+ *  Cost: one triangulation; then, for each face of the surface and each cell that it meets, a test of the Voronoi edges of that
+ *  cell, mostly in doubles. Memory: 60 bytes a face and 40 a piece of one, beside the triangulation and 60 bytes a tetrahedron.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the surface is not closed, no manifold, or not of triangles), BRIO_ERR_NO_ANSWER (the
+ *  samples are in a plane), and as brio_delaunay.
+ *  Based on: [Edelsbrunner Shah 1997], [Choi 2003] section 2.7. */
+BRIO_API brio_status brio_restricted_delaunay(brio_context *ctx, const double *points, size_t num_points,
+                                              const brio_mesh *surface, brio_mesh **out, brio_restricted_stats *stats);
+
+/* ------------------------------------------------------------------------------------------------------------------
  * Alpha complexes and alpha shapes
  *
  * Alpha is a squared radius, as in the papers, GUDHI and CGAL. Programs that take a radius (PyVista's delaunay_3d, Open3D,
@@ -1708,8 +1764,9 @@ typedef struct brio_cocone_stats {
 /** Reconstructs a surface from Delaunay triangles of the samples: the co-cone or the tight co-cone.
  *  Guarantees: for every input, the mesh is manifold and oriented as a combinatorial object, and the tight co-cone is
  *  closed; not so with another extraction than BRIO_EXTRACTION_LABELS. On an r-sample of a smooth closed surface with
- *  r <= 0.08, the co-cone is homeomorphic to the surface and within
- *  1.3 r / (1 - r) times the local feature size of it (theorem 19 of [Choi 2003]).
+ *  r <= 0.08, BRIO_EXTRACTION_WALK is homeomorphic to the surface and within
+ *  1.3 r / (1 - r) times the local feature size of it (theorem 19 of [Choi 2003]). For BRIO_EXTRACTION_LABELS that is
+ *  tested, not proven.
  *  Does not guarantee: a closed mesh on sparser samples, freedom from self-intersections, that every sample is used.
  *  points  #P by 3.   options  NULL for the defaults.   stats  NULL, or its `size` set.
  *  out     owned by the caller. Its vertices are the points, with the same indices, also those that no face uses.

@@ -44,6 +44,12 @@ brio_status brio_delaunay_check_options(brio_context *ctx, size_t n, const brio_
     for (size_t i = 0; i < 2 * o->num_edges; i++)
         BRIO_REQUIRE(ctx, o->edges[i] < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, o->edges[i],
                      n);
+    BRIO_REQUIRE(ctx, !(o->page_bytes & (o->page_bytes - 1)) && (!o->page_bytes || o->page_bytes >= 64),
+                 BRIO_ERR_ARGUMENT, "pages of %llu bytes; their size is a power of two from 64 on",
+                 (unsigned long long)o->page_bytes);
+    BRIO_REQUIRE(ctx, !o->cache_bytes || o->page_bytes, BRIO_ERR_ARGUMENT, "a cache of pages without a size of pages");
+    BRIO_REQUIRE(ctx, !o->all_conflicts || !o->first_conflict, BRIO_ERR_ARGUMENT,
+                 "only one of all conflicts and the first conflict");
     BRIO_REQUIRE(ctx, o->max_tetrahedra <= UINT32_C(1) << 30, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
                  o->max_tetrahedra);
 done:
@@ -83,7 +89,7 @@ static brio_status insert_all(brio_inserter *ins, const brio_delaunay_options *o
     size_t n = s->num_points, p = (size_t)s->dimension + 1, end;
     if (s->dimension <= 0) return brio_recorder_note(recorder, ins, n);
     BRIO_TRY(brio_strategy_start(ins, options));
-    bool parallel = s->rank && s->dimension == 3;
+    bool parallel = s->rank && s->dimension == 3 && !ins->touches.counts;
     BRIO_TRY(brio_recorder_note(recorder, ins, p));
     for (; p < n; p = end) {
         BRIO_TRY(brio_inserter_report(ins, (double)p / (double)n));
@@ -152,6 +158,7 @@ static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder
     ins->stats.points = s->num_points;
     ins->stats.dimension = s->dimension;
     ins->stats.walk_steps = ins->walk.steps;
+    if (ins->touches.counts) brio_page_touches_total(ins->touches.counts, &ins->stats);
     ins->stats.exact_calls = ins->filter.unsettled + s->filter.unsettled;
     BRIO_TRY(BRIO_RESIZE(s->ctx, s->t.tet, s->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, t, 1));
@@ -163,6 +170,7 @@ static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder
     s->t.tet = NULL;
     t->round = recorder->list;
     t->num_rounds = recorder->count;
+    if (ins->touches.counts) t->num_caches = brio_page_touches_faults(ins->touches.counts, t->cache_faults);
     recorder->list = NULL;
     assert(result_is_valid(t));
     *out = t;
@@ -176,6 +184,7 @@ done:
 static brio_status construct(brio_store *store, const brio_delaunay_options *options, double order_seconds,
                              brio_recorder *recorder, brio_triangulation **out) {
     brio_inserter *ins = NULL;
+    brio_page_touches *touches = NULL;
     brio_status status = BRIO_OK;
     recorder->start = brio_seconds();
     BRIO_TRY(brio_start(store));
@@ -183,6 +192,9 @@ static brio_status construct(brio_store *store, const brio_delaunay_options *opt
     ins->reports = true;
     ins->stats.order_seconds = order_seconds;
     ins->stats.created = store->t.count; /* the first ones */
+    if (options->page_bytes)
+        BRIO_TRY(brio_page_touches_new(store->ctx, options->page_bytes, options->cache_bytes, &touches));
+    brio_inserter_count_touches(ins, touches, 0);
     BRIO_TRY(insert_all(ins, options, recorder));
     BRIO_TRY(brio_represent(ins, options->leave_hidden != 0));
     BRIO_TRY(sort_result(ins));
@@ -190,6 +202,7 @@ static brio_status construct(brio_store *store, const brio_delaunay_options *opt
     BRIO_TRY(triangulation_new(ins, recorder, out));
     (*out)->leaves_hidden = options->leave_hidden != 0;
 done:
+    brio_page_touches_free(touches);
     brio_inserter_free(ins);
     return status;
 }
@@ -240,4 +253,9 @@ uint64_t brio_triangulation_points_hash(const brio_triangulation *t) {
 const brio_round *brio_triangulation_rounds(const brio_triangulation *t, size_t *count) {
     *count = t->num_rounds;
     return t->round;
+}
+
+const uint64_t *brio_triangulation_cache_faults(const brio_triangulation *t, size_t *count) {
+    *count = t->num_caches;
+    return t->num_caches ? t->cache_faults : NULL;
 }

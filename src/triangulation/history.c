@@ -5,10 +5,11 @@
  * infinite tetrahedron is in the closure of a finite tetrahedron created then, or strictly outside the facet of a
  * created infinite one. For along a ray from the new vertex through the old hull, the height over the plane of a facet
  * that the new vertex sees only falls.
- * All conflicts: the search goes from the first tetrahedra through all tetrahedra that were in conflict with the
- * point. These include the tetrahedra that held the point, unless the point is hidden. A hull facet in whose plane the
- * point lies does not count as in conflict. A tetrahedron with a vertex at the point's position does, so that
- * duplicates are found.
+ * Conflicts: the search goes depth first from a tetrahedron in conflict with the point to those that took its place,
+ * which it tests one after the other. It ends at the first one in conflict that is live, as the program hull does, or
+ * goes on until it has all of them. It comes to the tetrahedra that held the point, unless the point is hidden; so it
+ * ends. A hull facet in whose plane the point lies does not count as in conflict. A tetrahedron with a vertex at the
+ * point's position does, so that duplicates are found.
  *
  * Based on: Guibas, Knuth, Sharir. Randomized incremental construction of Delaunay and Voronoi diagrams. Algorithmica
  * 1992, for the path. Clarkson, Mehlhorn, Seidel. Four results on randomized incremental constructions. CGTA 1993.
@@ -22,7 +23,7 @@ void brio_history_free(brio_context *ctx, brio_history *h) {
     brio_release(ctx, h->first);
     brio_release(ctx, h->node_of);
     brio_release(ctx, h->seen);
-    brio_release(ctx, h->insertion);
+    brio_release(ctx, h->open);
     brio_release(ctx, h->conflict);
 }
 
@@ -53,6 +54,19 @@ done:
     return status;
 }
 
+static void touch_node(const brio_inserter *ins, size_t node) {
+    if (ins->touches.counts) brio_touch(ins->touches.counts, BRIO_TOUCH_HISTORY, node * sizeof(brio_history_node));
+}
+
+/* Counts a node and the records of its vertices. */
+static void touch_search(const brio_inserter *ins, const brio_history *h, size_t node) {
+    if (!ins->touches.counts) return;
+    touch_node(ins, node);
+    for (int i = 0; i < 4; i++)
+        if (h->node[node].vertex[i] != ins->store->t.infinite)
+            brio_touch_record(&ins->touches, h->node[node].vertex[i]);
+}
+
 /* Adds nodes for `count` new tetrahedra in the given slots (NULL: slots 0, 1, ...). */
 static brio_status add_nodes(brio_inserter *ins, brio_history *h, const uint32_t *slots, size_t count) {
     brio_status status = reserve_nodes(ins, h, count);
@@ -60,6 +74,7 @@ static brio_status add_nodes(brio_inserter *ins, brio_history *h, const uint32_t
     for (size_t i = 0; i < count; i++) {
         uint32_t slot = slots ? slots[i] : (uint32_t)i;
         const uint32_t *v = ins->store->t.tet[slot].vertex;
+        touch_node(ins, h->num_nodes);
         h->node_of[slot] = (uint32_t)h->num_nodes;
         h->node[h->num_nodes++] = (brio_history_node){{v[0], v[1], v[2], v[3]}, BRIO_HISTORY_LIVE | slot};
     }
@@ -69,7 +84,9 @@ static brio_status add_nodes(brio_inserter *ins, brio_history *h, const uint32_t
 }
 
 brio_status brio_history_new(brio_inserter *ins, const brio_delaunay_options *options, brio_history *out) {
-    *out = (brio_history){.all_conflicts = options->all_conflicts != 0};
+    *out = (brio_history){.search = options->all_conflicts    ? BRIO_SEARCH_ALL_CONFLICTS
+                                    : options->first_conflict ? BRIO_SEARCH_FIRST_CONFLICT
+                                                              : BRIO_SEARCH_PATH};
     brio_status status = add_nodes(ins, out, NULL, ins->store->t.count);
     if (status == BRIO_OK) out->first[0] = 0;
     return status;
@@ -77,8 +94,11 @@ brio_status brio_history_new(brio_inserter *ins, const brio_delaunay_options *op
 
 brio_status brio_history_add(brio_inserter *ins, brio_history *h) {
     const brio_cavity *c = &ins->cavity;
-    for (size_t i = 0; i < c->num_tets; i++)
-        h->node[h->node_of[brio_tet_of(c->entry[i])]].next = (uint32_t)h->num_insertions;
+    for (size_t i = 0; i < c->num_tets; i++) {
+        uint32_t node = h->node_of[brio_tet_of(c->entry[i])];
+        touch_node(ins, node);
+        h->node[node].next = (uint32_t)h->num_insertions;
+    }
     return add_nodes(ins, h, c->created, c->num_created);
 }
 
@@ -105,14 +125,15 @@ uint32_t brio_history_path(brio_inserter *ins, brio_history *h, uint32_t from, c
     uint32_t next = next_of(h, from);
     while (!(next & BRIO_HISTORY_LIVE)) {
         uint32_t node = h->first[next];
-        while (!holds(ins, h->node[node].vertex, p)) node++;
+        touch_search(ins, h, node);
+        while (!holds(ins, h->node[node].vertex, p)) touch_search(ins, h, ++node);
         ins->stats.history_tests += node - h->first[next] + 1;
         next = h->node[node].next;
     }
     return next & ~BRIO_HISTORY_LIVE;
 }
 
-/* --- all conflicts --- */
+/* --- conflicts --- */
 
 static bool conflicts(brio_inserter *ins, const brio_history_node *node, const double *p) {
     const brio_store *s = ins->store;
@@ -124,13 +145,13 @@ static bool conflicts(brio_inserter *ins, const brio_history_node *node, const d
     return brio_conflict(&ins->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]], p, s->weighted);
 }
 
-/* Puts an insertion on the list to be searched, at most once. */
-static brio_status come_to(brio_context *ctx, brio_history *h, uint32_t insertion, size_t *count) {
+/* Opens the nodes of an insertion to the search, at most once. */
+static brio_status come_to(brio_context *ctx, brio_history *h, uint32_t insertion, size_t *depth) {
     if (h->seen[insertion] == h->searches) return BRIO_OK;
-    brio_status status = BRIO_RESERVE(ctx, h->insertion, h->insertion_capacity, *count + 1);
+    brio_status status = BRIO_RESERVE(ctx, h->open, h->open_capacity, *depth + 1);
     if (status != BRIO_OK) return status;
     h->seen[insertion] = h->searches;
-    h->insertion[(*count)++] = insertion;
+    h->open[(*depth)++] = (brio_history_span){h->first[insertion], h->first[insertion + 1]};
     return BRIO_OK;
 }
 
@@ -151,33 +172,38 @@ static brio_status begin_search(brio_context *ctx, brio_history *h) {
     return BRIO_OK;
 }
 
-brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p) {
+brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, size_t most) {
     const brio_store *s = ins->store;
     brio_status status = BRIO_OK;
-    size_t count = 0;
+    size_t depth = 0;
     uint32_t next = next_of(h, from);
     BRIO_TRY(begin_search(s->ctx, h));
     if (next & BRIO_HISTORY_LIVE) return list_conflict(s->ctx, h, next & ~BRIO_HISTORY_LIVE);
-    BRIO_TRY(come_to(s->ctx, h, next, &count));
-    while (count > 0) {
-        uint32_t insertion = h->insertion[--count];
-        for (uint32_t i = h->first[insertion]; i < h->first[insertion + 1]; i++) {
-            const brio_history_node *node = &h->node[i];
-            ins->stats.history_tests++;
-            if (!conflicts(ins, node, p)) continue;
-            if (is_live(node))
-                BRIO_TRY(list_conflict(s->ctx, h, live_slot(node)));
-            else
-                BRIO_TRY(come_to(s->ctx, h, node->next, &count));
+    BRIO_TRY(come_to(s->ctx, h, next, &depth));
+    while (depth > 0 && h->num_conflicts < most) {
+        brio_history_span *here = &h->open[depth - 1];
+        if (here->node == here->end) {
+            depth--;
+            continue;
         }
+        touch_search(ins, h, here->node);
+        const brio_history_node *node = &h->node[here->node++];
+        ins->stats.history_tests++;
+        if (!conflicts(ins, node, p)) continue;
+        ins->stats.history_conflicts++;
+        if (is_live(node))
+            BRIO_TRY(list_conflict(s->ctx, h, live_slot(node)));
+        else
+            BRIO_TRY(come_to(s->ctx, h, node->next, &depth));
     }
 done:
     return status;
 }
 
 brio_status brio_history_locate(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, uint32_t *tet) {
-    if (h->all_conflicts) {
-        brio_status status = brio_history_conflicts(ins, h, from, p);
+    if (h->search != BRIO_SEARCH_PATH) {
+        size_t most = h->search == BRIO_SEARCH_FIRST_CONFLICT ? 1 : SIZE_MAX;
+        brio_status status = brio_history_conflicts(ins, h, from, p, most);
         if (status != BRIO_OK) return status;
         if (h->num_conflicts > 0) {
             *tet = h->conflict[0];

@@ -18,6 +18,14 @@ typedef struct {
 /** Stands for a node: search from the first tetrahedra on. */
 #define BRIO_HISTORY_ROOT UINT32_MAX
 
+/** How a search goes through the history: along one path, or through conflicts to the first live one, or to all. */
+typedef enum { BRIO_SEARCH_PATH, BRIO_SEARCH_FIRST_CONFLICT, BRIO_SEARCH_ALL_CONFLICTS } brio_history_search;
+
+/** Nodes of one insertion that a search has still to test: [node, end). */
+typedef struct {
+    uint32_t node, end;
+} brio_history_span;
+
 typedef struct {
     brio_history_node *node;
     size_t num_nodes, node_capacity;
@@ -25,11 +33,12 @@ typedef struct {
     size_t num_insertions, first_capacity;
     uint32_t *node_of; /* node of each slot */
     size_t slot_capacity;
-    bool all_conflicts;
-    /* state of the search for all conflicts */
-    uint32_t *seen;                 /* of each insertion, the last search that reached it */
-    uint32_t *insertion, *conflict; /* insertions still to search; live tetrahedra found in conflict */
-    size_t seen_capacity, insertion_capacity, conflict_capacity, num_conflicts;
+    brio_history_search search;
+    /* state of the search for conflicts */
+    uint32_t *seen;          /* of each insertion, the last search that reached it */
+    brio_history_span *open; /* the insertions on the way from the root, the deepest one last */
+    uint32_t *conflict;      /* live tetrahedra found in conflict */
+    size_t seen_capacity, open_capacity, conflict_capacity, num_conflicts;
     uint32_t searches;
 } brio_history;
 
@@ -44,9 +53,10 @@ brio_status brio_history_add(brio_inserter *ins, brio_history *h);
  *  tetrahedron whose facet has p strictly outside.   from  a node with this property, or BRIO_HISTORY_ROOT. */
 uint32_t brio_history_path(brio_inserter *ins, brio_history *h, uint32_t from, const double *p);
 
-/** Lists in h->conflict the live tetrahedra in conflict with p that can be reached from node `from` through nodes in
- *  conflict with p. A tetrahedron with a vertex at p's position counts as in conflict. Lists none when p is hidden. */
-brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p);
+/** Lists in h->conflict the first `most` live tetrahedra in conflict with p that a search meets which goes depth first
+ *  from node `from` through nodes in conflict with p. A tetrahedron with a vertex at p's position counts as in conflict.
+ *  Lists none when p is hidden. */
+brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, size_t most);
 
 /** Does what a strategy's `locate` does, by the search that the options choose. */
 brio_status brio_history_locate(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, uint32_t *tet);

@@ -20,6 +20,7 @@
 #include "triangulation/cavity.h"
 #include "triangulation/engine.h"
 #include "triangulation/locator.h"
+#include "triangulation/page_touches.h"
 #include "triangulation/star.h"
 #include "triangulation/store.h"
 
@@ -45,6 +46,7 @@ struct brio_inserter {
     brio_read_ahead read_ahead;
     bool goes_on; /* in scratch files: the next point is often close to the last one */
 
+    brio_touch_view touches; /* the caller of brio_delaunay owns what counts; a strategy gives it to its levels */
     brio_delaunay_stats stats;
     bool reports;       /* whether this thread, the caller's, reports progress */
     double done;        /* share of the points that were in at the last report */
@@ -57,6 +59,12 @@ enum { BRIO_INSERT_WORK = 1 << 18 };
 
 /** Slots that an inserter takes at once in a parallel pass. */
 enum { BRIO_SLOT_STRETCH = 4096 };
+
+/** From now on the inserter counts page touches: its records are array `first` of `counts`. */
+static inline void brio_inserter_count_touches(brio_inserter *ins, brio_page_touches *counts, int first) {
+    ins->touches = (brio_touch_view){counts, first};
+    ins->walk.touches = counts ? &ins->touches : NULL;
+}
 
 /** Makes an inserter for a store that brio_start has begun. It walks from the first tetrahedron, locates by walks
  *  (brio_strategy_start for other strategies), has no zone, and has counted nothing. */
@@ -85,6 +93,8 @@ static inline uint64_t brio_inserter_work(const brio_inserter *ins) {
 
 /** The engine's walk to p, from walk.start. */
 static inline uint32_t brio_inserter_walk(brio_inserter *ins, const double *p, uint64_t most_steps) {
+    if (__builtin_expect(ins->walk.touches != NULL, 0))
+        return brio_locate_walk(&ins->store->t, ins->zone, &ins->filter, &ins->walk, p, most_steps);
     return ins->engine->walk(&ins->store->t, ins->zone, &ins->filter, &ins->walk, p, most_steps);
 }
 

@@ -74,7 +74,10 @@ brio_status brio_locate_descent(brio_inserter *ins, const double *p, uint32_t *t
         from = best.vertex;
         brio_status status = brio_star_collect(s->ctx, &s->t, from, best.tet, MOST_OF_STAR, &ins->star);
         if (status != BRIO_OK) return status;
-        for (size_t n = 0; n < ins->star.size; n++) offer(&s->t, &best, ins->star.tet[n], p);
+        for (size_t n = 0; n < ins->star.size; n++) {
+            brio_touch_tet(&ins->touches, &s->t, ins->star.tet[n]);
+            offer(&s->t, &best, ins->star.tet[n], p);
+        }
         ins->walk.steps++;
         if (best.square == 0) break;
         *tet = first_conflict(ins, ins->star.tet, ins->star.size, p);

@@ -122,7 +122,10 @@ static brio_status start_hierarchy(brio_inserter *ins, const brio_delaunay_optio
     for (int l = 1; l < MOST_LEVELS && size[l] > (size_t)s->dimension + 1; l++, own->num_levels++)
         BRIO_TRY(level_new(s, &own->level[l], size[l]));
     deal_records(s, own);
-    for (int l = 1; l < own->num_levels; l++) BRIO_TRY(start_level(s, &own->level[l], own->level[l - 1].store));
+    for (int l = 1; l < own->num_levels; l++) {
+        BRIO_TRY(start_level(s, &own->level[l], own->level[l - 1].store));
+        brio_inserter_count_touches(own->level[l].inserter, ins->touches.counts, 2 * l);
+    }
 done:
     return status;
 }

@@ -37,6 +37,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     for (int samples = (int)sqrt(sqrt(p)); samples > 0; samples--) {
         uint32_t v = brio_rng_below(&own->rng, p);
         double square = brio_square_distance(point, s->record[v]);
+        brio_touch_record(&ins->touches, v);
         if (s->representative[v] == v && square < least) best = v, least = square;
     }
     ins->walk.start = own->vertex_tet[best];

@@ -38,6 +38,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
         if (graph->neighbour[e] >= p) continue;
         uint32_t v = brio_alive(s, graph->neighbour[e]);
         double square = brio_square_distance(point, s->record[v]);
+        brio_touch_record(&ins->touches, v);
         if (square < least) best = v, least = square;
     }
     ins->walk.start = own->vertex_tet[best];

@@ -16,6 +16,7 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter
     for (uint64_t steps = 0;; steps++, walk->steps++) {
         if (steps > most_steps) return BRIO_NO_TET;
         const uint32_t *v = t->tet[tet].vertex;
+        if (walk->touches) brio_touch_tet(walk->touches, t, tet);
         if (v[3] == t->infinite) return tet;
         walk->random = brio_walk_random(walk->random);
         int first = (int)(walk->random >> 30), i = 0;

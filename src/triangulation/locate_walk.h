@@ -2,6 +2,7 @@
 #ifndef BRIO_TRIANGULATION_LOCATE_WALK_H
 #define BRIO_TRIANGULATION_LOCATE_WALK_H
 
+#include "triangulation/page_touches.h"
 #include "triangulation/zone.h"
 
 /** State of a sequence of walks: the start of the next walk, random bits, and the number of steps of all walks. */
@@ -11,6 +12,7 @@ typedef struct {
     uint64_t steps;
     bool blocked;    /* the last walk left the thread's zone */
     unsigned unsure; /* bit i is 0: the last walk found the point strictly inside facet i of the finite tetrahedron */
+    const brio_touch_view *touches; /* NULL, or what brio_locate_walk counts the tetrahedra with that it comes to */
 } brio_walk;
 
 enum { BRIO_NO_TET = UINT32_MAX };

@@ -2,7 +2,7 @@
 #ifndef BRIO_TRIANGULATION_TRIANGULATION_H
 #define BRIO_TRIANGULATION_TRIANGULATION_H
 
-#include "triangulation/tetrahedra.h"
+#include "triangulation/page_touches.h"
 
 struct brio_triangulation {
     brio_context *ctx;
@@ -13,6 +13,8 @@ struct brio_triangulation {
     uint64_t points_hash; /* base/points_hash.h */
     brio_round *round;    /* NULL when nothing was recorded */
     size_t num_rounds;
+    uint64_t cache_faults[BRIO_TOUCH_CACHES]; /* in caches of 2^0, 2^1, ... pages, where touches were counted */
+    size_t num_caches;
 };
 
 /** Checks the options of brio_delaunay for num_points points.

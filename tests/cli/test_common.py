@@ -10,12 +10,12 @@ import subprocess
 from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
 COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide",
-            "locate", "interpolate", "voronoi"]
+            "locate", "interpolate", "voronoi", "restricted"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
-                 "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--verify", "--neighbors", "--faces",
+                 "--first-conflict", "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--page-size", "--cache-size", "--verify", "--neighbors", "--faces",
                  "--edges"],
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
@@ -37,6 +37,7 @@ OWN_OPTIONS = {
     "locate": ["--at", "--plane", "--weights", "--weights-mod", "--unweighted"],
     "voronoi": ["--weights", "--weights-mod", "--unweighted", "--box", "--faces"],
     "interpolate": ["--at", "--plane", "--property", "--method"],
+    "restricted": ["--surface"],
 }
 
 

@@ -14,15 +14,15 @@ static uint32_t edges[2 * EDGES];
 
 static const char *const names[] = {"walk", "jump", "hierarchy", "history", "trace", "neighbour"};
 
-/* The strategies, and those of the history DAG once more with its other search. */
-enum { STRATEGIES = BRIO_LOCATION_END + 2 };
+/* The strategies, and those of the history DAG once more with each of its other searches. */
+enum { STRATEGIES = BRIO_LOCATION_END + 4 };
 
 static brio_delaunay_options strategy(int s) {
     brio_delaunay_options o = brio_delaunay_options_default();
-    o.all_conflicts = s >= BRIO_LOCATION_END;
-    o.locate = !o.all_conflicts         ? (brio_location)s
-               : s == BRIO_LOCATION_END ? BRIO_LOCATION_HISTORY
-                                        : BRIO_LOCATION_TRACE;
+    int other = s - BRIO_LOCATION_END;
+    o.all_conflicts = other == 0 || other == 1;
+    o.first_conflict = other > 1;
+    o.locate = other < 0 ? (brio_location)s : other % 2 == 0 ? BRIO_LOCATION_HISTORY : BRIO_LOCATION_TRACE;
     o.edges = edges;
     o.num_edges = EDGES;
     return o;
@@ -90,7 +90,7 @@ static result run(const double *p, const double *w, size_t n, const brio_delauna
 }
 
 static void expect_same(const result *found, const result *expected, int set, int s, int order) {
-    const char *name = names[s < BRIO_LOCATION_END ? s : s - BRIO_LOCATION_END + BRIO_LOCATION_HISTORY];
+    const char *name = names[s < BRIO_LOCATION_END ? s : (s - BRIO_LOCATION_END) % 2 + BRIO_LOCATION_HISTORY];
     EXPECT(found->checksum == expected->checksum, "set %d, %s, order %d", set, name, order);
     EXPECT(found->stats.vertices == expected->stats.vertices && found->stats.hidden == expected->stats.hidden &&
                found->stats.duplicates == expected->stats.duplicates,
@@ -128,6 +128,8 @@ static void strategies_count_what_they_do(void) {
         bool history = o.locate == BRIO_LOCATION_HISTORY || o.locate == BRIO_LOCATION_TRACE;
         EXPECT(stats.history == (history ? stats.created : 0), "strategy %d", s);
         EXPECT((stats.history_tests > 0) == history, "strategy %d", s);
+        EXPECT((stats.history_conflicts > 0) == (o.all_conflicts || o.first_conflict), "strategy %d", s);
+        EXPECT(stats.history_conflicts <= stats.history_tests, "strategy %d", s);
         EXPECT((stats.trace_intersections > 0) == (o.locate == BRIO_LOCATION_TRACE), "strategy %d", s);
         EXPECT((stats.walk_steps > 0) == !history, "strategy %d", s);
     }
@@ -235,7 +237,10 @@ static void expect_searches_right(brio_inserter *ins, brio_history *h, const dou
     uint32_t tet = brio_history_path(ins, h, BRIO_HISTORY_ROOT, p);
     EXPECT(s->state[tet] == TET_PLAIN && tetrahedron_holds(s, tet, p));
     EXPECT(brio_history_path(ins, h, h->node_of[tet], p) == tet);
-    EXPECT(brio_history_conflicts(ins, h, BRIO_HISTORY_ROOT, p) == BRIO_OK);
+    EXPECT(brio_history_conflicts(ins, h, BRIO_HISTORY_ROOT, p, 1) == BRIO_OK && h->num_conflicts <= 1);
+    uint32_t first = h->num_conflicts ? h->conflict[0] : BRIO_NO_TET;
+    EXPECT(brio_history_conflicts(ins, h, BRIO_HISTORY_ROOT, p, SIZE_MAX) == BRIO_OK);
+    EXPECT(first == (h->num_conflicts ? h->conflict[0] : BRIO_NO_TET)); /* the first one of all */
     bool any = false, listed = false;
     for (uint32_t t = 0; t < s->t.count; t++)
         any |= s->state[t] == TET_PLAIN && brio_in_conflict(&s->t, &ins->filter, t, p, s->weighted);
@@ -247,6 +252,77 @@ static void expect_searches_right(brio_inserter *ins, brio_history *h, const dou
     }
     EXPECT(any == (h->num_conflicts > 0));
     if (brio_in_conflict(&s->t, &ins->filter, tet, p, s->weighted) && !brio_is_infinite(&s->t, tet)) EXPECT(listed);
+}
+
+/* A history made by hand: insertion 0 has nodes 0 and 1, insertion 1, which destroyed node 0, has 2 to 4, insertion 2, which
+ * destroyed node 3, has 5 to 7, and insertion 3, which destroyed 6, has 8. Nodes whose turn it is are tetrahedra about the
+ * origin, the place that is searched for; the others are far away. */
+typedef struct {
+    brio_inserter *ins;
+    brio_history h;
+    brio_history_node node[9];
+    uint32_t first[5], node_of[9];
+} made_history;
+
+/* Nodes of `conflicts`, a bit each, are in conflict with the origin. */
+static void make_history(made_history *m, brio_inserter *ins, unsigned conflicts) {
+    static const uint32_t first[5] = {0, 2, 5, 8, 9}, next[9] = {1, BRIO_HISTORY_LIVE + 1, BRIO_HISTORY_LIVE + 2,
+                                                                 2, BRIO_HISTORY_LIVE + 4, BRIO_HISTORY_LIVE + 5,
+                                                                 3, BRIO_HISTORY_LIVE + 7, BRIO_HISTORY_LIVE + 8};
+    *m = (made_history){.ins = ins};
+    memcpy(m->first, first, sizeof first);
+    for (uint32_t i = 0; i < 9; i++) {
+        uint32_t v = conflicts >> i & 1 ? 0 : 4;
+        m->node[i] = (brio_history_node){{v, v + 1, v + 2, v + 3}, next[i]};
+        m->node_of[i] = i;
+    }
+    m->h =
+        (brio_history){.node = m->node, .num_nodes = 9, .first = m->first, .num_insertions = 4, .node_of = m->node_of};
+}
+
+/* The nodes that a search for the origin tests, until it has `most` conflicts; *found is the first of these. */
+static uint64_t tests_of_search(brio_inserter *ins, unsigned conflicts, size_t most, uint32_t *found) {
+    static const double origin[4] = {0};
+    made_history m;
+    make_history(&m, ins, conflicts);
+    uint64_t before = ins->stats.history_tests;
+    EXPECT(brio_history_conflicts(ins, &m.h, BRIO_HISTORY_ROOT, origin, most) == BRIO_OK);
+    *found = m.h.num_conflicts ? m.h.conflict[0] : BRIO_NO_TET;
+    brio_context *ctx = ins->store->ctx;
+    brio_release(ctx, m.h.seen);
+    brio_release(ctx, m.h.open);
+    brio_release(ctx, m.h.conflict);
+    return ins->stats.history_tests - before;
+}
+
+/* The program hull's search goes depth first, and returns at the first live tetrahedron in conflict. */
+static void a_search_ends_at_the_first_live_conflict(void) {
+    static const double corner[3 * 8] = {-1, -1, -1, 3,  0,  0,  0,  3,  0,  0,  0,  3,
+                                         49, 49, 49, 53, 50, 50, 50, 53, 50, 50, 50, 53};
+    static const struct {
+        unsigned conflicts;  /* in conflict with the origin, of the nodes 0 to 8 */
+        uint64_t first, all; /* tests until the first live conflict, and until all */
+        uint32_t found;
+    } cases[] = {
+        {0x05b, 8, 9, 4}, /* nodes 0, 1, 3, 4 and 6: 0, 2, 3, and below 3: 5, 6, below 6: 8, back to 7, and to 4 */
+        {0x002, 2, 2, 1}, /* node 1: after node 0, which is not in conflict */
+        {0x1cb, 6, 9, 8}, /* nodes 0, 1, 3, 6, 7 and 8: the way down to 8, whatever lives beside it */
+        {0x007, 2, 5, 2}, /* nodes 0, 1 and 2: 0 leads to 2, the first of its insertion */
+        {0x049, 9, 9, BRIO_NO_TET},
+    };
+    brio_context *ctx = new_context();
+    brio_delaunay_options o = strategy(BRIO_LOCATION_WALK);
+    brio_inserter *ins = insertion_begin(ctx, corner, NULL, 8, &o);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        uint32_t found;
+        uint64_t first = tests_of_search(ins, cases[i].conflicts, 1, &found);
+        EXPECT(first == cases[i].first && found == cases[i].found, "case %zu: %d tests, node %u", i, (int)first, found);
+        uint64_t all = tests_of_search(ins, cases[i].conflicts, SIZE_MAX, &found);
+        EXPECT(all == cases[i].all && found == cases[i].found, "case %zu: %d tests of all, node %u", i, (int)all,
+               found);
+    }
+    insertion_end(ins);
+    brio_context_free(ctx);
 }
 
 static void history_searches_find_what_brute_force_finds(void) {
@@ -543,6 +619,7 @@ SUITE(test_location) {
     RUN(history_tests_grow_as_the_logarithm);
     RUN(history_tests_of_sorted_points_are_many);
     RUN(traced_pairs_save_their_history_tests);
+    RUN(a_search_ends_at_the_first_live_conflict);
     RUN(history_searches_find_what_brute_force_finds);
     RUN(segments_lead_to_their_ends);
     RUN(segments_enter_what_they_cross);

@@ -163,8 +163,8 @@ static void results_that_cannot_be_freed_are_refused(void) {
 /* A field that is appended begins at the old size: no struct ends with padding, which would pass for the new field. */
 #define ENDS_WITH(type, last)                                                                                          \
     _Static_assert(offsetof(type, last) + sizeof(((type *)0)->last) == sizeof(type), #type " ends with padding")
-ENDS_WITH(brio_delaunay_options, reserved_int);
-ENDS_WITH(brio_delaunay_stats, insert_seconds);
+ENDS_WITH(brio_delaunay_options, cache_bytes);
+ENDS_WITH(brio_delaunay_stats, page_faults);
 ENDS_WITH(brio_certificate, volume);
 ENDS_WITH(brio_distance, diagonal);
 ENDS_WITH(brio_pole_options, reserved);
@@ -191,6 +191,7 @@ ENDS_WITH(brio_mesh_simplify_options, tolerance);
 ENDS_WITH(brio_generate_options, reserved_int);
 ENDS_WITH(brio_mesh, metadata);
 ENDS_WITH(brio_alpha_complex, triangulation2);
+ENDS_WITH(brio_restricted_stats, cut_seconds);
 
 static void statuses_have_words_of_their_own(void) {
     static const brio_status all[] = {BRIO_OK,        BRIO_ERR_ARGUMENT,  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_ANSWER,

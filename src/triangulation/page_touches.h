@@ -1,0 +1,59 @@
+/* Page touches: which pages of the records, the tetrahedra and the history an insertion reads and writes, and how many other
+ * pages were touched since each was touched before. */
+#ifndef BRIO_TRIANGULATION_PAGE_TOUCHES_H
+#define BRIO_TRIANGULATION_PAGE_TOUCHES_H
+
+#include "triangulation/tetrahedra.h"
+
+/** The arrays that are counted: records and tetrahedra of a store, two for each level of a hierarchy; the history. */
+enum { BRIO_TOUCH_RECORDS = 0, BRIO_TOUCH_TETRAHEDRA = 1, BRIO_TOUCH_HISTORY = 30, BRIO_TOUCHED_ARRAYS = 31 };
+
+/** Caches of 2^0, 2^1, ... pages that faults are told for. */
+enum { BRIO_TOUCH_CACHES = 33 };
+
+typedef struct brio_page_touches brio_page_touches;
+
+/** What an inserter counts with: NULL, nothing; its store's records are array `first`, its tetrahedra the one after. */
+typedef struct {
+    brio_page_touches *counts;
+    int first;
+} brio_touch_view;
+
+/** Starts to count. page_bytes is a power of two. The cache holds cache_bytes / page_bytes pages, at least one. */
+brio_status brio_page_touches_new(brio_context *ctx, uint64_t page_bytes, uint64_t cache_bytes,
+                                  brio_page_touches **out);
+/** NULL is accepted. */
+void brio_page_touches_free(brio_page_touches *t);
+
+/** Counts a touch of the byte at an offset of an array. */
+void brio_touch(brio_page_touches *t, int array, uint64_t offset);
+
+/** BRIO_OK, or why touches could not be counted. */
+brio_status brio_page_touches_status(const brio_page_touches *t);
+
+/** Writes the totals into the statistics. */
+void brio_page_touches_total(const brio_page_touches *t, brio_delaunay_stats *stats);
+
+/** faults[k] = the faults in a cache of 2^k pages, up to the first that holds all pages; returns how many there are. */
+size_t brio_page_touches_faults(const brio_page_touches *t, uint64_t faults[BRIO_TOUCH_CACHES]);
+
+static inline void brio_touch_record(const brio_touch_view *view, uint32_t record) {
+    if (__builtin_expect(view->counts != NULL, 0))
+        brio_touch(view->counts, view->first + BRIO_TOUCH_RECORDS, (uint64_t)record * sizeof(brio_record));
+}
+
+/** Counts a tetrahedron, or the slot where one was. */
+static inline void brio_touch_slot(const brio_touch_view *view, uint32_t tet) {
+    if (__builtin_expect(view->counts != NULL, 0))
+        brio_touch(view->counts, view->first + BRIO_TOUCH_TETRAHEDRA, (uint64_t)tet * sizeof(brio_tetrahedron));
+}
+
+/** Counts a tetrahedron and the records of its vertices. */
+static inline void brio_touch_tet(const brio_touch_view *view, const brio_tetrahedra *t, uint32_t tet) {
+    if (__builtin_expect(view->counts == NULL, 1)) return;
+    brio_touch_slot(view, tet);
+    for (int i = 0; i < 4; i++)
+        if (t->tet[tet].vertex[i] != t->infinite) brio_touch_record(view, t->tet[tet].vertex[i]);
+}
+
+#endif
