@@ -122,8 +122,8 @@ brio_status brio_smooth_surface(brio_context *ctx, double *points, size_t num_po
     for (int pass = 0; pass < PASSES; pass++) {
         BRIO_TRY(brio_progress(ctx, "smooth", (double)pass / PASSES));
         memcpy(from, points, 3 * num_points * sizeof *from);
-        brio_for_chunks(ctx, brio_threads(ctx, num_points, VERTICES_A_THREAD), num_points, VERTICES_A_THREAD,
-                        smooth_part, &s);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, num_points, VERTICES_A_THREAD), num_points, VERTICES_A_THREAD,
+                                 smooth_part, &s));
     }
 done:
     brio_release(ctx, s.first);
