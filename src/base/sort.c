@@ -21,7 +21,7 @@ typedef struct {
 /* Whether a member goes on at entry i of its part. Member 0 looks now and then. */
 static inline bool goes_on(stopper *s, size_t i, const brio_member *m) {
     if (i % BRIO_LOOK_EVERY) return true;
-    if (m->thread == 0 && s->looks) brio_report(&s->stop, brio_look(s->ctx, BRIO_LOOK_EVERY));
+    if (m->thread == 0 && s->looks && s->stop == BRIO_OK) brio_report(&s->stop, brio_look(s->ctx, BRIO_LOOK_EVERY));
     return __atomic_load_n(&s->stop, __ATOMIC_RELAXED) == BRIO_OK;
 }
 

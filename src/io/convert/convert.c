@@ -30,6 +30,7 @@ typedef struct {
     bool open;       /* whether a pass ended because the depth of colours was not known */
     int dulled;      /* whether colours lost steps */
     bool rounded;    /* whether single precision rounded a coordinate */
+    double moved;    /* how far the format's coordinates move points, where the caller does not ask */
     uint64_t counted;
     brio_convert_stats stats;
 } conversion;
@@ -275,6 +276,8 @@ static brio_status write_whole(void *user, const brio_mesh *mesh) {
     c->stats.tetrahedra = shown.num_tetrahedra;
     c->stats.edges = shown.num_edges;
     BRIO_TRY(brio_write(c->ctx, c->to, &shown, &o));
+    if (!c->rounded && !c->source.job.notes.rounded && *o.moved > 0)
+        lose(c, "precision"); /* about an origin, as in GLB */
 done:
     brio_colour_free(c->ctx, mesh, &shown);
     return status;
@@ -362,7 +365,8 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     if (o.from) BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, o.from, &read));
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, read.notes));
     if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));
-    if (c.write.moved) *c.write.moved = 0;
+    if (!c.write.moved) c.write.moved = &c.moved;
+    *c.write.moved = 0;
     int *rounded = c.write.colours_rounded;
     c.write.colours_rounded = &c.dulled;
     c.format = c.write.format == BRIO_FORMAT_AUTO && strcmp(to, "-") ? brio_format_of(to) : c.write.format;
