@@ -2039,6 +2039,7 @@ typedef struct brio_write_options {
                               for .csv */
     int *colours_rounded; /* receives 1 if the file's colours have fewer steps than the mesh's, else 0; default NULL */
     int crs_comment;      /* PLY, 1: the metadata crs.wkt, or without it crs.code, as comments "crs TEXT"; default 0 */
+    int reserved_int;
 } brio_write_options;
 
 BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);

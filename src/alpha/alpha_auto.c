@@ -71,6 +71,7 @@ brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex
     for (uint32_t i = 0; i < n; i++) order[i] = g.set[i] = i;
     BRIO_TRY(brio_sort_rows(ctx, &(brio_row_order){g.value, 1, by_index, NULL}, order, n));
     for (size_t i = 0; i < n; i++) {
+        BRIO_TRY(brio_look(ctx, 4));
         add(&g, order[i]);
         *alpha = g.value[order[i]];
         bool rises = i + 1 == n || g.value[order[i + 1]] > *alpha;

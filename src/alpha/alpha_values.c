@@ -149,8 +149,10 @@ static brio_status list_facets(const evaluation *e, uint32_t **out, size_t *coun
     for (uint32_t h = 0; h < 4 * e->num_finite; h++) {
         uint32_t mate = *brio_mate(&e->t, h);
         if (h < mate) (*out)[(*count)++] = h; /* finite tetrahedra come first */
+        if (h % BRIO_LOOK_EVERY == 0) BRIO_TRY(brio_look(e->ctx, BRIO_LOOK_EVERY));
     }
-    return BRIO_OK;
+done:
+    return status;
 }
 
 /* Lists each finite edge once, in its first tetrahedron. */
@@ -200,7 +202,7 @@ static brio_status find_all(evaluation *e, brio_part_fn body, size_t n, double f
     int threads = brio_threads(e->ctx, e->num_finite, TETS_A_THREAD);
     for (size_t first = 0; first < n; first += SLICE) {
         slice s = {e, body, first};
-        brio_for_chunks(e->ctx, threads, n - first < SLICE ? n - first : SLICE, CHUNK, work_on_slice, &s);
+        BRIO_TRY(brio_for_chunks(e->ctx, threads, n - first < SLICE ? n - first : SLICE, CHUNK, work_on_slice, &s));
         BRIO_TRY(brio_progress(e->ctx, "values", from + (to - from) * ((double)first / (double)n)));
     }
 done:
@@ -215,7 +217,7 @@ static brio_status evaluate(evaluation *e, const uint32_t *place) {
     BRIO_TRY(find_all(e, find_edges, c->counts[1], 0.7, 1));
     for (size_t n = 0; n < 2 * c->counts[1]; n++) /* every vertex has edges */
         c->simplices[0][place[c->simplices[1][n]]] = c->simplices[1][n];
-    brio_find_vertex_values(c, &e->records, place);
+    BRIO_TRY(brio_find_vertex_values(e->ctx, c, &e->records, place));
 done:
     return status;
 }

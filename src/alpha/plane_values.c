@@ -82,7 +82,7 @@ static brio_status evaluate(const evaluation *e, const uint32_t *place) {
         for (uint32_t i = 0; i < 3; i++)
             if (is_first(e, t, i)) find_edge(e, 4 * (uint32_t)t + i, edges++);
     }
-    brio_find_vertex_values(c, &e->records, place);
+    BRIO_TRY(brio_find_vertex_values(e->ctx, c, &e->records, place));
 done:
     return status;
 }

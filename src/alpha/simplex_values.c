@@ -72,13 +72,16 @@ done:
     return status;
 }
 
-void brio_find_vertex_values(brio_alpha_complex *c, const brio_records *records, const uint32_t *place) {
+brio_status brio_find_vertex_values(brio_context *ctx, brio_alpha_complex *c, const brio_records *records,
+                                    const uint32_t *place) {
+    brio_status status = BRIO_OK;
     double *least = c->values[0], *solid = c->solid[0];
     for (size_t v = 0; v < c->counts[0]; v++) {
         least[v] = solid[v] = INFINITY;
         c->gabriel[0][v] = 1;
     }
-    for (size_t n = 0; n < c->counts[1]; n++)
+    for (size_t n = 0; n < c->counts[1]; n++) {
+        BRIO_TRY(brio_look(ctx, 2));
         for (int i = 0; i < 2; i++) {
             uint32_t own = c->simplices[1][2 * n + (size_t)i], other = c->simplices[1][2 * n + (size_t)!i];
             const double *a = records->of[own], *b = records->of[other];
@@ -86,8 +89,11 @@ void brio_find_vertex_values(brio_alpha_complex *c, const brio_records *records,
             solid[place[own]] = fmin(solid[place[own]], c->solid[1][n]);
             if (records->weighted && brio_power_compare(a, b, a) < 0) c->gabriel[0][place[own]] = 0;
         }
+    }
     for (size_t v = 0; v < c->counts[0]; v++)
         if (c->gabriel[0][v]) least[v] = fmin(least[v], 0 - records->of[c->simplices[0][v]][3]);
+done:
+    return status;
 }
 
 brio_status brio_refuse_small_alpha(brio_context *ctx, const brio_alpha_complex *c, double alpha) {

@@ -28,6 +28,7 @@ bool brio_is_inside(const brio_records *records, const uint32_t *vertex, int cou
 brio_status brio_alpha_room(brio_context *ctx, brio_alpha_complex *complex);
 
 /** Finds the values of vertices from the edges, which are complete.   place  #P: the number of each vertex. */
-void brio_find_vertex_values(brio_alpha_complex *complex, const brio_records *records, const uint32_t *place);
+brio_status brio_find_vertex_values(brio_context *ctx, brio_alpha_complex *complex, const brio_records *records,
+                                    const uint32_t *place);
 
 #endif

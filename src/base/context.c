@@ -74,6 +74,8 @@ int brio_context_threads(const brio_context *ctx) {
 void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user) {
     ctx->progress = progress;
     ctx->progress_user = user;
+    ctx->stage = NULL;
+    ctx->share = 0;
 }
 
 void brio_context_set_memory_limit(brio_context *ctx, size_t bytes) {
@@ -114,8 +116,16 @@ void brio_progress_part(brio_context *ctx, brio_bar bar, double from, double to)
 }
 
 brio_status brio_progress(brio_context *ctx, const char *stage, double fraction) {
-    if (!ctx->progress) return BRIO_OK;
-    if (!ctx->progress(stage, place_in(ctx->bar, fraction), ctx->progress_user)) return BRIO_OK;
+    ctx->stage = stage;
+    ctx->share = place_in(ctx->bar, fraction);
+    return brio_ask(ctx);
+}
+
+brio_status brio_ask(brio_context *ctx) {
+    const char *stage = ctx->stage ? ctx->stage : "start";
+    ctx->unlooked = 0;
+    if (!ctx->progress || !ctx->progress(stage, ctx->share, ctx->progress_user)) return BRIO_OK;
+    ctx->stopped = true;
     return brio_fail(ctx, BRIO_ERR_CANCELLED, "cancelled during %s", stage);
 }
 

@@ -38,7 +38,11 @@ struct brio_context {
     char *scratch; /* folder of mapped files, or NULL */
     brio_progress_fn progress;
     void *progress_user;
-    brio_bar bar; /* the part that the running stage owns */
+    brio_bar bar;      /* the part that the running stage owns */
+    const char *stage; /* what the callback was told last, NULL for nothing */
+    double share;
+    size_t unlooked; /* items of work since the callback was asked last */
+    bool stopped;    /* the callback asked to stop, in the loop (team.h) that runs */
     char message[512];
 };
 
@@ -49,6 +53,21 @@ brio_status brio_fail(brio_context *ctx, brio_status status, const char *format,
 /** Reports that a fraction of a stage is done. Returns BRIO_OK, or BRIO_ERR_CANCELLED if the callback asked to stop.
  *  Only the thread that called the library may call this. */
 brio_status brio_progress(brio_context *ctx, const char *stage, double fraction);
+
+/** Asks the callback whether to stop, with what it was told last. Returns what brio_progress returns. */
+brio_status brio_ask(brio_context *ctx);
+
+/* BRIO_LOOK_EVERY: items of work between two looks; an item takes 1 ns to 2 us. Chosen. */
+enum { BRIO_LOOK_EVERY = 1 << 14 };
+
+/** A look: tells that `items` of work have been done, and asks the callback whether to stop when they add up to
+ *  BRIO_LOOK_EVERY. Every loop over data of the caller looks, or is a brio_for: so that a wish to stop is heard within half a
+ *  second of processor time. Returns BRIO_OK or BRIO_ERR_CANCELLED. Only the thread that called the library may call
+ *  this. */
+static inline brio_status brio_look(brio_context *ctx, size_t items) {
+    ctx->unlooked += items;
+    return ctx->unlooked < BRIO_LOOK_EVERY ? BRIO_OK : brio_ask(ctx);
+}
 
 /** Returns the part of the progress bar that the running function owns. A function that divides its part among stages
  *  asks for it first, and at its label `done:` takes all of it back: brio_progress_part(ctx, bar, 0, 1). */

@@ -6,7 +6,8 @@
 #include "base/halving.h"
 #include "base/team.h"
 
-enum { PIECES_A_THREAD = 4 };
+/* LOOKED_AT: most places of a piece, so that a look comes between two pieces in time. All chosen. */
+enum { PIECES_A_THREAD = 4, LOOKED_AT = 1 << 17 };
 
 /* The 2^depth ranges of a depth, in order. */
 typedef struct {
@@ -48,17 +49,21 @@ static void finish_ranges(void *user, size_t from, size_t to, int thread) {
     }
 }
 
-static void do_level(brio_context *ctx, int threads, level *l, brio_part_fn body) {
+static brio_status do_level(brio_context *ctx, int threads, level *l, brio_part_fn body) {
     size_t ranges = (size_t)1 << l->depth;
-    brio_for_chunks(ctx, ranges < (size_t)threads ? (int)ranges : threads, ranges, 1, body, l);
+    return brio_for_chunks(ctx, ranges < (size_t)threads ? (int)ranges : threads, ranges, 1, body, l);
 }
 
-void brio_halve(brio_context *ctx, const brio_halving *h) {
+brio_status brio_halve(brio_context *ctx, const brio_halving *h) {
+    brio_status status = BRIO_OK;
     int threads = brio_threads(ctx, h->count, h->least);
     size_t pieces = threads > 1 ? (size_t)threads * PIECES_A_THREAD : 1;
+    if (pieces < h->count / LOOKED_AT) pieces = h->count / LOOKED_AT;
     level l = {h, 0};
     /* each of 2^d ranges has at least count / 2^d - gap places */
     for (; (size_t)1 << l.depth < pieces && h->count >> l.depth > h->least; l.depth++)
-        do_level(ctx, threads, &l, cut_ranges);
-    do_level(ctx, threads, &l, finish_ranges);
+        BRIO_TRY(do_level(ctx, threads, &l, cut_ranges));
+    status = do_level(ctx, threads, &l, finish_ranges);
+done:
+    return status;
 }

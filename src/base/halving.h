@@ -18,6 +18,6 @@ typedef struct {
 } brio_halving;
 
 /** Runs the recursion. Which ranges go to `cut` and which to `finish` depends on the number of threads. */
-void brio_halve(brio_context *ctx, const brio_halving *halving);
+brio_status brio_halve(brio_context *ctx, const brio_halving *halving);
 
 #endif

@@ -34,17 +34,31 @@ static void insert_keys(uint64_t *keys, size_t n) {
     }
 }
 
-void brio_sort_keys(uint64_t *keys, size_t n) {
-    if (n <= FEW) {
-        insert_keys(keys, n);
-        return;
+/* ctx  NULL for a sort that does not look. */
+static brio_status heap_sort_keys(brio_context *ctx, uint64_t *keys, size_t n) {
+    brio_status status = BRIO_OK;
+    for (size_t i = n / 2; i-- > 0;) {
+        key_down(keys, i, n, keys[i], NULL);
+        if (ctx) BRIO_TRY(brio_look(ctx, 1));
     }
-    for (size_t i = n / 2; i-- > 0;) key_down(keys, i, n, keys[i], NULL);
     for (size_t last = n; last-- > 1;) {
         uint64_t moved = keys[last];
         keys[last] = keys[0];
         key_down(keys, 0, last, moved, NULL);
+        if (ctx) BRIO_TRY(brio_look(ctx, 1));
     }
+done:
+    return status;
+}
+
+brio_status brio_sort_many_keys(brio_context *ctx, uint64_t *keys, size_t n) {
+    if (n > FEW) return heap_sort_keys(ctx, keys, n);
+    insert_keys(keys, n);
+    return BRIO_OK;
+}
+
+void brio_sort_keys(uint64_t *keys, size_t n) {
+    brio_sort_many_keys(NULL, keys, n);
 }
 
 /* --- indices, by a comparison --- */
@@ -58,16 +72,29 @@ static void insert_indices(uint32_t *a, size_t n, brio_compare_fn compare, const
     }
 }
 
-void brio_sort_indices(uint32_t *a, size_t n, brio_compare_fn compare, const void *user) {
-    if (n <= FEW) {
-        insert_indices(a, n, compare, user);
-        return;
+static brio_status heap_sort_indices(brio_context *ctx, uint32_t *a, size_t n, const index_order *order) {
+    brio_status status = BRIO_OK;
+    for (size_t i = n / 2; i-- > 0;) {
+        index_down(a, i, n, a[i], order);
+        if (ctx) BRIO_TRY(brio_look(ctx, 1));
     }
-    const index_order order = {compare, user};
-    for (size_t i = n / 2; i-- > 0;) index_down(a, i, n, a[i], &order);
     for (size_t last = n; last-- > 1;) {
         uint32_t moved = a[last];
         a[last] = a[0];
-        index_down(a, 0, last, moved, &order);
+        index_down(a, 0, last, moved, order);
+        if (ctx) BRIO_TRY(brio_look(ctx, 1));
     }
+done:
+    return status;
+}
+
+brio_status brio_sort_many_indices(brio_context *ctx, uint32_t *a, size_t n, brio_compare_fn compare,
+                                   const void *user) {
+    if (n > FEW) return heap_sort_indices(ctx, a, n, &(index_order){compare, user});
+    insert_indices(a, n, compare, user);
+    return BRIO_OK;
+}
+
+void brio_sort_indices(uint32_t *a, size_t n, brio_compare_fn compare, const void *user) {
+    brio_sort_many_indices(NULL, a, n, compare, user);
 }

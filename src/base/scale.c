@@ -48,14 +48,14 @@ static void scale_part(void *user, size_t begin, size_t end, int thread) {
         s->out[i] = (by_product ? s->x[i] * factor : ldexp(s->x[i], s->exponent)) + 0.0;
 }
 
-void brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out) {
+brio_status brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out) {
     scaling s = {x, out, exponent};
-    brio_for(ctx, brio_threads(ctx, n, NUMBERS_A_THREAD), n, scale_part, &s);
+    return brio_for(ctx, brio_threads(ctx, n, NUMBERS_A_THREAD), n, scale_part, &s);
 }
 
 brio_status brio_scale_vertices(brio_context *ctx, double *vertices, size_t num_vertices, int exponent) {
     brio_status status = BRIO_OK;
-    brio_scale(ctx, vertices, 3 * num_vertices, exponent, vertices);
+    BRIO_TRY(brio_scale(ctx, vertices, 3 * num_vertices, exponent, vertices));
     for (size_t i = 0; i < 3 * num_vertices; i++)
         BRIO_REQUIRE(ctx, isfinite(vertices[i]), BRIO_ERR_NO_ANSWER,
                      "doubles cannot hold vertex %zu (counted from 0) of the result: scale the points down", i / 3);

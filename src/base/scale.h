@@ -29,7 +29,7 @@ int brio_exponent(double x);
 int brio_usual_exponent(const double *points, size_t num_points);
 
 /** Sets out[i] to x[i] * 2^exponent for i < n, and -0 to 0. Uses all threads. `out` may be x. */
-void brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out);
+brio_status brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out);
 
 /** Scales the vertices of a result in place. Returns BRIO_OK, or BRIO_ERR_NO_ANSWER if doubles cannot hold a coordinate. */
 brio_status brio_scale_vertices(brio_context *ctx, double *vertices, size_t num_vertices, int exponent);

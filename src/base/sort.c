@@ -1,4 +1,7 @@
-/* Least-significant-digit radix sorts of pairs and of items, and a sort of rows by their first number. */
+/* Least-significant-digit radix sorts of pairs and of items, and a sort of rows by their first number.
+ *
+ * Member 0 looks between pieces of its part. Where the callback asks to stop, every member leaves its loops when it sees
+ * `stop`, and all of them end after the same digit: they read `stop` between two barriers, where nobody looks. */
 #include "base/sort.h"
 #include "base/memory.h"
 #include "base/places.h"
@@ -7,6 +10,20 @@
 
 /* DIGIT: bits sorted in a pass. Both chosen. */
 enum { DIGIT = 11, BUCKETS = 1 << DIGIT, PAIRS_A_THREAD = 1 << 12 };
+
+/* What stops a sort. */
+typedef struct {
+    brio_context *ctx;
+    bool looks;       /* whether member 0 may */
+    brio_status stop; /* written by member 0; atomic */
+} stopper;
+
+/* Whether a member goes on at entry i of its part. Member 0 looks now and then. */
+static inline bool goes_on(stopper *s, size_t i, const brio_member *m) {
+    if (i % BRIO_LOOK_EVERY) return true;
+    if (m->thread == 0 && s->looks && s->stop == BRIO_OK) brio_report(&s->stop, brio_look(s->ctx, BRIO_LOOK_EVERY));
+    return __atomic_load_n(&s->stop, __ATOMIC_RELAXED) == BRIO_OK;
+}
 
 typedef struct {
     uint64_t *key;
@@ -31,6 +48,7 @@ typedef struct {
     size_t (*count)[BUCKETS]; /* one for each thread */
     bool moved;               /* whether the last digit moved the pairs */
     bool in_spare;            /* whether the sorted pairs are in `spare` */
+    stopper stopper;
 } pair_sort;
 
 /* Sorts by one digit, from one array to the other. Every thread calls this. Sets s->moved. */
@@ -38,11 +56,11 @@ static void sort_pairs_digit(pair_sort *s, pairs from, pairs to, int shift, cons
     size_t begin = brio_part(s->n, m->thread, m->threads), end = brio_part(s->n, m->thread + 1, m->threads);
     size_t *mine = s->count[m->thread];
     memset(mine, 0, sizeof *s->count);
-    for (size_t i = begin; i < end; i++) mine[from.key[i] >> shift & (BUCKETS - 1)]++;
+    for (size_t i = begin; i < end && goes_on(&s->stopper, i, m); i++) mine[from.key[i] >> shift & (BUCKETS - 1)]++;
     brio_barrier(m);
     if (m->thread == 0) s->moved = first_positions(s->count, m->threads, s->n);
     brio_barrier(m);
-    for (size_t i = s->moved ? begin : end; i < end; i++) {
+    for (size_t i = s->moved ? begin : end; i < end && goes_on(&s->stopper, i, m); i++) {
         size_t place = mine[from.key[i] >> shift & (BUCKETS - 1)]++;
         to.key[place] = from.key[i];
         to.value[place] = from.value[i];
@@ -52,24 +70,26 @@ static void sort_pairs_digit(pair_sort *s, pairs from, pairs to, int shift, cons
 
 static void sort_pairs(void *user, const brio_member *m) {
     pair_sort *s = user;
-    bool in_spare = false;
-    for (int shift = 0; shift < s->bits; shift += DIGIT) {
+    bool in_spare = false, stop = false;
+    for (int shift = 0; shift < s->bits && !stop; shift += DIGIT) {
         sort_pairs_digit(s, in_spare ? s->spare : s->given, in_spare ? s->given : s->spare, shift, m);
         in_spare ^= s->moved;
-        brio_barrier(m); /* every thread has read s->moved */
+        stop = __atomic_load_n(&s->stopper.stop, __ATOMIC_RELAXED) != BRIO_OK;
+        brio_barrier(m); /* every thread has read s->moved and s->stopper.stop */
     }
     if (m->thread == 0) s->in_spare = in_spare;
 }
 
 brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits) {
     brio_status status = BRIO_OK;
-    pair_sort s = {.given = {keys, values}, .n = n, .bits = bits};
+    pair_sort s = {.given = {keys, values}, .n = n, .bits = bits, .stopper = {ctx, brio_may_look(ctx), BRIO_OK}};
     if (n < 2) return BRIO_OK;
     int threads = brio_threads(ctx, n, PAIRS_A_THREAD);
     BRIO_TRY(BRIO_ALLOC(ctx, s.count, (size_t)threads));
     BRIO_TRY(BRIO_ALLOC(ctx, s.spare.key, n));
     BRIO_TRY(BRIO_ALLOC(ctx, s.spare.value, n));
     brio_run(ctx, threads, sort_pairs, &s);
+    BRIO_TRY(s.stopper.stop);
     if (s.in_spare) {
         memcpy(keys, s.spare.key, n * sizeof *keys);
         memcpy(values, s.spare.value, n * sizeof *values);
@@ -108,31 +128,42 @@ typedef struct {
     size_t n;
     int passes;
     size_t (*count)[ITEM_BUCKETS]; /* one for each thread */
+    stopper stopper;
 } item_sort;
 
 /* Sorts by one digit. Every thread calls this. */
-static void sort_digit(const item_sort *s, int pass, const brio_member *m) {
+static void sort_digit(item_sort *s, int pass, const brio_member *m) {
     const uint64_t *from = pass % 2 ? s->spare : s->items;
     uint64_t *to = pass % 2 ? s->items : s->spare;
     size_t begin = brio_part(s->n, m->thread, m->threads), end = brio_part(s->n, m->thread + 1, m->threads);
     size_t *mine = s->count[m->thread];
     int shift = 32 + pass * ITEM_DIGIT;
     memset(mine, 0, sizeof *s->count);
-    for (size_t i = begin; i < end; i++) mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++;
+    for (size_t i = begin; i < end && goes_on(&s->stopper, i, m); i++) mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++;
     brio_barrier(m);
     if (m->thread == 0) first_places(s->count, m->threads);
     brio_barrier(m);
-    for (size_t i = begin; i < end; i++) to[mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++] = from[i];
+    for (size_t i = begin; i < end && goes_on(&s->stopper, i, m); i++)
+        to[mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++] = from[i];
     brio_barrier(m);
 }
 
 static void sort_items(void *user, const brio_member *m) {
-    const item_sort *s = user;
-    for (int pass = 0; pass < s->passes; pass++) sort_digit(s, pass, m);
+    item_sort *s = user;
+    bool stop = false;
+    for (int pass = 0; pass < s->passes && !stop; pass++) {
+        sort_digit(s, pass, m);
+        stop = __atomic_load_n(&s->stopper.stop, __ATOMIC_RELAXED) != BRIO_OK;
+        brio_barrier(m); /* every thread has read s->stopper.stop */
+    }
 }
 
 brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare, size_t n, int bits, int threads) {
-    item_sort s = {.items = items, .spare = spare, .n = n, .passes = (bits + ITEM_DIGIT - 1) / ITEM_DIGIT};
+    item_sort s = {.items = items,
+                   .spare = spare,
+                   .n = n,
+                   .passes = (bits + ITEM_DIGIT - 1) / ITEM_DIGIT,
+                   .stopper = {ctx, brio_may_look(ctx), BRIO_OK}};
     if (n <= FEW_ITEMS) {
         insert_items(items, n);
         return BRIO_OK;
@@ -144,7 +175,7 @@ brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare,
     brio_run(ctx, threads, sort_items, &s);
     if (s.passes % 2) memcpy(items, spare, n * sizeof *items);
     brio_release(ctx, s.count);
-    return BRIO_OK;
+    return s.stopper.stop;
 }
 
 uint64_t brio_double_key(double x) {
@@ -158,12 +189,17 @@ brio_status brio_sort_rows(brio_context *ctx, const brio_row_order *by, uint32_t
     uint64_t *keys = NULL;
     brio_status status = BRIO_ALLOC(ctx, keys, n);
     if (status != BRIO_OK) return status;
-    for (size_t i = 0; i < n; i++) keys[i] = brio_double_key(by->rows[by->stride * indices[i]]);
-    status = brio_radix_sort(ctx, keys, indices, n, 64);
-    for (size_t begin = 0, end; status == BRIO_OK && begin < n; begin = end) {
-        for (end = begin + 1; end < n && keys[end] == keys[begin];) end++;
-        brio_sort_indices(indices + begin, end - begin, by->compare, by->user);
+    for (size_t i = 0; i < n; i++) {
+        keys[i] = brio_double_key(by->rows[by->stride * indices[i]]);
+        BRIO_TRY(brio_look(ctx, 1));
     }
+    BRIO_TRY(brio_radix_sort(ctx, keys, indices, n, 64));
+    for (size_t begin = 0, end; begin < n; begin = end) {
+        for (end = begin + 1; end < n && keys[end] == keys[begin];) end++;
+        BRIO_TRY(brio_look(ctx, end - begin));
+        BRIO_TRY(brio_sort_many_indices(ctx, indices + begin, end - begin, by->compare, by->user));
+    }
+done:
     brio_release(ctx, keys);
     return status;
 }

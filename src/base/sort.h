@@ -4,14 +4,14 @@
 
 #include "base/context.h"
 
-/** Sorts n pairs by key; the sort is stable.   keys  below 2^bits.   Workspace: 12 n bytes.
- *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+/** Sorts n pairs by key; the sort is stable.   keys  below 2^bits.   Workspace: 12 n bytes. Looks.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED: then keys and values are in no order, and some may be lost. */
 brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits);
 
 /** Sorts n items by their bits 32 to 32 + bits - 1; the sort is stable.
  *  spare    n items, workspace.
  *  threads  what brio_threads returned; the sort uses fewer if n is small.
- *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+ *  Looks where the caller may. Returns BRIO_OK, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED: then the items are lost. */
 brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare, size_t n, int bits, int threads);
 
 /** Sorts n keys in place. Cost: O(n log n) for every input. */
@@ -24,6 +24,12 @@ typedef int (*brio_compare_fn)(uint32_t, uint32_t, const void *user);
  *  input only if `compare` returns 0 for equal indices alone. */
 void brio_sort_indices(uint32_t *indices, size_t n, brio_compare_fn compare, const void *user);
 
+/** The same sorts, of any number of entries: they look. Return BRIO_OK or BRIO_ERR_CANCELLED: then entries are in any order,
+ *  and some may be lost. Only the thread that called the library may call these. */
+brio_status brio_sort_many_keys(brio_context *ctx, uint64_t *keys, size_t n);
+brio_status brio_sort_many_indices(brio_context *ctx, uint32_t *indices, size_t n, brio_compare_fn compare,
+                                   const void *user);
+
 /** Returns a key; keys as unsigned numbers sort as the doubles do. -0 and 0 have one key. */
 uint64_t brio_double_key(double x);
 
@@ -35,7 +41,7 @@ typedef struct {
     const void *user; /* passed to compare */
 } brio_row_order;
 
-/** Sorts n indices of rows. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+/** Sorts n indices of rows. Looks. Returns BRIO_OK, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
 brio_status brio_sort_rows(brio_context *ctx, const brio_row_order *by, uint32_t *indices, size_t n);
 
 #endif

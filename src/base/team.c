@@ -244,36 +244,66 @@ void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user) {
     team->busy = false;
 }
 
+bool brio_may_look(const brio_context *ctx) {
+    return !ctx->team->busy;
+}
+
 /* --- loops --- */
 
+/* PIECE: most items of a part that are worked on between two looks: an item may take 50 us. Chosen. */
+enum { PIECE = 1 << 11 };
+
 typedef struct {
+    brio_context *ctx;
     brio_part_fn body;
     void *user;
     size_t n, chunk, next;
+    bool looks;         /* not within another run, whose member may be any thread */
+    brio_status status; /* the first failure; atomic */
 } loop;
 
+/* Works on [begin, end), which counts as `work` items. Returns whether the loop goes on: not where the body itself asked the
+ * callback, and was told to stop. */
+static bool do_some(loop *l, size_t begin, size_t end, size_t work, const brio_member *m) {
+    l->body(l->user, begin, end, m->thread);
+    if (l->looks && m->thread == 0)
+        brio_report(&l->status, l->ctx->stopped ? BRIO_ERR_CANCELLED : brio_look(l->ctx, work));
+    return __atomic_load_n(&l->status, __ATOMIC_RELAXED) == BRIO_OK;
+}
+
 static void do_part(void *user, const brio_member *m) {
-    const loop *l = user;
-    size_t begin = brio_part(l->n, m->thread, m->threads), end = brio_part(l->n, m->thread + 1, m->threads);
-    if (begin < end) l->body(l->user, begin, end, m->thread);
-}
-
-void brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user) {
-    loop l = {.body = body, .user = user, .n = n};
-    brio_run(ctx, threads, do_part, &l);
-}
-
-static void do_chunks(void *user, const brio_member *m) {
     loop *l = user;
-    for (;;) {
-        brio_stress();
-        size_t begin = __atomic_fetch_add(&l->next, l->chunk, __ATOMIC_RELAXED);
-        if (begin >= l->n) return;
-        l->body(l->user, begin, l->n - begin < l->chunk ? l->n : begin + l->chunk, m->thread);
+    size_t begin = brio_part(l->n, m->thread, m->threads), end = brio_part(l->n, m->thread + 1, m->threads);
+    for (size_t next; begin < end; begin = next) {
+        next = end - begin > PIECE ? begin + PIECE : end;
+        if (!do_some(l, begin, next, (next - begin) * (BRIO_LOOK_EVERY / PIECE), m)) return;
     }
 }
 
-void brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user) {
-    loop l = {.body = body, .user = user, .n = n, .chunk = chunk};
-    brio_run(ctx, threads, do_chunks, &l);
+/* A chunk is as much work as is worth a look. */
+static void do_chunks(void *user, const brio_member *m) {
+    loop *l = user;
+    bool more = true;
+    while (more) {
+        brio_stress();
+        size_t begin = __atomic_fetch_add(&l->next, l->chunk, __ATOMIC_RELAXED);
+        size_t end = begin < l->n && l->n - begin > l->chunk ? begin + l->chunk : l->n;
+        more = begin < l->n && do_some(l, begin, end, BRIO_LOOK_EVERY, m);
+    }
+}
+
+static brio_status run_loop(brio_context *ctx, int threads, brio_work_fn work, loop *l) {
+    l->ctx = ctx;
+    l->looks = brio_may_look(ctx);
+    if (l->looks) ctx->stopped = false;
+    brio_run(ctx, threads, work, l);
+    return l->status;
+}
+
+brio_status brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user) {
+    return run_loop(ctx, threads, do_part, &(loop){.body = body, .user = user, .n = n});
+}
+
+brio_status brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user) {
+    return run_loop(ctx, threads, do_chunks, &(loop){.body = body, .user = user, .n = n, .chunk = chunk});
 }

@@ -42,14 +42,23 @@ int brio_threads(brio_context *ctx, size_t n, size_t least);
 /** Calls work(user, member) in `threads` threads at once. Returns when all calls have returned. */
 void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user);
 
+/** Whether the caller is the thread that called the library: no run with several members goes on. Only then may it look
+ *  (brio_look). */
+bool brio_may_look(const brio_context *ctx);
+
 /** Waits until every member of the run has called this. Afterwards each member sees what the others wrote before. */
 void brio_barrier(const brio_member *member);
 
-/** Calls body once in each thread: [0, n) is divided into equal parts in the order of the threads. */
-void brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user);
+/** Divides [0, n) into equal parts in the order of the threads, and calls body for each piece of each part, in ascending
+ *  order. Between pieces the calling thread looks (brio_look): where the callback asks to stop, all threads do.
+ *  Returns BRIO_OK or BRIO_ERR_CANCELLED: then some of the pieces were left out. */
+brio_status brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user)
+    __attribute__((warn_unused_result));
 
-/** Calls body for chunks of [0, n). Each chunk goes to the next thread that is free, in ascending order. */
-void brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user);
+/** Calls body for chunks of [0, n). Each chunk goes to the next thread that is free, in ascending order. Looks between chunks,
+ *  and returns what brio_for returns. */
+brio_status brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user)
+    __attribute__((warn_unused_result));
 
 /** Stores a member's status in *shared if that is its first failure. *shared starts as BRIO_OK; members may call this
  *  together. */

@@ -71,7 +71,7 @@ static brio_status make_faces(assembly *a) {
         BRIO_TRY(BRIO_ALLOC(ctx, out->corner_offsets, faces + 1));
         out->corner_offsets[faces] = a->first_corner[cells];
     }
-    brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_faces, a);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_faces, a));
 done:
     return status;
 }
@@ -139,7 +139,7 @@ static brio_status make_vertices(assembly *a) {
     BRIO_TRY(BRIO_ALLOC(ctx, out->vertices, 3 * out->num_vertices));
     BRIO_TRY(BRIO_ALLOC(ctx, out->face_vertices, (size_t)a->first_corner[cells]));
     copy_centres(a);
-    brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_corners, a);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_corners, a));
 done:
     return status;
 }

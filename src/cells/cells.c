@@ -303,7 +303,7 @@ static brio_status record_all(brio_cell_job *job) {
     for (size_t first = 0; first < n; first += size) {
         cell_slice slice = {job, first};
         size_t count = n - first < size ? n - first : size;
-        brio_for_chunks(d->ctx, job->threads, count, CHUNK, record_some, &slice);
+        BRIO_TRY(brio_for_chunks(d->ctx, job->threads, count, CHUNK, record_some, &slice));
         for (int i = 0; i < job->threads; i++) BRIO_TRY(job->recorder[i].status);
         BRIO_TRY(brio_progress(d->ctx, "cells", 0.4 + 0.5 * ((double)first / (double)n)));
     }

@@ -93,7 +93,7 @@ brio_status brio_diagram_find_centres(brio_diagram *d, const brio_region *region
         BRIO_TRY(BRIO_ALLOC(d->ctx, d->id, d->num_finite));
         BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, d->marked, d->num_vertices));
     }
-    brio_for(d->ctx, brio_threads(d->ctx, batches, BATCHES_A_THREAD), batches, find_batches, &p);
+    BRIO_TRY(brio_for(d->ctx, brio_threads(d->ctx, batches, BATCHES_A_THREAD), batches, find_batches, &p));
     set_infinite(d);
     d->num_listed = d->t.count;
     if (!d->volumes_only) goto done;
@@ -112,8 +112,8 @@ static void find_places(void *user, size_t from, size_t to, int thread) {
     }
 }
 
-void brio_diagram_find_places(brio_diagram *d, const brio_region *region) {
+brio_status brio_diagram_find_places(brio_diagram *d, const brio_region *region) {
     placing p = {d, region};
     size_t least = (size_t)BATCHES_A_THREAD * BRIO_CENTRE_BATCH;
-    brio_for(d->ctx, brio_threads(d->ctx, d->num_listed, least), d->num_listed, find_places, &p);
+    return brio_for(d->ctx, brio_threads(d->ctx, d->num_listed, least), d->num_listed, find_places, &p);
 }

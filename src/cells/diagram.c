@@ -8,7 +8,7 @@ brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region) {
     BRIO_TRY(brio_diagram_find_centres(d, region));
     BRIO_TRY(brio_progress(d->ctx, "cells", 0.2));
     BRIO_TRY(brio_diagram_unite_ties(d));
-    brio_diagram_find_places(d, region);
+    BRIO_TRY(brio_diagram_find_places(d, region));
     BRIO_TRY(brio_progress(d->ctx, "cells", 0.3));
     BRIO_TRY(brio_diagram_gather_stars(d));
     BRIO_TRY(brio_progress(d->ctx, "cells", 0.4));

@@ -65,7 +65,7 @@ brio_status brio_diagram_find_centres(brio_diagram *d, const brio_region *region
 /** Finds the tetrahedra that share a centre, and makes their rows equal. */
 brio_status brio_diagram_unite_ties(brio_diagram *d);
 /** Replaces the fourth number of each row by its place. */
-void brio_diagram_find_places(brio_diagram *d, const brio_region *region);
+brio_status brio_diagram_find_places(brio_diagram *d, const brio_region *region);
 brio_status brio_diagram_gather_stars(brio_diagram *d);
 
 /** Computes the volumes of the cells of all vertices that are not marked, scaled.   volume  #vertices, zero; what is

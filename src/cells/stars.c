@@ -78,11 +78,12 @@ brio_status brio_diagram_gather_stars(brio_diagram *d) {
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, d->size, rows));
     BRIO_TRY(BRIO_ALLOC(d->ctx, d->begin, rows));
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, s.filled, rows));
-    brio_for(d->ctx, s.threads, d->num_listed, count_some, &s);
+    BRIO_TRY(brio_for(d->ctx, s.threads, d->num_listed, count_some, &s));
     BRIO_TRY(BRIO_ALLOC(d->ctx, d->star, begin_stars(d)));
-    brio_for(d->ctx, s.threads, d->num_listed, fill_some, &s);
+    BRIO_TRY(brio_for(d->ctx, s.threads, d->num_listed, fill_some, &s));
     if (s.threads > 1)
-        brio_for(d->ctx, brio_threads(d->ctx, d->num_vertices, VERTICES_A_THREAD), d->num_vertices, sort_some, &s);
+        BRIO_TRY(
+            brio_for(d->ctx, brio_threads(d->ctx, d->num_vertices, VERTICES_A_THREAD), d->num_vertices, sort_some, &s));
 done:
     brio_release(d->ctx, s.filled);
     return status;

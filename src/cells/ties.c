@@ -81,7 +81,7 @@ brio_status brio_diagram_unite_ties(brio_diagram *d) {
     brio_status status = BRIO_OK;
     tie_search s = {.d = d, .threads = brio_threads(d->ctx, d->num_listed, TETRAHEDRA_A_THREAD)};
     size_t rows = d->num_points + (d->flat ? 3 : 0);
-    brio_for_chunks(d->ctx, s.threads, d->num_listed, CHUNK, look_at_some, &s);
+    BRIO_TRY(brio_for_chunks(d->ctx, s.threads, d->num_listed, CHUNK, look_at_some, &s));
     if (!s.candidates) goto done;
     BRIO_TRY(BRIO_ALLOC(d->ctx, s.record, rows));
     BRIO_TRY(BRIO_ALLOC(d->ctx, d->same, d->t.count));
@@ -89,8 +89,8 @@ brio_status brio_diagram_unite_ties(brio_diagram *d) {
     fill_records(&s, rows);
     brio_filter_for(&s.filter, (const brio_record *)s.record, rows, d->weights != NULL);
     s.search = true;
-    brio_for_chunks(d->ctx, s.threads, d->num_listed, CHUNK, look_at_some, &s);
-    brio_for(d->ctx, s.threads, d->t.count, settle_some, &s);
+    BRIO_TRY(brio_for_chunks(d->ctx, s.threads, d->num_listed, CHUNK, look_at_some, &s));
+    BRIO_TRY(brio_for(d->ctx, s.threads, d->t.count, settle_some, &s));
     for (size_t t = 0; t < d->t.count; t++) d->same[t] = brio_find(d->same, (uint32_t)t);
 done:
     brio_release(d->ctx, s.record);

@@ -20,17 +20,22 @@ static void copy_points(void *user, size_t from, size_t to, int thread) {
     }
 }
 
-static void rank_vertices(brio_diagram *d, size_t rows) {
+static brio_status rank_vertices(brio_diagram *d, size_t rows) {
+    brio_status status = BRIO_OK;
     uint32_t n = 0;
     for (size_t p = 0; p < rows; p++) d->rank[p] = UINT32_MAX;
-    for (size_t t = 0; t < d->num_finite; t++)
+    for (size_t t = 0; t < d->num_finite; t++) {
+        BRIO_TRY(brio_look(d->ctx, 1));
         for (int i = 0; i < 4; i++) {
             uint32_t p = d->t.tet[t].vertex[i];
             if (d->rank[p] != UINT32_MAX) continue;
             d->order[n] = p;
             d->rank[p] = n++;
         }
+    }
     d->num_vertices = n;
+done:
+    return status;
 }
 
 brio_status brio_diagram_order_vertices(brio_diagram *d) {
@@ -38,10 +43,11 @@ brio_status brio_diagram_order_vertices(brio_diagram *d) {
     size_t rows = d->num_points + (d->flat ? 3 : 0);
     BRIO_TRY(BRIO_ALLOC(d->ctx, d->order, rows));
     BRIO_TRY(BRIO_ALLOC(d->ctx, d->rank, rows));
-    rank_vertices(d, rows);
+    BRIO_TRY(rank_vertices(d, rows));
     BRIO_TRY(BRIO_ALLOC(d->ctx, d->ranked, 3 * d->num_vertices));
     if (d->square) BRIO_TRY(BRIO_ALLOC(d->ctx, d->ranked_square, d->num_vertices));
-    brio_for(d->ctx, brio_threads(d->ctx, d->num_vertices, VERTICES_A_THREAD), d->num_vertices, copy_points, d);
+    BRIO_TRY(
+        brio_for(d->ctx, brio_threads(d->ctx, d->num_vertices, VERTICES_A_THREAD), d->num_vertices, copy_points, d));
 done:
     return status;
 }

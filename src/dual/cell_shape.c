@@ -130,12 +130,15 @@ static void divide_by_radii(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* offer_edge skips the edges within the radius at which the shape is `most`: such edges cannot change the result. */
-void brio_cell_shapes(brio_context *ctx, const brio_shaped_cells *c, double most, double *shape) {
+brio_status brio_cell_shapes(brio_context *ctx, const brio_shaped_cells *c, double most, double *shape) {
+    brio_status status = BRIO_OK;
     measurement m = {c, most, shape};
     int threads = brio_threads(ctx, c->num_samples, SAMPLES_A_THREAD);
-    brio_for(ctx, threads, c->num_samples, set_least_radii, &m);
-    brio_for(ctx, brio_threads(ctx, c->num_finite, TETRAHEDRA_A_THREAD), c->num_finite, raise_radii, &m);
-    brio_for(ctx, threads, c->num_samples, divide_by_radii, &m);
+    BRIO_TRY(brio_for(ctx, threads, c->num_samples, set_least_radii, &m));
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, c->num_finite, TETRAHEDRA_A_THREAD), c->num_finite, raise_radii, &m));
+    status = brio_for(ctx, threads, c->num_samples, divide_by_radii, &m);
+done:
+    return status;
 }
 
 bool brio_cell_is_bad(double shape, double density) {

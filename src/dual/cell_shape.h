@@ -19,7 +19,7 @@ typedef struct {
  *  the co-cone. The co-cone holds the directions within pi / 8 of the plane through s normal to the direction to the
  *  farther pole. The radius is the largest distance from s to a point on an edge of the cell in the co-cone.
  *  Long, thin cells have large shapes. Writes about `most` for larger shapes and for samples without a nearer pole. */
-void brio_cell_shapes(brio_context *ctx, const brio_shaped_cells *cells, double most, double *shape);
+brio_status brio_cell_shapes(brio_context *ctx, const brio_shaped_cells *cells, double most, double *shape);
 
 /** Returns whether a cell of this shape is bad for a surface sampled with density r: whether its radius in the co-cone
  *  exceeds 1.3 r / (1 - r) times the distance to the nearer pole. */

@@ -67,7 +67,7 @@ brio_status brio_feature_sizes(brio_context *ctx, const brio_pole_vectors *v, do
     BRIO_TRY(brio_point_tree_new(ctx, poles, count, &s.tree));
     BRIO_TRY(BRIO_ALLOC(ctx, s.size, v->num_points));
     int threads = brio_threads(ctx, v->num_points, SAMPLES_A_THREAD);
-    brio_for_chunks(ctx, threads, v->num_points, CHUNK, find_part, &s);
+    BRIO_TRY(brio_for_chunks(ctx, threads, v->num_points, CHUNK, find_part, &s));
     *size = s.size;
 done:
     brio_point_tree_free(ctx, &s.tree);

@@ -50,9 +50,9 @@ static void find_centres(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-static void find_all_centres(brio_context *ctx, finder *f) {
+static brio_status find_all_centres(brio_context *ctx, finder *f) {
     size_t batches = (f->num_tets + BRIO_CENTRE_BATCH - 1) / BRIO_CENTRE_BATCH;
-    brio_for(ctx, brio_threads(ctx, f->num_tets, TETRAHEDRA_A_THREAD), batches, find_centres, f);
+    return brio_for(ctx, brio_threads(ctx, f->num_tets, TETRAHEDRA_A_THREAD), batches, find_centres, f);
 }
 
 static int compare_tets(const finder *f, uint32_t s, uint32_t t) {
@@ -123,7 +123,8 @@ static brio_status look_at_shapes(brio_context *ctx, finder *f, const brio_pole_
     if (r > 0) most = fmax(most, (1 - r) / (1.3 * r));
     if (!(most > 0)) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, out->shape, f->num_samples));
-    brio_cell_shapes(ctx, &cells, 1.01 * most, out->shape); /* 1.01, chosen: the cut exceeds `most` despite rounding */
+    BRIO_TRY(brio_cell_shapes(ctx, &cells, 1.01 * most,
+                              out->shape)); /* 1.01, chosen: the cut exceeds `most` despite rounding */
     if (r > 0) discard_bad(f, filter, out->shape, &out->bad_cells);
 done:
     return status;
@@ -159,8 +160,8 @@ static brio_status sort_poles(brio_context *ctx, const finder *f, uint32_t *list
     list_of_poles l = {.f = f, .list = list};
     BRIO_TRY(BRIO_ALLOC(ctx, keys, count));
     BRIO_TRY(BRIO_ALLOC(ctx, l.centre, 3 * count));
-    brio_for(ctx, brio_threads(ctx, count, POLES_A_THREAD), count, copy_centres, &l);
-    brio_hilbert_keys(ctx, l.centre, count, BITS, keys);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, count, POLES_A_THREAD), count, copy_centres, &l));
+    BRIO_TRY(brio_hilbert_keys(ctx, l.centre, count, BITS, keys));
     BRIO_TRY(brio_radix_sort(ctx, keys, list, count, 3 * BITS));
     for (size_t begin = 0, end; begin < count; begin = end) {
         for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;
@@ -239,10 +240,10 @@ static brio_status number_poles(brio_context *ctx, finder *f, brio_poles *poles)
     BRIO_TRY(BRIO_ALLOC(ctx, poles->bounding, poles->count));
     l.list = list;
     int threads = brio_threads(ctx, poles->count, POLES_A_THREAD);
-    brio_for(ctx, threads, poles->count, fill_poles, &l);
+    BRIO_TRY(brio_for(ctx, threads, poles->count, fill_poles, &l));
     BRIO_TRY(BRIO_ALLOC(ctx, l.number, f->num_tets));
-    brio_for(ctx, threads, poles->count, number_part, &l);
-    brio_for(ctx, threads, 2 * f->num_samples, rename_part, &l);
+    BRIO_TRY(brio_for(ctx, threads, poles->count, number_part, &l));
+    BRIO_TRY(brio_for(ctx, threads, 2 * f->num_samples, rename_part, &l));
 done:
     brio_release(ctx, list);
     brio_release(ctx, l.number);
@@ -257,8 +258,8 @@ static brio_status find_best(brio_context *ctx, finder *f) {
     BRIO_TRY(BRIO_ALLOC(ctx, f->farthest, places));
     for (size_t i = 0; i < places; i++) f->farthest[i] = BRIO_NO_FARTHEST;
     f->alone = threads == 1;
-    brio_for(ctx, threads, f->num_tets, offer_as_farther, f);
-    brio_for(ctx, threads, f->num_tets, offer_on_other_side, f);
+    BRIO_TRY(brio_for(ctx, threads, f->num_tets, offer_as_farther, f));
+    BRIO_TRY(brio_for(ctx, threads, f->num_tets, offer_on_other_side, f));
     BRIO_TRY(BRIO_ALLOC(ctx, f->best, places));
     for (size_t i = 0; i < places; i++) f->best[i] = brio_farthest_tet(f->farthest[i]);
 done:
@@ -276,7 +277,7 @@ brio_status brio_poles_find(brio_context *ctx, const brio_triangulation *t, cons
                 .num_samples = num_samples};
     *out = (brio_poles){0};
     BRIO_TRY(BRIO_ALLOC(ctx, f.centre, 3 * f.num_tets));
-    find_all_centres(ctx, &f);
+    BRIO_TRY(find_all_centres(ctx, &f));
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
     BRIO_TRY(find_best(ctx, &f));
     BRIO_TRY(look_at_shapes(ctx, &f, filter, out));

@@ -66,7 +66,7 @@ brio_status brio_sample_spacing(brio_context *ctx, const brio_triangulation *t, 
                    .points = points,
                    .spacing = spacing};
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, m.list, num_samples));
-    brio_for(ctx, brio_threads(ctx, num_samples, SAMPLES_A_THREAD), num_samples, measure_part, &m);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, num_samples, SAMPLES_A_THREAD), num_samples, measure_part, &m));
 done:
     brio_release(ctx, m.list);
     return status;

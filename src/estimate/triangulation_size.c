@@ -129,11 +129,14 @@ static int exponent_of_set(const double *points, const double *weights, size_t c
 static brio_status triangulate(brio_context *ctx, double *points, double *weights, size_t count,
                                brio_triangulation **t) {
     brio_delaunay_options o = brio_delaunay_options_default();
+    brio_status status = BRIO_OK;
     int exponent = exponent_of_set(points, weights, count);
-    brio_scale(ctx, points, 3 * count, -exponent, points);
-    if (weights) brio_scale(ctx, weights, count, -2 * exponent, weights);
+    BRIO_TRY(brio_scale(ctx, points, 3 * count, -exponent, points));
+    if (weights) BRIO_TRY(brio_scale(ctx, weights, count, -2 * exponent, weights));
     o.max_tetrahedra = MOST_TETRAHEDRA;
-    return brio_delaunay(ctx, points, weights, count, &o, t);
+    status = brio_delaunay(ctx, points, weights, count, &o, t);
+done:
+    return status;
 }
 
 /* Triangulates the points of a ball within radius2 of its centre and counts at the inner ones. BRIO_ERR_TOO_LARGE if there are

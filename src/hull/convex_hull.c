@@ -119,6 +119,7 @@ static brio_status place_vertices(hull *h, brio_mesh *mesh, uint32_t *samples) {
     for (size_t p = 0; p < h->num_points; p++) h->stats.vertices += vertex[p];
     BRIO_TRY(brio_mesh_set_vertices(mesh, NULL, h->stats.vertices));
     for (size_t p = 0; p < h->num_points; p++) {
+        BRIO_TRY(brio_look(h->ctx, 1));
         if (!vertex[p]) continue;
         memcpy(mesh->vertices + 3 * (size_t)used, h->points + 3 * p, 3 * sizeof *mesh->vertices);
         if (samples) samples[used] = (uint32_t)p;

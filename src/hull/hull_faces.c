@@ -45,10 +45,12 @@ void brio_rotate_polygon(const double (*record)[4], uint32_t *corner, size_t siz
 }
 
 /* Walks round each face once. Crossed creases become 2. */
-static void list_faces(const brio_polytope *p, const double (*record)[4], uint8_t *crease, const uint8_t *degree,
-                       brio_hull_polygons *out) {
+static brio_status list_faces(brio_context *ctx, const brio_polytope *p, const double (*record)[4], uint8_t *crease,
+                              const uint8_t *degree, brio_hull_polygons *out) {
+    brio_status status = BRIO_OK;
     uint64_t corners = 0;
-    for (uint32_t f = 0; f < p->count; f++)
+    for (uint32_t f = 0; f < p->count; f++) {
+        BRIO_TRY(brio_look(ctx, 4));
         for (uint32_t i = 0; i < 3; i++) {
             uint32_t h = 4 * f + i, first = (uint32_t)corners;
             if (crease[h] != 1) continue;
@@ -60,7 +62,10 @@ static void list_faces(const brio_polytope *p, const double (*record)[4], uint8_
             }
             brio_rotate_polygon(record, out->corner + first, corners - first);
         }
+    }
     out->first[out->count] = corners;
+done:
+    return status;
 }
 
 brio_status brio_hull_faces(brio_context *ctx, const brio_polytope *p, const brio_hull_records *records,
@@ -76,7 +81,7 @@ brio_status brio_hull_faces(brio_context *ctx, const brio_polytope *p, const bri
     BRIO_TRY(BRIO_ALLOC(ctx, out->first, p->count + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, out->corner, 3 * p->count));
     find_creases(p, &filter, record, crease, degree);
-    list_faces(p, record, crease, degree, out);
+    BRIO_TRY(list_faces(ctx, p, record, crease, degree, out));
 done:
     brio_release(ctx, crease);
     brio_release(ctx, degree);

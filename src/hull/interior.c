@@ -218,14 +218,14 @@ brio_status brio_hull_candidates(brio_context *ctx, const double *points, size_t
     s->parts = brio_threads(ctx, n, POINTS_A_THREAD);
     s->parts = s->parts < MOST_PARTS ? s->parts : MOST_PARTS;
     if (n >= LEAST_POINTS) {
-        brio_for_chunks(ctx, s->parts, (size_t)s->parts, 1, find_extremes, s);
+        BRIO_TRY(brio_for_chunks(ctx, s->parts, (size_t)s->parts, 1, find_extremes, s));
         join_extremes(s);
         BRIO_TRY(brio_progress(ctx, "skip", 0.5));
         brio_progress_part(ctx, bar, 0.5, 1);
         BRIO_TRY(find_planes(ctx, points, &s->extreme[0], &s->planes));
     }
     if (s->planes.count > 0)
-        brio_for_chunks(ctx, s->parts, (size_t)s->parts, 1, list_candidates, s);
+        BRIO_TRY(brio_for_chunks(ctx, s->parts, (size_t)s->parts, 1, list_candidates, s));
     else
         list_all(s);
     *num_candidates = 0;

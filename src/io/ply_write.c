@@ -140,8 +140,8 @@ static brio_status write_binary_faces(brio_output *out, const brio_write_job *jo
         const uint64_t *offsets = m->face_offsets + begin;
         size_t size = count * head + (size_t)(offsets[count] - offsets[0]) * sizeof(uint32_t);
         BRIO_TRY(BRIO_RESERVE(out->ctx, bytes, capacity, size));
-        brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode_faces,
-                 &(rows){job, begin, bytes, head});
+        BRIO_TRY(brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode_faces,
+                          &(rows){job, begin, bytes, head}));
         BRIO_TRY(brio_output_bytes(out, bytes, size));
     }
 done:

@@ -50,8 +50,8 @@ brio_status brio_rows_write(brio_output *out, const brio_write_job *job) {
     BRIO_TRY(BRIO_ALLOC(out->ctx, bytes, most * size));
     for (size_t begin = 0; begin < m->num_vertices; begin += CHUNK) {
         size_t count = m->num_vertices - begin < CHUNK ? m->num_vertices - begin : CHUNK;
-        brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode,
-                 &(chunk){job, begin, bytes, size});
+        BRIO_TRY(brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode,
+                          &(chunk){job, begin, bytes, size}));
         BRIO_TRY(brio_output_bytes(out, bytes, count * size));
     }
 done:

@@ -329,7 +329,7 @@ static brio_status settle_plane(slab *s, triangle_list *plane) {
     BRIO_REQUIRE(s->ctx, count < NONE, BRIO_ERR_TOO_LARGE, "%zu triangles in a plane of the grid", count);
     BRIO_TRY(BRIO_ALLOC(s->ctx, order, count));
     for (size_t i = 0; i < count; i++) order[i] = (uint32_t)i;
-    brio_sort_indices(order, count, compare_triangles, corners);
+    BRIO_TRY(brio_sort_many_indices(s->ctx, order, count, compare_triangles, corners));
     for (size_t i = 0; i < count; i++) {
         if (i + 1 < count && compare_triangles(order[i], order[i + 1], corners) == 0)
             i++;

@@ -215,7 +215,7 @@ static brio_status in_batches(brio_context *ctx, optimizer *o, size_t n, brio_pa
         size_t count = n - o->first < BATCH ? n - o->first : BATCH;
         double share = (double)o->first / (double)n;
         BRIO_TRY(brio_progress(ctx, "optimize", part[0] + share * (part[1] - part[0])));
-        brio_for_chunks(ctx, brio_threads(ctx, count, ITEMS_A_THREAD), count, ITEMS_A_THREAD, body, o);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, ITEMS_A_THREAD), count, ITEMS_A_THREAD, body, o));
     }
 done:
     return status;

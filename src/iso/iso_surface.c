@@ -124,7 +124,8 @@ brio_status brio_implicit_layer(brio_context *ctx, const brio_implicit_grid *gri
         uint32_t end = rows - y < step ? rows : y + (uint32_t)step;
         size_t nodes = ((size_t)grid->cells[0] + 1) * (end - y);
         layer_job job = {grid, z, y, values, true};
-        brio_for_chunks(ctx, brio_threads(ctx, nodes, NODES_A_THREAD), end - y, ROWS_A_CHUNK, fill_rows, &job);
+        BRIO_TRY(
+            brio_for_chunks(ctx, brio_threads(ctx, nodes, NODES_A_THREAD), end - y, ROWS_A_CHUNK, fill_rows, &job));
         closed = job.closed && closed;
         y = end;
         BRIO_TRY(brio_implicit_progress(ctx, grid, z ? z - 1 : 0, z ? 0.5 * y / rows : 0));

@@ -73,8 +73,8 @@ static brio_status search_all(nearest_search *s, const brio_mesh *mesh) {
     for (s->first = 0; s->first < n; s->first += BLOCK) {
         size_t count = n - s->first < BLOCK ? n - s->first : BLOCK;
         BRIO_TRY(brio_progress(s->ctx, "properties", (double)s->first / (double)n));
-        brio_scale(s->ctx, mesh->vertices + 3 * s->first, 3 * count, -s->exponent, queries);
-        brio_for(s->ctx, brio_threads(s->ctx, count, VERTICES_A_THREAD), count, search, s);
+        BRIO_TRY(brio_scale(s->ctx, mesh->vertices + 3 * s->first, 3 * count, -s->exponent, queries));
+        BRIO_TRY(brio_for(s->ctx, brio_threads(s->ctx, count, VERTICES_A_THREAD), count, search, s));
     }
 done:
     brio_release(s->ctx, queries);

@@ -124,7 +124,8 @@ static brio_status take_tetrahedra(brio_locator *l, const brio_triangulation *t)
     BRIO_TRY(BRIO_ALLOC(l->ctx, place, l->num_points));
     for (size_t v = 0; v < l->num_vertices; v++) place[l->name[v]] = (uint32_t)v;
     copy_job job = {l, t->tet, place};
-    brio_for(l->ctx, brio_threads(l->ctx, l->t.count, TETRAHEDRA_A_THREAD), l->t.count, copy_tetrahedra, &job);
+    BRIO_TRY(
+        brio_for(l->ctx, brio_threads(l->ctx, l->t.count, TETRAHEDRA_A_THREAD), l->t.count, copy_tetrahedra, &job));
     find_vertex_tetrahedra(l);
 done:
     brio_release(l->ctx, place);

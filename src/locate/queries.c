@@ -89,7 +89,7 @@ static brio_status answer_block(block_job *job, int threads, size_t count, uint6
     }
     job->items = items;
     job->near = items && count >= job->batch->l->num_vertices / SPARSE;
-    brio_for_chunks(job->ctx, threads, count, QUERIES_A_CHUNK, answer_chunk, job);
+    brio_report(&job->status, brio_for_chunks(job->ctx, threads, count, QUERIES_A_CHUNK, answer_chunk, job));
     if (job->status == BRIO_ERR_NOT_FINITE)
         return brio_fail(job->ctx, BRIO_ERR_NOT_FINITE,
                          "the queries changed during the call, to numbers that are not finite");

@@ -60,8 +60,8 @@ static uint32_t next_corner(const topology *t, uint32_t h) {
 }
 
 /* Calls body on parts of the range 0 to n - 1. */
-static void for_each(const topology *t, size_t n, brio_part_fn body, void *user) {
-    brio_for(t->ctx, brio_threads(t->ctx, n, ITEMS_A_THREAD), n, body, user);
+static brio_status for_each(const topology *t, size_t n, brio_part_fn body, void *user) {
+    return brio_for(t->ctx, brio_threads(t->ctx, n, ITEMS_A_THREAD), n, body, user);
 }
 
 static void topology_free(brio_context *ctx, topology *t) {
@@ -101,7 +101,7 @@ static brio_status topology_new(brio_context *ctx, const brio_mesh *mesh, topolo
     BRIO_TRY(BRIO_ALLOC(ctx, t->fan, t->corners));
     BRIO_TRY(BRIO_ALLOC(ctx, t->patch, mesh->num_faces));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->vertex, mesh->num_vertices));
-    for_each(t, mesh->num_faces, make_sets, t);
+    BRIO_TRY(for_each(t, mesh->num_faces, make_sets, t));
 done:
     return status;
 }
@@ -150,13 +150,14 @@ static void join_at_half_edges(void *user, size_t begin, size_t end, int thread)
 }
 
 /* Joins the faces across every edge, and the corners at both ends of every edge of two faces. */
-static void join_across_edges(const topology *t, brio_certificate *out) {
+static brio_status join_across_edges(const topology *t, brio_certificate *out) {
     int threads = brio_threads(t->ctx, t->corners, ITEMS_A_THREAD);
     edge_count c = {.t = t, .alone = threads == 1};
-    brio_for(t->ctx, threads, t->corners, join_at_half_edges, &c);
+    brio_status status = brio_for(t->ctx, threads, t->corners, join_at_half_edges, &c);
     out->boundary_edges = c.boundary;
     out->nonmanifold_edges = c.nonmanifold;
     out->flipped_edges = c.flipped;
+    return status;
 }
 
 /* --- degenerate faces --- */
@@ -226,7 +227,7 @@ static brio_status mark_degenerate_faces(const topology *t, size_t *degenerate, 
     size_t num_faces = t->mesh->num_faces;
     uint32_t *last_face = NULL;
     face_count c = {t, 0, 0, 0};
-    for_each(t, num_faces, mark_small_faces, &c);
+    BRIO_TRY(for_each(t, num_faces, mark_small_faces, &c));
     bool large = c.small < num_faces;
     if (large) BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, last_face, t->mesh->num_vertices));
     for (size_t f = 0; large && f < num_faces; f++)
@@ -279,11 +280,16 @@ static void find_roots(void *user, size_t begin, size_t end, int thread) {
 
 /* Turns roots into component numbers. A root is the first face of its component, so it is numbered before any other
  * face of the component. */
-static void number_components(component_count *c) {
+static brio_status number_components(component_count *c) {
+    brio_status status = BRIO_OK;
     size_t num_faces = c->t->mesh->num_faces;
-    for_each(c->t, num_faces, find_roots, c);
-    for (size_t f = 0; f < num_faces; f++)
+    BRIO_TRY(for_each(c->t, num_faces, find_roots, c));
+    for (size_t f = 0; f < num_faces; f++) {
         c->number[f] = c->number[f] == f ? (uint32_t)c->count++ : c->number[c->number[f]];
+        BRIO_TRY(brio_look(c->t->ctx, 1));
+    }
+done:
+    return status;
 }
 
 /* Counts faces and edges of each component. */
@@ -329,11 +335,12 @@ static brio_status recount_pinched_vertices(const component_count *c) {
     size_t count = 0, capacity = 0;
     for (uint32_t h = 0; h < t->corners; h++) {
         uint32_t v = t->mesh->face_vertices[h];
+        BRIO_TRY(brio_look(t->ctx, 1));
         if (t->fan[h] != h || !(t->vertex[v] & VERTEX_TWO_FANS)) continue;
         BRIO_TRY(BRIO_RESERVE(t->ctx, fans, capacity, count + 1));
         fans[count++] = (uint64_t)v << 32 | c->number[face_at(t, h)];
     }
-    brio_sort_keys(fans, count);
+    BRIO_TRY(brio_sort_many_keys(t->ctx, fans, count));
     for (size_t i = 1; i < count; i++)
         if (fans[i] == fans[i - 1]) c->components[(uint32_t)fans[i]].vertices--;
 done:
@@ -352,8 +359,10 @@ static brio_status count_loops(const component_count *c) {
         uint32_t g = t->ring[h];
         if (g == h) brio_unite(t->fan, h, next_corner(t, h), true);
         if (g > h && t->ring[g] != h) join_corners(t, h, g, true);
+        BRIO_TRY(brio_look(t->ctx, 1));
     }
     for (uint32_t h = 0; h < t->corners; h++) {
+        BRIO_TRY(brio_look(t->ctx, 1));
         if (t->ring[h] != h) continue;
         uint32_t root = brio_find(t->fan, h);
         if (!counted[root]) c->components[c->number[face_at(t, h)]].loops++;
@@ -376,7 +385,7 @@ static brio_status list_genera(brio_context *ctx, const component *components, s
     BRIO_TRY(BRIO_ALLOC(ctx, order, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->genera, count));
     for (size_t i = 0; i < count; i++) order[i] = (uint64_t)(UINT32_MAX - components[i].faces) << 32 | i;
-    brio_sort_keys(order, count);
+    BRIO_TRY(brio_sort_many_keys(ctx, order, count));
     for (size_t i = 0; i < count; i++) {
         const component *c = &components[(uint32_t)order[i]];
         out->genera[i] = genus_of(c);
@@ -393,10 +402,10 @@ static brio_status certify_components(const topology *t, brio_certificate *out) 
     brio_status status = BRIO_OK;
     component_count c = {.t = t};
     BRIO_TRY(BRIO_ALLOC(t->ctx, c.number, t->mesh->num_faces));
-    number_components(&c);
+    BRIO_TRY(number_components(&c));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, c.components, c.count));
-    for_each(t, t->mesh->num_faces, count_faces, &c);
-    for_each(t, t->corners, count_fans, &c);
+    BRIO_TRY(for_each(t, t->mesh->num_faces, count_faces, &c));
+    BRIO_TRY(for_each(t, t->corners, count_fans, &c));
     if (c.pinched) BRIO_TRY(recount_pinched_vertices(&c));
     if (out->boundary_edges) BRIO_TRY(count_loops(&c));
     BRIO_TRY(list_genera(t->ctx, c.components, c.count, out));
@@ -427,9 +436,9 @@ static brio_status certify_topology(brio_context *ctx, const brio_mesh *mesh, br
     size_t degenerate_faces, thin_faces;
     BRIO_TRY(topology_new(ctx, mesh, &t));
     BRIO_TRY(mark_degenerate_faces(&t, &degenerate_faces, &thin_faces));
-    join_across_edges(&t, out);
+    BRIO_TRY(join_across_edges(&t, out));
     BRIO_TRY(certify_components(&t, out));
-    for_each(&t, mesh->num_vertices, count_nonmanifold_vertices, &nonmanifold);
+    BRIO_TRY(for_each(&t, mesh->num_vertices, count_nonmanifold_vertices, &nonmanifold));
     out->nonmanifold_vertices = nonmanifold.count;
     out->closed = t.corners > 0 && !out->boundary_edges && !out->nonmanifold_edges && !thin_faces;
     out->manifold = !out->nonmanifold_edges && !out->nonmanifold_vertices && !degenerate_faces;
@@ -500,11 +509,12 @@ static void measure_parts(void *user, size_t begin, size_t end, int thread) {
 
 /* Sums area and volume. Volumes are relative to the centre of the box of the used vertices, so that a surface far from
  * the origin loses no digits. */
-static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
+static brio_status measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
+    brio_status status = BRIO_OK;
     measures m = {.mesh = mesh};
-    if (!mesh->num_faces || !mesh->face_offsets[mesh->num_faces]) return;
+    if (!mesh->num_faces || !mesh->face_offsets[mesh->num_faces]) return BRIO_OK;
     int threads = brio_threads(ctx, (size_t)mesh->face_offsets[mesh->num_faces], ITEMS_A_THREAD);
-    brio_for_chunks(ctx, threads, PARTS, 1, find_boxes, &m);
+    BRIO_TRY(brio_for_chunks(ctx, threads, PARTS, 1, find_boxes, &m));
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int i = 0; i < 3 * PARTS; i++) {
         low[i % 3] = fmin(low[i % 3], m.part[i / 3].low[i % 3]);
@@ -513,10 +523,12 @@ static void measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certifi
     int exponent = brio_box_exponent(low, high); /* so that no square overflows or underflows */
     m.scale = brio_power_of_two(-exponent);
     for (int k = 0; k < 3; k++) m.centre[k] = (0.5 * low[k] + 0.5 * high[k]) * m.scale;
-    brio_for_chunks(ctx, threads, PARTS, 1, measure_parts, &m);
+    BRIO_TRY(brio_for_chunks(ctx, threads, PARTS, 1, measure_parts, &m));
     for (int i = 0; i < PARTS; i++) out->area += m.part[i].area, out->volume += m.part[i].volume;
     out->area = ldexp(out->area, 2 * exponent);
     out->volume = ldexp(out->volume, 3 * exponent);
+done:
+    return status;
 }
 
 brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
@@ -527,7 +539,7 @@ brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio
     BRIO_GIVE(brio_certificate, out, &(brio_certificate){0});
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     BRIO_TRY(certify_topology(ctx, mesh, &c));
-    measure_faces(ctx, mesh, &c);
+    BRIO_TRY(measure_faces(ctx, mesh, &c));
     BRIO_GIVE(brio_certificate, out, &c);
 done:
     if (status != BRIO_OK) brio_certificate_free(&c);

@@ -18,7 +18,8 @@
 enum {
     MOST_LEVELS = 64,
     TRIANGLES_A_THREAD = 1 << 12,
-    SUBTREES_A_THREAD = 8 /* chosen: several, so that no thread waits long for the last subtree */
+    SUBTREES_A_THREAD = 8, /* chosen: several, so that no thread waits long for the last subtree */
+    LOOKED_AT = 1 << 14    /* chosen: most triangles of a subtree, so that a look comes between two in time */
 };
 
 /* A triangle while the tree is built: its centroid, in units of the mesh's box, and its index. */
@@ -171,19 +172,24 @@ static void build_subtrees(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* Calls body on the nodes of a level; one node is one job. */
-static void for_level(brio_context *ctx, builder *b, size_t nodes, brio_part_fn body) {
+static brio_status for_level(brio_context *ctx, builder *b, size_t nodes, brio_part_fn body) {
     b->first = nodes - 1;
-    brio_for_chunks(ctx, brio_threads(ctx, nodes, 1), nodes, 1, body, b);
+    return brio_for_chunks(ctx, brio_threads(ctx, nodes, 1), nodes, 1, body, b);
 }
 
 /* Splits level after level until each thread has SUBTREES_A_THREAD nodes, then builds the subtrees. A node split here
  * has at least TRIANGLES_A_THREAD / SUBTREES_A_THREAD triangles, so no leaf is split. A split depends only on the
  * node's items, so the tree does not depend on the number of threads. */
-static void build_tree(brio_context *ctx, builder *b) {
+static brio_status build_tree(brio_context *ctx, builder *b) {
+    brio_status status = BRIO_OK;
     size_t threads = (size_t)brio_threads(ctx, b->count, TRIANGLES_A_THREAD), nodes = 1;
-    for (; threads > 1 && nodes < SUBTREES_A_THREAD * threads; nodes *= 2) for_level(ctx, b, nodes, split_nodes);
-    for_level(ctx, b, nodes, build_subtrees);
+    size_t wanted = threads > 1 ? SUBTREES_A_THREAD * threads : 1;
+    if (wanted < b->count / LOOKED_AT) wanted = b->count / LOOKED_AT;
+    for (; nodes < wanted; nodes *= 2) BRIO_TRY(for_level(ctx, b, nodes, split_nodes));
+    BRIO_TRY(for_level(ctx, b, nodes, build_subtrees));
     for (size_t node = nodes - 1; node-- > 0;) join_children(b, node);
+done:
+    return status;
 }
 
 static brio_status cut_faces(brio_context *ctx, const brio_mesh *mesh, uint32_t (**triangles)[3], size_t *count) {
@@ -252,7 +258,7 @@ brio_status brio_triangle_tree_new(brio_context *ctx, const brio_mesh *mesh, bri
     out->num_triangles = b.count = count;
     b.boxes = out->boxes;
     fill_items(&b, count);
-    build_tree(ctx, &b);
+    BRIO_TRY(build_tree(ctx, &b));
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) out->triangles[i][k] = b.triangles[b.items[i].triangle][k];
 done:

@@ -165,8 +165,8 @@ brio_status brio_collapse_blocks(brio_collapse_mesh *m, const brio_collapse_pass
     *collapses = 0;
     BRIO_TRY(BRIO_ALLOC(m->ctx, b.block, m->num_vertices));
     BRIO_TRY(BRIO_ALLOC_ZERO(m->ctx, b.workers, (size_t)threads));
-    brio_for(m->ctx, threads, pass->count, name_blocks, &b);
-    brio_for_chunks(m->ctx, threads, num_blocks, 1, collapse_part, &b);
+    BRIO_TRY(brio_for(m->ctx, threads, pass->count, name_blocks, &b));
+    BRIO_TRY(brio_for_chunks(m->ctx, threads, num_blocks, 1, collapse_part, &b));
     status = b.status;
     for (int t = 0; t < threads; t++) *collapses += b.workers[t].collapses;
 done:

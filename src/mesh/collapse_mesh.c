@@ -83,10 +83,10 @@ static brio_status order_vertices(renumbering *r) {
     BRIO_TRY(BRIO_ALLOC(ctx, m->second_order, n));
     BRIO_TRY(BRIO_ALLOC(ctx, r->position, 3 * n));
     BRIO_TRY(brio_sort_along_curve(ctx, r->mesh->vertices, r->items, r->spare, n, threads));
-    brio_for(ctx, threads, n, number_vertices, r);
-    brio_for(ctx, threads, n, rotate_vertices, r);
+    BRIO_TRY(brio_for(ctx, threads, n, number_vertices, r));
+    BRIO_TRY(brio_for(ctx, threads, n, rotate_vertices, r));
     BRIO_TRY(brio_sort_along_curve(ctx, r->position, r->items, r->spare, n, threads));
-    brio_for(ctx, threads, n, keep_second_order, r);
+    BRIO_TRY(brio_for(ctx, threads, n, keep_second_order, r));
 done:
     brio_release(ctx, r->items);
     brio_release(ctx, r->spare);
@@ -159,8 +159,8 @@ static brio_status renumber(renumbering *r) {
     BRIO_TRY(BRIO_ALLOC(ctx, r->vertex, 3 * m->num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, m->mate, 3 * m->num_faces));
     if (m->options->spacing) BRIO_TRY(BRIO_ALLOC(ctx, m->spacing, m->num_vertices));
-    brio_for(ctx, brio_threads(ctx, m->num_faces, VERTICES_A_THREAD), m->num_faces, move_faces, r);
-    brio_for(ctx, brio_threads(ctx, m->num_vertices, VERTICES_A_THREAD), m->num_vertices, move_vertices, r);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, m->num_faces, VERTICES_A_THREAD), m->num_faces, move_faces, r));
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, m->num_vertices, VERTICES_A_THREAD), m->num_vertices, move_vertices, r));
     m->vertex = r->vertex;
     m->position = r->position;
 done:
@@ -287,7 +287,7 @@ brio_status brio_collapse_mesh_new(brio_context *ctx, brio_mesh *mesh, const bri
     renumbering_free(ctx, &r);
     r.position = NULL, r.vertex = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, m->quadric, m->num_vertices));
-    brio_for(ctx, brio_threads(ctx, m->num_vertices, VERTICES_A_THREAD), m->num_vertices, add_quadrics, m);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, m->num_vertices, VERTICES_A_THREAD), m->num_vertices, add_quadrics, m));
     BRIO_TRY(BRIO_ALLOC(ctx, m->error, 3 * m->num_faces));
 done:
     renumbering_free(ctx, &r);

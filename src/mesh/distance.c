@@ -75,7 +75,7 @@ static brio_status build_tree(brio_context *ctx, const brio_mesh *mesh, int expo
     brio_mesh in_unit = *mesh;
     if (exponent) {
         BRIO_TRY(BRIO_ALLOC(ctx, s->scaled, 3 * mesh->num_vertices));
-        brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, s->scaled);
+        BRIO_TRY(brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, s->scaled));
         in_unit.vertices = s->scaled;
     }
     BRIO_TRY(brio_triangle_tree_new(ctx, &in_unit, &s->tree));
@@ -165,7 +165,8 @@ static brio_status measure(brio_context *ctx, sampler s) {
     for (; s.first < samples; s.first += BATCH) {
         size_t count = samples - s.first < BATCH ? samples - s.first : BATCH;
         BRIO_TRY(brio_progress(ctx, "distance", 0.5 * (double)(s.start + s.first) / (double)samples));
-        brio_for_chunks(ctx, brio_threads(ctx, count, SAMPLES_A_CHUNK), count, SAMPLES_A_CHUNK, measure_part, &s);
+        BRIO_TRY(
+            brio_for_chunks(ctx, brio_threads(ctx, count, SAMPLES_A_CHUNK), count, SAMPLES_A_CHUNK, measure_part, &s));
     }
 done:
     return status;

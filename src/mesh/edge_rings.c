@@ -33,14 +33,16 @@ brio_status brio_mesh_check_faces(brio_context *ctx, const brio_mesh *mesh) {
     if (!mesh->num_faces) return BRIO_OK;
     BRIO_REQUIRE(ctx, offsets[0] == 0, BRIO_ERR_ARGUMENT, "face 0: starts at corner %llu, expected 0",
                  (unsigned long long)offsets[0]);
-    for (size_t f = 0; f < mesh->num_faces; f++)
+    for (size_t f = 0; f < mesh->num_faces; f++) {
         BRIO_REQUIRE(ctx, offsets[f] <= offsets[f + 1], BRIO_ERR_ARGUMENT, "face %zu: ends before it starts", f);
+        if (f % BRIO_LOOK_EVERY == 0) BRIO_TRY(brio_look(ctx, BRIO_LOOK_EVERY));
+    }
     BRIO_REQUIRE(ctx, offsets[mesh->num_faces] < UINT32_MAX && mesh->num_faces < UINT32_MAX, BRIO_ERR_TOO_LARGE,
                  "%zu faces with %llu corners are more than 32-bit indices can name", mesh->num_faces,
                  (unsigned long long)offsets[mesh->num_faces]);
     size_t corners = (size_t)offsets[mesh->num_faces];
     check all = {mesh, true};
-    brio_for(ctx, brio_threads(ctx, corners, CORNERS_A_THREAD), corners, check_corners, &all);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, corners, CORNERS_A_THREAD), corners, check_corners, &all));
     for (size_t f = 0; !all.sound && f < mesh->num_faces; f++)
         for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++)
             BRIO_REQUIRE(ctx, mesh->face_vertices[h] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
@@ -99,17 +101,21 @@ static void deal_half_edges(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* Fills the buckets. The caller has zeroed bucket_end; afterwards bucket_end[v] is the end of the bucket of v. */
-static void deal_into_buckets(brio_context *ctx, buckets *b) {
+static brio_status deal_into_buckets(brio_context *ctx, buckets *b) {
+    brio_status status = BRIO_OK;
     int threads = brio_threads(ctx, b->mesh->num_faces, FACES_A_THREAD);
     uint32_t start = 0;
     b->alone = threads == 1;
-    brio_for(ctx, threads, b->mesh->num_faces, count_half_edges, b);
+    BRIO_TRY(brio_for(ctx, threads, b->mesh->num_faces, count_half_edges, b));
     for (size_t v = 0; v < b->mesh->num_vertices; v++) {
         uint32_t count = b->bucket_end[v];
         b->bucket_end[v] = start;
         start += count;
+        BRIO_TRY(brio_look(ctx, 1));
     }
-    brio_for(ctx, threads, b->mesh->num_faces, deal_half_edges, b);
+    BRIO_TRY(brio_for(ctx, threads, b->mesh->num_faces, deal_half_edges, b));
+done:
+    return status;
 }
 
 /* Links each run of equal higher vertices, in the sorted keys of one bucket, into a ring. */
@@ -140,9 +146,9 @@ brio_status brio_edge_rings(brio_context *ctx, const brio_mesh *mesh, uint32_t *
     BRIO_TRY(BRIO_ALLOC(ctx, b.keys, corners));
     BRIO_TRY(BRIO_ALLOC(ctx, *ring, corners));
     b.ring = *ring;
-    deal_into_buckets(ctx, &b);
-    brio_for_chunks(ctx, brio_threads(ctx, mesh->num_vertices, BUCKETS_A_CHUNK), mesh->num_vertices, BUCKETS_A_CHUNK,
-                    link_buckets, &b);
+    BRIO_TRY(deal_into_buckets(ctx, &b));
+    BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, mesh->num_vertices, BUCKETS_A_CHUNK), mesh->num_vertices,
+                             BUCKETS_A_CHUNK, link_buckets, &b));
 done:
     brio_release(ctx, b.bucket_end);
     brio_release(ctx, b.keys);

@@ -89,10 +89,15 @@ brio_status brio_mesh_set_tetrahedra(brio_mesh *mesh, const uint32_t *tetrahedra
     BRIO_REQUIRE(ctx, stride >= 4, BRIO_ERR_ARGUMENT, "a stride of %zu numbers for four vertices", stride);
     BRIO_REQUIRE(ctx, num_tetrahedra < MOST, BRIO_ERR_TOO_LARGE, "%zu tetrahedra", num_tetrahedra);
     BRIO_TRY(BRIO_ALLOC(ctx, copy, 4 * num_tetrahedra));
-    for (size_t t = 0; t < num_tetrahedra; t++) memcpy(copy + 4 * t, tetrahedra + stride * t, 4 * sizeof *copy);
+    for (size_t t = 0; t < num_tetrahedra; t++) {
+        memcpy(copy + 4 * t, tetrahedra + stride * t, 4 * sizeof *copy);
+        BRIO_TRY(brio_look(ctx, 1));
+    }
     mesh->tetrahedra = copy;
     mesh->num_tetrahedra = num_tetrahedra;
+    copy = NULL;
 done:
+    brio_release(ctx, copy);
     return status;
 }
 

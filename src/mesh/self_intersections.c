@@ -229,7 +229,7 @@ brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mes
     for (; b.first < t.count; b.first += BATCH) {
         size_t faces = t.count - b.first < BATCH ? t.count - b.first : BATCH;
         BRIO_TRY(brio_progress(ctx, "self-intersections", (double)b.first / (double)t.count));
-        brio_for_chunks(ctx, brio_threads(ctx, faces, FACES_A_CHUNK), faces, FACES_A_CHUNK, count_pairs, &b);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, faces, FACES_A_CHUNK), faces, FACES_A_CHUNK, count_pairs, &b));
     }
     *pairs = b.count;
 done:

@@ -79,7 +79,7 @@ static brio_status count_edges(simplifier *s, size_t *edges) {
     int threads = brio_threads(ctx, n, EDGES_A_THREAD);
     counting c = {.m = &s->m};
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, c.counts, (size_t)threads * CLASSES));
-    brio_for(ctx, threads, n, count_classes, &c);
+    BRIO_TRY(brio_for(ctx, threads, n, count_classes, &c));
     *edges = 0;
     for (size_t i = 0; i < CLASSES; i++) {
         s->classes[i] = 0;
@@ -182,7 +182,7 @@ static brio_status prepare(simplifier *s) {
     BRIO_TRY(BRIO_ALLOC(ctx, s->order[0], s->count));
     BRIO_TRY(BRIO_ALLOC(ctx, s->classes, CLASSES));
     for (size_t v = 0; v < s->count; v++) s->order[0][v] = (uint32_t)v;
-    brio_for(ctx, brio_threads(ctx, half_edges, EDGES_A_THREAD), half_edges, measure_edges, &s->m);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, half_edges, EDGES_A_THREAD), half_edges, measure_edges, &s->m));
 done:
     return status;
 }

@@ -40,7 +40,7 @@ brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_me
                  "neither a number of faces nor a tolerance to simplify to");
     BRIO_TRY(brio_refuse_not_finite(ctx, mesh->vertices, NULL, mesh->num_vertices, NULL));
     int exponent = exponent_of(mesh);
-    if (exponent) brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, mesh->vertices);
+    if (exponent) BRIO_TRY(brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, mesh->vertices));
     status = collapse(ctx, mesh, &o, o.tolerance > 0 ? ldexp(o.tolerance, -exponent) : INFINITY);
     if (exponent) {
         brio_status scaled = brio_scale_vertices(ctx, mesh->vertices, mesh->num_vertices, exponent);

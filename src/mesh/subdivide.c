@@ -240,7 +240,7 @@ static brio_status place_vertices(brio_context *ctx, subdivider *s) {
     if (old) memcpy(s->fine->vertices, s->mesh->vertices, old * sizeof(double));
     for (s->from = 0; s->from < corners; s->from += BATCH) {
         size_t count = corners - s->from < BATCH ? corners - s->from : BATCH;
-        brio_for(ctx, brio_threads(ctx, count, HALF_EDGES_A_THREAD), count, place_part, s);
+        BRIO_TRY(brio_for(ctx, brio_threads(ctx, count, HALF_EDGES_A_THREAD), count, place_part, s));
         BRIO_TRY(brio_progress(ctx, "subdivide", 0.4 + 0.2 * ((double)(s->from + count) / (double)corners)));
     }
     for (uint32_t c = 0; c < corners; c++) {
@@ -363,7 +363,7 @@ static brio_status subdivide_scaled(brio_context *ctx, const brio_mesh *mesh, in
     scaled.vertices = NULL;
     *out = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, scaled.vertices, old));
-    brio_scale(ctx, mesh->vertices, old, -exponent, scaled.vertices);
+    BRIO_TRY(brio_scale(ctx, mesh->vertices, old, -exponent, scaled.vertices));
     BRIO_TRY(subdivide_levels(ctx, &scaled, levels, &fine));
     BRIO_TRY(brio_scale_vertices(ctx, fine->vertices, fine->num_vertices, exponent));
     memcpy(fine->vertices, mesh->vertices, old * sizeof *fine->vertices);

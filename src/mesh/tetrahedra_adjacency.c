@@ -135,6 +135,7 @@ brio_status brio_tetrahedra_neighbours(brio_context *ctx, const brio_mesh *mesh,
     BRIO_TRY(fill_buckets(ctx, mesh, least_vertex, &b));
     for (uint32_t v = 0; v < mesh->num_vertices; v++) {
         BRIO_TRY(report(ctx, mesh, v));
+        BRIO_TRY(brio_look(ctx, b.offsets[v + 1] - b.offsets[v]));
         BRIO_TRY(join_bucket(ctx, mesh, &b, v, *neighbours));
     }
 done:
@@ -173,6 +174,7 @@ brio_status brio_tetrahedra_edges_find(brio_context *ctx, const brio_mesh *mesh,
     BRIO_TRY(fill_buckets(ctx, mesh, own_vertex, &b));
     for (uint32_t v = 0; v < mesh->num_vertices; v++) {
         BRIO_TRY(report(ctx, mesh, v));
+        BRIO_TRY(brio_look(ctx, b.offsets[v + 1] - b.offsets[v]));
         size_t count = edges_at(mesh, neighbours, &b, v);
         brio_sort_keys(b.keys, count);
         BRIO_TRY(BRIO_RESERVE(ctx, out->ends, out->ends_capacity, 2 * (out->count + count)));

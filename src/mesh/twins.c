@@ -6,6 +6,7 @@
 static brio_status check_triangles(brio_context *ctx, const brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     for (size_t f = 0; f < mesh->num_faces; f++) {
+        BRIO_TRY(brio_look(ctx, 1));
         uint64_t first = mesh->face_offsets[f], sides = mesh->face_offsets[f + 1] - first;
         BRIO_REQUIRE(ctx, sides == 3, BRIO_ERR_NO_ANSWER, "face %zu has %llu corners: a mesh of triangles is needed", f,
                      (unsigned long long)sides);
@@ -41,7 +42,10 @@ brio_status brio_mesh_twins(brio_context *ctx, const brio_mesh *mesh, uint32_t *
     BRIO_TRY(check_triangles(ctx, mesh));
     BRIO_TRY(brio_edge_rings(ctx, mesh, &ring));
     BRIO_TRY(BRIO_ALLOC(ctx, *twin, 3 * mesh->num_faces));
-    for (uint32_t h = 0; h < 3 * mesh->num_faces; h++) BRIO_TRY(twin_of(ctx, mesh, ring, h, &(*twin)[h]));
+    for (uint32_t h = 0; h < 3 * mesh->num_faces; h++) {
+        BRIO_TRY(brio_look(ctx, 1));
+        BRIO_TRY(twin_of(ctx, mesh, ring, h, &(*twin)[h]));
+    }
 done:
     brio_release(ctx, ring);
     if (status != BRIO_OK) {

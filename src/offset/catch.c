@@ -66,7 +66,7 @@ static brio_status look(net *n) {
     for (n->first = 0; n->first < n->count; n->first += BATCH) {
         size_t batch = n->count - n->first < BATCH ? n->count - n->first : BATCH;
         BRIO_TRY(brio_offset_progress(n->w));
-        brio_for_chunks(ctx, brio_threads(ctx, batch, CELLS_A_CHUNK), batch, CELLS_A_CHUNK, look_part, n);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, batch, CELLS_A_CHUNK), batch, CELLS_A_CHUNK, look_part, n));
         for (size_t i = 0; i < batch; i++) {
             if (n->state[i] == MISSED) {
                 BRIO_TRY(BRIO_RESERVE(ctx, n->found, n->capacity, n->num_found + 1));

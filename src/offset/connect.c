@@ -17,7 +17,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 1 << 15, TETS_A_CHUNK = 128, FEW = 64 /* tetrahedra of a speck; chosen */ };
+enum { BATCH = 1 << 15, TETS_A_CHUNK = 16, FEW = 64 /* tetrahedra of a speck; chosen */ };
 enum { COVERED = 1, CERTAIN = 2 }; /* bits of a label */
 
 static const double FINE = 0.5;  /* of the distance: side of the smallest part of a facet that is looked at; chosen */
@@ -133,7 +133,7 @@ static brio_status label_all(labeler *l) {
     for (l->first = 0; l->first < l->count; l->first += BATCH) {
         size_t count = l->count - l->first < BATCH ? l->count - l->first : BATCH;
         BRIO_TRY(brio_offset_progress(l->w));
-        brio_for_chunks(ctx, brio_threads(ctx, count, TETS_A_CHUNK), count, TETS_A_CHUNK, label_part, l);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, TETS_A_CHUNK), count, TETS_A_CHUNK, label_part, l));
     }
 done:
     return status;

@@ -173,8 +173,8 @@ static brio_status judge_all(brio_offset_work *w, judge_fn fn, uint8_t kind) {
     for (; p.j.first < n; p.j.first += BATCH) {
         size_t count = n - p.j.first < BATCH ? n - p.j.first : BATCH;
         BRIO_TRY(brio_offset_progress(w));
-        brio_for_chunks(w->ctx, brio_threads(w->ctx, count, TRIANGLES_A_CHUNK), count, TRIANGLES_A_CHUNK, judge_part,
-                        &p);
+        BRIO_TRY(brio_for_chunks(w->ctx, brio_threads(w->ctx, count, TRIANGLES_A_CHUNK), count, TRIANGLES_A_CHUNK,
+                                 judge_part, &p));
         for (size_t i = 0; i < count; i++) {
             if (p.j.bound[i] <= w->error * (1 + PROOF_SHARE)) continue;
             brio_offset_fault fault = {.triangle = (uint32_t)(p.j.first + i), .bound = p.j.bound[i]};

@@ -113,7 +113,8 @@ brio_status brio_offset_mend(brio_offset_work *w, size_t *added) {
     for (; m.first < n; m.first += BATCH) {
         size_t count = n - m.first < BATCH ? n - m.first : BATCH;
         BRIO_TRY(brio_offset_progress(w));
-        brio_for_chunks(w->ctx, brio_threads(w->ctx, count, FAULTS_A_CHUNK), count, FAULTS_A_CHUNK, find_part, &m);
+        BRIO_TRY(
+            brio_for_chunks(w->ctx, brio_threads(w->ctx, count, FAULTS_A_CHUNK), count, FAULTS_A_CHUNK, find_part, &m));
     }
     BRIO_TRY(take_kind(&m, CREASE, added));
     BRIO_TRY(take_kind(&m, SMOOTH, added));

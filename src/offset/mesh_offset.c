@@ -183,7 +183,7 @@ brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double di
     BRIO_TRY(brio_offset_settle(ctx, mesh, distance, options, &o));
     int exponent = brio_exponent(fmax(brio_greatest(mesh->vertices, 3 * mesh->num_vertices), fabs(distance)));
     BRIO_TRY(BRIO_ALLOC(ctx, vertices, 3 * mesh->num_vertices));
-    brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, vertices);
+    BRIO_TRY(brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, vertices));
     scaled.vertices = vertices;
     BRIO_TRY(brio_solid_new(ctx, &scaled, &solid));
     w.field = (brio_offset_field){&solid, ldexp(fabs(distance), -exponent), distance < 0};

@@ -101,7 +101,8 @@ brio_status brio_offset_seed(brio_offset_work *w) {
     for (; s.first < t->num_triangles; s.first += BATCH) {
         size_t count = t->num_triangles - s.first < BATCH ? t->num_triangles - s.first : BATCH;
         BRIO_TRY(brio_offset_progress(w));
-        brio_for_chunks(w->ctx, brio_threads(w->ctx, count, FACES_A_CHUNK), count, FACES_A_CHUNK, seed_part, &s);
+        BRIO_TRY(
+            brio_for_chunks(w->ctx, brio_threads(w->ctx, count, FACES_A_CHUNK), count, FACES_A_CHUNK, seed_part, &s));
         for (size_t i = 0; i < count; i++)
             for (int c = 0; c < PLACES; c++)
                 if (s.found[i][c]) BRIO_TRY(brio_offset_add(w, s.place[i][c]));

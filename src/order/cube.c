@@ -24,13 +24,15 @@ static void add_parts(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-brio_cube brio_cube_of(brio_context *ctx, const double *points, const uint64_t *items, size_t n, int threads) {
+brio_status brio_cube_of(brio_context *ctx, const double *points, const uint64_t *items, size_t n, int threads,
+                         brio_cube *out) {
     finder f; /* no initializer, because it would set all PARTS cubes: most calls have few points and one part */
     f.points = points, f.items = items, f.n = n;
     f.parts = threads > 1 ? PARTS : 1;
     brio_cube_new(&f.cube[0], points + 3 * (items ? (size_t)(uint32_t)items[0] : 0));
     for (size_t part = 1; part < f.parts; part++) f.cube[part] = f.cube[0];
-    brio_for_chunks(ctx, threads, f.parts, 1, add_parts, &f);
+    brio_status status = brio_for_chunks(ctx, threads, f.parts, 1, add_parts, &f);
     for (size_t part = 1; part < f.parts; part++) brio_cube_join(&f.cube[0], &f.cube[part]);
-    return f.cube[0];
+    *out = f.cube[0];
+    return status;
 }

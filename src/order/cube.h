@@ -35,7 +35,8 @@ static inline void brio_cube_join(brio_cube *c, const brio_cube *other) {
 
 /** Returns the cube of n > 0 points: the first n points or, unless `items` is NULL, the points whose indices are the
  *  low halves of items[0 .. n).   threads  a result of brio_threads. */
-brio_cube brio_cube_of(brio_context *ctx, const double *points, const uint64_t *items, size_t n, int threads);
+brio_status brio_cube_of(brio_context *ctx, const double *points, const uint64_t *items, size_t n, int threads,
+                         brio_cube *out);
 
 /** Divides each side of the cube into 2^bits cells. Returns false when the cube is a single point. */
 static inline bool brio_cube_divide(brio_cube *c, int bits) {

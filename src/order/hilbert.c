@@ -86,22 +86,29 @@ static void number_items(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-void brio_hilbert_keys(brio_context *ctx, const double *points, size_t n, int bits, uint64_t *keys) {
+brio_status brio_hilbert_keys(brio_context *ctx, const double *points, size_t n, int bits, uint64_t *keys) {
+    brio_status status = BRIO_OK;
     numbering all = {.points = points, .keys = keys, .bits = bits};
     int threads = brio_threads(ctx, n, POINTS_A_THREAD);
-    if (!n) return;
+    if (!n) return BRIO_OK;
     compose(&all.two);
-    all.cube = brio_cube_of(ctx, points, NULL, n, threads);
+    BRIO_TRY(brio_cube_of(ctx, points, NULL, n, threads, &all.cube));
     brio_cube_divide(&all.cube, bits);
-    brio_for(ctx, threads, n, number_points, &all);
+    status = brio_for(ctx, threads, n, number_points, &all);
+done:
+    return status;
 }
 
-bool brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int bits, int threads) {
+brio_status brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int bits,
+                               int threads, bool *apart) {
+    brio_status status = BRIO_OK;
     numbering all = {.points = points, .keys = items, .bits = bits};
-    if (!n) return false;
+    *apart = false;
+    if (!n) return BRIO_OK;
     compose(&all.two);
-    all.cube = brio_cube_of(ctx, points, items, n, threads);
-    if (!brio_cube_divide(&all.cube, bits)) return false;
-    brio_for(ctx, threads, n, number_items, &all);
-    return true;
+    BRIO_TRY(brio_cube_of(ctx, points, items, n, threads, &all.cube));
+    *apart = brio_cube_divide(&all.cube, bits);
+    if (*apart) BRIO_TRY(brio_for(ctx, threads, n, number_items, &all));
+done:
+    return status;
 }

@@ -11,11 +11,12 @@ uint64_t brio_hilbert_key(uint32_t x, uint32_t y, uint32_t z, int bits);
 
 /** Writes keys[i], the key of point i in the smallest cube that holds the points.
  *  points  #P by 3, finite.   bits  at most BRIO_HILBERT_MAX_BITS. */
-void brio_hilbert_keys(brio_context *ctx, const double *points, size_t num_points, int bits, uint64_t *keys);
+brio_status brio_hilbert_keys(brio_context *ctx, const double *points, size_t num_points, int bits, uint64_t *keys);
 
 /** Writes to the high half of items[i] the key of the point whose index is the low half, in the smallest cube that
  *  holds the points of all n items. Returns false, and changes no item, when n is 0 or all points have one position.
  *  bits  at most 10.   threads  a result of brio_threads. */
-bool brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int bits, int threads);
+brio_status brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int bits,
+                               int threads, bool *apart);
 
 #endif

@@ -146,7 +146,7 @@ brio_status brio_kdtree_blocks(brio_context *ctx, const brio_blocks *b) {
     if (status != BRIO_OK) return status;
     for (size_t i = 0; i < n; i++) k.nodes[i] = (node){{0, 0, 0}, (uint32_t)i};
     size_t least = b->block_size > POINTS_A_PIECE ? b->block_size : POINTS_A_PIECE;
-    brio_halve(ctx, &(brio_halving){.count = n, .least = least, .cut = cut, .finish = divide, .user = &k});
+    status = brio_halve(ctx, &(brio_halving){.count = n, .least = least, .cut = cut, .finish = divide, .user = &k});
     brio_release(ctx, k.nodes);
-    return BRIO_OK;
+    return status;
 }

@@ -203,14 +203,17 @@ static void divide_large(void *user, size_t from, size_t to, int thread) {
     }
 }
 
-static void take_turns(brio_context *ctx, octree *o, int threads) {
+static brio_status take_turns(brio_context *ctx, octree *o, int threads) {
+    brio_status status = BRIO_OK;
     while (o->num_next) {
         large_cell *swap = o->now;
         size_t count = o->num_next;
         o->now = o->next, o->next = swap;
         o->num_next = 0;
-        brio_for_chunks(ctx, count < (size_t)threads ? (int)count : threads, count, 1, divide_large, o);
+        BRIO_TRY(brio_for_chunks(ctx, count < (size_t)threads ? (int)count : threads, count, 1, divide_large, o));
     }
+done:
+    return status;
 }
 
 /* --- the root --- */
@@ -240,13 +243,16 @@ static void visit_octants(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* Does the work of bring_cells_together for all points, with all threads. */
-static void bring_all_together(brio_context *ctx, root *r, int threads) {
+static brio_status bring_all_together(brio_context *ctx, root *r, int threads) {
+    brio_status status = BRIO_OK;
     size_t cells = cells_of(r->g), n = r->g->end;
-    brio_for(ctx, threads, n, count_part, r);
+    BRIO_TRY(brio_for(ctx, threads, n, count_part, r));
     for (size_t c = 0, place = 0; c < cells; c++)
         place = brio_counts_to_places(r->place + c, cells, (size_t)threads, place);
-    brio_for(ctx, threads, n, place_part, r);
+    BRIO_TRY(brio_for(ctx, threads, n, place_part, r));
     r->stop = r->place + cells * (size_t)(threads - 1);
+done:
+    return status;
 }
 
 static brio_status divide_root(brio_context *ctx, octree *o, grid *g, int threads) {
@@ -257,9 +263,9 @@ static brio_status divide_root(brio_context *ctx, octree *o, grid *g, int thread
     BRIO_TRY(BRIO_ALLOC(ctx, o->now, g->end / LARGE + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, o->next, g->end / LARGE + 1));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r.place, cells_of(g) * (size_t)threads));
-    bring_all_together(ctx, &r, threads);
-    brio_for_chunks(ctx, threads, 8, 1, visit_octants, &r);
-    take_turns(ctx, o, threads);
+    BRIO_TRY(bring_all_together(ctx, &r, threads));
+    BRIO_TRY(brio_for_chunks(ctx, threads, 8, 1, visit_octants, &r));
+    BRIO_TRY(take_turns(ctx, o, threads));
 done:
     brio_release(ctx, o->now);
     brio_release(ctx, o->next);
@@ -279,7 +285,8 @@ brio_status brio_octree_blocks(brio_context *ctx, const brio_blocks *b, uint32_t
     grid g = {.points = b->points, .end = n, .levels = levels_for(n, b->block_size, ROOT_LEVELS), .passes = 1};
     int threads = brio_threads(ctx, n, POINTS_A_THREAD);
     if (n == 0) return BRIO_OK;
-    g.cube = brio_cube_of(ctx, b->points, NULL, n, threads);
+    brio_status status = brio_cube_of(ctx, b->points, NULL, n, threads, &g.cube);
+    if (status != BRIO_OK) return status;
     if (n > b->block_size && brio_cube_divide(&g.cube, g.levels)) return divide_root(ctx, &o, &g, threads);
     for (size_t i = 0; i < n; i++) b->index[i] = (uint32_t)i;
     visit_crowd(&o, 0, n, 1);

@@ -128,9 +128,9 @@ brio_status brio_divide_into_rounds(brio_context *ctx, const brio_division *of, 
     BRIO_TRY(BRIO_ALLOC(ctx, d.back, n));
     brio_expect_sequence(d.back);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, d.place, (size_t)threads));
-    brio_for(ctx, threads, blocks, count_blocks, &d);
+    BRIO_TRY(brio_for(ctx, threads, blocks, count_blocks, &d));
     first_places(d.place, threads, ends);
-    brio_for(ctx, threads, blocks, place_blocks, &d);
+    BRIO_TRY(brio_for(ctx, threads, blocks, place_blocks, &d));
 done:
     brio_release(ctx, d.back);
     brio_release(ctx, d.place);

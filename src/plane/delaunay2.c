@@ -99,7 +99,8 @@ static brio_status list_line(const brio_plane_store *s, brio_triangulation2 *t) 
     if (status != BRIO_OK) return status;
     for (uint32_t p = 0; p < s->num_points; p++)
         if (s->representative[p] == p) t->line[count++] = p;
-    brio_sort_indices(t->line, count, compare_places, s);
+    status = brio_sort_many_indices(s->ctx, t->line, count, compare_places, s);
+    if (status != BRIO_OK) return status;
     for (size_t i = 0; i < count; i++) t->line[i] = s->caller[t->line[i]];
     t->line_count = count;
     return BRIO_OK;

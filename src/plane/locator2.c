@@ -106,7 +106,7 @@ static brio_status line_up(brio_locator2 *l, const brio_triangulation2 *t) {
         along[p] = l->record[p][k];
         if (t->representative[p] == p) l->line[l->num_line++] = (uint32_t)p;
     }
-    brio_sort_indices(l->line, l->num_line, compare_places, along);
+    BRIO_TRY(brio_sort_many_indices(l->ctx, l->line, l->num_line, compare_places, along));
 done:
     brio_release(l->ctx, along);
     return status;

@@ -112,7 +112,7 @@ static brio_status check_counts(workspace *w, size_t vertices) {
     brio_status status = BRIO_OK;
     const brio_delaunay2_stats *s = &w->j->t->stats;
     size_t hidden = 0;
-    brio_sort_indices(w->hidden, w->num_hidden, compare_places, w);
+    BRIO_TRY(brio_sort_many_indices(w->j->ctx, w->hidden, w->num_hidden, compare_places, w));
     for (size_t i = 0; i < w->num_hidden; i++) hidden += i == 0 || compare(w, w->hidden[i - 1], w->hidden[i]) != 0;
     size_t duplicates = s->points - vertices - hidden;
     BRIO_REQUIRE(w->j->ctx,

@@ -98,7 +98,7 @@ static brio_status check_counts(workspace *w) {
     const brio_plane_judge *j = w->j;
     const brio_delaunay2_stats *s = &j->t->stats;
     size_t hidden = 0;
-    brio_sort_indices(w->hidden, w->num_hidden, compare_places, j);
+    BRIO_TRY(brio_sort_many_indices(j->ctx, w->hidden, w->num_hidden, compare_places, j));
     for (size_t i = 0; i < w->num_hidden; i++)
         hidden += i == 0 || !brio_same_place(j->view.record[w->hidden[i - 1]], j->view.record[w->hidden[i]]);
     size_t duplicates = j->num_points - w->num_vertices - hidden;

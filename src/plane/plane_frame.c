@@ -166,7 +166,7 @@ brio_status brio_plane_fit(brio_context *ctx, const double *points, size_t num_p
     BRIO_TRY(BRIO_ALLOC(ctx, rows, 3 * num_points));
     double greatest = brio_greatest(points, 3 * num_points);
     int exponent = brio_exponent(greatest);
-    brio_scale(ctx, points, 3 * num_points, -exponent, rows);
+    BRIO_TRY(brio_scale(ctx, points, 3 * num_points, -exponent, rows));
     f.points = rows;
     f.rounding = BRIO_FLAT_ROUNDING * ldexp(greatest, -exponent);
     if (num_points) span(&f);

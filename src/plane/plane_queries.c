@@ -47,7 +47,7 @@ static void answer_chunk(void *user, size_t begin, size_t end, int thread) {
 brio_status brio_plane_answer_all(brio_context *ctx, int threads, const brio_plane_batch *b) {
     query_job job = {ctx, b, refuse_not_finite(ctx, b->queries, b->count)};
     if (job.status != BRIO_OK) return job.status;
-    brio_for_chunks(ctx, threads, b->count, QUERIES_A_CHUNK, answer_chunk, &job);
+    brio_report(&job.status, brio_for_chunks(ctx, threads, b->count, QUERIES_A_CHUNK, answer_chunk, &job));
     if (job.status == BRIO_ERR_NOT_FINITE)
         return brio_fail(ctx, BRIO_ERR_NOT_FINITE,
                          "the queries changed during the call, to numbers that are not finite");

@@ -115,12 +115,13 @@ brio_status brio_point_tree_scaled(brio_context *ctx, const double *points, size
     BRIO_TRY(BRIO_ALLOC(ctx, out->index, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->axis, count));
     if (count) memcpy(out->point, points, count * sizeof *out->point);
-    if (exponent) brio_scale(ctx, *out->point, 3 * count, exponent, *out->point);
+    if (exponent) BRIO_TRY(brio_scale(ctx, *out->point, 3 * count, exponent, *out->point));
     BRIO_TRY(
         brio_refuse_not_finite(ctx, *out->point, NULL, count, NULL)); /* the copy: the points may change meanwhile */
     for (size_t i = 0; i < count; i++) out->index[i] = (uint32_t)i;
-    brio_halve(ctx, &(brio_halving){
-                        .count = count, .gap = 1, .least = POINTS_A_PIECE, .cut = cut, .finish = build, .user = out});
+    status = brio_halve(
+        ctx,
+        &(brio_halving){.count = count, .gap = 1, .least = POINTS_A_PIECE, .cut = cut, .finish = build, .user = out});
 done:
     return status;
 }

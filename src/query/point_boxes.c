@@ -51,7 +51,7 @@ brio_status brio_point_boxes_new(brio_context *ctx, const double *points, size_t
         out->levels++;
     }
     BRIO_TRY(BRIO_ALLOC(ctx, out->box, out->first[out->levels]));
-    brio_for(ctx, brio_threads(ctx, boxes, RUNS_A_THREAD), boxes, box_runs, out);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, boxes, RUNS_A_THREAD), boxes, box_runs, out));
     for (int level = 1; level < out->levels; level++) box_boxes(out, level);
 done:
     return status;

@@ -117,7 +117,7 @@ brio_status brio_mesh_samples(brio_context *ctx, const brio_mesh *mesh, double s
     BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
     int exponent = brio_exponent(brio_greatest(mesh->vertices, 3 * mesh->num_vertices));
     BRIO_TRY(BRIO_ALLOC(ctx, vertices, 3 * mesh->num_vertices));
-    brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, vertices);
+    BRIO_TRY(brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, vertices));
     scaled.vertices = vertices;
     s.spacing = fmin(ldexp(spacing, -exponent), 16); /* as wide as the mesh is as good */
     BRIO_REQUIRE(ctx, s.spacing > 0x1p-40, BRIO_ERR_TOO_LARGE, "a spacing of %g is too small for this mesh", spacing);

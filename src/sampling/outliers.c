@@ -159,7 +159,7 @@ static brio_status for_all(brio_context *ctx, search *s, brio_part_fn part) {
     size_t n = s->tree.count;
     for (s->first = 0; s->first < n; s->first += GROUP) {
         size_t count = n - s->first < GROUP ? n - s->first : GROUP;
-        brio_for_chunks(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, CHUNK, part, s);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, CHUNK, part, s));
         BRIO_TRY(brio_progress(ctx, "outliers", (double)(s->first + count) / (double)n));
     }
 done:

@@ -278,7 +278,8 @@ static brio_status thin_all(thinning *t, brio_bar bar) {
             for (last = first + 1; last < t->num_slabs && t->slabs[last].end - t->slabs[first].begin < GROUP;) last++;
             t->first_slab = first;
             size_t points = t->slabs[last - 1].end - t->slabs[first].begin;
-            brio_for_chunks(t->ctx, brio_threads(t->ctx, points, POINTS_A_THREAD), last - first, 1, thin_slabs, t);
+            BRIO_TRY(
+                brio_for_chunks(t->ctx, brio_threads(t->ctx, points, POINTS_A_THREAD), last - first, 1, thin_slabs, t));
             BRIO_TRY(brio_progress(t->ctx, "thin", (t->parity + (double)last / (double)t->num_slabs) / 2));
         }
 done:
@@ -290,7 +291,7 @@ static brio_status sort_points(thinning *t) {
     size_t n = t->num_points;
     BRIO_TRY(BRIO_ALLOC(t->ctx, t->keys, n));
     BRIO_TRY(BRIO_ALLOC(t->ctx, t->order, n));
-    brio_for(t->ctx, brio_threads(t->ctx, n, POINTS_A_THREAD), n, find_keys, t);
+    BRIO_TRY(brio_for(t->ctx, brio_threads(t->ctx, n, POINTS_A_THREAD), n, find_keys, t));
     BRIO_TRY(brio_progress(t->ctx, "sort", 0.1));
     BRIO_TRY(brio_radix_sort(t->ctx, t->keys, t->order, n, t->bits[0] + t->bits[1] + t->bits[2]));
     BRIO_TRY(brio_progress(t->ctx, "sort", 1));

@@ -57,7 +57,7 @@ static brio_status in_batches(brio_context *ctx, brio_csg_blocks *b, brio_part_f
     for (b->first = 0; b->first < n; b->first += BATCH) {
         size_t count = n - b->first < BATCH ? n - b->first : BATCH;
         BRIO_TRY(brio_progress(ctx, "blocks", from + 0.5 * (double)b->first / (double)n));
-        brio_for_chunks(ctx, brio_threads(ctx, count, BLOCKS_A_CHUNK), count, BLOCKS_A_CHUNK, body, b);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, BLOCKS_A_CHUNK), count, BLOCKS_A_CHUNK, body, b));
     }
 done:
     return status;

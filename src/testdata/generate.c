@@ -200,7 +200,7 @@ static brio_status fill(brio_context *ctx, brio_kind kind, uint64_t seed, brio_m
     for (; g.start < n; g.start += BATCH) {
         size_t count = n - g.start < BATCH ? n - g.start : BATCH;
         BRIO_TRY(brio_progress(ctx, "generate", (double)g.start / (double)n));
-        brio_for(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, make_points, &g);
+        BRIO_TRY(brio_for(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, make_points, &g));
     }
     BRIO_TRY(brio_progress(ctx, "generate", 1));
 done:

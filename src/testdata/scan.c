@@ -179,15 +179,17 @@ static void count_hits(void *user, size_t begin, size_t end, int thread) {
     __atomic_fetch_add(&c->hits, hits, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
 
-/* Returns the size of a raster, in pixels a side, for which all views together hit about n times. */
-static double choose_raster(const scan *c, size_t n) {
+/* Chooses the size of the raster, in pixels a side: all views together hit about n times. */
+static brio_status choose_raster(scan *c, size_t n) {
     const scanner *s = c->scanner;
     double rays = fmin(fmax(4 * (double)n, LEAST_COARSE_RAYS), MOST_COARSE_RAYS);
     uint64_t side = (uint64_t)ceil(sqrt(rays / s->views)), pixels = side * side;
     size_t views = (size_t)s->views;
     coarse_scan coarse = {s, side, 0};
-    brio_for_chunks(c->ctx, brio_threads(c->ctx, views * pixels, RAYS_A_CHUNK), views, 1, count_hits, &coarse);
-    return sqrt((double)n / fmax((double)coarse.hits, 1) * (double)pixels);
+    int threads = brio_threads(c->ctx, views * pixels, RAYS_A_CHUNK);
+    brio_status status = brio_for_chunks(c->ctx, threads, views, 1, count_hits, &coarse);
+    c->raster = sqrt((double)n / fmax((double)coarse.hits, 1) * (double)pixels);
+    return status;
 }
 
 /* Measures one pixel. Returns false when the scanner sees nothing there. */
@@ -221,8 +223,8 @@ static void measure_pixels(void *user, size_t begin, size_t end, int thread) {
 static brio_status scan_block(scan *c, const sensor *e, int view, uint64_t first, uint64_t end) {
     brio_status status = BRIO_OK;
     size_t pixels = (size_t)(end - first);
-    brio_for_chunks(c->ctx, brio_threads(c->ctx, pixels, RAYS_A_CHUNK), pixels, RAYS_A_CHUNK, measure_pixels,
-                    &(block){c, e, view, first});
+    BRIO_TRY(brio_for_chunks(c->ctx, brio_threads(c->ctx, pixels, RAYS_A_CHUNK), pixels, RAYS_A_CHUNK, measure_pixels,
+                             &(block){c, e, view, first}));
     for (uint64_t i = 0; i < end - first; i++) {
         const double *p = c->measured + 3 * i;
         if (!c->seen[i]) continue;
@@ -275,7 +277,7 @@ brio_status brio_scan(brio_context *ctx, size_t n, const brio_generate_options *
     *out = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, c.measured, 3 * BLOCK));
     BRIO_TRY(BRIO_ALLOC(ctx, c.seen, BLOCK));
-    if (n) c.raster = choose_raster(&c, n);
+    if (n) BRIO_TRY(choose_raster(&c, n));
     for (int view = 0; view < s.views; view++) BRIO_TRY(scan_view(&c, view));
     BRIO_TRY(brio_progress(ctx, "scan", 1));
     BRIO_TRY(make_mesh(&c, out));

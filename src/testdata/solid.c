@@ -160,7 +160,7 @@ static brio_status measure(solid *s, double *spacing, double *thin) {
     }
     BRIO_TRY(brio_solid_keep_parts(s->ctx, mesh, &s->keep));
     *spacing = sqrt(AREA_A_SAMPLE * brio_solid_area(mesh) / SAMPLES);
-    *thin = brio_solid_thin_share(s->ctx, &grid, mesh, LEAST_THICKNESS * *spacing);
+    BRIO_TRY(brio_solid_thin_share(s->ctx, &grid, mesh, LEAST_THICKNESS * *spacing, thin));
 done:
     brio_csg_blocks_free(s->ctx, &blocks);
     brio_mesh_free(mesh);

@@ -171,10 +171,12 @@ static void count_thin(void *user, size_t begin, size_t end, int thread) {
     __atomic_fetch_add(&w->thin, thin, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
 
-double brio_solid_thin_share(brio_context *ctx, const brio_implicit_grid *grid, const brio_mesh *mesh,
-                             double thickness) {
+brio_status brio_solid_thin_share(brio_context *ctx, const brio_implicit_grid *grid, const brio_mesh *mesh,
+                                  double thickness, double *out) {
     size_t stride = mesh->num_vertices / MOST_PROBED + 1, n = mesh->num_vertices / stride;
     probe w = {grid, mesh, thickness, stride, 0};
-    brio_for_chunks(ctx, brio_threads(ctx, n, VERTICES_A_THREAD), n, VERTICES_A_THREAD, count_thin, &w);
-    return n ? (double)w.thin / (double)n : 0;
+    int threads = brio_threads(ctx, n, VERTICES_A_THREAD);
+    brio_status status = brio_for_chunks(ctx, threads, n, VERTICES_A_THREAD, count_thin, &w);
+    *out = n ? (double)w.thin / (double)n : 0;
+    return status;
 }

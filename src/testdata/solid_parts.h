@@ -24,7 +24,7 @@ double brio_solid_area(const brio_mesh *mesh);
 
 /** Returns the share of vertices from which a line along the normal, inwards or outwards, crosses the surface within
  *  `thickness`, where the two tangent planes are about parallel. */
-double brio_solid_thin_share(brio_context *ctx, const brio_implicit_grid *grid, const brio_mesh *mesh,
-                             double thickness);
+brio_status brio_solid_thin_share(brio_context *ctx, const brio_implicit_grid *grid, const brio_mesh *mesh,
+                                  double thickness, double *out);
 
 #endif

@@ -99,7 +99,7 @@ static brio_status fill_buckets(sorter *s) {
     brio_status status = BRIO_OK;
     size_t count = s->store->t.count;
     uint32_t sum = 0;
-    brio_for(s->store->ctx, s->threads, count, count_buckets, s);
+    BRIO_TRY(brio_for(s->store->ctx, s->threads, count, count_buckets, s));
     for (size_t b = 0; b < s->buckets; b++) {
         uint32_t c = s->end[b];
         s->end[b] = sum;
@@ -107,7 +107,7 @@ static brio_status fill_buckets(sorter *s) {
     }
     BRIO_REQUIRE(s->store->ctx, sum == s->live, BRIO_ERR_INTERNAL, "%u slots are in use instead of %zu", (unsigned)sum,
                  s->live);
-    brio_for(s->store->ctx, s->threads, count, list_buckets, s);
+    BRIO_TRY(brio_for(s->store->ctx, s->threads, count, list_buckets, s));
 done:
     return status;
 }
@@ -151,9 +151,13 @@ static void sort_chunk(void *user, size_t from, size_t to, int thread) {
 }
 
 static brio_status sort_buckets(sorter *s) {
-    enum { PARTS = 16 }; /* a thread, since buckets are not alike */
-    size_t chunk = s->threads > 1 ? s->buckets / (size_t)(PARTS * s->threads) + 1 : s->buckets;
-    brio_for_chunks(s->store->ctx, s->threads, s->buckets, chunk, sort_chunk, s);
+    enum {
+        PARTS = 16,
+        MOST = 1 << 14
+    }; /* parts of a thread, since buckets are not alike, and buckets between two looks */
+    size_t chunk = s->buckets / (size_t)(PARTS * s->threads) + 1;
+    if (chunk > MOST) chunk = MOST;
+    brio_report(&s->status, brio_for_chunks(s->store->ctx, s->threads, s->buckets, chunk, sort_chunk, s));
     return s->status;
 }
 
@@ -214,6 +218,7 @@ typedef struct {
     brio_tetrahedron *aside;
     uint32_t *leaving, *vacant;
     size_t *num_leaving, *num_vacant;
+    brio_status stop; /* the callback asked to stop */
 } mover;
 
 /* Gathers the tetrahedra of the places [begin + from, begin + to) aside. */
@@ -289,17 +294,21 @@ static void write_block(sorter *s, const mover *m, size_t begin, size_t from, si
 
 /* Fills all blocks one after the other; every member does its part of each. */
 static void move_blocks(void *user, const brio_member *member) {
-    const mover *m = user;
+    mover *m = user;
     sorter *s = m->sorter;
     int thread = member->thread, threads = member->threads;
-    for (size_t begin = 0; begin < s->live; begin += m->block) {
+    for (size_t begin = 0; begin < s->live && !m->stop; begin += m->block) {
         size_t end = begin + m->block < s->live ? begin + m->block : s->live;
         size_t from = brio_part(end - begin, thread, threads), to = brio_part(end - begin, thread + 1, threads);
         gather(s, m, begin, from, to);
         brio_barrier(member);
         list_moves(m, begin, end, member, true);
         brio_barrier(member);
-        if (thread == 0) add_up(m, threads);
+        if (thread == 0) {
+            add_up(m, threads);
+            m->stop =
+                brio_look(s->store->ctx, BRIO_LOOK_EVERY); /* every member reads it after the barriers that follow */
+        }
         brio_barrier(member);
         list_moves(m, begin, end, member, false);
         brio_barrier(member);
@@ -323,6 +332,7 @@ static brio_status move_all(sorter *s) {
     BRIO_TRY(BRIO_ALLOC(ctx, m.num_leaving, (size_t)s->threads + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, m.num_vacant, (size_t)s->threads + 1));
     brio_run(ctx, s->threads, move_blocks, &m);
+    status = m.stop;
 done:
     brio_release(ctx, m.aside);
     brio_release(ctx, m.leaving);

@@ -100,6 +100,7 @@ static brio_status check_point(workspace *w, uint32_t p) {
     if (known != BRIO_INFINITE) w->walk.start = w->vertex_tet[known];
     uint32_t tet = brio_locate_walk(&j->t, NULL, &j->filter, &w->walk, x, UINT64_MAX);
     w->walk.start = tet;
+    BRIO_TRY(brio_look(j->ctx, 16));
     BRIO_REQUIRE(j->ctx, !brio_is_infinite(&j->t, tet), BRIO_ERR_CHECK, "point %u is outside the hull", p);
     uint32_t v = vertex_at(j, tet, x);
     status = v != BRIO_INFINITE ? check_duplicate(w, p, v) : check_hidden(w, p, tet);

@@ -23,7 +23,10 @@ static brio_status lexicographic_ranks(brio_context *ctx, const brio_triangulati
     for (size_t p = 0; p < t->stats.points; p++)
         if (t->representative[p] == p) vertex[n++] = (uint32_t)p;
     BRIO_TRY(brio_sort_rows(ctx, &(brio_row_order){points, 3, compare_points, points}, vertex, n));
-    for (size_t i = 0; i < n; i++) rank[vertex[i]] = (uint32_t)i;
+    for (size_t i = 0; i < n; i++) {
+        rank[vertex[i]] = (uint32_t)i;
+        BRIO_TRY(brio_look(ctx, 1));
+    }
 done:
     brio_release(ctx, vertex);
     return status;
@@ -53,6 +56,7 @@ brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulat
             brio_block_expect(t->tet, (tet + EXPECTED) * sizeof *t->tet, EXPECTED * sizeof *t->tet);
         for (int i = 0; i < 4; i++) r[i] = rank[t->tet[tet].vertex[i]];
         sum += hash_of(r);
+        BRIO_TRY(brio_look(ctx, 1));
     }
     *checksum = sum;
 done:

@@ -111,7 +111,7 @@ static brio_status for_all(brio_context *ctx, neighbour_job *job, int threads, b
     size_t n = job->out->count;
     for (job->first = 0; job->first < n; job->first += GROUP) {
         size_t count = n - job->first < GROUP ? n - job->first : GROUP;
-        brio_for_chunks(ctx, threads, count, VERTICES_A_CHUNK, part, job);
+        BRIO_TRY(brio_for_chunks(ctx, threads, count, VERTICES_A_CHUNK, part, job));
         BRIO_TRY(brio_progress(ctx, "neighbours", (double)(job->first + count) / (double)n));
     }
 done:

@@ -51,9 +51,9 @@ brio_status brio_records_new(brio_context *ctx, const brio_input *input, const u
     if (status != BRIO_OK) return status;
     brio_expect_sequence(record);
     record_job job = {input->points, input->weights, order, record, false, 0};
-    brio_for(ctx, brio_threads(ctx, n, RECORDS_A_THREAD), n, write_records, &job);
-    if (job.bad) {
-        status = brio_refuse_records(ctx, (const brio_record *)record, order, n);
+    status = brio_for(ctx, brio_threads(ctx, n, RECORDS_A_THREAD), n, write_records, &job);
+    if (status != BRIO_OK || job.bad) {
+        if (status == BRIO_OK) status = brio_refuse_records(ctx, (const brio_record *)record, order, n);
         brio_release(ctx, record);
         return status;
     }

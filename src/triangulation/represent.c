@@ -81,7 +81,10 @@ static brio_status represent_weighted(brio_inserter *ins) {
     brio_vertex_tets_fill(s, w.vertex_tet);
     BRIO_TRY(brio_nearest_new(s->ctx, &s->t, s->num_points, w.vertex_tet, &w.nearest));
     for (uint32_t p = 0; p < s->num_points; p++)
-        if (s->representative[p] != p) BRIO_TRY(represent_one(&w, p));
+        if (s->representative[p] != p) {
+            BRIO_TRY(represent_one(&w, p));
+            BRIO_TRY(brio_look(s->ctx, 16));
+        }
     BRIO_TRY(count_hidden(&w));
 done:
     brio_release(s->ctx, w.vertex_tet);
@@ -202,7 +205,7 @@ static brio_status restore_first(brio_store *s) {
     for (uint32_t p = (uint32_t)s->num_points; p-- > 0;)
         if (is_earlier_twin(s, p)) first[s->representative[p]] = p;
     renaming r = {s, first};
-    brio_for(s->ctx, brio_threads(s->ctx, s->t.count, SLOTS_A_THREAD), s->t.count, rename_vertices, &r);
+    status = brio_for(s->ctx, brio_threads(s->ctx, s->t.count, SLOTS_A_THREAD), s->t.count, rename_vertices, &r);
     for (uint32_t p = 0; p < s->num_points; p++) {
         uint32_t v = s->representative[p];
         s->representative[p] = first[v];
@@ -211,7 +214,7 @@ static brio_status restore_first(brio_store *s) {
         s->caller[p] = s->caller[first[p]], s->caller[first[p]] = name;
     }
     brio_release(s->ctx, first);
-    return BRIO_OK;
+    return status;
 }
 
 static void count_duplicates(brio_inserter *ins) {

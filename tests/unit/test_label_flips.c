@@ -93,7 +93,9 @@ static bool is_lucky(const double *p) {
 static double energy_of(scene *s, const brio_label_flips *f) {
     for (size_t p = 0; p < SAMPLES; p++) s->label[s->dual.t.count + p] = BRIO_LABEL_OUTER;
     brio_label_samples(f);
-    return brio_vote_energy(&s->graph, s->label) / BRIO_VOTE_UNIT;
+    double energy = NAN;
+    EXPECT(brio_vote_energy(&s->graph, s->label, &energy) == BRIO_OK);
+    return energy / BRIO_VOTE_UNIT;
 }
 
 static size_t count_faces(const scene *s) {

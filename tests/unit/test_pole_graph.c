@@ -212,6 +212,12 @@ static void blocks_of_a_round_are_apart(void) {
     brio_context_free(ctx);
 }
 
+static double energy_of(const random_graph *r) {
+    double energy = NAN;
+    EXPECT(brio_label_energy(&r->g, r->label, &energy) == BRIO_OK);
+    return energy;
+}
+
 /* The least energy over all labels of the poles of a block. */
 static double least_energy(random_graph *r, const uint32_t *pole, size_t size) {
     uint8_t kept[NODES];
@@ -219,7 +225,7 @@ static double least_energy(random_graph *r, const uint32_t *pole, size_t size) {
     memcpy(kept, r->label, sizeof kept);
     for (unsigned set = 0; set < 1u << size; set++) {
         for (size_t i = 0; i < size; i++) r->label[pole[i]] = set >> i & 1 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-        least = fmin(least, brio_label_energy(&r->g, r->label));
+        least = fmin(least, energy_of(r));
     }
     memcpy(r->label, kept, sizeof kept);
     return least;
@@ -239,10 +245,10 @@ static void settled_blocks_have_least_energy(void) {
         EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, BITS, trial, &b) == BRIO_OK);
         for (size_t block = 0; block < b.num_blocks; block++) {
             size_t begin = brio_node_block_begin(&b, block), size = brio_node_block_begin(&b, block + 1) - begin;
-            double before = brio_label_energy(&r.g, r.label), least = least_energy(&r, b.node + begin, size);
+            double before = energy_of(&r), least = least_energy(&r, b.node + begin, size);
             roof.undecided = 0;
             EXPECT(brio_roof_settle(&roof, &r.g, &b, block, r.label) == BRIO_OK);
-            double after = brio_label_energy(&r.g, r.label);
+            double after = energy_of(&r);
             EXPECT(after <= before && after >= least, "%g, %g, least %g", before, after, least);
             if (roof.undecided == 0) EXPECT(after == least, "%g, least %g", after, least);
             closed += roof.undecided == 0, improved += after < before;

@@ -229,8 +229,9 @@ static void thin_share_knows_the_thickness_of_a_plate(void) {
     tree->root = brio_solid_tumble(&m, brio_solid_box(&m, 0.5, 0.5, 0.03));
     brio_implicit_grid grid = grid_of(tree, 1, 0.025);
     brio_mesh *mesh = mesh_of(&grid);
-    double thinner = brio_solid_thin_share(ctx, &grid, mesh, 0.055),
-           thicker = brio_solid_thin_share(ctx, &grid, mesh, 0.066);
+    double thinner, thicker;
+    EXPECT(brio_solid_thin_share(ctx, &grid, mesh, 0.055, &thinner) == BRIO_OK);
+    EXPECT(brio_solid_thin_share(ctx, &grid, mesh, 0.066, &thicker) == BRIO_OK);
     EXPECT(thinner < 0.01 && thicker > 0.7, "%g %g", thinner, thicker);
     brio_mesh_free(mesh);
     free(tree);

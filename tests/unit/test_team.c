@@ -45,10 +45,10 @@ static void loops_do_every_index_once(void) {
             int threads = brio_threads(ctx, sizes[s], 1);
             EXPECT(threads >= 1 && threads <= THREADS[k]);
             memset(done, 0, sizeof done);
-            brio_for(ctx, threads, sizes[s], count_indices, done);
+            EXPECT(brio_for(ctx, threads, sizes[s], count_indices, done) == BRIO_OK);
             EXPECT(all_are(done, sizes[s], 1), "%zu indices in %d threads", sizes[s], threads);
             for (size_t chunk = 1; chunk <= 100; chunk *= 10)
-                brio_for_chunks(ctx, threads, sizes[s], chunk, count_indices, done);
+                EXPECT(brio_for_chunks(ctx, threads, sizes[s], chunk, count_indices, done) == BRIO_OK);
             EXPECT(all_are(done, sizes[s], 4), "%zu indices in %d threads, in chunks", sizes[s], threads);
         }
         brio_context_free(ctx);
@@ -119,9 +119,9 @@ static void run_inside(void *user, const brio_member *m) {
     static uint8_t done[MOST_MEMBERS][100];
     int threads = brio_threads(n->ctx, 100, 1);
     memset(done[m->thread], 0, 100);
-    brio_for(n->ctx, threads, 100, count_indices, done[m->thread]);
+    brio_status status = brio_for(n->ctx, threads, 100, count_indices, done[m->thread]);
     __atomic_fetch_add(&n->threads, (size_t)threads, __ATOMIC_RELAXED);
-    __atomic_fetch_add(&n->calls, all_are(done[m->thread], 100, 1), __ATOMIC_RELAXED);
+    __atomic_fetch_add(&n->calls, status == BRIO_OK && all_are(done[m->thread], 100, 1), __ATOMIC_RELAXED);
 }
 
 static void work_within_work_runs_alone(void) {
@@ -129,6 +129,47 @@ static void work_within_work_runs_alone(void) {
     brio_run(n.ctx, brio_threads(n.ctx, 8, 1), run_inside, &n);
     EXPECT(n.threads == 8 && n.calls == 8);
     brio_context_free(n.ctx);
+}
+
+/* --- looks --- */
+
+typedef struct {
+    size_t looks, allowed;
+    pthread_t caller;
+    bool elsewhere; /* asked in another thread than the caller's */
+} wish;
+
+static int ask(const char *stage, double fraction, void *user) {
+    wish *a = user;
+    (void)stage, (void)fraction;
+    a->elsewhere |= !pthread_equal(pthread_self(), a->caller);
+    return a->looks++ >= a->allowed;
+}
+
+static void count_some(void *user, size_t begin, size_t end, int thread) {
+    (void)thread;
+    __atomic_fetch_add((size_t *)user, end - begin, __ATOMIC_RELAXED);
+}
+
+/* A loop of any length asks once for so much work, and ends where it is asked to. */
+static void loops_look_and_stop(void) {
+    enum { MANY = 100 * BRIO_LOOK_EVERY };
+    for (int k = 0; k < NUM_THREADS; k++) {
+        brio_context *ctx = context_with(THREADS[k]);
+        int threads = brio_threads(ctx, MANY, 1);
+        wish a = {0, SIZE_MAX, pthread_self(), false};
+        size_t count = 0;
+        brio_context_set_progress(ctx, ask, &a);
+        EXPECT(brio_for(ctx, threads, MANY, count_some, &count) == BRIO_OK && count == MANY);
+        EXPECT(a.looks + 1 >= 100u / (size_t)threads && !a.elsewhere, "%zu looks, %d threads", a.looks, threads);
+        count = a.looks = a.allowed = 0;
+        EXPECT(brio_for(ctx, threads, MANY, count_some, &count) == BRIO_ERR_CANCELLED);
+        EXPECT(threads > 1 || count == BRIO_LOOK_EVERY, "%zu", count);
+        count = a.looks = a.allowed = 0;
+        EXPECT(brio_for_chunks(ctx, threads, MANY, 64, count_some, &count) == (a.looks ? BRIO_ERR_CANCELLED : BRIO_OK));
+        EXPECT(threads > 1 || count == 64, "%zu", count);
+        brio_context_free(ctx);
+    }
 }
 
 /* --- hosts --- */
@@ -307,6 +348,7 @@ SUITE(test_team) {
     RUN(impossible_numbers_of_threads_are_bounded);
     RUN(barriers_order_what_members_write);
     RUN(work_within_work_runs_alone);
+    RUN(loops_look_and_stop);
     RUN(child_after_fork_works);
     RUN(refused_threads_are_fewer_threads);
     RUN(stack_of_64_kibibytes_is_enough);

@@ -181,7 +181,7 @@ ENDS_WITH(brio_labeled_delaunay_stats, open_seconds);
 ENDS_WITH(brio_evidence, origin_of);
 ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
-ENDS_WITH(brio_write_options, crs_comment);
+ENDS_WITH(brio_write_options, reserved_int);
 ENDS_WITH(brio_read_options, origins);
 ENDS_WITH(brio_read_notes, rounded_column);
 ENDS_WITH(brio_merge_stats, edges);

@@ -58,7 +58,7 @@ static brio_status read_records(brio_stream *s, brio_builder *b, const brio_las_
         if (!rows) return brio_stream_truncated(s);
         BRIO_TRY(brio_builder_add_vertices(b, rows));
         block_job job = {plan, b->mesh, s->buffer + s->begin, b->mesh->num_vertices - rows};
-        brio_for(s->ctx, brio_threads(s->ctx, rows, LEAST_ROWS), rows, store_part, &job);
+        BRIO_TRY(brio_for(s->ctx, brio_threads(s->ctx, rows, LEAST_ROWS), rows, store_part, &job));
         s->begin += rows * h->record;
         s->row += rows;
     }

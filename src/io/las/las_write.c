@@ -51,7 +51,7 @@ static brio_status write_records(brio_output *out, const brio_write_job *job, vo
     if (!w->rows) BRIO_TRY(BRIO_ALLOC(out->ctx, w->rows, CHUNK * record));
     for (w->first = 0; w->first < n; w->first += CHUNK) {
         size_t count = n - w->first < CHUNK ? n - w->first : CHUNK;
-        brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode, w);
+        BRIO_TRY(brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode, w));
         if (w->facts.compressed)
             BRIO_TRY(brio_laz_write_rows(&w->laz, out, (uint8_t *)w->rows, count));
         else

@@ -143,7 +143,7 @@ static brio_status read_batch(laz_reader *r, const brio_laz_chunk *chunks, size_
         r->batch[i].bytes = (const uint8_t *)data;
         r->batch[i].first += base;
     }
-    brio_for_chunks(s->ctx, r->threads, n, 1, decode_part, r);
+    BRIO_TRY(brio_for_chunks(s->ctx, r->threads, n, 1, decode_part, r));
     for (size_t i = 0; i < n; offset += r->batch[i++].size)
         if (r->batch[i].damaged) return damaged(r, &r->batch[i], offset);
     s->row += points;

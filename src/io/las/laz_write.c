@@ -59,7 +59,7 @@ static brio_status flush(brio_laz_writer *w, brio_output *out) {
     brio_status status = BRIO_OK;
     size_t n = (size_t)chunks_of(w);
     BRIO_TRY(BRIO_RESERVE(out->ctx, w->sizes, w->chunk_capacity, w->num_chunks + n));
-    brio_for_chunks(out->ctx, brio_threads(out->ctx, n, 1), n, 1, pack_part, w);
+    BRIO_TRY(brio_for_chunks(out->ctx, brio_threads(out->ctx, n, 1), n, 1, pack_part, w));
     for (size_t i = 0; i < n; i++) {
         BRIO_TRY(brio_output_bytes(out, w->workers[i].bytes, w->workers[i].size));
         w->sizes[w->num_chunks++] = (uint32_t)w->workers[i].size;

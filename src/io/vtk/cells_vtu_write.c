@@ -94,6 +94,7 @@ static brio_status take_cells(brio_context *ctx, polyhedra *w) {
     BRIO_TRY(BRIO_ALLOC(ctx, w->end, cells->num_cells));
     BRIO_TRY(BRIO_ALLOC(ctx, w->polyhedron, cells->num_cells));
     for (size_t c = 0; c < cells->num_cells; c++) {
+        BRIO_TRY(brio_look(ctx, 16));
         if (!is_taken(w, c)) continue;
         take_vertices(w, c);
         w->polyhedron[w->num_polyhedra] = (uint32_t)c;

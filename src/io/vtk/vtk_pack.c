@@ -63,7 +63,7 @@ static brio_status pack_batches(brio_vtk_writer *w, brio_vtk_appended *a, batch 
         source->fill(source->user, first, numbers, b->plain);
         b->plain_size = numbers * size;
         size_t blocks = (b->plain_size + BLOCK - 1) / BLOCK;
-        brio_for_chunks(b->ctx, brio_threads(b->ctx, blocks, 1), blocks, 1, pack_blocks, b);
+        BRIO_TRY(brio_for_chunks(b->ctx, brio_threads(b->ctx, blocks, 1), blocks, 1, pack_blocks, b));
         BRIO_TRY(b->status);
         BRIO_TRY(append(a, b, first * size / BLOCK, blocks));
         BRIO_TRY(report(w, b->plain_size));

@@ -83,7 +83,8 @@ typedef brio_status (*visit_fn)(detection *d, uint32_t facet, const uint32_t cor
 static brio_status visit_meetings(detection *d, visit_fn visit) {
     brio_status status = BRIO_OK;
     const brio_tetrahedra *t = &d->dual->t;
-    for (size_t tet = 0; tet < t->count; tet++)
+    for (size_t tet = 0; tet < t->count; tet++) {
+        BRIO_TRY(brio_look(d->ctx, 8));
         for (int i = 0; i < 4; i++) {
             uint32_t facet = brio_facet_of((uint32_t)tet, i), v[3];
             if (*brio_mate(t, facet) < facet || (i != 3 && t->tet[tet].vertex[3] == BRIO_INFINITE)) continue;
@@ -92,6 +93,7 @@ static brio_status visit_meetings(detection *d, visit_fn visit) {
                 if (brio_meets_cocone(d->cocones, facet, v[0])) BRIO_TRY(visit(d, facet, v));
             }
         }
+    }
 done:
     return status;
 }

@@ -50,7 +50,7 @@ static brio_status find_surface(brio_context *ctx, const double *points, size_t 
     BRIO_TRY(BRIO_ALLOC(ctx, scaled, 3 * num_points));
     BRIO_TRY(brio_canonical_points(ctx, points, num_points, &order));
     brio_copy_points(points, order, num_points, scaled);
-    brio_scale(ctx, scaled, 3 * num_points, -exponent, scaled);
+    BRIO_TRY(brio_scale(ctx, scaled, 3 * num_points, -exponent, scaled));
     brio_sample_evidence evidence = {.order = order, .exponent = exponent};
     BRIO_TRY(brio_take_evidence(ctx, options->evidence, num_points, &evidence));
     BRIO_TRY(brio_cocone_surface_find(ctx, scaled, num_points, options, &evidence, surface));

@@ -146,11 +146,12 @@ static void select_part(void *user, size_t begin, size_t end, int thread) {
     __atomic_fetch_add(&s->found, found, __ATOMIC_RELAXED);
 }
 
-void brio_cocones_select(brio_context *ctx, brio_cocones *c, size_t *count) {
+brio_status brio_cocones_select(brio_context *ctx, brio_cocones *c, size_t *count) {
     size_t size = c->dual->t.count;
     int threads = brio_threads(ctx, size, TETS_A_THREAD);
     selection s = {.cocones = c, .alone = threads == 1};
     count_sides(s.counts);
-    brio_for(ctx, threads, size, select_part, &s);
+    brio_status status = brio_for(ctx, threads, size, select_part, &s);
     *count = s.found;
+    return status;
 }

@@ -21,7 +21,7 @@ void brio_cocones_free(brio_context *ctx, brio_cocones *c);
 /** Finds the candidates; call once. A facet is a candidate if its dual Voronoi edge meets the co-cone of each of its
  *  samples that is no boundary sample. If all three are boundary samples, the edge must meet all three co-cones.
  *  count  receives the number of candidates. */
-void brio_cocones_select(brio_context *ctx, brio_cocones *c, size_t *count);
+brio_status brio_cocones_select(brio_context *ctx, brio_cocones *c, size_t *count);
 
 /** Returns whether the Voronoi edge of a facet meets the co-cone of its sample v. The edge misses the co-cone exactly
  *  if both its ends lie in the same cone of v: each cone is convex, and between the two cones the edge crosses the

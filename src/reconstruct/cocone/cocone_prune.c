@@ -162,7 +162,7 @@ brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *labels, 
                  .t = &labels->dual->t,
                  .points = labels->dual->points};
     *dropped = 0;
-    brio_for_chunks(ctx, brio_threads(ctx, x.t->count, CHUNK), x.t->count, CHUNK, find_sharp, &x);
+    BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, x.t->count, CHUNK), x.t->count, CHUNK, find_sharp, &x));
     BRIO_TRY(x.status);
     if (x.size > 0) brio_sort_indices(x.stack, x.size, compare_facets, NULL);
     while (x.size > 0) {

@@ -69,7 +69,7 @@ static brio_status find_candidates(reconstruction *r) {
         BRIO_TRY(brio_boundary_samples(r->ctx, &r->cocones, &r->out->boundary, &s->boundary_samples));
         r->cocones.boundary = r->out->boundary;
     }
-    brio_cocones_select(r->ctx, &r->cocones, &s->candidates);
+    BRIO_TRY(brio_cocones_select(r->ctx, &r->cocones, &s->candidates));
     BRIO_REQUIRE(r->ctx, s->candidates > 0, BRIO_ERR_NO_ANSWER, "no triangle passes the co-cone test");
     lap(r, &s->candidates_seconds);
 done:

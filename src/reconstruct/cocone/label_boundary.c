@@ -52,7 +52,7 @@ brio_status brio_boundary_facets(brio_context *ctx, const brio_tet_labels *label
     size_t size = labels->dual->t.count;
     *out = (brio_facets){0};
     listing all = {ctx, labels, parts, size, BRIO_OK};
-    brio_for_chunks(ctx, brio_threads(ctx, size, TETS_A_THREAD), PARTS, 1, list_parts, &all);
+    BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, size, TETS_A_THREAD), PARTS, 1, list_parts, &all));
     BRIO_TRY(all.status);
     for (int i = 0; i < PARTS; i++) out->count += parts[i].count;
     BRIO_TRY(BRIO_ALLOC(ctx, out->facet, out->count));

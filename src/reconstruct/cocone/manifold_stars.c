@@ -149,7 +149,7 @@ static brio_status enqueue_singular(repair *r, const uint32_t *facets, size_t co
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, singular, n));
     deal_corners(r, facets, count, end, corner);
     fan_marks marks = {end, corner, singular};
-    brio_for(r->ctx, brio_threads(r->ctx, n, SAMPLES_A_THREAD), n, mark_singular, &marks);
+    BRIO_TRY(brio_for(r->ctx, brio_threads(r->ctx, n, SAMPLES_A_THREAD), n, mark_singular, &marks));
     for (size_t v = 0; v < n; v++)
         if (singular[v]) BRIO_TRY(enqueue(r, (uint32_t)v));
 done:

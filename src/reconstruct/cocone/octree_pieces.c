@@ -129,7 +129,7 @@ brio_status brio_pieces_new(brio_context *ctx, const double *points, size_t num_
     BRIO_TRY(BRIO_ALLOC(ctx, out->piece_of, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, keys, num_points));
     for (size_t n = 0; n < num_points; n++) out->order[n] = (uint32_t)n;
-    brio_hilbert_keys(ctx, points, num_points, BITS, keys);
+    BRIO_TRY(brio_hilbert_keys(ctx, points, num_points, BITS, keys));
     BRIO_TRY(brio_radix_sort(ctx, keys, out->order, num_points, 3 * BITS));
     sort_ties(points, num_points, keys, out->order);
     brio_name_coincident(points, num_points, out->order);

@@ -105,7 +105,7 @@ brio_status brio_mend_rim_axes(brio_context *ctx, brio_pole_vectors *v) {
     for (uint32_t p = 0, at = 0; p < v->num_points; p++)
         if (on_hull[p]) sample[at++] = p;
     BRIO_TRY(brio_point_tree_new(ctx, v->points, v->num_points, &tree));
-    brio_for(ctx, brio_threads(ctx, count, SAMPLES_A_THREAD), count, mend_axes, &(mender){v, &tree, sample});
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, count, SAMPLES_A_THREAD), count, mend_axes, &(mender){v, &tree, sample}));
 done:
     brio_point_tree_free(ctx, &tree);
     brio_release(ctx, on_hull);

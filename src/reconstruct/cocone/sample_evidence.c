@@ -168,10 +168,10 @@ brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e
         if (!(kind == BRIO_EVIDENCE_NORMALS ? given->normals : given->origins)) continue;
         w.kind = kind;
         for (int i = 0; i < CLASSES; i++) w.agree[i] = w.pairs[i] = 0;
-        brio_for(ctx, threads, n, find_cosines, &w);
-        brio_for(ctx, brio_threads(ctx, tets, TETS_A_THREAD), tets, count_pairs, &w);
+        BRIO_TRY(brio_for(ctx, threads, n, find_cosines, &w));
+        BRIO_TRY(brio_for(ctx, brio_threads(ctx, tets, TETS_A_THREAD), tets, count_pairs, &w));
         if (!weigh_classes(&w)) continue;
-        brio_for(ctx, threads, n, add_weights, &w);
+        BRIO_TRY(brio_for(ctx, threads, n, add_weights, &w));
         *used |= kind;
     }
 done:

@@ -160,7 +160,8 @@ static brio_status join_sorted(forest *f, int class, const uint32_t *before) {
         order[count++] = (uint32_t)i;
     }
     BRIO_TRY(BRIO_ALLOC(f->ctx, keys, count));
-    brio_for(f->ctx, brio_threads(f->ctx, count, LINKS_A_THREAD), count, find_keys, &(keyed_links){f, order, keys});
+    BRIO_TRY(brio_for(f->ctx, brio_threads(f->ctx, count, LINKS_A_THREAD), count, find_keys,
+                      &(keyed_links){f, order, keys}));
     BRIO_TRY(brio_radix_sort(f->ctx, keys, order, count, KEY_BITS));
     for (size_t begin = 0, end; begin < count; begin = end) {
         for (end = begin + 1; end < count && keys[end] == keys[begin];) end++;

@@ -79,7 +79,7 @@ static brio_status find_piece(assembly *a, uint32_t piece) {
     BRIO_TRY(brio_piece_samples(ctx, &a->pieces, piece, &samples, &count));
     BRIO_TRY(BRIO_ALLOC(ctx, points, 3 * count));
     brio_copy_points(a->points, samples, count, points);
-    brio_scale(ctx, points, 3 * count, -a->exponent, points);
+    BRIO_TRY(brio_scale(ctx, points, 3 * count, -a->exponent, points));
     status = brio_cocone_surface_find(ctx, points, count, a->options, NULL, &s);
     if (status == BRIO_ERR_NO_ANSWER) status = BRIO_OK;
     if (status != BRIO_OK) goto done;

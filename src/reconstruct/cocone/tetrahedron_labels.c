@@ -72,19 +72,21 @@ static void vote_in_part(void *user, size_t begin, size_t end, int thread) {
     __atomic_fetch_add(&v->undecided, label_by_votes(v->labels, begin, end), __ATOMIC_RELAXED);
 }
 
-/* Labels all tetrahedra. Returns the number of tetrahedra without a majority. */
-static size_t label_all_by_votes(brio_context *ctx, brio_tet_labels *labels) {
+/* Labels all tetrahedra. Writes the number of tetrahedra without a majority. */
+static brio_status label_all_by_votes(brio_context *ctx, brio_tet_labels *labels, size_t *undecided) {
     voting v = {labels, 0};
     size_t size = labels->dual->t.count;
-    brio_for(ctx, brio_threads(ctx, size, TETS_A_THREAD), size, vote_in_part, &v);
-    return v.undecided;
+    brio_status status = brio_for(ctx, brio_threads(ctx, size, TETS_A_THREAD), size, vote_in_part, &v);
+    *undecided = v.undecided;
+    return status;
 }
 
 brio_status brio_tet_labels_vote(brio_context *ctx, brio_tet_labels *labels) {
     brio_status status = BRIO_OK;
-    size_t count = labels->dual->t.count;
+    size_t count = labels->dual->t.count, undecided;
     BRIO_TRY(BRIO_ALLOC(ctx, labels->label, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, labels->undecided, label_all_by_votes(ctx, labels)));
+    BRIO_TRY(label_all_by_votes(ctx, labels, &undecided));
+    BRIO_TRY(BRIO_ALLOC(ctx, labels->undecided, undecided));
     for (size_t tet = 0; tet < count; tet++)
         if (labels->label[tet] == BRIO_LABEL_NONE) labels->undecided[labels->num_undecided++] = (uint32_t)tet;
 done:

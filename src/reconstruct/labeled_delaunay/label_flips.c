@@ -35,7 +35,7 @@ brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_
     BRIO_TRY(BRIO_ALLOC(ctx, out->outer, out->num_samples));
     BRIO_TRY(BRIO_ALLOC(ctx, out->place, out->num_tets));
     memset(out->place, 255, out->num_tets * sizeof *out->place);
-    brio_for(ctx, brio_threads(ctx, out->num_samples, SAMPLES_A_THREAD), out->num_samples, sum_votes, out);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, out->num_samples, SAMPLES_A_THREAD), out->num_samples, sum_votes, out));
 done:
     return status;
 }

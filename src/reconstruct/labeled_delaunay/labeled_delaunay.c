@@ -92,7 +92,7 @@ static brio_status take_samples(reconstruction *r, const double *points) {
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->points, 3 * n));
     BRIO_TRY(brio_canonical_points(r->ctx, points, n, &r->order));
     brio_copy_points(points, r->order, n, r->points);
-    brio_scale(r->ctx, r->points, 3 * n, -r->exponent, r->points);
+    BRIO_TRY(brio_scale(r->ctx, r->points, 3 * n, -r->exponent, r->points));
 done:
     return status;
 }
@@ -167,7 +167,7 @@ static brio_status orient(reconstruction *r) {
     size_t candidates;
     BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
-    brio_cocones_select(r->ctx, &cocones, &candidates);
+    BRIO_TRY(brio_cocones_select(r->ctx, &cocones, &candidates));
     BRIO_TRY(brio_orient_samples(r->ctx, &cocones, &r->turned));
     BRIO_TRY(orient_by_evidence(r, &cocones));
     lap(r, &r->stats.poles_seconds);
@@ -209,7 +209,7 @@ static brio_status label(reconstruction *r) {
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, num_tets + r->num_points));
     BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, r->own, &r->graph));
     BRIO_TRY(brio_vote_labels(&r->graph, r->turned, r->label, &r->stats.undecided));
-    r->stats.energy = brio_vote_energy(&r->graph, r->label);
+    BRIO_TRY(brio_vote_energy(&r->graph, r->label, &r->stats.energy));
     lap(r, &r->stats.labels_seconds);
     if (r->own) BRIO_TRY(brio_drop_hull_patches(r->ctx, &r->dual, r->label));
     BRIO_TRY(drop_specks(r));

@@ -89,7 +89,6 @@ static void look_part(void *user, size_t begin, size_t end, int thread) {
     brio_mending own = {.flips = &flips};
     brio_star_parts s;
     flips.place = l->place + (size_t)thread * flips.num_tets;
-    memset(flips.place, 255, flips.num_tets * sizeof *flips.place);
     for (size_t p = begin; p < end; p++) {
         tally now = count(&own, (uint32_t)p, &s);
         l->m->surplus[p] = (uint8_t)now.surplus;
@@ -105,7 +104,8 @@ static brio_status look_at_all(brio_mending *m) {
     int threads = brio_threads(f->ctx, f->num_samples, SAMPLES_A_THREAD);
     if (threads > MOST_PLACES) threads = MOST_PLACES;
     BRIO_TRY(BRIO_ALLOC(f->ctx, l.place, (size_t)threads * f->num_tets));
-    brio_for(f->ctx, threads, f->num_samples, look_part, &l);
+    memset(l.place, 255, (size_t)threads * f->num_tets * sizeof *l.place);
+    BRIO_TRY(brio_for(f->ctx, threads, f->num_samples, look_part, &l));
     for (uint32_t p = 0; p < f->num_samples; p++) {
         m->singular += m->surplus[p] > 0;
         m->all_fans += m->fans[p];
@@ -308,7 +308,7 @@ brio_status brio_mend(brio_mending *m) {
     brio_status status = BRIO_OK;
     int64_t price = BRIO_FLIP_UNIT / 4;
     for (int i = 0; i < PRICES && m->size > 0; i++, price *= 2) {
-        brio_sort_indices(m->queue, m->size, compare_numbers, NULL);
+        BRIO_TRY(brio_sort_many_indices(m->flips->ctx, m->queue, m->size, compare_numbers, NULL));
         BRIO_TRY(mend_at(m, price));
     }
 done:

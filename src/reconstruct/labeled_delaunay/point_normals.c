@@ -53,8 +53,7 @@ done:
 
 static brio_status scale_to_one(point_set *s, const double *coordinates, size_t count, double **scaled) {
     brio_status status = BRIO_ALLOC(s->ctx, *scaled, 3 * count);
-    if (status == BRIO_OK) brio_scale(s->ctx, coordinates, 3 * count, -s->exponent, *scaled);
-    return status;
+    return status == BRIO_OK ? brio_scale(s->ctx, coordinates, 3 * count, -s->exponent, *scaled) : status;
 }
 
 /* Gives duplicates of known points their vertices. */

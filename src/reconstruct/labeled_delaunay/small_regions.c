@@ -79,11 +79,11 @@ brio_status brio_drop_small_regions(brio_context *ctx, const brio_tetrahedra *t,
     *changed = 0;
     BRIO_TRY(BRIO_ALLOC(ctx, s.parent, t->count));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.boundary, t->count));
-    brio_for(ctx, threads, t->count, make_regions, &s);
-    brio_for(ctx, threads, t->count, join_regions, &s);
-    brio_for(ctx, threads, t->count, count_facets, &s);
-    brio_for(ctx, threads, t->count, keep_infinite, &s);
-    brio_for(ctx, threads, t->count, drop_regions, &s);
+    BRIO_TRY(brio_for(ctx, threads, t->count, make_regions, &s));
+    BRIO_TRY(brio_for(ctx, threads, t->count, join_regions, &s));
+    BRIO_TRY(brio_for(ctx, threads, t->count, count_facets, &s));
+    BRIO_TRY(brio_for(ctx, threads, t->count, keep_infinite, &s));
+    BRIO_TRY(brio_for(ctx, threads, t->count, drop_regions, &s));
     *changed = s.small;
 done:
     brio_release(ctx, s.parent);

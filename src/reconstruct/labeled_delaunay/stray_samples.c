@@ -56,22 +56,25 @@ static bool limit(const search *s, uint32_t p, uint32_t q, double square) {
     return true;
 }
 
-/* Passes over the edges of all tetrahedra, each edge as often as it has tetrahedra. Returns whether a limit changed. */
-static bool sweep(const search *s, bool backwards, bool first) {
-    bool changed = false;
+/* Passes over the edges of all tetrahedra, each edge as often as it has tetrahedra. Writes whether a limit changed. */
+static brio_status sweep(brio_context *ctx, const search *s, bool backwards, bool first, bool *changed) {
+    brio_status status = BRIO_OK;
+    *changed = false;
     for (size_t n = 0; n < s->num_tets; n++) {
         const uint32_t *v = s->tet[backwards ? s->num_tets - 1 - n : n].vertex;
+        BRIO_TRY(brio_look(ctx, 4));
         for (int j = 1; j < 4; j++)
             for (int k = 0; k < j; k++) {
                 if (v[j] >= s->num_points || v[k] >= s->num_points) continue;
                 double square = brio_square_distance(s->points + 3 * (size_t)v[j], s->points + 3 * (size_t)v[k]);
-                changed |= limit(s, v[j], v[k], square) | limit(s, v[k], v[j], square);
+                *changed |= limit(s, v[j], v[k], square) | limit(s, v[k], v[j], square);
                 if (!first) continue;
                 offer(&s->near[v[j]], v[k], square);
                 offer(&s->near[v[k]], v[j], square);
             }
     }
-    return changed;
+done:
+    return status;
 }
 
 /* Marks the samples whose second nearest sample is over `times` as far away as is allowed. Returns their number. */
@@ -96,8 +99,8 @@ brio_status brio_find_strays(brio_context *ctx, const brio_triangulation *t, con
         s.near[p] = (pair){INFINITY, INFINITY, UINT32_MAX};
         s.allowed[p] = spacing[p];
     }
-    for (int n = 0; n < SWEEPS; n++)
-        if (!sweep(&s, n % 2 == 1, n == 0)) break;
+    bool changed = true;
+    for (int n = 0; n < SWEEPS && changed; n++) BRIO_TRY(sweep(ctx, &s, n % 2 == 1, n == 0, &changed));
     bool many = (double)mark(&s, SUSPECT, stray) > MANY * (double)vertices;
     size_t count = mark(&s, many ? LIKELY : LONELY, stray);
     if ((double)count > MOST * (double)vertices) mark(&s, INFINITY, stray);

@@ -111,10 +111,10 @@ brio_status brio_vote_confidence(const brio_vote_graph *g, const uint8_t *label,
     judgement j = {.g = g, .label = label, .confidence = confidence};
     BRIO_TRY(BRIO_ALLOC(g->ctx, j.own, n));
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, j.round, n));
-    brio_for(g->ctx, threads, n, count_own_votes, &j);
+    BRIO_TRY(brio_for(g->ctx, threads, n, count_own_votes, &j));
     for (size_t i = 0; i < facets->count; i++) add_margin(&j, facets->facet[i]);
     for (size_t i = 0; i < facets->count; i++) pool(&j, facets->facet[i]);
-    brio_for(g->ctx, threads, n, judge, &j);
+    BRIO_TRY(brio_for(g->ctx, threads, n, judge, &j));
 done:
     brio_release(g->ctx, j.own);
     brio_release(g->ctx, j.round);

@@ -65,7 +65,7 @@ brio_status brio_vote_cut_new(const brio_vote_graph *g, const uint8_t *open, bri
     BRIO_TRY(list_open(out, &count));
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->wanted, g->dual->t.count));
     BRIO_TRY(brio_tet_flow_new(g->ctx, &g->dual->t, out->list, count, &out->flow));
-    brio_for(g->ctx, brio_threads(g->ctx, count, TETS_A_THREAD), count, set_capacities, out);
+    BRIO_TRY(brio_for(g->ctx, brio_threads(g->ctx, count, TETS_A_THREAD), count, set_capacities, out));
 done:
     return status;
 }
@@ -99,15 +99,18 @@ static void sum_votes(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-void brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out) {
+brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out) {
+    brio_status status = BRIO_OK;
     brio_context *ctx = c->g->ctx;
     terminals t = {c, label, (int32_t)(bias * BRIO_VOTE_UNIT * CAPACITY)};
-    brio_for(ctx, brio_threads(ctx, c->flow.num_open, TETS_A_THREAD), c->flow.num_open, sum_votes, &t);
-    brio_tet_flow_run(&c->flow);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, c->flow.num_open, TETS_A_THREAD), c->flow.num_open, sum_votes, &t));
+    BRIO_TRY(brio_tet_flow_run(&c->flow));
     if (out != label)
         for (size_t tet = 0; tet < c->g->num_free; tet++) out[tet] = label[tet];
     for (size_t i = 0; i < c->flow.num_open; i++) {
         uint32_t tet = tet_at(c, i);
         out[tet] = c->flow.side[tet] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
     }
+done:
+    return status;
 }

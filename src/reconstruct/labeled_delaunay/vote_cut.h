@@ -26,6 +26,6 @@ void brio_vote_cut_free(brio_vote_cut *c);
  *  bias   log-odds that are added to the votes of every open tetrahedron for outer; not over 100.
  *  label  #nodes of the graph.
  *  out    #T, written for tetrahedra below g->num_free; may be `label`. */
-void brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out);
+brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out);
 
 #endif

@@ -175,10 +175,10 @@ static brio_status list_stars(const builder *b) {
     size_t n = b->dual->num_points;
     int threads = brio_threads(g->ctx, n, SAMPLES_A_THREAD);
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, l.next, n));
-    brio_for(g->ctx, threads, n, count_entries, &l);
+    BRIO_TRY(brio_for(g->ctx, threads, n, count_entries, &l));
     g->first[n] = brio_counts_to_places(l.next, 1, n, 0);
     for (size_t p = 0; p < n; p++) g->first[p] = l.next[p];
-    brio_for(g->ctx, threads, n, write_entries, &l);
+    BRIO_TRY(brio_for(g->ctx, threads, n, write_entries, &l));
 done:
     brio_release(g->ctx, l.next);
     return status;
@@ -192,13 +192,13 @@ brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, cons
     int threads = brio_threads(ctx, size, TETS_A_THREAD);
     *out = (brio_vote_graph){.ctx = ctx, .dual = dual, .num_free = own ? size : dual->num_finite, .own = own};
     BRIO_TRY(BRIO_ALLOC(ctx, out->vote, size));
-    brio_for(ctx, threads, size, find_cosines, &b);
+    BRIO_TRY(brio_for(ctx, threads, size, find_cosines, &b));
     brio_pole_vectors_drop(ctx, dual);
     BRIO_TRY(BRIO_ALLOC(ctx, out->facet, size));
     BRIO_TRY(BRIO_ALLOC(ctx, out->first, dual->num_points + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, out->star, 4 * dual->num_finite + 3 * hull));
-    brio_for(ctx, threads, size, weigh_facets, &b);
-    brio_for(ctx, threads, size, weigh_votes, &b);
+    BRIO_TRY(brio_for(ctx, threads, size, weigh_facets, &b));
+    BRIO_TRY(brio_for(ctx, threads, size, weigh_votes, &b));
     BRIO_TRY(list_stars(&b));
 done:
     return status;
@@ -249,10 +249,12 @@ static void sum_parts(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* Sums in PARTS parts for every number of threads, so that the rounding does not depend on the threads. */
-double brio_vote_energy(const brio_vote_graph *g, const uint8_t *label) {
+brio_status brio_vote_energy(const brio_vote_graph *g, const uint8_t *label, double *out) {
     energy e = {.g = g, .label = label};
     double sum = 0;
-    brio_for_chunks(g->ctx, brio_threads(g->ctx, g->dual->t.count, TETS_A_THREAD), PARTS, 1, sum_parts, &e);
-    for (int i = 0; i < PARTS; i++) sum += e.part[i];
-    return sum;
+    int threads = brio_threads(g->ctx, g->dual->t.count, TETS_A_THREAD);
+    brio_status status = brio_for_chunks(g->ctx, threads, PARTS, 1, sum_parts, &e);
+    for (int i = 0; status == BRIO_OK && i < PARTS; i++) sum += e.part[i];
+    *out = sum;
+    return status;
 }

@@ -52,6 +52,6 @@ static inline uint32_t brio_star_tet(uint32_t entry) {
 
 /** Returns the energy of labels, in the unit of the weights: the sum of |weight| over the edges that the labels
  *  contradict. Does not depend on the number of threads. */
-double brio_vote_energy(const brio_vote_graph *g, const uint8_t *label);
+brio_status brio_vote_energy(const brio_vote_graph *g, const uint8_t *label, double *out);
 
 #endif

@@ -65,9 +65,9 @@ static brio_status take_turns(voting *v) {
     BRIO_TRY(brio_vote_cut_new(v->g, NULL, &cut));
     for (int turn = 0; turn < TURNS; turn++) {
         BRIO_TRY(brio_progress(v->ctx, "label", 0.6 * turn / TURNS));
-        brio_vote_cut_find(&cut, 0, v->label, v->label);
+        BRIO_TRY(brio_vote_cut_find(&cut, 0, v->label, v->label));
         v->turned = 0;
-        brio_for(v->ctx, brio_threads(v->ctx, v->num_samples, NODES_A_THREAD), v->num_samples, turn_part, v);
+        BRIO_TRY(brio_for(v->ctx, brio_threads(v->ctx, v->num_samples, NODES_A_THREAD), v->num_samples, turn_part, v));
         if (v->turned <= v->num_samples / FEW) break;
     }
 done:
@@ -134,7 +134,7 @@ brio_status brio_vote_labels(const brio_vote_graph *g, const uint8_t *turned, ui
     BRIO_TRY(take_turns(&v));
     BRIO_TRY(BRIO_ALLOC(v.ctx, v.fixed, v.num_tets + v.num_samples));
     memset(v.fixed, 1, v.num_tets + v.num_samples);
-    brio_for(v.ctx, brio_threads(v.ctx, v.num_samples, NODES_A_THREAD), v.num_samples, free_contested, &v);
+    BRIO_TRY(brio_for(v.ctx, brio_threads(v.ctx, v.num_samples, NODES_A_THREAD), v.num_samples, free_contested, &v));
     BRIO_TRY(settle_contested(&v, undecided));
 done:
     brio_release(v.ctx, v.fixed);

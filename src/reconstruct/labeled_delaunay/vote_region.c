@@ -118,7 +118,7 @@ brio_status brio_vote_region_new(const brio_vote_graph *g, const uint8_t *fixed,
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->first, out->count + 1));
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->edge, bound));
     list_nodes(&c);
-    brio_for(g->ctx, brio_threads(g->ctx, out->num_nodes, NODES_A_THREAD), out->num_nodes, copy_nodes, &c);
+    BRIO_TRY(brio_for(g->ctx, brio_threads(g->ctx, out->num_nodes, NODES_A_THREAD), out->num_nodes, copy_nodes, &c));
 done:
     brio_release(g->ctx, c.number);
     return status;

@@ -158,7 +158,7 @@ done:
 static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_progress(s->f->ctx, "handles", 1));
-    brio_vote_cut_find(&s->cut, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning);
+    BRIO_TRY(brio_vote_cut_find(&s->cut, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning));
     for (uint32_t tet = 0; tet < s->f->num_finite; tet++)
         if (leans(s, tet, label) && collect_patch(s, tet, label) && !brio_flips_deform(s->m, s->patch, s->patch_size))
             BRIO_TRY(weigh_patch(s, label));

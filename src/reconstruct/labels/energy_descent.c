@@ -51,7 +51,7 @@ static brio_status settle_round(const problem *pr, const brio_node_blocks *b, si
     round_of_blocks r = {pr, b, b->block + b->first_round[round], BRIO_OK};
     size_t blocks = b->first_round[round + 1] - b->first_round[round];
     int threads = blocks < (size_t)pr->threads ? (int)blocks : pr->threads;
-    brio_for_chunks(pr->g->ctx, threads, blocks, 1, settle_part, &r);
+    brio_report(&r.status, brio_for_chunks(pr->g->ctx, threads, blocks, 1, settle_part, &r));
     return r.status;
 }
 
@@ -138,10 +138,11 @@ static void sum_parts(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* Sums in PARTS parts for every number of threads, so that the rounding does not depend on the threads. */
-double brio_label_energy(const brio_signed_graph *g, const uint8_t *label) {
+brio_status brio_label_energy(const brio_signed_graph *g, const uint8_t *label, double *out) {
     energy e = {.g = g, .label = label};
     double sum = 0;
-    brio_for_chunks(g->ctx, brio_threads(g->ctx, g->count, NODES_A_SUM), PARTS, 1, sum_parts, &e);
-    for (int i = 0; i < PARTS; i++) sum += e.part[i];
-    return sum;
+    brio_status status = brio_for_chunks(g->ctx, brio_threads(g->ctx, g->count, NODES_A_SUM), PARTS, 1, sum_parts, &e);
+    for (int i = 0; status == BRIO_OK && i < PARTS; i++) sum += e.part[i];
+    *out = sum;
+    return status;
 }

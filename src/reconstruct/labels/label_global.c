@@ -37,7 +37,7 @@ brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_lab
     BRIO_TRY(BRIO_ALLOC(g->ctx, before, n));
     brio_label_certain(g, certain);
     settle_beyond_box(g, certain, label);
-    stats->energy_greedy = brio_label_energy(&signs, label);
+    BRIO_TRY(brio_label_energy(&signs, label, &stats->energy_greedy));
     memcpy(before, label, n);
     BRIO_TRY(brio_lower_energy(&signs, certain, &descent, label));
     stats->undecided = descent.undecided;

@@ -41,7 +41,7 @@ brio_status brio_label_by_solid(brio_context *ctx, const brio_poles *poles, int 
         size_t count = poles->count - begin < STEP ? poles->count - begin : STEP;
         labeller l = {&solid, poles->centre + 3 * begin, exponent, label + begin};
         BRIO_TRY(brio_progress(ctx, "label", (double)begin / (double)poles->count));
-        brio_for_chunks(ctx, brio_threads(ctx, count, POLES_A_THREAD), count, CHUNK, label_part, &l);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, POLES_A_THREAD), count, CHUNK, label_part, &l));
     }
 done:
     brio_solid_free(ctx, &solid);

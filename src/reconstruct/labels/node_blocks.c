@@ -72,11 +72,14 @@ static void hop_from(void *user, size_t begin, size_t end, int thread) {
         if (__atomic_load_n(&f->depth[p], __ATOMIC_RELAXED) == f->hop) reach_neighbours(f, (uint32_t)p, f->hop + 1);
 }
 
-static void mark_region(finder *f) {
+static brio_status mark_region(finder *f) {
+    brio_status status = BRIO_OK;
     brio_context *ctx = f->g->ctx;
     size_t n = f->g->count;
-    brio_for_chunks(ctx, f->threads, n, NODES_A_CHUNK, mark_troubled, f);
-    for (f->hop = 0; f->hop < HOPS; f->hop++) brio_for_chunks(ctx, f->threads, n, NODES_A_CHUNK, hop_from, f);
+    BRIO_TRY(brio_for_chunks(ctx, f->threads, n, NODES_A_CHUNK, mark_troubled, f));
+    for (f->hop = 0; f->hop < HOPS; f->hop++) BRIO_TRY(brio_for_chunks(ctx, f->threads, n, NODES_A_CHUNK, hop_from, f));
+done:
+    return status;
 }
 
 static brio_status list_region(finder *f) {
@@ -84,7 +87,7 @@ static brio_status list_region(finder *f) {
     brio_node_blocks *b = f->out;
     size_t n = f->g->count, count = 0;
     BRIO_TRY(BRIO_ALLOC(b->ctx, f->depth, n));
-    mark_region(f);
+    BRIO_TRY(mark_region(f));
     for (size_t p = 0; p < n; p++) b->count += f->depth[p] != OUTSIDE;
     BRIO_TRY(BRIO_ALLOC(b->ctx, b->node, b->count));
     for (size_t p = 0; p < n; p++)
@@ -128,9 +131,9 @@ static brio_status sort_along_curve(finder *f, uint64_t draw) {
     size_t n = b->count;
     BRIO_TRY(BRIO_ALLOC(b->ctx, f->points, 3 * (n + 2)));
     BRIO_TRY(BRIO_ALLOC(b->ctx, keys, n + 2));
-    brio_for(b->ctx, f->threads, n, copy_positions, f);
+    BRIO_TRY(brio_for(b->ctx, f->threads, n, copy_positions, f));
     draw_cube(f->points, n, draw);
-    brio_hilbert_keys(b->ctx, f->points, n + 2, CURVE_BITS, keys);
+    BRIO_TRY(brio_hilbert_keys(b->ctx, f->points, n + 2, CURVE_BITS, keys));
     BRIO_TRY(brio_radix_sort(b->ctx, keys, b->node, n, 3 * CURVE_BITS));
 done:
     brio_release(b->ctx, f->points);
@@ -187,7 +190,7 @@ static brio_status join_all(finder *f) {
     brio_context *ctx = f->out->ctx;
     size_t n = f->out->num_blocks;
     for (int t = 0; t < f->threads; t++) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f->joiners[t].seen, n));
-    brio_for_chunks(ctx, n < (size_t)f->threads ? (int)n : f->threads, n, 1, join_part, f);
+    BRIO_TRY(brio_for_chunks(ctx, n < (size_t)f->threads ? (int)n : f->threads, n, 1, join_part, f));
     status = f->joined;
 done:
     return status;
@@ -202,7 +205,7 @@ static brio_status list_pairs(finder *f) {
     BRIO_TRY(BRIO_ALLOC(ctx, f->pair, f->num_pairs));
     for (size_t t = 0, count = 0; t < (size_t)f->threads; count += f->joiners[t++].count)
         if (f->joiners[t].count) memcpy(f->pair + count, f->joiners[t].pair, f->joiners[t].count * sizeof *f->pair);
-    brio_sort_keys(f->pair, f->num_pairs);
+    BRIO_TRY(brio_sort_many_keys(ctx, f->pair, f->num_pairs));
 done:
     for (int t = 0; f->joiners && t < f->threads; t++) {
         brio_release(ctx, f->joiners[t].pair);

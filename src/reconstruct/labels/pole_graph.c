@@ -144,9 +144,9 @@ static brio_status note_all(builder *b, double from, double to) {
         size_t count = g->diagram->num_finite - b->start < STEP ? g->diagram->num_finite - b->start : STEP;
         BRIO_TRY(
             brio_progress(g->ctx, "label", from + (to - from) * (double)b->start / (double)g->diagram->num_finite));
-        brio_for_chunks(g->ctx, b->threads, count, CHUNK, note_tetrahedra, b);
+        BRIO_TRY(brio_for_chunks(g->ctx, b->threads, count, CHUNK, note_tetrahedra, b));
     }
-    brio_for(g->ctx, b->threads, g->diagram->poles->count, note_hidden, b);
+    BRIO_TRY(brio_for(g->ctx, b->threads, g->diagram->poles->count, note_hidden, b));
 done:
     return status;
 }
@@ -185,7 +185,7 @@ static brio_status list_neighbours(builder *b) {
     BRIO_TRY(BRIO_ALLOC(ctx, b->low, b->first_low[n]));
     BRIO_TRY(note_all(b, 0.15, 0.3));
     memset(b->place, 0, n * sizeof *b->place);
-    brio_for_chunks(ctx, b->threads, n, CHUNK, weigh_part, b);
+    BRIO_TRY(brio_for_chunks(ctx, b->threads, n, CHUNK, weigh_part, b));
 done:
     return status;
 }
@@ -222,7 +222,7 @@ static void weigh_opposite(void *user, size_t begin, size_t end, int thread) {
 static brio_status list_opposite(builder *b) {
     brio_context *ctx = b->g->ctx;
     brio_status status = BRIO_ALLOC(ctx, b->opposite, b->g->diagram->num_samples);
-    if (status == BRIO_OK) brio_for(ctx, b->threads, b->g->diagram->num_samples, weigh_opposite, b);
+    if (status == BRIO_OK) status = brio_for(ctx, b->threads, b->g->diagram->num_samples, weigh_opposite, b);
     return status;
 }
 
@@ -293,9 +293,9 @@ static brio_status list_edges(brio_pole_graph *g, const uint32_t *representative
     BRIO_TRY(BRIO_ALLOC(ctx, g->first, n + 1));
     first_places(g->first, b.place, n);
     BRIO_TRY(BRIO_ALLOC(ctx, b.edge, g->first[n]));
-    brio_for(ctx, threads, n, deal_out_neighbours, &b);
-    brio_for(ctx, threads, g->diagram->num_samples, deal_out_opposite, &b);
-    brio_for_chunks(ctx, threads, n, CHUNK, sort_edges, &b);
+    BRIO_TRY(brio_for(ctx, threads, n, deal_out_neighbours, &b));
+    BRIO_TRY(brio_for(ctx, threads, g->diagram->num_samples, deal_out_opposite, &b));
+    BRIO_TRY(brio_for_chunks(ctx, threads, n, CHUNK, sort_edges, &b));
     g->edge = (brio_signed_edge *)b.edge; /* sort_edges overwrote the keys by edges, which have the same size */
     assert(runs_are_sorted(g));
 done:

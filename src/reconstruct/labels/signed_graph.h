@@ -28,7 +28,7 @@ static inline bool brio_label_violates(const uint8_t *label, uint32_t p, brio_si
 
 /** Returns the energy of labels: the sum of |weight| over the edges that the labels contradict, each edge counted
  *  once. Does not depend on the number of threads. */
-double brio_label_energy(const brio_signed_graph *g, const uint8_t *label);
+brio_status brio_label_energy(const brio_signed_graph *g, const uint8_t *label, double *out);
 
 /** What brio_lower_energy does, and what it counts. */
 typedef struct {

@@ -111,12 +111,14 @@ static void push_part(void *user, size_t from, size_t to, int thread) {
     keep_later(&p->time, f.trees.time);
 }
 
-void brio_tet_flow_run(brio_tet_flow *f) {
+brio_status brio_tet_flow_run(brio_tet_flow *f) {
     pushing p = {f, f->trees.time};
     int threads = brio_threads(f->ctx, f->num_open, f->part_size);
-    brio_for_chunks(f->ctx, threads, f->num_open, f->part_size, push_part, &p);
+    brio_status status = brio_for_chunks(f->ctx, threads, f->num_open, f->part_size, push_part, &p);
+    if (status != BRIO_OK) return status;
     f->from = 0, f->to = f->num_open, f->started = true;
     f->trees = (brio_flow_trees){.room = f->num_open, .time = p.time, .active_head = NO_NODE};
     open_borders(f);
     push(f);
+    return BRIO_OK;
 }

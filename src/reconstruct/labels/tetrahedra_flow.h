@@ -39,6 +39,6 @@ void brio_tet_flow_free(brio_tet_flow *f);
  *  part_size.
  *  Based on: [Boykov Kolmogorov 2004]; Kohli, Torr. Dynamic graph cuts for efficient inference in Markov random fields.
  *            IEEE PAMI 2007. Liu, Sun. Parallel graph-cuts by adaptive bottom-up merging. CVPR 2010. */
-void brio_tet_flow_run(brio_tet_flow *f);
+brio_status brio_tet_flow_run(brio_tet_flow *f);
 
 #endif

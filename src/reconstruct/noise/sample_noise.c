@@ -92,7 +92,7 @@ static brio_status choose_samples(brio_context *ctx, const double *points, size_
     brio_status status = BRIO_OK;
     choosing c = {.points = points, .count = n};
     BRIO_TRY(BRIO_ALLOC(ctx, c.chosen, n));
-    brio_for(ctx, brio_threads(ctx, n, SAMPLES_A_THREAD), n, choose_part, &c);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, n, SAMPLES_A_THREAD), n, choose_part, &c));
     BRIO_TRY(list_chosen(ctx, &c, l));
     if (l->count == 0) goto done;
     BRIO_TRY(brio_radix_sort(ctx, l->hash, l->sample, l->count, 64));
@@ -178,7 +178,8 @@ static brio_status look_around(brio_context *ctx, const double *points, size_t c
     BRIO_TRY(BRIO_ALLOC(ctx, l->flat, l->count));
     BRIO_TRY(brio_point_boxes_new(ctx, points, count, &boxes));
     looking all = {&boxes, l};
-    brio_for_chunks(ctx, brio_threads(ctx, l->count, LOOKS_A_THREAD), l->count, LOOKS_A_THREAD, look_at_some, &all);
+    BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, l->count, LOOKS_A_THREAD), l->count, LOOKS_A_THREAD, look_at_some,
+                             &all));
 done:
     brio_point_boxes_free(ctx, &boxes);
     return status;
@@ -289,7 +290,7 @@ static brio_status smooth_all(brio_context *ctx, const smoothing *s, int pass) {
         size_t end = count - begin < BLOCK ? count : begin + BLOCK;
         BRIO_TRY(brio_progress(ctx, "noise", (pass + (double)begin / (double)count) / PASSES));
         smoothing_run run = {s, begin, pass == 0};
-        brio_for_chunks(ctx, brio_threads(ctx, end - begin, RUN), end - begin, RUN, smooth_run, &run);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, end - begin, RUN), end - begin, RUN, smooth_run, &run));
     }
 done:
     return status;

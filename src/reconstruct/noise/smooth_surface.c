@@ -175,12 +175,12 @@ static void mark_turned(void *user, size_t begin, size_t end, int thread) {
 }
 
 /* Moves vertices back until no face is turned. That ends: before the pass none was. */
-static void hold_back(brio_context *ctx, turning *t, size_t num_points, size_t num_faces) {
+static brio_status hold_back(brio_context *ctx, turning *t, size_t num_points, size_t num_faces) {
     for (int sweep = 0;; sweep++) {
         memset(t->held, 0, num_points);
         t->turned = 0;
-        brio_for(ctx, brio_threads(ctx, num_faces, FACES_A_THREAD), num_faces, mark_turned, t);
-        if (t->turned == 0) return;
+        brio_status status = brio_for(ctx, brio_threads(ctx, num_faces, FACES_A_THREAD), num_faces, mark_turned, t);
+        if (status != BRIO_OK || t->turned == 0) return status;
         for (size_t p = 0; p < num_points; p++) {
             const double *from = t->s->from + 3 * p;
             double *to = t->s->to + 3 * p;
@@ -206,9 +206,9 @@ brio_status brio_smooth_surface(brio_context *ctx, double *points, size_t num_po
         BRIO_TRY(brio_progress(ctx, "smooth", (double)pass / PASSES));
         memcpy(from, points, 3 * num_points * sizeof *from);
         add_normals(&s, num_points, faces, num_faces);
-        brio_for_chunks(ctx, brio_threads(ctx, num_points, VERTICES_A_THREAD), num_points, VERTICES_A_THREAD,
-                        smooth_part, &s);
-        hold_back(ctx, &t, num_points, num_faces);
+        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, num_points, VERTICES_A_THREAD), num_points, VERTICES_A_THREAD,
+                                 smooth_part, &s));
+        BRIO_TRY(hold_back(ctx, &t, num_points, num_faces));
     }
 done:
     brio_release(ctx, s.first);

@@ -133,11 +133,11 @@ brio_status brio_face_sizes(const brio_triangle_net *n, double *radius, double *
     BRIO_TRY(brio_net_leaving(n, &s.first, &s.leaving));
     BRIO_TRY(BRIO_ALLOC(n->ctx, s.own, n->num_points));
     BRIO_TRY(BRIO_ALLOC(n->ctx, s.size, n->num_points));
-    brio_for(n->ctx, by_faces, n->num_faces, measure_radii, &s);
-    brio_for(n->ctx, by_points, n->num_points, measure_samples, &s);
-    brio_for(n->ctx, by_points, n->num_points, limit_samples, &s);
+    BRIO_TRY(brio_for(n->ctx, by_faces, n->num_faces, measure_radii, &s));
+    BRIO_TRY(brio_for(n->ctx, by_points, n->num_points, measure_samples, &s));
+    BRIO_TRY(brio_for(n->ctx, by_points, n->num_points, limit_samples, &s));
     limit_growth(&s);
-    brio_for(n->ctx, by_faces, n->num_faces, measure_usual, &s);
+    BRIO_TRY(brio_for(n->ctx, by_faces, n->num_faces, measure_usual, &s));
 done:
     brio_release(n->ctx, s.first);
     brio_release(n->ctx, s.leaving);

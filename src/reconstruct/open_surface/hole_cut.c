@@ -107,7 +107,7 @@ static brio_status cut(cutting *c) {
     BRIO_TRY(BRIO_ALLOC(n->ctx, c->terminal, n->num_faces));
     BRIO_TRY(BRIO_ALLOC(n->ctx, c->rim, 3 * n->num_faces));
     BRIO_TRY(BRIO_ALLOC(n->ctx, edges, 3 * n->num_faces / 2));
-    brio_for(n->ctx, brio_threads(n->ctx, n->num_faces, FACES_A_THREAD), n->num_faces, price, c);
+    BRIO_TRY(brio_for(n->ctx, brio_threads(n->ctx, n->num_faces, FACES_A_THREAD), n->num_faces, price, c));
     for (uint32_t h = 0; h < 3 * n->num_faces; h++)
         if (c->rim[h] > 0) edges[count++] = (brio_flow_edge){h / 3, n->twin[h] / 3, c->rim[h]};
     BRIO_TRY(brio_flow_maximum(&flow, n->num_faces, edges, count, c->terminal, c->part));

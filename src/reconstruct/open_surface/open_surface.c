@@ -40,7 +40,7 @@ static brio_status find_spacing(const brio_triangle_net *n, double *spacing) {
     }
     for (size_t p = 0; p < n->num_points; p++)
         if (key[p] != UINT64_MAX) key[count++] = key[p];
-    brio_sort_keys(key, count);
+    BRIO_TRY(brio_sort_many_keys(n->ctx, key, count));
     memcpy(&value, &key[count / 2], sizeof value);
     *spacing = count ? sqrt(value) : 0;
 done:

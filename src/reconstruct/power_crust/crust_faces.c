@@ -126,10 +126,10 @@ static void sum_blocks(builder *b) {
 
 static brio_status make_vertices(builder *b) {
     brio_status status = BRIO_OK;
-    brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, count_vertices, b);
+    BRIO_TRY(brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, count_vertices, b));
     sum_blocks(b);
     BRIO_TRY(brio_mesh_set_vertices(b->mesh, NULL, b->blocks[b->num_blocks].vertices));
-    brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, fill_vertices, b);
+    BRIO_TRY(brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, fill_vertices, b));
     memset(b->blocks, 0, (b->num_blocks + 1) * sizeof *b->blocks);
 done:
     return status;
@@ -262,7 +262,7 @@ static brio_status make_faces(builder *b) {
     brio_context *ctx = b->mesh->context;
     brio_mesh *m = b->mesh;
     BRIO_TRY(brio_progress(ctx, "crust", 0.4));
-    brio_for_chunks(ctx, b->threads, b->num_blocks, 1, list_block, b);
+    BRIO_TRY(brio_for_chunks(ctx, b->threads, b->num_blocks, 1, list_block, b));
     BRIO_TRY(b->status);
     sum_blocks(b);
     const block_counts *total = &b->blocks[b->num_blocks];
@@ -272,7 +272,7 @@ static brio_status make_faces(builder *b) {
     BRIO_TRY(BRIO_ALLOC(ctx, m->face_vertices, total->corners));
     m->face_offsets[0] = 0;
     m->num_faces = total->faces;
-    brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, copy_faces, b);
+    BRIO_TRY(brio_for_chunks(b->mesh->context, b->threads, b->num_blocks, 1, copy_faces, b));
 done:
     return status;
 }

@@ -56,7 +56,7 @@ static brio_status take_samples(brio_labeled_poles *l, const double *points) {
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
     BRIO_TRY(brio_canonical_points(l->ctx, points, n, &l->order));
     brio_copy_points(points, l->order, n, l->points);
-    brio_scale(l->ctx, l->points, 3 * n, -l->exponent, l->points);
+    BRIO_TRY(brio_scale(l->ctx, l->points, 3 * n, -l->exponent, l->points));
 done:
     return status;
 }
@@ -204,7 +204,7 @@ static brio_status label_along_graph(brio_labeled_poles *l, brio_labeling labeli
     l->stats.toggled = s.toggled;
     l->stats.energy_greedy = s.energy_greedy;
     brio_signed_graph signs = brio_pole_signs(&l->graph);
-    l->stats.energy = brio_label_energy(&signs, l->label);
+    BRIO_TRY(brio_label_energy(&signs, l->label, &l->stats.energy));
 done:
     return status;
 }
