@@ -180,6 +180,10 @@ ERRORS = {
         "iso ball.map --level -4 -n 99 --resolution 9 -o out.ply", 1,
         ["iso ball.map --level -4 -n 99 -o out.ply", "iso ball.map --level -4 --resolution 9 -o out.ply"]),
     "no places: --at FILE is missing": ("locate few.xyz -o out.csv", 1, ["locate few.xyz --at few.xyz -o out.csv"]),
+    "only one of --first-conflict and --all-conflicts": (
+        "delaunay scan.ply --locate history --first-conflict --all-conflicts", 1,
+        ["delaunay scan.ply --locate history --first-conflict"]),
+    "no surface: --surface FILE is missing": ("restricted oct.off -o out.ply", 1, ["restricted oct.off --surface oct.off -o out.ply"]),
     "no distance: --distance D is missing": ("offset scan.ply -o out.ply", 1, ["offset scan.ply --distance 0.01 -o out.ply"]),
     "no output: -o FILE is missing": ("hull few.xyz", 1, ["hull few.xyz -o out.ply"]),
     "no output: --%s needs -o FILE": ("delaunay few.xyz --ascii", 1, ["delaunay few.xyz --ascii -o out.ply"]),
@@ -349,7 +353,7 @@ class Hints(CliTest):
             self.assertTrue(found, command)
             arguments = shlex.split(found.group(1))
             for name, source in [("points.ply", "cube.ply"), ("surface.ply", "oct.off"), ("truth.ply", "oct.off"),
-                                 ("mesh.ply", "oct.off"), ("atoms.xyz", "cube.ply"), ("places.xyz", "few.xyz")]:
+                                 ("mesh.ply", "oct.off"), ("samples.ply", "oct.off"), ("atoms.xyz", "cube.ply"), ("places.xyz", "few.xyz")]:
                 self.expect(0, "convert", source, name, "--quiet")
             self.file("stations.csv", "x,y,z,temperature\n" + "".join("%d,%d,%d,%d\n" % (*p, i) for i, p in enumerate(CUBE)))
             self.ball_map("emd_1234.map", 12)

@@ -61,6 +61,8 @@ class People(CliTest):
         yield "alpha", points, "--alpha", "auto", "-o", out
         yield "offset", points, "-D", "0.1", "-o", out
         yield "offset", mesh, "-D", "0.1", "-o", out
+        octahedron = self.off("o.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        yield "restricted", octahedron, "--surface", octahedron, "-o", out
         yield "check", mesh, "--self-intersections"
         yield "compare", mesh, mesh, "--samples", "100"
         yield "iso", self.ball_map("b.map", 12), "--level", "-3", "-o", out

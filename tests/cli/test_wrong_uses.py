@@ -114,7 +114,7 @@ USES = [
     ("delaunay cube.xyz -o {new}.doc", 1, "{new}.doc: this version writes", "--format"),
     ("delaunay cube.xyz -o {old}.ply --format doc", 1, "--format doc: this version writes"),
     ("delaunay cube.xyz -o {new}.pcd", 1, "{new}.pcd: ", "cannot hold the result"),
-    ("delaunay cube.xyz -o {new}.e57", 1, "{new}.e57: ", "read, not written"),
+    ("delaunay cube.xyz -o {new}.gltf", 1, "{new}.gltf: ", "read, not written"),
     ("delaunay cube.xyz -o -", 1, "-o - needs --format"),
     ("delaunay cube.xyz -o - --format node", 1, "cannot hold the two files .node and .ele"),
     ("delaunay cube.xyz -o - --format ply --json", 1, "--json and -o - both want standard output"),
