@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/scratch_file.h"
 #include "base/team.h"
+#include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,6 +35,7 @@ brio_status brio_context_new(const brio_allocator *allocator, brio_context **out
     const brio_allocator system = {system_alloc, system_realloc, system_free, NULL};
     const brio_allocator *a = allocator ? allocator : &system;
     int processors = brio_processors(), most = most_threads(processors);
+    assert(1 <= processors && processors <= most);
     brio_context *ctx = a->alloc(sizeof *ctx + brio_team_bytes(most), a->user);
     *out = ctx;
     if (!ctx) return BRIO_ERR_NO_MEMORY;
@@ -64,6 +66,7 @@ const char *brio_message(const brio_context *ctx) {
 }
 
 void brio_context_set_threads(brio_context *ctx, int threads) {
+    assert(ctx->most_threads >= 1);
     ctx->threads = threads < 0 ? 0 : threads < ctx->most_threads ? threads : ctx->most_threads;
 }
 
@@ -98,6 +101,7 @@ done:
 }
 
 brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...) {
+    assert(status != BRIO_OK); /* BRIO_TRY would go on */
     va_list arguments;
     va_start(arguments, format);
     pthread_mutex_lock(&ctx->lock); /* several threads may fail at a time */
@@ -112,10 +116,12 @@ static double place_in(brio_bar bar, double fraction) {
 }
 
 void brio_progress_part(brio_context *ctx, brio_bar bar, double from, double to) {
+    assert(0 <= from && from <= to && to <= 1 + 1e-9); /* up to rounding */
     ctx->bar = (brio_bar){place_in(bar, from), place_in(bar, to)};
 }
 
 brio_status brio_progress(brio_context *ctx, const char *stage, double fraction) {
+    assert(!(fraction < 0));
     ctx->stage = stage;
     ctx->share = place_in(ctx->bar, fraction);
     return brio_ask(ctx);

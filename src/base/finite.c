@@ -1,5 +1,6 @@
 /* Coordinates and weights that are no numbers, see finite.h. */
 #include "base/finite.h"
+#include <assert.h>
 #include <inttypes.h>
 #include <math.h>
 
@@ -16,6 +17,7 @@ static void count_row(brio_not_finite *found, uint64_t index, const double row[4
     size_t c = 0;
     if (found->count++ > 0) return;
     while (c < 3 && isfinite(row[c])) c++;
+    assert(!isfinite(row[c]));
     found->first = index;
     found->axis = NAME[c];
     found->what = isnan(row[c]) ? "NaN" : "infinite";
@@ -32,6 +34,7 @@ void brio_count_not_finite(brio_not_finite *found, uint64_t first, const double 
 
 brio_status brio_refuse_counted(brio_context *ctx, const brio_not_finite *found, const char *file) {
     if (found->count == 0) return BRIO_OK;
+    assert(found->axis && found->what);
     if (!file)
         return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %" PRIu64 ": %s is %s (%" PRIu64 " such point%s in all)",
                          found->first, found->axis, found->what, found->count, found->count == 1 ? "" : "s");

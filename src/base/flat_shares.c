@@ -5,6 +5,7 @@
  * vertex of the simplex, shares below 0 are cleared, and the nearest of these points counts. */
 #include "base/flat_shares.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -20,6 +21,7 @@ static double square_of(const double (*row)[3], int count, const double *share) 
 }
 
 int brio_shares_hold(const double (*row)[3], int count, const double *share) {
+    assert(count == 3 || count == 4);
     double most = 0;
     for (int i = 0; i < count; i++) most = fmax(most, brio_dot(row[i], row[i]));
     return square_of(row, count, share) <= NEAR * most;
@@ -46,6 +48,7 @@ static void project_to_plane(const double *a, const double *b, const double *c, 
 /* Projects 0 to the face whose vertices are the bits of `face`, one to three of them. Returns false if the face is too flat
  * for that. */
 static bool project(const double (*row)[3], int count, unsigned face, double *share) {
+    assert(face != 0 && face >> count == 0 && __builtin_popcount(face) <= 3);
     int corner[3], n = 0;
     double part[3] = {1, 0, 0}, sum = 0;
     for (int i = 0; i < count; i++) {
@@ -60,6 +63,7 @@ static bool project(const double (*row)[3], int count, unsigned face, double *sh
 }
 
 void brio_flat_shares(const double (*row)[3], int count, unsigned zeros, double *share) {
+    assert((count == 3 || count == 4) && zeros != (1u << count) - 1);
     double least = INFINITY, found[4];
     for (int size = 3; size > 0; size--)
         for (unsigned face = 1; face < 1u << count; face++) {

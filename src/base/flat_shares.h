@@ -2,7 +2,7 @@
 #ifndef BRIO_BASE_FLAT_SHARES_H
 #define BRIO_BASE_FLAT_SHARES_H
 
-/** Whether sum share[i] row[i] is 0 up to 2^-40 of the largest row. False if a share is NaN.
+/** Returns whether sum share[i] row[i] is 0 up to 2^-40 of the largest row. False if a share is NaN.
  *  row  the offsets of `count` vertices, 3 or 4, from the query. */
 int brio_shares_hold(const double (*row)[3], int count, const double *share);
 

@@ -7,6 +7,7 @@
 #define BRIO_BASE_FLOAT_STATE_H
 
 #include <float.h>
+#include <stdbool.h>
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "brio is exact only without -ffast-math, -ffinite-math-only and -Ofast"
@@ -54,6 +55,11 @@ static inline void brio_float_write(brio_float_state state) {
     fesetround(state);
 }
 #endif
+
+/** Returns whether the thread's state is the standard one, whatever its flags. */
+static inline bool brio_float_is_standard(void) {
+    return (brio_float_read() & ~(brio_float_state)BRIO_FLOAT_FLAGS) == BRIO_FLOAT_STANDARD;
+}
 
 /** Sets the standard state, if another one is set. Returns the state that was set. */
 static inline brio_float_state brio_float_enter(void) {

@@ -5,6 +5,7 @@
  * ranges is needed: the bits of a range's number tell which half to take at each depth. */
 #include "base/halving.h"
 #include "base/team.h"
+#include <assert.h>
 
 /* LOOKED_AT: most places of a piece, so that a look comes between two pieces in time. All chosen. */
 enum { PIECES_A_THREAD = 4, LOOKED_AT = 1 << 17 };
@@ -20,6 +21,7 @@ static inline size_t middle_of(size_t begin, size_t end) {
 }
 
 static void range_of(const level *l, size_t i, size_t *begin, size_t *end) {
+    assert(i >> l->depth == 0);
     *begin = 0;
     *end = l->h->count;
     for (int d = l->depth; d-- > 0;) {
@@ -29,6 +31,7 @@ static void range_of(const level *l, size_t i, size_t *begin, size_t *end) {
         else
             *end = middle;
     }
+    assert(*begin <= *end && *end <= l->h->count);
 }
 
 static void cut_ranges(void *user, size_t from, size_t to, int thread) {
@@ -36,6 +39,7 @@ static void cut_ranges(void *user, size_t from, size_t to, int thread) {
     (void)thread;
     for (size_t i = from, begin, end; i < to; i++) {
         range_of(l, i, &begin, &end);
+        assert(begin < end); /* ranges that are cut have a middle */
         l->h->cut(l->h->user, begin, middle_of(begin, end), end);
     }
 }
@@ -56,6 +60,7 @@ static brio_status do_level(brio_context *ctx, int threads, level *l, brio_part_
 
 brio_status brio_halve(brio_context *ctx, const brio_halving *h) {
     brio_status status = BRIO_OK;
+    assert(h->gap <= 1);
     int threads = brio_threads(ctx, h->count, h->least);
     size_t pieces = threads > 1 ? (size_t)threads * PIECES_A_THREAD : 1;
     if (pieces < h->count / LOOKED_AT) pieces = h->count / LOOKED_AT;

@@ -1,6 +1,7 @@
 /* The instruction set in use. The environment is read when the library is loaded, before a program has threads that
  * could change it. */
 #include "base/instruction_set.h"
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,6 +10,7 @@ static const char *const NAME[BRIO_INSTRUCTION_SETS] = {"plain", "avx2", "avx512
 brio_instruction_set brio_instructions_in_use = BRIO_PLAIN;
 
 const char *brio_instruction_set_name(brio_instruction_set set) {
+    assert((unsigned)set < BRIO_INSTRUCTION_SETS);
     return NAME[set];
 }
 
@@ -33,6 +35,7 @@ brio_instruction_set brio_instructions_for(const char *name) {
 
 bool brio_use_instructions(brio_instruction_set set) {
     if (set > brio_most_instructions()) return false;
+    assert((unsigned)set < BRIO_INSTRUCTION_SETS);
     brio_instructions_in_use = set;
     return true;
 }

@@ -18,7 +18,7 @@ static inline brio_instruction_set brio_instructions(void) {
     return brio_instructions_in_use;
 }
 
-/** Whether the processor multiplies and adds in one rounding; a constant where the target always or never does. */
+/** Returns whether the processor multiplies and adds in one rounding; a constant where the target always or never does. */
 static inline bool brio_have_fma(void) {
 #if defined(__FMA__) || defined(__aarch64__)
     return true;
@@ -29,13 +29,13 @@ static inline bool brio_have_fma(void) {
 #endif
 }
 
-/** The name of a set: plain, avx2 or avx512. */
+/** Returns the name of a set: plain, avx2 or avx512. */
 const char *brio_instruction_set_name(brio_instruction_set set);
 
-/** The largest set that this processor has. */
+/** Returns the largest set that this processor has. */
 brio_instruction_set brio_most_instructions(void);
 
-/** The set for a value of the environment variable BRIO_INSTRUCTIONS: the one that it names. A value that is NULL, that
+/** Returns the set for a value of the environment variable BRIO_INSTRUCTIONS: the set that the value names. A value that is NULL, that
  *  names no set, or a set that the processor does not have, gives the largest set. */
 brio_instruction_set brio_instructions_for(const char *name);
 

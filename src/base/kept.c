@@ -4,6 +4,7 @@
  *     more memory than the work needed without. */
 #include "base/kept.h"
 #include "base/poison.h"
+#include <assert.h>
 #include <sys/mman.h>
 
 /* Most bytes kept outside brio_keep_begin and brio_keep_end. Chosen. */
@@ -17,6 +18,8 @@ void brio_unmap(void *base, size_t size) {
 /* Unmaps the last bytes of kept mapping i. */
 static void cut(brio_context *ctx, int i, size_t size) {
     brio_mapping *m = &ctx->kept[i];
+    assert(0 < size && size <= m->size && size % BRIO_PAGE == 0);
+    assert(ctx->kept_bytes >= size); /* the sum of the sizes */
     m->size -= size;
     brio_unmap((char *)m->base + m->size, size);
     __atomic_sub_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
@@ -26,6 +29,7 @@ static void cut(brio_context *ctx, int i, size_t size) {
 /* Unmaps kept bytes until at most `most` are left, the smallest mappings first. */
 static void trim(brio_context *ctx, size_t most) {
     while (ctx->kept_bytes > most) {
+        assert(ctx->num_kept > 0);
         int least = 0;
         for (int i = 1; i < ctx->num_kept; i++)
             if (ctx->kept[i].size < ctx->kept[least].size) least = i;
@@ -51,10 +55,12 @@ static int smallest(const brio_context *ctx, size_t least) {
 
 void *brio_kept_take(brio_context *ctx, size_t size) {
     void *base = NULL;
+    assert(size > 0 && size % BRIO_PAGE == 0);
     pthread_mutex_lock(&ctx->lock);
     int i = smallest(ctx, size);
     if (i >= 0) {
         brio_mapping *m = &ctx->kept[i];
+        assert(m->size >= size && ctx->kept_bytes >= size);
         base = m->base;
         m->base = (char *)m->base + size;
         m->size -= size;
@@ -67,8 +73,10 @@ void *brio_kept_take(brio_context *ctx, size_t size) {
 }
 
 void brio_kept_give(brio_context *ctx, void *base, size_t size) {
+    assert(size > 0 && size % BRIO_PAGE == 0);
     brio_poison_hide(base, size);
     pthread_mutex_lock(&ctx->lock);
+    assert(0 <= ctx->num_kept && ctx->num_kept <= BRIO_MOST_KEPT);
     bool full = ctx->num_kept == BRIO_MOST_KEPT;
     if (!full) {
         ctx->kept[ctx->num_kept++] = (brio_mapping){base, size};
@@ -88,6 +96,7 @@ void brio_kept_make_room(brio_context *ctx) {
 
 void brio_kept_free(brio_context *ctx) {
     trim(ctx, 0);
+    assert(ctx->num_kept == 0 && ctx->kept_bytes == 0);
 }
 
 void brio_keep_begin(brio_context *ctx) {
@@ -95,6 +104,7 @@ void brio_keep_begin(brio_context *ctx) {
 }
 
 void brio_keep_end(brio_context *ctx) {
+    assert(ctx->keeping > 0);
     ctx->keeping--;
     brio_kept_make_room(ctx);
 }

@@ -21,8 +21,8 @@ void brio_kept_make_room(brio_context *ctx);
 /** Unmaps all kept mappings. */
 void brio_kept_free(brio_context *ctx);
 
-/** Between these two calls, which can be nested, the context keeps up to peak - live bytes. Otherwise it keeps at most
- *  64 MiB of these. */
+/** Start and end a stretch in which the context keeps up to peak - live bytes. Outside of all stretches, which may be
+ *  nested, it keeps at most 64 MiB. */
 void brio_keep_begin(brio_context *ctx);
 void brio_keep_end(brio_context *ctx);
 

@@ -12,6 +12,7 @@
 #include "base/kept.h"
 #include "base/poison.h"
 #include "base/scratch_file.h"
+#include <assert.h>
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -39,11 +40,13 @@ typedef struct {
 } block_header;
 
 static block_header *header_of(const void *block) {
+    assert(block && (uintptr_t)block % _Alignof(block_header) == 0);
     return (block_header *)((char *)block - HEADER);
 }
 
 /* Returns the bytes in front of a block: its header and, in mappings, the rest of the page. */
 static size_t front_of(block_kind kind) {
+    assert((unsigned)kind <= KIND_FILE); /* I1: a header, not any bytes */
     return kind == KIND_HEAP ? HEADER : FRONT;
 }
 
@@ -54,11 +57,13 @@ static char *base_of(const void *block) {
 /* --- the account --- */
 
 size_t brio_memory_limit(const brio_context *ctx) {
+    assert(ctx->machine_limit > 0);
     return ctx->caller_limit && ctx->caller_limit < ctx->machine_limit ? ctx->caller_limit : ctx->machine_limit;
 }
 
 static bool account_add(brio_context *ctx, size_t bytes) {
     size_t live = __atomic_add_fetch(&ctx->live, bytes, __ATOMIC_RELAXED);
+    assert(live >= bytes);
     if (live > brio_memory_limit(ctx)) {
         __atomic_sub_fetch(&ctx->live, bytes, __ATOMIC_RELAXED);
         return false;
@@ -71,6 +76,7 @@ static bool account_add(brio_context *ctx, size_t bytes) {
 }
 
 static void account_sub(brio_context *ctx, size_t bytes) {
+    assert(__atomic_load_n(&ctx->live, __ATOMIC_RELAXED) >= bytes); /* I3 */
     __atomic_sub_fetch(&ctx->live, bytes, __ATOMIC_RELAXED);
 }
 
@@ -129,11 +135,13 @@ size_t brio_machine_memory(void) {
 /* --- mapped blocks --- */
 
 static size_t round_up(size_t size, size_t unit) {
+    assert(unit > 0 && size <= SIZE_MAX - unit);
     return (size + unit - 1) / unit * unit;
 }
 
 /* Returns the bytes of a mapping for a block of `size` bytes, header included. */
 static size_t mapped_size(size_t size) {
+    assert(size >= HEADER);
     return round_up(size - HEADER + FRONT, BRIO_PAGE);
 }
 
@@ -182,6 +190,8 @@ static size_t bytes_in(const void *block) {
 static void settle(void *block, size_t used) {
     if (!BRIO_POISON) return;
     block_header *h = header_of(block);
+    /* a header in a file may be lost meanwhile */
+    assert((h->kind != KIND_HEAP && h->kind != KIND_MAPPED) || used <= bytes_in(block));
     if (used > h->used) brio_poison_fill((char *)block + h->used, used - h->used);
     if (h->kind != KIND_HEAP) brio_poison_hide((char *)block + used, bytes_in(block) - used);
     h->used = used;
@@ -212,7 +222,9 @@ static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_stat
         if (h.kind != KIND_FILE) *status = refuse(ctx, h.size);
         return NULL;
     }
+    assert(h.size >= size && (h.kind == KIND_HEAP || h.size % BRIO_PAGE == 0));
     char *block = base + front_of(h.kind);
+    assert(h.kind == KIND_HEAP || (uintptr_t)block % FRONT == 0); /* I2 */
     memcpy(block - HEADER, &h, sizeof h);
     settle(block, size - HEADER);
     return block;
@@ -222,6 +234,8 @@ void brio_release(brio_context *ctx, void *block) {
     if (!block) return;
     block_header h = *header_of(block);
     if (h.kind == KIND_LOST) return;
+    assert(h.kind == KIND_FILE || h.size >= front_of(h.kind));                                   /* I1 */
+    assert(h.kind != KIND_MAPPED || (h.size % BRIO_PAGE == 0 && (uintptr_t)block % FRONT == 0)); /* I2 */
     if (h.kind != KIND_FILE) account_sub(ctx, h.size);
     if (h.kind == KIND_HEAP)
         ctx->allocator.free(base_of(block), ctx->allocator.user);
@@ -263,6 +277,7 @@ brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset,
     if (h->kind == KIND_LOST) return lost(ctx);
     brio_scratch_file file = h->file; /* the header may be lost in the midst of the call */
     if (h->kind == KIND_FILE) return brio_scratch_read(ctx, &file, FRONT + offset, to, size);
+    assert(h->kind == KIND_LOST || (offset <= bytes_in(block) && size <= bytes_in(block) - offset));
     memcpy(to, (const char *)block + offset, size);
     return BRIO_OK;
 }
@@ -272,6 +287,7 @@ brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, cons
     if (h->kind == KIND_LOST) return lost(ctx);
     brio_scratch_file file = h->file;
     if (h->kind == KIND_FILE) return brio_scratch_write(ctx, &file, FRONT + offset, from, size);
+    assert(h->kind == KIND_LOST || (offset <= bytes_in(block) && size <= bytes_in(block) - offset));
     memcpy((char *)block + offset, from, size);
     return BRIO_OK;
 }
@@ -282,6 +298,8 @@ brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, cons
 static void *block_remap(brio_context *ctx, void *block, size_t target, brio_status *status) {
     block_header h = *header_of(block);
     bool grows = target > h.size, file = h.kind == KIND_FILE;
+    assert(h.kind != KIND_HEAP && target % BRIO_PAGE == 0);
+    assert(grows || file);
     if (file && grows) {
         *status = brio_scratch_grow(ctx, &h.file, target);
         if (*status != BRIO_OK) return NULL;
@@ -299,6 +317,7 @@ static void *block_remap(brio_context *ctx, void *block, size_t target, brio_sta
         *status = refuse(ctx, target);
         return NULL;
     }
+    assert((uintptr_t)base % FRONT == 0); /* I2 */
     header_of(base + FRONT)->size = target;
     brio_status shrunk = file && !grows ? brio_scratch_shrink(ctx, &h.file, target) : BRIO_OK;
     header_of(base + FRONT)->file = h.file;
@@ -322,8 +341,10 @@ static void *block_move(brio_context *ctx, void *block, size_t size, brio_status
 static void *block_resize_mapped(brio_context *ctx, void *block, size_t size, brio_status *status) {
     block_header *h = header_of(block);
     size_t target = mapped_size(size);
+    assert(h->kind != KIND_HEAP);
     if (target == h->size) return block;
     if (target > h->size || h->kind == KIND_FILE) return block_remap(ctx, block, target, status);
+    assert(h->kind == KIND_MAPPED && target < h->size);
     account_sub(ctx, h->size - target);
     brio_kept_give(ctx, base_of(block) + target, h->size - target);
     h->size = target;
@@ -332,6 +353,7 @@ static void *block_resize_mapped(brio_context *ctx, void *block, size_t size, br
 
 static void *block_realloc(brio_context *ctx, void *block, size_t size, brio_status *status) {
     size_t old = header_of(block)->size;
+    assert(header_of(block)->kind == KIND_HEAP && size >= HEADER);
     if (size > old && !account_add(ctx, size - old)) {
         *status = refuse(ctx, size - old);
         return NULL;
@@ -395,9 +417,11 @@ brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count,
 }
 
 brio_status brio_reserve(brio_context *ctx, void *pointer_to_block, size_t *capacity, size_t need, size_t size) {
+    assert(size > 0 && need > *capacity);
     size_t target = *capacity ? *capacity : 16;
     while (target < need) target = target > SIZE_MAX / 4 ? need : target * 2;
     brio_status status = brio_resize_to(ctx, pointer_to_block, target, size);
+    assert(target >= need);
     if (status == BRIO_OK) *capacity = target;
     return status;
 }

@@ -44,8 +44,8 @@ void brio_block_direct(void *block, bool direct);
 /** Announces that these bytes will be read soon. */
 void brio_block_expect(const void *block, size_t offset, size_t size);
 
-/* The functions below take a pointer to the caller's pointer, of any type. On failure the caller's pointer stays as it
- * was; brio_in_memory sets it to NULL. */
+/* Resizes the block of the pointer that `pointer_to_block` points to, of any type. This function and the next two leave the
+ * pointer as it was on failure, except brio_in_memory, which sets it to NULL. */
 static inline brio_status brio_resize_to(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {
     brio_status status = BRIO_OK;
     void *block;
@@ -55,8 +55,8 @@ static inline brio_status brio_resize_to(brio_context *ctx, void *pointer_to_blo
     return status;
 }
 
-/* brio_zeroed resizes a block and sets its elements to 0. brio_in_memory makes a new block that is not in a scratch
- * file. */
+/* Resizes a block and sets its elements to 0 (brio_zeroed); makes a new block that is not in a scratch file
+ * (brio_in_memory). */
 brio_status brio_zeroed(brio_context *ctx, void *pointer_to_block, size_t count, size_t size);
 brio_status brio_in_memory(brio_context *ctx, void *pointer_to_block, size_t count, size_t size);
 

@@ -2,9 +2,11 @@
 #include "base/points_hash.h"
 #include "base/context.h"
 #include "base/float_state.h"
+#include <assert.h>
 
 uint64_t brio_points_hash(const double *points, const double *weights, size_t num_points, int coordinates) {
     BRIO_DOOR;
+    assert(coordinates == 2 || coordinates == 3);
     uint64_t sum = 0;
     size_t columns = coordinates == 2 ? 2 : 3;
     for (size_t i = 0; i < num_points; i++) {

@@ -5,6 +5,7 @@
 #ifndef BRIO_BASE_RNG_H
 #define BRIO_BASE_RNG_H
 
+#include <assert.h>
 #include <stdint.h>
 
 /** Returns the bits of x mixed by a bijection. */
@@ -39,6 +40,7 @@ static inline double brio_rng_double(brio_rng *rng) {
 
 /** Returns a number that is uniform in [0, n), n < 2^32. */
 static inline uint32_t brio_rng_below(brio_rng *rng, uint32_t n) {
+    assert(n > 0);
     return (uint32_t)(((brio_rng_next(rng) >> 32) * (uint64_t)n) >> 32);
 }
 

@@ -2,12 +2,14 @@
 #ifndef BRIO_BASE_ROTATE_H
 #define BRIO_BASE_ROTATE_H
 
+#include <assert.h>
 #include <math.h>
 
 /** Rotates the symmetric matrix m in the plane of axes i and j so that m[i][j] becomes 0, and the columns of v with it.
  *  Repeated over all pairs of axes, m becomes diagonal, and the columns of v the eigenvectors.
  *  Based on: [Jacobi 1846]. */
 static inline void brio_rotate(double m[3][3], double v[3][3], int i, int j) {
+    assert(i != j);
     if (m[i][j] == 0) return;
     double theta = (m[j][j] - m[i][i]) / (2 * m[i][j]);
     double t = copysign(1, theta) / (fabs(theta) + sqrt(1 + theta * theta)), c = 1 / sqrt(1 + t * t), s = t * c;

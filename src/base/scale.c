@@ -1,6 +1,7 @@
 /* Numbers times a power of two, see scale.h. */
 #include "base/scale.h"
 #include "base/team.h"
+#include <assert.h>
 #include <math.h>
 
 double brio_greatest(const double *x, size_t n) {
@@ -15,7 +16,7 @@ int brio_exponent(double x) {
     return exponent;
 }
 
-/* Points at the origin have no exponent. */
+/* Skips points at the origin, which have no exponent. */
 int brio_usual_exponent(const double *points, size_t num_points) {
     enum { MOST = 1000 }; /* derived: numbers below 2^MOST are finite */
     int64_t sum = 0, counted = 0;
@@ -49,6 +50,7 @@ static void scale_part(void *user, size_t begin, size_t end, int thread) {
 }
 
 brio_status brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out) {
+    assert(n == 0 || (x && out));
     scaling s = {x, out, exponent};
     return brio_for(ctx, brio_threads(ctx, n, NUMBERS_A_THREAD), n, scale_part, &s);
 }

@@ -3,10 +3,12 @@
 #define BRIO_BASE_SCALE_H
 
 #include "base/context.h"
+#include <assert.h>
 #include <string.h>
 
 /** Returns 2^exponent for exponents of normal numbers, -1022 to 1023, without a call. */
 static inline double brio_power_of_two(int exponent) {
+    assert(-1022 <= exponent && exponent <= 1023);
     uint64_t bits = (uint64_t)(exponent + 1023) << 52;
     double x;
     memcpy(&x, &bits, sizeof x);

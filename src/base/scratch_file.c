@@ -9,6 +9,7 @@
 #define _GNU_SOURCE
 #include "base/scratch_file.h"
 #include "base/quiet_signals.h"
+#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
@@ -43,6 +44,7 @@ static ssize_t move_some(int file, const transfer *t) {
 
 /* Moves all bytes.   direct  set to whether they bypassed the cache. */
 static brio_status move_all(brio_context *ctx, const brio_scratch_file *f, transfer t, bool *direct) {
+    assert(f->cached >= 0 && !t.in != !t.out);
     *direct = f->direct >= 0;
     while (t.size > 0) {
         bool past = f->direct >= 0 && whole_pages(t.offset, t.in ? t.in : t.out, t.size);
@@ -52,6 +54,7 @@ static brio_status move_all(brio_context *ctx, const brio_scratch_file *f, trans
         if (n <= 0)
             return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot %s a scratch file: %s", ctx->scratch,
                              t.in ? "read" : "write", n ? strerror(errno) : "it ends early");
+        assert((size_t)n <= t.size);
         *direct &= past;
         t.offset += (size_t)n, t.size -= (size_t)n;
         if (t.in) t.in += n;
@@ -169,6 +172,7 @@ done:
 }
 
 brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size) {
+    assert(size >= f->size);
     brio_scratch_file grown = *f;
     grown.size = size;
     int error = allocate_pieces(f->cached, f->size ? f->size + sizeof MARK : 0, size + sizeof MARK);
@@ -181,6 +185,7 @@ brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t si
 }
 
 brio_status brio_scratch_shrink(brio_context *ctx, brio_scratch_file *f, size_t size) {
+    assert(size <= f->size || f->size == 0); /* 0: the header was lost */
     brio_scratch_file shrunk = *f;
     shrunk.size = size;
     bool marked = put(ctx, &shrunk, MARK) == BRIO_OK;
@@ -192,6 +197,7 @@ brio_status brio_scratch_shrink(brio_context *ctx, brio_scratch_file *f, size_t 
 }
 
 void brio_scratch_close(brio_scratch_file *f) {
+    assert(f->cached >= 0);
     close(f->cached);
     if (f->direct >= 0) close(f->direct);
 }
@@ -219,6 +225,7 @@ static bool give(int file, size_t offset, size_t size, unsigned flags) {
 static brio_status write_behind(brio_context *ctx, int file, size_t begin, size_t end) {
     enum { STRETCH = 1 << 22 };
     const unsigned wait = SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WRITE | SYNC_FILE_RANGE_WAIT_AFTER;
+    assert(begin <= end);
     for (size_t at = (begin / STRETCH + 1) * STRETCH; at <= end; at += STRETCH) {
         bool taken = give(file, at - STRETCH, STRETCH, SYNC_FILE_RANGE_WRITE);
         if (taken && at >= 2 * (size_t)STRETCH) {

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/places.h"
 #include "base/team.h"
+#include <assert.h>
 #include <string.h>
 
 /* DIGIT: bits sorted in a pass. Both chosen. */
@@ -40,6 +41,20 @@ static bool first_positions(size_t (*count)[BUCKETS], int threads, size_t n) {
     return true;
 }
 
+#ifndef NDEBUG
+static bool keys_ascend(const uint64_t *key, size_t n, int bits) {
+    for (size_t i = 1; i < n; i++)
+        if (key[i] < key[i - 1]) return false;
+    return n == 0 || bits >= 64 || key[n - 1] >> bits == 0;
+}
+
+static bool items_ascend(const uint64_t *item, size_t n) {
+    for (size_t i = 1; i < n; i++)
+        if (item[i] >> 32 < item[i - 1] >> 32) return false;
+    return true;
+}
+#endif
+
 /* What the threads of a sort of pairs share. */
 typedef struct {
     pairs given, spare;
@@ -62,6 +77,7 @@ static void sort_pairs_digit(pair_sort *s, pairs from, pairs to, int shift, cons
     brio_barrier(m);
     for (size_t i = s->moved ? begin : end; i < end && goes_on(&s->stopper, i, m); i++) {
         size_t place = mine[from.key[i] >> shift & (BUCKETS - 1)]++;
+        assert(place < s->n);
         to.key[place] = from.key[i];
         to.value[place] = from.value[i];
     }
@@ -83,6 +99,7 @@ static void sort_pairs(void *user, const brio_member *m) {
 brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits) {
     brio_status status = BRIO_OK;
     pair_sort s = {.given = {keys, values}, .n = n, .bits = bits, .stopper = {ctx, brio_may_look(ctx), BRIO_OK}};
+    assert(0 <= bits && bits <= 64);
     if (n < 2) return BRIO_OK;
     int threads = brio_threads(ctx, n, PAIRS_A_THREAD);
     BRIO_TRY(BRIO_ALLOC(ctx, s.count, (size_t)threads));
@@ -94,6 +111,7 @@ brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values,
         memcpy(keys, s.spare.key, n * sizeof *keys);
         memcpy(values, s.spare.value, n * sizeof *values);
     }
+    assert(keys_ascend(keys, n, bits));
 done:
     brio_release(ctx, s.count);
     brio_release(ctx, s.spare.key);
@@ -143,8 +161,10 @@ static void sort_digit(item_sort *s, int pass, const brio_member *m) {
     brio_barrier(m);
     if (m->thread == 0) first_places(s->count, m->threads);
     brio_barrier(m);
-    for (size_t i = begin; i < end && goes_on(&s->stopper, i, m); i++)
+    for (size_t i = begin; i < end && goes_on(&s->stopper, i, m); i++) {
+        assert(mine[from[i] >> shift & (ITEM_BUCKETS - 1)] < s->n);
         to[mine[from[i] >> shift & (ITEM_BUCKETS - 1)]++] = from[i];
+    }
     brio_barrier(m);
 }
 
@@ -164,8 +184,10 @@ brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare,
                    .n = n,
                    .passes = (bits + ITEM_DIGIT - 1) / ITEM_DIGIT,
                    .stopper = {ctx, brio_may_look(ctx), BRIO_OK}};
+    assert(0 <= bits && bits <= 32 && threads >= 1);
     if (n <= FEW_ITEMS) {
         insert_items(items, n);
+        assert(items_ascend(items, n));
         return BRIO_OK;
     }
     int most = (int)(n / ITEMS_A_THREAD) + 1;
@@ -174,6 +196,7 @@ brio_status brio_sort_items(brio_context *ctx, uint64_t *items, uint64_t *spare,
     if (status != BRIO_OK) return status;
     brio_run(ctx, threads, sort_items, &s);
     if (s.passes % 2) memcpy(items, spare, n * sizeof *items);
+    assert(s.stopper.stop != BRIO_OK || items_ascend(items, n));
     brio_release(ctx, s.count);
     return s.stopper.stop;
 }

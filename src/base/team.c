@@ -72,7 +72,8 @@ static void gate_free(gate *g) {
     pthread_mutex_destroy(&g->lock);
 }
 
-/* The stores and loads of `value` and `sleepers` in gate_change and gate_sleep are sequentially consistent: either the
+/* Changes a gate and wakes who sleeps there. The stores and loads of `value` and `sleepers` here and in gate_sleep are
+ * sequentially consistent: either the
  * sleeper sees the new value, or gate_change sees the sleeper. */
 static void gate_change(gate *g) {
     brio_stress();
@@ -115,7 +116,9 @@ void brio_barrier(const brio_member *member) {
     if (!team) return;
     int threads = member->threads; /* read before arriving: after the last arrival the next run may write it */
     bool looks = threads <= team->processors;
+    assert(0 <= member->thread && member->thread < threads && threads <= team->size);
     unsigned old = __atomic_load_n(&team->barrier.value, __ATOMIC_ACQUIRE);
+    assert(__atomic_load_n(&team->arrived, __ATOMIC_RELAXED) < threads); /* this member has not arrived yet */
     if (__atomic_add_fetch(&team->arrived, 1, __ATOMIC_ACQ_REL) == threads) {
         __atomic_store_n(&team->arrived, 0, __ATOMIC_RELAXED);
         gate_change(&team->barrier);
@@ -124,7 +127,7 @@ void brio_barrier(const brio_member *member) {
     }
 }
 
-/* The function of a thread: does the work of each run until a run has none. */
+/* Does the work of each run until a run has none: the function of a thread. */
 static void *live(void *argument) {
     thread *self = argument;
     brio_team *team = self->team;
@@ -133,7 +136,9 @@ static void *live(void *argument) {
     for (unsigned seen = 0;; seen++) {
         gate_wait(&self->start, seen, looks);
         if (!team->work) break;
+        assert(self->member.team == team && team->thread + self->member.thread == self); /* I1 */
         looks = self->member.threads <= team->processors;
+        assert(brio_float_is_standard());
         team->work(team->user, &self->member);
         brio_barrier(&self->member);
     }
@@ -150,6 +155,7 @@ static bool grow(brio_team *team) {
     pthread_attr_t attributes;
     sigset_t all, old;
     if (pthread_attr_init(&attributes)) return false;
+    assert(team->process == getpid()); /* I2 */
     t->team = team;
     gate_new(&t->start);
     sigfillset(&all);
@@ -182,6 +188,7 @@ size_t brio_team_bytes(int most) {
 }
 
 brio_team *brio_team_begin(void *memory, int most, int processors) {
+    assert(most >= 1 && processors >= 1);
     brio_team *team = memory;
     memset(team, 0, brio_team_bytes(most));
     team->size = 1;
@@ -193,6 +200,7 @@ brio_team *brio_team_begin(void *memory, int most, int processors) {
 
 void brio_team_end(brio_team *team) {
     forget_other_process(team);
+    assert(!team->busy);
     team->work = NULL;
     for (int i = 1; i < team->size; i++) gate_change(&team->thread[i].start);
     for (int i = 1; i < team->size; i++) {
@@ -220,17 +228,20 @@ int brio_threads(brio_context *ctx, size_t n, size_t least) {
     if (wanted < 2 || team->busy) return 1;
     forget_other_process(team);
     while (team->size < wanted && grow(team)) {}
+    assert(team->size >= 1);
     return wanted < team->size ? wanted : team->size;
 }
 
 void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user) {
     brio_team *team = ctx->team;
+    assert(threads >= 1);
     assert(threads == 1 || (threads <= team->size && !team->busy)); /* threads is what brio_threads returned */
     if (threads > team->size) threads = team->size;
     if (threads < 2 || team->busy) {
         work(user, &(brio_member){NULL, 0, 1});
         return;
     }
+    assert(__atomic_load_n(&team->arrived, __ATOMIC_RELAXED) == 0);
     team->busy = true;
     team->work = work;
     team->user = user;
@@ -274,6 +285,7 @@ static bool do_some(loop *l, size_t begin, size_t end, size_t work, const brio_m
 static void do_part(void *user, const brio_member *m) {
     loop *l = user;
     size_t begin = brio_part(l->n, m->thread, m->threads), end = brio_part(l->n, m->thread + 1, m->threads);
+    assert(begin <= end && end <= l->n);
     for (size_t next; begin < end; begin = next) {
         next = end - begin > PIECE ? begin + PIECE : end;
         if (!do_some(l, begin, next, (next - begin) * (BRIO_LOOK_EVERY / PIECE), m)) return;
@@ -305,5 +317,6 @@ brio_status brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body
 }
 
 brio_status brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user) {
+    assert(chunk > 0 || n == 0);
     return run_loop(ctx, threads, do_chunks, &(loop){.body = body, .user = user, .n = n, .chunk = chunk});
 }

@@ -7,6 +7,7 @@
 #define BRIO_BASE_TEAM_H
 
 #include "base/context.h"
+#include <assert.h>
 
 typedef struct brio_team brio_team;
 
@@ -69,6 +70,7 @@ static inline void brio_report(brio_status *shared, brio_status own) {
 
 /** Returns where part i of n equal parts of [0, size) begins. */
 static inline size_t brio_part(size_t size, int i, int n) {
+    assert(0 <= i && i <= n && n > 0);
     return size / (size_t)n * (size_t)i + size % (size_t)n * (size_t)i / (size_t)n;
 }
 

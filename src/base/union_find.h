@@ -12,15 +12,18 @@
 #ifndef BRIO_BASE_UNION_FIND_H
 #define BRIO_BASE_UNION_FIND_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-/** The root of the set of i; paths are halved on the way. */
+/** Returns the root of the set of i, and halves paths on the way. */
 static inline uint32_t brio_find(uint32_t *parent, uint32_t i) {
     for (;;) {
         uint32_t up = __atomic_load_n(&parent[i], __ATOMIC_RELAXED);
         if (up == i) return i;
+        assert(up < i); /* a link goes to a lower element */
         uint32_t next = __atomic_load_n(&parent[up], __ATOMIC_RELAXED);
+        assert(next <= up);
         if (next != up) __atomic_store_n(&parent[i], next, __ATOMIC_RELAXED);
         i = next;
     }

@@ -2,6 +2,7 @@
 #ifndef BRIO_BASE_UTF8_H
 #define BRIO_BASE_UTF8_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -23,6 +24,7 @@ static inline size_t brio_utf8_length(const char *s) {
  *  Returns whether all of it fits. */
 static inline bool brio_utf8_copy(char *to, size_t room, const char *from) {
     size_t n = 0;
+    assert(room > 0);
     while (*from) {
         char latin[2] = {(char)(0xc0 | (unsigned char)*from >> 6), (char)(0x80 | (*from & 0x3f))};
         size_t length = brio_utf8_length(from), copied = length ? length : sizeof latin;
@@ -38,6 +40,7 @@ static inline bool brio_utf8_copy(char *to, size_t room, const char *from) {
 /** Makes NAME_NUMBER, NAME cut so that the whole fits in `room` bytes, more than 24. */
 static inline void brio_numbered_name(char *to, size_t room, const char *name, size_t number) {
     char end[24];
+    assert(room > sizeof end);
     size_t length = (size_t)snprintf(end, sizeof end, "_%zu", number);
     brio_utf8_copy(to, room - length, name);
     strcat(to, end);

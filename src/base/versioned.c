@@ -2,6 +2,7 @@
  *
  * Based on: the system calls clone3 and openat2 of Linux, which copy structs of any size. */
 #include "base/versioned.h"
+#include <assert.h>
 #include <string.h>
 
 /* Chosen: no struct of this interface is larger, in any version. A larger size means a struct that was not
@@ -31,6 +32,7 @@ static void copy_fields(void *to, size_t to_size, const void *from, size_t from_
 }
 
 void brio_versioned_init(void *given, size_t size, const void *defaults, size_t mine_size) {
+    assert(is_plausible(mine_size));
     if (size < sizeof size) return;
     memset(given, 0, size);
     memcpy(given, &size, sizeof size);
@@ -60,6 +62,7 @@ brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine
     brio_status status = brio_versioned_check(ctx, given, name);
     if (status != BRIO_OK) return status;
     size_t size = size_of(given);
+    assert(is_plausible(mine_size));
     if (size > mine_size && !all_zero(given, mine_size, size))
         return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s sets a field that this version of the library does not know",
                          name);
@@ -68,6 +71,7 @@ brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine
 }
 
 void brio_versioned_give(void *given, const void *mine, size_t mine_size) {
+    assert(is_plausible(mine_size));
     size_t size = given ? size_of(given) : 0;
     if (!is_plausible(size)) return;
     memset((char *)given + sizeof size, 0, size - sizeof size);

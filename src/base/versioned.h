@@ -24,11 +24,11 @@ brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT if the size is impossible. */
 brio_status brio_versioned_check(brio_context *ctx, const void *given, const char *name);
 
-/** The same for a result that owns memory and is never NULL: its size must be `least` at least, so that all by which it is
- *  freed is in it. */
+/** Does what brio_versioned_check does for a result that owns memory and is never NULL. The size must be at least `least`: then
+ *  the struct has all fields by which the result is freed. */
 brio_status brio_versioned_check_owner(brio_context *ctx, const void *given, size_t least, const char *name);
 
-/** Returns whether the caller's struct has so many bytes, and a size that brio_versioned_check accepts. */
+/** Returns whether the caller's struct has `least` bytes, and a size that brio_versioned_check accepts. */
 bool brio_versioned_reaches(const void *given, size_t least);
 
 /** Copies a result into the caller's struct, up to the caller's size, which stays. Bytes beyond the library's struct

@@ -4,12 +4,14 @@
  * the largest double, or so small that products with shares lose bits, they are first scaled by a power of two. */
 #include "base/weighted_mean.h"
 #include "base/scale.h"
+#include <assert.h>
 #include <math.h>
 
 /* Exponents of values whose sums cannot overflow, and whose products with shares above 2^-100 are normal numbers. */
 enum { LOWEST = -920, HIGHEST = 1020 };
 
 static inline double value_of(const brio_weighted_mean *m, size_t i, size_t component) {
+    assert(i < m->count && component < m->components);
     size_t row = m->name ? m->name[m->place[i]] : m->place[i];
     return m->values[m->components * row + component];
 }

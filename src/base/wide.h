@@ -3,6 +3,7 @@
 #ifndef BRIO_BASE_WIDE_H
 #define BRIO_BASE_WIDE_H
 
+#include <assert.h>
 #include <stdint.h>
 
 #if defined(__SIZEOF_INT128__) && !defined(BRIO_WITHOUT_INT128)
@@ -30,6 +31,7 @@ static inline uint64_t brio_multiply_add(uint64_t a, uint64_t b, uint64_t c, uin
 /** Returns the quotient of high 2^64 + low and the divisor, and the remainder; high < divisor, and the divisor's highest bit is
  *  set. Digit by digit: rare and short. */
 static inline uint64_t brio_divide_wide(uint64_t high, uint64_t low, uint64_t divisor, uint64_t *remainder) {
+    assert(high < divisor && divisor >> 63);
 #if BRIO_HAS_INT128
     __extension__ typedef unsigned __int128 wide;
     wide dividend = (wide)high << 64 | low;
