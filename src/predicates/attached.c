@@ -78,7 +78,7 @@ static brio_wide dot_integer(const int64_t *p, const int64_t *q) {
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/* The rows are U, V (for a facet) and -A. */
+/* Returns the sign by integers, 2 where the points are on no grid. The rows are U, V (for a facet) and -A. */
 static int attached_integer(const double *const *p, int count, bool weighted) {
     int64_t row[3][3];
     brio_wide w[3] = {0, 0, 0};

@@ -12,6 +12,7 @@
  * product, which is exact, uses a fused operation. */
 #include "predicates/circumcentre.h"
 #include "predicates/lane_pairs.h"
+#include <assert.h>
 
 /* Derived: first-order error of each expression relative to its permanent, u = 2^-53. In doubles a path has at most 20
  * roundings, 20 u; in pairs the error is at most 80 u^2, below 2^-99 = 128 u^2. */
@@ -258,6 +259,7 @@ typedef unsigned (*solve_lanes)(const brio_centre_batch *b, const uint8_t index[
 static inline __attribute__((always_inline)) uint64_t solve_some(const brio_centre_batch *b, uint64_t some,
                                                                  const brio_centre_goal *goal, solve_lanes solve,
                                                                  const bool weighted) {
+    assert(b->count >= 64 || some >> b->count == 0);
     uint64_t left = 0;
     while (some) {
         uint8_t index[LANES];

@@ -1,11 +1,22 @@
 /* Exact arithmetic on dyadic numbers, by schoolbook sums and products of 64-bit limbs. */
 #include "predicates/dyadic.h"
 #include "base/wide.h"
+#include <assert.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
+
+#ifndef NDEBUG
+/* Returns whether a number keeps I1 and I2. */
+static bool is_normal(const brio_dyadic *x) {
+    if (x->sign == 0 || x->size == 0) return x->sign == 0 && x->size == 0;
+    return 0 < x->size && x->size <= BRIO_DYADIC_CAPACITY && x->limb[0] && x->limb[x->size - 1];
+}
+#endif
 
 /* Restores I1 and I2 after an operation that may have left zero limbs at either end. */
 static void trim(brio_dyadic *r) {
+    assert(0 <= r->size && r->size <= BRIO_DYADIC_CAPACITY);
     while (r->size && r->limb[r->size - 1] == 0) r->size--;
     if (!r->size) {
         r->sign = r->low = 0;
@@ -17,6 +28,7 @@ static void trim(brio_dyadic *r) {
     r->size -= zeros;
     r->low += zeros;
     memmove(r->limb, r->limb + zeros, (size_t)r->size * sizeof *r->limb);
+    assert(is_normal(r));
 }
 
 void brio_dyadic_set(brio_dyadic *r, double x) {
@@ -57,6 +69,7 @@ static int compare_magnitude(const brio_dyadic *x, const brio_dyadic *y) {
 }
 
 void brio_dyadic_add(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y, int s) {
+    assert((s == 1 || s == -1) && is_normal(x) && is_normal(y));
     if (!x->sign || !y->sign) {
         const brio_dyadic *z = x->sign ? x : y;
         int sign = x->sign ? x->sign : s * y->sign, low = z->low, size = z->size;
@@ -83,9 +96,12 @@ void brio_dyadic_add(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y,
             unsigned char first = __builtin_sub_overflow(a, b, &c);
             carry = first | __builtin_sub_overflow(c, (uint64_t)carry, &d);
         }
+        assert(k - low < BRIO_DYADIC_CAPACITY);
         sum.limb[k - low] = d;
     }
     sum.size = top - low;
+    assert(same || !carry); /* the greater magnitude is first */
+    assert(sum.size + carry <= BRIO_DYADIC_CAPACITY);
     if (carry) sum.limb[sum.size++] = 1;
     r->sign = sign, r->low = low, r->size = sum.size;
     memcpy(r->limb, sum.limb, (size_t)sum.size * sizeof *r->limb);
@@ -93,6 +109,8 @@ void brio_dyadic_add(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y,
 }
 
 void brio_dyadic_multiply(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y) {
+    assert(r != x && r != y && is_normal(x) && is_normal(y));
+    assert(x->size + y->size <= BRIO_DYADIC_CAPACITY);
     r->sign = x->sign * y->sign;
     r->low = x->low + y->low;
     r->size = r->sign ? x->size + y->size : 0;

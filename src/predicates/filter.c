@@ -6,8 +6,10 @@
  *   insphere   (16 + 224 u) u times the permanent (Shewchuk's isperrboundA). The additional subtraction of the weighted
  *              lift raises 16 to 17.
  * ORIENT_BOUND and INSPHERE_BOUND round these up to 8 u and 18 u. */
+#include "base/float_state.h"
 #include "predicates/predicates.h"
 #include "predicates/span.h"
+#include <assert.h>
 
 static const double ORIENT_BOUND = 8 * 0x1p-53, INSPHERE_BOUND = 18 * 0x1p-53;
 
@@ -15,6 +17,7 @@ static const double ORIENT_BOUND = 8 * 0x1p-53, INSPHERE_BOUND = 18 * 0x1p-53;
 static const double EXTENT_MOST = 1e55, WEIGHT_MOST = 1e110;
 
 void brio_filter_set(brio_filter *f, const double extent[3], double weight_extent, bool weighted) {
+    assert(brio_float_is_standard()); /* the bounds hold for rounding to nearest */
     double x = extent[0], y = extent[1], z = extent[2];
     double most = fmax(x, fmax(y, z)), w = weighted ? weight_extent : 0;
     *f = (brio_filter){INFINITY, INFINITY, INFINITY, INFINITY, weighted, false, false, 0};

@@ -7,6 +7,7 @@
 #include "base/scale.h"
 #include "base/wide.h"
 #include "predicates/span.h"
+#include <assert.h>
 #include <stdbool.h>
 
 /* Without integers of 128 bits brio_grid_rows declines all points, and the stage of dyadic numbers decides: the same signs,
@@ -35,6 +36,7 @@ static inline bool brio_grid_rows(const double *const *p, int count, const doubl
                                   brio_wide *weight) {
     double d[4][3], w[4];
     brio_span s = BRIO_NO_SPAN;
+    assert(0 < count && count <= 4 && 0 < bits && bits <= 61);
     if (!BRIO_HAS_INT128) return false;
     for (int i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
@@ -58,7 +60,10 @@ static inline bool brio_grid_rows(const double *const *p, int count, const doubl
     if (s.high - grid > bits || grid < -500 || grid > 400) return false;
     double unit = brio_power_of_two(-grid);
     for (int i = 0; i < count; i++) {
-        for (int k = 0; k < 3; k++) row[i][k] = (int64_t)(d[i][k] * unit);
+        for (int k = 0; k < 3; k++) {
+            assert(fabs(d[i][k] * unit) < ldexp(1, bits) && d[i][k] * unit == trunc(d[i][k] * unit)); /* on the grid */
+            row[i][k] = (int64_t)(d[i][k] * unit);
+        }
         if (weight) weight[i] = (brio_wide)(w[i] * unit * unit);
     }
     return true;

@@ -19,7 +19,7 @@ static inline lanes magnitude(lanes x) {
 static inline lanes maximum(lanes x, lanes y) {
     return _mm512_max_pd(x, y);
 }
-/* These return x y - z and x y + z with one rounding. */
+/* Return x y - z and x y + z with one rounding. */
 static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {
     return _mm512_fmsub_pd(x, y, z);
 }

@@ -48,7 +48,7 @@ static inline unsigned bits_of(lane_mask m) {
     return (unsigned)(m[0] & 1) | (unsigned)(m[1] & 2);
 }
 
-/* These return x y - z and x y + z, rounded once or twice. */
+/* Return x y - z and x y + z, rounded once or twice. */
 static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {
 #if defined(__aarch64__)
     return (lanes)vfmaq_f64((float64x2_t)-z, (float64x2_t)x, (float64x2_t)y);

@@ -14,6 +14,7 @@
 #ifndef BRIO_PREDICATES_PLANE_H
 #define BRIO_PREDICATES_PLANE_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -63,6 +64,7 @@ int brio_incircle_tie(brio_plane_filter *f, const double *a, const double *b, co
 static inline int brio_plane_lexicographic(const brio_plane_filter *f, const double *p, const double *q) {
     for (int i = 0; i < 3; i++) {
         int k = f->key[i];
+        assert(k < 3);
         if (p[k] != q[k]) return p[k] < q[k] ? -1 : 1;
     }
     return 0;

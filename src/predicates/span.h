@@ -3,6 +3,8 @@
 #ifndef BRIO_PREDICATES_SPAN_H
 #define BRIO_PREDICATES_SPAN_H
 
+#include <assert.h>
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -16,6 +18,7 @@ static const brio_span BRIO_NO_SPAN = {INT32_MAX, INT32_MIN};
 
 /** Returns the span of a finite number. */
 static inline brio_span brio_span_of(double x) {
+    assert(isfinite(x));
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     int exponent = (int)(bits >> 52 & 0x7ff);
