@@ -6,14 +6,16 @@
 #include "base/memory.h"
 #include "base/places.h"
 #include "base/sort.h"
+#include <assert.h>
 #include <string.h>
 
-/* The vertices of a handle in ascending order: three of a facet, or two of a hull edge (facet of an infinite
+/* Writes the vertices of a handle in ascending order: three of a facet, or two of a hull edge (facet of an infinite
  * tetrahedron). */
 static void sorted_vertices(const brio_tetrahedra *t, uint32_t handle, uint32_t v[3]) {
     const uint32_t *tet = t->tet[brio_tet_of(handle)].vertex;
     const uint8_t *f = BRIO_FACET[brio_slot_of(handle)];
     uint32_t a = tet[f[0]], b = tet[f[1]], c = tet[f[2]], swap;
+    assert(brio_has_tet(t, brio_tet_of(handle)));
     if (a > b) swap = a, a = b, b = swap;
     if (b > c) swap = b, b = c, c = swap;
     if (a > b) swap = a, a = b, b = swap;
@@ -65,6 +67,7 @@ static brio_status match(brio_context *ctx, brio_tetrahedra *t, uint32_t *sorted
         BRIO_REQUIRE(ctx, i + 2 >= n || !same_vertices(t, sorted[i], sorted[i + 2]), BRIO_ERR_CHECK,
                      "tetrahedra %u, %u and %u share a facet", brio_tet_of(sorted[i]), brio_tet_of(sorted[i + 1]),
                      brio_tet_of(sorted[i + 2]));
+        assert(*alone <= i); /* handles left alone are written behind those that are read */
         *brio_mate(t, sorted[i]) = sorted[i + 1];
         *brio_mate(t, sorted[i + 1]) = sorted[i];
         i++;
@@ -94,13 +97,15 @@ done:
     return status;
 }
 
-/* One infinite tetrahedron behind each hull facet, and the handles of its three facets through the infinite vertex. */
+/* Makes an infinite tetrahedron behind each hull facet.   edges  receives the handles of its three facets through the
+ * infinite vertex. */
 static void close_hull(brio_tetrahedra *t, size_t first, const uint32_t *hull, size_t num_hull, uint32_t *edges) {
     for (size_t i = 0; i < num_hull; i++) {
         uint32_t tet = (uint32_t)(first + i), *v = t->tet[tet].vertex;
         const uint32_t *inside = t->tet[brio_tet_of(hull[i])].vertex;
         const uint8_t *f = BRIO_FACET[brio_slot_of(hull[i])];
         v[0] = inside[f[0]], v[1] = inside[f[2]], v[2] = inside[f[1]], v[3] = BRIO_INFINITE;
+        assert(brio_has_tet(t, tet));
         t->tet[tet].mate[3] = hull[i];
         *brio_mate(t, hull[i]) = brio_facet_of(tet, 3);
         for (int j = 0; j < 3; j++) edges[3 * i + (size_t)j] = brio_facet_of(tet, j);
@@ -116,6 +121,7 @@ brio_status brio_adjacency_build(brio_context *ctx, const brio_record *record, s
     size_t num_hull = 0, alone = 0;
     BRIO_REQUIRE(ctx, n < UINT32_C(1) << 29, BRIO_ERR_TOO_LARGE, "%zu tetrahedra; at most 2^29 - 1", n);
     BRIO_TRY(BRIO_ALLOC(ctx, t.tet, n));
+    t.count = n;
     BRIO_TRY(copy_positive(ctx, record, num_points, tetrahedra, t.tet));
     BRIO_TRY(BRIO_ALLOC(ctx, handles, 4 * n));
     BRIO_TRY(BRIO_ALLOC(ctx, sorted, 4 * n));

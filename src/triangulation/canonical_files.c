@@ -16,6 +16,7 @@
 #include "base/memory.h"
 #include "base/read_ahead.h"
 #include "triangulation/canonical_turn.h"
+#include <assert.h>
 
 /* A tetrahedron, turned but not renamed, and the slot where the insertion left it. */
 typedef struct {
@@ -74,11 +75,12 @@ static void choose_partitions(distribution *d) {
     size_t bytes = budget(d->store->ctx), chunks = bytes / (ALIGNED * sizeof(entry));
     size_t each = sizeof *d->entries + sizeof *d->sorted + sizeof *d->order + sizeof *d->name + sizeof *d->key;
     d->ranges = between(LEAST_RANGES, d->live * each / bytes + 1, chunks / 2 < MOST_RANGES ? chunks / 2 : MOST_RANGES);
+    assert(0 < d->ranges && d->ranges <= MOST_RANGES);
     d->range = (d->store->num_points + 2) / d->ranges + 1;
     d->chunk = between(1, chunks / (2 * d->ranges), MOST_CHUNK) * ALIGNED;
 }
 
-/* The three passes are about as long. */
+/* Reports progress of one of three passes, which take about equally long. */
 static brio_status tell_progress(const distribution *d, int pass, size_t done, size_t all) {
     return brio_progress(d->store->ctx, "sort", (pass + (double)done / (double)all) / 3);
 }
@@ -90,6 +92,7 @@ static brio_status flush_chunk(distribution *d, size_t p) {
     BRIO_TRY(BRIO_RESERVE(ctx, d->chunks, d->chunk_capacity, (d->num_chunks + 1) * d->chunk));
     if (first) brio_block_direct(d->chunks, true);
     BRIO_TRY(BRIO_RESERVE(ctx, d->owner, d->owner_capacity, d->num_chunks + 1));
+    assert(p <= UINT16_MAX && d->num_chunks < d->owner_capacity);
     d->owner[d->num_chunks] = (uint16_t)p;
     size_t bytes = d->chunk * sizeof(entry);
     status = brio_block_write(ctx, d->chunks, d->num_chunks++ * bytes, d->part[p].last, bytes);
@@ -103,6 +106,7 @@ static brio_status append(distribution *d, const brio_tetrahedron *t, uint32_t s
     brio_turn_key(t->vertex, store->t.infinite, &turn);
     const uint8_t *from = BRIO_TURNED[turn];
     size_t p = t->vertex[from[0]] / d->range + (t->vertex[3] == store->t.infinite ? d->ranges : 0);
+    assert(p < 2 * d->ranges);
     partition *part = &d->part[p];
     entry *e = &part->last[part->count++ % d->chunk];
     for (int i = 0; i < 4; i++) e->tet.vertex[i] = t->vertex[from[i]], e->tet.mate[i] = t->mate[from[i]];
@@ -159,7 +163,7 @@ done:
 
 /* --- one partition --- */
 
-/* Room for a partition: in memory, unless one vertex is the latest of very many tetrahedra. */
+/* Makes room for the largest partition: in memory, unless one vertex is the latest of very many tetrahedra. */
 static brio_status reserve_entries(distribution *d) {
     brio_context *ctx = d->store->ctx;
     size_t n = d->most;
@@ -177,7 +181,7 @@ done:
     return status;
 }
 
-/* The next run of chunks of a partition from *begin on, which becomes its beginning: its length, or 0. */
+/* Finds the next run of chunks of a partition from *begin on. Sets *begin to its beginning. Returns its length, or 0. */
 static size_t next_run(const distribution *d, size_t p, size_t *begin) {
     size_t c = *begin;
     while (c < d->num_chunks && d->owner[c] != p) c++;
@@ -201,6 +205,7 @@ static void fill_buckets(distribution *d, size_t p) {
     memset(d->end, 0, d->range * sizeof *d->end);
     for (size_t i = 0; i < n; i++) d->end[d->entries[i].tet.vertex[0] - first]++;
     uint32_t sum = 0;
+    assert(n <= d->most);
     for (size_t b = 0; b < d->range; b++) {
         uint32_t c = d->end[b];
         d->end[b] = sum;
@@ -241,7 +246,7 @@ static inline void rename_one(const distribution *d, const brio_tetrahedron *old
     }
 }
 
-/* The places and turns of all neighbours of the entries at hand. */
+/* Announces that the places and turns of all neighbours of the entries at hand will be read. */
 static void expect_neighbours(distribution *d, size_t n) {
     brio_read_ahead *r = d->read_ahead;
     for (size_t i = 0; i < n; i++, r->now++)
@@ -254,6 +259,7 @@ static void expect_neighbours(distribution *d, size_t n) {
 
 /* Writes what is sorted as far as it fills pages; `end` is its last place. */
 static brio_status write_pages(distribution *d, brio_tetrahedron *out, size_t end) {
+    assert(d->carried <= end);
     size_t begin = end - d->carried, whole = d->carried / ALIGNED * ALIGNED;
     brio_status status = brio_block_write(d->store->ctx, out, begin * sizeof *out, d->sorted, whole * sizeof *out);
     d->carried -= whole;
@@ -268,6 +274,7 @@ static brio_status write_partition(distribution *d, size_t p, brio_tetrahedron *
     if (status == BRIO_OK) status = read_partition(d, p);
     if (status != BRIO_OK) return status;
     expect_neighbours(d, part->count);
+    assert(d->carried < ALIGNED && d->carried <= part->begin);
     brio_tetrahedron *sorted = d->sorted + d->carried;
     for (size_t i = 0; i < part->count; i++)
         rename_one(d, &d->entries[i].tet, &sorted[d->place[d->entries[i].slot] - part->begin]);

@@ -4,7 +4,7 @@
 
 #include "triangulation/store.h"
 
-/** The same as brio_canonical_order, by files that are read and written in sequence. */
+/** Does what brio_canonical_order does, by files that are read and written in sequence. */
 brio_status brio_canonical_files(brio_store *store, size_t live, size_t *finite);
 
 #endif

@@ -48,13 +48,13 @@ typedef struct {
 
 /* --- places --- */
 
-/* One more in a bucket; what was there before. */
+/* Returns the count of a bucket and adds 1 to it. */
 static inline uint32_t count_one(const sorter *s, size_t b) {
     if (s->threads == 1) return s->end[b]++;
     return __atomic_fetch_add(&s->end[b], 1, __ATOMIC_RELAXED);
 }
 
-/* place = bucket of the tetrahedron in a slot: finite ones by latest vertex, then infinite ones. */
+/* Sets `place` to the bucket of the tetrahedron in a slot: finite ones by latest vertex, then infinite ones. */
 static inline void find_bucket(sorter *s, size_t slot) {
     const brio_store *store = s->store;
     const uint32_t *v = store->t.tet[slot].vertex;
@@ -91,6 +91,7 @@ static void list_buckets(void *user, size_t from, size_t to, int thread) {
             uint32_t end = __atomic_load_n(&s->end[s->place[soon]], __ATOMIC_RELAXED);
             __builtin_prefetch(&s->order[end], 1);
         }
+        assert(s->place[t] == NOWHERE || __atomic_load_n(&s->end[s->place[t]], __ATOMIC_RELAXED) < s->live);
         if (s->place[t] != NOWHERE) s->order[count_one(s, s->place[t])] = (uint32_t)t;
     }
 }
@@ -112,8 +113,9 @@ done:
     return status;
 }
 
-/* Sorts the tetrahedra of the places [begin, end) and tells each its place and turn. */
+/* Sorts the tetrahedra of the places [begin, end) and notes the place and the turn of each. */
 static brio_status sort_bucket(sorter *s, bucket *b, size_t begin, size_t end) {
+    assert(begin <= end && end <= s->live);
     size_t n = end - begin;
     const brio_tetrahedron *tets = s->store->t.tet;
     uint32_t *order = s->order + begin, infinite = s->store->t.infinite;
@@ -129,7 +131,7 @@ static brio_status sort_bucket(sorter *s, bucket *b, size_t begin, size_t end) {
     return BRIO_OK;
 }
 
-/* The buckets [from, to). */
+/* Sorts the buckets [from, to). */
 static brio_status sort_some(sorter *s, size_t from, size_t to) {
     bucket b = {0};
     brio_status status = BRIO_OK;
@@ -171,24 +173,27 @@ static inline void mark_slot(sorter *s, uint32_t slot, unsigned mark) {
     __atomic_store_n(&s->store->state[slot], (uint8_t)((load_state(s, slot) & TURN) | mark), __ATOMIC_RELAXED);
 }
 
-/* Place of the tetrahedron in a slot. */
+/* Returns the place of the tetrahedron in a slot. */
 static inline uint32_t place_of(const sorter *s, uint32_t slot) {
+    assert(!(load_state(s, slot) & SLOT_FREE));
     return load_state(s, slot) & SLOT_MOVED ? s->store->t.tet[slot].vertex[0] : s->place[slot];
 }
 
-/* The slots of the tetrahedron in a slot, in the order in which it will stand. */
+/* Returns the permutation that turns the tetrahedron in a slot to the order in which it will stand. */
 static inline const uint8_t *turn_of(const sorter *s, uint32_t slot) {
     unsigned state = load_state(s, slot);
+    assert((state & TURN) < 12); /* bits 0 to 3: the turn; bit 4: moved; bit 5: free */
     return BRIO_TURNED[state & SLOT_MOVED ? 0 : state & TURN];
 }
 
-/* The tetrahedron in a slot as it will stand, but for its first vertex. */
+/* Writes the tetrahedron in a slot as it will stand, except its first vertex. */
 static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *out) {
     const brio_store *store = s->store;
     const brio_tetrahedron *old = &store->t.tet[slot];
     const uint8_t *from = turn_of(s, slot);
     for (int i = 0; i < 4; i++) {
         uint32_t facet = old->mate[from[i]], other = brio_tet_of(facet);
+        assert(s->place[other] < s->live && (load_state(s, other) & TURN) < 12);
         out->mate[i] = brio_facet_of(s->place[other], BRIO_BACK[load_state(s, other) & TURN][brio_slot_of(facet)]);
     }
     for (int i = 1; i < 4; i++) {
@@ -197,14 +202,17 @@ static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *
     }
 }
 
-/* Turns the tetrahedron of a slot into another slot, where vertex[0] tells its place, which tells that vertex. */
+/* Turns a tetrahedron and moves it to another slot. There vertex[0] holds the place of the tetrahedron: the place determines
+ * the bucket, and the bucket the vertex. */
 static inline void move_one(sorter *s, uint32_t slot, uint32_t to) {
     const brio_tetrahedron *old = &s->store->t.tet[slot];
     brio_tetrahedron *new = &s->store->t.tet[to];
     const uint8_t *from = turn_of(s, slot);
+    assert(load_state(s, to) & SLOT_FREE);
     uint32_t place = place_of(s, slot);
     for (int i = 0; i < 4; i++) new->vertex[i] = old->vertex[from[i]], new->mate[i] = old->mate[from[i]];
     new->vertex[0] = place;
+    assert(place < s->live && s->order[place] == slot);
     s->order[place] = to;
     mark_slot(s, to, SLOT_MOVED);
     mark_slot(s, slot, SLOT_FREE);
@@ -255,7 +263,7 @@ static void list_moves(const mover *m, size_t begin, size_t end, const brio_memb
     if (counts_only) m->num_leaving[thread] = leaving, m->num_vacant[thread] = vacant;
 }
 
-/* Turns the threads' counts into where each begins; how many there are to move. */
+/* Turns the threads' counts into where each thread begins. Returns how many tetrahedra are to be moved. */
 static size_t add_up(const mover *m, int threads) {
     size_t leaving = 0, vacant = 0;
     for (int t = 0; t < threads; t++) {
@@ -263,10 +271,11 @@ static size_t add_up(const mover *m, int threads) {
         m->num_leaving[t] = leaving, m->num_vacant[t] = vacant;
         leaving += l, vacant += v;
     }
+    assert(leaving <= vacant && leaving <= m->block); /* each finds a slot outside of the block */
     return m->num_leaving[threads] = leaving;
 }
 
-/* Moves of the leaving ones those from `from` to `to`. */
+/* Moves the leaving tetrahedra [from, to). */
 static void leave_block(sorter *s, const mover *m, size_t from, size_t to) {
     for (size_t i = from; i < to; i++) {
         if (i + AHEAD < to) __builtin_prefetch(&s->order[place_of(s, m->leaving[i + AHEAD])], 1);
@@ -287,6 +296,7 @@ static void write_block(sorter *s, const mover *m, size_t begin, size_t from, si
     }
     for (size_t i = from, b = low; i < to; i++) {
         while (s->end[b] <= begin + i) b++;
+        assert(b < s->buckets);
         store->t.tet[begin + i] = m->aside[i];
         store->t.tet[begin + i].vertex[0] = store->caller[b < store->num_points + 2 ? b : b - store->num_points - 2];
     }
@@ -357,6 +367,7 @@ brio_status brio_canonical_order(brio_store *store, size_t live, size_t *finite)
     BRIO_TRY(sort_buckets(&s));
     BRIO_TRY(brio_progress(ctx, "sort", 1));
     BRIO_TRY(move_all(&s));
+    assert(s.end[s.buckets - 1] == live);
     store->t.count = store->capacity = live;
     *finite = s.end[store->num_points + 1];
     brio_release(ctx, store->state);

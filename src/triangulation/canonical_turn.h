@@ -2,6 +2,7 @@
 #ifndef BRIO_TRIANGULATION_CANONICAL_TURN_H
 #define BRIO_TRIANGULATION_CANONICAL_TURN_H
 
+#include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -14,13 +15,14 @@ static const uint8_t BRIO_BACK[12][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1
                                          {3, 0, 2, 1}, {2, 0, 1, 3}, {1, 2, 0, 3}, {3, 1, 0, 2},
                                          {2, 3, 0, 1}, {1, 3, 2, 0}, {3, 2, 1, 0}, {2, 1, 3, 0}};
 
-/* The latest finite vertex: its slot. */
+/* Returns the slot of the latest finite vertex. */
 static inline unsigned brio_latest_slot(const uint32_t *v, uint32_t infinite) {
+    assert(v[0] != infinite && v[1] != infinite && v[2] != infinite); /* I2 */
     unsigned low = v[1] > v[0], high = v[3] != infinite && v[3] > v[2] ? 3 : 2;
     return v[high] > v[low] ? high : low;
 }
 
-/* How a tetrahedron is turned, and its key: the second and third vertex then. */
+/* Sets *turn to how a tetrahedron is turned. Returns its key: its second and third vertex, once it is turned. */
 static inline uint64_t brio_turn_key(const uint32_t *v, uint32_t infinite, uint8_t *turn) {
     unsigned first = 3 * brio_latest_slot(v, infinite), r = first;
     if (v[3] == infinite) {
@@ -31,6 +33,8 @@ static inline uint64_t brio_turn_key(const uint32_t *v, uint32_t infinite, uint8
         unsigned later = b > a;
         r += c > (later ? b : a) ? 2 : later;
     }
+    assert(r < 12 && v[BRIO_TURNED[r][0]] == v[brio_latest_slot(v, infinite)]);
+    assert(v[3] != infinite || BRIO_TURNED[r][3] == 3); /* I2 */
     *turn = (uint8_t)r;
     return (uint64_t)v[BRIO_TURNED[r][1]] << 32 | v[BRIO_TURNED[r][2]];
 }
@@ -57,16 +61,17 @@ static inline void brio_heap_sort(uint64_t *key, uint32_t *name, size_t n) {
     }
 }
 
-/* out[rank of key[i]] = name[i], by counting the smaller keys: no branch depends on them. */
+/* Sets out[rank of key[i]] to name[i]. Counts the smaller keys: no branch depends on them. */
 static inline void brio_sort_few(const uint64_t *key, const uint32_t *name, size_t n, uint32_t *out) {
     for (size_t i = 0; i < n; i++) {
         size_t rank = 0;
         for (size_t j = 0; j < n; j++) rank += key[j] < key[i];
+        assert(rank < n);
         out[rank] = name[i];
     }
 }
 
-/** name[i] by ascending key[i]; key and name are changed, out receives the names. */
+/** Writes the names by ascending key[i] to `out`. Changes key and name. */
 static inline void brio_sort_names(uint64_t *key, uint32_t *name, size_t n, uint32_t *out) {
     enum { FEW = 48 };
     if (n <= FEW) {

@@ -32,7 +32,7 @@ void brio_cavity_free(brio_context *ctx, brio_cavity *c) {
     brio_release(ctx, c->cavity_vertex);
 }
 
-/* Room for the lists of a cavity of at most `tets` tetrahedra. */
+/* Makes room for the lists of a cavity of at most `tets` tetrahedra. */
 static brio_status reserve_lists(brio_context *ctx, brio_cavity *c, size_t tets) {
     if (tets <= c->capacity) return BRIO_OK;
     brio_status status = BRIO_RESIZE(ctx, c->entry, tets);
@@ -52,15 +52,18 @@ brio_status brio_cavity_new(brio_context *ctx, brio_cavity *out) {
 brio_status brio_cavity_pause(brio_inserter *ins) {
     brio_cavity *c = &ins->cavity;
     brio_status status = BRIO_OK;
+    assert(c->num_tets <= c->capacity && c->pause <= c->capacity);
     if (c->pause == c->capacity) BRIO_TRY(reserve_lists(ins->store->ctx, c, 2 * c->capacity));
     if (c->num_tets >= BRIO_INSERT_WORK / 2) BRIO_TRY(brio_inserter_report(ins, ins->done));
     c->pause = c->capacity - c->num_tets < BRIO_INSERT_WORK ? c->capacity : c->num_tets + BRIO_INSERT_WORK;
+    assert(c->num_tets + 2 * BRIO_BATCH <= c->pause); /* else the dig would pause again at once */
 done:
     return status;
 }
 
 void brio_cavity_undo(brio_inserter *ins) {
     const brio_cavity *c = &ins->cavity;
+    assert(ins->zone); /* alone nothing is deferred */
     for (size_t i = 0; i < c->num_tets; i++) ins->store->state[brio_tet_of(c->entry[i])] = TET_PLAIN;
 }
 
@@ -68,8 +71,8 @@ void brio_cavity_undo(brio_inserter *ins) {
  * hold the infinite vertex, last. */
 static const uint8_t OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}};
 
-/* Slots for the new tetrahedra: those of the cavity, then unused ones, then fresh ones (room is there). What the star
- * does not need of the cavity becomes unused. */
+/* Lists slots for the new tetrahedra: those of the cavity, then unused ones, then fresh ones (room is there). Slots of the
+ * cavity that the star does not need become unused. */
 static brio_status take_slots(brio_inserter *ins) {
     brio_cavity *c = &ins->cavity;
     size_t n = 0;
@@ -84,6 +87,7 @@ static brio_status take_slots(brio_inserter *ins) {
         assert(ins->num_unused ? state[ins->unused[ins->num_unused - 1]] == TET_UNUSED
                                : ins->next_slot < ins->end_slot);
         created[n] = ins->num_unused ? ins->unused[--ins->num_unused] : (uint32_t)ins->next_slot++;
+        assert(brio_has_tet(&ins->store->t, created[n]));
         state[created[n]] = TET_PLAIN;
     }
     if (n >= c->num_tets) return BRIO_OK;
@@ -92,6 +96,7 @@ static brio_status take_slots(brio_inserter *ins) {
     if (status != BRIO_OK) return status;
     for (; n < c->num_tets; n++) {
         uint32_t slot = brio_tet_of(c->entry[n]);
+        assert(state[slot] == TET_CAVITY && ins->num_unused < ins->unused_capacity); /* N4 */
         ins->unused[ins->num_unused++] = slot;
         state[slot] = TET_UNUSED;
         brio_poison_fill(&ins->store->t.tet[slot], sizeof *ins->store->t.tet);
@@ -110,13 +115,15 @@ static inline void store_four(uint32_t *to, uint64_t a, uint64_t b, uint64_t c, 
     memcpy(to + 2, &pair[1], sizeof *pair);
 }
 
-/* The tetrahedron of a border facet: the new vertex in slot 0, the facet's, v, in 1 to 3. The tetrahedron outside need
+/* Makes the tetrahedron of a border facet, with the new vertex in slot 0 and the facet's vertices v in slots 1 to 3. The tetrahedron outside need
  * not be the thread's own: no other thread writes its vertices, nor its mate at this facet (P1, P2). */
 static inline void create(brio_tetrahedron *tets, uint32_t tet, uint32_t outer, uint32_t p, uint32_t v[3]) {
+    assert(brio_tet_of(outer) != tet);
     brio_tetrahedron *outside = &tets[brio_tet_of(outer)], *inside = &tets[tet];
     int slot = brio_slot_of(outer);
     for (int i = 0; i < 3; i++) v[i] = outside->vertex[OUT[slot][i]];
     outside->mate[slot] = brio_facet_of(tet, 0);
+    assert(v[0] != p && v[1] != p && v[2] != p);
     store_four(inside->vertex, p, v[0], v[1], v[2]);
 }
 
@@ -142,13 +149,14 @@ static void number_vertices(brio_inserter *ins) {
     const numbers number = numbers_of(ins);
     const uint32_t *entry = ins->cavity.entry;
     size_t num_tets = ins->cavity.num_tets;
+    assert(0 < num_tets && num_tets <= BYTES_MOST); /* numbers up to num_tets + 2 fit bytes */
     for (uint32_t i = 0; i < 4; i++) *number_of(number, tets[brio_tet_of(entry[0])].vertex[i]) = (uint8_t)i;
     for (size_t n = 1; n < num_tets; n++)
         *number_of(number, tets[brio_tet_of(entry[n])].vertex[brio_slot_of(entry[n])]) = (uint8_t)(n + 3);
 }
 
 /* Joins the star by a table of edges. Facet i > 0 of a new tetrahedron holds the point and the edge from vertex i % 3 +
- * 1 to the one after it. The numbers x, y, z of the vertices 1, 2, 3, of so many bits each, are packed as x y z x from
+ * 1 to the one after it. The numbers x, y, z of the vertices 1, 2, 3, of `bits` bits each, are packed as x y z x from
  * the lowest on, so that each edge is a pair of neighbours; packed as x z y x, each edge the other way round is one. */
 static inline void join_by_table(brio_inserter *ins, uint32_t p, const int bits) {
     brio_cavity *c = &ins->cavity;
@@ -158,11 +166,13 @@ static inline void join_by_table(brio_inserter *ins, uint32_t p, const int bits)
     brio_tetrahedron *tets = ins->store->t.tet;
     uint32_t *table = c->table, *code = c->facet;
     size_t num_border = c->num_border;
+    assert(2 * bits <= 16 && c->num_tets + 3 <= (size_t)1 << bits); /* pairs of numbers are places of the table */
     for (size_t b = 0; b < num_border; b++) {
         uint32_t tet = created[b], v[3];
         create(tets, tet, border[b], p, v);
         uint32_t x = local[v[0]], y = local[v[1]], z = *number_of(number, v[2]), xx = x | x << 3 * bits;
         uint32_t xyzx = xx | y << bits | z << 2 * bits;
+        assert((x | y | z) >> bits == 0 && x != y && y != z && z != x);
         code[b] = xx | z << bits | y << 2 * bits;
         table[xyzx >> bits & pair] = brio_facet_of(tet, 1);
         table[xyzx >> 2 * bits] = brio_facet_of(tet, 2);
@@ -170,6 +180,9 @@ static inline void join_by_table(brio_inserter *ins, uint32_t p, const int bits)
     }
     for (size_t b = 0; b < num_border; b++) {
         uint32_t xzyx = code[b];
+        /* each edge of the border was met from its other side (I3) */
+        assert(brio_has_tet(&ins->store->t, brio_tet_of(table[xzyx >> bits & pair])) &&
+               tets[brio_tet_of(table[xzyx >> bits & pair])].vertex[0] == p);
         store_four(tets[created[b]].mate, border[b], table[xzyx >> bits & pair], table[xzyx & pair],
                    table[xzyx >> 2 * bits]);
     }
@@ -180,23 +193,25 @@ static brio_status report_between(brio_inserter *ins, size_t b) {
     return (b + 1) % HASHED_BETWEEN == 0 ? brio_inserter_report(ins, ins->done) : BRIO_OK;
 }
 
-/* An edge, from either side: multilinear hashing, whose upper bits are good. [Lemire Kaser 2014] */
+/* Returns the hash of an edge, the same from either side: multilinear hashing, whose upper bits are good. [Lemire Kaser 2014] */
 static inline uint64_t edge_hash(uint32_t u, uint32_t v) {
     uint32_t low = u < v ? u : v, high = u ^ v ^ low;
     return low * UINT64_C(0x9e3779b97f4a7c15) + high * UINT64_C(0xd1b54a32d192ed03);
 }
 
-/* Facet i > 0 of new tetrahedron tet, whose edge on the border leads from u to v: becomes the mate of the facet that was
- * entered for this edge, else it is entered itself. */
+/* Joins facet i > 0 of a new tetrahedron, whose edge on the border leads from u to v, with the facet that was entered for this
+ * edge. Enters it if there is none. */
 static inline void meet(brio_cavity *c, int bits, brio_tetrahedron *tets, uint32_t facet, uint32_t u, uint32_t v) {
     uint64_t hash = edge_hash(u, v);
     size_t at = hash >> (64 - bits), mask = ((size_t)1 << bits) - 1;
+    assert(((size_t)1 << bits) <= c->edge_capacity && at <= mask && brio_slot_of(facet) > 0);
     uint32_t tag = (uint32_t)(hash >> 16);
     for (; c->edge[at].facet != 0; at = (at + 1) & mask) {
         if (c->edge[at].tag != tag) continue;
         uint32_t other = c->edge[at].facet, i = brio_slot_of(other);
         brio_tetrahedron *mate = &tets[brio_tet_of(other)];
         if (mate->vertex[i % 3 + 1] != v || mate->vertex[(i + 1) % 3 + 1] != u) continue;
+        assert(i > 0); /* facet 0 is the border's */
         mate->mate[i] = facet;
         tets[brio_tet_of(facet)].mate[brio_slot_of(facet)] = other;
         return;
@@ -204,7 +219,7 @@ static inline void meet(brio_cavity *c, int bits, brio_tetrahedron *tets, uint32
     c->edge[at] = (brio_border_edge){tag, facet};
 }
 
-/* The same with a hash table of edges, where there are too many numbers for bytes. */
+/* Joins the star by a hash table of edges, where there are too many vertices for numbers of one byte. */
 static brio_status join_by_hash(brio_inserter *ins, uint32_t p) {
     brio_cavity *c = &ins->cavity;
     brio_tetrahedron *tets = ins->store->t.tet;
@@ -231,12 +246,13 @@ static brio_status list_vertices(brio_inserter *ins) {
     const brio_tetrahedra *t = &ins->store->t;
     brio_status status = BRIO_RESERVE(ins->store->ctx, c->cavity_vertex, c->cavity_vertex_capacity, c->num_tets + 3);
     if (status != BRIO_OK) return status;
+    assert(c->num_tets > 0 && brio_slot_of(c->entry[0]) == 0); /* as dig_cavity begins */
     for (uint32_t i = 0; i < 4; i++) c->cavity_vertex[i] = brio_apex(t, c->entry[0] ^ i);
     for (size_t n = 1; n < c->num_tets; n++) c->cavity_vertex[n + 3] = brio_apex(t, c->entry[n]);
     return BRIO_OK;
 }
 
-/* Whether some vertex of the cavity is not on its border: a sphere of b triangles has b / 2 + 2 vertices. A vertex of the
+/* Returns whether some vertex of the cavity is not on its border: a sphere of b triangles has b / 2 + 2 vertices. A vertex of the
  * cavity counts where its last number stands, so the count is that of the vertices. */
 static bool has_interior(brio_inserter *ins) {
     const brio_cavity *c = &ins->cavity;
@@ -247,7 +263,7 @@ static bool has_interior(brio_inserter *ins) {
     return vertices != c->num_border / 2 + 2;
 }
 
-/* Vertices of the cavity that are not on its border are hidden by p. */
+/* Names p as the representative of the vertices of the cavity that are not on its border: p hides them. */
 static void hide_interior(brio_inserter *ins, uint32_t p) {
     const brio_cavity *c = &ins->cavity;
     const brio_store *s = ins->store;
@@ -261,7 +277,8 @@ static void hide_interior(brio_inserter *ins, uint32_t p) {
 }
 
 #ifndef NDEBUG
-/* I2: a finite vertex in each slot but the last. I3 at facet i: the mate leads back, and has the facet's vertices. */
+/* Returns whether slot i keeps I2, a finite vertex in each slot except the last, and facet i keeps I3: its mate leads back,
+ * and has the facet's vertices. */
 static bool facet_is_mated(const brio_tetrahedra *t, uint32_t tet, int i) {
     const uint32_t *v = t->tet[tet].vertex;
     uint32_t facet = brio_facet_of(tet, i), mate = *brio_mate(t, facet);
@@ -274,7 +291,7 @@ static bool facet_is_mated(const brio_tetrahedra *t, uint32_t tet, int i) {
     return true;
 }
 
-/* I1 to I3 and I5 for the new tetrahedra. */
+/* Returns whether the new tetrahedra keep I1 to I3 and I5. */
 static bool star_is_valid(const brio_inserter *ins, uint32_t p) {
     const brio_tetrahedra *t = &ins->store->t;
     const brio_record *r = t->record;
@@ -296,6 +313,8 @@ brio_status brio_cavity_fill(brio_inserter *ins, uint32_t p, bool *deferred) {
     const bool weighted = ins->store->weighted;
     brio_status status = BRIO_OK;
     size_t slots = c->num_tets + ins->num_unused;
+    assert(c->num_tets > 0 && c->num_border >= 4 && c->num_border % 2 == 0); /* a sphere of triangles */
+    assert(c->num_border <= 4 * c->capacity);
     if (c->num_border > slots) BRIO_TRY(brio_inserter_reserve(ins, c->num_border - slots, deferred));
     if (*deferred) {
         brio_cavity_undo(ins);

@@ -31,7 +31,7 @@ typedef struct {
 
 enum { BRIO_TABLE = 1 << 16 };
 
-/** An empty cavity; what was allocated is to be freed after a failure, too. */
+/** Makes an empty cavity. The caller frees it, also after a failure. */
 brio_status brio_cavity_new(brio_context *ctx, brio_cavity *out);
 void brio_cavity_free(brio_context *ctx, brio_cavity *c);
 

@@ -57,6 +57,7 @@
 #include "triangulation/adjacency.h"
 #include "triangulation/records.h"
 #include "triangulation/triangulation.h"
+#include <assert.h>
 
 brio_judge brio_judge_of(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, bool weighted) {
     brio_judge j = {.ctx = ctx, .t = *t, .num_points = num_points, .weighted = weighted, .canonical = true};
@@ -104,6 +105,7 @@ static int place_in_facet(const uint32_t *vertex, const uint8_t *facet, uint32_t
 /* Runs tests 2 and 3 on one facet whose mate's handle is in range. */
 static brio_status check_mate(brio_judge *j, uint32_t f, uint32_t g) {
     brio_status status = BRIO_OK;
+    assert(f < 4 * j->t.count && g < 4 * j->t.count);
     size_t tet = brio_tet_of(f), other = brio_tet_of(g);
     const uint32_t *v = vertices_of(j, tet), *w = vertices_of(j, other);
     const uint8_t *p = BRIO_FACET[brio_slot_of(f)], *q = BRIO_FACET[brio_slot_of(g)];

@@ -11,6 +11,7 @@
 #include "triangulation/locate_walk.h"
 #include "triangulation/nearest_vertex.h"
 #include "triangulation/triangulation.h"
+#include <assert.h>
 
 typedef struct {
     brio_judge *j;
@@ -84,6 +85,7 @@ static brio_status check_hidden(workspace *w, uint32_t p, uint32_t tet) {
     uint32_t best = BRIO_INFINITE;
     BRIO_TRY(brio_check_sphere(j, tet, p));
     if (!w->result) goto done;
+    assert(w->num_hidden < j->num_points - w->num_vertices);
     w->hidden[w->num_hidden++] = p;
     if (!w->result->leaves_hidden) BRIO_TRY(brio_nearest_vertex(&w->nearest, tet, j->t.record[p], &best));
     BRIO_REQUIRE(j->ctx, w->result->representative[p] == best, BRIO_ERR_CHECK,

@@ -8,6 +8,7 @@
 #include "base/rng.h"
 #include "base/sort.h"
 #include "triangulation/triangulation.h"
+#include <assert.h>
 
 static int compare_points(uint32_t p, uint32_t q, const void *points) {
     return brio_lexicographic((const double *)points + 3 * (size_t)p, (const double *)points + 3 * (size_t)q);
@@ -22,6 +23,7 @@ static brio_status lexicographic_ranks(brio_context *ctx, const brio_triangulati
     BRIO_TRY(BRIO_ALLOC(ctx, vertex, t->stats.vertices));
     for (size_t p = 0; p < t->stats.points; p++)
         if (t->representative[p] == p) vertex[n++] = (uint32_t)p;
+    assert(n == t->stats.vertices);
     BRIO_TRY(brio_sort_rows(ctx, &(brio_row_order){points, 3, compare_points, points}, vertex, n));
     for (size_t i = 0; i < n; i++) {
         rank[vertex[i]] = (uint32_t)i;

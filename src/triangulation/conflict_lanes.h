@@ -54,13 +54,13 @@ static inline void rows_set(const corners *c, rows *r, const bool weighted) {
     r->lift[3] = choose(infinite, all(1), r->lift[3]);
 }
 
-/* x w - z y. */
+/* Returns x w - z y. */
 static inline lanes minor2(lanes x, lanes y, lanes z, lanes w) {
     return multiply_subtract(x, w, z * y);
 }
 
-/* Minors of the rows but one: the orientations of the tetrahedron with one vertex replaced by the query, up to the
- * sign: minor[1] and minor[3] are negated. */
+/* Writes the minors of all rows except one: the orientations of the tetrahedron with one vertex replaced by the query, with
+ * minor[1] and minor[3] negated. */
 static inline void minors(const rows *r, lanes minor[4]) {
     const lanes *x = r->x, *y = r->y, *z = r->z;
     lanes ab = minor2(x[0], y[0], x[1], y[1]), bc = minor2(x[1], y[1], x[2], y[2]), cd = minor2(x[2], y[2], x[3], y[3]);
@@ -79,15 +79,15 @@ static inline lanes determinant(const rows *r) {
     return even - odd;
 }
 
-/* Lanes where p is lexicographically larger than q. */
+/* Returns the lanes where p is lexicographically larger than q. */
 static inline lane_mask larger(const lanes p[3], const lanes q[3]) {
     lane_mask z = greater(p[2], q[2]);
     lane_mask y = either(greater(p[1], q[1]), both(equal(p[1], q[1]), z));
     return either(greater(p[0], q[0]), both(equal(p[0], q[0]), y));
 }
 
-/* The symbolic perturbation (perturb.c) where minors are exact: bits of the lanes in conflict if their determinant is
- * 0. */
+/* Decides by the symbolic perturbation (perturb.c), where minors are exact. Returns the bits of the lanes that are in
+ * conflict if their determinant is 0. */
 static inline unsigned ties(const corners *c, const rows *r) {
     lanes minor[4], decisive[3] = {c->e[0], c->e[1], c->e[2]}, decision = all(-1);
     minors(r, minor);
@@ -101,7 +101,8 @@ static inline unsigned ties(const corners *c, const rows *r) {
     return bits_of(greater(decision, all(0)));
 }
 
-/* Bits of the lanes that are certainly in conflict, and of those that are certainly not, added to *known. */
+/* Returns the bits of the lanes that are certainly in conflict. Adds their bits, and those of the lanes that are certainly in
+ * none, to *known. */
 static inline unsigned decide(lanes det, lanes bound, unsigned *known) {
     unsigned above = bits_of(greater(det, bound)), below = bits_of(greater(all(0) - bound, det));
     unsigned fresh = above & ~*known;
@@ -113,7 +114,7 @@ static inline lanes largest(const lanes v[4]) {
     return maximum(maximum(magnitude(v[0]), magnitude(v[1])), maximum(magnitude(v[2]), magnitude(v[3])));
 }
 
-/* A bound of the permanent of each lane. */
+/* Returns a bound of the permanent of each lane. */
 static inline lanes permanent(const corners *c, const rows *r, const bool weighted) {
     lanes lift[4];
     for (int s = 0; s < 4; s++) {
@@ -132,7 +133,7 @@ static inline lanes permanent(const corners *c, const rows *r, const bool weight
  *   sum         c = max(c1, c2) + 1, e = max(e1, e2) + 2 c,
  * which makes (4, 14) of a minor of two rows, (8, 60) of three, (5, 24) of a lift and (16, 210) of the determinant. */
 
-/* x y - z w. */
+/* Returns x y - z w. */
 static inline lane_pair minor_of_pairs(lane_pair x, lane_pair y, lane_pair z, lane_pair w) {
     return pair_subtract_loose(pair_multiply_loose(x, y), pair_multiply_loose(z, w));
 }
@@ -166,7 +167,7 @@ static __attribute__((noinline)) lanes determinant_of_pairs(const corners *c, la
 
 static const double DOUBLE_UNIT = 18 * 0x1p-53, PAIR_UNIT = 0x1p-97;
 
-/* Lanes of hull facets whose planes hold the point: the finite neighbours decide. */
+/* Settles the lanes of hull facets whose planes hold the point: the finite neighbours decide. */
 static inline unsigned settle_in_planes(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
                                         const double *p, unsigned lanes_to_settle) {
     unsigned mask = 0;
@@ -176,7 +177,7 @@ static inline unsigned settle_in_planes(const brio_tetrahedra *t, brio_filter *f
     return mask;
 }
 
-/* The same against a bound from the lifts alone, which are at hand. With the largest lift L no difference is over
+/* Decides against a bound from the lifts alone, which are at hand. With the largest lift L no difference is over
  * sqrt(L), so that the permanent is at most 24 L^2.5, for a hull facet 6 L^1.5; compared as squares. */
 static inline unsigned decide_by_lifts(const brio_filter *f, const rows *r, lanes det, unsigned *known) {
     static const double FINITE = 24.1 * DOUBLE_UNIT, HULL = 6.1 * DOUBLE_UNIT, TINY = 1e-290;
@@ -190,7 +191,7 @@ static inline unsigned decide_by_lifts(const brio_filter *f, const rows *r, lane
     return fresh;
 }
 
-/* The second stage. With weights nearly every call needs it: the balls of neighbouring poles all but touch the same
+/* Decides by the second stage. With weights nearly every call needs it: the balls of neighbouring poles all but touch the same
  * points. */
 static inline unsigned decide_by_permanent(const brio_filter *f, const corners *c, const rows *r, lanes det,
                                            unsigned *known, const bool weighted) {
@@ -198,7 +199,7 @@ static inline unsigned decide_by_permanent(const brio_filter *f, const corners *
     return decide(det, all(DOUBLE_UNIT) * permanent(c, r, weighted) + floor, known);
 }
 
-/* What is left of the stages, for the lanes not yet known. Loads everything again: keeping it at hand would cost the
+/* Runs the stages that are left, for the lanes not yet known. Loads everything again: keeping it at hand would cost the
  * calls that do not come here as much. */
 static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_filter *f, const uint32_t facets[LANES],
                                                  const double *p, unsigned known, const bool weighted) {

@@ -5,6 +5,7 @@
 #include "base/float_state.h"
 #include "base/kept.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "base/versioned.h"
 #include "triangulation/canonical_order.h"
 #include "triangulation/insert.h"
@@ -62,8 +63,9 @@ static inline size_t least(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-/* Where the records whose turns are from `begin` on stop to follow the curve, at most `end`. */
+/* Returns the turn where the records from turn `begin` on stop following the curve, at most `end`. */
 static size_t end_of_run(const brio_store *s, size_t begin, size_t end) {
+    assert(begin < end && end <= s->num_points && s->rank);
     size_t i = begin + 1;
     while (i < end && s->rank[brio_record_at(s, i)] > s->rank[brio_record_at(s, i - 1)]) i++;
     return i;
@@ -115,17 +117,19 @@ done:
 static brio_status sort_result(brio_inserter *ins) {
     brio_store *s = ins->store;
     brio_delaunay_stats *stats = &ins->stats;
+    assert(ins->num_unused <= s->t.count && ins->next_slot == ins->end_slot); /* N3, N4 */
     size_t live = s->t.count - ins->num_unused, finite = 0;
     brio_store_drop_records(s);
     if (s->dimension < 3) s->t.count = live = 0;
     brio_status status = live > 0 ? brio_canonical_order(s, live, &finite) : BRIO_OK;
+    assert(status != BRIO_OK || finite <= live);
     stats->tetrahedra = finite;
     stats->hull_facets = live - finite;
     return status;
 }
 
 #ifndef NDEBUG
-/* Whether mates are mates of each other, finite tetrahedra come first, and infinite ones have their vertex last: I2 and
+/* Returns whether mates are mates of each other, finite tetrahedra come first, and infinite ones have their vertex last: I2 and
  * I3 of tetrahedra.h, in the order of the result. */
 static bool result_is_valid(const brio_triangulation *t) {
     size_t finite = t->stats.tetrahedra, count = finite + t->stats.hull_facets;
@@ -139,12 +143,24 @@ static bool result_is_valid(const brio_triangulation *t) {
 }
 #endif
 
+#ifndef NDEBUG
+/* Returns whether `caller` permutes 0 .. n - 1 (I8), up to collisions of a hash. */
+static bool caller_permutes(const brio_store *s) {
+    uint64_t sum = 0;
+    for (size_t p = 0; p < s->num_points; p++) sum += brio_mix(p) - brio_mix(s->caller[p]);
+    return sum == 0;
+}
+#endif
+
 /* Names the representatives by the caller's indices. */
 static brio_status rename_representatives(const brio_store *s, uint32_t **out) {
     brio_status status = BRIO_ALLOC(s->ctx, *out, s->num_points);
     if (status != BRIO_OK) return status;
+    assert(caller_permutes(s));
     for (size_t p = 0; p < s->num_points; p++) {
         uint32_t v = s->representative[p];
+        assert(s->caller[p] < s->num_points);                                           /* I8 */
+        assert(v == BRIO_INFINITE || (v < s->num_points && s->representative[v] == v)); /* I7 */
         (*out)[s->caller[p]] = v == BRIO_INFINITE ? v : s->caller[v];
     }
     return BRIO_OK;
@@ -180,7 +196,7 @@ done:
     return status;
 }
 
-/* The triangulation of a store without tetrahedra, which `recorder` watches from now on. */
+/* Makes the triangulation of a store without tetrahedra, which `recorder` watches from now on. */
 static brio_status construct(brio_store *store, const brio_delaunay_options *options, double order_seconds,
                              brio_recorder *recorder, brio_triangulation **out) {
     brio_inserter *ins = NULL;

@@ -1,6 +1,7 @@
 /* The versions of the inner loops by instruction set, and the exact test that they share. */
 #include "triangulation/engine.h"
 #include "base/instruction_set.h"
+#include <assert.h>
 
 bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted) {
     const uint32_t *v = t->tet[tet].vertex;
@@ -9,6 +10,7 @@ bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t t
         if (side) return side > 0;
         return brio_in_conflict(t, f, brio_tet_of(t->tet[tet].mate[3]), p, weighted);
     }
+    assert(v[0] != t->infinite && v[1] != t->infinite && v[2] != t->infinite); /* I2 */
     const double *a = t->record[v[0]], *b = t->record[v[1]], *c = t->record[v[2]], *d = t->record[v[3]];
     int sign = brio_insphere_exact(a, b, c, d, p, weighted);
     return (sign ? sign : brio_insphere_tie(f, a, b, c, d, p)) > 0;
@@ -22,5 +24,6 @@ const brio_engine *brio_engine_choose(bool weighted) {
         brio_engine_avx512,
 #endif
     };
+    assert((size_t)brio_instructions() < sizeof OF_SET / sizeof *OF_SET);
     return &OF_SET[brio_instructions()][weighted];
 }

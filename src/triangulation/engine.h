@@ -24,7 +24,7 @@ typedef struct {
                          const double (*points)[4], unsigned which, uint32_t *found);
 } brio_engine;
 
-/** The version for the instruction set in use. */
+/** Returns the version for the instruction set in use. */
 const brio_engine *brio_engine_choose(bool weighted);
 
 /** The versions, without and with weights. */

@@ -17,6 +17,7 @@
  * the two at its facet. So a conflict that descends only from the tetrahedron outside the cavity is not met. */
 #include "triangulation/history.h"
 #include "base/memory.h"
+#include <assert.h>
 
 void brio_history_free(brio_context *ctx, brio_history *h) {
     brio_release(ctx, h->node);
@@ -31,6 +32,7 @@ static inline bool is_live(const brio_history_node *node) {
     return node->next & BRIO_HISTORY_LIVE;
 }
 static inline uint32_t live_slot(const brio_history_node *node) {
+    assert(node->next & BRIO_HISTORY_LIVE);
     return node->next & ~BRIO_HISTORY_LIVE;
 }
 
@@ -74,10 +76,13 @@ static brio_status add_nodes(brio_inserter *ins, brio_history *h, const uint32_t
     for (size_t i = 0; i < count; i++) {
         uint32_t slot = slots ? slots[i] : (uint32_t)i;
         const uint32_t *v = ins->store->t.tet[slot].vertex;
+        assert(slot < h->slot_capacity && h->num_nodes < h->node_capacity);
+        assert(!(slot & BRIO_HISTORY_LIVE)); /* bit 31 says that the node is live; bits 0 to 30 are its slot */
         touch_node(ins, h->num_nodes);
         h->node_of[slot] = (uint32_t)h->num_nodes;
         h->node[h->num_nodes++] = (brio_history_node){{v[0], v[1], v[2], v[3]}, BRIO_HISTORY_LIVE | slot};
     }
+    assert(h->num_insertions + 1 < h->first_capacity);
     h->first[++h->num_insertions] = (uint32_t)h->num_nodes;
     ins->stats.history = h->num_nodes;
     return BRIO_OK;
@@ -94,8 +99,10 @@ brio_status brio_history_new(brio_inserter *ins, const brio_delaunay_options *op
 
 brio_status brio_history_add(brio_inserter *ins, brio_history *h) {
     const brio_cavity *c = &ins->cavity;
+    assert(h->num_insertions < BRIO_HISTORY_LIVE);
     for (size_t i = 0; i < c->num_tets; i++) {
         uint32_t node = h->node_of[brio_tet_of(c->entry[i])];
+        assert(h->node[node].next == (BRIO_HISTORY_LIVE | brio_tet_of(c->entry[i])));
         touch_node(ins, node);
         h->node[node].next = (uint32_t)h->num_insertions;
     }
@@ -118,15 +125,18 @@ static bool holds(brio_inserter *ins, const uint32_t v[4], const double *p) {
 }
 
 static inline uint32_t next_of(const brio_history *h, uint32_t from) {
+    assert(from == BRIO_HISTORY_ROOT || from < h->num_nodes);
     return from == BRIO_HISTORY_ROOT ? 0 : h->node[from].next;
 }
 
 uint32_t brio_history_path(brio_inserter *ins, brio_history *h, uint32_t from, const double *p) {
     uint32_t next = next_of(h, from);
     while (!(next & BRIO_HISTORY_LIVE)) {
+        assert(next < h->num_insertions);
         uint32_t node = h->first[next];
         touch_search(ins, h, node);
         while (!holds(ins, h->node[node].vertex, p)) touch_search(ins, h, ++node);
+        assert(node < h->first[next + 1]); /* one tetrahedron of the insertion holds p */
         ins->stats.history_tests += node - h->first[next] + 1;
         next = h->node[node].next;
     }
@@ -147,6 +157,7 @@ static bool conflicts(brio_inserter *ins, const brio_history_node *node, const d
 
 /* Opens the nodes of an insertion to the search, at most once. */
 static brio_status come_to(brio_context *ctx, brio_history *h, uint32_t insertion, size_t *depth) {
+    assert(insertion < h->num_insertions);
     if (h->seen[insertion] == h->searches) return BRIO_OK;
     brio_status status = BRIO_RESERVE(ctx, h->open, h->open_capacity, *depth + 1);
     if (status != BRIO_OK) return status;

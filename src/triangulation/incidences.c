@@ -8,6 +8,7 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "triangulation/triangulation.h"
+#include <assert.h>
 
 /* VERTICES_A_THREAD, GROUP (vertices between two reports of progress): chosen. */
 enum { VERTICES_A_THREAD = 1 << 12, VERTICES_A_CHUNK = 256, GROUP = 1 << 16 };
@@ -28,6 +29,7 @@ void brio_incidences_free(brio_incidences *incidences) {
 
 /* Turns offsets[p + 1] from the length of list p into its end. */
 static void add_up(brio_incidences *lists) {
+    assert(lists->offsets[0] == 0);
     for (size_t p = 0; p < lists->count; p++) lists->offsets[p + 1] += lists->offsets[p];
 }
 
@@ -44,6 +46,7 @@ static brio_status list_tetrahedra(brio_context *ctx, const brio_triangulation *
     for (size_t i = 0; i < 4 * t->stats.tetrahedra; i++)
         out->items[out->offsets[t->tet[i / 4].vertex[i % 4]]++] = (uint32_t)(i / 4);
     for (size_t p = n; p > 0; p--) out->offsets[p] = out->offsets[p - 1]; /* each offset moved to its list's end */
+    assert(out->offsets[n] == 4 * t->stats.tetrahedra);
     out->offsets[0] = 0;
 done:
     if (status != BRIO_OK) brio_incidences_free(out);
@@ -75,6 +78,7 @@ static size_t sort_neighbours(const neighbour_job *job, size_t p, uint64_t *key)
             uint32_t v = job->t->tet[job->tets->items[i]].vertex[k];
             if (v != p) key[count++] = v;
         }
+    assert(count <= job->room);
     brio_sort_keys(key, count);
     for (size_t i = 0; i < count; i++)
         if (i == 0 || key[i] != key[i - 1]) key[distinct++] = key[i];
@@ -92,6 +96,7 @@ static void write_neighbours(void *user, size_t begin, size_t end, int thread) {
     uint64_t *key = job->key + job->room * (size_t)thread;
     for (size_t p = job->first + begin; p < job->first + end; p++) {
         size_t count = sort_neighbours(job, p, key);
+        assert(job->out->offsets[p] + count == job->out->offsets[p + 1]); /* as it was counted */
         for (size_t i = 0; i < count; i++) job->out->items[job->out->offsets[p] + i] = (uint32_t)key[i];
     }
 }
@@ -164,6 +169,7 @@ brio_status brio_triangulation_edges(brio_context *ctx, const brio_triangulation
             out->ends[2 * out->count] = (uint32_t)p;
             out->ends[2 * out->count++ + 1] = lists.items[i];
         }
+    assert(2 * out->count == lists.offsets[lists.count]);
 done:
     brio_incidences_free(&lists);
     return status;

@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <math.h>
 
-/* More steps than it takes to cross vertices that fill space, as the walks of orders without locality do. */
+/* Returns a number of steps that crosses vertices which fill space, as walks do in orders without locality. */
 static uint64_t most_steps(const brio_store *store) {
     return 40 + (uint64_t)(4 * cbrt((double)store->num_points));
 }
@@ -42,23 +42,26 @@ void brio_inserter_free(brio_inserter *ins) {
 
 brio_status brio_inserter_return_stretch(brio_inserter *ins) {
     brio_store *store = ins->store;
+    assert(ins->next_slot <= ins->end_slot); /* N3 */
     size_t left = ins->end_slot - ins->next_slot;
     brio_status status = BRIO_RESERVE(store->ctx, ins->unused, ins->unused_capacity, ins->num_unused + left);
     if (status != BRIO_OK) return status;
     for (; ins->next_slot < ins->end_slot; ins->next_slot++) {
         store->state[ins->next_slot] = TET_UNUSED;
+        assert(ins->num_unused < ins->unused_capacity); /* N4 */
         ins->unused[ins->num_unused++] = (uint32_t)ins->next_slot;
     }
     return BRIO_OK;
 }
 
-/* In a pass: a new stretch. */
+/* Takes a new stretch, in a pass. */
 static brio_status reserve_stretch(brio_inserter *ins, size_t more, bool *deferred) {
     size_t size = more > BRIO_SLOT_STRETCH ? more : BRIO_SLOT_STRETCH, begin;
     brio_status status = brio_inserter_return_stretch(ins);
     if (status != BRIO_OK) return status;
     *deferred = !brio_store_take(ins->store, size, &begin);
     if (*deferred) return BRIO_OK;
+    assert(ins->next_slot == ins->end_slot); /* the old stretch was returned */
     ins->next_slot = begin;
     ins->end_slot = begin + size;
     return BRIO_OK;
@@ -66,6 +69,7 @@ static brio_status reserve_stretch(brio_inserter *ins, size_t more, bool *deferr
 
 brio_status brio_inserter_reserve(brio_inserter *ins, size_t more, bool *deferred) {
     brio_store *store = ins->store;
+    assert(more > 0 && ins->next_slot <= ins->end_slot);
     if (more <= ins->end_slot - ins->next_slot) return BRIO_OK;
     if (ins->zone) return reserve_stretch(ins, more, deferred);
     assert(ins->next_slot == ins->end_slot);
@@ -73,6 +77,7 @@ brio_status brio_inserter_reserve(brio_inserter *ins, size_t more, bool *deferre
     if (status != BRIO_OK) return status;
     ins->next_slot = store->t.count;
     ins->end_slot = store->t.count += more;
+    assert(ins->end_slot - ins->next_slot == more && store->t.count <= store->capacity); /* N3 */
     return BRIO_OK;
 }
 

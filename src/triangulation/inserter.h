@@ -23,6 +23,7 @@
 #include "triangulation/page_touches.h"
 #include "triangulation/star.h"
 #include "triangulation/store.h"
+#include <assert.h>
 
 struct brio_inserter {
     brio_store *store;
@@ -73,17 +74,17 @@ brio_status brio_inserter_new(brio_store *store, brio_inserter **out);
 /** Frees the inserter and what its strategy of location keeps, not the zone; NULL is accepted. */
 void brio_inserter_free(brio_inserter *ins);
 
-/** Makes sure of `more` fresh slots. In a pass the rest of the stretch may become unused first, and *deferred becomes true
+/** Reserves `more` fresh slots. In a pass the rest of the stretch may become unused first, and *deferred becomes true
  *  when the store has no further stretch. Alone, exactly `more` slots are handed out, and the caller writes all of them. */
 brio_status brio_inserter_reserve(brio_inserter *ins, size_t more, bool *deferred);
 
-/** What is left of the stretch becomes unused slots. */
+/** Makes what is left of the stretch unused slots. */
 brio_status brio_inserter_return_stretch(brio_inserter *ins);
 
 /** Reports the share of the points that are in, where this inserter reports. */
 brio_status brio_inserter_report(brio_inserter *ins, double done);
 
-/** The work of an inserter so far: conflict tests, tetrahedra created, steps of walks, nodes of the history; a predicate
+/** Returns the work of an inserter so far: conflict tests, tetrahedra created, steps of walks, nodes of the history; a predicate
  *  that the floating-point filter leaves open counts as 64 of these. */
 static inline uint64_t brio_inserter_work(const brio_inserter *ins) {
     const brio_delaunay_stats *s = &ins->stats;
@@ -91,8 +92,9 @@ static inline uint64_t brio_inserter_work(const brio_inserter *ins) {
            64 * ins->filter.unsettled;
 }
 
-/** The engine's walk to p, from walk.start. */
+/** Walks to p from walk.start, by the engine's walk. */
 static inline uint32_t brio_inserter_walk(brio_inserter *ins, const double *p, uint64_t most_steps) {
+    assert(brio_has_tet(&ins->store->t, ins->walk.start)); /* N1 */
     if (__builtin_expect(ins->walk.touches != NULL, 0))
         return brio_locate_walk(&ins->store->t, ins->zone, &ins->filter, &ins->walk, p, most_steps);
     return ins->engine->walk(&ins->store->t, ins->zone, &ins->filter, &ins->walk, p, most_steps);

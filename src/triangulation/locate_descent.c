@@ -10,6 +10,7 @@
  * Simple and fast nearest neighbor search. ALENEX 2010, for the descent. */
 #include "triangulation/locate_descent.h"
 #include "base/memory.h"
+#include <assert.h>
 
 enum { MOST_OF_STAR = 512 }; /* tetrahedra to test round one vertex; chosen, bounds the cost at the apex of a cone */
 
@@ -19,6 +20,7 @@ typedef struct {
 } candidate;
 
 static inline void offer(const brio_tetrahedra *t, candidate *best, uint32_t tet, const double *p) {
+    assert(brio_has_tet(t, tet));
     for (size_t i = 0; i < 4; i++) {
         uint32_t v = t->tet[tet].vertex[i];
         if (v == t->infinite) continue;
@@ -34,8 +36,10 @@ static uint32_t first_conflict(brio_inserter *ins, const uint32_t *tets, size_t 
         size_t size = count - n < BRIO_BATCH ? count - n : BRIO_BATCH;
         uint32_t facet[BRIO_BATCH];
         for (size_t i = 0; i < BRIO_BATCH; i++) facet[i] = brio_facet_of(tets[i < size ? n + i : n], 0);
+        assert(size > 0);
         unsigned mask = ins->engine->conflicts(&ins->store->t, &ins->filter, facet, size, p);
         ins->stats.insphere_calls += size;
+        assert(mask >> size == 0);
         if (mask) return tets[n + (size_t)__builtin_ctz(mask)];
     }
     return BRIO_NO_TET;
@@ -51,6 +55,7 @@ static brio_status collect_last(brio_inserter *ins, uint32_t v) {
     star->size = 0;
     for (size_t b = 0; b < ins->cavity.num_created; b++) {
         uint32_t tet = ins->cavity.created[b];
+        assert(s->state[tet] == TET_PLAIN); /* N2 */
         star->tet[star->size] = tet;
         star->size += brio_slot_of_vertex(s->t.tet[tet].vertex, v) < 4;
     }
@@ -62,6 +67,7 @@ brio_status brio_locate_descent(brio_inserter *ins, const double *p, uint32_t *t
     candidate best = {s->t.infinite, BRIO_NO_TET, INFINITY};
     ins->star.mark = s->state; /* 0 for every tetrahedron, since no insertion is under way (I5) */
     ins->star.zone = ins->zone;
+    assert(s->state[ins->walk.start] == TET_PLAIN); /* N1, I5 */
     offer(&s->t, &best, ins->walk.start, p);
     for (size_t b = 0; b < ins->cavity.num_created; b++) offer(&s->t, &best, ins->cavity.created[b], p);
     if (best.square > 0 && best.vertex != s->t.infinite) {

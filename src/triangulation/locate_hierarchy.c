@@ -14,6 +14,7 @@
 #include "triangulation/insert.h"
 #include "triangulation/start.h"
 #include "triangulation/vertex_tets.h"
+#include <assert.h>
 #include <string.h>
 
 enum { RATIO = 30, MOST_LEVELS = 7 };
@@ -81,6 +82,7 @@ static void deal_records(const brio_store *all, hierarchy *own) {
             brio_store *s = own->level[l].store;
             memcpy(s->record[at], all->record[p], sizeof(brio_record));
             s->caller[at] = at;
+            assert(at < s->num_points && (at == 0 || own->level[l].below[at - 1] < below));
             own->level[l].below[at] = below;
             below = at;
         }
@@ -133,6 +135,7 @@ done:
 static uint32_t nearest_of(const brio_store *s, uint32_t tet, const double *p) {
     const uint32_t *v = s->t.tet[tet].vertex;
     uint32_t best = v[0];
+    assert(best < s->t.infinite); /* I2 */
     double least = brio_square_distance(p, s->record[best]);
     for (int i = 1; i < 4 && v[i] != s->t.infinite; i++) {
         double square = brio_square_distance(p, s->record[v[i]]);
@@ -152,6 +155,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
         ins->walk.steps += here->inserter->walk.steps - before;
         const level *below = &own->level[l - 1];
         uint32_t v = brio_alive(below->store, here->below[nearest_of(here->store, here->located, point)]);
+        assert(below->store->representative[v] == v);
         below->inserter->walk.start = below->vertex_tet[v];
     }
     *tet = own->level[0].located;
@@ -167,6 +171,8 @@ static brio_status filled(brio_inserter *ins, uint32_t p) {
         level *here = &own->level[l];
         brio_insertion outcome;
         while (here->below[here->next] < below) here->next++;
+        assert(here->next < here->store->num_points &&
+               here->below[here->next] == below); /* the level drew this record */
         brio_status status = brio_insert(here->inserter, here->next, &outcome);
         if (status != BRIO_OK) return status;
         below = here->next;

@@ -9,6 +9,7 @@
 #include "base/rng.h"
 #include "triangulation/inserter.h"
 #include "triangulation/vertex_tets.h"
+#include <assert.h>
 
 typedef struct {
     uint32_t *vertex_tet, last;
@@ -40,6 +41,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
         brio_touch_record(&ins->touches, v);
         if (s->representative[v] == v && square < least) best = v, least = square;
     }
+    assert(s->representative[best] == best); /* a vertex has a tetrahedron */
     ins->walk.start = own->vertex_tet[best];
     *tet = brio_inserter_walk(ins, point, UINT64_MAX);
     return BRIO_OK;

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "triangulation/point_graph.h"
 #include "triangulation/vertex_tets.h"
+#include <assert.h>
 
 typedef struct {
     brio_point_graph graph;
@@ -41,6 +42,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
         brio_touch_record(&ins->touches, v);
         if (square < least) best = v, least = square;
     }
+    assert(s->representative[best] == best); /* a vertex has a tetrahedron */
     ins->walk.start = own->vertex_tet[best];
     *tet = brio_inserter_walk(ins, point, UINT64_MAX);
     return BRIO_OK;

@@ -10,6 +10,7 @@
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "triangulation/locate_segment.h"
+#include <assert.h>
 
 /* Returns whether the line through u and w meets the closed triangle of a facet; w is off the facet's plane. */
 static bool line_meets(brio_inserter *ins, const uint32_t *v, int slot, const double *u, const double *w) {
@@ -38,6 +39,7 @@ static unsigned facets_before(brio_inserter *ins, const uint32_t *v, int came_th
 
 /* Returns the slot of the facet to cross, out of `before`. */
 static int facet_ahead(brio_inserter *ins, const uint32_t *v, unsigned before, const double *u, const double *w) {
+    assert(before != 0 && before >> 4 == 0);
     int any = __builtin_ctz(before);
     if ((before & (before - 1)) == 0) return any;
     for (; before; before &= before - 1)
@@ -50,6 +52,7 @@ uint32_t brio_locate_segment(brio_inserter *ins, uint32_t tet, const double *u, 
     int came_through = 4;
     if (brio_is_infinite(&s->t, tet)) tet = brio_tet_of(s->t.tet[tet].mate[3]);
     for (;; ++*entered) {
+        assert(s->state[tet] == TET_PLAIN);
         const uint32_t *v = s->t.tet[tet].vertex;
         if (v[3] == s->t.infinite) return tet;
         unsigned before = facets_before(ins, v, came_through, w);

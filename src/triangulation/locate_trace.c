@@ -17,6 +17,7 @@
 #include "triangulation/locate_segment.h"
 #include "triangulation/point_graph.h"
 #include "triangulation/vertex_tets.h"
+#include <assert.h>
 
 typedef struct {
     brio_history history;
@@ -50,6 +51,7 @@ done:
 }
 
 static void found(tracing *t, uint32_t p, uint32_t tet) {
+    assert(t->tail < t->ins->store->num_points && t->ins->store->state[tet] == TET_PLAIN);
     t->tet[p] = tet;
     t->queue[t->tail++] = p;
 }
@@ -62,6 +64,7 @@ static void trace_edges(tracing *t) {
     while (t->head < t->tail) {
         uint32_t u = t->queue[t->head++];
         for (uint32_t e = graph->first[u]; e < graph->first[u + 1]; e++) {
+            assert(t->tet[u] != BRIO_NO_TET);
             uint32_t w = graph->neighbour[e];
             if (t->tet[w] != BRIO_NO_TET) continue;
             found(t, w,

@@ -6,6 +6,7 @@
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "triangulation/locate_walk.h"
+#include <assert.h>
 
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps) {
@@ -15,6 +16,7 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter
     if ((walk->blocked = !brio_owns(t, zone, tet))) return BRIO_NO_TET;
     for (uint64_t steps = 0;; steps++, walk->steps++) {
         if (steps > most_steps) return BRIO_NO_TET;
+        assert(brio_has_tet(t, tet) && brio_zone_holds_tet(t, zone, tet)); /* P3 */
         const uint32_t *v = t->tet[tet].vertex;
         if (walk->touches) brio_touch_tet(walk->touches, t, tet);
         if (v[3] == t->infinite) return tet;

@@ -4,6 +4,7 @@
 
 #include "triangulation/page_touches.h"
 #include "triangulation/zone.h"
+#include <assert.h>
 
 /** State of a sequence of walks: the start of the next walk, random bits, and the number of steps of all walks. */
 typedef struct {
@@ -34,6 +35,8 @@ void brio_locate_abreast(const brio_tetrahedra *t, brio_filter *f, brio_walk wal
 
 /** Returns the tetrahedron where a walk starts: walk->start, or the finite tetrahedron next to it. */
 static inline uint32_t brio_walk_begin(const brio_tetrahedra *t, const brio_walk *walk) {
+    assert(!brio_is_infinite(t, walk->start) ||
+           !brio_is_infinite(t, brio_tet_of(t->tet[walk->start].mate[3]))); /* I2 */
     return brio_is_infinite(t, walk->start) ? brio_tet_of(t->tet[walk->start].mate[3]) : walk->start;
 }
 

@@ -1,9 +1,10 @@
 /* The choice of a strategy of point location, and the default one: the walk from the point inserted last. */
 #include "triangulation/inserter.h"
 #include "triangulation/locate_descent.h"
+#include <assert.h>
 
-/* A walk, which is best nearly always; where walks are long again and again, the descent, with a walk tried now and
- * then. */
+/* Walks, which is best nearly always. Where walks are long again and again it descends, and tries a walk after every DESCENTS
+ * descents. */
 static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     const double *point = ins->store->record[p];
     enum { DESCENTS = 64 };
@@ -24,6 +25,7 @@ brio_status brio_strategy_start(brio_inserter *ins, const brio_delaunay_options 
         [BRIO_LOCATION_HIERARCHY] = &brio_strategy_hierarchy, [BRIO_LOCATION_HISTORY] = &brio_strategy_history,
         [BRIO_LOCATION_TRACE] = &brio_strategy_trace,         [BRIO_LOCATION_NEIGHBOUR] = &brio_strategy_neighbour,
     };
+    assert((unsigned)options->locate < BRIO_LOCATION_END && locators[options->locate]);
     ins->locator = locators[options->locate];
     return ins->locator->start ? ins->locator->start(ins, options) : BRIO_OK;
 }

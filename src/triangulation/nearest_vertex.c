@@ -8,6 +8,7 @@
 #include "triangulation/nearest_vertex.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <string.h>
 
 enum { LARGE_STAR = 256 };
@@ -91,6 +92,7 @@ static brio_status look_around(brio_nearest *n, const double *x, uint32_t v, uin
     }
     brio_status status = brio_star_collect(n->ctx, n->t, v, n->vertex_tet[v], SIZE_MAX, &n->star);
     if (status != BRIO_OK) return status;
+    assert(v < n->num_points && n->look < UINT32_MAX);
     n->look++;
     for (size_t i = 0; i < 4 * n->star.size; i++) { /* each neighbour is in about five of these tetrahedra */
         uint32_t u = n->t->tet[n->star.tet[i / 4]].vertex[i % 4];
@@ -103,11 +105,13 @@ static brio_status look_around(brio_nearest *n, const double *x, uint32_t v, uin
 
 brio_status brio_nearest_vertex(brio_nearest *n, uint32_t tet, const double *x, uint32_t *best) {
     const uint32_t *v = n->t->tet[tet].vertex;
+    assert(brio_has_tet(n->t, tet));
     uint32_t next = nearer(n, x, nearer(n, x, v[0], v[1]), nearer(n, x, v[2], v[3]));
     do {
         *best = next;
         brio_status status = look_around(n, x, *best, &next);
         if (status != BRIO_OK) return status;
+        assert(is_point(n, next));
     } while (next != *best);
     return BRIO_OK;
 }

@@ -66,6 +66,7 @@ typedef struct {
 } worker;
 
 static inline uint32_t record_of(const pass *own, size_t i) {
+    assert(i < own->count);
     return own->list ? own->list[i] : brio_record_at(own->store, own->first + i);
 }
 
@@ -75,6 +76,7 @@ static inline uint32_t record_of(const pass *own, size_t i) {
 static brio_status insert_in_zone(brio_inserter *ins, uint32_t p, brio_insertion *outcome) {
     *outcome = BRIO_DEFERRED;
     if (!brio_zone_has(ins->zone, p)) return BRIO_OK;
+    assert(brio_zone_holds(ins->zone, p)); /* P4 */
     brio_status status = brio_insert(ins, p, outcome);
     if (status != BRIO_OK) return status; /* the store is good for nothing but to be freed */
     brio_owns(&ins->store->t, ins->zone, ins->walk.start);
@@ -94,9 +96,10 @@ done:
     return status;
 }
 
-/* Progress of a thread stands for that of all. */
+/* Reports progress: that of one thread stands for that of all. */
 static brio_status report(worker *w, size_t i) {
     const pass *own = w->pass;
+    assert(w->begin < w->end && i <= w->end);
     double done = (double)own->first + (double)(i - w->begin) / (double)(w->end - w->begin) * (double)own->count;
     return brio_inserter_report(w->inserter, done / (double)own->store->num_points);
 }
@@ -119,7 +122,7 @@ done:
     return status;
 }
 
-/* The calling thread, done with its part, reports progress until the others are done with theirs. It sleeps for a share
+/* Reports progress, in the calling thread, from when it is done with its part until the other threads are. It sleeps for a share
  * of the time that it has waited, so that it is late by no more than that share. */
 static brio_status wait_for_others(worker *w) {
     const double SHARE = 1.0 / 16, LEAST_SLEEP = 2e-5, MOST_SLEEP = 1e-2, BETWEEN = 0.05;
@@ -137,7 +140,8 @@ done:
     return status;
 }
 
-/* A failed insertion may have left its cavity half filled: then the thread's segments stay taken. */
+/* Does a thread's part of a pass. A failed insertion may have left its cavity half filled: then the thread's segments stay
+ * taken. */
 static brio_status work(worker *w) {
     brio_inserter *ins = w->inserter;
     pass *own = w->pass;
@@ -163,7 +167,7 @@ static void work_as_member(void *user, const brio_member *m) {
 
 /* --- workers --- */
 
-/* Finds a tetrahedron along the worker's part that it can hold; whether there is one. */
+/* Finds a tetrahedron along the worker's part that the worker can hold. Returns whether there is one. */
 static bool place_worker(worker *w) {
     brio_inserter *ins = w->inserter, *main = w->pass->main;
     const brio_store *store = w->pass->store;
@@ -197,7 +201,7 @@ done:
     return status;
 }
 
-/* NULL pointers inside are accepted. */
+/* Frees what a worker owns; NULL pointers inside are accepted. */
 static void worker_free(worker *w, brio_context *ctx) {
     brio_inserter_free(w->inserter);
     brio_zone_free(ctx, &w->zone);
@@ -213,6 +217,7 @@ static brio_status leave_pass(worker *w) {
     BRIO_TRY(brio_inserter_return_stretch(ins));
     BRIO_TRY(BRIO_RESERVE(store->ctx, main->unused, main->unused_capacity, main->num_unused + ins->num_unused));
     if (ins->num_unused) memcpy(main->unused + main->num_unused, ins->unused, ins->num_unused * sizeof *ins->unused);
+    assert(main->num_unused + ins->num_unused <= main->unused_capacity); /* N4 */
     main->num_unused += ins->num_unused;
     ins->num_unused = 0;
     main->stats.created += ins->stats.created;
@@ -231,28 +236,47 @@ done:
 
 /* --- passes --- */
 
-/* Segments of the curve so that each has some vertices already. */
+/* Divides the curve into segments so that each has some vertices already. */
 static brio_status divide_curve(pass *own, size_t inserted) {
     brio_context *ctx = own->store->ctx;
     size_t points = own->store->num_points,
            most = inserted / SEGMENT < MOST_SEGMENTS ? inserted / SEGMENT : MOST_SEGMENTS;
     own->shift = 0;
     while (points >> own->shift > most) own->shift++;
+    assert(own->shift < 32);
     own->segments = (points >> own->shift) + 1;
     brio_release(ctx, own->taken);
     return BRIO_ALLOC_ZERO(ctx, own->taken, own->segments);
 }
 
-/* Slots for a pass: as many a point as up to now, and some more. */
+/* Makes room for the slots of a pass: as many a point as up to now, and some more. */
 static brio_status reserve_slots(pass *own, size_t inserted, int threads) {
     brio_store *store = own->store;
+    assert(inserted > 0 && store->t.count <= store->max_tetrahedra && own->main->num_unused <= store->t.count);
     double each = (double)(store->t.count - own->main->num_unused) / (double)inserted;
     size_t more = (size_t)(1.04 * each * (double)own->count) + (size_t)threads * 2 * BRIO_SLOT_STRETCH;
     size_t room = store->max_tetrahedra - store->t.count;
     return brio_store_reserve(store, more < room ? more : room);
 }
 
-/* One pass over the records; the deferred ones take their place. */
+#ifndef NDEBUG
+/* Returns whether the inserter that works alone owns each slot without a tetrahedron (I5, I6, N4), and starts at a tetrahedron
+ * (N1). The slots that are handed out after a pass all have a state. */
+static bool slots_are_accounted_for(const brio_inserter *ins) {
+    const brio_store *s = ins->store;
+    size_t unused = 0;
+    if (ins->next_slot != ins->end_slot || s->state[ins->walk.start] != TET_PLAIN) return false;
+    for (size_t slot = 0; slot < s->t.count; slot++) {
+        if (s->state[slot] != TET_PLAIN && s->state[slot] != TET_UNUSED) return false;
+        unused += s->state[slot] == TET_UNUSED;
+    }
+    for (size_t i = 0; i < ins->num_unused; i++)
+        if (s->state[ins->unused[i]] != TET_UNUSED) return false;
+    return unused == ins->num_unused;
+}
+#endif
+
+/* Runs one pass over the records. The list of records becomes that of the deferred ones. */
 static brio_status run_pass(pass *own, worker *workers, int threads) {
     brio_context *ctx = own->store->ctx;
     brio_status status = BRIO_OK;
@@ -267,6 +291,7 @@ static brio_status run_pass(pass *own, worker *workers, int threads) {
         num_left += workers[i].num_deferred;
     }
     own->main->cavity.num_created = 0; /* its last star may be gone (N2) */
+    assert(slots_are_accounted_for(own->main) && own->running == 0);
     BRIO_TRY(BRIO_ALLOC(ctx, left, num_left));
     brio_release(ctx, own->list);
     own->list = left;
@@ -286,7 +311,7 @@ static int useful_threads(size_t count, size_t inserted, int most) {
     return threads < (size_t)most ? (int)threads : most;
 }
 
-/* What the passes have left, by the main inserter alone. */
+/* Inserts what the passes have left, by the main inserter alone. */
 static brio_status insert_rest(pass *own, double done) {
     brio_inserter *ins = own->main;
     brio_status status = BRIO_OK;
@@ -308,6 +333,7 @@ brio_status brio_insert_parallel(brio_inserter *ins, size_t begin, size_t end) {
     int most = brio_threads(ctx, own.count, LEAST);
     worker *workers = NULL;
     assert(ins->locator == &brio_strategy_walk); /* workers walk, and keep no tables of other strategies up to date */
+    assert(ins->store->rank && !ins->zone && begin <= end && end <= ins->store->num_points);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, workers, (size_t)most));
     for (int n = 0; n < PASSES; n++) {
         size_t count = own.count, inserted = end - count;

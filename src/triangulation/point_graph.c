@@ -2,6 +2,7 @@
  * another thread of the caller may write to them. */
 #include "triangulation/point_graph.h"
 #include "base/memory.h"
+#include <assert.h>
 #include <string.h>
 
 void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph) {
@@ -28,8 +29,10 @@ brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_op
     }
     for (size_t p = 0; p < n; p++)
         first[p] = sum += first[p]; /* the end of the list of p; filling moves first[p] back to the list's start */
+    assert(sum == ends);
     first[n] = sum;
     for (size_t i = 0; i < ends; i++) out->neighbour[--first[end[i]]] = end[i ^ 1];
+    assert(n == 0 || first[0] == 0); /* filled lists begin where they are to begin */
 done:
     brio_release(store->ctx, record);
     brio_release(store->ctx, end);

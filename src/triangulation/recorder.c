@@ -2,10 +2,12 @@
  * Insertion itself does no recording: runs of insertions end where an entry is due. */
 #include "triangulation/recorder.h"
 #include "base/memory.h"
+#include <assert.h>
 
 enum { FIRST_DOUBLING = 4096 };
 
 size_t brio_recorder_next(const brio_recorder *r, size_t inserted) {
+    assert(r->rounds.count <= BRIO_MOST_ROUNDS);
     size_t next = FIRST_DOUBLING;
     if (r->every == 0) return SIZE_MAX;
     if (r->every != BRIO_RECORD_ROUNDS) {

@@ -15,6 +15,7 @@
 #include "base/team.h"
 #include "triangulation/nearest_vertex.h"
 #include "triangulation/vertex_tets.h"
+#include <assert.h>
 #include <string.h>
 
 enum { SLOTS_A_THREAD = 1 << 13 };
@@ -31,8 +32,10 @@ static brio_status represent_one(workspace *w, uint32_t p) {
     brio_inserter *ins = w->ins;
     const brio_store *s = ins->store;
     const double *x = s->record[p];
+    assert(s->state[w->vertex_tet[brio_alive(s, p)]] == TET_PLAIN);
     ins->walk.start = w->vertex_tet[brio_alive(s, p)];
     uint32_t tet = brio_inserter_walk(ins, x, UINT64_MAX);
+    assert(tet != BRIO_NO_TET);
     const uint32_t *v = s->t.tet[tet].vertex;
     for (int i = 0; i < 4; i++)
         if (v[i] != s->t.infinite && brio_same_position(s->record[v[i]], x)) {
@@ -40,6 +43,7 @@ static brio_status represent_one(workspace *w, uint32_t p) {
             ins->stats.duplicates++;
             return BRIO_OK;
         }
+    assert(s->weighted); /* without weights every point is a vertex or at one */
     w->hidden[w->num_hidden++] = p;
     return brio_nearest_vertex(&w->nearest, tet, x, &s->representative[p]);
 }
@@ -113,6 +117,7 @@ static brio_status positions_new(const brio_store *s, positions *out) {
 static size_t first_place(const positions *t, uint32_t p) {
     uint64_t x[3];
     memcpy(x, t->store->record[p], sizeof x);
+    assert((t->size & (t->size - 1)) == 0 && t->size > t->store->num_points); /* probing ends */
     return brio_mix(x[0] ^ brio_mix(x[1] ^ brio_mix(x[2]))) & (t->size - 1);
 }
 
@@ -191,6 +196,7 @@ static void rename_vertices(void *user, size_t begin, size_t end, int thread) {
     for (size_t t = begin; t < end; t++) {
         if (r->store->state[t] != TET_PLAIN) continue; /* an unused slot may never have been written */
         uint32_t *v = r->store->t.tet[t].vertex;
+        assert(v[0] < r->store->t.infinite && v[3] <= r->store->t.infinite); /* I2 */
         for (int i = 0; i < 4; i++) v[i] = r->first[v[i]];
     }
 }
@@ -235,6 +241,7 @@ brio_status brio_represent(brio_inserter *ins, bool leaves_hidden) {
         status = leaves_hidden ? leave_hidden(ins) : represent_weighted(ins);
     else
         count_duplicates(ins);
+    assert(ins->stats.duplicates + ins->stats.hidden <= s->num_points);
     ins->stats.vertices = s->num_points - ins->stats.duplicates - ins->stats.hidden;
     return status;
 }

@@ -7,6 +7,7 @@
  * regular triangulation of the points in their own dimension, with the same hidden points. */
 #include "triangulation/start.h"
 #include "base/memory.h"
+#include <assert.h>
 #include <string.h>
 
 enum { FIRST = 5 }; /* tetrahedra that a triangulation begins with */
@@ -17,6 +18,7 @@ static void swap_records(brio_store *s, size_t i, size_t j) {
     memcpy(r, s->record[i], sizeof r);
     memcpy(s->record[i], s->record[j], sizeof r);
     memcpy(s->record[j], r, sizeof r);
+    assert(i < s->num_points && j < s->num_points);
     uint32_t c = s->caller[i];
     s->caller[i] = s->caller[j], s->caller[j] = c;
     if (!s->rank) return;
@@ -48,7 +50,7 @@ static int general_position(brio_store *s) {
     return count;
 }
 
-/* The first four records, those of the first tetrahedron, take the first turns. Flat inputs need no sequence. */
+/* Gives the first four records, those of the first tetrahedron, the first turns. Flat inputs need no sequence. */
 static void choose_turns(brio_store *s) {
     size_t to = s->num_points;
     if (s->dimension < 3) {
@@ -58,6 +60,7 @@ static void choose_turns(brio_store *s) {
     }
     for (size_t i = s->num_points; i-- > 0;)
         if (s->sequence[i] > 3) s->sequence[--to] = s->sequence[i];
+    assert(to == 4); /* the first four records were in the sequence */
     for (uint32_t i = 0; i < 4; i++) s->sequence[i] = i;
 }
 
@@ -80,6 +83,7 @@ static void place_apex(brio_store *s, uint32_t corner[4], int count, uint32_t ap
                               : brio_orient3d_exact(r[corner[0]], r[corner[1]], r[corner[2]], p) != 0;
         if (off) break;
     }
+    assert(apex < s->t.infinite);
     corner[count] = apex;
 }
 
@@ -91,6 +95,7 @@ static double largest_difference(const brio_store *s) {
 
 /* Rotates the latest of the first three vertices to the front; the orientation stays. */
 static void latest_first(uint32_t *v) {
+    assert(v[0] != v[1] && v[1] != v[2] && v[2] != v[0]);
     while (v[0] < v[1] || v[0] < v[2]) {
         uint32_t first = v[0];
         v[0] = v[1], v[1] = v[2], v[2] = first;
@@ -105,6 +110,8 @@ static void first_tetrahedron(brio_store *s, uint32_t corner[4]) {
     uint32_t *own = t->tet[0].vertex;
     own[0] = corner[3], own[1] = corner[0], own[2] = corner[1], own[3] = corner[2];
     if (brio_orient3d_exact(r[own[0]], r[own[1]], r[own[2]], r[own[3]]) < 0) own[2] = corner[2], own[3] = corner[1];
+    assert(brio_orient3d_exact(r[own[0]], r[own[1]], r[own[2]], r[own[3]]) > 0); /* I1 */
+    assert(s->capacity >= FIRST && s->t.count == 0);
     t->count = FIRST;
     for (uint32_t i = 0; i < 4; i++) { /* facet i seen from outside: its order reversed */
         uint32_t *v = t->tet[i + 1].vertex;
@@ -119,6 +126,7 @@ static void first_tetrahedron(brio_store *s, uint32_t corner[4]) {
              e++) { /* across the edge opposite to vertex e lies the facet opposite to that vertex */
             uint32_t j = (uint32_t)brio_slot_of_vertex(own, t->tet[i + 1].vertex[e]);
             int other = brio_slot_of_vertex(t->tet[j + 1].vertex, own[i]);
+            assert(j < 4 && other < 3 && j != i);
             t->tet[i + 1].mate[e] = brio_facet_of(j + 1, other);
         }
     memset(s->state, TET_PLAIN, t->count);

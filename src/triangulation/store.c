@@ -4,11 +4,12 @@
 #include "base/team.h"
 #include "order/order.h"
 #include "triangulation/records.h"
+#include <assert.h>
 #include <math.h>
 
 enum { POINTS_A_THREAD = 512, MORE_RECORDS = 3 /* two apexes and the infinite vertex */ };
 
-/* A store for n points, without arrays. */
+/* Makes a store for n points, without arrays. */
 static brio_status begin_store(brio_context *ctx, size_t n, brio_store **out) {
     brio_status status = BRIO_ALLOC_ZERO(ctx, *out, 1);
     if (status != BRIO_OK) return status;
@@ -18,8 +19,9 @@ static brio_status begin_store(brio_context *ctx, size_t n, brio_store **out) {
     return BRIO_OK;
 }
 
-/* The arrays beside those of the records. */
+/* Makes the arrays beside those of the records. */
 static brio_status end_store(brio_store *s) {
+    assert(s->record && s->caller && s->t.infinite == s->num_points + 2); /* the layout of store.h */
     size_t n = s->num_points + MORE_RECORDS;
     brio_status status = BRIO_OK;
     s->record[s->t.infinite][3] = INFINITY; /* as conflict_lanes.h knows the infinite vertex */
@@ -100,20 +102,24 @@ void brio_store_free(brio_store *s) {
 brio_status brio_store_reserve(brio_store *s, size_t more) {
     brio_status status = BRIO_OK;
     size_t need = s->t.count + more, capacity = need + need / 8 + 1024;
+    assert(s->t.count <= s->capacity && s->max_tetrahedra <= (size_t)1 << 30);
     if (need <= s->capacity) return BRIO_OK;
     BRIO_REQUIRE(s->ctx, need <= s->max_tetrahedra, BRIO_ERR_TOO_LARGE, "more than %zu tetrahedra", s->max_tetrahedra);
     if (capacity > s->max_tetrahedra) capacity = s->max_tetrahedra;
     BRIO_TRY(BRIO_RESIZE(s->ctx, s->t.tet, capacity));
     BRIO_TRY(BRIO_RESIZE(s->ctx, s->state, capacity));
+    assert(need <= capacity && capacity <= (size_t)1 << 30); /* facet handles have 32 bits */
     s->capacity = capacity;
 done:
     return status;
 }
 
 bool brio_store_take(brio_store *s, size_t size, size_t *begin) {
+    assert(size > 0);
     *begin = __atomic_load_n(&s->t.count, __ATOMIC_RELAXED);
     do { /* taken only when it fits: giving back what did not could give away another thread's slots */
         if (*begin + size > s->capacity) return false;
     } while (!__atomic_compare_exchange_n(&s->t.count, begin, *begin + size, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED));
+    assert(*begin + size <= s->capacity);
     return true;
 }

@@ -46,6 +46,7 @@
 
 #include "order/rounds.h"
 #include "triangulation/records.h"
+#include <assert.h>
 
 typedef enum {
     TET_PLAIN = 0,  /* a tetrahedron */
@@ -82,27 +83,29 @@ brio_status brio_store_new(brio_context *ctx, const brio_input *input, const bri
  *  their entries of `caller`. */
 brio_status brio_store_sample(const brio_store *from, size_t n, brio_store **out);
 
-/** NULL is accepted. */
+/** Frees a store; NULL is accepted. */
 void brio_store_free(brio_store *store);
 
 /** Makes room for at least `more` further slots. Alone only. BRIO_ERR_TOO_LARGE beyond max_tetrahedra. */
 brio_status brio_store_reserve(brio_store *store, size_t more);
 
-/** Hands out the slots [*begin, *begin + size) of the room there is; false, and no slot, where the room is less. By any
- *  thread at any time. */
+/** Hands out the slots [*begin, *begin + size) of the room there is; returns false, and hands out no slot, where
+ *  the room is less. Any thread may call this at any time. */
 bool brio_store_take(brio_store *store, size_t size, size_t *begin);
 
-/** The record that is inserted after so many others. */
+/** Returns the record that is inserted after `turn` others. */
 static inline uint32_t brio_record_at(const brio_store *store, size_t turn) {
+    assert(turn < store->num_points);
     return store->sequence ? store->sequence[turn] : (uint32_t)turn;
 }
 
 /** Frees the records and their sequence, once only the records' indices matter. */
 void brio_store_drop_records(brio_store *store);
 
-/** The vertex that took the place of record p; p itself for a vertex. Shortens the way there. Alone only. */
+/** Returns the vertex that took the place of record p; p itself for a vertex. Shortens the way there. Alone only. */
 static inline uint32_t brio_alive(const brio_store *store, uint32_t p) {
     uint32_t *representative = store->representative;
+    assert(p < store->num_points + 3);
     while (representative[p] != p) p = representative[p] = representative[representative[p]];
     return p;
 }

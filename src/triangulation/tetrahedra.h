@@ -19,6 +19,7 @@
 
 #include "base/context.h"
 #include "predicates/predicates.h"
+#include <assert.h>
 
 typedef double brio_record[4];
 
@@ -29,7 +30,9 @@ typedef struct {
     const brio_record *record;
 } brio_tetrahedra;
 
+/* Makes a facet handle. bits 0 and 1: the slot opposite to the facet; bits 2 to 31: the tetrahedron, at most 2^30 of them. */
 static inline uint32_t brio_facet_of(uint32_t tet, int i) {
+    assert(tet >> 30 == 0 && 0 <= i && i < 4);
     return 4 * tet + (uint32_t)i;
 }
 static inline uint32_t brio_tet_of(uint32_t facet) {
@@ -39,15 +42,24 @@ static inline int brio_slot_of(uint32_t facet) {
     return (int)(facet & 3);
 }
 
-/* The mate of a facet, and the vertex opposite to it. */
+/* Returns whether there is a tetrahedron, or a slot for one, of that number. In a parallel pass other threads hand out slots
+ * meanwhile. */
+static inline bool brio_has_tet(const brio_tetrahedra *t, uint32_t tet) {
+    return tet < __atomic_load_n(&t->count, __ATOMIC_RELAXED);
+}
+
+/* Return the place of the mate of a facet (brio_mate), and the vertex opposite to a facet (brio_apex). */
 static inline uint32_t *brio_mate(const brio_tetrahedra *t, uint32_t facet) {
+    assert(brio_has_tet(t, brio_tet_of(facet)));
     return &t->tet[brio_tet_of(facet)].mate[brio_slot_of(facet)];
 }
 static inline uint32_t brio_apex(const brio_tetrahedra *t, uint32_t facet) {
+    assert(brio_has_tet(t, brio_tet_of(facet)));
     return t->tet[brio_tet_of(facet)].vertex[brio_slot_of(facet)];
 }
 
 static inline bool brio_is_infinite(const brio_tetrahedra *t, uint32_t tet) {
+    assert(brio_has_tet(t, tet));
     return t->tet[tet].vertex[3] == t->infinite;
 }
 
@@ -62,25 +74,29 @@ static const uint8_t BRIO_EDGE[4][4][2] = {
     {{2, 1}, {0, 2}, {1, 0}, {0, 0}},
 };
 
-/* Slot of vertex v in a tetrahedron; 4 when it is none of them. */
+/* Returns the slot of vertex v in a tetrahedron; 4 when the tetrahedron does not have v. */
 static inline int brio_slot_of_vertex(const uint32_t v4[4], uint32_t v) {
     return v4[0] == v ? 0 : v4[1] == v ? 1 : v4[2] == v ? 2 : v4[3] == v ? 3 : 4;
 }
 
-/* Whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the plane of
+/* Returns whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the plane of
  * a hull facet the finite neighbour decides. Ties are broken, so that the answer is never on the border. */
 static inline bool brio_in_conflict(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p,
                                     const bool weighted) {
+    assert(brio_has_tet(t, tet) && t->record);
     const uint32_t *v = t->tet[tet].vertex;
     if (v[3] == t->infinite) {
         int side = brio_orient3d_sign(f, t->record[v[0]], t->record[v[1]], t->record[v[2]], p);
         if (side) return side > 0;
+        assert(brio_has_tet(t, brio_tet_of(t->tet[tet].mate[3])));
         v = t->tet[brio_tet_of(t->tet[tet].mate[3])].vertex;
+        assert(v[3] != t->infinite); /* behind facet 3, the hull facet, is a finite tetrahedron (I2) */
     }
+    assert(v[0] != t->infinite && v[1] != t->infinite && v[2] != t->infinite); /* I2 */
     return brio_conflict(f, t->record[v[0]], t->record[v[1]], t->record[v[2]], t->record[v[3]], p, weighted);
 }
 
-/* The same by the exact stage at once, for a test that the inexact ones have given up. */
+/* Returns what brio_in_conflict returns, by the exact stage at once: for tests that the inexact stages left open. */
 bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted);
 
 #endif

@@ -5,14 +5,14 @@
 #include "base/vector.h"
 #include "triangulation/inserter.h"
 
-/** vertex_tet[v] = a tetrahedron of v, for all vertices, the infinite one included; others are left as they are. */
+/** Sets vertex_tet[v] to a tetrahedron of v, for all vertices, the infinite one included. Leaves the other entries unchanged. */
 static inline void brio_vertex_tets_fill(const brio_store *s, uint32_t *vertex_tet) {
     for (size_t t = 0; t < s->t.count; t++)
         if (s->state[t] == TET_PLAIN)
             for (int i = 0; i < 4; i++) vertex_tet[s->t.tet[t].vertex[i]] = (uint32_t)t;
 }
 
-/** The same after one insertion: only the vertices of the new star can have lost their tetrahedron. */
+/** Updates vertex_tet after one insertion: only the vertices of the new star can have lost their tetrahedron. */
 static inline void brio_vertex_tets_filled(const brio_inserter *ins, uint32_t *vertex_tet) {
     const brio_tetrahedron *tets = ins->store->t.tet;
     const brio_cavity *c = &ins->cavity;

@@ -1,9 +1,10 @@
 /* The walk of locate_walk.c with the four facets of a tetrahedron side by side in the lanes of one AVX2 register;
  * included by the engines that have it. */
 #include "triangulation/locate_walk.h"
+#include <assert.h>
 #include <immintrin.h>
 
-/* x, y, z of the vertices of a tetrahedron relative to p, a vertex a lane. */
+/* Writes x, y, z of the vertices of a tetrahedron relative to p, a vertex a lane. */
 static inline void vertices_about(const brio_tetrahedra *t, const uint32_t v[4], const double *p, __m256d xyz[3]) {
     __m256d origin = _mm256_loadu_pd(p), r[4];
     for (int i = 0; i < 4; i++) r[i] = _mm256_loadu_pd(t->record[v[i]]) - origin;
@@ -14,7 +15,7 @@ static inline void vertices_about(const brio_tetrahedra *t, const uint32_t v[4],
     xyz[2] = _mm256_permute2f128_pd(ab0, cd0, 0x31);
 }
 
-/* Lane i: the orientation of the tetrahedron with vertex i replaced by the origin. */
+/* Returns in lane i the orientation of the tetrahedron with vertex i replaced by the origin. */
 static inline __m256d facet_sides(const __m256d xyz[3]) {
     __m256d a[3], b[3], c[3]; /* the vertices one, two and three after i */
     for (int k = 0; k < 3; k++) {
@@ -53,6 +54,7 @@ static inline unsigned facets_beyond(const brio_tetrahedra *t, brio_filter *f, c
 /* Draws one of the facets `beyond`. */
 static inline unsigned draw_facet(brio_walk *w, unsigned beyond) {
     w->random = brio_walk_random(w->random);
+    assert(beyond != 0 && beyond >> 4 == 0);
     unsigned first = w->random >> 30;
     return (first + (unsigned)__builtin_ctz((beyond | beyond << 4) >> first)) & 3;
 }
@@ -63,6 +65,7 @@ static uint32_t walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, 
     unsigned ahead = 15; /* all facets but the one that the walk came through */
     if ((w->blocked = !brio_owns(t, zone, tet))) return BRIO_NO_TET;
     for (uint64_t steps = 0; steps <= most_steps; steps++, w->steps++) {
+        assert(brio_has_tet(t, tet) && brio_zone_holds_tet(t, zone, tet)); /* P3 */
         const uint32_t *v = t->tet[tet].vertex;
         if (v[3] == t->infinite) return tet;
         unsigned above, beyond = facets_beyond(t, f, v, p, ahead, &above);
@@ -82,6 +85,7 @@ static uint32_t walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, 
 /* Takes one step from *tet. Returns whether the walk has ended there. */
 static inline bool step(const brio_tetrahedra *t, brio_filter *f, brio_walk *w, const double *p, uint32_t *tet,
                         unsigned *ahead) {
+    assert(brio_has_tet(t, *tet));
     const uint32_t *v = t->tet[*tet].vertex;
     if (v[3] == t->infinite) return true;
     unsigned above, beyond = facets_beyond(t, f, v, p, *ahead, &above);

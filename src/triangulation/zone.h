@@ -7,6 +7,7 @@
 #define BRIO_TRIANGULATION_ZONE_H
 
 #include "triangulation/tetrahedra.h"
+#include <assert.h>
 
 /** All fields belong to one thread, except what `taken` points to. */
 typedef struct {
@@ -19,29 +20,44 @@ typedef struct {
     uint8_t now; /* number of the insertion, never 0 */
 } brio_zone;
 
-/** A zone without segments. taken  of `segments` bytes, the caller's. */
+/** Makes a zone without segments. taken  of `segments` bytes, the caller's. */
 brio_status brio_zone_new(brio_context *ctx, const uint32_t *rank, int shift, size_t segments, uint8_t *taken,
                           brio_zone *out);
 void brio_zone_free(brio_context *ctx, brio_zone *zone);
 
-/** Takes a segment that this thread does not hold; false when another thread does. */
+/** Takes a segment that this thread does not hold. Returns false when another thread holds it. */
 bool brio_zone_take(brio_zone *zone, uint32_t segment);
 
-/** Ends an insertion. Where many segments are held, gives back those that it did not meet; whether there were any. */
+/** Ends an insertion. Where many segments are held, gives back those that the insertion did not meet. Returns whether there
+ *  were any. */
 bool brio_zone_tidy(brio_zone *zone);
 
 /** Gives back all segments. */
 void brio_zone_leave(brio_zone *zone);
 
-/** Whether a vertex is in the zone, which grows by its segment where that is free. */
+/** Returns whether a vertex is in the zone. Adds its segment to the zone first, if no thread holds that. */
 static inline bool brio_zone_has(brio_zone *zone, uint32_t vertex) {
+    assert(zone->now != 0);
     uint32_t segment = zone->rank[vertex] >> zone->shift;
     if (!zone->held[segment] && !brio_zone_take(zone, segment)) return false;
     zone->held[segment] = zone->now;
     return true;
 }
 
-/** Whether this thread may destroy a tetrahedron: all its finite vertices are in the zone, which grows where it can. No
+/** Returns whether this thread holds a vertex. Changes nothing. */
+static inline bool brio_zone_holds(const brio_zone *zone, uint32_t vertex) {
+    return zone->held[zone->rank[vertex] >> zone->shift] != 0;
+}
+
+/** Returns whether this thread holds all finite vertices of a tetrahedron (P1 of store.h); always without a zone. Changes
+ *  nothing. */
+static inline bool brio_zone_holds_tet(const brio_tetrahedra *t, const brio_zone *zone, uint32_t tet) {
+    const uint32_t *v = t->tet[tet].vertex;
+    return !zone || (brio_zone_holds(zone, v[0]) && brio_zone_holds(zone, v[1]) && brio_zone_holds(zone, v[2]) &&
+                     (v[3] == t->infinite || brio_zone_holds(zone, v[3])));
+}
+
+/** Returns whether this thread may destroy a tetrahedron: all its finite vertices are in the zone, which grows where it can. No
  *  other thread then destroys the tetrahedron or one that shares a facet with it (decision 006). Without a zone, which
  *  is NULL, always. */
 static inline bool brio_owns(const brio_tetrahedra *t, brio_zone *zone, uint32_t tet) {
@@ -51,7 +67,7 @@ static inline bool brio_owns(const brio_tetrahedra *t, brio_zone *zone, uint32_t
            (v[3] == t->infinite || brio_zone_has(zone, v[3]));
 }
 
-/** The same for the tetrahedron of a facet whose mate's tetrahedron the thread owns: one vertex is new. */
+/** Returns what brio_owns returns for the tetrahedron of a facet whose mate's tetrahedron the thread owns: one vertex is new. */
 static inline bool brio_owns_beyond(const brio_tetrahedra *t, brio_zone *zone, uint32_t facet) {
     uint32_t apex;
     if (!zone) return true;
