@@ -11,6 +11,7 @@
 #include "plane/plane_represent.h"
 #include "plane/plane_start.h"
 #include "plane/triangulation2.h"
+#include <assert.h>
 
 enum { PROGRESS_EVERY = 1 << 14 };
 
@@ -37,6 +38,7 @@ done:
 
 /* Moves a triangle to a free slot. */
 static void move_triangle(brio_triangle *t, uint32_t from, uint32_t to) {
+    assert(from != to);
     t[to] = t[from];
     for (uint32_t i = 0; i < 3; i++) {
         uint32_t g = t[to].mate[i];
@@ -69,11 +71,26 @@ static void separate(brio_plane_store *s) {
         while (low < high && t[low].vertex[2] != infinite) low++;
         while (low < high && t[high - 1].vertex[2] == infinite) high--;
         if (low == high) break;
+        assert(s->count < s->capacity); /* slot `count` is free */
         swap_triangles(t, low, high - 1, (uint32_t)s->count);
     }
     s->stats.triangles = low;
     s->stats.hull_edges = s->count - low;
 }
+
+#ifndef NDEBUG
+/* Returns whether mates are mates of each other, and finite triangles come first (I2, I3). */
+static bool result_is_valid(const brio_plane_store *s) {
+    for (size_t t = 0; t < s->count; t++)
+        for (uint32_t i = 0; i < 3; i++) {
+            uint32_t g = s->triangle[t].mate[i];
+            if ((s->triangle[t].vertex[i] == s->infinite) != (t >= s->stats.triangles && i == 2)) return false;
+            if (brio_triangle_of(g) >= s->count) return false;
+            if (s->triangle[brio_triangle_of(g)].mate[brio_edge_slot(g)] != brio_edge_of((uint32_t)t, i)) return false;
+        }
+    return true;
+}
+#endif
 
 /* Orders the triangles and gives their vertices the caller's names. */
 static void number_result(brio_plane_store *s) {
@@ -83,6 +100,8 @@ static void number_result(brio_plane_store *s) {
     }
     fill_unused(s);
     separate(s);
+    assert(s->count == 2 * s->stats.vertices - 2); /* Euler's relation, infinite triangles included */
+    assert(result_is_valid(s));
     for (size_t i = 0; i < s->count; i++)
         for (int k = 0; k < 3; k++) s->triangle[i].vertex[k] = s->caller[s->triangle[i].vertex[k]];
 }
@@ -102,6 +121,7 @@ static brio_status list_line(const brio_plane_store *s, brio_triangulation2 *t) 
     status = brio_sort_many_indices(s->ctx, t->line, count, compare_places, s);
     if (status != BRIO_OK) return status;
     for (size_t i = 0; i < count; i++) t->line[i] = s->caller[t->line[i]];
+    assert(count == s->stats.vertices);
     t->line_count = count;
     return BRIO_OK;
 }
@@ -118,7 +138,10 @@ static brio_status triangulation_new(brio_plane_store *s, brio_triangulation2 **
     brio_release(s->ctx, s->record); /* the room for the representatives */
     s->record = NULL;
     BRIO_TRY(BRIO_ALLOC(s->ctx, t->representative, s->num_points));
-    for (size_t p = 0; p < s->num_points; p++) t->representative[s->caller[p]] = s->caller[s->representative[p]];
+    for (size_t p = 0; p < s->num_points; p++) {
+        assert(s->representative[s->representative[p]] == s->representative[p]); /* I6: a vertex */
+        t->representative[s->caller[p]] = s->caller[s->representative[p]];
+    }
     t->triangle = s->triangle;
     t->stats = s->stats;
     t->points_hash = s->points_hash;

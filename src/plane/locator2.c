@@ -8,6 +8,7 @@
 #include "base/sort.h"
 #include "plane/plane_frame.h"
 #include "plane/plane_points.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -39,6 +40,7 @@ static void fill_grid(brio_locator2 *l) {
     for (size_t s = 0; s < squares; s++) {
         if (l->start[s] == BRIO_NO_TRIANGLE) l->start[s] = last;
         last = l->start[s];
+        assert(last < l->num_finite); /* I3 */
     }
 }
 
@@ -49,6 +51,7 @@ static brio_status take_triangles(brio_locator2 *l, const brio_triangulation2 *t
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->triangle, l->num_triangles));
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->corner, l->num_points));
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->start, l->side * l->side));
+    assert(l->num_finite <= l->num_triangles);
     memcpy(l->triangle, t->triangle, l->num_triangles * sizeof *l->triangle);
     for (size_t i = l->num_finite; i-- > 0;)
         for (int k = 0; k < 3; k++) l->corner[l->triangle[i].vertex[k]] = (uint32_t)i;
@@ -63,6 +66,7 @@ static brio_status take_line(brio_locator2 *l, const brio_triangulation2 *t) {
     if (l->num_finite || !l->num_points) return BRIO_OK;
     brio_status status = BRIO_ALLOC(l->ctx, l->line, t->stats.vertices);
     if (status != BRIO_OK) return status;
+    assert(!t->line || t->line_count == t->stats.vertices);
     l->num_line = t->stats.vertices;
     if (t->line)
         memcpy(l->line, t->line, l->num_line * sizeof *l->line);
@@ -73,7 +77,7 @@ static brio_status take_line(brio_locator2 *l, const brio_triangulation2 *t) {
 
 /* --- points on a line up to rounding --- */
 
-/* Whether all triangles are flat up to the rounding of coordinates. In usual triangulations the first one is not. */
+/* Returns whether all triangles are flat up to the rounding of coordinates. In usual triangulations the first one is not. */
 static bool is_line(const brio_locator2 *l) {
     double greatest = 0;
     for (int k = 0; k < 2; k++) greatest = fmax(greatest, fmax(fabs(l->low[k]), fabs(l->high[k])));

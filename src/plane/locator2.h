@@ -9,6 +9,7 @@
 #define BRIO_PLANE_LOCATOR2_H
 
 #include "plane/plane_walk.h"
+#include <assert.h>
 
 struct brio_locator2 {
     brio_context *ctx;
@@ -30,7 +31,7 @@ static inline brio_plane_view brio_locator2_view(const brio_locator2 *l) {
     return (brio_plane_view){l->triangle, (const brio_plane_record *)l->record, BRIO_INFINITE};
 }
 
-/** Whether x is in the box of the points, where the locator's filter holds. */
+/** Returns whether x is in the box of the points, where the locator's filter holds. */
 static inline bool brio_locator2_boxes(const brio_locator2 *l, const double *x) {
     return x[0] >= l->low[0] && x[0] <= l->high[0] && x[1] >= l->low[1] && x[1] <= l->high[1];
 }
@@ -42,6 +43,7 @@ static inline uint32_t *brio_locator2_square(const brio_locator2 *l, const doubl
         double place = (x[k] - l->low[k]) * l->scale[k];
         at[k] = !(place > 0) ? 0 : place < (double)l->side ? (size_t)place : l->side - 1;
     }
+    assert(l->start && at[0] < l->side && at[1] < l->side);
     return &l->start[at[1] * l->side + at[0]];
 }
 

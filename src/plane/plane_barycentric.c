@@ -3,6 +3,7 @@
 #include "plane/plane_barycentric.h"
 #include "base/flat_shares.h"
 #include "base/scale.h"
+#include <assert.h>
 #include <math.h>
 
 enum { REFINEMENTS = 2 };
@@ -50,6 +51,7 @@ static void normalize(unsigned zeros, double share[3]) {
 }
 
 void brio_plane_barycentric(const brio_locator2 *l, const brio_plane_holder *h, const double *x, double share[3]) {
+    assert(h->triangle < l->num_finite && h->zeros < 7);
     const uint32_t *v = l->triangle[h->triangle].vertex;
     double row[3][2], residual[2] = {0, 0}, more[3], scale = brio_plane_offset_scale(l, v, 3, x);
     if (__builtin_popcount(h->zeros) == 2) {

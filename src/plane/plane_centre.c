@@ -1,6 +1,7 @@
 /* Centres of circles in the plane, see plane_centre.h. The corners are sorted, and the first one is raised by about the
  * size of the triangle, so the bits of a centre depend on the positions alone. */
 #include "plane/plane_centre.h"
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 
@@ -17,6 +18,7 @@ static double height_of(const double *const corner[3]) {
 }
 
 void brio_plane_circles_add(brio_plane_circles *b, const double *p, const double *q, const double *r) {
+    assert(b->count < BRIO_CENTRE_BATCH);
     const double *corner[3] = {p, q, r};
     for (int i = 1; i < 3; i++)
         for (int j = i; j > 0 && comes_before(corner[j], corner[j - 1]); j--) {

@@ -124,7 +124,7 @@ done:
     return status;
 }
 
-/* The heaviest point represents the others; among equal weights, the one with the lowest index. */
+/* Checks that the heaviest point represents the others; among equal weights, the one with the lowest index. */
 static brio_status check_one_place(workspace *w) {
     brio_status status = BRIO_OK;
     const brio_plane_judge *j = w->j;

@@ -3,9 +3,11 @@
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "plane/plane_holder.h"
+#include <assert.h>
 
 static unsigned zero_sides(brio_plane_querent *q, uint32_t t, const double *x) {
     const brio_locator2 *l = q->l;
+    assert(t < l->num_finite);
     const uint32_t *v = l->triangle[t].vertex;
     unsigned zeros = 0;
     for (uint32_t i = 0; i < 3; i++) {
@@ -40,6 +42,7 @@ static uint32_t walk(brio_plane_querent *q, const double *x, unsigned *zeros) {
 
 /* Returns the lowest index of the triangles that hold a query which is in triangle t. */
 static uint32_t lowest_holder(const brio_locator2 *l, uint32_t t, unsigned zeros) {
+    assert(t < l->num_finite && zeros < 7);
     const brio_triangle *own = &l->triangle[t];
     if (!zeros) return t;
     if (zeros & (zeros - 1)) return l->corner[own->vertex[__builtin_ctz(~zeros)]];
@@ -58,5 +61,6 @@ brio_plane_holder brio_plane_find_holder(brio_plane_querent *q, const double *x)
 }
 
 bool brio_plane_holder_on_hull(const brio_locator2 *l, const brio_plane_holder *h) {
+    assert(h->triangle < l->num_finite && __builtin_popcount(h->zeros) < 2);
     return h->zeros && brio_triangle_of(l->triangle[h->triangle].mate[__builtin_ctz(h->zeros)]) >= l->num_finite;
 }

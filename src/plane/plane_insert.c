@@ -27,13 +27,16 @@ ALWAYS_INLINE brio_status reserve(brio_context *ctx, brio_plane_list *list, size
 /* Returns whether triangle t conflicts with x. On the line of a hull edge, the conflict of the infinite triangle is that
  * of the triangle behind the edge: its circle meets the line where the edge's own circle does. */
 ALWAYS_INLINE bool in_conflict(brio_plane_store *s, uint32_t t, const double *x, const bool general) {
+    assert(t < s->count);
     const brio_plane_record *r = s->record;
     const uint32_t *v = s->triangle[t].vertex;
     if (v[2] == s->infinite) {
         int side = brio_orient2d_sign(&s->filter, r[v[0]], r[v[1]], x);
         if (side) return side > 0;
         v = s->triangle[brio_triangle_of(s->triangle[t].mate[2])].vertex;
+        assert(v[2] != s->infinite); /* behind a hull edge is a finite triangle (I2) */
     }
+    assert(v[0] != s->infinite && v[1] != s->infinite); /* I2 */
     s->stats.incircle_calls++;
     return brio_circle_conflict(&s->filter, r[v[0]], r[v[1]], r[v[2]], x, general);
 }
@@ -50,6 +53,7 @@ ALWAYS_INLINE uint32_t vertex_at(const brio_plane_store *s, uint32_t t, const do
 
 /* Returns whether p, coincident with vertex v, adds nothing. Of equal weights the lower index keeps the name. */
 static bool absorbed(brio_plane_store *s, uint32_t p, uint32_t v) {
+    assert(s->representative[p] == p && s->representative[v] == v); /* I6: p is not in yet, and v is a vertex */
     double wp = s->record[p][3], wv = s->record[v][3];
     if (wp > wv) return false;
     if (wp == wv && s->caller[p] < s->caller[v]) {
@@ -74,11 +78,13 @@ ALWAYS_INLINE bool becomes_vertex(brio_plane_store *s, uint32_t p, uint32_t t, c
 /* --- the cavity --- */
 
 static inline void push(brio_plane_list *list, uint32_t item) {
+    assert(list->count < list->capacity);
     list->item[list->count++] = item;
 }
 
 /* Adds triangle t to the cavity, entered by its edge in slot i; the edges after it will be looked at counterclockwise. */
 ALWAYS_INLINE void dig_triangle(brio_plane_store *s, uint32_t t, uint32_t i, const bool general) {
+    assert(t < s->count && i < 3 && !(general && s->dug && s->dug[t])); /* each triangle is dug once */
     const uint32_t *mate = s->triangle[t].mate;
     push(&s->cavity, t);
     if (general && s->dug) s->dug[t] = 1;
@@ -107,6 +113,8 @@ ALWAYS_INLINE brio_status dig(brio_plane_store *s, uint32_t t, const double *x, 
         else
             push(&s->boundary, g);
     }
+    assert(s->boundary.count >= 3 && s->cavity.count > 0); /* a disk */
+    assert((general && s->weighted) || s->boundary.count == s->cavity.count + 2);
 done:
     return status;
 }
@@ -134,6 +142,7 @@ static brio_status take_slots(brio_plane_store *s) {
     while (s->cavity.count < need)
         push(&s->cavity, s->unused.count ? s->unused.item[--s->unused.count] : (uint32_t)s->count++);
     assert(s->count <= s->capacity);
+    assert(s->cavity.count == s->boundary.count);
 done:
     return status;
 }
@@ -141,6 +150,7 @@ done:
 /* Turns a triangle with the infinite vertex in slot 1 so that it is in slot 2. */
 static void turn(brio_plane_store *s, uint32_t t) {
     brio_triangle *own = &s->triangle[t], old = *own;
+    assert(own->vertex[1] == s->infinite);
     for (uint32_t i = 0; i < 3; i++) {
         uint32_t to = brio_slot_after(i), g = old.mate[i];
         own->vertex[to] = old.vertex[i];
@@ -148,6 +158,28 @@ static void turn(brio_plane_store *s, uint32_t t) {
         s->triangle[brio_triangle_of(g)].mate[brio_edge_slot(g)] = brio_edge_of(t, to);
     }
 }
+
+#ifndef NDEBUG
+/* Returns whether the new triangles, which are listed in the cavity's list, keep I1 to I3. */
+static bool star_is_valid(const brio_plane_store *s, uint32_t p) {
+    brio_plane_filter filter = s->filter; /* a copy, which counts apart */
+    for (size_t n = 0; n < s->cavity.count; n++) {
+        uint32_t t = s->cavity.item[n];
+        const uint32_t *v = s->triangle[t].vertex;
+        if (v[0] == s->infinite || v[1] == s->infinite || (v[0] != p && v[1] != p && v[2] != p)) return false;
+        if (v[2] != s->infinite && brio_orient2d_sign(&filter, s->record[v[0]], s->record[v[1]], s->record[v[2]]) <= 0)
+            return false;
+        for (uint32_t i = 0; i < 3; i++) {
+            uint32_t g = s->triangle[t].mate[i], j = brio_edge_slot(g);
+            const brio_triangle *other = &s->triangle[brio_triangle_of(g)];
+            if (other->mate[j] != brio_edge_of(t, i)) return false;
+            if (other->vertex[brio_slot_after(j)] != v[brio_slot_before(i)]) return false;
+            if (other->vertex[brio_slot_before(j)] != v[brio_slot_after(i)]) return false;
+        }
+    }
+    return true;
+}
+#endif
 
 /* Fills the cavity with the star of p. */
 ALWAYS_INLINE brio_status fill(brio_plane_store *s, uint32_t p, const bool general) {
@@ -169,19 +201,25 @@ ALWAYS_INLINE brio_status fill(brio_plane_store *s, uint32_t p, const bool gener
         uint32_t from = outer->vertex[brio_slot_before(j)], to = outer->vertex[brio_slot_after(j)];
         outer->mate[j] = brio_edge_of(t, 0);
         s->triangle[t] = (brio_triangle){{p, from, to}, {g, brio_edge_of(next, 2), brio_edge_of(before, 1)}};
+        assert(from != p && to != p && from != to);
+        assert(from != s->infinite ||
+               to_turn == BRIO_NO_TRIANGLE); /* two new triangles are infinite, one of them to be turned */
         if (from == s->infinite) to_turn = t;
         before = t;
     }
     if (to_turn != BRIO_NO_TRIANGLE) turn(s, to_turn);
     s->start = slot[0];
+    assert(star_is_valid(s, p));
     return BRIO_OK;
 }
 
 ALWAYS_INLINE brio_status insert_all(brio_plane_store *s, size_t begin, size_t end, const bool general) {
     brio_status status = BRIO_OK;
     brio_plane_view view = {s->triangle, (const brio_plane_record *)s->record, s->infinite};
+    assert(begin <= end && end <= s->num_points && s->start < s->count);
     for (size_t p = begin; p < end; p++) {
         const double *x = s->record[p];
+        assert(s->representative[p] == p); /* I6: p is not in yet */
         uint32_t t = brio_plane_walk(&view, &s->filter, s->start, x, &s->stats.walk_steps);
         s->start = t;
         if (!becomes_vertex(s, (uint32_t)p, t, general)) continue;

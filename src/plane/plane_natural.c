@@ -17,6 +17,7 @@
 #include "plane/plane_natural.h"
 #include "base/memory.h"
 #include "plane/plane_centre.h"
+#include <assert.h>
 #include <math.h>
 
 void brio_plane_natural_free(brio_plane_natural *n) {
@@ -38,6 +39,7 @@ static brio_status visit(brio_plane_natural *n, uint32_t centre) {
 static brio_status add_centre(brio_plane_natural *n, uint32_t a, uint32_t b, uint32_t c) {
     brio_status status = BRIO_RESERVE(n->ctx, n->corner, n->corner_room, n->num_centres + 1);
     if (status != BRIO_OK) return status;
+    assert(a != b && b != c && c != a && n->num_centres < n->corner_room);
     uint32_t *corner = n->corner[n->num_centres];
     corner[0] = a, corner[1] = b, corner[2] = c;
     return visit(n, (uint32_t)n->num_centres++);
@@ -59,6 +61,7 @@ static brio_status add_border(brio_plane_natural *n, const brio_triangle *outsid
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_RESERVE(n->ctx, n->border, n->border_room, n->num_points + 1));
     BRIO_TRY(BRIO_RESERVE(n->ctx, n->point, n->point_room, n->num_points + 1));
+    assert(from != to);
     n->border[n->num_points] = (uint32_t)n->num_tour;
     n->point[n->num_points++] = to;
     BRIO_TRY(add_centre(n, BRIO_INFINITE, from, to));
@@ -69,6 +72,7 @@ done:
 static brio_status cross(brio_plane_natural *n, brio_plane_querent *q, uint32_t edge, const double *x) {
     const brio_locator2 *l = q->l;
     uint32_t t = brio_triangle_of(edge), i = brio_edge_slot(edge), centre = (uint32_t)n->num_centres;
+    assert(t < l->num_triangles && i < 3);
     const brio_triangle *own = &l->triangle[t];
     const uint32_t *v = own->vertex;
     brio_status status = BRIO_OK;
@@ -129,11 +133,13 @@ done:
 
 /* Returns twice the area that x takes from the point at the end of border edge k. */
 static double area_at(const brio_plane_natural *n, size_t k) {
+    assert(k < n->num_points);
     size_t at = n->border[k], end = n->border[k + 1 < n->num_points ? k + 1 : 0];
     const double *first = n->centre[n->tour[at]];
     double last[2] = {0, 0}, area = 0;
     while (at != end) {
         at = at + 1 < n->num_tour ? at + 1 : 0;
+        assert(n->tour[at] < n->num_centres);
         const double *c = n->centre[n->tour[at]];
         double next[2] = {c[0] - first[0], c[1] - first[1]};
         area -= brio_plane_cross(last, next);
@@ -189,7 +195,9 @@ brio_status brio_plane_natural_coordinates(brio_plane_natural *n, brio_plane_que
                                            const double *x, bool *found) {
     brio_status status = BRIO_OK;
     double sum;
+    assert(h->triangle < q->l->num_finite && !q->l->weighted);
     BRIO_TRY(go_round(n, q, h->triangle, x));
+    assert(n->num_ahead == 0 && n->num_points >= 3 && n->num_tour >= n->num_centres); /* the border is a cycle */
     BRIO_TRY(find_centres(n, q->l, x, found));
     if (!*found) goto done;
     BRIO_TRY(add_areas(n, &sum));

@@ -1,6 +1,7 @@
 /* The vertex of least power distance, by descent along edges: in a regular triangulation a vertex without a nearer
  * neighbour is the nearest of all. The descent goes to the first nearer neighbour that it meets around a vertex. */
 #include "plane/plane_nearest.h"
+#include <assert.h>
 
 static bool is_nearer(const brio_plane_nearest *n, const double *x, uint32_t u, uint32_t v) {
     const brio_plane_record *r = n->view->record;
@@ -11,9 +12,11 @@ static bool is_nearer(const brio_plane_nearest *n, const double *x, uint32_t u, 
 
 /* Returns a neighbour of v that is nearer to x, or v. */
 static uint32_t nearer_neighbour(const brio_plane_nearest *n, uint32_t v, const double *x) {
+    assert(v < n->num_points);
     uint32_t first = n->corner[v], t = first;
     do {
         const brio_triangle *own = &n->view->triangle[t];
+        assert(own->vertex[0] == v || own->vertex[1] == v || own->vertex[2] == v);
         uint32_t i = own->vertex[0] == v ? 0 : own->vertex[1] == v ? 1 : 2;
         uint32_t u = own->vertex[brio_slot_after(i)];
         if (is_nearer(n, x, u, v)) return u;

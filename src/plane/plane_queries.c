@@ -3,6 +3,7 @@
 #include "plane/plane_queries.h"
 #include "base/finite.h"
 #include "base/team.h"
+#include <assert.h>
 #include <math.h>
 
 /* QUERIES_A_CHUNK, QUERIES_A_THREAD: chosen. */
@@ -36,6 +37,7 @@ static brio_status answer_one(const brio_plane_batch *b, brio_plane_querent *q, 
 static void answer_chunk(void *user, size_t begin, size_t end, int thread) {
     query_job *job = user;
     const brio_plane_batch *b = job->batch;
+    assert(begin < end && end <= b->count);
     brio_plane_querent q = {b->l, thread, b->l->filter};
     brio_status status = BRIO_OK;
     if (__atomic_load_n(&job->status, __ATOMIC_RELAXED) != BRIO_OK) return;

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "plane/plane_nearest.h"
+#include <assert.h>
 
 typedef struct {
     brio_plane_store *store;
@@ -17,7 +18,7 @@ typedef struct {
     size_t num_hidden;
 } workspace;
 
-/* Slots without a triangle are overwritten: they have no vertices. */
+/* Finds a triangle of each vertex. Overwrites slots without a triangle: they have no vertices. */
 static void find_corners(workspace *w) {
     brio_plane_store *s = w->store;
     for (size_t i = 0; i < s->unused.count; i++)
@@ -31,6 +32,7 @@ static void represent_one(workspace *w, uint32_t p) {
     const double *x = s->record[p];
     uint32_t start = w->corner[brio_plane_alive(s, p)];
     uint32_t t = brio_plane_walk(&w->view, &s->filter, start, x, &s->stats.walk_steps);
+    assert(t < s->count && start < s->count);
     const uint32_t *v = s->triangle[t].vertex;
     for (int i = 0; i < 3; i++)
         if (v[i] < s->num_points && brio_same_place(s->record[v[i]], x)) {
@@ -40,6 +42,7 @@ static void represent_one(workspace *w, uint32_t p) {
         }
     brio_plane_nearest nearest = {&w->view, &s->filter, s->num_points, w->corner};
     s->representative[p] = brio_plane_nearest_vertex(&nearest, t, x);
+    assert(s->representative[p] < s->num_points);
     w->hidden[w->num_hidden++] = p;
 }
 
@@ -99,6 +102,7 @@ brio_status brio_plane_represent(brio_plane_store *s) {
         status = represent_weighted(s);
     else
         for (uint32_t p = 0; p < s->num_points; p++) s->stats.duplicates += s->representative[p] != p;
+    assert(s->stats.duplicates + s->stats.hidden <= s->num_points);
     s->stats.vertices = s->num_points - s->stats.duplicates - s->stats.hidden;
     return status;
 }

@@ -6,6 +6,7 @@
  * skips the apex. So the link of the apex is the perturbed regular triangulation of the points on the line, with the
  * same hidden points. triangulation/start.c does the same one dimension higher. */
 #include "plane/plane_start.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -15,6 +16,7 @@ static void swap_records(brio_plane_store *s, size_t i, size_t j) {
     memcpy(r, s->record[i], sizeof r);
     memcpy(s->record[i], s->record[j], sizeof r);
     memcpy(s->record[j], r, sizeof r);
+    assert(i < s->num_points && j < s->num_points);
     uint32_t c = s->caller[i];
     s->caller[i] = s->caller[j], s->caller[j] = c;
 }
@@ -53,6 +55,8 @@ static void first_triangle(brio_plane_store *s, uint32_t last) {
     brio_triangle *t = s->triangle;
     uint32_t own[3] = {0, 1, last};
     if (brio_orient2d_exact(s->record[0], s->record[1], s->record[last]) < 0) own[0] = 1, own[1] = 0;
+    assert(brio_orient2d_exact(s->record[own[0]], s->record[own[1]], s->record[own[2]]) > 0); /* I1 */
+    assert(s->capacity >= 4 && last < s->infinite);
     for (uint32_t i = 0; i < 3; i++) {
         uint32_t j = brio_slot_after(i), k = brio_slot_before(i);
         t[0].vertex[i] = own[i];
@@ -65,6 +69,7 @@ static void first_triangle(brio_plane_store *s, uint32_t last) {
 
 void brio_plane_start(brio_plane_store *s) {
     bool general = s->filter.general;
+    assert(s->filter.key[0] != s->filter.key[1] && s->filter.key[1] != s->filter.key[2]); /* brio_plane_input_key */
     const double(*records)[4] = (const double(*)[4])s->record;
     brio_plane_filter_for(&s->filter, records, s->num_points, general);
     size_t count = general_position(s);

@@ -4,6 +4,7 @@
 #include "plane/plane_store.h"
 #include "base/memory.h"
 #include "order/rounds.h"
+#include <assert.h>
 
 enum { MORE_RECORDS = 2 /* the apex and the infinite vertex */ };
 
@@ -35,10 +36,11 @@ done:
     return status;
 }
 
-/* The arrays beside the records, whose sizes are known. */
+/* Allocates the arrays beside the records. Their sizes are known. */
 static brio_status allocate(brio_plane_store *s) {
     brio_status status = BRIO_OK;
     size_t records = s->num_points + MORE_RECORDS;
+    assert(s->record && s->infinite == s->num_points + 1); /* the layout of plane_store.h */
     s->capacity = 2 * records;
     BRIO_TRY(BRIO_ALLOC(s->ctx, s->representative, records));
     BRIO_TRY(BRIO_ALLOC(s->ctx, s->triangle, s->capacity));
@@ -51,6 +53,7 @@ done:
 static brio_status make_records(brio_plane_store *s, brio_plane_input *input) {
     brio_status status = brio_plane_records_new(s->ctx, input, s->caller, MORE_RECORDS, &s->record);
     brio_plane_input_free(s->ctx, input);
+    assert(input->own == NULL);
     s->points_hash = input->hash;
     for (uint32_t i = 0; i < MORE_RECORDS; i++) s->caller[s->num_points + i] = BRIO_INFINITE;
     s->filter = (brio_plane_filter){.general = brio_plane_general(input)};

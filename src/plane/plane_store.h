@@ -27,6 +27,7 @@
 #define BRIO_PLANE_PLANE_STORE_H
 
 #include "plane/plane_input.h"
+#include <assert.h>
 
 /** A list that grows. */
 typedef struct {
@@ -59,20 +60,25 @@ typedef struct {
 
 static const uint32_t BRIO_NO_TRIANGLE = UINT32_MAX;
 
+/* Makes an edge handle. bits 0 and 1: the slot opposite to the edge, 0 to 2; bits 2 to 31: the triangle. */
 static inline uint32_t brio_edge_of(uint32_t triangle, uint32_t i) {
+    assert(triangle >> 30 == 0 && i < 3);
     return 4 * triangle + i;
 }
 static inline uint32_t brio_triangle_of(uint32_t edge) {
     return edge >> 2;
 }
 static inline uint32_t brio_edge_slot(uint32_t edge) {
+    assert((edge & 3) < 3);
     return edge & 3;
 }
-/* The slots after slot i, counterclockwise. */
+/* Return the slots after and before slot i, counterclockwise. */
 static inline uint32_t brio_slot_after(uint32_t i) {
+    assert(i < 3);
     return i == 2 ? 0 : i + 1;
 }
 static inline uint32_t brio_slot_before(uint32_t i) {
+    assert(i < 3);
     return i == 0 ? 2 : i - 1;
 }
 
@@ -81,11 +87,12 @@ static inline uint32_t brio_slot_before(uint32_t i) {
 brio_status brio_plane_store_new(brio_context *ctx, brio_plane_input *input, const brio_delaunay2_options *options,
                                  brio_plane_store **out);
 
-/** NULL is accepted. */
+/** Frees a store; NULL is accepted. */
 void brio_plane_store_free(brio_plane_store *store);
 
 /** Returns the vertex that took the place of record p; p itself for a vertex. Shortens the way there. */
 static inline uint32_t brio_plane_alive(const brio_plane_store *s, uint32_t p) {
+    assert(p < s->num_points);
     uint32_t *representative = s->representative;
     while (representative[p] != p) p = representative[p] = representative[representative[p]];
     return p;

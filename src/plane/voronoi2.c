@@ -10,6 +10,7 @@
 #include "plane/plane_centre.h"
 #include "plane/plane_points.h"
 #include "plane/plane_walk.h"
+#include <assert.h>
 
 typedef struct {
     brio_context *ctx;
@@ -25,6 +26,7 @@ typedef struct {
 /* --- vertices --- */
 
 static uint32_t find_root(uint32_t *parent, uint32_t t) {
+    assert(parent[t] <= t); /* the root is the least */
     while (parent[t] != t) t = parent[t] = parent[parent[t]];
     return t;
 }
@@ -45,10 +47,12 @@ static void number_circles(dual *d) {
             uint32_t mate = d->triangle[t].mate[i], other = brio_triangle_of(mate);
             if (other >= d->count || other < t || !have_one_circle(d, t, mate)) continue;
             uint32_t a = find_root(class, t), b = find_root(class, other);
+            assert(a <= t && b <= other);
             class[a > b ? a : b] = a < b ? a : b; /* the root is the first triangle */
         }
     for (uint32_t t = 0; t < d->count; t++) class[t] = find_root(class, t);
     for (uint32_t t = 0; t < d->count; t++) class[t] = class[t] == t ? classes++ : class[class[t]];
+    assert(classes <= d->count);
     d->out->num_vertices = classes;
 }
 
@@ -83,6 +87,7 @@ done:
 /* --- regions --- */
 
 static uint32_t slot_of(const brio_triangle *t, uint32_t vertex) {
+    assert(t->vertex[0] == vertex || t->vertex[1] == vertex || t->vertex[2] == vertex);
     return t->vertex[0] == vertex ? 0 : t->vertex[1] == vertex ? 1 : 2;
 }
 
@@ -130,6 +135,7 @@ static brio_status find_regions(dual *d) {
         bool owns = d->corner[p] != BRIO_NO_TRIANGLE;
         out->offsets[p + 1] = begin + (owns ? write_region(d, d->corner[p], (uint32_t)p, out->items + begin) : 0);
     }
+    assert(out->offsets[d->num_points] <= 3 * d->count + d->hull);
     BRIO_TRY(BRIO_RESIZE(d->ctx, out->items, out->offsets[d->num_points]));
 done:
     return status;
