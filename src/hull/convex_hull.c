@@ -18,6 +18,7 @@
 #include "hull/interior.h"
 #include "order/canonical_points.h"
 #include "order/order.h"
+#include <assert.h>
 #include <string.h>
 
 static const brio_convex_hull_options STANDARD = {.size = sizeof STANDARD};
@@ -125,6 +126,7 @@ static brio_status place_vertices(hull *h, brio_mesh *mesh, uint32_t *samples) {
         if (samples) samples[used] = (uint32_t)p;
         vertex[p] = used++;
     }
+    assert(used == h->stats.vertices);
     for (uint64_t c = 0; c < corners; c++) h->faces.corner[c] = vertex[h->index[h->faces.corner[c]]];
 done:
     brio_release(h->ctx, vertex);
@@ -181,6 +183,7 @@ static brio_status put_faces(hull *h, bool whole, brio_mesh *mesh) {
         uint64_t from = f->first[order[i]];
         put_face(f->corner + from, f->first[order[i] + 1] - from, whole, &offset, &corner);
     }
+    assert(offset == mesh->face_offsets + mesh->num_faces && *offset == (size_t)(corner - mesh->face_vertices));
 done:
     brio_release(h->ctx, order);
     return status;

@@ -2,20 +2,22 @@
  * serves hulls so flat that doubles hold none. */
 #include "base/memory.h"
 #include "hull/polytope.h"
+#include <assert.h>
 
-/* Infinite tetrahedron (a, b, c, infinite) becomes the triangle abc; its mate across edge i, opposite to vertex i, is the
+/* Makes triangle abc of each infinite tetrahedron (a, b, c, infinite); its mate across edge i, opposite to vertex i, is the
  * mate of facet i, which is a handle of an infinite tetrahedron, too. */
 static void take_triangles(const brio_triangulation *t, brio_polytope *out) {
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
     size_t finite = brio_triangulation_stats(t)->tetrahedra;
     for (size_t f = 0; f < out->count; f++)
         for (int i = 0; i < 3; i++) {
+            assert(tet[finite + f].vertex[3] == BRIO_INFINITE && tet[finite + f].mate[i] >> 2 >= finite);
             out->triangle[f].vertex[i] = tet[finite + f].vertex[i];
             out->triangle[f].mate[i] = tet[finite + f].mate[i] - 4 * (uint32_t)finite;
         }
 }
 
-/* Each vertex stands for the records that it represents; there are no hidden points. */
+/* Finds the lowest record at each vertex, among those that it represents; there are no hidden points. */
 static void name_lowest(const brio_triangulation *t, const brio_hull_records *records, uint32_t *same) {
     const uint32_t *vertex = brio_triangulation_representatives(t);
     for (uint32_t r = 0; r < records->count; r++) same[r] = r;

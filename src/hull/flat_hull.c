@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "hull/hull_faces.h"
+#include <assert.h>
 
 /* The axes that a projection keeps: along z, x and y. */
 static const int KEPT[3][2] = {{0, 1}, {1, 2}, {2, 0}};
@@ -48,6 +49,7 @@ static bool same_projected(const projection *on, uint32_t a, uint32_t b) {
 /* Extends a half of the hull, which begins at hull[first], by a point. Returns the new size of the hull. */
 static size_t extend(const projection *on, uint32_t *hull, size_t first, size_t size, uint32_t point) {
     while (size >= first + 2 && orient2d(on, hull[size - 2], hull[size - 1], point) <= 0) size--;
+    assert(first <= size);
     hull[size] = point;
     return size + 1;
 }
@@ -58,6 +60,7 @@ static size_t wrap(const projection *on, const uint32_t *sorted, size_t n, uint3
     for (size_t i = 0; i < n; i++) size = extend(on, hull, 0, size, sorted[i]);
     size_t upper = size - 1;
     for (size_t i = n - 1; i-- > 0;) size = extend(on, hull, upper, size, sorted[i]);
+    assert(size >= 4 && hull[size - 1] == hull[0]);
     return size - 1; /* the last point is the first one */
 }
 

@@ -4,6 +4,7 @@
  * check fails, the first record that passes it takes its place; if there is none, the records before span all. */
 #include "base/vector.h"
 #include "hull/polytope.h"
+#include <assert.h>
 #include <math.h>
 
 typedef struct {
@@ -15,6 +16,7 @@ typedef struct {
 
 /* Returns whether record i is off the affine hull of the first `count` corners; exact. */
 static bool is_off(const search *s, size_t i, int count) {
+    assert(0 < count && count < 4 && i < s->n);
     const double(*r)[4] = s->record;
     const uint32_t *c = s->corner;
     if (count == 1) return !brio_same_position(r[c[0]], r[i]);

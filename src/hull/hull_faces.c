@@ -5,6 +5,7 @@
  * three or more creases is strictly extreme; one with two is inside an edge of the hull, and one without inside a face. */
 #include "hull/hull_faces.h"
 #include "base/memory.h"
+#include <assert.h>
 #include <string.h>
 
 /* Sets crease[4 f + i] for each edge, and counts the creases of each vertex, up to 3. */
@@ -18,6 +19,7 @@ static void find_creases(const brio_polytope *p, brio_filter *filter, const doub
                                  : brio_orient3d_sign(filter, record[v[0]], record[v[1]], record[v[2]],
                                                       record[brio_hull_apex(p, mate)]) != 0;
             uint8_t *d = &degree[brio_hull_origin(p, h)];
+            assert(crease[h] <= 1);
             if (crease[h] && *d < 3) ++*d;
         }
 }
@@ -25,6 +27,7 @@ static void find_creases(const brio_polytope *p, brio_filter *filter, const doub
 /* Returns the next crease round the face of a crease. */
 static uint32_t next_crease(const brio_polytope *p, const uint8_t *crease, uint32_t h) {
     for (h = brio_hull_next(h); !crease[h];) h = brio_hull_next(p->triangle[h >> 2].mate[h & 3]);
+    assert(h >> 2 < p->count);
     return h;
 }
 
@@ -60,6 +63,7 @@ static brio_status list_faces(brio_context *ctx, const brio_polytope *p, const d
                 crease[h] = 2;
                 if (degree[v] == 3) out->corner[corners++] = p->same[v];
             }
+            assert(corners - first >= 3 && corners <= 3 * p->count); /* a polygon */
             brio_rotate_polygon(record, out->corner + first, corners - first);
         }
     }

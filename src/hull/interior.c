@@ -18,6 +18,7 @@
 #include "base/team.h"
 #include "base/vector.h"
 #include "hull/polytope.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -101,6 +102,7 @@ static double magnitude(const double (*record)[4], size_t n, double *extent) {
 }
 
 static void set_planes(const brio_polytope *p, const double (*record)[4], planes *out) {
+    assert(p->count <= MOST_PLANES);
     out->count = (int)p->count;
     for (int f = 0; f < out->count; f++) {
         const uint32_t *v = p->triangle[f].vertex;
@@ -171,6 +173,7 @@ static void plane_values(const planes *a, const block *b, double *worst) {
 static size_t list_part(skipping *s, size_t begin, size_t end) {
     block b;
     double worst[BLOCK];
+    assert(begin <= end && end <= s->n);
     uint32_t *out = s->candidate + begin;
     size_t count = 0;
     for (; begin < end; begin += BLOCK) {
@@ -232,6 +235,7 @@ brio_status brio_hull_candidates(brio_context *ctx, const double *points, size_t
     for (int i = 0; i < s->parts; i++) {
         memmove(s->candidate + *num_candidates, s->candidate + brio_part(n, i, s->parts),
                 s->count[i] * sizeof *s->candidate);
+        assert(*num_candidates <= brio_part(n, i, s->parts)); /* lists move to the front */
         *num_candidates += s->count[i];
     }
     *candidate = s->candidate;

@@ -18,6 +18,7 @@
 #include "hull/polytope.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include <assert.h>
 #include <string.h>
 
 enum { MOST_TRIANGLES = 1 << 30, INSERTIONS_A_CALL = 1 << 14 };
@@ -40,6 +41,7 @@ typedef struct {
 
 static bool is_beyond(builder *b, uint32_t triangle, const double *point) {
     const uint32_t *v = b->p->triangle[triangle].vertex;
+    assert(triangle < b->p->count && v[0] != v[1] && v[1] != v[2] && v[2] != v[0]);
     return brio_orient3d_sign(&b->filter, b->record[v[0]], b->record[v[1]], b->record[v[2]], point) > 0;
 }
 
@@ -63,6 +65,7 @@ static bool walk(builder *b, const double *point) {
 }
 
 static brio_status remove_triangle(builder *b, uint32_t triangle, uint32_t mark) {
+    assert(b->p->triangle[triangle].mark != mark); /* removed once */
     b->p->triangle[triangle].mark = mark;
     brio_status status = BRIO_RESERVE(b->ctx, b->hole, b->hole_capacity, b->num_hole + 1);
     if (status == BRIO_OK) b->hole[b->num_hole++] = triangle;
@@ -80,6 +83,7 @@ static brio_status dig(builder *b, uint32_t r) {
     BRIO_TRY(remove_triangle(b, b->last, r));
     while (b->num_stack > 0) {
         uint32_t handle = b->stack[--b->num_stack], mate = t[handle >> 2].mate[handle & 3];
+        assert(t[mate >> 2].mate[mate & 3] == handle); /* I2 */
         if (t[mate >> 2].mark == r) continue;
         if (is_beyond(b, mate >> 2, b->record[r])) {
             BRIO_TRY(remove_triangle(b, mate >> 2, r));
@@ -91,6 +95,7 @@ static brio_status dig(builder *b, uint32_t r) {
             b->border[b->num_border++] = mate;
         }
     }
+    assert(b->num_border >= 3 && b->num_border <= b->num_hole + 2); /* a disk */
 done:
     return status;
 }
@@ -111,6 +116,21 @@ done:
     return status;
 }
 
+#ifndef NDEBUG
+/* Returns whether the new triangles keep I2: mates name each other and the same edge, the other way round. */
+static bool star_is_closed(const builder *b, uint32_t r) {
+    const brio_hull_triangle *t = b->p->triangle;
+    for (size_t n = 0; n < b->num_border; n++)
+        for (uint32_t e = 0; e < 3; e++) {
+            uint32_t handle = 4 * b->hole[n] + e, mate = t[b->hole[n]].mate[e];
+            if (t[b->hole[n]].vertex[2] != r || t[mate >> 2].mate[mate & 3] != handle) return false;
+            if (brio_hull_origin(b->p, mate) != brio_hull_origin(b->p, brio_hull_next(handle))) return false;
+            if (brio_hull_origin(b->p, handle) != brio_hull_origin(b->p, brio_hull_next(mate))) return false;
+        }
+    return true;
+}
+#endif
+
 /* Joins record r to the border. */
 static brio_status fill(builder *b, uint32_t r) {
     brio_status status = BRIO_OK;
@@ -121,8 +141,10 @@ static brio_status fill(builder *b, uint32_t r) {
         uint32_t next = b->hole[i + 1 < b->num_border ? i + 1 : 0], before = b->hole[i ? i - 1 : b->num_border - 1];
         uint32_t to = brio_hull_origin(p, outer), from = brio_hull_origin(p, brio_hull_next(outer));
         p->triangle[own] = (brio_hull_triangle){{from, to, r}, {4 * next + 1, 4 * before, outer}, UNMARKED};
+        assert(own < p->capacity && from != to && from != r && to != r);
         p->triangle[outer >> 2].mate[outer & 3] = 4 * own + 2;
     }
+    assert(b->num_hole == b->num_border && star_is_closed(b, r));
     b->last = b->hole[0];
 done:
     return status;
@@ -189,6 +211,7 @@ static void close_gaps(builder *b) {
     for (size_t i = 0; i < b->num_unused; i++) {
         while (p->count > 0 && p->triangle[p->count - 1].vertex[0] == BRIO_INFINITE) p->count--;
         uint32_t to = b->unused[i];
+        assert(to < p->capacity);
         if (to >= p->count) continue;
         p->triangle[to] = p->triangle[--p->count];
         for (uint32_t e = 0; e < 3; e++) {
@@ -204,6 +227,7 @@ static brio_status insert_all(builder *b, size_t n) {
         if (r % INSERTIONS_A_CALL == 0) BRIO_TRY(brio_progress(b->ctx, "hull", (double)r / (double)n));
         BRIO_TRY(insert(b, r));
     }
+    assert(b->num_unused <= b->p->count);
     close_gaps(b);
 done:
     return status;

@@ -12,6 +12,7 @@
 
 #include "base/context.h"
 #include "predicates/predicates.h"
+#include <assert.h>
 
 typedef struct {
     uint32_t vertex[3], mate[3];
@@ -51,16 +52,19 @@ brio_status brio_polytope_by_delaunay(brio_context *ctx, const brio_hull_records
 void brio_polytope_free(brio_context *ctx, brio_polytope *p);
 
 static inline uint32_t brio_hull_next(uint32_t handle) {
+    assert((handle & 3) < 3); /* I2 */
     return (handle & 3) == 2 ? handle - 2 : handle + 1;
 }
 
 /** Returns the vertex where an edge begins. */
 static inline uint32_t brio_hull_origin(const brio_polytope *p, uint32_t handle) {
+    assert(handle >> 2 < p->count && (handle & 3) < 3); /* I2 */
     return p->triangle[handle >> 2].vertex[((handle & 3) + 1) % 3];
 }
 
 /** Returns the vertex of the triangle that is not on the edge. */
 static inline uint32_t brio_hull_apex(const brio_polytope *p, uint32_t handle) {
+    assert(handle >> 2 < p->count && (handle & 3) < 3); /* I2 */
     return p->triangle[handle >> 2].vertex[handle & 3];
 }
 

@@ -53,7 +53,7 @@ void brio_copy_points(const double *points, const uint32_t *order, size_t n, dou
     for (size_t i = 0; i < n; i++) memcpy(rows + 3 * i, points + 3 * (size_t)order[i], 3 * sizeof *rows);
 }
 
-/* Coincident points have consecutive ranks, and the lowest index comes first. */
+/* Relies on coincident points having consecutive ranks, the lowest index first. */
 void brio_name_coincident(const double *points, size_t n, uint32_t *order) {
     for (size_t i = 1; i < n; i++)
         if (brio_same_position(points + 3 * (size_t)order[i - 1], points + 3 * (size_t)order[i]))

@@ -1,6 +1,7 @@
 /* Finds the smallest cube around many points, with all threads. */
 #include "order/cube.h"
 #include "base/team.h"
+#include <assert.h>
 
 enum { PARTS = 64 };
 
@@ -28,6 +29,7 @@ brio_status brio_cube_of(brio_context *ctx, const double *points, const uint64_t
                          brio_cube *out) {
     finder f; /* no initializer, because it would set all PARTS cubes: most calls have few points and one part */
     f.points = points, f.items = items, f.n = n;
+    assert(n > 0 && threads >= 1);
     f.parts = threads > 1 ? PARTS : 1;
     brio_cube_new(&f.cube[0], points + 3 * (items ? (size_t)(uint32_t)items[0] : 0));
     for (size_t part = 1; part < f.parts; part++) f.cube[part] = f.cube[0];

@@ -5,6 +5,7 @@
 
 #include "base/context.h"
 #include "order/ruler.h"
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -45,6 +46,7 @@ static inline bool brio_cube_divide(brio_cube *c, int bits) {
 
 /** Returns coordinate k of the cell that holds a point of the cube; for any other point, that of some cell. */
 static inline uint32_t brio_cube_cell(const brio_cube *c, const double *p, int k) {
+    assert(0 <= k && k < 3);
     return brio_ruler_cell(&c->ruler, p[k], c->low[k]);
 }
 

@@ -8,6 +8,7 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "order/hilbert.h"
+#include <assert.h>
 
 enum { CURVE_BITS = 10, CELL_MOST = 8 };
 
@@ -45,6 +46,7 @@ static brio_status refine_cells(const curve *c, range r, range *largest) {
     for (size_t from = r.begin, next; from < r.end && status == BRIO_OK; from = next) {
         for (next = from + 1; next < r.end && items[next] >> 32 == items[from] >> 32;) next++;
         range cell = {from, next};
+        assert(next == r.end || items[from] >> 32 < items[next] >> 32); /* the keys ascend */
         if (size_of(cell) <= CELL_MOST) continue;
         if (size_of(cell) > size_of(*largest)) {
             range smaller = *largest;
@@ -59,6 +61,7 @@ static brio_status refine_cells(const curve *c, range r, range *largest) {
  * all points of its range: its cube is too small to be divided. */
 static brio_status sort_range(const curve *c, range r) {
     brio_status status = BRIO_OK;
+    assert(r.begin <= r.end);
     for (range largest; size_of(r); r = largest) {
         uint64_t *items = c->items + r.begin;
         int bits = curve_bits(size_of(r));
@@ -108,6 +111,7 @@ static brio_status sort_together(const curve *c, size_t n, int threads) {
     BRIO_TRY(brio_sort_items(c->ctx, c->items, c->spare, n, 3 * bits, threads));
     BRIO_TRY(BRIO_ALLOC(c->ctx, start, (size_t)threads + 1));
     for (int t = 0; t <= threads; t++) start[t] = start_of_cell(c, n, brio_part(n, t, threads));
+    assert(start[0] == 0 && start[threads] == n);
     refinement r = {c, start, n, BRIO_OK};
     BRIO_TRY(brio_for_chunks(c->ctx, threads, (size_t)threads, 1, refine_part, &r));
     status = r.status;
@@ -118,6 +122,7 @@ done:
 
 brio_status brio_sort_along_curve(brio_context *ctx, const double *points, uint64_t *items, uint64_t *spare, size_t n,
                                   int threads) {
+    assert(threads >= 1 && (n == 0 || (items && spare && items != spare)));
     const curve c = {ctx, points, items, spare};
     return threads > 1 ? sort_together(&c, n, threads) : sort_range(&c, (range){0, n});
 }

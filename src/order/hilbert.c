@@ -6,6 +6,7 @@
 #include "order/hilbert.h"
 #include "base/team.h"
 #include "order/cube.h"
+#include <assert.h>
 
 enum { POINTS_A_THREAD = 1 << 12 };
 
@@ -48,12 +49,15 @@ static inline uint64_t key_of(const two_levels *two, uint32_t x, uint32_t y, uin
         unsigned next = two->step[state][(x >> b & 3) << 4 | (y >> b & 3) << 2 | (z >> b & 3)];
         key = key << 6 | (next & 63);
         state = next >> 6;
+        assert(state < 12); /* bits 0 to 5: the rank; bits 6 on: the state inside */
     }
+    assert(key >> 3 * bits == 0);
     return key;
 }
 
 uint64_t brio_hilbert_key(uint32_t x, uint32_t y, uint32_t z, int bits) {
     two_levels two;
+    assert(0 <= bits && bits <= BRIO_HILBERT_MAX_BITS && (x | y | z) >> bits == 0);
     compose(&two);
     return key_of(&two, x, y, z, bits);
 }
@@ -88,6 +92,7 @@ static void number_items(void *user, size_t begin, size_t end, int thread) {
 
 brio_status brio_hilbert_keys(brio_context *ctx, const double *points, size_t n, int bits, uint64_t *keys) {
     brio_status status = BRIO_OK;
+    assert(0 < bits && bits <= BRIO_HILBERT_MAX_BITS);
     numbering all = {.points = points, .keys = keys, .bits = bits};
     int threads = brio_threads(ctx, n, POINTS_A_THREAD);
     if (!n) return BRIO_OK;
@@ -102,6 +107,7 @@ done:
 brio_status brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int bits,
                                int threads, bool *apart) {
     brio_status status = BRIO_OK;
+    assert(0 < bits && bits <= 10); /* keys have 32 bits */
     numbering all = {.points = points, .keys = items, .bits = bits};
     *apart = false;
     if (!n) return BRIO_OK;

@@ -14,6 +14,7 @@
 #include "order/blocks.h"
 #include "order/cube.h"
 #include "base/halving.h"
+#include <assert.h>
 
 enum { STEP_BITS = 32, FEW_STEPS = 1 << 10, POINTS_A_PIECE = 1 << 13, SAMPLE = 31 };
 
@@ -32,7 +33,7 @@ typedef struct {
 
 /* --- the median --- */
 
-/* No two nodes have the same key. */
+/* Returns the key of a node; no two nodes have the same key. */
 static inline uint64_t key_of(const node *a, int axis) {
     return (uint64_t)a->step[axis] << 32 | a->index;
 }
@@ -44,6 +45,7 @@ static inline void swap_nodes(node *a, node *b) {
 
 /* Returns a random node that about `half` of the n nodes precede: the quantile of a sample. */
 static size_t choose_pivot(const node *nodes, size_t n, size_t half, int axis) {
+    assert(0 < half && half < n);
     size_t sample[SAMPLE], size = n < 8 * SAMPLE ? 3 : SAMPLE;
     brio_rng rng = brio_rng_new(n);
     for (size_t i = 0, j; i < size; i++) {
@@ -67,11 +69,13 @@ static size_t divide_by_pivot(node *nodes, size_t n, size_t pivot, int axis) {
         front += before;
     }
     swap_nodes(&nodes[front], &nodes[n - 1]);
+    assert(front < n);
     return front;
 }
 
 /* Moves the `half` nodes with the least keys to the front. */
 static void select_least(node *nodes, size_t n, size_t half, int axis) {
+    assert(half <= n);
     while (half > 0 && half < n) {
         size_t front = divide_by_pivot(nodes, n, choose_pivot(nodes, n, half, axis), axis);
         if (half <= front)
@@ -108,6 +112,7 @@ static void take_steps(const kdtree *k, node *nodes, size_t n) {
 }
 
 static void visit_block(const kdtree *k, size_t begin, size_t end, int passes) {
+    assert(begin < end && end - begin <= k->block_size);
     brio_block block = {begin, end, passes};
     for (size_t i = begin; i < end; i++) k->index[i] = k->nodes[i].index;
     k->visit(k->index, &block, k->user);

@@ -16,6 +16,7 @@
 #include "base/team.h"
 #include "order/blocks.h"
 #include "order/cube.h"
+#include <assert.h>
 #include <string.h>
 
 enum { ROOT_LEVELS = 5, LEVELS = 3, LARGE = 1 << 13, POINTS_A_THREAD = 1 << 13, NO_CELL = UINT32_MAX };
@@ -51,6 +52,7 @@ typedef struct {
 /* --- a pass --- */
 
 static inline uint32_t cells_of(const grid *g) {
+    assert(0 < g->levels && g->levels <= ROOT_LEVELS); /* numbers of cells have 15 bits */
     return UINT32_C(1) << 3 * g->levels;
 }
 
@@ -67,6 +69,7 @@ static int levels_for(size_t points, size_t block_size, int most) {
 
 /* Inserts two zero bits above each of the lowest five bits of x. */
 static inline uint32_t spread(uint32_t x) {
+    assert(x >> 5 == 0);
     x = (x | x << 8) & 0x100f;
     x = (x | x << 4) & 0x10c3;
     return (x | x << 2) & 0x1249;
@@ -97,6 +100,7 @@ static void place_in_cells(const grid *g, size_t from, size_t to, size_t *place,
 static void divide(octree *o, size_t begin, size_t end, int passes);
 
 static void visit_block(const octree *o, size_t begin, size_t end, int passes) {
+    assert(begin < end && end - begin <= o->block_size);
     brio_block block = {begin, end, passes};
     o->visit(o->index, &block, o->user);
 }
@@ -104,6 +108,7 @@ static void visit_block(const octree *o, size_t begin, size_t end, int passes) {
 /* Appends a large cell to `next`. Relaxed order is enough: the position belongs to this thread alone, and other threads
  * read the cell only after the turn, whose end orders the write before the reads. */
 static void leave_for_next_turn(octree *o, size_t begin, size_t end, int passes) {
+    assert(end - begin > LARGE); /* the room for large cells */
     size_t place = __atomic_fetch_add(&o->num_next, 1, __ATOMIC_RELAXED);
     o->next[place] = (large_cell){begin, end, passes};
 }
@@ -113,6 +118,7 @@ static void leave_for_next_turn(octree *o, size_t begin, size_t end, int passes)
  * except finest cell all_but. */
 static void visit_cell(octree *o, const grid *g, const size_t *stop, uint32_t first, uint32_t size, uint32_t all_but) {
     size_t begin = first ? stop[first - 1] : g->begin, end = stop[first + size - 1];
+    assert(begin <= end && end <= g->end);
     int passes = g->passes;
     if (begin == end) return;
     if (end - begin <= o->block_size) {
@@ -183,6 +189,7 @@ static void divide(octree *o, size_t begin, size_t end, int passes) {
         visit_cell(o, &g, stop, 0, cells_of(&g), most);
         if (most) begin = stop[most - 1];
         end = stop[most];
+        assert(begin <= end);
     }
 }
 
@@ -251,6 +258,7 @@ static brio_status bring_all_together(brio_context *ctx, root *r, int threads) {
         place = brio_counts_to_places(r->place + c, cells, (size_t)threads, place);
     BRIO_TRY(brio_for(ctx, threads, n, place_part, r));
     r->stop = r->place + cells * (size_t)(threads - 1);
+    assert(r->stop[cells - 1] == n);
 done:
     return status;
 }

@@ -16,6 +16,7 @@
 #include "base/team.h"
 #include "order/blocks.h"
 #include "order/curve.h"
+#include <assert.h>
 
 enum { POINTS_A_THREAD = 1 << 13, BLOCK_SIZE = 2000 };
 
@@ -80,6 +81,7 @@ static void shuffle_block(uint32_t *index, const brio_block *block, const void *
     uint32_t *a = index + block->begin;
     for (uint32_t i = (uint32_t)(block->end - block->begin); i > 1; i--) {
         uint32_t j = brio_rng_below(&rng, i), swap = a[i - 1];
+        assert(j < i);
         a[i - 1] = a[j], a[j] = swap;
     }
 }
@@ -125,6 +127,8 @@ brio_status brio_order_points(brio_context *ctx, const brio_input *input, const 
             &ends));
     else
         for (size_t i = 0; rank && i < n; i++) rank[i] = (uint32_t)i;
+    assert(!sequence || (in_rounds && input->weights));
+    assert(ends.end[ends.count - 1] == n);
     if (rounds) *rounds = ends;
 done:
     if (m.index != order) brio_release(ctx, m.index);

@@ -18,6 +18,7 @@
 #include "base/places.h"
 #include "base/rng.h"
 #include "base/team.h"
+#include <assert.h>
 #include <string.h>
 
 /* BLOCK: of a scan with 60 % hidden points, blocks of 8 points create 12.4 million tetrahedra, of 64 points 11.3, of 256
@@ -28,6 +29,7 @@ enum { BLOCK = 64, INDICES_A_THREAD = 1 << 13 };
  * number of rounds: adds rounds until the first round is expected to hold about one point. */
 static int set_rounds(size_t n, double ratio, uint64_t least[BRIO_MOST_ROUNDS + 1]) {
     double share = ratio;
+    assert(0 <= ratio && ratio < 1);
     int rounds = 1;
     for (; rounds < BRIO_MOST_ROUNDS && share * (double)n >= 1; rounds++, share *= ratio)
         least[rounds] = (uint64_t)(share * 0x1p63) << 1;
@@ -38,6 +40,7 @@ static int set_rounds(size_t n, double ratio, uint64_t least[BRIO_MOST_ROUNDS + 
 static inline int rounds_before_last(uint64_t hash, const uint64_t least[BRIO_MOST_ROUNDS + 1]) {
     int back = 0;
     while (hash < least[back + 1]) back++;
+    assert(back < BRIO_MOST_ROUNDS);
     return back;
 }
 
@@ -68,7 +71,7 @@ static bool precedes(const brio_division *of, size_t i, size_t j) {
     return a != b ? a > b : draw_of(of, i) < draw_of(of, j);
 }
 
-/* The rounds of the indices of a block after the exchange: the heaviest take the rounds before the last. */
+/* Writes the rounds of the indices of a block after the exchange: the heaviest take the rounds before the last. */
 static void exchange_rounds(const division *d, size_t begin, size_t end, uint8_t back[BLOCK]) {
     uint8_t drawn[BLOCK];
     size_t heavy[BLOCK], places = 0, count = 0;
@@ -85,6 +88,7 @@ static void exchange_rounds(const division *d, size_t begin, size_t end, uint8_t
         for (; k > 0 && precedes(d->of, i, heavy[k - 1]); k--) heavy[k] = heavy[k - 1];
         heavy[k] = i;
     }
+    assert(count == places && end - begin <= BLOCK);
     for (size_t k = 0; k < count; k++) back[heavy[k] - begin] = drawn[k];
 }
 
@@ -100,7 +104,8 @@ static void count_blocks(void *user, size_t first, size_t last, int thread) {
     }
 }
 
-/* A block has as many points in a round before the exchange as after it, so order and sequence have the same places. */
+/* Writes order and sequence. A block has as many points in a round before the exchange as after it, so order and sequence
+ * have the same places. */
 static void place_blocks(void *user, size_t first, size_t last, int thread) {
     const division *d = user;
     const brio_division *of = d->of;
@@ -112,6 +117,7 @@ static void place_blocks(void *user, size_t first, size_t last, int thread) {
         if (of->sequence) exchange_rounds(d, begin, end, back);
         for (size_t i = begin; i < end; i++) {
             size_t to = place[d->back[i]]++;
+            assert(to < of->n);
             of->order[to] = of->index[i];
             if (of->rank) of->rank[to] = (uint32_t)i;
             if (of->sequence) of->sequence[turn[back[i - begin]]++] = (uint32_t)to;
@@ -130,6 +136,7 @@ brio_status brio_divide_into_rounds(brio_context *ctx, const brio_division *of, 
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, d.place, (size_t)threads));
     BRIO_TRY(brio_for(ctx, threads, blocks, count_blocks, &d));
     first_places(d.place, threads, ends);
+    assert(ends->count <= BRIO_MOST_ROUNDS && ends->end[ends->count - 1] == n);
     BRIO_TRY(brio_for(ctx, threads, blocks, place_blocks, &d));
 done:
     brio_release(ctx, d.back);

@@ -3,6 +3,7 @@
 #ifndef BRIO_ORDER_RULER_H
 #define BRIO_ORDER_RULER_H
 
+#include <assert.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,6 +32,7 @@ static inline bool brio_ruler_lay(brio_ruler *r, const double *low, const double
 /** Returns the cell of a coordinate of the box; for any other number, some cell. */
 static inline uint32_t brio_ruler_cell(const brio_ruler *r, double x, double low) {
     double at = (x * r->half - low * r->half) * r->unit * r->scale;
+    assert(r->last >= 0);
     at = at < r->last ? at : r->last;
     return (uint32_t)(int64_t)(at > 0 ? at : 0);
 }

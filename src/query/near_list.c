@@ -5,6 +5,7 @@
  * the squares of the distances of points of a surface are. Counting reads all numbers side by side and has no branch.
  * After TRIES limits, and where the distance is that of several points, a selection goes on. */
 #include "query/near_list.h"
+#include <assert.h>
 #include <float.h>
 #include <string.h>
 
@@ -16,6 +17,7 @@ _Static_assert(BRIO_NEAR_ROOM >= 2 * BRIO_MOST_NEAR + BRIO_TREE_LEAF, "a full li
 static double select_least(double *x, size_t count, size_t k) {
     double more[BRIO_NEAR_ROOM];
     for (;;) {
+        assert(k < count && count <= BRIO_NEAR_ROOM);
         double pivot = x[count / 2];
         size_t less = 0, greater = 0;
         for (size_t i = 0; i < count; i++) {
@@ -68,6 +70,7 @@ static void take_squares(const brio_near_list *l, numbers *n) {
     for (; i < l->size; i++) x[i] = l->near[i].square;
     for (; i % WIDE; i++) x[i] = INFINITY;
     n->count = i / WIDE;
+    assert(n->count <= ROOM);
 }
 
 /* Finds the least bound that holds `wanted` points of the list. Returns false if it did not find one: there is none where
@@ -78,6 +81,7 @@ static bool find_bound(const brio_near_list *l, double *bound) {
     double low = 0, high = l->bound < INFINITY ? l->bound : greatest_within(&n, DBL_MAX);
     size_t below = 0, above = l->size; /* points within `low` and within `high` */
     for (int i = 0; i < TRIES; i++) {
+        assert(below < l->wanted && l->wanted <= above);
         double limit = low + (high - low) * ((double)(l->wanted - below) / (double)(above - below));
         size_t within = count_within(&n, limit);
         if (within == l->wanted) {
@@ -114,6 +118,7 @@ static void mark_out(const brio_near_list *l, size_t less, uint64_t *out) {
 
 /* Finds the bound by selection, and keeps the points within it that have a place. */
 static void keep_by_place(brio_near_list *l) {
+    assert(l->wanted <= l->size && l->size <= BRIO_NEAR_ROOM);
     double square[BRIO_NEAR_ROOM];
     size_t kept = 0, less = 0, within = 0;
     for (size_t i = 0; i < l->size; i++) square[i] = l->near[i].square;
@@ -126,6 +131,7 @@ static void keep_by_place(brio_near_list *l) {
         kept += l->near[i].square <= l->bound && !(out[i / 64] >> i % 64 & 1);
     }
     l->size = kept;
+    assert(kept == l->wanted);
 }
 
 void brio_keep_nearest(brio_near_list *l) {
@@ -139,6 +145,7 @@ void brio_keep_nearest(brio_near_list *l) {
         l->near[kept] = l->near[i];
         kept += l->near[i].square <= bound;
     }
+    assert(kept == l->wanted);
     l->bound = bound;
     l->size = kept;
 }

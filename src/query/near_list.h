@@ -4,6 +4,7 @@
 
 #include "base/vector.h"
 #include "query/nearest_points.h"
+#include <assert.h>
 #include <math.h>
 
 /** A search lists each point it meets that is not farther than the bound. When the list is full, it keeps the `wanted`
@@ -39,9 +40,11 @@ void brio_keep_nearest(brio_near_list *l);
 /** Lists the points begin to end - 1, at most BRIO_TREE_LEAF, that are within the bound. A point beyond the bound is
  *  written too, and overwritten next. */
 static inline void brio_offer_points(brio_near_list *l, size_t begin, size_t end) {
+    assert(begin <= end && end - begin <= BRIO_TREE_LEAF && 0 < l->wanted && l->wanted <= BRIO_MOST_NEAR);
     if (l->size >= 2 * l->wanted) brio_keep_nearest(l);
     for (size_t i = begin; i < end; i++) {
         double square = brio_square_distance(l->p, l->point[i]);
+        assert(l->size < BRIO_NEAR_ROOM);
         l->near[l->size] = (brio_near_point){square, (uint32_t)i};
         l->size += square <= l->bound;
     }

@@ -17,6 +17,7 @@
 #include "base/halving.h"
 #include "base/scale.h"
 #include "query/near_list.h"
+#include <assert.h>
 #include <string.h>
 
 enum {
@@ -40,6 +41,7 @@ static inline void swap(const brio_point_tree *t, ptrdiff_t i, ptrdiff_t j) {
 /* Selects by Hoare's method: afterwards no point before the middle is greater than the middle, and none behind it
  * smaller. */
 static void select_middle(const brio_point_tree *t, ptrdiff_t first, ptrdiff_t last, int axis) {
+    assert(0 <= first && first <= last && axis < 3);
     ptrdiff_t middle = first + (last - first + 1) / 2;
     while (first < last) {
         double pivot[3];
@@ -84,6 +86,7 @@ static int longest_axis(const brio_point_tree *t, size_t begin, size_t end) {
 /* Moves the median of a range to its middle. */
 static void cut(const void *user, size_t begin, size_t middle, size_t end) {
     const brio_point_tree *t = user;
+    assert(begin <= middle && middle < end && end <= t->count);
     t->axis[middle] = (uint8_t)longest_axis(t, begin, end);
     if (t->axis[middle] != DUPLICATES) select_middle(t, (ptrdiff_t)begin, (ptrdiff_t)end - 1, t->axis[middle]);
 }
@@ -164,6 +167,7 @@ static void look(query *q, size_t begin, size_t end) {
         look_at_duplicates(q, begin, end);
         return;
     }
+    assert(t->axis[middle] < 3);
     double across = l->p[t->axis[middle]] - t->point[middle][t->axis[middle]];
     if (across < 0)
         look(q, begin, middle);
@@ -181,9 +185,11 @@ static void look(query *q, size_t begin, size_t end) {
 size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, double bound,
                            brio_near_point *near) {
     query q = {tree, brio_near_list_for((const double(*)[3])tree->point, p, wanted, near)};
+    assert(0 < wanted && wanted <= BRIO_MOST_NEAR && !(bound < 0));
     q.list.bound = bound;
     look(&q, 0, tree->count);
     if (q.list.size > wanted) brio_keep_nearest(&q.list);
+    assert(q.list.size <= wanted);
     return q.list.size;
 }
 
@@ -197,6 +203,7 @@ static double nearest_in(const brio_point_tree *t, const double *p, size_t begin
     }
     size_t middle = begin + (end - begin) / 2;
     if (t->axis[middle] == DUPLICATES) return fmin(best, brio_square_distance(p, t->point[middle]));
+    assert(t->axis[middle] < 3);
     double across = p[t->axis[middle]] - t->point[middle][t->axis[middle]];
     bool below = across < 0;
     double square = brio_square_distance(p, t->point[middle]);

@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "query/near_list.h"
+#include <assert.h>
 
 /* RUN: points of a box of level 0. FAN: boxes of a box of the next level. AROUND: runs on either side of a point that a
  * query looks at first. All chosen. */
@@ -36,6 +37,7 @@ static void box_runs(void *user, size_t begin, size_t end, int thread) {
 
 /* Fills the boxes of a level from those of the level below. */
 static void box_boxes(const brio_point_boxes *b, int level) {
+    assert(0 < level && level < b->levels);
     const brio_box *below = b->box + b->first[level - 1];
     size_t count = b->first[level] - b->first[level - 1];
     for (size_t i = b->first[level]; i < b->first[level + 1]; i++) b->box[i] = EMPTY;
@@ -49,6 +51,7 @@ brio_status brio_point_boxes_new(brio_context *ctx, const double *points, size_t
     for (size_t size = boxes; size > 0; size = size > 1 ? (size + FAN - 1) / FAN : 0) {
         out->first[out->levels + 1] = out->first[out->levels] + size;
         out->levels++;
+        assert(out->levels <= BRIO_BOX_LEVELS);
     }
     BRIO_TRY(BRIO_ALLOC(ctx, out->box, out->first[out->levels]));
     BRIO_TRY(brio_for(ctx, brio_threads(ctx, boxes, RUNS_A_THREAD), boxes, box_runs, out));
@@ -72,6 +75,7 @@ static double square_of_box(const brio_box *b, const double *p) {
 
 /* Lists the points of a box and of the boxes below it. */
 static void enter(const brio_point_boxes *b, int level, size_t i, brio_near_list *l) {
+    assert(0 <= level && level < b->levels && b->first[level] + i < b->first[level + 1]);
     if (square_of_box(&b->box[b->first[level] + i], l->p) > l->bound) return;
     if (level == 0) {
         brio_offer_points(l, i * RUN, end_of_run(b, i));
@@ -92,6 +96,7 @@ static double first_bound(const brio_point_boxes *b, size_t point, size_t wanted
 
 size_t brio_nearest_in_boxes(const brio_point_boxes *boxes, size_t point, size_t wanted, brio_near_point *near) {
     brio_near_list l = brio_near_list_for(boxes->point, boxes->point[point], wanted, near);
+    assert(point < boxes->count && 0 < wanted && wanted <= BRIO_MOST_NEAR);
     l.bound = first_bound(boxes, point, wanted, near);
     enter(boxes, boxes->levels - 1, 0, &l);
     if (l.size > wanted) brio_keep_nearest(&l);
