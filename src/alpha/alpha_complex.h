@@ -3,6 +3,7 @@
 #define BRIO_ALPHA_ALPHA_COMPLEX_H
 
 #include "base/context.h"
+#include <assert.h>
 
 /** Returns the dimension of the simplex of that number, and sets *row to its place among those of its dimension. */
 static inline int brio_simplex_of(const brio_alpha_complex *c, uint32_t number, size_t *row) {
@@ -10,6 +11,7 @@ static inline int brio_simplex_of(const brio_alpha_complex *c, uint32_t number, 
     size_t at = number;
     for (; k < 3 && at >= c->counts[k]; k++) at -= c->counts[k];
     *row = at;
+    assert(at < c->counts[k]); /* numbers are those of simplices */
     return k;
 }
 

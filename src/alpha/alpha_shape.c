@@ -13,6 +13,7 @@
 #include "base/versioned.h"
 #include "mesh/split_vertices.h"
 #include "triangulation/view.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -28,6 +29,7 @@ typedef struct {
 } shape;
 
 static bool is_inside(const shape *s, uint32_t tet) {
+    assert(brio_has_tet(&s->t, tet));
     return tet < s->complex->counts[3] && s->complex->values[3][tet] <= s->alpha;
 }
 
@@ -35,7 +37,7 @@ static bool is_boundary(const shape *s, uint32_t facet) {
     return is_inside(s, brio_tet_of(facet)) && !is_inside(s, brio_tet_of(*brio_mate(&s->t, facet)));
 }
 
-/* A facet seen from inside is FACET[i]; from outside its order is reversed. */
+/* Lists the facets between inside and outside. A facet seen from inside is FACET[i]; from outside its order is reversed. */
 static brio_status list_faces(shape *s) {
     brio_status status = BRIO_OK;
     static const uint8_t FROM_OUTSIDE[3] = {0, 2, 1};
@@ -50,6 +52,7 @@ static brio_status list_faces(shape *s) {
         const uint32_t *v = s->t.tet[brio_tet_of(h)].vertex;
         for (int k = 0; k < 3; k++) m->face_vertices[at++] = v[BRIO_FACET[brio_slot_of(h)][FROM_OUTSIDE[k]]];
     }
+    assert(at == 3 * m->num_faces);
 done:
     return status;
 }
@@ -67,6 +70,7 @@ static brio_status place_vertices(shape *s, const double *points) {
     for (size_t p = 0; p < s->num_points; p++)
         if (s->vertex[p]) memcpy(m->vertices + 3 * (size_t)(s->vertex[p] - 1), points + 3 * p, 3 * sizeof *points);
     for (size_t c = 0; c < 3 * m->num_faces; c++) m->face_vertices[c] = s->vertex[m->face_vertices[c]] - 1;
+    assert(used <= s->num_points);
     s->stats.vertices = used;
 done:
     return status;
@@ -74,7 +78,7 @@ done:
 
 /* --- all of it --- */
 
-/* A simplex in the complex is singular when all tetrahedra that contain it are outside. */
+/* Counts the singular simplices of a dimension. A simplex of the complex is singular when all tetrahedra that contain it are outside. */
 static size_t count_singular(const shape *s, int dimension) {
     const double *value = s->complex->values[dimension], *solid = s->complex->solid[dimension];
     size_t count = 0;

@@ -19,6 +19,7 @@
 #include "base/versioned.h"
 #include "triangulation/ring.h"
 #include "triangulation/view.h"
+#include <assert.h>
 #include <math.h>
 
 enum {
@@ -45,6 +46,7 @@ typedef struct {
 } evaluation;
 
 static bool is_finite(const evaluation *e, uint32_t handle) {
+    assert(brio_has_tet(&e->t, brio_tet_of(handle)));
     return brio_tet_of(handle) < e->num_finite;
 }
 
@@ -77,6 +79,7 @@ static void find_facet(const evaluation *e, size_t f) {
     uint32_t *vertex = e->out->simplices[2] + 3 * f, seen[3];
     for (int k = 0; k < 3; k++) seen[k] = e->t.tet[brio_tet_of(h)].vertex[BRIO_FACET[brio_slot_of(h)][k]];
     brio_put_simplex(seen, 3, vertex);
+    assert(is_finite(e, h)); /* finite tetrahedra come first, and h is the lower handle */
     double value = INFINITY;
     bool gabriel = true;
     for (int s = 0; s < 2; s++) {
@@ -123,6 +126,7 @@ static void find_edge(const evaluation *e, size_t n) {
     const uint32_t *v = e->t.tet[at->tet].vertex, seen[2] = {v[at->i], v[at->j]};
     uint32_t *vertex = e->out->simplices[1] + 2 * n;
     brio_put_simplex(seen, 2, vertex);
+    assert(at->tet < e->num_finite && at->i < at->j && at->j < 4);
     edge_star star = {vertex, INFINITY, INFINITY, true};
     meet_tetrahedron(e, at->tet, &star);
     brio_ring ring = brio_ring_second(&e->t, at->tet, at->i, at->j);
@@ -236,6 +240,7 @@ static brio_status find_values(evaluation *e, const double *points, const double
     counts[0] = number_vertices(e, place);
     counts[3] = e->num_finite;
     e->facet = facet, e->edge = edge;
+    assert(counts[0] + counts[2] == counts[1] + counts[3] + 1); /* Euler: a ball */
     BRIO_TRY(brio_alpha_room(e->ctx, e->out));
     BRIO_TRY(evaluate(e, place));
 done:

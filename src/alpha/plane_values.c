@@ -11,6 +11,7 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
+#include <assert.h>
 #include <math.h>
 
 enum { CHUNK = 1 << 16 }; /* of simplices, between two looks at the progress callback */
@@ -34,6 +35,7 @@ static void find_triangle(const evaluation *e, size_t t) {
 /* Finds edge n, which has the handle h. */
 static void find_edge(const evaluation *e, uint32_t h, size_t n) {
     const uint32_t *own = e->triangle[h >> 2].vertex, slot = h & 3, mate = e->triangle[h >> 2].mate[slot];
+    assert(h >> 2 < e->num_finite && slot < 3 && (mate & 3) < 3);
     const uint32_t side[2] = {h, mate}, seen[2] = {own[(slot + 1) % 3], own[(slot + 2) % 3]};
     uint32_t *vertex = e->out->simplices[1] + 2 * n;
     brio_put_simplex(seen, 2, vertex);
@@ -51,7 +53,8 @@ static void find_edge(const evaluation *e, uint32_t h, size_t n) {
     e->out->gabriel[1][n] = gabriel;
 }
 
-/* An edge is found at its lower handle, or at that of its finite triangle: finite triangles come first. */
+/* Returns whether an edge is found at this handle: its lower handle, or that of its finite triangle, since finite triangles
+ * come first. */
 static bool is_first(const evaluation *e, size_t t, uint32_t slot) {
     return 4 * (uint32_t)t + slot < e->triangle[t].mate[slot];
 }
@@ -82,6 +85,7 @@ static brio_status evaluate(const evaluation *e, const uint32_t *place) {
         for (uint32_t i = 0; i < 3; i++)
             if (is_first(e, t, i)) find_edge(e, 4 * (uint32_t)t + i, edges++);
     }
+    assert(edges == c->counts[1] && c->counts[0] + c->counts[2] == edges + 1); /* Euler: a disk */
     BRIO_TRY(brio_find_vertex_values(e->ctx, c, &e->records, place));
 done:
     return status;

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "base/scale.h"
 #include "predicates/predicates.h"
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 
@@ -30,20 +31,24 @@ done:
 }
 
 void brio_put_simplex(const uint32_t *from, int count, uint32_t *to) {
+    assert(1 <= count && count <= 4);
     for (int n = 0; n < count; n++) {
         int at = n;
         for (; at > 0 && to[at - 1] > from[n]; at--) to[at] = to[at - 1];
+        assert(at == 0 || to[at - 1] < from[n]); /* no vertex twice */
         to[at] = from[n];
     }
 }
 
 double brio_own_value(const brio_records *records, const uint32_t *vertex, int count) {
+    assert(2 <= count && count <= 4 && vertex[0] < vertex[1]); /* ascending */
     const double *p[4];
     for (int i = 0; i < count; i++) p[i] = records->of[vertex[i]];
     return brio_squared_radius(p, count);
 }
 
 bool brio_is_inside(const brio_records *records, const uint32_t *vertex, int count, uint32_t other) {
+    assert((count == 2 || count == 3) && vertex[0] < vertex[1]); /* ascending */
     const double *p[4];
     for (int i = 0; i < count; i++) p[i] = records->of[vertex[i]];
     p[count] = records->of[other];
@@ -68,6 +73,7 @@ brio_status brio_alpha_room(brio_context *ctx, brio_alpha_complex *c) {
         c->solid[k] = c->solid[k - 1] + c->counts[k - 1];
         c->gabriel[k] = c->gabriel[k - 1] + c->counts[k - 1];
     }
+    assert(c->values[3] + c->counts[3] == c->values[0] + total); /* the four arrays are one */
 done:
     return status;
 }
@@ -84,6 +90,7 @@ brio_status brio_find_vertex_values(brio_context *ctx, brio_alpha_complex *c, co
         BRIO_TRY(brio_look(ctx, 2));
         for (int i = 0; i < 2; i++) {
             uint32_t own = c->simplices[1][2 * n + (size_t)i], other = c->simplices[1][2 * n + (size_t)!i];
+            assert(place[own] < c->counts[0] && place[other] < c->counts[0]);
             const double *a = records->of[own], *b = records->of[other];
             least[place[own]] = fmin(least[place[own]], c->values[1][n]);
             solid[place[own]] = fmin(solid[place[own]], c->solid[1][n]);

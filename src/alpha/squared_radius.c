@@ -6,6 +6,7 @@
 #include "alpha/squared_radius.h"
 #include "base/scale.h"
 #include "predicates/double_double.h"
+#include <assert.h>
 #include <math.h>
 
 typedef struct {
@@ -49,6 +50,7 @@ BRIO_INLINE brio_dd divide(brio_dd x, brio_dd y, const bool fma) {
 }
 
 BRIO_INLINE void take(simplex *s, const double *const *p, int count, const bool fma) {
+    assert(2 <= count && count <= 4);
     frexp(largest_difference(p, count), &s->exponent);
     for (int i = 0; i + 1 < count; i++) {
         for (int k = 0; k < 3; k++) s->row[i][k] = scaled(dd_difference(p[i + 1][k], p[0][k]), -s->exponent);
@@ -57,7 +59,7 @@ BRIO_INLINE void take(simplex *s, const double *const *p, int count, const bool 
     }
 }
 
-/* |y|^2 = b^2 / (4 U^2). */
+/* Returns |y|^2 = b^2 / (4 U^2). */
 BRIO_INLINE brio_dd square_of_edge(const simplex *s, const bool fma) {
     brio_dd square = divide(dd_multiply(s->b[0], s->b[0], fma), dot(s->row[0], s->row[0], fma), fma);
     return scaled(square, -2);
@@ -70,7 +72,7 @@ BRIO_INLINE brio_dd square_of_quotient(const brio_dd *x, brio_dd d, const bool f
     return scaled(dot(y, y, fma), -2);
 }
 
-/* y = (b (V x N) + c (N x U)) / (2 N^2), N = U x V; for an edge of length 0 in doubles, NaN. */
+/* Returns |y|^2 of y = (b (V x N) + c (N x U)) / (2 N^2), N = U x V; for an edge of length 0 in doubles, NaN. */
 BRIO_INLINE brio_dd square_of_facet(const simplex *s, const bool fma) {
     brio_dd normal[3], one[3], other[3];
     cross(s->row[0], s->row[1], normal, fma);
@@ -80,7 +82,7 @@ BRIO_INLINE brio_dd square_of_facet(const simplex *s, const bool fma) {
     return square_of_quotient(one, dot(normal, normal, fma), fma);
 }
 
-/* y = (b (V x W) + c (W x U) + d (U x V)) / (2 U (V x W)). */
+/* Returns |y|^2 of y = (b (V x W) + c (W x U) + d (U x V)) / (2 U (V x W)). */
 BRIO_INLINE brio_dd square_of_tetrahedron(const simplex *s, const bool fma) {
     brio_dd vw[3], wu[3], uv[3], sum[3];
     cross(s->row[1], s->row[2], vw, fma);

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "cells/cell_record.h"
+#include <assert.h>
 #include <string.h>
 
 enum { CELLS_A_THREAD = 1 << 12 };
@@ -44,6 +45,8 @@ static void copy_faces(void *user, size_t from, size_t to, int thread) {
     (void)thread;
     for (size_t c = from; c < to; c++) {
         const brio_cell_place *place = &a->job->place[c];
+        assert(0 <= place->thread && place->thread < a->job->threads &&
+               place->face + place->num_faces <= a->job->recorder[place->thread].num_faces);
         const brio_cell_recorder *r = &a->job->recorder[place->thread];
         uint64_t corner = a->first_corner[c];
         for (size_t i = 0; i < place->num_faces; i++) {
@@ -55,6 +58,7 @@ static void copy_faces(void *user, size_t from, size_t to, int thread) {
             if (!out->corner_offsets) continue;
             out->corner_offsets[f] = corner;
             corner += face->corners;
+            assert(corner <= a->first_corner[c + 1]);
         }
     }
 }
@@ -102,11 +106,13 @@ static void copy_corners(void *user, size_t from, size_t to, int thread) {
     (void)thread;
     for (size_t c = from; c < to; c++) {
         const brio_cell_place *place = &job->place[c];
+        assert(place->corner + place->num_corners <= job->recorder[place->thread].num_corners);
         const brio_cell_recorder *r = &job->recorder[place->thread];
         size_t first = a->num_voronoi + (size_t)a->first_vertex[c];
         for (size_t i = 0; i < place->num_corners; i++) {
             uint32_t corner = r->corner[place->corner + i];
             bool own = corner & BRIO_OWN_VERTEX;
+            assert(own ? (corner & ~BRIO_OWN_VERTEX) < place->num_vertices : a->vertex_of[corner] > 0);
             job->out->face_vertices[a->first_corner[c] + i] =
                 own ? (uint32_t)(first + (corner & ~BRIO_OWN_VERTEX)) : a->vertex_of[corner] - 1;
         }

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/scale.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -33,6 +34,7 @@ typedef struct {
 static void store_numbers(const brio_cell_job *job, uint32_t site, const cell_numbers *n) {
     const brio_diagram *d = job->d;
     size_t cell = job->cell_of[site];
+    assert(cell < job->out->num_cells);
     job->out->volume[cell] = brio_cells_held(in_lengths(d, n->volume, 3));
     job->out->bounded[cell] = n->bounded;
     if (job->areas) job->out->area[cell] = brio_cells_held(in_lengths(d, n->area, 2));
@@ -62,6 +64,7 @@ static brio_status add_corner(brio_cell_recorder *r, uint32_t corner) {
     brio_status status = BRIO_RESERVE(r->ctx, r->corner, r->corner_capacity, r->num_corners + 1);
     if (status != BRIO_OK) return status;
     r->corner[r->num_corners++] = corner;
+    assert(r->num_faces > 0);
     r->face[r->num_faces - 1].corners++;
     return BRIO_OK;
 }
@@ -127,6 +130,7 @@ static brio_status corner_of(const brio_cell_job *job, brio_cell_recorder *r, ui
     brio_status status = BRIO_OK;
     const double *site = job->d->at + 3 * (size_t)r->star.site;
     *corner = r->shape.name[v];
+    assert(*corner == BRIO_NO_NAME || *corner < job->d->t.count); /* bit 31 is 0: a tetrahedron */
     if (*corner != BRIO_NO_NAME) return BRIO_OK;
     if (r->own[v] == UINT32_MAX) {
         BRIO_TRY(BRIO_RESERVE(r->ctx, r->vertex, r->vertex_capacity, r->num_vertices + 1));
@@ -134,12 +138,13 @@ static brio_status corner_of(const brio_cell_job *job, brio_cell_recorder *r, ui
         r->num_vertices++;
         r->own[v] = (*num_own)++;
     }
+    assert(!(r->own[v] & BRIO_OWN_VERTEX)); /* bit 31 is the mark, bits 0 to 30 are the number */
     *corner = BRIO_OWN_VERTEX | r->own[v];
 done:
     return status;
 }
 
-/* Whether the corner after corner c is at the same position, as where a plane passes through a vertex. */
+/* Returns whether the corner after corner c is at the same position, as where a plane passes through a vertex. */
 static bool is_repeated(const brio_polyhedron *p, const brio_face *face, size_t c) {
     const uint32_t *corner = p->faces.corner;
     const double *x = p->x[corner[c]], *next = p->x[corner[c + 1 < face->end ? c + 1 : face->begin]];

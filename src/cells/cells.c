@@ -128,7 +128,7 @@ static void choose_origin(const cell_call *c, double origin[3]) {
     }
 }
 
-/* The greatest number of an array by its absolute value. */
+/* Returns the greatest absolute value of an array. */
 static double greatest(const double *x, size_t n) {
     double most = 0;
     for (size_t i = 0; x && i < n; i++) most = fabs(x[i]) > most ? fabs(x[i]) : most;
@@ -195,8 +195,8 @@ static double choose_scale(const cell_call *c, exponents e) {
     return brio_power_of_two(scale < highest ? scale : highest);
 }
 
-/* Scales so that cubes of lengths of the points and of the region are doubles: 2^1022 and 2^-1022 are far enough from these then,
- * whose exponents differ by at most FARTHEST. */
+/* Scales lengths of the points and of the region so that doubles hold their cubes. The exponents of these lengths differ by at
+ * most FARTHEST; scaled to the middle of them, the exponents of cubes are at most 3 / 2 FARTHEST, below 1022. */
 static brio_status scale_points(cell_call *c) {
     enum { FARTHEST = 600 };
     brio_status status = BRIO_OK;
@@ -362,8 +362,8 @@ done:
     return status;
 }
 
-/* Cells fill the region. Where it is much smaller than its distance from their sites, rounding loses more than the region is
- * large. What doubles cannot hold is not compared. */
+/* Checks that the cells fill the region. Where the region is much smaller than its distance from the sites, rounding loses more
+ * than its volume. Skips volumes that doubles cannot hold. */
 static brio_status check_filled(brio_context *ctx, const brio_cells *cells) {
     static const double MOST = 0.01; /* chosen: what is left of the accuracy of the cells is of no use */
     brio_status status = BRIO_OK;

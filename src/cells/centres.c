@@ -63,7 +63,7 @@ static void find_batches(void *user, size_t from, size_t to, int thread) {
         find_batch(p, t, finite - t < BRIO_CENTRE_BATCH ? finite - t : BRIO_CENTRE_BATCH);
 }
 
-/* The infinite tetrahedra have no centres. */
+/* Gives the infinite tetrahedra no centres. */
 static void set_infinite(brio_diagram *d) {
     for (size_t t = d->num_finite; t < d->t.count; t++) {
         const uint32_t *v = d->t.tet[t].vertex;

@@ -7,6 +7,7 @@
 #include "cells/clip.h"
 #include "cells/exact_side.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <string.h>
 
 /* Cuts the region by the planes of all faces of the cell. A cell that has neighbours but no face with an area is an edge
@@ -38,6 +39,7 @@ done:
 static brio_status vertex_of(brio_star_cell *c, brio_polyhedron *p, uint32_t name, uint32_t *vertex) {
     size_t mask = c->num_slots - 1, at = (name * UINT32_C(0x9E3779B1) >> 7) & mask;
     while (c->slot[at][1] && c->slot[at][0] != name) at = (at + 1) & mask;
+    assert(name < c->d->num_finite); /* a Voronoi vertex */
     if (c->slot[at][1]) return *vertex = c->slot[at][1] - 1, BRIO_OK;
     const double *x = c->d->centre[name], *site = c->d->at + 3 * (size_t)c->site;
     double from[3] = {x[0] - site[0], x[1] - site[1], x[2] - site[2]};

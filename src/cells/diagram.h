@@ -16,6 +16,7 @@
 
 #include "cells/region.h"
 #include "triangulation/tetrahedra.h"
+#include <assert.h>
 
 /** Where a centre is. */
 typedef enum brio_place {
@@ -57,6 +58,7 @@ brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region);
 void brio_diagram_free(brio_diagram *d);
 
 /* The steps of brio_diagram_fill, in their order: vertex_order.c, centres.c, ties.c, centres.c, stars.c. */
+
 /** Orders the vertices: I4. */
 brio_status brio_diagram_order_vertices(brio_diagram *d);
 /** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. Marks vertices and lists
@@ -74,11 +76,13 @@ brio_status brio_diagram_add_volumes(const brio_diagram *d, double *volume);
 
 /** Returns number i of the listed tetrahedra. */
 static inline uint32_t brio_listed(const brio_diagram *d, size_t i) {
+    assert(i < d->num_listed);
     return d->listed ? d->listed[i] : (uint32_t)i;
 }
 
 /** Returns the tetrahedron that speaks for all that share the centre of t. */
 static inline uint32_t brio_same_centre(const brio_diagram *d, uint32_t t) {
+    assert(!d->same || (d->same[t] <= t && d->same[d->same[t]] == d->same[t])); /* I2 */
     return d->same ? d->same[t] : t;
 }
 

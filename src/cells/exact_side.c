@@ -6,6 +6,7 @@
  * Based on: Shewchuk. Adaptive precision floating-point arithmetic and fast robust geometric predicates. DCG 1997. */
 #include "cells/exact_side.h"
 #include "predicates/dyadic.h"
+#include <assert.h>
 #include <math.h>
 
 /* A number of a row errs by at most 12 roundings of the sum of its terms: the differences, products and sums of an offset, or
@@ -22,6 +23,7 @@ static bool find_sites(const brio_exact_planes *e, int64_t plane, uint32_t *a, u
     *b = (uint32_t)plane;
     if (plane <= UINT32_MAX) return true;
     int64_t number = plane - ((int64_t)1 << 32);
+    assert(number / 3 < (int64_t)e->d->num_finite); /* a plane of a finite tetrahedron */
     const uint32_t *v = e->d->t.tet[number / 3].vertex;
     *a = v[0];
     *b = v[1 + number % 3];
@@ -36,6 +38,7 @@ typedef struct {
 } row;
 
 static void fill_wall(const brio_exact_planes *e, size_t wall, row *r) {
+    assert(wall < e->region->num_planes);
     const double *plane = e->region->plane[wall], *site = e->d->at + 3 * (size_t)e->site;
     r->d = plane[3];
     r->d_terms = e->region->terms[wall];
@@ -97,7 +100,7 @@ static int rounded_orientation(const row r[3]) {
 
 static const int OTHERS[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
 
-/* The sign of the determinant of four rows, along their offsets. */
+/* Returns the sign of the determinant of four rows, expanded along their offsets; 2 if rounding may have changed it. */
 static int rounded_determinant(const row r[4]) {
     double sum = 0, terms = 0;
     for (int i = 0; i < 4; i++) {
@@ -123,8 +126,9 @@ static void add_square(brio_dyadic *sum, double x, double o, int s) {
     brio_dyadic_add(sum, sum, &square, s);
 }
 
-/* A wall is n . x = d. Its offset is doubled, as a plane between sites is n . 2 x = d. */
+/* Fills the row of a wall n . x = d. Its offset is doubled, as a plane between sites is n . 2 x = d. */
 static void fill_exact_wall(const brio_exact_planes *e, size_t wall, exact_row *r) {
+    assert(wall < e->region->num_planes);
     const double *plane = e->region->given[wall], *site = e->d->points + 3 * (size_t)e->site;
     brio_dyadic term, at;
     brio_dyadic_set(&r->d, plane[3]);

@@ -14,6 +14,7 @@
 #define BRIO_CELLS_EXACT_SIDE_H
 
 #include "cells/diagram.h"
+#include <assert.h>
 
 typedef struct brio_exact_planes {
     const brio_diagram *d;
@@ -22,10 +23,11 @@ typedef struct brio_exact_planes {
 } brio_exact_planes;
 
 static inline int64_t brio_plane_of_tetrahedron(uint32_t t, int k) {
+    assert(0 <= k && k < 3);
     return ((int64_t)1 << 32) + 3 * (int64_t)t + k;
 }
 
-/** As brio_judge says.   user  a brio_exact_planes. */
+/** Return what brio_judge says.   user  a brio_exact_planes. */
 int brio_exact_orientation(const void *user, const int64_t planes[3]);
 int brio_exact_side(const void *user, const int64_t planes[3], int orientation, int64_t plane);
 

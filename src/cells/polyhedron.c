@@ -10,7 +10,9 @@
  * Based on: Sutherland, Hodgman. Reentrant polygon clipping. CACM 1974. */
 #include "cells/polyhedron.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -47,6 +49,8 @@ brio_status brio_polyhedron_add_vertex(brio_polyhedron *p, const double x[3], ui
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->name, p->name_capacity, p->num_vertices + 1));
     BRIO_TRY(BRIO_RESERVE(p->ctx, p->exact, p->exact_capacity, p->num_vertices + 1));
     memcpy(p->x[p->num_vertices], x, sizeof *p->x);
+    assert(exact || !p->judge); /* I2 */
+    assert(p->num_vertices < NONE);
     if (exact) p->exact[p->num_vertices] = *exact;
     p->name[p->num_vertices++] = name;
 done:
@@ -63,6 +67,7 @@ static brio_status add_corner(brio_context *ctx, brio_faces *f, uint32_t vertex)
     brio_status status = BRIO_RESERVE(ctx, f->corner, f->corner_capacity, f->num_corners + 1);
     if (status != BRIO_OK) return status;
     f->corner[f->num_corners++] = vertex;
+    assert(f->count > 0 && f->list[f->count - 1].end + 1 == f->num_corners); /* the last face grows */
     f->list[f->count - 1].end = f->num_corners;
     return BRIO_OK;
 }
@@ -72,6 +77,7 @@ brio_status brio_polyhedron_add_face(brio_polyhedron *p, int64_t neighbour) {
 }
 
 brio_status brio_polyhedron_add_corner(brio_polyhedron *p, uint32_t vertex) {
+    assert(vertex < p->num_vertices);
     return add_corner(p->ctx, &p->faces, vertex);
 }
 
@@ -116,6 +122,7 @@ done:
 
 /* Gives a height the sign that the judge says. */
 static double judged(const brio_polyhedron *p, size_t v, double height, int64_t plane) {
+    assert(v < p->num_vertices);
     const brio_exact_vertex *e = &p->exact[v];
     int side = p->judge->side(p->judge->user, e->plane, e->orientation, plane);
     if (side == 0) return 0;
@@ -147,6 +154,7 @@ static brio_status cut_edge(brio_polyhedron *p, uint32_t in, uint32_t out, const
             p->exact[*vertex].plane[2] = planes[0];
             return BRIO_OK;
         }
+    assert(!(p->height[in] > 0) && p->height[out] > 0);
     const brio_exact_vertex exact = {{planes[0], planes[1], planes[0]}, 0};
     double x[3], share = p->height[in] / (p->height[in] - p->height[out]);
     for (int k = 0; k < 3; k++) x[k] = p->x[in][k] + share * (p->x[out][k] - p->x[in][k]);
@@ -173,6 +181,7 @@ static brio_status keep_face(brio_polyhedron *p, const brio_face *face, int64_t 
     BRIO_TRY(begin_face(p->ctx, &p->kept, face->neighbour));
     for (size_t c = face->begin; c < face->end; c++) {
         uint32_t u = corner[c], v = corner[c + 1 < face->end ? c + 1 : face->begin];
+        assert(u < p->num_vertices && v < p->num_vertices);
         bool over = p->height[u] > 0, next_over = p->height[v] > 0;
         under |= p->height[u] < 0;
         if (!over) BRIO_TRY(add_corner(p->ctx, &p->kept, u));
@@ -212,6 +221,7 @@ static brio_status close_cut(brio_polyhedron *p, int64_t neighbour) {
             p->after[v] = NONE;
             BRIO_TRY(add_corner(p->ctx, &p->kept, v));
         }
+        assert(v == p->cut[i].vertex); /* a cycle (I1) */
     }
 done:
     return status;
@@ -225,7 +235,7 @@ static void orient_cut(brio_polyhedron *p) {
     }
 }
 
-/* A face that lies in a plane under which all else is becomes the plane's. */
+/* Gives a face in a plane, under which all else lies, to the plane: the neighbour of the face becomes the plane's. */
 static void take_face_in_plane(brio_polyhedron *p, int64_t neighbour) {
     for (size_t i = 0; i < p->faces.count; i++) {
         brio_face *face = &p->faces.list[i];
@@ -234,6 +244,23 @@ static void take_face_in_plane(brio_polyhedron *p, int64_t neighbour) {
         if (on && face->neighbour >= 0 && neighbour < 0) face->neighbour = neighbour;
     }
 }
+
+#ifndef NDEBUG
+/* Returns whether the directed edges of all faces cancel (I1), up to collisions of a hash. */
+static bool edges_are_paired(const brio_polyhedron *p) {
+    uint64_t sum = 0;
+    for (size_t f = 0; f < p->faces.count; f++) {
+        const brio_face *face = &p->faces.list[f];
+        if (face->end > p->faces.num_corners || face->begin >= face->end) return false;
+        for (size_t c = face->begin; c < face->end; c++) {
+            uint64_t u = p->faces.corner[c], v = p->faces.corner[c + 1 < face->end ? c + 1 : face->begin];
+            if (u >= p->num_vertices) return false;
+            sum += brio_mix(u << 32 | v) - brio_mix(v << 32 | u);
+        }
+    }
+    return sum == 0;
+}
+#endif
 
 brio_status brio_polyhedron_cut(brio_polyhedron *p, const double plane[4], int64_t neighbour) {
     brio_status status = BRIO_OK;
@@ -251,6 +278,7 @@ brio_status brio_polyhedron_cut(brio_polyhedron *p, const double plane[4], int64
     brio_faces old = p->faces;
     p->faces = p->kept;
     p->kept = old;
+    assert(edges_are_paired(p)); /* I1 */
 done:
     return status;
 }

@@ -73,7 +73,7 @@ void brio_polyhedron_free(brio_polyhedron *p);
 
 /* The functions below that return a status return BRIO_OK or BRIO_ERR_NO_MEMORY. */
 
-/* exact  what the vertex is: I2; NULL without a judge */
+/** Adds a vertex.   exact  what the vertex is (I2); NULL without a judge. */
 brio_status brio_polyhedron_add_vertex(brio_polyhedron *p, const double x[3], uint32_t name,
                                        const brio_exact_vertex *exact);
 /** Begins a face; the corners that follow are its corners. */

@@ -84,7 +84,7 @@ done:
     return status;
 }
 
-/* Whether plane i is the wall of a box, for i from 0 to 5 in the order of the neighbours of brio_polyhedron_set_box. */
+/* Returns whether plane i is the wall of a box, for i from 0 to 5 in the order of the neighbours of brio_polyhedron_set_box. */
 static bool is_box(const brio_region *r) {
     for (size_t i = 0; i < r->num_planes; i++)
         for (size_t k = 0; k < 3; k++)

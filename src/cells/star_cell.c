@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "base/vector.h"
 #include "triangulation/ring.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -50,6 +51,7 @@ static inline brio_side *side_of(brio_star_cell *c, uint32_t neighbour, uint32_t
     size_t mask = c->num_slots - 1, at = (neighbour * UINT32_C(0x9E3779B1) >> 7) & mask;
     while (c->slot[at][1] && c->slot[at][0] != neighbour) at = (at + 1) & mask;
     if (c->slot[at][1]) return &c->side[c->slot[at][1] - 1];
+    assert(c->num_sides < c->side_capacity && 2 * c->num_sides < c->num_slots); /* probing ends */
     brio_side *s = &c->side[c->num_sides++];
     *s = (brio_side){.site = neighbour, .tet = tet};
     if (neighbour != BRIO_INFINITE) find_foot(c->d, c->site, neighbour, s->foot);
@@ -87,10 +89,12 @@ static inline void add_edges(brio_star_cell *c, uint32_t t, const bool moments) 
     const brio_tetrahedron *tet = &d->t.tet[t];
     const double *p = d->at + 3 * (size_t)c->site, *x = d->centre[t];
     int own = brio_slot_of_vertex(tet->vertex, c->site);
+    assert(own < 4); /* the star has the tetrahedra of its site */
     double from[3] = {x[0] - p[0], x[1] - p[1], x[2] - p[2]};
     brio_side *side[3];
     for (int e = 0; e < 3; e++) side[e] = side_of(c, tet->vertex[BRIO_FACET[own][e]], t);
     if (t >= d->num_finite) side[0]->open = side[1]->open = side[2]->open = c->open = true;
+    assert(x[3] == BRIO_PLACE_INSIDE || x[3] == BRIO_PLACE_OUTSIDE || x[3] == BRIO_PLACE_FAR); /* I1 of diagram.h */
     if (x[3] > c->place) c->place = (brio_place)x[3];
     for (int e = 0; e < 3; e++) {
         uint32_t u = brio_tet_of(tet->mate[BRIO_FACET[own][e]]);
@@ -160,6 +164,7 @@ static void drop_infinite(brio_star_cell *c, size_t *count) {
     reverse(v, 0, first);
     reverse(v, first, n);
     reverse(v, 0, n);
+    assert(finite <= n);
     *count = finite;
 }
 

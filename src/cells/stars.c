@@ -3,6 +3,7 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "cells/diagram.h"
+#include <assert.h>
 
 /* MOST_INSERTED, chosen: stars up to this size are sorted by insertion. */
 enum { TETRAHEDRA_A_THREAD = 1 << 14, VERTICES_A_THREAD = 1 << 12, MOST_INSERTED = 64 };
@@ -36,6 +37,7 @@ static void fill_some(void *user, size_t from, size_t to, int thread) {
         uint32_t t = brio_listed(s->d, n);
         for (int i = 0; i < (t < s->d->num_finite ? 4 : 3); i++) {
             uint32_t v = s->d->t.tet[t].vertex[i];
+            assert(__atomic_load_n(&s->filled[v], __ATOMIC_RELAXED) < s->d->size[v]);
             s->d->star[s->d->begin[v] + count_one(&s->filled[v], s->threads)] = t;
         }
     }
@@ -71,6 +73,18 @@ static uint64_t begin_stars(brio_diagram *d) {
     return next;
 }
 
+#ifndef NDEBUG
+/* Returns whether the tetrahedra of each vertex ascend (I3). */
+static bool stars_ascend(const brio_diagram *d) {
+    for (size_t n = 0; n < d->num_vertices; n++) {
+        const uint32_t *star = d->star + d->begin[d->order[n]];
+        for (uint32_t i = 1; i < d->size[d->order[n]]; i++)
+            if (star[i - 1] >= star[i]) return false;
+    }
+    return true;
+}
+#endif
+
 brio_status brio_diagram_gather_stars(brio_diagram *d) {
     brio_status status = BRIO_OK;
     size_t rows = d->num_points + (d->flat ? 3 : 0);
@@ -84,6 +98,7 @@ brio_status brio_diagram_gather_stars(brio_diagram *d) {
     if (s.threads > 1)
         BRIO_TRY(
             brio_for(d->ctx, brio_threads(d->ctx, d->num_vertices, VERTICES_A_THREAD), d->num_vertices, sort_some, &s));
+    assert(stars_ascend(d)); /* I3 */
 done:
     brio_release(d->ctx, s.filled);
     return status;

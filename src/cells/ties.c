@@ -8,6 +8,7 @@
 #include "base/team.h"
 #include "base/union_find.h"
 #include "cells/diagram.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -22,15 +23,16 @@ typedef struct {
     bool search;         /* whether candidates are only counted */
 } tie_search;
 
-/* Whether the bounds of their errors allow the centres of two finite tetrahedra to be one. */
+/* Returns whether the error bounds of the centres of two finite tetrahedra allow both to be one point. */
 static inline bool may_share(const double *a, const double *b) {
     double bound = (a[3] + b[3]) * (1 + 0x1p-50);
     if (fabs(a[0] - b[0]) > bound) return false;                         /* settles most pairs */
     return !(fabs(a[1] - b[1]) > bound) && !(fabs(a[2] - b[2]) > bound); /* true also if a number is NaN */
 }
 
-/* Whether tetrahedron t and its mate behind facet i share their centre. Both are finite or both infinite. */
+/* Returns whether tetrahedron t and its mate behind facet i share their centre. Both are finite or both infinite. */
 static bool shares(const tie_search *s, brio_filter *f, uint32_t t, int i) {
+    assert((t >= s->d->num_finite) == (brio_tet_of(s->d->t.tet[t].mate[i]) >= s->d->num_finite));
     const uint32_t *v = s->d->t.tet[t].vertex;
     const brio_record *r = (const brio_record *)s->record;
     const double *apex = r[brio_apex(&s->d->t, s->d->t.tet[t].mate[i])];
@@ -91,7 +93,10 @@ brio_status brio_diagram_unite_ties(brio_diagram *d) {
     s.search = true;
     BRIO_TRY(brio_for_chunks(d->ctx, s.threads, d->num_listed, CHUNK, look_at_some, &s));
     BRIO_TRY(brio_for(d->ctx, s.threads, d->t.count, settle_some, &s));
-    for (size_t t = 0; t < d->t.count; t++) d->same[t] = brio_find(d->same, (uint32_t)t);
+    for (size_t t = 0; t < d->t.count; t++) {
+        d->same[t] = brio_find(d->same, (uint32_t)t);
+        assert(d->same[t] <= t); /* I2: the least of them */
+    }
 done:
     brio_release(d->ctx, s.record);
     return status;

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "cells/diagram.h"
+#include <assert.h>
 #include <string.h>
 
 enum { VERTICES_A_THREAD = 1 << 14 };
@@ -15,6 +16,7 @@ static void copy_points(void *user, size_t from, size_t to, int thread) {
     const brio_diagram *d = user;
     (void)thread;
     for (size_t r = from; r < to; r++) {
+        assert(d->rank[d->order[r]] == r); /* I4 */
         memcpy(d->ranked + 3 * r, d->at + 3 * (size_t)d->order[r], 3 * sizeof *d->ranked);
         if (d->square) d->ranked_square[r] = d->square[d->order[r]];
     }
@@ -29,6 +31,7 @@ static brio_status rank_vertices(brio_diagram *d, size_t rows) {
         for (int i = 0; i < 4; i++) {
             uint32_t p = d->t.tet[t].vertex[i];
             if (d->rank[p] != UINT32_MAX) continue;
+            assert(p < rows && n < rows);
             d->order[n] = p;
             d->rank[p] = n++;
         }

@@ -17,6 +17,7 @@
 #include "base/team.h"
 #include "base/vector.h"
 #include "cells/diagram.h"
+#include <assert.h>
 #include <string.h>
 
 /* SLICE, chosen: tetrahedra a thread and slice, whose terms fit the second-level cache. SLICES: between progress. */
@@ -35,11 +36,13 @@ static inline void subtract(const double *a, const double *b, double *out) {
 
 /* Returns k - 1 for the vertices p and y. */
 static inline double shift(const brio_diagram *d, uint32_t p, uint32_t y, const double *way) {
+    assert(p < d->num_vertices && y < d->num_vertices && p != y);
     return (d->ranked_square[p] - d->ranked_square[y]) / brio_dot(way, way);
 }
 
 /* Adds the terms of the facet opposite to slot i of tetrahedron t, whose mate is in u. */
 static inline void add_facet(const brio_diagram *d, size_t t, int i, uint32_t u, double term[4], const bool weighted) {
+    assert(u > t && d->id);
     const uint8_t *slot = BRIO_FACET[i];
     const uint32_t *id = d->id[t];
     const double *a = d->ranked + 3 * (size_t)id[slot[0]];
@@ -64,7 +67,7 @@ static inline void add_facet(const brio_diagram *d, size_t t, int i, uint32_t u,
     term[slot[2]] += (third - bc) + (gx - ac);
 }
 
-/* Each facet counts once, with the lesser of its two tetrahedra. */
+/* Finds the terms of the tetrahedra of a slice. A facet counts once, with the lesser of its two tetrahedra. */
 static inline void find_terms(const volume_pass *v, size_t from, size_t to, const bool weighted) {
     const brio_diagram *d = v->d;
     for (size_t n = from; n < to; n++) {

@@ -13,6 +13,7 @@
 #include "dual/cell_shape.h"
 #include "base/team.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <math.h>
 
 enum { SAMPLES_A_THREAD = 1 << 13, TETRAHEDRA_A_THREAD = 1 << 13 };
@@ -81,6 +82,7 @@ static inline void offer_edge(const brio_shaped_cells *c, uint32_t s, const doub
  * lower of its two tetrahedra. The three samples of a facet have equal distances to each end of the dual edge. */
 static void offer_edges(const brio_shaped_cells *c, size_t t, double *square) {
     static const double MORE = 1 + 1e-9; /* chosen: exceeds the relative rounding error of a squared distance */
+    assert(t < c->num_finite);
     const double *from = c->centre + 3 * t;
     if (isnan(from[0])) return;
     double own = brio_square_distance(from, c->points + 3 * (size_t)c->tet[t].vertex[0]);
@@ -129,9 +131,10 @@ static void divide_by_radii(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* offer_edge skips the edges within the radius at which the shape is `most`: such edges cannot change the result. */
+/* Relies on offer_edge skipping the edges within the radius at which the shape is `most`: such edges cannot change the result. */
 brio_status brio_cell_shapes(brio_context *ctx, const brio_shaped_cells *c, double most, double *shape) {
     brio_status status = BRIO_OK;
+    assert(most > 0);
     measurement m = {c, most, shape};
     int threads = brio_threads(ctx, c->num_samples, SAMPLES_A_THREAD);
     BRIO_TRY(brio_for(ctx, threads, c->num_samples, set_least_radii, &m));
@@ -142,5 +145,6 @@ done:
 }
 
 bool brio_cell_is_bad(double shape, double density) {
+    assert(0 < density && density < 1);
     return shape < (1 - density) / (1.3 * density);
 }

@@ -9,6 +9,7 @@
 #ifndef BRIO_DUAL_FARTHEST_H
 #define BRIO_DUAL_FARTHEST_H
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -24,6 +25,7 @@ typedef bool (*brio_farther_fn)(const void *user, uint32_t tet, uint32_t than, u
 
 /** Returns the key of a squared distance, which is not NaN, and a tetrahedron. */
 static inline uint64_t brio_farthest_key(double square, uint32_t tet) {
+    assert(!(square < 0));
     uint64_t bits;
     memcpy(&bits, &square, sizeof bits);
     return (bits & BRIO_ENDLESS) | tet;
@@ -48,6 +50,7 @@ static inline __attribute__((always_inline)) void brio_offer_farthest(uint64_t *
                                                                       brio_farther_fn farther, const void *user,
                                                                       uint32_t sample) {
     uint64_t now = __atomic_load_n(place, __ATOMIC_ACQUIRE);
+    assert((uint32_t)key != UINT32_MAX); /* bits 0 to 31 name a tetrahedron */
     while (key >> 32 != now >> 32
                ? key >> 32 > now >> 32
                : now == BRIO_NO_FARTHEST || farther(user, brio_farthest_tet(key), brio_farthest_tet(now), sample)) {

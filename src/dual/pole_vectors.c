@@ -20,6 +20,7 @@
 #include "predicates/circumcentre.h"
 #include "predicates/double_double.h"
 #include "triangulation/view.h"
+#include <assert.h>
 #include <string.h>
 
 static double square(const double *x) {
@@ -109,6 +110,7 @@ static void find_hull_vectors(search *s) {
     static const double ROUND = 0x1.8p16;
     brio_pole_vectors *v = s->v;
     for (size_t tet = v->num_finite; tet < v->t.count; tet++) {
+        assert(v->t.tet[tet].vertex[3] == v->t.infinite); /* finite tetrahedra come first */
         double *normal = v->centre + 4 * tet;
         write_ray(v, tet, normal);
         for (int i = 0; i < 3; i++) {
@@ -121,6 +123,7 @@ static void find_hull_vectors(search *s) {
 
 /* Computes the centres of up to BRIO_CENTRE_BATCH tetrahedra from `first` on. */
 static void find_centres(const brio_pole_vectors *v, size_t first, size_t count, double *centre) {
+    assert(count <= BRIO_CENTRE_BATCH && first + count <= v->num_finite);
     uint32_t vertex[BRIO_CENTRE_BATCH][4];
     for (size_t n = 0; n < count; n++) memcpy(vertex[n], v->t.tet[first + n].vertex, sizeof *vertex);
     brio_rough_centres(&(brio_centre_batch){v->points, NULL, (const uint32_t(*)[4])vertex, count}, centre);
@@ -166,6 +169,7 @@ static void find_planes(void *user, size_t begin, size_t end, int thread) {
         uint32_t pole = brio_farthest_tet(s->farther[0][p]);
         double *plane = v->plane + 4 * p;
         const double *x = v->points + 3 * p;
+        assert(pole < v->t.count || pole == BRIO_INFINITE);
         if (pole < v->num_finite) brio_towards_centre(v, pole, p, plane);
         make_unit(plane);
         plane[3] = -(plane[0] * x[0] + plane[1] * x[1] + plane[2] * x[2]);
@@ -249,6 +253,7 @@ BRIO_INLINE uint16_t sides_of(const search *s, size_t tet, double sine) {
     offer_if(bits >> 17 & 1, s, vertex[1], key);
     offer_if(bits >> 18 & 1, s, vertex[2], key);
     offer_if(bits >> 19 & 1, s, vertex[3], key);
+    assert((bits & bits >> 4 & 15) == 0 && bits >> 20 == 0); /* a centre is on one side of a sample */
     return (uint16_t)bits;
 }
 
@@ -309,6 +314,7 @@ brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *
                                    size_t num_points, double theta, brio_pole_vectors *out) {
     brio_status status = BRIO_OK;
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    assert(num_points == s->points && 0 < theta && theta < 1.6);
     *out = (brio_pole_vectors){.num_finite = s->tetrahedra,
                                .num_points = num_points,
                                .num_vertices = s->vertices,

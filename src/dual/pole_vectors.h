@@ -4,6 +4,7 @@
 
 #include "base/context.h"
 #include "triangulation/tetrahedra.h"
+#include <assert.h>
 
 /** Where a Voronoi vertex lies relative to a sample: in the cone about the direction to the sample's farther pole, in
  *  the opposite cone, or in the co-cone between the cones. A vertex within its error bound of a cone's border counts as
@@ -47,6 +48,7 @@ void brio_centre_row(const brio_pole_vectors *v, size_t tet, double row[4]);
 
 /** Writes the vector from p to the Voronoi vertex of a tetrahedron; for an infinite tetrahedron, the unit direction. */
 static inline void brio_towards_centre(const brio_pole_vectors *v, size_t tet, size_t p, double to[3]) {
+    assert(tet < v->t.count && p < v->num_points && v->centre);
     const double *c = v->centre + 4 * tet, *from = v->points + 3 * p;
     bool ray = tet >= v->num_finite;
     for (int k = 0; k < 3; k++) to[k] = ray ? c[k] : c[k] - from[k];
@@ -68,10 +70,12 @@ static inline unsigned brio_shallow_slots(unsigned sides) {
 /** Returns the two side bits of a slot, of which at most one is set: bit 0 for the cone to the pole, bit 4 for the
  *  opposite cone. */
 static inline unsigned brio_slot_sides(unsigned sides, int slot) {
+    assert(0 <= slot && slot < 4 && (sides >> slot & 0x11) != 0x11); /* one side at most */
     return sides >> slot & 0x11;
 }
 
 static inline int brio_side_of(const brio_pole_vectors *v, size_t tet, int slot) {
+    assert(tet < v->t.count && 0 <= slot && slot < 4);
     int bits = v->sides[tet] >> slot;
     return (bits & 1) | (bits >> 3 & 2);
 }
@@ -81,6 +85,7 @@ enum { BRIO_DEPTHS = 4 };
 /** Returns how many of 1/16, 1/8 and 1/4 are below the sine of the angle between the direction to a Voronoi vertex and
  *  the axis of the sample in a slot. */
 static inline int brio_depth_class(const brio_pole_vectors *v, size_t tet, int slot) {
+    assert(tet < v->t.count && 0 <= slot && slot < 4);
     int bits = v->sides[tet] >> (8 + slot);
     return (bits & 1) | (bits >> 3 & 2);
 }

@@ -18,6 +18,7 @@
 #include "order/hilbert.h"
 #include "predicates/circumcentre.h"
 #include "predicates/predicates.h"
+#include <assert.h>
 #include <string.h>
 
 enum { NO_TET = UINT32_MAX, AHEAD = 12, TETRAHEDRA_A_THREAD = 1 << 14, POLES_A_THREAD = 1 << 14 };
@@ -33,6 +34,7 @@ typedef struct {
 } finder;
 
 static const double *centre_of(const finder *f, uint32_t tet) {
+    assert(tet < f->num_tets);
     return f->centre + 3 * (size_t)tet;
 }
 
@@ -217,6 +219,7 @@ static void fill_poles(void *user, size_t begin, size_t end, int thread) {
 static void number_part(void *user, size_t begin, size_t end, int thread) {
     const list_of_poles *l = user;
     (void)thread;
+    assert(l->list[end - 1] < l->f->num_tets);
     for (size_t p = begin; p < end; p++) l->number[l->list[p]] = (uint32_t)p;
 }
 

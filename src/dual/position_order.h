@@ -5,10 +5,12 @@
 
 #include "brio/brio.h"
 #include "predicates/predicates.h"
+#include <assert.h>
 
 /** Writes the positions of the first `count` vertices of a tetrahedron to p, in ascending order. */
 static inline void brio_sorted_positions(const double *points, const brio_tetrahedron *tet, int count,
                                          const double *p[4]) {
+    assert((count == 3 || count == 4) && (count < 4 || tet->vertex[3] != BRIO_INFINITE));
     for (int i = 0; i < count; i++) p[i] = points + 3 * (size_t)tet->vertex[i];
     for (int i = 1; i < count; i++)
         for (int j = i; j > 0 && brio_lexicographic(p[j - 1], p[j]) > 0; j--) {

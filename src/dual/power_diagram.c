@@ -2,9 +2,11 @@
 #include "dual/power_diagram.h"
 #include "base/vector.h"
 #include "triangulation/view.h"
+#include <assert.h>
 #include <math.h>
 
 double brio_ball_weight(const brio_poles *poles, uint32_t p, uint32_t q) {
+    assert(p < poles->count && q < poles->count);
     double pp = poles->square[p], qq = poles->square[q];
     double between = brio_square_distance(poles->centre + 3 * (size_t)p, poles->centre + 3 * (size_t)q);
     return (pp + qq - between) / (2 * sqrt(pp * qq));

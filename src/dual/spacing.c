@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <math.h>
 
 /* NEAREST: derived, the mean degree of a triangulated surface. SAMPLES_A_THREAD: chosen. */
@@ -18,6 +19,7 @@ typedef struct {
 } neighbours;
 
 static void offer(neighbours *n, uint32_t sample, float square) {
+    assert(n->count <= NEAREST);
     if (n->count == NEAREST && !(square < n->square[NEAREST - 1])) return;
     for (uint32_t i = 0; i < n->count; i++)
         if (n->sample[i] == sample) return;
@@ -76,6 +78,7 @@ void brio_pole_spacing(const brio_poles *poles, size_t num_samples, const double
     for (size_t p = 0; p < poles->count; p++) spacing[p] = 0;
     for (size_t i = 0; i < 2 * num_samples; i++) {
         uint32_t p = poles->of_sample[i];
+        assert(p == BRIO_NO_POLE || p < poles->count);
         if (p != BRIO_NO_POLE) spacing[p] = fmax(spacing[p], of_sample[i / 2]);
     }
 }

@@ -13,6 +13,7 @@
 #include "base/rng.h"
 #include "base/scale.h"
 #include "base/vector.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -46,8 +47,9 @@ typedef struct {
     uint32_t member[BALL_MOST];
 } ball;
 
-/* Point i of `count` random points, one of each of `count` equal parts of all points. */
+/* Returns point i of `count` random points, one of each of `count` equal parts of all points. */
 static size_t nth_choice(size_t i, size_t count, size_t points) {
+    assert(i < count && count > 0 && points > 0);
     double part = (double)points / (double)count, within = (double)(brio_mix(i + 1) >> 11) * 0x1p-53;
     size_t at = (size_t)(((double)i + within) * part);
     return at < points ? at : points - 1;
@@ -57,14 +59,14 @@ static void scaled_point(const cloud *c, const double *p, double *scaled) {
     for (int k = 0; k < 3; k++) scaled[k] = p[k] * c->scale;
 }
 
-/* The squared distance of point i from a place, both scaled. */
+/* Returns the squared distance of point i from a place, both scaled. */
 static double squared_distance(const cloud *c, size_t i, const double *place) {
     double p[3];
     scaled_point(c, c->points + 3 * i, p);
     return brio_square_distance(p, place);
 }
 
-/* The squared diagonal of the bounding box, scaled. */
+/* Returns the squared diagonal of the bounding box, scaled. */
 static double squared_diagonal(const cloud *c) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < c->count; i++)
@@ -105,7 +107,7 @@ typedef struct {
     double balls, all; /* points of these balls, the outer ones included */
 } tally;
 
-/* A tetrahedron counts for each of its finite vertices with an equal share. */
+/* Counts the tetrahedra at inner points: a tetrahedron counts for each of its finite vertices with an equal share. */
 static void count_inner(const brio_triangulation *t, const uint8_t *inner, tally *sum) {
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
@@ -147,6 +149,7 @@ static brio_status count_ball(const cloud *c, const ball *b, double radius2, tal
     uint8_t *inner = NULL;
     brio_triangulation *t = NULL;
     size_t n = 0;
+    assert(BALL_LEAST <= b->count && b->count <= BALL_MOST); /* find_ball listed them all */
     BRIO_TRY(BRIO_ALLOC(c->ctx, points, 3 * b->count));
     BRIO_TRY(BRIO_ALLOC(c->ctx, weights, b->count));
     BRIO_TRY(BRIO_ALLOC(c->ctx, inner, b->count));
@@ -155,6 +158,7 @@ static brio_status count_ball(const cloud *c, const ball *b, double radius2, tal
         if (distance > radius2) continue;
         memcpy(points + 3 * n, c->points + 3 * (size_t)b->member[i], 3 * sizeof *points);
         weights[n] = c->weights ? c->weights[b->member[i]] : 0;
+        assert(b->member[i] < c->count);
         inner[n++] = distance <= radius2 / 4;
     }
     BRIO_TRY(triangulate(c->ctx, points, c->weights ? weights : NULL, n, &t));
