@@ -60,9 +60,8 @@ brio_status brio_ask(brio_context *ctx);
 /* BRIO_LOOK_EVERY: items of work between two looks; an item takes 1 ns to 2 us. Chosen. */
 enum { BRIO_LOOK_EVERY = 1 << 14 };
 
-/** A look: tells that `items` of work have been done, and asks the callback whether to stop when they add up to
- *  BRIO_LOOK_EVERY. Every loop over data of the caller looks, or is a brio_for: so that a wish to stop is heard within half a
- *  second of processor time. Returns BRIO_OK or BRIO_ERR_CANCELLED. Only the thread that called the library may call
+/** Looks: counts `items` of work as done, and asks the callback whether to stop when they add up to BRIO_LOOK_EVERY. Every loop
+ *  over data of the caller looks, or is a brio_for, so that the callback is asked within half a second of processor time. Returns BRIO_OK or BRIO_ERR_CANCELLED. Only the thread that called the library may call
  *  this. */
 static inline brio_status brio_look(brio_context *ctx, size_t items) {
     ctx->unlooked += items;

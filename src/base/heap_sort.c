@@ -34,7 +34,7 @@ static void insert_keys(uint64_t *keys, size_t n) {
     }
 }
 
-/* ctx  NULL for a sort that does not look. */
+/* Sorts keys.   ctx  NULL for a sort that does not look. */
 static brio_status heap_sort_keys(brio_context *ctx, uint64_t *keys, size_t n) {
     brio_status status = BRIO_OK;
     for (size_t i = n / 2; i-- > 0;) {

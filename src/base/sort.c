@@ -19,7 +19,7 @@ typedef struct {
     brio_status stop; /* written by member 0; atomic */
 } stopper;
 
-/* Whether a member goes on at entry i of its part. Member 0 looks now and then. */
+/* Returns whether a member goes on at entry i of its part. Member 0 looks now and then. */
 static inline bool goes_on(stopper *s, size_t i, const brio_member *m) {
     if (i % BRIO_LOOK_EVERY) return true;
     if (m->thread == 0 && s->looks && s->stop == BRIO_OK) brio_report(&s->stop, brio_look(s->ctx, BRIO_LOOK_EVERY));

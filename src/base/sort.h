@@ -24,8 +24,8 @@ typedef int (*brio_compare_fn)(uint32_t, uint32_t, const void *user);
  *  input only if `compare` returns 0 for equal indices alone. */
 void brio_sort_indices(uint32_t *indices, size_t n, brio_compare_fn compare, const void *user);
 
-/** The same sorts, of any number of entries: they look. Return BRIO_OK or BRIO_ERR_CANCELLED: then entries are in any order,
- *  and some may be lost. Only the thread that called the library may call these. */
+/** Sort as the two functions above do, and look. Return BRIO_OK or BRIO_ERR_CANCELLED: then entries are in any order, and some
+ *  may be lost. Only the thread that called the library may call these. */
 brio_status brio_sort_many_keys(brio_context *ctx, uint64_t *keys, size_t n);
 brio_status brio_sort_many_indices(brio_context *ctx, uint32_t *indices, size_t n, brio_compare_fn compare,
                                    const void *user);

@@ -292,7 +292,7 @@ static void do_part(void *user, const brio_member *m) {
     }
 }
 
-/* A chunk is as much work as is worth a look. */
+/* Works on chunks until none is left. A chunk is as much work as is worth a look. */
 static void do_chunks(void *user, const brio_member *m) {
     loop *l = user;
     bool more = true;

@@ -43,8 +43,8 @@ int brio_threads(brio_context *ctx, size_t n, size_t least);
 /** Calls work(user, member) in `threads` threads at once. Returns when all calls have returned. */
 void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user);
 
-/** Whether the caller is the thread that called the library: no run with several members goes on. Only then may it look
- *  (brio_look). */
+/** Returns whether the caller is the thread that called the library: no run with several members goes on. Only then may it
+ *  look (brio_look). */
 bool brio_may_look(const brio_context *ctx);
 
 /** Waits until every member of the run has called this. Afterwards each member sees what the others wrote before. */

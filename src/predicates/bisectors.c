@@ -42,12 +42,12 @@ static inline bounded minor(bounded x, bounded y, bounded z, bounded w) { /* x y
     return sum(product(x, y), q);
 }
 
-/* 2: not certain. */
+/* Returns the sign, 2 where the error leaves it open. */
 static inline int sign_of(bounded x) {
     return x.value > x.error ? 1 : -x.value > x.error ? -1 : 2;
 }
 
-/* g of sample s at p: (a - s) . ((p - a) + (p - s)). */
+/* Returns g of sample s at p: (a - s) . ((p - a) + (p - s)). */
 static bounded bounded_g(const double *a, const double *s, const double *p) {
     bounded g = {0, 0};
     for (int k = 0; k < 3; k++)
@@ -72,7 +72,7 @@ static OUT_OF_LINE void exact_g(brio_dyadic *g, const double *a, const double *s
     }
 }
 
-/* r = x y - z w. */
+/* Sets r = x y - z w. */
 static OUT_OF_LINE void exact_minor(brio_dyadic *r, const brio_dyadic *x, const brio_dyadic *y, const brio_dyadic *z,
                                     const brio_dyadic *w) {
     brio_dyadic p, q;
@@ -81,7 +81,7 @@ static OUT_OF_LINE void exact_minor(brio_dyadic *r, const brio_dyadic *x, const 
     brio_dyadic_add(r, &p, &q, -1);
 }
 
-/* r += (x - y) m, for doubles x and y. */
+/* Adds (x - y) m to r, for doubles x and y. */
 static OUT_OF_LINE void add_scaled(brio_dyadic *r, double x, double y, const brio_dyadic *m) {
     brio_dyadic d, t;
     brio_dyadic_difference(&d, x, y);
@@ -104,7 +104,7 @@ int brio_nearer_sample(brio_bisector_counts *n, const double *a, const double *b
     return a[2] > b[2] ? 1 : -1;
 }
 
-/* The translation's share along axis k: (a - b) (g_c(q) - g_c(p)) + (a - c) (g_b(p) - g_b(q)). */
+/* Returns the sign of the translation's share along the first axis k where it is not 0: (a - b) (g_c(q) - g_c(p)) + (a - c) (g_b(p) - g_b(q)). */
 static int order_of_translated(const double *a, const double *b, const double *c, const brio_dyadic gb[2],
                                const brio_dyadic gc[2]) {
     brio_dyadic db, dc, r;
@@ -133,7 +133,7 @@ int brio_bisector_order(brio_bisector_counts *n, const double *a, const double *
     return order_of_translated(a, b, c, gb, gc);
 }
 
-/* The sum of x cross y: the determinant of (1, 1, 1), x, y. */
+/* Sets r to the sum of x cross y: the determinant of (1, 1, 1), x, y. */
 static OUT_OF_LINE void exact_area(brio_dyadic *r, const brio_dyadic x[3], const brio_dyadic y[3]) {
     brio_dyadic m;
     exact_minor(r, &x[1], &y[2], &x[2], &y[1]);
@@ -143,7 +143,7 @@ static OUT_OF_LINE void exact_area(brio_dyadic *r, const brio_dyadic x[3], const
     brio_dyadic_add(r, r, &m, 1);
 }
 
-/* The translation's share along an axis: each row of the determinant in turn replaced by its (a - s). */
+/* Returns the sign of the translation's share along the first axis where it is not 0: each row of the determinant in turn replaced by its (a - s). */
 static OUT_OF_LINE int side_of_translated(const double *const samples[4], const brio_dyadic g[3][3]) {
     brio_dyadic area[3], r;
     for (int i = 0; i < 3; i++) exact_area(&area[i], g[(i + 1) % 3], g[(i + 2) % 3]);

@@ -21,14 +21,14 @@ typedef struct {
     uint64_t exact, ties;
 } brio_bisector_counts;
 
-/** 1 where sample a is nearer to corner p than sample b, else -1. a and b differ. */
+/** Returns 1 where sample a is nearer to corner p than sample b, else -1. a and b differ. */
 int brio_nearer_sample(brio_bisector_counts *n, const double *a, const double *b, const double *p);
 
-/** Sign of g_b(p) g_c(q) - g_b(q) g_c(p), with g of sample a. */
+/** Returns the sign of g_b(p) g_c(q) - g_b(q) g_c(p), with g of sample a. */
 int brio_bisector_order(brio_bisector_counts *n, const double *a, const double *b, const double *c, const double *p,
                         const double *q);
 
-/** Sign of the determinant whose rows are g_b, g_c, g_w at the corners of a triangle. */
+/** Returns the sign of the determinant whose rows are g_b, g_c, g_w at the corners of a triangle. */
 int brio_bisector_side(brio_bisector_counts *n, const double *const samples[4], const double *const corners[3]);
 
 #endif

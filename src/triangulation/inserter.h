@@ -61,7 +61,7 @@ enum { BRIO_INSERT_WORK = 1 << 18 };
 /** Slots that an inserter takes at once in a parallel pass. */
 enum { BRIO_SLOT_STRETCH = 4096 };
 
-/** From now on the inserter counts page touches: its records are array `first` of `counts`. */
+/** Makes the inserter count page touches from now on: its records are array `first` of `counts`. */
 static inline void brio_inserter_count_touches(brio_inserter *ins, brio_page_touches *counts, int first) {
     ins->touches = (brio_touch_view){counts, first};
     ins->walk.touches = counts ? &ins->touches : NULL;

@@ -22,19 +22,19 @@ typedef struct {
 /** Starts to count. page_bytes is a power of two. The cache holds cache_bytes / page_bytes pages, at least one. */
 brio_status brio_page_touches_new(brio_context *ctx, uint64_t page_bytes, uint64_t cache_bytes,
                                   brio_page_touches **out);
-/** NULL is accepted. */
+/** Frees the counts; NULL is accepted. */
 void brio_page_touches_free(brio_page_touches *t);
 
 /** Counts a touch of the byte at an offset of an array. */
 void brio_touch(brio_page_touches *t, int array, uint64_t offset);
 
-/** BRIO_OK, or why touches could not be counted. */
+/** Returns BRIO_OK, or why touches could not be counted. */
 brio_status brio_page_touches_status(const brio_page_touches *t);
 
 /** Writes the totals into the statistics. */
 void brio_page_touches_total(const brio_page_touches *t, brio_delaunay_stats *stats);
 
-/** faults[k] = the faults in a cache of 2^k pages, up to the first that holds all pages; returns how many there are. */
+/** Sets faults[k] to the faults in a cache of 2^k pages, up to the first that holds all pages. Returns the number of caches. */
 size_t brio_page_touches_faults(const brio_page_touches *t, uint64_t faults[BRIO_TOUCH_CACHES]);
 
 static inline void brio_touch_record(const brio_touch_view *view, uint32_t record) {

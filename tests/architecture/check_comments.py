@@ -26,7 +26,7 @@ NO_VERBS = set("""
 # Words of NO_VERBS that are verbs, too, and mostly used as such above functions.
 BOTH = set("Blocks Bounds Copies Counts Handles Hashes Lists Marks Names Needs Numbers Orders Places Ranks Records Rounds "
            "Sorts Spans Squares Sums Tests Walks Weights".split())
-PLAIN = set("Add Call Decode Free Give Make Read Return Set Start Take Tell Write".split())  # above several functions
+PLAIN = set("Add Sort Call Decode Free Give Make Read Return Set Start Take Tell Write".split())  # above several functions
 
 COMMENT = re.compile(r"^/\*\*?\s+(?!---)((?:[^*]|\*(?!/))*)\*/\n(?=([^\n]+))", re.M)
 
