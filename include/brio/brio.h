@@ -149,9 +149,11 @@ BRIO_API void brio_context_set_threads(brio_context *ctx, int threads);
 /** Returns the greatest number of threads that a call uses: at least 1. A negative number was taken for 0. */
 BRIO_API int brio_context_threads(const brio_context *ctx);
 
-/** A progress callback. Long calls call it from the calling thread, a few times a second or more often, with the name
- *  of the stage and the share of the whole call that is done, in [0, 1]. A result other than 0 cancels the call, which
- *  then frees everything and returns BRIO_ERR_CANCELLED. */
+/** A progress callback. Long calls call it from the calling thread, many times a second, with the name of the stage and the
+ *  share of the whole call that is done, in [0, 1]. Between stages they repeat what they said last; before the first stage
+ *  that is "start" and 0, or what the call before said last. A result other than 0 cancels the call, which then frees
+ *  everything and returns BRIO_ERR_CANCELLED: at the latest half a second of processor time after the callback would have
+ *  said so, on the machines and inputs of docs/reliability.md. */
 typedef int (*brio_progress_fn)(const char *stage, double fraction, void *user);
 /** Sets the progress callback; NULL removes it. */
 BRIO_API void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user);
