@@ -896,8 +896,8 @@ typedef struct brio_merge_stats {
  *  the number of threads.
  *  A face loses corners that equal the next one, and is dropped if fewer than three distinct corners are left. Tetrahedra
  *  and edges with equal corners are dropped, and so are those that were given like that. Faces that become equal stay.
- *  distance  0: equal positions only; or a normal number, at least 2^-38 times the largest coordinate. Distances are
- *            rounded to doubles.
+ *  distance  0: equal positions only; or a normal number, at least 2^-38 times the largest coordinate. Distances that are
+ *            this one up to rounding, 2^-50 of the greatest coordinate, count as this one.
  *  stats     NULL, or receives what was changed.
  *  Cost: O(n) where few vertices are in a cube of half the distance; the number of pairs of two such cubes at most, one
  *  beside the other. Memory: 24 bytes a vertex, and up to 64 for each distinct position or cube.
@@ -1821,7 +1821,8 @@ BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const
  */
 
 /** Thins points to a spacing: chooses points that are at least `spacing` from each other, such that every other point is
- *  less than `spacing` from a chosen one. (Distances as computed in doubles.) No other point can be added, so the set has no
+ *  less than `spacing` from a chosen one. Distances that are the spacing up to rounding, 2^-50 of the greatest coordinate,
+ *  count as the spacing: a grid of the spacing 0.1 stays whole. No other point can be added, so the set has no
  *  holes that the points do not have. The chosen positions depend on the set of positions and the spacing only, and not on
  *  the order of the points or the number of threads; of coincident points the first one is chosen.
  *  points   #P by 3, finite.   spacing  finite, greater than 0.

@@ -70,6 +70,7 @@ RUNS = {
                  "generate ball -n {n:20000000} -o {out}.ply", "generate clusters -n {n:9000000} -o {out}.ply"],
     "subdivide": ["subdivide {coarse.ply} --levels 5 -o {out}.ply"],
     "locate": ["locate {few.ply} --at {big.ply} -o {out}.csv", "locate {ball.ply} --plane xy --at {ball.ply} -o {out}.npy"],
+    "restricted": ["restricted {solid.ply} --surface {dense.ply} -o {out}.ply"],
     "interpolate": ["interpolate {small.ply} --at {scan.ply} --property view -o {out}.ply"],
 }
 
