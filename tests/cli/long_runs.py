@@ -98,7 +98,7 @@ class Inputs:
 
     def size(self, kind, number):
         if kind == "r":  # cells along a side: the work grows with their square or cube
-            return max(12, int(int(number) * self.scale ** 0.4))
+            return max(24, int(int(number) * self.scale ** 0.4))
         return max(40, int(int(number) * self.scale))
 
     def line(self, template, out="out"):

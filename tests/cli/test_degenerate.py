@@ -4,7 +4,7 @@
 - What is one thing that such points have not, as a surface or a solid, is no answer (exit 3), with a sentence that says what
   they are. A hull of any dimension is one; of no points there is none. Values are interpolated between points: of none, or of
   points at one place, there are none.
-- A command that needs faces says so: `check` and `compare` that the file is not of their kind (exit 2), `subdivide` that there is
+- A command that needs faces says so: `check`, `compare` and `restricted` that the file is not of their kind (exit 2), `subdivide` that there is
   nothing to subdivide (exit 3).
 """
 
@@ -52,6 +52,7 @@ RUNS = {
     "offset {p} --distance 0.1 -o {o}.ply": ("3333333", SOLID),
     "check {p}": ("2222222", r"expected faces or tetrahedra to check, found points only"),
     "compare {p} {p}": ("2222222", r"expected a surface, found no faces"),
+    "restricted {p} --surface {p}": ("2222222", r"expected a surface, found no faces"),
     "subdivide {p} -o {o}.ply": ("3333333", r"has no faces"),
 }
 # read no points
