@@ -2115,7 +2115,8 @@ typedef struct brio_convert_stats {
  *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
  *  file is in memory.
  *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, the names of metadata ("crs" for a coordinate system), and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
+ *  properties, the names of metadata ("crs" for a coordinate system), "faces of dropped points" if outliers or thinning take corners of faces, tetrahedra or edges,
+ *  and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
  *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
  *  With options->crs an input without a coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written.
  *  Progress begins anew where a text is read again because late rows lack a column.
