@@ -8,6 +8,7 @@
 #include "estimate.h"
 #include "weights.h"
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -219,6 +220,26 @@ done:
     return status;
 }
 
+/* The estimate of an offset. Of a mesh its faces count, and the distance: a hundredth of the diagonal of its box is taken. A mesh that
+ * cannot be offset has none. */
+static brio_status report_offset(run *r, const brio_mesh *mesh, double beside, uint64_t of_points) {
+    double low[3], high[3], square = 0;
+    uint64_t work = 0;
+    if (!mesh->num_faces) {
+        cli_fact_bytes(&r->facts, "offset", (uint64_t)(beside + (double)of_points));
+        return BRIO_OK;
+    }
+    cli_cloud_box(mesh->vertices, mesh->num_vertices, low, high);
+    for (int k = 0; k < 3; k++) square += (high[k] - low[k]) * (high[k] - low[k]);
+    brio_status status = brio_estimate_mesh_offset(r->ctx, mesh, sqrt(square) / 100, NULL, &work);
+    if (status == BRIO_ERR_CANCELLED || status == BRIO_ERR_NO_MEMORY) return status;
+    if (status == BRIO_OK)
+        cli_fact_bytes(&r->facts, "offset", (uint64_t)(beside + (double)work));
+    else
+        cli_fact_null(&r->facts, "offset");
+    return BRIO_OK;
+}
+
 /* Estimates of surfaces and axes. */
 static brio_status report_surfaces(run *r, const brio_mesh *mesh, size_t usual) {
     facts *f = &r->facts;
@@ -230,7 +251,7 @@ static brio_status report_surfaces(run *r, const brio_mesh *mesh, size_t usual) 
     TRY(brio_estimate_cocone(r->ctx, usual, NULL, &cocone));
     cli_fact_bytes(f, "surface", (uint64_t)(beside + (double)surface));
     cli_fact_bytes(f, "medial", (uint64_t)(beside + (double)crust));
-    cli_fact_bytes(f, "offset", (uint64_t)(beside + (double)crust));
+    TRY(report_offset(r, mesh, beside, crust));
     cli_fact_bytes(f, "cocone", (uint64_t)(beside + (double)cocone));
     if (mesh->num_faces) {
         double subdivide = (double)brio_estimate_mesh_subdivide(mesh->num_faces, 1);

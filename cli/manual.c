@@ -10,7 +10,7 @@ const manual_entry cli_exit_codes[] = {
     {"4", "not enough memory, or over --max-memory"},
     {"5", "the result, or the file of `brio check`, does not check"},
     {"6", "the output could not be written"},
-    {"130", "interrupted"},
+    {"130", "interrupted: at most half a second of processor time after the signal"},
     {NULL, NULL},
 };
 

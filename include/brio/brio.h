@@ -149,9 +149,11 @@ BRIO_API void brio_context_set_threads(brio_context *ctx, int threads);
 /** Returns the greatest number of threads that a call uses: at least 1. A negative number was taken for 0. */
 BRIO_API int brio_context_threads(const brio_context *ctx);
 
-/** A progress callback. Long calls call it from the calling thread, a few times a second or more often, with the name
- *  of the stage and the share of the whole call that is done, in [0, 1]. A result other than 0 cancels the call, which
- *  then frees everything and returns BRIO_ERR_CANCELLED. */
+/** A progress callback. Long calls call it from the calling thread, many times a second, with the name of the stage and the
+ *  share of the whole call that is done, in [0, 1]. Between stages they repeat what they said last; before the first stage
+ *  that is "start" and 0, or what the call before said last. A result other than 0 cancels the call, which then frees
+ *  everything and returns BRIO_ERR_CANCELLED: at the latest half a second of processor time after the callback would have
+ *  said so, on the machines and inputs of docs/reliability.md. */
 typedef int (*brio_progress_fn)(const char *stage, double fraction, void *user);
 /** Sets the progress callback; NULL removes it. */
 BRIO_API void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user);
@@ -894,8 +896,8 @@ typedef struct brio_merge_stats {
  *  the number of threads.
  *  A face loses corners that equal the next one, and is dropped if fewer than three distinct corners are left. Tetrahedra
  *  and edges with equal corners are dropped, and so are those that were given like that. Faces that become equal stay.
- *  distance  0: equal positions only; or a normal number, at least 2^-38 times the largest coordinate. Distances are
- *            rounded to doubles.
+ *  distance  0: equal positions only; or a normal number, at least 2^-38 times the largest coordinate. Distances that are
+ *            this one up to rounding, 2^-50 of the greatest coordinate, count as this one.
  *  stats     NULL, or receives what was changed.
  *  Cost: O(n) where few vertices are in a cube of half the distance; the number of pairs of two such cubes at most, one
  *  beside the other. Memory: 24 bytes a vertex, and up to 64 for each distinct position or cube.
@@ -1819,7 +1821,8 @@ BRIO_API brio_status brio_iso_surface(brio_context *ctx, const char *path, const
  */
 
 /** Thins points to a spacing: chooses points that are at least `spacing` from each other, such that every other point is
- *  less than `spacing` from a chosen one. (Distances as computed in doubles.) No other point can be added, so the set has no
+ *  less than `spacing` from a chosen one. Distances that are the spacing up to rounding, 2^-50 of the greatest coordinate,
+ *  count as the spacing: a grid of the spacing 0.1 stays whole. No other point can be added, so the set has no
  *  holes that the points do not have. The chosen positions depend on the set of positions and the spacing only, and not on
  *  the order of the points or the number of threads; of coincident points the first one is chosen.
  *  points   #P by 3, finite.   spacing  finite, greater than 0.
@@ -2112,7 +2115,8 @@ typedef struct brio_convert_stats {
  *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
  *  file is in memory.
  *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, the names of metadata ("crs" for a coordinate system), and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
+ *  properties, the names of metadata ("crs" for a coordinate system), "faces of dropped points" if outliers or thinning take corners of faces, tetrahedra or edges,
+ *  and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
  *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
  *  With options->crs an input without a coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written.
  *  Progress begins anew where a text is read again because late rows lack a column.

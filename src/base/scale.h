@@ -26,6 +26,13 @@ double brio_greatest(const double *x, size_t n);
 /** Returns the exponent of the least power of two above x: x * 2^-exponent is below 1. 0 for 0 and for what is not finite. */
 int brio_exponent(double x);
 
+/** Returns by how much the rounding of coordinates of magnitudes up to `greatest` may change the distance of two points: two
+ *  units in the last place of each. Distances closer than that to a threshold count as equal to it, so that a grid of a spacing
+ *  that no double holds is treated alike all over. */
+static inline double brio_distance_rounding(double greatest) {
+    return 0x1p-50 * greatest;
+}
+
 /** Returns an exponent so that usual points times 2^-exponent are near 1, and all points finite: the mean exponent of the
  *  greatest coordinates, which a few points far out hardly change.   points  #P by 3. */
 int brio_usual_exponent(const double *points, size_t num_points);

@@ -19,6 +19,9 @@
 
 /* Chosen. MOST_TETRAHEDRA: a ball with more is made smaller. That is 32 a point of the largest. */
 enum { BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400, MOST_TETRAHEDRA = 1 << 17 };
+/* Chosen. MOST_EXACT: tests of triangulations that took exact arithmetic, after which FEW_BALLS are enough: points on a line, or
+ * of a turned lattice, whose balls are alike, took seconds. */
+enum { FEW_BALLS = 3, MOST_EXACT = 1 << 17 };
 /* Derived: a set that fits into one ball is triangulated once. Twelve balls that hold all of it would cost more. */
 enum { ALL = BALL_MOST };
 /* Derived: scaled weights are below 2^MOST_EXPONENT, so they are finite. */
@@ -105,6 +108,7 @@ static bool find_ball(const cloud *c, double diagonal2, size_t centre, ball *b) 
 typedef struct {
     double points, hidden, tetrahedra;
     double balls, all; /* points of these balls, the outer ones included */
+    uint64_t exact;    /* tests that took exact arithmetic */
 } tally;
 
 /* Counts the tetrahedra at inner points: a tetrahedron counts for each of its finite vertices with an equal share. */
@@ -164,6 +168,7 @@ static brio_status count_ball(const cloud *c, const ball *b, double radius2, tal
     BRIO_TRY(triangulate(c->ctx, points, c->weights ? weights : NULL, n, &t));
     const uint32_t *representative = brio_triangulation_representatives(t);
     sum->balls++, sum->all += (double)n;
+    sum->exact += brio_triangulation_stats(t)->exact_calls;
     for (size_t i = 0; i < n; i++) {
         sum->points += inner[i];
         sum->hidden += inner[i] && representative[i] != i;
@@ -184,7 +189,7 @@ static brio_status count_surroundings(const cloud *c, tally *far, tally *near) {
     ball *b = NULL;
     double diagonal2 = squared_diagonal(c);
     BRIO_TRY(BRIO_ALLOC(c->ctx, b, 1));
-    for (size_t i = 0; i < BALLS; i++) {
+    for (size_t i = 0; i < BALLS && (i < FEW_BALLS || far->exact < MOST_EXACT); i++) {
         BRIO_TRY(brio_progress(c->ctx, "estimate", 0));
         if (!find_ball(c, diagonal2, nth_choice(i, BALLS, c->count), b)) continue;
         while ((status = count_ball(c, b, b->radius2, far)) == BRIO_ERR_TOO_LARGE) b->radius2 /= 2;

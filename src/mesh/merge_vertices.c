@@ -7,6 +7,7 @@
  * positions alone. Of each set the vertex of the lexicographically least position stays. */
 #include "base/finite.h"
 #include "base/float_state.h"
+#include "base/scale.h"
 #include "base/sort.h"
 #include "base/union_find.h"
 #include "base/versioned.h"
@@ -19,6 +20,8 @@
  * place is then rounded by less than 2^-13 cells. So vertices within the distance are at most two places apart, and those
  * of one cell, whose diagonal is 0.87 distances, are within it. */
 static const double WIDER = 1 + 0x1p-8, MOST_PLACES = 0x1p40;
+/* Chosen: the most that rounding of coordinates counts for, a share of the distance. Far less than WIDER adds. */
+static const double MOST_ROUNDED = 0x1p-14;
 enum { REACH = 2, ROWS = 13, TESTS_A_REPORT = 1 << 20, VERTICES_A_REPORT = 1 << 16 };
 
 typedef struct {
@@ -281,8 +284,9 @@ static brio_status prepare(merger *m, double distance) {
     BRIO_TRY(brio_refuse_vertices(m->ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
     m->side = distance / 2 * WIDER;
     m->scale = distance > 0 ? ldexp(1, -ilogb(distance)) : 1;
-    m->square = distance * m->scale * (distance * m->scale);
     for (size_t i = 0; i < 3 * mesh->num_vertices; i++) largest = fmax(largest, fabs(mesh->vertices[i]));
+    double within = (distance + fmin(brio_distance_rounding(largest), MOST_ROUNDED * distance)) * m->scale;
+    m->square = within * within;
     BRIO_REQUIRE(m->ctx, m->side == 0 || largest / m->side < MOST_PLACES, BRIO_ERR_ARGUMENT,
                  "a distance of %g between vertices that merge, expected 0 or at least %g for coordinates of %g",
                  distance, largest / MOST_PLACES * 4, largest);

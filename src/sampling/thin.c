@@ -16,6 +16,7 @@
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include <math.h>
@@ -28,6 +29,8 @@ enum { KEY_BITS = 63, POINTS_A_THREAD = 1 << 14, GROUP = 1 << 21 };
  * in units of cells is rounded by less than 2^-10, so points in cells that are not neighbours are at least the spacing
  * apart. */
 static const double WIDER = 1 + 0x1p-8;
+/* Chosen: the most that rounding of coordinates counts for, a share of the spacing. */
+static const double MOST_ROUNDED = 0x1p-14;
 enum { MOST_AXIS_BITS = 42 };
 
 typedef struct {
@@ -106,7 +109,10 @@ static brio_status find_cells(thinning *t, double spacing) {
                          "the points changed during the call, to numbers that are not finite");
     find_axes(t, high);
     t->scale = ldexp(1, -ilogb(spacing) > 1000 ? 1000 : -ilogb(spacing));
-    t->square = spacing * t->scale * (spacing * t->scale);
+    double greatest = 0;
+    for (int k = 0; k < 3; k++) greatest = fmax(greatest, fmax(fabs(t->low[k]), fabs(high[k])));
+    double apart = (spacing - fmin(brio_distance_rounding(greatest), MOST_ROUNDED * spacing)) * t->scale;
+    t->square = apart * apart;
     t->width = fmax(spacing * WIDER, 0x1p-1000);
     while (!count_bits(t, high)) t->width *= 2;
     return BRIO_OK;

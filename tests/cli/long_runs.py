@@ -5,6 +5,7 @@ command without a row here fails cli.moments.
 """
 
 import os
+import struct
 import subprocess
 
 from brio_cli import BRIO
@@ -24,7 +25,6 @@ INPUTS = {
     "big.csv": "convert {ball.ply} -o {out}",
     "big.pcd": "convert {big.ply} --compress -o {out}",
     "big.vtp": "convert {ball.ply} --compress -o {out}",
-    "heights.xyz": "convert {few.ply} -o {out}",
     "solid.ply": "generate solid --resolution {r:200} -o {out}",
     "coarse.ply": "generate solid --resolution {r:48} -o {out}",
     "other.ply": "generate solid --resolution {r:190} -o {out}",
@@ -35,6 +35,7 @@ INPUTS = {
     "dense.vtk": "convert {dense.ply} --ascii -o {out}",
     "tets.vtu": "delaunay {few.ply} -o {out}",
     "many.vtu": "delaunay {ball.ply} -o {out}",
+    "ball.map": None,
 }
 
 # command: its long runs. {out} is a file that the run writes, {out2} another.
@@ -57,7 +58,7 @@ RUNS = {
                 "voronoi {ball.ply} -o {out}.npy"],
     "check": ["check {dense.ply} --self-intersections", "check {many.vtu}", "check {dense.obj}"],
     "compare": ["compare {solid.ply} {other.ply} --samples {n:2000000}", "compare {dense.ply} {solid.ply}"],
-    "iso": ["generate solid --resolution {r:300} -o {out}.ply"],
+    "iso": ["iso {ball.map} --level -40 --delaunay-conforming -o {out}.ply", "iso {ball.map} --level -40 --vertex-normals -o {out}.ply"],
     "convert": ["convert {big.xyz} -o {out}.ply", "convert {big.ply} -o {out}.xyz", "convert {big.ply} -o {out}.laz", "convert {big.laz} -o {out}.las",
                 "convert {big.csv} -o {out}.npy", "convert {big.pcd} -o {out}.pcd --compress", "convert {big.vtp} -o {out}.vtp --compress",
                 "convert {ball.ply} --drop-outliers 12 -o {out}.ply", "convert {big.ply} --thin 0.004 -o {out}.ply",
@@ -69,8 +70,24 @@ RUNS = {
                  "generate ball -n {n:20000000} -o {out}.ply", "generate clusters -n {n:9000000} -o {out}.ply"],
     "subdivide": ["subdivide {coarse.ply} --levels 5 -o {out}.ply"],
     "locate": ["locate {few.ply} --at {big.ply} -o {out}.csv", "locate {ball.ply} --plane xy --at {ball.ply} -o {out}.npy"],
-    "interpolate": ["interpolate {heights.xyz} --at {ball.ply} --property x -o {out}.ply"],
+    "restricted": ["restricted {solid.ply} --surface {dense.ply} -o {out}.ply"],
+    "interpolate": ["interpolate {small.ply} --at {scan.ply} --property view -o {out}.ply"],
 }
+
+
+def write_map(path, size):
+    """A CCP4 map whose values fall with the distance from the middle, in waves."""
+    header = struct.pack("<10i", size, size, size, 2, 0, 0, 0, size, size, size)
+    header += struct.pack("<6f", size, size, size, 90, 90, 90) + struct.pack("<3i", 1, 2, 3)
+    header = header.ljust(208, b"\0") + b"MAP \x44\x44\0\0"
+    middle, row = (size - 1) / 2, range(size)
+    with open(path, "wb") as file:
+        file.write(header.ljust(1024, b"\0"))
+        for z in row:
+            for y in row:
+                part = (y - middle) ** 2 + (z - middle) ** 2
+                file.write(struct.pack("<%df" % size, *[-80 / size * ((x - middle) ** 2 + part) ** 0.5 -
+                                                        4 * ((x * 7 + y * 5 + z * 3) % 11 > 8) for x in row]))
 
 
 class Inputs:
@@ -81,7 +98,7 @@ class Inputs:
 
     def size(self, kind, number):
         if kind == "r":  # cells along a side: the work grows with their square or cube
-            return max(12, int(int(number) * self.scale ** 0.4))
+            return max(24, int(int(number) * self.scale ** 0.4))
         return max(40, int(int(number) * self.scale))
 
     def line(self, template, out="out"):
@@ -106,6 +123,9 @@ class Inputs:
     def made(self, name):
         path = os.path.join(self.folder, name)
         if not os.path.exists(path):
+            if INPUTS[name] is None:
+                write_map(path, self.size("r", 160))
+                return path
             line = self.line(INPUTS[name], name)
             done = subprocess.run([BRIO] + line + ["--quiet"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
             if done.returncode:

@@ -55,5 +55,14 @@ class Info(CliTest):
             self.assertEqual(self.facts("info", self.path("nameless"))["format"], name[2:])
 
 
+    def test_offsets_of_a_mesh_are_estimated_by_its_faces(self):
+        """They were estimated by its points, of which a cube has eight: 16 kB for a hundred times as much."""
+        mesh = self.off("a.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        by_faces = self.facts("info", mesh)["estimate_bytes"]["offset"]
+        by_points = self.facts("info", self.xyz("a.xyz", OCTAHEDRON))["estimate_bytes"]["offset"]
+        self.assertGreater(by_faces, by_points + 1000 * len(OCTAHEDRON))
+        out = self.facts("offset", mesh, "--distance", "0.02", "-o", self.path("out.ply"))
+        self.assertGreater(by_faces, 0.5 * out["peak_bytes"])
+
 if __name__ == "__main__":
     main()

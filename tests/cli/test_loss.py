@@ -6,7 +6,7 @@ import re
 import struct
 
 import whole_files
-from brio_cli import CliTest, main
+from brio_cli import OCTAHEDRON, OCTAHEDRON_FACES, CliTest, main
 
 CUBES = [(x, y, z) for x in range(4) for y in range(4) for z in range(4)]
 TYPES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I", "float": "f", "double": "d"}
@@ -170,6 +170,14 @@ class SinglePrecision(LossTest):
         points = self.xyz("a.xyz", [(x, y, z) for x in range(4) for y in range(4) for z in range(4)])
         run = self.expect(0, "hull", points, "-o", self.path("out.ply"), "--float32")
         self.assertEqual(run.err, "")
+
+    def test_faces_of_points_that_are_thinned_out_are_named(self):
+        """All faces of a mesh went, and nothing was said."""
+        mesh = self.off("a.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        run = self.expect(0, "convert", mesh, "--thin", "1.5", "-o", self.path("out.ply"))
+        self.assertIn("out.ply is without: faces of dropped points", run.err)
+        facts = self.facts("convert", mesh, "--thin", "0.5", "-o", self.path("out.ply"))
+        self.assertEqual((facts["lost"], facts["faces"]), ([], 8))
 
     def test_some_points_that_merge_are_counted(self):
         twin = (0.1, 0.2, 0.3), (0.1 + 1e-12, 0.2, 0.3)

@@ -3,6 +3,7 @@
 #include "harness.h"
 #include "points.h"
 #include <limits.h>
+#include <string.h>
 
 enum { N = 40000 };
 
@@ -40,6 +41,25 @@ static void triangulations_take_what_was_estimated(void) {
             EXPECT(ratio > (way < 2 ? 0.8 : 0.6) && ratio < 1.3, "set %d, way %d: %g", set, way, ratio);
         }
     }
+}
+
+static int count_balls(const char *stage, double fraction, void *user) {
+    (void)fraction;
+    *(size_t *)user += !strcmp(stage, "estimate");
+    return 0;
+}
+
+/* `brio info` of 20,000 points on a line took over ten seconds without optimization: twelve balls of exact arithmetic. */
+static void points_on_a_line_take_few_balls(void) {
+    enum { LINE = 20000, MOST = 6 };
+    brio_context *ctx = new_context();
+    size_t balls = 0;
+    uint64_t tetrahedra = 0;
+    for (size_t i = 0; i < 3 * LINE; i++) points[i] = 0.1 * (double)(i / 3);
+    brio_context_set_progress(ctx, count_balls, &balls);
+    EXPECT(brio_estimate_tetrahedra(ctx, points, NULL, LINE, &tetrahedra) == BRIO_OK && tetrahedra > 0);
+    EXPECT(balls > 0 && balls <= MOST, "%zu balls", balls);
+    brio_context_free(ctx);
 }
 
 /* The estimate triangulated all of a curve, for minutes, and had half as many tetrahedra as there are. */
@@ -267,6 +287,7 @@ static void estimates_can_be_cancelled(void) {
 
 SUITE(test_estimate) {
     RUN(triangulations_take_what_was_estimated);
+    RUN(points_on_a_line_take_few_balls);
     RUN(tetrahedra_on_curves_are_estimated);
     RUN(estimates_are_the_same_at_every_scale);
     RUN(estimates_of_wide_ranges);

@@ -201,6 +201,27 @@ static brio_status merge_parts(brio_context *ctx) {
     return status;
 }
 
+/* A grid of the spacing 0.1, merged over 0.1, fell into 64 vertices: distances were 0.1 up to rounding, some of them above it. */
+static void vertices_of_a_grid_merge_over_its_spacing(void) {
+    enum { SIDE = 6, COUNT = SIDE * SIDE * SIDE };
+    const double spacings[] = {1, 0.1, 0.3, 1.0 / 3, 1e-3}, shifts[] = {0, 1000, -12345.678};
+    for (size_t s = 0; s < 15; s++) {
+        brio_context *ctx = new_context();
+        brio_mesh *mesh = NULL;
+        double points[3 * COUNT], spacing = spacings[s % 5];
+        for (size_t i = 0; i < COUNT; i++) {
+            const size_t at[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+            for (size_t k = 0; k < 3; k++) points[3 * i + k] = shifts[s / 5] + spacing * (double)at[k];
+        }
+        EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, points, COUNT) == BRIO_OK);
+        EXPECT(brio_mesh_merge_vertices(mesh, 0.999 * spacing, NULL) == BRIO_OK && mesh->num_vertices == COUNT);
+        EXPECT(brio_mesh_merge_vertices(mesh, spacing, NULL) == BRIO_OK && mesh->num_vertices == 1,
+               "spacing %g at %g: %zu", spacing, shifts[s / 5], mesh->num_vertices);
+        brio_mesh_free(mesh);
+        brio_context_free(ctx);
+    }
+}
+
 static void every_failing_allocation_is_clean(void) {
     expect_clean_failures(merge_parts);
 }
@@ -211,6 +232,7 @@ SUITE(test_merge_vertices) {
     RUN(faces_share_vertices_and_degenerate_ones_go);
     RUN(wrong_calls_leave_the_mesh_as_it_was);
     RUN(the_scale_does_not_matter);
+    RUN(vertices_of_a_grid_merge_over_its_spacing);
     RUN(every_failing_allocation_is_clean);
     return harness_end();
 }

@@ -277,9 +277,10 @@ static brio_status edges(void) {
     brio_triangulation *t = NULL;
     brio_edges list = {0};
     brio_progress_fn report = ctx->progress;
-    ctx->progress = NULL; /* another call of the library, with a bar of its own */
+    void *user = ctx->progress_user;
+    brio_context_set_progress(ctx, NULL, NULL); /* another call of the library, with its bar */
     brio_status status = brio_delaunay(ctx, scan->vertices, NULL, scan->num_vertices, NULL, &t);
-    ctx->progress = report;
+    brio_context_set_progress(ctx, report, user);
     if (status == BRIO_OK) status = brio_triangulation_edges(ctx, t, &list);
     brio_edges_free(&list);
     brio_triangulation_free(t);

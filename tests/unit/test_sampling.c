@@ -185,6 +185,27 @@ static void equal_spacings_are_no_outliers(void) {
     }
 }
 
+/* A grid of the spacing 0.1, thinned to 0.1, lost 792 of 1,728 points: distances were 0.1 up to rounding, some of them below it. */
+static void grids_thinned_to_their_spacing_stay_whole(void) {
+    enum { SIDE = 12, COUNT = SIDE * SIDE * SIDE };
+    static double points[3 * COUNT];
+    static uint8_t chosen[COUNT];
+    const double spacings[] = {1, 0.1, 0.3, 1.0 / 3, 1e-3}, shifts[] = {0, 1000, -12345.678};
+    brio_context *ctx = new_context();
+    for (size_t s = 0; s < 15; s++) {
+        double spacing = spacings[s % 5];
+        size_t count = 0;
+        for (size_t i = 0; i < COUNT; i++) {
+            const size_t at[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
+            for (size_t k = 0; k < 3; k++) points[3 * i + k] = shifts[s / 5] + spacing * (double)at[k];
+        }
+        EXPECT(brio_thin(ctx, points, COUNT, spacing, chosen, &count) == BRIO_OK && count == COUNT,
+               "spacing %g at %g: %zu", spacing, shifts[s / 5], count);
+        EXPECT(brio_thin(ctx, points, COUNT, 1.001 * spacing, chosen, &count) == BRIO_OK && count < COUNT);
+    }
+    brio_context_free(ctx);
+}
+
 /* A spacing that is larger by more than rounding is above the threshold still. */
 static void unequal_spacings_are_outliers_by_factor_1(void) {
     brio_context *ctx = new_context();
@@ -307,6 +328,7 @@ SUITE(test_sampling) {
     RUN(outliers_are_the_same_at_every_scale);
     RUN(equal_spacings_are_no_outliers);
     RUN(unequal_spacings_are_outliers_by_factor_1);
+    RUN(grids_thinned_to_their_spacing_stay_whole);
     RUN(a_far_outlier_hides_no_other);
     RUN(outliers_among_duplicates_cost_little);
     RUN(sparse_parts_are_no_outliers);

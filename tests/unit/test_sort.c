@@ -280,6 +280,77 @@ static void refused_memory_is_a_status_and_leaves_nothing(void) {
     expect_clean_failures(sort_some_rows);
 }
 
+/* --- looks --- */
+
+typedef struct {
+    size_t looks, allowed;
+} wish;
+
+static int ask(const char *stage, double fraction, void *user) {
+    wish *w = user;
+    (void)stage, (void)fraction;
+    return w->looks++ >= w->allowed;
+}
+
+static int compare_indices(uint32_t a, uint32_t b, const void *user) {
+    (void)user;
+    return (a > b) - (a < b);
+}
+
+enum { MANY = 40 * BRIO_LOOK_EVERY };
+
+/* More entries than the arrays above have. */
+typedef struct {
+    uint64_t *keys, *spare;
+    uint32_t *values;
+    double *rows;
+} many;
+
+static brio_status sort_one_way(brio_context *ctx, int way, const many *m) {
+    for (size_t i = 0; i < MANY; i++) {
+        m->keys[i] = (uint64_t)(i * 2654435761u % MANY) << 32 | i;
+        m->values[i] = (uint32_t)(i * 2654435761u % MANY);
+    }
+    switch (way) {
+    case 0:
+        return brio_radix_sort(ctx, m->keys, m->values, MANY, 64);
+    case 1:
+        return brio_sort_items(ctx, m->keys, m->spare, MANY, 30, brio_threads(ctx, MANY, 1 << 14));
+    case 2:
+        return brio_sort_rows(ctx, &(brio_row_order){m->rows, 1, compare_indices, NULL}, m->values, MANY);
+    case 3:
+        return brio_sort_many_keys(ctx, m->keys, MANY);
+    default:
+        return brio_sort_many_indices(ctx, m->values, MANY, compare_indices, NULL);
+    }
+}
+
+/* Sorts of millions of entries ran for seconds without a look. Cancelled at each of the first looks, and at the last one. */
+static void sorts_look_and_stop(void) {
+    many m = {malloc(MANY * sizeof *m.keys), malloc(MANY * sizeof *m.spare), malloc(MANY * sizeof *m.values),
+              calloc(MANY, sizeof *m.rows)};
+    for (int threads = 1; threads <= 3; threads++)
+        for (int way = 0; way < 5; way++) {
+            brio_context *ctx = new_context();
+            wish w = {0, SIZE_MAX};
+            brio_context_set_threads(ctx, threads);
+            brio_context_set_progress(ctx, ask, &w);
+            EXPECT(sort_one_way(ctx, way, &m) == BRIO_OK);
+            EXPECT(w.looks >= 10, "way %d, %d threads: %zu looks", way, threads, w.looks);
+            for (size_t k = 1, all = w.looks; k < all; k += 1 + all / 8) {
+                w = (wish){0, k - 1};
+                EXPECT(sort_one_way(ctx, way, &m) == BRIO_ERR_CANCELLED);
+                EXPECT(w.looks == k && brio_context_memory(ctx) == 0, "way %d, %d threads: %zu looks after %zu", way,
+                       threads, w.looks, k);
+            }
+            brio_context_free(ctx);
+        }
+    free(m.keys);
+    free(m.spare);
+    free(m.values);
+    free(m.rows);
+}
+
 SUITE(test_sort) {
     RUN(pairs_are_sorted_and_stable);
     RUN(items_are_sorted_and_stable);
@@ -289,5 +360,6 @@ SUITE(test_sort) {
     RUN(keys_of_doubles_have_the_order_of_doubles);
     RUN(rows_are_sorted_by_the_first_number_then_as_compared);
     RUN(refused_memory_is_a_status_and_leaves_nothing);
+    RUN(sorts_look_and_stop);
     return harness_end();
 }

@@ -115,6 +115,7 @@ static void name_losses(conversion *c, const brio_mesh *m) {
 
 /* Names what the reader passed over. */
 static void name_left_out(const conversion *c) {
+    if (c->source.torn) lose(c, "faces of dropped points");
     for (size_t i = 0; i < c->source.job.num_left_out; i++) lose(c, c->source.job.left_out[i]);
 }
 

@@ -171,7 +171,10 @@ done:
 /* Removes the points that are not chosen from the file in memory. */
 static brio_status apply_choice(brio_source *s) {
     if (!s->job.mesh) return BRIO_OK;
+    const brio_mesh *m = s->job.mesh;
+    size_t cells = m->num_faces + m->num_tetrahedra + m->num_edges;
     brio_status status = brio_filter_mesh(s->ctx, s->job.mesh, s->chosen);
+    s->torn = m->num_faces + m->num_tetrahedra + m->num_edges < cells;
     brio_release(s->ctx, s->chosen);
     s->chosen = NULL;
     return status;

@@ -10,6 +10,7 @@ typedef struct brio_source {
     const char *path;
     const brio_convert_options *options;
     bool whole;           /* whether the first pass keeps the file in memory */
+    bool torn;            /* whether faces, tetrahedra or edges lost corners to the choice among points */
     brio_read_job job;    /* of the last pass; job.mesh is the file in memory */
     uint64_t points_read; /* of a pass, before the choice */
     uint8_t *chosen;      /* of the points in the box: 1 for those that stay; NULL: all stay */
