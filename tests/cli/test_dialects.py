@@ -315,6 +315,13 @@ class Trackers(DialectTest):
             self.assertEqual(self.faces("a.vtk", text), faces, rest)
             self.assertEqual(self.faces("b.vtk", text.replace("\n", "\r\n")), faces, rest)
 
+    def test_long_names_of_other_alphabets_in_legacy_vtk(self):
+        """brio did not read the names that it wrote: each byte of them takes three characters."""
+        name = "\u0436" * 31
+        self.file("a.csv", "x,y,z,%s\n1,2,3,4\n" % name)
+        self.expect(0, "convert", self.path("a.csv"), self.path("a.vtk"))
+        self.assertEqual(self.columns(self.path("a.vtk"))[name], (4,))
+
     def test_vtu_of_few_attributes_strips_and_pieces(self):
         # meshio: no version, and no order of bytes, which text has not; a strip; more than one piece
         self.assertEqual(self.faces("a.vtu", self.VTU % self.PIECE), 2)

@@ -192,6 +192,13 @@ class Written(ScansTest):
         self.assertEqual(self.convert(name, "b.e57")["lost"], [])
         self.assertEqual(read_e57(self.path("b.e57"))[0].find(E57 + "coordinateMetadata").text, 'A[<"b" & c>]')
 
+    def test_texts_that_are_no_xml(self):
+        # a fuzzer's finding: bytes that are no UTF-8 made a file that no program reads
+        wkt = b'A["\xe4\x01 & \xef\xbf\xbf"]\0'
+        self.file("a.las", whole_files.las(minor=4, form=6, encoding=16, vlrs=[whole_files.vlr("LASF_Projection", 2112, wkt)]))
+        self.convert(self.path("a.las"), "b.e57")
+        self.assertEqual(read_e57(self.path("b.e57"))[0].find(E57 + "coordinateMetadata").text, 'A["\u00e4? & ?"]')
+
     def test_more_than_a_block_of_points_streams(self):
         text = "x,y,z,intensity\n" + "".join("%d,0,1,%d\n" % (i, i % 7) for i in range(70000))
         facts = self.convert(self.file("a.csv", text), "a.e57")

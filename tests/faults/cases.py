@@ -100,6 +100,8 @@ convert {i}/mesh.ply {o}/a.vtu --compress --json
 convert {i}/mesh.ply {o}/a.stl --json
 convert {i}/cube.xyz {o}/a.xyz --thin 0.2 --drop-outliers 8 --crop 0,0,0,1,1,1 --json
 convert {i}/cube.xyz {o}/a.npy --json
+convert {i}/cube.xyz {o}/a.e57 --json
+convert {i}/cube.xyz {o}/a.ptx --json
 convert {i}/ball.npy {o}/a.node --json
 convert {i}/cube.xyz - --format xyz --quiet
 help surface

@@ -22,7 +22,10 @@ static const struct {
              {"a.glb", BRIO_FORMAT_GLB, 0},
              {"a.laz", BRIO_FORMAT_LAZ, 0},
              {"a.gltf", BRIO_FORMAT_GLB, 0},
-             {"a.e57", BRIO_FORMAT_E57, 0}};
+             {"a.e57", BRIO_FORMAT_E57, DOUBLES | PROPERTIES},
+             {"a.ptx", BRIO_FORMAT_PTX, 0},
+             {"a.pcd", BRIO_FORMAT_PCD, DOUBLES},
+             {"a.vtk", BRIO_FORMAT_VTK, 0}};
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 

@@ -304,8 +304,8 @@ static void names_of_properties(void) {
                                         "nor:normalY",    "nor:normalZ", "columnIndex", "returnIndex",
                                         "demo:someThing", "red",         "scan",        "x"};
     static const char *const expected[] = {
-        "red",          "green",           "blue",  "nx",     "ny", "nz", "column_index",
-        "return_index", "demo_some_thing", "red_2", "scan_2", "x_2"};
+        "red",          "green",           "blue",  "nx",   "ny", "nz", "column_index",
+        "return_index", "demo_some_thing", "red_2", "scan", "x_2"};
     uint64_t state = 7;
     size_t count = sizeof given / sizeof *given;
     set_axes(&state);

@@ -285,13 +285,24 @@ static brio_status put_number(brio_e57_pen *p, const char *name, bool real, doub
     return brio_e57_put_text(p, "<%s type=\"%s\">%s</%s>\n", name, real ? "Float" : "Integer", digits, name);
 }
 
-/* Writes bytes as text of an element. XML has no control characters but white space. */
+/* Writes a character of n bytes, or what stands for it: XML has no control characters but white space, and not the last two
+ * of the first plane. */
+static brio_status put_character(brio_e57_pen *p, const char *c, size_t n) {
+    const char *escaped = *c == '<' ? "&lt;" : *c == '>' ? "&gt;" : *c == '&' ? "&amp;" : NULL;
+    bool control = (unsigned char)*c < ' ' && !strchr("\t\n\r", *c),
+         last = n == 3 && !memcmp(c, "\xef\xbf", 2) && c[2] >= '\xbe';
+    if (control || last) escaped = "?";
+    return escaped ? brio_e57_put(p, escaped, strlen(escaped)) : brio_e57_put(p, c, n);
+}
+
+/* Writes a text of an element. Bytes that are not UTF-8 are taken for Latin-1. */
 static brio_status put_escaped(brio_e57_pen *p, const char *text) {
     brio_status status = BRIO_OK;
-    for (; *text; text++) {
-        const char *escaped = *text == '<' ? "&lt;" : *text == '>' ? "&gt;" : *text == '&' ? "&amp;" : NULL;
-        char plain = (unsigned char)*text < ' ' && !strchr("\t\n\r", *text) ? '?' : *text;
-        BRIO_TRY(escaped ? brio_e57_put(p, escaped, strlen(escaped)) : brio_e57_put(p, &plain, 1));
+    for (size_t n; *text; text += n) {
+        n = brio_utf8_length(text);
+        const char latin[2] = {(char)(0xc0 | (unsigned char)*text >> 6), (char)(0x80 | (*text & 0x3f))};
+        BRIO_TRY(n ? put_character(p, text, n) : brio_e57_put(p, latin, sizeof latin));
+        n += !n;
     }
 done:
     return status;

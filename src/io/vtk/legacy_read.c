@@ -16,8 +16,9 @@
 #include <string.h>
 #include <strings.h>
 
-/* WORD: bytes of a word. PART: numbers read at a time. Both chosen. */
-enum { WORD = 128, PART = 1 << 13 };
+/* WORD: bytes of a word: a name of 63 bytes has three characters for each of them that is no letter. PART: numbers read at a
+ * time; chosen. */
+enum { WORD = 256, PART = 1 << 13 };
 
 /* Types that are passed over. */
 enum { BITS = BRIO_VTK_TYPE_END, WORDS, UNKNOWN };
@@ -63,7 +64,7 @@ static brio_status next_word(legacy_reader *r) {
         if (brio_is_blank(c) && length) break;
         if (brio_is_blank(c)) continue;
         r->word[length] = 0;
-        if (length == WORD - 1) return expected(r, "a word of fewer than 128 characters");
+        if (length == WORD - 1) return expected(r, "a word of fewer than 256 characters");
         r->word[length++] = c;
     }
     r->word[length] = 0;
