@@ -42,11 +42,6 @@ def _script(figure, results, path):
         f'set output "{path}"\nplot ' + ', '.join(curves) + '\n'
 
 
-def is_drawn(figure, results):
-    """Whether a figure has a plot."""
-    return figure.kind not in ('table', 'pages', 'none') and bool(_script(figure, results, ''))
-
-
 def clear(folder):
     """Removes the plots of an earlier call, which a report would take for its own."""
     for old in glob.glob(f'{folder}/figure-*.svg'): os.remove(old)
@@ -56,6 +51,6 @@ def path(figure, folder): return f'{folder}/figure-{figure.name}.svg'
 
 
 def draw(figure, results, folder):
-    if not is_drawn(figure, results): return
+    if figure.kind in ('table', 'pages', 'none'): return
     script = _script(figure, results, path(figure, folder))
     if script and shutil.which('gnuplot'): subprocess.run(['gnuplot'], input=script.encode(), check=True)

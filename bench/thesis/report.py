@@ -61,7 +61,8 @@ def facts(bench, found):
     o = bench.options
     return {'machine': _machine(), 'commit': bench.commit, 'shrink': o.shrink, 'memory': o.memory, 'copies': o.copies,
             'headline': o.headline, 'patience': o.patience, 'minutes': round(bench.minutes()), 'no_limits': bench.no_limits,
-            'left_out': bench.left_out, 'figures': {f.name: {k: _slim(r) for k, r in results.items()} for f, results in found}}
+            'left_out': bench.left_out, 'plots': [f.name for f, _ in found if os.path.exists(plot.path(f, o.out))],
+            'figures': {f.name: {k: _slim(r) for k, r in results.items()} for f, results in found}}
 
 
 ROUND = ('points', 'tetrahedra', 'seconds', 'locate_seconds', 'history', 'pages')
@@ -126,7 +127,7 @@ def verdict_of(g, results):
     return g.verdict(results) if results else (None, 'Left out')
 
 
-def _section(f, g, results, images):
+def _section(f, g, results, plots, images):
     holds, words = verdict_of(g, results)
     f.write(f'\n## {g.name}: {g.title}\n\n{g.whose}: {g.claim}\n\nHere: **{WORDS[holds]}**. {words}.\n')
     if not results: return
@@ -138,7 +139,7 @@ def _section(f, g, results, images):
     elif g.kind != 'none':
         f.write(TABLE)
         for label, r in results.items(): f.write(_row(label, r))
-    if plot.is_drawn(g, results): f.write(f'\n![{g.title}]({images}figure-{g.name}.svg)\n')
+    if g.name in plots: f.write(f'\n![{g.title}]({images}figure-{g.name}.svg)\n')
 
 
 def write(path, facts, images):
@@ -155,7 +156,7 @@ def write(path, facts, images):
         for g, results in found:
             whose = '' if g.whose == 'Thesis' else g.whose + ': '
             f.write(f'| {g.name} | {whose}{g.claim} | {WORDS[verdict_of(g, results)[0]]} |\n')
-        for g, results in found: _section(f, g, results, images)
+        for g, results in found: _section(f, g, results, facts['plots'], images)
 
 
 def keep(path, facts):

@@ -1,63 +1,18 @@
 /* The guarantees of the power crust [Choi 2003, appendix B] on r-samples of surfaces whose local feature size is known:
  * sphere, torus, and a plate of genus 3. */
 #include "harness.h"
-#include "known_surfaces.h"
+#include "known_balls.h"
 #include "query/nearest_points.h"
 #include "points.h"
 #include "reconstruct/labels/labeling.h"
 #include "mesh/closest_point.h"
 
-enum { BOUNDING_POINTS = 8 };
 /* Inner and outer balls meet at less than a right angle up to r = 0.235 (lemma 38), and labels are right up to there. */
 static const double SPARSE = 0.22;
 /* A crust vertex between nearly flat cells loses digits: half of them may go. */
-static const double ROUNDING = 1e-8, BOUND = 15;
+static const double ROUNDING = 1e-8;
 
 typedef brio_status (*label_fn)(const brio_pole_graph *, uint8_t *, brio_labeling_stats *);
-
-/* The polar balls of one r-sample, with their true labels. */
-typedef struct {
-    brio_context *ctx;
-    const known_surface *surface;
-    double r;
-    double *points; /* the samples; eight bounding points follow */
-    size_t n;
-    brio_triangulation *power;
-    brio_poles poles;
-    uint8_t *truth;
-} theory;
-
-static void add_bounding_points(theory *x) {
-    x->points = realloc(x->points, sizeof *x->points * 3 * (x->n + BOUNDING_POINTS));
-    for (size_t i = 0; i < BOUNDING_POINTS; i++)
-        for (size_t k = 0; k < 3; k++) x->points[3 * (x->n + i) + k] = i >> k & 1 ? BOUND : -BOUND;
-}
-
-static theory theory_new(const known_surface *surface, double r) {
-    theory x = {.ctx = new_context(), .surface = surface, .r = r};
-    brio_pole_filter keep_all = {0};
-    brio_triangulation *t;
-    brio_context_set_threads(x.ctx, 1);
-    x.points = surface->sample(r, 11, &x.n);
-    add_bounding_points(&x);
-    EXPECT(brio_delaunay(x.ctx, x.points, NULL, x.n + BOUNDING_POINTS, NULL, &t) == BRIO_OK);
-    EXPECT(brio_poles_find(x.ctx, t, x.points, x.n, &keep_all, &x.poles) == BRIO_OK);
-    EXPECT(brio_delaunay(x.ctx, x.poles.centre, x.poles.square, x.poles.count, NULL, &x.power) == BRIO_OK);
-    x.truth = malloc(x.poles.count);
-    for (size_t p = 0; p < x.poles.count; p++)
-        x.truth[p] = surface->value(x.poles.centre + 3 * p) < 0 ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-    brio_triangulation_free(t);
-    return x;
-}
-
-static void theory_free(theory *x) {
-    brio_triangulation_free(x->power);
-    brio_poles_free(x->ctx, &x->poles);
-    EXPECT(brio_context_memory(x->ctx) == 0);
-    brio_context_free(x->ctx);
-    free(x->points);
-    free(x->truth);
-}
 
 /* The angle at which two balls intersect, 0 where they do not. */
 static double angle_between(const brio_pole_graph *g, uint32_t p, uint32_t q) {
@@ -77,10 +32,6 @@ static void check_intersections(const theory *x, const brio_pole_graph *g) {
         if (p != BRIO_NO_POLE && q != BRIO_NO_POLE) widest = fmax(widest, angle_between(g, p, q));
     }
     EXPECT(widest > 0 && widest <= limit, "angle %g, at most %g", widest, limit);
-}
-
-static double square_between(const double *a, const double *b) {
-    return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
 }
 
 /* Lemma 36: the balls of a sample intersect at O(r) LFS / rho. With the proof's steps: their circle has radius at most
@@ -130,31 +81,6 @@ static void check_points_outside_balls(const theory *x) {
     }
     EXPECT(tried > 200 && bare > 200, "%zu points beyond the distance, %zu bare ones within", tried, bare);
     brio_point_tree_free(x->ctx, &tree);
-}
-
-typedef struct {
-    double from, to;
-} interval;
-
-static int compare_intervals(const void *a, const void *b) {
-    const interval *x = a, *y = b;
-    return x->from < y->from ? -1 : x->from > y->from;
-}
-
-/* The balls of a label along the line from s with the given direction: *count intervals, by where they begin. */
-static interval *cut_line(const theory *x, uint8_t label, const double *s, const double *way, size_t *count) {
-    interval *cut = malloc((x->poles.count + 1) * sizeof *cut);
-    *count = 0;
-    for (size_t p = 0; p < x->poles.count; p++) {
-        const double *c = x->poles.centre + 3 * p;
-        double along = 0, far = square_between(c, s);
-        for (int k = 0; k < 3; k++) along += (c[k] - s[k]) * way[k];
-        double half = x->poles.square[p] - (far - along * along);
-        if (x->truth[p] != label || half < 0) continue;
-        cut[(*count)++] = (interval){along - sqrt(half), along + sqrt(half)};
-    }
-    qsort(cut, *count, sizeof *cut, compare_intervals);
-    return cut;
 }
 
 /* Lemma 47: the boundary of the union of the balls of one side is taken to the surface, point for point, by the nearest
