@@ -103,7 +103,8 @@ static brio_status check_order(run *r, const arguments *a) {
 /* Refuses options of tetrahedra. */
 static brio_status check_plane(run *r, const arguments *a) {
     bool three = a->order != FITTING_ORDER || a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds ||
-                 a->first_conflict || a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING;
+                 a->first_conflict || a->record_every || a->page_size || a->cache_size ||
+                 a->subgraph != SUBGRAPH_FITTING;
     if (three)
         return cli_fail(
             r, BRIO_ERR_ARGUMENT,

@@ -65,9 +65,8 @@ static brio_status sort_range(const curve *c, range r) {
     for (range largest; size_of(r); r = largest) {
         uint64_t *items = c->items + r.begin;
         int bits = curve_bits(size_of(r));
-        bool apart;
-        BRIO_TRY(brio_hilbert_items(c->ctx, c->points, items, size_of(r), bits, 1, &apart));
-        if (!apart) break;
+        BRIO_TRY(brio_hilbert_items(c->ctx, c->points, items, size_of(r), &bits, 1));
+        if (!bits) break;
         BRIO_TRY(brio_sort_items(c->ctx, items, c->spare + r.begin, size_of(r), 3 * bits, 1));
         BRIO_TRY(refine_cells(c, r, &largest));
         if (size_of(largest) == size_of(r)) break;
@@ -105,9 +104,8 @@ static brio_status sort_together(const curve *c, size_t n, int threads) {
     brio_status status = BRIO_OK;
     size_t *start = NULL; /* the bounds of each thread's cells, found before a thread changes a key */
     int bits = curve_bits(n);
-    bool apart;
-    BRIO_TRY(brio_hilbert_items(c->ctx, c->points, c->items, n, bits, threads, &apart));
-    if (!apart) goto done;
+    BRIO_TRY(brio_hilbert_items(c->ctx, c->points, c->items, n, &bits, threads));
+    if (!bits) goto done;
     BRIO_TRY(brio_sort_items(c->ctx, c->items, c->spare, n, 3 * bits, threads));
     BRIO_TRY(BRIO_ALLOC(c->ctx, start, (size_t)threads + 1));
     for (int t = 0; t <= threads; t++) start[t] = start_of_cell(c, n, brio_part(n, t, threads));

@@ -104,17 +104,18 @@ done:
     return status;
 }
 
-brio_status brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int bits,
-                               int threads, bool *apart) {
+brio_status brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int *bits,
+                               int threads) {
     brio_status status = BRIO_OK;
-    assert(0 < bits && bits <= 10); /* keys have 32 bits */
-    numbering all = {.points = points, .keys = items, .bits = bits};
-    *apart = false;
+    assert(0 < *bits && *bits <= 10); /* keys have 32 bits */
+    numbering all = {.points = points, .keys = items, .bits = *bits};
+    *bits = 0;
     if (!n) return BRIO_OK;
     compose(&all.two);
     BRIO_TRY(brio_cube_of(ctx, points, items, n, threads, &all.cube));
-    *apart = brio_cube_divide(&all.cube, bits);
-    if (*apart) BRIO_TRY(brio_for(ctx, threads, n, number_items, &all));
+    if (!brio_cube_divide(&all.cube, all.bits)) goto done;
+    BRIO_TRY(brio_for(ctx, threads, n, number_items, &all));
+    *bits = all.bits;
 done:
     return status;
 }

@@ -14,9 +14,9 @@ uint64_t brio_hilbert_key(uint32_t x, uint32_t y, uint32_t z, int bits);
 brio_status brio_hilbert_keys(brio_context *ctx, const double *points, size_t num_points, int bits, uint64_t *keys);
 
 /** Writes to the high half of items[i] the key of the point whose index is the low half, in the smallest cube that
- *  holds the points of all n items. Returns false, and changes no item, when n is 0 or all points have one position.
- *  bits  at most 10.   threads  a result of brio_threads. */
-brio_status brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int bits,
-                               int threads, bool *apart);
+ *  holds the points of all n items. Changes no item, and sets *bits to 0, when n is 0 or all points have one position.
+ *  *bits  from 1 to 10.   threads  a result of brio_threads. */
+brio_status brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int *bits,
+                               int threads);
 
 #endif
