@@ -52,14 +52,15 @@ by {slightly:g} times at most; ratios under {noise:g} say nothing. A search is w
 steps. A share of the time from {location[0]:.0%} to {location[1]:.0%} is significant, but not overwhelming. Sizes differ from
 the thesis': each section names both, as far as the thesis says them.
 
-{machine}, commit {commit}; {size}; {minutes:.0f} minutes in all.
+{machine}, {cores} cores, commit {commit}; {size}; {minutes:.0f} minutes in all. The load was {load:.1f} when it began: over the number of
+cores, the machine had other work, and times say little.
 '''
 
 
 def facts(bench, found):
     """All that a report is made of, as JSON can hold it."""
     o = bench.options
-    return {'machine': _machine(), 'commit': bench.commit, 'shrink': o.shrink, 'memory': o.memory, 'copies': o.copies,
+    return {'machine': _machine(), 'cores': os.cpu_count(), 'load': bench.load, 'commit': bench.commit, 'shrink': o.shrink, 'memory': o.memory, 'copies': o.copies,
             'headline': o.headline, 'patience': o.patience, 'minutes': round(bench.minutes()), 'no_limits': bench.no_limits,
             'left_out': bench.left_out, 'plots': [f.name for f, _ in found if os.path.exists(plot.path(f, o.out))],
             'figures': {f.name: {k: _slim(r) for k, r in results.items()} for f, results in found}}
@@ -149,7 +150,7 @@ def write(path, facts, images):
         size = 'all points' if facts['shrink'] == 1 else f'every {facts["shrink"]}th point'
         f.write(HEAD.format(patience=facts['patience'], finishes=FINISHES, linear=LINEAR, nearly=NEARLY, slower=SLOWER, about=ABOUT,
                             tenth=TENTH, slightly=SLIGHTLY, noise=NOISE, wasted=WASTED, location=LOCATION, page=figures.PAGE,
-                            size=size, **{k: facts[k] for k in ('machine', 'commit', 'minutes')}))
+                            size=size, **{k: facts[k] for k in ('machine', 'cores', 'load', 'commit', 'minutes')}))
         if facts['no_limits']: f.write(f'\nRuns with little memory were left out: {facts["no_limits"]}.\n')
         if facts['left_out']: f.write(f'\nLeft out, the time being over: {"; ".join(facts["left_out"])}.\n')
         f.write('\n| figure | claim | here |\n|---|---|---|\n')

@@ -61,6 +61,7 @@ class Bench:
     def __init__(self, options):
         self.options, self.no_limits, self.free = options, limits.reason(), {}
         self.left_out, self.begin, self.commit = [], time.monotonic(), report.commit()
+        self.load = os.getloadavg()[0]
         os.makedirs(options.out, exist_ok=True)
         self.folder = tempfile.mkdtemp(prefix='thesis-', dir=options.scratch)
         self.data = data.Data(os.path.abspath(options.brio), self.folder, options.shrink)

@@ -79,6 +79,31 @@ class Facts(CliTest):
         self.assertEqual(path_counts["history"], path["created"])
         self.assertGreater(path_counts["history_tests"], 3000)
         self.assertGreater(conflicts["history_tests"], path_counts["history_tests"])
+        first = self.facts("delaunay", points, "--locate", "history", "--first-conflict")
+        self.assertEqual(first["checksum"], path["checksum"])
+        first = first["internals"]
+        self.assertLess(first["history_tests"], conflicts["history_tests"])
+        self.assertTrue(0 < first["history_conflicts"] < conflicts["history_conflicts"])
+        self.assertEqual(path_counts["history_conflicts"], 0)
+        self.usage("only one of", "delaunay", points, "--locate", "history", "--all-conflicts", "--first-conflict")
+        self.usage("--first-conflict goes with", "delaunay", points, "--first-conflict")
+
+    def test_page_touches_are_counted(self):
+        points = self.cloud("a.ply", 1500)
+        plain = self.facts("delaunay", points)
+        for order, locate in (("random", "hierarchy"), ("brio-octree", "walk"), ("octree", "history"), ("random", "jump")):
+            facts = self.facts("delaunay", points, "--order", order, "--locate", locate, "--page-size", "256", "--cache-size", "16K",
+                               "--rounds")
+            caches = {c["cache_pages"]: c["page_faults"] for c in facts["caches"]}
+            self.assertEqual((facts["checksum"], facts["page_faults"]), (plain["checksum"], caches[64]))
+            self.assertEqual(min(caches.values()), facts["pages"])
+            self.assertEqual(sorted(caches.values(), reverse=True), list(caches.values()))
+            last = facts["rounds"][-1]
+            self.assertEqual([last[k] for k in ("pages", "page_touches", "page_faults")],
+                             [facts[k] for k in ("pages", "page_touches", "page_faults")])
+        self.assertNotIn("caches", plain)
+        self.usage("power of two", "delaunay", points, "--page-size", "1000")
+        self.usage("--cache-size goes with", "delaunay", points, "--cache-size", "1M")
 
     def test_failed_verification_would_write_nothing_new(self):
         facts = self.facts("delaunay", self.cloud("a.ply", 300), "--verify", "-o", self.path("out.ply"))

@@ -42,7 +42,7 @@ MODES = [
     "iso ball.map --level -4 -o out.ply", "iso atoms.pdb --level 1 -o out.ply", "iso ball.map --level -4",
     "convert text.csv out.las", "info text.csv",
     "generate scan -n 90 -o out.ply", "generate solid --resolution 16 -o out.ply",
-    "subdivide mesh.ply -o out.ply", "locate cloud.ply --at p.csv -o out.csv",
+    "subdivide mesh.ply -o out.ply", "restricted cloud.ply --surface mesh2.ply -o out.ply", "locate cloud.ply --at p.csv -o out.csv",
     "interpolate text.csv --at p.csv --property q -o out.csv", "interpolate text.csv --at p.csv --property q -o out.ply",
 ]
 
