@@ -45,13 +45,22 @@ static brio_status sort_handles(brio_context *ctx, const brio_tetrahedra *t, siz
     brio_status status = BRIO_ALLOC_ZERO(ctx, end, num_points + 1);
     if (status != BRIO_OK) return status;
     uint32_t v[3];
-    for (size_t i = 0; i < n; i++) sorted_vertices(t, handles[i], v), end[v[0]]++;
+    for (size_t i = 0; i < n; i++) {
+        BRIO_TRY(brio_look(ctx, 1));
+        sorted_vertices(t, handles[i], v), end[v[0]]++;
+    }
     brio_counts_to_places(end, 1, num_points, 0);
-    for (size_t i = 0; i < n; i++) sorted_vertices(t, handles[i], v), sorted[end[v[0]]++] = handles[i];
-    for (size_t b = 0, begin = 0; b < num_points; begin = end[b++])
-        brio_sort_indices(sorted + begin, end[b] - begin, compare_handles, t);
+    for (size_t i = 0; i < n; i++) {
+        BRIO_TRY(brio_look(ctx, 1));
+        sorted_vertices(t, handles[i], v), sorted[end[v[0]]++] = handles[i];
+    }
+    for (size_t b = 0, begin = 0; b < num_points; begin = end[b++]) {
+        BRIO_TRY(brio_look(ctx, end[b] - begin));
+        BRIO_TRY(brio_sort_many_indices(ctx, sorted + begin, end[b] - begin, compare_handles, t));
+    }
+done:
     brio_release(ctx, end);
-    return BRIO_OK;
+    return status;
 }
 
 /* Makes equal neighbours in a sorted list mates; those without one go to the front of the list, *alone of them. */
@@ -60,6 +69,7 @@ static brio_status match(brio_context *ctx, brio_tetrahedra *t, uint32_t *sorted
     *alone = 0;
     for (size_t i = 0; i < n; i++) {
         bool pair = i + 1 < n && same_vertices(t, sorted[i], sorted[i + 1]);
+        BRIO_TRY(brio_look(ctx, 1));
         if (!pair) {
             sorted[(*alone)++] = sorted[i];
             continue;

@@ -164,7 +164,7 @@ static void loops_look_and_stop(void) {
         EXPECT(a.looks + 1 >= 100u / (size_t)threads && !a.elsewhere, "%zu looks, %d threads", a.looks, threads);
         count = a.looks = a.allowed = 0;
         EXPECT(brio_for(ctx, threads, MANY, count_some, &count) == BRIO_ERR_CANCELLED);
-        EXPECT(threads > 1 || count == BRIO_LOOK_EVERY, "%zu", count);
+        EXPECT(threads > 1 || count <= BRIO_LOOK_EVERY, "%zu", count);
         count = a.looks = a.allowed = 0;
         EXPECT(brio_for_chunks(ctx, threads, MANY, 64, count_some, &count) == (a.looks ? BRIO_ERR_CANCELLED : BRIO_OK));
         EXPECT(threads > 1 || count == 64, "%zu", count);
