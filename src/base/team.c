@@ -234,7 +234,6 @@ int brio_threads(brio_context *ctx, size_t n, size_t least) {
 
 void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user) {
     brio_team *team = ctx->team;
-    assert(threads >= 1);
     assert(threads == 1 || (threads <= team->size && !team->busy)); /* threads is what brio_threads returned */
     if (threads > team->size) threads = team->size;
     if (threads < 2 || team->busy) {

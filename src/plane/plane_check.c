@@ -53,7 +53,7 @@ static brio_status check_mates(brio_plane_judge *j) {
     for (uint32_t t = 0; t < j->count; t++)
         for (uint32_t i = 0; i < 3; i++) {
             const brio_triangle *own = &j->view.triangle[t];
-            uint32_t g = own->mate[i], u = brio_triangle_of(g), k = brio_edge_slot(g);
+            uint32_t g = own->mate[i], u = brio_triangle_of(g), k = g & 3; /* may be no edge handle */
             BRIO_REQUIRE(j->ctx, u < j->count && k < 3, BRIO_ERR_CHECK, "edge %u of triangle %u has no mate", i, t);
             const brio_triangle *other = &j->view.triangle[u];
             BRIO_REQUIRE(j->ctx,

@@ -9,7 +9,7 @@
  * inside it. A depth-first search that crosses the edges of each triangle counterclockwise goes round this tree, meets
  * the border edges counterclockwise, and between two of them goes through the triangles at their common vertex, in
  * order. So one tour has the corners of every R(a) one after the other, clockwise. Areas are computed relative to the
- * first corner; all their parts are positive but for rounding, and nothing large cancels.
+ * first corner; all their parts are positive up to rounding, and nothing large cancels.
  *
  * The last step makes the coordinates reproduce x, as in locate/natural.c.
  *

@@ -6,7 +6,7 @@
  *
  * Based on: Edelsbrunner, Shah. Triangulating topological spaces. IJCGA 1997, for what is asked.
  *           Edelsbrunner, Muecke. Simulation of simplicity. ACM TOG 1990, for ties.
- * Differs from the paper: one translation moves the whole surface, instead of each point by a power of its own. */
+ * Differs from the paper: one translation moves the whole surface, instead of another power for each point. */
 #include "predicates/bisectors.h"
 #include "predicates/dyadic.h"
 #include <math.h>

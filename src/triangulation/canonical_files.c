@@ -25,7 +25,7 @@ typedef struct {
 } entry;
 
 enum {
-    ALIGNED = 1024,    /* so many entries, or tetrahedra, fill whole pages */
+    ALIGNED = 1024,    /* 1024 entries, or tetrahedra, fill whole pages */
     LEAST_RANGES = 8,  /* for finite tetrahedra, and as many for infinite ones */
     MOST_RANGES = 256, /* the same */
     MOST_CHUNK = 16    /* times ALIGNED */

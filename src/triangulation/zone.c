@@ -11,7 +11,7 @@ enum { SEGMENTS_KEPT = 8 };
 
 brio_status brio_zone_new(brio_context *ctx, const uint32_t *rank, int shift, size_t segments, uint8_t *taken,
                           brio_zone *out) {
-    assert(rank && 0 <= shift && shift < 32 && segments > 0);
+    assert(0 <= shift && shift < 32 && segments > 0);
     *out = (brio_zone){.rank = rank, .shift = shift, .taken = taken, .now = 1};
     brio_status status = BRIO_ALLOC_ZERO(ctx, out->held, segments);
     return status == BRIO_OK ? BRIO_ALLOC(ctx, out->segment, segments) : status;
@@ -34,7 +34,7 @@ bool brio_zone_take(brio_zone *zone, uint32_t segment) {
 }
 
 static void give_back(brio_zone *zone, uint32_t segment) {
-    assert(zone->held[segment] != 0 && __atomic_load_n(&zone->taken[segment], __ATOMIC_RELAXED) == 1);
+    assert(__atomic_load_n(&zone->taken[segment], __ATOMIC_RELAXED) == 1); /* only its holder gives it back */
     zone->held[segment] = 0;
     brio_stress();
     __atomic_store_n(&zone->taken[segment], 0, __ATOMIC_RELEASE);
