@@ -1,9 +1,15 @@
 /* Open surfaces: what holds of them without a known shape. */
 #include "base/memory.h"
+#include "base/rng.h"
+#include "dual/spacing.h"
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "reconstruct/labeled_delaunay/axis_agreement.h"
+#include "reconstruct/labeled_delaunay/sheet_signs.h"
 #include "reconstruct/open_surface/single_fans.h"
+#include "same_faces.h"
+#include <math.h>
 
 /* --- fans --- */
 
@@ -38,7 +44,141 @@ static void fans_of_a_surface_with_a_boundary_meet_at_no_sample(void) {
     expect_clean_failures(thin_bow);
 }
 
+/* --- sheets --- */
+
+/* What a scanner far above sees: a wavy ground, and a dome that floats before it and hides what is below. */
+enum { MANY = 6000 };
+static double scene[3 * MANY];
+static size_t num_scene, num_dome;
+
+static void make_scene(void) {
+    brio_rng rng = brio_rng_new(3);
+    num_scene = num_dome = 0;
+    for (size_t i = 0; i < MANY; i++) {
+        double *p = scene + 3 * num_scene, x = 4 * brio_rng_double(&rng) - 2, y = 4 * brio_rng_double(&rng) - 2;
+        bool dome = hypot(x, y) < 0.9;
+        p[0] = x, p[1] = y, p[2] = dome ? 0.6 + 0.8 * sqrt(1 - x * x - y * y) : 0.1 * sin(3 * x) * cos(2 * y);
+        num_scene++, num_dome += dome;
+    }
+}
+
+/* Lies below the dome's rim, where the ground is. */
+static bool is_ground(const double *p) {
+    return p[2] < 0.5;
+}
+
+static void signs_agree_along_sheets(void) {
+    brio_context *ctx = new_context();
+    brio_triangulation *t;
+    brio_pole_vectors v;
+    double *spacing = malloc(MANY * sizeof *spacing);
+    uint8_t *turned = malloc(MANY), *alone = malloc(MANY);
+    size_t down[2] = {0}, all[2] = {0};
+    make_scene();
+    EXPECT(brio_delaunay(ctx, scene, NULL, num_scene, NULL, &t) == BRIO_OK);
+    EXPECT(brio_sample_spacing(ctx, t, scene, num_scene, spacing) == BRIO_OK);
+    EXPECT(brio_pole_vectors_find(ctx, t, scene, num_scene, 0.39, &v) == BRIO_OK);
+    EXPECT(brio_sign_sheets(ctx, &v, spacing, 0, turned, alone) == BRIO_OK);
+    for (size_t p = 0; p < num_scene; p++) {
+        bool ground = is_ground(scene + 3 * p);
+        all[ground]++;
+        down[ground] += (v.plane[4 * p + 2] < 0) != turned[p];
+    }
+    for (int i = 0; i < 2; i++) {
+        size_t few = down[i] < all[i] - down[i] ? down[i] : all[i] - down[i];
+        EXPECT(all[i] > 500 && few * 50 < all[i], "%zu of %zu look down", down[i], all[i]);
+    }
+    brio_pole_vectors_free(ctx, &v);
+    brio_triangulation_free(t);
+    free(spacing), free(turned), free(alone);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void axes_of_a_circle_and_of_an_edge_agree(void) {
+    for (double noise = 0; noise < 0.2; noise += 0.1)
+        for (double distance = 1; distance < 4; distance++) {
+            for (double along = -0.9; along < 1; along += 0.2)
+                for (double mirrored = -0.9; mirrored < 1; mirrored += 0.2) {
+                    double w = brio_axis_log_odds(along, mirrored, distance, noise);
+                    EXPECT(w == -brio_axis_log_odds(-along, -mirrored, distance, noise), "an axis turned over");
+                    EXPECT(fabs(w) <= 7);
+                }
+            EXPECT(brio_axis_log_odds(0.05, 0.95, distance, noise) > 2, "across an edge the mirror tells");
+            EXPECT(brio_axis_log_odds(0.95, 0.95, distance, noise) > 4);
+        }
+    EXPECT(brio_axis_log_odds(0.95, -0.95, 1, 0.2) > 2 && brio_axis_log_odds(0.95, -0.95, 1, 0) < -2,
+           "in noise the plane between close samples is an accident");
+}
+
+/* Makes the surface of the scene with a number of threads. */
+static brio_mesh *surface_of_scene(int threads, brio_labeled_delaunay_stats *s) {
+    brio_context *ctx = new_context();
+    brio_mesh *mesh;
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_context_set_threads(ctx, threads);
+    o.holes = BRIO_HOLES_AUTO;
+    make_scene();
+    EXPECT(brio_labeled_delaunay(ctx, scene, num_scene, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
+    return mesh;
+}
+
+static void free_with_context(brio_mesh *mesh) {
+    brio_context *ctx = mesh->context;
+    brio_mesh_free(mesh);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* Both sheets are open, apart, and each looks one way. Labels that know inside and outside alone turn half of one over. */
+static void sheets_one_behind_the_other_look_one_way_each(void) {
+    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    brio_mesh *mesh = surface_of_scene(1, &s), *other = surface_of_scene(4, &s);
+    double up[2] = {0}, area[2] = {0};
+    size_t between = 0;
+    EXPECT(s.holes > 0 && s.evidence == 0 && s.told == 0);
+    for (size_t f = 0; f < mesh->num_faces; f++) {
+        const uint32_t *v = mesh->face_vertices + 3 * f;
+        const double *p[3];
+        size_t ground = 0;
+        for (int i = 0; i < 3; i++) p[i] = mesh->vertices + 3 * (size_t)v[i], ground += is_ground(p[i]);
+        between += ground % 3 != 0;
+        double z = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+        area[ground == 3] += fabs(z), up[ground == 3] += z;
+    }
+    EXPECT(between == 0, "%zu triangles join the sheets", between);
+    for (int i = 0; i < 2; i++) EXPECT(fabs(up[i]) > 0.99 * area[i], "%g of %g", up[i], area[i]);
+    EXPECT(area[0] / 2 > 0.85 * 2.54 && area[1] / 2 > 0.95 * (16 - 2.54), "areas %g %g", area[0] / 2, area[1] / 2);
+    expect_same_faces(mesh, NULL, other);
+    free_with_context(mesh);
+    free_with_context(other);
+}
+
+/* A surface that is known to be open is labeled twice. */
+static brio_status make_bowl(brio_context *ctx) {
+    static double p[3 * 300];
+    brio_mesh *mesh;
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    o.holes = BRIO_HOLES_AUTO;
+    o.confidence = 1;
+    sphere_points(1, 300, p);
+    for (size_t i = 0; i < 300; i++) p[3 * i + 2] = fabs(p[3 * i + 2]);
+    brio_status status = brio_labeled_delaunay(ctx, p, 300, &o, &mesh, NULL, &s);
+    EXPECT(status != BRIO_OK || s.holes > 0, "no hole");
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void every_failed_allocation_is_a_status(void) {
+    expect_clean_failures(make_bowl);
+}
+
 SUITE(test_open_surface) {
+    RUN(signs_agree_along_sheets);
+    RUN(axes_of_a_circle_and_of_an_edge_agree);
+    RUN(sheets_one_behind_the_other_look_one_way_each);
+    RUN(every_failed_allocation_is_a_status);
     RUN(fans_of_a_surface_with_a_boundary_meet_at_no_sample);
     return harness_end();
 }

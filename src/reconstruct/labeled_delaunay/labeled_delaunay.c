@@ -2,14 +2,16 @@
  *
  *   1. The samples in canonical order, scaled by a power of two to coordinates of at most 1.
  *   2. Their Delaunay triangulation, without strays (stray_samples.c); the axis of each sample, the spacing of the samples.
- *   3. A first orientation of the samples: whether their axes point outwards.
+ *   3. A first orientation of the samples: whether their axes point outwards (sheet_signs.c).
  *   4. Labels of samples and tetrahedra of low energy: each sample votes on the side of its tetrahedra, and the area of the
  *      surface is weighed against the votes (vote_graph.c).
  *   5. Regions of a few tetrahedra are dropped. Labels change where the boundary is not one fan, at the least cost in
  *      energy (mending.c), and where little evidence holds a handle (weak_handles.c).
- *   6. On request, the confidence of each sample, from the votes. What of the surface the samples do not show, and on
+ *   6. If the surface proves to be open, 3 to 5 once more: the orientation of its sheets counts as evidence then, and what is
+ *      beyond the hull is no longer outside by force.
+ *   7. On request, the confidence of each sample, from the votes. What of the surface the samples do not show, and on
  *      request holes that stay open (open_surface/).
- *   7. The vertices of noisy samples are smoothed along the surface. On request, edges collapse.
+ *   8. The vertices of noisy samples are smoothed along the surface. On request, edges collapse.
  *
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009.
  *           Dey, Goswami. Tight cocone: a water-tight surface reconstructor. JCISE 2003.
@@ -25,8 +27,8 @@
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "reconstruct/cocone/rim_axes.h"
 #include "reconstruct/cocone/sample_evidence.h"
-#include "reconstruct/cocone/sample_orientation.h"
 #include "reconstruct/labeled_delaunay/hull_patches.h"
+#include "reconstruct/labeled_delaunay/sheet_signs.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/stray_samples.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
@@ -51,6 +53,10 @@ static const double LEAST_NOISE = 0.085, MOST_NOISE = 0.13;
  * rarer the larger k is, but the more there are in all, the larger is the largest. Chosen. */
 enum { SPECK = 2 };
 
+/* In log-odds, what the sign of a sample of an open surface weighs. Chosen on scans of models that nothing else was measured
+ * on. */
+static const double SHEET = 3;
+
 /* Half the opening of the co-cones, for the first orientation: pi / 8 as in [Amenta Choi Dey Leekha 2000]. */
 static const double THETA = 0.39269908169872414;
 
@@ -66,9 +72,11 @@ typedef struct {
     double left;     /* the noise that the triangulated samples have */
     brio_triangulation *delaunay;
     brio_pole_vectors dual;
-    uint8_t *turned; /* #P */
+    uint8_t *turned, *alone; /* #P: as brio_sign_sheets writes them */
+    float (*outside)[3];     /* #P: the axes, and once there are labels, which way is outside */
     brio_sample_evidence evidence;
-    float *own;            /* #P, or NULL: what evidence tells of the samples, in BRIO_VOTE_UNIT */
+    float *own;            /* #P, or NULL: what evidence, or their sheet, tells of the samples, in BRIO_VOTE_UNIT */
+    bool is_open;          /* the surface proved to be open */
     brio_vote_graph graph; /* until the surface is found */
     uint8_t *label;        /* #T and #P */
     uint32_t *faces;       /* #F by 3 */
@@ -143,36 +151,64 @@ done:
     return status;
 }
 
+/* Signs the axes so that neighbours agree. */
+static brio_status sign_sheets(reconstruction *r) {
+    return brio_sign_sheets(r->ctx, &r->dual, r->spacing, r->left, r->turned, r->alone);
+}
+
 /* Lets evidence sign the axes, if it tells anything. At the rims of sheets axes change then. */
-static brio_status orient_by_evidence(reconstruction *r, const brio_cocones *cocones) {
+static brio_status orient_by_evidence(reconstruction *r) {
     brio_status status = BRIO_OK;
+    brio_cocones cocones = {0};
     unsigned *used = &r->stats.evidence;
+    size_t candidates;
     r->evidence.order = r->order;
     r->evidence.exponent = r->exponent;
-    BRIO_TRY(brio_weigh_evidence(r->ctx, &r->evidence, cocones, &r->own, used));
-    if (!r->own) return BRIO_OK;
+    if (!r->evidence.given.normals && !r->evidence.given.origins) return BRIO_OK;
+    BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
+    BRIO_TRY(brio_cocones_select(r->ctx, &cocones, &candidates));
+    BRIO_TRY(brio_weigh_evidence(r->ctx, &r->evidence, &cocones, &r->own, used));
+    if (!r->own) goto done;
     brio_release(r->ctx, r->own);
     r->own = NULL;
     BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
-    BRIO_TRY(brio_orient_by_evidence(r->ctx, &r->evidence, cocones, r->turned, &r->own, used));
+    BRIO_TRY(sign_sheets(r));
+    BRIO_TRY(brio_orient_by_evidence(r->ctx, &r->evidence, &cocones, r->turned, &r->own, used));
     for (size_t p = 0; p < r->num_points && r->own; p++) r->own[p] *= (float)BRIO_VOTE_UNIT;
+done:
+    brio_cocones_free(r->ctx, &cocones);
+    return status;
+}
+
+/* Lets the samples of an open surface keep the signs of their sheets. */
+static brio_status orient_by_sheets(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
+    BRIO_TRY(sign_sheets(r));
+    BRIO_TRY(BRIO_ALLOC(r->ctx, r->own, r->num_points));
+    for (size_t p = 0; p < r->num_points; p++)
+        r->own[p] = r->alone[p] ? 0 : (float)((r->turned[p] ? -SHEET : SHEET) * BRIO_VOTE_UNIT);
 done:
     return status;
 }
 
-/* Finds the axes of the samples, and whether they point outwards as far as the co-cones tell. */
+/* Finds the axes of the samples, and whether they point outwards as far as their neighbours tell. */
 static brio_status orient(reconstruction *r) {
     brio_status status = BRIO_OK;
-    brio_cocones cocones = {0};
-    size_t candidates;
     BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
-    BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
-    BRIO_TRY(brio_cocones_select(r->ctx, &cocones, &candidates));
-    BRIO_TRY(brio_orient_samples(r->ctx, &cocones, &r->turned));
-    BRIO_TRY(orient_by_evidence(r, &cocones));
+    if (r->is_open) {
+        BRIO_TRY(orient_by_sheets(r));
+    } else {
+        BRIO_TRY(BRIO_ALLOC(r->ctx, r->turned, r->num_points));
+        BRIO_TRY(BRIO_ALLOC(r->ctx, r->alone, r->num_points));
+        BRIO_TRY(BRIO_ALLOC(r->ctx, r->outside, r->num_points));
+        BRIO_TRY(sign_sheets(r));
+        BRIO_TRY(orient_by_evidence(r));
+    }
+    for (size_t p = 0; p < r->num_points; p++)
+        for (size_t k = 0; k < 3; k++) r->outside[p][k] = (float)r->dual.plane[4 * p + k];
     lap(r, &r->stats.poles_seconds);
 done:
-    brio_cocones_free(r->ctx, &cocones);
     return status;
 }
 
@@ -214,8 +250,12 @@ static brio_status label(reconstruction *r) {
     if (r->own) BRIO_TRY(brio_drop_hull_patches(r->ctx, &r->dual, r->label));
     BRIO_TRY(drop_specks(r));
     BRIO_TRY(mend(r));
-    for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
-    r->stats.agreement = brio_evidence_agreement(r->own, r->turned, r->num_points, &r->stats.told);
+    for (size_t p = 0; p < r->num_points; p++) {
+        r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
+        for (size_t k = 0; k < 3 && r->turned[p]; k++) r->outside[p][k] = -r->outside[p][k];
+    }
+    if (r->stats.evidence)
+        r->stats.agreement = brio_evidence_agreement(r->own, r->turned, r->num_points, &r->stats.told);
     lap(r, &r->stats.manifold_seconds);
     if (!r->options->confidence) brio_vote_graph_free(&r->graph);
 done:
@@ -276,9 +316,10 @@ static brio_status open_surface(reconstruction *r) {
     const brio_labeled_delaunay_options *o = r->options;
     size_t before = r->num_faces;
     brio_unseen u;
-    brio_sample_points samples = {r->ctx, r->points, r->num_points};
-    brio_hole_rule rule = {.choice = o->holes == BRIO_HOLES_AUTO ? BRIO_HOLES_SEEN : BRIO_HOLES_FILL};
-    if (o->open > 0) rule = (brio_hole_rule){BRIO_HOLES_WIDER, o->open};
+    brio_sample_points samples = {r->ctx, r->points, r->num_points, r->own ? (const float(*)[3])r->outside : NULL};
+    brio_hole_rule rule = {.choice = o->holes == BRIO_HOLES_AUTO ? BRIO_HOLES_SEEN : BRIO_HOLES_FILL,
+                           .proven = r->is_open};
+    if (o->open > 0) rule = (brio_hole_rule){.choice = BRIO_HOLES_WIDER, .most = o->open};
     BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &u));
     r->stats.left_out = before - r->num_faces;
     r->stats.holes = u.holes;
@@ -346,23 +387,58 @@ done:
     return status;
 }
 
+/* Forgets the labels, all that they were found by, and the surface. The triangulation stays. */
+static void forget_labels(reconstruction *r) {
+    brio_vote_graph_free(&r->graph);
+    brio_pole_vectors_free(r->ctx, &r->dual);
+    brio_release(r->ctx, r->label);
+    brio_release(r->ctx, r->faces);
+    brio_release(r->ctx, r->confidence);
+    r->dual = (brio_pole_vectors){0};
+    r->label = NULL, r->faces = NULL, r->confidence = NULL;
+    r->num_faces = r->stats.specks = r->stats.handles = 0;
+}
+
+/* Finds the surface that has both, labels and holes.   from, to  of the progress `bar`. */
+static brio_status find_faces(reconstruction *r, brio_bar bar, double from, double to) {
+    brio_status status = BRIO_OK;
+    double step = (to - from) / 4;
+    brio_progress_part(r->ctx, bar, from, from + step);
+    BRIO_TRY(orient(r));
+    brio_progress_part(r->ctx, bar, from + step, from + 3 * step);
+    BRIO_TRY(label(r));
+    brio_progress_part(r->ctx, bar, from + 3 * step, to);
+    BRIO_TRY(extract(r));
+    BRIO_TRY(open_surface(r));
+done:
+    return status;
+}
+
+/* Finds the surface again, now that it is known to be open. Where it ends on the hull there is nothing to leave out this time:
+ * the holes are still those that the closed surface had. */
+static brio_status find_sheets(reconstruction *r, brio_bar bar, double from, double to) {
+    size_t holes = r->stats.holes, left_out = r->stats.left_out;
+    r->is_open = true;
+    forget_labels(r);
+    brio_status status = find_faces(r, bar, from, to);
+    if (holes > r->stats.holes) r->stats.holes = holes;
+    if (left_out > r->stats.left_out) r->stats.left_out = left_out;
+    return status;
+}
+
 static brio_status find_surface(reconstruction *r, const double *points) {
     brio_status status = BRIO_OK;
     const brio_bar bar = brio_progress_bar(r->ctx);
+    bool by_itself = r->options->holes == BRIO_HOLES_AUTO && r->options->open == 0;
     BRIO_TRY(take_samples(r, points));
     BRIO_TRY(treat_noise(r));
     brio_progress_part(r->ctx, bar, 0, 0.4);
     BRIO_TRY(triangulate(r));
     BRIO_TRY(measure_spacing(r));
     if (r->options->noise != BRIO_NOISE_KEEP) BRIO_TRY(drop_strays(r));
-    brio_progress_part(r->ctx, bar, 0.4, 0.55);
-    BRIO_TRY(orient(r));
-    brio_progress_part(r->ctx, bar, 0.55, 0.85);
-    BRIO_TRY(label(r));
-    brio_progress_part(r->ctx, bar, 0.85, 0.95);
-    BRIO_TRY(extract(r));
+    BRIO_TRY(find_faces(r, bar, 0.4, by_itself ? 0.7 : 0.95));
+    if (by_itself && r->stats.holes > 0 && !r->own) BRIO_TRY(find_sheets(r, bar, 0.7, 0.95));
     brio_progress_part(r->ctx, bar, 0.95, 1);
-    BRIO_TRY(open_surface(r));
     if (r->stats.smoothed) BRIO_TRY(brio_smooth_surface(r->ctx, r->points, r->num_points, r->faces, r->num_faces));
     lap(r, &r->stats.noise_seconds);
 done:
@@ -378,6 +454,8 @@ static void release(reconstruction *r) {
     brio_release(r->ctx, r->points);
     brio_release(r->ctx, r->spacing);
     brio_release(r->ctx, r->turned);
+    brio_release(r->ctx, r->alone);
+    brio_release(r->ctx, r->outside);
     brio_release(r->ctx, r->own);
     brio_release(r->ctx, r->label);
     brio_release(r->ctx, r->faces);

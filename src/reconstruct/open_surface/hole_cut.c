@@ -2,7 +2,8 @@
  *
  * To keep a triangle costs its area, in squares of the usual radius, times what its own radius says: twice the logarithm
  * of how often it is BRIDGE times the usual radius, between -1 and 20. So triangles that samples carry gain, and wide ones
- * cost. A rim costs its length. The triangles that stay are those of least cost: one minimum cut, exact. It judges a hole
+ * cost. A triangle that looks another way than its samples costs more: it is the back of a sheet, close behind it, or
+ * a step between two sheets. A rim costs its length. The triangles that stay are those of least cost: one minimum cut, exact. It judges a hole
  * as a whole, with the short triangles at its rim, and leaves no shards of a lid. Rims along folds are free: where a
  * surface turns back on itself, a back that nobody saw comes apart from its front.
  *
@@ -26,6 +27,11 @@
 
 /* Chosen on scans of models that nothing else was measured on; flat between 2 and 3 (BRIDGE) and between 0 and 1 (RIM). */
 static const double BRIDGE = 2.5, RIM = 0.3, LEAST_COST = -1, MOST_COST = 20;
+
+/* A triangle costs AWAY times as much more as the mean cosine between its normal and what its samples take for the outside is
+ * under FACING. Holes of over SIDEWAYS_AREA squares of the usual radius whose mean is under SIDEWAYS stay open, if the
+ * surface is open. Chosen on scans of models that nothing else was measured on. */
+static const double AWAY = 4, FACING = 0.4, SIDEWAYS = 0.5, SIDEWAYS_AREA = 5;
 
 /* The cosine between normals across an edge from which on the edge is a fold. Chosen. */
 static const double FOLD = -0.7;
@@ -66,8 +72,9 @@ static double bridge_of(const cutting *c, size_t f) {
 static double cost_of(const cutting *c, size_t f) {
     const brio_triangle_net *n = c->net;
     double area = area_of(n, f);
-    double evidence = 2 * log(c->radius[f] / bridge_of(c, f));
-    return fmax(LEAST_COST, fmin(evidence, MOST_COST)) * (area / c->usual[f] / c->usual[f]);
+    double evidence = fmax(LEAST_COST, 2 * log(c->radius[f] / bridge_of(c, f)));
+    if (c->rule->choice == BRIO_HOLES_SEEN) evidence += AWAY * fmax(0, FACING - brio_net_facing(n, f));
+    return fmin(evidence, MOST_COST) * (area / c->usual[f] / c->usual[f]);
 }
 
 /* Returns what a rim along a half-edge costs. */
@@ -132,6 +139,7 @@ static brio_hole list_hole(const cutting *c, uint32_t f, size_t begin, size_t *e
         double ratio = c->radius[g] / c->usual[g], area = area_of(c->net, g);
         if (ratio > hole.ratio) hole.ratio = ratio, hole.widest = g;
         hole.area += area;
+        hole.facing += area * brio_net_facing(c->net, g);
         hole.usual_area += area / c->usual[g] / c->usual[g];
         hole.open |= c->rule->choice == BRIO_HOLES_WIDER && c->radius[g] > c->rule->most;
         for (uint32_t k = 0; k < 3; k++) {
@@ -142,14 +150,21 @@ static brio_hole list_hole(const cutting *c, uint32_t f, size_t begin, size_t *e
             c->queue[(*end)++] = other;
         }
     }
+    hole.facing = hole.area > 0 ? hole.facing / hole.area : 1;
     return hole;
+}
+
+/* Returns whether the triangles of a hole look another way than the samples at its rim: it is a step between sheets, one
+ * behind the other, and no gap in a sheet. */
+static bool is_sideways(const brio_hole *h) {
+    return h->facing < SIDEWAYS && h->usual_area > SIDEWAYS_AREA;
 }
 
 /* Decides which holes stay open. */
 static void decide(const cutting *c) {
     brio_hole_list *l = c->holes;
     double all = 0, unlikely = 0;
-    bool open = false;
+    bool open = c->rule->proven;
     for (size_t f = 0; f < c->net->num_faces; f++) all += area_of(c->net, f);
     for (size_t i = 0; i < l->count; i++) {
         brio_hole *h = &l->hole[i];
@@ -158,7 +173,7 @@ static void decide(const cutting *c) {
         open |= h->ratio > PROOF && h->usual_area > PROOF_AREA;
     }
     open = c->rule->choice == BRIO_HOLES_SEEN && (open || unlikely > PROOF_SHARE * all);
-    for (size_t i = 0; i < l->count; i++) l->hole[i].open |= open && l->hole[i].unlikely;
+    for (size_t i = 0; i < l->count; i++) l->hole[i].open |= open && (l->hole[i].unlikely || is_sideways(&l->hole[i]));
 }
 
 static brio_status list_holes(const cutting *c) {

@@ -17,6 +17,7 @@ typedef struct {
     double ratio;      /* the radius of that circle by the usual one */
     double usual_area; /* in squares of the usual radius */
     double area;
+    double facing; /* the mean of brio_net_facing over the area */
     bool unlikely; /* samples of a surface would hardly leave such a gap */
     bool open;
 } brio_hole;
@@ -32,6 +33,7 @@ typedef struct {
 typedef struct {
     enum { BRIO_HOLES_FILL, BRIO_HOLES_SEEN, BRIO_HOLES_WIDER } choice;
     double most;
+    bool proven; /* SEEN: the surface is known to be open, and its holes need not prove that again */
 } brio_hole_rule;
 
 /** Finds the holes, and leaves each open or fills it, as a whole.

@@ -132,12 +132,13 @@ brio_status brio_open_surface(const brio_sample_points *points, const brio_hole_
     double *radius = NULL, *usual = NULL, spacing = 0;
     uint8_t *part = NULL;
     BRIO_TRY(brio_triangle_net_new(ctx, points->points, points->num_points, faces, *num_faces, &net));
+    net.outside = points->outside;
     BRIO_TRY(BRIO_ALLOC(ctx, radius, *num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, usual, *num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, part, *num_faces));
     BRIO_TRY(brio_face_sizes(&net, radius, usual));
     if (rule->choice == BRIO_HOLES_WIDER) BRIO_TRY(find_spacing(&net, &spacing));
-    brio_hole_rule scaled = {rule->choice, rule->most * spacing};
+    brio_hole_rule scaled = {rule->choice, rule->most * spacing, rule->proven};
     BRIO_TRY(brio_cut_holes(&net, radius, usual, &scaled, part, &holes));
     if (is_any_open(&net, &holes)) {
         BRIO_TRY(brio_drop_small_pieces(&net, part));

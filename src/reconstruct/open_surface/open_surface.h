@@ -9,6 +9,7 @@ typedef struct {
     brio_context *ctx;
     const double *points; /* #P by 3 */
     size_t num_points;
+    const float (*outside)[3]; /* #P: unit vectors from the samples to the outside, or NULL */
 } brio_sample_points;
 
 /** What of a surface the samples do not show. */

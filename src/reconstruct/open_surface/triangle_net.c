@@ -10,7 +10,8 @@ brio_status brio_triangle_net_new(brio_context *ctx, const double *points, size_
     brio_status status = BRIO_OK;
     brio_mesh mesh = {.context = ctx, .num_vertices = num_points, .num_faces = num_faces};
     uint32_t *corners = NULL;
-    *out = (brio_triangle_net){ctx, points, num_points, faces, num_faces, NULL};
+    *out = (brio_triangle_net){
+        .ctx = ctx, .points = points, .num_points = num_points, .faces = faces, .num_faces = num_faces};
     BRIO_TRY(BRIO_ALLOC(ctx, mesh.face_offsets, num_faces + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, corners, 3 * num_faces));
     for (size_t f = 0; f <= num_faces; f++) mesh.face_offsets[f] = 3 * f;
@@ -52,4 +53,13 @@ void brio_net_normal(const brio_triangle_net *n, size_t face, double normal[3]) 
     brio_cross(u, v, normal);
     double length = brio_length(normal);
     for (int k = 0; k < 3; k++) normal[k] = length > 0 ? normal[k] / length : 0;
+}
+
+double brio_net_facing(const brio_triangle_net *n, size_t face) {
+    double normal[3], sum = 0;
+    if (!n->outside) return 1;
+    brio_net_normal(n, face, normal);
+    for (size_t i = 0; i < 3; i++)
+        for (size_t k = 0; k < 3; k++) sum += normal[k] * (double)n->outside[n->faces[3 * face + i]][k];
+    return sum / 3;
 }

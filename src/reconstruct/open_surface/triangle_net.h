@@ -11,7 +11,8 @@ typedef struct {
     size_t num_points;
     const uint32_t *faces; /* #F by 3 */
     size_t num_faces;
-    uint32_t *twin; /* 3 #F */
+    uint32_t *twin;            /* 3 #F */
+    const float (*outside)[3]; /* #P: unit vectors from the samples to the outside, or NULL */
 } brio_triangle_net;
 
 /** Links the triangles across their edges.
@@ -39,5 +40,9 @@ static inline bool brio_net_has_twin(const brio_triangle_net *n, size_t half_edg
 
 /** Writes the unit normal of a triangle, 0 if its corners are collinear. */
 void brio_net_normal(const brio_triangle_net *n, size_t face, double normal[3]);
+
+/** Returns the mean cosine between the normal of a triangle and what its samples take for the outside; 1 if they do not
+ *  say. */
+double brio_net_facing(const brio_triangle_net *n, size_t face);
 
 #endif
