@@ -35,8 +35,10 @@
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "reconstruct/noise/sample_noise.h"
 #include "reconstruct/noise/smooth_surface.h"
+#include "mesh/back_off.h"
 #include "reconstruct/open_surface/open_surface.h"
 #include <math.h>
+#include <string.h>
 
 static const brio_labeled_delaunay_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
 
@@ -74,6 +76,7 @@ typedef struct {
     uint32_t *faces;       /* #F by 3 */
     size_t num_faces;
     float *confidence; /* #P, or NULL */
+    brio_triangle_facts of_faces;
     brio_labeled_delaunay_stats stats;
     double lap;
 } reconstruction;
@@ -279,7 +282,7 @@ static brio_status open_surface(reconstruction *r) {
     brio_sample_points samples = {r->ctx, r->points, r->num_points};
     brio_hole_rule rule = {.choice = o->holes == BRIO_HOLES_AUTO ? BRIO_HOLES_SEEN : BRIO_HOLES_FILL};
     if (o->open > 0) rule = (brio_hole_rule){BRIO_HOLES_WIDER, o->open};
-    BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &u));
+    BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &r->of_faces, &u));
     r->stats.left_out = before - r->num_faces;
     r->stats.holes = u.holes;
     r->stats.bridges = u.bridges;
@@ -316,6 +319,8 @@ static brio_status make_mesh(reconstruction *r, const double *points, brio_mesh 
                              .moved = r->stats.smoothed,
                              .spacing = r->spacing,
                              .confidence = r->confidence,
+                             .bridge = r->of_faces.bridge,
+                             .size = r->of_faces.size,
                              .simplify = r->options->simplify != 0,
                              .faces = r->faces,
                              .num_faces = r->num_faces};
@@ -346,6 +351,33 @@ done:
     return status;
 }
 
+/* Smooths the surface, as far as faces do not cross: those of a Delaunay triangulation did not. */
+static brio_status smooth(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_mesh mesh = {.size = sizeof mesh,
+                      .context = r->ctx,
+                      .num_vertices = r->num_points,
+                      .vertices = r->points,
+                      .num_faces = r->num_faces,
+                      .face_vertices = r->faces};
+    double *before = NULL;
+    const brio_bar bar = brio_progress_bar(r->ctx);
+    BRIO_TRY(BRIO_ALLOC(r->ctx, mesh.face_offsets, r->num_faces + 1));
+    BRIO_TRY(BRIO_ALLOC(r->ctx, before, 3 * r->num_points));
+    for (size_t f = 0; f <= r->num_faces; f++) mesh.face_offsets[f] = 3 * f;
+    memcpy(before, r->points, 3 * r->num_points * sizeof *before);
+    brio_progress_part(r->ctx, bar, 0, 0.5);
+    BRIO_TRY(brio_smooth_surface(r->ctx, r->points, r->num_points, r->faces, r->num_faces));
+    brio_progress_part(r->ctx, bar, 0.5, 1);
+    BRIO_TRY(brio_back_off(r->ctx, &mesh, before, NULL));
+    lap(r, &r->stats.noise_seconds);
+done:
+    brio_progress_part(r->ctx, bar, 0, 1);
+    brio_release(r->ctx, mesh.face_offsets);
+    brio_release(r->ctx, before);
+    return status;
+}
+
 static brio_status find_surface(reconstruction *r, const double *points) {
     brio_status status = BRIO_OK;
     const brio_bar bar = brio_progress_bar(r->ctx);
@@ -363,8 +395,7 @@ static brio_status find_surface(reconstruction *r, const double *points) {
     BRIO_TRY(extract(r));
     brio_progress_part(r->ctx, bar, 0.95, 1);
     BRIO_TRY(open_surface(r));
-    if (r->stats.smoothed) BRIO_TRY(brio_smooth_surface(r->ctx, r->points, r->num_points, r->faces, r->num_faces));
-    lap(r, &r->stats.noise_seconds);
+    if (r->stats.smoothed) BRIO_TRY(smooth(r));
 done:
     brio_progress_part(r->ctx, bar, 0, 1);
     return status;
@@ -382,6 +413,8 @@ static void release(reconstruction *r) {
     brio_release(r->ctx, r->label);
     brio_release(r->ctx, r->faces);
     brio_release(r->ctx, r->confidence);
+    brio_release(r->ctx, r->of_faces.bridge);
+    brio_release(r->ctx, r->of_faces.size);
 }
 
 brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
