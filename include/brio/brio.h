@@ -1962,17 +1962,17 @@ BRIO_API brio_format brio_format_of(const char *path);
 enum {
     BRIO_HOLDS_FACES = 1,
     BRIO_HOLDS_TETRAHEDRA = 2,
-    BRIO_HOLDS_EDGES = 4,        /* of brio_mesh.edges */
-    BRIO_HOLDS_PROPERTIES = 8,   /* of the vertices, any of them */
-    BRIO_HOLDS_NAMES = 16,       /* the names of the properties */
-    BRIO_HOLDS_DOUBLES = 32,     /* coordinates in double precision */
-    BRIO_HOLDS_SINGLES = 64,     /* coordinates in single precision: by choice where doubles are held, too */
-    BRIO_HOLDS_TEXT = 128,       /* the file can be a text */
-    BRIO_HOLDS_BINARY = 256,     /* the file can be binary */
-    BRIO_HOLDS_COMPRESSED = 512, /* brio_write_options.compress has a meaning */
-    BRIO_HOLDS_COLOURS = 1024,   /* red, green and blue, though not all properties */
-    BRIO_HOLDS_NORMALS = 2048,   /* nx, ny and nz, though not all properties */
-    BRIO_HOLDS_INTENSITY = 4096, /* intensity, though not all properties */
+    BRIO_HOLDS_EDGES = 4,              /* of brio_mesh.edges */
+    BRIO_HOLDS_PROPERTIES = 8,         /* of the vertices, any of them */
+    BRIO_HOLDS_NAMES = 16,             /* the names of the properties */
+    BRIO_HOLDS_DOUBLES = 32,           /* coordinates in double precision */
+    BRIO_HOLDS_SINGLES = 64,           /* coordinates in single precision: by choice where doubles are held, too */
+    BRIO_HOLDS_TEXT = 128,             /* the file can be a text */
+    BRIO_HOLDS_BINARY = 256,           /* the file can be binary */
+    BRIO_HOLDS_COMPRESSED = 512,       /* brio_write_options.compress has a meaning */
+    BRIO_HOLDS_COLOURS = 1024,         /* red, green and blue, though not all properties */
+    BRIO_HOLDS_NORMALS = 2048,         /* nx, ny and nz, though not all properties */
+    BRIO_HOLDS_INTENSITY = 4096,       /* intensity, though not all properties */
     BRIO_HOLDS_FACE_PROPERTIES = 8192, /* of the faces, any of them */
     BRIO_HOLDS_FACE_COLOURS = 16384    /* red, green, blue and alpha of the faces, though not all properties */
 };

@@ -56,11 +56,11 @@ typedef struct brio_format_row {
     brio_status (*read_columns)(brio_stream *s, brio_builder *b, const char *columns);
     const struct brio_row_format *rows;                                /* NULL: not written row by row */
     brio_status (*write)(brio_output *out, const brio_write_job *job); /* NULL: not written as a whole */
-    bool about_origin;    /* single precision is that of distances from an origin, which the writer chooses */
-    brio_colours colours; /* how a file that is written has colours */
+    bool about_origin;         /* single precision is that of distances from an origin, which the writer chooses */
+    brio_colours colours;      /* how a file that is written has colours */
     brio_colours face_colours; /* likewise of the faces */
-    bool scans;           /* whether the writer makes scans (scans.h): the reader then tells places and grids */
-    const char *keeps;    /* NULL, or how the names of the metadata begin that the writer keeps: "crs. las." */
+    bool scans;                /* whether the writer makes scans (scans.h): the reader then tells places and grids */
+    const char *keeps;         /* NULL, or how the names of the metadata begin that the writer keeps: "crs. las." */
 } brio_format_row;
 
 /** Returns the row of a format, or NULL. */

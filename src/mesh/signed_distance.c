@@ -154,7 +154,8 @@ static brio_status measure(brio_context *ctx, measurement *m, size_t num_points)
     for (; m->first < num_points; m->first += BATCH) {
         size_t count = num_points - m->first < BATCH ? num_points - m->first : BATCH;
         BRIO_TRY(brio_progress(ctx, "distance", (double)m->first / (double)num_points));
-        brio_for_chunks(ctx, brio_threads(ctx, count, POINTS_A_CHUNK), count, POINTS_A_CHUNK, measure_points, m);
+        BRIO_TRY(
+            brio_for_chunks(ctx, brio_threads(ctx, count, POINTS_A_CHUNK), count, POINTS_A_CHUNK, measure_points, m));
     }
 done:
     return status;

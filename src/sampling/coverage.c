@@ -135,7 +135,7 @@ static brio_status run(coverage *c, size_t count, double from, double to, void (
     for (c->first = 0; c->first < count; c->first += BATCH) {
         size_t part = count - c->first < BATCH ? count - c->first : BATCH;
         BRIO_TRY(brio_progress(c->ctx, "coverage", from + (to - from) * (double)c->first / (double)count));
-        brio_for_chunks(c->ctx, brio_threads(c->ctx, part, ITEMS_A_CHUNK), part, ITEMS_A_CHUNK, body, c);
+        BRIO_TRY(brio_for_chunks(c->ctx, brio_threads(c->ctx, part, ITEMS_A_CHUNK), part, ITEMS_A_CHUNK, body, c));
     }
 done:
     return status;
